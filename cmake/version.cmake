@@ -1,0 +1,10 @@
+# The commit that `vernier --version` prints; "unknown" outside a checkout.
+set(VERNIER_COMMIT unknown)
+find_package(Git QUIET)
+if(GIT_FOUND)
+  execute_process(COMMAND ${GIT_EXECUTABLE} -C ${CMAKE_SOURCE_DIR} rev-parse --short=12 HEAD
+    OUTPUT_VARIABLE git_commit OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET RESULT_VARIABLE git_result)
+  if(git_result EQUAL 0)
+    set(VERNIER_COMMIT ${git_commit})
+  endif()
+endif()

@@ -1,0 +1,5 @@
+# Every target of the project links vernier_warnings; third-party headers are SYSTEM and stay out of it.
+add_library(vernier_warnings INTERFACE)
+target_compile_options(vernier_warnings INTERFACE
+  -Wall -Wextra -Wconversion -Wshadow -Wdouble-promotion -Werror)
+target_include_directories(vernier_warnings INTERFACE ${CMAKE_SOURCE_DIR})

@@ -1,0 +1,29 @@
+#pragma once
+#include <Eigen/Core>
+#include <vector>
+
+#include "tools/model/machine.h"
+#include "tools/model/states.h"
+
+namespace vernier {
+
+/// Tool points and orientations of N states in workpiece coordinates (no BaseShift).
+struct Poses {
+  Eigen::Matrix3Xd position;              // mm
+  std::vector<Eigen::Matrix3d> rotation;  // workpiece <- tool
+};
+
+/// Forward solution of the chain: p = W^-1 * T * (0,0,0,1), FORMATS section 1. Exact, in double.
+/// Throws InputError where an expression is not finite, naming transform, degree of freedom and state. tool.
+Poses forward(const Machine& machine, const States& states);
+
+/// Deviation of each state: position of `machine` minus position of its nominal chain, mm.
+Eigen::Matrix3Xd deviation(const Machine& machine, const States& states);
+
+/// Values of a table at a raw axis position, mm and deg; node, edge and periodic rules of FORMATS.
+std::array<double, 6> table_values(const Table& table, double raw);
+
+/// Value of an expression of the machine at every state.
+Column evaluate(const Machine& machine, const Expr& expr, const States& states);
+
+}  // namespace vernier

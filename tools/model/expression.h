@@ -1,0 +1,93 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace vernier {
+
+/// What a node of an expression does. Angles are degrees throughout (`sin cos tan` take them, `atan2` gives them).
+enum class Op : std::uint8_t {
+  kNumber, kSymbol, kRunIs,
+  kNegate, kAdd, kSubtract, kMultiply, kDivide, kPower,
+  kEqual, kLess, kGreater,
+  kSin, kCos, kTan, kAtan2, kSqrt, kAbs, kExp, kLog, kSign, kMin, kMax,
+  kLag,  // lag(u, tau): first-order lag over t, state starts at u's first value in each run
+};
+
+/// What a name in an expression stands for, once resolved against a machine.
+enum class SymbolKind : std::uint8_t {
+  kUnresolved,
+  kStatic,        // index: Machine::statics
+  kAxis,          // index: Machine::axes; value (1 + scalefactor) * raw
+  kInput,         // index: Machine::inputs
+  kTableValue,    // index: axis * 6 + column, column 0..5 = X Y Z rX rY rZ; mm and deg
+  kVelocity,      // index: axis; mm/s or deg/s
+  kAcceleration,  // index: axis; mm/s^2 or deg/s^2
+  kDirection,     // index: axis; -1, 0, +1
+  kSince,         // index: axis; travel since the last reversal, mm or deg
+  kFeed,          // mm/min
+  kCurvature,     // 1/mm
+  kNormal,        // index 0..2: nx ny nz of the row
+  kTime,          // s
+  kVisit,         // rows since the start of the run
+};
+
+struct Symbol {
+  SymbolKind kind = SymbolKind::kUnresolved;
+  std::size_t index = 0;
+  bool operator==(const Symbol&) const = default;
+};
+
+struct Expr;
+using ExprPtr = std::shared_ptr<const Expr>;
+
+/// A node of an immutable expression tree.
+struct Expr {
+  Op op = Op::kNumber;
+  double number = 0;          // kNumber
+  std::string name;           // kSymbol: as written; kRunIs: the label
+  Symbol symbol;              // kSymbol, after resolution
+  std::vector<ExprPtr> args;  // operands in order
+};
+
+/// Where in the text of an expression it goes wrong, and the word it goes wrong at.
+class ExpressionError : public std::runtime_error {
+ public:
+  ExpressionError(std::size_t offset_, std::string word_, const std::string& what)
+      : std::runtime_error(what), offset(offset_), word(std::move(word_)) {}
+  std::size_t offset;
+  std::string word;
+};
+
+/// Parses an expression of FORMATS (docs/formats.md). Names stay unresolved. Throws ExpressionError. tool.
+ExprPtr parse_expression(std::string_view text);
+
+/// Text that parses back to the same tree, with the fewest parentheses.
+std::string to_text(const Expr& expr);
+
+ExprPtr make_number(double value);
+ExprPtr make_node(Op op, std::vector<ExprPtr> args);
+
+/// True where the expression is a number after folding, and its value.
+bool is_constant(const Expr& expr, double& value);
+
+/// The function's name in expressions ("sin"), or nullptr for operators and leaves.
+const char* function_name(Op op);
+/// Is `name` a function or a fixed quantity of the expression language (t, feed, run, sin ...)?
+bool is_reserved_word(std::string_view name);
+
+/// The value of one operation on plain numbers; comparisons give 1 or 0. Not for leaves and kLag.
+double apply(Op op, double a, double b);
+
+/// Calls visit(node) for every node, children first.
+template <class Visit>
+void walk(const Expr& expr, const Visit& visit) {
+  for (const ExprPtr& arg : expr.args) walk(*arg, visit);
+  visit(expr);
+}
+
+}  // namespace vernier

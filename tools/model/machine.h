@@ -1,0 +1,127 @@
+#pragma once
+#include <array>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/model/error.h"
+#include "tools/model/expression.h"
+
+namespace vernier {
+
+/// X Y Z rX rY rZ in mm and deg: the columns of a table, of BaseShift, of a sixdof transform.
+inline constexpr std::array<const char*, 6> kSixDofNames = {"X", "Y", "Z", "rX", "rY", "rZ"};
+/// The attributes of a DH transform in the order of Transform::dof.
+inline constexpr std::array<const char*, 4> kDhNames = {"theta", "d", "a", "alpha"};
+
+struct Static {
+  std::string name;
+  double value = 0;
+  std::optional<double> nominal;
+  std::string unit, note;
+  bool hidden = false;  // not free in a fit
+  std::size_t line = 0;
+};
+
+struct Axis {
+  std::string name;
+  bool rotary = false;
+  std::optional<double> min, max;                   // mm or deg
+  std::optional<double> max_correction, max_slew;   // axis unit; axis unit per s
+  bool rollover = false;
+  double scale_factor = 0;
+  std::size_t line = 0;
+};
+
+/// A measured quantity that is no axis. An axis with Hide is one of these too (`hidden_axis`).
+struct Input {
+  std::string name, unit;
+  double reference = 0;
+  std::optional<double> min, max;
+  bool hidden_axis = false;
+  std::size_t line = 0;
+};
+
+struct Station {
+  double loc = 0;
+  std::string loc_text;  // as written, for parameter names
+  std::array<double, 6> value{};
+};
+
+enum class Interpolation : std::uint8_t { kLinear, kCubic };
+
+struct Table {
+  std::size_t axis = 0;
+  Interpolation interpolation = Interpolation::kLinear;
+  bool periodic = false;           // the axis has rollover: periodic over first..last station
+  std::array<bool, 6> free{};      // columns freed in a fit
+  std::vector<Station> stations;   // loc strictly increasing
+  std::size_t line = 0;
+};
+
+struct BaseShift {
+  std::optional<std::string> run;  // none: the plain one
+  std::array<double, 6> value{};   // mm, deg
+  bool hidden = false;
+  std::size_t line = 0;
+};
+
+enum class TransformKind : std::uint8_t { kSixDof, kDh };
+
+struct Transform {
+  TransformKind kind = TransformKind::kSixDof;
+  int n = 0;
+  std::array<ExprPtr, 6> dof{};         // six for sixdof, the first four for DH (kDhNames); never null for those
+  std::array<std::string, 6> text{};    // as written ("0" where absent)
+  std::size_t line = 0;
+  std::size_t dof_count() const { return kind == TransformKind::kSixDof ? 6 : 4; }
+  const char* dof_name(std::size_t i) const {
+    return kind == TransformKind::kSixDof ? kSixDofNames[i] : kDhNames[i];
+  }
+};
+
+/// A machine file: chain, statics, axes, inputs, tables. Value type; expressions are resolved against it.
+struct Machine {
+  std::string name, file;
+  std::array<double, 3> gravity{0, 0, -1};  // unit vector in the chain's base frame
+  std::vector<Static> statics;
+  std::vector<Axis> axes;
+  std::vector<Input> inputs;
+  std::vector<Table> tables;
+  std::vector<BaseShift> base_shifts;
+  std::vector<Transform> tool, workpiece;
+  std::vector<std::string> notes;  // what was read but ignored (`multiply` and the like)
+
+  std::optional<std::size_t> find_static(std::string_view n) const;
+  std::optional<std::size_t> find_axis(std::string_view n) const;
+  std::optional<std::size_t> find_input(std::string_view n) const;
+  const Table* table_of(std::size_t axis) const;
+};
+
+/// Reads a machine file. Throws InputError with file, line and word. tool.
+Machine read_machine(const std::string& path);
+/// The same from text; `file` is only used in messages.
+Machine parse_machine(const std::string& text, const std::string& file);
+
+/// What a name means in expressions of this machine; kUnresolved where it means nothing.
+Symbol resolve_name(const Machine& machine, std::string_view name);
+/// Parses and resolves an expression for this machine. Throws ExpressionError with the unknown name.
+ExprPtr parse_expression_for(const Machine& machine, std::string_view text);
+/// The name of a symbol as expressions write it.
+std::string symbol_name(const Machine& machine, const Symbol& symbol);
+/// The unit of a symbol ("mm", "deg/s", ...), for reports and unit checks.
+std::string symbol_unit(const Machine& machine, const Symbol& symbol);
+
+/// The machine of the nominal chain: statics at `nominal` (hidden ones without it at their value),
+/// tables and scalefactor 0; inputs and motion as they are. BaseShift is identity.
+Machine nominal_machine(const Machine& machine);
+
+/// Writes the machine back into the text it was read from: values of statics, tables and BaseShift changed,
+/// everything else (comments, order, unknown spelling) as the user wrote it. Throws InputError. tool.
+/// `set_nominal`: a static without `nominal` gets the value that it had in the text.
+std::string update_machine_text(const std::string& text, const Machine& machine, bool set_nominal);
+
+}  // namespace vernier
