@@ -1,0 +1,132 @@
+#include "tests/unit/house/includes.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <set>
+
+namespace vernier::house {
+namespace {
+
+bool starts_with(std::string_view text, std::string_view prefix) {
+  return text.substr(0, prefix.size()) == prefix;
+}
+
+std::string_view head(std::string_view path) { return path.substr(0, path.find('/')); }
+
+// C++20's freestanding headers, and those that C++23 and C++26 add and that need neither heap nor operating
+// system.
+bool is_freestanding(std::string_view header) {
+  static const std::set<std::string_view> kHeaders = {
+      "algorithm", "array",       "atomic",  "bit",     "cfloat",  "climits",         "compare",
+      "concepts",  "cstddef",     "cstdint", "cstring", "limits",  "optional",        "ratio",
+      "span",      "type_traits", "tuple",   "utility", "version", "initializer_list"};
+  return kHeaders.contains(header);
+}
+
+// Order in which the folders of tools build on one another; a folder may use those before it.
+int rank_of_tool(std::string_view folder) {
+  static constexpr std::array<std::string_view, 10> kOrder = {
+      "model", "import", "fit", "diagnose", "plan", "compile", "simulate", "upload", "report", "cli"};
+  const auto found = std::find(kOrder.begin(), kOrder.end(), folder);
+  return found == kOrder.end() ? -1 : static_cast<int>(found - kOrder.begin());
+}
+
+bool is_hal_port(std::string_view path) {
+  return starts_with(path, "hal/") && path.substr(4).find('/') == std::string_view::npos;
+}
+
+std::string_view second_folder(std::string_view path) {
+  const auto slash = path.find('/');
+  return slash == std::string_view::npos ? std::string_view{} : head(path.substr(slash + 1));
+}
+
+std::string tool_may_include(std::string_view path, std::string_view target) {
+  const std::string_view folder = second_folder(path);
+  const std::string_view top = head(target);
+  if (top == "comp" || top == "tables") return {};
+  if (top == "firmware" || top == "hal") {
+    const bool runs_firmware = folder == "simulate" || folder == "upload" || folder == "cli";
+    return runs_firmware ? "" : "only simulate, upload and watch may use firmware and hal";
+  }
+  if (target == "tools/cli/command.h") return {};
+  const int mine = rank_of_tool(folder), other = rank_of_tool(second_folder(target));
+  if (mine < 0 || other < 0) return "a folder of tools that has no place in the order";
+  return other <= mine ? "" : "against the order of the folders of tools";
+}
+
+std::string hal_may_include(std::string_view path, std::string_view target) {
+  if (target == "comp/quantity.h" || is_hal_port(target)) return {};
+  if (is_hal_port(path)) return "a hal port may include only ports and comp/quantity.h";
+  const bool sim = starts_with(path, "hal/sim/");
+  if (sim && (head(target) == "comp" || starts_with(target, "hal/sim/"))) return {};
+  if (!sim && starts_with(target, "hal/linux/")) return {};
+  return sim ? "hal/sim may include ports and comp" : "hal/linux may include ports and system libraries";
+}
+
+std::string firmware_may_include(std::string_view path, std::string_view target) {
+  const std::string_view top = head(target);
+  if (top == "firmware" || top == "comp" || top == "tables" || is_hal_port(target)) return {};
+  if (path == "firmware/main.cpp" && top == "hal") return {};
+  return "firmware may include comp, tables and hal ports; only main.cpp names a backend";
+}
+
+// Empty: allowed; else the reason.
+std::string may_include(std::string_view path, std::string_view target) {
+  static const std::set<std::string_view> kFolders = {"comp", "tables", "hal", "firmware", "tools", "tests"};
+  const std::string_view from = head(path), to = head(target);
+  if (!kFolders.contains(to)) return "not written from the repository root";
+  if (from == "tests") return {};
+  if (to == "tests") return "nobody includes tests";
+  if (from == "tools") return tool_may_include(path, target);
+  if (to == "tools") return "nobody includes tools";
+  if (from == "comp") return to == "comp" ? "" : "comp stands alone";
+  if (from == "tables") return to == "tables" || to == "comp" ? "" : "tables may include comp only";
+  if (from == "hal") return hal_may_include(path, target);
+  return firmware_may_include(path, target);
+}
+
+struct Include {
+  std::string target;
+  bool system = false;
+};
+
+// The include on this line, or an empty target.
+Include parse_include(std::string_view line) {
+  const auto skip_blanks = [&line] {
+    line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
+  };
+  skip_blanks();
+  if (!starts_with(line, "#")) return {};
+  line.remove_prefix(1);
+  skip_blanks();
+  if (!starts_with(line, "include")) return {};
+  line.remove_prefix(7);
+  skip_blanks();
+  if (line.empty() || (line.front() != '"' && line.front() != '<')) return {};
+  const bool system = line.front() == '<';
+  line.remove_prefix(1);
+  return {std::string(line.substr(0, line.find(system ? '>' : '"'))), system};
+}
+
+}  // namespace
+
+std::vector<std::string> wrong_includes(const std::string& path, std::string_view text) {
+  std::vector<std::string> wrong;
+  const bool core = starts_with(path, "comp/") || starts_with(path, "tables/");
+  for (std::size_t line = 1; !text.empty(); ++line) {
+    const auto end = std::min(text.find('\n'), text.size());
+    const Include include = parse_include(text.substr(0, end));
+    text.remove_prefix(std::min(end + 1, text.size()));
+    if (include.target.empty()) continue;
+    std::string why;
+    if (!include.system) why = may_include(path, include.target);
+    if (include.system && core && !is_freestanding(include.target))
+      why = "comp and tables take freestanding headers only";
+    if (!why.empty())
+      wrong.push_back(path + ":" + std::to_string(line) + ": \"" + include.target + "\": " + why);
+  }
+  return wrong;
+}
+
+}  // namespace vernier::house
