@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+
+#include "comp/equation.h"
+#include "comp/quantity.h"
+#include "comp/slew_limit.h"
+
+namespace vernier {
+
+/// Motion of one axis in its own count (nm, or 2^-32 turn).
+struct AxisInput {
+  AxisPosition position;
+  AxisSpeed velocity;
+  AxisAcceleration acceleration;
+  AxisTravel since{INT64_MAX};  // travel since the last reversal; a long way where unknown
+  std::int8_t sense = 0;        // -1, 0, +1: sense of the last motion
+};
+
+/// All that the error equation may depend on at one tick. Indices as in the image's axes and inputs.
+struct CycleInput {
+  AxisInput axis[kMaxAxes];
+  InputMicro input[kMaxInputs];
+  FeedNmPerMin feed;
+  CurvatureNanoPerMm curvature;
+  TimeUs time;  // since start
+  VisitCount visit;
+};
+
+/// What a channel reads from the CycleInput.
+enum class ChannelKind : std::uint8_t {
+  kPosition,
+  kVelocity,
+  kAcceleration,
+  kSense,
+  kSince,
+  kInput,
+  kFeed,
+  kCurvature,
+  kTime,
+  kVisit
+};
+constexpr std::uint8_t kChannelKindCount = static_cast<std::uint8_t>(ChannelKind::kVisit) + 1;
+
+/// Turns one quantity of the CycleInput into the program's format: limit to [low, high], then
+/// round(round(value / 2^pre_shift) * multiplier / 2^shift). 32 bytes, as in the image.
+struct Channel {
+  ChannelKind kind;
+  std::uint8_t index;       // axis or input
+  std::uint8_t pre_shift;   // 0..40: brings the limits into int32
+  std::uint8_t shift;       // 0..61
+  std::int32_t multiplier;  // > 0
+  std::int64_t low, high;   // in the quantity's own count
+  std::int64_t
+      wrap;  // 0, or one period: a value beyond the limits comes back by whole turns (a power of two)
+};
+static_assert(sizeof(Channel) == 32);
+
+/// Takes one result of the equation to an axis: deviation = round(register * multiplier / 2^shift) in axis
+/// counts.
+struct Output {
+  std::uint16_t axis;
+  std::uint16_t source;  // register
+  std::uint32_t shift;   // 0..61
+  std::int32_t multiplier;
+  std::int32_t limit;  // largest |correction|, axis counts
+  std::int32_t slew;   // largest change a tick, axis counts
+};
+static_assert(sizeof(Output) == 20);
+
+/// The whole program of a machine, non-owning.
+struct Program {
+  Equation equation;
+  View<Channel> channels;
+  View<Output> outputs;
+  std::uint32_t axis_count = 0;
+  std::uint32_t input_count = 0;
+};
+
+/// Actual minus nominal, seen along an axis; and what is added to the command of the axis. Axis counts, two
+/// types so that nobody mixes the signs.
+struct Deviation {
+  std::int32_t counts = 0;
+};
+struct Correction {
+  std::int32_t counts = 0;
+};
+/// The only place where a deviation turns into a correction. -INT32_MIN becomes INT32_MAX. realtime.
+constexpr Correction correction_for(Deviation deviation) noexcept {
+  return Correction{deviation.counts == INT32_MIN ? INT32_MAX : -deviation.counts};
+}
+/// The correction of a linear axis as a length.
+constexpr LengthNm length_of(Correction correction) { return LengthNm(correction.counts); }
+
+/// Limits in force in this tick: reported, never silent, nothing latches.
+enum CycleFlag : std::uint32_t {
+  kBeyondRange = 1u << 0,  // a channel outside its declared range: its edge was held
+  kSaturated = 1u << 1,    // a correction at its limit
+  kSlewing = 1u << 2,      // a correction still on its way
+};
+
+struct CycleOutput {
+  Correction correction[kMaxAxes];    // 0 for axes that are not corrected
+  std::uint32_t flags = 0;            // CycleFlag
+  std::uint32_t beyond_channels = 0;  // number of channels beyond their range
+};
+
+/// A value limited to the range of its channel, in the format of the program; monotone, so the limits give
+/// its range. realtime.
+std::int32_t channel_value(const Channel& channel, std::int64_t value) noexcept;
+
+/// One tick of compensation: equation, magnitude limit, ramp weight, slew limit. Owns the registers, lags and
+/// slew state. The program must have been verified and must outlive the compensator.
+class Compensator {
+ public:
+  /// setup.
+  explicit Compensator(const Program& program) noexcept;
+
+  /// The correction of this tick. Call it once per tick (the program's slew and lags count ticks).
+  /// weight: 0..kFullWeight, the fraction of the correction applied (ramp-in, ramp-out). Never fails.
+  /// realtime.
+  CycleOutput step(const CycleInput& input, WeightQ16 weight = kFullWeight) noexcept;
+
+  /// Forgets lags and slew state: the next step starts from zero correction. setup.
+  void reset() noexcept;
+
+  /// Register i after the last step, for tests and for watching intermediates. setup.
+  std::int32_t register_value(std::uint32_t i) const noexcept { return registers_[i]; }
+
+ private:
+  void read_channels(const CycleInput& input, CycleOutput& output) noexcept;
+
+  Program program_;
+  std::int32_t registers_[kMaxRegisters] = {};
+  LagState lags_[kMaxLags] = {};
+  SlewLimit slew_[kMaxAxes];
+  bool starting_ = true;
+};
+
+}  // namespace vernier

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+
+namespace vernier {
+
+/// Lower of two, higher of two, and value limited to [low, high]. Exact. realtime.
+template <class Integer>
+constexpr Integer lower(Integer a, Integer b) noexcept {
+  return b < a ? b : a;
+}
+template <class Integer>
+constexpr Integer higher(Integer a, Integer b) noexcept {
+  return a < b ? b : a;
+}
+template <class Integer>
+constexpr Integer clamp(Integer value, Integer low, Integer high) noexcept {
+  return lower(higher(value, low), high);
+}
+
+/// value / 2^shift, rounded to nearest, ties towards plus infinity.
+/// value: any format, |value| <= 2^63 - 1 - 2^(shift-1); shift: 0..62. Accumulator 64 bit, nothing saturates.
+/// Error <= 1/2 LSB of the result. realtime.
+constexpr std::int64_t round_shift(std::int64_t value, unsigned shift) noexcept {
+  const std::int64_t half = (std::int64_t{1} << shift) >> 1;
+  return (value + half) >> shift;
+}
+
+/// The low 32 bits of a value that the caller has proved to fit (program verifier). realtime.
+constexpr std::int32_t narrow(std::int64_t value) noexcept { return static_cast<std::int32_t>(value); }
+
+/// value where it fits int32, else the nearest end; `saturated` is set (never cleared) where it did not.
+/// realtime.
+constexpr std::int32_t saturate(std::int64_t value, bool& saturated) noexcept {
+  const std::int64_t limited = clamp<std::int64_t>(value, INT32_MIN, INT32_MAX);
+  saturated = saturated || limited != value;
+  return narrow(limited);
+}
+
+/// a * b / 2^shift. a: format Qm, b: Qn, result: Q(m+n-shift); 64-bit product, one rounding (<= 1/2 LSB).
+/// The result must fit int32 (proved by the caller). shift: 0..61. realtime.
+constexpr std::int32_t multiply(std::int32_t a, std::int32_t b, unsigned shift) noexcept {
+  return narrow(round_shift(std::int64_t{a} * b, shift));
+}
+
+/// (a * b + c * k) / 2^shift with one rounding. a: Qm, b: Qn, c * k aligned to Q(m+n) by the choice of k, |k|
+/// <= 2^30. Accumulator 64 bit: 2^62 + 2^61 + 2^60 < 2^63. shift: 0..61; the result fits int32 (proved by the
+/// caller). realtime.
+constexpr std::int32_t multiply_add(std::int32_t a, std::int32_t b, std::int32_t c, std::int32_t k,
+                                    unsigned shift) noexcept {
+  return narrow(round_shift(std::int64_t{a} * b + std::int64_t{c} * k, shift));
+}
+
+/// (a * k + b * l) / 2^shift with one rounding: weighted sum of two values of any formats, |k|, |l| <= 2^30.
+/// shift: 0..61; the result fits int32 (proved by the caller). Sum, difference, scaling and change of format.
+/// realtime.
+constexpr std::int32_t linear(std::int32_t a, std::int32_t k, std::int32_t b, std::int32_t l,
+                              unsigned shift) noexcept {
+  return narrow(round_shift(std::int64_t{a} * k + std::int64_t{b} * l, shift));
+}
+
+/// -1, 0 or +1. realtime.
+constexpr std::int32_t sign_of(std::int32_t value) noexcept {
+  return (value > 0 ? 1 : 0) - (value < 0 ? 1 : 0);
+}
+
+/// |value|; value > INT32_MIN (proved by the caller). realtime.
+constexpr std::int32_t magnitude(std::int32_t value) noexcept { return value < 0 ? -value : value; }
+
+/// |value|, 64 bit; value > INT64_MIN (proved by the caller). realtime.
+constexpr std::int64_t magnitude_of(std::int64_t value) noexcept { return value < 0 ? -value : value; }
+
+}  // namespace vernier

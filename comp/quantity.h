@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <compare>
+#include <cstdint>
+
+namespace vernier {
+
+/// One integer with its unit in the type. Converting to or from a bare integer is always written out; sums
+/// and differences stay in the unit; nothing here saturates or wraps silently on purpose: callers keep
+/// ranges. Context: realtime.
+template <class Unit, class Integer>
+struct Quantity {
+  using Count = Integer;
+  Count count = 0;
+
+  constexpr Quantity() = default;
+  constexpr explicit Quantity(Count value) : count(value) {}
+  constexpr auto operator<=>(const Quantity&) const = default;
+  constexpr Quantity operator-() const { return Quantity(static_cast<Count>(-count)); }
+  constexpr Quantity operator+(Quantity other) const {
+    return Quantity(static_cast<Count>(count + other.count));
+  }
+  constexpr Quantity operator-(Quantity other) const {
+    return Quantity(static_cast<Count>(count - other.count));
+  }
+};
+
+namespace unit {
+struct Nanometre;
+struct Nanoradian;
+struct NanometrePosition;
+struct TurnFraction;
+struct Millikelvin;
+struct Microsecond;
+struct AxisPositionCount;
+struct AxisTravelCount;
+struct AxisSpeedCount;
+struct AxisAccelerationCount;
+struct FeedNanometrePerMinute;
+struct CurvatureNanoPerMillimetre;
+struct InputMicro;
+struct Visit;
+struct WeightQ16;
+}  // namespace unit
+
+/// A length, ±2.1 m at 1 nm.
+using LengthNm = Quantity<unit::Nanometre, std::int32_t>;
+/// An angle, ±2.1 rad at 1 nrad.
+using AngleNrad = Quantity<unit::Nanoradian, std::int32_t>;
+/// Position of a linear axis; 64 bit because 20 m at 1 nm do not fit 32.
+using PositionNm = Quantity<unit::NanometrePosition, std::int64_t>;
+/// Position of a rotary axis in 2^-32 turn; whole turns above bit 32, so that a rollover is a mask.
+using TurnsQ32 = Quantity<unit::TurnFraction, std::int64_t>;
+/// A temperature, 1 mK above absolute zero or as a difference.
+using TempMilliK = Quantity<unit::Millikelvin, std::int32_t>;
+/// A time or a duration.
+using TimeUs = Quantity<unit::Microsecond, std::int64_t>;
+
+/// Motion of an axis, in the axis' own count: 1 nm (linear) or 2^-32 turn (rotary); per s, per s^2.
+using AxisPosition = Quantity<unit::AxisPositionCount, std::int64_t>;
+using AxisTravel = Quantity<unit::AxisTravelCount, std::int64_t>;
+using AxisSpeed = Quantity<unit::AxisSpeedCount, std::int64_t>;
+using AxisAcceleration = Quantity<unit::AxisAccelerationCount, std::int64_t>;
+
+/// Path feed, 1 nm/min.
+using FeedNmPerMin = Quantity<unit::FeedNanometrePerMinute, std::int64_t>;
+/// Path curvature, 1e-9 per mm.
+using CurvatureNanoPerMm = Quantity<unit::CurvatureNanoPerMillimetre, std::int64_t>;
+/// A measured input, 1e-6 of the unit that the machine file declares for it (degC, V, N ...).
+using InputMicro = Quantity<unit::InputMicro, std::int64_t>;
+/// Rows (stops) since the start of the run.
+using VisitCount = Quantity<unit::Visit, std::int64_t>;
+/// A weight 0..1 as 0..65536.
+using WeightQ16 = Quantity<unit::WeightQ16, std::int32_t>;
+
+constexpr WeightQ16 kFullWeight{65536};
+/// Counts of one turn of a rotary axis.
+constexpr std::int64_t kTurnCounts = std::int64_t{1} << 32;
+
+constexpr AxisPosition axis_position(PositionNm position) { return AxisPosition(position.count); }
+constexpr AxisPosition axis_position(TurnsQ32 position) { return AxisPosition(position.count); }
+/// A reading of a thermometer for an input declared in degC. absolute: mK above absolute zero.
+constexpr InputMicro input_degC(TempMilliK absolute) {
+  return InputMicro((std::int64_t{absolute.count} - 273150) * 1000);
+}
+
+}  // namespace vernier

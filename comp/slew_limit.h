@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+
+#include "comp/fixed.h"
+
+namespace vernier {
+
+/// Moves a value towards its target by at most `step` a tick. The invariant |change| <= step holds for every
+/// sequence of targets. Moving to a correction is thereby separate from looking it up.
+class SlewLimit {
+ public:
+  /// target: counts; step: counts a tick, >= 0. Returns the new value. realtime.
+  constexpr std::int32_t approach(std::int32_t target, std::int32_t step) noexcept {
+    const std::int64_t wanted = std::int64_t{target} - value_;
+    const std::int64_t allowed = clamp<std::int64_t>(wanted, -std::int64_t{step}, step);
+    moving_ = allowed != wanted;
+    value_ = narrow(value_ + allowed);
+    return value_;
+  }
+  constexpr std::int32_t value() const noexcept { return value_; }
+  /// True where the last step could not reach its target.
+  constexpr bool limiting() const noexcept { return moving_; }
+  constexpr void reset() noexcept { value_ = 0, moving_ = false; }
+
+ private:
+  std::int32_t value_ = 0;
+  bool moving_ = false;
+};
+
+}  // namespace vernier

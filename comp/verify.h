@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+
+#include "comp/compensator.h"
+
+namespace vernier {
+
+/// Why a program is not safe to run.
+enum class ProgramFault : std::uint8_t {
+  kNone,
+  kTooLong,       // more registers, lags, axes or inputs than the cycle has memory for
+  kChannel,       // channel index, limits, shift or multiplier out of range
+  kTable,         // stations not increasing, lengths or reciprocals inconsistent
+  kColumn,        // a column without values
+  kWrap,          // period, reciprocal or shift inconsistent
+  kOpCode,        // unknown operation
+  kOperand,       // a register that is not written yet, or an index outside
+  kShift,         // shift or factor outside the limits of fixed.h
+  kOverflow,      // a result that could leave int32
+  kSegmentRange,  // a segment number that could leave its table or column
+  kLag,           // a state used twice or not at all
+  kOutput,        // output axis, source, shift or limits out of range
+};
+
+/// All values that a register can take, whatever the inputs.
+struct ValueRange {
+  std::int64_t low = 0;
+  std::int64_t high = 0;
+};
+
+/// Proves by interval analysis of the integers themselves that no run of the program can overflow, shift
+/// wrongly or read outside. ranges: room for kMaxRegisters, gets the range of every register. Trusts nothing
+/// but the views' own sizes. setup.
+ProgramFault verify_program(const Program& program, ValueRange* ranges) noexcept;
+
+/// Range of the result of one instruction, given the ranges of all earlier registers; the compiler chooses
+/// formats with it. `position` is the register that the instruction writes. setup.
+ProgramFault range_of(const Equation& equation, const Instruction& step, std::uint32_t position,
+                      const ValueRange* ranges, ValueRange& result) noexcept;
+
+}  // namespace vernier

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <bit>
+#include <cstdint>
+
+#include "comp/compensator.h"
+
+/// The only definition of the machine image (`machine.vimg`), shared by compiler, uploader and firmware.
+///
+/// Little-endian. Header (64 bytes), then `section_count` section entries, then the sections, each starting
+/// on a multiple of 8 bytes from the start of the image; gaps are zero. Every section type stands exactly
+/// once, in the order of SectionType. The checksum covers all bytes of the image after the checksum field
+/// itself.
+namespace vernier {
+
+static_assert(std::endian::native == std::endian::little, "images are read in place");
+
+constexpr std::uint8_t kImageMagic[8] = {'V', 'E', 'R', 'N', 'I', 'E', 'R', '\n'};
+constexpr std::uint32_t kImageFormatVersion = 1;
+constexpr std::uint32_t kMaxImageBytes = 16u << 20;
+constexpr std::uint32_t kImageAlignment = 8;
+constexpr std::uint32_t kImageNameBytes = 24;
+
+struct ImageHeader {
+  std::uint8_t magic[8];
+  std::uint32_t header_bytes;  // 64: the section entries follow
+  std::uint32_t checksum;      // CRC-32C of everything after this field
+  std::uint32_t format_version;
+  std::uint32_t image_bytes;  // the whole image
+  std::uint32_t section_count;
+  std::uint32_t tick_us;      // the tick for which lags and slew limits were computed
+  std::uint64_t fingerprint;  // of the equation: FNV-1a over the sections from kConstants on
+  std::uint64_t source_hash;  // FNV-1a of the machine file that it was compiled from
+  std::uint32_t lag_count;
+  std::uint32_t reserved[3];  // 0
+};
+static_assert(sizeof(ImageHeader) == 64);
+constexpr std::uint32_t kChecksumStart = 16;  // first byte under the checksum
+
+enum class SectionType : std::uint32_t {
+  kName,          // char: name of the machine
+  kAxes,          // AxisRecord
+  kInputs,        // InputRecord
+  kConstants,     // int32
+  kChannels,      // Channel (comp/compensator.h)
+  kInstructions,  // Instruction (comp/equation.h)
+  kSegments,      // Segment (comp/error_table.h), all tables one after the other
+  kTables,        // Range: the segments of each table
+  kValues,        // int32, all columns one after the other
+  kColumns,       // Range: the values of each column
+  kWraps,         // Wrap
+  kOutputs,       // Output
+};
+constexpr std::uint32_t kSectionCount = static_cast<std::uint32_t>(SectionType::kOutputs) + 1;
+
+struct SectionEntry {
+  SectionType type;
+  std::uint32_t offset;  // from the start of the image
+  std::uint32_t count;   // records
+  std::uint32_t record_bytes;
+};
+static_assert(sizeof(SectionEntry) == 16);
+
+/// A stretch of the section that holds the values of all tables or columns.
+struct Range {
+  std::uint32_t first, count;
+};
+
+enum AxisFlag : std::uint32_t { kRotary = 1u << 0, kRollover = 1u << 1 };
+
+/// Names end with a zero byte and are padded with zeros.
+struct AxisRecord {
+  char name[kImageNameBytes];
+  std::uint32_t flags;     // AxisFlag
+  std::uint32_t reserved;  // 0
+  std::int64_t low, high;  // axis counts: declared range
+};
+static_assert(sizeof(AxisRecord) == 48);
+
+struct InputRecord {
+  char name[kImageNameBytes];
+  char unit[16];
+  std::int64_t reference;  // 1e-6 of the unit: what a missing sensor reads
+  std::int64_t low, high;  // 1e-6 of the unit: range that the error bound covers
+};
+static_assert(sizeof(InputRecord) == 64);
+
+}  // namespace vernier

@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tables/image_view.h"
+
+#include "tables/checksum.h"
+
+namespace vernier {
+namespace {
+
+constexpr std::uint32_t kRecordBytes[kSectionCount] = {1,
+                                                       sizeof(AxisRecord),
+                                                       sizeof(InputRecord),
+                                                       4,
+                                                       sizeof(Channel),
+                                                       sizeof(Instruction),
+                                                       sizeof(Segment),
+                                                       sizeof(Range),
+                                                       4,
+                                                       sizeof(Range),
+                                                       sizeof(Wrap),
+                                                       sizeof(Output)};
+
+template <class T>
+const T* at(const std::uint8_t* bytes, std::uint32_t offset) {
+  return reinterpret_cast<const T*>(bytes + offset);
+}
+
+constexpr std::uint64_t aligned(std::uint64_t offset) {
+  return (offset + kImageAlignment - 1) & ~std::uint64_t{kImageAlignment - 1};
+}
+
+bool zero_between(const std::uint8_t* bytes, std::uint64_t from, std::uint64_t to) {
+  for (std::uint64_t i = from; i < to; ++i)
+    if (bytes[i] != 0) return false;
+  return true;
+}
+
+ImageFault check_header(const std::uint8_t* bytes, std::uint32_t size) {
+  if ((reinterpret_cast<std::uintptr_t>(bytes) & (kImageAlignment - 1)) != 0) return ImageFault::kMisaligned;
+  if (size < sizeof(ImageHeader)) return ImageFault::kTruncated;
+  const ImageHeader& header = *at<ImageHeader>(bytes, 0);
+  for (std::uint32_t i = 0; i < sizeof(kImageMagic); ++i)
+    if (header.magic[i] != kImageMagic[i]) return ImageFault::kMagic;
+  if (header.format_version != kImageFormatVersion) return ImageFault::kFormatVersion;
+  if (header.header_bytes != sizeof(ImageHeader) || header.image_bytes > kMaxImageBytes)
+    return ImageFault::kHeader;
+  if (header.image_bytes < sizeof(ImageHeader) + kSectionCount * sizeof(SectionEntry))
+    return ImageFault::kHeader;
+  if (header.image_bytes > size) return ImageFault::kTruncated;
+  if (header.section_count != kSectionCount || header.tick_us == 0) return ImageFault::kHeader;
+  if ((header.reserved[0] | header.reserved[1] | header.reserved[2]) != 0) return ImageFault::kHeader;
+  if (crc32c(bytes + kChecksumStart, header.image_bytes - kChecksumStart) != header.checksum)
+    return ImageFault::kChecksum;
+  return ImageFault::kNone;
+}
+
+// The sections fill the image without gaps beyond the alignment, so that no byte of it is without meaning.
+ImageFault check_sections(const std::uint8_t* bytes) {
+  const ImageHeader& header = *at<ImageHeader>(bytes, 0);
+  const SectionEntry* const entries = at<SectionEntry>(bytes, sizeof(ImageHeader));
+  std::uint64_t end = sizeof(ImageHeader) + kSectionCount * sizeof(SectionEntry);
+  std::uint64_t fingerprint = kFnvSeed;
+  for (std::uint32_t i = 0; i < kSectionCount; ++i) {
+    const SectionEntry& entry = entries[i];
+    if (static_cast<std::uint32_t>(entry.type) != i || entry.record_bytes != kRecordBytes[i])
+      return ImageFault::kSection;
+    const std::uint64_t bytes_here = std::uint64_t{entry.count} * entry.record_bytes;
+    if (entry.offset != aligned(end) || entry.offset + bytes_here > header.image_bytes)
+      return ImageFault::kSection;
+    if (!zero_between(bytes, end, entry.offset)) return ImageFault::kSection;
+    end = entry.offset + bytes_here;
+    if (i >= static_cast<std::uint32_t>(SectionType::kConstants))
+      fingerprint = fnv1a(bytes + entry.offset, static_cast<std::uint32_t>(bytes_here), fingerprint);
+  }
+  if (end != header.image_bytes) return ImageFault::kSection;
+  return fingerprint == header.fingerprint ? ImageFault::kNone : ImageFault::kFingerprint;
+}
+
+// A name is one to size-1 characters and zeros to the end of its field.
+bool text_ok(const char* text, std::uint32_t size, bool may_be_empty) {
+  std::uint32_t length = 0;
+  while (length < size && text[length] != 0) ++length;
+  if (length == size || (length == 0 && !may_be_empty)) return false;
+  return zero_between(reinterpret_cast<const std::uint8_t*>(text), length, size);
+}
+
+bool axis_ok(const AxisRecord& axis) {
+  return text_ok(axis.name, sizeof(axis.name), false) &&
+         (axis.flags & ~std::uint32_t{kRotary | kRollover}) == 0 && axis.reserved == 0 &&
+         axis.low <= axis.high;
+}
+
+bool input_ok(const InputRecord& input) {
+  return text_ok(input.name, sizeof(input.name), false) && text_ok(input.unit, sizeof(input.unit), true) &&
+         input.low <= input.high;
+}
+
+template <class T>
+View<T> section(const std::uint8_t* bytes, SectionType type) {
+  const SectionEntry& entry = at<SectionEntry>(bytes, sizeof(ImageHeader))[static_cast<std::uint32_t>(type)];
+  return {at<T>(bytes, entry.offset), entry.count};
+}
+
+template <class T>
+ImageFault slice(View<T> all, View<Range> ranges, View<T>* out, std::uint32_t room) {
+  if (ranges.size > room) return ImageFault::kTooMany;
+  std::uint32_t next = 0;
+  for (std::uint32_t i = 0; i < ranges.size; ++i) {
+    if (ranges[i].first != next || ranges[i].count > all.size - next) return ImageFault::kRange;
+    out[i] = View<T>{all.data + next, ranges[i].count};
+    next += ranges[i].count;
+  }
+  return next == all.size ? ImageFault::kNone : ImageFault::kRange;
+}
+
+ImageFault fault_of(ProgramFault fault) {
+  if (fault == ProgramFault::kNone) return ImageFault::kNone;
+  return static_cast<ImageFault>(static_cast<int>(ImageFault::kProgramTooLong) + static_cast<int>(fault) -
+                                 static_cast<int>(ProgramFault::kTooLong));
+}
+static_assert(static_cast<int>(ImageFault::kProgramOutput) - static_cast<int>(ImageFault::kProgramTooLong) ==
+              static_cast<int>(ProgramFault::kOutput) - static_cast<int>(ProgramFault::kTooLong));
+
+}  // namespace
+
+ImageFault ImageView::read_tables(View<Segment> segments, View<Range> tables, View<std::int32_t> values,
+                                  View<Range> columns) noexcept {
+  ImageFault fault = slice(segments, tables, tables_, kMaxTables);
+  if (fault == ImageFault::kNone) fault = slice(values, columns, columns_, kMaxColumns);
+  program_.equation.tables = {tables_, tables.size};
+  program_.equation.columns = {columns_, columns.size};
+  return fault;
+}
+
+ImageFault ImageView::read_sections(const std::uint8_t* bytes) noexcept {
+  const View<char> name = section<char>(bytes, SectionType::kName);
+  if (name.size == 0 || name[name.size - 1] != 0) return ImageFault::kSection;
+  name_ = name.data;
+  axes_ = section<AxisRecord>(bytes, SectionType::kAxes);
+  inputs_ = section<InputRecord>(bytes, SectionType::kInputs);
+  for (const AxisRecord& axis : axes_)
+    if (!axis_ok(axis)) return ImageFault::kAxis;
+  for (const InputRecord& input : inputs_)
+    if (!input_ok(input)) return ImageFault::kInput;
+
+  program_.axis_count = axes_.size;
+  program_.input_count = inputs_.size;
+  program_.channels = section<Channel>(bytes, SectionType::kChannels);
+  program_.outputs = section<Output>(bytes, SectionType::kOutputs);
+  Equation& equation = program_.equation;
+  equation.constants = section<std::int32_t>(bytes, SectionType::kConstants);
+  equation.channel_count = program_.channels.size;
+  equation.instructions = section<Instruction>(bytes, SectionType::kInstructions);
+  equation.wraps = section<Wrap>(bytes, SectionType::kWraps);
+  equation.lag_count = header_->lag_count;
+  return read_tables(
+      section<Segment>(bytes, SectionType::kSegments), section<Range>(bytes, SectionType::kTables),
+      section<std::int32_t>(bytes, SectionType::kValues), section<Range>(bytes, SectionType::kColumns));
+}
+
+ImageFault ImageView::read(const std::uint8_t* bytes, std::uint32_t size,
+                           ImageWorkspace& workspace) noexcept {
+  ImageFault fault = check_header(bytes, size);
+  if (fault == ImageFault::kNone) fault = check_sections(bytes);
+  if (fault != ImageFault::kNone) return fault;
+  header_ = at<ImageHeader>(bytes, 0);
+  fault = read_sections(bytes);
+  return fault != ImageFault::kNone ? fault : fault_of(verify_program(program_, workspace.ranges));
+}
+
+void ImageView::close() noexcept {
+  header_ = nullptr;
+  name_ = "";
+  axes_ = {};
+  inputs_ = {};
+  program_ = {};
+}
+
+ImageFault ImageView::open(const std::uint8_t* bytes, std::uint32_t size,
+                           ImageWorkspace& workspace) noexcept {
+  close();
+  const ImageFault fault = read(bytes, size, workspace);
+  if (fault != ImageFault::kNone) close();
+  return fault;
+}
+
+const char* describe(ImageFault fault) noexcept {
+  switch (fault) {
+    case ImageFault::kNone:
+      return "no fault";
+    case ImageFault::kMisaligned:
+      return "buffer: not aligned to 8 bytes";
+    case ImageFault::kTruncated:
+      return "length: the image is cut off";
+    case ImageFault::kMagic:
+      return "magic: this is no machine image";
+    case ImageFault::kFormatVersion:
+      return "format version: compiled for another version";
+    case ImageFault::kHeader:
+      return "header: sizes or reserved words are wrong";
+    case ImageFault::kChecksum:
+      return "checksum: bytes changed on the way";
+    case ImageFault::kSection:
+      return "section: out of order, misplaced or outside the image";
+    case ImageFault::kFingerprint:
+      return "fingerprint: the equation is not the one the header names";
+    case ImageFault::kAxis:
+      return "axis record: name, flags or range";
+    case ImageFault::kInput:
+      return "input record: name, unit or range";
+    case ImageFault::kRange:
+      return "table or column: leaves its section";
+    case ImageFault::kTooMany:
+      return "tables or columns: more than there is room for";
+    case ImageFault::kProgramTooLong:
+      return "program: more registers, lags, axes or inputs than there is room for";
+    case ImageFault::kProgramChannel:
+      return "program: channel index, limits, shift or multiplier";
+    case ImageFault::kProgramTable:
+      return "program: stations or reciprocals of a table inconsistent";
+    case ImageFault::kProgramColumn:
+      return "program: a column without values";
+    case ImageFault::kProgramWrap:
+      return "program: period of an axis inconsistent";
+    case ImageFault::kProgramOpCode:
+      return "program: unknown operation";
+    case ImageFault::kProgramOperand:
+      return "program: an operand that is not there yet";
+    case ImageFault::kProgramShift:
+      return "program: shift or factor out of range";
+    case ImageFault::kProgramOverflow:
+      return "program: a result could overflow";
+    case ImageFault::kProgramSegmentRange:
+      return "program: a look-up could leave its table";
+    case ImageFault::kProgramLag:
+      return "program: lag states do not match";
+    case ImageFault::kProgramOutput:
+      return "program: output axis, source or limits";
+  }
+  return "unknown fault";
+}
+
+}  // namespace vernier

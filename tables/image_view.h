@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+
+#include "comp/verify.h"
+#include "tables/image_format.h"
+
+namespace vernier {
+
+/// Why an image is refused; one enumerator per cause.
+enum class ImageFault : std::uint8_t {
+  kNone,
+  kMisaligned,      // the buffer does not start on a multiple of 8
+  kTruncated,       // shorter than a header, or than the header says
+  kMagic,           // no Vernier image
+  kFormatVersion,   // another format version
+  kHeader,          // header size, image size, section count, tick or reserved words wrong
+  kChecksum,        // bytes changed on the way
+  kSection,         // a section out of order, misaligned, overlapping or outside
+  kFingerprint,     // the equation is not the one that the header names
+  kAxis,            // axis record: name, flags or range
+  kInput,           // input record: name, unit or range
+  kRange,           // a table or column that leaves its section
+  kTooMany,         // more tables or columns than the views have room for
+  kProgramTooLong,  // the causes of comp/verify.h, in its order
+  kProgramChannel,
+  kProgramTable,
+  kProgramColumn,
+  kProgramWrap,
+  kProgramOpCode,
+  kProgramOperand,
+  kProgramShift,
+  kProgramOverflow,
+  kProgramSegmentRange,
+  kProgramLag,
+  kProgramOutput,
+};
+
+/// One line for people: "checksum: bytes changed on the way".
+const char* describe(ImageFault fault) noexcept;
+
+/// Room that the verification needs once, kept out of the stack of small targets.
+struct ImageWorkspace {
+  ValueRange ranges[kMaxRegisters];
+};
+
+/// Validated, non-owning views into the bytes of an image. The bytes must outlive the view and everything
+/// made from it.
+class ImageView {
+ public:
+  ImageView() = default;
+  ImageView(const ImageView&) = delete;
+  ImageView& operator=(const ImageView&) = delete;
+
+  /// Validates everything, the program included; the views are empty unless it returns kNone.
+  /// bytes: start of the image, aligned to 8, any content; size: bytes available. After kNone,
+  /// workspace.ranges holds the proved range of every register. setup.
+  ImageFault open(const std::uint8_t* bytes, std::uint32_t size, ImageWorkspace& workspace) noexcept;
+
+  const ImageHeader& header() const noexcept { return *header_; }
+  const char* name() const noexcept { return name_; }
+  View<AxisRecord> axes() const noexcept { return axes_; }
+  View<InputRecord> inputs() const noexcept { return inputs_; }
+  /// Ready for Compensator.
+  const Program& program() const noexcept { return program_; }
+
+ private:
+  ImageFault read(const std::uint8_t* bytes, std::uint32_t size, ImageWorkspace& workspace) noexcept;
+  ImageFault read_sections(const std::uint8_t* bytes) noexcept;
+  ImageFault read_tables(View<Segment> segments, View<Range> tables, View<std::int32_t> values,
+                         View<Range> columns) noexcept;
+  void close() noexcept;
+
+  const ImageHeader* header_ = nullptr;
+  const char* name_ = "";
+  View<AxisRecord> axes_;
+  View<InputRecord> inputs_;
+  Program program_;
+  View<Segment> tables_[kMaxTables];
+  View<std::int32_t> columns_[kMaxColumns];
+};
+
+}  // namespace vernier
