@@ -1,0 +1,87 @@
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "tests/unit/import/ballbar_data.h"
+#include "tools/import/ballbar_file.h"
+#include "tools/import/ballbar_motion.h"
+#include "tools/import/json_place.h"
+#include "tools/model/error.h"
+
+namespace vernier {
+namespace {
+
+TraceSetup setup_6000() {
+  TraceSetup setup;
+  setup.feed_mm_min = 6000;
+  return setup;
+}
+
+TEST(TraceReader, ReadsTheFragment) {
+  const BallbarFile file = read_ballbar_trace(ballbar_data("ballbar_trace_fragment.json"), setup_6000());
+  ASSERT_EQ(file.runs.size(), 1u);
+  ASSERT_EQ(file.runs[0].reading_mm.size(), 34u);
+  EXPECT_EQ(file.runs[0].reading_mm[0], -0.070085994597527415);
+  EXPECT_EQ(file.runs[0].reading_mm[33], -0.055732364694930307);
+  EXPECT_EQ(file.runs[0].direction, +1);
+  EXPECT_NEAR(actual_feed_mm_min(file, file.runs[0]), 6000, 1e-9);
+  // 100 mm/s on a radius of 100 mm for 5 ms are 5 mrad, half of it to the first sample.
+  EXPECT_NEAR(circle_point(file, file.runs[0], 0).angle_deg, 180 + 0.0025 * 180 / std::acos(-1.0), 1e-9);
+  EXPECT_EQ(file.notes.size(), 2u);
+}
+
+TEST(TraceReader, ClockwiseRunGoesTheOtherWay) {
+  TraceSetup setup = setup_6000();
+  setup.direction_of_zero = -1;
+  const BallbarFile file = read_ballbar_trace(ballbar_data("ballbar_trace_fragment.json"), setup);
+  EXPECT_EQ(file.runs[0].label, "CW");
+  EXPECT_NEAR(circle_point(file, file.runs[0], 0).angle_deg, 180 - 0.0025 * 180 / std::acos(-1.0), 1e-9);
+  EXPECT_GT(circle_point(file, file.runs[0], 0).velocity_mm_s[1], 0);
+}
+
+TEST(TraceReader, FragmentBecomesRows) {
+  const BallbarFile file = read_ballbar_trace(ballbar_data("ballbar_trace_fragment.json"), setup_6000());
+  const BallbarCsv csv = ballbar_csv({file}, {});
+  EXPECT_EQ(csv.fit_rows, 34u);
+  EXPECT_EQ(csv.check_rows, 0u);
+}
+
+struct Damage {
+  const char *from, *to;
+  const char* message;
+};
+
+class TraceReaderDamage : public ::testing::TestWithParam<Damage> {};
+
+TEST_P(TraceReaderDamage, IsAnErrorThatNamesLineAndWord) {
+  const ScratchFile file("damaged.json", replaced(text_of(ballbar_data("ballbar_trace_fragment.json")),
+                                                  GetParam().from, GetParam().to));
+  try {
+    read_ballbar_trace(file.path(), setup_6000());
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_EQ(std::string(error.what()).rfind(file.path() + GetParam().message, 0), 0u) << error.what();
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Trace, TraceReaderDamage,
+                         ::testing::Values(Damage{"-0.16441383149986355", "\"-0.164\"",
+                                                  ":20: \"\"-0.164\"\""},
+                                           Damage{"-0.16441383149986355", "null", ":20: \"null\""},
+                                           Damage{"-0.16441383149986355", "-0.16x", ":20: \"-0.16x\""},
+                                           Damage{"\"Direction\": 0", "\"Direction\": 2", ":17: \"2\""},
+                                           Damage{"\"Direction\": 0,", "", ":16: "},
+                                           Damage{"millimetres", "furlongs", ":10: \"\"furlongs\"\""},
+                                           Damage{"\"Runs\": [", "\"Runs\": [], \"Rins\": [", ":15: \"[]\""},
+                                           Damage{"\"ErrorUnits\": \"millimetres\",", "", ":1: "}));
+
+TEST(JsonPlace, FindsTheLineOfAnyValue) {
+  const std::string text = "{\n \"a\": [1,\n  {\"b\": 2},\n  3],\n \"c\":\n  4\n}";
+  EXPECT_EQ(json_line(text, "/a/0"), 2u);
+  EXPECT_EQ(json_line(text, "/a/1/b"), 3u);
+  EXPECT_EQ(json_line(text, "/a/2"), 4u);
+  EXPECT_EQ(json_line(text, "/c"), 6u);
+  EXPECT_EQ(json_line(text, "/d"), 0u);
+}
+
+}  // namespace
+}  // namespace vernier

@@ -1,0 +1,118 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <iterator>
+#include <set>
+
+#include "tools/import/ballbar_motion.h"
+
+namespace vernier {
+namespace {
+
+constexpr const char* kMotionColumns[] = {"v{}[mm/s]", "a{}[mm/s^2]", "dir{}", "since{}[mm]"};
+
+// Positions to 0.1 nm, so that an angle computed from them is good to 1e-7 deg; a reading keeps its five
+// decimals.
+std::string number(double value) {
+  std::string text = fmt::format("{:.7f}", value);
+  text.erase(text.find_last_not_of('0') + 1);
+  if (text.back() == '.') text.pop_back();
+  return text == "-0" ? "0" : text;
+}
+
+std::vector<std::string> axes_of(const std::vector<BallbarFile>& files) {
+  std::set<std::string> axes;
+  for (const auto& file : files) axes.insert({file.axis_a, file.axis_b});
+  return {axes.begin(), axes.end()};
+}
+
+std::string header(const std::vector<std::string>& axes) {
+  std::string text;
+  for (const auto& axis : axes) text += axis + "[mm],";
+  for (const char* column : kMotionColumns) {
+    for (const auto& axis : axes) text += fmt::format(fmt::runtime(column), axis) + ",";
+  }
+  return text + "feed[mm/min],curv[1/mm],t[s],cx[mm],cy[mm],cz[mm],length[mm],sense,run,role\n";
+}
+
+// A field that a comma or a line end in a file's name could break.
+std::string field(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](unsigned char c) { return c < ' ' || c == ',' || c == '"' || c == '#'; },
+      '_');
+  return text;
+}
+
+class Writer {
+ public:
+  Writer(const std::vector<BallbarFile>& files, const BallbarCsvOptions& options) : axes_(axes_of(files)) {
+    for (const auto& file : files)
+      csv_.text += "# ball bar: " + field(std::filesystem::path(file.path).filename().string()) + "\n";
+    csv_.text += fmt::format(
+        "# the start of each run after the first is not logged: {} s after the last sample before it\n",
+        number(options.pause_s));
+    csv_.text += header(axes_);
+    for (const auto& file : files) {
+      for (const auto& run : file.runs) {
+        add_run(file, run, label_of(files, file, run));
+        time_s_ += static_cast<double>(run.reading_mm.size()) / run.sample_rate_hz + options.pause_s;
+      }
+    }
+  }
+  BallbarCsv take() { return std::move(csv_); }
+
+ private:
+  std::string label_of(const std::vector<BallbarFile>& files, const BallbarFile& file,
+                       const BallbarRun& run) {
+    std::string label = run.label;
+    if (files.size() > 1) label = field(std::filesystem::path(file.path).stem().string()) + " " + label;
+    const std::string wanted = label;
+    for (int n = 2; !labels_.insert(label).second; ++n) label = wanted + "-" + std::to_string(n);
+    return label;
+  }
+
+  void add_run(const BallbarFile& file, const BallbarRun& run, const std::string& label) {
+    csv_.run_labels.push_back(label);
+    for (std::size_t i = 0; i < run.reading_mm.size(); ++i) {
+      const bool check = i < run.start || i > run.end;
+      add_motion(file, circle_point(file, run, i));
+      fmt::format_to(std::back_inserter(csv_.text), "{},{},{},0,0,0,{},{},{},{}\n",
+                     number(actual_feed_mm_min(file, run)), fmt::format("{:.9g}", 1 / file.radius_mm),
+                     number(time_s_ + static_cast<double>(i) / run.sample_rate_hz),
+                     number(file.nominal_length_mm + run.reading_mm[i]), run.direction, label,
+                     check ? "check" : "fit");
+      ++csv_.rows;
+      ++(check ? csv_.check_rows : csv_.fit_rows);
+    }
+  }
+
+  // An axis outside the plane of this file stands still on the programmed centre.
+  void add_motion(const BallbarFile& file, const CirclePoint& point) {
+    const auto each = [&](const double(&values)[2]) {
+      for (const auto& axis : axes_)
+        csv_.text += (axis == file.axis_a   ? number(values[0])
+                      : axis == file.axis_b ? number(values[1])
+                                            : "0") +
+                     ",";
+    };
+    each(point.position_mm);
+    each(point.velocity_mm_s);
+    each(point.acceleration_mm_s2);
+    each({static_cast<double>(point.direction[0]), static_cast<double>(point.direction[1])});
+    each(point.since_mm);
+  }
+
+  std::vector<std::string> axes_;
+  std::set<std::string> labels_;
+  double time_s_ = 0;
+  BallbarCsv csv_;
+};
+
+}  // namespace
+
+BallbarCsv ballbar_csv(const std::vector<BallbarFile>& files, const BallbarCsvOptions& options) {
+  return Writer(files, options).take();
+}
+
+}  // namespace vernier

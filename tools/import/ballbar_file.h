@@ -1,0 +1,77 @@
+#pragma once
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace vernier {
+
+/// One printed result of a file: AF_CIRCULARITY and the like, with its unit type as written (UT_LENGTH_UM …).
+struct BallbarFeature {
+  std::string name, unit;
+  double value = 0;
+};
+
+struct BallbarAnalysis {
+  std::string name, version;  // "ISO230_4", "1996"; version empty where the file gives none
+  std::vector<BallbarFeature> features;
+};
+
+/// A series of the file's own model, on the grid of the clockwise run.
+struct BallbarSimulation {
+  std::string label;               // "CCW", "CW"
+  std::vector<double> reading_mm;  // in time order
+};
+
+/// One pass over the circle in one sense, overshoot arcs included.
+struct BallbarRun {
+  std::string label;      // "CCW", "CW"
+  int direction = 0;      // +1 counter-clockwise (from +A towards +B), -1 clockwise
+  std::size_t start = 0;  // 0-based index of the first sample of the analysed arc
+  std::size_t end = 0;    // and of its last one (inclusive)
+  double sample_rate_hz = 0;
+  double first_deg = 0,
+         last_deg = 360;  // the arc that start..end spans, first_deg < last_deg whatever the direction
+  std::vector<double> reading_mm;  // length - nominal length
+  std::vector<BallbarFeature> features;
+};
+
+/// A circular test with a telescoping bar as its instrument's software stores it.
+struct BallbarFile {
+  std::string path, instrument, machine;
+  std::string axis_a, axis_b;    // the axes of the plane: "X", "Y"
+  double nominal_length_mm = 0;  // of the bar
+  double radius_mm = 0;          // of the programmed circle
+  double programmed_feed_mm_min = 0;
+  std::vector<BallbarRun> runs;  // at least one
+  std::vector<BallbarAnalysis> analyses;
+  std::vector<BallbarSimulation> simulations;
+  std::vector<std::string> notes;  // what was assumed, one sentence each
+};
+
+/// The file's printed result `feature` of analysis `analysis` of that version ("" for none); nothing where it
+/// has none. tool.
+std::optional<double> printed_result(const BallbarFile& file, const std::string& analysis,
+                                     const std::string& version, const std::string& feature);
+
+/// Reads a result file (.b5r, XML) of Renishaw Ballbar 20. Indices are 0-based and END is inclusive. Throws
+/// InputError with file, line and word: not XML, a missing or odd element, a view other than +A+B, indices
+/// outside the readings. tool.
+BallbarFile read_b5r(const std::string& path);
+
+/// What a file of Ballbar Trace does not hold and the operator must say.
+struct TraceSetup {
+  std::string axis_a = "X", axis_b = "Y";
+  double length_mm = 100;
+  double radius_mm = 100;  // of the programmed circle
+  double feed_mm_min = 0;  // actual; the speed is taken as constant
+  double start_deg = 180;  // angle of the first reading, from +A towards +B
+  double sample_rate_hz = 200;
+  int direction_of_zero = +1;  // sense of "Direction": 0
+};
+
+/// Reads a file of Renishaw Ballbar Trace (JSON: Runs[].Direction 0 or 1, Runs[].Readings, ErrorUnits). All
+/// readings lie in the arc, none is overshoot. Throws InputError with file, line and word. tool.
+BallbarFile read_ballbar_trace(const std::string& path, const TraceSetup& setup);
+
+}  // namespace vernier

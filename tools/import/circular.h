@@ -1,0 +1,55 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace vernier {
+
+/// One pass over a circle in one sense, in time order.
+struct CircularPass {
+  std::string label;
+  int direction = +1;                // +1 from +A towards +B, -1 the other way round
+  std::vector<double> angle_deg;     // of the programmed position about the programmed centre, 0..360
+  std::vector<double> deviation_mm;  // measured radius - nominal radius
+  std::optional<double> feed_mm_min;
+};
+
+/// ISO 230-4 numbers of one pass. Circular deviations are about the pass' own least-squares centre and
+/// radius, radial ones about its own centre and the nominal radius.
+struct CircularPassResult {
+  std::string label;
+  int direction = +1;
+  double centre_a_mm = 0, centre_b_mm = 0;  // of the least-squares circle
+  double radius_mm = 0;
+  double circular_deviation_um = 0;
+  double max_circular_um = 0, min_circular_um = 0;
+  double max_radial_um = 0, min_radial_um = 0;
+  double max_deg = 0, min_deg = 0;  // where (the same for circular and radial)
+  std::optional<double> feed_mm_min;
+  std::vector<double> circular_um;  // of each sample, in the order given
+};
+
+/// Greatest difference of the radii of the two senses at one place, about the mean of both centres.
+struct Hysteresis {
+  double um = 0;
+  double deg = 0;
+};
+
+struct CircularResult {
+  double nominal_radius_mm = 0;
+  std::vector<CircularPassResult> passes;
+  /// The rest is of the first pass of each sense, absent where one sense is missing.
+  std::optional<double> bidirectional_um;
+  std::optional<double> mean_centre_a_mm, mean_centre_b_mm, mean_radius_mm;
+  std::optional<double> non_roundness_um;  // both passes about the mean centre and radius (ANSI/ASME B5.54)
+  std::optional<Hysteresis> hysteresis;    // sample i of one sense with sample i from the end of the other
+  std::optional<Hysteresis> hysteresis_by_angle;  // at the same angle, linear between samples
+};
+
+/// ISO 230-4 analysis of passes about one centre. nominal_radius: mm. Each pass needs three samples at three
+/// different angles; throws std::invalid_argument otherwise. The centre is that of the linearised least
+/// squares deviation = c + a cos + b sin, as the instruments' software takes it. tool. Source: ISO
+/// 230-4:1996, 3.4 to 3.6.
+CircularResult analyse_circle(double nominal_radius_mm, const std::vector<CircularPass>& passes);
+
+}  // namespace vernier

@@ -1,0 +1,79 @@
+#pragma once
+#include <array>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace vernier {
+
+inline constexpr std::size_t kDiagnosticsCount = 20;
+
+/// Names of the linear diagnostics, as the instrument's file prints them (without AF_), in the order of the
+/// basis.
+inline constexpr std::array<const char*, kDiagnosticsCount> kDiagnosticsNames = {"GLOBAL_SCALE",
+                                                                                 "CENTRE_OFFSET_A",
+                                                                                 "CENTRE_OFFSET_B",
+                                                                                 "SCALE_MISMATCH",
+                                                                                 "SQUARENESS",
+                                                                                 "STRAIGHTNESS_A",
+                                                                                 "STRAIGHTNESS_B",
+                                                                                 "SERVO_MISMATCH",
+                                                                                 "SIN_4_THETA",
+                                                                                 "RADIUS_CHANGE",
+                                                                                 "OFFSET_A_SHIFT",
+                                                                                 "OFFSET_B_SHIFT",
+                                                                                 "BACKLASH_A_GLOBAL",
+                                                                                 "BACKLASH_A_MISMATCH",
+                                                                                 "BACKLASH_B_GLOBAL",
+                                                                                 "BACKLASH_B_MISMATCH",
+                                                                                 "LATERAL_PLAY_A_GLOBAL",
+                                                                                 "LATERAL_PLAY_A_MISMATCH",
+                                                                                 "LATERAL_PLAY_B_GLOBAL",
+                                                                                 "LATERAL_PLAY_B_MISMATCH"};
+/// Their units: um, but um/m for the squareness and ms for the servo mismatch.
+inline constexpr std::array<const char*, kDiagnosticsCount> kDiagnosticsUnits = {
+    "um", "um", "um", "um", "um/m", "um", "um", "ms", "um", "um",
+    "um", "um", "um", "um", "um",   "um", "um", "um", "um", "um"};
+
+/// One sample of a circular test.
+struct DiagnosticsSample {
+  double angle_deg = 0;     // from +A towards +B
+  int direction = +1;       // +1 counter-clockwise, -1 clockwise
+  double deviation_um = 0;  // measured radius - nominal radius
+};
+
+struct DiagnosticsSetup {
+  double radius_mm = 100;
+  double feed_mm_min = 1000;  // scales the servo mismatch only
+  double reversal_gap_deg =
+      12;  // samples nearer than this to 0/90/180/270 deg are left out (reversal spikes)
+  double pitch_a_mm = 0, pitch_b_mm = 0;  // of the cyclic errors that are fitted along; 0: none
+};
+
+/// Radial deviation in um per unit of each diagnostic, at that angle and sense. tool.
+/// Source: found by recomputing a file's own simulation (tests/data/ballbar/README.md).
+std::array<double, kDiagnosticsCount> diagnostics_basis(double angle_deg, int direction,
+                                                        const DiagnosticsSetup& setup);
+
+/// Peak-to-peak of a cyclic error of one axis, one sense of motion of the axis, one sense of the circle.
+struct CyclicAmplitude {
+  char axis = 'A';
+  bool forward = true;  // the axis moves in its positive sense
+  int direction = +1;
+  double peak_to_peak_um = 0;
+};
+
+struct DiagnosticsResult {
+  std::array<double, kDiagnosticsCount> value{};
+  std::vector<CyclicAmplitude> cyclic;
+  std::size_t samples = 0, rank = 0, columns = 0;  // rank < columns: the data cannot separate the terms
+  double rms_um = 0, max_um = 0;                   // of the residual
+};
+
+/// Least squares of the linear diagnostics (and cyclic terms) to samples of both senses; the minimum-norm
+/// solution where the rank is short. Throws std::invalid_argument where there are fewer samples than terms.
+/// tool.
+DiagnosticsResult fit_diagnostics(const std::vector<DiagnosticsSample>& samples,
+                                  const DiagnosticsSetup& setup);
+
+}  // namespace vernier
