@@ -3,11 +3,13 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "tools/model/files.h"
+
 namespace vernier {
 
-/// Adds one subcommand to `vernier`. Its callback does the job; it throws InputError (exit 1) or LimitNotMet (exit 2)
-/// and returns normally otherwise (exit 0). Anything else that escapes is our bug (exit 70).
-/// One function a command, listed in the order of the journey in tools/cli/vernier.cpp.
+/// Adds one subcommand to `vernier`. Its callback does the job; it throws InputError (exit 1) or LimitNotMet
+/// (exit 2) and returns normally otherwise (exit 0). Anything else that escapes is our bug (exit 70). One
+/// function a command, listed in the order of the journey in tools/cli/vernier.cpp.
 using RegisterCommand = void (*)(CLI::App& vernier);
 
 void register_import(CLI::App& vernier);
@@ -16,21 +18,16 @@ void register_compare(CLI::App& vernier);
 void register_compile(CLI::App& vernier);
 void register_simulate(CLI::App& vernier);
 
-/// Writes `text` to `path` by way of a temporary file beside it, so that a reader sees the old file or the whole new
-/// one. Throws InputError with the path where it cannot. tool.
-void write_file(const std::string& path, const std::string& text);
-
-/// The whole of a file. Throws InputError where it cannot be read. tool.
-std::string read_file(const std::string& path);
-
 /// Writes the result for programs: to a file, or to standard output for "-"; nothing for an empty path.
 /// Numbers that are not finite become null.
 void write_json(const std::string& path, const nlohmann::ordered_json& result);
 
-/// Where the human-readable lines go: standard output, or standard error where `--json -` has taken standard output.
+/// Where the human-readable lines go: standard output, or standard error where `--json -` has taken standard
+/// output.
 std::FILE* human_stream(const std::string& json_path);
 
-/// Progress of a job that may take more than two seconds, on standard error if it is a terminal; else one line a step.
+/// Progress of a job that may take more than two seconds, on standard error if it is a terminal; else one
+/// line a step.
 class Progress {
  public:
   explicit Progress(std::string what);

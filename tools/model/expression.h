@@ -9,12 +9,32 @@
 
 namespace vernier {
 
-/// What a node of an expression does. Angles are degrees throughout (`sin cos tan` take them, `atan2` gives them).
+/// What a node of an expression does. Angles are degrees throughout (`sin cos tan` take them, `atan2` gives
+/// them).
 enum class Op : std::uint8_t {
-  kNumber, kSymbol, kRunIs,
-  kNegate, kAdd, kSubtract, kMultiply, kDivide, kPower,
-  kEqual, kLess, kGreater,
-  kSin, kCos, kTan, kAtan2, kSqrt, kAbs, kExp, kLog, kSign, kMin, kMax,
+  kNumber,
+  kSymbol,
+  kRunIs,
+  kNegate,
+  kAdd,
+  kSubtract,
+  kMultiply,
+  kDivide,
+  kPower,
+  kEqual,
+  kLess,
+  kGreater,
+  kSin,
+  kCos,
+  kTan,
+  kAtan2,
+  kSqrt,
+  kAbs,
+  kExp,
+  kLog,
+  kSign,
+  kMin,
+  kMax,
   kLag,  // lag(u, tau): first-order lag over t, state starts at u's first value in each run
 };
 

@@ -29,8 +29,8 @@ struct Static {
 struct Axis {
   std::string name;
   bool rotary = false;
-  std::optional<double> min, max;                   // mm or deg
-  std::optional<double> max_correction, max_slew;   // axis unit; axis unit per s
+  std::optional<double> min, max;                  // mm or deg
+  std::optional<double> max_correction, max_slew;  // axis unit; axis unit per s
   bool rollover = false;
   double scale_factor = 0;
   std::size_t line = 0;
@@ -56,9 +56,9 @@ enum class Interpolation : std::uint8_t { kLinear, kCubic };
 struct Table {
   std::size_t axis = 0;
   Interpolation interpolation = Interpolation::kLinear;
-  bool periodic = false;           // the axis has rollover: periodic over first..last station
-  std::array<bool, 6> free{};      // columns freed in a fit
-  std::vector<Station> stations;   // loc strictly increasing
+  bool periodic = false;          // the axis has rollover: periodic over first..last station
+  std::array<bool, 6> free{};     // columns freed in a fit
+  std::vector<Station> stations;  // loc strictly increasing
   std::size_t line = 0;
 };
 
@@ -74,8 +74,8 @@ enum class TransformKind : std::uint8_t { kSixDof, kDh };
 struct Transform {
   TransformKind kind = TransformKind::kSixDof;
   int n = 0;
-  std::array<ExprPtr, 6> dof{};         // six for sixdof, the first four for DH (kDhNames); never null for those
-  std::array<std::string, 6> text{};    // as written ("0" where absent)
+  std::array<ExprPtr, 6> dof{};  // six for sixdof, the first four for DH (kDhNames); never null for those
+  std::array<std::string, 6> text{};  // as written ("0" where absent)
   std::size_t line = 0;
   std::size_t dof_count() const { return kind == TransformKind::kSixDof ? 6 : 4; }
   const char* dof_name(std::size_t i) const {

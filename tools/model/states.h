@@ -9,8 +9,9 @@ namespace vernier {
 
 using Column = Eigen::ArrayXd;
 
-/// Everything an expression may depend on, for N moments (rows of a measurement or ticks of a path), column by column.
-/// All columns have N entries; axis-wise vectors are indexed like Machine::axes, inputs like Machine::inputs.
+/// Everything an expression may depend on, for N moments (rows of a measurement or ticks of a path), column
+/// by column. All columns have N entries; axis-wise vectors are indexed like Machine::axes, inputs like
+/// Machine::inputs.
 struct States {
   std::size_t count = 0;
   std::vector<Column> axis;          // raw position, mm or deg
@@ -24,15 +25,15 @@ struct States {
   Column time;                       // s
   Column visit;                      // rows since the start of the run
   std::vector<Column> input;
-  std::vector<std::size_t> run;      // index into run_names
+  std::vector<std::size_t> run;  // index into run_names
   std::vector<std::string> run_names;
 };
 
 /// `since` where no column says it: far beyond any decay length.
 inline constexpr double kLongWay = 1e9;
 
-/// States of `count` moments for a machine with these numbers of axes and inputs: all columns zero, `since` kLongWay,
-/// one run named "".
+/// States of `count` moments for a machine with these numbers of axes and inputs: all columns zero, `since`
+/// kLongWay, one run named "".
 States make_states(std::size_t count, std::size_t axes, const std::vector<double>& input_references);
 
 /// The rows `which` of `states`, in that order.

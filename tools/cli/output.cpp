@@ -1,0 +1,52 @@
+#include <unistd.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+
+#include "tools/cli/command.h"
+
+namespace vernier {
+namespace {
+
+/// Progress is shown from this moment on, and at most so often.
+constexpr double kShowAfterS = 1.0, kShowEveryS = 0.2;
+
+double now_s() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+}  // namespace
+
+void write_json(const std::string& path, const nlohmann::ordered_json& result) {
+  if (path.empty()) return;
+  // The library writes numbers that are not finite as null.
+  const std::string text =
+      result.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  if (path == "-")
+    std::fputs(text.c_str(), stdout);
+  else
+    write_file(path, text);
+}
+
+std::FILE* human_stream(const std::string& json_path) { return json_path == "-" ? stderr : stdout; }
+
+Progress::Progress(std::string what) : what_(std::move(what)), started_s_(now_s()) {}
+
+Progress::~Progress() {
+  if (shown_ && isatty(STDERR_FILENO) != 0) std::fputs("\r\033[K", stderr);
+}
+
+void Progress::update(double fraction, const std::string& step) {
+  const double now = now_s();
+  if (now - started_s_ < kShowAfterS || now - last_s_ < kShowEveryS) return;
+  const bool terminal = isatty(STDERR_FILENO) != 0;
+  if (!terminal && shown_ && now - last_s_ < 10) return;  // a log wants a line now and then, not a film
+  last_s_ = now;
+  shown_ = true;
+  std::fprintf(stderr, terminal ? "\r\033[K%s: %3.0f %% %s" : "%s: %3.0f %% %s\n", what_.c_str(),
+               100 * fraction, step.c_str());
+  std::fflush(stderr);
+}
+
+}  // namespace vernier

@@ -1,0 +1,140 @@
+#include "tools/fit/ceres_solver.h"
+
+#include <ceres/ceres.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace vernier {
+namespace {
+
+/// Evaluates all rows once per point; the residual blocks read their line of the result.
+class WholeEvaluation : public ceres::EvaluationCallback {
+ public:
+  WholeEvaluation(const FitProblem& problem, const Eigen::VectorXd& values)
+      : problem_(problem), values_(values) {}
+  void PrepareForEvaluation(bool jacobians, bool new_point) override {
+    if (new_point || (jacobians && !has_jacobian_)) {
+      valid_ = true;
+      try {
+        residual_ = problem_.weighted_residuals(values_, jacobians ? &jacobian_ : nullptr);
+      } catch (const InputError&) {
+        valid_ = false;
+      }
+      has_jacobian_ = jacobians && valid_;
+    }
+  }
+  bool valid() const { return valid_; }
+  double residual(Eigen::Index row) const { return residual_[row]; }
+  const SparseRows& jacobian() const { return jacobian_; }
+
+ private:
+  const FitProblem& problem_;
+  const Eigen::VectorXd& values_;
+  Eigen::VectorXd residual_;
+  SparseRows jacobian_;
+  bool has_jacobian_ = false, valid_ = true;
+};
+
+class OneObservation : public ceres::CostFunction {
+ public:
+  OneObservation(const WholeEvaluation& all, Eigen::Index row, std::vector<int> columns)
+      : all_(all), row_(row), columns_(std::move(columns)) {
+    set_num_residuals(1);
+    mutable_parameter_block_sizes()->assign(columns_.size(), 1);
+  }
+  bool Evaluate(double const* const* /*values*/, double* residuals, double** jacobians) const override {
+    if (!all_.valid()) return false;
+    residuals[0] = all_.residual(row_);
+    if (jacobians == nullptr) return true;
+    for (std::size_t i = 0; i < columns_.size(); ++i)
+      if (jacobians[i] != nullptr) jacobians[i][0] = -all_.jacobian().coeff(row_, columns_[i]);
+    return true;
+  }
+
+ private:
+  const WholeEvaluation& all_;
+  Eigen::Index row_;
+  std::vector<int> columns_;
+};
+
+/// Spread of weighted residuals, from their median size (1.4826: standard deviation of a normal
+/// distribution).
+double spread(const Eigen::VectorXd& residual) {
+  std::vector<double> sizes(residual.data(), residual.data() + residual.size());
+  for (double& size : sizes) size = std::abs(size);
+  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+  std::nth_element(sizes.begin(), middle, sizes.end());
+  return sizes.empty() ? 1 : 1.4826 * *middle;
+}
+
+ceres::LossFunction* loss_of(Loss loss, double scale) {
+  if (loss == Loss::kHuber) return new ceres::HuberLoss(scale);
+  if (loss == Loss::kCauchy) return new ceres::CauchyLoss(scale);
+  return nullptr;
+}
+
+CeresOutcome solve_once(const FitProblem& problem, const Eigen::VectorXd& start, const FitOptions& options,
+                        double scale) {
+  CeresOutcome outcome;
+  outcome.point = start;
+  if (start.size() == 0) {
+    outcome.converged = true;
+    return outcome;
+  }
+  WholeEvaluation all(problem, outcome.point);
+  ceres::Problem::Options ceres_options;
+  ceres_options.evaluation_callback = &all;
+  ceres::Problem ceres_problem(ceres_options);
+  SparseRows jacobian;
+  problem.weighted_residuals(start, &jacobian);
+  for (Eigen::Index i = 0; i < start.size(); ++i)
+    ceres_problem.AddParameterBlock(outcome.point.data() + i, 1);
+  for (Eigen::Index row = 0; row < jacobian.outerSize(); ++row) {
+    if (problem.measurement().check[problem.measurement().observations[static_cast<std::size_t>(row)].row] !=
+        0)
+      continue;
+    std::vector<int> columns;
+    std::vector<double*> blocks;
+    for (SparseRows::InnerIterator entry(jacobian, row); entry; ++entry) {
+      columns.push_back(static_cast<int>(entry.col()));
+      blocks.push_back(outcome.point.data() + entry.col());
+    }
+    if (columns.empty()) continue;
+    ceres_problem.AddResidualBlock(new OneObservation(all, row, std::move(columns)),
+                                   loss_of(options.loss, scale), blocks);
+  }
+  ceres::Solver::Options solver;
+  solver.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
+  solver.initial_trust_region_radius = 1e8;
+  solver.max_num_iterations = options.max_iterations;
+  solver.function_tolerance = 1e-14;
+  solver.parameter_tolerance = 1e-14;
+  solver.gradient_tolerance = 1e-16;
+  solver.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(solver, &ceres_problem, &summary);
+  outcome.iterations = static_cast<int>(summary.iterations.size());
+  outcome.converged = summary.termination_type == ceres::CONVERGENCE;
+  return outcome;
+}
+
+}  // namespace
+
+CeresOutcome solve_with_ceres(const FitProblem& problem, const Eigen::VectorXd& start,
+                              const FitOptions& options) {
+  if (options.loss == Loss::kSquared) return solve_once(problem, start, options, 1);
+  if (has_uncertainty(problem.measurement())) return solve_once(problem, start, options, options.loss_scale);
+  // Without u the residual's own spread is the yardstick; it needs a fit first, and one more look after the
+  // second.
+  FitOptions plain = options;
+  plain.loss = Loss::kSquared;
+  CeresOutcome outcome = solve_once(problem, start, plain, 1);
+  for (int pass = 0; pass < 2; ++pass) {
+    const double width = spread(problem.weighted_residuals(outcome.point, nullptr));
+    outcome = solve_once(problem, outcome.point, options, options.loss_scale * std::max(width, 1e-12));
+  }
+  return outcome;
+}
+
+}  // namespace vernier

@@ -1,0 +1,27 @@
+#pragma once
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "tools/model/parameters.h"
+
+namespace vernier {
+
+/// What a weighted Jacobian says about its parameters. Computed on columns scaled to unit length.
+struct Observability {
+  Eigen::Index rank = 0;
+  double condition = 0;  // of the scaled Jacobian, over the identified directions
+  /// (J^T W^2 J)^+ over the identified directions, in parameter units; to be multiplied by the variance
+  /// factor.
+  Eigen::MatrixXd covariance;
+  std::vector<char> determined;  // per parameter: no part of it lies in an unidentified direction
+  /// Combinations that the data cannot see; indices of the parameters that take part, largest part first.
+  std::vector<std::vector<std::size_t>> unidentifiable;
+};
+
+/// normal: J^T W^2 J, n x n. Directions with a scaled singular value below `cutoff` times the largest count
+/// as unidentified; the default is far above what rounding leaves of an exact dependence (1e-8) and below any
+/// direction that real data determine. tool.
+Observability observe(const Eigen::MatrixXd& normal, double cutoff = 1e-5);
+
+}  // namespace vernier

@@ -1,0 +1,37 @@
+#pragma once
+#include <Eigen/Core>
+
+#include "tools/fit/levenberg.h"
+#include "tools/model/machine.h"
+#include "tools/model/measurement.h"
+#include "tools/model/parameters.h"
+#include "tools/model/prediction.h"
+
+namespace vernier {
+
+/// A machine, rows and free parameters as a least-squares problem in the parameters' own units.
+class FitProblem {
+ public:
+  /// Keeps references to `measurement` and `parameters`. Check rows have weight 0.
+  FitProblem(const Machine& machine, const Measurement& measurement, const ParameterSet& parameters);
+
+  /// Sum of squared weighted residuals; infinity where the model is undefined at this point.
+  double cost(const Eigen::VectorXd& point) const;
+  /// Throws InputError where the model is undefined.
+  NormalEquations equations(const Eigen::VectorXd& point) const;
+  /// Weighted residuals (measured - predicted) / u and, if asked for, the weighted Jacobian of `predicted`.
+  Eigen::VectorXd weighted_residuals(const Eigen::VectorXd& point, SparseRows* jacobian) const;
+
+  std::size_t parameter_count() const { return parameters_.size(); }
+  const Measurement& measurement() const { return measurement_; }
+
+ private:
+  Machine at(const Eigen::VectorXd& point) const;
+
+  Machine machine_;
+  const Measurement& measurement_;
+  const ParameterSet& parameters_;
+  Eigen::VectorXd weights_, measured_;
+};
+
+}  // namespace vernier

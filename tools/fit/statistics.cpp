@@ -1,0 +1,126 @@
+#include "tools/fit/statistics.h"
+
+#include <cmath>
+#include <map>
+#include <numbers>
+
+namespace vernier {
+namespace {
+
+constexpr double kUmPerMm = 1e3;
+constexpr double kUradPerDeg = std::numbers::pi / 180 * 1e6;
+/// Fewer pooled degrees of freedom than this say too little about the noise (its own uncertainty would exceed
+/// 30 %).
+constexpr std::size_t kLeastRepeatFreedom = 5;
+
+struct Pool {
+  double sum = 0, largest = 0;
+  std::size_t count = 0;
+  void add(double value) {
+    sum += value * value;
+    largest = std::max(largest, std::abs(value));
+    ++count;
+  }
+  std::optional<double> rms() const {
+    if (count == 0) return std::nullopt;
+    return std::sqrt(sum / static_cast<double>(count));
+  }
+};
+
+/// All that was set or logged in a row besides time and the measured values.
+std::vector<double> conditions(const Measurement& m, std::size_t row) {
+  const auto at = static_cast<Eigen::Index>(row);
+  const States& s = m.states;
+  std::vector<double> key;
+  for (const auto* columns : {&s.axis, &s.velocity, &s.acceleration, &s.direction, &s.since, &s.input})
+    for (const Column& column : *columns) key.push_back(column[at]);
+  for (const Column& normal : s.normal) key.push_back(normal[at]);
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    key.push_back(std::isnan(m.centre(k, at)) ? 0 : m.centre(k, at));
+    key.push_back(std::isnan(m.nominal_point(k, at)) ? 0 : m.nominal_point(k, at));
+  }
+  key.push_back(s.feed[at]);
+  key.push_back(s.curvature[at]);
+  for (const CandidateInput& candidate : m.candidates)
+    key.push_back(std::isnan(candidate.value[at]) ? kLongWay : candidate.value[at]);
+  return key;
+}
+
+std::optional<double> repeat_noise_um(const Measurement& m) {
+  struct Group {
+    double sum = 0, squares = 0;
+    std::size_t count = 0;
+  };
+  std::map<std::pair<std::vector<double>, int>, Group> groups;
+  for (const Observation& o : m.observations) {
+    if (m.check[o.row] != 0 || is_rotation(o.kind)) continue;
+    Group& group = groups[{conditions(m, o.row), static_cast<int>(o.kind)}];
+    const double value = o.value * kUmPerMm;
+    // Deviations from the group's first value would do; a running mean keeps the digits.
+    ++group.count;
+    const double step = value - group.sum;
+    group.sum += step / static_cast<double>(group.count);
+    group.squares += step * (value - group.sum);
+  }
+  double squares = 0;
+  std::size_t freedom = 0;
+  for (const auto& [key, group] : groups) {
+    squares += group.squares;
+    freedom += group.count - 1;
+  }
+  if (freedom < kLeastRepeatFreedom) return std::nullopt;
+  return std::sqrt(squares / static_cast<double>(freedom));
+}
+
+}  // namespace
+
+RoleStatistics role_statistics(const Measurement& m, const Eigen::VectorXd& residual, bool check) {
+  Pool lengths, rotations;
+  for (std::size_t i = 0; i < m.observations.size(); ++i) {
+    const Observation& o = m.observations[i];
+    if ((m.check[o.row] != 0) != check) continue;
+    const double value = residual[static_cast<Eigen::Index>(i)];
+    if (is_rotation(o.kind))
+      rotations.add(value * kUradPerDeg);
+    else
+      lengths.add(value * kUmPerMm);
+  }
+  RoleStatistics result;
+  result.count = lengths.count + rotations.count;
+  result.rms_um = lengths.rms();
+  result.rms_urad = rotations.rms();
+  if (lengths.count > 0) result.max_um = lengths.largest;
+  if (rotations.count > 0) result.max_urad = rotations.largest;
+  return result;
+}
+
+bool has_uncertainty(const Measurement& m) {
+  bool any = false;
+  for (const Observation& o : m.observations) {
+    if (m.check[o.row] != 0) continue;
+    if (m.uncertainty[static_cast<Eigen::Index>(o.row)] <= 0) return false;
+    any = true;
+  }
+  return any;
+}
+
+std::optional<double> noise_um(const Measurement& m) {
+  if (!has_uncertainty(m)) return repeat_noise_um(m);
+  Pool pool;
+  for (const Observation& o : m.observations)
+    if (m.check[o.row] == 0 && !is_rotation(o.kind))
+      pool.add(m.uncertainty[static_cast<Eigen::Index>(o.row)] * kUmPerMm);
+  return pool.rms();
+}
+
+Eigen::VectorXd fit_weights(const Measurement& m) {
+  Eigen::VectorXd weights(static_cast<Eigen::Index>(m.observations.size()));
+  for (std::size_t i = 0; i < m.observations.size(); ++i) {
+    const std::size_t row = m.observations[i].row;
+    const double u = m.uncertainty[static_cast<Eigen::Index>(row)];
+    weights[static_cast<Eigen::Index>(i)] = m.check[row] != 0 ? 0 : u > 0 ? 1 / u : 1;
+  }
+  return weights;
+}
+
+}  // namespace vernier

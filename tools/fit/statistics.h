@@ -1,0 +1,30 @@
+#pragma once
+#include <Eigen/Core>
+#include <optional>
+
+#include "tools/model/measurement.h"
+
+namespace vernier {
+
+/// Unweighted figures over one role's observations, lengths in um, rotations in urad. Nothing where there are
+/// none.
+struct RoleStatistics {
+  std::optional<double> rms_um, max_um, rms_urad, max_urad;
+  std::size_t count = 0;  // lengths and rotations
+};
+
+/// residual: measured - model, one per observation of `m`, mm or deg. `check`: which role to look at.
+RoleStatistics role_statistics(const Measurement& m, const Eigen::VectorXd& residual, bool check);
+
+/// Noise of the measurement, um: rms of u over the fit rows' lengths; without u from repeats (rows with the
+/// same axes, motion, inputs and candidates in the same run or another, pooled standard deviation, at least 5
+/// degrees of freedom); else nothing.
+std::optional<double> noise_um(const Measurement& m);
+
+/// Weight of each observation in a fit: 1/u, 1 where u is absent, 0 for check rows. Multiplies the residual.
+Eigen::VectorXd fit_weights(const Measurement& m);
+
+/// Is u given for every fit row?
+bool has_uncertainty(const Measurement& m);
+
+}  // namespace vernier

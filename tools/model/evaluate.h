@@ -1,0 +1,67 @@
+#pragma once
+#include <cstddef>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "tools/model/machine.h"
+#include "tools/model/states.h"
+#include "tools/model/station_table.h"
+
+namespace vernier {
+
+/// A number per state, or one number for all of them.
+class Value {
+ public:
+  Value() = default;
+  explicit Value(double all) : all_(all) {}
+  explicit Value(Column each) : each_(std::move(each)), varies_(true) {}
+  bool varies() const { return varies_; }
+  double operator[](std::size_t i) const { return varies_ ? each_[static_cast<Eigen::Index>(i)] : all_; }
+  bool is_zero() const { return !varies_ && all_ == 0; }
+  bool all_finite() const;
+  Column column(std::size_t count) const;
+
+ private:
+  double all_ = 0;
+  Column each_;
+  bool varies_ = false;
+};
+
+/// A value and its derivatives by the quantities that a fit may change. Keys: the index of a static, or
+/// statics.size() + axis * 6 + column of a table value (the station weights come later, they are the same for
+/// all).
+struct Dual {
+  Value value;
+  std::vector<std::pair<std::size_t, Value>> by;
+};
+
+/// Evaluates expressions of one machine at all states at once, with derivatives where asked for.
+/// Everything is column by column, so that lag (which needs the whole run) is nothing special. tool.
+class Evaluator {
+ public:
+  /// `active`: for each key whether its derivative is wanted; empty: none.
+  Evaluator(const Machine& machine, const States& states, std::vector<char> active = {});
+
+  Dual operator()(const Expr& expr);
+
+  std::size_t table_key(std::size_t table_value) const { return machine_.statics.size() + table_value; }
+  std::size_t key_count() const { return machine_.statics.size() + 6 * machine_.axes.size(); }
+
+ private:
+  Dual symbol(const Symbol& symbol);
+  Value table_value(std::size_t index);
+  Value run_is(const std::string& label) const;
+  Dual lag(const Dual& input, const Dual& tau) const;
+  bool active(std::size_t key) const { return !active_.empty() && active_[key] != 0; }
+
+  const Machine& machine_;
+  const States& states_;
+  std::vector<char> active_;
+  std::unordered_map<std::size_t, std::vector<Column>> table_columns_;  // axis -> six columns
+};
+
+/// Does any expression of the machine use lag? Then rows must be evaluated together, in time order.
+bool uses_lag(const Machine& machine);
+
+}  // namespace vernier

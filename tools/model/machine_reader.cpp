@@ -1,0 +1,466 @@
+#include <algorithm>
+#include <cmath>
+#include <pugixml.hpp>
+#include <set>
+#include <sstream>
+
+#include "tools/model/files.h"
+#include "tools/model/machine.h"
+#include "tools/model/numbers.h"
+#include "tools/model/xml_text.h"
+
+namespace vernier {
+namespace {
+
+using Words = std::initializer_list<const char*>;
+
+bool is_name(std::string_view text) {
+  const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
+  if (text.empty() || !letter(text.front())) return false;
+  return std::all_of(text.begin(), text.end(), [&](char c) { return letter(c) || (c >= '0' && c <= '9'); });
+}
+
+/// Walks the elements of one machine file. Every element and attribute is either read, ignored with a note,
+/// or an error.
+class Reader {
+ public:
+  Reader(const std::string& text, const std::string& file) : text_(text) {
+    machine_.file = file;
+    line_starts_.push_back(0);
+    for (std::size_t i = 0; i < text.size(); ++i)
+      if (text[i] == '\n') line_starts_.push_back(i + 1);
+  }
+
+  Machine read() {
+    const pugi::xml_parse_result result = document_.load_buffer(
+        text_.data(), text_.size(), pugi::parse_default | pugi::parse_doctype, pugi::encoding_utf8);
+    if (!result) {
+      const auto at = static_cast<std::size_t>(std::max<std::ptrdiff_t>(result.offset, 0));
+      throw InputError({machine_.file, line_at(at)}, word_at(at), result.description());
+    }
+    pugi::xml_node root;
+    for (const pugi::xml_node node : document_.children()) {
+      if (node.type() == pugi::node_doctype)
+        fail(node, "DOCTYPE", "a document type is not part of a machine file");
+      if (node.type() != pugi::node_element) fail(node, node.value(), "text outside the machine");
+      if (root) fail(node, node.name(), "a second root element");
+      root = node;
+    }
+    if (!root) throw InputError({machine_.file, 1}, "", "no <machine> in this file");
+    read_root(root);
+    check_names();
+    resolve_all();
+    return std::move(machine_);
+  }
+
+ private:
+  void read_root(const pugi::xml_node& root) {
+    if (!is(root, "machine") && !is(root, "EITransform"))
+      fail(root, root.name(), "the root must be <machine> or <EITransform>");
+    check_attributes(root, {"name", "gravity", "note"});
+    machine_.name = attribute(root, "name").value_or("");
+    if (const auto gravity = attribute(root, "gravity")) read_gravity(root, *gravity);
+    std::set<std::string> branches;
+    bool variables = false;
+    for (const pugi::xml_node node : children(root)) {
+      if (is(node, "variables")) {
+        once(node, variables);
+        read_variables(node);
+      } else if (is(node, "transforms")) {
+        read_transforms(node, branches);
+      } else {
+        unknown(node);
+      }
+    }
+    if (machine_.tool.empty() && machine_.workpiece.empty())
+      fail(root, root.name(), "no <transforms> with a transform");
+  }
+
+  void read_gravity(const pugi::xml_node& root, const std::string& value) {
+    std::istringstream words(value);
+    std::string word;
+    std::size_t count = 0;
+    while (words >> word) {
+      const auto number = parse_number(word);
+      if (!number || count >= 3)
+        fail_attribute(root, "gravity", word, "gravity is three numbers, a unit vector");
+      machine_.gravity[count++] = *number;
+    }
+    const auto& g = machine_.gravity;
+    if (count != 3 || std::abs(std::hypot(g[0], g[1], g[2]) - 1) > 1e-3)
+      fail_attribute(root, "gravity", value, "gravity is three numbers, a unit vector");
+  }
+
+  void read_variables(const pugi::xml_node& variables) {
+    check_attributes(variables, {"note"});
+    bool statics = false, axes = false, inputs = false, tables = false;
+    pugi::xml_node table_node;
+    for (const pugi::xml_node node : children(variables)) {
+      if (is(node, "static")) {
+        once(node, statics);
+        read_statics(node);
+      } else if (is(node, "machineaxes")) {
+        once(node, axes);
+        read_axes(node);
+      } else if (is(node, "inputs")) {
+        once(node, inputs);
+        read_inputs(node);
+      } else if (is(node, "comptables")) {
+        once(node, tables);
+        table_node = node;
+      } else {
+        unknown(node);
+      }
+    }
+    if (table_node) read_tables(table_node);
+  }
+
+  void read_statics(const pugi::xml_node& list) {
+    check_attributes(list, {"note"});
+    for (const pugi::xml_node node : children(list)) {
+      no_children(node);
+      if (is(node, "BaseShift")) {
+        read_base_shift(node);
+        continue;
+      }
+      check_attributes(node, {"value", "nominal", "unit", "note", "Hide"});
+      Static item;
+      item.name = new_name(node);
+      item.line = line(node);
+      const auto value = attribute(node, "value");
+      if (!value) fail(node, node.name(), "a static needs a value");
+      if (equal_no_case(*value, "true") || equal_no_case(*value, "false")) {
+        item.value = equal_no_case(*value, "true") ? 1 : 0;
+        item.hidden = true;
+      } else {
+        item.value = number(node, "value", 0);
+      }
+      if (attribute(node, "nominal")) item.nominal = number(node, "nominal", 0);
+      item.unit = attribute(node, "unit").value_or("");
+      item.note = attribute(node, "note").value_or("");
+      item.hidden = boolean(node, "Hide", item.hidden);
+      machine_.statics.push_back(item);
+    }
+  }
+
+  void read_base_shift(const pugi::xml_node& node) {
+    check_attributes(node, {"X", "Y", "Z", "rX", "rY", "rZ", "run", "Hide", "note"});
+    BaseShift shift;
+    shift.line = line(node);
+    shift.run = attribute(node, "run");
+    for (std::size_t i = 0; i < 6; ++i) shift.value[i] = number(node, kSixDofNames[i], 0);
+    shift.hidden = boolean(node, "Hide", false);
+    for (const BaseShift& other : machine_.base_shifts)
+      if (other.run == shift.run)
+        fail(node, shift.run.value_or("BaseShift"), "a second BaseShift of the same run");
+    machine_.base_shifts.push_back(shift);
+  }
+
+  void read_axes(const pugi::xml_node& list) {
+    check_attributes(list, {"note"});
+    for (const pugi::xml_node node : children(list)) {
+      no_children(node);
+      check_attributes(node, {"rotary", "min", "max", "maxcorrection", "maxslew", "rollover", "scalefactor",
+                              "Hide", "unit", "reference", "note"});
+      Axis axis;
+      axis.name = new_name(node);
+      axis.line = line(node);
+      axis.rotary = boolean(node, "rotary", false);
+      axis.rollover = boolean(node, "rollover", false);
+      axis.scale_factor = number(node, "scalefactor", 0);
+      axis.min = optional_number(node, "min");
+      axis.max = optional_number(node, "max");
+      if (axis.min && axis.max && *axis.min >= *axis.max)
+        fail_attribute(node, "max", attribute(node, "max").value_or(""), "max must be greater than min");
+      axis.max_correction = optional_number(node, "maxcorrection");
+      axis.max_slew = optional_number(node, "maxslew");
+      for (const char* limit : {"maxcorrection", "maxslew"})
+        if (optional_number(node, limit).value_or(1) <= 0)
+          fail_attribute(node, limit, attribute(node, limit).value_or(""), "a limit must be greater than 0");
+      if (boolean(node, "Hide", false)) {
+        machine_.inputs.push_back({axis.name, attribute(node, "unit").value_or(""),
+                                   number(node, "reference", 0), axis.min, axis.max, true, axis.line});
+      } else {
+        machine_.axes.push_back(axis);
+      }
+    }
+  }
+
+  void read_inputs(const pugi::xml_node& list) {
+    check_attributes(list, {"note"});
+    for (const pugi::xml_node node : children(list)) {
+      no_children(node);
+      check_attributes(node, {"unit", "reference", "min", "max", "note"});
+      Input input;
+      input.name = new_name(node);
+      input.line = line(node);
+      input.unit = attribute(node, "unit").value_or("");
+      input.reference = number(node, "reference", 0);
+      input.min = optional_number(node, "min");
+      input.max = optional_number(node, "max");
+      machine_.inputs.push_back(input);
+    }
+  }
+
+  void read_tables(const pugi::xml_node& list) {
+    check_attributes(list, {"note"});
+    for (const pugi::xml_node node : children(list)) {
+      if (!is(node, "table")) unknown(node);
+      check_attributes(node, {"axis", "interpolation", "fit", "note"});
+      Table table;
+      table.line = line(node);
+      const std::string axis_name = attribute(node, "axis").value_or("");
+      const auto axis = machine_.find_axis(axis_name);
+      if (!axis) fail_attribute(node, "axis", axis_name, "no such axis");
+      if (machine_.table_of(*axis) != nullptr)
+        fail_attribute(node, "axis", axis_name, "a second table of this axis");
+      table.axis = *axis;
+      table.periodic = machine_.axes[*axis].rollover;
+      const std::string interpolation = attribute(node, "interpolation").value_or("linear");
+      if (interpolation != "linear" && interpolation != "cubic")
+        fail_attribute(node, "interpolation", interpolation, "interpolation is linear or cubic");
+      table.interpolation = interpolation == "cubic" ? Interpolation::kCubic : Interpolation::kLinear;
+      read_free_columns(node, table);
+      for (const pugi::xml_node station : children(node)) read_station(station, table);
+      check_table(node, table);
+      machine_.tables.push_back(std::move(table));
+    }
+  }
+
+  void read_free_columns(const pugi::xml_node& node, Table& table) {
+    std::istringstream words(attribute(node, "fit").value_or(""));
+    std::string word;
+    while (words >> word) {
+      const auto* const found = std::find(kSixDofNames.begin(), kSixDofNames.end(), word);
+      if (found == kSixDofNames.end()) fail_attribute(node, "fit", word, "columns are X Y Z rX rY rZ");
+      table.free[static_cast<std::size_t>(found - kSixDofNames.begin())] = true;
+    }
+  }
+
+  void read_station(const pugi::xml_node& node, Table& table) {
+    if (!is(node, "station")) unknown(node);
+    no_children(node);
+    check_attributes(node, {"loc", "X", "Y", "Z", "rX", "rY", "rZ", "note"});
+    Station station;
+    const auto loc = attribute(node, "loc");
+    if (!loc) fail(node, node.name(), "a station needs a loc");
+    station.loc_text = *loc;
+    station.loc = number(node, "loc", 0);
+    for (std::size_t i = 0; i < 6; ++i) station.value[i] = number(node, kSixDofNames[i], 0);
+    if (!table.stations.empty() && station.loc <= table.stations.back().loc)
+      fail_attribute(node, "loc", *loc, "stations must increase");
+    table.stations.push_back(std::move(station));
+  }
+
+  void check_table(const pugi::xml_node& node, const Table& table) {
+    const std::string& axis = machine_.axes[table.axis].name;
+    if (table.stations.empty()) fail(node, axis, "a table without a station");
+    if (!table.periodic) return;
+    if (table.stations.size() < 2) fail(node, axis, "a periodic table needs at least two stations");
+    for (std::size_t i = 0; i < 6; ++i)
+      if (std::abs(table.stations.front().value[i] - table.stations.back().value[i]) > 1e-9)
+        fail(node, axis, "a periodic table must have equal values at its first and last station");
+  }
+
+  void read_transforms(const pugi::xml_node& list, std::set<std::string>& branches) {
+    check_attributes(list, {"branch", "note"});
+    const std::string branch = attribute(list, "branch").value_or("tool");
+    if (branch != "tool" && branch != "workpiece")
+      fail_attribute(list, "branch", branch, "branch is tool or workpiece");
+    if (!branches.insert(branch).second) fail(list, branch, "a second <transforms> of this branch");
+    std::vector<Transform>& transforms = branch == "tool" ? machine_.tool : machine_.workpiece;
+    for (const pugi::xml_node node : children(list))
+      transforms.push_back(read_transform(node, transforms, branch == "tool"));
+  }
+
+  Transform read_transform(const pugi::xml_node& node, const std::vector<Transform>& before, bool tool) {
+    Transform transform;
+    transform.line = line(node);
+    no_children(node);
+    if (is(node, "sixdof")) {
+      check_attributes(node, {"n", "X", "Y", "Z", "rX", "rY", "rZ", "note"});
+    } else if (is(node, "DH")) {
+      transform.kind = TransformKind::kDh;
+      check_attributes(node, {"n", "theta", "d", "a", "alpha", "note"});
+    } else {
+      unknown(node);
+    }
+    const int expected = before.empty() ? 1 : before.back().n + 1;
+    const double n = number(node, "n", expected);
+    if (n != std::floor(n) || std::abs(n) > 1e6 || (!before.empty() && n <= before.back().n))
+      fail_attribute(node, "n", attribute(node, "n").value_or(""),
+                     "transforms are numbered upwards with whole numbers");
+    transform.n = static_cast<int>(n);
+    for (std::size_t i = 0; i < transform.dof_count(); ++i) {
+      transform.text[i] = attribute(node, transform.dof_name(i)).value_or("0");
+      try {
+        transform.dof[i] = parse_expression(transform.text[i]);
+      } catch (const ExpressionError& error) {
+        fail_expression(node, transform, i, error);
+      }
+    }
+    pending_.push_back({node, tool, before.size()});
+    return transform;
+  }
+
+  void resolve_all() {
+    for (const Pending& pending : pending_) {
+      Transform& transform = (pending.tool ? machine_.tool : machine_.workpiece)[pending.index];
+      for (std::size_t i = 0; i < transform.dof_count(); ++i) {
+        try {
+          transform.dof[i] = parse_expression_for(machine_, transform.text[i]);
+        } catch (const ExpressionError& error) {
+          fail_expression(pending.node, transform, i, error);
+        }
+      }
+    }
+  }
+  [[noreturn]] void fail_expression(const pugi::xml_node& node, const Transform& transform, std::size_t dof,
+                                    const ExpressionError& error) {
+    const std::string name = transform.dof_name(dof);
+    fail_attribute(node, name, error.word,
+                   std::string(error.what()) + ", in " + name + "=\"" + transform.text[dof] + "\"");
+  }
+
+  /// No name may also be a quantity that the axes bring along (vX, lXx ...).
+  void check_names() {
+    Machine only_axes;
+    only_axes.axes = machine_.axes;
+    const auto check = [&](const std::string& name, std::size_t at_line) {
+      only_axes.statics.clear();
+      const Symbol symbol = resolve_name(only_axes, name);
+      if (symbol.kind != SymbolKind::kUnresolved && symbol.kind != SymbolKind::kAxis)
+        throw InputError({machine_.file, at_line}, name, "this name is already a quantity of the axes");
+    };
+    for (const Static& item : machine_.statics) check(item.name, item.line);
+    for (const Input& input : machine_.inputs) check(input.name, input.line);
+    for (const Axis& axis : machine_.axes) {
+      only_axes.axes = machine_.axes;
+      std::erase_if(only_axes.axes, [&](const Axis& other) { return other.name == axis.name; });
+      check(axis.name, axis.line);
+    }
+  }
+
+  std::string new_name(const pugi::xml_node& node) {
+    const std::string name = node.name();
+    if (!is_name(name)) fail(node, name, "names are letters, digits and _, and begin with a letter or _");
+    if (is_reserved_word(name)) fail(node, name, "this name is reserved");
+    if (!names_.insert(name).second) fail(node, name, "this name stands twice");
+    return name;
+  }
+
+  // -- attributes
+  // ------------------------------------------------------------------------------------------------
+  void check_attributes(const pugi::xml_node& node, Words known) {
+    std::set<std::string> seen;
+    for (const pugi::xml_attribute item : node.attributes()) {
+      const std::string name = item.name();
+      std::string lower = name;
+      std::transform(lower.begin(), lower.end(), lower.begin(),
+                     [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+      if (!seen.insert(lower).second) fail_attribute(node, item.name(), name, "this attribute stands twice");
+      if (lower.find("multiply") != std::string::npos) {
+        machine_.notes.push_back(machine_.file + ":" + std::to_string(line(node)) + ": " + name +
+                                 " is ignored");
+        continue;
+      }
+      if (std::none_of(known.begin(), known.end(),
+                       [&](const char* word) { return equal_no_case(name, word); }))
+        fail_attribute(node, item.name(), name, std::string("unknown attribute of <") + node.name() + ">");
+    }
+  }
+
+  static std::optional<std::string> attribute(const pugi::xml_node& node, std::string_view name) {
+    for (const pugi::xml_attribute item : node.attributes())
+      if (equal_no_case(item.name(), name)) return item.value();
+    return std::nullopt;
+  }
+
+  double number(const pugi::xml_node& node, const char* name, double fallback) {
+    return optional_number(node, name).value_or(fallback);
+  }
+  std::optional<double> optional_number(const pugi::xml_node& node, const char* name) {
+    const auto text = attribute(node, name);
+    if (!text) return std::nullopt;
+    const auto value = parse_number(*text);
+    if (!value) fail_attribute(node, name, *text, std::string(name) + " must be a number");
+    return value;
+  }
+  bool boolean(const pugi::xml_node& node, const char* name, bool fallback) {
+    const auto text = attribute(node, name);
+    if (!text) return fallback;
+    if (equal_no_case(*text, "true") || *text == "1") return true;
+    if (equal_no_case(*text, "false") || *text == "0") return false;
+    fail_attribute(node, name, *text, std::string(name) + " is true or false");
+  }
+
+  // -- elements
+  // --------------------------------------------------------------------------------------------------
+  static bool is(const pugi::xml_node& node, std::string_view name) {
+    return equal_no_case(node.name(), name);
+  }
+  std::vector<pugi::xml_node> children(const pugi::xml_node& node) {
+    std::vector<pugi::xml_node> list;
+    for (const pugi::xml_node child : node.children()) {
+      if (child.type() != pugi::node_element) fail(node, child.value(), "text is not expected here");
+      list.push_back(child);
+    }
+    return list;
+  }
+  void no_children(const pugi::xml_node& node) {
+    for (const pugi::xml_node child : node.children())
+      fail(node, child.type() == pugi::node_element ? child.name() : child.value(),
+           "nothing may stand inside this element");
+  }
+  void once(const pugi::xml_node& node, bool& seen) {
+    if (seen) fail(node, node.name(), "this element stands twice");
+    seen = true;
+  }
+  [[noreturn]] void unknown(const pugi::xml_node& node) { fail(node, node.name(), "unknown element"); }
+
+  std::size_t line(const pugi::xml_node& node) const {
+    return line_at(static_cast<std::size_t>(std::max<std::ptrdiff_t>(node.offset_debug(), 0)));
+  }
+  std::size_t line_at(std::size_t offset) const {
+    const auto after = std::upper_bound(line_starts_.begin(), line_starts_.end(), offset);
+    return static_cast<std::size_t>(after - line_starts_.begin());
+  }
+  std::string word_at(std::size_t offset) const {
+    std::size_t end = offset;
+    while (end < text_.size() && end < offset + 40 && !std::isspace(static_cast<unsigned char>(text_[end])))
+      ++end;
+    return text_.substr(std::min(offset, text_.size()), end - offset);
+  }
+  [[noreturn]] void fail(const pugi::xml_node& node, const std::string& word, const std::string& what) {
+    throw InputError({machine_.file, line(node)}, word, what);
+  }
+  [[noreturn]] void fail_attribute(const pugi::xml_node& node, std::string_view name, const std::string& word,
+                                   const std::string& what) {
+    std::size_t at = line(node);
+    const std::ptrdiff_t offset = node.offset_debug();
+    if (offset >= 0)
+      for (const AttributeSpan& span : attribute_spans(text_, static_cast<std::size_t>(offset)))
+        if (equal_no_case(span.name, name)) at = line_at(span.name_at);
+    throw InputError({machine_.file, at}, word, what);
+  }
+
+  const std::string& text_;
+  pugi::xml_document document_;
+  Machine machine_;
+  std::set<std::string> names_;
+  struct Pending {
+    pugi::xml_node node;
+    bool tool = true;
+    std::size_t index = 0;
+  };
+  std::vector<Pending> pending_;  // transforms whose names wait for the axes and inputs
+  std::vector<std::size_t> line_starts_;
+};
+
+}  // namespace
+
+Machine parse_machine(const std::string& text, const std::string& file) { return Reader(text, file).read(); }
+
+Machine read_machine(const std::string& path) { return parse_machine(read_file(path), path); }
+
+}  // namespace vernier

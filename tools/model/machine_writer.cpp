@@ -1,0 +1,101 @@
+#include <pugixml.hpp>
+
+#include "tools/model/machine.h"
+#include "tools/model/numbers.h"
+#include "tools/model/xml_text.h"
+
+namespace vernier {
+namespace {
+
+/// Collects the edits that turn the numbers of a text into those of a machine.
+class Writer {
+ public:
+  Writer(const std::string& text, const Machine& machine, bool set_nominal)
+      : text_(text), machine_(machine), set_nominal_(set_nominal) {}
+
+  std::string write() {
+    pugi::xml_document document;
+    document.load_buffer(text_.data(), text_.size(), pugi::parse_default, pugi::encoding_utf8);
+    visit(document);
+    return apply_edits(text_, std::move(edits_));
+  }
+
+ private:
+  void visit(const pugi::xml_node& parent) {
+    for (const pugi::xml_node node : parent.children()) {
+      if (equal_no_case(node.name(), "static"))
+        for (const pugi::xml_node child : node.children()) edit_static(child);
+      else if (equal_no_case(node.name(), "table"))
+        edit_table(node);
+      else
+        visit(node);
+    }
+  }
+
+  void edit_static(const pugi::xml_node& node) {
+    if (equal_no_case(node.name(), "BaseShift")) {
+      std::optional<std::string> run;
+      for (const pugi::xml_attribute item : node.attributes())
+        if (equal_no_case(item.name(), "run")) run = item.value();
+      for (const BaseShift& shift : machine_.base_shifts)
+        if (shift.run == run) set_six(node, shift.value);
+      return;
+    }
+    const auto index = machine_.find_static(node.name());
+    if (!index) return;
+    const Static& item = machine_.statics[*index];
+    const std::string before = text_of(node, "value");
+    if (item.hidden) return;
+    set(node, "value", number_text(item.value));
+    if (set_nominal_ && !item.nominal) set(node, "nominal", before);
+  }
+
+  void edit_table(const pugi::xml_node& node) {
+    const auto axis = machine_.find_axis(text_of(node, "axis"));
+    const Table* table = axis ? machine_.table_of(*axis) : nullptr;
+    if (table == nullptr) return;
+    std::size_t at = 0;
+    for (const pugi::xml_node station : node.children())
+      if (at < table->stations.size()) set_six(station, table->stations[at++].value);
+  }
+
+  void set_six(const pugi::xml_node& node, const std::array<double, 6>& value) {
+    for (std::size_t i = 0; i < 6; ++i) {
+      const auto now = parse_number(text_of(node, kSixDofNames[i]));
+      if (now.value_or(0) != value[i]) set(node, kSixDofNames[i], number_text(value[i]));
+    }
+  }
+
+  std::string text_of(const pugi::xml_node& node, std::string_view name) const {
+    for (const AttributeSpan& span : attribute_spans(text_, offset(node)))
+      if (equal_no_case(span.name, name)) return text_.substr(span.value_at, span.value_size);
+    return {};
+  }
+
+  void set(const pugi::xml_node& node, const std::string& name, const std::string& value) {
+    for (const AttributeSpan& span : attribute_spans(text_, offset(node)))
+      if (equal_no_case(span.name, name)) {
+        if (text_.compare(span.value_at, span.value_size, value) != 0)
+          edits_.push_back({span.value_at, span.value_size, value});
+        return;
+      }
+    edits_.push_back({end_of_attributes(text_, offset(node)), 0, " " + name + "=\"" + value + "\""});
+  }
+
+  static std::size_t offset(const pugi::xml_node& node) {
+    return static_cast<std::size_t>(node.offset_debug());
+  }
+
+  const std::string& text_;
+  const Machine& machine_;
+  bool set_nominal_;
+  std::vector<TextEdit> edits_;
+};
+
+}  // namespace
+
+std::string update_machine_text(const std::string& text, const Machine& machine, bool set_nominal) {
+  return Writer(text, machine, set_nominal).write();
+}
+
+}  // namespace vernier

@@ -1,0 +1,62 @@
+#pragma once
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "tools/model/machine.h"
+#include "tools/model/states.h"
+
+namespace vernier {
+
+enum class ObservationKind : std::uint8_t { kX, kY, kZ, kRx, kRy, kRz, kLength, kD };
+inline constexpr std::array<const char*, 8> kObservationNames = {"x",  "y",  "z",      "rx",
+                                                                 "ry", "rz", "length", "d"};
+/// rx ry rz: the tool's rotation vector; the others are lengths.
+constexpr bool is_rotation(ObservationKind kind) {
+  return kind == ObservationKind::kRx || kind == ObservationKind::kRy || kind == ObservationKind::kRz;
+}
+
+/// One measured number: mm, or deg for rotations.
+struct Observation {
+  ObservationKind kind = ObservationKind::kX;
+  std::size_t row = 0;
+  double value = 0;
+};
+
+/// A column that the machine file does not know: it may be the key to a missing effect. NaN where the cell is
+/// empty.
+struct CandidateInput {
+  std::string name, unit;
+  Column value;
+};
+
+/// The rows of one or several measurement files, bound to a machine (FORMATS section 2). Rows excluded for an
+/// empty input cell are not in it, only counted.
+struct Measurement {
+  std::vector<std::string> files;
+  States states;
+  std::vector<Observation> observations;  // by row, in the order of kObservationNames
+  std::vector<CandidateInput> candidates;
+  Column uncertainty;                   // u of the row, mm (deg for its rotations); 0 where not given
+  std::vector<char> check;              // role of the row
+  std::vector<std::size_t> file, line;  // where the row stands
+  Eigen::Matrix3Xd centre;              // of `length`, measuring frame, mm
+  Eigen::Matrix3Xd nominal_point;       // of `d`, workpiece coordinates, mm
+  std::size_t excluded = 0;             // rows with an empty input cell
+  std::vector<std::string> recorded;    // names of the columns of motion that some file has (vX, feed, t ...)
+
+  std::size_t rows() const { return states.count; }
+  bool has_recorded(std::string_view name) const;
+};
+
+/// Reads measurement files for a machine; columns in any order, units converted to the base units (an input
+/// to the unit that the machine declares). Throws InputError with file, line and word. tool.
+Measurement read_measurement(const std::vector<std::string>& paths, const Machine& machine);
+
+/// The rows `keep` (increasing) of a measurement, with their observations.
+Measurement select_rows(const Measurement& all, const std::vector<std::size_t>& keep);
+
+/// The same from text (one file), for tests and imports.
+Measurement parse_measurement(const std::string& text, const std::string& file, const Machine& machine);
+
+}  // namespace vernier

@@ -1,0 +1,15 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace vernier {
+
+/// A finite decimal number that fills the whole of `text` ("1", "-2.5e-3", "+4"); nothing for anything else
+/// (empty, blanks, hex, inf, nan). Independent of the locale.
+std::optional<double> parse_number(std::string_view text);
+
+/// The shortest decimal that reads back to the same double.
+std::string number_text(double value);
+
+}  // namespace vernier

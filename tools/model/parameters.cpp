@@ -1,0 +1,70 @@
+#include "tools/model/parameters.h"
+
+#include <set>
+
+namespace vernier {
+namespace {
+
+double& slot(Machine& machine, const Parameter& p) {
+  switch (p.kind) {
+    case ParameterKind::kStatic:
+      return machine.statics[p.item].value;
+    case ParameterKind::kStation:
+      return machine.tables[p.item].stations[p.station].value[p.column];
+    case ParameterKind::kBaseShift:
+      break;
+  }
+  return machine.base_shifts[p.item].value[p.column];
+}
+
+}  // namespace
+
+std::optional<std::size_t> base_shift_of(const Machine& machine, const std::string& run) {
+  std::optional<std::size_t> plain;
+  for (std::size_t i = 0; i < machine.base_shifts.size(); ++i) {
+    if (machine.base_shifts[i].run == run) return i;
+    if (!machine.base_shifts[i].run) plain = i;
+  }
+  return plain;
+}
+
+ParameterSet::ParameterSet(const Machine& machine, const std::vector<std::string>& runs) {
+  for (std::size_t i = 0; i < machine.statics.size(); ++i)
+    if (!machine.statics[i].hidden)
+      list_.push_back({machine.statics[i].name, machine.statics[i].unit, ParameterKind::kStatic, i, 0, 0});
+  for (std::size_t i = 0; i < machine.tables.size(); ++i) {
+    const Table& table = machine.tables[i];
+    const std::size_t count = table.stations.size() - (table.periodic ? 1 : 0);
+    for (std::size_t c = 0; c < 6; ++c)
+      for (std::size_t s = 0; table.free[c] && s < count; ++s)
+        list_.push_back({"table." + machine.axes[table.axis].name + "[" + table.stations[s].loc_text + "]." +
+                             kSixDofNames[c],
+                         c < 3 ? "mm" : "deg", ParameterKind::kStation, i, s, c});
+  }
+  std::set<std::size_t> used;
+  for (const std::string& run : runs)
+    if (const auto shift = base_shift_of(machine, run)) used.insert(*shift);
+  for (const std::size_t i : used) {
+    const BaseShift& shift = machine.base_shifts[i];
+    const std::string label = shift.run ? "BaseShift[" + *shift.run + "]." : "BaseShift.";
+    for (std::size_t c = 0; !shift.hidden && c < 6; ++c)
+      list_.push_back({label + kSixDofNames[c], c < 3 ? "mm" : "deg", ParameterKind::kBaseShift, i, 0, c});
+  }
+}
+
+Eigen::VectorXd ParameterSet::get(const Machine& machine) const {
+  Eigen::VectorXd values(static_cast<Eigen::Index>(size()));
+  for (std::size_t i = 0; i < size(); ++i)
+    values[static_cast<Eigen::Index>(i)] = slot(const_cast<Machine&>(machine), list_[i]);
+  return values;
+}
+
+void ParameterSet::set(Machine& machine, const Eigen::VectorXd& values) const {
+  for (std::size_t i = 0; i < size(); ++i) slot(machine, list_[i]) = values[static_cast<Eigen::Index>(i)];
+  for (Table& table : machine.tables)
+    if (table.periodic)
+      for (std::size_t c = 0; c < 6; ++c)
+        if (table.free[c]) table.stations.back().value[c] = table.stations.front().value[c];
+}
+
+}  // namespace vernier

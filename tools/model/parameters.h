@@ -1,0 +1,45 @@
+#pragma once
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "tools/model/machine.h"
+
+namespace vernier {
+
+enum class ParameterKind : std::uint8_t { kStatic, kStation, kBaseShift };
+
+/// One number of a machine that a fit may change.
+struct Parameter {
+  std::string name, unit;  // as in the JSON result: `alpha`, `table.X[100].rY`, `BaseShift[s2].rZ`
+  ParameterKind kind = ParameterKind::kStatic;
+  std::size_t item = 0;     // index of the static, table or BaseShift
+  std::size_t station = 0;  // kStation
+  std::size_t column = 0;   // kStation, kBaseShift: 0..5 = X Y Z rX rY rZ
+};
+
+/// The free parameters of a machine, in a fixed order: statics, stations, BaseShifts.
+class ParameterSet {
+ public:
+  ParameterSet() = default;
+  /// All that FORMATS calls free: statics and BaseShifts without Hide, table columns named by `fit`. A
+  /// BaseShift whose run is none of `runs` is left out, and the plain one where every run has its own. In a
+  /// periodic table the last station is the first one again and is no parameter of its own.
+  ParameterSet(const Machine& machine, const std::vector<std::string>& runs);
+
+  std::size_t size() const { return list_.size(); }
+  const Parameter& operator[](std::size_t i) const { return list_[i]; }
+  auto begin() const { return list_.begin(); }
+  auto end() const { return list_.end(); }
+
+  Eigen::VectorXd get(const Machine& machine) const;
+  void set(Machine& machine, const Eigen::VectorXd& values) const;
+
+ private:
+  std::vector<Parameter> list_;
+};
+
+/// The BaseShift of a run: its own, else the plain one, else none (identity).
+std::optional<std::size_t> base_shift_of(const Machine& machine, const std::string& run);
+
+}  // namespace vernier

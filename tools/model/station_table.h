@@ -1,0 +1,39 @@
+#pragma once
+#include <Eigen/Core>
+#include <array>
+#include <utility>
+#include <vector>
+
+#include "tools/model/machine.h"
+
+namespace vernier {
+
+/// Look-up in a station table: linear or cubic (natural, or periodic), held at both ends, periodic where the
+/// axis rolls over. Linear in the station values, so it also gives the weight of each. tool.
+class StationTable {
+ public:
+  explicit StationTable(const Table& table);
+
+  /// Six values (mm, deg) at a raw axis position.
+  std::array<double, 6> values(double raw) const;
+  /// d value / d raw of the six columns; 0 beyond the held ends.
+  std::array<double, 6> slopes(double raw) const;
+  /// Station index and weight of every station that takes part at this position. In a periodic table the last
+  /// station is the first one again and its weight is given to index 0.
+  void weights(double raw, std::vector<std::pair<std::size_t, double>>& result) const;
+
+ private:
+  struct Spot {
+    std::size_t segment = 0;
+    double fraction = 0, width = 1;
+    bool held = false;
+  };
+  Spot spot(double raw) const;
+
+  const Table& table_;
+  std::vector<double> loc_;
+  Eigen::MatrixXd curvature_;                // cubic: second derivatives = curvature_ * station values
+  std::vector<std::array<double, 6>> bend_;  // cubic: second derivative of the six columns at every station
+};
+
+}  // namespace vernier

@@ -1,0 +1,42 @@
+#pragma once
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace vernier {
+
+/// Where an attribute of a start tag stands in the text of an XML file.
+struct AttributeSpan {
+  std::string name;          // as written
+  std::size_t name_at = 0;   // offset of its name
+  std::size_t value_at = 0;  // offset of the first character between the quotes
+  std::size_t value_size = 0;
+};
+
+/// The attributes of the start tag whose element name begins at `offset`. The text must be well-formed there
+/// (a parser has accepted it). tool.
+std::vector<AttributeSpan> attribute_spans(std::string_view text, std::size_t offset);
+
+/// Offset just behind the last attribute (or the name) of that start tag: where another attribute can be
+/// written.
+std::size_t end_of_attributes(std::string_view text, std::size_t offset);
+
+/// 1-based line of an offset.
+std::size_t line_of(std::string_view text, std::size_t offset);
+
+/// Same letters, whatever their case (ASCII).
+bool equal_no_case(std::string_view a, std::string_view b);
+
+/// One replacement in a text: `size` characters at `at` become `text`.
+struct TextEdit {
+  std::size_t at = 0, size = 0;
+  std::string text;
+};
+/// Applies edits that do not overlap, given in any order (those at one place in the order given).
+std::string apply_edits(const std::string& text, std::vector<TextEdit> edits);
+
+/// A number or text as it may stand between double quotes in an attribute.
+std::string escape_attribute(std::string_view value);
+
+}  // namespace vernier
