@@ -78,6 +78,13 @@ void print_circle(std::FILE* out, const BallbarFile& file, const CircularResult&
   }
 }
 
+// Shorter than a quarter, an arc fixes neither its centre nor its radius.
+bool spans_a_circle(const BallbarFile& file) {
+  constexpr double kShortestArcDeg = 90;
+  return std::all_of(file.runs.begin(), file.runs.end(),
+                     [](const BallbarRun& run) { return run.last_deg - run.first_deg >= kShortestArcDeg; });
+}
+
 // Writes the CSV and tells what it holds: the same for both kinds of file.
 void write_import(const std::string& kind, const std::vector<BallbarFile>& files,
                   const BallbarCsvOptions& options, const ImportOutput& output) {
@@ -87,10 +94,14 @@ void write_import(const std::string& kind, const std::vector<BallbarFile>& files
   std::vector<PrintedResult> printed;
   std::string lines;
   for (const auto& file : files) {
+    for (const auto& note : file.notes) notes.push_back(file.path + ": " + note);
+    if (!spans_a_circle(file)) {
+      notes.push_back(file.path + ": the arc is too short for a centre and a radius; no circular numbers");
+      continue;
+    }
     const CircularResult circle = analyse_circle(file.radius_mm, circular_passes(file));
     circles.push_back(circle_json(file, circle));
     for (const auto& result : printed_results(file, circle)) printed.push_back(result);
-    for (const auto& note : file.notes) notes.push_back(file.path + ": " + note);
   }
   const auto equal =
       std::count_if(printed.begin(), printed.end(), [](const PrintedResult& result) { return result.equal; });
