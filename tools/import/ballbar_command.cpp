@@ -118,8 +118,9 @@ void write_import(const std::string& kind, const std::vector<BallbarFile>& files
                  {"notes", notes}};
   write_file(output.csv_path, csv.text);
   write_json(output.json_path, result);
-  for (const auto& file : files)
-    print_circle(out, file, analyse_circle(file.radius_mm, circular_passes(file)));
+  for (const auto& file : files) {
+    if (spans_a_circle(file)) print_circle(out, file, analyse_circle(file.radius_mm, circular_passes(file)));
+  }
   if (!printed.empty())
     fmt::print(out, "{} of the {} results that the files print are recomputed to the last digit\n", equal,
                printed.size());
