@@ -1,0 +1,61 @@
+#pragma once
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "tools/compile/lower.h"
+
+namespace vernier {
+
+/// Registers while the program grows: constants, channels and results live in three provisional stretches,
+/// because the number of constants is only known at the end. finish() closes the gaps.
+class ProgramBuilder {
+ public:
+  using Id = std::uint32_t;
+
+  ProgramBuilder();
+
+  /// A constant in the finest format that holds it.
+  Id constant(double value);
+  /// counts: the range in the quantity's own counts; unit: size of a count in the machine file's unit.
+  /// reach: largest magnitude that must be representable beside the range itself (stations of a table).
+  Id channel(Channel kind, double unit, double reach, const std::string& name);
+
+  /// k*a + l*b. exact: interval of the exact value.
+  Id linear(double k, Id a, double l, Id b, const Interval& exact, const std::string& name);
+  Id product(Id a, Id b, const Interval& exact, const std::string& name);
+  /// An operation whose result has the given format and needs no shift; error: its own, in the result's unit.
+  Id plain(Instruction step, int fraction_bits, const Interval& exact, double error, ErrorSource source,
+           std::vector<Register::Use> uses, const std::string& name);
+  /// a in the given format (no instruction where it has it).
+  Id reformat(Id a, int fraction_bits);
+
+  std::uint16_t add_table(std::vector<Segment> segments, const std::string& name);
+  std::uint16_t add_column(std::vector<std::int32_t> values, const std::string& name);
+  std::uint16_t add_wrap(const Wrap& wrap);
+  std::uint16_t add_lag();
+
+  const Register& at(Id id) const { return registers_[id]; }
+  const ValueRange& counts(Id id) const { return ranges_[id]; }
+  double lsb(Id id) const;
+  LoweredProgram finish(const std::vector<std::pair<Output, Id>>& outputs);
+
+ private:
+  Id append(const Instruction& step, const Register& meta, bool& overflow);
+  std::string unique(const std::string& name);
+  Equation view() const;
+
+  LoweredProgram p_;
+  std::vector<Register> registers_;
+  std::vector<ValueRange> ranges_;
+  std::map<double, Id> known_constants_;
+  std::set<std::string> names_;
+  std::vector<View<Segment>> table_views_;
+  std::vector<View<std::int32_t>> column_views_;
+};
+
+/// Most fraction bits with which `magnitude` fits int32; at most 50.
+int fraction_bits_for(double magnitude);
+
+}  // namespace vernier

@@ -1,0 +1,101 @@
+#include "tools/cli/command.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "tools/compile/compile.h"
+#include "tools/model/files.h"
+
+namespace vernier {
+namespace {
+
+struct Arguments {
+  std::string machine, directory, json, budget;
+};
+
+/// A length such as 0.1um, 100nm, 0.001mm; a bare number is um. Result in um.
+double parse_length_um(const std::string& text) {
+  std::size_t used = 0;
+  double value = 0;
+  try {
+    value = std::stod(text, &used);
+  } catch (const std::exception&) {
+    throw InputError("--budget \"" + text + "\": not a length");
+  }
+  const std::string unit = text.substr(used);
+  if (!(value > 0)) throw InputError("--budget \"" + text + "\": must be greater than zero");
+  if (unit.empty() || unit == "um") return value;
+  if (unit == "nm") return value / 1000;
+  if (unit == "mm") return value * 1000;
+  throw InputError("--budget \"" + text + "\": unit must be nm, um or mm");
+}
+
+nlohmann::ordered_json to_json(const OutputBound& b) {
+  nlohmann::ordered_json terms = nlohmann::ordered_json::array();
+  for (const Contribution& c : b.contributions)
+    if (terms.size() < 20)
+      terms.push_back({{"term", c.name}, {"source", c.source}, {"bound_um", c.bound_um}});
+  return {{"axis", b.axis},         {"total_um", b.total_um},       {"linearisation_um", b.linearisation_um},
+          {"table_um", b.table_um}, {"function_um", b.function_um}, {"rounding_um", b.rounding_um},
+          {"input_um", b.input_um}, {"lag_um", b.lag_um},           {"deviation_um", b.deviation_um},
+          {"largest_terms", terms}};
+}
+
+nlohmann::ordered_json to_json(const CompiledMachine& c) {
+  nlohmann::ordered_json bounds = nlohmann::ordered_json::array();
+  double total = 0;
+  for (const OutputBound& b : c.bounds) {
+    bounds.push_back(to_json(b));
+    total = std::max(total, b.total_um);
+  }
+  return {{"bound_um", total},
+          {"outputs", bounds},
+          {"switching", c.switching},
+          {"operations", c.program.instructions.size()},
+          {"registers", c.program.registers.size()},
+          {"tables", c.program.tables.size()},
+          {"image_bytes", c.image.size()},
+          {"fingerprint", fmt::format("{:016x}", c.fingerprint)}};
+}
+
+void run_compile(const Arguments& arguments) {
+  const std::string text = read_file(arguments.machine);
+  CompileOptions options;
+  if (!arguments.budget.empty()) options.budget_um = parse_length_um(arguments.budget);
+  const CompiledMachine compiled = compile_machine(parse_machine(text, arguments.machine), text, options);
+  const nlohmann::ordered_json result = to_json(compiled);
+  std::error_code failed;
+  std::filesystem::create_directories(arguments.directory, failed);
+  if (failed) throw InputError(arguments.directory + ": " + failed.message());
+  write_file(arguments.directory + "/machine.xml", text);
+  write_file(arguments.directory + "/equation.h", compiled.header);
+  write_file(arguments.directory + "/equation.cpp", compiled.source);
+  write_file(arguments.directory + "/bound.json", result.dump(2) + "\n");
+  write_file(arguments.directory + "/machine.vimg", {compiled.image.begin(), compiled.image.end()});
+  write_json(arguments.json, result);
+  std::FILE* const out = human_stream(arguments.json);
+  fmt::print(out, "{}: {} operations, {} tables, {} bytes of image\n", arguments.directory,
+             compiled.program.instructions.size(), compiled.program.tables.size(), compiled.image.size());
+  for (const OutputBound& b : compiled.bounds)
+    fmt::print(out, "  {}: deviation up to {:.1f} um, error <= {:.4f} um; largest term: {}\n", b.axis,
+               b.deviation_um, b.total_um, b.contributions.empty() ? "none" : b.contributions.front().name);
+}
+
+}  // namespace
+
+void register_compile(CLI::App& vernier) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* const command =
+      vernier.add_subcommand("compile", "machine file -> fixed-point image, the same as C++, error bound");
+  command->add_option("machine", arguments->machine, "machine file (XML)")->required();
+  command
+      ->add_option("-o,--output", arguments->directory,
+                   "directory for machine.xml, machine.vimg, equation.h/.cpp, bound.json")
+      ->required();
+  command->add_option("--json", arguments->json, "result for programs (- is standard output)");
+  command->add_option("--budget", arguments->budget, "largest error bound allowed on an axis, e.g. 0.1um");
+  command->callback([arguments] { run_compile(*arguments); });
+}
+
+}  // namespace vernier

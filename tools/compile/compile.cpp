@@ -1,0 +1,130 @@
+#include "tools/compile/compile.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "tables/checksum.h"
+#include "tools/model/files.h"
+
+namespace vernier {
+namespace {
+
+constexpr double kUmPerMm = 1000;
+// What is left out at first, and the finest that is tried to meet a budget.
+constexpr double kNeglect_mm = 5e-6, kFinestNeglect_mm = 5e-9;
+
+/// How strongly each register's error shows in the register `output`: reverse accumulation of the gains.
+std::vector<double> gains_to(const LoweredProgram& p, std::uint32_t output) {
+  std::vector<double> gain(p.registers.size(), 0);
+  gain[output] = 1;
+  for (std::size_t i = p.registers.size(); i-- > 0;)
+    for (const Register::Use& use : p.registers[i].uses) gain[use.from] += gain[i] * use.gain;
+  return gain;
+}
+
+double& share_of(OutputBound& bound, const std::string& source) {
+  if (source == "table") return bound.table_um;
+  if (source == "function") return bound.function_um;
+  if (source == "input") return bound.input_um;
+  if (source == "lag") return bound.lag_um;
+  if (source == "linearisation") return bound.linearisation_um;
+  return bound.rounding_um;
+}
+
+OutputBound bound_of(const Machine& machine, const Derivation& d, const LoweredProgram& p, std::size_t i) {
+  const Output& out = p.outputs[i];
+  const Register& result = p.registers[out.source];
+  OutputBound bound;
+  bound.axis = machine.axes[out.axis].name;
+  bound.deviation_um = result.range.magnitude() * kUmPerMm;
+  const auto blame = [&](const std::string& name, const std::string& source, double mm) {
+    if (mm <= 0) return;
+    bound.contributions.push_back({name, source, mm * kUmPerMm});
+    share_of(bound, source) += mm * kUmPerMm;
+  };
+  const std::vector<double> gain = gains_to(p, out.source);
+  double first_order = 0;
+  for (std::size_t r = 0; r < p.registers.size(); ++r) {
+    blame(p.registers[r].name, name_of(p.registers[r].source), gain[r] * p.registers[r].own_error);
+    first_order += gain[r] * p.registers[r].own_error;
+  }
+  blame("errors multiplied with each other", "rounding", result.error - first_order);
+  const double factor = std::ldexp(out.multiplier, -static_cast<int>(out.shift)),
+               exact = std::ldexp(1e6, -result.fraction_bits);
+  blame("output in nm", "rounding", 0.5e-6 + result.range.magnitude() * std::abs(factor / exact - 1));
+  for (const Neglected& n : d.neglected) blame(n.what, "linearisation", n.bound_mm * d.outputs[i].row_norm);
+  for (const Contribution& c : bound.contributions) bound.total_um += c.bound_um;
+  std::stable_sort(bound.contributions.begin(), bound.contributions.end(),
+                   [](const auto& a, const auto& b) { return a.bound_um > b.bound_um; });
+  return bound;
+}
+
+const OutputBound& worst(const std::vector<OutputBound>& bounds) {
+  return *std::max_element(bounds.begin(), bounds.end(),
+                           [](const auto& a, const auto& b) { return a.total_um < b.total_um; });
+}
+
+CompiledMachine compile_once(const Machine& machine, std::uint32_t tick_us, double neglect_mm) {
+  CompiledMachine result;
+  const Derivation d = derive(machine, neglect_mm);
+  result.program = lower(machine, d, tick_us);
+  result.switching = d.switching;
+  for (std::size_t i = 0; i < result.program.outputs.size(); ++i)
+    result.bounds.push_back(bound_of(machine, d, result.program, i));
+  return result;
+}
+
+}  // namespace
+
+std::uint64_t hash_of(const std::string& text) {
+  return fnv1a(reinterpret_cast<const std::uint8_t*>(text.data()), static_cast<std::uint32_t>(text.size()));
+}
+
+CompiledMachine compile_machine(const Machine& machine, const std::string& machine_text,
+                                const CompileOptions& options) {
+  CompiledMachine result = compile_once(machine, options.tick_us, kNeglect_mm);
+  for (double neglect = kNeglect_mm / 10;
+       options.budget_um && worst(result.bounds).total_um > *options.budget_um &&
+       neglect >= kFinestNeglect_mm;
+       neglect /= 10)
+    result = compile_once(machine, options.tick_us, neglect);
+  if (options.budget_um && worst(result.bounds).total_um > *options.budget_um) {
+    const OutputBound& bad = worst(result.bounds);
+    const Contribution& blame = bad.contributions.front();
+    throw LimitNotMet(fmt::format(
+        "error bound {:.4g} um on axis {} exceeds the budget of {:g} um; largest term: {} ({}), {:.4g} um",
+        bad.total_um, bad.axis, *options.budget_um, blame.name, blame.source, blame.bound_um));
+  }
+  const std::uint64_t source_hash = hash_of(machine_text);
+  result.image = write_image(machine, result.program, options.tick_us, source_hash, result.fingerprint);
+  result.header = print_header(machine, result.program, source_hash);
+  result.source = print_source(machine, result.program, source_hash);
+  load_image(result.image,
+             machine);  // the compiler's own output passes the board's verifier, or it is no output
+  return result;
+}
+
+std::unique_ptr<LoadedImage> load_image(const std::vector<std::uint8_t>& image, const Machine& machine) {
+  auto loaded = std::make_unique<LoadedImage>();
+  loaded->machine = machine;
+  loaded->words.resize((image.size() + 7) / 8);
+  if (!image.empty()) std::memcpy(loaded->words.data(), image.data(), image.size());
+  const ImageFault fault = loaded->view.open(reinterpret_cast<const std::uint8_t*>(loaded->words.data()),
+                                             static_cast<std::uint32_t>(image.size()), loaded->workspace);
+  if (fault != ImageFault::kNone) throw InputError(std::string("image refused: ") + describe(fault));
+  return loaded;
+}
+
+std::unique_ptr<LoadedImage> load_image_dir(const std::string& directory) {
+  const std::string text = read_file(directory + "/machine.xml"),
+                    bytes = read_file(directory + "/machine.vimg");
+  auto loaded = load_image({bytes.begin(), bytes.end()}, parse_machine(text, directory + "/machine.xml"));
+  if (loaded->view.header().source_hash != hash_of(text))
+    throw InputError(directory + "/machine.vimg was not compiled from the machine.xml beside it");
+  return loaded;
+}
+
+}  // namespace vernier

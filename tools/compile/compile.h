@@ -1,0 +1,75 @@
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tables/image_view.h"
+#include "tools/compile/lower.h"
+
+namespace vernier {
+
+struct CompileOptions {
+  std::uint32_t tick_us = 1000;     // cycle time that lags and slew limits are computed for
+  std::optional<double> budget_um;  // largest error bound allowed on any axis
+};
+
+/// One cause of error in an output and the most it can be.
+struct Contribution {
+  std::string name;
+  std::string source;  // "linearisation", "table", "function", "rounding", "input", "lag"
+  double bound_um = 0;
+};
+
+/// Proved bound of |fixed-point correction - exact correction| along one axis, over the declared ranges, away
+/// from the steps of comparisons; before magnitude limit, ramp and slew limit.
+struct OutputBound {
+  std::string axis;
+  double total_um = 0;
+  double linearisation_um = 0, table_um = 0, function_um = 0, rounding_um = 0, input_um = 0, lag_um = 0;
+  double deviation_um = 0;                  // largest |deviation| over the declared ranges, by intervals
+  std::vector<Contribution> contributions;  // largest first, all of them
+};
+
+struct CompiledMachine {
+  std::vector<std::uint8_t> image;
+  LoweredProgram program;
+  std::vector<OutputBound> bounds;
+  std::vector<std::string> switching;
+  std::string header, source;  // equation.h, equation.cpp
+  std::uint64_t fingerprint = 0;
+};
+
+/// Compiles a machine (FORMATS section 1). Throws InputError in one line where it cannot, LimitNotMet where
+/// the bound exceeds the budget, naming the term to blame. machine_text: the file's bytes, for its hash.
+/// tool.
+CompiledMachine compile_machine(const Machine& machine, const std::string& machine_text,
+                                const CompileOptions& options);
+
+/// A compiled directory (`vernier compile -o DIR`) ready to run: DIR/machine.xml and DIR/machine.vimg.
+struct LoadedImage {
+  Machine machine;
+  std::vector<std::uint64_t> words;  // the image, aligned as ImageView wants it
+  ImageView view;
+  ImageWorkspace workspace;
+};
+/// Throws InputError where a file is missing, the image is refused (with the cause) or is not of that
+/// machine.xml. tool.
+std::unique_ptr<LoadedImage> load_image_dir(const std::string& directory);
+/// The same from bytes. Throws InputError with the cause.
+std::unique_ptr<LoadedImage> load_image(const std::vector<std::uint8_t>& image, const Machine& machine);
+
+/// The bytes of an image (tables/image_format.h). tool.
+std::vector<std::uint8_t> write_image(const Machine& machine, const LoweredProgram& program,
+                                      std::uint32_t tick_us, std::uint64_t source_hash,
+                                      std::uint64_t& fingerprint);
+
+/// The program as readable C++: equation.h and equation.cpp. Same program, same bytes. tool.
+std::string print_header(const Machine& machine, const LoweredProgram& program, std::uint64_t source_hash);
+std::string print_source(const Machine& machine, const LoweredProgram& program, std::uint64_t source_hash);
+
+/// FNV-1a of a text.
+std::uint64_t hash_of(const std::string& text);
+
+}  // namespace vernier

@@ -1,0 +1,201 @@
+#include "tools/compile/dual.h"
+
+#include <cmath>
+#include <stdexcept>
+
+#include "tools/model/station_table.h"
+
+namespace vernier {
+namespace {
+
+// An interval that holds the spline, not only its stations: a cubic piece stays within its Bezier control
+// values.
+Interval column_range(const Table& table, std::size_t column) {
+  const StationTable look_up(table);
+  Interval range{table.stations[0].value[column], table.stations[0].value[column]};
+  for (std::size_t i = 0; i < table.stations.size(); ++i) {
+    const double value = table.stations[i].value[column];
+    range = hull(range, {value, value});
+    if (table.interpolation == Interpolation::kLinear || i + 1 == table.stations.size()) continue;
+    const double width = table.stations[i + 1].loc - table.stations[i].loc;
+    const double next = table.stations[i + 1].value[column];
+    const double inside = 1e-9 * width;  // slopes are zero at held ends, the piece's own just inside
+    const double near = value + look_up.slopes(table.stations[i].loc + inside)[column] * width / 3;
+    const double far = next - look_up.slopes(table.stations[i + 1].loc - inside)[column] * width / 3;
+    const double slack = 1e-6 * (std::abs(near - value) + std::abs(far - next));
+    range = hull(range, {std::min(near, far) - slack, std::max(near, far) + slack});
+  }
+  return range;
+}
+
+}  // namespace
+
+NodeId Translator::channel(ChannelKind kind, std::size_t index) {
+  return g_.channel(kind, static_cast<std::uint32_t>(index), channel_range(machine_, kind, index));
+}
+
+NodeId Translator::table_value(std::size_t index) {
+  const std::size_t axis = index / 6, column = index % 6;
+  const Table* const table = machine_.table_of(axis);
+  if (table == nullptr) return g_.constant(0);
+  const Interval range = column_range(*table, column);
+  if (range.low == range.high) return g_.constant(range.low);
+  return g_.table(static_cast<std::uint32_t>(axis), static_cast<std::uint32_t>(column),
+                  channel(ChannelKind::kPosition, axis), range);
+}
+
+Dual Translator::symbol(const Expr& expr) {
+  const NodeId zero = g_.constant(0);
+  const std::size_t i = expr.symbol.index;
+  switch (expr.symbol.kind) {
+    case SymbolKind::kStatic: {
+      const Static& s = machine_.statics[i];
+      const double nominal = s.nominal.value_or(s.value);
+      return constant(nominal, s.value - nominal);
+    }
+    case SymbolKind::kAxis: {
+      const NodeId raw = channel(ChannelKind::kPosition, i);
+      return {raw, g_.scale(machine_.axes[i].scale_factor, raw)};
+    }
+    case SymbolKind::kTableValue:
+      return {zero, table_value(i)};
+    case SymbolKind::kInput:
+      return {channel(ChannelKind::kInput, i), zero};
+    case SymbolKind::kVelocity:
+      return {channel(ChannelKind::kVelocity, i), zero};
+    case SymbolKind::kAcceleration:
+      return {channel(ChannelKind::kAcceleration, i), zero};
+    case SymbolKind::kDirection:
+      return {channel(ChannelKind::kSense, i), zero};
+    case SymbolKind::kSince:
+      return {channel(ChannelKind::kSince, i), zero};
+    case SymbolKind::kFeed:
+      return {channel(ChannelKind::kFeed, 0), zero};
+    case SymbolKind::kCurvature:
+      return {channel(ChannelKind::kCurvature, 0), zero};
+    case SymbolKind::kTime:
+      return {channel(ChannelKind::kTime, 0), zero};
+    case SymbolKind::kVisit:
+      return {channel(ChannelKind::kVisit, 0), zero};
+    case SymbolKind::kNormal:
+      throw std::domain_error("the normal of a probed row, which a running machine does not know");
+    case SymbolKind::kUnresolved:
+      break;
+  }
+  throw std::domain_error("the name \"" + expr.name + "\", which is not resolved");
+}
+
+Dual Translator::product(const Dual& a, const Dual& b) {
+  const NodeId delta = g_.add(g_.product(a.nominal, b.delta), g_.product(a.delta, actual(b)));
+  return {g_.product(a.nominal, b.nominal), delta};
+}
+
+Dual Translator::lag(const Dual& u, const Dual& tau) {
+  const auto nominal = g_.constant_value(tau.nominal), change = g_.constant_value(tau.delta);
+  if (!nominal || !change) throw std::domain_error("a lag whose time constant is not constant");
+  const NodeId at_nominal = g_.lag(u.nominal, *nominal);
+  if (*change == 0) return {at_nominal, g_.lag(u.delta, *nominal)};
+  return {at_nominal, g_.subtract(g_.lag(actual(u), *nominal + *change), at_nominal)};
+}
+
+NodeId Translator::power(NodeId base, NodeId exponent) {
+  const auto n = g_.constant_value(exponent);
+  if (const auto b = g_.constant_value(base); n && b) return g_.constant(std::pow(*b, *n));
+  if (n && *n == std::round(*n) && std::abs(*n) <= 16) {
+    NodeId result = g_.constant(1);
+    for (int i = 0; i < std::abs(static_cast<int>(*n)); ++i) result = g_.product(result, base);
+    return *n < 0 ? g_.function(Function::kReciprocal, result) : result;
+  }
+  if (n && *n == 0.5) return g_.function(Function::kSqrt, base);
+  return g_.function(Function::kExp, g_.product(exponent, g_.function(Function::kLog, base)));
+}
+
+// atan2 over the half plane where one of the two operands keeps its sign; elsewhere it has a step.
+NodeId Translator::angle_of(NodeId y, NodeId x) {
+  const Interval along = g_[x].range, across = g_[y].range;
+  if (along.low > 0)
+    return g_.function(Function::kArcTangent, g_.product(y, g_.function(Function::kReciprocal, x)));
+  if (across.contains(0))
+    throw std::domain_error("atan2 whose operands can both reach zero or turn through 180 deg");
+  const NodeId cotangent = g_.product(x, g_.function(Function::kReciprocal, y));
+  return g_.sum(across.low > 0 ? 90 : -90, {{-1, g_.function(Function::kArcTangent, cotangent)}});
+}
+
+NodeId Translator::apply_to(Op op, NodeId a, NodeId b) {
+  switch (op) {
+    case Op::kDivide:
+      return g_.product(a, g_.function(Function::kReciprocal, b));
+    case Op::kPower:
+      return power(a, b);
+    case Op::kEqual:
+      return g_.choice(NodeKind::kEqual, a, b);
+    case Op::kLess:
+      return g_.choice(NodeKind::kLess, a, b);
+    case Op::kGreater:
+      return g_.choice(NodeKind::kLess, b, a);
+    case Op::kSin:
+      return g_.function(Function::kSin, a);
+    case Op::kCos:
+      return g_.function(Function::kCos, a);
+    case Op::kTan:
+      return g_.product(g_.function(Function::kSin, a),
+                        g_.function(Function::kReciprocal, g_.function(Function::kCos, a)));
+    case Op::kAtan2:
+      return angle_of(a, b);
+    case Op::kSqrt:
+      return g_.function(Function::kSqrt, a);
+    case Op::kAbs:
+      return g_.choice(NodeKind::kAbs, a, a);
+    case Op::kExp:
+      return g_.function(Function::kExp, a);
+    case Op::kLog:
+      return g_.function(Function::kLog, a);
+    case Op::kSign:
+      return g_.choice(NodeKind::kSign, a, a);
+    case Op::kMin:
+      return g_.choice(NodeKind::kMin, a, b);
+    case Op::kMax:
+      return g_.choice(NodeKind::kMax, a, b);
+    default:
+      throw std::domain_error("an operation that the program does not have");
+  }
+}
+
+Dual Translator::visit(const Expr& expr) {
+  if (expr.op == Op::kNumber) return constant(expr.number, 0);
+  if (expr.op == Op::kSymbol) return symbol(expr);
+  if (expr.op == Op::kRunIs) throw std::domain_error("run(...): a running machine is in no measurement run");
+  const Dual a = visit(*expr.args[0]);
+  const Dual b = expr.args.size() > 1 ? visit(*expr.args[1]) : a;
+  switch (expr.op) {
+    case Op::kNegate:
+      return {g_.scale(-1, a.nominal), g_.scale(-1, a.delta)};
+    case Op::kAdd:
+      return {g_.add(a.nominal, b.nominal), g_.add(a.delta, b.delta)};
+    case Op::kSubtract:
+      return {g_.subtract(a.nominal, b.nominal), g_.subtract(a.delta, b.delta)};
+    case Op::kMultiply:
+      return product(a, b);
+    case Op::kLag:
+      return lag(a, b);
+    default:
+      break;
+  }
+  if (expr.op == Op::kEqual || expr.op == Op::kLess || expr.op == Op::kGreater || expr.op == Op::kSign)
+    d_.switching.push_back(to_text(expr));
+  const NodeId nominal = apply_to(expr.op, a.nominal, b.nominal);
+  if (g_.is_zero(a.delta) && g_.is_zero(b.delta)) return {nominal, g_.constant(0)};
+  if (expr.op == Op::kDivide && g_.is_zero(b.delta))
+    return {nominal, apply_to(Op::kDivide, a.delta, b.nominal)};
+  return {nominal, g_.subtract(apply_to(expr.op, actual(a), actual(b)), nominal)};
+}
+
+Dual Translator::translate(const Expr& expr, const std::string& text, std::size_t line) {
+  try {
+    return visit(expr);
+  } catch (const std::domain_error& reason) {
+    throw InputError({machine_.file, line}, text, std::string("cannot be compiled: it has ") + reason.what());
+  }
+}
+
+}  // namespace vernier

@@ -1,0 +1,40 @@
+#pragma once
+#include "tools/compile/derive.h"
+
+namespace vernier {
+
+/// A quantity of the chain: its value in the nominal chain, and actual minus nominal, so that no big numbers
+/// are subtracted to find a small one.
+struct Dual {
+  NodeId nominal;
+  NodeId delta;
+};
+
+/// Turns expressions of the machine file into duals. tool.
+class Translator {
+ public:
+  Translator(const Machine& machine, Derivation& derivation)
+      : machine_(machine), d_(derivation), g_(derivation.graph) {}
+
+  /// Throws InputError naming `text` where the expression has no fixed-point form.
+  Dual translate(const Expr& expr, const std::string& text, std::size_t line);
+  Dual constant(double nominal, double delta) { return {g_.constant(nominal), g_.constant(delta)}; }
+  NodeId actual(const Dual& a) { return g_.add(a.nominal, a.delta); }
+  NodeId channel(ChannelKind kind, std::size_t index);
+
+ private:
+  Dual visit(const Expr& expr);
+  Dual symbol(const Expr& expr);
+  Dual product(const Dual& a, const Dual& b);
+  Dual lag(const Dual& u, const Dual& tau);
+  NodeId apply_to(Op op, NodeId a, NodeId b);
+  NodeId power(NodeId base, NodeId exponent);
+  NodeId angle_of(NodeId y, NodeId x);
+  NodeId table_value(std::size_t index);
+
+  const Machine& machine_;
+  Derivation& d_;
+  Graph& g_;
+};
+
+}  // namespace vernier

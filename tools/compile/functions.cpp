@@ -1,0 +1,111 @@
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "tools/compile/graph.h"
+
+namespace vernier {
+namespace {
+
+constexpr double kRad = std::numbers::pi / 180;
+
+}  // namespace
+
+double value_of(Function f, double x) {
+  switch (f) {
+    case Function::kSin:
+      return std::sin(x * kRad);
+    case Function::kCos:
+      return std::cos(x * kRad);
+    case Function::kExp:
+      return std::exp(x);
+    case Function::kLog:
+      return std::log(x);
+    case Function::kSqrt:
+      return std::sqrt(x);
+    case Function::kReciprocal:
+      return 1 / x;
+    case Function::kArcTangent:
+      return std::atan(x) / kRad;
+  }
+  throw std::logic_error("unknown function");
+}
+
+double slope_of(Function f, double x) {
+  switch (f) {
+    case Function::kSin:
+      return kRad * std::cos(x * kRad);
+    case Function::kCos:
+      return -kRad * std::sin(x * kRad);
+    case Function::kExp:
+      return std::exp(x);
+    case Function::kLog:
+      return 1 / x;
+    case Function::kSqrt:
+      return 0.5 / std::sqrt(x);
+    case Function::kReciprocal:
+      return -1 / (x * x);
+    case Function::kArcTangent:
+      return 1 / (1 + x * x) / kRad;
+  }
+  throw std::logic_error("unknown function");
+}
+
+// Every one of these functions has its steepest and most curved point at the end of the interval nearest to
+// zero, apart from exp (at the high end), sine, cosine and arc tangent (bounded everywhere).
+double slope_bound(Function f, const Interval& x) {
+  const double nearest = std::min(std::abs(x.low), std::abs(x.high));
+  switch (f) {
+    case Function::kSin:
+    case Function::kCos:
+      return kRad;
+    case Function::kExp:
+      return std::exp(x.high);
+    case Function::kArcTangent:
+      return 1 / kRad;
+    default:
+      return std::abs(slope_of(f, nearest));
+  }
+}
+
+double fourth_derivative_bound(Function f, const Interval& x) {
+  const double nearest = std::min(std::abs(x.low), std::abs(x.high));
+  switch (f) {
+    case Function::kSin:
+    case Function::kCos:
+      return kRad * kRad * kRad * kRad;
+    case Function::kExp:
+      return std::exp(x.high);
+    case Function::kLog:
+      return 6 / std::pow(nearest, 4);
+    case Function::kSqrt:
+      return 15.0 / 16 * std::pow(nearest, -3.5);
+    case Function::kReciprocal:
+      return 24 / std::pow(nearest, 5);
+    case Function::kArcTangent:
+      return 4.67 / kRad;  // max of |24 x (1 - x^2) / (1 + x^2)^4| is 4.669
+  }
+  throw std::logic_error("unknown function");
+}
+
+const char* name_of(Function f) {
+  switch (f) {
+    case Function::kSin:
+      return "sin";
+    case Function::kCos:
+      return "cos";
+    case Function::kExp:
+      return "exp";
+    case Function::kLog:
+      return "log";
+    case Function::kSqrt:
+      return "sqrt";
+    case Function::kReciprocal:
+      return "one_over";
+    case Function::kArcTangent:
+      return "atan";
+  }
+  throw std::logic_error("unknown function");
+}
+
+}  // namespace vernier

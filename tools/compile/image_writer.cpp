@@ -1,0 +1,122 @@
+#include <cmath>
+#include <cstring>
+
+#include "tables/checksum.h"
+#include "tools/compile/compile.h"
+
+namespace vernier {
+namespace {
+
+class Writer {
+ public:
+  Writer() : bytes_(sizeof(ImageHeader) + kSectionCount * sizeof(SectionEntry)) {}
+
+  template <class T>
+  void section(SectionType type, const std::vector<T>& records) {
+    bytes_.resize((bytes_.size() + kImageAlignment - 1) / kImageAlignment * kImageAlignment);
+    const SectionEntry entry{type, static_cast<std::uint32_t>(bytes_.size()),
+                             static_cast<std::uint32_t>(records.size()), sizeof(T)};
+    std::memcpy(bytes_.data() + sizeof(ImageHeader) + sizeof(SectionEntry) * static_cast<std::size_t>(type),
+                &entry, sizeof(entry));
+    const std::size_t start = bytes_.size();
+    bytes_.resize(start + records.size() * sizeof(T));
+    if (!records.empty()) std::memcpy(bytes_.data() + start, records.data(), records.size() * sizeof(T));
+    if (type >= SectionType::kConstants)
+      fingerprint_ =
+          fnv1a(bytes_.data() + start, static_cast<std::uint32_t>(bytes_.size() - start), fingerprint_);
+  }
+
+  std::vector<std::uint8_t> finish(ImageHeader header) {
+    std::memcpy(header.magic, kImageMagic, sizeof(kImageMagic));
+    header.header_bytes = sizeof(ImageHeader);
+    header.format_version = kImageFormatVersion;
+    header.image_bytes = static_cast<std::uint32_t>(bytes_.size());
+    header.section_count = kSectionCount;
+    header.fingerprint = fingerprint_;
+    std::memcpy(bytes_.data(), &header, sizeof(header));
+    header.checksum = crc32c(bytes_.data() + kChecksumStart, header.image_bytes - kChecksumStart);
+    std::memcpy(bytes_.data(), &header, sizeof(header));
+    return std::move(bytes_);
+  }
+  std::uint64_t fingerprint() const { return fingerprint_; }
+
+ private:
+  std::vector<std::uint8_t> bytes_;
+  std::uint64_t fingerprint_ = kFnvSeed;
+};
+
+void copy_text(char* field, std::size_t size, const std::string& text, const Machine& machine,
+               std::size_t line) {
+  if (text.size() >= size) throw InputError({machine.file, line}, text, "too long a name for an image");
+  std::memcpy(field, text.data(), text.size());
+}
+
+std::vector<AxisRecord> axis_records(const Machine& machine) {
+  std::vector<AxisRecord> records;
+  for (const Axis& axis : machine.axes) {
+    AxisRecord r{};
+    copy_text(r.name, sizeof(r.name), axis.name, machine, axis.line);
+    r.flags = (axis.rotary ? kRotary : 0u) | (axis.rollover ? kRollover : 0u);
+    const double counts = axis.rotary ? static_cast<double>(kTurnCounts) / 360 : 1e6;
+    r.low = std::llround(axis.min.value() * counts);
+    r.high = std::llround(axis.max.value() * counts);
+    records.push_back(r);
+  }
+  return records;
+}
+
+std::vector<InputRecord> input_records(const Machine& machine) {
+  std::vector<InputRecord> records;
+  for (const Input& input : machine.inputs) {
+    InputRecord r{};
+    copy_text(r.name, sizeof(r.name), input.name, machine, input.line);
+    copy_text(r.unit, sizeof(r.unit), input.unit, machine, input.line);
+    const Interval range = input_range(input);
+    r.reference = std::llround(input.reference * 1e6);
+    r.low = std::llround(range.low * 1e6);
+    r.high = std::llround(range.high * 1e6);
+    records.push_back(r);
+  }
+  return records;
+}
+
+template <class T>
+std::vector<T> joined(const std::vector<std::vector<T>>& parts, std::vector<Range>& ranges) {
+  std::vector<T> all;
+  for (const std::vector<T>& part : parts) {
+    ranges.push_back({static_cast<std::uint32_t>(all.size()), static_cast<std::uint32_t>(part.size())});
+    all.insert(all.end(), part.begin(), part.end());
+  }
+  return all;
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> write_image(const Machine& machine, const LoweredProgram& program,
+                                      std::uint32_t tick_us, std::uint64_t source_hash,
+                                      std::uint64_t& fingerprint) {
+  Writer writer;
+  std::vector<char> name(machine.name.begin(), machine.name.end());
+  name.push_back('\0');
+  writer.section(SectionType::kName, name);
+  writer.section(SectionType::kAxes, axis_records(machine));
+  writer.section(SectionType::kInputs, input_records(machine));
+  writer.section(SectionType::kConstants, program.constants);
+  writer.section(SectionType::kChannels, program.channels);
+  writer.section(SectionType::kInstructions, program.instructions);
+  std::vector<Range> tables, columns;
+  writer.section(SectionType::kSegments, joined(program.tables, tables));
+  writer.section(SectionType::kTables, tables);
+  writer.section(SectionType::kValues, joined(program.columns, columns));
+  writer.section(SectionType::kColumns, columns);
+  writer.section(SectionType::kWraps, program.wraps);
+  writer.section(SectionType::kOutputs, program.outputs);
+  ImageHeader header{};
+  header.tick_us = tick_us;
+  header.source_hash = source_hash;
+  header.lag_count = program.lag_count;
+  fingerprint = writer.fingerprint();
+  return writer.finish(header);
+}
+
+}  // namespace vernier

@@ -1,0 +1,27 @@
+#pragma once
+#include <algorithm>
+#include <cmath>
+
+namespace vernier {
+
+/// All values that a quantity can take over the declared ranges; low <= high.
+struct Interval {
+  double low = 0, high = 0;
+
+  double magnitude() const { return std::max(std::abs(low), std::abs(high)); }
+  bool contains(double x) const { return low <= x && x <= high; }
+};
+
+inline Interval operator+(const Interval& a, const Interval& b) { return {a.low + b.low, a.high + b.high}; }
+inline Interval operator*(double k, const Interval& a) {
+  return k < 0 ? Interval{k * a.high, k * a.low} : Interval{k * a.low, k * a.high};
+}
+inline Interval operator*(const Interval& a, const Interval& b) {
+  const auto [low, high] = std::minmax({a.low * b.low, a.low * b.high, a.high * b.low, a.high * b.high});
+  return {low, high};
+}
+inline Interval hull(const Interval& a, const Interval& b) {
+  return {std::min(a.low, b.low), std::max(a.high, b.high)};
+}
+
+}  // namespace vernier

@@ -1,0 +1,414 @@
+#include "tools/compile/lower.h"
+
+#include <cmath>
+#include <stdexcept>
+
+#include "tools/compile/builder.h"
+#include "tools/compile/segments.h"
+#include "tools/model/station_table.h"
+
+namespace vernier {
+namespace {
+
+constexpr double kNmPerMm = 1e6;
+const double kTurnUnit = 360.0 / 4294967296.0;  // deg of one count of a rotary axis
+
+double unit_of(const Machine& machine, ChannelKind kind, std::size_t index) {
+  switch (kind) {
+    case ChannelKind::kPosition:
+    case ChannelKind::kVelocity:
+    case ChannelKind::kAcceleration:
+    case ChannelKind::kSince:
+      return machine.axes[index].rotary ? kTurnUnit : 1e-6;
+    case ChannelKind::kSense:
+    case ChannelKind::kVisit:
+      return 1;
+    case ChannelKind::kCurvature:
+      return 1e-9;
+    case ChannelKind::kInput:
+    case ChannelKind::kFeed:
+    case ChannelKind::kTime:
+      return 1e-6;
+  }
+  return 1;
+}
+
+std::string channel_name(const Machine& machine, ChannelKind kind, std::size_t index) {
+  switch (kind) {
+    case ChannelKind::kPosition:
+      return machine.axes[index].name;
+    case ChannelKind::kVelocity:
+      return "v_" + machine.axes[index].name;
+    case ChannelKind::kAcceleration:
+      return "a_" + machine.axes[index].name;
+    case ChannelKind::kSense:
+      return "dir_" + machine.axes[index].name;
+    case ChannelKind::kSince:
+      return "since_" + machine.axes[index].name;
+    case ChannelKind::kInput:
+      return machine.inputs[index].name;
+    case ChannelKind::kFeed:
+      return "feed";
+    case ChannelKind::kCurvature:
+      return "curv";
+    case ChannelKind::kTime:
+      return "time_s";
+    case ChannelKind::kVisit:
+      return "visit";
+  }
+  return "channel";
+}
+
+class Lowering {
+ public:
+  Lowering(const Machine& machine, const Derivation& d, std::uint32_t tick_us)
+      : machine_(machine), d_(d), g_(d.graph), tick_us_(tick_us) {}
+
+  LoweredProgram run() {
+    std::vector<std::pair<Output, ProgramBuilder::Id>> outputs;
+    for (const AxisDeviation& out : d_.outputs) {
+      wanted_name_ = "deviation_" + machine_.axes[out.axis].name;
+      const Id id = value(out.value);
+      outputs.emplace_back(output_of(out.axis, id), id);
+    }
+    return b_.finish(outputs);
+  }
+
+ private:
+  using Id = ProgramBuilder::Id;
+
+  Output output_of(std::size_t axis, Id id) const {
+    const Axis& a = machine_.axes[axis];
+    const double factor = std::ldexp(kNmPerMm, -b_.at(id).fraction_bits);
+    const int shift = std::clamp(29 - std::ilogb(factor), 0, static_cast<int>(kMaxShift));
+    const auto counts = [](std::optional<double> mm, double per) {
+      return mm ? static_cast<std::int32_t>(std::min(2147483647.0, std::floor(*mm * per + 1e-6))) : INT32_MAX;
+    };
+    Output out{};
+    out.axis = static_cast<std::uint16_t>(axis);
+    out.shift = static_cast<std::uint32_t>(shift);
+    out.multiplier = static_cast<std::int32_t>(std::llround(std::ldexp(factor, shift)));
+    out.limit = counts(a.max_correction, kNmPerMm);
+    out.slew = counts(a.max_slew, kNmPerMm * tick_us_ * 1e-6);
+    return out;
+  }
+
+  Id value(NodeId node) {
+    const auto found = done_.find(node);
+    if (found != done_.end()) return found->second;
+    const std::string name = std::exchange(wanted_name_, {});
+    const Id id = make(node, name);
+    done_[node] = id;
+    return id;
+  }
+
+  Id make(NodeId node, const std::string& name) {
+    const Node& n = g_[node];
+    switch (n.kind) {
+      case NodeKind::kConstant:
+        return b_.constant(n.number);
+      case NodeKind::kChannel:
+        return channel(n);
+      case NodeKind::kSum:
+        return sum(n, name);
+      case NodeKind::kProduct: {
+        const Id a = value(n.args[0]), b = value(n.args[1]);
+        return b_.product(
+            a, b, n.range,
+            name.empty() ? short_name(b_.at(a).name + "_times_" + b_.at(b).name, "product") : name);
+      }
+      case NodeKind::kTable:
+        return table(n);
+      case NodeKind::kFunction:
+        return function(n);
+      case NodeKind::kLag:
+        return lag(n);
+      default:
+        return choice(n);
+    }
+  }
+
+  static std::string short_name(const std::string& name, const char* otherwise) {
+    return name.size() <= 40 ? name : otherwise;
+  }
+
+  Id channel(const Node& n) {
+    const double unit = unit_of(machine_, n.channel, n.index[0]);
+    Channel c{};
+    c.kind = n.channel;
+    c.index = static_cast<std::uint8_t>(n.index[0]);
+    c.low = std::llround(n.range.low / unit);
+    c.high = std::llround(n.range.high / unit);
+    double reach = 0;
+    if (n.channel == ChannelKind::kPosition) {
+      const Axis& axis = machine_.axes[n.index[0]];
+      if (const Table* const t = machine_.table_of(n.index[0]))
+        reach = std::max(std::abs(t->stations.front().loc), std::abs(t->stations.back().loc));
+      // A whole turn at least: positions beyond come back by turns.
+      if (axis.rotary && axis.rollover && c.high - c.low >= kTurnCounts) c.wrap = kTurnCounts;
+    }
+    return b_.channel(c, unit, reach, channel_name(machine_, n.channel, n.index[0]));
+  }
+
+  // Terms in order of size, so that partial sums keep the finest format as long as they can.
+  Id sum(const Node& n, const std::string& name) {
+    struct Part {
+      double k;
+      Id id;
+      Interval range;
+    };
+    std::vector<Part> parts;
+    for (const Term& term : n.terms)
+      parts.push_back({term.coefficient, value(term.node), term.coefficient * g_[term.node].range});
+    if (n.number != 0) parts.push_back({1, b_.constant(n.number), {n.number, n.number}});
+    std::stable_sort(parts.begin(), parts.end(),
+                     [](const Part& a, const Part& b) { return a.range.magnitude() < b.range.magnitude(); });
+    const std::string base =
+        name.empty() ? short_name("sum_with_" + b_.at(parts.back().id).name, "sum") : name;
+    if (parts.size() == 1)
+      return b_.linear(parts[0].k, parts[0].id, 0, parts[0].id, parts[0].range,
+                       name.empty() ? short_name(b_.at(parts[0].id).name + "_scaled", "scaled") : name);
+    Part so_far = parts[0];
+    for (std::size_t i = 1; i < parts.size(); ++i) {
+      const Interval range = so_far.range + parts[i].range;
+      const std::string part_name = i + 1 == parts.size() ? base : base + "_part";
+      so_far = {1, b_.linear(so_far.k, so_far.id, parts[i].k, parts[i].id, range, part_name), range};
+    }
+    return so_far.id;
+  }
+
+  struct Spot {
+    Id segment, fraction, position;
+    std::uint16_t table;
+  };
+
+  Spot look_up(Id position, std::uint16_t table, std::size_t segments, const std::string& name) {
+    const auto at = static_cast<std::uint16_t>(position);
+    const Id segment =
+        b_.plain({OpCode::kSegment, 0, at, table, 0, 0, 0}, 0, {0, static_cast<double>(segments) - 1}, 0,
+                 ErrorSource::kTable, {}, "segment_" + name);
+    const Id fraction = b_.plain({OpCode::kFraction, 0, at, table, static_cast<std::uint16_t>(segment), 0, 0},
+                                 30, {0, 1}, 0, ErrorSource::kTable, {}, "fraction_" + name);
+    return {segment, fraction, position, table};
+  }
+
+  Id wrapped(Id position, double first, double period, const std::string& name, double slope_for_error) {
+    const int bits = b_.at(position).fraction_bits;
+    const double exact = std::ldexp(period, bits);
+    const Wrap wrap = make_wrap(std::llround(std::ldexp(first, bits)), std::llround(exact));
+    const double turns = b_.at(position).range.magnitude() / period + 1;
+    const double error =
+        turns * std::abs(exact - std::round(exact)) * b_.lsb(position) * (slope_for_error > 0 ? 1 : 0);
+    return b_.plain({OpCode::kWrap, 0, static_cast<std::uint16_t>(position), b_.add_wrap(wrap), 0, 0, 0},
+                    bits, {first, first + period}, error, ErrorSource::kTable, {{position, 1}},
+                    name + "_in_period");
+  }
+
+  Spot spot_of(std::size_t axis, NodeId position_node) {
+    const auto found = spots_.find(axis);
+    if (found != spots_.end()) return found->second;
+    const Table& table = *machine_.table_of(axis);
+    const std::string& name = machine_.axes[axis].name;
+    const double first = table.stations.front().loc, last = table.stations.back().loc;
+    Id position = value(position_node);
+    const Interval range = g_[position_node].range;
+    if (table.periodic && (range.low < first || range.high > last))
+      position = wrapped(position, first, last - first, name, 1);
+    std::vector<std::int64_t> stations;
+    for (const Station& s : table.stations) {
+      const double count = std::ldexp(s.loc, b_.at(position).fraction_bits);
+      if (std::abs(count) > 2147483000.0)
+        throw InputError({machine_.file, table.line}, s.loc_text,
+                         "cannot be compiled: station out of reach of the axis format");
+      stations.push_back(std::llround(count));
+      if (stations.size() > 1 && stations.back() <= stations[stations.size() - 2])
+        throw InputError({machine_.file, table.line}, s.loc_text,
+                         "cannot be compiled: stations closer than the axis format resolves");
+    }
+    const std::uint16_t index = b_.add_table(make_segments(stations), "stations_" + name);
+    return spots_.emplace(axis, look_up(position, index, stations.size() - 1, name)).first->second;
+  }
+
+  Id table(const Node& n) {
+    const Table& t = *machine_.table_of(n.index[0]);
+    const Spot spot = spot_of(n.index[0], n.args[0]);
+    constexpr const char* kLetters[6] = {"X", "Y", "Z", "A", "B", "C"};
+    const std::string name = std::string("E") + kLetters[n.index[1]] + machine_.axes[n.index[0]].name;
+    const bool cubic = t.interpolation == Interpolation::kCubic && t.stations.size() > 2;
+    return cubic ? cubic_column(t, n, spot, name) : linear_column(t, n, spot, name);
+  }
+
+  Id linear_column(const Table& t, const Node& n, const Spot& spot, const std::string& name) {
+    const int bits = fraction_bits_for(n.range.magnitude());
+    std::vector<std::int32_t> values;
+    double slope = 0, step = 0;
+    for (std::size_t i = 0; i < t.stations.size(); ++i) {
+      const double v = t.stations[i].value[n.index[1]];
+      values.push_back(static_cast<std::int32_t>(std::llround(std::ldexp(v, bits))));
+      if (i == 0) continue;
+      const double rise = std::abs(v - t.stations[i - 1].value[n.index[1]]);
+      slope = std::max(slope, rise / (t.stations[i].loc - t.stations[i - 1].loc));
+      step = std::max(step, rise);
+    }
+    // Value and interpolation half an LSB each; a station half an LSB of the position off; fraction below
+    // 2^-29.
+    const double error =
+        std::ldexp(1.0, -bits) + 2 * slope * 0.5 * b_.lsb(spot.position) + step * std::ldexp(1.0, -29);
+    const Instruction op{OpCode::kLinearColumn,
+                         0,
+                         static_cast<std::uint16_t>(spot.fraction),
+                         b_.add_column(values, name),
+                         static_cast<std::uint16_t>(spot.segment),
+                         0,
+                         0};
+    return b_.plain(op, bits, n.range, error, ErrorSource::kTable, {{spot.position, slope}}, name);
+  }
+
+  Id cubic_column(const Table& t, const Node& n, const Spot& spot, const std::string& name) {
+    const StationTable exact(t);
+    std::vector<CubicPiece> pieces;
+    double size = 0, slope = 0;
+    for (std::size_t i = 0; i + 1 < t.stations.size(); ++i) {
+      const double a = t.stations[i].loc, h = t.stations[i + 1].loc - a;
+      // A cubic is fixed by its values at four places; end slopes come from them without touching the held
+      // ends.
+      const auto at = [&](double f) {
+        return f == 0   ? t.stations[i].value[n.index[1]]
+               : f == 1 ? t.stations[i + 1].value[n.index[1]]
+                        : exact.values(a + f * h)[n.index[1]];
+      };
+      const double v0 = at(0), v1 = at(1.0 / 3), v2 = at(2.0 / 3), v3 = at(1);
+      const double near_slope = (-11 * v0 + 18 * v1 - 9 * v2 + 2 * v3) / 2,
+                   far_slope = (11 * v3 - 18 * v2 + 9 * v1 - 2 * v0) / 2;
+      pieces.push_back(hermite(v0, v3, near_slope, far_slope));
+      const double* const c = pieces.back().c;
+      size = std::max(size, std::abs(c[0]) + std::abs(c[1]) + std::abs(c[2]) + std::abs(c[3]));
+      slope = std::max(slope, (std::abs(c[1]) + 2 * std::abs(c[2]) + 3 * std::abs(c[3])) / h);
+    }
+    const int bits = fraction_bits_for(size * 1.001);
+    std::vector<std::int32_t> values;
+    for (const CubicPiece& p : pieces)
+      for (const double c : p.c)
+        values.push_back(static_cast<std::int32_t>(std::llround(std::ldexp(c, bits))));
+    const double error = 3.5 * std::ldexp(1.0, -bits) + 2 * slope * 0.5 * b_.lsb(spot.position) +
+                         3 * size * std::ldexp(1.0, -29);
+    const Instruction op{OpCode::kCubicColumn,
+                         0,
+                         static_cast<std::uint16_t>(spot.fraction),
+                         b_.add_column(values, name),
+                         static_cast<std::uint16_t>(spot.segment),
+                         0,
+                         0};
+    return b_.plain(op, bits, n.range, error, ErrorSource::kTable, {{spot.position, slope}}, name);
+  }
+
+  Id function(const Node& n) {
+    Id argument = value(n.args[0]);
+    const bool periodic = n.function == Function::kSin || n.function == Function::kCos;
+    const std::string name =
+        short_name(std::string(name_of(n.function)) + "_" + b_.at(argument).name, name_of(n.function));
+    if (periodic && b_.at(argument).range.magnitude() > 361) argument = wrapped_once(argument);
+    FunctionPieces pieces;
+    try {
+      pieces = make_pieces(n.function, b_.counts(argument).low, b_.counts(argument).high,
+                           b_.at(argument).fraction_bits);
+    } catch (const std::domain_error& e) {
+      throw InputError("cannot be compiled: " + name + ": " + e.what());
+    }
+    const std::size_t count = pieces.segments.size();
+    const Spot spot =
+        look_up(argument, b_.add_table(std::move(pieces.segments), "pieces_" + name), count, name);
+    const Instruction op{OpCode::kCubicColumn,
+                         0,
+                         static_cast<std::uint16_t>(spot.fraction),
+                         b_.add_column(std::move(pieces.coefficients), name),
+                         static_cast<std::uint16_t>(spot.segment),
+                         0,
+                         0};
+    return b_.plain(op, pieces.fraction_bits, n.range, pieces.error, ErrorSource::kFunction,
+                    {{argument, pieces.slope}}, name);
+  }
+
+  Id wrapped_once(Id argument) {
+    const auto found = wrapped_.find(argument);
+    if (found != wrapped_.end()) return found->second;
+    return wrapped_[argument] = wrapped(argument, -180, 360, b_.at(argument).name, 1);
+  }
+
+  Id choice(const Node& n) {
+    Id a = value(n.args[0]);
+    const auto one = [&](OpCode op, int bits, double gain, const char* name) {
+      return b_.plain({op, 0, static_cast<std::uint16_t>(a), 0, 0, 0, 0}, bits, n.range, 0,
+                      ErrorSource::kRounding, {{a, gain}}, std::string(name) + b_.at(a).name);
+    };
+    if (n.kind == NodeKind::kAbs) return one(OpCode::kAbs, b_.at(a).fraction_bits, 1, "abs_");
+    if (n.kind == NodeKind::kSign) return one(OpCode::kSign, 0, 0, "sign_");
+    Id b = value(n.args[1]);
+    const int bits = std::min(b_.at(a).fraction_bits, b_.at(b).fraction_bits);
+    a = b_.reformat(a, bits);
+    b = b_.reformat(b, bits);
+    const bool value_kind = n.kind == NodeKind::kMin || n.kind == NodeKind::kMax;
+    const OpCode op = n.kind == NodeKind::kMin     ? OpCode::kMin
+                      : n.kind == NodeKind::kMax   ? OpCode::kMax
+                      : n.kind == NodeKind::kEqual ? OpCode::kEqual
+                                                   : OpCode::kLess;
+    const double gain = value_kind ? 1 : 0;
+    const std::string name = n.kind == NodeKind::kMin     ? "lower"
+                             : n.kind == NodeKind::kMax   ? "higher"
+                             : n.kind == NodeKind::kEqual ? "is_equal"
+                                                          : "is_less";
+    return b_.plain({op, 0, static_cast<std::uint16_t>(a), static_cast<std::uint16_t>(b), 0, 0, 0},
+                    value_kind ? bits : 0, n.range, 0, ErrorSource::kRounding, {{a, gain}, {b, gain}}, name);
+  }
+
+  Id lag(const Node& n) {
+    const Id input = value(n.args[0]);
+    const double gain = -std::expm1(-tick_us_ * 1e-6 / n.number);
+    const int shift = std::clamp(30 - std::ilogb(gain), 31, static_cast<int>(kMaxShift));
+    const auto mantissa =
+        static_cast<std::int32_t>(std::min(2147483647.0, std::round(std::ldexp(gain, shift))));
+    const double width = n.range.high - n.range.low;
+    // Against an input that is linear between ticks: half a tick of delay, at most gain * width; then the
+    // time constant's quantisation, the output's rounding and what the state's truncation adds up to.
+    const double error = width * (gain + std::abs(std::ldexp(mantissa, -shift) / gain - 1)) +
+                         b_.lsb(input) * (0.5 + std::ldexp(1.0, -30) / gain);
+    return b_.plain({OpCode::kLag, static_cast<std::uint8_t>(shift), static_cast<std::uint16_t>(input),
+                     b_.add_lag(), 0, mantissa, 0},
+                    b_.at(input).fraction_bits, n.range, error, ErrorSource::kLag, {{input, 1}},
+                    "lagged_" + b_.at(input).name);
+  }
+
+  const Machine& machine_;
+  const Derivation& d_;
+  const Graph& g_;
+  std::uint32_t tick_us_;
+  ProgramBuilder b_;
+  std::string wanted_name_;
+  std::map<NodeId, Id> done_;
+  std::map<std::size_t, Spot> spots_;
+  std::map<Id, Id> wrapped_;
+};
+
+}  // namespace
+
+const char* name_of(ErrorSource source) {
+  switch (source) {
+    case ErrorSource::kRounding:
+      return "rounding";
+    case ErrorSource::kTable:
+      return "table";
+    case ErrorSource::kFunction:
+      return "function";
+    case ErrorSource::kChannel:
+      return "input";
+    case ErrorSource::kLag:
+      return "lag";
+  }
+  return "";
+}
+
+LoweredProgram lower(const Machine& machine, const Derivation& derivation, std::uint32_t tick_us) {
+  return Lowering(machine, derivation, tick_us).run();
+}
+
+}  // namespace vernier

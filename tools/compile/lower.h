@@ -1,0 +1,55 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "comp/verify.h"
+#include "tools/compile/derive.h"
+
+namespace vernier {
+
+/// Where an error of the fixed-point program comes from.
+enum class ErrorSource : std::uint8_t { kRounding, kTable, kFunction, kChannel, kLag };
+constexpr std::size_t kErrorSourceCount = 5;
+const char* name_of(ErrorSource source);
+
+/// What the compiler knows about one register: format, range and where its error comes from. The value it
+/// stands for is count / 2^fraction_bits in the unit of the machine file.
+struct Register {
+  std::string name;  // unique, a C++ identifier
+  int fraction_bits = 0;
+  Interval range;        // of the exact value
+  double error = 0;      // bound of |register - exact value|, same unit
+  double own_error = 0;  // the part that arises in this register
+  ErrorSource source = ErrorSource::kRounding;
+  struct Use {
+    std::uint32_t from;
+    double gain;  // |d this / d from| at most
+  };
+  std::vector<Use> uses;
+};
+
+/// A fixed-point program with its stores, owned.
+struct LoweredProgram {
+  std::vector<std::int32_t> constants;
+  std::vector<Channel> channels;
+  std::vector<Instruction> instructions;
+  std::vector<std::vector<Segment>> tables;
+  std::vector<std::string> table_names;
+  std::vector<std::vector<std::int32_t>> columns;
+  std::vector<std::string> column_names;
+  std::vector<Wrap> wraps;
+  std::vector<Output> outputs;
+  std::uint32_t lag_count = 0;
+  std::vector<Register> registers;  // one per constant, channel and instruction
+
+  std::uint32_t first_result() const {
+    return static_cast<std::uint32_t>(constants.size() + channels.size());
+  }
+};
+
+/// Chooses formats by interval analysis and writes the straight-line program with a proved error bound per
+/// register. tick_us: the cycle time for lags and slew limits. Throws InputError where a format or the size
+/// does not suffice. tool.
+LoweredProgram lower(const Machine& machine, const Derivation& derivation, std::uint32_t tick_us);
+
+}  // namespace vernier

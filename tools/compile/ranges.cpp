@@ -1,0 +1,71 @@
+#include "tools/compile/derive.h"
+
+namespace vernier {
+namespace {
+
+// Where a machine file declares no range, these hold: faster, hotter or longer is held at the edge and
+// flagged.
+constexpr double kLinearSpeed = 1000;          // mm/s
+constexpr double kRotarySpeed = 1000;          // deg/s
+constexpr double kLinearAcceleration = 10000;  // mm/s^2
+constexpr double kRotaryAcceleration = 10000;  // deg/s^2
+constexpr double kFeed = 60000;                // mm/min
+constexpr double kCurvature = 1;               // 1/mm
+constexpr double kTime = 1e6;                  // s
+constexpr double kVisits = 1e6;
+
+double half_width_of(const std::string& unit) {
+  if (unit == "degC" || unit == "K") return 50;
+  if (unit == "mm" || unit == "V" || unit == "deg") return 10;
+  if (unit == "um" || unit == "N" || unit == "mV") return 10000;
+  if (unit == "kg") return 1000;
+  return 1000;
+}
+
+}  // namespace
+
+Interval axis_range(const Machine& machine, std::size_t axis) {
+  const Axis& a = machine.axes[axis];
+  if (!a.min || !a.max)
+    throw InputError({machine.file, a.line}, a.name, "an axis without min and max cannot be compiled");
+  return {*a.min, *a.max};
+}
+
+Interval input_range(const Input& input) {
+  const double width = half_width_of(input.unit);
+  return {input.min.value_or(input.reference - width), input.max.value_or(input.reference + width)};
+}
+
+Interval channel_range(const Machine& machine, ChannelKind kind, std::size_t index) {
+  const auto symmetric = [&](double linear, double rotary) {
+    const double limit = machine.axes[index].rotary ? rotary : linear;
+    return Interval{-limit, limit};
+  };
+  switch (kind) {
+    case ChannelKind::kPosition:
+      return axis_range(machine, index);
+    case ChannelKind::kVelocity:
+      return symmetric(kLinearSpeed, kRotarySpeed);
+    case ChannelKind::kAcceleration:
+      return symmetric(kLinearAcceleration, kRotaryAcceleration);
+    case ChannelKind::kSense:
+      return {-1, 1};
+    case ChannelKind::kSince: {
+      const Interval travel = axis_range(machine, index);
+      return {0, std::max(1000.0, 10 * (travel.high - travel.low))};
+    }
+    case ChannelKind::kInput:
+      return input_range(machine.inputs[index]);
+    case ChannelKind::kFeed:
+      return {0, kFeed};
+    case ChannelKind::kCurvature:
+      return {0, kCurvature};
+    case ChannelKind::kTime:
+      return {0, kTime};
+    case ChannelKind::kVisit:
+      return {0, kVisits};
+  }
+  return {};
+}
+
+}  // namespace vernier

@@ -1,0 +1,107 @@
+#include "tools/compile/segments.h"
+
+#include <cmath>
+#include <stdexcept>
+
+#include "tools/compile/builder.h"
+
+namespace vernier {
+namespace {
+
+constexpr double kRelativeTolerance = 1.0 / (1 << 26);
+constexpr std::size_t kMostPieces = 1024;
+
+void split(Function f, std::int64_t low, std::int64_t high, double unit, double tolerance,
+           std::vector<std::int64_t>& positions, double& error) {
+  const Interval x{static_cast<double>(low) * unit, static_cast<double>(high) * unit};
+  const double bound = std::pow(x.high - x.low, 4) / 384 * fourth_derivative_bound(f, x);
+  if (bound <= tolerance || high - low <= 16 || positions.size() > kMostPieces) {
+    positions.push_back(high);
+    error = std::max(error, bound);
+    return;
+  }
+  const std::int64_t middle = low + (high - low) / 2;
+  split(f, low, middle, unit, tolerance, positions, error);
+  split(f, middle, high, unit, tolerance, positions, error);
+}
+
+}  // namespace
+
+Segment make_segment(std::int64_t start, std::int64_t end) {
+  Segment s{};
+  s.start = static_cast<std::int32_t>(start);
+  s.length = static_cast<std::uint32_t>(end - start);
+  // The largest shift with which ceil(2^(30+shift)/length) still fits 32 bits.
+  for (s.shift = 33;; --s.shift) {
+    const std::uint64_t one = std::uint64_t{1} << (30 + s.shift);
+    const std::uint64_t reciprocal = (one + s.length - 1) / s.length;
+    if (reciprocal > UINT32_MAX && s.shift > 0) continue;
+    s.reciprocal = static_cast<std::uint32_t>(reciprocal);
+    return s;
+  }
+}
+
+std::vector<Segment> make_segments(const std::vector<std::int64_t>& positions) {
+  std::vector<Segment> segments;
+  for (std::size_t i = 0; i + 1 < positions.size(); ++i)
+    segments.push_back(make_segment(positions[i], positions[i + 1]));
+  return segments;
+}
+
+Wrap make_wrap(std::int64_t first, std::int64_t period) {
+  if (period < 4 || period > INT32_MAX)
+    throw InputError("cannot be compiled: a period that does not fit the format");
+  Wrap w{};
+  w.first = static_cast<std::int32_t>(first);
+  w.period = static_cast<std::int32_t>(period);
+  w.shift = static_cast<std::uint32_t>(30 + std::ilogb(static_cast<double>(period)));
+  w.reciprocal = static_cast<std::int32_t>(((std::int64_t{1} << w.shift) + period / 2) / period);
+  return w;
+}
+
+CubicPiece hermite(double near, double far, double near_slope, double far_slope) {
+  const double rise = far - near;
+  return {{near, near_slope, 3 * rise - 2 * near_slope - far_slope, -2 * rise + near_slope + far_slope}};
+}
+
+FunctionPieces make_pieces(Function f, std::int64_t low, std::int64_t high, int argument_bits) {
+  const double unit = std::ldexp(1.0, -argument_bits);
+  const Interval x{static_cast<double>(low) * unit, static_cast<double>(high) * unit};
+  // Rounding of the argument may carry it over the edge of the domain that its exact range respects.
+  const bool open_at_zero = f == Function::kLog || f == Function::kSqrt || f == Function::kReciprocal;
+  if (open_at_zero && low <= 0 && (f != Function::kReciprocal || high >= 0))
+    throw std::domain_error("its argument comes too close to zero");
+  FunctionPieces result;
+  double size = f == Function::kSin || f == Function::kCos
+                    ? 1
+                    : std::max(std::abs(value_of(f, x.low)), std::abs(value_of(f, x.high)));
+  std::vector<std::int64_t> positions;
+  for (double tolerance = size * kRelativeTolerance;; tolerance *= 16) {
+    positions.assign(1, low);
+    result.error = 0;
+    split(f, low, std::max(high, low + 1), unit, tolerance, positions, result.error);
+    if (positions.size() <= kMostPieces) break;
+  }
+  result.segments = make_segments(positions);
+  std::vector<CubicPiece> pieces;
+  for (std::size_t i = 0; i + 1 < positions.size(); ++i) {
+    const double a = static_cast<double>(positions[i]) * unit,
+                 b = static_cast<double>(positions[i + 1]) * unit;
+    pieces.push_back(
+        hermite(value_of(f, a), value_of(f, b), slope_of(f, a) * (b - a), slope_of(f, b) * (b - a)));
+    const double* const c = pieces.back().c;
+    size = std::max(size, std::abs(c[0]) + std::abs(c[1]) + std::abs(c[2]) + std::abs(c[3]));
+  }
+  result.fraction_bits = fraction_bits_for(size * 1.01);
+  for (const CubicPiece& piece : pieces)
+    for (const double c : piece.c)
+      result.coefficients.push_back(
+          static_cast<std::int32_t>(std::llround(std::ldexp(c, result.fraction_bits))));
+  // Four coefficients and three products, each half an LSB; the fraction truncates by less than 2^-29 of a
+  // piece.
+  result.error += 3.5 * std::ldexp(1.0, -result.fraction_bits) + size * std::ldexp(1.0, -29);
+  result.slope = slope_bound(f, x);
+  return result;
+}
+
+}  // namespace vernier
