@@ -1,0 +1,10 @@
+#pragma once
+#include <string_view>
+
+namespace vernier {
+
+/// The bundled plots (tools/report/web, one script) and the style sheet of the reports. tool.
+std::string_view report_script();
+std::string_view report_style();
+
+}  // namespace vernier

@@ -1,0 +1,29 @@
+#pragma once
+#include <cstddef>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace vernier {
+
+/// Base64 (RFC 4648, padded) of some bytes. tool.
+std::string base64(std::string_view bytes);
+
+/// Text for an HTML document: & < > " ' written as entities. tool.
+std::string escape_html(std::string_view text);
+
+/// `value` with long rows of numbers packed: {"u8": base64} for small whole numbers, else {"f32": base64} of
+/// little-endian floats, null and what is not finite as NaN. Short rows stay as they are. tool.
+nlohmann::ordered_json packed(const nlohmann::ordered_json& value);
+
+/// JSON that can stand in a <script> element: no '<' and '>' in it, ASCII only; bytes that are no UTF-8 are
+/// replaced. tool.
+std::string script_json(const nlohmann::ordered_json& value);
+
+/// `detail` with at most about `most` observations: every n-th of them and those of the rows in `worst`, with
+/// the rows that they refer to; `thinned` tells {kept, of, step}. Long circular runs are thinned likewise.
+/// Throws std::invalid_argument where lengths or indices contradict one another. tool.
+nlohmann::ordered_json thinned_detail(const nlohmann::ordered_json& detail, std::size_t most);
+
+}  // namespace vernier

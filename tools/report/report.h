@@ -1,0 +1,35 @@
+#pragma once
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace vernier {
+
+/// One self-contained HTML page that draws the JSON result of `compare`; it computes no result of its own.
+/// The page opens without a network, in light and dark. Everything is optional but an object:
+///   machine, files[], rms_um, check_rms_um, max_um, check_max_um, noise_um, n_obs, n_excluded, rms_urad,
+///   parameters[{name, value, std, unit}], notes[],
+///   detail: { columns[{name, unit, kind}], column_data[column][row], runs[], row_run[], row_check[],
+///   row_line[],
+///     observations: {kind[], row[], kind_index[], residual[] (um or urad)},
+///     circular[{plane[2], nominal_radius_mm, runs[{label, direction, angle_deg[], measured_um[], model_um[],
+///     check[],
+///       centre_mm[2], radius_mm, circular_deviation_um, max_radial_um, max_radial_deg, min_radial_um,
+///       min_radial_deg, feed_mm_min}], bidirectional_um, hysteresis_um, hysteresis_deg}],
+///     worst[{row, line, run, kind, residual}] }
+/// More observations of a kind than kMostDrawn are thinned: every n-th and the worst are drawn, and the page
+/// says so. Texts are shown as they are, never read as markup. Throws std::invalid_argument where `detail`
+/// contradicts itself. tool.
+std::string compare_report_html(const nlohmann::ordered_json& result);
+
+/// The same kind of page for a job of several steps:
+///   title, machine, files[], sections[{title, prose[], numbers[{label, value, unit, hint, strong}],
+///     ladder[{label, rms_um, check_rms_um}], tables[{caption, columns[], rows[][]}], parameters[],
+///     plots[{x: {name, unit, values[]}, y[{name, unit, values[]}], bars, log, caption}],
+///     detail (as above), notes[]}]
+/// tool.
+std::string improvement_report_html(const nlohmann::ordered_json& result);
+
+/// Observations of one kind that a page draws at most.
+inline constexpr std::size_t kMostDrawn = 20000;
+
+}  // namespace vernier

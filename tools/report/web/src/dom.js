@@ -1,0 +1,47 @@
+// Everything that comes from a file or a user goes in as text, never as markup.
+
+/** An element with attributes and children; strings become text nodes. */
+export function el(name, attributes = {}, ...children) {
+  const node = document.createElement(name);
+  for (const [key, value] of Object.entries(attributes)) {
+    if (value !== undefined && value !== null) node.setAttribute(key, value);
+  }
+  for (const child of children.flat()) {
+    if (child !== null && child !== undefined) node.append(child instanceof Node ? child : String(child));
+  }
+  return node;
+}
+
+let sections = 0;
+
+/** A section with a heading, linked from the bar at the top. */
+export function section(root, title, ...children) {
+  const id = `s${++sections}`;
+  const node = el('section', { id, 'aria-labelledby': `${id}h` }, el('h2', { id: `${id}h` }, title), ...children);
+  root.append(node);
+  document.getElementById('nav').append(el('a', { href: `#${id}` }, title));
+  return node;
+}
+
+/** Table of texts; columns: [{name, left}] (left: text, else a right-aligned number). */
+export function table(caption, columns, rows) {
+  const cell = (name, column, text) => el(name, { class: column.left ? 'text' : 'num', scope: name === 'th' ? 'col' : null }, text);
+  return el('div', { class: 'scroll', tabindex: '0', role: 'region', 'aria-label': caption },
+    el('table', {}, el('caption', {}, caption),
+      el('thead', {}, el('tr', {}, columns.map((column) => cell('th', column, column.name)))),
+      el('tbody', {}, rows.map((row) => el('tr', {}, row.map((text, i) => cell('td', columns[i], text)))))));
+}
+
+/** Labelled numbers in a row of tiles: [{label, value, unit, hint}]. */
+export function tiles(items) {
+  return el('dl', { class: 'tiles' }, items.map((item) =>
+    el('div', { class: item.strong ? 'tile strong' : 'tile', title: item.hint },
+      el('dt', {}, item.label), el('dd', {}, item.value, item.unit && item.value !== '–' ? el('small', {}, ` ${item.unit}`) : null))));
+}
+
+/** A labelled choice; calls back with the value chosen. */
+export function choice(label, options, chosen, change) {
+  const select = el('select', {}, options.map(([value, text]) => el('option', { value, selected: value === chosen ? '' : null }, text)));
+  select.addEventListener('change', () => change(select.value));
+  return el('label', { class: 'choice' }, `${label} `, select);
+}
