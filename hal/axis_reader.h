@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "comp/quantity.h"
+#include "hal/fault.h"
+
+namespace vernier {
+
+/// What a controller says about one axis: its own counts (1 nm, or 2^-32 turn), per s, per s^2.
+struct AxisReading {
+  AxisPosition position;
+  AxisSpeed velocity;
+  AxisAcceleration acceleration;
+  AxisTravel since{INT64_MAX};  // travel since the last reversal; a long way where unknown
+  std::int8_t sense = 0;        // -1, 0, +1: sense of the last motion
+};
+
+/// What a controller says about the path as a whole.
+struct PathReading {
+  FeedNmPerMin feed;
+  CurvatureNanoPerMm curvature;
+  VisitCount visit;
+};
+
+/// Positions of the machine's axes, in the order that the board was wired up with (the image's).
+class AxisReader {
+ public:
+  virtual ~AxisReader() = default;
+  /// Newest reading of an axis. kNoReading: none since the last tick. realtime.
+  virtual HalFault read_axis(std::uint32_t axis, AxisReading& reading) noexcept = 0;
+  /// Feed and curvature; zero where the controller does not know them. realtime.
+  virtual HalFault read_path(PathReading& reading) noexcept = 0;
+  /// Does the controller itself give velocity, acceleration, sense and since? If not, only position is filled
+  /// and the firmware derives the rest. setup.
+  virtual bool gives_motion() const noexcept = 0;
+};
+
+}  // namespace vernier

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "comp/quantity.h"
+#include "hal/fault.h"
+
+namespace vernier {
+
+namespace unit {
+struct InstantNanosecond;
+}  // namespace unit
+
+/// A moment of a monotonic clock, or the time between two; finer than TimeUs because a tick computes for
+/// about one microsecond.
+using InstantNs = Quantity<unit::InstantNanosecond, std::int64_t>;
+
+constexpr InstantNs instant_ns(TimeUs time) { return InstantNs(time.count * 1000); }
+
+/// Time that never runs backwards; its zero means nothing.
+class Clock {
+ public:
+  virtual ~Clock() = default;
+  /// realtime.
+  virtual InstantNs now() noexcept = 0;
+  /// Returns when now() >= due, at once if that is past. kRefused: the timer failed. realtime.
+  virtual HalFault sleep_until(InstantNs due) noexcept = 0;
+};
+
+}  // namespace vernier

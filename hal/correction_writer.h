@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "comp/quantity.h"
+#include "hal/fault.h"
+
+namespace vernier {
+
+/// Takes corrections to the controller: what is added to the command of an axis.
+class CorrectionWriter {
+ public:
+  virtual ~CorrectionWriter() = default;
+  /// correction: axis counts (1 nm, or 2^-32 turn). After a fault the device holds the old or the new value.
+  /// realtime.
+  virtual HalFault write_correction(std::uint32_t axis, AxisTravel correction) noexcept = 0;
+};
+
+}  // namespace vernier

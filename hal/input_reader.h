@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "comp/quantity.h"
+#include "hal/fault.h"
+
+namespace vernier {
+
+/// Measured quantities that are no axis (temperatures, loads), in the order of the image's inputs.
+class InputReader {
+ public:
+  virtual ~InputReader() = default;
+  /// Newest value, 1e-6 of the unit that the image declares. kNoReading: the sensor is silent. realtime.
+  virtual HalFault read_input(std::uint32_t input, InputMicro& value) noexcept = 0;
+};
+
+}  // namespace vernier

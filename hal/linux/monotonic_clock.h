@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "hal/clock.h"
+
+namespace vernier {
+
+/// CLOCK_MONOTONIC, with absolute sleeps so that a late wake-up does not shift the next.
+class MonotonicClock : public Clock {
+ public:
+  InstantNs now() noexcept override;
+  HalFault sleep_until(InstantNs due) noexcept override;
+};
+
+}  // namespace vernier

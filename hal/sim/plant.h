@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <random>
+#include <vector>
+
+#include "hal/axis_reader.h"
+#include "hal/correction_writer.h"
+#include "hal/input_reader.h"
+#include "hal/sim/trajectory.h"
+
+namespace vernier {
+
+enum class PlantFaultKind : std::uint8_t {
+  kMissingPosition,  // the axis gives no reading
+  kFrozenAxis,       // the axis repeats its last position, its speed goes on
+  kJump,             // the axis is off by `counts`
+  kSensorLost,       // the input gives no reading
+  kWriteFailure,     // corrections of the axis are refused
+};
+
+/// One thing that goes wrong during [first, first + ticks) of the plant's own count of ticks.
+struct PlantFault {
+  PlantFaultKind kind;
+  std::uint32_t index;  // axis or input
+  std::int64_t first;
+  std::int64_t ticks;
+  std::int64_t counts = 0;
+};
+
+/// How imperfect the instruments are.
+struct PlantOptions {
+  std::uint64_t seed = 1;
+  double position_noise_counts = 0;  // standard deviation
+  double input_noise_micro = 0;      // standard deviation
+  std::int64_t delay_ticks = 0;      // readings are that old
+  double dropout = 0;                // probability that a reading of an axis is missing
+  bool gives_motion = true;
+  std::vector<PlantFault> faults;
+};
+
+/// A seeded machine on a trajectory, seen through imperfect instruments. Same seed, same readings. It stands
+/// at the trajectory's first point until release().
+class SimPlant : public AxisReader, public InputReader, public CorrectionWriter {
+ public:
+  SimPlant(Trajectory& trajectory, std::uint32_t axes, std::uint32_t inputs, PlantOptions options = {});
+
+  /// The next tick begins; call it once before each tick of the firmware.
+  void advance() noexcept;
+  /// The motion begins with the next tick.
+  void release() noexcept { released_ = true; }
+  /// Ticks since construction; tick 0 is the one after the first advance().
+  std::int64_t tick() const noexcept { return tick_; }
+  /// Tick of the trajectory; 0 until released.
+  std::int64_t path_tick() const noexcept { return path_tick_; }
+  /// The correction that the drive holds.
+  AxisTravel written(std::uint32_t axis) const noexcept { return written_[axis]; }
+
+  HalFault read_axis(std::uint32_t axis, AxisReading& reading) noexcept override;
+  HalFault read_path(PathReading& reading) noexcept override;
+  bool gives_motion() const noexcept override { return options_.gives_motion; }
+  HalFault read_input(std::uint32_t input, InputMicro& value) noexcept override;
+  HalFault write_correction(std::uint32_t axis, AxisTravel correction) noexcept override;
+
+ private:
+  const PlantFault* active_fault(PlantFaultKind kind, std::uint32_t index) const noexcept;
+  void spoil_axis(std::uint32_t axis) noexcept;
+  void spoil_inputs() noexcept;
+
+  Trajectory& trajectory_;
+  std::uint32_t axes_, inputs_;
+  PlantOptions options_;
+  std::mt19937_64 random_;
+  std::normal_distribution<double> normal_{0, 1};
+  PlantState seen_;
+  bool missing_[kMaxAxes] = {};
+  AxisPosition frozen_[kMaxAxes];
+  AxisTravel written_[kMaxAxes];
+  std::int64_t tick_ = -1, path_tick_ = 0;
+  bool released_ = false, moving_ = false;
+};
+
+}  // namespace vernier

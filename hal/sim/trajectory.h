@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+
+#include "comp/equation.h"
+#include "hal/axis_reader.h"
+
+namespace vernier {
+
+/// What the simulated machine does at one tick, before any instrument spoils it. Rollover axes carry whole
+/// turns.
+struct PlantState {
+  AxisReading axis[kMaxAxes];
+  InputMicro input[kMaxInputs];
+  PathReading path;
+};
+
+/// A motion of the machine as a function of the tick.
+class Trajectory {
+ public:
+  virtual ~Trajectory() = default;
+  /// tick: 0 is the start; any later one, in any order.
+  virtual void at(std::int64_t tick, PlantState& state) noexcept = 0;
+};
+
+}  // namespace vernier
