@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware/runner.h"
+
+namespace vernier {
+namespace {
+
+// Ticks that are left out one by one; a longer stop starts a new count.
+constexpr int kMostSkipped = 1000;
+
+}  // namespace
+
+Runner::Runner(Cycle& cycle, Clock& clock, TimeUs period) noexcept
+    : cycle_(cycle), clock_(clock), period_(period), due_(clock.now() + instant_ns(period)) {}
+
+void Runner::schedule(InstantNs ended) noexcept {
+  due_ = due_ + instant_ns(period_);
+  time_ = time_ + period_;
+  if (ended <= due_) {
+    overruns_ = 0;
+    return;
+  }
+  ++cycle_.health().overruns;
+  ++overruns_;
+  for (int i = 0; i < kMostSkipped && due_ < ended; ++i) {
+    due_ = due_ + instant_ns(period_);
+    time_ = time_ + period_;
+    ++cycle_.health().skipped;
+  }
+  if (due_ < ended) due_ = ended + instant_ns(period_);
+}
+
+TickReport Runner::step(Command command) noexcept {
+  Fault outer = overruns_ >= kMostOverruns ? Fault::kOverrun : Fault::kNone;
+  if (clock_.sleep_until(due_) != HalFault::kNone) outer = Fault::kClock;
+  const InstantNs woke = clock_.now();
+  const TickReport report = cycle_.tick(time_, command, outer);
+  const InstantNs ended = clock_.now();
+  cycle_.health().latency.add((woke - due_).count);
+  cycle_.health().execution.add((ended - woke).count);
+  schedule(ended);
+  return report;
+}
+
+}  // namespace vernier
