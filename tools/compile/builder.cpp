@@ -74,10 +74,7 @@ ProgramBuilder::Id ProgramBuilder::constant(double value) {
   if (id >= kFirstChannel) throw InputError("cannot be compiled: more constants than a program holds");
   Register& r = registers_[id];
   r.fraction_bits = fraction_bits_for(std::abs(value));
-  auto count = std::llround(std::ldexp(value, r.fraction_bits));
-  while (r.fraction_bits > 0 && count % 2 == 0 &&
-         std::ldexp(static_cast<double>(count), -r.fraction_bits) == value)
-    count /= 2, --r.fraction_bits;
+  const auto count = std::llround(std::ldexp(value, r.fraction_bits));
   r.name = unique("constant_" + std::to_string(id + 1));
   r.range = {value, value};
   r.error = r.own_error = std::abs(std::ldexp(static_cast<double>(count), -r.fraction_bits) - value);
@@ -121,7 +118,8 @@ ProgramBuilder::Id ProgramBuilder::append(const Instruction& step, const Registe
   overflow = fault == ProgramFault::kOverflow;
   if (overflow) return 0;
   if (fault != ProgramFault::kNone)
-    throw std::logic_error("the compiler wrote an instruction that its verifier refuses");
+    throw std::logic_error("the compiler wrote an instruction that its verifier refuses: " + meta.name + ", fault " +
+                           std::to_string(static_cast<int>(fault)));
   registers_.push_back(meta);
   Register& r = registers_.back();
   r.name = unique(meta.name);

@@ -11,6 +11,8 @@ namespace vernier {
 namespace {
 
 constexpr double kNmPerMm = 1e6;
+constexpr int kUnitBits =
+    30;  // format of -1, 0, 1: as fine as int32 allows, so that factors keep their digits
 const double kTurnUnit = 360.0 / 4294967296.0;  // deg of one count of a rotary axis
 
 double unit_of(const Machine& machine, ChannelKind kind, std::size_t index) {
@@ -342,9 +344,13 @@ class Lowering {
                       ErrorSource::kRounding, {{a, gain}}, std::string(name) + b_.at(a).name);
     };
     if (n.kind == NodeKind::kAbs) return one(OpCode::kAbs, b_.at(a).fraction_bits, 1, "abs_");
-    if (n.kind == NodeKind::kSign) return one(OpCode::kSign, 0, 0, "sign_");
+    if (n.kind == NodeKind::kSign) return b_.reformat(one(OpCode::kSign, 0, 0, "sign_"), kUnitBits);
     Id b = value(n.args[1]);
-    const int bits = std::min(b_.at(a).fraction_bits, b_.at(b).fraction_bits);
+    // The finest format that holds both.
+    const double size =
+        std::max(b_.at(a).range.magnitude() + b_.at(a).error, b_.at(b).range.magnitude() + b_.at(b).error);
+    const int bits =
+        std::min(fraction_bits_for(size), std::max(b_.at(a).fraction_bits, b_.at(b).fraction_bits));
     a = b_.reformat(a, bits);
     b = b_.reformat(b, bits);
     const bool value_kind = n.kind == NodeKind::kMin || n.kind == NodeKind::kMax;
@@ -357,13 +363,15 @@ class Lowering {
                              : n.kind == NodeKind::kMax   ? "higher"
                              : n.kind == NodeKind::kEqual ? "is_equal"
                                                           : "is_less";
-    return b_.plain({op, 0, static_cast<std::uint16_t>(a), static_cast<std::uint16_t>(b), 0, 0, 0},
-                    value_kind ? bits : 0, n.range, 0, ErrorSource::kRounding, {{a, gain}, {b, gain}}, name);
+    const Id result =
+        b_.plain({op, 0, static_cast<std::uint16_t>(a), static_cast<std::uint16_t>(b), 0, 0, 0},
+                 value_kind ? bits : 0, n.range, 0, ErrorSource::kRounding, {{a, gain}, {b, gain}}, name);
+    return value_kind ? result : b_.reformat(result, kUnitBits);
   }
 
   Id lag(const Node& n) {
     const Id input = value(n.args[0]);
-    const double gain = -std::expm1(-tick_us_ * 1e-6 / n.number);
+    const double gain = -std::expm1(-1e-6 * tick_us_ / n.number);
     const int shift = std::clamp(30 - std::ilogb(gain), 31, static_cast<int>(kMaxShift));
     const auto mantissa =
         static_cast<std::int32_t>(std::min(2147483647.0, std::round(std::ldexp(gain, shift))));
