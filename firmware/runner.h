@@ -18,8 +18,10 @@ class Runner {
   /// The first tick is due one period from now. setup.
   Runner(Cycle& cycle, Clock& clock, TimeUs period) noexcept;
 
-  /// Sleeps, then one tick; its time is counted from the construction. realtime.
+  /// Sleeps, then one tick; its time is counted from the construction or set_time(). realtime.
   TickReport step(Command command) noexcept;
+  /// The machine file's t of the next tick; for a run that starts in the middle of a machine's day. setup.
+  void set_time(TimeUs time) noexcept { time_ = time; }
   /// The moment at which the next tick is due.
   InstantNs due() const noexcept { return due_; }
 

@@ -1,0 +1,41 @@
+#include "tools/simulate/alignment.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/SVD>
+
+namespace vernier {
+namespace {
+
+/// Below this share of the largest extent a second extent is rounding: mm^2 over mm^2.
+constexpr double kFlat = 1e-14;
+
+Eigen::Matrix3d rotation_of(const Eigen::Matrix3d& covariance, double extent) {
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Eigen::Vector3d& size = svd.singularValues();
+  const Eigen::Matrix3d &u = svd.matrixU(), &v = svd.matrixV();
+  if (!(size[0] > kFlat * extent)) return Eigen::Matrix3d::Identity();
+  if (size[1] <= kFlat * size[0])
+    return Eigen::Quaterniond::FromTwoVectors(v.col(0), u.col(0)).toRotationMatrix();
+  Eigen::Vector3d sign(1, 1, u.determinant() * v.determinant() < 0 ? -1 : 1);
+  return u * sign.asDiagonal() * v.transpose();
+}
+
+}  // namespace
+
+RigidMotion align(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to) {
+  const Eigen::Vector3d from_mean = from.rowwise().mean(), to_mean = to.rowwise().mean();
+  const Eigen::Matrix3Xd a = from.colwise() - from_mean, b = to.colwise() - to_mean;
+  RigidMotion motion;
+  // A standing machine: what is left of its points is rounding of their coordinates.
+  const double extent = std::max(from.squaredNorm(), to.squaredNorm());
+  motion.rotation = rotation_of(b * a.transpose(), extent);
+  motion.translation = to_mean - motion.rotation * from_mean;
+  return motion;
+}
+
+Eigen::Matrix3Xd aligned_error(const RigidMotion& motion, const Eigen::Matrix3Xd& from,
+                               const Eigen::Matrix3Xd& to) {
+  return ((motion.rotation * from).colwise() + motion.translation) - to;
+}
+
+}  // namespace vernier

@@ -1,0 +1,22 @@
+#pragma once
+#include <Eigen/Core>
+
+namespace vernier {
+
+/// A rigid motion: point -> rotation * point + translation.
+struct RigidMotion {
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d translation = Eigen::Vector3d::Zero();
+};
+
+/// The rigid motion that brings `from` closest to `to` in the sum of squared distances.
+/// from, to: 3 x N, N >= 1, in correspondence. Points on one line leave the rotation about it open: the
+/// smallest is taken; a single point leaves all of it open: none is taken. Source: Umeyama, IEEE PAMI 13
+/// (1991) 376, equations 40-43, without scale. tool.
+RigidMotion align(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to);
+
+/// motion applied to `from`, minus `to`.
+Eigen::Matrix3Xd aligned_error(const RigidMotion& motion, const Eigen::Matrix3Xd& from,
+                               const Eigen::Matrix3Xd& to);
+
+}  // namespace vernier

@@ -1,0 +1,42 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "firmware/health.h"
+#include "firmware/mode.h"
+#include "tables/image_view.h"
+#include "tools/model/machine.h"
+#include "tools/model/states.h"
+
+namespace vernier {
+
+/// What stands between the firmware and a perfect machine.
+struct LoopOptions {
+  std::optional<unsigned> dac_bits;  // analogue chain; none: one count of the image
+  double noise_um = 0;               // of the position readings, standard deviation
+  std::int64_t delay_ticks = 0;      // age of the readings
+  std::uint64_t seed = 1;            // of the noise
+};
+
+/// What the firmware did along a path.
+struct LoopResult {
+  std::vector<Column>
+      correction;               // as the machine moves by it; per axis of the image, mm or deg, a tick each
+  std::size_t pre_roll = 0;     // ticks that the machine stood until the firmware was Active
+  std::uint64_t saturated = 0;  // ticks of the path with a correction at a limit, or beyond the converter
+  std::uint64_t slewing = 0, beyond_range = 0, not_active = 0;  // ticks of the path
+  Mode mode = Mode::kBoot;
+  Fault fault = Fault::kNone;
+  Health health;        // of the whole run, pre-roll included, in simulated time
+  Histogram execution;  // of a tick of the path on this host
+};
+
+/// Runs the firmware cycle on the simulated machine, without sleeping: the machine stands at the path's first
+/// point until the firmware is Active, then follows `states` tick by tick (machine: whose states these are,
+/// the image's own). Plausibility limits of readings are off: the path is what happened.
+/// Throws LimitNotMet where the firmware never becomes Active. tool.
+LoopResult run_loop(const ImageView& image, const Machine& machine, const States& states,
+                    const LoopOptions& options);
+
+}  // namespace vernier

@@ -1,0 +1,68 @@
+#pragma once
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/model/csv.h"
+#include "tools/model/machine.h"
+#include "tools/model/states.h"
+#include "tools/model/units.h"
+
+namespace vernier {
+
+/// A path file (FORMATS section 3, `simulate`): `t[s]`, axes, inputs and motion by name. Columns are turned
+/// into numbers when a machine asks for them, so one path serves machines with different inputs; a column
+/// that no machine asks for is ignored.
+class Path {
+ public:
+  /// Throws InputError: no column t, a malformed or empty time, times that do not increase. tool.
+  Path(const std::string& text, const std::string& file);
+
+  std::size_t rows() const { return csv_.rows.size(); }
+  /// s, strictly increasing.
+  const Column& time() const { return time_; }
+  bool has(const std::string& name) const { return index_of(name).has_value(); }
+  /// A column in the base unit of its dimension. Throws InputError where it is absent, has another dimension,
+  /// or a cell is empty or no number.
+  Column numbers(const std::string& name, Dimension dimension) const;
+  /// The column of an input in the unit that the machine declares for it.
+  Column input(const Input& input) const;
+  /// The column's cells as they are.
+  std::vector<std::string> words(const std::string& name) const;
+  const std::string& file() const { return csv_.file; }
+
+ private:
+  std::optional<std::size_t> index_of(const std::string& name) const;
+  Column read(std::size_t column) const;
+
+  CsvFile csv_;
+  Column time_;
+};
+
+/// Reads a path file. tool.
+Path read_path(const std::string& file);
+
+/// Where the ticks of a path lie: tick k at time()[0] + k * period, from the first row to the last.
+struct Ticks {
+  Column time;                       // s
+  std::vector<std::size_t> segment;  // row at or before the tick; never the last row where there are two
+  Column fraction;                   // 0..1 of the way to the next row
+  std::size_t count() const { return segment.size(); }
+};
+
+/// period_s: time between two ticks.
+Ticks ticks_of(const Path& path, double period_s);
+
+/// Motion state of a machine at every tick. Positions and inputs are interpolated linearly. Of the motion,
+/// what the path has is interpolated (a sense is held from its row); the rest is derived:
+///   v      slope of the path's segment
+///   a      change of segment speed at each row, over the time between the segments' middles; linear between
+///          the rows, the first and last row as their neighbours
+///   dir    sign of the last motion, held at rest; 0 before the first
+///   since  travel since the last reversal; a long way before the first
+///   feed   speed over the linear axes; curv  |v x a| / |v|^3 over them
+/// Throws InputError where an axis is missing. tool.
+States path_states(const Path& path, const Machine& machine, const Ticks& ticks);
+
+}  // namespace vernier
