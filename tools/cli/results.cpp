@@ -68,6 +68,7 @@ ordered_json compare_json(const Machine& machine, const Measurement& m, const Ei
   ordered_json json = shared(machine, m, fit, fit, check, 0);
   json["parameters"] = ordered_json::array();
   json["unidentifiable"] = ordered_json::array();
+  json["circular"] = circular_json(machine, m);
   json["notes"] = machine.notes;
   return json;
 }

@@ -12,6 +12,10 @@
 namespace vernier {
 namespace {
 
+/// A step that lowers chi^2 by less than this share of one observation's variance moves no parameter by more
+/// than sqrt(this) = 3 % of its standard uncertainty.
+constexpr double kNegligible = 1e-3;
+
 std::vector<std::string> runs_of_fit_rows(const Measurement& m) {
   std::vector<char> seen(m.states.run_names.size(), 0);
   for (const Observation& o : m.observations)
@@ -81,6 +85,9 @@ FitResult fit(const Machine& machine, const Measurement& measurement, const FitO
     LevenbergOptions levenberg;
     levenberg.max_iterations = options.max_iterations;
     levenberg.progress = options.progress;
+    const double freedom =
+        std::max(1.0, static_cast<double>(result.before.count) - static_cast<double>(start.size()));
+    levenberg.negligible = [freedom](double cost) { return kNegligible * cost / freedom; };
     const LevenbergResult outcome = minimise(
         start, [&](const Eigen::VectorXd& x) { return problem.equations(x); },
         [&](const Eigen::VectorXd& x) { return problem.cost(x); }, levenberg);

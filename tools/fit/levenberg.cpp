@@ -50,7 +50,7 @@ LevenbergResult minimise(const Eigen::VectorXd& start,
       const double next_cost = cost(next);
       const double gain = (result.cost - next_cost) / predicted;
       if (std::isfinite(next_cost) && gain > 1e-4) {
-        quiet = result.cost - next_cost < kCostTolerance * result.cost ? quiet + 1 : 0;
+        quiet = result.cost - next_cost <= options.negligible(next_cost) ? quiet + 1 : 0;
         result.point = next;
         result.cost = next_cost;
         damping =

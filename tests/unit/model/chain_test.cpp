@@ -1,0 +1,175 @@
+#include "tools/model/chain.h"
+
+#include <gtest/gtest.h>
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <random>
+#include <sstream>
+
+#include "tests/support/machines.h"
+#include "tools/model/files.h"
+#include "tools/model/prediction.h"
+#include "tools/model/station_table.h"
+
+namespace vernier {
+namespace {
+
+const std::string kData = VERNIER_SOURCE_DIR "/tests/data/electroimpact/";
+
+/// Electroimpact's published chain (SAE 2012, Rudberg) at the reference poses, to the six printed decimals.
+TEST(Chain, ReproducesThePublishedForwardReference) {
+  const Machine machine = read_machine(kData + "kinematic_before.xml");
+  std::istringstream lines(read_file(kData + "forward_reference.csv"));
+  std::string line;
+  std::getline(lines, line);
+  int poses = 0;
+  while (std::getline(lines, line)) {
+    std::vector<double> v;
+    std::istringstream fields(line);
+    for (std::string field; std::getline(fields, field, ',');) v.push_back(std::stod(field));
+    ASSERT_EQ(v.size(), 20U);
+    States states = make_states(1, 7, {v[7]});
+    for (std::size_t i = 0; i < 7; ++i) states.axis[i][0] = v[i];
+    const Poses pose = forward(machine, states);
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_NEAR(pose.position(k, 0), v[8 + static_cast<std::size_t>(k)], 1e-6);
+      for (int j = 0; j < 3; ++j)
+        EXPECT_NEAR(pose.rotation[0](k, j), v[11 + static_cast<std::size_t>(3 * k + j)], 1e-9);
+    }
+    ++poses;
+  }
+  EXPECT_EQ(poses, 7);
+}
+
+TEST(Chain, DerivativesOfEveryObservationAgreeWithDifferences) {
+  constexpr unsigned kSeed = 20260101;
+  std::mt19937_64 random(kSeed);
+  RecordProperty("seed", static_cast<int>(kSeed));
+  const Machine machine = support::full_machine();
+  const Measurement m = support::full_measurement(machine, 40, random);
+  const ParameterSet parameters(machine, {"a", "b"});
+  ASSERT_EQ(parameters.size(), 5U + 18 + 8 + 6 + 12);
+  const Linearisation linear = linearise(machine, m, parameters);
+  const Eigen::MatrixXd analytic = linear.jacobian;
+  const Eigen::VectorXd point = parameters.get(machine);
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    const auto at = static_cast<Eigen::Index>(p);
+    const double step = 1e-4;
+    const auto moved = [&](double by) {
+      Eigen::VectorXd next = point;
+      next[at] += by;
+      Machine other = machine;
+      parameters.set(other, next);
+      return predict(other, m);
+    };
+    const Eigen::VectorXd difference = (moved(step) - moved(-step)) / (2 * step);
+    // Third derivatives over a step of 1e-4 and six digits lost to rounding of values near 1e3.
+    EXPECT_LT((difference - analytic.col(at)).cwiseAbs().maxCoeff(),
+              2e-6 * (1 + difference.cwiseAbs().maxCoeff()))
+        << parameters[p].name;
+  }
+  EXPECT_LT((linear.predicted - predict(machine, m)).cwiseAbs().maxCoeff(), 1e-12);
+}
+
+TEST(Chain, RotationVectorFollowsTheMeasuredBranchAcrossHalfATurn) {
+  const Machine machine = parse_machine(
+      "<machine><variables><machineaxes><C rotary=\"true\"/></machineaxes></variables>"
+      "<transforms><sixdof rZ=\"C\"/></transforms></machine>",
+      "m.xml");
+  const Measurement m =
+      parse_measurement("C[deg],rz[deg]\n179,179.01\n181,180.99\n181,-179.01\n", "m.csv", machine);
+  const Eigen::VectorXd predicted = predict(machine, m);
+  EXPECT_NEAR(predicted[0], 179, 1e-9);
+  EXPECT_NEAR(predicted[1], 181, 1e-9);
+  EXPECT_NEAR(predicted[2], -179, 1e-9);
+}
+
+TEST(Chain, NamesTheRowWhereAnExpressionIsNotFinite) {
+  const Machine machine = parse_machine(
+      "<machine><variables><machineaxes><X/></machineaxes></variables>\n<transforms><sixdof "
+      "X=\"1/X\"/></transforms></machine>",
+      "m.xml");
+  const Measurement m = parse_measurement("X[mm],x[mm]\n1,1\n0,0\n", "m.csv", machine);
+  try {
+    predict(machine, m);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("m.xml:2: \"1/X\""), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("row 2"), std::string::npos) << error.what();
+  }
+}
+
+Table table_of(const std::vector<double>& loc, const std::vector<double>& value, Interpolation how,
+               bool periodic) {
+  Table table;
+  table.interpolation = how;
+  table.periodic = periodic;
+  for (std::size_t i = 0; i < loc.size(); ++i) {
+    Station station;
+    station.loc = loc[i];
+    station.value[0] = value[i];
+    table.stations.push_back(station);
+  }
+  return table;
+}
+
+TEST(StationTable, HoldsItsEndsAndHitsItsStations) {
+  for (const Interpolation how : {Interpolation::kLinear, Interpolation::kCubic}) {
+    const Table table = table_of({-10, 0, 5, 20}, {1, 3, -2, 4}, how, false);
+    const StationTable look(table);
+    for (const Station& station : table.stations)
+      EXPECT_NEAR(look.values(station.loc)[0], station.value[0], 1e-14);
+    EXPECT_EQ(look.values(-11)[0], 1);
+    EXPECT_EQ(look.values(1e6)[0], 4);
+    EXPECT_EQ(look.slopes(21)[0], 0);
+  }
+  const Table single = table_of({3}, {7}, Interpolation::kCubic, false);
+  EXPECT_EQ(StationTable(single).values(-100)[0], 7);
+}
+
+TEST(StationTable, LinearIsStraightBetweenStations) {
+  const Table table = table_of({0, 10}, {1, 3}, Interpolation::kLinear, false);
+  EXPECT_DOUBLE_EQ(StationTable(table).values(2.5)[0], 1.5);
+  EXPECT_DOUBLE_EQ(StationTable(table).slopes(2.5)[0], 0.2);
+}
+
+/// Natural cubic spline through (0,0) (1,1) (2,0): M1 = -3, so s(0.5) = 0.5 + 3/16 = 0.6875.
+TEST(StationTable, NaturalSplineAgreesWithTheHandCalculation) {
+  const Table table = table_of({0, 1, 2}, {0, 1, 0}, Interpolation::kCubic, false);
+  EXPECT_NEAR(StationTable(table).values(0.5)[0], 0.6875, 1e-14);
+}
+
+TEST(StationTable, PeriodicSplineFollowsASineAndRepeats) {
+  std::vector<double> loc, value;
+  for (int i = 0; i <= 24; ++i) {
+    loc.push_back(15.0 * i);
+    value.push_back(std::sin(15.0 * (i % 24) * M_PI / 180));
+  }
+  const Table table = table_of(loc, value, Interpolation::kCubic, true);
+  const StationTable look(table);
+  for (double angle = -400; angle < 800; angle += 7.3) {
+    // Error of a cubic spline: h^4 / 384 * max |f''''| = (0.2618)^4 / 384 = 1.2e-5.
+    EXPECT_NEAR(look.values(angle)[0], std::sin(angle * M_PI / 180), 2e-5);
+    EXPECT_NEAR(look.values(angle)[0], look.values(angle + 360)[0], 1e-12);
+  }
+}
+
+TEST(StationTable, WeightsGiveTheValues) {
+  for (const bool periodic : {false, true})
+    for (const Interpolation how : {Interpolation::kLinear, Interpolation::kCubic}) {
+      const Table table = table_of({0, 3, 7, 12, 20}, {1, -1, 4, 2, 1}, how, periodic);
+      const StationTable look(table);
+      std::vector<std::pair<std::size_t, double>> weights;
+      for (double x = -5; x < 26; x += 0.37) {
+        look.weights(x, weights);
+        double sum = 0;
+        for (const auto& [i, w] : weights) sum += w * table.stations[i].value[0];
+        EXPECT_NEAR(sum, look.values(x)[0], 1e-12);
+      }
+    }
+}
+
+}  // namespace
+}  // namespace vernier

@@ -1,0 +1,95 @@
+#include "tools/model/measurement.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace vernier {
+namespace {
+
+Machine machine() {
+  return parse_machine(R"XML(<machine><variables><static><k value="0"/></static>
+    <machineaxes><X/><B rotary="true"/></machineaxes><inputs><T unit="degC" reference="20"/></inputs></variables>
+    <transforms><sixdof X="X+k*T" rY="B"/></transforms></machine>)XML",
+                       "m.xml");
+}
+Measurement read(const std::string& text) { return parse_measurement(text, "m.csv", machine()); }
+std::string error_of(const std::string& text) {
+  try {
+    read(text);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(MeasurementFile, ConvertsUnitsToTheBaseUnits) {
+  const Measurement m = read(
+      "# a comment\nX[in],B[arcsec],vX[mm/min],aX[g],feed[m/s],t[min],T[K],x[um],u[um],run,role\n"
+      "1,7200,60,1,0.1,2,293.15,1500,2,a,fit\n2,0,0,0,0,3,294.15,1,1,b,check\n");
+  EXPECT_DOUBLE_EQ(m.states.axis[0][0], 25.4);
+  EXPECT_DOUBLE_EQ(m.states.axis[1][0], 2);
+  EXPECT_DOUBLE_EQ(m.states.velocity[0][0], 1);
+  EXPECT_DOUBLE_EQ(m.states.acceleration[0][0], 9806.65);
+  EXPECT_DOUBLE_EQ(m.states.feed[0], 6000);
+  EXPECT_DOUBLE_EQ(m.states.time[0], 120);
+  EXPECT_NEAR(m.states.input[0][0], 20, 1e-12);
+  EXPECT_DOUBLE_EQ(m.observations[0].value, 1.5);
+  EXPECT_DOUBLE_EQ(m.uncertainty[0], 0.002);
+  EXPECT_EQ(m.check[0], 0);
+  EXPECT_EQ(m.check[1], 1);
+  EXPECT_EQ(m.states.run_names, (std::vector<std::string>{"a", "b"}));
+}
+
+TEST(MeasurementFile, AbsentColumnsHaveTheirDefaults) {
+  const Measurement m = read("X[mm],B[deg],x[mm]\n1,2,3\n");
+  EXPECT_EQ(m.states.velocity[0][0], 0);
+  EXPECT_EQ(m.states.since[0][0], kLongWay);
+  EXPECT_EQ(m.states.input[0][0], 20);  // the input's reference
+  EXPECT_EQ(m.uncertainty[0], 0);
+}
+
+TEST(MeasurementFile, EmptyCellsAreAbsentObservationsOrExcludedRows) {
+  const Measurement m =
+      read("X[mm],B[deg],T[degC],x[mm],y[mm],load[kg],run\n1,0,20,5,,3,a\n2,0,,5,6,3,a\n3,0,21,,7,,a\n");
+  EXPECT_EQ(m.excluded, 1U);
+  EXPECT_EQ(m.rows(), 2U);
+  EXPECT_EQ(m.observations.size(), 2U);
+  EXPECT_EQ(m.states.visit[1], 2);  // the excluded row was visited all the same
+  EXPECT_EQ(m.candidates[0].name, "load");
+  EXPECT_TRUE(std::isnan(m.candidates[0].value[1]));
+  EXPECT_EQ(m.line[1], 4U);
+}
+
+TEST(MeasurementFile, ErrorsNameFileLineAndWord) {
+  EXPECT_EQ(error_of("X[mm],x[mm]\n1,2\n"), "m.csv:1: \"B\": the column of this axis is missing");
+  EXPECT_EQ(error_of("X[mm],B[deg],x[mm]\n1,2,3\n1,2\n").substr(0, 14), "m.csv:3: \"1,2\"");
+  EXPECT_EQ(error_of("X[mm],B[deg],x[mm]\n1,2,3a\n"), "m.csv:2: \"3a\": not a number, in column x");
+  EXPECT_EQ(error_of("X[mm],B[mm],x[mm]\n1,2,3\n"), "m.csv:1: \"B[mm]\": this column needs a unit like deg");
+  EXPECT_EQ(error_of("X[mm],B[deg],x[furlong]\n1,2,3\n").substr(0, 28), "m.csv:1: \"furlong\": unknown ");
+}
+
+TEST(MeasurementFile, RefusesWhatItWouldOtherwiseHaveToGuess) {
+  for (const char* text : {"", "X[mm],B[deg],x[mm]\n", "X[mm],B[deg]\n1,2\n", "X,B,x\n1,2,3\n",
+                           "X[mm],B[deg],x[mm],x[mm]\n1,2,3,4\n", "X[mm],B[deg],x[mm],role\n1,2,3,chek\n",
+                           "X[mm],B[deg],x[mm],dirX\n1,2,3,0.5\n", "X[mm],B[deg],x[mm],u[mm]\n1,2,3,0\n",
+                           "X[mm],B[deg],x[mm],u[mm]\n1,2,3,\n", "X[mm],B[deg],length[mm]\n1,2,3\n",
+                           "X[mm],B[deg],d[mm],nx,ny,nz\n1,2,3,1,0,0\n",
+                           "X[mm],B[deg],d[mm],nx,ny,nz,px[mm],py[mm],pz[mm]\n1,2,3,0,0,0,0,0,0\n",
+                           "X[mm],B[deg],x[mm]\n,2,3\n", "X[mm],B[deg],x[mm]\n1,2,nan\n",
+                           "X[mm],B[deg],x[mm]\n1,2,1e999\n", "X[mm],B[deg],x[mm],T[mm]\n1,2,3,4\n",
+                           "X[mm],B[deg],x[mm],run\n1,2,3,\"a\n", "X[mm],B[deg],x[mm],a b\n1,2,3,4\n"})
+    EXPECT_NE(error_of(text), "accepted") << text;
+}
+
+TEST(MeasurementFile, SelectedRowsKeepTheirObservations) {
+  const Measurement all = read("X[mm],B[deg],x[mm],y[mm]\n1,0,1,2\n2,0,3,4\n3,0,5,6\n");
+  const Measurement some = select_rows(all, {0, 2});
+  ASSERT_EQ(some.observations.size(), 4U);
+  EXPECT_EQ(some.observations[2].row, 1U);
+  EXPECT_EQ(some.observations[2].value, 5);
+  EXPECT_EQ(some.line[1], 4U);
+}
+
+}  // namespace
+}  // namespace vernier

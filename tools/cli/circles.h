@@ -1,0 +1,38 @@
+#pragma once
+#include <Eigen/Core>
+#include <array>
+#include <string>
+#include <vector>
+
+#include "tools/import/circular.h"
+#include "tools/model/machine.h"
+#include "tools/model/measurement.h"
+
+namespace vernier {
+
+/// One run of a circular test as it lies in a measurement: which observations, at which angles.
+struct CircleRun {
+  std::string label;
+  int direction = +1;
+  std::vector<std::size_t> observation;  // indices into Measurement::observations, in time order
+  std::vector<double> angle_deg;         // of the nominal tool point about the centre, 0..360
+};
+
+/// Runs of length observations on one circle: same centre, same nominal radius, same plane.
+struct Circle {
+  std::array<std::size_t, 2> plane{0, 1};  // coordinates 0..2 of the plane: (X,Y), (Y,Z) or (Z,X)
+  std::array<double, 3> centre_mm{};
+  double nominal_radius_mm = 0;
+  std::vector<CircleRun> runs;
+};
+
+/// Finds the circular tests (ball bar) in a measurement: runs whose lengths are measured while the nominal
+/// tool point moves on a circle about the length's centre in a coordinate plane, over at least 90 degrees.
+/// tool.
+std::vector<Circle> find_circles(const Machine& machine, const Measurement& measurement);
+
+/// ISO 230-4 analysis of a circle's fit rows (check rows are overshoot or held out). Throws
+/// std::invalid_argument where a run has too few of them.
+CircularResult analyse(const Circle& circle, const Measurement& measurement);
+
+}  // namespace vernier

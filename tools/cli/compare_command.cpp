@@ -1,0 +1,98 @@
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "tools/cli/command.h"
+#include "tools/cli/results.h"
+#include "tools/fit/fit.h"
+#include "tools/model/machine.h"
+#include "tools/model/measurement.h"
+#include "tools/report/report.h"
+
+namespace vernier {
+namespace {
+
+struct CompareArguments {
+  std::string machine, output, json;
+  std::vector<std::string> measurements;
+};
+
+std::optional<double> value_of(const nlohmann::ordered_json& json, const char* key) {
+  if (json[key].is_null()) return std::nullopt;
+  return json[key].get<double>();
+}
+
+void print_circle(std::FILE* out, const nlohmann::ordered_json& circle) {
+  fmt::print(out, "circle {}{}, nominal radius {:g} mm (ISO 230-4)\n", circle["plane"][0].get<std::string>(),
+             circle["plane"][1].get<std::string>(), circle["nominal_radius_mm"].get<double>());
+  for (const auto& run : circle["runs"]) {
+    fmt::print(
+        out,
+        "  {:<5} circular deviation {:.1f} um, radial {:.1f} um at {:.3f} deg to {:.1f} um at {:.3f} deg\n",
+        run["label"].get<std::string>(), run["circular_deviation_um"].get<double>(),
+        run["max_radial_um"].get<double>(), run["max_radial_deg"].get<double>(),
+        run["min_radial_um"].get<double>(), run["min_radial_deg"].get<double>());
+    fmt::print(
+        out, "        centre {:.4f} / {:.4f} mm, radius {:.4f} mm{}\n", run["centre_mm"][0].get<double>(),
+        run["centre_mm"][1].get<double>(), run["radius_mm"].get<double>(),
+        run["feed_mm_min"].is_null() ? ""
+                                     : fmt::format(", feed {:.1f} mm/min", run["feed_mm_min"].get<double>()));
+  }
+  if (!circle["bidirectional_um"].is_null())
+    fmt::print(out, "  bidirectional circular deviation {:.1f} um\n",
+               circle["bidirectional_um"].get<double>());
+  if (!circle["hysteresis_um"].is_null())
+    fmt::print(out,
+               "  hysteresis {:.1f} um at {:.3f} deg (samples paired by index), {:.1f} um at {:.3f} deg (by "
+               "angle)\n",
+               circle["hysteresis_um"].get<double>(), circle["hysteresis_deg"].get<double>(),
+               circle["hysteresis_by_angle_um"].get<double>(),
+               circle["hysteresis_by_angle_deg"].get<double>());
+}
+
+void print_result(std::FILE* out, const nlohmann::ordered_json& json) {
+  fmt::print(out, "rms fit rows    {}   max {}\n", number_or_dash(value_of(json, "rms_um"), "um"),
+             number_or_dash(value_of(json, "max_um"), "um"));
+  fmt::print(out, "rms check rows  {}   max {}\n", number_or_dash(value_of(json, "check_rms_um"), "um"),
+             number_or_dash(value_of(json, "check_max_um"), "um"));
+  if (const auto rotations = value_of(json, "rms_urad"))
+    fmt::print(out, "rms rotations   {}\n", number_or_dash(rotations, "urad"));
+  fmt::print(out, "noise           {}\n", number_or_dash(value_of(json, "noise_um"), "um"));
+  fmt::print(out, "{} observations, {} of them check, {} rows excluded\n",
+             json["n_obs"].get<std::size_t>() + json["n_check"].get<std::size_t>(),
+             json["n_check"].get<std::size_t>(), json["n_excluded"].get<std::size_t>());
+  for (const auto& circle : json["circular"]) print_circle(out, circle);
+}
+
+void run_compare(const CompareArguments& arguments) {
+  const Machine machine = read_machine(arguments.machine);
+  const Measurement m = read_measurement(arguments.measurements, machine);
+  const Eigen::VectorXd residual = residuals(machine, m);
+  nlohmann::ordered_json json = compare_json(machine, m, residual);
+  if (!arguments.output.empty()) {
+    nlohmann::ordered_json with_detail = json;
+    add_detail(with_detail, machine, m, residual);
+    write_file(arguments.output, compare_report_html(with_detail));
+  }
+  write_json(arguments.json, json);
+  for (const std::string& note : machine.notes) fmt::print(stderr, "note: {}\n", note);
+  print_result(human_stream(arguments.json), json);
+}
+
+}  // namespace
+
+void register_compare(CLI::App& vernier) {
+  auto arguments = std::make_shared<CompareArguments>();
+  CLI::App* command = vernier.add_subcommand(
+      "compare", "Compare a model as it is with measurements: how well, and where it fails");
+  command->add_option("MACHINE", arguments->machine, "machine file (XML)")->required();
+  command->add_option("MEAS", arguments->measurements, "measurement files (CSV)")->required();
+  command->add_option("-o,--output", arguments->output, "the report, one HTML file that opens offline");
+  command->add_option("--json", arguments->json, "result for programs; - for standard output");
+  command->footer(
+      "Changes no parameter. For ball-bar data the ISO 230-4 numbers and the polar plot; for all data the\n"
+      "residual against everything that was recorded. Exit status 0 done, 1 bad input.");
+  command->callback([arguments] { run_compare(*arguments); });
+}
+
+}  // namespace vernier
