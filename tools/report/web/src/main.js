@@ -26,12 +26,11 @@ function parameterTable(parameters) {
 }
 
 function worstTable(detail) {
-  const rows = detail.worst.map((one) => {
-    const role = detail.row_check?.[one.row] ?? null;
-    return [one.line, one.run ?? '', one.kind, one.check ?? (role === null ? '' : role ? 'check' : 'fit'), number(one.residual, 5), unitOf(one.kind)];
-  });
-  return table('Largest residuals', [{ name: 'line in the file' }, { name: 'run', left: true }, { name: 'observation', left: true }, { name: 'role', left: true },
-    { name: 'residual' }, { name: 'unit', left: true }], rows);
+  const manyFiles = new Set(detail.worst.map((one) => one.file)).size > 1;
+  const role = (one) => one.role ?? (detail.row_check ? (detail.row_check[one.row] ? 'check' : 'fit') : '');
+  const rows = detail.worst.map((one) => [...(manyFiles ? [one.file] : []), one.line, one.run ?? '', one.kind, role(one), number(one.residual, 5), unitOf(one.kind)]);
+  return table('Largest residuals', [...(manyFiles ? [{ name: 'file', left: true }] : []), { name: 'line in the file' }, { name: 'run', left: true },
+    { name: 'observation', left: true }, { name: 'role', left: true }, { name: 'residual' }, { name: 'unit', left: true }], rows);
 }
 
 const circles = (list) => list.map((circle) => el('div', { class: 'beside' }, polarPlot(circle), el('div', {}, circleTable(circle))));

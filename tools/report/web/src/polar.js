@@ -108,6 +108,8 @@ export function circleTable(circle) {
     ['Bidirectional circular deviation G(b)', 'µm', fixed(circle.bidirectional_um, 1)],
     ['Circular hysteresis H', 'µm', fixed(circle.hysteresis_um, 1)],
     ['   at', 'deg', fixed(circle.hysteresis_deg, 3)],
+    ['Hysteresis, samples paired by angle', 'µm', fixed(circle.hysteresis_by_angle_um, 1)],
+    ['   at', 'deg', fixed(circle.hysteresis_by_angle_deg, 3)],
   ].filter((one) => one[2] !== '–');
   return [
     table(`ISO 230-4, ${a}${b} plane, each sense about its own centre`, columns, rows),
