@@ -27,6 +27,13 @@ export function colours() {
 export function chart(label, options) {
   const box = el('div', { class: 'chart', role: 'img', 'aria-label': label });
   const entry = { box, options, instance: null, width: 0 };
+  // Charts that a choice has replaced.
+  for (const old of charts) {
+    if (old.instance !== null && !old.box.isConnected) {
+      old.instance.dispose();
+      charts.delete(old);
+    }
+  }
   charts.add(entry);
   const near = new IntersectionObserver((seen) => {
     if (seen.some((one) => one.isIntersecting)) {
