@@ -83,12 +83,12 @@ std::vector<Circle> find_circles(const Machine& machine, const Measurement& m) {
     CircleRun run = run_of(runs[r], circle.plane);
     run.label = m.states.run_names[r];
     if (run.direction == 0) continue;
-    const auto same = std::find_if(circles.begin(), circles.end(), [&](const Circle& other) {
+    auto same = std::find_if(circles.begin(), circles.end(), [&](const Circle& other) {
       return other.plane == circle.plane && other.centre_mm == circle.centre_mm &&
              std::abs(other.nominal_radius_mm - radius) <= kFlatness * radius;
     });
-    if (same == circles.end()) circles.push_back(circle);
-    (same == circles.end() ? circles.back() : *same).runs.push_back(std::move(run));
+    if (same == circles.end()) same = circles.insert(circles.end(), circle);
+    same->runs.push_back(std::move(run));
   }
   return circles;
 }

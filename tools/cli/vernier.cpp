@@ -12,7 +12,7 @@ constexpr int kDone = 0, kBadInput = 1, kAnswerIsNo = 2, kOurBug = 70;
 /// In the order of the journey; `vernier` alone prints them so.
 constexpr vernier::RegisterCommand kCommands[] = {
     vernier::register_import,  vernier::register_fit,      vernier::register_compare,
-    vernier::register_compile, vernier::register_simulate,
+    vernier::register_compile, vernier::register_simulate, vernier::register_replay,
 };
 
 int run(int argc, char** argv) {

@@ -60,12 +60,10 @@ void register_simulate(CLI::App& vernier) {
       ->check(CLI::Range(0, 1000));
   command->add_option("--seed", arguments->loop.seed, "seed of the noise")->capture_default_str();
   command->footer(
-      "Error of a tick: p_truth(q + correction) - p_nominal(q) after the best rigid alignment of the whole "
-      "path;\n"
-      "before: correction 0. Ticks are counted from the first one in Active: until then the machine stands "
-      "at\n"
-      "the path's first point. The analogue chain: 0-10 V, 25 um/V, 5 V = zero; 8 bit: step 0.98 um, +-124.5 "
-      "um.\n"
+      "Error of a tick: p_truth(q + correction) - p_nominal(q) after the best rigid alignment of the whole\n"
+      "path; before: correction 0. Ticks are counted from the first one in Active: until then the machine\n"
+      "stands at the path's first point, in the motion state of the first tick. The analogue chain: 0-10 V,\n"
+      "25 um/V, 5 V = zero; 8 bit: step 0.98 um, +-124.5 um.\n"
       "Exit status 0 done, 1 bad input, 2 the firmware never became active.");
   command->callback([arguments] { run_simulate(*arguments); });
 }

@@ -65,6 +65,7 @@ CycleLimits limits_off() {
 PlantOptions plant_options(const LoopOptions& options) {
   PlantOptions plant;
   plant.seed = options.seed;
+  plant.run_in = true;
   plant.delay_ticks = options.delay_ticks;
   plant.position_noise_counts = 1e3 * options.noise_um;
   return plant;

@@ -34,8 +34,9 @@ struct LoopResult {
 
 /// Runs the firmware cycle on the simulated machine, without sleeping: the machine stands at the path's first
 /// point until the firmware is Active, then follows `states` tick by tick (machine: whose states these are,
-/// the image's own). Plausibility limits of readings are off: the path is what happened.
-/// Throws LimitNotMet where the firmware never becomes Active. tool.
+/// the image's own). While it stands, its motion state is that of the first tick, as if it had come there on
+/// the path: a path cut out of a longer motion starts without a transient. Plausibility limits of readings
+/// are off: the path is what happened. Throws LimitNotMet where the firmware never becomes Active. tool.
 LoopResult run_loop(const ImageView& image, const Machine& machine, const States& states,
                     const LoopOptions& options);
 
