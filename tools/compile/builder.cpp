@@ -16,6 +16,108 @@ std::string identifier(const std::string& name) {
   return out;
 }
 
+/// Words that mean something else in the printed program.
+std::set<std::string> taken_names() {
+  return {"lower",
+          "higher",
+          "linear",
+          "multiply",
+          "multiply_add",
+          "magnitude",
+          "sign_of",
+          "wrapped",
+          "segment_of",
+          "fraction_in",
+          "linear_between",
+          "cubic_between",
+          "lagged",
+          "step_lag",
+          "start_lag",
+          "channel",
+          "lag",
+          "starting",
+          "deviation",
+          "equation",
+          "clamp",
+          "narrow",
+          "round_shift",
+          "saturate",
+          "std",
+          "vernier",
+          "generated",
+          "View",
+          "Segment",
+          "Wrap",
+          "LagState",
+          "alignas",
+          "and",
+          "asm",
+          "auto",
+          "bool",
+          "break",
+          "case",
+          "catch",
+          "char",
+          "class",
+          "const",
+          "continue",
+          "default",
+          "delete",
+          "do",
+          "double",
+          "else",
+          "enum",
+          "explicit",
+          "export",
+          "extern",
+          "false",
+          "float",
+          "for",
+          "friend",
+          "goto",
+          "if",
+          "inline",
+          "int",
+          "long",
+          "mutable",
+          "namespace",
+          "new",
+          "not",
+          "operator",
+          "or",
+          "private",
+          "protected",
+          "public",
+          "register",
+          "requires",
+          "return",
+          "short",
+          "signed",
+          "sizeof",
+          "static",
+          "struct",
+          "switch",
+          "template",
+          "this",
+          "throw",
+          "true",
+          "try",
+          "typedef",
+          "typename",
+          "union",
+          "unsigned",
+          "using",
+          "virtual",
+          "void",
+          "volatile",
+          "while",
+          "xor",
+          "concept",
+          "constexpr",
+          "nullptr",
+          "noexcept"};
+}
+
 /// Two real factors as integers over one power of two: k ~ first / 2^shift, |first|, |second| <= kMaxFactor.
 struct Factors {
   std::int32_t first = 0, second = 0;
@@ -47,7 +149,7 @@ int fraction_bits_for(double magnitude) {
   return std::clamp(bits, kFewestBits, kMostBits);
 }
 
-ProgramBuilder::ProgramBuilder() : registers_(kFirstResult), ranges_(kFirstResult) {}
+ProgramBuilder::ProgramBuilder() : registers_(kFirstResult), ranges_(kFirstResult), names_(taken_names()) {}
 
 double ProgramBuilder::lsb(Id id) const { return std::ldexp(1.0, -registers_[id].fraction_bits); }
 
@@ -118,8 +220,8 @@ ProgramBuilder::Id ProgramBuilder::append(const Instruction& step, const Registe
   overflow = fault == ProgramFault::kOverflow;
   if (overflow) return 0;
   if (fault != ProgramFault::kNone)
-    throw std::logic_error("the compiler wrote an instruction that its verifier refuses: " + meta.name + ", fault " +
-                           std::to_string(static_cast<int>(fault)));
+    throw std::logic_error("the compiler wrote an instruction that its verifier refuses: " + meta.name +
+                           ", fault " + std::to_string(static_cast<int>(fault)));
   registers_.push_back(meta);
   Register& r = registers_.back();
   r.name = unique(meta.name);

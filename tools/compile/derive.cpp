@@ -139,15 +139,18 @@ class Walk {
   NodeId sine_of(const Step& step, double size, double reach) {
     if (const auto angle = g_.constant_value(step.by.delta)) return g_.constant(std::sin(*angle * kRad));
     const NodeId angle = g_.scale(kRad, step.by.delta);
-    if (small(size * size * size / 6 * reach, "third order of " + step.where)) return angle;
+    if (small(std::pow(size, 3) / 6 * reach, "third order of " + step.where)) return angle;
+    if (small(std::pow(size, 5) / 120 * reach, "fifth order of " + step.where))
+      return g_.sum(0, {{1, angle}, {-1.0 / 6, g_.product(angle, g_.product(angle, angle))}});
     return g_.function(Function::kSin, step.by.delta);
   }
   NodeId bend_of(const Step& step, double size, double reach) {
     if (const auto angle = g_.constant_value(step.by.delta)) return g_.constant(1 - std::cos(*angle * kRad));
     if (small(size * size / 2 * reach, "second order of " + step.where)) return g_.constant(0);
-    const NodeId angle = g_.scale(kRad, step.by.delta);
-    if (small(std::pow(size, 4) / 24 * reach, "fourth order of " + step.where))
-      return g_.scale(0.5, g_.product(angle, angle));
+    const NodeId angle = g_.scale(kRad, step.by.delta), square = g_.product(angle, angle);
+    if (small(std::pow(size, 4) / 24 * reach, "fourth order of " + step.where)) return g_.scale(0.5, square);
+    if (small(std::pow(size, 6) / 720 * reach, "sixth order of " + step.where))
+      return g_.sum(0, {{0.5, square}, {-1.0 / 24, g_.product(square, square)}});
     return g_.sum(1, {{-1, g_.function(Function::kCos, step.by.delta)}});
   }
 

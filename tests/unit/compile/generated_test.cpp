@@ -1,0 +1,82 @@
+#include <dlfcn.h>
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "tests/unit/compile/poses.h"
+
+namespace vernier {
+namespace {
+
+using Equation_ = void (*)(const std::int32_t*, LagState*, bool, std::int32_t*) noexcept;
+
+/// The printed C++ of a machine, built by the compiler that builds the project and loaded.
+class Printed {
+ public:
+  Printed(const std::string& name, const CompiledMachine& compiled) {
+    directory_ =
+        std::filesystem::temp_directory_path() / ("vernier-printed-" + name + "-" + std::to_string(getpid()));
+    std::filesystem::create_directories(directory_);
+    write_file(directory_ / "equation.h", compiled.header);
+    write_file(directory_ / "equation.cpp", compiled.source);
+    const std::string library = directory_ / "equation.so";
+    const std::string command =
+        std::string(VERNIER_CXX) +
+        " -std=c++20 -O2 -Wall -Wextra -Wconversion -Wshadow -Werror -fPIC -shared -I " + VERNIER_SOURCE_DIR +
+        " " + (directory_ / "equation.cpp").string() + " -o " + library;
+    if (std::system(command.c_str()) != 0) throw std::runtime_error("the printed program does not compile");
+    handle_ = dlopen(library.c_str(), RTLD_NOW);
+    if (handle_ == nullptr) throw std::runtime_error(dlerror());
+    equation =
+        reinterpret_cast<Equation_>(dlsym(handle_, "_ZN7vernier9generated8equationEPKiPNS_8LagStateEbPi"));
+  }
+  Printed(const Printed&) = delete;
+  Printed& operator=(const Printed&) = delete;
+  ~Printed() {
+    if (handle_ != nullptr) dlclose(handle_);
+    std::filesystem::remove_all(directory_);
+  }
+  Equation_ equation = nullptr;
+
+ private:
+  std::filesystem::path directory_;
+  void* handle_ = nullptr;
+};
+
+class Generated : public testing::TestWithParam<const char*> {};
+
+TEST_P(Generated, IsBitIdenticalToTheExecutedProgram) {
+  const TestMachine test(GetParam());
+  const Printed printed(GetParam(), test.compiled);
+  ASSERT_NE(printed.equation, nullptr);
+  const Program& program = test.loaded->view.program();
+  std::mt19937_64 random(77);
+  Compensator compensator(program);
+  std::vector<LagState> lags(kMaxLags);
+  bool starting = true;
+  for (const CycleInput& input : test.random_poses(50000, random)) {
+    compensator.step(input);
+    std::int32_t channels[kMaxRegisters], deviations[kMaxAxes] = {};
+    for (std::uint32_t i = 0; i < program.channels.size; ++i)
+      channels[i] = compensator.register_value(program.equation.first_channel() + i);
+    printed.equation(channels, lags.data(), starting, deviations);
+    starting = false;
+    for (std::uint32_t k = 0; k < program.outputs.size; ++k)
+      ASSERT_EQ(deviations[k], compensator.register_value(program.outputs[k].source));
+  }
+}
+
+TEST_P(Generated, HasTheSameBytesForTheSameInput) {
+  const TestMachine first(GetParam()), second(GetParam());
+  EXPECT_EQ(first.compiled.image, second.compiled.image);
+  EXPECT_EQ(first.compiled.source, second.compiled.source);
+  EXPECT_EQ(first.compiled.header, second.compiled.header);
+}
+
+INSTANTIATE_TEST_SUITE_P(Machines, Generated, testing::Values("bridge", "five_axis", "planar"));
+
+}  // namespace
+}  // namespace vernier

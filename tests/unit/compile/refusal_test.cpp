@@ -1,0 +1,108 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "tests/unit/compile/poses.h"
+
+namespace vernier {
+namespace {
+
+std::string replaced(std::string text, const std::string& what, const std::string& by) {
+  const std::size_t at = text.find(what);
+  if (at == std::string::npos) throw std::logic_error("the test machine lacks " + what);
+  return text.replace(at, what.size(), by);
+}
+
+CompiledMachine compile_text(const std::string& text, std::optional<double> budget_um = {}) {
+  CompileOptions options;
+  options.budget_um = budget_um;
+  return compile_machine(parse_machine(text, "m.xml"), text, options);
+}
+
+/// The message with which the bridge is refused after one change; empty where it compiles.
+std::string refusal(const std::string& what, const std::string& by) {
+  try {
+    compile_text(replaced(read_file(machine_path("bridge")), what, by));
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return {};
+}
+
+void expect_one_line(const std::string& message, const std::string& word, const std::string& reason) {
+  EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+  EXPECT_NE(message.find("m.xml"), std::string::npos) << message;
+  EXPECT_NE(message.find(word), std::string::npos) << message;
+  EXPECT_NE(message.find(reason), std::string::npos) << message;
+}
+
+TEST(Compile, RefusesInOneLineWithTheReason) {
+  expect_one_line(refusal("<BX value=\"0.0021\" nominal=\"0\"", "<BX value=\"0.0021\""), "BX",
+                  "without nominal");
+  expect_one_line(refusal("min=\"0\" max=\"600\"", "min=\"0\""), "X", "min and max");
+  expect_one_line(refusal("BY*dirY", "BY*nx"), "BY*nx", "normal");
+  expect_one_line(refusal("BY*dirY", "BY*run(&quot;a&quot;)"), "run", "measurement run");
+  expect_one_line(refusal("BY*dirY", "BY*log(Y)"), "BY*log(Y)", "log");
+  expect_one_line(refusal("BY*dirY", "BY/(Y-100)"), "BY/(Y-100)", "division");
+  expect_one_line(refusal("BY*dirY", "BY*atan2(Y-5,X-5)"), "atan2", "180 deg");
+  expect_one_line(refusal("lag(T_column-20,600)", "lag(T_column-20,100+Y)"), "lag", "time constant");
+  expect_one_line(refusal("Z=\"lYz\"", "Z=\"X^2\""), "X", "direction or scale");
+}
+
+TEST(Compile, RefusesAnAxisThatARotaryAxisCarries) {
+  std::string text = read_file(machine_path("five_axis"));
+  text = replaced(text, "X=\"X\" Y=\"0\" Z=\"0\" rX=\"180\"", "X=\"0\" Y=\"0\" Z=\"0\" rX=\"180\"");
+  text = replaced(text, "X=\"lCx\"", "X=\"X+lCx\"");
+  // A stands between Y (in the frame of the machine) and X (on the table): no constant pair of directions.
+  try {
+    compile_text(text);
+    FAIL() << "an axis whose direction turns";
+  } catch (const InputError& error) {
+    expect_one_line(error.what(), "\"Y\"", "direction or scale");
+  }
+}
+
+TEST(Compile, NamesTheTermToBlameForABudget) {
+  const std::string text = read_file(machine_path("bridge"));
+  EXPECT_NO_THROW(compile_text(text, 0.1));
+  // Half a nm of the output's own rounding is the floor.
+  try {
+    compile_text(text, 0.0004);
+    FAIL() << "a bound below the output's LSB";
+  } catch (const LimitNotMet& no) {
+    EXPECT_NE(std::string(no.what()).find("output in nm"), std::string::npos) << no.what();
+  }
+}
+
+TEST(Compile, KeepsMoreOrdersForATighterBudget) {
+  const std::string text = read_file(machine_path("five_axis"));
+  const CompiledMachine loose = compile_text(text), tight = compile_text(text, 0.0015);
+  EXPECT_GT(loose.bounds[0].total_um, 0.0015);
+  EXPECT_LE(tight.bounds[0].total_um, 0.0015);
+  EXPECT_GT(tight.program.instructions.size(), loose.program.instructions.size());
+}
+
+TEST(Compile, GivesAnEmptyDeviationForAPerfectMachine) {
+  const std::string text =
+      "<machine name=\"ideal\"><variables><machineaxes><X rotary=\"false\" min=\"0\" "
+      "max=\"100\"/></machineaxes></variables>"
+      "<transforms><sixdof n=\"1\" X=\"X\" Y=\"0\" Z=\"0\" rX=\"0\" rY=\"0\" "
+      "rZ=\"30\"/></transforms></machine>";
+  const CompiledMachine compiled = compile_text(text);
+  EXPECT_EQ(compiled.program.instructions.size(), 0u);
+  Compensator compensator(load_image(compiled.image, parse_machine(text, "m.xml"))->view.program());
+}
+
+TEST(LoadImageDir, RefusesAnImageOfAnotherMachineFile) {
+  const std::string directory = testing::TempDir() + "/vernier-load-image";
+  std::filesystem::create_directories(directory);
+  const TestMachine test("planar");
+  write_file(directory + "/machine.vimg", {test.compiled.image.begin(), test.compiled.image.end()});
+  write_file(directory + "/machine.xml", read_file(machine_path("planar")));
+  EXPECT_EQ(load_image_dir(directory)->view.axes().size, 2u);
+  write_file(directory + "/machine.xml", read_file(machine_path("planar")) + "\n");
+  EXPECT_THROW(load_image_dir(directory), InputError);
+}
+
+}  // namespace
+}  // namespace vernier
