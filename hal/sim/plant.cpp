@@ -28,7 +28,7 @@ void SimPlant::advance() noexcept {
   moving_ = released_;
   trajectory_.at(std::max<std::int64_t>(0, path_tick_ - options_.delay_ticks), seen_);
   for (std::uint32_t axis = 0; axis < axes_; ++axis) spoil_axis(axis);
-  if (!released_) {  // standing: where, but not how fast
+  if (!released_ && !options_.run_in) {  // standing: where, but not how fast
     for (AxisReading& reading : seen_.axis) reading.velocity = {}, reading.acceleration = {};
     seen_.path.feed = {}, seen_.path.curvature = {};
   }

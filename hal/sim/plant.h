@@ -36,6 +36,7 @@ struct PlantOptions {
   std::int64_t delay_ticks = 0;      // readings are that old
   double dropout = 0;                // probability that a reading of an axis is missing
   bool gives_motion = true;
+  bool run_in = false;  // before release() the speeds of the first point are reported too
   std::vector<PlantFault> faults;
 };
 
