@@ -1,0 +1,154 @@
+#include "firmware/cycle.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/unit/firmware/rig.h"
+
+namespace vernier {
+namespace {
+
+TEST(Cycle, CorrectionIsZeroUntilActivated) {
+  Rig rig;
+  for (int i = 0; i < 1000; ++i) rig.tick();
+  EXPECT_EQ(rig.cycle().mode(), Mode::kReady);
+  EXPECT_EQ(rig.plant().written(0), AxisTravel(0));
+}
+
+TEST(Cycle, ActiveCorrectionIsMinusTheDeviation) {
+  Rig rig({}, {}, 1);
+  ASSERT_TRUE(rig.run_to(Mode::kActive));
+  int compared = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const TickReport report = rig.tick();
+    if ((report.output.flags & kSlewing) != 0) continue;
+    AxisReading x, y;
+    rig.plant().read_axis(0, x), rig.plant().read_axis(1, y);
+    const double x_nm = static_cast<double>(x.position.count), y_nm = static_cast<double>(y.position.count);
+    // The compiler's bound is below 2 nm for either axis.
+    const double wanted = std::clamp(-(1e-4 * x_nm + 4000 * x.sense), -30'000.0, 30'000.0);
+    ASSERT_NEAR(static_cast<double>(rig.plant().written(0).count), wanted, 2);
+    ASSERT_NEAR(static_cast<double>(rig.plant().written(1).count), -1e-4 * y_nm, 2);
+    ++compared;
+  }
+  EXPECT_GT(compared, 15000);
+  EXPECT_GT(rig.cycle().health().saturated, 100u) << "the range goes beyond the limit of X";
+}
+
+TEST(Cycle, ActiveBeginsWithTheWholeCorrection) {
+  Rig rig({}, {}, 10);  // 200 um at the far end of Y: 100 ticks of slew beyond the ramp at most
+  ASSERT_TRUE(rig.run_to(Mode::kReady));
+  while (rig.cycle().mode() != Mode::kActive) {
+    const TickReport report = rig.tick(rig.asked() ? Command::kNone : Command::kActivate);
+    if (report.mode == Mode::kActive) {
+      EXPECT_EQ(report.output.flags & kSlewing, 0u);
+      EXPECT_EQ(rig.cycle().weight(), kFullWeight);
+      EXPECT_EQ(rig.plant().written(1).count, report.output.correction[1].counts);
+    }
+  }
+}
+
+struct Injected {
+  PlantFaultKind kind;
+  std::uint32_t index;
+  std::int64_t ticks, counts;
+  Fault latched;
+  std::uint64_t Health::*counter;
+  const char* name;
+};
+
+class CycleFault : public testing::TestWithParam<Injected> {};
+
+TEST_P(CycleFault, RampsOutLatchesAndIsCounted) {
+  // GIVEN a machine in Active, and one thing that goes wrong at tick 1500
+  const Injected& injected = GetParam();
+  PlantOptions options;
+  options.faults = {{injected.kind, injected.index, 1500, injected.ticks, injected.counts}};
+  Rig rig(options, {}, 5);
+  ASSERT_TRUE(rig.run_to(Mode::kActive));
+  while (rig.plant().tick() < 1498) rig.tick();
+  ASSERT_EQ(rig.cycle().latched(), Fault::kNone);
+  ASSERT_NE(rig.plant().written(0), AxisTravel(0));
+
+  // WHEN it happens
+  bool ramped = false;
+  for (int i = 0; i < 2000; ++i) {
+    const AxisTravel before[2] = {rig.plant().written(0), rig.plant().written(1)};
+    const TickReport report = rig.tick();
+    ramped = ramped || report.mode == Mode::kRampOut;
+    // THEN the correction only shrinks while it is taken out, within the slew limit; but a refused write is
+    // repeated as it was
+    if (report.mode == Mode::kRampOut && injected.kind != PlantFaultKind::kWriteFailure) {
+      for (std::uint32_t axis = 0; axis < 2; ++axis)
+        ASSERT_LE(std::abs(rig.plant().written(axis).count), std::abs(before[axis].count));
+    }
+    ASSERT_LE(std::abs((rig.plant().written(0) - before[0]).count), kSmallSlewX);
+    ASSERT_LE(std::abs((rig.plant().written(1) - before[1]).count), kSmallSlewY);
+  }
+  // and the fault is latched and counted, and stays although its cause has gone
+  EXPECT_TRUE(ramped);
+  EXPECT_EQ(rig.cycle().mode(), Mode::kFaulted);
+  EXPECT_EQ(rig.cycle().latched(), injected.latched);
+  EXPECT_EQ(rig.cycle().health().faults, 1u);
+  EXPECT_GT(rig.cycle().health().*injected.counter, 0u);
+  EXPECT_EQ(rig.plant().written(0), AxisTravel(0));
+  EXPECT_EQ(rig.plant().written(1), AxisTravel(0));
+
+  // and after an explicit clearing it can be activated again
+  rig.tick(Command::kClearFault);
+  EXPECT_EQ(rig.cycle().mode(), Mode::kChecking);
+  EXPECT_TRUE(rig.run_to(Mode::kActive));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Kinds, CycleFault,
+    testing::Values(Injected{PlantFaultKind::kMissingPosition, 0, 50, 0, Fault::kPositionMissing,
+                             &Health::missing_readings, "MissingPosition"},
+                    Injected{PlantFaultKind::kFrozenAxis, 0, 300, 0, Fault::kPositionFrozen,
+                             &Health::frozen_readings, "FrozenAxis"},
+                    Injected{PlantFaultKind::kJump, 1, 1, 5'000'000, Fault::kPositionJump, &Health::jumps,
+                             "Jump"},
+                    Injected{PlantFaultKind::kSensorLost, 0, 200, 0, Fault::kInputMissing,
+                             &Health::missing_inputs, "SensorLost"},
+                    Injected{PlantFaultKind::kWriteFailure, 1, 20, 0, Fault::kWriteFailed,
+                             &Health::failed_writes, "WriteFailure"}),
+    [](const testing::TestParamInfo<Injected>& parameter) { return parameter.param.name; });
+
+TEST(Cycle, ShortSilenceIsCountedAndTolerated) {
+  PlantOptions options;
+  options.faults = {{PlantFaultKind::kMissingPosition, 0, 1500, 3},
+                    {PlantFaultKind::kSensorLost, 0, 1600, 90}};
+  Rig rig(options);
+  ASSERT_TRUE(rig.run_to(Mode::kActive));
+  while (rig.plant().tick() < 2000) rig.tick();
+  EXPECT_EQ(rig.cycle().mode(), Mode::kActive);
+  EXPECT_EQ(rig.cycle().health().missing_readings, 3u);
+  EXPECT_EQ(rig.cycle().health().missing_inputs, 90u);
+}
+
+TEST(Cycle, SilentSensorFromTheStartKeepsItChecking) {
+  PlantOptions options;
+  options.faults = {{PlantFaultKind::kSensorLost, 0, 0, 100000}};
+  Rig rig(options);
+  for (int i = 0; i < 3000; ++i) rig.tick(Command::kActivate);
+  EXPECT_EQ(rig.cycle().mode(), Mode::kChecking);
+  EXPECT_EQ(rig.plant().written(0), AxisTravel(0));
+}
+
+TEST(Cycle, RefusedWriteIsRepeatedWithTheSameValue) {
+  PlantOptions options;
+  options.faults = {{PlantFaultKind::kWriteFailure, 0, 1500, 100}};
+  Rig rig(options);
+  ASSERT_TRUE(rig.run_to(Mode::kActive));
+  while (rig.plant().tick() < 1499) rig.tick();
+  const AxisTravel held = rig.plant().written(0);
+  while (rig.plant().tick() < 1599) rig.tick();
+  EXPECT_EQ(rig.plant().written(0), held);
+  rig.tick();
+  EXPECT_LE(std::abs((rig.plant().written(0) - held).count), kSmallSlewX);
+  EXPECT_EQ(rig.cycle().health().failed_writes, 100u);
+}
+
+}  // namespace
+}  // namespace vernier
