@@ -50,6 +50,16 @@ void print_circle(std::FILE* out, const nlohmann::ordered_json& circle) {
                circle["hysteresis_by_angle_deg"].get<double>());
 }
 
+/// Worth a look where the rows of a run change roles, and few enough to read.
+void print_stretches(std::FILE* out, const nlohmann::ordered_json& stretches) {
+  constexpr std::size_t kMost = 12;
+  if (stretches.size() < 2 || stretches.size() > kMost) return;
+  for (const auto& s : stretches)
+    fmt::print(out, "  run {:<6} {:<5} lines {} to {}: rms {:.4g} um\n", s["run"].get<std::string>(),
+               s["role"].get<std::string>(), s["first_line"].get<std::size_t>(),
+               s["last_line"].get<std::size_t>(), s["rms_um"].get<double>());
+}
+
 void print_result(std::FILE* out, const nlohmann::ordered_json& json) {
   fmt::print(out, "rms fit rows    {}   max {}\n", number_or_dash(value_of(json, "rms_um"), "um"),
              number_or_dash(value_of(json, "max_um"), "um"));
@@ -61,6 +71,7 @@ void print_result(std::FILE* out, const nlohmann::ordered_json& json) {
   fmt::print(out, "{} observations, {} of them check, {} rows excluded\n",
              json["n_obs"].get<std::size_t>() + json["n_check"].get<std::size_t>(),
              json["n_check"].get<std::size_t>(), json["n_excluded"].get<std::size_t>());
+  print_stretches(out, json["stretches"]);
   for (const auto& circle : json["circular"]) print_circle(out, circle);
 }
 

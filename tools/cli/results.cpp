@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+#include <cstdint>
+
 namespace vernier {
 namespace {
 
@@ -68,8 +71,41 @@ ordered_json compare_json(const Machine& machine, const Measurement& m, const Ei
   ordered_json json = shared(machine, m, fit, fit, check, 0);
   json["parameters"] = ordered_json::array();
   json["unidentifiable"] = ordered_json::array();
+  json["stretches"] = stretches_json(m, residual);
   json["circular"] = circular_json(machine, m);
   json["notes"] = machine.notes;
+  return json;
+}
+
+ordered_json stretches_json(const Measurement& m, const Eigen::VectorXd& residual) {
+  struct Stretch {
+    std::size_t run = 0, first_line = 0, last_line = 0, count = 0;
+    char check = 0;
+    double squares = 0;
+  };
+  std::vector<Stretch> list;
+  std::vector<std::size_t> open(m.states.run_names.size(), SIZE_MAX);  // the stretch that a run is in
+  for (std::size_t i = 0; i < m.observations.size(); ++i) {
+    const Observation& o = m.observations[i];
+    if (is_rotation(o.kind)) continue;
+    std::size_t& at = open[m.states.run[o.row]];
+    if (at == SIZE_MAX || list[at].check != m.check[o.row]) {
+      at = list.size();
+      list.push_back({m.states.run[o.row], m.line[o.row], m.line[o.row], 0, m.check[o.row], 0});
+    }
+    Stretch& stretch = list[at];
+    stretch.last_line = m.line[o.row];
+    ++stretch.count;
+    stretch.squares += residual[static_cast<Eigen::Index>(i)] * residual[static_cast<Eigen::Index>(i)];
+  }
+  ordered_json json = ordered_json::array();
+  for (const Stretch& s : list)
+    json.push_back({{"run", m.states.run_names[s.run]},
+                    {"role", s.check != 0 ? "check" : "fit"},
+                    {"first_line", s.first_line},
+                    {"last_line", s.last_line},
+                    {"n_obs", s.count},
+                    {"rms_um", 1e3 * std::sqrt(s.squares / static_cast<double>(s.count))}});
   return json;
 }
 

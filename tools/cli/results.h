@@ -17,6 +17,10 @@ nlohmann::ordered_json compare_json(const Machine& machine, const Measurement& m
 void add_detail(nlohmann::ordered_json& result, const Machine& machine, const Measurement& measurement,
                 const Eigen::VectorXd& residual);
 
+/// Stretches of rows of one role within each run, in the order of the file: {run, role, first_line,
+/// last_line, n_obs, rms_um}. Shows where in a run a model holds (an overshoot arc, a warm-up, a late row).
+nlohmann::ordered_json stretches_json(const Measurement& measurement, const Eigen::VectorXd& residual);
+
 /// ISO 230-4 numbers of every circular test among the rows (a list, empty where there is none).
 nlohmann::ordered_json circular_json(const Machine& machine, const Measurement& measurement);
 

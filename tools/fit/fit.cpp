@@ -13,8 +13,9 @@ namespace vernier {
 namespace {
 
 /// A step that lowers chi^2 by less than this share of one observation's variance moves no parameter by more
-/// than sqrt(this) = 3 % of its standard uncertainty.
-constexpr double kNegligible = 1e-3;
+/// than sqrt(this) = 3 % of its standard uncertainty; nor is it worth more when it lowers chi^2 by less than
+/// a millionth.
+constexpr double kNegligible = 1e-3, kNegligibleShare = 1e-6;
 
 std::vector<std::string> runs_of_fit_rows(const Measurement& m) {
   std::vector<char> seen(m.states.run_names.size(), 0);
@@ -87,7 +88,9 @@ FitResult fit(const Machine& machine, const Measurement& measurement, const FitO
     levenberg.progress = options.progress;
     const double freedom =
         std::max(1.0, static_cast<double>(result.before.count) - static_cast<double>(start.size()));
-    levenberg.negligible = [freedom](double cost) { return kNegligible * cost / freedom; };
+    levenberg.negligible = [freedom](double cost) {
+      return cost * std::max(kNegligible / freedom, kNegligibleShare);
+    };
     const LevenbergResult outcome = minimise(
         start, [&](const Eigen::VectorXd& x) { return problem.equations(x); },
         [&](const Eigen::VectorXd& x) { return problem.cost(x); }, levenberg);

@@ -17,7 +17,7 @@ struct LevenbergOptions {
   /// Least damping, in units of the scaled normal matrix (unit diagonal). It keeps unidentified directions at
   /// their start; identified ones (scaled singular value above 1e-5) still converge, at worst by a factor of
   /// ten a step.
-  double least_damping = 1e-9;
+  double least_damping = 1e-8;
   /// A fall of the cost below this is nothing: the fit passes the variance of an observation times a small
   /// share, so that no parameter would move by more than a few percent of its standard uncertainty.
   std::function<double(double)> negligible = [](double cost) { return 1e-14 * cost; };
