@@ -42,7 +42,7 @@ class Histogram {
   /// Largest value of a bin.
   static constexpr std::uint64_t upper_edge(std::uint32_t bin) noexcept {
     const std::uint32_t shift = bin < 128 ? 0 : bin / 64 - 1;
-    return ((std::uint64_t{bin} - shift * 64 + 1) << shift) - 1;
+    return ((std::uint64_t{bin} - std::uint64_t{shift} * 64 + 1) << shift) - 1;
   }
 
  private:

@@ -16,6 +16,6 @@ struct RealtimeGrant {
 RealtimeGrant become_realtime(int priority) noexcept;
 
 /// Bytes of stack that become_realtime touches, so that the tick does not fault pages in.
-constexpr std::size_t kPrefaultedStack = 256 * 1024;
+constexpr std::size_t kPrefaultedStack = std::size_t{256} * 1024;
 
 }  // namespace vernier
