@@ -1,0 +1,137 @@
+#include "tools/part/b_head_machine.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "tools/model/chain.h"
+#include "tools/model/numbers.h"
+#include "tools/model/units.h"
+
+namespace vernier {
+namespace {
+
+/// Far above rounding of a chain of this size (1e-12 mm), far below any error that matters.
+constexpr double kSameMm = 1e-8, kSameAxis = 1e-11;
+
+/// Poses that tell the nominal chain apart from any other of sliding and turning axes: each axis alone, both
+/// senses, and all together.
+const std::vector<JointPose> kProbes = {{0, 0, 0, 0, 0},       {70, 0, 0, 0, 0},      {0, -60, 0, 0, 0},
+                                        {0, 0, 90, 0, 0},      {0, 0, 0, 25, 0},      {0, 0, 0, -35, 0},
+                                        {0, 0, 0, 0, 50},      {0, 0, 0, 0, -110},    {40, 30, 20, 10, 60},
+                                        {-50, 80, 5, -17, 95}, {33, -44, 55, 18, -20}};
+
+constexpr const char* kDefaultMachine = R"(<machine name="five-axis B head, C table">
+  <!-- X and Z slides and B head on the tool side, Y slide and C table on the workpiece side; the eight location errors of
+       Chanal, Duc, Chevalier, Precision Engineering 75 (2022), equation 12. -->
+  <variables>
+    <static>
+      <EC0Y value="0" nominal="0" unit="deg" note="squareness of Y to X"/>
+      <EA0Z value="0" nominal="0" unit="deg" note="squareness of Z to Y"/>
+      <EB0Z value="0" nominal="0" unit="deg" note="squareness of Z to X"/>
+      <EA0C value="0" nominal="0" unit="deg" note="tilt of the table axis about X"/>
+      <EB0C value="0" nominal="0" unit="deg" note="tilt of the table axis about Y"/>
+      <EX0B value="0" nominal="0" unit="mm" note="offset of the B axis from the C axis along X"/>
+      <EA0B value="0" nominal="0" unit="deg" note="tilt of the B axis about X"/>
+      <EC0B value="0" nominal="0" unit="deg" note="tilt of the B axis about Z"/>
+      <L0 value="499.889" unit="mm" Hide="true" note="B axis to tool tip"/>
+    </static>
+    <machineaxes>
+      <X rotary="false" min="-300" max="300"/>
+      <Y rotary="false" min="-300" max="300"/>
+      <Z rotary="false" min="0" max="600"/>
+      <B rotary="true" min="-30" max="30"/>
+      <C rotary="true" min="-360" max="360"/>
+    </machineaxes>
+  </variables>
+  <transforms branch="workpiece">
+    <sixdof n="1" X="0" Y="0" Z="0" rX="0" rY="0" rZ="EC0Y"/>
+    <sixdof n="2" X="0" Y="-Y" Z="0" rX="EA0C" rY="EB0C" rZ="0"/>
+    <sixdof n="3" X="0" Y="0" Z="0" rX="0" rY="0" rZ="C"/>
+  </transforms>
+  <transforms branch="tool">
+    <sixdof n="1" X="X" Y="0" Z="0" rX="EA0Z" rY="EB0Z" rZ="0"/>
+    <sixdof n="2" X="EX0B" Y="0" Z="Z" rX="EA0B" rY="0" rZ="EC0B"/>
+    <sixdof n="3" X="0" Y="0" Z="0" rX="0" rY="B" rZ="0"/>
+    <sixdof n="4" X="0" Y="0" Z="-L0" rX="0" rY="0" rZ="0"/>
+  </transforms>
+</machine>
+)";
+
+/// Value of one "NAME=NUMBER[UNIT]" in the unit of the static.
+double error_value(const Static& target, const std::string& word, const std::string& text) {
+  std::size_t split = text.size();
+  while (split > 0 && !parse_number(text.substr(0, split))) --split;
+  const std::optional<double> number = parse_number(text.substr(0, split));
+  if (!number) throw InputError({"--errors", 0}, word, "not a number");
+  const std::string name = text.substr(split);
+  if (name.empty()) return *number;
+  const std::optional<Unit> from = find_unit(name), to = find_unit(target.unit);
+  if (!from || !to || from->dimension != to->dimension)
+    throw InputError(
+        {"--errors", 0}, word,
+        "\"" + name + "\" is no unit that \"" + target.unit + "\" of " + target.name + " can be given in");
+  return (*number * from->factor + from->offset - to->offset) / to->factor;
+}
+
+}  // namespace
+
+std::string default_b_head_text() { return kDefaultMachine; }
+
+States BHeadMachine::states(const std::vector<JointPose>& joints) const {
+  std::vector<double> references;
+  for (const Input& input : machine.inputs) references.push_back(input.reference);
+  States result = make_states(joints.size(), machine.axes.size(), references);
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    const JointPose& q = joints[i];
+    const std::array<double, 5> value = {q.x_mm, q.y_mm, q.z_mm, q.b_deg, q.c_deg};
+    for (std::size_t k = 0; k < 5; ++k) result.axis[axis[k]][row] = value[k];
+  }
+  return result;
+}
+
+BHeadMachine b_head_machine(Machine machine) {
+  BHeadMachine result;
+  result.machine = std::move(machine);
+  const Place place{result.machine.file, 0};
+  constexpr std::array<const char*, 5> kAxes = {"X", "Y", "Z", "B", "C"};
+  for (std::size_t k = 0; k < 5; ++k) {
+    const auto found = result.machine.find_axis(kAxes[k]);
+    if (!found) throw InputError(place, kAxes[k], "the S-shaped part needs a machine with this axis");
+    result.axis[k] = *found;
+  }
+  const Poses poses = forward(nominal_machine(result.machine), result.states(kProbes));
+  result.pivot_mm = -poses.position(2, 0);
+  for (std::size_t i = 0; i < kProbes.size(); ++i) {
+    const ToolPose want = tool_pose(kProbes[i], result.pivot_mm);
+    const double apart = (poses.position.col(static_cast<Eigen::Index>(i)) - want.tip).norm();
+    const double turned = (poses.rotation[i].col(2) - want.axis).norm();
+    if (apart > kSameMm || turned > kSameAxis)
+      throw InputError(
+          place, result.machine.name,
+          fmt::format("the nominal chain is not X Z B on the tool side and Y C on the workpiece "
+                      "side with crossing axes: at X {} Y {} Z {} B {} C {} the tool is {:.3g} mm "
+                      "and {:.3g} rad away from it",
+                      kProbes[i].x_mm, kProbes[i].y_mm, kProbes[i].z_mm, kProbes[i].b_deg, kProbes[i].c_deg,
+                      apart, turned));
+  }
+  return result;
+}
+
+void set_errors(Machine& machine, const std::string& text) {
+  for (std::size_t at = 0; (at = text.find_first_not_of(", ", at)) != std::string::npos;) {
+    const std::size_t end = std::min(text.find_first_of(", ", at), text.size());
+    const std::string word = text.substr(at, end - at);
+    const std::size_t equals = word.find('=');
+    if (equals == std::string::npos) throw InputError({"--errors", 0}, word, "expected NAME=VALUE");
+    const auto index = machine.find_static(word.substr(0, equals));
+    if (!index) throw InputError({"--errors", 0}, word, "no static of this name in " + machine.name);
+    Static& target = machine.statics[*index];
+    if (!target.nominal && !target.hidden) target.nominal = target.value;
+    target.value = error_value(target, word, word.substr(equals + 1));
+    at = end;
+  }
+}
+
+}  // namespace vernier

@@ -1,0 +1,52 @@
+#pragma once
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "tools/part/b_head_machine.h"
+
+namespace vernier {
+
+/// A point of the part: flank 0 (A) or 1 (B), and where on it.
+struct PartPoint {
+  std::size_t flank = 0;
+  double u = 0, v = 0;
+};
+
+/// Where and along what the tool's displacement is taken. Contact: the cutter is a rigid body, and its
+/// displacement is taken at the height of the point, along the surface's normal there. Tip: the paper's
+/// reading, displacement of the tool tip along N(u,1). In plane: as contact, but only the horizontal part of
+/// the displacement, along the horizontal part of the normal (unit length), which is what a profile at
+/// constant height shows of a wall that is nearly vertical.
+enum class DefectReading : std::uint8_t { kContact, kTip, kInPlane };
+
+struct DefectOptions {
+  Cutter cutter;
+  DefectReading reading = DefectReading::kContact;
+  RotarySolution solution = RotarySolution::kContinuous;
+};
+
+/// What the errors of a machine do to the part, at N points.
+struct PartDefect {
+  std::vector<JointPose> joints;  // where the machine stands when the point is cut
+  Eigen::Matrix3Xd position,
+      normal;                 // nominal surface, workpiece coordinates; normal of the reading: unit, outward
+  Eigen::VectorXd defect_mm;  // along the normal, positive: material left; exact, not linearised
+  std::vector<std::size_t> parameters;  // statics of the machine that are free
+  /// d defect / d parameter, N x parameters, mm per unit of the static, at the machine's values.
+  Eigen::MatrixXd jacobian;
+};
+
+/// Mdef(u) = n . (displacement of the tool at the point - displacement at the origin of the work coordinates,
+/// where the offsets were set); displacement = actual - nominal chain. The part is clamped on the table where
+/// it was cut; no alignment. The point is taken as cut at its own u: the envelope's true contact is up to
+/// 0.9 mm further along the surface. tool.
+PartDefect part_defect(const BHeadMachine& machine, const std::vector<PartPoint>& points,
+                       const DefectOptions& options = {});
+
+/// The hundred points of the test: 25 on each flank at the bottom and the top line (11 and 25 mm), at
+/// u = 0.02, 0.06 ... 0.98. Flank by flank, bottom line first.
+std::vector<PartPoint> standard_points();
+inline constexpr std::size_t kPointsPerLine = 25;
+
+}  // namespace vernier

@@ -1,0 +1,20 @@
+#pragma once
+#include <array>
+
+namespace vernier {
+
+/// Where a gauge block on the table is read in Y at table positions C = 0, 90, 180, 270 deg with the tool
+/// vertical, X = 0 and the tip at the height of the work origin (Z = L0): two of the location errors, from
+/// four readings (equation 14 of the paper, second of that number, with X = 0 and Z = L0).
+struct GaugeBlockEstimate {
+  double ea0b_rad = 0;  // (y0 - y180) / (2 L0); negative for the paper's readings, which prints it positive
+  double ex0b_mm = 0;   // (y270 - y90) / 2
+  /// Standard uncertainties for readings with standard uncertainty 1 mm.
+  double ea0b_per_mm = 0, ex0b_per_mm = 0;
+};
+
+/// y_mm: readings at C = 0, 90, 180, 270 deg, workpiece coordinates. pivot_mm: L0, above 0. A shift of the
+/// block along Y cancels only within each pair. tool.
+GaugeBlockEstimate estimate_gauge_block(const std::array<double, 4>& y_mm, double pivot_mm);
+
+}  // namespace vernier

@@ -1,0 +1,66 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/fit/observability.h"
+#include "tools/part/defect.h"
+
+namespace vernier {
+
+/// One measured point of the part.
+struct MeasuredPoint {
+  PartPoint at;
+  double defect_mm = 0;       // along the outward normal, positive: material left
+  double uncertainty_mm = 0;  // standard uncertainty; 0 where not given
+  std::size_t line = 0;       // in the file
+};
+
+struct MeasuredPart {
+  std::string file;
+  std::vector<MeasuredPoint> points;
+};
+
+/// Reads `sx[mm],sy[mm],sz[mm]` (nominal surface point, workpiece coordinates), `defect[mm]` and, if there,
+/// `u[mm]`; other columns are of no concern. Each point is placed on the flank that it is nearest to. Throws
+/// InputError with file, line and word: a missing column, no number, a point farther than 0.05 mm from both
+/// flanks, u not positive or given for some rows only. tool.
+MeasuredPart read_measured_part(const std::string& text, const std::string& file);
+
+struct IdentifyOptions {
+  DefectOptions defect;
+  /// The part was aligned to its model by best fit: six numbers of a rigid motion are fitted beside the
+  /// errors (`part.X` ... `part.rZ`; mm and deg about the work origin).
+  bool aligned = false;
+};
+
+struct IdentifiedError {
+  std::string name, unit;
+  double value = 0;
+  std::optional<double> std;  // nothing where the points do not determine it
+};
+
+struct Identification {
+  Machine machine;                         // with the identified values
+  std::vector<IdentifiedError> errors;     // free statics, then the alignment
+  Observability observability;             // over `errors`
+  Eigen::MatrixXd correlation;             // over `errors`; 0 for those not determined
+  Eigen::VectorXd before_mm, residual_mm;  // measured - model at the start, at the end
+  double chi_square = 0, variance_factor = 1;
+  Eigen::Index freedom = 0;
+  int iterations = 0;
+  bool converged = false;
+};
+
+/// Weighted least squares of the free statics of the machine against the measured defects. Errors that the
+/// points cannot tell apart keep their start along those directions and are named in `observability`.
+/// Standard uncertainties as those of `vernier fit`. Throws InputError where nothing is free or points are
+/// fewer than errors. tool.
+Identification identify(const BHeadMachine& machine, const MeasuredPart& part,
+                        const IdentifyOptions& options = {});
+
+/// What N points could tell about the free statics at all, each point with standard uncertainty 1 mm.
+Observability part_observability(const BHeadMachine& machine, const std::vector<PartPoint>& points,
+                                 const DefectOptions& options);
+
+}  // namespace vernier

@@ -1,0 +1,103 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "tools/model/csv.h"
+#include "tools/model/numbers.h"
+#include "tools/model/units.h"
+#include "tools/part/identify.h"
+
+namespace vernier {
+namespace {
+
+/// A nominal point so far from both flanks is none of theirs (the flanks are known to rounding; files have
+/// three or four decimals).
+constexpr double kOnSurfaceMm = 0.05;
+
+/// One column of lengths, in mm.
+class LengthColumn {
+ public:
+  LengthColumn(const CsvFile& csv, const std::string& name, bool required) : csv_(csv) {
+    for (std::size_t i = 0; i < csv.columns.size(); ++i)
+      if (csv.columns[i].name == name) index_ = i;
+    if (!index_ && required)
+      throw InputError({csv.file, csv.header_line}, name, "a measured part needs this column");
+    if (!index_) return;
+    const std::optional<Unit> unit = find_unit(csv.columns[*index_].unit);
+    if (!unit || unit->dimension != Dimension::kLength)
+      throw InputError({csv.file, csv.header_line}, name, "needs a unit of length, as in " + name + "[mm]");
+    factor_ = unit->factor;
+  }
+  bool present() const { return index_.has_value(); }
+  double at(std::size_t row) const {
+    const std::string& text = csv_.rows[row][*index_];
+    const std::optional<double> number = parse_number(text);
+    if (!number)
+      throw InputError({csv_.file, csv_.line[row]}, text,
+                       "no number in column " + csv_.columns[*index_].name);
+    return *number * factor_;
+  }
+
+ private:
+  const CsvFile& csv_;
+  std::optional<std::size_t> index_;
+  double factor_ = 1;
+};
+
+std::string point_text(const Eigen::Vector3d& p) {
+  return fmt::format("({:g}, {:g}, {:g})", p.x(), p.y(), p.z());
+}
+
+/// Nothing where the point is so far off that it has no settled foot.
+std::optional<SurfaceFoot> foot_near(const RuledSurface& surface, const Eigen::Vector3d& position) {
+  try {
+    return nearest(surface, position);
+  } catch (const std::runtime_error&) {
+    return std::nullopt;
+  }
+}
+
+PartPoint place_on_part(const Eigen::Vector3d& position, const Place& place) {
+  PartPoint best;
+  double best_mm = -1;
+  for (std::size_t flank = 0; flank < s_part().size(); ++flank) {
+    const std::optional<SurfaceFoot> foot = foot_near(s_part()[flank], position);
+    if (!foot) continue;
+    const double apart_mm = std::hypot(foot->distance_mm, foot->across_mm);
+    if (best_mm >= 0 && apart_mm >= best_mm) continue;
+    best_mm = apart_mm;
+    best = {flank, foot->u, foot->v};
+  }
+  constexpr double kEdge = kOnSurfaceMm / kPartHeightMm;
+  if (best_mm < 0)
+    throw InputError(place, point_text(position), "no point of the part: far from both flanks");
+  if (best_mm > kOnSurfaceMm || best.v < -kEdge || best.v > 1 + kEdge)
+    throw InputError(
+        place, point_text(position),
+        fmt::format("no point of the part: {:.3g} mm from the nearest flank, at {:.3g} of its height",
+                    best_mm, best.v));
+  return best;
+}
+
+}  // namespace
+
+MeasuredPart read_measured_part(const std::string& text, const std::string& file) {
+  const CsvFile csv = parse_csv(text, file);
+  const LengthColumn x(csv, "sx", true), y(csv, "sy", true), z(csv, "sz", true), defect(csv, "defect", true);
+  const LengthColumn u(csv, "u", false);
+  MeasuredPart part{file, {}};
+  for (std::size_t row = 0; row < csv.rows.size(); ++row) {
+    const Place place{file, csv.line[row]};
+    MeasuredPoint point;
+    point.line = csv.line[row];
+    point.at = place_on_part({x.at(row), y.at(row), z.at(row)}, place);
+    point.defect_mm = defect.at(row);
+    if (u.present()) point.uncertainty_mm = u.at(row);
+    if (u.present() && !(point.uncertainty_mm > 0))
+      throw InputError(place, number_text(point.uncertainty_mm), "u is a standard uncertainty above 0");
+    part.points.push_back(point);
+  }
+  return part;
+}
+
+}  // namespace vernier
