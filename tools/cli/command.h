@@ -15,9 +15,12 @@ using RegisterCommand = void (*)(CLI::App& vernier);
 void register_import(CLI::App& vernier);
 void register_fit(CLI::App& vernier);
 void register_compare(CLI::App& vernier);
+void register_derive(CLI::App& vernier);
 void register_compile(CLI::App& vernier);
 void register_simulate(CLI::App& vernier);
 void register_replay(CLI::App& vernier);
+void register_pose(CLI::App& vernier);
+void register_solve(CLI::App& vernier);
 
 /// Writes the result for programs: to a file, or to standard output for "-"; nothing for an empty path.
 /// Numbers that are not finite become null.

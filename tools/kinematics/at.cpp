@@ -1,0 +1,102 @@
+#include "tools/kinematics/at.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "tools/model/numbers.h"
+
+namespace vernier {
+namespace {
+
+std::string trimmed(const std::string& text) {
+  const auto first = text.find_first_not_of(" \t");
+  if (first == std::string::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+std::vector<std::string> split(const std::string& text) {
+  std::vector<std::string> parts(1);
+  for (const char c : text) {
+    if (c == ',')
+      parts.emplace_back();
+    else
+      parts.back() += c;
+  }
+  for (std::string& part : parts) part = trimmed(part);
+  return parts;
+}
+
+/// The column of a state that a name means, or nullptr.
+Column* column_of(const Machine& machine, States& states, const std::string& name) {
+  const Symbol symbol = resolve_name(machine, name);
+  switch (symbol.kind) {
+    case SymbolKind::kAxis:
+      return &states.axis[symbol.index];
+    case SymbolKind::kInput:
+      return &states.input[symbol.index];
+    case SymbolKind::kVelocity:
+      return &states.velocity[symbol.index];
+    case SymbolKind::kAcceleration:
+      return &states.acceleration[symbol.index];
+    case SymbolKind::kDirection:
+      return &states.direction[symbol.index];
+    case SymbolKind::kSince:
+      return &states.since[symbol.index];
+    case SymbolKind::kFeed:
+      return &states.feed;
+    case SymbolKind::kCurvature:
+      return &states.curvature;
+    case SymbolKind::kNormal:
+      return &states.normal[symbol.index];
+    case SymbolKind::kTime:
+      return &states.time;
+    case SymbolKind::kVisit:
+      return &states.visit;
+    default:
+      return nullptr;
+  }
+}
+
+void set_word(const Machine& machine, States& states, const std::string& word) {
+  const auto equals = word.find('=');
+  const std::string name = trimmed(word.substr(0, equals));
+  const std::string value = equals == std::string::npos ? "" : trimmed(word.substr(equals + 1));
+  if (name.empty() || value.empty()) throw InputError({}, word, "a state is NAME=NUMBER,NAME=NUMBER…");
+  if (name == "run") {
+    states.run_names = {value};
+    return;
+  }
+  Column* column = column_of(machine, states, name);
+  if (column == nullptr)
+    throw InputError({machine.file, 0}, name,
+                     "this machine has no axis, input or motion quantity of that name");
+  const auto number = parse_number(value);
+  if (!number) throw InputError({}, value, "not a number, for " + name);
+  (*column)[0] = *number;
+}
+
+}  // namespace
+
+States state_at(const Machine& machine, const std::string& words) {
+  std::vector<double> references;
+  for (const Input& input : machine.inputs) references.push_back(input.reference);
+  States states = make_states(1, machine.axes.size(), references);
+  if (trimmed(words).empty()) return states;
+  for (const std::string& word : split(words)) set_word(machine, states, word);
+  return states;
+}
+
+std::vector<double> number_list(const std::string& text, const std::vector<std::size_t>& counts,
+                                const std::string& what) {
+  std::vector<double> result;
+  for (const std::string& word : split(text)) {
+    const auto number = parse_number(word);
+    if (!number) throw InputError({}, word, "not a number, in " + what);
+    result.push_back(*number);
+  }
+  if (std::find(counts.begin(), counts.end(), result.size()) == counts.end())
+    throw InputError({}, text, std::to_string(result.size()) + " numbers do not make " + what);
+  return result;
+}
+
+}  // namespace vernier

@@ -1,0 +1,19 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "tools/model/machine.h"
+#include "tools/model/states.h"
+
+namespace vernier {
+
+/// One state from a user's words: "X=100,Y=-20,dirX=1,T=25,feed=1000". Names: axes, inputs, v/a/dir/since of
+/// an axis, feed, curv, t, nx ny nz, run (a label). Base units (mm, deg, mm/s ...). What is not named is 0;
+/// inputs are at their reference. Throws InputError with the word. tool.
+States state_at(const Machine& machine, const std::string& words);
+
+/// Numbers separated by commas; `counts` says how many there may be. Throws InputError. tool.
+std::vector<double> number_list(const std::string& text, const std::vector<std::size_t>& counts,
+                                const std::string& what);
+
+}  // namespace vernier

@@ -1,0 +1,28 @@
+#pragma once
+#include <vector>
+
+#include "tools/kinematics/inverse.h"
+
+namespace vernier {
+
+struct CorrectionOptions {
+  /// false: linear axes put the tool point right. true: all axes put point and tool direction right.
+  bool with_rotary = false;
+  double tolerance_mm = 1e-9, tolerance_deg = 1e-9;
+};
+
+/// What to add to each axis command, and the proof that it does what it should.
+struct CorrectionResult {
+  std::vector<Column> offset;      // per axis of the machine, mm or deg; 0 for axes that do not move
+  Eigen::Matrix3Xd before, after;  // actual - nominal tool point, mm
+  Column tilt_before, tilt_after;  // angle between actual and nominal tool direction, deg
+  std::vector<Inverse> each;       // of each state; residuals are those of `after`
+};
+
+/// The axis offsets that put the actual tool point (and direction) of `machine` where its nominal chain has
+/// it at the same commands. They are found on the forward solution of the whole chain, so that an axis on the
+/// workpiece side gets its sign by itself. Motion and inputs stay as they are. What the axes cannot reach
+/// (the height of an XY table) stays in `after`; an iteration that does not get there is not converged. tool.
+CorrectionResult correct(const Machine& machine, const States& states, const CorrectionOptions& options = {});
+
+}  // namespace vernier

@@ -1,0 +1,260 @@
+#include "tools/kinematics/inverse.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "tools/kinematics/jacobian.h"
+#include "tools/model/evaluate.h"
+
+namespace vernier {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+constexpr double kDeg = 180 / std::numbers::pi;
+
+/// Damping: where it begins, how it grows and shrinks, and where no step is left to try.
+constexpr double kFirstDamping = 1e-6, kGrow = 10, kShrink = 0.1, kMostDamping = 1e12, kLeastDamping = 1e-14;
+
+std::vector<std::size_t> axes_of(const Machine& machine, const InverseOptions& options) {
+  if (!options.axes.empty()) return options.axes;
+  std::vector<std::size_t> all(machine.axes.size());
+  for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
+  return all;
+}
+
+/// One state on its way.
+struct Walker {
+  VectorXd residual;  // target - pose; mm and lever * rad
+  double damping = kFirstDamping;
+  bool done = false;
+};
+
+class Solver {
+ public:
+  Solver(const Machine& machine, const Poses& target, const States& start, const InverseOptions& options)
+      : machine_(machine),
+        target_(target),
+        options_(options),
+        axes_(axes_of(machine, options)),
+        states_(start),
+        walkers_(start.count),
+        proofs_(start.count) {}
+
+  InverseResult run() {
+    measure(forward(machine_, states_), true);
+    for (int i = 0; i < options_.most_iterations && step(); ++i) continue;
+    return {states_, finish()};
+  }
+
+ private:
+  double length_of(const VectorXd& residual) const { return residual.norm(); }
+
+  VectorXd residual_at(const Poses& poses, std::size_t i) const {
+    return pose_error(poses, target_, i, options_.match, options_.lever_mm);
+  }
+
+  bool small(const VectorXd& residual) const {
+    return residual.head<3>().norm() <= options_.tolerance_mm &&
+           residual.tail(residual.size() - 3).norm() / options_.lever_mm * kDeg <= options_.tolerance_deg;
+  }
+
+  void measure(const Poses& poses, bool first) {
+    for (std::size_t i = 0; i < walkers_.size(); ++i) {
+      if (first) walkers_[i].residual = residual_at(poses, i);
+      walkers_[i].done = walkers_[i].done || small(walkers_[i].residual);
+    }
+  }
+
+  /// One damped Newton step of every walker that still walks; false when none does.
+  bool step() {
+    if (std::all_of(walkers_.begin(), walkers_.end(), [](const Walker& w) { return w.done; })) return false;
+    const std::vector<MatrixXd> jacobian =
+        axis_jacobian(machine_, states_, axes_, options_.match, options_.lever_mm);
+    States trial = states_;
+    for (std::size_t i = 0; i < walkers_.size(); ++i)
+      if (!walkers_[i].done) move(trial, i, damped_step(jacobian[i], walkers_[i]));
+    const Poses poses = forward(machine_, trial);
+    for (std::size_t i = 0; i < walkers_.size(); ++i)
+      if (!walkers_[i].done) judge(trial, poses, jacobian[i], i);
+    return true;
+  }
+
+  VectorXd damped_step(const MatrixXd& jacobian, const Walker& walker) const {
+    const MatrixXd scaled = jacobian * axis_scales(machine_, axes_, options_.lever_mm).asDiagonal();
+    MatrixXd normal = scaled.transpose() * scaled;
+    normal.diagonal().array() += walker.damping;  // columns are scaled to about 1 mm per mm
+    const VectorXd scaled_step = normal.ldlt().solve(scaled.transpose() * walker.residual);
+    return axis_scales(machine_, axes_, options_.lever_mm).cwiseProduct(scaled_step);
+  }
+
+  void move(States& states, std::size_t row, const VectorXd& by) const {
+    for (std::size_t k = 0; k < axes_.size(); ++k)
+      states.axis[axes_[k]][static_cast<Index>(row)] += by[static_cast<Index>(k)];
+  }
+
+  void judge(const States& trial, const Poses& poses, const MatrixXd& jacobian, std::size_t i) {
+    Walker& walker = walkers_[i];
+    ++proofs_[i].iterations;
+    const VectorXd residual = residual_at(poses, i);
+    const bool better = length_of(residual) < length_of(walker.residual);
+    if (better) {
+      for (const std::size_t axis : axes_)
+        states_.axis[axis][static_cast<Index>(i)] = trial.axis[axis][static_cast<Index>(i)];
+      walker.residual = residual;
+      walker.damping = std::max(walker.damping * kShrink, kLeastDamping);
+    } else {
+      walker.damping *= kGrow;
+    }
+    const bool reached = options_.only_reachable ? reducible(jacobian, machine_, axes_, walker.residual,
+                                                             options_) <= options_.tolerance_mm
+                                                 : false;
+    walker.done = small(walker.residual) || reached || walker.damping > kMostDamping;
+  }
+
+  std::vector<Inverse> finish() {
+    const std::vector<MatrixXd> jacobian =
+        axis_jacobian(machine_, states_, axes_, options_.match, options_.lever_mm);
+    const Poses poses = forward(machine_, states_);
+    for (std::size_t i = 0; i < walkers_.size(); ++i) {
+      Inverse& proof = proofs_[i];
+      const VectorXd residual = residual_at(poses, i);
+      proof.residual_mm = residual.head<3>().norm();
+      proof.residual_deg = residual.tail(residual.size() - 3).norm() / options_.lever_mm * kDeg;
+      proof.reducible_mm = reducible(jacobian[i], machine_, axes_, residual, options_);
+      proof.condition = condition_of(jacobian[i], machine_, axes_, options_);
+      const bool met =
+          options_.only_reachable ? proof.reducible_mm <= options_.tolerance_mm : small(residual);
+      proof.fault = fault_of(proof, met, i);
+      proof.converged = proof.fault == InverseFault::kNone;
+    }
+    return std::move(proofs_);
+  }
+
+  InverseFault fault_of(Inverse& proof, bool met, std::size_t row) {
+    if (!options_.only_reachable && !(proof.condition <= options_.most_condition))
+      return InverseFault::kSingular;
+    if (!met) return InverseFault::kUnreachable;
+    if (!options_.keep_ranges) return InverseFault::kNone;
+    for (const std::size_t axis : axes_) {
+      if (into_range(states_.axis[axis][static_cast<Index>(row)], machine_.axes[axis])) continue;
+      proof.axis = axis;
+      return InverseFault::kBeyondRange;
+    }
+    return InverseFault::kNone;
+  }
+
+  /// Turns a rotary axis by whole turns into its range; false where it (or a linear one) cannot stand there.
+  static bool into_range(double& value, const Axis& axis) {
+    if (axis.rollover && axis.rotary) {
+      value = std::remainder(value, 360.0);  // a rotary axis that rolls over knows no other turn
+      if (axis.min && value < *axis.min) value += 360;
+      return true;
+    }
+    constexpr double kSlack = 1e-9;  // of a target on the limit itself, mm or deg
+    const auto inside = [&](double v) {
+      return (!axis.min || v >= *axis.min - kSlack) && (!axis.max || v <= *axis.max + kSlack);
+    };
+    if (inside(value)) return true;
+    if (!axis.rotary) return false;
+    const double near = std::remainder(value, 360.0);
+    for (const double turn : {0.0, 360.0, -360.0, 720.0, -720.0})
+      if (inside(near + turn)) {
+        value = near + turn;
+        return true;
+      }
+    return false;
+  }
+
+  const Machine& machine_;
+  const Poses& target_;
+  const InverseOptions& options_;
+  std::vector<std::size_t> axes_;
+  States states_;
+  std::vector<Walker> walkers_;
+  std::vector<Inverse> proofs_;
+};
+
+/// The `index`-th number of the Halton sequence of a base: spread evenly over 0..1.
+double halton(int index, int base) {
+  double result = 0, fraction = 1;
+  for (; index > 0; index /= base) {
+    fraction /= base;
+    result += fraction * (index % base);
+  }
+  return result;
+}
+
+/// Ordering of failures: the one that came nearest is worth showing.
+bool better(const Inverse& a, const Inverse& b) {
+  if (a.converged != b.converged) return a.converged;
+  return a.residual_mm + a.residual_deg < b.residual_mm + b.residual_deg;
+}
+
+}  // namespace
+
+const char* name_of(InverseFault fault) {
+  switch (fault) {
+    case InverseFault::kNone:
+      return "none";
+    case InverseFault::kSingular:
+      return "singular";
+    case InverseFault::kUnreachable:
+      return "unreachable";
+    case InverseFault::kBeyondRange:
+      return "beyond-range";
+  }
+  return "";
+}
+
+InverseResult solve(const Machine& machine, const Poses& target, const States& start,
+                    const InverseOptions& options) {
+  return Solver(machine, target, start, options).run();
+}
+
+InverseResult solve_anywhere(const Machine& machine, const Poses& target, const States& start,
+                             const InverseOptions& options, int restarts) {
+  constexpr std::array<int, 12> kPrimes = {2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37};
+  InverseResult best = solve(machine, target, start, options);
+  const std::vector<std::size_t> axes = axes_of(machine, options);
+  for (int i = 1; i <= restarts && !best.each[0].converged; ++i) {
+    States other = start;
+    for (std::size_t k = 0; k < axes.size(); ++k) {
+      const Axis& axis = machine.axes[axes[k]];
+      if (axis.min && axis.max)
+        other.axis[axes[k]][0] = *axis.min + (*axis.max - *axis.min) * halton(i, kPrimes[k % kPrimes.size()]);
+    }
+    InverseResult next = solve(machine, target, other, options);
+    if (better(next.each[0], best.each[0])) best = std::move(next);
+  }
+  return best;
+}
+
+std::vector<std::size_t> linear_axes(const Machine& machine) {
+  std::vector<std::size_t> result;
+  for (std::size_t i = 0; i < machine.axes.size(); ++i)
+    if (!machine.axes[i].rotary) result.push_back(i);
+  return result;
+}
+
+Eigen::Vector3d rotation_vector(const Eigen::Matrix3d& rotation) {
+  // Through the quaternion: well conditioned near 0 and near half a turn.
+  Eigen::Quaterniond q(rotation);
+  if (q.w() < 0) q.coeffs() = -q.coeffs();
+  const double sine = q.vec().norm();
+  if (sine < 1e-300) return Eigen::Vector3d::Zero();
+  return q.vec() * (2 * std::atan2(sine, q.w()) / sine);
+}
+
+Eigen::Matrix3d rotation_of(const Eigen::Vector3d& vector_deg) {
+  const double angle = vector_deg.norm();
+  if (angle == 0) return Eigen::Matrix3d::Identity();
+  return Eigen::AngleAxisd(angle / kDeg, vector_deg / angle).toRotationMatrix();
+}
+
+}  // namespace vernier
