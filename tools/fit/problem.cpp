@@ -6,10 +6,70 @@
 
 namespace vernier {
 
+namespace {
+
+/// to += weight * from, a block of `rows` x `columns` of two column-major matrices. Six rows, a table's or a
+/// BaseShift's, are the usual case and worth unrolling.
+void add_block(double* to, Eigen::Index to_stride, const double* from, Eigen::Index from_stride,
+               Eigen::Index rows, Eigen::Index columns, double weight) {
+  if (rows == 6) {
+    for (Eigen::Index j = 0; j < columns; ++j, to += to_stride, from += from_stride)
+      for (int i = 0; i < 6; ++i) to[i] += weight * from[i];
+    return;
+  }
+  for (Eigen::Index j = 0; j < columns; ++j, to += to_stride, from += from_stride)
+    for (Eigen::Index i = 0; i < rows; ++i) to[i] += weight * from[i];
+}
+
+/// Adds one row's share: each pair of groups meets in one block of `inner`, which every pair of their
+/// stations takes with the product of their weights. Fills the lower triangle (and parts of the upper within
+/// a group).
+void scatter(const std::vector<ParameterGroup>& groups, const Eigen::MatrixXd& inner,
+             const Eigen::VectorXd& answer, NormalEquations& sum) {
+  const Eigen::Index n = sum.normal.rows(), slots = inner.rows();
+  for (std::size_t b = 0; b < groups.size(); ++b) {
+    const ParameterGroup& low = groups[b];
+    for (const auto& [row, row_weight] : low.first_weight) {
+      for (Eigen::Index i = 0; i < low.width; ++i) sum.gradient[row + i] += row_weight * answer[low.slot + i];
+      for (std::size_t a = 0; a <= b; ++a) {
+        const ParameterGroup& high = groups[a];
+        for (const auto& [column, column_weight] : high.first_weight)
+          if (column <= row)
+            add_block(sum.normal.data() + column * n + row, n, inner.data() + high.slot * slots + low.slot,
+                      slots, low.width, high.width, row_weight * column_weight);
+      }
+    }
+  }
+}
+
+/// inner = g * g^T and answer = g * r for slots x observations g: both triangles, since a table's block with
+/// itself is used whole.
+void inner_products(const Eigen::MatrixXd& g, const Eigen::VectorXd& r, Eigen::MatrixXd& inner,
+                    Eigen::VectorXd& answer) {
+  const Eigen::Index slots = g.rows();
+  inner.resize(slots, slots);
+  answer.setZero(slots);
+  for (Eigen::Index o = 0; o < g.cols(); ++o) {
+    const double* column = g.col(o).data();
+    double* to = inner.data();
+    for (Eigen::Index j = 0; j < slots; ++j, to += slots) {
+      const double factor = column[j];
+      if (o == 0)
+        for (Eigen::Index i = 0; i < slots; ++i) to[i] = factor * column[i];
+      else
+        for (Eigen::Index i = 0; i < slots; ++i) to[i] += factor * column[i];
+    }
+    for (Eigen::Index i = 0; i < slots; ++i) answer[i] += r[o] * column[i];
+  }
+}
+
+}  // namespace
+
 FitProblem::FitProblem(const Machine& machine, const Measurement& measurement, const ParameterSet& parameters)
     : machine_(machine),
       measurement_(measurement),
       parameters_(parameters),
+      linearizer_(machine, measurement, parameters),
       weights_(fit_weights(measurement)) {
   measured_.resize(weights_.size());
   for (std::size_t i = 0; i < measurement.observations.size(); ++i)
@@ -32,24 +92,29 @@ double FitProblem::cost(const Eigen::VectorXd& point) const {
 
 Eigen::VectorXd FitProblem::weighted_residuals(const Eigen::VectorXd& point, SparseRows* jacobian) const {
   if (jacobian == nullptr) return (measured_ - predict(at(point), measurement_)).cwiseProduct(weights_);
-  Linearisation linear = linearise(at(point), measurement_, parameters_);
+  Linearisation linear =
+      linearise(at(point), linearizer_, measurement_.observations.size(), parameters_.size());
   *jacobian = weights_.asDiagonal() * linear.jacobian;
   return (measured_ - linear.predicted).cwiseProduct(weights_);
 }
 
 NormalEquations FitProblem::equations(const Eigen::VectorXd& point) const {
-  SparseRows jacobian;
-  const Eigen::VectorXd residual = weighted_residuals(point, &jacobian);
-  NormalEquations result;
-  result.cost = residual.squaredNorm();
-  result.gradient = jacobian.transpose() * residual;
   const auto n = static_cast<Eigen::Index>(parameters_.size());
+  NormalEquations result;
+  result.gradient = Eigen::VectorXd::Zero(n);
   result.normal = Eigen::MatrixXd::Zero(n, n);
-  // Rows touch few parameters each; adding their outer products beats a sparse matrix product.
-  for (Eigen::Index row = 0; row < jacobian.outerSize(); ++row)
-    for (SparseRows::InnerIterator a(jacobian, row); a; ++a)
-      for (SparseRows::InnerIterator b(jacobian, row); b && b.col() <= a.col(); ++b)
-        result.normal(a.col(), b.col()) += a.value() * b.value();
+  Eigen::MatrixXd weighted, inner;
+  Eigen::VectorXd residual, answer;
+  linearizer_.each_row(at(point), [&](const RowLinear& row) {
+    const auto first = static_cast<Eigen::Index>(row.first_observation);
+    const Eigen::Index count = row.predicted.size();
+    const auto weight = weights_.segment(first, count);
+    weighted = row.gradient * weight.asDiagonal();
+    residual = weight.cwiseProduct(measured_.segment(first, count) - row.predicted);
+    inner_products(weighted, residual, inner, answer);
+    result.cost += residual.squaredNorm();
+    scatter(row.groups, inner, answer, result);
+  });
   result.normal.triangularView<Eigen::StrictlyUpper>() = result.normal.transpose();
   return result;
 }

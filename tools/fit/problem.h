@@ -2,6 +2,7 @@
 #include <Eigen/Core>
 
 #include "tools/fit/levenberg.h"
+#include "tools/model/linearizer.h"
 #include "tools/model/machine.h"
 #include "tools/model/measurement.h"
 #include "tools/model/parameters.h"
@@ -31,6 +32,7 @@ class FitProblem {
   Machine machine_;
   const Measurement& measurement_;
   const ParameterSet& parameters_;
+  Linearizer linearizer_;
   Eigen::VectorXd weights_, measured_;
 };
 

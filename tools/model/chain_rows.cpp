@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
 namespace vernier {
@@ -35,18 +36,35 @@ Twist turn_about(const Vector3d& axis, const Vector3d& through, const Vector3d& 
 
 }  // namespace
 
+/// Sine and cosine of an angle in degrees; most angles of most machines are a plain zero.
+struct SineCosine {
+  explicit SineCosine(double angle_deg) {
+    if (angle_deg == 0) return;
+    s = std::sin(angle_deg * kRad);
+    c = std::cos(angle_deg * kRad);
+  }
+  double s = 0, c = 1;
+};
+
 Frame sixdof_frame(const std::array<double, 6>& v) {
-  return {turn(v[3], Vector3d::UnitX()) * turn(v[4], Vector3d::UnitY()) * turn(v[5], Vector3d::UnitZ()),
-          Vector3d(v[0], v[1], v[2])};
+  const SineCosine x(v[3]), y(v[4]), z(v[5]);
+  Frame frame;
+  frame.rotation << y.c * z.c, -y.c * z.s, y.s,  //
+      x.c * z.s + x.s * y.s * z.c, x.c * z.c - x.s * y.s * z.s, -x.s * y.c, x.s * z.s - x.c * y.s * z.c,
+      x.s * z.c + x.c * y.s * z.s, x.c * y.c;
+  frame.origin = Vector3d(v[0], v[1], v[2]);
+  return frame;
 }
 
 std::array<Twist, 6> sixdof_twists(const std::array<double, 6>& v, const Vector3d& point) {
+  const SineCosine x(v[3]), y(v[4]);
   const Vector3d origin(v[0], v[1], v[2]);
-  const Matrix3d rx = turn(v[3], Vector3d::UnitX());
-  const Matrix3d rxy = rx * turn(v[4], Vector3d::UnitY());
-  return {shift_along(Vector3d::UnitX()),       shift_along(Vector3d::UnitY()),
-          shift_along(Vector3d::UnitZ()),       turn_about(Vector3d::UnitX(), origin, point),
-          turn_about(rx.col(1), origin, point), turn_about(rxy.col(2), origin, point)};
+  return {shift_along(Vector3d::UnitX()),
+          shift_along(Vector3d::UnitY()),
+          shift_along(Vector3d::UnitZ()),
+          turn_about(Vector3d::UnitX(), origin, point),
+          turn_about(Vector3d(0, x.c, x.s), origin, point),
+          turn_about(Vector3d(y.s, -x.s * y.c, x.c * y.c), origin, point)};
 }
 
 ChainRows::ChainRows(const Machine& machine, const States& states, std::vector<char> active)
@@ -94,19 +112,22 @@ Frame ChainRows::pose(std::size_t i) const {
 }
 
 Frame ChainRows::pose(std::size_t i, std::vector<Twist>& twists) const {
-  Frame tool, work;
-  for (const Link& link : tool_) tool = compose(tool, frame_of(link, i));
-  for (const Link& link : workpiece_) work = compose(work, frame_of(link, i));
+  // The frame below each link, tool branch then workpiece branch; the last of each branch is its end.
+  thread_local std::vector<Frame> below;
+  below.clear();
+  for (const std::vector<Link>* links : {&tool_, &workpiece_}) {
+    below.emplace_back();
+    for (const Link& link : *links) below.push_back(compose(below.back(), frame_of(link, i)));
+  }
+  const Frame& tool = below[tool_.size()];
+  const Frame& work = below.back();
   const Matrix3d to_workpiece = work.rotation.transpose();
   twists.assign(keys_.size(), Twist{});
   // Both branches move the tool point in the common base; what carries the workpiece moves it the other way.
-  for (const auto& [links, sense] : {std::pair{&tool_, 1.0}, std::pair{&workpiece_, -1.0}}) {
-    Frame below;
-    for (const Link& link : *links) {
-      add_twists(link, i, below, tool.origin, to_workpiece, sense, twists);
-      below = compose(below, frame_of(link, i));
-    }
-  }
+  for (std::size_t k = 0; k < tool_.size(); ++k)
+    add_twists(tool_[k], i, below[k], tool.origin, to_workpiece, 1, twists);
+  for (std::size_t k = 0; k < workpiece_.size(); ++k)
+    add_twists(workpiece_[k], i, below[tool_.size() + 1 + k], tool.origin, to_workpiece, -1, twists);
   return {to_workpiece * tool.rotation, to_workpiece * (tool.origin - work.origin)};
 }
 

@@ -83,7 +83,8 @@ class ExpressionError : public std::runtime_error {
   std::string word;
 };
 
-/// Parses an expression of FORMATS (tools/docs/formats.md). Names stay unresolved. Throws ExpressionError. tool.
+/// Parses an expression of FORMATS (tools/docs/formats.md). Names stay unresolved. Throws ExpressionError.
+/// tool.
 ExprPtr parse_expression(std::string_view text);
 
 /// Text that parses back to the same tree, with the fewest parentheses.

@@ -35,11 +35,13 @@ ParameterSet::ParameterSet(const Machine& machine, const std::vector<std::string
   for (std::size_t i = 0; i < machine.tables.size(); ++i) {
     const Table& table = machine.tables[i];
     const std::size_t count = table.stations.size() - (table.periodic ? 1 : 0);
-    for (std::size_t c = 0; c < 6; ++c)
-      for (std::size_t s = 0; table.free[c] && s < count; ++s)
+    for (std::size_t s = 0; s < count; ++s)
+      for (std::size_t c = 0; c < 6; ++c) {
+        if (!table.free[c]) continue;
         list_.push_back({"table." + machine.axes[table.axis].name + "[" + table.stations[s].loc_text + "]." +
                              kSixDofNames[c],
                          c < 3 ? "mm" : "deg", ParameterKind::kStation, i, s, c});
+      }
   }
   std::set<std::size_t> used;
   for (const std::string& run : runs)

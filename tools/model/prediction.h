@@ -24,4 +24,9 @@ struct Linearisation {
 Linearisation linearise(const Machine& machine, const Measurement& measurement,
                         const ParameterSet& parameters);
 
+/// The same with the work that does not depend on the parameters' values done beforehand.
+class Linearizer;
+Linearisation linearise(const Machine& machine, const Linearizer& linearizer, std::size_t observations,
+                        std::size_t parameters);
+
 }  // namespace vernier

@@ -121,7 +121,11 @@ void StationTable::weights(double raw, std::vector<std::pair<std::size_t, double
   const auto folded = [&](std::size_t i) { return table_.periodic && i + 1 == loc_.size() ? 0 : i; };
   if (bend_.empty()) {
     if (a != 0) result.emplace_back(folded(s.segment), a);
-    if (b != 0) result.emplace_back(folded(s.segment + 1), b);
+    if (b == 0) return;
+    if (!result.empty() && result.back().first == folded(s.segment + 1))
+      result.back().second += b;
+    else
+      result.emplace_back(folded(s.segment + 1), b);
     return;
   }
   const double ka = (a * a * a - a) * s.width * s.width / 6, kb = (b * b * b - b) * s.width * s.width / 6;

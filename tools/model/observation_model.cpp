@@ -1,0 +1,109 @@
+#include "tools/model/observation_model.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace vernier {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+constexpr double kDeg = 180 / std::numbers::pi;
+
+Matrix3d cross_matrix(const Vector3d& v) {
+  Matrix3d m;
+  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+  return m;
+}
+
+/// Rotation vector of a rotation, rad; of the two around half a turn the one nearest to `like`.
+Vector3d nearest_rotation_vector(const Matrix3d& rotation, const Vector3d& like) {
+  const Eigen::AngleAxisd turn(rotation);
+  const Vector3d vector = turn.angle() * turn.axis();
+  const double angle = vector.norm();
+  if (angle < 1e-9) return vector;
+  const Vector3d other = vector * (1 - 2 * std::numbers::pi / angle);
+  return (other - like).norm() < (vector - like).norm() ? other : vector;
+}
+
+/// d(rotation vector) = this * (small rotation applied from the left). Inverse left Jacobian of SO(3);
+/// Chirikjian, Stochastic Models, Information Theory, and Lie Groups, vol. 2, section 10.4.
+Matrix3d inverse_left_jacobian(const Vector3d& phi) {
+  const double angle = phi.norm();
+  const Matrix3d k = cross_matrix(phi);
+  if (angle < 1e-4) return Matrix3d::Identity() - 0.5 * k + k * k / 12;
+  const double factor = 1 / (angle * angle) - (1 + std::cos(angle)) / (2 * angle * std::sin(angle));
+  return Matrix3d::Identity() - 0.5 * k + factor * k * k;
+}
+
+int component(ObservationKind kind) {
+  return static_cast<int>(kind) - static_cast<int>(ObservationKind::kRx);
+}
+
+}  // namespace
+
+ObservationModel::ObservationModel(const Measurement& measurement, const BaseShift* shift, const Frame& pose)
+    : m_(measurement), pose_(pose) {
+  if (shift != nullptr) {
+    base_ = sixdof_frame(shift->value);
+    base_value_ = shift->value;
+  }
+  point_ = base_.rotation * pose.origin + base_.origin;
+}
+
+Vector3d ObservationModel::normal(Eigen::Index row) const {
+  const auto& n = m_.states.normal;
+  return {n[0][row], n[1][row], n[2][row]};
+}
+
+const Vector3d& ObservationModel::rotation_vector(std::size_t row) {
+  if (has_phi_) return phi_;
+  Vector3d measured = Vector3d::Zero();
+  // Observations are ordered by row; the few of this one stand together.
+  auto o = std::lower_bound(m_.observations.begin(), m_.observations.end(), row,
+                            [](const Observation& a, std::size_t r) { return a.row < r; });
+  for (; o != m_.observations.end() && o->row == row; ++o)
+    if (is_rotation(o->kind)) measured[component(o->kind)] = o->value / kDeg;
+  phi_ = nearest_rotation_vector(base_.rotation * pose_.rotation, measured);
+  has_phi_ = true;
+  return phi_;
+}
+
+double ObservationModel::predicted(const Observation& o) {
+  const auto at = static_cast<Eigen::Index>(o.row);
+  switch (o.kind) {
+    case ObservationKind::kX:
+      return point_.x();
+    case ObservationKind::kY:
+      return point_.y();
+    case ObservationKind::kZ:
+      return point_.z();
+    case ObservationKind::kLength:
+      return (point_ - m_.centre.col(at)).norm();
+    case ObservationKind::kD:
+      return normal(at).dot(pose_.origin - m_.nominal_point.col(at));
+    default:
+      return kDeg * rotation_vector(o.row)[component(o.kind)];
+  }
+}
+
+Twist ObservationModel::gradient(const Observation& o) const {
+  const auto at = static_cast<Eigen::Index>(o.row);
+  Twist g;
+  if (o.kind == ObservationKind::kLength) {
+    const Vector3d arm = point_ - m_.centre.col(at);
+    const double length = arm.norm();
+    if (length > 0) g.point = arm / length;
+  } else if (o.kind == ObservationKind::kD) {
+    g.point = base_.rotation * normal(at);
+  } else if (is_rotation(o.kind)) {
+    g.rotation = kDeg * inverse_left_jacobian(phi_).row(component(o.kind)).transpose();
+  } else {
+    g.point = Vector3d::Unit(static_cast<int>(o.kind));
+  }
+  return g;
+}
+
+}  // namespace vernier
