@@ -63,6 +63,19 @@ void inner_products(const Eigen::MatrixXd& g, const Eigen::VectorXd& r, Eigen::M
   }
 }
 
+/// A parameter that moves no reading by more than this (mm or deg per unit, rms) moves them by rounding only:
+/// positions of 1e4 mm carry 1e-12. Scaling such a column up would invent a parameter.
+constexpr double kRounding = 1e-11;
+
+void silence_rounding(NormalEquations& equations, double squared_weights) {
+  for (Eigen::Index i = 0; i < equations.normal.rows(); ++i) {
+    if (equations.normal(i, i) > kRounding * kRounding * squared_weights) continue;
+    equations.normal.row(i).setZero();
+    equations.normal.col(i).setZero();
+    equations.gradient[i] = 0;
+  }
+}
+
 }  // namespace
 
 FitProblem::FitProblem(const Machine& machine, const Measurement& measurement, const ParameterSet& parameters)
@@ -116,6 +129,7 @@ NormalEquations FitProblem::equations(const Eigen::VectorXd& point) const {
     scatter(row.groups, inner, answer, result);
   });
   result.normal.triangularView<Eigen::StrictlyUpper>() = result.normal.transpose();
+  silence_rounding(result, weights_.squaredNorm());
   return result;
 }
 

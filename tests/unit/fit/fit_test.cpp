@@ -104,6 +104,21 @@ TEST(Fit, NamesWhatTheDataCannotSeparateAndLeavesItAtItsStart) {
   for (const ParameterEstimate& item : result.estimates) EXPECT_FALSE(item.std.has_value());
 }
 
+/// A rotation about the tool point moves it by rounding only; it must neither wander off nor count as
+/// determined.
+TEST(Fit, AParameterThatOnlyMovesRoundingStaysAtItsStart) {
+  const Machine machine = parse_machine(
+      "<machine><variables><static><a value=\"0\"/><r "
+      "value=\"0.25\"/></static><machineaxes><X/></machineaxes></variables>"
+      "<transforms><sixdof X=\"X+a\" rX=\"30\" rZ=\"r\"/><sixdof Z=\"-80\"/></transforms></machine>",
+      "m.xml");
+  const Measurement m = parse_measurement(
+      "X[mm],x[mm],z[mm]\n0,1,-69.28\n1000,1001.001,-69.283\n2000,2001,-69.28\n", "m.csv", machine);
+  const FitResult result = fit(machine, m);
+  EXPECT_EQ(result.estimates[1].value, 0.25);
+  EXPECT_EQ(result.observability.unidentifiable, (std::vector<std::vector<std::size_t>>{{1}}));
+}
+
 TEST(Fit, CheckRowsNeverEnter) {
   const Machine machine = line_machine("<a value=\"0\"/>", "X+a");
   const Measurement m =
