@@ -5,7 +5,7 @@ namespace vernier {
 namespace {
 
 using AddKind = void (*)(CLI::App& import);
-constexpr AddKind kKinds[] = {add_ballbar_kind, add_ballbar_trace_kind};
+constexpr AddKind kKinds[] = {add_ballbar_kind, add_ballbar_trace_kind, add_tracker_kind, add_probe_kind};
 
 }  // namespace
 

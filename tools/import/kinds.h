@@ -16,5 +16,7 @@ void add_import_output(CLI::App& kind, ImportOutput& output);
 // import_command.cpp.
 void add_ballbar_kind(CLI::App& import);
 void add_ballbar_trace_kind(CLI::App& import);
+void add_tracker_kind(CLI::App& import);
+void add_probe_kind(CLI::App& import);
 
 }  // namespace vernier

@@ -1,0 +1,125 @@
+#include "tools/import/delimited.h"
+
+#include <algorithm>
+
+#include "tools/model/error.h"
+
+namespace vernier {
+namespace {
+
+std::string trimmed(const std::string& text) {
+  const auto first = text.find_first_not_of(" \t");
+  if (first == std::string::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+/// Fields of one line; blanks separate as one where they are the separator.
+std::vector<std::string> split(const std::string& line, char separator, const Place& place) {
+  std::vector<std::string> fields(1);
+  bool quoted = false, was_quoted = false;
+  const auto is_separator = [&](char c) { return separator == ' ' ? c == ' ' || c == '\t' : c == separator; };
+  const auto close = [&] {
+    if (!was_quoted) fields.back() = trimmed(fields.back());
+    was_quoted = false;
+  };
+  const std::string text = separator == ' ' ? trimmed(line) : line;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (quoted) {
+      if (c == '"')
+        quoted = false;
+      else
+        fields.back() += c;
+    } else if (is_separator(c)) {
+      if (separator == ' ' && is_separator(text[i - 1])) continue;
+      close();
+      fields.emplace_back();
+    } else if (c == '"' && trimmed(fields.back()).empty() && !was_quoted) {
+      fields.back().clear();
+      quoted = was_quoted = true;
+    } else if (!was_quoted) {
+      fields.back() += c;
+    } else if (c != ' ' && c != '\t') {
+      throw InputError(place, text.substr(i, 20), "text behind a closing quote");
+    }
+  }
+  if (quoted) throw InputError(place, fields.back(), "a closing quote is missing");
+  close();
+  return fields;
+}
+
+char separator_in(const std::string& line, bool decimal_comma) {
+  for (const char c : {'\t', ';', ','})
+    if (line.find(c) != std::string::npos && !(c == ',' && decimal_comma)) return c;
+  return ' ';
+}
+
+class Lines {
+ public:
+  Lines(const std::string& text, const std::string& file) : text_(text), file_(file) {
+    if (text.starts_with("\xEF\xBB\xBF")) at_ = 3;
+  }
+  bool next(std::string& line) {
+    if (at_ >= text_.size()) return false;
+    const std::size_t end = std::min(text_.find('\n', at_), text_.size());
+    line = text_.substr(at_, end - at_);
+    at_ = end + 1;
+    ++number_;
+    if (!line.empty() && line.back() == '\r') line.pop_back();
+    if (line.find('\0') != std::string::npos)
+      throw InputError(place(), "", "a zero byte: this is not a text file");
+    return true;
+  }
+  Place place() const { return {file_, number_}; }
+
+ private:
+  const std::string& text_;
+  const std::string& file_;
+  std::size_t at_ = 0, number_ = 0;
+};
+
+}  // namespace
+
+char separator_of(const std::string& name) {
+  if (name == "auto") return 0;
+  if (name == "comma") return ',';
+  if (name == "semicolon") return ';';
+  if (name == "tab") return '\t';
+  if (name == "space") return ' ';
+  throw InputError({}, name, "a separator is comma, semicolon, tab, space or auto");
+}
+
+DelimitedFile parse_delimited(const std::string& text, const std::string& file,
+                              const DelimitedFormat& format) {
+  DelimitedFile result;
+  result.file = file;
+  Lines lines(text, result.file);
+  char separator = format.separator;
+  std::string line;
+  while (lines.next(line)) {
+    const Place place = lines.place();
+    const std::string bare = trimmed(line);
+    if (place.line <= format.skip || bare.empty()) continue;
+    if (!format.comment.empty() && bare.starts_with(format.comment)) continue;
+    if (separator == 0) separator = separator_in(line, format.decimal_comma);
+    std::vector<std::string> fields = split(line, separator, place);
+    if (format.header && result.header.empty()) {
+      result.header = std::move(fields);
+      result.header_line = place.line;
+      continue;
+    }
+    const std::size_t wanted = format.header         ? result.header.size()
+                               : result.rows.empty() ? fields.size()
+                                                     : result.rows.front().size();
+    if (fields.size() != wanted)
+      throw InputError(
+          place, bare.substr(0, 40),
+          std::to_string(fields.size()) + " fields where the lines above have " + std::to_string(wanted));
+    result.rows.push_back(std::move(fields));
+    result.line.push_back(place.line);
+  }
+  if (result.rows.empty()) throw InputError({file, 0}, "", "no rows of data");
+  return result;
+}
+
+}  // namespace vernier

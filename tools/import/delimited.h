@@ -1,0 +1,33 @@
+#pragma once
+#include <string>
+#include <vector>
+
+namespace vernier {
+
+/// How a table of an instrument is written.
+struct DelimitedFormat {
+  char separator = 0;  // ',' ';' '\t'; ' ' is any run of blanks; 0: told from the first line
+  bool decimal_comma = false;
+  std::size_t skip = 0;       // lines at the top that are no data
+  std::string comment = "#";  // lines that begin so are left out; empty: none
+  bool header = false;        // the first line that is left names the columns
+};
+
+/// Its lines as fields of text, trimmed, all rows with the same number of fields.
+struct DelimitedFile {
+  std::string file;
+  std::size_t header_line = 0;
+  std::vector<std::string> header;  // empty without one
+  std::vector<std::vector<std::string>> rows;
+  std::vector<std::size_t> line;  // 1-based line of each row
+};
+
+/// Splits a text. Fields may stand in double quotes. Throws InputError with file, line and word: a row of
+/// another length, an open quote, a zero byte, no rows. tool.
+DelimitedFile parse_delimited(const std::string& text, const std::string& file,
+                              const DelimitedFormat& format);
+
+/// The separator that a name means: comma, semicolon, tab, space, auto. Throws InputError.
+char separator_of(const std::string& name);
+
+}  // namespace vernier
