@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <ginac/ginac.h>
+
+#include <array>
+#include <vector>
+
+#include "tools/derive/error_equation.h"
+
+namespace vernier {
+
+class SymbolBook;
+
+using SymbolicVector = std::array<GiNaC::ex, 3>;
+
+/// Rotation matrix as a product that merges turns about one axis in a row: parallel axes give sin(q2+q3), not
+/// products of sines.
+class RotationProduct {
+ public:
+  void turn(int axis, const GiNaC::ex& angle_rad);
+  /// The product applied to a vector.
+  SymbolicVector operator*(const SymbolicVector& v) const;
+
+ private:
+  struct Turn {
+    int axis;
+    GiNaC::ex angle;
+  };
+  std::vector<Turn> turns_;
+};
+
+/// v turned about axis x, y or z (0..2).
+SymbolicVector turned(const SymbolicVector& v, int axis, const GiNaC::ex& angle_rad);
+
+/// a x b.
+SymbolicVector cross(const SymbolicVector& a, const SymbolicVector& b);
+
+/// Unit vector of axis 0..2.
+SymbolicVector unit_vector(int axis);
+
+/// The chain as elementary motions from the workpiece to the tool: the workpiece branch backwards with signs
+/// changed, then the tool branch. Throws InputError naming the expression that cannot be expressed. tool.
+std::vector<ElementaryMotion> elementary_motions(const Machine& machine, SymbolBook& book);
+
+}  // namespace vernier

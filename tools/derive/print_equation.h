@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tools/derive/error_equation.h"
+#include "tools/derive/print.h"
+#include "tools/derive/second_order.h"
+
+namespace vernier {
+
+/// An equation with what is known about its remainder.
+struct DerivedMachine {
+  ErrorEquation equation;
+  SecondOrderBound bound;
+  std::optional<SecondOrder> sampled;  // none where a linear axis has no range
+  std::size_t samples = 0;
+};
+
+/// One component of the deviation: 0..2 tool point (mm), 3..5 rotation vector (rad), 6..8 direction of the
+/// tool's z; a sum over the errors with their sensitivities in factored form. "0" where there is none. tool.
+std::string print_component(const ErrorEquation& equation, std::size_t component, Notation notation,
+                            const std::string& separator = " ");
+
+/// The page that `vernier derive` prints.
+std::string print_text(const DerivedMachine& derived);
+/// The same as a LaTeX fragment (amsmath).
+std::string print_latex(const DerivedMachine& derived);
+/// The same for programs.
+nlohmann::ordered_json to_json(const DerivedMachine& derived);
+
+}  // namespace vernier
