@@ -56,6 +56,22 @@ ordered_json fit_json(const FitResult& result, const Measurement& m) {
     for (const std::size_t i : group) names.push_back(result.parameters[i].name);
     json["unidentifiable"].push_back(names);
   }
+  json["weakest"] = ordered_json::array();
+  for (const Observability::Weak& weak : result.observability.weakest) {
+    ordered_json names = ordered_json::array();
+    for (const std::size_t i : weak.parts) names.push_back(result.parameters[i].name);
+    json["weakest"].push_back({{"ratio", weak.ratio}, {"parameters", names}});
+  }
+  json["correlations"] = ordered_json::array();
+  for (const Correlation& c : result.correlations)
+    json["correlations"].push_back(
+        {result.parameters[c.first].name, result.parameters[c.second].name, c.value});
+  json["priors"] = ordered_json::array();
+  for (const auto& [name, std] : result.priors) json["priors"].push_back({{"name", name}, {"std", std}});
+  json["normalised_check_rms"] =
+      result.normalised_check ? ordered_json(result.normalised_check->rms) : ordered_json(nullptr);
+  json["normalised_check_within_3"] =
+      result.normalised_check ? ordered_json(result.normalised_check->within_3) : ordered_json(nullptr);
   json["rank"] = result.observability.rank;
   json["condition"] = result.observability.condition;
   json["chi_square"] = result.chi_square;

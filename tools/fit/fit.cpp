@@ -1,5 +1,6 @@
 #include "tools/fit/fit.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -53,6 +54,134 @@ void estimate(FitResult& result, const FitProblem& problem, bool has_u) {
   }
 }
 
+/// Does `name` match `pattern` (* any letters, ? one letter)?
+bool matches(std::string_view pattern, std::string_view name) {
+  if (pattern.empty()) return name.empty();
+  if (pattern.front() == '*')
+    return matches(pattern.substr(1), name) || (!name.empty() && matches(pattern, name.substr(1)));
+  return !name.empty() && (pattern.front() == '?' || pattern.front() == name.front()) &&
+         matches(pattern.substr(1), name.substr(1));
+}
+
+/// 1 / std^2 of each parameter that a prior names, 0 for the others. A prior that names nothing is a mistake.
+Eigen::VectorXd prior_weights(FitResult& result, const FitOptions& options) {
+  Eigen::VectorXd weights = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(result.parameters.size()));
+  for (const Prior& prior : options.priors) {
+    bool found = false;
+    for (std::size_t i = 0; i < result.parameters.size(); ++i) {
+      if (!matches(prior.pattern, result.parameters[i].name)) continue;
+      found = true;
+      weights[static_cast<Eigen::Index>(i)] = 1 / (prior.std * prior.std);
+      result.priors.emplace_back(result.parameters[i].name, prior.std);
+    }
+    if (!found) throw InputError("\"" + prior.pattern + "\": no free parameter has this name");
+  }
+  return weights;
+}
+
+std::vector<char> freed_in(const std::vector<std::string>& patterns, const ParameterSet& parameters) {
+  std::vector<char> freed(parameters.size(), 0);
+  for (const std::string& pattern : patterns) {
+    bool found = false;
+    for (std::size_t i = 0; i < parameters.size(); ++i)
+      if (matches(pattern, parameters[i].name)) freed[i] = found = true;
+    if (!found) throw InputError("\"" + pattern + "\": no free parameter has this name");
+  }
+  return freed;
+}
+
+/// One run of the own solver over the parameters in `freed` (all where empty); the others stay.
+LevenbergResult solve_stage(const FitProblem& problem, const Eigen::VectorXd& start,
+                            const std::vector<char>& freed, const FitOptions& options,
+                            std::size_t observations) {
+  LevenbergOptions levenberg;
+  levenberg.max_iterations = options.max_iterations;
+  levenberg.progress = options.progress;
+  const double freedom = std::max(1.0, static_cast<double>(observations) - static_cast<double>(start.size()));
+  levenberg.negligible = [freedom](double cost) {
+    return cost * std::max(kNegligible / freedom, kNegligibleShare);
+  };
+  const auto equations = [&](const Eigen::VectorXd& x) {
+    NormalEquations all = problem.equations(x);
+    for (std::size_t i = 0; i < freed.size(); ++i) {
+      if (freed[i] != 0) continue;
+      all.normal.row(static_cast<Eigen::Index>(i)).setZero();
+      all.normal.col(static_cast<Eigen::Index>(i)).setZero();
+      all.gradient[static_cast<Eigen::Index>(i)] = 0;
+    }
+    return all;
+  };
+  return minimise(
+      start, equations, [&](const Eigen::VectorXd& x) { return problem.cost(x); }, levenberg);
+}
+
+Eigen::VectorXd solve(const FitProblem& problem, Eigen::VectorXd point, const FitOptions& options,
+                      FitResult& result) {
+  for (const auto& patterns : options.stages) {
+    const LevenbergResult stage =
+        solve_stage(problem, point, freed_in(patterns, result.parameters), options, result.before.count);
+    point = stage.point;
+    result.iterations += stage.iterations;
+  }
+  if (options.solver == Solver::kCeres || options.loss != Loss::kSquared) {
+    if (!options.priors.empty()) throw InputError("priors go with the squared loss and the own solver");
+    const CeresOutcome outcome = solve_with_ceres(problem, point, options);
+    result.iterations += outcome.iterations;
+    result.converged = outcome.converged;
+    return outcome.point;
+  }
+  const LevenbergResult outcome = solve_stage(problem, point, {}, options, result.before.count);
+  result.iterations += outcome.iterations;
+  result.converged = outcome.converged;
+  return outcome.point;
+}
+
+std::vector<Correlation> strong_correlations(const Observability& seen) {
+  constexpr double kStrong = 0.9;
+  std::vector<Correlation> list;
+  const Eigen::VectorXd std = seen.covariance.diagonal().cwiseSqrt();
+  for (Eigen::Index i = 0; i < std.size(); ++i)
+    for (Eigen::Index k = 0; k < i; ++k) {
+      const auto first = static_cast<std::size_t>(k), second = static_cast<std::size_t>(i);
+      if (seen.determined[first] == 0 || seen.determined[second] == 0 || std[i] <= 0 || std[k] <= 0) continue;
+      const double value = seen.covariance(i, k) / (std[i] * std[k]);
+      if (std::abs(value) > kStrong) list.push_back({first, second, value});
+    }
+  std::sort(list.begin(), list.end(),
+            [](const Correlation& a, const Correlation& b) { return std::abs(a.value) > std::abs(b.value); });
+  return list;
+}
+
+/// residual / sqrt(u^2 + g C g^T) over the check rows; u is the reading's own, without it the fit's spread.
+std::optional<NormalisedError> normalised_error(const FitResult& result, const Measurement& m) {
+  if (result.check.count == 0 || result.freedom <= 0) return std::nullopt;
+  std::vector<std::size_t> keep;
+  for (std::size_t row = 0; row < m.rows(); ++row)
+    if (m.check[row] != 0) keep.push_back(row);
+  const Measurement rows = uses_lag(result.machine) ? m : select_rows(m, keep);
+  const Linearisation linear = linearise(result.machine, rows, result.parameters);
+  NormalisedError error;
+  for (std::size_t i = 0; i < rows.observations.size(); ++i) {
+    const Observation& o = rows.observations[i];
+    if (rows.check[o.row] == 0) continue;
+    const auto at = static_cast<Eigen::Index>(i);
+    double model = 0;
+    for (SparseRows::InnerIterator a(linear.jacobian, at); a; ++a)
+      for (SparseRows::InnerIterator b(linear.jacobian, at); b; ++b)
+        model += a.value() * b.value() * result.observability.covariance(a.col(), b.col());
+    const double u = rows.uncertainty[static_cast<Eigen::Index>(o.row)];
+    const double reading = u > 0 ? u * u : result.variance_factor;
+    const double e = (o.value - linear.predicted[at]) / std::sqrt(reading + result.variance_factor * model);
+    error.rms += e * e;
+    error.within_3 += std::abs(e) <= 3 ? 1 : 0;
+    ++error.count;
+  }
+  if (error.count == 0) return std::nullopt;
+  error.rms = std::sqrt(error.rms / static_cast<double>(error.count));
+  error.within_3 /= static_cast<double>(error.count);
+  return error;
+}
+
 }  // namespace
 
 Eigen::VectorXd residuals(const Machine& machine, const Measurement& m) {
@@ -74,35 +203,17 @@ FitResult fit(const Machine& machine, const Measurement& measurement, const FitO
   if (result.before.count == 0) throw InputError("no observation with role fit: there is nothing to fit");
   result.noise_um = noise_um(measurement);
   const Measurement rows = rows_for_fit(machine, measurement);
-  const FitProblem problem(machine, rows, result.parameters);
+  FitProblem problem(machine, rows, result.parameters);
   const Eigen::VectorXd start = result.parameters.get(machine);
-  Eigen::VectorXd end;
-  if (options.solver == Solver::kCeres || options.loss != Loss::kSquared) {
-    const CeresOutcome outcome = solve_with_ceres(problem, start, options);
-    end = outcome.point;
-    result.iterations = outcome.iterations;
-    result.converged = outcome.converged;
-  } else {
-    LevenbergOptions levenberg;
-    levenberg.max_iterations = options.max_iterations;
-    levenberg.progress = options.progress;
-    const double freedom =
-        std::max(1.0, static_cast<double>(result.before.count) - static_cast<double>(start.size()));
-    levenberg.negligible = [freedom](double cost) {
-      return cost * std::max(kNegligible / freedom, kNegligibleShare);
-    };
-    const LevenbergResult outcome = minimise(
-        start, [&](const Eigen::VectorXd& x) { return problem.equations(x); },
-        [&](const Eigen::VectorXd& x) { return problem.cost(x); }, levenberg);
-    end = outcome.point;
-    result.iterations = outcome.iterations;
-    result.converged = outcome.converged;
-  }
+  problem.set_priors(prior_weights(result, options), start);
+  const Eigen::VectorXd end = solve(problem, start, options, result);
   result.parameters.set(result.machine, end);
   result.residual = residuals(result.machine, measurement);
   result.after = role_statistics(measurement, result.residual, false);
   result.check = role_statistics(measurement, result.residual, true);
   estimate(result, problem, has_uncertainty(measurement));
+  result.correlations = strong_correlations(result.observability);
+  result.normalised_check = normalised_error(result, measurement);
   return result;
 }
 

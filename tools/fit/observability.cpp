@@ -10,6 +10,9 @@ namespace {
 /// A part smaller than this share of a combination's largest is rounding or a detail nobody should read.
 constexpr double kNamedShare = 0.02;
 constexpr double kDeterminedShare = 1e-3;
+/// Of a weak combination only what carries it is named.
+constexpr double kWeakShare = 0.3;
+constexpr Eigen::Index kWeakest = 3;
 
 /// Reduces the rows of `basis` (k directions x n parameters) so that each is as short as elimination can make
 /// it.
@@ -33,20 +36,24 @@ void eliminate(Eigen::MatrixXd& basis) {
   }
 }
 
+/// Parameters whose part is at least `share` of the largest, largest first.
+std::vector<std::size_t> parts_of(const Eigen::VectorXd& combination, double share) {
+  const double largest = combination.cwiseAbs().maxCoeff();
+  std::vector<std::size_t> parts;
+  for (Eigen::Index c = 0; c < combination.size(); ++c)
+    if (std::abs(combination[c]) >= share * largest) parts.push_back(static_cast<std::size_t>(c));
+  std::stable_sort(parts.begin(), parts.end(), [&](std::size_t a, std::size_t b) {
+    return std::abs(combination[static_cast<Eigen::Index>(a)]) >
+           std::abs(combination[static_cast<Eigen::Index>(b)]) + 1e-9;
+  });
+  return parts;
+}
+
 std::vector<std::vector<std::size_t>> name_parts(Eigen::MatrixXd basis) {
   eliminate(basis);
   std::vector<std::vector<std::size_t>> groups;
-  for (Eigen::Index row = 0; row < basis.rows(); ++row) {
-    const double largest = basis.row(row).cwiseAbs().maxCoeff();
-    std::vector<std::size_t> group;
-    for (Eigen::Index c = 0; c < basis.cols(); ++c)
-      if (std::abs(basis(row, c)) >= kNamedShare * largest) group.push_back(static_cast<std::size_t>(c));
-    std::stable_sort(group.begin(), group.end(), [&](std::size_t a, std::size_t b) {
-      return std::abs(basis(row, static_cast<Eigen::Index>(a))) >
-             std::abs(basis(row, static_cast<Eigen::Index>(b))) + 1e-9;
-    });
-    groups.push_back(group);
-  }
+  for (Eigen::Index row = 0; row < basis.rows(); ++row)
+    groups.push_back(parts_of(basis.row(row).transpose(), kNamedShare));
   return groups;
 }
 

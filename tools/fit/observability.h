@@ -15,6 +15,13 @@ struct Observability {
   /// factor.
   Eigen::MatrixXd covariance;
   std::vector<char> determined;  // per parameter: no part of it lies in an unidentified direction
+  /// The identified combinations that the data see least: singular value over the largest, and the parameters
+  /// that take part, largest part first. At most three, weakest first.
+  struct Weak {
+    double ratio = 0;
+    std::vector<std::size_t> parts;
+  };
+  std::vector<Weak> weakest;
   /// Combinations that the data cannot see; indices of the parameters that take part, largest part first.
   std::vector<std::vector<std::size_t>> unidentifiable;
 };

@@ -95,9 +95,20 @@ Machine FitProblem::at(const Eigen::VectorXd& point) const {
   return machine;
 }
 
+void FitProblem::set_priors(const Eigen::VectorXd& weights, const Eigen::VectorXd& centre) {
+  prior_weights_ = weights;
+  prior_centre_ = centre;
+}
+
+double FitProblem::prior_cost(const Eigen::VectorXd& point) const {
+  if (prior_weights_.size() == 0) return 0;
+  return prior_weights_.dot((point - prior_centre_).cwiseAbs2());
+}
+
 double FitProblem::cost(const Eigen::VectorXd& point) const {
   try {
-    return (measured_ - predict(at(point), measurement_)).cwiseProduct(weights_).squaredNorm();
+    return (measured_ - predict(at(point), measurement_)).cwiseProduct(weights_).squaredNorm() +
+           prior_cost(point);
   } catch (const InputError&) {
     return std::numeric_limits<double>::infinity();
   }
@@ -130,6 +141,11 @@ NormalEquations FitProblem::equations(const Eigen::VectorXd& point) const {
   });
   result.normal.triangularView<Eigen::StrictlyUpper>() = result.normal.transpose();
   silence_rounding(result, weights_.squaredNorm());
+  if (prior_weights_.size() > 0) {
+    result.cost += prior_cost(point);
+    result.normal.diagonal() += prior_weights_;
+    result.gradient += prior_weights_.cwiseProduct(prior_centre_ - point);
+  }
   return result;
 }
 

@@ -16,7 +16,10 @@ class FitProblem {
   /// Keeps references to `measurement` and `parameters`. Check rows have weight 0.
   FitProblem(const Machine& machine, const Measurement& measurement, const ParameterSet& parameters);
 
-  /// Sum of squared weighted residuals; infinity where the model is undefined at this point.
+  /// Parameters held near `centre`: weight * (value - centre)^2 is added to the cost.
+  void set_priors(const Eigen::VectorXd& weights, const Eigen::VectorXd& centre);
+
+  /// Sum of squared weighted residuals and priors; infinity where the model is undefined at this point.
   double cost(const Eigen::VectorXd& point) const;
   /// Throws InputError where the model is undefined.
   NormalEquations equations(const Eigen::VectorXd& point) const;
@@ -28,12 +31,14 @@ class FitProblem {
 
  private:
   Machine at(const Eigen::VectorXd& point) const;
+  double prior_cost(const Eigen::VectorXd& point) const;
 
   Machine machine_;
   const Measurement& measurement_;
   const ParameterSet& parameters_;
   Linearizer linearizer_;
   Eigen::VectorXd weights_, measured_;
+  Eigen::VectorXd prior_weights_, prior_centre_;  // empty: none
 };
 
 }  // namespace vernier

@@ -129,6 +129,52 @@ TEST(Fit, CheckRowsNeverEnter) {
   EXPECT_NEAR(*result.before.rms_um, 1000, 1e-9);
 }
 
+TEST(Fit, APriorHoldsAParameterAsAMeasurementWould) {
+  const Machine machine = line_machine("<a value=\"0\"/>", "X+a");
+  const Measurement m = parse_measurement("X[mm],x[mm],u[mm]\n0,1,0.1\n1,2,0.1\n", "m.csv", machine);
+  FitOptions options;
+  options.priors = {{"a*", 0.1}};
+  const FitResult result = fit(machine, m, options);
+  EXPECT_NEAR(result.estimates[0].value, 2.0 / 3, 1e-9);  // two readings of 1 and a prior of 0, all with 0.1
+  ASSERT_EQ(result.priors.size(), 1U);
+  options.priors = {{"nobody", 1}};
+  EXPECT_THROW(fit(machine, m, options), InputError);
+}
+
+TEST(Fit, StagesEndWhereAllAtOnceEnds) {
+  std::mt19937_64 random(kSeed);
+  Machine truth = support::full_machine();
+  for (BaseShift& shift : truth.base_shifts) shift.hidden = true;
+  truth.tables[1].free.fill(false);
+  truth.statics[0].hidden = true;
+  Measurement m = support::full_measurement(truth, 120, random);
+  measure(truth, m, 1e-3, random);
+  Machine start = truth;
+  for (Table& table : start.tables)
+    for (Station& station : table.stations)
+      if (table.free[0]) station.value.fill(0);
+  FitOptions staged;
+  staged.stages = {{"table.X*"}, {"table.C*", "k"}};
+  EXPECT_NEAR(fit(start, m, staged).chi_square, fit(start, m).chi_square, 1e-3);
+}
+
+/// The model's own claim about rows that it did not see: readings of the true machine lie within it.
+TEST(Fit, CheckRowsAgreeWithTheClaimedUncertainty) {
+  std::mt19937_64 random(kSeed);
+  Machine truth = support::full_machine();
+  for (BaseShift& shift : truth.base_shifts) shift.hidden = true;
+  truth.tables[1].free.fill(false);
+  truth.statics[0].hidden = true;
+  Measurement m = support::full_measurement(truth, 200, random);
+  measure(truth, m, 1e-3, random);
+  for (std::size_t row = 0; row < m.rows(); row += 4) m.check[row] = 1;
+  const FitResult result = fit(truth, m);
+  ASSERT_TRUE(result.normalised_check.has_value());
+  // 50 rows of 8 readings: 1 / sqrt(2 * 400) = 3.5 %.
+  EXPECT_NEAR(result.normalised_check->rms, 1, 0.14);
+  EXPECT_GT(result.normalised_check->within_3, 0.98);
+}
+
 TEST(Fit, RobustLossIsNotPulledByAnOutlier) {
   const Machine machine = line_machine("<a value=\"0\"/>", "X+a");
   std::string text = "X[mm],x[mm],u[mm]\n";
