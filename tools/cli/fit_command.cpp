@@ -82,6 +82,7 @@ void print_result(std::FILE* out, const FitResult& result, const Measurement& m)
   fmt::print(out, "{} observations, {} parameters, rank {}, {} rows excluded, {} iterations{}\n",
              result.before.count, result.parameters.size(), result.observability.rank, m.excluded,
              result.iterations, result.converged ? "" : ", NOT CONVERGED");
+  print_verdict(out, result);
 }
 
 std::vector<std::string> split_list(const std::string& text) {
