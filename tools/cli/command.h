@@ -19,8 +19,12 @@ void register_derive(CLI::App& vernier);
 void register_compile(CLI::App& vernier);
 void register_simulate(CLI::App& vernier);
 void register_replay(CLI::App& vernier);
+void register_part(CLI::App& vernier);
 void register_pose(CLI::App& vernier);
 void register_solve(CLI::App& vernier);
+void register_export(CLI::App& vernier);
+void register_import_tables(CLI::App& vernier);
+void register_map(CLI::App& vernier);
 
 /// Writes the result for programs: to a file, or to standard output for "-"; nothing for an empty path.
 /// Numbers that are not finite become null.

@@ -14,7 +14,9 @@ constexpr vernier::RegisterCommand kCommands[] = {
     vernier::register_import,  vernier::register_fit,      vernier::register_compare,
     vernier::register_derive,
     vernier::register_compile, vernier::register_simulate, vernier::register_replay,
-    vernier::register_pose,    vernier::register_solve,
+    vernier::register_pose,    vernier::register_solve,    vernier::register_export,
+    vernier::register_import_tables,
+    vernier::register_part,
 };
 
 int run(int argc, char** argv) {

@@ -1,8 +1,11 @@
 #include "tools/kinematics/correction.h"
 
 #include <Eigen/Geometry>
+#include <Eigen/QR>
 #include <cmath>
 #include <numbers>
+
+#include "tools/kinematics/jacobian.h"
 
 namespace vernier {
 namespace {
@@ -40,6 +43,23 @@ CorrectionResult correct(const Machine& machine, const States& states, const Cor
   result.after = corrected.position - nominal.position;
   result.tilt_after = tilt(corrected, nominal);
   result.each = std::move(solved.each);
+  return result;
+}
+
+std::vector<Column> first_order_offset(const Machine& machine, const States& states) {
+  const Machine nominal = nominal_machine(machine);
+  const std::vector<std::size_t> axes = linear_axes(machine);
+  const Eigen::Matrix3Xd deviation = forward(machine, states).position - forward(nominal, states).position;
+  std::vector<Column> result(machine.axes.size(), Column::Zero(static_cast<Eigen::Index>(states.count)));
+  if (axes.empty()) return result;
+  const auto jacobian = axis_jacobian(nominal, states, axes, Match::kPosition, InverseOptions{}.lever_mm);
+  for (std::size_t i = 0; i < states.count; ++i) {
+    const auto column = static_cast<Eigen::Index>(i);
+    const Eigen::VectorXd offset =
+        jacobian[i].completeOrthogonalDecomposition().solve(-deviation.col(column));
+    for (std::size_t k = 0; k < axes.size(); ++k)
+      result[axes[k]][column] = offset[static_cast<Eigen::Index>(k)];
+  }
   return result;
 }
 

@@ -25,4 +25,9 @@ struct CorrectionResult {
 /// (the height of an XY table) stays in `after`; an iteration that does not get there is not converged. tool.
 CorrectionResult correct(const Machine& machine, const States& states, const CorrectionOptions& options = {});
 
+/// The offsets of the linear axes that a table of deviations measured at the commanded positions stands for:
+/// the nominal chain's Jacobian takes the deviation back. They differ from those of correct() by the slope of
+/// the deviation times the offset (second order). Per axis of the machine, mm; 0 for rotary axes. tool.
+std::vector<Column> first_order_offset(const Machine& machine, const States& states);
+
 }  // namespace vernier

@@ -1,0 +1,32 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "tools/kinematics/correction.h"
+
+namespace vernier {
+
+/// Something that a format cannot say, and how much it is.
+struct LeftOut {
+  std::string what;
+  double um = 0;
+};
+
+/// Above this an error counts as one, um: a tenth of the finest digit that controllers' tables are kept in.
+inline constexpr double kNothing_um = 0.01;
+
+/// How the first-order offset of `axis` depends on anything but the position and the sense of that
+/// axis: the largest change that other axes, inputs, speed, travel since reversal … make at random states
+/// (fixed seed) within the axis ranges, one entry for each that counts. `at`: the state (count 1) that stays.
+/// tool.
+std::vector<LeftOut> beyond_own_axis(const Machine& machine, std::size_t axis, const States& at);
+
+/// Deviations that stay when all tables are zero (position errors, scale factors, user terms): the largest at
+/// random states. tool.
+std::vector<LeftOut> beyond_tables(const Machine& machine, const States& at);
+
+/// Refuses with all reasons unless `allowed`. Throws InputError.
+void refuse(const Machine& machine, const std::string& format, const std::vector<LeftOut>& left_out,
+            bool allowed);
+
+}  // namespace vernier

@@ -1,0 +1,44 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "tools/model/machine.h"
+#include "tools/model/states.h"
+
+namespace vernier {
+
+/// One line of a screw-compensation file. A trim is what the controller adds to the command: a correction.
+struct ScrewPoint {
+  double nominal = 0;  // mm or deg
+  double forward_trim = 0, reverse_trim = 0;
+};
+
+/// Type 0 holds where the axis really is (nominal, forward, reverse; the controller makes trim = nominal -
+/// actual of it), type 1 the trims themselves. Source: LinuxCNC src/emc/motion/usrmotintf.cc, usrmotLoadComp.
+enum class ScrewType { kActual = 0, kTrim = 1 };
+
+/// Lines that the controller keeps at most (EMCMOT_COMP_SIZE).
+inline constexpr std::size_t kMostScrewPoints = 256;
+
+/// Trims of one linear axis in both senses, at the stations of its table and wherever it takes to stay within
+/// tolerance_um between them; other axes, motion and inputs as in `at` (count 1). They are first-order
+/// offsets, as if measured at the commanded positions, so an axis that carries the workpiece has the right
+/// sign. Throws InputError: no min and max, or more lines than the controller keeps. tool.
+std::vector<ScrewPoint> screw_points(const Machine& machine, std::size_t axis, const States& at,
+                                     double tolerance_um);
+
+/// Text of a file: three numbers a line, nothing else (the controller stops reading at any other line).
+std::string screw_text(const std::vector<ScrewPoint>& points, ScrewType type);
+
+/// Reads a file. Throws InputError with file, line and word: not three numbers, positions that do not
+/// increase, too many lines. tool.
+std::vector<ScrewPoint> parse_screw(const std::string& text, const std::string& file, ScrewType type);
+
+/// The machine text with the points as the axis' own column of its table: minus the mean of both trims, and
+/// half their difference as static `reversal` (empty: there must be none). Verified: the machine that comes
+/// out has these trims again. Throws InputError where it has not, or where the reversal is not the same at
+/// all points. tool.
+std::string screw_into_machine(const std::string& text, const Machine& machine, std::size_t axis,
+                               const std::vector<ScrewPoint>& points, const std::string& reversal);
+
+}  // namespace vernier

@@ -1,0 +1,118 @@
+#include "tools/exchange/table_text.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "tools/model/numbers.h"
+#include "tools/model/xml_text.h"
+
+namespace vernier {
+namespace {
+
+constexpr std::size_t kNowhere = std::string::npos;
+
+/// Offset of a word in any case, from `at` on.
+std::size_t find_no_case(const std::string& text, const std::string& word, std::size_t at) {
+  for (; at + word.size() <= text.size(); ++at)
+    if (equal_no_case(std::string_view(text).substr(at, word.size()), word)) return at;
+  return kNowhere;
+}
+
+std::string table_element(const Machine& machine, const Table& table) {
+  const Axis& axis = machine.axes[table.axis];
+  std::string text = "<table axis=\"" + axis.name + "\" interpolation=\"" +
+                     (table.interpolation == Interpolation::kCubic ? "cubic" : "linear") + "\"";
+  std::string fit;
+  for (std::size_t k = 0; k < 6; ++k)
+    if (table.free[k]) fit += (fit.empty() ? "" : " ") + std::string(kSixDofNames[k]);
+  if (!fit.empty()) text += " fit=\"" + fit + "\"";
+  text += ">\n";
+  for (const Station& station : table.stations) {
+    text += "        <station loc=\"" + number_text(station.loc) + "\"";
+    for (std::size_t k = 0; k < 6; ++k)
+      text += std::string(" ") + kSixDofNames[k] + "=\"" + number_text(station.value[k]) + "\"";
+    text += "/>\n";
+  }
+  return text + "      </table>";
+}
+
+/// Start of the element of the table of this axis, or kNowhere.
+std::size_t table_start(const std::string& text, const std::string& axis) {
+  for (std::size_t at = find_no_case(text, "<table", 0); at != kNowhere;
+       at = find_no_case(text, "<table", at + 1))
+    for (const AttributeSpan& span : attribute_spans(text, at + 1))
+      if (equal_no_case(span.name, "axis") && text.substr(span.value_at, span.value_size) == axis) return at;
+  return kNowhere;
+}
+
+std::string with_element(const std::string& text, const Machine& machine, const Table& table) {
+  const std::string element = table_element(machine, table);
+  const std::string& axis = machine.axes[table.axis].name;
+  if (machine.table_of(table.axis) != nullptr) {
+    const std::size_t start = table_start(text, axis), end = find_no_case(text, "</table>", start);
+    if (start == kNowhere || end == kNowhere)
+      throw InputError({machine.file, 0}, axis, "its table is not found");
+    return apply_edits(text, {{start, end + 8 - start, element}});
+  }
+  const std::size_t list = find_no_case(text, "</comptables>", 0),
+                    variables = find_no_case(text, "</variables>", 0);
+  if (list != kNowhere) return apply_edits(text, {{list, 0, "  " + element + "\n    "}});
+  if (variables == kNowhere)
+    throw InputError({machine.file, 0}, "variables", "no such section to put a table into");
+  return apply_edits(text, {{variables, 0, "<comptables>\n      " + element + "\n    </comptables>\n  "}});
+}
+
+bool same(const Table& a, const Table& b) {
+  if (a.stations.size() != b.stations.size() || a.interpolation != b.interpolation || a.free != b.free)
+    return false;
+  for (std::size_t i = 0; i < a.stations.size(); ++i)
+    if (a.stations[i].loc != b.stations[i].loc || a.stations[i].value != b.stations[i].value) return false;
+  return true;
+}
+
+}  // namespace
+
+std::string set_table(const std::string& text, const Machine& machine, const Table& table) {
+  const std::string result = with_element(text, machine, table);
+  const Machine back = parse_machine(result, machine.file);
+  const Table* read = back.table_of(table.axis);
+  if (read == nullptr || !same(*read, table))
+    throw InputError({machine.file, 0}, machine.axes[table.axis].name,
+                     "the table cannot be put into this text: a comment may hold a table of its own");
+  return result;
+}
+
+void check_used(const Machine& machine, const Table& table) {
+  std::set<std::size_t> used;
+  for (const auto* branch : {&machine.tool, &machine.workpiece})
+    for (const Transform& transform : *branch)
+      for (std::size_t i = 0; i < transform.dof_count(); ++i)
+        walk(*transform.dof[i], [&](const Expr& node) {
+          if (node.op == Op::kSymbol && node.symbol.kind == SymbolKind::kTableValue)
+            used.insert(node.symbol.index);
+        });
+  for (std::size_t k = 0; k < 6; ++k) {
+    const auto zero = [&](const Station& station) { return station.value[k] == 0; };
+    if (std::all_of(table.stations.begin(), table.stations.end(), zero)) continue;
+    if (used.count(6 * table.axis + k) > 0) continue;
+    throw InputError({machine.file, 0}, symbol_name(machine, {SymbolKind::kTableValue, 6 * table.axis + k}),
+                     "no transform uses this table value, so the table would have no effect");
+  }
+}
+
+Table empty_table(const Machine& machine, std::size_t axis, const std::vector<double>& positions) {
+  Table table;
+  if (const Table* old = machine.table_of(axis)) table = *old;
+  table.axis = axis;
+  table.stations.clear();
+  for (const double position : positions) table.stations.push_back({position, number_text(position), {}});
+  return table;
+}
+
+double nine_decimals(double value) {
+  const double scaled = std::round(value * 1e9);
+  return scaled == 0 ? 0 : scaled / 1e9;
+}
+
+}  // namespace vernier
