@@ -101,6 +101,10 @@ LevenbergResult solve_stage(const FitProblem& problem, const Eigen::VectorXd& st
   levenberg.negligible = [freedom](double cost) {
     return cost * std::max(kNegligible / freedom, kNegligibleShare);
   };
+  if (freed.empty())
+    levenberg.bend = [&](const Eigen::VectorXd& x, const Eigen::VectorXd& step) {
+      return problem.bend(x, step);
+    };
   const auto equations = [&](const Eigen::VectorXd& x) {
     NormalEquations all = problem.equations(x);
     for (std::size_t i = 0; i < freed.size(); ++i) {

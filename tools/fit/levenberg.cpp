@@ -11,6 +11,7 @@ namespace {
 constexpr double kCostTolerance = 1e-14;
 constexpr double kFirstDamping = 1e-6;
 constexpr double kMostDamping = 1e12;
+constexpr double kMostBend = 0.75;
 
 }  // namespace
 
@@ -38,8 +39,8 @@ LevenbergResult minimise(const Eigen::VectorXd& start,
     while (damping < kMostDamping) {
       Eigen::MatrixXd damped = scaled;
       damped.diagonal().array() += damping;
-      const Eigen::VectorXd scaled_step = damped.llt().solve(gradient);
-      const Eigen::VectorXd next = result.point + shrink.cwiseProduct(scaled_step);
+      const Eigen::LLT<Eigen::MatrixXd> factor(damped);
+      const Eigen::VectorXd scaled_step = factor.solve(gradient);
       const double predicted = scaled_step.dot(gradient + damping * scaled_step);
       if (!std::isfinite(predicted) || predicted <= kCostTolerance * result.cost) {
         if (std::isfinite(predicted)) break;  // nothing left to gain
@@ -47,6 +48,14 @@ LevenbergResult minimise(const Eigen::VectorXd& start,
         growth *= 2;
         continue;
       }
+      Eigen::VectorXd bent = scaled_step;
+      if (options.bend) {
+        const Eigen::VectorXd bend = options.bend(result.point, shrink.cwiseProduct(scaled_step));
+        const Eigen::VectorXd acceleration = -factor.solve(shrink.cwiseProduct(bend));
+        // Beyond this the valley bends too sharply for two terms of its series.
+        if (2 * acceleration.norm() <= kMostBend * scaled_step.norm()) bent += 0.5 * acceleration;
+      }
+      const Eigen::VectorXd next = result.point + shrink.cwiseProduct(bent);
       const double next_cost = cost(next);
       const double gain = (result.cost - next_cost) / predicted;
       if (std::isfinite(next_cost) && gain > 1e-4) {

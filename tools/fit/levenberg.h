@@ -21,6 +21,9 @@ struct LevenbergOptions {
   /// A fall of the cost below this is nothing: the fit passes the variance of an observation times a small
   /// share, so that no parameter would move by more than a few percent of its standard uncertainty.
   std::function<double(double)> negligible = [](double cost) { return 1e-14 * cost; };
+  /// J^T W^2 p'' of a point and a step: p'' is the second derivative of the predictions along the step. With
+  /// it the step is bent along the valley (geodesic acceleration), without it it is straight.
+  std::function<Eigen::VectorXd(const Eigen::VectorXd&, const Eigen::VectorXd&)> bend;
   std::function<void(int, double)> progress;
 };
 

@@ -149,4 +149,34 @@ NormalEquations FitProblem::equations(const Eigen::VectorXd& point) const {
   return result;
 }
 
+Eigen::VectorXd FitProblem::bend(const Eigen::VectorXd& point, const Eigen::VectorXd& step) const {
+  // A tenth of the step: far enough for the difference to rise above rounding, near enough to be the second
+  // derivative.
+  constexpr double kPart = 0.1;
+  Eigen::VectorXd result = Eigen::VectorXd::Zero(point.size());
+  Eigen::VectorXd ahead;
+  try {
+    ahead = predict(at(point + kPart * step), measurement_);
+  } catch (const InputError&) {
+    return result;
+  }
+  linearizer_.each_row(at(point), [&](const RowLinear& row) {
+    for (Eigen::Index o = 0; o < row.predicted.size(); ++o) {
+      const Eigen::Index at_row = static_cast<Eigen::Index>(row.first_observation) + o;
+      double slope = 0;
+      for (const ParameterGroup& group : row.groups)
+        for (const auto& [first, weight] : group.first_weight)
+          slope += weight *
+                   row.gradient.col(o).segment(group.slot, group.width).dot(step.segment(first, group.width));
+      const double second = 2 / (kPart * kPart) * (ahead[at_row] - row.predicted[o] - kPart * slope);
+      const double weighted = second * weights_[at_row] * weights_[at_row];
+      for (const ParameterGroup& group : row.groups)
+        for (const auto& [first, weight] : group.first_weight)
+          result.segment(first, group.width) +=
+              weight * weighted * row.gradient.col(o).segment(group.slot, group.width);
+    }
+  });
+  return result;
+}
+
 }  // namespace vernier

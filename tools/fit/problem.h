@@ -23,6 +23,9 @@ class FitProblem {
   double cost(const Eigen::VectorXd& point) const;
   /// Throws InputError where the model is undefined.
   NormalEquations equations(const Eigen::VectorXd& point) const;
+  /// J^T W^2 p'', p'' the second derivative of the predictions along `step`, by one more evaluation part of
+  /// the way. Zero where the model is undefined there.
+  Eigen::VectorXd bend(const Eigen::VectorXd& point, const Eigen::VectorXd& step) const;
   /// Weighted residuals (measured - predicted) / u and, if asked for, the weighted Jacobian of `predicted`.
   Eigen::VectorXd weighted_residuals(const Eigen::VectorXd& point, SparseRows* jacobian) const;
 
