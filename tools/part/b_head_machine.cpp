@@ -21,43 +21,6 @@ const std::vector<JointPose> kProbes = {{0, 0, 0, 0, 0},       {70, 0, 0, 0, 0},
                                         {0, 0, 0, 0, 50},      {0, 0, 0, 0, -110},    {40, 30, 20, 10, 60},
                                         {-50, 80, 5, -17, 95}, {33, -44, 55, 18, -20}};
 
-constexpr const char* kDefaultMachine = R"(<machine name="five-axis B head, C table">
-  <!-- X and Z slides and B head on the tool side, Y slide and C table on the workpiece side; the eight location errors of
-       Chanal, Duc, Chevalier, Precision Engineering 75 (2022), equation 12. -->
-  <variables>
-    <static>
-      <EC0Y value="0" nominal="0" unit="deg" note="squareness of Y to X"/>
-      <EA0Z value="0" nominal="0" unit="deg" note="squareness of Z to Y"/>
-      <EB0Z value="0" nominal="0" unit="deg" note="squareness of Z to X"/>
-      <EA0C value="0" nominal="0" unit="deg" note="tilt of the table axis about X"/>
-      <EB0C value="0" nominal="0" unit="deg" note="tilt of the table axis about Y"/>
-      <EX0B value="0" nominal="0" unit="mm" note="offset of the B axis from the C axis along X"/>
-      <EA0B value="0" nominal="0" unit="deg" note="tilt of the B axis about X"/>
-      <EC0B value="0" nominal="0" unit="deg" note="tilt of the B axis about Z"/>
-      <L0 value="499.889" unit="mm" Hide="true" note="B axis to tool tip"/>
-    </static>
-    <machineaxes>
-      <X rotary="false" min="-300" max="300"/>
-      <Y rotary="false" min="-300" max="300"/>
-      <Z rotary="false" min="0" max="600"/>
-      <B rotary="true" min="-30" max="30"/>
-      <C rotary="true" min="-360" max="360"/>
-    </machineaxes>
-  </variables>
-  <transforms branch="workpiece">
-    <sixdof n="1" X="0" Y="0" Z="0" rX="0" rY="0" rZ="EC0Y"/>
-    <sixdof n="2" X="0" Y="-Y" Z="0" rX="EA0C" rY="EB0C" rZ="0"/>
-    <sixdof n="3" X="0" Y="0" Z="0" rX="0" rY="0" rZ="C"/>
-  </transforms>
-  <transforms branch="tool">
-    <sixdof n="1" X="X" Y="0" Z="0" rX="EA0Z" rY="EB0Z" rZ="0"/>
-    <sixdof n="2" X="EX0B" Y="0" Z="Z" rX="EA0B" rY="0" rZ="EC0B"/>
-    <sixdof n="3" X="0" Y="0" Z="0" rX="0" rY="B" rZ="0"/>
-    <sixdof n="4" X="0" Y="0" Z="-L0" rX="0" rY="0" rZ="0"/>
-  </transforms>
-</machine>
-)";
-
 /// Value of one "NAME=NUMBER[UNIT]" in the unit of the static.
 double error_value(const Static& target, const std::string& word, const std::string& text) {
   std::size_t split = text.size();
@@ -75,8 +38,6 @@ double error_value(const Static& target, const std::string& word, const std::str
 }
 
 }  // namespace
-
-std::string default_b_head_text() { return kDefaultMachine; }
 
 States BHeadMachine::states(const std::vector<JointPose>& joints) const {
   std::vector<double> references;
@@ -128,7 +89,8 @@ void set_errors(Machine& machine, const std::string& text) {
     const auto index = machine.find_static(word.substr(0, equals));
     if (!index) throw InputError({"--errors", 0}, word, "no static of this name in " + machine.name);
     Static& target = machine.statics[*index];
-    if (!target.nominal && !target.hidden) target.nominal = target.value;
+    if (target.hidden) throw InputError({"--errors", 0}, word, "a hidden static is no error of the machine");
+    if (!target.nominal) target.nominal = target.value;
     target.value = error_value(target, word, word.substr(equals + 1));
     at = end;
   }

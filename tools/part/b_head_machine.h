@@ -25,8 +25,8 @@ struct BHeadMachine {
 /// InputError where an axis is missing or the chain is another. tool.
 BHeadMachine b_head_machine(Machine machine);
 
-/// The machine of the paper with its eight location errors EC0Y EA0Z EB0Z EA0C EB0C EX0B EA0B EC0B, all 0, as
-/// a machine file; angles in deg. L0 499.889 mm (simulation of the paper).
+/// tables/machines/five_axis_bhead_ctable.xml as it was when the program was built: the machine of the paper
+/// with its eight location errors, all 0; angles in deg, L0 499.889 mm (the paper's simulation).
 std::string default_b_head_text();
 
 /// Names of the eight location errors, in the order of the paper.
@@ -34,8 +34,8 @@ inline constexpr std::array<const char*, 8> kLocationErrors = {"EC0Y", "EA0Z", "
                                                                "EB0C", "EX0B", "EA0B", "EC0B"};
 
 /// Sets statics from "EA0B=3.2419e-4rad, EX0B=0.0294": comma or blank between; a unit behind the number is
-/// converted to the static's, no unit means the static's own. Throws InputError for an unknown name, a
-/// malformed number or a unit of another dimension. tool.
+/// converted to the static's, no unit means the static's own. Throws InputError for an unknown or hidden
+/// name, a malformed number or a unit of another dimension. tool.
 void set_errors(Machine& machine, const std::string& text);
 
 }  // namespace vernier

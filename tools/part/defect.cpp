@@ -51,56 +51,70 @@ Probe probe_of(const PartPoint& point, const DefectOptions& options) {
 }
 
 /// The statics that a fit may change, as keys of the chain's derivatives.
-std::vector<char> free_statics(const Machine& machine) {
+std::vector<char> active_keys(const Machine& machine) {
   std::vector<char> active(machine.statics.size() + 6 * machine.axes.size(), 0);
-  for (std::size_t i = 0; i < machine.statics.size(); ++i) active[i] = machine.statics[i].hidden ? 0 : 1;
+  for (const std::size_t index : free_statics(machine)) active[index] = 1;
   return active;
 }
 
-/// Displacement of the tool at `height_mm` above its tip, and its derivatives by the active keys.
-struct Displacement {
-  Eigen::Vector3d shift;
-  Eigen::Matrix3Xd by;
-};
+}  // namespace
 
-Displacement displacement(const ChainRows& actual, const ChainRows& ideal, std::size_t row,
-                          double height_mm) {
-  std::vector<Twist> twists;
-  const Frame here = actual.pose(row, twists), wanted = ideal.pose(row);
-  const Eigen::Vector3d arm = height_mm * here.rotation.col(2);
-  Displacement result{here.origin + arm - wanted.origin - height_mm * wanted.rotation.col(2),
-                      Eigen::Matrix3Xd(3, static_cast<Eigen::Index>(twists.size()))};
-  for (std::size_t k = 0; k < twists.size(); ++k)
-    result.by.col(static_cast<Eigen::Index>(k)) = twists[k].point + twists[k].rotation.cross(arm);
-  return result;
+std::vector<std::size_t> free_statics(const Machine& machine) {
+  std::vector<std::size_t> indices;
+  for (std::size_t i = 0; i < machine.statics.size(); ++i)
+    if (!machine.statics[i].hidden) indices.push_back(i);
+  return indices;
 }
 
-}  // namespace
+std::vector<Displacement> displacements(const BHeadMachine& machine, const std::vector<JointPose>& joints,
+                                        const std::vector<double>& height_mm) {
+  const States states = machine.states(joints);
+  const Machine nominal = nominal_machine(machine.machine);
+  const ChainRows actual(machine.machine, states, active_keys(machine.machine)), ideal(nominal, states);
+  const std::vector<std::size_t> wanted = free_statics(machine.machine);
+  std::vector<Displacement> result(joints.size());
+  std::vector<Twist> twists;
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    const Frame here = actual.pose(i, twists), there = ideal.pose(i);
+    const Eigen::Vector3d arm = height_mm[i] * here.rotation.col(2);
+    result[i].shift = here.origin - there.origin + (arm - height_mm[i] * there.rotation.col(2));
+    // A chain need not use every static: what it has no derivative for stays zero.
+    result[i].by = Eigen::Matrix3Xd::Zero(3, static_cast<Eigen::Index>(wanted.size()));
+    for (std::size_t k = 0; k < twists.size(); ++k) {
+      const auto at = std::find(wanted.begin(), wanted.end(), actual.keys()[k]) - wanted.begin();
+      result[i].by.col(at) = twists[k].point + twists[k].rotation.cross(arm);
+    }
+  }
+  return result;
+}
 
 PartDefect part_defect(const BHeadMachine& machine, const std::vector<PartPoint>& points,
                        const DefectOptions& options) {
   PartDefect result;
   result.joints = joints_of(machine, points, options);
+  std::vector<Probe> probes;
+  std::vector<double> heights_mm;
+  for (const PartPoint& point : points) {
+    probes.push_back(probe_of(point, options));
+    heights_mm.push_back(probes.back().height_mm);
+  }
   std::vector<JointPose> with_origin = result.joints;
   with_origin.push_back(machine.origin());
-  const States states = machine.states(with_origin);
-  const Machine nominal = nominal_machine(machine.machine);
-  const ChainRows actual(machine.machine, states, free_statics(machine.machine)), ideal(nominal, states);
-  result.parameters = actual.keys();
+  heights_mm.push_back(0);
+  const std::vector<Displacement> moved = displacements(machine, with_origin, heights_mm);
+  const Displacement& datum = moved.back();
   const auto count = static_cast<Eigen::Index>(points.size());
   result.position.resize(3, count);
   result.normal.resize(3, count);
   result.defect_mm.resize(count);
-  result.jacobian.resize(count, static_cast<Eigen::Index>(result.parameters.size()));
-  const Displacement datum = displacement(actual, ideal, points.size(), 0);
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const auto row = static_cast<Eigen::Index>(i);
-    const Probe probe = probe_of(points[i], options);
-    const Displacement moved = displacement(actual, ideal, i, probe.height_mm);
-    result.position.col(row) = probe.position;
-    result.normal.col(row) = probe.along;
-    result.defect_mm[row] = probe.along.dot(moved.shift - datum.shift);
-    result.jacobian.row(row) = probe.along.transpose() * (moved.by - datum.by);
+  result.jacobian.resize(count, datum.by.cols());
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const Probe& probe = probes[static_cast<std::size_t>(i)];
+    const Displacement& here = moved[static_cast<std::size_t>(i)];
+    result.position.col(i) = probe.position;
+    result.normal.col(i) = probe.along;
+    result.defect_mm[i] = probe.along.dot(here.shift - datum.shift);
+    result.jacobian.row(i) = probe.along.transpose() * (here.by - datum.by);
   }
   return result;
 }

@@ -26,14 +26,26 @@ struct DefectOptions {
   RotarySolution solution = RotarySolution::kContinuous;
 };
 
+/// Where the errors of a machine put the tool: actual - nominal chain, in workpiece coordinates.
+struct Displacement {
+  Eigen::Vector3d shift;  // mm, exact, at the height asked for
+  Eigen::Matrix3Xd by;    // its derivatives, 3 x free statics of the machine, mm per unit of the static
+};
+
+/// At joint poses, for the point of the tool axis `height_mm` above the tip (as many as joints). tool.
+std::vector<Displacement> displacements(const BHeadMachine& machine, const std::vector<JointPose>& joints,
+                                        const std::vector<double>& height_mm);
+
+/// Indices of the statics that `by` and the Jacobian of a part stand for, in the order of the machine file.
+std::vector<std::size_t> free_statics(const Machine& machine);
+
 /// What the errors of a machine do to the part, at N points.
 struct PartDefect {
   std::vector<JointPose> joints;  // where the machine stands when the point is cut
   Eigen::Matrix3Xd position,
       normal;                 // nominal surface, workpiece coordinates; normal of the reading: unit, outward
   Eigen::VectorXd defect_mm;  // along the normal, positive: material left; exact, not linearised
-  std::vector<std::size_t> parameters;  // statics of the machine that are free
-  /// d defect / d parameter, N x parameters, mm per unit of the static, at the machine's values.
+  /// d defect / d static, N x free statics, mm per unit of the static, at the machine's values.
   Eigen::MatrixXd jacobian;
 };
 

@@ -1,10 +1,9 @@
 #include "tools/part/identify.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
-
-#include "tools/fit/levenberg.h"
 
 namespace vernier {
 namespace {
@@ -39,8 +38,7 @@ class PartProblem {
       measured_[i] = point.defect_mm;
       if (point.uncertainty_mm > 0) weight_[i] = 1 / point.uncertainty_mm;
     }
-    for (std::size_t i = 0; i < machine.machine.statics.size(); ++i)
-      if (!machine.machine.statics[i].hidden) free_.push_back(i);
+    free_ = free_statics(machine.machine);
   }
 
   const std::vector<std::size_t>& free() const { return free_; }
@@ -64,14 +62,6 @@ class PartProblem {
     Eigen::VectorXd left = measured_ - defect.defect_mm;
     Eigen::MatrixXd all(left.size(), size());
     all.leftCols(defect.jacobian.cols()) = defect.jacobian;
-    // A chain need not use every static; a column that it has no derivative for is one that nothing sees.
-    if (defect.parameters != free_) {
-      all.setZero();
-      for (std::size_t k = 0; k < defect.parameters.size(); ++k)
-        for (std::size_t i = 0; i < free_.size(); ++i)
-          if (free_[i] == defect.parameters[k])
-            all.col(static_cast<Eigen::Index>(i)) = defect.jacobian.col(static_cast<Eigen::Index>(k));
-    }
     if (options_.aligned) {
       all.rightCols<6>() = alignment_columns(defect);
       left -= all.rightCols<6>() * point.tail<6>();
@@ -80,14 +70,27 @@ class PartProblem {
     return left;
   }
 
-  double cost(const Eigen::VectorXd& point) const {
-    return weight_.cwiseProduct(residual(point, nullptr)).squaredNorm();
-  }
-  NormalEquations equations(const Eigen::VectorXd& point) const {
+  /// Sum of squares at a point, and what a step is made of.
+  double cost(const Eigen::VectorXd& point, Eigen::MatrixXd& normal, Eigen::VectorXd& gradient) const {
     Eigen::MatrixXd jacobian;
     const Eigen::VectorXd left = weight_.cwiseProduct(residual(point, &jacobian));
     jacobian = weight_.asDiagonal() * jacobian;
-    return {left.squaredNorm(), jacobian.transpose() * jacobian, jacobian.transpose() * left};
+    normal = jacobian.transpose() * jacobian;
+    gradient = jacobian.transpose() * left;
+    return left.squaredNorm();
+  }
+  /// What the points can tell apart, seen where all errors are nominal: away from there the second order
+  /// feigns a difference between columns that are one.
+  Observability seen_at_nominal() const {
+    Eigen::VectorXd point = Eigen::VectorXd::Zero(size());
+    for (std::size_t i = 0; i < free_.size(); ++i) {
+      const Static& item = machine_.machine.statics[free_[i]];
+      point[static_cast<Eigen::Index>(i)] = item.nominal.value_or(item.value);
+    }
+    Eigen::MatrixXd normal;
+    Eigen::VectorXd gradient;
+    cost(point, normal, gradient);
+    return observe(normal);
   }
 
  private:
@@ -98,12 +101,39 @@ class PartProblem {
   Eigen::VectorXd measured_, weight_;
 };
 
-void fill_statistics(Identification& result, const PartProblem& problem, const LevenbergResult& solved,
-                     bool with_uncertainty) {
-  result.observability = observe(problem.equations(solved.point).normal);
-  result.chi_square = solved.cost;
+struct Solution {
+  Eigen::VectorXd point;
+  double chi_square = 0;
+  int iterations = 0;
+  bool converged = false;
+};
+
+/// Newton with the inverse of the start kept: the errors are so small that the chain is all but linear in
+/// them, and the directions that the points cannot see stay as they are.
+Solution solve(const PartProblem& problem, const Observability& seen) {
+  constexpr int kMost = 50;
+  constexpr double kSettled = 1e-12;  // of the step that the first iteration made
+  Solution solution{problem.start()};
+  Eigen::MatrixXd normal;
+  Eigen::VectorXd gradient;
+  double first = 0;
+  while (!solution.converged && solution.iterations < kMost) {
+    problem.cost(solution.point, normal, gradient);
+    const Eigen::VectorXd step = seen.covariance * gradient;
+    const double size = step.dot(normal * step);  // what the step gains
+    first = std::max(first, size);
+    solution.point += step;
+    ++solution.iterations;
+    solution.converged = size <= kSettled * kSettled * first;
+  }
+  solution.chi_square = problem.cost(solution.point, normal, gradient);
+  return solution;
+}
+
+void fill_statistics(Identification& result, const Solution& solved, bool with_uncertainty) {
+  result.chi_square = solved.chi_square;
   result.freedom = result.residual_mm.size() - result.observability.rank;
-  if (result.freedom > 0) result.variance_factor = solved.cost / static_cast<double>(result.freedom);
+  if (result.freedom > 0) result.variance_factor = solved.chi_square / static_cast<double>(result.freedom);
   if (with_uncertainty) result.variance_factor = std::max(1.0, result.variance_factor);
   const Eigen::MatrixXd covariance = result.variance_factor * result.observability.covariance;
   result.correlation = Eigen::MatrixXd::Zero(covariance.rows(), covariance.cols());
@@ -130,10 +160,10 @@ Identification identify(const BHeadMachine& machine, const MeasuredPart& part,
   if (static_cast<Eigen::Index>(part.points.size()) < problem.size())
     throw InputError(place, std::to_string(part.points.size()) + " points", "fewer points than unknowns");
   const bool with_uncertainty = part.points.front().uncertainty_mm > 0;
-  const LevenbergResult solved = minimise(
-      problem.start(), [&](const Eigen::VectorXd& p) { return problem.equations(p); },
-      [&](const Eigen::VectorXd& p) { return problem.cost(p); }, {});
+  const Observability seen = problem.seen_at_nominal();
+  const Solution solved = solve(problem, seen);
   Identification result;
+  result.observability = seen;
   result.machine = problem.at(solved.point).machine;
   for (const std::size_t index : problem.free()) {
     const Static& item = result.machine.statics[index];
@@ -148,7 +178,7 @@ Identification identify(const BHeadMachine& machine, const MeasuredPart& part,
   result.residual_mm = problem.residual(solved.point, nullptr);
   result.iterations = solved.iterations;
   result.converged = solved.converged;
-  fill_statistics(result, problem, solved, with_uncertainty);
+  fill_statistics(result, solved, with_uncertainty);
   return result;
 }
 
@@ -158,7 +188,7 @@ Observability part_observability(const BHeadMachine& machine, const std::vector<
   for (const PartPoint& point : points) part.points.push_back({point, 0, 1, 0});
   const IdentifyOptions asked{options, false};
   const PartProblem problem(machine, part, asked);
-  return observe(problem.equations(problem.start()).normal);
+  return problem.seen_at_nominal();
 }
 
 }  // namespace vernier

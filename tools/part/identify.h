@@ -53,13 +53,14 @@ struct Identification {
 };
 
 /// Weighted least squares of the free statics of the machine against the measured defects. Errors that the
-/// points cannot tell apart keep their start along those directions and are named in `observability`.
-/// Standard uncertainties as those of `vernier fit`. Throws InputError where nothing is free or points are
-/// fewer than errors. tool.
+/// points cannot tell apart (where all errors are nominal) keep their start along those directions and are
+/// named in `observability`. Standard uncertainties as those of `vernier fit`. Throws InputError where
+/// nothing is free or points are fewer than errors. tool.
 Identification identify(const BHeadMachine& machine, const MeasuredPart& part,
                         const IdentifyOptions& options = {});
 
-/// What N points could tell about the free statics at all, each point with standard uncertainty 1 mm.
+/// What N points could tell about the free statics at all (at their nominal values), each point with standard
+/// uncertainty 1 mm.
 Observability part_observability(const BHeadMachine& machine, const std::vector<PartPoint>& points,
                                  const DefectOptions& options);
 

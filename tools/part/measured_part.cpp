@@ -90,11 +90,12 @@ MeasuredPart read_measured_part(const std::string& text, const std::string& file
     const Place place{file, csv.line[row]};
     MeasuredPoint point;
     point.line = csv.line[row];
-    point.at = place_on_part({x.at(row), y.at(row), z.at(row)}, place);
+    const Eigen::Vector3d position(x.at(row), y.at(row), z.at(row));
     point.defect_mm = defect.at(row);
     if (u.present()) point.uncertainty_mm = u.at(row);
     if (u.present() && !(point.uncertainty_mm > 0))
       throw InputError(place, number_text(point.uncertainty_mm), "u is a standard uncertainty above 0");
+    point.at = place_on_part(position, place);
     part.points.push_back(point);
   }
   return part;

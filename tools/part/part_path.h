@@ -1,0 +1,48 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "tools/part/b_head_machine.h"
+#include "tools/part/defect.h"
+
+namespace vernier {
+
+/// The joint path of one flank, timed.
+struct PartPath {
+  std::size_t flank = 0;
+  std::vector<double> u, t_s;
+  std::vector<JointPose> joints;
+  double step_mm = 0;  // longest step along the top curve
+  double chord_error_mm =
+      0;  // step^2 / (8 radius): what straight steps leave at the cutter (paper, section 2)
+};
+
+struct PathOptions {
+  Cutter cutter;
+  double step_mm = 0.5;       // longest step along the top curve
+  double feed_mm_min = 1000;  // along the top curve
+  RotarySolution solution = RotarySolution::kContinuous;
+};
+
+/// Even steps of u, short enough; t starts at 0 and runs with the feed. tool.
+PartPath part_path(const BHeadMachine& machine, std::size_t flank, const PathOptions& options);
+
+/// `t[s]` and the axes of the machine (path columns of `vernier simulate`).
+std::string path_csv(const BHeadMachine& machine, const PartPath& path);
+
+/// The same for a controller: millimetres, absolute, inverse-time feed (G93), one G1 a step. Positions are
+/// those of the axes, not of the tool tip.
+std::string path_gcode(const PartPath& path, const PathOptions& options);
+
+/// One row a point: flank, curve parameter, surface point (sx, sy, sz), normal, defect, joint values. What
+/// read_measured_part() reads is among it.
+std::string defect_csv(const std::vector<PartPoint>& points, const PartDefect& defect);
+
+/// Axes of the machine that the path leads beyond their min or max, as "B 17.84 deg is beyond max 15".
+std::vector<std::string> beyond_limits(const BHeadMachine& machine, const PartPath& path);
+
+/// Throws InputError where the cutter is too thick for a hollow of the flank (its centre would run backwards)
+/// or not longer than the flank.
+void check_cutter(const RuledSurface& surface, const Cutter& cutter);
+
+}  // namespace vernier
