@@ -3,6 +3,7 @@ import { number, readData } from './data.js';
 import { circleTable, polarPlot } from './polar.js';
 import { byKind, residualMatrix, unitOf } from './matrix.js';
 import { curves, histogram, ladder } from './plots.js';
+import { volume } from './volume.js';
 
 const root = document.getElementById('report');
 
@@ -57,6 +58,7 @@ function comparison(result) {
 function part(one) {
   section(root, one.title, (one.prose ?? []).map((text) => el('p', {}, text)),
     one.numbers?.length ? tiles(one.numbers.map((item) => ({ ...item, value: typeof item.value === 'number' ? number(item.value, 4) : item.value ?? '–' }))) : null,
+    one.field ? volume(one.field) : null,
     one.ladder?.length ? ladder(one.ladder) : null,
     (one.tables ?? []).map((entry) => table(entry.caption, entry.columns.map((name, i) => ({ name, left: typeof entry.rows[0]?.[i] === 'string' })),
       entry.rows.map((row) => row.map((cell) => (typeof cell === 'number' ? number(cell, 5) : cell ?? '–'))))),

@@ -1,0 +1,129 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tools/map/simulated.h"
+#include "tools/model/files.h"
+
+namespace vernier {
+namespace {
+
+constexpr double kX = 600, kY = 400, kZ = 300;  // travel, mm
+/// Numbers are exact but for second order: deviation (0.06 mm) times angle (1e-4).
+constexpr double kSecondOrder_um = 0.02;
+
+struct Errors {
+  double scale = 0, squareness = 0, lean = 0, reversal = 0;
+};
+
+/// Tool-side X, table-side Y, so that a wrong sign of a table axis cannot hide.
+Machine machine(const Errors& e) {
+  Machine m = parse_machine(R"XML(<machine><variables><static>
+    <k value="0" nominal="0"/><a value="0" nominal="0"/><b value="0" nominal="0"/><r value="0" nominal="0"/></static>
+    <machineaxes><X min="0" max="600"/><Y min="0" max="400"/><Z min="-300" max="0"/></machineaxes></variables>
+    <transforms branch="workpiece"><sixdof n="1" Y="Y"/></transforms>
+    <transforms branch="tool"><sixdof n="1" X="X*(1+k)+r*dirX" Y="-a*X"/><sixdof n="2" X="b*Z" Z="Z"/></transforms>
+    </machine>)XML",
+                            "m.xml");
+  const double value[] = {e.scale, e.squareness, e.lean, e.reversal};
+  for (std::size_t i = 0; i < 4; ++i) m.statics[i].value = value[i];
+  return m;
+}
+
+States at() { return make_states(1, 3, {}); }
+
+const LineResult& named(const std::vector<LineResult>& lines, const std::string& name) {
+  for (const LineResult& line : lines)
+    if (line.name == name) return line;
+  throw std::runtime_error("no line " + name);
+}
+
+TEST(ErrorField, HasANodeForEveryCombinationFirstAxisFastest) {
+  const Machine m = machine({.scale = 1e-4});
+  const ErrorField field = error_field(m, at(), {0, 1, 2}, 3);
+  ASSERT_EQ(field.nominal.cols(), 27);
+  EXPECT_NEAR(field.nominal(0, 1), 300, 1e-12);
+  EXPECT_NEAR(field.nominal(1, 3), -200, 1e-12);  // the table moves the other way
+  EXPECT_NEAR(field.nominal(2, 9), -150, 1e-12);
+  EXPECT_NEAR(field.deviation(0, 26), 0.06, 1e-12);
+  EXPECT_NEAR(field.deviation.rightCols(2).row(1).norm(), 0, 1e-12);
+  EXPECT_THROW(error_field(m, at(), {}, 3), InputError);
+}
+
+TEST(Measured, ScaleErrorOnAxesAndDiagonals) {
+  const Machine m = machine({.scale = 1e-4});
+  const Bench bench(m, at());
+  const auto lines = axis_lines(m, bench), crossing = diagonals(m, bench);
+  EXPECT_NEAR(named(lines, "X").error_um, 60, kSecondOrder_um);
+  EXPECT_NEAR(named(lines, "Y").error_um, 0, kSecondOrder_um);
+  ASSERT_EQ(crossing.size(), 10u);
+  const double body = std::sqrt(kX * kX + kY * kY + kZ * kZ), face = std::hypot(kX, kY);
+  EXPECT_NEAR(named(crossing, "+X+Y+Z").error_um, 0.1 * kX * kX / body, kSecondOrder_um);
+  EXPECT_NEAR(named(crossing, "+X-Y").error_um, 0.1 * kX * kX / face, kSecondOrder_um);
+  EXPECT_NEAR(named(crossing, "+Y+Z").error_um, 0, kSecondOrder_um);
+  for (const LineResult& line : crossing) EXPECT_NEAR(line.reversal_um, 0, 1e-9);
+  EXPECT_NEAR(circles_json(bench)[0]["circular_deviation_ccw_um"].get<double>(), 0.1 * 180, 0.05);
+}
+
+TEST(Measured, SquarenessInDiagonalsAndSquares) {
+  const Machine m = machine({.squareness = 5e-5});
+  const Bench bench(m, at());
+  const auto crossing = diagonals(m, bench);
+  // The X motion turns to -Y; a table Y turns the plane over: the tool goes +Y when the table goes -Y.
+  const double expected = 0.05 * kX * kY / std::hypot(kX, kY);
+  EXPECT_NEAR(named(crossing, "+X+Y").forward_um.back(), expected, kSecondOrder_um);
+  EXPECT_NEAR(named(crossing, "+X-Y").forward_um.back(), -expected, kSecondOrder_um);
+  const auto squares = squares_json(bench);
+  EXPECT_NEAR(squares[0]["angle_um_per_m"].get<double>(), 50, 0.01);
+  EXPECT_NEAR(squares[1]["angle_um_per_m"].get<double>(), 0, 0.01);
+  // An ellipse at 45 deg: radii differ by the angle times the radius.
+  EXPECT_NEAR(circles_json(bench)[0]["circular_deviation_cw_um"].get<double>(), 0.05 * 180, 0.02);
+}
+
+TEST(Measured, ReversalSeparatesTheSenses) {
+  const Machine m = machine({.reversal = 0.003});
+  const Bench bench(m, at());
+  EXPECT_NEAR(named(axis_lines(m, bench), "X").reversal_um, 6, 1e-9);
+  EXPECT_NEAR(named(axis_lines(m, bench), "Z").reversal_um, 0, 1e-9);
+  const auto circles = circles_json(bench);
+  ASSERT_EQ(circles.size(), 3u);
+  EXPECT_NEAR(circles[0]["hysteresis_um"].get<double>(), 6, 0.1);  // at 90 deg of its reversal, one step wide
+  EXPECT_NEAR(circles[1]["hysteresis_um"].get<double>(), 0, 0.01);
+}
+
+TEST(Measured, LeaningCylinderIsRoundAndTilted) {
+  const Machine m = machine({.lean = 4e-5});
+  const auto cylinder = cylinder_json(Bench(m, at()));
+  EXPECT_NEAR(cylinder["axis_tilt_um_per_m"][0].get<double>(), 40, 0.01);
+  EXPECT_NEAR(cylinder["axis_tilt_um_per_m"][1].get<double>(), 0, 0.01);
+  EXPECT_NEAR(cylinder["cylindricity_um"].get<double>(), 0, 0.01);
+}
+
+TEST(Measured, FreeLinesStayInTheVolume) {
+  const Machine m = machine({.scale = 1e-4});
+  const Bench bench(m, at());
+  const std::string path = testing::TempDir() + "free_lines.csv";
+  write_file(path, "x[mm],y[mm],z[m],run\n100,-100,-0.05,a\n300,-100,-0.05,a\n10,-10,0,b\n10,-390,0,b\n");
+  const auto lines = free_lines_json(bench, path);
+  ASSERT_EQ(lines.size(), 2u);
+  EXPECT_NEAR(lines[0]["length_deviation_um"].get<double>(), 20, kSecondOrder_um);
+  EXPECT_NEAR(lines[1]["length_deviation_um"].get<double>(), 0, kSecondOrder_um);
+  write_file(path, "x[mm],y[mm],z[mm]\n100,100,0\n300,100,0\n");  // y is -400..0
+  EXPECT_THROW(free_lines_json(bench, path), InputError);
+  write_file(path, "x[mm],y[mm],z[mm]\n100,-100,0\n");
+  EXPECT_THROW(free_lines_json(bench, path), InputError);
+}
+
+TEST(Measured, ChainsWithoutAClosedSolutionAreRefused) {
+  const Machine bending = parse_machine(
+      R"XML(<machine><variables><machineaxes><X min="0" max="1"/></machineaxes></variables>
+      <transforms><sixdof n="1" X="X" rZ="0.01*X"/></transforms></machine>)XML",
+      "bending.xml");
+  EXPECT_THROW(Bench(bending, make_states(1, 1, {})), InputError);
+  Machine endless = machine({});
+  endless.axes[1].max.reset();
+  EXPECT_THROW(Bench(endless, at()), InputError);
+}
+
+}  // namespace
+}  // namespace vernier

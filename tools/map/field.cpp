@@ -1,0 +1,107 @@
+#include "tools/map/field.h"
+
+#include <cmath>
+
+namespace vernier {
+namespace {
+
+using Eigen::Index;
+
+const Axis& ranged(const Machine& machine, std::size_t axis) {
+  const Axis& one = machine.axes[axis];
+  if (!one.min || !one.max)
+    throw InputError({machine.file, one.line}, one.name, "this axis needs min and max");
+  return one;
+}
+
+ClosedSolution closed_of(const Machine& machine, const States& at) {
+  const auto closed = closed_solution(nominal_machine(machine), at);
+  if (!closed)
+    throw InputError({machine.file, 0}, "",
+                     "no closed back solution of its linear axes: no measurement is simulated");
+  for (const std::size_t axis : closed->axes) ranged(machine, axis);
+  return *closed;
+}
+
+}  // namespace
+
+ErrorField error_field(const Machine& machine, const States& at, const std::vector<std::size_t>& axes,
+                       std::size_t count) {
+  if (axes.empty() || axes.size() > 3)
+    throw InputError({machine.file, 0}, "", "a map is over one to three axes");
+  ErrorField field;
+  field.axes = axes;
+  field.counts.assign(axes.size(), count);
+  std::size_t nodes = 1;
+  for (const std::size_t n : field.counts) nodes *= n;
+  field.states = select_states(at, std::vector<std::size_t>(nodes, 0));
+  std::size_t stride = 1;
+  for (const std::size_t axis : axes) {
+    const Axis& one = ranged(machine, axis);
+    for (std::size_t i = 0; i < nodes; ++i)
+      field.states.axis[axis][static_cast<Index>(i)] =
+          *one.min +
+          (*one.max - *one.min) * static_cast<double>(i / stride % count) / static_cast<double>(count - 1);
+    stride *= count;
+  }
+  field.nominal = forward(nominal_machine(machine), field.states).position;
+  field.deviation = forward(machine, field.states).position - field.nominal;
+  return field;
+}
+
+Bench::Bench(const Machine& machine, const States& at)
+    : machine_(machine), at_(at), closed_(closed_of(machine, at)) {}
+
+Eigen::Vector3d Bench::point_at(const Eigen::VectorXd& fraction) const {
+  Eigen::VectorXd q(fraction.size());
+  for (Index k = 0; k < q.size(); ++k) {
+    const Axis& axis = machine_.axes[closed_.axes[static_cast<std::size_t>(k)]];
+    q[k] = *axis.min + fraction[k] * (*axis.max - *axis.min);
+  }
+  return closed_.origin + closed_.jacobian * q;
+}
+
+bool Bench::reaches(const Eigen::Matrix3Xd& points) const {
+  const Eigen::MatrixXd q = solve_closed(closed_, points);
+  const Eigen::Matrix3Xd back = (closed_.jacobian * q).colwise() + closed_.origin;
+  constexpr double kSlack_mm = 1e-6;
+  if ((back - points).colwise().norm().maxCoeff() > kSlack_mm) return false;
+  for (Index k = 0; k < q.rows(); ++k) {
+    const Axis& axis = machine_.axes[closed_.axes[static_cast<std::size_t>(k)]];
+    if (q.row(k).minCoeff() < *axis.min - kSlack_mm || q.row(k).maxCoeff() > *axis.max + kSlack_mm)
+      return false;
+  }
+  return true;
+}
+
+Eigen::Matrix3Xd Bench::measure(const Eigen::Matrix3Xd& points) const {
+  return forward(machine_, states_of(solve_closed(closed_, points))).position;
+}
+
+States Bench::states_of(const Eigen::MatrixXd& positions) const {
+  const Index count = positions.cols();
+  States states = select_states(at_, std::vector<std::size_t>(static_cast<std::size_t>(count), 0));
+  constexpr double kStill_mm = 1e-9;  // less is rounding of the back solution, no motion
+  for (Index k = 0; k < positions.rows(); ++k) {
+    const std::size_t axis = closed_.axes[static_cast<std::size_t>(k)];
+    states.axis[axis] = positions.row(k).transpose().array();
+    double sense = 0, since = kLongWay;
+    for (Index i = 1; i < count && sense == 0; ++i) {
+      const double step = positions(k, i) - positions(k, i - 1);
+      if (std::abs(step) > kStill_mm) sense = step > 0 ? 1 : -1;
+    }
+    for (Index i = 0; i < count; ++i) {
+      const double step = i > 0 ? positions(k, i) - positions(k, i - 1) : 0;
+      if (std::abs(step) > kStill_mm) {
+        const double next = step > 0 ? 1 : -1;
+        since = next == sense ? since + std::abs(step) : std::abs(step);
+        sense = next;
+      }
+      states.direction[axis][i] = sense;
+      states.since[axis][i] = std::min(since, kLongWay);
+    }
+  }
+  return states;
+}
+
+}  // namespace vernier

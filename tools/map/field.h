@@ -1,0 +1,49 @@
+#pragma once
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "tools/kinematics/closed.h"
+
+namespace vernier {
+
+/// Deviation vectors on a grid over the ranges of one to three axes.
+struct ErrorField {
+  std::vector<std::size_t> axes;    // swept, the first one runs fastest
+  std::vector<std::size_t> counts;  // nodes along each
+  States states;                    // one a node
+  Eigen::Matrix3Xd nominal;         // tool point of the nominal chain, mm
+  Eigen::Matrix3Xd deviation;       // actual - nominal, mm
+};
+
+/// The field over the declared ranges of `axes`, `count` nodes along each; everything else as in `at` (count
+/// 1). Throws InputError: an axis without min and max, no axis or more than three. tool.
+ErrorField error_field(const Machine& machine, const States& at, const std::vector<std::size_t>& axes,
+                       std::size_t count);
+
+/// A machine on which measurements are simulated: its nominal chain is what was commanded, the machine itself
+/// what happens. Only for chains with a closed back solution of their linear axes.
+class Bench {
+ public:
+  /// Throws InputError where the nominal chain has no closed solution, or an axis no range.
+  Bench(const Machine& machine, const States& at);
+
+  const std::vector<std::size_t>& axes() const { return closed_.axes; }
+  /// Nominal tool point (mm) where the linear axes stand at these fractions (0..1) of their ranges.
+  Eigen::Vector3d point_at(const Eigen::VectorXd& fraction) const;
+  /// Can the linear axes bring the nominal tool point to all of these (3 x N, mm)?
+  bool reaches(const Eigen::Matrix3Xd& points) const;
+  /// Where the tool point really is when these are commanded one after the other, at rest at each. Senses of
+  /// motion and travel since reversal are those of the way there; the first point is come to as its second
+  /// is.
+  Eigen::Matrix3Xd measure(const Eigen::Matrix3Xd& points) const;
+
+ private:
+  States states_of(const Eigen::MatrixXd& positions) const;
+
+  const Machine& machine_;
+  States at_;
+  ClosedSolution closed_;
+};
+
+}  // namespace vernier

@@ -1,0 +1,47 @@
+#pragma once
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tools/map/field.h"
+
+namespace vernier {
+
+/// A straight line measured there and back, deviations along it from its first point, um.
+struct LineResult {
+  std::string name;
+  Eigen::Vector3d from, to;         // nominal ends, mm
+  std::vector<double> distance_mm;  // of the positions, from the first
+  std::vector<double> forward_um, reverse_um;
+  double error_um = 0;     // E: range over both senses
+  double mean_um = 0;      // M: range of the mean of both senses
+  double reversal_um = 0;  // B: largest difference of the senses
+  double straightness_um =
+      0;  // range across the line about its least-squares line, the worse of two directions
+};
+
+/// A line of `positions` points between two nominal points, forward then back. Source of E, M, B: ISO 230-6
+/// (diagonals), ISO 230-2 (single axes), here of one run a sense and so without repeatability. tool.
+LineResult measure_line(const Bench& bench, const std::string& name, const Eigen::Vector3d& from,
+                        const Eigen::Vector3d& to, int positions = 21);
+
+/// Each linear axis through the middle of the volume; body diagonals (four) and face diagonals (two in each
+/// face at the low end of the third axis; with two axes the two of the plane). Names: "X", "+X+Y-Z", "+X-Y".
+std::vector<LineResult> axis_lines(const Machine& machine, const Bench& bench);
+std::vector<LineResult> diagonals(const Machine& machine, const Bench& bench);
+
+/// ISO 230-4 numbers of circles in the planes XY, YZ, ZX of the workpiece about the middle of the volume,
+/// both senses, as large as fits; planes that the axes cannot reach are left out. tool.
+nlohmann::ordered_json circles_json(const Bench& bench);
+/// Squares in the same planes: angle of the sides (um/m from 90 deg), side lengths, straightness.
+nlohmann::ordered_json squares_json(const Bench& bench);
+/// A cylinder (five circles along Z): range of the radii about its least-squares axis, tilt of that axis;
+/// null where the axes cannot reach it.
+nlohmann::ordered_json cylinder_json(const Bench& bench);
+/// Lines through points of a CSV file `x[mm],y[mm],z[mm],run`, a line a run: length between its ends and
+/// straightness. Throws InputError: a point out of the volume, fewer than two points. tool.
+nlohmann::ordered_json free_lines_json(const Bench& bench, const std::string& path);
+
+nlohmann::ordered_json line_json(const LineResult& line);
+
+}  // namespace vernier
