@@ -63,7 +63,7 @@ SymbolicVector cross(const SymbolicVector& a, const SymbolicVector& b) {
 
 SymbolicVector turned(const SymbolicVector& v, int axis, const ex& angle_rad) {
   const auto i = static_cast<std::size_t>((axis + 1) % 3), j = static_cast<std::size_t>((axis + 2) % 3);
-  const ex c = GiNaC::cos(angle_rad), s = GiNaC::sin(angle_rad);
+  const ex c = cosine(angle_rad), s = sine(angle_rad);
   SymbolicVector result = v;
   result[i] = (c * v[i] - s * v[j]).expand();
   result[j] = (s * v[i] + c * v[j]).expand();

@@ -16,11 +16,7 @@ using GiNaC::ex;
 /// The chain at errors 0, walked from the workpiece to the tool.
 class NominalChain {
  public:
-  NominalChain(const std::vector<ElementaryMotion>& motions, const GiNaC::exmap& no_errors) {
-    for (const ElementaryMotion& m : motions)
-      motions_.push_back(
-          {m.rotation, m.axis, expand_inside(m.value.subs(no_errors)), m.workpiece, m.link, m.dof});
-  }
+  explicit NominalChain(std::vector<ElementaryMotion> nominal) : motions_(std::move(nominal)) {}
 
   /// What the tool point (mm) and the tool (rad) do per unit of motion j, in workpiece coordinates.
   Sensitivity velocity(std::size_t j) const {
@@ -94,6 +90,30 @@ ex nominal_slope(const Machine& machine, const ElementaryMotion& motion, const E
   return slope;
 }
 
+/// The motions at errors 0; long lengths become abbreviations.
+std::vector<ElementaryMotion> nominal_motions(const Machine& machine,
+                                              const std::vector<ElementaryMotion>& motions,
+                                              const GiNaC::exmap& no_errors, SymbolBook& book,
+                                              std::vector<Abbreviation>& abbreviations) {
+  constexpr std::size_t kLongSum = 3;
+  std::vector<ElementaryMotion> nominal = motions;
+  for (ElementaryMotion& m : nominal) {
+    const Transform& transform = transform_of(machine, m);
+    try {
+      m.value = expand_inside(m.value.subs(no_errors, GiNaC::subs_options::no_pattern));
+    } catch (const std::exception& error) {
+      throw InputError({machine.file, transform.line}, transform.text[m.dof],
+                       std::string("has no value in the nominal chain: ") + error.what());
+    }
+    if (m.rotation || term_count(m.value) < kLongSum) continue;
+    const std::string name =
+        std::string(m.workpiece ? "w" : "t") + transform.dof_name(m.dof) + std::to_string(transform.n);
+    abbreviations.push_back({GiNaC::realsymbol(book.free_name(name, name + "_")), m.value});
+    m.value = abbreviations.back().symbol;
+  }
+  return nominal;
+}
+
 void add_to(Sensitivity& sum, const ex& slope, const Sensitivity& velocity) {
   for (std::size_t i = 0; i < 6; ++i) sum[i] += slope * velocity[i];
 }
@@ -114,7 +134,8 @@ ErrorEquation derive(const Machine& machine, const ErrorSizes& sizes) {
 
   GiNaC::exmap no_errors;
   for (const ErrorParameter& p : book.parameters) no_errors[p.symbol] = 0;
-  const NominalChain chain(equation.motions, no_errors);
+  const NominalChain chain(
+      nominal_motions(equation.machine, equation.motions, no_errors, book, equation.abbreviations));
   equation.sensitivity.assign(book.parameters.size(), Sensitivity{0, 0, 0, 0, 0, 0});
   for (std::size_t j = 0; j < equation.motions.size(); ++j) {
     std::optional<Sensitivity> velocity;

@@ -39,6 +39,12 @@ struct OpaqueSymbol {
   std::vector<GiNaC::ex> args;
 };
 
+/// A long length of the nominal chain (a sum of tool offsets, say) that stands as one symbol.
+struct Abbreviation {
+  GiNaC::realsymbol symbol;
+  GiNaC::ex value;  // mm
+};
+
 /// First-order deviation of the tool point in workpiece coordinates (mm) and rotation vector of the tool
 /// (rad) by one error: dX dY dZ, dA dB dC per unit of the parameter.
 using Sensitivity = std::array<GiNaC::ex, 6>;
@@ -62,6 +68,7 @@ struct ErrorEquation {
   std::vector<ErrorParameter> parameters;
   std::vector<NominalSymbol> nominal;
   std::vector<OpaqueSymbol> opaque;
+  std::vector<Abbreviation> abbreviations;
   std::vector<ElementaryMotion> motions;
   std::array<GiNaC::ex, 3> position;     // nominal tool point in workpiece coordinates, mm
   std::array<GiNaC::ex, 3> tool_axis;    // nominal direction of the tool's z in workpiece coordinates

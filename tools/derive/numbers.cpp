@@ -27,7 +27,62 @@ GiNaC::numeric decimal(double value) {
   return GiNaC::numeric(text.c_str()) * GiNaC::numeric(10).power(GiNaC::numeric(exponent));
 }
 
+/// An angle as quarters * pi/2 + sign * rest.
+struct SplitAngle {
+  int quarters = 0;  // 0..3
+  int sign = 1;
+  GiNaC::ex rest;
+};
+
+/// The number in an expanded sum.
+GiNaC::ex constant_part(const GiNaC::ex& sum) {
+  if (!GiNaC::is_a<GiNaC::add>(sum)) return 0;
+  for (std::size_t i = 0; i < sum.nops(); ++i)
+    if (GiNaC::is_a<GiNaC::numeric>(sum.op(i))) return sum.op(i);
+  return 0;
+}
+
+/// Sign of the symbol of an expanded angle that comes first by name; 1 where it is no plain factor.
+int leading_sign(const GiNaC::ex& angle) {
+  std::string first;
+  int sign = 1;
+  for (GiNaC::const_preorder_iterator it = angle.preorder_begin(); it != angle.preorder_end(); ++it) {
+    if (!GiNaC::is_a<GiNaC::symbol>(*it)) continue;
+    const std::string name = GiNaC::ex_to<GiNaC::symbol>(*it).get_name();
+    if (!first.empty() && name >= first) continue;
+    first = name;
+    const GiNaC::ex factor = angle.coeff(*it, 1).evalf();
+    sign = GiNaC::is_a<GiNaC::numeric>(factor) && factor.info(GiNaC::info_flags::negative) ? -1 : 1;
+  }
+  return sign;
+}
+
+SplitAngle split(const GiNaC::ex& angle_rad) {
+  SplitAngle result;
+  result.rest = angle_rad.expand();
+  // A plain number keeps GiNaC's own tables (sin(pi/6) is 1/2).
+  if (GiNaC::is_a<GiNaC::numeric>(result.rest.evalf())) return result;
+  const GiNaC::ex turns = result.rest.coeff(GiNaC::Pi, 1) * 2;
+  const GiNaC::ex constant = GiNaC::is_a<GiNaC::numeric>(turns) ? turns : constant_part(turns);
+  if (constant.info(GiNaC::info_flags::integer)) {
+    result.quarters = GiNaC::mod(GiNaC::ex_to<GiNaC::numeric>(constant), 4).to_int();
+    result.rest = (result.rest - constant * GiNaC::Pi / 2).expand();
+  }
+  result.sign = leading_sign(result.rest);
+  if (result.sign < 0) result.rest = (-result.rest).expand();
+  return result;
+}
+
 }  // namespace
+
+GiNaC::ex sine(const GiNaC::ex& angle_rad) {
+  const SplitAngle a = split(angle_rad);
+  const int sign = a.quarters >= 2 ? -1 : 1;
+  if (a.quarters % 2 == 0) return sign * a.sign * GiNaC::sin(a.rest);
+  return sign * GiNaC::cos(a.rest);
+}
+
+GiNaC::ex cosine(const GiNaC::ex& angle_rad) { return sine(angle_rad + GiNaC::Pi / 2); }
 
 GiNaC::ex exact_number(double value) {
   const double size = std::abs(value);

@@ -12,4 +12,9 @@ GiNaC::ex exact_number(double value);
 GiNaC::ex to_rad(const GiNaC::ex& angle_deg);
 GiNaC::ex to_deg(const GiNaC::ex& angle_rad);
 
+/// sin and cos with quarter turns taken out and the sign of the angle settled by its first symbol: sin(-C) is
+/// -sin(C), cos(B - pi/2) is sin(B). GiNaC leaves these as they are.
+GiNaC::ex sine(const GiNaC::ex& angle_rad);
+GiNaC::ex cosine(const GiNaC::ex& angle_rad);
+
 }  // namespace vernier

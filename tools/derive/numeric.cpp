@@ -30,6 +30,7 @@ Eigen::MatrixXd sensitivity_at(const ErrorEquation& equation, const States& stat
   };
   for (const NominalSymbol& n : equation.nominal) put(n.symbol, *expression_of(nominal, n.key), n.file_units);
   for (const OpaqueSymbol& o : equation.opaque) put(o.symbol, *o.expr, 1);
+  for (const Abbreviation& a : equation.abbreviations) point[a.symbol] = range_of(a.value, point);
   Eigen::MatrixXd result(6, static_cast<Eigen::Index>(equation.parameters.size()));
   for (Eigen::Index p = 0; p < result.cols(); ++p)
     for (Eigen::Index i = 0; i < 6; ++i) {

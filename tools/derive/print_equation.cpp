@@ -98,6 +98,9 @@ std::string print_text(const DerivedMachine& derived) {
     if (c == 6) text += "\nDeviation of the tool axis:\n";
     text += wrapped(kComponents[c], component_terms(e, c, Notation::kText));
   }
+  if (!e.abbreviations.empty()) text += "\nwhere (mm):\n";
+  for (const Abbreviation& a : e.abbreviations)
+    text += "    " + a.symbol.get_name() + " = " + print(a.value, Notation::kText) + "\n";
   text += "\nErrors, what they are called in the machine file, size assumed:\n";
   for (const ErrorParameter& p : e.parameters)
     text += fmt::format("    {:<10} {:<22} {}{}\n", p.name, p.source, size_text(p),
@@ -116,8 +119,12 @@ std::string print_latex(const DerivedMachine& derived) {
   for (std::size_t c = 0; c < 9; ++c) {
     text += std::string(kLatexComponents[c]) + " ={}& ";
     text += print_component(e, c, Notation::kLatex, " \\\\\n &");
-    text += c == 8 ? "\n" : " \\\\\n";
+    text += c == 8 && e.abbreviations.empty() ? "\n" : " \\\\\n";
   }
+  for (std::size_t i = 0; i < e.abbreviations.size(); ++i)
+    text += print(e.abbreviations[i].symbol, Notation::kLatex) + " ={}& " +
+            print(e.abbreviations[i].value, Notation::kLatex) +
+            (i + 1 == e.abbreviations.size() ? "\n" : " \\\\\n");
   text += "\\end{align*}\n";
   if (derived.bound.bound)
     text += fmt::format("%% neglected second order: at most {:.4g} um, {:.4g} urad\n",
@@ -136,6 +143,8 @@ nlohmann::ordered_json to_json(const DerivedMachine& derived) {
     result[kComponents[c]] = print_component(e, c, Notation::kText);
     result["latex"][kComponents[c]] = print_component(e, c, Notation::kLatex);
   }
+  for (const Abbreviation& a : e.abbreviations)
+    result["where"][a.symbol.get_name()] = print(a.value, Notation::kText);
   result["parameters"] = nlohmann::ordered_json::array();
   for (std::size_t p = 0; p < e.parameters.size(); ++p) {
     const ErrorParameter& q = e.parameters[p];

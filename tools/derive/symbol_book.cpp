@@ -34,9 +34,9 @@ ex operation(Op op, const ex& a, const ex& b) {
     case Op::kPower:
       return GiNaC::pow(a, b);
     case Op::kSin:
-      return GiNaC::sin(to_rad(a));
+      return sine(to_rad(a));
     case Op::kCos:
-      return GiNaC::cos(to_rad(a));
+      return cosine(to_rad(a));
     case Op::kTan:
       return GiNaC::tan(to_rad(a));
     case Op::kAtan2:
@@ -78,7 +78,8 @@ ex SymbolBook::value(const Expr& expr) {
   if (expr.op == Op::kNumber) return exact_number(expr.number);
   if (expr.op == Op::kSymbol) return symbol_value(expr);
   if (is_opaque(expr.op)) return opaque_value(expr);
-  return operation(expr.op, value(*expr.args[0]), expr.args.size() > 1 ? value(*expr.args[1]) : ex(0));
+  const ex first = value(*expr.args[0]);  // in order: errors are listed as they are met
+  return operation(expr.op, first, expr.args.size() > 1 ? value(*expr.args[1]) : ex(0));
 }
 
 ex SymbolBook::symbol_value(const Expr& expr) {

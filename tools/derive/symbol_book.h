@@ -29,6 +29,9 @@ class SymbolBook {
   /// The word under which an error has no derivative, where `coefficient` depends on one; else empty.
   std::string rough_word(const GiNaC::ex& coefficient) const;
 
+  /// `wanted`, or `other` where that is taken; taken from now on.
+  std::string free_name(const std::string& wanted, const std::string& other);
+
   std::vector<ErrorParameter> parameters;
   std::vector<NominalSymbol> nominal;
   std::vector<OpaqueSymbol> opaque;
@@ -43,7 +46,6 @@ class SymbolBook {
                            double file_units);
   GiNaC::ex error_symbol(const Symbol& key, const std::string& name, const std::string& source,
                          const std::string& unit, double file_units);
-  std::string free_name(const std::string& wanted, const std::string& other);
   std::string inferred_unit(const ErrorParameter& parameter,
                             const std::vector<ElementaryMotion>& motions) const;
   double file_size(const ErrorParameter& parameter) const;
@@ -54,7 +56,8 @@ class SymbolBook {
   std::map<std::pair<int, std::size_t>, GiNaC::ex> known_;
   std::map<std::string, GiNaC::ex> known_opaque_;
   std::set<std::string> names_;
-  std::vector<std::pair<GiNaC::realsymbol, std::string>> rough_;  // stands for a derivative that does not exist
+  std::vector<std::pair<GiNaC::realsymbol, std::string>>
+      rough_;  // stands for a derivative that does not exist
 };
 
 }  // namespace vernier
