@@ -30,11 +30,22 @@ class SquaresOfSines : public GiNaC::map_function {
   bool found = false;
 };
 
+/// The factors of a product with every sum in them multiplied out: one form, whatever GiNaC's inner order
+/// (its factors may come back half factored, differently in each run).
+ex with_flat_factors(const ex& product) {
+  if (GiNaC::is_a<GiNaC::power>(product)) return GiNaC::pow(product.op(0).expand(), product.op(1));
+  if (!GiNaC::is_a<GiNaC::mul>(product)) return product.expand();
+  ex result = 1;
+  for (std::size_t i = 0; i < product.nops(); ++i) result *= with_flat_factors(product.op(i));
+  return result;
+}
+
 /// Factors of an expanded sum, sines and the like taken as unknowns; the sum itself where that fails.
 ex factored(const ex& sum) {
   GiNaC::exmap unknowns;
   const ex polynomial = sum.to_polynomial(unknowns);
-  const ex result = GiNaC::factor(polynomial).subs(unknowns, GiNaC::subs_options::no_pattern);
+  const ex result =
+      with_flat_factors(GiNaC::factor(polynomial)).subs(unknowns, GiNaC::subs_options::no_pattern);
   return (result - sum).expand().is_zero() ? result : sum;
 }
 
