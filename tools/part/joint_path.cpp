@@ -106,6 +106,7 @@ std::vector<JointPose> joint_path(const RuledSurface& surface, const Cutter& cut
   std::sort(grid.begin(), grid.end());
   grid.erase(std::unique(grid.begin(), grid.end()), grid.end());
   std::vector<ToolPose> poses;
+  poses.reserve(grid.size());
   for (const double at : grid) {
     const FlankPose pose = flank_pose(surface, cutter, at);
     poses.push_back({pose.tip, pose.axis});
