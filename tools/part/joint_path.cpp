@@ -113,6 +113,7 @@ std::vector<JointPose> joint_path(const RuledSurface& surface, const Cutter& cut
   }
   const std::vector<JointPose> all = back_solution(poses, pivot_mm, solution);
   std::vector<JointPose> asked;
+  asked.reserve(u.size());
   for (const double at : u)
     asked.push_back(
         all[static_cast<std::size_t>(std::lower_bound(grid.begin(), grid.end(), at) - grid.begin())]);
