@@ -39,8 +39,9 @@ Measurement rows_for_fit(const Machine& machine, const Measurement& all) {
 
 void estimate(FitResult& result, const FitProblem& problem, bool has_u) {
   const Eigen::VectorXd values = result.parameters.get(result.machine);
-  result.observability = observe(problem.equations(values).normal);
-  result.chi_square = problem.cost(values);
+  const NormalEquations end = problem.equations(values);
+  result.observability = observe(end.normal);
+  result.chi_square = end.cost;
   result.freedom = static_cast<Eigen::Index>(result.before.count) - result.observability.rank;
   const double reduced = result.freedom > 0 ? result.chi_square / static_cast<double>(result.freedom)
                                             : std::numeric_limits<double>::quiet_NaN();

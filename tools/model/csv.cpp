@@ -1,9 +1,9 @@
 #include "tools/model/csv.h"
 
-#include <algorithm>
 #include <set>
 
 #include "tools/model/error.h"
+#include "tools/model/numbers.h"
 #include "tools/model/units.h"
 
 namespace vernier {
@@ -45,12 +45,6 @@ std::vector<std::string> split(const std::string& text, const Place& place) {
   if (quoted) throw InputError(place, fields.back(), "a closing quote is missing");
   if (!was_quoted) fields.back() = trimmed(fields.back());
   return fields;
-}
-
-bool is_name(const std::string& text) {
-  const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
-  return !text.empty() && letter(text.front()) &&
-         std::all_of(text.begin(), text.end(), [&](char c) { return letter(c) || (c >= '0' && c <= '9'); });
 }
 
 CsvColumn column_of(const std::string& field, const Place& place) {

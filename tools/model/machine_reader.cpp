@@ -14,12 +14,6 @@ namespace {
 
 using Words = std::initializer_list<const char*>;
 
-bool is_name(std::string_view text) {
-  const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
-  if (text.empty() || !letter(text.front())) return false;
-  return std::all_of(text.begin(), text.end(), [&](char c) { return letter(c) || (c >= '0' && c <= '9'); });
-}
-
 /// Walks the elements of one machine file. Every element and attribute is either read, ignored with a note,
 /// or an error.
 class Reader {

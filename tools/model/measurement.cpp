@@ -5,6 +5,7 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <set>
 
 #include "tools/model/csv.h"
 #include "tools/model/files.h"
@@ -19,7 +20,7 @@ constexpr double kAbsent = std::numeric_limits<double>::quiet_NaN();
 /// One file's columns as numbers in their base units; NaN for an empty cell.
 class FileReader {
  public:
-  FileReader(const CsvFile& csv, const Machine& machine) : csv_(csv), machine_(machine) {
+  explicit FileReader(const CsvFile& csv) : csv_(csv) {
     for (std::size_t i = 0; i < csv.columns.size(); ++i) index_[csv.columns[i].name] = i;
   }
 
@@ -28,7 +29,7 @@ class FileReader {
   /// A column that must have this dimension; `required`: an empty cell is an error.
   Column numbers(const std::string& name, Dimension dimension, bool required) {
     const std::size_t column = index_.at(name);
-    used_.insert({name, true});
+    used_.insert(name);
     const Unit unit = *find_unit(csv_.columns[column].unit);
     if (unit.dimension != dimension)
       throw InputError(header(), csv_.columns[column].unit.empty() ? name : name + "[" + unit.name + "]",
@@ -40,12 +41,12 @@ class FileReader {
 
   /// A column as it is, without conversion.
   Column raw(const std::string& name) {
-    used_.insert({name, true});
+    used_.insert(name);
     return read(index_.at(name), 1, 0, false);
   }
 
   std::vector<std::string> words(const std::string& name) {
-    used_.insert({name, true});
+    used_.insert(name);
     const std::size_t column = index_.at(name);
     std::vector<std::string> result;
     for (const auto& row : csv_.rows) result.push_back(row[column]);
@@ -86,15 +87,14 @@ class FileReader {
   }
 
   const CsvFile& csv_;
-  const Machine& machine_;
   std::map<std::string, std::size_t> index_;
-  std::map<std::string, bool> used_;
+  std::set<std::string> used_;
 };
 
 /// Reads one file into a Measurement of its own.
 class Builder {
  public:
-  Builder(const CsvFile& csv, const Machine& machine) : csv_(csv), machine_(machine), reader_(csv, machine) {
+  Builder(const CsvFile& csv, const Machine& machine) : csv_(csv), machine_(machine), reader_(csv) {
     std::vector<double> references;
     for (const Input& input : machine.inputs) references.push_back(input.reference);
     result_.states = make_states(reader_.rows(), machine.axes.size(), references);

@@ -9,6 +9,9 @@ namespace vernier {
 /// (empty, blanks, hex, inf, nan). Independent of the locale.
 std::optional<double> parse_number(std::string_view text);
 
+/// Is this a name of the formats: letters, digits and _, beginning with a letter or _ (ASCII)?
+bool is_name(std::string_view text);
+
 /// The shortest decimal that reads back to the same double.
 std::string number_text(double value);
 

@@ -22,6 +22,15 @@ void measure(const Machine& machine, Measurement& m, double u, std::mt19937_64& 
     m.observations[i].value = truth[static_cast<Eigen::Index>(i)] + noise(random);
 }
 
+/// full_machine() with so much held that the data determine all the rest.
+Machine determined_machine() {
+  Machine machine = support::full_machine();
+  for (BaseShift& shift : machine.base_shifts) shift.hidden = true;
+  machine.tables[1].free.fill(false);
+  machine.statics[0].hidden = true;
+  return machine;
+}
+
 TEST(Fit, FindsTheParametersOfAMachineWithEverything) {
   std::mt19937_64 random(kSeed);
   const Machine truth = support::full_machine();
@@ -52,10 +61,7 @@ TEST(Fit, FindsTheParametersOfAMachineWithEverything) {
 
 TEST(Fit, CeresComesToTheSameMinimum) {
   std::mt19937_64 random(kSeed);
-  Machine truth = support::full_machine();
-  for (BaseShift& shift : truth.base_shifts) shift.hidden = true;  // leaves nothing undetermined
-  truth.tables[1].free.fill(false);
-  truth.statics[0].hidden = true;
+  const Machine truth = determined_machine();
   Measurement m = support::full_measurement(truth, 120, random);
   measure(truth, m, 1e-3, random);
   FitOptions ceres;
@@ -144,10 +150,7 @@ TEST(Fit, APriorHoldsAParameterAsAMeasurementWould) {
 
 TEST(Fit, StagesEndWhereAllAtOnceEnds) {
   std::mt19937_64 random(kSeed);
-  Machine truth = support::full_machine();
-  for (BaseShift& shift : truth.base_shifts) shift.hidden = true;
-  truth.tables[1].free.fill(false);
-  truth.statics[0].hidden = true;
+  const Machine truth = determined_machine();
   Measurement m = support::full_measurement(truth, 120, random);
   measure(truth, m, 1e-3, random);
   Machine start = truth;
@@ -162,10 +165,7 @@ TEST(Fit, StagesEndWhereAllAtOnceEnds) {
 /// The model's own claim about rows that it did not see: readings of the true machine lie within it.
 TEST(Fit, CheckRowsAgreeWithTheClaimedUncertainty) {
   std::mt19937_64 random(kSeed);
-  Machine truth = support::full_machine();
-  for (BaseShift& shift : truth.base_shifts) shift.hidden = true;
-  truth.tables[1].free.fill(false);
-  truth.statics[0].hidden = true;
+  const Machine truth = determined_machine();
   Measurement m = support::full_measurement(truth, 200, random);
   measure(truth, m, 1e-3, random);
   for (std::size_t row = 0; row < m.rows(); row += 4) m.check[row] = 1;
