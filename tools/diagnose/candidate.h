@@ -1,0 +1,90 @@
+#pragma once
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/diagnose/effect.h"
+#include "tools/model/machine.h"
+
+namespace vernier {
+
+/// A degree of freedom of a transform of the chain.
+struct DofPlace {
+  bool workpiece = false;
+  std::size_t transform = 0;  // position in its branch
+  std::size_t dof = 0;        // as Transform::dof
+  bool operator==(const DofPlace&) const = default;
+};
+
+const Transform& transform_at(const Machine& machine, const DofPlace& place);
+const char* dof_name(const Machine& machine, const DofPlace& place);
+/// Is the degree of freedom an angle (deg), no length (mm)?
+bool is_angle(const Machine& machine, const DofPlace& place);
+/// The degree of freedom that an axis moves in the nominal chain; nothing for an axis that moves none.
+std::optional<DofPlace> own_place(const Machine& machine, std::size_t axis);
+bool is_own_place(const Machine& machine, std::size_t axis, const DofPlace& place);
+/// The axis that moves a transform (the first one where there are several).
+std::optional<std::size_t> axis_of(const Machine& machine, const DofPlace& place);
+/// The lengths X Y Z that shift the whole measuring frame, where the chain has such a transform: the first
+/// one of a chain without workpiece branch, the last one of a workpiece branch that does not turn there.
+std::vector<DofPlace> base_places(const Machine& machine);
+/// All degrees of freedom, tool branch first.
+std::vector<DofPlace> all_places(const Machine& machine);
+
+/// What has to be said to put a form of an effect into a machine: the content of an `add` string.
+struct Choice {
+  const Effect* effect = nullptr;
+  const EffectForm* form = nullptr;
+  std::optional<std::size_t> axis, axis2;  // {q}, and the second one of a pair
+  std::vector<std::string> inputs;         // {T} or {L} or {F}, then {S}
+  std::vector<std::string> units;          // of the inputs
+  std::optional<DofPlace> place;
+  std::string sum;                  // {sum}
+  std::optional<double> reference;  // {ref}; none: the declared one, 20 for one not declared
+  double from = 0, to = 0;          // {from} {to} {mid} {hats N}
+  std::vector<std::string> runs;    // {runs}
+  std::map<std::string, double> start;
+  std::string term;  // of a found expression (effect `custom`)
+};
+
+/// A term that an effect adds to one degree of freedom; names are the final ones.
+struct CandidateTerm {
+  DofPlace place;
+  std::string text;
+};
+
+/// A static that an effect brings along.
+struct CandidateUnknown {
+  std::string name, unit;
+  std::string rule;  // name in the catalogue: k, p, tau ...
+  UnknownKind kind = UnknownKind::kLinear;
+  double start = 0;
+  double limit = 0;  // linear: largest plausible size of the term, mm or deg; 0: none
+};
+
+/// An effect at a place of a machine, ready to be evaluated or written.
+struct Candidate {
+  Choice choice;
+  std::vector<CandidateTerm> terms;
+  std::vector<CandidateUnknown> unknowns;
+  std::string label;  // for people: "backlash of X"
+};
+
+/// Fills the placeholders and names the unknowns so that they clash with nothing in the machine. Throws
+/// InputError where the choice leaves something open that the form needs. tool.
+Candidate make_candidate(const Machine& machine, const Choice& choice);
+
+/// The `add` string of a choice, and back (FORMATS section 3). What the string leaves open is filled with the
+/// axis' own transform and the form's first fit. Throws InputError with the offending word. tool.
+std::string add_string(const Machine& machine, const Candidate& candidate);
+Choice parse_add_string(const std::string& text, const Machine& machine, const std::vector<Effect>& effects);
+
+/// The machine file with the candidate's terms, statics (nominal 0) and inputs written into it; nothing else
+/// changes. Throws InputError. tool.
+std::string add_to_machine_text(const std::string& text, const Machine& machine, const Candidate& candidate);
+
+/// The effect of a term found by search: no named physics.
+const Effect& custom_effect();
+
+}  // namespace vernier

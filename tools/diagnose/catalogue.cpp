@@ -1,0 +1,176 @@
+#include <algorithm>
+#include <array>
+#include <sstream>
+
+#include "tools/diagnose/effect.h"
+#include "tools/model/error.h"
+#include "tools/model/files.h"
+#include "tools/model/numbers.h"
+
+namespace vernier {
+
+extern const char* const kBuiltInCatalogue;  // the text of catalogue.txt
+
+namespace {
+
+constexpr std::array<const char*, 11> kPlaceNames = {"own", "cross", "turn", "length", "angle", "base",
+                                                     "sag", "joint", "each", "pair",   "normal"};
+
+/// Reads one catalogue, line by line.
+class CatalogueReader {
+ public:
+  explicit CatalogueReader(const std::string& file) : file_(file) {}
+
+  std::vector<Effect> read(const std::string& text) {
+    std::istringstream lines(text);
+    std::string line;
+    while (std::getline(lines, line)) {
+      ++line_;
+      if (!line.empty() && line.back() == '\r') line.pop_back();
+      const auto first = line.find_first_not_of(" \t");
+      if (first != std::string::npos && line[first] != '#') take(line.substr(first));
+    }
+    if (!effects_.empty()) check(effects_.back());
+    return std::move(effects_);
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& word, const std::string& what) const {
+    throw InputError(Place{file_, line_}, word, what);
+  }
+
+  static std::string next_word(std::string& rest) {
+    const auto end = rest.find_first_of(" \t");
+    std::string word = rest.substr(0, end);
+    const auto begin = end == std::string::npos ? end : rest.find_first_not_of(" \t", end);
+    rest = begin == std::string::npos ? std::string() : rest.substr(begin);
+    return word;
+  }
+
+  void take(std::string rest) {
+    const std::string key = next_word(rest);
+    if (key == "effect") return begin(rest);
+    if (effects_.empty()) fail(key, "an entry begins with a line \"effect ID\"");
+    Effect& now = effects_.back();
+    if (rest.empty()) fail(key, "nothing behind this word");
+    if (key == "title")
+      now.title = rest;
+    else if (key == "formula")
+      now.formula = rest;
+    else if (key == "signature")
+      now.signature = rest;
+    else if (key == "exposed")
+      now.exposed_by = rest;
+    else if (key == "impostors")
+      while (!rest.empty()) now.impostors.push_back(next_word(rest));
+    else if (key == "form")
+      take_form(now, rest);
+    else if (key == "unknown")
+      take_unknown(now, rest);
+    else
+      fail(key, "expected effect, title, formula, signature, exposed, impostors, form or unknown");
+  }
+
+  void begin(const std::string& id) {
+    if (!effects_.empty()) check(effects_.back());
+    if (id.empty() || id.find_first_of(" \t:,=") != std::string::npos) fail(id, "not an effect id");
+    for (const Effect& other : effects_)
+      if (other.id == id) fail(id, "this effect stands twice");
+    effects_.push_back({});
+    effects_.back().id = id;
+  }
+
+  void take_form(Effect& effect, std::string rest) {
+    EffectForm form;
+    form.label = next_word(rest);
+    const std::string place = next_word(rest);
+    const auto found = std::find(kPlaceNames.begin(), kPlaceNames.end(), place);
+    if (found == kPlaceNames.end()) fail(place, "not a place (own, cross, turn, length, angle, base, ...)");
+    if (rest.empty()) fail(form.label, "a form is \"form LABEL PLACE TERM\"");
+    form.place = static_cast<PlaceRule>(found - kPlaceNames.begin());
+    form.term = rest;
+    for (const EffectForm& other : effect.forms)
+      if (other.label == form.label) fail(form.label, "this form stands twice");
+    effect.forms.push_back(form);
+  }
+
+  void take_unknown(Effect& effect, std::string rest) {
+    UnknownRule rule;
+    rule.name = next_word(rest);
+    if (!is_name(rule.name)) fail(rule.name, "not a name");
+    rule.unit = next_word(rest);
+    const std::string kind = next_word(rest);
+    const auto number = [&] {
+      const std::string word = next_word(rest);
+      const auto value = parse_number(word);
+      if (!value) fail(word, "expected a number");
+      return *value;
+    };
+    if (kind == "linear") {
+      rule.kind = UnknownKind::kLinear;
+      if (!rest.empty()) rule.limit = number();
+    } else if (kind == "time") {
+      rule.kind = UnknownKind::kTime;
+    } else if (kind == "travel") {
+      rule.kind = UnknownKind::kTravel;
+    } else if (kind == "period") {
+      rule.kind = UnknownKind::kPeriod;
+    } else if (kind == "grid") {
+      rule.kind = UnknownKind::kGrid;
+      rule.low = number();
+      rule.high = number();
+      const double count = number();
+      if (!(rule.low > 0 && rule.high > rule.low && count >= 2 && count <= 1000))
+        fail(rule.name, "a grid is \"grid LOW HIGH COUNT\" with 0 < LOW < HIGH and COUNT 2 to 1000");
+      rule.count = static_cast<std::size_t>(count);
+    } else {
+      fail(kind, "expected linear, time, travel, period or grid");
+    }
+    effect.unknowns.push_back(rule);
+  }
+
+  void check(const Effect& effect) const {
+    if (effect.forms.empty()) fail(effect.id, "an effect needs a form");
+    if (effect.title.empty() || effect.signature.empty()) fail(effect.id, "title or signature is missing");
+    if (effect.unknowns.empty()) fail(effect.id, "an effect needs an unknown");
+  }
+
+  std::string file_;
+  std::size_t line_ = 0;
+  std::vector<Effect> effects_;
+};
+
+}  // namespace
+
+const UnknownRule* Effect::find_unknown(std::string_view name) const {
+  for (const UnknownRule& rule : unknowns)
+    if (rule.name == name) return &rule;
+  return nullptr;
+}
+
+const char* place_name(PlaceRule rule) { return kPlaceNames[static_cast<std::size_t>(rule)]; }
+
+std::vector<Effect> parse_effects(const std::string& text, const std::string& file) {
+  return CatalogueReader(file).read(text);
+}
+
+const std::vector<Effect>& built_in_effects() {
+  static const std::vector<Effect> effects = parse_effects(kBuiltInCatalogue, "catalogue.txt");
+  return effects;
+}
+
+std::vector<Effect> effect_catalogue(const std::vector<std::string>& files) {
+  std::vector<Effect> all = built_in_effects();
+  for (const std::string& file : files)
+    for (Effect& effect : parse_effects(read_file(file), file)) {
+      const auto same =
+          std::find_if(all.begin(), all.end(), [&](const Effect& e) { return e.id == effect.id; });
+      if (same == all.end())
+        all.push_back(std::move(effect));
+      else
+        *same = std::move(effect);
+    }
+  return all;
+}
+
+}  // namespace vernier

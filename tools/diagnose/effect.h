@@ -1,0 +1,74 @@
+#pragma once
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace vernier {
+
+/// Where a form of an effect may act. `q` is the axis that drives it.
+enum class PlaceRule : std::uint8_t {
+  kOwn,       // the degree of freedom that the axis q itself moves
+  kCross,     // the other lengths of q's transform
+  kTurn,      // the other angles of q's transform
+  kLength,    // every length of the chain
+  kAngle,     // every angle of the chain
+  kBase,      // lengths that shift the whole measuring frame
+  kSag,       // angles about a horizontal axis and lengths along gravity, of any transform
+  kJoint,     // the angle that a rotary axis moves, where gravity has a moment about it
+  kEachAxis,  // together at the own degree of freedom of every linear axis, one coefficient
+  kPair,      // together at the own degrees of freedom of two linear axes
+  kNormal,    // together at the three lengths of the measuring frame, along nx ny nz
+};
+
+/// How the unknowns of a form are found.
+enum class UnknownKind : std::uint8_t {
+  kLinear,  // the term is linear in it
+  kTime,    // a time constant: scanned from the spacing of the rows to a few times their duration, s
+  kTravel,  // a decay length: scanned from the spacing to the range of q
+  kPeriod,  // a period of q: scanned from twice the spacing to most of the range; a whole fraction of a turn
+  kGrid,    // scanned over the values that the catalogue names
+};
+
+struct UnknownRule {
+  std::string name, unit;  // unit may hold {dof} {q} {T}
+  UnknownKind kind = UnknownKind::kLinear;
+  double limit = 0;          // kLinear: largest plausible size of the whole term, mm or deg; 0: none
+  double low = 0, high = 0;  // kGrid
+  std::size_t count = 0;     // kGrid, logarithmic
+};
+
+/// One way to write an effect. The term is an expression with placeholders: {q} the driving axis, {T} {S}
+/// inputs that are temperatures, {L} a load, {F} an accelerometer feature, {ref} the reference of {T},
+/// {mid} {from} {to} of the range of {q}, {hats N} a sum of N hat functions over that range, {runs} a sum of
+/// one step a run, {sum} the sum of parallel joints up to {q} and beyond, {n} nx, ny or nz.
+struct EffectForm {
+  std::string label;
+  PlaceRule place = PlaceRule::kOwn;
+  std::string term;
+};
+
+/// An entry of the catalogue: what a user may be told is missing.
+struct Effect {
+  std::string id, title, formula, signature, exposed_by;
+  std::vector<std::string> impostors;
+  std::vector<EffectForm> forms;
+  std::vector<UnknownRule> unknowns;
+
+  const UnknownRule* find_unknown(std::string_view name) const;
+};
+
+/// Effects as a text in the format of tools/docs/effects.md. `file` is for messages. Throws InputError with
+/// file, line and word. tool.
+std::vector<Effect> parse_effects(const std::string& text, const std::string& file);
+
+/// The catalogue that comes with the program.
+const std::vector<Effect>& built_in_effects();
+
+/// The catalogue, with the entries of users' files in addition (an entry with a known id replaces it).
+std::vector<Effect> effect_catalogue(const std::vector<std::string>& files);
+
+/// The name of a place rule as the catalogue writes it.
+const char* place_name(PlaceRule rule);
+
+}  // namespace vernier

@@ -1,0 +1,425 @@
+#include "tools/diagnose/enumerate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "tools/model/chain_rows.h"
+#include "tools/model/xml_text.h"
+
+namespace vernier {
+namespace {
+
+/// Two degrees of freedom whose effects on all observations differ by less than this are one.
+constexpr double kSamePlace = 1e-7;
+constexpr double kShare = 0.7;  // of a unit vector along or across gravity
+
+bool contains(const std::string& text, std::string_view part) { return text.find(part) != std::string::npos; }
+
+std::vector<double> logarithmic(double low, double high, std::size_t count) {
+  std::vector<double> grid;
+  for (std::size_t i = 0; i < count; ++i)
+    grid.push_back(low * std::pow(high / low, static_cast<double>(i) / static_cast<double>(count - 1)));
+  return grid;
+}
+
+/// Lists the candidates of one survey.
+class Enumerator {
+ public:
+  Enumerator(const Evidence& evidence, const std::vector<Effect>& effects)
+      : evidence_(evidence), machine_(evidence.machine()), effects_(effects) {
+    for (std::size_t axis = 0; axis < machine_.axes.size(); ++axis) {
+      own_.push_back(own_place(machine_, axis));
+      range_.push_back(evidence.range_of(axis));
+    }
+    find_distinct();
+    find_sag();
+    find_sums();
+    has_normals_ =
+        std::any_of(evidence.measurement().observations.begin(), evidence.measurement().observations.end(),
+                    [](const Observation& o) { return o.kind == ObservationKind::kD; });
+  }
+
+  std::vector<ScannedCandidate> all() {
+    for (const Effect& effect : effects_)
+      for (const EffectForm& form : effect.forms) {
+        Choice choice;
+        choice.effect = &effect;
+        choice.form = &form;
+        with_inputs(choice);
+      }
+    return std::move(list_);
+  }
+
+ private:
+  bool answers(const DofPlace& place) const {
+    return evidence_.response(evidence_.index_of(place)).squaredNorm() > 0;
+  }
+
+  void find_distinct() {
+    std::vector<Eigen::VectorXd> seen;
+    for (std::size_t i = 0; i < evidence_.places().size(); ++i) {
+      Eigen::VectorXd column = evidence_.response(i);
+      const double norm = column.norm();
+      if (norm == 0) continue;
+      column /= norm;
+      const bool angle = is_angle(machine_, evidence_.places()[i]);
+      bool known = false;
+      for (std::size_t k = 0; k < seen.size() && !known; ++k)
+        known = is_angle(machine_, distinct_[k]) == angle && 1 - std::abs(column.dot(seen[k])) < kSamePlace;
+      if (known) continue;
+      seen.push_back(column);
+      distinct_.push_back(evidence_.places()[i]);
+    }
+  }
+
+  /// Which places turn about a horizontal axis or move along gravity, on average over some rows.
+  void find_sag() {
+    Machine probed = machine_;
+    std::vector<char> active(probed.statics.size(), 0);
+    for (const DofPlace& place : evidence_.places()) {
+      Static probe;
+      probe.name = "probe";
+      probed.statics.push_back(probe);
+      active.push_back(1);
+      Expr symbol;
+      symbol.op = Op::kSymbol;
+      symbol.symbol = {SymbolKind::kStatic, probed.statics.size() - 1};
+      auto& branch = place.workpiece ? probed.workpiece : probed.tool;
+      ExprPtr& dof = branch[place.transform].dof[place.dof];
+      dof = make_node(Op::kAdd, {dof, std::make_shared<const Expr>(symbol)});
+    }
+    active.resize(probed.statics.size() + 6 * probed.axes.size(), 0);
+    Machine table = machine_;
+    table.tool.clear();  // W^-1 alone: from the base frame to the workpiece
+    const ChainRows chain(probed, evidence_.measurement().states, active);
+    const ChainRows base(table, evidence_.measurement().states);
+    const Eigen::Vector3d gravity(machine_.gravity[0], machine_.gravity[1], machine_.gravity[2]);
+    std::vector<double> across(evidence_.places().size(), 0), along(across.size(), 0);
+    const std::size_t stride = std::max<std::size_t>(1, evidence_.measurement().rows() / 50);
+    double count = 0;
+    std::vector<Twist> twists;
+    for (std::size_t row = 0; row < evidence_.measurement().rows(); row += stride) {
+      chain.pose(row, twists);
+      const Eigen::Vector3d down = base.pose(row).rotation * gravity;
+      ++count;
+      for (std::size_t k = 0; k < twists.size(); ++k) {
+        const std::size_t place = chain.keys()[k] - machine_.statics.size();
+        if (is_angle(machine_, evidence_.places()[place])) {
+          if (twists[k].rotation.norm() > 0)
+            across[place] +=
+                std::sqrt(1 - std::min(1.0, std::pow(twists[k].rotation.normalized().dot(down), 2)));
+        } else if (twists[k].point.norm() > 0) {
+          along[place] += std::abs(twists[k].point.normalized().dot(down));
+        }
+      }
+    }
+    for (std::size_t i = 0; i < across.size(); ++i) {
+      const bool sags =
+          is_angle(machine_, evidence_.places()[i]) ? across[i] > kShare * count : along[i] > kShare * count;
+      if (sags) sag_.push_back(evidence_.places()[i]);
+    }
+  }
+
+  /// Sums of the angles of parallel joints that follow one another: the direction of a link depends on them.
+  void find_sums() {
+    sums_.resize(machine_.axes.size());
+    std::vector<std::size_t> rotary;
+    for (std::size_t axis = 0; axis < machine_.axes.size(); ++axis)
+      if (machine_.axes[axis].rotary && own_[axis] && !own_[axis]->workpiece) rotary.push_back(axis);
+    std::sort(rotary.begin(), rotary.end(),
+              [&](std::size_t a, std::size_t b) { return own_[a]->transform < own_[b]->transform; });
+    const Machine nominal = nominal_machine(machine_);
+    std::vector<double> references;
+    for (const Input& input : nominal.inputs) references.push_back(input.reference);
+    const States zero = make_states(1, nominal.axes.size(), references);
+    Machine probed = nominal;
+    std::vector<char> active(probed.statics.size(), 0);
+    for (const std::size_t axis : rotary) {
+      Static probe;
+      probe.name = "probe";
+      probed.statics.push_back(probe);
+      active.push_back(1);
+      Expr symbol;
+      symbol.op = Op::kSymbol;
+      symbol.symbol = {SymbolKind::kStatic, probed.statics.size() - 1};
+      ExprPtr& dof = probed.tool[own_[axis]->transform].dof[own_[axis]->dof];
+      dof = make_node(Op::kAdd, {dof, std::make_shared<const Expr>(symbol)});
+    }
+    active.resize(probed.statics.size() + 6 * probed.axes.size(), 0);
+    std::vector<Eigen::Vector3d> direction(rotary.size(), Eigen::Vector3d::Zero());
+    const ChainRows chain(probed, zero, active);
+    std::vector<Twist> twists;
+    chain.pose(0, twists);
+    for (std::size_t k = 0; k < twists.size(); ++k)
+      direction[chain.keys()[k] - machine_.statics.size()] = twists[k].rotation.normalized();
+    for (std::size_t i = 0; i < rotary.size(); ++i) {
+      // From the first joint that is parallel to this one without a break, up to each joint at or behind it.
+      std::size_t first = i;
+      while (first > 0 && std::abs(direction[first - 1].dot(direction[i])) > 0.999) --first;
+      for (std::size_t last = i; last < rotary.size(); ++last) {
+        if (std::abs(direction[last].dot(direction[i])) < 0.999) break;
+        std::string sum;
+        for (std::size_t k = first; k <= last; ++k) {
+          const bool minus = direction[k].dot(direction[first]) < 0;
+          sum += (minus ? "-" : k > first ? "+" : "") + machine_.axes[rotary[k]].name;
+        }
+        sums_[rotary[i]].push_back(sum);
+      }
+    }
+  }
+
+  void with_inputs(Choice choice) {
+    const std::string& term = choice.form->term;
+    const auto needs = [&](const char* mark) { return contains(term, mark); };
+    if (!needs("{T}") && !needs("{L}") && !needs("{F}")) return with_axis(choice);
+    const InputClass wanted = needs("{T}")   ? InputClass::kTemperature
+                              : needs("{L}") ? InputClass::kLoad
+                                             : InputClass::kFeature;
+    for (std::size_t i = 0; i < machine_.inputs.size(); ++i) {
+      if (class_of_input(machine_.inputs[i]) != wanted) continue;
+      Choice one = choice;
+      one.inputs = {machine_.inputs[i].name};
+      one.units = {machine_.inputs[i].unit};
+      if (needs("{ref}")) one.reference = i < evidence_.declared_inputs() ? machine_.inputs[i].reference : 20;
+      if (!needs("{S}")) {
+        with_axis(one);
+        continue;
+      }
+      for (std::size_t k = i + 1; k < machine_.inputs.size(); ++k) {
+        if (class_of_input(machine_.inputs[k]) != wanted) continue;
+        Choice two = one;
+        two.inputs.push_back(machine_.inputs[k].name);
+        two.units.push_back(machine_.inputs[k].unit);
+        with_axis(two);
+      }
+    }
+  }
+
+  void with_axis(Choice choice) {
+    const EffectForm& form = *choice.form;
+    const bool driven = contains(form.term, "{q}") || contains(form.term, "{hats") ||
+                        form.place == PlaceRule::kOwn || form.place == PlaceRule::kCross ||
+                        form.place == PlaceRule::kTurn || form.place == PlaceRule::kJoint;
+    if (form.place == PlaceRule::kEachAxis || !driven) return with_place(choice);
+    for (std::size_t axis = 0; axis < machine_.axes.size(); ++axis) {
+      if (!own_[axis]) continue;
+      Choice one = choice;
+      one.axis = axis;
+      one.from = range_[axis].low;
+      one.to = range_[axis].high;
+      if (form.place != PlaceRule::kPair) {
+        with_place(one);
+        continue;
+      }
+      for (std::size_t other = axis + 1; other < machine_.axes.size(); ++other) {
+        if (!own_[other] || machine_.axes[axis].rotary || machine_.axes[other].rotary) continue;
+        Choice two = one;
+        two.axis2 = other;
+        with_place(two);
+      }
+    }
+  }
+
+  void with_place(Choice& choice) {
+    const EffectForm& form = *choice.form;
+    const auto at_each = [&](const std::vector<DofPlace>& places, const auto& admitted) {
+      for (const DofPlace& place : places)
+        if (answers(place) && admitted(place)) {
+          Choice one = choice;
+          one.place = place;
+          if (!one.axis) one.axis = std::nullopt;
+          with_sum(one);
+        }
+    };
+    const auto own = choice.axis ? own_[*choice.axis] : std::nullopt;
+    const auto at_own_transform = [&](const DofPlace& p) {
+      return own && p.workpiece == own->workpiece && p.transform == own->transform;
+    };
+    const bool rotary = choice.axis && machine_.axes[*choice.axis].rotary;
+    switch (form.place) {
+      case PlaceRule::kOwn:
+        if (needs_linear(form) && rotary) return;
+        at_each({*own}, [](const DofPlace&) { return true; });
+        break;
+      case PlaceRule::kCross:
+        at_each(evidence_.places(), [&](const DofPlace& p) {
+          return at_own_transform(p) && !(p == *own) && !is_angle(machine_, p);
+        });
+        break;
+      case PlaceRule::kTurn:
+        at_each(evidence_.places(), [&](const DofPlace& p) {
+          return at_own_transform(p) && !(p == *own) && is_angle(machine_, p);
+        });
+        break;
+      case PlaceRule::kLength:
+      case PlaceRule::kAngle:
+        at_each(distinct_, [&](const DofPlace& p) {
+          return is_angle(machine_, p) == (form.place == PlaceRule::kAngle);
+        });
+        break;
+      case PlaceRule::kBase:
+        at_each(base_places(machine_), [](const DofPlace&) { return true; });
+        break;
+      case PlaceRule::kSag:
+        if (contains(form.term, "sin(") || contains(form.term, "cos(") ? !rotary : rotary) return;
+        at_each(distinct_, [&](const DofPlace& p) {
+          const bool sags = std::find(sag_.begin(), sag_.end(), p) != sag_.end();
+          return sags && (rotary ? !(p == *own) : !at_own_transform(p));
+        });
+        break;
+      case PlaceRule::kJoint:
+        if (!rotary || std::find(sag_.begin(), sag_.end(), *own) == sag_.end()) return;
+        at_each({*own}, [](const DofPlace&) { return true; });
+        break;
+      case PlaceRule::kNormal:
+        if (has_normals_ && !base_places(machine_).empty()) with_sum(choice);
+        break;
+      case PlaceRule::kEachAxis:
+      case PlaceRule::kPair:
+        with_sum(choice);
+    }
+  }
+
+  /// Effects that speak of lengths (thermal growth, squareness) mean no rotary axis.
+  static bool needs_linear(const EffectForm& form) { return contains(form.term, "{T}"); }
+
+  void with_sum(const Choice& choice) {
+    if (!contains(choice.form->term, "{sum}")) return with_runs(choice);
+    for (const std::string& sum : sums_[*choice.axis]) {
+      // The two-link forms say the same as one link where the sum is the joint itself.
+      if (contains(choice.form->term, "{q}") && sum == machine_.axes[*choice.axis].name) continue;
+      Choice one = choice;
+      one.sum = sum;
+      with_runs(one);
+    }
+  }
+
+  void with_runs(const Choice& choice) {
+    if (!contains(choice.form->term, "{runs}")) return with_hats(choice);
+    std::set<std::size_t> seen;
+    for (const std::size_t row : evidence_.rows()) seen.insert(evidence_.measurement().states.run[row]);
+    if (seen.size() < 2) return;
+    const auto& names = evidence_.measurement().states.run_names;
+    Choice all = choice;
+    for (const std::size_t run : seen) {
+      Choice one = choice;
+      one.runs = {names[run]};
+      finish(one);
+      if (run != *seen.begin()) all.runs.push_back(names[run]);
+    }
+    constexpr std::size_t kMostRuns = 12;
+    if (all.runs.size() > 1 && all.runs.size() <= kMostRuns) finish(all);
+  }
+
+  void with_hats(const Choice& choice) {
+    if (contains(choice.form->term, "{hats")) {
+      const auto at = choice.form->term.find("{hats ");
+      const double nodes = std::stod(choice.form->term.substr(at + 6));
+      const Evidence::Range& range = range_[*choice.axis];
+      if (range.step <= 0 || (range.high - range.low) / range.step + 1 < nodes) return;
+      if (nodes * 4 > static_cast<double>(evidence_.rows().size())) return;
+    }
+    finish(choice);
+  }
+
+  std::vector<double> grid_of(const Choice& choice, const UnknownRule& rule) const {
+    switch (rule.kind) {
+      case UnknownKind::kTime: {
+        const Evidence::Range range = evidence_.time_range();
+        const double length = range.high - range.low;
+        if (length <= 0) return {};
+        return logarithmic(std::max(3 * range.step, length / 200), 3 * length, 16);
+      }
+      case UnknownKind::kTravel: {
+        const Evidence::Range& range = range_[*choice.axis];
+        const double length = range.high - range.low;
+        if (length <= 0) return {};
+        return logarithmic(length / 500, length / 2, 14);
+      }
+      case UnknownKind::kPeriod:
+        return periods(*choice.axis);
+      case UnknownKind::kGrid:
+        return logarithmic(rule.low, rule.high, rule.count);
+      default:
+        return {};
+    }
+  }
+
+  std::vector<double> periods(std::size_t axis) const {
+    const Evidence::Range& range = range_[axis];
+    const double length = range.high - range.low;
+    std::vector<double> grid;
+    if (length <= 0 || range.step <= 0) return grid;
+    constexpr double kMostPeriods = 100, kPerRange = 2.5, kLongest = 0.67;
+    const double fastest = std::min(1 / (2.1 * range.step), kMostPeriods / length);
+    for (double f = 1 / (kLongest * length); f <= fastest; f += 1 / (kPerRange * length))
+      grid.push_back(1 / f);
+    if (machine_.axes[axis].rotary)
+      for (double harmonic = 1; harmonic <= 12; ++harmonic)
+        if (harmonic / 360 <= fastest && length > 90 / harmonic) grid.push_back(360 / harmonic);
+    std::sort(grid.begin(), grid.end());
+    return grid;
+  }
+
+  void finish(Choice choice) {
+    // Starts of the scanned unknowns: any value of the grid, to make the candidate whole.
+    ScannedCandidate item;
+    for (const UnknownRule& rule : choice.effect->unknowns) {
+      if (rule.kind == UnknownKind::kLinear || !uses(choice.form->term, rule.name)) continue;
+      const std::vector<double> grid = grid_of(choice, rule);
+      if (grid.empty()) return;
+      choice.start[rule.name] = grid[grid.size() / 2];
+    }
+    item.candidate = make_candidate(machine_, choice);
+    for (const CandidateUnknown& unknown : item.candidate.unknowns)
+      if (unknown.kind != UnknownKind::kLinear)
+        item.grid.push_back(grid_of(choice, *choice.effect->find_unknown(unknown.rule)));
+    item.may_lose_columns = contains(choice.form->term, "{hats") || choice.runs.size() > 1;
+    list_.push_back(std::move(item));
+  }
+
+  static bool uses(const std::string& term, const std::string& name) {
+    for (std::size_t at = term.find(name); at != std::string::npos; at = term.find(name, at + 1)) {
+      const auto is_part = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; };
+      const bool before = at > 0 && is_part(term[at - 1]);
+      const bool after = at + name.size() < term.size() && is_part(term[at + name.size()]);
+      if (!before && !after) return true;
+    }
+    return false;
+  }
+
+  const Evidence& evidence_;
+  const Machine& machine_;
+  const std::vector<Effect>& effects_;
+  std::vector<std::optional<DofPlace>> own_;
+  std::vector<Evidence::Range> range_;
+  std::vector<DofPlace> distinct_, sag_;
+  std::vector<std::vector<std::string>> sums_;
+  bool has_normals_ = false;
+  std::vector<ScannedCandidate> list_;
+};
+
+}  // namespace
+
+InputClass class_of_input(const Input& input) {
+  const std::string& unit = input.unit;
+  if (unit == "degC" || unit == "K") return InputClass::kTemperature;
+  if (unit == "N" || unit == "kg") return InputClass::kLoad;
+  if (unit == "mm/s^2" || unit == "m/s^2" || unit == "deg/s^2" || unit == "g") return InputClass::kFeature;
+  if (!unit.empty() && unit != "V" && unit != "mV") return InputClass::kOther;
+  std::string lower;
+  for (const char c : input.name) lower += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const auto has = [&](const char* part) { return contains(lower, part); };
+  if (has("temp") || input.name.rfind("T_", 0) == 0) return InputClass::kTemperature;
+  if (has("load") || has("force") || has("mass") || has("torque") || has("weight")) return InputClass::kLoad;
+  if (has("vib") || has("acc") || has("rms")) return InputClass::kFeature;
+  return InputClass::kOther;
+}
+
+std::vector<ScannedCandidate> enumerate_candidates(const Evidence& evidence,
+                                                   const std::vector<Effect>& effects) {
+  return Enumerator(evidence, effects).all();
+}
+
+}  // namespace vernier

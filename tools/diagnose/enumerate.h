@@ -1,0 +1,28 @@
+#pragma once
+#include <vector>
+
+#include "tools/diagnose/candidate.h"
+#include "tools/diagnose/evidence.h"
+
+namespace vernier {
+
+/// A candidate, and the values over which its scanned unknowns are looked for.
+struct ScannedCandidate {
+  Candidate candidate;
+  std::vector<std::vector<double>> grid;  // one list per unknown that is no coefficient, increasing
+  bool may_lose_columns = false;          // hats: the model may absorb a part of their span
+};
+
+/// Every effect of the catalogue at every place of the machine that the rule of its form admits and that the
+/// rows can tell apart, with every logged column as input whose unit fits. tool.
+std::vector<ScannedCandidate> enumerate_candidates(const Evidence& evidence,
+                                                   const std::vector<Effect>& effects);
+
+/// Products of up to three recorded quantities at every place: the search beyond the catalogue.
+std::vector<ScannedCandidate> enumerate_products(const Evidence& evidence);
+
+/// What a logged column is, by its unit (by its name where it has none).
+enum class InputClass : std::uint8_t { kTemperature, kLoad, kFeature, kOther };
+InputClass class_of_input(const Input& input);
+
+}  // namespace vernier

@@ -1,0 +1,231 @@
+#include "tools/diagnose/evidence.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "tools/fit/statistics.h"
+#include "tools/model/evaluate.h"
+#include "tools/model/prediction.h"
+
+namespace vernier {
+namespace {
+
+/// Directions of the scaled Jacobian below this share of the largest cannot be told from rounding.
+constexpr double kAbsorbCutoff = 1e-6;
+/// Blocks that a single run is cut into for leaving out.
+constexpr int kBlocksOfOneRun = 5;
+/// More numbers than this in the Jacobian: every k-th row is enough to name an effect.
+constexpr double kMostNumbers = 3e7;
+
+/// All free parameters held: only the probes of a machine are left free.
+void hold_all(Machine& machine) {
+  for (Static& item : machine.statics) item.hidden = true;
+  for (Table& table : machine.tables) table.free = {};
+  for (BaseShift& shift : machine.base_shifts) shift.hidden = true;
+}
+
+Measurement thinned(const Measurement& all, std::size_t parameters) {
+  const double numbers = static_cast<double>(all.observations.size()) * static_cast<double>(parameters + 60);
+  if (numbers <= kMostNumbers) return all;
+  const auto stride = static_cast<std::size_t>(std::ceil(numbers / kMostNumbers));
+  std::vector<std::size_t> keep;
+  for (std::size_t row = 0; row < all.rows(); row += stride) keep.push_back(row);
+  return select_rows(all, keep);
+}
+
+std::vector<std::string> runs_with_fit_rows(const Measurement& m) {
+  std::vector<std::string> runs;
+  std::vector<char> seen(m.states.run_names.size(), 0);
+  for (const Observation& o : m.observations)
+    if (m.check[o.row] == 0) seen[m.states.run[o.row]] = 1;
+  for (std::size_t i = 0; i < seen.size(); ++i)
+    if (seen[i] != 0) runs.push_back(m.states.run_names[i]);
+  return runs;
+}
+
+}  // namespace
+
+Evidence::Evidence(const Machine& fitted, const Measurement& measurement) : machine_(fitted) {
+  const ParameterSet parameters(fitted, runs_with_fit_rows(measurement));
+  measurement_ = thinned(measurement, parameters.size());
+  declared_ = fitted.inputs.size();
+  noise_known_ = has_uncertainty(measurement_);
+  take_inputs();
+  const Eigen::VectorXd weights = fit_weights(measurement_);
+  for (std::size_t i = 0; i < measurement_.observations.size(); ++i)
+    if (weights[static_cast<Eigen::Index>(i)] > 0) {
+      observation_.push_back(i);
+      rows_.push_back(measurement_.observations[i].row);
+    }
+  weight_ = weights(observation_);
+  respond();
+  absorb();
+  split_blocks();
+}
+
+void Evidence::take_inputs() {
+  for (const CandidateInput& candidate : measurement_.candidates) {
+    Input input;
+    input.name = candidate.name;
+    input.unit = candidate.unit;
+    machine_.inputs.push_back(input);
+    Column column = candidate.value;
+    // An empty cell says nothing: the column's mean makes the least of it.
+    double sum = 0, count = 0;
+    for (const double value : column)
+      if (std::isfinite(value)) {
+        sum += value;
+        ++count;
+      }
+    for (double& value : column)
+      if (!std::isfinite(value)) value = count > 0 ? sum / count : 0;
+    measurement_.states.input.push_back(column);
+  }
+  measurement_.candidates.clear();
+}
+
+void Evidence::respond() {
+  places_ = all_places(machine_);
+  Machine probed = machine_;
+  hold_all(probed);
+  for (std::size_t i = 0; i < places_.size(); ++i) {
+    Static probe;
+    probe.name = "probe of place " + std::to_string(i);  // no name that an expression could write
+    probed.statics.push_back(probe);
+    Expr symbol;
+    symbol.op = Op::kSymbol;
+    symbol.name = probe.name;
+    symbol.symbol = {SymbolKind::kStatic, probed.statics.size() - 1};
+    auto& branch = places_[i].workpiece ? probed.workpiece : probed.tool;
+    ExprPtr& dof = branch[places_[i].transform].dof[places_[i].dof];
+    dof = make_node(Op::kAdd, {dof, std::make_shared<const Expr>(symbol)});
+  }
+  const ParameterSet probes(probed, {});
+  const Linearisation linear = linearise(probed, measurement_, probes);
+  const Eigen::MatrixXd all(linear.jacobian);
+  response_.resize(static_cast<Eigen::Index>(observation_.size()), all.cols());
+  residual_.resize(response_.rows());
+  for (std::size_t i = 0; i < observation_.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i), from = static_cast<Eigen::Index>(observation_[i]);
+    response_.row(at) = weight_[at] * all.row(from);
+    residual_[at] = weight_[at] * (measurement_.observations[observation_[i]].value - linear.predicted[from]);
+  }
+}
+
+void Evidence::absorb() {
+  const ParameterSet parameters(machine_, runs_with_fit_rows(measurement_));
+  absorbed_.resize(residual_.size(), 0);
+  if (parameters.size() == 0) return;
+  const Linearisation linear = linearise(machine_, measurement_, parameters);
+  const Eigen::MatrixXd all(linear.jacobian);
+  Eigen::MatrixXd jacobian(residual_.size(), all.cols());
+  for (std::size_t i = 0; i < observation_.size(); ++i)
+    jacobian.row(static_cast<Eigen::Index>(i)) =
+        weight_[static_cast<Eigen::Index>(i)] * all.row(static_cast<Eigen::Index>(observation_[i]));
+  Eigen::VectorXd scale = jacobian.colwise().norm();
+  const double tiny = 1e-12 * std::max(scale.maxCoeff(), 1e-300);
+  for (double& s : scale) s = s > tiny ? 1 / s : 0;
+  jacobian *= scale.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(jacobian.transpose() * jacobian);
+  const Eigen::VectorXd& values = eigen.eigenvalues();
+  const double limit = kAbsorbCutoff * kAbsorbCutoff * values[values.size() - 1];
+  Eigen::Index lost = 0;
+  while (lost < values.size() && values[lost] < limit) ++lost;
+  const Eigen::Index rank = std::min(values.size() - lost, residual_.size());
+  const Eigen::MatrixXd seen = jacobian * (eigen.eigenvectors().rightCols(rank) *
+                                           values.tail(rank).cwiseSqrt().cwiseInverse().asDiagonal());
+  // Once more through a factorisation: the weak directions come out of the eigenvectors with few digits.
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(seen);
+  absorbed_ = qr.householderQ() * Eigen::MatrixXd::Identity(residual_.size(), rank);
+  residual_ -= absorbed_ * (absorbed_.transpose() * residual_);
+}
+
+void Evidence::split_blocks() {
+  std::map<std::size_t, int> index;
+  for (const std::size_t row : rows_) index.emplace(measurement_.states.run[row], 0);
+  block_.resize(rows_.size());
+  if (index.size() > 1) {
+    int next = 0;
+    for (auto& [run, block] : index) block = next++;
+    for (std::size_t i = 0; i < rows_.size(); ++i) block_[i] = index[measurement_.states.run[rows_[i]]];
+    blocks_ = next;
+    return;
+  }
+  std::vector<std::size_t> order = rows_;
+  order.erase(std::unique(order.begin(), order.end()), order.end());
+  blocks_ = std::min<int>(kBlocksOfOneRun, static_cast<int>(order.size()));
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    const auto at =
+        static_cast<std::size_t>(std::lower_bound(order.begin(), order.end(), rows_[i]) - order.begin());
+    block_[i] = static_cast<int>(at * static_cast<std::size_t>(blocks_) / order.size());
+  }
+}
+
+std::size_t Evidence::index_of(const DofPlace& place) const {
+  return static_cast<std::size_t>(std::find(places_.begin(), places_.end(), place) - places_.begin());
+}
+
+Eigen::MatrixXd Evidence::columns(const Candidate& candidate, const std::vector<double>& scanned) const {
+  Machine scratch = machine_;
+  std::vector<char> active(scratch.statics.size(), 0);
+  std::vector<std::size_t> linear;
+  std::size_t next = 0;
+  for (const CandidateUnknown& unknown : candidate.unknowns) {
+    Static item;
+    item.name = unknown.name;
+    if (unknown.kind == UnknownKind::kLinear)
+      linear.push_back(scratch.statics.size());
+    else
+      item.value = scanned.at(next++);
+    active.push_back(unknown.kind == UnknownKind::kLinear ? 1 : 0);
+    scratch.statics.push_back(item);
+  }
+  active.resize(scratch.statics.size() + 6 * scratch.axes.size(), 0);
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(residual_.size(), static_cast<Eigen::Index>(linear.size()));
+  Evaluator evaluate(scratch, measurement_.states, active);
+  for (const CandidateTerm& term : candidate.terms) {
+    const ExprPtr expr = parse_expression_for(scratch, term.text);
+    const Dual dual = evaluate(*expr);
+    const auto answer = response(index_of(term.place));
+    for (const auto& [key, value] : dual.by) {
+      const auto found = std::find(linear.begin(), linear.end(), key);
+      if (found == linear.end()) continue;
+      auto column = result.col(found - linear.begin());
+      for (std::size_t i = 0; i < rows_.size(); ++i) {
+        const auto at = static_cast<Eigen::Index>(i);
+        column[at] += answer[at] * value[rows_[i]];
+      }
+    }
+  }
+  return result;
+}
+
+Evidence::Range Evidence::range_of(std::size_t axis) const {
+  std::set<double> values;
+  for (const std::size_t row : rows_)
+    values.insert(measurement_.states.axis[axis][static_cast<Eigen::Index>(row)]);
+  Range range;
+  if (values.empty()) return range;
+  range.low = *values.begin();
+  range.high = *values.rbegin();
+  range.step = (range.high - range.low) / std::max<double>(1, static_cast<double>(values.size() - 1));
+  return range;
+}
+
+Evidence::Range Evidence::time_range() const {
+  Range range;
+  bool first = true;
+  for (const std::size_t row : rows_) {
+    const double t = measurement_.states.time[static_cast<Eigen::Index>(row)];
+    range.low = first ? t : std::min(range.low, t);
+    range.high = first ? t : std::max(range.high, t);
+    first = false;
+  }
+  range.step = (range.high - range.low) / std::max<double>(1, static_cast<double>(measurement_.rows()) - 1);
+  return range;
+}
+
+}  // namespace vernier

@@ -1,0 +1,76 @@
+#pragma once
+#include <Eigen/Core>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/diagnose/candidate.h"
+#include "tools/fit/fit.h"
+#include "tools/model/machine.h"
+#include "tools/model/measurement.h"
+
+namespace vernier {
+
+/// Everything that a search needs of a fitted machine and its rows: what each degree of freedom does to each
+/// observation, what is left of the readings, and what the model's own free parameters could still absorb.
+class Evidence {
+ public:
+  /// `fitted`: the machine at its best fit; every logged column becomes an input. tool.
+  Evidence(const Machine& fitted, const Measurement& measurement);
+
+  const Machine& machine() const { return machine_; }  // with every logged column as an input
+  const Measurement& measurement() const { return measurement_; }
+  /// Names of inputs that the user's machine does not declare start at this index.
+  std::size_t declared_inputs() const { return declared_; }
+  const std::vector<DofPlace>& places() const { return places_; }
+  std::size_t index_of(const DofPlace& place) const;
+
+  /// d reading / d (mm or deg at the place), weighted by 1/u, for the fit observations.
+  auto response(std::size_t place) const { return response_.col(static_cast<Eigen::Index>(place)); }
+  /// Row of each fit observation.
+  const std::vector<std::size_t>& rows() const { return rows_; }
+  const Eigen::VectorXd& weights() const { return weight_; }
+  /// (measured - model) / u of the fit observations, its part within reach of the model removed.
+  const Eigen::VectorXd& residual() const { return residual_; }
+  /// Orthonormal columns that span what the free parameters can absorb.
+  const Eigen::MatrixXd& absorbed() const { return absorbed_; }
+  bool noise_known() const { return noise_known_; }
+  double chi_square() const { return residual_.squaredNorm(); }
+  double freedom() const { return static_cast<double>(residual_.size() - absorbed_.cols()); }
+
+  /// Columns of a candidate, one per linear unknown, unweighted in its own unit: weighted readings per unit
+  /// of the unknown. `scanned`: values of the other unknowns, in their order.
+  Eigen::MatrixXd columns(const Candidate& candidate, const std::vector<double>& scanned) const;
+
+  /// Runs of the fit rows, for leaving them out: an index per fit observation. Where there is but one run,
+  /// blocks of rows that follow one another.
+  const std::vector<int>& blocks() const { return block_; }
+  int block_count() const { return blocks_; }
+
+  /// Range of an axis over the fit rows, and its least step between different values.
+  struct Range {
+    double low = 0, high = 0, step = 0;
+  };
+  Range range_of(std::size_t axis) const;
+  Range time_range() const;
+
+ private:
+  void take_inputs();
+  void respond();
+  void absorb();
+  void split_blocks();
+
+  Machine machine_;
+  Measurement measurement_;
+  std::size_t declared_ = 0;
+  std::vector<DofPlace> places_;
+  std::vector<std::size_t> observation_, rows_;  // of the fit observations
+  Eigen::MatrixXd response_, absorbed_;
+  Eigen::VectorXd weight_, residual_;
+  std::vector<int> block_;
+  int blocks_ = 0;
+  bool noise_known_ = false;
+};
+
+}  // namespace vernier

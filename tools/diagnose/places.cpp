@@ -1,0 +1,114 @@
+#include <cmath>
+
+#include "tools/diagnose/candidate.h"
+#include "tools/model/chain.h"
+
+namespace vernier {
+namespace {
+
+const std::vector<Transform>& branch_of(const Machine& machine, bool workpiece) {
+  return workpiece ? machine.workpiece : machine.tool;
+}
+
+/// Value of a degree of freedom of the nominal chain, with one axis at `position` and the others at rest.
+double value_at(const Machine& nominal, const Expr& expr, std::size_t axis, double position) {
+  std::vector<double> references;
+  for (const Input& input : nominal.inputs) references.push_back(input.reference);
+  States one = make_states(1, nominal.axes.size(), references);
+  for (std::size_t i = 0; i < nominal.axes.size(); ++i) {
+    const Axis& item = nominal.axes[i];
+    one.axis[i][0] = item.min && item.max ? *item.min + 0.37 * (*item.max - *item.min) : 1;
+  }
+  one.axis[axis][0] = position;
+  return evaluate(nominal, expr, one)[0];
+}
+
+bool names_axis(const Expr& expr, std::size_t axis) {
+  bool found = false;
+  walk(expr, [&](const Expr& node) {
+    found = found || (node.op == Op::kSymbol && node.symbol == Symbol{SymbolKind::kAxis, axis});
+  });
+  return found;
+}
+
+/// Change of a degree of freedom per unit of an axis in the nominal chain.
+double slope(const Machine& nominal, const Expr& expr, std::size_t axis) {
+  if (!names_axis(expr, axis)) return 0;
+  const Axis& item = nominal.axes[axis];
+  const double middle = item.min && item.max ? 0.5 * (*item.min + *item.max) : 1;
+  const double value =
+      value_at(nominal, expr, axis, middle + 0.5) - value_at(nominal, expr, axis, middle - 0.5);
+  return std::isfinite(value) ? value : 0;
+}
+
+}  // namespace
+
+const Transform& transform_at(const Machine& machine, const DofPlace& place) {
+  return branch_of(machine, place.workpiece).at(place.transform);
+}
+
+const char* dof_name(const Machine& machine, const DofPlace& place) {
+  return transform_at(machine, place).dof_name(place.dof);
+}
+
+bool is_angle(const Machine& machine, const DofPlace& place) {
+  if (transform_at(machine, place).kind == TransformKind::kSixDof) return place.dof >= 3;
+  return place.dof == 0 || place.dof == 3;
+}
+
+std::vector<DofPlace> all_places(const Machine& machine) {
+  std::vector<DofPlace> places;
+  for (const bool workpiece : {false, true}) {
+    const auto& branch = branch_of(machine, workpiece);
+    for (std::size_t t = 0; t < branch.size(); ++t)
+      for (std::size_t d = 0; d < branch[t].dof_count(); ++d) places.push_back({workpiece, t, d});
+  }
+  return places;
+}
+
+std::optional<DofPlace> own_place(const Machine& machine, std::size_t axis) {
+  const Machine nominal = nominal_machine(machine);
+  std::optional<DofPlace> best;
+  double largest = 0.01;  // an axis moves its own degree of freedom one to one; errors are far smaller
+  for (const DofPlace& place : all_places(nominal)) {
+    const double size = std::abs(slope(nominal, *transform_at(nominal, place).dof[place.dof], axis));
+    if (size > largest * 1.01) {
+      largest = size;
+      best = place;
+    }
+  }
+  return best;
+}
+
+bool is_own_place(const Machine& machine, std::size_t axis, const DofPlace& place) {
+  const std::optional<DofPlace> own = own_place(machine, axis);
+  return own.has_value() && own.value() == place;
+}
+
+std::optional<std::size_t> axis_of(const Machine& machine, const DofPlace& place) {
+  for (std::size_t axis = 0; axis < machine.axes.size(); ++axis) {
+    const auto own = own_place(machine, axis);
+    if (own && own->workpiece == place.workpiece && own->transform == place.transform) return axis;
+  }
+  return std::nullopt;
+}
+
+std::vector<DofPlace> base_places(const Machine& machine) {
+  const bool workpiece = !machine.workpiece.empty();
+  const auto& branch = branch_of(machine, workpiece);
+  if (branch.empty()) return {};
+  const std::size_t at = workpiece ? branch.size() - 1 : 0;
+  if (branch[at].kind != TransformKind::kSixDof) return {};
+  if (workpiece) {
+    // The lengths act before the angles of the same transform: with a turning table they are no base shift.
+    const Machine nominal = nominal_machine(machine);
+    for (std::size_t d = 3; d < 6; ++d) {
+      const Expr& expr = *nominal.workpiece[at].dof[d];
+      for (std::size_t axis = 0; axis < machine.axes.size(); ++axis)
+        if (names_axis(expr, axis) || value_at(nominal, expr, axis, 0) != 0) return {};
+    }
+  }
+  return {{workpiece, at, 0}, {workpiece, at, 1}, {workpiece, at, 2}};
+}
+
+}  // namespace vernier

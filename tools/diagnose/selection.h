@@ -1,0 +1,45 @@
+#pragma once
+#include <Eigen/Core>
+#include <cstddef>
+#include <vector>
+
+namespace vernier {
+
+/// A group of columns that enter a model together.
+struct SelectionEntry {
+  Eigen::Index first = 0, count = 1;
+  double penalty = 0;       // of the search: twice the logarithm of how many were looked at
+  std::size_t scanned = 0;  // unknowns that were found by scanning, beside the coefficients
+  std::size_t cause = 0;    // at most one entry of a cause enters
+};
+
+/// Which of many groups of columns explain a residual? All that is needed of columns and residual, both after
+/// projection on the complement of what the model can absorb.
+struct SelectionProblem {
+  Eigen::MatrixXd gram;     // columns^T columns
+  Eigen::VectorXd moment;   // columns^T residual
+  double chi_square = 0;    // residual^T residual, in units of the uncertainty where that is known
+  double observations = 0;  // for the penalty of a coefficient (BIC)
+  double freedom = 0;       // observations - rank of the model
+  bool noise_known = false;
+  std::vector<SelectionEntry> entries;
+};
+
+struct Selection {
+  std::vector<std::size_t> chosen;  // entries, in the order in which they lower the criterion most
+  double criterion = 0;
+  double chi_square = 0;
+};
+
+/// Extended BIC of a set of entries (Schwarz 1978; Chen and Chen 2008): the likelihood has the noise at its
+/// best value, but never below the given uncertainty. Infinite where the columns depend on one another.
+Selection evaluate_selection(const SelectionProblem& problem, const std::vector<std::size_t>& chosen);
+
+/// The set with the least criterion that forward steps, pairs, exchanges and backward steps find, at most
+/// `most` entries. tool.
+Selection select(const SelectionProblem& problem, std::size_t most);
+
+/// Coefficients of the columns of a set, in its order.
+Eigen::VectorXd coefficients(const SelectionProblem& problem, const std::vector<std::size_t>& chosen);
+
+}  // namespace vernier
