@@ -58,8 +58,7 @@ class Maker {
     switch (choice_.effect == &custom_effect() ? PlaceRule::kOwn : choice_.form->place) {
       case PlaceRule::kEachAxis:
         for (std::size_t axis = 0; axis < machine_.axes.size(); ++axis)
-          if (!machine_.axes[axis].rotary)
-            if (const auto own = own_place(machine_, axis)) add_term(*own, form, axis);
+          if (const auto own = own_place(machine_, axis)) add_term(*own, form, axis);
         break;
       case PlaceRule::kPair:
         add_pair(form);

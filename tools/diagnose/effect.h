@@ -16,7 +16,7 @@ enum class PlaceRule : std::uint8_t {
   kBase,      // lengths that shift the whole measuring frame
   kSag,       // angles about a horizontal axis and lengths along gravity, of any transform
   kJoint,     // the angle that a rotary axis moves, where gravity has a moment about it
-  kEachAxis,  // together at the own degree of freedom of every linear axis, one coefficient
+  kEachAxis,  // together at the own degree of freedom of every axis, one coefficient
   kPair,      // together at the own degrees of freedom of two linear axes
   kNormal,    // together at the three lengths of the measuring frame, along nx ny nz
 };

@@ -204,6 +204,8 @@ class Enumerator {
     if (form.place == PlaceRule::kEachAxis || !driven) return with_place(choice);
     for (std::size_t axis = 0; axis < machine_.axes.size(); ++axis) {
       if (!own_[axis]) continue;
+      const bool turns = contains(form.term, "sin({q})") || contains(form.term, "cos({q})");
+      if (turns && !machine_.axes[axis].rotary) continue;  // degrees of a turn, not millimetres
       Choice one = choice;
       one.axis = axis;
       one.from = range_[axis].low;
@@ -262,7 +264,7 @@ class Enumerator {
         at_each(base_places(machine_), [](const DofPlace&) { return true; });
         break;
       case PlaceRule::kSag:
-        if (contains(form.term, "sin(") || contains(form.term, "cos(") ? !rotary : rotary) return;
+        if (!contains(form.term, "sin(") && !contains(form.term, "cos(") && rotary) return;
         at_each(distinct_, [&](const DofPlace& p) {
           const bool sags = std::find(sag_.begin(), sag_.end(), p) != sag_.end();
           return sags && (rotary ? !(p == *own) : !at_own_transform(p));
@@ -308,7 +310,8 @@ class Enumerator {
       finish(one);
       if (run != *seen.begin()) all.runs.push_back(names[run]);
     }
-    constexpr std::size_t kMostRuns = 12;
+    // More steps than this follow any drift: they would name a jump where there is none.
+    constexpr std::size_t kMostRuns = 4;
     if (all.runs.size() > 1 && all.runs.size() <= kMostRuns) finish(all);
   }
 

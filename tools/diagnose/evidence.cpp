@@ -164,6 +164,50 @@ void Evidence::split_blocks() {
   }
 }
 
+double Evidence::correlation_time(const Eigen::VectorXd& residual) const {
+  std::map<std::pair<std::size_t, int>, std::vector<double>> series;
+  for (std::size_t i = 0; i < rows_.size(); ++i)
+    series[{measurement_.states.run[rows_[i]],
+            static_cast<int>(measurement_.observations[observation_[i]].kind)}]
+        .push_back(residual[static_cast<Eigen::Index>(i)]);
+  std::size_t longest = 0;
+  for (const auto& [key, values] : series) longest = std::max(longest, values.size());
+  double square = 0;
+  for (const double value : residual) square += value * value;
+  if (square <= 0) return 1;
+  const auto correlation = [&](std::size_t lag) {
+    double sum = 0;
+    for (const auto& [key, values] : series)
+      for (std::size_t i = lag; i < values.size(); ++i) sum += values[i] * values[i - lag];
+    return sum / square;
+  };
+  double time = 1;
+  for (std::size_t lag = 1; lag + 1 < longest / 2; lag += 2) {
+    const double pair = correlation(lag) + correlation(lag + 1);
+    // The sum of two neighbours of white noise has this spread: less is chance.
+    if (pair < 2 / std::sqrt(static_cast<double>(residual.size()))) break;
+    time += 2 * pair;
+  }
+  return time;
+}
+
+std::vector<int> Evidence::parts_of_runs() const {
+  constexpr std::size_t kParts = 4;
+  std::map<std::size_t, std::vector<std::size_t>> rows_of_run;
+  for (const std::size_t row : rows_) {
+    auto& rows = rows_of_run[measurement_.states.run[row]];
+    if (rows.empty() || rows.back() != row) rows.push_back(row);
+  }
+  std::vector<int> parts(rows_.size());
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    const auto& rows = rows_of_run[measurement_.states.run[rows_[i]]];
+    const auto at =
+        static_cast<std::size_t>(std::lower_bound(rows.begin(), rows.end(), rows_[i]) - rows.begin());
+    parts[i] = static_cast<int>(at * kParts / rows.size());
+  }
+  return parts;
+}
+
 std::size_t Evidence::index_of(const DofPlace& place) const {
   return static_cast<std::size_t>(std::find(places_.begin(), places_.end(), place) - places_.begin());
 }

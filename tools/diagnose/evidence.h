@@ -46,7 +46,13 @@ class Evidence {
   /// Runs of the fit rows, for leaving them out: an index per fit observation. Where there is but one run,
   /// blocks of rows that follow one another.
   const std::vector<int>& blocks() const { return block_; }
+  /// The same with every run cut into parts that are left out in turn.
+  std::vector<int> parts_of_runs() const;
   int block_count() const { return blocks_; }
+
+  /// Over how many readings of one kind and run a residual hangs together: 1 + 2 * sum of its
+  /// autocorrelations as long as pairs of them are positive (Geyer 1992); 1 for white noise.
+  double correlation_time(const Eigen::VectorXd& residual) const;
 
   /// Range of an axis over the fit rows, and its least step between different values.
   struct Range {

@@ -156,14 +156,15 @@ Selection evaluate_selection(const SelectionProblem& p, const std::vector<std::s
     unknowns += static_cast<double>(p.entries[entry].count) + static_cast<double>(p.entries[entry].scanned);
     penalty += p.entries[entry].penalty;
   }
-  const double freedom = std::max(p.freedom, 1.0);
-  const double reduced = result.chi_square / freedom;
+  const double freedom = std::max(p.freedom / p.correlation_time, 1.0);
+  const double chi_square = result.chi_square / p.correlation_time;
+  const double reduced = chi_square / freedom;
   // With the noise at its best value the likelihood is n log(chi^2/n); a noise below the given uncertainty is
   // not believed.
   const bool at_noise = p.noise_known && reduced <= 1;
-  const double likelihood =
-      at_noise ? result.chi_square : freedom * (1 + std::log(std::max(reduced, 1e-300)));
-  result.criterion = likelihood + unknowns * std::log(p.observations) + penalty;
+  const double likelihood = at_noise ? chi_square : freedom * (1 + std::log(std::max(reduced, 1e-300)));
+  result.criterion =
+      likelihood + unknowns * std::log(std::max(2.0, p.observations / p.correlation_time)) + penalty;
   return result;
 }
 

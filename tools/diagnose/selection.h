@@ -22,6 +22,8 @@ struct SelectionProblem {
   double observations = 0;  // for the penalty of a coefficient (BIC)
   double freedom = 0;       // observations - rank of the model
   bool noise_known = false;
+  /// Readings per independent one, where the residual of neighbours hangs together; 1 for white noise.
+  double correlation_time = 1;
   std::vector<SelectionEntry> entries;
 };
 

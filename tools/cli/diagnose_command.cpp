@@ -1,0 +1,93 @@
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "tools/cli/command.h"
+#include "tools/cli/diagnosis_json.h"
+#include "tools/cli/results.h"
+#include "tools/diagnose/diagnosis.h"
+#include "tools/model/files.h"
+
+namespace vernier {
+namespace {
+
+struct DiagnoseArguments {
+  std::string machine, output, json, write;
+  std::vector<std::string> measurements, effects;
+  std::size_t most = 5;
+};
+
+void print_ladder(std::FILE* out, const Diagnosis& d) {
+  fmt::print(out, "{:<58} {:>12} {:>12}\n", "ladder", "fit rows", "check rows");
+  for (const LadderStep& step : d.ladder)
+    fmt::print(out, "  {:<56} {:>12} {:>12}\n",
+               step.effect.empty() ? "the model as given" : "+ " + step.label,
+               number_or_dash(step.rms_um, "um"), number_or_dash(step.check_rms_um, "um"));
+  fmt::print(out, "  {:<56} {:>12}\n", "noise", number_or_dash(d.base.noise_um, "um"));
+}
+
+void print_candidates(std::FILE* out, const Diagnosis& d) {
+  if (d.candidates.empty()) return;
+  fmt::print(out, "{:<58} {:>8} {:>12} {:>12} {:>9}\n", "candidates, each alone", "score", "fit rows",
+             "check rows", "p");
+  for (const CandidateFinding& c : d.candidates) {
+    fmt::print(out, "{} {:<56} {:>8.1f} {:>12} {:>12} {:>9.2g}\n", c.accepted ? "*" : " ", c.candidate.label,
+               c.score, number_or_dash(c.rms_after_um, "um"), number_or_dash(c.check_rms_after_um, "um"),
+               c.p_value);
+    if (!c.why_not.empty()) fmt::print(out, "    not accepted: {}\n", c.why_not);
+    if (!c.confounded_with.empty())
+      fmt::print(out, "    alike in these data: {}\n", fmt::join(c.confounded_with, ", "));
+    if (!c.accepted) continue;
+    for (const ParameterEstimate& p : c.parameters)
+      fmt::print(out, "    {} = {:.6g} +- {} {}\n", p.name, p.value,
+                 p.std ? fmt::format("{:.2g}", *p.std) : "-", p.unit);
+    fmt::print(out, "    vernier add '{}' MACHINE -o NEW\n", c.add);
+  }
+}
+
+void run_diagnose(const DiagnoseArguments& arguments) {
+  const std::string text = read_file(arguments.machine);
+  const Machine machine = parse_machine(text, arguments.machine);
+  const Measurement m = read_measurement(arguments.measurements, machine);
+  DiagnoseOptions options;
+  options.effects = effect_catalogue(arguments.effects);
+  options.most_effects = arguments.most;
+  Progress progress("diagnose");
+  options.progress = [&](double fraction, const std::string& step) { progress.update(fraction, step); };
+  const Diagnosis diagnosis = diagnose(text, machine, m, options);
+  const nlohmann::ordered_json json = diagnosis_json(diagnosis, machine, m);
+  if (!arguments.write.empty()) write_file(arguments.write, diagnosis.machine_text);
+  write_json(arguments.json, json);
+  std::FILE* out = human_stream(arguments.json);
+  fmt::print(out, "verdict: {}\n{}\n\n", verdict_name(diagnosis.verdict), diagnosis.explanation);
+  print_ladder(out, diagnosis);
+  fmt::print(out, "\n");
+  print_candidates(out, diagnosis);
+  for (const std::string& next : diagnosis.next_measurement) fmt::print(out, "measure next: {}\n", next);
+}
+
+}  // namespace
+
+void register_diagnose(CLI::App& vernier) {
+  auto arguments = std::make_shared<DiagnoseArguments>();
+  CLI::App* command =
+      vernier.add_subcommand("diagnose", "Find which physical effect is missing from a model");
+  command->add_option("MACHINE", arguments->machine, "machine file (XML)")->required();
+  command->add_option("MEAS", arguments->measurements, "measurement files (CSV)")->required();
+  command->add_option("-o,--output", arguments->output, "report (HTML)");
+  command->add_option("--json", arguments->json, "result for programs; - for standard output");
+  command->add_option("--machine-out", arguments->write,
+                      "the machine file with the effects of the ladder, fitted");
+  command->add_option("--effects", arguments->effects, "files with effects of your own; may be repeated");
+  command->add_option("--most", arguments->most, "most effects in the ladder")
+      ->check(CLI::Range(1, 10))
+      ->capture_default_str();
+  command->footer(
+      "Fits the model first, then looks for what explains the residual beyond what its free parameters can\n"
+      "absorb. Verdict: missing-effect, ambiguous, unexplained, instrument or consistent. Check rows judge, "
+      "they\n"
+      "enter nothing. Exit status 0 whatever the finding, 1 bad input.");
+  command->callback([arguments] { run_diagnose(*arguments); });
+}
+
+}  // namespace vernier

@@ -1,0 +1,12 @@
+#pragma once
+#include <nlohmann/json.hpp>
+
+#include "tools/diagnose/diagnosis.h"
+
+namespace vernier {
+
+/// The result of `diagnose` for programs (FORMATS section 3, and more keys). `machine`: the user's.
+nlohmann::ordered_json diagnosis_json(const Diagnosis& diagnosis, const Machine& machine,
+                                      const Measurement& measurement);
+
+}  // namespace vernier

@@ -1,0 +1,103 @@
+#include "tools/diagnose/acceptance.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "tools/diagnose/scan.h"
+
+namespace vernier {
+namespace {
+
+/// A direction of which the other runs hold less than this share of the information is theirs no more.
+constexpr double kDetermined = 0.01;
+
+/// Rows of a matrix or vector that belong to one block.
+std::vector<Eigen::Index> rows_of(const std::vector<int>& blocks, int block) {
+  std::vector<Eigen::Index> rows;
+  for (std::size_t i = 0; i < blocks.size(); ++i)
+    if (blocks[i] == block) rows.push_back(static_cast<Eigen::Index>(i));
+  return rows;
+}
+
+}  // namespace
+
+HeldOut leave_runs_out(const Evidence& evidence, const Eigen::MatrixXd& columns, Eigen::Index watched_first,
+                       Eigen::Index watched_count, bool within_runs) {
+  HeldOut result;
+  const Eigen::MatrixXd own = orthonormal(columns, 1e-6, nullptr);
+  const Eigen::MatrixXd& q = evidence.absorbed();
+  Eigen::MatrixXd basis(q.rows(), q.cols() + own.cols());
+  basis << q, own;
+  const Eigen::VectorXd& r = evidence.residual();
+  const Eigen::VectorXd all = basis.transpose() * r;
+  // Full set of columns in terms of `own`, to follow the watched ones.
+  const Eigen::MatrixXd in_own = own.transpose() * columns;
+  const auto watched_part = [&](const Eigen::VectorXd& theta) -> Eigen::VectorXd {
+    if (watched_count == 0 || own.cols() < columns.cols()) return Eigen::VectorXd();
+    const Eigen::VectorXd coefficient = in_own.colPivHouseholderQr().solve(theta.tail(own.cols()));
+    return columns.middleCols(watched_first, watched_count) *
+           coefficient.segment(watched_first, watched_count);
+  };
+  const Eigen::VectorXd whole = watched_part(all);
+  const std::vector<int> blocks = within_runs ? evidence.parts_of_runs() : evidence.blocks();
+  const int count = 1 + *std::max_element(blocks.begin(), blocks.end());
+  for (int block = 0; block < count; ++block) {
+    const std::vector<Eigen::Index> rows = rows_of(blocks, block);
+    if (rows.empty()) continue;
+    const Eigen::MatrixXd left_out = basis(rows, Eigen::all);
+    const Eigen::VectorXd r_out = r(rows);
+    const Eigen::MatrixXd normal =
+        Eigen::MatrixXd::Identity(basis.cols(), basis.cols()) - left_out.transpose() * left_out;
+    const Eigen::VectorXd moment = all - left_out.transpose() * r_out;
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(normal);
+    Eigen::Index lost = 0;
+    while (lost < basis.cols() && eigen.eigenvalues()[lost] < kDetermined) ++lost;
+    const Eigen::Index seen = basis.cols() - lost;
+    const Eigen::MatrixXd v = eigen.eigenvectors().rightCols(seen);
+    const Eigen::VectorXd theta = v * (v.transpose() * moment).cwiseQuotient(eigen.eigenvalues().tail(seen));
+    Eigen::VectorXd error = r_out - left_out * theta;
+    if (lost > 0) {
+      const Eigen::MatrixXd local =
+          orthonormal(left_out * eigen.eigenvectors().leftCols(lost), 1e-6, nullptr);
+      error -= local * (local.transpose() * error);
+    }
+    result.chi_square += error.squaredNorm();
+    const Eigen::VectorXd part = watched_part(theta);
+    if (part.size() > 0)
+      result.agreement.push_back(part.dot(whole) / std::max(part.norm() * whole.norm(), 1e-300));
+  }
+  return result;
+}
+
+double chi_square_tail(double value, double freedom) {
+  if (!(value > 0)) return 1;
+  const double a = freedom / 2, x = value / 2;
+  const double front = std::exp(-x + a * std::log(x) - std::lgamma(a));
+  constexpr int kMost = 10000;
+  constexpr double kSmall = 1e-15;
+  if (x < a + 1) {  // series
+    double term = 1 / a, sum = term;
+    for (int k = 1; k < kMost && term > kSmall * sum; ++k) {
+      term *= x / (a + k);
+      sum += term;
+    }
+    return std::max(0.0, 1 - sum * front);
+  }
+  double b = x + 1 - a, c = 1e300, d = 1 / b, h = d;  // continued fraction, Lentz
+  for (int i = 1; i < kMost; ++i) {
+    const double an = -i * (i - a);
+    b += 2;
+    d = an * d + b;
+    d = std::abs(d) < 1e-300 ? 1e300 : 1 / d;
+    c = b + an / c;
+    if (std::abs(c) < 1e-300) c = 1e-300;
+    h *= d * c;
+    if (std::abs(d * c - 1) < kSmall) break;
+  }
+  return front * h;
+}
+
+}  // namespace vernier

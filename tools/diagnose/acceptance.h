@@ -1,0 +1,26 @@
+#pragma once
+#include <Eigen/Core>
+#include <vector>
+
+#include "tools/diagnose/evidence.h"
+
+namespace vernier {
+
+/// What leaving out whole runs says of columns that a model would gain.
+struct HeldOut {
+  double chi_square = 0;          // of all rows, each predicted from the other runs
+  std::vector<double> agreement;  // per run left out: cosine between its columns' part and that of all runs
+};
+
+/// Predicts every run of the fit rows from the others, with the model's free parameters and `columns` (any
+/// columns, after projection on the complement of what the model absorbs). Parameters that only the run left
+/// out determines are fitted to it. `within_runs`: leaves out parts of runs instead (for effects that are a
+/// property of a run). `watched`: first and count of the columns whose agreement is reported.
+HeldOut leave_runs_out(const Evidence& evidence, const Eigen::MatrixXd& columns, Eigen::Index watched_first,
+                       Eigen::Index watched_count, bool within_runs = false);
+
+/// Probability that chi^2 with `freedom` degrees of freedom exceeds `value` (Numerical Recipes' incomplete
+/// gamma function is Abramowitz and Stegun 6.5).
+double chi_square_tail(double value, double freedom);
+
+}  // namespace vernier

@@ -1,0 +1,71 @@
+#pragma once
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/diagnose/candidate.h"
+#include "tools/diagnose/time_base.h"
+#include "tools/fit/fit.h"
+#include "tools/model/machine.h"
+#include "tools/model/measurement.h"
+
+namespace vernier {
+
+enum class Verdict : std::uint8_t { kMissingEffect, kAmbiguous, kUnexplained, kInstrument, kConsistent };
+/// As the JSON result writes it: "missing-effect" ...
+const char* verdict_name(Verdict verdict);
+
+struct DiagnoseOptions {
+  std::vector<Effect> effects = built_in_effects();
+  std::size_t most_effects = 5;  // steps of the ladder
+  std::size_t shown = 8;         // candidates that are fitted and listed
+  std::function<void(double, const std::string&)> progress = [](double, const std::string&) {};
+};
+
+/// What one candidate would do alone, fitted in earnest.
+struct CandidateFinding {
+  Candidate candidate;
+  std::string add;
+  std::optional<std::size_t> axis;  // that drives it, else that of the receiving transform
+  std::vector<ParameterEstimate> parameters;
+  std::optional<double> rms_after_um, check_rms_before_um, check_rms_after_um;
+  double share = 0, p_value = 1;
+  double score = 0;       // fall of the criterion (extended BIC); above 6 is evidence
+  bool accepted = false;  // stands in the ladder
+  std::string why_not;    // the test that it fails
+  std::vector<std::string> confounded_with;
+};
+
+struct LadderStep {
+  std::string effect, add, label;  // empty: the model as given
+  std::optional<double> rms_um, check_rms_um;
+  double chi_square_per_freedom = 0;
+};
+
+struct Diagnosis {
+  Verdict verdict = Verdict::kConsistent;
+  std::string explanation;
+  FitResult base;
+  std::vector<CandidateFinding> candidates;
+  std::vector<LadderStep> ladder;
+  std::vector<std::string> next_measurement;
+  std::optional<std::size_t> runner_up;  // index into candidates
+  double runner_up_distance = 0;         // by how much its criterion is worse
+  std::string machine_text;              // with all effects of the ladder, fitted
+  FitResult end;                         // of that machine
+  TimeBaseFinding time_base;             // `found` where the clock is the likelier cause
+  std::size_t searched = 0;              // candidates looked at
+};
+
+/// Which physical effect is missing? Fits the model, ranks the catalogue at every place, accepts what passes
+/// all tests, and says which of the five answers the data give (FORMATS section 3). `text`: of the machine
+/// file. Check rows enter nothing but the figures that judge. Throws InputError. tool.
+Diagnosis diagnose(const std::string& text, const Machine& machine, const Measurement& measurement,
+                   const DiagnoseOptions& options = {});
+
+/// The same rows for a machine that declares more of their columns as inputs; rows with an empty cell in a
+/// column that is now an input are excluded and counted.
+Measurement rebind(const Measurement& measurement, const Machine& from, const Machine& to);
+
+}  // namespace vernier

@@ -1,0 +1,161 @@
+#include "tools/diagnose/pool.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace vernier {
+
+std::set<std::pair<int, std::size_t>> drivers_of(const Machine& machine, const Candidate& candidate) {
+  std::set<std::pair<int, std::size_t>> drivers;
+  Machine scratch = machine;
+  for (const CandidateUnknown& unknown : candidate.unknowns) {
+    Static item;
+    item.name = unknown.name;
+    scratch.statics.push_back(item);
+  }
+  for (const CandidateTerm& term : candidate.terms)
+    walk(*parse_expression_for(scratch, term.text), [&](const Expr& node) {
+      if (node.op == Op::kRunIs) drivers.insert({-1, 0});
+      if (node.op != Op::kSymbol) return;
+      const SymbolKind kind = node.symbol.kind;
+      if (kind == SymbolKind::kStatic || kind == SymbolKind::kAxis) return;
+      drivers.insert({static_cast<int>(kind), node.symbol.index});
+    });
+  return drivers;
+}
+
+Pool::Pool(const Evidence& evidence, const Scanner& scanner) : evidence_(evidence), scanner_(scanner) {
+  for (const ScannedCandidate& item : scanner.candidates()) ++instances_[item.candidate.choice.effect->id];
+}
+
+const Candidate& Pool::candidate(std::size_t i) const {
+  return scanner_.candidates()[items_[i].scored.candidate].candidate;
+}
+
+double Pool::penalty(std::size_t candidate) const {
+  const std::string& id = scanner_.candidates()[candidate].candidate.choice.effect->id;
+  return 2 * std::log(static_cast<double>(instances_.size()) * instances_.at(id));
+}
+
+/// One key per effect and place; a second period at the same place is another one.
+std::string Pool::place_key(const Scored& scored) const {
+  const Choice& c = scanner_.candidates()[scored.candidate].candidate.choice;
+  std::string key = c.effect->id;
+  if (c.axis) key += fmt::format(" a{}", *c.axis);
+  if (c.axis2) key += fmt::format(" b{}", *c.axis2);
+  for (const std::string& input : c.inputs) key += " " + input;
+  if (c.place) key += fmt::format(" {}.{}.{}", c.place->workpiece, c.place->transform, c.place->dof);
+  if (c.form->place != PlaceRule::kJoint && !scored.scanned.empty() && c.effect->find_unknown("p") != nullptr)
+    key += fmt::format(" p{}", std::lround(8 * std::log(scored.scanned[0])));
+  key += c.runs.size() == 1 ? " " + c.runs[0] : "";
+  if (c.effect == &custom_effect()) key += " " + c.term;
+  return key;
+}
+
+void Pool::add(const std::vector<Scored>& scored, std::size_t most, const Eigen::MatrixXd& beside) {
+  std::vector<std::size_t> order(scored.size());
+  const double scale = evidence_.noise_known()
+                           ? std::max(1.0, 0.5 * evidence_.chi_square() / evidence_.freedom())
+                           : 0.5 * evidence_.chi_square() / evidence_.freedom();
+  std::vector<double> value(scored.size());
+  for (std::size_t i = 0; i < scored.size(); ++i) {
+    order[i] = i;
+    value[i] =
+        scored[i].gain / scale -
+        static_cast<double>(scored[i].unknowns) * std::log(static_cast<double>(evidence_.rows().size())) -
+        penalty(scored[i].candidate);
+  }
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return value[a] > value[b]; });
+  std::map<std::string, int> of_effect;
+  constexpr int kOfEachEffect = 3;
+  std::size_t taken = 0;
+  for (const std::size_t i : order) {
+    int& count = of_effect[scanner_.candidates()[scored[i].candidate].candidate.choice.effect->id];
+    if (taken >= most && count >= kOfEachEffect) continue;
+    ++count;
+    ++taken;
+    Item item;
+    item.scored = scored[i];
+    if (value[i] > -20) scanner_.refine(item.scored, beside);
+    const std::string key =
+        place_key(item.scored) + " " +
+        scanner_.candidates()[item.scored.candidate].candidate.choice.form->label +
+        (item.scored.scanned.empty() ? "" : fmt::format(" {:.3g}", item.scored.scanned[0]));
+    if (!keys_.insert(key).second) continue;
+    item.columns = scanner_.projected(item.scored, &item.kept);
+    if (item.columns.cols() > 0) items_.push_back(std::move(item));
+  }
+}
+
+Eigen::MatrixXd Pool::columns(const std::vector<std::size_t>& items) const {
+  Eigen::Index count = 0;
+  for (const std::size_t i : items) count += items_[i].columns.cols();
+  Eigen::MatrixXd all(evidence_.residual().size(), count);
+  Eigen::Index at = 0;
+  for (const std::size_t i : items) {
+    all.middleCols(at, items_[i].columns.cols()) = items_[i].columns;
+    at += items_[i].columns.cols();
+  }
+  return all;
+}
+
+SelectionProblem Pool::problem(std::vector<std::size_t>& items) const {
+  SelectionProblem p;
+  items.clear();
+  for (std::size_t i = 0; i < items_.size(); ++i)
+    if (!items_[i].banned) items.push_back(i);
+  Eigen::MatrixXd all = columns(items);
+  std::map<std::string, std::size_t> causes;
+  Eigen::Index at = 0;
+  for (const std::size_t i : items) {
+    const Item& item = items_[i];
+    SelectionEntry entry;
+    entry.first = at;
+    entry.count = item.columns.cols();
+    entry.penalty = penalty(item.scored.candidate);
+    entry.scanned = item.scored.scanned.size();
+    entry.cause = causes.emplace(place_key(item.scored), causes.size()).first->second;
+    at += entry.count;
+    p.entries.push_back(entry);
+  }
+  // Unit columns keep the pivots comparable.
+  for (Eigen::Index j = 0; j < all.cols(); ++j) all.col(j).normalize();
+  p.gram = all.transpose() * all;
+  p.moment = all.transpose() * evidence_.residual();
+  p.chi_square = evidence_.chi_square();
+  p.observations = static_cast<double>(evidence_.residual().size());
+  p.freedom = evidence_.freedom();
+  p.noise_known = evidence_.noise_known();
+  return p;
+}
+
+bool Pool::same_cause(std::size_t a, std::size_t b) const {
+  const Choice &x = candidate(a).choice, &y = candidate(b).choice;
+  if (x.effect == &custom_effect() || y.effect == &custom_effect())
+    return x.effect == y.effect && x.term == y.term;
+  return x.effect == y.effect && x.axis == y.axis && x.axis2 == y.axis2 && x.inputs == y.inputs;
+}
+
+bool Pool::same_columns(std::size_t a, std::size_t b) const {
+  const Eigen::MatrixXd x = orthonormal(items_[a].columns, 1e-6, nullptr);
+  const Eigen::MatrixXd y = orthonormal(items_[b].columns, 1e-6, nullptr);
+  if (x.cols() != y.cols()) return false;
+  // Squares of the cosines between the two spans, the least of them decides.
+  const double common = (x.transpose() * y).squaredNorm();
+  return static_cast<double>(x.cols()) - common < 1e-3;
+}
+
+bool Pool::no_simpler(std::size_t a, std::size_t b) const {
+  const auto x = drivers_of(evidence_.machine(), candidate(a)),
+             y = drivers_of(evidence_.machine(), candidate(b));
+  if (!std::includes(x.begin(), x.end(), y.begin(), y.end())) return false;
+  return std::all_of(x.begin(), x.end(), [&](const auto& driver) {
+    const bool mere_count = driver.first == static_cast<int>(SymbolKind::kVisit) ||
+                            driver.first == static_cast<int>(SymbolKind::kSince);
+    return mere_count || y.contains(driver);
+  });
+}
+
+}  // namespace vernier

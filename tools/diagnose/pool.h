@@ -1,0 +1,66 @@
+#pragma once
+#include <Eigen/Core>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "tools/diagnose/scan.h"
+#include "tools/diagnose/selection.h"
+
+namespace vernier {
+
+/// What a term depends on besides positions and constants: dir of an axis, an input, t ...
+std::set<std::pair<int, std::size_t>> drivers_of(const Machine& machine, const Candidate& candidate);
+
+/// The best of all candidates, with their columns side by side, so that sets of them can be compared.
+class Pool {
+ public:
+  struct Item {
+    Scored scored;
+    Eigen::MatrixXd columns;        // after projection on the complement of what the model absorbs
+    std::vector<std::size_t> kept;  // which linear unknowns the columns are
+    bool banned = false;            // failed a test of acceptance
+    std::string why_not;
+  };
+
+  Pool(const Evidence& evidence, const Scanner& scanner);
+
+  /// Puts the most promising ones in: `most` by gain less cost, and the best of every effect. Scanned values
+  /// are refined first.
+  void add(const std::vector<Scored>& scored, std::size_t most, const Eigen::MatrixXd& beside);
+
+  /// The entries that are not banned, as a problem of selection; `items`: which item each entry is.
+  SelectionProblem problem(std::vector<std::size_t>& items) const;
+
+  std::size_t size() const { return items_.size(); }
+  const Item& operator[](std::size_t i) const { return items_[i]; }
+  const Candidate& candidate(std::size_t i) const;
+  void ban(std::size_t i, std::string why) {
+    items_[i].banned = true;
+    items_[i].why_not = std::move(why);
+  }
+
+  /// Columns of several items side by side.
+  Eigen::MatrixXd columns(const std::vector<std::size_t>& items) const;
+  /// Effect, driving axis and inputs are the same: no different cause.
+  bool same_cause(std::size_t a, std::size_t b) const;
+  /// Do two items span the same columns (all but a thousandth of their squares)?
+  bool same_columns(std::size_t a, std::size_t b) const;
+  /// Does `a` depend on all that `b` depends on, and on nothing more but the count of rows or the travel
+  /// since a reversal? Then `b` is the simpler way to say the same.
+  bool no_simpler(std::size_t a, std::size_t b) const;
+  /// How much a candidate costs for having been one of many (twice the logarithm of their number).
+  double penalty(std::size_t candidate) const;
+
+ private:
+  std::string place_key(const Scored& scored) const;
+
+  const Evidence& evidence_;
+  const Scanner& scanner_;
+  std::map<std::string, double> instances_;  // of each effect
+  std::vector<Item> items_;
+  std::set<std::string> keys_;
+};
+
+}  // namespace vernier

@@ -1,0 +1,203 @@
+#include "tools/diagnose/scan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <thread>
+
+namespace vernier {
+namespace {
+
+/// Columns projected at a time: one product of matrices instead of many of vectors.
+constexpr Eigen::Index kBatch = 192;
+/// Less than this share of a column's length outside of the model's reach: the data cannot see it.
+constexpr double kLeastOwn = 1e-3;
+/// A column of hats that repeats the others is dropped below this share.
+constexpr double kLeastIndependent = 1e-3;
+
+}  // namespace
+
+std::vector<std::vector<double>> grid_points(const std::vector<std::vector<double>>& lists) {
+  std::vector<std::vector<double>> points(1);
+  for (const std::vector<double>& list : lists) {
+    std::vector<std::vector<double>> next;
+    for (const auto& point : points)
+      for (const double value : list) {
+        next.push_back(point);
+        next.back().push_back(value);
+      }
+    points = std::move(next);
+  }
+  return points;
+}
+
+Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& columns, double least, std::vector<std::size_t>* kept) {
+  Eigen::MatrixXd basis(columns.rows(), columns.cols());
+  Eigen::Index count = 0;
+  for (Eigen::Index j = 0; j < columns.cols(); ++j) {
+    Eigen::VectorXd column = columns.col(j);
+    const double before = column.norm();
+    if (before == 0) continue;
+    for (int pass = 0; pass < 2; ++pass)
+      column -= basis.leftCols(count) * (basis.leftCols(count).transpose() * column);
+    const double after = column.norm();
+    if (after < least * before) continue;
+    basis.col(count++) = column / after;
+    if (kept != nullptr) kept->push_back(static_cast<std::size_t>(j));
+  }
+  return basis.leftCols(count);
+}
+
+Scanner::Scanner(const Evidence& evidence, const std::vector<ScannedCandidate>& candidates)
+    : evidence_(evidence), candidates_(candidates) {}
+
+bool Scanner::score(const Eigen::MatrixXd& raw, const Eigen::MatrixXd& projected,
+                    const Eigen::MatrixXd& beside, const Eigen::VectorXd& residual, Scored& scored) const {
+  const ScannedCandidate& item = candidates_[scored.candidate];
+  scored.own_share = 1;
+  Eigen::MatrixXd own = projected;
+  if (beside.cols() > 0) own -= beside * (beside.transpose() * own);
+  for (Eigen::Index j = 0; j < own.cols(); ++j) {
+    const double before = raw.col(j).norm(), after = own.col(j).norm();
+    if (!(before > 0) || !std::isfinite(after) || after < kLeastOwn * before) {
+      if (!item.may_lose_columns) return false;
+      own.col(j).setZero();
+      continue;
+    }
+    scored.own_share = std::min(scored.own_share, after / before);
+  }
+  std::vector<std::size_t> kept;
+  const Eigen::MatrixXd basis = orthonormal(own, kLeastIndependent, &kept);
+  if (basis.cols() == 0) return false;
+  if (!item.may_lose_columns && basis.cols() < own.cols()) return false;
+  scored.gain = (basis.transpose() * residual).squaredNorm();
+  scored.unknowns = basis.cols() + static_cast<Eigen::Index>(item.grid.size());
+  return true;
+}
+
+void Scanner::scan_part(std::size_t first, std::size_t step, const Eigen::MatrixXd& beside,
+                        const Eigen::VectorXd& residual, std::vector<Scored>& best,
+                        const std::function<void(double)>& progress) const {
+  std::vector<Point> points;
+  std::vector<Eigen::MatrixXd> raw;
+  Eigen::Index width = 0;
+  const auto flush = [&] {
+    Eigen::MatrixXd batch(evidence_.residual().size(), width);
+    Eigen::Index at = 0;
+    for (const Eigen::MatrixXd& block : raw) {
+      batch.middleCols(at, block.cols()) = block;
+      at += block.cols();
+    }
+    const Eigen::MatrixXd& q = evidence_.absorbed();
+    const Eigen::MatrixXd part = q.transpose() * batch;
+    batch.noalias() -= q * part;
+    at = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      Scored scored{points[i].candidate, points[i].scanned, 0, 0, 0};
+      const Eigen::Index count = raw[i].cols();
+      if (score(raw[i], batch.middleCols(at, count), beside, residual, scored)) {
+        Scored& so_far = best[scored.candidate];
+        if (so_far.unknowns == 0 || scored.gain > so_far.gain) so_far = scored;
+      }
+      at += count;
+    }
+    points.clear();
+    raw.clear();
+    width = 0;
+  };
+  for (std::size_t c = first; c < candidates_.size(); c += step) {
+    for (const std::vector<double>& scanned : grid_points(candidates_[c].grid)) {
+      Eigen::MatrixXd columns = evidence_.columns(candidates_[c].candidate, scanned);
+      width += columns.cols();
+      raw.push_back(std::move(columns));
+      points.push_back({c, scanned});
+      if (width >= kBatch) flush();
+    }
+    if (first == 0 && progress) progress(static_cast<double>(c) / static_cast<double>(candidates_.size()));
+  }
+  if (width > 0) flush();
+}
+
+std::vector<Scored> Scanner::scan(const Eigen::MatrixXd& beside,
+                                  const std::function<void(double)>& progress) {
+  Eigen::VectorXd residual = evidence_.residual();
+  if (beside.cols() > 0) residual -= beside * (beside.transpose() * residual);
+  std::vector<Scored> best(candidates_.size());
+  // Each thread writes the entries of its own candidates only.
+  const std::size_t threads = std::max(1U, std::min(4U, std::thread::hardware_concurrency()));
+  std::vector<std::thread> others;
+  for (std::size_t k = 1; k < threads; ++k)
+    others.emplace_back([&, k] { scan_part(k, threads, beside, residual, best, {}); });
+  scan_part(0, threads, beside, residual, best, progress);
+  for (std::thread& thread : others) thread.join();
+  std::vector<Scored> seen;
+  for (Scored& scored : best)
+    if (scored.unknowns > 0) seen.push_back(std::move(scored));
+  return seen;
+}
+
+void Scanner::refine(Scored& scored, const Eigen::MatrixXd& beside) const {
+  const ScannedCandidate& item = candidates_[scored.candidate];
+  if (item.grid.empty()) return;
+  Eigen::VectorXd residual = evidence_.residual();
+  if (beside.cols() > 0) residual -= beside * (beside.transpose() * residual);
+  const Eigen::MatrixXd& q = evidence_.absorbed();
+  const auto gain_at = [&](const std::vector<double>& scanned) {
+    const Eigen::MatrixXd raw = evidence_.columns(item.candidate, scanned);
+    Scored trial = scored;
+    const Eigen::MatrixXd projected = raw - q * (q.transpose() * raw);
+    return score(raw, projected, beside, residual, trial) ? trial.gain : 0.0;
+  };
+  for (std::size_t i = 0; i < item.grid.size(); ++i) {
+    const std::vector<double>& grid = item.grid[i];
+    const auto at = static_cast<std::size_t>(std::lower_bound(grid.begin(), grid.end(), scored.scanned[i]) -
+                                             grid.begin());
+    // In 1/value between the neighbours: phases of a period move evenly there.
+    double low = 1 / grid[std::min(at + 1, grid.size() - 1)], high = 1 / grid[at > 0 ? at - 1 : 0];
+    constexpr double kGolden = 0.381966011250105;
+    std::vector<double> point = scored.scanned;
+    const auto value = [&](double inverse) {
+      point[i] = 1 / inverse;
+      return gain_at(point);
+    };
+    double a = low + kGolden * (high - low), b = high - kGolden * (high - low);
+    double gain_a = value(a), gain_b = value(b);
+    for (int k = 0; k < 14; ++k) {
+      if (gain_a > gain_b) {
+        high = b;
+        b = a;
+        gain_b = gain_a;
+        a = low + kGolden * (high - low);
+        gain_a = value(a);
+      } else {
+        low = a;
+        a = b;
+        gain_a = gain_b;
+        b = high - kGolden * (high - low);
+        gain_b = value(b);
+      }
+    }
+    const double best = std::max(gain_a, gain_b);
+    if (best > scored.gain) {
+      scored.gain = best;
+      scored.scanned[i] = 1 / (gain_a > gain_b ? a : b);
+    }
+  }
+}
+
+Eigen::MatrixXd Scanner::projected(const Scored& scored, std::vector<std::size_t>* kept) const {
+  const Eigen::MatrixXd raw = evidence_.columns(candidates_[scored.candidate].candidate, scored.scanned);
+  const Eigen::MatrixXd& q = evidence_.absorbed();
+  const Eigen::MatrixXd own = raw - q * (q.transpose() * raw);
+  std::vector<std::size_t> chosen;
+  Eigen::MatrixXd usable = own;
+  for (Eigen::Index j = 0; j < own.cols(); ++j)
+    if (own.col(j).norm() < kLeastOwn * raw.col(j).norm()) usable.col(j).setZero();
+  orthonormal(usable, kLeastIndependent, &chosen);
+  Eigen::MatrixXd result(own.rows(), static_cast<Eigen::Index>(chosen.size()));
+  for (std::size_t j = 0; j < chosen.size(); ++j)
+    result.col(static_cast<Eigen::Index>(j)) = own.col(static_cast<Eigen::Index>(chosen[j]));
+  if (kept != nullptr) *kept = chosen;
+  return result;
+}
+
+}  // namespace vernier

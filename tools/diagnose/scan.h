@@ -1,0 +1,62 @@
+#pragma once
+#include <Eigen/Core>
+#include <functional>
+#include <vector>
+
+#include "tools/diagnose/enumerate.h"
+#include "tools/diagnose/evidence.h"
+
+namespace vernier {
+
+/// What a candidate at its best scanned values does to the residual, after the model's own free parameters
+/// have had their chance.
+struct Scored {
+  std::size_t candidate = 0;    // index into the list that was scanned
+  std::vector<double> scanned;  // values of its scanned unknowns
+  double gain = 0;              // fall of chi^2
+  double own_share = 0;         // least share of a column that the model cannot absorb
+  Eigen::Index unknowns = 0;    // coefficients and scanned values
+};
+
+/// Scores of all candidates against a residual. `beside`: orthonormal columns (in the complement of what the
+/// model absorbs) of effects already accepted; the candidates' parts along them do not count.
+class Scanner {
+ public:
+  Scanner(const Evidence& evidence, const std::vector<ScannedCandidate>& candidates);
+
+  /// Best values on the grid for every candidate that the data can see at all; in the order of the list.
+  /// `progress`: share done.
+  std::vector<Scored> scan(const Eigen::MatrixXd& beside, const std::function<void(double)>& progress);
+
+  /// The scanned values moved between the grid's neighbours to where the gain is largest.
+  void refine(Scored& scored, const Eigen::MatrixXd& beside) const;
+
+  /// Independent columns of a scored candidate after projection; dropped are those that the model or the
+  /// columns before them hold already. `kept`: which of the linear unknowns they are.
+  Eigen::MatrixXd projected(const Scored& scored, std::vector<std::size_t>* kept = nullptr) const;
+
+  const std::vector<ScannedCandidate>& candidates() const { return candidates_; }
+
+ private:
+  struct Point {
+    std::size_t candidate;
+    std::vector<double> scanned;
+  };
+  void scan_part(std::size_t first, std::size_t step, const Eigen::MatrixXd& beside,
+                 const Eigen::VectorXd& residual, std::vector<Scored>& best,
+                 const std::function<void(double)>& progress) const;
+  bool score(const Eigen::MatrixXd& raw, const Eigen::MatrixXd& projected, const Eigen::MatrixXd& beside,
+             const Eigen::VectorXd& residual, Scored& scored) const;
+
+  const Evidence& evidence_;
+  const std::vector<ScannedCandidate>& candidates_;
+};
+
+/// Every combination of the values of several lists.
+std::vector<std::vector<double>> grid_points(const std::vector<std::vector<double>>& lists);
+
+/// Columns made orthonormal one after the other; those with less than `least` of their length left are
+/// dropped. `kept`: the ones that stay.
+Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& columns, double least, std::vector<std::size_t>* kept);
+
+}  // namespace vernier
