@@ -1,0 +1,432 @@
+#include "tests/support/hidden_survey.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <regex>
+#include <set>
+#include <stdexcept>
+
+#include "tests/support/hidden_survey_columns.h"
+#include "tests/support/hidden_survey_csv.h"
+#include "tests/support/hidden_survey_rivals.h"
+#include "tools/model/prediction.h"
+
+namespace vernier::support {
+namespace {
+
+constexpr std::array<const char*, 5> kClassNames = {"single", "two", "outside", "noise", "confusable"};
+constexpr double kLeastRemaining = 0.12;  // below this the effect must be absurdly large to be seen
+constexpr double kTells = 20;             // chi^2 between the truth and its best rival, issue's definition
+constexpr int kDraws = 80;
+
+/// One attempt at a survey: everything drawn, nothing measured yet.
+class Attempt {
+ public:
+  Attempt(const SurveySpec& spec, std::uint64_t seed)
+      : spec_(spec), draw_(seed), g_(geometry_of(spec.family)) {}
+
+  /// Nothing where this draw shows the effect too badly, or tells what it must not tell.
+  std::optional<HiddenSurvey> survey();
+
+ private:
+  bool choose();
+  bool choose_effect(const std::string& effect);
+  bool design_confusable();
+  void choose_motion();
+  void choose_model();
+  bool scale_effects();
+  bool far_apart() const;
+  Eigen::VectorXd shift_of(std::size_t effect) const;
+  std::vector<TermStatic> statics_of(std::size_t effect) const;
+  std::vector<Place> places_of(std::size_t effect) const;
+  std::vector<TermInput> inputs() const;
+  std::string truth_text() const;
+  void measure(HiddenSurvey& survey);
+  void judge(HiddenSurvey& survey);
+  HiddenEffect key_of(std::size_t effect) const;
+  SurveyTable table() const { return {g_, options_, rows_, columns_, u_}; }
+
+  SurveySpec spec_;
+  Draw draw_;
+  Geometry g_;
+  MotionOptions options_;
+  ModelOptions model_options_;
+  std::vector<MotionRow> rows_;
+  std::vector<LoggedColumn> columns_;
+  std::vector<std::string> effects_;
+  std::vector<Form> forms_;
+  std::vector<double> scale_, ratio_, remaining_;
+  double u_ = 0;
+  std::string model_, base_;  // the user's file; the same with true values
+  Machine base_machine_;      // base_ with every logged column as an input
+  Measurement measurement_;
+  std::optional<Complement> complement_;
+};
+
+bool suits(const std::string& effect, const Form& form, const std::vector<LoggedColumn>& columns) {
+  using Sort = LoggedColumn::Sort;
+  for (const LoggedColumn& c : columns)
+    if (std::find(form.inputs.begin(), form.inputs.end(), c.name) != form.inputs.end() &&
+        effect == "load-deflection" && c.sort != Sort::kLoad)
+      return false;
+  return true;
+}
+
+bool Attempt::choose_effect(const std::string& effect) {
+  const Share share = [this] { return draw_.uniform(); };
+  std::vector<Form> forms = forms_of(effect, g_, columns_, model_options_.runs, share, draw_);
+  std::erase_if(forms, [&](const Form& f) { return !suits(effect, f, columns_); });
+  if (forms.empty()) return false;
+  forms_.push_back(draw_.pick(forms));
+  return true;
+}
+
+/// One thermometer shape in proportion to time, or one feed and one axis at a time.
+bool Attempt::design_confusable() {
+  if (draw_.chance(0.5)) {
+    options_.one_thermal = true;
+    options_.locked = draw_.chance(0.5);
+    static const std::vector<std::string> thermal = {"thermal-offset", "thermal-scale", "thermal-bend",
+                                                     "base-drift"};
+    effects_ = {draw_.pick(thermal)};
+  } else {
+    options_.one_axis = true;
+    options_.feeds = 1;
+    options_.manner = Manner::kMoving;
+    static const std::vector<std::string> lag = {"servo-lag", "backlash"};
+    effects_ = {draw_.pick(lag)};
+  }
+  if (!spec_.effect.empty()) effects_ = {spec_.effect};
+  return true;
+}
+
+void Attempt::choose_motion() {
+  options_.rows = spec_.rows;
+  options_.runs = spec_.runs;
+  options_.feeds = spec_.feeds;
+  bool moving = draw_.chance(0.3), probing = false;
+  for (const std::string& effect : effects_) {
+    moving = moving || demands_of(effect).moving;
+    probing = probing || demands_of(effect).probing;
+  }
+  if (g_.family == Family::kBallBar) moving = true;
+  options_.manner = probing ? Manner::kProbing : moving ? Manner::kMoving : Manner::kAtRest;
+  options_.reading = Reading::kPoint;
+  if (probing) options_.reading = Reading::kD;
+  if (g_.family == Family::kSingleAxis) options_.reading = Reading::kX;
+  if (g_.family == Family::kBallBar || (g_.family == Family::kRobot && draw_.chance(0.25)))
+    options_.reading = Reading::kLength;
+}
+
+void Attempt::choose_model() {
+  const bool has_tables = g_.text.find("fit=\"") != std::string::npos;
+  model_options_.kind = has_tables && draw_.chance(0.6) ? ModelKind::kTables : ModelKind::kStatics;
+  model_options_.shift_per_run = draw_.chance(0.7);
+  model_options_.hold_shift = options_.reading == Reading::kD;
+  for (std::size_t i = 0; i < effects_.size(); ++i) {
+    const Demands demands = demands_of(effects_[i]);
+    if (demands.bare) model_options_.kind = ModelKind::kBare;
+    if (!demands.shift_per_run) model_options_.shift_per_run = false;
+    if (demands.without_own) {
+      model_options_.axis_without = forms_[i].cause.axis;
+      model_options_.column_without = forms_[i].places.front().dof;
+    }
+  }
+}
+
+/// Draws effect, motion, inputs, form and model. False: this draw cannot be.
+bool Attempt::choose() {
+  if (spec_.kind == SurveyClass::kSingle || spec_.kind == SurveyClass::kTwo) {
+    const std::vector<std::string> all = effects_of(spec_.family);
+    effects_ = {spec_.effect.empty() ? draw_.pick(all) : spec_.effect};
+    if (spec_.kind == SurveyClass::kTwo) effects_.push_back(draw_.pick(all));
+  } else if (spec_.kind == SurveyClass::kConfusable) {
+    design_confusable();
+  }
+  const bool probing =
+      std::any_of(effects_.begin(), effects_.end(), [](auto& e) { return demands_of(e).probing; });
+  const bool moving =
+      std::any_of(effects_.begin(), effects_.end(), [](auto& e) { return demands_of(e).moving; });
+  if ((probing && moving) || (effects_.size() == 2 && effects_[0] == effects_[1])) return false;
+  if (spec_.kind == SurveyClass::kConfusable) {
+    const MotionOptions designed = options_;
+    choose_motion();
+    options_.manner = designed.one_axis ? Manner::kMoving : options_.manner;
+    options_.one_axis = designed.one_axis;
+    options_.one_thermal = designed.one_thermal;
+    options_.locked = designed.locked;
+    if (designed.one_axis) options_.feeds = 1;
+  } else {
+    choose_motion();
+  }
+  rows_ = move(g_, options_, draw_);
+  columns_ = log_inputs(rows_, options_, draw_);
+  for (std::size_t r = 0; r < spec_.runs; ++r) model_options_.runs.push_back(run_label(r));
+  for (const std::string& effect : effects_)
+    if (!choose_effect(effect)) return false;
+  if (spec_.kind == SurveyClass::kOutside) {
+    forms_ = {outside_form(g_, columns_, draw_)};
+    effects_ = {forms_.front().cause.effect};
+  }
+  choose_model();
+  u_ = spec_.u_mm > 0 ? spec_.u_mm : g_.u_mm;
+  return true;
+}
+
+std::vector<TermStatic> Attempt::statics_of(std::size_t effect) const {
+  std::vector<TermStatic> statics;
+  for (std::size_t k = 0; k < forms_[effect].coefficients.size(); ++k)
+    statics.push_back(
+        {fmt::format("hid{}_{}", effect + 1, k + 1), scale_[effect] * forms_[effect].coefficients[k]});
+  return statics;
+}
+
+std::vector<Place> Attempt::places_of(std::size_t effect) const {
+  static const std::regex coefficient(R"(\bk([123])\b)");
+  std::vector<Place> places = forms_[effect].places;
+  for (Place& place : places)
+    place.text = std::regex_replace(place.text, coefficient, fmt::format("hid{}_$1", effect + 1));
+  return places;
+}
+
+std::vector<TermInput> Attempt::inputs() const {
+  std::vector<TermInput> list;
+  for (const LoggedColumn& c : columns_)
+    for (const Form& form : forms_)
+      if (std::find(form.inputs.begin(), form.inputs.end(), c.name) != form.inputs.end() &&
+          std::none_of(list.begin(), list.end(), [&](const TermInput& t) { return t.name == c.name; }))
+        list.push_back({c.name, c.unit, c.reference});
+  return list;
+}
+
+std::string Attempt::truth_text() const {
+  std::string text = with_terms(base_, {}, {}, inputs());
+  for (std::size_t e = 0; e < forms_.size(); ++e) text = with_terms(text, places_of(e), statics_of(e), {});
+  return text;
+}
+
+/// What an effect at its scale does to the readings, exactly.
+Eigen::VectorXd Attempt::shift_of(std::size_t effect) const {
+  std::vector<TermInput> all;
+  for (const LoggedColumn& c : columns_) all.push_back({c.name, c.unit, c.reference});
+  const Machine with = parse_machine(
+      with_terms(with_terms(base_, {}, {}, all), places_of(effect), statics_of(effect), {}), "truth.xml");
+  return predict(with, measurement_) - predict(base_machine_, measurement_);
+}
+
+bool Attempt::scale_effects() {
+  const auto rms = [](const Eigen::VectorXd& v) {
+    return std::sqrt(v.squaredNorm() / static_cast<double>(v.size()));
+  };
+  scale_.assign(forms_.size(), 0);
+  ratio_ = remaining_ = scale_;
+  const FormColumns columns(base_machine_, measurement_, *complement_);
+  for (std::size_t e = 0; e < forms_.size(); ++e) {
+    Eigen::VectorXd sizes(static_cast<Eigen::Index>(forms_[e].coefficients.size()));
+    for (Eigen::Index k = 0; k < sizes.size(); ++k)
+      sizes[k] = forms_[e].coefficients[static_cast<std::size_t>(k)];
+    const double linear = rms(columns(forms_[e], false) * sizes);
+    if (!(linear > 1e-9)) return false;
+    scale_[e] = spec_.ratio / linear;
+    // Once more with the exact shift: an angle of some size is not quite linear.
+    for (int again = 0; again < 2; ++again) {
+      const Eigen::VectorXd shift = complement_->weighted(shift_of(e));
+      ratio_[e] = rms(complement_->project(shift));
+      remaining_[e] = ratio_[e] / rms(shift);
+      if (remaining_[e] < kLeastRemaining || !std::isfinite(ratio_[e])) return false;
+      if (again == 0) scale_[e] *= spec_.ratio / ratio_[e];
+    }
+    if (std::abs(ratio_[e] / spec_.ratio - 1) > 0.03) return false;
+  }
+  return forms_.size() < 2 || far_apart();
+}
+
+/// Two effects of which each still shows beside the other.
+bool Attempt::far_apart() const {
+  const Eigen::VectorXd a = complement_->project(complement_->weighted(shift_of(0)));
+  const Eigen::VectorXd b = complement_->project(complement_->weighted(shift_of(1)));
+  return std::abs(a.dot(b)) < 0.5 * a.norm() * b.norm();
+}
+
+void Attempt::measure(HiddenSurvey& survey) {
+  survey.truth = truth_text();
+  const Machine truth = parse_machine(survey.truth, "truth.xml");
+  Eigen::VectorXd readings = predict(truth, parse_measurement(survey.csv, "survey.csv", truth));
+  for (Eigen::Index i = 0; i < readings.size(); ++i) readings[i] += u_ * draw_.normal();
+  survey.csv = survey_csv(table(), readings);
+  for (std::size_t i = 0; i < measurement_.observations.size(); ++i)
+    measurement_.observations[i].value = readings[static_cast<Eigen::Index>(i)];
+}
+
+HiddenEffect Attempt::key_of(std::size_t e) const {
+  const Form& form = forms_[e];
+  const std::vector<Place> places = places_of(e);
+  HiddenEffect key;
+  key.cause = form.cause;
+  key.inputs = form.inputs;
+  key.branch = places.front().workpiece ? "workpiece" : "tool";
+  key.transform = places.front().n;
+  key.dof = places.front().dof;
+  key.term = places.front().text;
+  key.ratio = ratio_[e];
+  key.remaining = remaining_[e];
+  for (const TermStatic& item : statics_of(e)) key.statics.push_back(item.name);
+  // FORMATS gives these pairs one line or one formula.
+  static const std::vector<std::pair<std::string, std::string>> names = {
+      {"squareness", "axis-tilt"}, {"servo-lag", "servo-mismatch"}, {"gravity-sag", "joint-compliance"}};
+  key.accept = {form.cause};
+  for (const auto& [one, other] : names)
+    if (form.cause.effect == one || form.cause.effect == other)
+      key.accept.push_back({form.cause.effect == one ? other : one, form.cause.axis, form.cause.input});
+  return key;
+}
+
+void Attempt::judge(HiddenSurvey& survey) {
+  const FormColumns columns(base_machine_, measurement_, *complement_);
+  Eigen::VectorXd difference(static_cast<Eigen::Index>(measurement_.observations.size()));
+  const Eigen::VectorXd expected = predict(base_machine_, measurement_);
+  for (Eigen::Index i = 0; i < difference.size(); ++i)
+    difference[i] = measurement_.observations[static_cast<std::size_t>(i)].value - expected[i];
+  survey.can_tell = true;
+  for (std::size_t e = 0; e < forms_.size(); ++e) {
+    Complement beside = *complement_;  // what the other effects explain is not for this one
+    for (std::size_t other = 0; other < forms_.size(); ++other)
+      if (other != e) beside.extend(columns(forms_[other], true));
+    const FormColumns mine(base_machine_, measurement_, beside);
+    const Eigen::MatrixXd true_columns = mine(forms_[e], true);
+    RivalCourt court{g_,
+                     columns_,
+                     model_options_.runs,
+                     mine,
+                     beside.project(beside.weighted(difference)),
+                     beside.project(beside.weighted(shift_of(e))),
+                     0,
+                     orthonormal(true_columns).cols(),
+                     forms_[e].inputs};
+    court.truth_chi_square = chi_square_with(true_columns, court.residual);
+    std::vector<Rival> rivals = find_rivals(court, survey.effects[e].accept, draw_);
+    survey.can_tell = survey.can_tell && (rivals.empty() || rivals.front().excess >= kTells);
+    survey.rivals.insert(
+        survey.rivals.end(), rivals.begin(),
+        rivals.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(5, rivals.size())));
+  }
+}
+
+std::optional<HiddenSurvey> Attempt::survey() {
+  if (!choose()) return {};
+  HiddenSurvey result;
+  result.spec = spec_;
+  result.model = model_ = model_text(g_, model_options_, draw_);
+  const Machine at = true_values(model_, g_, 5 * u_, draw_);
+  base_ = update_machine_text(model_, at, false);
+  result.csv = survey_csv(table(), {});
+  std::vector<TermInput> all;
+  for (const LoggedColumn& c : columns_) all.push_back({c.name, c.unit, c.reference});
+  base_machine_ = parse_machine(with_terms(base_, {}, {}, all), "base.xml");
+  measurement_ = parse_measurement(result.csv, "survey.csv", base_machine_);
+  complement_.emplace(base_machine_, measurement_);
+  if (!scale_effects()) return {};
+  measure(result);
+  result.observations = measurement_.observations.size();
+  result.parameters = complement_->parameters();
+  for (std::size_t e = 0; e < forms_.size(); ++e) result.effects.push_back(key_of(e));
+  judge(result);
+  if (spec_.kind == SurveyClass::kConfusable && (result.rivals.empty() || result.rivals.front().excess > 2))
+    return {};
+  return result;
+}
+
+nlohmann::json to_json(const Cause& cause) {
+  const auto or_null = [](const std::string& s) { return s.empty() ? nlohmann::json() : nlohmann::json(s); };
+  return {{"effect", cause.effect}, {"axis", or_null(cause.axis)}, {"input", or_null(cause.input)}};
+}
+
+}  // namespace
+
+const char* class_name(SurveyClass kind) { return kClassNames[static_cast<std::size_t>(kind)]; }
+
+SurveyClass class_named(const std::string& name) {
+  for (std::size_t i = 0; i < kClassNames.size(); ++i)
+    if (name == kClassNames[i]) return static_cast<SurveyClass>(i);
+  throw std::invalid_argument("no survey class '" + name + "'");
+}
+
+std::vector<std::string> effects_of(Family family) {
+  const Geometry g = geometry_of(family);
+  std::vector<std::string> effects;
+  for (const EffectScan& scan : effect_scans()) {
+    const std::string effect = scan.effect;
+    const bool rotary = !g.all_linear();
+    if (demands_of(effect).probing && (rotary || g.axes.size() < 3)) continue;
+    if (effect == "joint-compliance" && !rotary) continue;
+    if (g.axes.size() < 3 &&
+        (demands_of(effect).bare || effect == "angular-error" || effect == "thermal-bend"))
+      continue;
+    if (effect == "offset" && !rotary) continue;
+    if (effect == "gravity-sag" && g.bends.empty()) continue;
+    if (effect == "thermal-scale" &&
+        std::all_of(g.axes.begin(), g.axes.end(), [](const AxisPlace& a) { return a.rotary; }))
+      continue;
+    // A circle that is read too late is the same circle.
+    if (family == Family::kBallBar && (effect == "time-sync" || effect == "time-base")) continue;
+    if (g.axes.size() == 1 &&
+        (effect == "lateral-play" || effect == "straightness" || effect == "gravity-sag" ||
+         effect == "servo-mismatch" || effect == "centrifugal"))
+      continue;
+    effects.push_back(effect);
+  }
+  return effects;
+}
+
+HiddenSurvey make_survey(const SurveySpec& spec) {
+  if (spec.ratio <= 0 || spec.rows < 20 || spec.runs < 1 || (spec.feeds != 1 && spec.feeds != 3))
+    throw std::invalid_argument("survey: ratio > 0, at least 20 rows, a run, 1 or 3 feeds");
+  Draw seeds(spec.seed * 0x9E3779B97F4A7C15ULL + static_cast<std::uint64_t>(spec.family) * 1000003 +
+             static_cast<std::uint64_t>(spec.kind));
+  for (int k = 0; k < kDraws; ++k)
+    if (std::optional<HiddenSurvey> survey = Attempt(spec, seeds.seed()).survey()) return *std::move(survey);
+  throw std::runtime_error(
+      fmt::format("{} shows nothing of {} in {} draws (seed {})", family_name(spec.family),
+                  spec.effect.empty() ? class_name(spec.kind) : spec.effect, kDraws, spec.seed));
+}
+
+std::string HiddenSurvey::key() const {
+  nlohmann::json list = nlohmann::json::array(), others = nlohmann::json::array();
+  for (const HiddenEffect& e : effects) {
+    nlohmann::json item = to_json(e.cause), names = nlohmann::json::array();
+    for (const Cause& cause : e.accept) names.push_back(to_json(cause));
+    item.update({{"inputs", e.inputs},
+                 {"branch", e.branch},
+                 {"transform", e.transform},
+                 {"dof", e.dof},
+                 {"term", e.term},
+                 {"accept", names},
+                 {"ratio", e.ratio},
+                 {"remaining", e.remaining},
+                 {"statics", e.statics}});
+    list.push_back(item);
+  }
+  for (const Rival& r : rivals) {
+    nlohmann::json item = to_json(r.cause);
+    item.update({{"term", r.term}, {"excess_chi_square", r.excess}});
+    others.push_back(item);
+  }
+  return nlohmann::json{{"seed", spec.seed},
+                        {"family", family_name(spec.family)},
+                        {"class", class_name(spec.kind)},
+                        {"u_mm", spec.u_mm},
+                        {"observations", observations},
+                        {"parameters", parameters},
+                        {"effects", list},
+                        {"rivals", others},
+                        {"can_tell", can_tell}}
+             .dump(2) +
+         "\n";
+}
+
+}  // namespace vernier::support

@@ -1,0 +1,23 @@
+#pragma once
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "tests/support/hidden_survey_motion.h"
+
+namespace vernier::support {
+
+/// A measurement file without its readings.
+struct SurveyTable {
+  const Geometry& geometry;
+  const MotionOptions& options;
+  const std::vector<MotionRow>& rows;
+  const std::vector<LoggedColumn>& columns;
+  double u_mm;
+};
+
+/// The file; `readings`: per row in the order of the header, mm. Empty: all 0. Of a `d` reading the nominal
+/// point is where the nominal chain stands.
+std::string survey_csv(const SurveyTable& table, const Eigen::VectorXd& readings);
+
+}  // namespace vernier::support

@@ -1,0 +1,53 @@
+#pragma once
+#include <array>
+#include <string>
+#include <vector>
+
+#include "tests/support/hidden_survey_family.h"
+
+namespace vernier::support {
+
+/// How the machine is measured.
+enum class Manner : std::uint8_t {
+  kAtRest,   // moves to a pose, stops, is read
+  kMoving,   // read on the fly: lines with acceleration, arcs where two linear axes span a plane
+  kProbing,  // touches surfaces along their normal and is latched while it moves
+};
+enum class Reading : std::uint8_t { kPoint, kLength, kD, kX };
+
+struct MotionOptions {
+  Manner manner = Manner::kAtRest;
+  Reading reading = Reading::kPoint;
+  std::size_t rows = 400, runs = 4;
+  int feeds = 3;
+  bool locked = false;       // the first axis only creeps forward within a run: time and place go together
+  bool one_axis = false;     // one axis moves at a time, read at constant speed
+  bool one_thermal = false;  // every thermometer shows one shape, in proportion to the time
+};
+
+/// One row of a survey: commanded state, physically consistent with the rows before it.
+struct MotionRow {
+  std::vector<double> q, v, a, direction, since;  // by axis: mm, mm/s, mm/s^2, -1 0 1, mm (deg)
+  double feed = 0, curvature = 0, t = 0;          // mm/min, 1/mm, s
+  std::array<double, 3> normal{}, centre{};
+  std::size_t run = 0;
+  bool check = false;
+};
+
+std::vector<MotionRow> move(const Geometry& geometry, const MotionOptions& options, Draw& draw);
+
+/// A column beside the axes that is no motion: thermometers, loads, an accelerometer, decoys.
+struct LoggedColumn {
+  enum class Sort : std::uint8_t { kTemperature, kLoad, kVibration, kDecoy };
+  std::string name, unit;
+  Sort sort = Sort::kDecoy;
+  double reference = 0;
+  std::vector<double> value;
+};
+std::vector<LoggedColumn> log_inputs(const std::vector<MotionRow>& rows, const MotionOptions& options,
+                                     Draw& draw);
+
+/// Label of a run.
+std::string run_label(std::size_t run);
+
+}  // namespace vernier::support

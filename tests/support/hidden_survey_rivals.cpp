@@ -1,0 +1,63 @@
+#include "tests/support/hidden_survey_rivals.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace vernier::support {
+namespace {
+
+/// Share of the truth's column that the rival's columns cannot follow.
+double missed(const Eigen::MatrixXd& basis, const Eigen::VectorXd& truth) {
+  if (truth.size() == 0 || truth.squaredNorm() == 0) return 1;
+  return 1 - (basis.transpose() * truth).squaredNorm() / truth.squaredNorm();
+}
+
+void judge(const RivalCourt& court, const Form& form, std::vector<Cause>& accept,
+           std::vector<Rival>& rivals) {
+  if (is_accepted(accept, form.cause)) return;
+  const Eigen::MatrixXd basis = orthonormal(court.form_columns(form, true));
+  if (basis.cols() == 0) return;
+  const bool same_inputs = form.inputs == court.inputs;
+  if (missed(basis, court.truth) < 1e-4) {
+    if (basis.cols() > court.truth_width) return;
+    if (same_inputs) return accept.push_back(form.cause);
+  }
+  const double excess = court.residual.squaredNorm() - (basis.transpose() * court.residual).squaredNorm() -
+                        court.truth_chi_square;
+  const auto same =
+      std::find_if(rivals.begin(), rivals.end(), [&](const Rival& r) { return r.cause == form.cause; });
+  const Rival rival{form.cause, form.places.front().text, excess};
+  if (same == rivals.end())
+    rivals.push_back(rival);
+  else if (excess < same->excess)
+    *same = rival;
+}
+
+}  // namespace
+
+double chi_square_with(const Eigen::MatrixXd& columns, const Eigen::VectorXd& residual) {
+  return residual.squaredNorm() - (orthonormal(columns).transpose() * residual).squaredNorm();
+}
+
+bool is_accepted(const std::vector<Cause>& accept, const Cause& cause) {
+  return std::any_of(accept.begin(), accept.end(), [&](const Cause& a) {
+    return a.effect == cause.effect && (a.axis.empty() || a.axis == cause.axis) &&
+           (a.input.empty() || a.input == cause.input);
+  });
+}
+
+std::vector<Rival> find_rivals(const RivalCourt& court, std::vector<Cause>& accept, Draw& draw) {
+  std::vector<Rival> rivals;
+  for (const EffectScan& scan : effect_scans())
+    for (int step = 0; step < scan.steps; ++step) {
+      const Share share = [&] { return (step + 0.5) / scan.steps; };
+      for (const Form& form : forms_of(scan.effect, court.geometry, court.columns, court.runs, share, draw))
+        judge(court, form, accept, rivals);
+    }
+  // A twin that was found late may have been a rival under another of its forms.
+  std::erase_if(rivals, [&](const Rival& r) { return is_accepted(accept, r.cause); });
+  std::sort(rivals.begin(), rivals.end(), [](const Rival& a, const Rival& b) { return a.excess < b.excess; });
+  return rivals;
+}
+
+}  // namespace vernier::support

@@ -1,0 +1,33 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "tests/support/hidden_survey_columns.h"
+
+namespace vernier::support {
+
+/// What rivals are judged on.
+struct RivalCourt {
+  const Geometry& geometry;
+  const std::vector<LoggedColumn>& columns;
+  const std::vector<std::string>& runs;
+  const FormColumns& form_columns;
+  Eigen::VectorXd residual;      // projected, weighted
+  Eigen::VectorXd truth;         // the effect itself, projected
+  double truth_chi_square = 0;   // of the fit with the true form
+  Eigen::Index truth_width = 1;  // independent columns of the true form
+  std::vector<std::string> inputs;
+};
+
+/// chi^2 that is left when these projected columns are fitted too.
+double chi_square_with(const Eigen::MatrixXd& columns, const Eigen::VectorXd& residual);
+
+/// Every other form of every effect against the truth, best first, one per cause. A form whose columns hold
+/// the truth's, without more coefficients and with the same inputs, is the same effect under another name:
+/// added to `accept`. One with more coefficients only says the same more loosely and is no rival.
+std::vector<Rival> find_rivals(const RivalCourt& court, std::vector<Cause>& accept, Draw& draw);
+
+/// Is the cause one of these? Empty axis and input of `accept` match any.
+bool is_accepted(const std::vector<Cause>& accept, const Cause& cause);
+
+}  // namespace vernier::support
