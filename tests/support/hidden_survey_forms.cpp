@@ -297,6 +297,9 @@ void Builder::load() {
   for (const LoggedColumn& c : columns_)
     for (const bool angle : {false, true}) {
       if (c.sort != LoggedColumn::Sort::kLoad && c.sort != LoggedColumn::Sort::kDecoy) continue;
+      // What never changes is no cause of anything, only another name for a constant.
+      if (std::all_of(c.value.begin(), c.value.end(), [&](double v) { return v == c.value.front(); }))
+        continue;
       each_dof(angle, [&](const TransformPlace& t, const std::string& dof) {
         with_input(c, add("", {{t.workpiece, t.n, dof, "k1*" + c.name}}, {some()}), "1");
       });
