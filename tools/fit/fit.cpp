@@ -4,29 +4,13 @@
 #include <cmath>
 #include <limits>
 
-#include "tools/fit/ceres_solver.h"
-#include "tools/fit/levenberg.h"
 #include "tools/fit/problem.h"
+#include "tools/fit/solve.h"
 #include "tools/model/evaluate.h"
 #include "tools/model/prediction.h"
 
 namespace vernier {
 namespace {
-
-/// A step that lowers chi^2 by less than this share of one observation's variance moves no parameter by more
-/// than sqrt(this) = 3 % of its standard uncertainty; nor is it worth more when it lowers chi^2 by less than
-/// a millionth.
-constexpr double kNegligible = 1e-3, kNegligibleShare = 1e-6;
-
-std::vector<std::string> runs_of_fit_rows(const Measurement& m) {
-  std::vector<char> seen(m.states.run_names.size(), 0);
-  for (const Observation& o : m.observations)
-    if (m.check[o.row] == 0) seen[m.states.run[o.row]] = 1;
-  std::vector<std::string> runs;
-  for (std::size_t i = 0; i < seen.size(); ++i)
-    if (seen[i] != 0) runs.push_back(m.states.run_names[i]);
-  return runs;
-}
 
 /// The rows that the fit needs: its own, or all where lag makes a row depend on those before it.
 Measurement rows_for_fit(const Machine& machine, const Measurement& all) {
@@ -40,7 +24,7 @@ Measurement rows_for_fit(const Machine& machine, const Measurement& all) {
 void estimate(FitResult& result, const FitProblem& problem, bool has_u) {
   const Eigen::VectorXd values = result.parameters.get(result.machine);
   const NormalEquations end = problem.equations(values);
-  result.observability = observe(end.normal);
+  result.observability = observe(end.normal, kUnseenShare, result.held);
   result.chi_square = end.cost;
   result.freedom = static_cast<Eigen::Index>(result.before.count) - result.observability.rank;
   const double reduced = result.freedom > 0 ? result.chi_square / static_cast<double>(result.freedom)
@@ -55,22 +39,13 @@ void estimate(FitResult& result, const FitProblem& problem, bool has_u) {
   }
 }
 
-/// Does `name` match `pattern` (* any letters, ? one letter)?
-bool matches(std::string_view pattern, std::string_view name) {
-  if (pattern.empty()) return name.empty();
-  if (pattern.front() == '*')
-    return matches(pattern.substr(1), name) || (!name.empty() && matches(pattern, name.substr(1)));
-  return !name.empty() && (pattern.front() == '?' || pattern.front() == name.front()) &&
-         matches(pattern.substr(1), name.substr(1));
-}
-
 /// 1 / std^2 of each parameter that a prior names, 0 for the others. A prior that names nothing is a mistake.
 Eigen::VectorXd prior_weights(FitResult& result, const FitOptions& options) {
   Eigen::VectorXd weights = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(result.parameters.size()));
   for (const Prior& prior : options.priors) {
     bool found = false;
     for (std::size_t i = 0; i < result.parameters.size(); ++i) {
-      if (!matches(prior.pattern, result.parameters[i].name)) continue;
+      if (!matches_pattern(prior.pattern, result.parameters[i].name)) continue;
       found = true;
       weights[static_cast<Eigen::Index>(i)] = 1 / (prior.std * prior.std);
       result.priors.emplace_back(result.parameters[i].name, prior.std);
@@ -78,67 +53,6 @@ Eigen::VectorXd prior_weights(FitResult& result, const FitOptions& options) {
     if (!found) throw InputError("\"" + prior.pattern + "\": no free parameter has this name");
   }
   return weights;
-}
-
-std::vector<char> freed_in(const std::vector<std::string>& patterns, const ParameterSet& parameters) {
-  std::vector<char> freed(parameters.size(), 0);
-  for (const std::string& pattern : patterns) {
-    bool found = false;
-    for (std::size_t i = 0; i < parameters.size(); ++i)
-      if (matches(pattern, parameters[i].name)) freed[i] = found = true;
-    if (!found) throw InputError("\"" + pattern + "\": no free parameter has this name");
-  }
-  return freed;
-}
-
-/// One run of the own solver over the parameters in `freed` (all where empty); the others stay.
-LevenbergResult solve_stage(const FitProblem& problem, const Eigen::VectorXd& start,
-                            const std::vector<char>& freed, const FitOptions& options,
-                            std::size_t observations) {
-  LevenbergOptions levenberg;
-  levenberg.max_iterations = options.max_iterations;
-  levenberg.progress = options.progress;
-  const double freedom = std::max(1.0, static_cast<double>(observations) - static_cast<double>(start.size()));
-  levenberg.negligible = [freedom](double cost) {
-    return cost * std::max(kNegligible / freedom, kNegligibleShare);
-  };
-  if (freed.empty())
-    levenberg.bend = [&](const Eigen::VectorXd& x, const Eigen::VectorXd& step) {
-      return problem.bend(x, step);
-    };
-  const auto equations = [&](const Eigen::VectorXd& x) {
-    NormalEquations all = problem.equations(x);
-    for (std::size_t i = 0; i < freed.size(); ++i) {
-      if (freed[i] != 0) continue;
-      all.normal.row(static_cast<Eigen::Index>(i)).setZero();
-      all.normal.col(static_cast<Eigen::Index>(i)).setZero();
-      all.gradient[static_cast<Eigen::Index>(i)] = 0;
-    }
-    return all;
-  };
-  return minimise(
-      start, equations, [&](const Eigen::VectorXd& x) { return problem.cost(x); }, levenberg);
-}
-
-Eigen::VectorXd solve(const FitProblem& problem, Eigen::VectorXd point, const FitOptions& options,
-                      FitResult& result) {
-  for (const auto& patterns : options.stages) {
-    const LevenbergResult stage =
-        solve_stage(problem, point, freed_in(patterns, result.parameters), options, result.before.count);
-    point = stage.point;
-    result.iterations += stage.iterations;
-  }
-  if (options.solver == Solver::kCeres || options.loss != Loss::kSquared) {
-    if (!options.priors.empty()) throw InputError("priors go with the squared loss and the own solver");
-    const CeresOutcome outcome = solve_with_ceres(problem, point, options);
-    result.iterations += outcome.iterations;
-    result.converged = outcome.converged;
-    return outcome.point;
-  }
-  const LevenbergResult outcome = solve_stage(problem, point, {}, options, result.before.count);
-  result.iterations += outcome.iterations;
-  result.converged = outcome.converged;
-  return outcome.point;
 }
 
 std::vector<Correlation> strong_correlations(const Observability& seen) {
@@ -211,7 +125,8 @@ FitResult fit(const Machine& machine, const Measurement& measurement, const FitO
   FitProblem problem(machine, rows, result.parameters);
   const Eigen::VectorXd start = result.parameters.get(machine);
   problem.set_priors(prior_weights(result, options), start);
-  const Eigen::VectorXd end = solve(problem, start, options, result);
+  const Eigen::VectorXd end =
+      solve(problem, align_set_ups(machine, rows, result.parameters, start), options, result);
   result.parameters.set(result.machine, end);
   result.residual = residuals(result.machine, measurement);
   result.after = role_statistics(measurement, result.residual, false);

@@ -69,13 +69,17 @@ struct FitResult {
   std::optional<NormalisedError>
       normalised_check;  // where there are check rows and an uncertainty of their readings
   std::vector<std::pair<std::string, double>> priors;  // parameter, standard uncertainty
+  std::vector<char> held;  // parameters that stand for directions left at their start; empty: none
   int iterations = 0;
   bool converged = false;
   Eigen::VectorXd residual;  // measured - model per observation, mm or deg
 };
 
 /// Weighted least squares on the fit rows: residual / u (1 where u is absent). Free parameters that the data
-/// cannot separate keep their start along the unidentified directions and are named in `observability`.
+/// cannot separate keep their start along the unidentified directions and are named in `observability`. So do
+/// directions that the data do not see at the start and only faintly, through products of errors, at the end,
+/// while following them promises no more than chance would. Set-ups that start more than 0.1 deg off are
+/// aligned first.
 /// Standard uncertainty: from u, times sqrt(chi^2 / dof) where that exceeds 1; without u from the residual
 /// (GUM 5.2). Throws InputError where there is nothing to fit. tool.
 FitResult fit(const Machine& machine, const Measurement& measurement, const FitOptions& options = {});

@@ -1,85 +1,224 @@
 #include "tools/fit/levenberg.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <optional>
+
+#include "tools/fit/pivoted_cholesky.h"
 
 namespace vernier {
 namespace {
 
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
 /// Relative fall of the cost below which a step brings nothing more.
 constexpr double kCostTolerance = 1e-14;
-constexpr double kFirstDamping = 1e-6;
-constexpr double kMostDamping = 1e12;
+constexpr double kFirstDamping = 1e-6, kLeastDamping = 1e-8, kMostDamping = 1e12;
 constexpr double kMostBend = 0.75;
+/// A step that did what the linear model promised, nearly: its factor serves once more.
+constexpr double kTrue = 0.9;
+/// A chord step that leaves more than this share of what the last one had to gain: time for a new factor.
+constexpr double kSlowChord = 0.1;
+/// A direction with a scaled square above this is seen plainly (a standard uncertainty within 300 times the
+/// best one's), whatever the start saw of it.
+constexpr double kPlain = 1e-5;
+
+/// What the new start does not see either would be released and held for ever.
+constexpr int kMostReleases = 3;
+
+class Minimiser {
+ public:
+  Minimiser(const VectorXd& start, const std::function<NormalEquations(const VectorXd&)>& equations,
+            const std::function<double(const VectorXd&)>& cost, const LevenbergOptions& options)
+      : equations_(equations), cost_(cost), options_(options) {
+    result_.point = start;
+    scale_ = VectorXd::Zero(start.size());
+  }
+
+  LevenbergResult run() {
+    do {
+      descend();
+    } while (result_.converged && result_.iterations < options_.max_iterations && releases_ < kMostReleases &&
+             release());
+    return result_;
+  }
+
+ private:
+  enum class Step : std::uint8_t { kGood, kPoor, kNothingLeft, kFailed };
+
+  void descend();
+  void prepare();
+  void factorise();
+  Step step();
+  Step chord();
+  bool release();
+  VectorXd bent(const VectorXd& straight) const;
+  Slope look(const VectorXd& point) const;
+  VectorXd solve(const VectorXd& gradient) const;
+  void accept(const VectorXd& point, Slope slope);
+
+  const std::function<NormalEquations(const VectorXd&)>& equations_;
+  const std::function<double(const VectorXd&)>& cost_;
+  const LevenbergOptions& options_;
+  LevenbergResult result_;
+  VectorXd scale_, shrink_, gradient_;  // gradient_: of the current point, scaled
+  MatrixXd scaled_;                     // normal matrix with unit diagonal
+  std::optional<PivotedCholesky> factor_;
+  MatrixXd unseen_;  // orthonormal; scaled
+  double damping_ = 0, growth_ = 2, promised_ = 0;
+  bool troubled_ = false;  // the last step fell short of its promise
+  int quiet_ = 0;          // steps in a row that changed nothing
+  int releases_ = 0;
+};
+
+/// The normal equations at the current point, scaled.
+void Minimiser::prepare() {
+  const NormalEquations now = equations_(result_.point);
+  result_.cost = now.cost;
+  scale_ = scale_.cwiseMax(now.normal.diagonal().cwiseSqrt());
+  shrink_ = scale_.unaryExpr([](double s) { return s > 0 ? 1 / s : 0.0; });
+  scaled_ = shrink_.asDiagonal() * now.normal * shrink_.asDiagonal();
+  gradient_ = shrink_.cwiseProduct(now.gradient);
+}
+
+/// Which directions are left alone is decided once, at the start, and what is less seen further on joins
+/// them.
+void Minimiser::factorise() {
+  MatrixXd damped = scaled_;
+  damped.diagonal().array() += damping_;
+  factor_.emplace(std::move(damped), options_.unseen, result_.held);
+  if (result_.held.empty()) result_.held = factor_->left_over();
+  unseen_ = factor_->null_basis();
+}
+
+/// The shortest of the steps that the kept rows cannot tell apart.
+VectorXd Minimiser::solve(const VectorXd& gradient) const {
+  VectorXd step = factor_->solve(gradient);
+  if (unseen_.cols() > 0) step -= unseen_ * (unseen_.transpose() * step);
+  return step;
+}
+
+VectorXd Minimiser::bent(const VectorXd& straight) const {
+  if (!options_.bend || !troubled_) return straight;
+  const VectorXd bend = options_.bend(result_.point, shrink_.cwiseProduct(straight));
+  const VectorXd acceleration = -solve(shrink_.cwiseProduct(bend));
+  // Beyond this the valley bends too sharply for two terms of its series.
+  if (2 * acceleration.norm() > kMostBend * straight.norm()) return straight;
+  return straight + 0.5 * acceleration;
+}
+
+Slope Minimiser::look(const VectorXd& point) const {
+  if (options_.slope) return options_.slope(point);
+  return {cost_(point), {}};
+}
+
+void Minimiser::accept(const VectorXd& point, Slope slope) {
+  quiet_ = result_.cost - slope.cost <= options_.negligible(slope.cost) ? quiet_ + 1 : 0;
+  result_.point = point;
+  result_.cost = slope.cost;
+  if (slope.gradient.size() > 0) gradient_ = shrink_.cwiseProduct(slope.gradient);
+  ++result_.iterations;
+  if (options_.progress) options_.progress(result_.iterations, result_.cost);
+}
+
+/// One step with a fresh factor, damped until it lowers the cost.
+Minimiser::Step Minimiser::step() {
+  while (damping_ < kMostDamping) {
+    factorise();
+    const VectorXd straight = solve(gradient_);
+    promised_ = straight.dot(gradient_ + damping_ * straight);
+    if (std::isfinite(promised_) && promised_ <= kCostTolerance * result_.cost) return Step::kNothingLeft;
+    if (std::isfinite(promised_)) {
+      const VectorXd next = result_.point + shrink_.cwiseProduct(bent(straight));
+      Slope there = look(next);
+      const double gain = (result_.cost - there.cost) / promised_;
+      if (std::isfinite(there.cost) && gain > 1e-4) {
+        accept(next, std::move(there));
+        damping_ *= std::max(1.0 / 30, 1 - std::pow(2 * gain - 1, 3));
+        if (damping_ < kLeastDamping) damping_ = 0;
+        growth_ = 2;
+        troubled_ = gain < 0.5;
+        return gain > kTrue ? Step::kGood : Step::kPoor;
+      }
+    }
+    troubled_ = true;
+    damping_ = damping_ > 0 ? damping_ * growth_ : kFirstDamping;
+    growth_ *= 2;
+  }
+  return Step::kFailed;
+}
+
+/// A step with the factor of an earlier point and the gradient of this one.
+Minimiser::Step Minimiser::chord() {
+  const VectorXd straight = solve(gradient_);
+  const double before = promised_;
+  promised_ = straight.dot(gradient_);
+  if (!(promised_ > options_.negligible(result_.cost) / 10)) return Step::kNothingLeft;
+  if (promised_ > kSlowChord * before) return Step::kPoor;
+  const VectorXd next = result_.point + shrink_.cwiseProduct(straight);
+  Slope there = look(next);
+  if (!std::isfinite(there.cost) || result_.cost - there.cost < 0.5 * promised_) return Step::kPoor;
+  accept(next, std::move(there));
+  return Step::kGood;
+}
+
+void Minimiser::descend() {
+  result_.converged = false;
+  quiet_ = 0;
+  prepare();
+  while (result_.iterations < options_.max_iterations) {
+    Step done = step();
+    const bool undamped = damping_ == 0;
+    while (done == Step::kGood && undamped && options_.slope && result_.iterations < options_.max_iterations)
+      done = chord();
+    if (done == Step::kFailed) return;
+    if (done == Step::kNothingLeft || quiet_ >= 2) {
+      result_.converged = true;
+      return;
+    }
+    prepare();
+  }
+}
+
+/// Looks again at the directions left alone: true if some of them are to be followed now.
+bool Minimiser::release() {
+  const auto held = static_cast<Index>(std::count(result_.held.begin(), result_.held.end(), 1));
+  if (held == 0) return false;
+  prepare();
+  damping_ = 0;
+  factorise();
+  // What of the held directions is seen once the others have adapted, and what following them promises.
+  const MatrixXd seen = unseen_.transpose() * (scaled_.selfadjointView<Eigen::Lower>() * unseen_);
+  const VectorXd slope = unseen_.transpose() * gradient_;
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(seen);
+  double promise = 0, count = 0;
+  bool plain = false;
+  for (Index i = 0; i < eigen.eigenvalues().size(); ++i) {
+    const double square = eigen.eigenvalues()[i];
+    if (square < options_.unseen) continue;
+    plain = plain || square > kPlain;
+    promise += std::pow(eigen.eigenvectors().col(i).dot(slope), 2) / square;
+    ++count;
+  }
+  // Freed for nothing, `count` parameters lower the cost by that many variances, give or take sqrt(2 count).
+  const double chance = options_.chance(result_.cost) * (count + 3 * std::sqrt(2 * count));
+  if (count == 0 || (!plain && promise <= std::max(chance, options_.negligible(result_.cost)))) return false;
+  ++releases_;
+  result_.held.clear();
+  return true;
+}
 
 }  // namespace
 
-LevenbergResult minimise(const Eigen::VectorXd& start,
-                         const std::function<NormalEquations(const Eigen::VectorXd&)>& equations,
-                         const std::function<double(const Eigen::VectorXd&)>& cost,
+LevenbergResult minimise(const VectorXd& start,
+                         const std::function<NormalEquations(const VectorXd&)>& equations,
+                         const std::function<double(const VectorXd&)>& cost,
                          const LevenbergOptions& options) {
-  LevenbergResult result;
-  result.point = start;
-  NormalEquations now = equations(start);
-  result.cost = now.cost;
-  if (start.size() == 0) {
-    result.converged = true;
-    return result;
-  }
-  Eigen::VectorXd scale = Eigen::VectorXd::Zero(start.size());
-  double damping = kFirstDamping, growth = 2;
-  int quiet = 0;  // steps in a row that changed nothing
-  for (int i = 0; i < options.max_iterations; ++i) {
-    scale = scale.cwiseMax(now.normal.diagonal().cwiseSqrt());
-    const Eigen::VectorXd shrink = scale.unaryExpr([](double s) { return s > 0 ? 1 / s : 0.0; });
-    const Eigen::MatrixXd scaled = shrink.asDiagonal() * now.normal * shrink.asDiagonal();
-    const Eigen::VectorXd gradient = shrink.cwiseProduct(now.gradient);
-    bool accepted = false;
-    while (damping < kMostDamping) {
-      Eigen::MatrixXd damped = scaled;
-      damped.diagonal().array() += damping;
-      const Eigen::LLT<Eigen::MatrixXd> factor(damped);
-      const Eigen::VectorXd scaled_step = factor.solve(gradient);
-      const double predicted = scaled_step.dot(gradient + damping * scaled_step);
-      if (!std::isfinite(predicted) || predicted <= kCostTolerance * result.cost) {
-        if (std::isfinite(predicted)) break;  // nothing left to gain
-        damping *= growth;
-        growth *= 2;
-        continue;
-      }
-      Eigen::VectorXd bent = scaled_step;
-      if (options.bend) {
-        const Eigen::VectorXd bend = options.bend(result.point, shrink.cwiseProduct(scaled_step));
-        const Eigen::VectorXd acceleration = -factor.solve(shrink.cwiseProduct(bend));
-        // Beyond this the valley bends too sharply for two terms of its series.
-        if (2 * acceleration.norm() <= kMostBend * scaled_step.norm()) bent += 0.5 * acceleration;
-      }
-      const Eigen::VectorXd next = result.point + shrink.cwiseProduct(bent);
-      const double next_cost = cost(next);
-      const double gain = (result.cost - next_cost) / predicted;
-      if (std::isfinite(next_cost) && gain > 1e-4) {
-        quiet = result.cost - next_cost <= options.negligible(next_cost) ? quiet + 1 : 0;
-        result.point = next;
-        result.cost = next_cost;
-        damping =
-            std::max(options.least_damping, damping * std::max(1.0 / 30, 1 - std::pow(2 * gain - 1, 3)));
-        growth = 2;
-        accepted = true;
-        break;
-      }
-      damping = std::max(damping, options.least_damping) * growth;
-      growth *= 2;
-    }
-    result.iterations = i + 1;
-    if (options.progress) options.progress(result.iterations, result.cost);
-    if (!accepted || quiet >= 2) {
-      result.converged = damping < kMostDamping;
-      return result;
-    }
-    now = equations(result.point);
-  }
-  return result;
+  return Minimiser(start, equations, cost, options).run();
 }
 
 }  // namespace vernier

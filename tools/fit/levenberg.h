@@ -1,6 +1,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <functional>
+#include <vector>
 
 namespace vernier {
 
@@ -12,18 +13,28 @@ struct NormalEquations {
   Eigen::VectorXd gradient;  // J^T W^2 (measured - predicted)
 };
 
+/// The first derivative alone: a fraction of the work.
+struct Slope {
+  double cost = 0;           // infinity where the model is undefined
+  Eigen::VectorXd gradient;  // J^T W^2 (measured - predicted)
+};
+
 struct LevenbergOptions {
   int max_iterations = 100;
-  /// Least damping, in units of the scaled normal matrix (unit diagonal). It keeps unidentified directions at
-  /// their start; identified ones (scaled singular value above 1e-5) still converge, at worst by a factor of
-  /// ten a step.
-  double least_damping = 1e-8;
+  /// Directions whose scaled square (unit diagonal) is below this at the start, or when a step is worked out,
+  /// are not seen there: the step leaves them alone. As observability's cutoff, squared.
+  double unseen = 1e-10;
   /// A fall of the cost below this is nothing: the fit passes the variance of an observation times a small
   /// share, so that no parameter would move by more than a few percent of its standard uncertainty.
   std::function<double(double)> negligible = [](double cost) { return 1e-14 * cost; };
+  /// Chance alone lowers the cost by about this much for each parameter freed (0: every fall counts). It
+  /// judges whether a direction that the start did not see is worth following.
+  std::function<double(double)> chance = [](double) { return 0.0; };
   /// J^T W^2 p'' of a point and a step: p'' is the second derivative of the predictions along the step. With
-  /// it the step is bent along the valley (geodesic acceleration), without it it is straight.
+  /// it a step that failed is bent along the valley (geodesic acceleration), without it it is straight.
   std::function<Eigen::VectorXd(const Eigen::VectorXd&, const Eigen::VectorXd&)> bend;
+  /// With it a good factor serves several steps (chord steps), each for the price of a gradient.
+  std::function<Slope(const Eigen::VectorXd&)> slope;
   std::function<void(int, double)> progress;
 };
 
@@ -32,11 +43,15 @@ struct LevenbergResult {
   double cost = 0;
   int iterations = 0;
   bool converged = false;
+  /// Parameters that stand for the directions left at their start; empty or one entry a parameter.
+  std::vector<char> held;
 };
 
-/// Levenberg-Marquardt on normal equations with column scaling (Nocedal and Wright, Numerical Optimization,
-/// 2nd ed., section 10.3; damping update by gain ratio, Nielsen 1999). `cost` evaluates the cost alone and
-/// may return infinity for a point where the model is undefined.
+/// Gauss-Newton in the directions that the data see, with column scaling; Levenberg-Marquardt where a step
+/// fails (Nocedal and Wright, Numerical Optimization, 2nd ed., section 10.3; damping update by gain ratio,
+/// Nielsen 1999). Directions that are not seen at the start are left there, not damped: they are looked at
+/// again at the end and released where the data see them plainly or where following them promises more than
+/// chance. `cost` evaluates the cost alone and may return infinity for a point where the model is undefined.
 LevenbergResult minimise(const Eigen::VectorXd& start,
                          const std::function<NormalEquations(const Eigen::VectorXd&)>& equations,
                          const std::function<double(const Eigen::VectorXd&)>& cost,

@@ -1,8 +1,12 @@
 #include "tools/fit/observability.h"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <optional>
+
+#include "tools/fit/pivoted_cholesky.h"
 
 namespace vernier {
 namespace {
@@ -57,35 +61,127 @@ std::vector<std::vector<std::size_t>> name_parts(Eigen::MatrixXd basis) {
   return groups;
 }
 
+/// Columns scaled to unit length; one that nothing sees stays zero and becomes a direction of its own.
+Eigen::VectorXd unit_scale(const Eigen::MatrixXd& normal) {
+  const Eigen::VectorXd length = normal.diagonal().cwiseSqrt();
+  const double tiny = 1e-14 * std::max(length.maxCoeff(), 1e-300);
+  return length.unaryExpr([tiny](double s) { return s > tiny ? 1 / s : 0.0; });
+}
+
+/// The scaled normal matrix taken apart: what observe() reports, before it is scaled back.
+struct Parts {
+  Eigen::Index rank = 0;
+  Eigen::VectorXd weak_squares;  // of the identified directions, smallest first, at most kWeakest
+  Eigen::MatrixXd weak;          // their directions
+  double largest = 0;
+  Eigen::MatrixXd unseen;   // n x (n - rank), orthonormal
+  Eigen::MatrixXd inverse;  // over the identified directions
+};
+
+Parts by_eigenvectors(const Eigen::MatrixXd& scaled, double limit_share) {
+  const Eigen::Index n = scaled.rows();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled);
+  const Eigen::VectorXd& values = eigen.eigenvalues();  // increasing
+  Parts parts;
+  parts.largest = std::max(values[n - 1], 1e-300);
+  Eigen::Index lost = 0;
+  while (lost < n && values[lost] < limit_share * parts.largest) ++lost;
+  parts.rank = n - lost;
+  parts.unseen = eigen.eigenvectors().leftCols(lost);
+  const Eigen::Index weak = std::min(kWeakest, parts.rank);
+  parts.weak_squares = values.segment(lost, weak);
+  parts.weak = eigen.eigenvectors().middleCols(lost, weak);
+  const Eigen::MatrixXd seen = eigen.eigenvectors().rightCols(parts.rank);
+  parts.inverse = seen * values.tail(parts.rank).cwiseInverse().asDiagonal() * seen.transpose();
+  return parts;
+}
+
+/// a - v v^T a - a v v^T + v v^T a v v^T for a symmetric a: without its part along the orthonormal v.
+Eigen::MatrixXd without(const Eigen::MatrixXd& a, const Eigen::MatrixXd& v) {
+  if (v.cols() == 0) return a;
+  const Eigen::MatrixXd along = a * v;
+  const Eigen::MatrixXd half = along - 0.5 * v * (v.transpose() * along);
+  return a - half * v.transpose() - v * half.transpose();
+}
+
+double largest_eigenvalue(const Eigen::MatrixXd& matrix) {
+  Eigen::VectorXd v = Eigen::VectorXd::Ones(matrix.rows()).normalized();
+  double value = 0;
+  for (int i = 0; i < 30; ++i) {  // to a percent or two: it is a yardstick
+    v = matrix * v;
+    value = v.norm();
+    if (value == 0) return 0;
+    v /= value;
+  }
+  return value;
+}
+
+/// Smallest eigenvalues of the identified part by inverse iteration on a few vectors more than are wanted.
+void find_weak(Parts& parts) {
+  const Eigen::Index n = parts.inverse.rows(), wanted = std::min(kWeakest, parts.rank),
+                     width = std::min(parts.rank, 3 * kWeakest);
+  Eigen::MatrixXd v = Eigen::MatrixXd::NullaryExpr(n, width, [](Eigen::Index i, Eigen::Index k) {
+    return std::cos(static_cast<double>((i + 1) * (k + 1)));
+  });
+  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> ritz;
+  for (int i = 0; i < 12; ++i) {
+    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(parts.inverse * v);
+    v = qr.householderQ() * Eigen::MatrixXd::Identity(n, width);
+  }
+  ritz.compute(v.transpose() * parts.inverse * v);
+  parts.weak_squares = ritz.eigenvalues().tail(wanted).reverse().cwiseInverse();
+  parts.weak = v * ritz.eigenvectors().rightCols(wanted).rowwise().reverse();
+}
+
+/// Nothing where a direction is so near the limit that only the eigenvalues can tell.
+std::optional<Parts> by_pivots(const Eigen::MatrixXd& scaled, double limit_share,
+                               const std::vector<char>& held) {
+  const Eigen::Index n = scaled.rows();
+  Parts parts;
+  parts.largest = largest_eigenvalue(scaled);
+  const double limit = limit_share * parts.largest;
+  // A remaining square bounds the smallest eigenvalue left from above, and n times it the largest.
+  const PivotedCholesky factor(scaled, limit / static_cast<double>(n), held);
+  parts.rank = factor.rank();
+  if (parts.rank == 0) return std::nullopt;
+  parts.unseen = factor.null_basis();
+  parts.inverse = without(factor.inverse(), parts.unseen);
+  find_weak(parts);
+  if (parts.weak_squares[0] < 2 * limit) return std::nullopt;
+  return parts;
+}
+
+Parts take_apart(const Eigen::MatrixXd& scaled, double limit_share, const std::vector<char>& held) {
+  constexpr Eigen::Index kMany = 200;  // an eigen-decomposition of fewer takes no time
+  if (scaled.rows() > kMany)
+    if (auto parts = by_pivots(scaled, limit_share, held)) return *parts;
+  if (std::count(held.begin(), held.end(), 1) == 0) return by_eigenvectors(scaled, limit_share);
+  const Eigen::MatrixXd unseen = PivotedCholesky(scaled, limit_share, held).null_basis();
+  return by_eigenvectors(without(scaled, unseen), limit_share);
+}
+
 }  // namespace
 
-Observability observe(const Eigen::MatrixXd& normal, double cutoff) {
+Observability observe(const Eigen::MatrixXd& normal, double cutoff, const std::vector<char>& held) {
   const Eigen::Index n = normal.rows();
   Observability result;
   result.covariance = Eigen::MatrixXd::Zero(n, n);
   result.determined.assign(static_cast<std::size_t>(n), 1);
   if (n == 0) return result;
-  Eigen::VectorXd scale = normal.diagonal().cwiseSqrt();
-  // A column that nothing sees has no length to scale by; it stays zero and becomes a direction of its own.
-  const double tiny = 1e-14 * std::max(scale.maxCoeff(), 1e-300);
-  for (double& s : scale) s = s > tiny ? 1 / s : 0;
-  const Eigen::MatrixXd scaled = scale.asDiagonal() * normal * scale.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled);
-  const Eigen::VectorXd& values = eigen.eigenvalues();  // increasing
-  const double limit = cutoff * cutoff * std::max(values[n - 1], 1e-300);
-  Eigen::Index lost = 0;
-  while (lost < n && values[lost] < limit) ++lost;
-  result.rank = n - lost;
-  if (result.rank > 0) {
-    result.condition = std::sqrt(values[n - 1] / values[lost]);
-    const Eigen::MatrixXd seen = scale.asDiagonal() * eigen.eigenvectors().rightCols(result.rank);
-    result.covariance = seen * values.tail(result.rank).cwiseInverse().asDiagonal() * seen.transpose();
+  const Eigen::VectorXd scale = unit_scale(normal);
+  const Parts parts = take_apart(scale.asDiagonal() * normal * scale.asDiagonal(), cutoff * cutoff, held);
+  result.rank = parts.rank;
+  if (parts.rank > 0) {
+    result.condition = std::sqrt(parts.largest / parts.weak_squares[0]);
+    result.covariance = scale.asDiagonal() * parts.inverse * scale.asDiagonal();
   }
-  if (lost == 0) return result;
-  const Eigen::MatrixXd unseen = eigen.eigenvectors().leftCols(lost);
+  for (Eigen::Index k = 0; k < parts.weak.cols(); ++k)
+    result.weakest.push_back(
+        {std::sqrt(parts.weak_squares[k] / parts.largest), parts_of(parts.weak.col(k), kWeakShare)});
+  if (parts.unseen.cols() == 0) return result;
   for (Eigen::Index i = 0; i < n; ++i)
-    if (unseen.row(i).norm() > kDeterminedShare) result.determined[static_cast<std::size_t>(i)] = 0;
-  result.unidentifiable = name_parts(unseen.transpose());
+    if (parts.unseen.row(i).norm() > kDeterminedShare) result.determined[static_cast<std::size_t>(i)] = 0;
+  result.unidentifiable = name_parts(parts.unseen.transpose());
   return result;
 }
 

@@ -26,9 +26,14 @@ struct Observability {
   std::vector<std::vector<std::size_t>> unidentifiable;
 };
 
-/// normal: J^T W^2 J, n x n. Directions with a scaled singular value below `cutoff` times the largest count
-/// as unidentified; the default is far above what rounding leaves of an exact dependence (1e-8) and below any
-/// direction that real data determine. tool.
-Observability observe(const Eigen::MatrixXd& normal, double cutoff = 1e-5);
+/// Directions with a scaled singular value below this share of the largest count as unidentified: far above
+/// what rounding leaves of an exact dependence (1e-8) and below any direction that real data determine.
+inline constexpr double kUnseenShare = 1e-5;
+
+/// normal: J^T W^2 J, n x n. `held`: parameters that stand for directions which were left at their start (one
+/// each; empty: none); those directions count as unidentified too. Above 200 parameters by pivoted Cholesky
+/// and inverse iteration, the whole eigen-decomposition only where the rank is not plain from that. tool.
+Observability observe(const Eigen::MatrixXd& normal, double cutoff = kUnseenShare,
+                      const std::vector<char>& held = {});
 
 }  // namespace vernier

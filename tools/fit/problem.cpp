@@ -149,6 +149,32 @@ NormalEquations FitProblem::equations(const Eigen::VectorXd& point) const {
   return result;
 }
 
+Slope FitProblem::slope(const Eigen::VectorXd& point) const {
+  Slope result;
+  result.gradient = Eigen::VectorXd::Zero(point.size());
+  Eigen::VectorXd weighted, answer;
+  const auto add_row = [&](const RowLinear& row) {
+    const auto first = static_cast<Eigen::Index>(row.first_observation);
+    const Eigen::Index count = row.predicted.size();
+    const auto weight = weights_.segment(first, count);
+    weighted = weight.cwiseProduct(measured_.segment(first, count) - row.predicted);
+    result.cost += weighted.squaredNorm();
+    answer.noalias() = row.gradient * weighted.cwiseProduct(weight);
+    for (const ParameterGroup& group : row.groups)
+      for (const auto& [start, share] : group.first_weight)
+        result.gradient.segment(start, group.width) += share * answer.segment(group.slot, group.width);
+  };
+  try {
+    linearizer_.each_row(at(point), add_row);
+  } catch (const InputError&) {
+    result.cost = std::numeric_limits<double>::infinity();
+    return result;
+  }
+  result.cost += prior_cost(point);
+  if (prior_weights_.size() > 0) result.gradient += prior_weights_.cwiseProduct(prior_centre_ - point);
+  return result;
+}
+
 Eigen::VectorXd FitProblem::bend(const Eigen::VectorXd& point, const Eigen::VectorXd& step) const {
   // A tenth of the step: far enough for the difference to rise above rounding, near enough to be the second
   // derivative.

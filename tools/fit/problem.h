@@ -23,6 +23,8 @@ class FitProblem {
   double cost(const Eigen::VectorXd& point) const;
   /// Throws InputError where the model is undefined.
   NormalEquations equations(const Eigen::VectorXd& point) const;
+  /// Cost and gradient without the normal matrix; the cost is infinity where the model is undefined.
+  Slope slope(const Eigen::VectorXd& point) const;
   /// J^T W^2 p'', p'' the second derivative of the predictions along `step`, by one more evaluation part of
   /// the way. Zero where the model is undefined there.
   Eigen::VectorXd bend(const Eigen::VectorXd& point, const Eigen::VectorXd& step) const;

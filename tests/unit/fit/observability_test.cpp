@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
+#include <set>
+
 namespace vernier {
 namespace {
 
@@ -41,6 +44,63 @@ TEST(Observability, CovarianceIsThatOfTheNormalMatrix) {
   const Eigen::MatrixXd jacobian = Eigen::MatrixXd::Random(30, 4);
   const Eigen::MatrixXd normal = jacobian.transpose() * jacobian;
   EXPECT_LT((observe(normal).covariance * normal - Eigen::MatrixXd::Identity(4, 4)).norm(), 1e-9);
+}
+
+/// A survey-like matrix of more parameters than the eigenvectors take on: the same findings both ways.
+TEST(Observability, ManyParametersFindWhatEigenvectorsFind) {
+  constexpr Eigen::Index kMany = 230;
+  Eigen::MatrixXd jacobian = Eigen::MatrixXd::Random(500, kMany);
+  jacobian.col(7) = 2 * jacobian.col(3) - jacobian.col(200);
+  jacobian.col(229) = jacobian.col(100) + 1e-3 * Eigen::VectorXd::Random(500);  // weak, yet seen
+  jacobian.col(50) *= 1e4;                                                      // another unit
+  const Eigen::MatrixXd normal = jacobian.transpose() * jacobian;
+  const Observability seen = observe(normal);
+  EXPECT_EQ(seen.rank, kMany - 1);
+  ASSERT_EQ(seen.unidentifiable.size(), 1U);
+  EXPECT_EQ(std::set<std::size_t>(seen.unidentifiable[0].begin(), seen.unidentifiable[0].end()),
+            (std::set<std::size_t>{3, 7, 200}));
+  EXPECT_FALSE(seen.determined[3] || seen.determined[7] || seen.determined[200]);
+  EXPECT_TRUE(seen.determined[100] && seen.determined[229]);
+  ASSERT_EQ(seen.weakest.size(), 3U);
+  EXPECT_EQ(std::set<std::size_t>(seen.weakest[0].parts.begin(), seen.weakest[0].parts.end()),
+            (std::set<std::size_t>{100, 229}));
+  const Eigen::VectorXd length = normal.diagonal().cwiseSqrt();
+  const Eigen::MatrixXd scaled =
+      length.cwiseInverse().asDiagonal() * normal * length.cwiseInverse().asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled);
+  const double condition = std::sqrt(eigen.eigenvalues()[kMany - 1] / eigen.eigenvalues()[1]);
+  EXPECT_NEAR(seen.condition, condition, 0.03 * condition);
+  // N C N = N for a generalised inverse, and C is the shortest of them.
+  EXPECT_LT((normal * seen.covariance * normal - normal).norm(), 1e-8 * normal.norm());
+  const Eigen::MatrixXd inverse = length.asDiagonal() * seen.covariance * length.asDiagonal();
+  EXPECT_LT((inverse * eigen.eigenvectors().col(0)).norm(), 1e-8 * inverse.norm());
+}
+
+TEST(Observability, NamesTheWeakestDirectionThatIsStillSeen) {
+  Eigen::MatrixXd jacobian = Eigen::MatrixXd::Random(40, 5);
+  jacobian.col(4) = jacobian.col(1) + 1e-3 * jacobian.col(4);
+  const Observability seen = observe(jacobian.transpose() * jacobian);
+  ASSERT_EQ(seen.weakest.size(), 3U);
+  EXPECT_LT(seen.weakest[0].ratio, 2e-3);
+  EXPECT_EQ(std::set<std::size_t>(seen.weakest[0].parts.begin(), seen.weakest[0].parts.end()),
+            (std::set<std::size_t>{1, 4}));
+}
+
+/// A direction left at its start counts as unidentified although the matrix sees something of it.
+TEST(Observability, HeldDirectionsCountAsUnidentified) {
+  for (const Eigen::Index n : {Eigen::Index{6}, Eigen::Index{220}}) {
+    Eigen::MatrixXd jacobian = Eigen::MatrixXd::Random(2 * n, n);
+    jacobian.col(2) = jacobian.col(0) + 1e-4 * jacobian.col(2);
+    const Eigen::MatrixXd normal = jacobian.transpose() * jacobian;
+    EXPECT_EQ(observe(normal).rank, n);
+    std::vector<char> held(static_cast<std::size_t>(n), 0);
+    held[2] = 1;
+    const Observability seen = observe(normal, kUnseenShare, held);
+    EXPECT_EQ(seen.rank, n - 1);
+    ASSERT_EQ(seen.unidentifiable.size(), 1U);
+    EXPECT_EQ(std::set<std::size_t>(seen.unidentifiable[0].begin(), seen.unidentifiable[0].end()),
+              (std::set<std::size_t>{0, 2}));
+  }
 }
 
 }  // namespace
