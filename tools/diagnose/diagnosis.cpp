@@ -43,10 +43,6 @@ class Diagnoser {
     search();
     weigh_correlation();
     accept();
-    if (!linear_down_to_noise()) {
-      search_products();
-      accept();
-    }
     walk_ladder();
     list_candidates();
     decide();
@@ -61,49 +57,13 @@ class Diagnoser {
 
   // ---- search ----
 
-  void scan_beside(const std::vector<std::size_t>& items, double from, double to, std::size_t first = 0) {
+  void scan_beside(const std::vector<std::size_t>& items, double from, double to) {
     const Eigen::MatrixXd beside = orthonormal(pool_.columns(items), 1e-6, nullptr);
-    const auto scored = scanner_.scan(
-        beside,
-        [&](double share) {
-          options_.progress(from + share * (to - from), fmt::format("{} candidates", list_.size()));
-        },
-        first);
+    const auto scored = scanner_.scan(beside, [&](double share) {
+      options_.progress(from + share * (to - from), fmt::format("{} candidates", list_.size()));
+    });
     constexpr std::size_t kMostAtOnce = 50;
     pool_.add(scored, kMostAtOnce, beside);
-  }
-
-  /// Beyond the catalogue: products of recorded quantities, pairs first, then a third factor on the best.
-  void search_products() {
-    std::vector<Product> best;
-    for (int round = 0; round < 2; ++round) {
-      const std::size_t first = list_.size();
-      for (ScannedCandidate& item : enumerate_products(evidence_, best)) list_.push_back(std::move(item));
-      pool_.count_instances();
-      for (const std::vector<std::size_t>& beside : {std::vector<std::size_t>{}, chosen_}) {
-        scan_beside(beside, 0.7, 0.75, first);
-        if (chosen_.empty()) break;
-      }
-      best = best_products();
-    }
-    select_again();
-  }
-
-  /// The products that lower the criterion most, alone.
-  std::vector<Product> best_products() {
-    problem_ = pool_.problem(entry_item_);
-    problem_.correlation_time = correlation_time_;
-    std::vector<std::pair<double, std::size_t>> order;
-    for (std::size_t i = 0; i < pool_.size(); ++i)
-      if (pool_.candidate(i).choice.effect == &custom_effect()) order.emplace_back(-score_alone(i), i);
-    std::sort(order.begin(), order.end());
-    std::vector<Product> best;
-    constexpr std::size_t kExtended = 25;
-    for (std::size_t i = 0; i < std::min(kExtended, order.size()); ++i) {
-      const Choice& choice = pool_.candidate(order[i].second).choice;
-      best.push_back({*choice.place, choice.term, choice.inputs, choice.units});
-    }
-    return best;
   }
 
   void select_again() {
@@ -462,13 +422,6 @@ class Diagnoser {
       if (distance < kDistance) rivals.close.push_back(rival);
     }
     return rivals;
-  }
-
-  /// Does what the accepted effects leave look like noise, by the linear estimate?
-  bool linear_down_to_noise() const {
-    if (!evidence_.noise_known()) return true;
-    const double freedom = std::max(1.0, evidence_.freedom());
-    return chi_square_ / freedom < 1 + kNoiseSigmas * std::sqrt(2 / freedom);
   }
 
   bool down_to_noise() const {

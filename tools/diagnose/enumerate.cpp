@@ -206,7 +206,6 @@ class Enumerator {
       if (!own_[axis]) continue;
       const bool turns = contains(form.term, "sin({q})") || contains(form.term, "cos({q})");
       if (turns && !machine_.axes[axis].rotary) continue;  // degrees of a turn, not millimetres
-      if (!turns && machine_.axes[axis].rotary && !has_meaning_of_turns(form)) continue;
       Choice one = choice;
       one.axis = axis;
       one.from = range_[axis].low;
@@ -222,13 +221,6 @@ class Enumerator {
         with_place(two);
       }
     }
-  }
-
-  /// A power of an angle says nothing: errors of a rotary axis are periodic, or a table.
-  static bool has_meaning_of_turns(const EffectForm& form) {
-    const std::string& t = form.term;
-    return !contains(t, "{q}^") && !contains(t, "{mid}") && !contains(t, "*{q}*(") &&
-           !(t.size() >= 4 && t.substr(t.size() - 4) == "*{q}" && form.place != PlaceRule::kOwn);
   }
 
   void with_place(Choice& choice) {

@@ -27,12 +27,7 @@ std::set<std::pair<int, std::size_t>> drivers_of(const Machine& machine, const C
 }
 
 Pool::Pool(const Evidence& evidence, const Scanner& scanner) : evidence_(evidence), scanner_(scanner) {
-  count_instances();
-}
-
-void Pool::count_instances() {
-  instances_.clear();
-  for (const ScannedCandidate& item : scanner_.candidates()) ++instances_[item.candidate.choice.effect->id];
+  for (const ScannedCandidate& item : scanner.candidates()) ++instances_[item.candidate.choice.effect->id];
 }
 
 const Candidate& Pool::candidate(std::size_t i) const {
@@ -40,16 +35,8 @@ const Candidate& Pool::candidate(std::size_t i) const {
 }
 
 double Pool::penalty(std::size_t candidate) const {
-  const ScannedCandidate& item = scanner_.candidates()[candidate];
-  double cost =
-      2 * std::log(static_cast<double>(instances_.size()) * instances_.at(item.candidate.choice.effect->id));
-  // A scanned unknown is as many tries as the grid has values that differ, where that is more than the price
-  // of a coefficient.
-  constexpr double kPointsPerTry = 2.5;
-  for (const std::vector<double>& grid : item.grid)
-    cost += std::max(0.0, 2 * std::log(static_cast<double>(grid.size()) / kPointsPerTry) -
-                              std::log(static_cast<double>(evidence_.rows().size())));
-  return cost;
+  const std::string& id = scanner_.candidates()[candidate].candidate.choice.effect->id;
+  return 2 * std::log(static_cast<double>(instances_.size()) * instances_.at(id));
 }
 
 /// One key per effect and place; a second period at the same place is another one.

@@ -33,9 +33,6 @@ class Pool {
   /// The entries that are not banned, as a problem of selection; `items`: which item each entry is.
   SelectionProblem problem(std::vector<std::size_t>& items) const;
 
-  /// Counts the scanner's candidates again, after some were added to its list.
-  void count_instances();
-
   std::size_t size() const { return items_.size(); }
   const Item& operator[](std::size_t i) const { return items_[i]; }
   const Candidate& candidate(std::size_t i) const;
