@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <memory>
 
 #include "tools/cli/command.h"
@@ -8,6 +9,7 @@
 #include "tools/import/ballbar_motion.h"
 #include "tools/import/kinds.h"
 #include "tools/import/printed_results.h"
+#include "tools/import/repair_report.h"
 
 namespace vernier {
 namespace {
@@ -85,11 +87,19 @@ bool spans_a_circle(const BallbarFile& file) {
                      [](const BallbarRun& run) { return run.last_deg - run.first_deg >= kShortestArcDeg; });
 }
 
+std::vector<BallbarFile> repaired_files(const std::vector<RepairReport>& repairs) {
+  std::vector<BallbarFile> files;
+  for (const auto& report : repairs) files.push_back(report.repair.file);
+  return files;
+}
+
 // Writes the CSV and tells what it holds: the same for both kinds of file.
 void write_import(const std::string& kind, const std::vector<BallbarFile>& files,
-                  const BallbarCsvOptions& options, const ImportOutput& output) {
+                  const BallbarCsvOptions& options, const ImportOutput& output, bool repair = false) {
   std::FILE* out = human_stream(output.json_path);
-  const BallbarCsv csv = ballbar_csv(files, options);
+  std::vector<RepairReport> repairs;
+  if (repair) std::transform(files.begin(), files.end(), std::back_inserter(repairs), repair_and_judge);
+  const BallbarCsv csv = ballbar_csv(repair ? repaired_files(repairs) : files, options);
   Json circles = Json::array(), notes = Json::array();
   std::vector<PrintedResult> printed;
   std::string lines;
@@ -116,11 +126,13 @@ void write_import(const std::string& kind, const std::vector<BallbarFile>& files
                  {"printed", printed_json(printed)},
                  {"pause_s", options.pause_s},
                  {"notes", notes}};
+  for (const auto& one : repairs) result["time_base_repair"].push_back(repair_json(one));
   write_file(output.csv_path, csv.text);
   write_json(output.json_path, result);
   for (const auto& file : files) {
     if (spans_a_circle(file)) print_circle(out, file, analyse_circle(file.radius_mm, circular_passes(file)));
   }
+  for (const auto& one : repairs) print_repair(out, one);
   if (!printed.empty())
     fmt::print(out, "{} of the {} results that the files print are recomputed to the last digit\n", equal,
                printed.size());
@@ -135,6 +147,7 @@ struct BallbarArguments {
   ImportOutput output;
   TraceSetup setup;  // ballbar-trace only
   std::string plane = "XY", direction_of_zero = "ccw";
+  bool repair = false;  // ballbar only
 };
 
 std::shared_ptr<BallbarArguments> add_common(CLI::App& kind) {
@@ -153,12 +166,18 @@ void add_ballbar_kind(CLI::App& import) {
   CLI::App* kind = import.add_subcommand("ballbar", "Result files (.b5r) of Renishaw Ballbar 20");
   kind->footer(
       "Samples between the file's START and END are fit rows, the overshoot arcs before and after are check "
-      "rows.");
+      "rows. With --repair-time-base the first whole turn that repeats is fit, the rest is check; samples of "
+      "the "
+      "feed-in that do not repeat have no length.");
   const auto arguments = add_common(*kind);
+  kind->add_flag(
+      "--repair-time-base", arguments->repair,
+      "Find the samples that a turn takes and those that are missing from the record itself, and give "
+      "each sample its own angle and time");
   kind->callback([arguments] {
     std::vector<BallbarFile> files;
     for (const auto& path : arguments->files) files.push_back(read_b5r(path));
-    write_import("ballbar", files, arguments->options, arguments->output);
+    write_import("ballbar", files, arguments->options, arguments->output, arguments->repair);
   });
 }
 

@@ -27,8 +27,9 @@ std::vector<std::string> axes_of(const std::vector<BallbarFile>& files) {
   return {axes.begin(), axes.end()};
 }
 
-std::string header(const std::vector<std::string>& axes) {
-  std::string text;
+// With repaired time bases the path angle is a column too: what repeats can be a table of it.
+std::string header(const std::vector<std::string>& axes, bool repaired) {
+  std::string text = repaired ? "phi[deg]," : "";
   for (const auto& axis : axes) text += axis + "[mm],";
   for (const char* column : kMotionColumns) {
     for (const auto& axis : axes) text += fmt::format(fmt::runtime(column), axis) + ",";
@@ -44,19 +45,29 @@ std::string field(std::string text) {
   return text;
 }
 
+// Of a run's record, lost samples included.
+double length_s(const BallbarRun& run) {
+  const double samples =
+      run.clock ? run.clock->sample.back() + 1 : static_cast<double>(run.reading_mm.size());
+  return samples / run.sample_rate_hz;
+}
+
 class Writer {
  public:
   Writer(const std::vector<BallbarFile>& files, const BallbarCsvOptions& options) : axes_(axes_of(files)) {
     for (const auto& file : files)
       csv_.text += "# ball bar: " + field(std::filesystem::path(file.path).filename().string()) + "\n";
+    for (const auto& file : files) {
+      for (const auto& run : file.runs) repaired_ = repaired_ || run.clock.has_value();
+    }
     csv_.text += fmt::format(
         "# the start of each run after the first is not logged: {} s after the last sample before it\n",
         number(options.pause_s));
-    csv_.text += header(axes_);
+    csv_.text += header(axes_, repaired_);
     for (const auto& file : files) {
       for (const auto& run : file.runs) {
         add_run(file, run, label_of(files, file, run));
-        time_s_ += static_cast<double>(run.reading_mm.size()) / run.sample_rate_hz + options.pause_s;
+        time_s_ += length_s(run) + options.pause_s;
       }
     }
   }
@@ -76,11 +87,15 @@ class Writer {
     csv_.run_labels.push_back(label);
     for (std::size_t i = 0; i < run.reading_mm.size(); ++i) {
       const bool check = i < run.start || i > run.end;
-      add_motion(file, circle_point(file, run, i));
+      const CirclePoint point = circle_point(file, run, i);
+      if (repaired_) csv_.text += number(point.angle_deg) + ",";
+      add_motion(file, point);
+      const double sample = run.clock ? run.clock->sample[i] : static_cast<double>(i);
+      const bool measured = !run.clock || run.clock->on_circle[i];
       fmt::format_to(std::back_inserter(csv_.text), "{},{},{},0,0,0,{},{},{},{}\n",
                      number(actual_feed_mm_min(file, run)), fmt::format("{:.9g}", 1 / file.radius_mm),
-                     number(time_s_ + static_cast<double>(i) / run.sample_rate_hz),
-                     number(file.nominal_length_mm + run.reading_mm[i]), run.direction, label,
+                     number(time_s_ + sample / run.sample_rate_hz),
+                     measured ? number(file.nominal_length_mm + run.reading_mm[i]) : "", run.direction, label,
                      check ? "check" : "fit");
       ++csv_.rows;
       ++(check ? csv_.check_rows : csv_.fit_rows);
@@ -106,6 +121,7 @@ class Writer {
   std::vector<std::string> axes_;
   std::set<std::string> labels_;
   double time_s_ = 0;
+  bool repaired_ = false;
   BallbarCsv csv_;
 };
 

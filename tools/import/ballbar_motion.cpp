@@ -29,17 +29,24 @@ AxisMotion axis_motion(double radius_mm, double phase_deg) {
   return falling ? AxisMotion{-1, radius_mm - position} : AxisMotion{+1, radius_mm + position};
 }
 
+double turned_deg(const BallbarRun& run, std::size_t index) {
+  if (run.clock) return run.clock->turned_deg[index];
+  const double step = static_cast<double>(index) - static_cast<double>(run.start) + 0.5;
+  return step * arc_deg(run) / samples_in_arc(run);
+}
+
 }  // namespace
 
 double actual_feed_mm_min(const BallbarFile& file, const BallbarRun& run) {
+  if (run.clock)
+    return file.radius_mm * 2 * std::numbers::pi / (run.clock->turn_samples / run.sample_rate_hz) * 60;
   const double path_mm = file.radius_mm * arc_deg(run) * kRadPerDeg;
   return path_mm / (samples_in_arc(run) / run.sample_rate_hz) * 60;
 }
 
 CirclePoint circle_point(const BallbarFile& file, const BallbarRun& run, std::size_t index) {
-  const double step = static_cast<double>(index) - static_cast<double>(run.start) + 0.5;
-  const double turned_deg = step * arc_deg(run) / samples_in_arc(run);
-  const double angle_deg = run.direction > 0 ? run.first_deg + turned_deg : run.last_deg - turned_deg;
+  const double turned = turned_deg(run, index);
+  const double angle_deg = run.direction > 0 ? run.first_deg + turned : run.last_deg - turned;
   const double angle = angle_deg * kRadPerDeg, c = std::cos(angle), s = std::sin(angle);
   const double speed = actual_feed_mm_min(file, run) / 60, radius = file.radius_mm;
   const double centripetal = speed * speed / radius;

@@ -82,9 +82,10 @@ std::optional<RepeatBlock> compare_block(const Eigen::MatrixXd& series, Index fi
   // Lags that are not neighbours of one another, as many as were tried.
   const double tried = std::max(
       1.0, static_cast<double>(scan.concordance.size()) * independent / static_cast<double>(a->size()));
-  block.p_at_lag =
-      std::max(chance_of_agreement(block.correlation, independent),
-               chance_of_ratio(block.implied_difference, block.difference, effective_rows(left, left)));
+  block.p_agreement = chance_of_agreement(block.correlation, independent);
+  block.p_at_lag = std::max(block.p_agreement, chance_of_ratio(block.implied_difference, block.difference,
+                                                               effective_rows(left, left)));
+  block.tried = tried;
   block.p_value = std::min(1.0, tried * block.p_at_lag);
   return block;
 }
@@ -115,9 +116,11 @@ void place_jump(const Eigen::MatrixXd& series, const RepeatBlock& a, const Repea
   const Index rows = end - first;
   const Eigen::VectorXd at_before = squares_at(series, first, rows, jump.before);
   const Eigen::VectorXd at_after = squares_at(series, first, rows, jump.after);
-  double cost = at_after.sum();
+  const Index skipped = jump.in_later_pass() ? static_cast<Index>(std::lround(jump.missing())) : 0;
+  if (rows <= skipped) return;
+  double cost = at_after.tail(rows - skipped).sum();
   std::vector<double> costs = {cost};
-  for (Index i = 0; i < rows; ++i) costs.push_back(cost += at_before[i] - at_after[i]);
+  for (Index i = 0; i + skipped < rows; ++i) costs.push_back(cost += at_before[i] - at_after[i + skipped]);
   const auto least = std::min_element(costs.begin(), costs.end());
   jump.row = a.first + static_cast<std::size_t>(least - costs.begin());
   // Twice the usual chi^2 step of 4 in units of the variance that the best place leaves.
@@ -167,20 +170,30 @@ std::vector<std::size_t> trusted_blocks(const std::vector<RepeatBlock>& blocks,
 
 namespace {
 
+// Stouffer's joint chance of the blocks of a level, times what there was to choose from.
+double joint_chance(const std::vector<RepeatBlock>& all, const RepeatLevel& level,
+                    double RepeatBlock::*chance) {
+  double z = 0, tried = 1;
+  for (const std::size_t i : level.blocks) {
+    const double p = all[i].*chance;
+    z += p < 0.5 ? upper_quantile(std::max(p, 1e-300)) : 0;
+    tried = std::max(tried, all[i].tried);
+  }
+  const auto n = static_cast<double>(level.blocks.size()), count = static_cast<double>(all.size());
+  return n > 1 ? std::min(1.0, upper_tail(z / std::sqrt(n)) * tried * count * count / 2) : 1;
+}
+
 void finish(const std::vector<RepeatBlock>& all, RepeatLevel& level) {
   const auto n = static_cast<double>(level.blocks.size());
-  double squares = 0, z = 0, tried = 1;
+  double squares = 0;
   for (const std::size_t i : level.blocks) {
     level.lag += all[i].lag / n;
     level.shift += (all[i].lag - all[i].implied_lag) / n;
-    const double p = std::clamp(all[i].p_at_lag, 1e-300, 0.5);
-    z += p < 0.5 ? upper_quantile(p) : 0;
-    tried = std::max(tried, all[i].p_value / std::max(all[i].p_at_lag, 1e-300));
   }
   for (const std::size_t i : level.blocks) squares += std::pow(all[i].lag - level.lag, 2);
   level.uncertainty = n > 1 ? std::max(std::sqrt(squares / (n - 1) / n), 0.1) : 1;
-  const auto count = static_cast<double>(all.size());
-  level.p_value = n > 1 ? std::min(1.0, upper_tail(z / std::sqrt(n)) * tried * count * count / 2) : 1;
+  level.p_agreement = joint_chance(all, level, &RepeatBlock::p_agreement);
+  level.p_value = joint_chance(all, level, &RepeatBlock::p_at_lag);
 }
 
 }  // namespace

@@ -13,10 +13,10 @@ struct RepeatBlock {
   double implied_lag = 0;                           // at which the same poses come again
   double correlation = 0, implied_correlation = 0;  // concordance (Lin), trend taken off
   double difference = 0, implied_difference = 0;    // rms, in the unit of the series, trend taken off
-  /// Chance that what is unrelated agrees so well at a given lag, or that noise alone makes the implied lag
-  /// so much worse; the larger of both.
-  double p_at_lag = 1;
-  double p_value = 1;  // the same for the best of all lags tried
+  double p_agreement = 1;  // chance that what is unrelated agrees so well at a given lag
+  double p_at_lag = 1;     // the same, or that noise alone makes the implied lag so much worse: the larger
+  double p_value = 1;      // the same for the best of all lags tried
+  double tried = 1;        // lags that are not neighbours of one another, as many as were looked at
 };
 
 struct RepeatOptions {
@@ -42,7 +42,8 @@ struct RepeatLevel {
   std::vector<std::size_t> blocks;
   double lag = 0, uncertainty = 0;  // mean of the blocks and its standard uncertainty, rows
   double shift = 0;                 // mean of lag - implied lag
-  double p_value = 1;  // that chance makes a level such as this somewhere in the record, at some lag
+  double p_agreement = 1;           // that what is unrelated agrees so somewhere in the record, at some lag
+  double p_value = 1;               // the same, and so much better than at the implied lag
 };
 
 /// Levels in order of their rows. The chance joins those of the blocks (Stouffer), times the lags and the
@@ -52,7 +53,7 @@ std::vector<RepeatLevel> repeat_levels(const std::vector<RepeatBlock>& blocks,
 
 /// Where the best lag jumps between two trusted blocks: rows are missing from one of the two passes there.
 struct LagJump {
-  std::size_t row = 0;           // of the earlier pass: the first with the new lag
+  std::size_t row = 0;           // of the earlier pass: the first without the old lag
   double row_uncertainty = 0;    // rows, half of the stretch within which both lags do about as well
   double before = 0, after = 0;  // lags
   double uncertainty = 0;        // rows, standard, of after - before
@@ -62,11 +63,12 @@ struct LagJump {
   bool in_later_pass() const { return after < before; }
   /// The row of the series before which they are missing.
   std::size_t missing_before() const {
-    return in_later_pass() ? row + static_cast<std::size_t>(after + 0.5) : row;
+    return in_later_pass() ? row + static_cast<std::size_t>(before + 0.5) : row;
   }
 };
 
-/// Jumps larger than the tolerance, each placed where the sum of squares on both sides is least. tool.
+/// Jumps larger than the tolerance, each placed where the sum of squares on both sides is least; rows of the
+/// earlier pass whose repetition is missing count on neither. tool.
 std::vector<LagJump> lag_jumps(const Eigen::MatrixXd& series, const std::vector<RepeatBlock>& blocks,
                                const RepeatOptions& options = {});
 

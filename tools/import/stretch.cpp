@@ -55,11 +55,12 @@ double chance_of_ratio(double larger, double smaller, double rows) {
 }
 
 double upper_quantile(double p) {
-  // Newton's method on the tail.
+  // Newton's method on the logarithm of the tail.
   double z = std::sqrt(std::max(0.0, -2 * std::log(2 * p)));
   for (int i = 0; i < 20; ++i) {
+    const double tail = upper_tail(z);
     const double density = std::exp(-0.5 * z * z) / std::sqrt(2 * std::numbers::pi);
-    z += (upper_tail(z) - p) / density;
+    z += (std::log(tail) - std::log(p)) * tail / density;
   }
   return z;
 }

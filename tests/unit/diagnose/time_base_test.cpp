@@ -6,6 +6,7 @@
 #include "tools/diagnose/revisit.h"
 #include "tools/fit/fit.h"
 #include "tools/import/ballbar_motion.h"
+#include "tools/import/time_repair.h"
 #include "tools/model/files.h"
 
 namespace vernier {
@@ -76,6 +77,25 @@ TEST(TimeBase, WholeBallBarRecordRepeatsAtAnotherLag) {
   EXPECT_NEAR(finding.gaps[0].missing, 19.5, 1.5);
   // At the end of the first half circle of the second turn (2370), where the motion rings for 60 samples.
   EXPECT_NEAR(static_cast<double>(finding.gaps[0].row), 2370, 60);
+}
+
+TEST(TimeBase, RepairedRecordIsInTimeAndItsErrorRepeats) {
+  // GIVEN the same record with its time base repaired
+  const BallbarFile file =
+      read_b5r(std::string(VERNIER_SOURCE_DIR) + "/tests/data/ballbar/ur10e_xy_100mm.b5r");
+  const std::string csv = ballbar_csv({repair_time_base(file).file}, {}).text;
+  const Machine circle = read_machine(kReal + "machine.xml");
+  const Measurement measurement = parse_measurement(csv, "repaired.csv", circle);
+  const FitResult plain = fit(circle, measurement);
+  // THEN nothing repeats at another place any more,
+  EXPECT_FALSE(examine_time_base(measurement, plain.residual).found);
+  // and a table of the path angle for each sense, fitted to one turn, holds on the other: 19 um of 51
+  const Machine repeating = read_machine(kReal + "repeating.xml");
+  const FitResult fitted = fit(repeating, parse_measurement(csv, "repaired.csv", repeating));
+  EXPECT_GT(*plain.check.rms_um, 45);
+  EXPECT_LT(*fitted.after.rms_um, 9);
+  EXPECT_LT(*fitted.check.rms_um, 21);
+  EXPECT_GT(*fitted.check.rms_um, 10);  // two passes differ by 11 um: less would be its own rows
 }
 
 struct Loss {

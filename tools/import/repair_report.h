@@ -1,0 +1,25 @@
+#pragma once
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "tools/import/repeating_error.h"
+#include "tools/import/time_repair.h"
+
+namespace vernier {
+
+/// A repaired file and what repeats in it, before and after.
+struct RepairReport {
+  TimeRepair repair;
+  std::vector<RepeatingError> before, after;  // one a repaired run: by the file's angles, by its own
+};
+
+/// Repairs a file and fits the repeating error of each repaired run, on the same samples before and after.
+/// tool.
+RepairReport repair_and_judge(const BallbarFile& file);
+
+/// What was changed and what it gained, for programs and for people. tool.
+nlohmann::ordered_json repair_json(const RepairReport& report);
+void print_repair(std::FILE* out, const RepairReport& report);
+
+}  // namespace vernier
