@@ -5,6 +5,25 @@
 #include <numbers>
 
 namespace vernier {
+
+std::vector<double> row_conditions(const Measurement& m, std::size_t row) {
+  const auto at = static_cast<Eigen::Index>(row);
+  const States& s = m.states;
+  std::vector<double> key;
+  for (const auto* columns : {&s.axis, &s.velocity, &s.acceleration, &s.direction, &s.since, &s.input})
+    for (const Column& column : *columns) key.push_back(column[at]);
+  for (const Column& normal : s.normal) key.push_back(normal[at]);
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    key.push_back(std::isnan(m.centre(k, at)) ? 0 : m.centre(k, at));
+    key.push_back(std::isnan(m.nominal_point(k, at)) ? 0 : m.nominal_point(k, at));
+  }
+  key.push_back(s.feed[at]);
+  key.push_back(s.curvature[at]);
+  for (const CandidateInput& candidate : m.candidates)
+    key.push_back(std::isnan(candidate.value[at]) ? kLongWay : candidate.value[at]);
+  return key;
+}
+
 namespace {
 
 constexpr double kUmPerMm = 1e3;
@@ -27,25 +46,6 @@ struct Pool {
   }
 };
 
-/// All that was set or logged in a row besides time and the measured values.
-std::vector<double> conditions(const Measurement& m, std::size_t row) {
-  const auto at = static_cast<Eigen::Index>(row);
-  const States& s = m.states;
-  std::vector<double> key;
-  for (const auto* columns : {&s.axis, &s.velocity, &s.acceleration, &s.direction, &s.since, &s.input})
-    for (const Column& column : *columns) key.push_back(column[at]);
-  for (const Column& normal : s.normal) key.push_back(normal[at]);
-  for (Eigen::Index k = 0; k < 3; ++k) {
-    key.push_back(std::isnan(m.centre(k, at)) ? 0 : m.centre(k, at));
-    key.push_back(std::isnan(m.nominal_point(k, at)) ? 0 : m.nominal_point(k, at));
-  }
-  key.push_back(s.feed[at]);
-  key.push_back(s.curvature[at]);
-  for (const CandidateInput& candidate : m.candidates)
-    key.push_back(std::isnan(candidate.value[at]) ? kLongWay : candidate.value[at]);
-  return key;
-}
-
 std::optional<double> repeat_noise_um(const Measurement& m) {
   struct Group {
     double sum = 0, squares = 0;
@@ -54,7 +54,7 @@ std::optional<double> repeat_noise_um(const Measurement& m) {
   std::map<std::pair<std::vector<double>, int>, Group> groups;
   for (const Observation& o : m.observations) {
     if (m.check[o.row] != 0 || is_rotation(o.kind)) continue;
-    Group& group = groups[{conditions(m, o.row), static_cast<int>(o.kind)}];
+    Group& group = groups[{row_conditions(m, o.row), static_cast<int>(o.kind)}];
     const double value = o.value * kUmPerMm;
     // Deviations from the group's first value would do; a running mean keeps the digits.
     ++group.count;

@@ -1,6 +1,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <optional>
+#include <vector>
 
 #include "tools/model/measurement.h"
 
@@ -15,6 +16,10 @@ struct RoleStatistics {
 
 /// residual: measured - model, one per observation of `m`, mm or deg. `check`: which role to look at.
 RoleStatistics role_statistics(const Measurement& m, const Eigen::VectorXd& residual, bool check);
+
+/// All that was set or logged in a row besides time and the measured values: rows with the same numbers are
+/// repeats. tool.
+std::vector<double> row_conditions(const Measurement& m, std::size_t row);
 
 /// Noise of the measurement, um: rms of u over the fit rows' lengths; without u from repeats (rows with the
 /// same axes, motion, inputs and candidates in the same run or another, pooled standard deviation, at least 5

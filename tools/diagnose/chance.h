@@ -1,0 +1,19 @@
+#pragma once
+
+namespace vernier {
+
+/// Natural logarithm of the upper tail of an F distribution: log P(F >= f). f >= 0, d1 > 0, d2 > 0, none of
+/// them has to be whole. In logarithms because the findings of a good survey lie far below the smallest
+/// double. Where d2 <= 0 nothing is known: 0 (p = 1). Relative accuracy of p about 1e-10. tool. NIST
+/// DLMF 8.17.
+double log_f_tail(double f, double d1, double d2);
+
+/// Natural logarithm of the upper tail of chi square: log P(X >= x), k > 0 degrees of freedom. tool. NIST
+/// DLMF 8.2, 8.9.
+double log_chi_square_tail(double x, double k);
+
+/// log P(R >= r) of the correlation coefficient of `pairs` independent pairs of normal numbers (one-sided).
+/// tool.
+double log_correlation_tail(double r, double pairs);
+
+}  // namespace vernier
