@@ -1,5 +1,7 @@
 #include "tools/report/report.h"
 
+#include <stdexcept>
+
 #include "tools/report/assets.h"
 #include "tools/report/payload.h"
 
@@ -46,15 +48,29 @@ std::string page(const std::string& title, const std::string& subtitle, const Js
   return html;
 }
 
-}  // namespace
-
-std::string compare_report_html(const Json& result) {
+/// A page of one result with its `detail` thinned.
+std::string result_page(const std::string& title, const char* type, const Json& result) {
+  if (!result.is_object()) throw std::invalid_argument("report: the result is no object");
   Json shown = result;
   if (shown.contains("detail") && shown["detail"].is_object())
     shown["detail"] = thinned_detail(shown["detail"], kMostDrawn);
   const std::string machine = text_of(result, "machine");
-  return page("Model against measurement" + (machine.empty() ? "" : ": " + machine), file_list(result),
-              {{"type", "compare"}, {"result", shown}});
+  return page(title + (machine.empty() ? "" : ": " + machine), file_list(result),
+              {{"type", type}, {"result", shown}});
+}
+
+}  // namespace
+
+std::string compare_report_html(const Json& result) {
+  return result_page("Model against measurement", "compare", result);
+}
+
+std::string diagnose_report_html(const Json& result) {
+  return result_page("What is missing", "diagnose", result);
+}
+
+std::string improve_report_html(const Json& result) {
+  return result_page("From the model to a better one", "improve", result);
 }
 
 std::string improvement_report_html(const Json& result) {

@@ -30,6 +30,18 @@ std::string compare_report_html(const nlohmann::ordered_json& result);
 /// tool.
 std::string improvement_report_html(const nlohmann::ordered_json& result);
 
+/// The page of `diagnose`: verdict in words, ladder, candidates, next measurements, where the model fails.
+/// Draws the JSON result of FORMATS section 3 (machine, files[], verdict, explanation, rms_um, check_rms_um,
+/// noise_um, candidates[], runner_up, ladder[], next_measurement[] of texts or objects with `sentence`) and,
+/// where there, findings[] and structure{} (tools/diagnose/structure_json.h), notes[], detail (as above).
+/// Candidates may also have score, signature, impostors[], why_not. tool.
+std::string diagnose_report_html(const nlohmann::ordered_json& result);
+
+/// The page of `improve`: the error falling step by step. ladder[{effect, add, label, rms_um, check_rms_um}],
+/// noise_um, and whatever the page of diagnose draws; simulation{rms_before_um, rms_after_um, max_after_um,
+/// ticks}; steps[{title, prose[], findings[], explanation}]. tool.
+std::string improve_report_html(const nlohmann::ordered_json& result);
+
 /// Observations of one kind that a page draws at most.
 inline constexpr std::size_t kMostDrawn = 20000;
 
