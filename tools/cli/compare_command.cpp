@@ -5,6 +5,7 @@
 #include "tools/cli/command.h"
 #include "tools/cli/results.h"
 #include "tools/fit/fit.h"
+#include "tools/map/field_json.h"
 #include "tools/model/machine.h"
 #include "tools/model/measurement.h"
 #include "tools/report/report.h"
@@ -75,6 +76,16 @@ void print_result(std::FILE* out, const nlohmann::ordered_json& json) {
   for (const auto& circle : json["circular"]) print_circle(out, circle);
 }
 
+/// The model's own deviations over the working volume, for the report.
+void add_field(nlohmann::ordered_json& json, const Machine& machine) {
+  constexpr std::size_t kNodes = 7;  // along each axis
+  std::string why_not;
+  if (auto field = volume_json(machine, kNodes, why_not))
+    json["field"] = std::move(*field);
+  else
+    json["field_note"] = "No error field over the volume is drawn: " + why_not;
+}
+
 void run_compare(const CompareArguments& arguments) {
   const Machine machine = read_machine(arguments.machine);
   const Measurement m = read_measurement(arguments.measurements, machine);
@@ -83,6 +94,7 @@ void run_compare(const CompareArguments& arguments) {
   if (!arguments.output.empty()) {
     nlohmann::ordered_json with_detail = json;
     add_detail(with_detail, machine, m, residual);
+    add_field(with_detail, machine);
     write_file(arguments.output, compare_report_html(with_detail));
   }
   write_json(arguments.json, json);
@@ -102,7 +114,8 @@ void register_compare(CLI::App& vernier) {
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->footer(
       "Changes no parameter. For ball-bar data the ISO 230-4 numbers and the polar plot; for all data the\n"
-      "residual against everything that was recorded. Exit status 0 done, 1 bad input.");
+      "residual against everything that was recorded, and the model's error field over the volume. Exit "
+      "status 0 done, 1 bad input.");
   command->callback([arguments] { run_compare(*arguments); });
 }
 

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "tools/cli/command.h"
-#include "tools/kinematics/at.h"
+#include "tools/map/field_json.h"
 #include "tools/map/simulated.h"
 #include "tools/report/report.h"
 
@@ -18,40 +18,6 @@ struct MapArguments {
   std::vector<std::string> over;
   std::size_t grid = 7;
 };
-
-Json vectors(const Eigen::Matrix3Xd& columns, double factor) {
-  Json list = Json::array();
-  for (Eigen::Index i = 0; i < columns.cols(); ++i)
-    list.push_back({factor * columns(0, i), factor * columns(1, i), factor * columns(2, i)});
-  return list;
-}
-
-Json field_json(const Machine& machine, const ErrorField& field) {
-  Json axes = Json::array();
-  for (const std::size_t axis : field.axes) axes.push_back(machine.axes[axis].name);
-  const Eigen::VectorXd size_um = 1000 * field.deviation.colwise().norm();
-  Eigen::Index worst = 0;
-  const double max_um = size_um.maxCoeff(&worst);
-  const Eigen::Vector3d at = field.nominal.col(worst);
-  return {{"axes", axes},
-          {"counts", field.counts},
-          {"max_um", max_um},
-          {"rms_um", std::sqrt(size_um.squaredNorm() / static_cast<double>(size_um.size()))},
-          {"max_at_mm", {at.x(), at.y(), at.z()}},
-          {"point_mm", vectors(field.nominal, 1)},
-          {"deviation_um", vectors(field.deviation, 1000)}};
-}
-
-/// States at the middle of the axis ranges, then what the user says.
-States base_state(const Machine& machine, const std::string& words) {
-  std::string all;
-  for (const Axis& axis : machine.axes)
-    if (axis.min && axis.max && !axis.rotary)
-      all += fmt::format("{}={},", axis.name, (*axis.min + *axis.max) / 2);
-  all += words;
-  if (!all.empty() && all.back() == ',') all.pop_back();
-  return state_at(machine, all);
-}
 
 void add_measurements(Json& json, const Machine& machine, const States& at, const std::string& lines) {
   const Bench bench(machine, at);
@@ -170,7 +136,7 @@ Json page_of(const Json& json) {
 
 void run_map(const MapArguments& arguments) {
   const Machine machine = read_machine(arguments.machine);
-  const States at = base_state(machine, arguments.at);
+  const States at = middle_state(machine, arguments.at);
   std::vector<std::size_t> axes = linear_axes(machine);
   if (!arguments.over.empty()) axes.clear();
   for (const std::string& name : arguments.over) {

@@ -15,7 +15,9 @@ namespace vernier {
 ///     check[],
 ///       centre_mm[2], radius_mm, circular_deviation_um, max_radial_um, max_radial_deg, min_radial_um,
 ///       min_radial_deg, feed_mm_min}], bidirectional_um, hysteresis_um, hysteresis_deg}],
-///     worst[{row, line, run, kind, residual}] }
+///     worst[{row, line, run, kind, residual}] },
+///   field: {axes[], counts[], point_mm[][3], deviation_um[][3], max_um, rms_um} (arrows over a volume), or
+///   field_note: why there is none
 /// More observations of a kind than kMostDrawn are thinned: every n-th and the worst are drawn, and the page
 /// says so. Texts are shown as they are, never read as markup. Throws std::invalid_argument where `detail`
 /// contradicts itself. tool.

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "tools/map/field_json.h"
 #include "tools/map/simulated.h"
 #include "tools/model/files.h"
 
@@ -48,6 +49,28 @@ TEST(ErrorField, HasANodeForEveryCombinationFirstAxisFastest) {
   EXPECT_NEAR(field.deviation(0, 26), 0.06, 1e-12);
   EXPECT_NEAR(field.deviation.rightCols(2).row(1).norm(), 0, 1e-12);
   EXPECT_THROW(error_field(m, at(), {}, 3), InputError);
+}
+
+TEST(VolumeJson, IsTheFieldOverTheLinearAxes) {
+  Errors errors;
+  errors.scale = 1e-4;
+  std::string why_not;
+  const auto json = volume_json(machine(errors), 3, why_not);
+  ASSERT_TRUE(json.has_value()) << why_not;
+  EXPECT_EQ((*json)["axes"], (nlohmann::ordered_json{"X", "Y", "Z"}));
+  EXPECT_EQ((*json)["point_mm"].size(), 27U);
+  // 1e-4 of 0, 300 and 600 mm: 0, 30 and 60 um.
+  EXPECT_NEAR((*json)["max_um"].get<double>(), 60, 1e-9);
+  EXPECT_NEAR((*json)["rms_um"].get<double>(), std::sqrt((30 * 30 + 60 * 60) / 3.0), 1e-9);
+  EXPECT_NEAR((*json)["deviation_um"][2][0].get<double>(), 60, 1e-9);
+}
+
+TEST(VolumeJson, SaysWhyThereIsNone) {
+  Machine open = machine({});
+  open.axes[0].max.reset();
+  std::string why_not;
+  EXPECT_FALSE(volume_json(open, 3, why_not).has_value());
+  EXPECT_NE(why_not.find("this axis needs min and max"), std::string::npos);
 }
 
 TEST(Measured, ScaleErrorOnAxesAndDiagonals) {

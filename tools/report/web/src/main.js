@@ -43,6 +43,9 @@ function thinned(detail) {
     + ' The numbers above are of all.') : null;
 }
 
+const fieldProse = (field) => el('p', {}, 'Deviation of the tool point that the model states, actual minus nominal, over the declared axis ranges, '
+  + `in workpiece coordinates: at most ${number(field.max_um, 4)} µm, rms ${number(field.rms_um, 4)} µm. Drag or use the arrow keys to turn it.`);
+
 function comparison(result) {
   const detail = result.detail;
   section(root, 'Summary', summary(result), (result.notes?.length ?? 0) ? listOf(result.notes) : null);
@@ -51,6 +54,8 @@ function comparison(result) {
     section(root, 'Residuals', thinned(detail), residualMatrix(detail));
     section(root, 'Distribution', histograms(detail));
   }
+  if (result.field) section(root, 'Error field', fieldProse(result.field), volume(result.field));
+  else if (result.field_note) section(root, 'Error field', el('p', {}, result.field_note));
   if (detail?.worst?.length) section(root, 'Worst rows', worstTable(detail));
   if (result.parameters?.length) section(root, 'Parameters', parameterTable(result.parameters));
 }
