@@ -55,6 +55,15 @@ double usual_step(const Eigen::MatrixXd& points) {
   return steps.empty() ? 0 : median(steps);
 }
 
+// Poses set one by one are no path: nothing lies between them, and everything is near everything.
+bool is_path(const Eigen::MatrixXd& points) {
+  constexpr double kLongestStep = 0.1;  // of the extent
+  if (points.rows() < 2 || points.cols() == 0) return false;
+  const double extent = (points.colwise().maxCoeff() - points.colwise().minCoeff()).maxCoeff();
+  const double step = usual_step(points);
+  return step > 0 && step <= kLongestStep * extent;
+}
+
 // Place between the rows of a path that is nearest to a point, about `row`.
 double project(const Eigen::MatrixXd& points, Index row, const Eigen::RowVectorXd& point) {
   const Eigen::RowVectorXd along = heading(points, row);
@@ -107,7 +116,7 @@ Eigen::MatrixXd path_points(const States& states, const std::vector<std::size_t>
 
 Eigen::VectorXd revisit_lags(const Eigen::MatrixXd& points) {
   Eigen::VectorXd lags = Eigen::VectorXd::Constant(points.rows(), std::nan(""));
-  if (points.cols() == 0) return lags;
+  if (!is_path(points)) return lags;
   // Half a step finds the nearest row of a path with the same spacing; the rest is room for uneven steps.
   const double radius = 0.8 * usual_step(points);
   const Neighbours neighbours(points);
@@ -117,7 +126,7 @@ Eigen::VectorXd revisit_lags(const Eigen::MatrixXd& points) {
 }
 
 std::optional<PathMap> map_paths(const Eigen::MatrixXd& first, const Eigen::MatrixXd& second) {
-  if (first.cols() == 0 || first.cols() != second.cols()) return std::nullopt;
+  if (first.cols() != second.cols() || !is_path(first) || !is_path(second)) return std::nullopt;
   const double radius = 0.8 * std::max(usual_step(first), usual_step(second));
   const Neighbours neighbours(second);
   std::vector<double> place(static_cast<std::size_t>(first.rows()), std::nan(""));

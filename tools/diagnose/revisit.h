@@ -13,8 +13,8 @@ namespace vernier {
 Eigen::MatrixXd path_points(const States& states, const std::vector<std::size_t>& rows);
 
 /// How many rows later the path passes each point again in the same sense, the row between two by projection;
-/// NaN where it does not. A pause at a point is no return. `points`: as path_points gives them, in time
-/// order. tool.
+/// NaN where it does not. A pause at a point is no return; poses set one by one (steps of a tenth of the
+/// extent) are no path. `points`: as path_points gives them, in time order. tool.
 Eigen::VectorXd revisit_lags(const Eigen::MatrixXd& points);
 
 /// Two paths over the same points: place on the second = offset + rate * row of the first (rows).

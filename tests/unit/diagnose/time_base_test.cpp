@@ -167,6 +167,17 @@ TEST(Revisit, FindsTurnsAndNotTheWayBack) {
   for (int i = 420; i < 800; ++i) ASSERT_TRUE(std::isnan(lags[i]) || i % 200 < 5 || i % 200 > 195) << i;
 }
 
+TEST(Revisit, PosesSetOneByOneAreNoPath) {
+  // GIVEN a survey of scattered poses, measured twice over
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> place(0, 1);
+  Eigen::MatrixXd points(20000, 3);
+  for (Eigen::Index i = 0; i < 10000; ++i) points.row(i) << place(random), place(random), place(random);
+  points.bottomRows(10000) = points.topRows(10000).eval();
+  EXPECT_TRUE(revisit_lags(points).array().isNaN().all());
+  EXPECT_FALSE(map_paths(points.topRows(10000), points.bottomRows(10000)).has_value());
+}
+
 TEST(Revisit, MapsAPathOntoItsReverse) {
   Eigen::MatrixXd forth(500, 2), back(450, 2);
   for (int i = 0; i < 500; ++i) forth.row(i) << std::cos(0.012 * i), std::sin(0.012 * i);
