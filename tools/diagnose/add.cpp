@@ -43,7 +43,7 @@ bool asks_for(const EffectForm& form, const char* mark) { return form.term.find(
 
 bool has_range(const EffectForm& form) {
   return asks_for(form, "{hats") || asks_for(form, "{mid}") || asks_for(form, "{from}") ||
-         asks_for(form, "{to}");
+         asks_for(form, "{to}") || asks_for(form, "{span}");
 }
 
 /// input, input2, input3 ...
@@ -204,6 +204,7 @@ class AddReader {
         return !angle && !at_own;
       case PlaceRule::kTurn:
       case PlaceRule::kAngle:
+      case PlaceRule::kBaseTurn:
         return angle;
       case PlaceRule::kLength:
       case PlaceRule::kBase:

@@ -104,6 +104,11 @@ class Maker {
     }
     fill_inputs(text);
     replace_all(text, "{mid}", number_in_term(0.5 * (choice_.from + choice_.to)));
+    replace_all(text, "{span}", number_in_term(choice_.to - choice_.from));
+    replace_all(text, "-{from}",
+                choice_.from == 0  ? std::string()
+                : choice_.from < 0 ? "+" + number_text(-choice_.from)
+                                   : "-" + number_text(choice_.from));
     replace_all(text, "{from}", number_in_term(choice_.from));
     replace_all(text, "{to}", number_in_term(choice_.to));
     if (text.find("{sum}") != std::string::npos) {

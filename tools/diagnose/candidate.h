@@ -29,6 +29,9 @@ std::optional<std::size_t> axis_of(const Machine& machine, const DofPlace& place
 /// The lengths X Y Z that shift the whole measuring frame, where the chain has such a transform: the first
 /// one of a chain without workpiece branch, the last one of a workpiece branch that does not turn there.
 std::vector<DofPlace> base_places(const Machine& machine);
+/// The degrees of freedom of the transform that carries everything: the first one of a chain without
+/// workpiece branch, else the last one of that branch.
+std::vector<DofPlace> carrier_places(const Machine& machine);
 /// All degrees of freedom, tool branch first.
 std::vector<DofPlace> all_places(const Machine& machine);
 

@@ -13,8 +13,8 @@ extern const char* const kBuiltInCatalogue;  // the text of catalogue.txt
 
 namespace {
 
-constexpr std::array<const char*, 11> kPlaceNames = {"own", "cross", "turn", "length", "angle", "base",
-                                                     "sag", "joint", "each", "pair",   "normal"};
+constexpr std::array<const char*, 12> kPlaceNames = {
+    "own", "cross", "turn", "length", "angle", "base", "baseturn", "sag", "joint", "each", "pair", "normal"};
 
 /// Reads one catalogue, line by line.
 class CatalogueReader {

@@ -393,6 +393,16 @@ class Diagnoser {
 
   // ---- verdict ----
 
+  /// The lag of one axis and the unequal lag of two are one effect (FORMATS section 4): on a circle nothing
+  /// tells which of the two axes is behind.
+  bool both_lags(std::size_t item, std::size_t rival) const {
+    const auto is_lag = [&](std::size_t i) {
+      const std::string& id = pool_.candidate(i).choice.effect->id;
+      return id == "servo-lag" || id == "servo-mismatch";
+    };
+    return is_lag(item) && is_lag(rival);
+  }
+
   struct Rivals {
     std::vector<std::size_t> close;  // other causes that fit nearly as well
     std::vector<std::size_t> same;   // the same columns from the same drivers
@@ -409,8 +419,8 @@ class Diagnoser {
       set.push_back(rival);
       const double distance = evaluate(set).criterion - criterion_;
       const bool alike = pool_.candidate(item).choice.effect == pool_.candidate(rival).choice.effect ||
-                         pool_.no_simpler(rival, item);
-      if (distance < kDistance && alike && pool_.same_columns(item, rival)) {
+                         pool_.no_simpler(rival, item) || both_lags(item, rival);
+      if (distance < kDistance && alike && (pool_.same_columns(item, rival) || pool_.contains(rival, item))) {
         rivals.same.push_back(rival);
         continue;
       }
@@ -444,6 +454,12 @@ class Diagnoser {
       result_.explanation = result_.verdict == Verdict::kConsistent
                                 ? "The residual is noise: there is nothing to add."
                                 : "There is more than noise, and nothing in the catalogue explains it.";
+      return;
+    }
+    if (pool_.candidate(chosen_.front()).choice.effect->id == "time-base") {
+      result_.verdict = Verdict::kInstrument;
+      result_.explanation =
+          "The time base of the measurement: the error grows with speed and with the time since the start.";
       return;
     }
     const Rivals rivals = rivals_of(chosen_.front());

@@ -13,7 +13,8 @@ enum class PlaceRule : std::uint8_t {
   kTurn,      // the other angles of q's transform
   kLength,    // every length of the chain
   kAngle,     // every angle of the chain
-  kBase,      // lengths that shift the whole measuring frame
+  kBase,      // lengths of the transform that carries everything
+  kBaseTurn,  // its angles
   kSag,       // angles about a horizontal axis and lengths along gravity, of any transform
   kJoint,     // the angle that a rotary axis moves, where gravity has a moment about it
   kEachAxis,  // together at the own degree of freedom of every axis, one coefficient
@@ -40,8 +41,8 @@ struct UnknownRule {
 
 /// One way to write an effect. The term is an expression with placeholders: {q} the driving axis, {T} {S}
 /// inputs that are temperatures, {L} a load, {F} an accelerometer feature, {ref} the reference of {T},
-/// {mid} {from} {to} of the range of {q}, {hats N} a sum of N hat functions over that range, {runs} a sum of
-/// one step a run, {sum} the sum of parallel joints up to {q} and beyond, {n} nx, ny or nz.
+/// {mid} {from} {to} {span} of the range of {q}, {hats N} a sum of N hat functions over that range, {runs} a
+/// sum of one step a run, {sum} the sum of parallel joints up to {q} and beyond, {n} nx, ny or nz.
 struct EffectForm {
   std::string label;
   PlaceRule place = PlaceRule::kOwn;

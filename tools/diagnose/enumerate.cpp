@@ -12,7 +12,7 @@ namespace {
 
 /// Two degrees of freedom whose effects on all observations differ by less than this are one.
 constexpr double kSamePlace = 1e-7;
-constexpr double kShare = 0.7;  // of a unit vector along or across gravity
+constexpr double kShare = 0.3;  // of a unit vector along or across gravity
 
 bool contains(const std::string& text, std::string_view part) { return text.find(part) != std::string::npos; }
 
@@ -43,6 +43,7 @@ class Enumerator {
   std::vector<ScannedCandidate> all() {
     for (const Effect& effect : effects_)
       for (const EffectForm& form : effect.forms) {
+        if (!goes_with_readings(effect, form)) continue;
         Choice choice;
         choice.effect = &effect;
         choice.form = &form;
@@ -52,6 +53,12 @@ class Enumerator {
   }
 
  private:
+  /// A trigger needs touches (readings along a normal); readings that a trigger takes have no second clock.
+  bool goes_with_readings(const Effect& effect, const EffectForm& form) const {
+    if (effect.id == "trigger-delay") return has_normals_;
+    return !(form.place == PlaceRule::kEachAxis && only_normals_);
+  }
+
   bool answers(const DofPlace& place) const {
     return evidence_.response(evidence_.index_of(place)).squaredNorm() > 0;
   }
@@ -261,7 +268,10 @@ class Enumerator {
         });
         break;
       case PlaceRule::kBase:
-        at_each(base_places(machine_), [](const DofPlace&) { return true; });
+      case PlaceRule::kBaseTurn:
+        at_each(carrier_places(machine_), [&](const DofPlace& p) {
+          return is_angle(machine_, p) == (form.place == PlaceRule::kBaseTurn);
+        });
         break;
       case PlaceRule::kSag:
         if (!contains(form.term, "sin(") && !contains(form.term, "cos(") && rotary) return;
@@ -354,7 +364,7 @@ class Enumerator {
     const double length = range.high - range.low;
     std::vector<double> grid;
     if (length <= 0 || range.step <= 0) return grid;
-    constexpr double kMostPeriods = 100, kPerRange = 2.5, kLongest = 0.67;
+    constexpr double kMostPeriods = 100, kPerRange = 2.5, kLongest = 0.4;
     const double fastest = std::min(1 / (2.1 * range.step), kMostPeriods / length);
     for (double f = 1 / (kLongest * length); f <= fastest; f += 1 / (kPerRange * length))
       grid.push_back(1 / f);
@@ -399,7 +409,7 @@ class Enumerator {
   std::vector<Evidence::Range> range_;
   std::vector<DofPlace> distinct_, sag_;
   std::vector<std::vector<std::string>> sums_;
-  bool has_normals_ = false;
+  bool has_normals_ = false, only_normals_ = false;
   std::vector<ScannedCandidate> list_;
 };
 

@@ -93,6 +93,16 @@ std::optional<std::size_t> axis_of(const Machine& machine, const DofPlace& place
   return std::nullopt;
 }
 
+std::vector<DofPlace> carrier_places(const Machine& machine) {
+  const bool workpiece = !machine.workpiece.empty();
+  const auto& branch = branch_of(machine, workpiece);
+  std::vector<DofPlace> places;
+  if (branch.empty()) return places;
+  const std::size_t at = workpiece ? branch.size() - 1 : 0;
+  for (std::size_t d = 0; d < branch[at].dof_count(); ++d) places.push_back({workpiece, at, d});
+  return places;
+}
+
 std::vector<DofPlace> base_places(const Machine& machine) {
   const bool workpiece = !machine.workpiece.empty();
   const auto& branch = branch_of(machine, workpiece);

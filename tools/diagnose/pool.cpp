@@ -7,6 +7,32 @@
 
 namespace vernier {
 
+namespace {
+
+/// Between forms that fit alike the simpler one wins: at the axis' own degree of freedom first, two axes that
+/// share an error before one of them, then across the axis, then anywhere. Far below any evidence.
+double rank_of(const Candidate& candidate) {
+  constexpr double kStep = 0.05;
+  switch (candidate.choice.form->place) {
+    case PlaceRule::kPair:
+      return 0;
+    case PlaceRule::kOwn:
+      return kStep;
+    case PlaceRule::kCross:
+    case PlaceRule::kNormal:
+    case PlaceRule::kBase:
+    case PlaceRule::kJoint:
+      return 2 * kStep;
+    case PlaceRule::kTurn:
+    case PlaceRule::kBaseTurn:
+      return 3 * kStep;
+    default:
+      return 4 * kStep;
+  }
+}
+
+}  // namespace
+
 std::set<std::pair<int, std::size_t>> drivers_of(const Machine& machine, const Candidate& candidate) {
   std::set<std::pair<int, std::size_t>> drivers;
   Machine scratch = machine;
@@ -26,17 +52,22 @@ std::set<std::pair<int, std::size_t>> drivers_of(const Machine& machine, const C
   return drivers;
 }
 
-Pool::Pool(const Evidence& evidence, const Scanner& scanner) : evidence_(evidence), scanner_(scanner) {
-  for (const ScannedCandidate& item : scanner.candidates()) ++instances_[item.candidate.choice.effect->id];
-}
+Pool::Pool(const Evidence& evidence, const Scanner& scanner) : evidence_(evidence), scanner_(scanner) {}
 
 const Candidate& Pool::candidate(std::size_t i) const {
   return scanner_.candidates()[items_[i].scored.candidate].candidate;
 }
 
 double Pool::penalty(std::size_t candidate) const {
-  const std::string& id = scanner_.candidates()[candidate].candidate.choice.effect->id;
-  return 2 * std::log(static_cast<double>(instances_.size()) * instances_.at(id));
+  const ScannedCandidate& item = scanner_.candidates()[candidate];
+  double cost = 2 * std::log(static_cast<double>(scanner_.candidates().size())) + rank_of(item.candidate);
+  // A scanned unknown is as many tries as the grid has values that differ, where that is more than the price
+  // of a coefficient.
+  constexpr double kPointsPerTry = 2.5;
+  for (const std::vector<double>& grid : item.grid)
+    cost += std::max(0.0, 2 * std::log(static_cast<double>(grid.size()) / kPointsPerTry) -
+                              std::log(static_cast<double>(evidence_.rows().size())));
+  return cost;
 }
 
 /// One key per effect and place; a second period at the same place is another one.
@@ -145,6 +176,13 @@ bool Pool::same_columns(std::size_t a, std::size_t b) const {
   // Squares of the cosines between the two spans, the least of them decides.
   const double common = (x.transpose() * y).squaredNorm();
   return static_cast<double>(x.cols()) - common < 1e-3;
+}
+
+bool Pool::contains(std::size_t general, std::size_t special) const {
+  const Eigen::MatrixXd x = orthonormal(items_[general].columns, 1e-6, nullptr);
+  const Eigen::MatrixXd y = orthonormal(items_[special].columns, 1e-6, nullptr);
+  if (x.cols() <= y.cols()) return false;
+  return static_cast<double>(y.cols()) - (x.transpose() * y).squaredNorm() < 2e-3;
 }
 
 bool Pool::no_simpler(std::size_t a, std::size_t b) const {

@@ -1,6 +1,5 @@
 #pragma once
 #include <Eigen/Core>
-#include <map>
 #include <set>
 #include <string>
 #include <vector>
@@ -47,6 +46,8 @@ class Pool {
   bool same_cause(std::size_t a, std::size_t b) const;
   /// Do two items span the same columns (all but a thousandth of their squares)?
   bool same_columns(std::size_t a, std::size_t b) const;
+  /// Do the columns of `general` hold those of `special`, and more?
+  bool contains(std::size_t general, std::size_t special) const;
   /// Does `a` depend on all that `b` depends on, and on nothing more but the count of rows or the travel
   /// since a reversal? Then `b` is the simpler way to say the same.
   bool no_simpler(std::size_t a, std::size_t b) const;
@@ -58,7 +59,6 @@ class Pool {
 
   const Evidence& evidence_;
   const Scanner& scanner_;
-  std::map<std::string, double> instances_;  // of each effect
   std::vector<Item> items_;
   std::set<std::string> keys_;
 };
