@@ -18,10 +18,9 @@ void judge(const RivalCourt& court, const Form& form, std::vector<Cause>& accept
   const Eigen::MatrixXd basis = orthonormal(court.form_columns(form, true));
   if (basis.cols() == 0) return;
   const bool same_inputs = form.inputs == court.inputs;
-  if (missed(basis, court.truth) < 1e-4) {
-    if (basis.cols() > court.truth_width) return;
-    if (same_inputs) return accept.push_back(form.cause);
-  }
+  const double unseen = missed(basis, court.truth);
+  if (basis.cols() > court.truth_width && unseen < 0.02) return;  // a smooth function that can also be a line
+  if (same_inputs && unseen < 1e-4) return accept.push_back(form.cause);
   const double excess = court.residual.squaredNorm() - (basis.transpose() * court.residual).squaredNorm() -
                         court.truth_chi_square;
   const auto same =
