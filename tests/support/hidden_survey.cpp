@@ -3,12 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <regex>
-#include <set>
 #include <stdexcept>
 
 #include "tests/support/hidden_survey_columns.h"
@@ -19,7 +16,6 @@
 namespace vernier::support {
 namespace {
 
-constexpr std::array<const char*, 5> kClassNames = {"single", "two", "outside", "noise", "confusable"};
 constexpr double kLeastRemaining = 0.12;  // below this the effect must be absurdly large to be seen
 constexpr double kTells = 20;             // chi^2 between the truth and its best rival, issue's definition
 constexpr int kDraws = 80;
@@ -306,7 +302,7 @@ void Attempt::judge(HiddenSurvey& survey) {
                      beside.project(beside.weighted(difference)),
                      beside.project(beside.weighted(shift_of(e))),
                      0,
-                     orthonormal(true_columns).cols(),
+                     orthonormal(true_columns).cols() + forms_[e].free_numbers,
                      forms_[e].inputs};
     court.truth_chi_square = chi_square_with(true_columns, court.residual);
     std::vector<Rival> rivals = find_rivals(court, survey.effects[e].accept, draw_);
@@ -341,47 +337,7 @@ std::optional<HiddenSurvey> Attempt::survey() {
   return result;
 }
 
-nlohmann::json to_json(const Cause& cause) {
-  const auto or_null = [](const std::string& s) { return s.empty() ? nlohmann::json() : nlohmann::json(s); };
-  return {{"effect", cause.effect}, {"axis", or_null(cause.axis)}, {"input", or_null(cause.input)}};
-}
-
 }  // namespace
-
-const char* class_name(SurveyClass kind) { return kClassNames[static_cast<std::size_t>(kind)]; }
-
-SurveyClass class_named(const std::string& name) {
-  for (std::size_t i = 0; i < kClassNames.size(); ++i)
-    if (name == kClassNames[i]) return static_cast<SurveyClass>(i);
-  throw std::invalid_argument("no survey class '" + name + "'");
-}
-
-std::vector<std::string> effects_of(Family family) {
-  const Geometry g = geometry_of(family);
-  std::vector<std::string> effects;
-  for (const EffectScan& scan : effect_scans()) {
-    const std::string effect = scan.effect;
-    const bool rotary = !g.all_linear();
-    if (demands_of(effect).probing && (rotary || g.axes.size() < 3)) continue;
-    if (effect == "joint-compliance" && !rotary) continue;
-    if (g.axes.size() < 3 &&
-        (demands_of(effect).bare || effect == "angular-error" || effect == "thermal-bend"))
-      continue;
-    if (effect == "offset" && !rotary) continue;
-    if (effect == "gravity-sag" && g.bends.empty()) continue;
-    if (effect == "thermal-scale" &&
-        std::all_of(g.axes.begin(), g.axes.end(), [](const AxisPlace& a) { return a.rotary; }))
-      continue;
-    // A circle that is read too late is the same circle.
-    if (family == Family::kBallBar && (effect == "time-sync" || effect == "time-base")) continue;
-    if (g.axes.size() == 1 &&
-        (effect == "lateral-play" || effect == "straightness" || effect == "gravity-sag" ||
-         effect == "servo-mismatch" || effect == "centrifugal"))
-      continue;
-    effects.push_back(effect);
-  }
-  return effects;
-}
 
 HiddenSurvey make_survey(const SurveySpec& spec) {
   if (spec.ratio <= 0 || spec.rows < 20 || spec.runs < 1 || (spec.feeds != 1 && spec.feeds != 3))
@@ -393,40 +349,6 @@ HiddenSurvey make_survey(const SurveySpec& spec) {
   throw std::runtime_error(
       fmt::format("{} shows nothing of {} in {} draws (seed {})", family_name(spec.family),
                   spec.effect.empty() ? class_name(spec.kind) : spec.effect, kDraws, spec.seed));
-}
-
-std::string HiddenSurvey::key() const {
-  nlohmann::json list = nlohmann::json::array(), others = nlohmann::json::array();
-  for (const HiddenEffect& e : effects) {
-    nlohmann::json item = to_json(e.cause), names = nlohmann::json::array();
-    for (const Cause& cause : e.accept) names.push_back(to_json(cause));
-    item.update({{"inputs", e.inputs},
-                 {"branch", e.branch},
-                 {"transform", e.transform},
-                 {"dof", e.dof},
-                 {"term", e.term},
-                 {"accept", names},
-                 {"ratio", e.ratio},
-                 {"remaining", e.remaining},
-                 {"statics", e.statics}});
-    list.push_back(item);
-  }
-  for (const Rival& r : rivals) {
-    nlohmann::json item = to_json(r.cause);
-    item.update({{"term", r.term}, {"excess_chi_square", r.excess}});
-    others.push_back(item);
-  }
-  return nlohmann::json{{"seed", spec.seed},
-                        {"family", family_name(spec.family)},
-                        {"class", class_name(spec.kind)},
-                        {"u_mm", spec.u_mm},
-                        {"observations", observations},
-                        {"parameters", parameters},
-                        {"effects", list},
-                        {"rivals", others},
-                        {"can_tell", can_tell}}
-             .dump(2) +
-         "\n";
 }
 
 }  // namespace vernier::support

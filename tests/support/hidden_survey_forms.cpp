@@ -9,8 +9,6 @@
 namespace vernier::support {
 namespace {
 
-bool is_angle(const std::string& dof) { return dof.front() == 'r' || dof == "theta" || dof == "alpha"; }
-
 /// Builds the forms of one effect.
 class Builder {
  public:
@@ -29,7 +27,8 @@ class Builder {
   using Make = void (Builder::*)();
 
   Form& add(const std::string& axis, std::vector<Place> places, std::vector<double> coefficients) {
-    forms_.push_back({{effect_, axis, ""}, {}, std::move(places), std::move(coefficients), ""});
+    forms_.push_back(
+        {{effect_, axis, ""}, {}, std::move(places), std::move(coefficients), free_numbers(), ""});
     return forms_.back();
   }
   /// At the axis' own motion. Coefficients are of the axis' reading: a table that moves against it turns the
@@ -37,6 +36,10 @@ class Builder {
   Form& own(const AxisPlace& a, const std::string& text, std::vector<double> coefficients) {
     for (double& c : coefficients) c *= a.sense;
     return add(a.name, {{a.workpiece, a.n, a.dof, text}}, std::move(coefficients));
+  }
+  int free_numbers() const {
+    const auto is = [&](const char* effect) { return effect_ == effect; };
+    return is("reversal-spike") || is("cyclic-error") || is("warmup-drift") || is("thermal-offset") ? 1 : 0;
   }
   /// Every degree of freedom of one sort, at every transform.
   template <class Visit>
@@ -376,6 +379,8 @@ void Builder::vibration() {
 
 }  // namespace
 
+bool is_angle(const std::string& dof) { return dof.front() == 'r' || dof == "theta" || dof == "alpha"; }
+
 Demands demands_of(const std::string& effect) {
   Demands d;
   const auto is = [&](std::initializer_list<const char*> list) {
@@ -403,13 +408,13 @@ const std::vector<EffectScan>& effect_scans() {
                                                 {"backlash", 1},
                                                 {"lateral-play", 1},
                                                 {"reversal-spike", 6},
-                                                {"cyclic-error", 30},
+                                                {"cyclic-error", 45},
                                                 {"straightness", 1},
                                                 {"angular-error", 1},
                                                 {"thermal-scale", 1},
-                                                {"thermal-offset", 6},
+                                                {"thermal-offset", 8},
                                                 {"thermal-bend", 1},
-                                                {"warmup-drift", 6},
+                                                {"warmup-drift", 8},
                                                 {"gravity-sag", 1},
                                                 {"joint-compliance", 1},
                                                 {"load-deflection", 1},
@@ -426,74 +431,6 @@ const std::vector<EffectScan>& effect_scans() {
                                                 {"creep", 1},
                                                 {"vibration", 1}};
   return scans;
-}
-
-namespace {
-
-/// Unit interval over an axis' range, as text.
-std::string unit_of(const AxisPlace& a) {
-  return fmt::format("({}-({:g}))/{:g}", a.name, a.low, a.high - a.low);
-}
-
-std::string random_field(const Geometry& g, Draw& draw) {
-  std::string text = "(";
-  for (int wave = 0; wave < 4; ++wave) {
-    std::string phase = fmt::format("{:.1f}", draw.uniform(0, 360));
-    for (const AxisPlace& a : g.axes) phase += fmt::format("{:+.1f}*{}", draw.uniform(-400, 400), unit_of(a));
-    text += fmt::format("{:+.3f}*cos({})", draw.normal(), phase);
-  }
-  return text + ")";
-}
-
-std::string chirp(const Geometry& g, Draw& draw) {
-  const AxisPlace& a = draw.pick(g.axes);
-  return fmt::format("sin({:.0f}*({})^2+{:.0f})", draw.uniform(1500, 3000), unit_of(a), draw.uniform(0, 360));
-}
-
-std::string bump(const Geometry& g, Draw& draw) {
-  const std::size_t i = draw.index(g.axes.size());
-  const std::size_t j = g.axes.size() > 1 ? (i + 1 + draw.index(g.axes.size() - 1)) % g.axes.size() : i;
-  return fmt::format("exp(-(({}-{:.2f})/{:.2f})^2-(({}-{:.2f})/{:.2f})^2)", unit_of(g.axes[i]),
-                     draw.uniform(0.25, 0.75), draw.uniform(0.12, 0.25), unit_of(g.axes[j]),
-                     draw.uniform(0.25, 0.75), draw.uniform(0.12, 0.25));
-}
-
-std::string four_factors(const Geometry& g, const std::vector<LoggedColumn>& columns, Draw& draw) {
-  std::string text = fmt::format("({}-20)*cos({:.0f}*{})", columns[draw.index(4)].name,
-                                 draw.uniform(200, 500), unit_of(draw.pick(g.axes)));
-  for (int i = 0; i < 2; ++i)
-    text += fmt::format("*({}-{:.2f})", unit_of(draw.pick(g.axes)), draw.uniform(0.3, 0.7));
-  return "(" + text + ")";
-}
-
-}  // namespace
-
-Form outside_form(const Geometry& g, const std::vector<LoggedColumn>& columns, Draw& draw) {
-  const std::size_t shape = draw.index(4);
-  const char* const names[] = {"outside:field", "outside:four-factors", "outside:bump", "outside:chirp"};
-  Form form;
-  form.cause.effect = names[shape];
-  std::vector<const TransformPlace*> tips;
-  for (const TransformPlace& t : g.transforms)
-    if (std::any_of(t.dofs.begin(), t.dofs.end(), [](const auto& d) { return !is_angle(d); }))
-      tips.push_back(&t);
-  const TransformPlace& tip = *(shape == 0 ? tips.back() : draw.pick(tips));
-  std::vector<std::string> dofs;
-  for (const std::string& dof : tip.dofs)
-    if (!is_angle(dof)) dofs.push_back(dof);
-  if (shape != 0) dofs = {draw.pick(dofs)};
-  for (const std::string& dof : dofs) {
-    const std::string text = shape == 0   ? random_field(g, draw)
-                             : shape == 1 ? four_factors(g, columns, draw)
-                             : shape == 2 ? bump(g, draw)
-                                          : chirp(g, draw);
-    form.places.push_back({tip.workpiece, tip.n, dof, "k1*" + text});
-  }
-  if (shape == 1)
-    for (const LoggedColumn& c : columns)
-      if (form.places.front().text.find(c.name) != std::string::npos) form.inputs.push_back(c.name);
-  form.coefficients = {1};
-  return form;
 }
 
 }  // namespace vernier::support

@@ -15,6 +15,7 @@ struct Form {
   std::vector<std::string> inputs;
   std::vector<Place> places;
   std::vector<double> coefficients;  // of k1, k2 ...: relative sizes and signs of a plausible truth
+  int free_numbers = 0;              // periods, time constants: what a search must find beside them
   std::string reference_factor;      // of an input: what an unknown reference would multiply; else empty
 };
 
@@ -37,6 +38,9 @@ std::vector<Form> forms_of(const std::string& effect, const Geometry& geometry,
 
 /// A form that is in no catalogue and beyond a product of three factors.
 Form outside_form(const Geometry& geometry, const std::vector<LoggedColumn>& columns, Draw& draw);
+
+/// Is this degree of freedom an angle?
+bool is_angle(const std::string& dof);
 
 /// All effects that forms exist for, and how many values of its unfixed number a scan should visit.
 struct EffectScan {

@@ -19,7 +19,8 @@ void judge(const RivalCourt& court, const Form& form, std::vector<Cause>& accept
   if (basis.cols() == 0) return;
   const bool same_inputs = form.inputs == court.inputs;
   const double unseen = missed(basis, court.truth);
-  if (basis.cols() > court.truth_width && unseen < 0.02) return;  // a smooth function that can also be a line
+  if (basis.cols() + form.free_numbers > court.truth_width && unseen < 0.02)
+    return;  // a smooth function that can also be a line
   if (same_inputs && unseen < 1e-4) return accept.push_back(form.cause);
   const double excess = court.residual.squaredNorm() - (basis.transpose() * court.residual).squaredNorm() -
                         court.truth_chi_square;
@@ -49,7 +50,8 @@ std::vector<Rival> find_rivals(const RivalCourt& court, std::vector<Cause>& acce
   std::vector<Rival> rivals;
   for (const EffectScan& scan : effect_scans())
     for (int step = 0; step < scan.steps; ++step) {
-      const Share share = [&] { return (step + 0.5) / scan.steps; };
+      // Half as wide again on both sides: a search may wander out of what is plausible.
+      const Share share = [&] { return 2 * (step + 0.5) / scan.steps - 0.5; };
       for (const Form& form : forms_of(scan.effect, court.geometry, court.columns, court.runs, share, draw))
         judge(court, form, accept, rivals);
     }

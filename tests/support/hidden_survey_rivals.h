@@ -15,7 +15,7 @@ struct RivalCourt {
   Eigen::VectorXd residual;      // projected, weighted
   Eigen::VectorXd truth;         // the effect itself, projected
   double truth_chi_square = 0;   // of the fit with the true form
-  Eigen::Index truth_width = 1;  // independent columns of the true form
+  Eigen::Index truth_width = 1;  // independent columns and free numbers of the true form
   std::vector<std::string> inputs;
 };
 

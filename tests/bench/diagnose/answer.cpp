@@ -90,10 +90,21 @@ Outcome of_verdict(const std::string& verdict) {
   return Outcome::kError;
 }
 
+/// Did the search write down the hidden effect's axis and inputs, under no name?
+bool is_custom_of(const HiddenSurvey& survey, const json& candidate) {
+  if (survey.spec.kind != SurveyClass::kSingle || text_of(candidate, "effect") != "custom") return false;
+  const HiddenEffect& hidden = survey.effects.at(0);
+  return text_of(candidate, "axis") == hidden.cause.axis &&
+         std::all_of(hidden.inputs.begin(), hidden.inputs.end(),
+                     [&](const std::string& input) { return has_input(candidate, input); });
+}
+
 Outcome judge_one(const HiddenSurvey& survey, const json& answer) {
   const std::string verdict = answer.at("verdict");
   const json& candidates = answer.at("candidates");
   const bool first_right = !candidates.empty() && is_one_of(candidates[0], survey.effects);
+  if (verdict == "missing-effect" && !first_right && is_custom_of(survey, candidates.at(0)))
+    return Outcome::kCustom;
   if (verdict == "missing-effect") return first_right ? Outcome::kRight : Outcome::kWrong;
   if (verdict == "ambiguous") {
     const std::vector<json> group = rivals_of_first(candidates);
@@ -129,9 +140,9 @@ Judgement judge_json(const HiddenSurvey& survey, const json& answer) {
 }  // namespace
 
 const char* outcome_name(Outcome outcome) {
-  static constexpr std::array<const char*, kOutcomes> kNames = {"right",      "wrong",       "ambiguous",
-                                                                "ambig-miss", "unexplained", "instrument",
-                                                                "consistent", "one-of-two",  "error"};
+  static constexpr std::array<const char*, kOutcomes> kNames = {
+      "right",      "wrong",      "ambiguous", "ambig-miss", "unexplained",
+      "instrument", "consistent", "custom",    "one-of-two", "error"};
   return kNames[static_cast<std::size_t>(outcome)];
 }
 

@@ -16,10 +16,11 @@ enum class Outcome : std::uint8_t {
   kUnexplained,
   kInstrument,
   kConsistent,
-  kHalf,   // of two effects one was named and nothing wrong
-  kError,  // no JSON, wrong keys, exit status not 0
+  kCustom,  // a term of the search, labelled as no named physics, on the axis and inputs of the cause
+  kHalf,    // of two effects one was named and nothing wrong
+  kError,   // no JSON, wrong keys, exit status not 0
 };
-inline constexpr std::size_t kOutcomes = 9;
+inline constexpr std::size_t kOutcomes = 10;
 const char* outcome_name(Outcome outcome);
 
 struct Judgement {
