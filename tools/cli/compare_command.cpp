@@ -1,9 +1,11 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "tools/cli/command.h"
 #include "tools/cli/results.h"
+#include "tools/diagnose/structure_json.h"
 #include "tools/fit/fit.h"
 #include "tools/map/field_json.h"
 #include "tools/model/machine.h"
@@ -61,6 +63,32 @@ void print_stretches(std::FILE* out, const nlohmann::ordered_json& stretches) {
                s["last_line"].get<std::size_t>(), s["rms_um"].get<double>());
 }
 
+std::string percent(double share) { return fmt::format("{:.3g} %", 100 * share); }
+
+/// Where the model fails, strongest first: sentences of the same JSON that the report draws.
+void print_failure(std::FILE* out, const nlohmann::ordered_json& json) {
+  constexpr std::size_t kMost = 8;
+  const auto& findings = json["findings"];
+  const auto& structure = json["structure"];
+  const double chance = structure["omnibus_p"].get<double>();
+  if (findings.empty()) {
+    fmt::print(out, "where it fails: {} ({} things tried, chance of the strongest {:.2g})\n",
+               chance < 1e-3 ? "there is structure, but no column stands out" : "nothing beyond chance",
+               structure["tried"].get<std::size_t>(), chance);
+  } else {
+    fmt::print(out, "where it fails (share of that residual's variance: alone, beyond the other findings)\n");
+  }
+  for (std::size_t i = 0; i < std::min(kMost, findings.size()); ++i)
+    fmt::print(out, "  {:>7} {:>7}  {}\n", percent(findings[i]["share_alone"].get<double>()),
+               percent(findings[i]["share_after"].get<double>()), findings[i]["sentence"].get<std::string>());
+  if (findings.size() > kMost) fmt::print(out, "  and {} more in the report\n", findings.size() - kMost);
+  if (!structure["pure_error_um"].is_null())
+    fmt::print(out, "  repeats scatter by {:.4g} um; lack of fit beyond that {:.4g} um\n",
+               structure["pure_error_um"].get<double>(), structure["lack_of_fit_um"].get<double>());
+  if (structure["outliers"].get<std::size_t>() > 0)
+    fmt::print(out, "  {} readings lie beyond 5 robust spreads\n", structure["outliers"].get<std::size_t>());
+}
+
 void print_result(std::FILE* out, const nlohmann::ordered_json& json) {
   fmt::print(out, "rms fit rows    {}   max {}\n", number_or_dash(value_of(json, "rms_um"), "um"),
              number_or_dash(value_of(json, "max_um"), "um"));
@@ -74,6 +102,7 @@ void print_result(std::FILE* out, const nlohmann::ordered_json& json) {
              json["n_check"].get<std::size_t>(), json["n_excluded"].get<std::size_t>());
   print_stretches(out, json["stretches"]);
   for (const auto& circle : json["circular"]) print_circle(out, circle);
+  print_failure(out, json);
 }
 
 /// The model's own deviations over the working volume, for the report.
@@ -91,6 +120,7 @@ void run_compare(const CompareArguments& arguments) {
   const Measurement m = read_measurement(arguments.measurements, machine);
   const Eigen::VectorXd residual = residuals(machine, m);
   nlohmann::ordered_json json = compare_json(machine, m, residual);
+  add_failure(json, failure_picture(machine, m, residual));
   if (!arguments.output.empty()) {
     nlohmann::ordered_json with_detail = json;
     add_detail(with_detail, machine, m, residual);
@@ -114,8 +144,11 @@ void register_compare(CLI::App& vernier) {
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->footer(
       "Changes no parameter. For ball-bar data the ISO 230-4 numbers and the polar plot; for all data the\n"
-      "residual against everything that was recorded, and the model's error field over the volume. Exit "
-      "status 0 done, 1 bad input.");
+      "residual against everything that was recorded, where the model fails in plain sentences, and the\n"
+      "model's error field over the volume. Nothing is fitted, so a wrong offset, squareness or scale "
+      "counts\n"
+      "as a failure here that a fit would remove: run `fit` first to see what no parameter can explain.\n"
+      "Exit status 0 done, 1 bad input.");
   command->callback([arguments] { run_compare(*arguments); });
 }
 

@@ -12,6 +12,7 @@
 #include <Eigen/QR>
 
 #include "tests/support/machines.h"
+#include "tools/diagnose/structure_json.h"
 #include "tools/model/parameters.h"
 #include "tools/model/prediction.h"
 
@@ -369,6 +370,22 @@ TEST(FailurePicture, CellsHoldTheMeanVectorWhereItIs) {
     EXPECT_NEAR(cell.mean_um[2], x > 300 ? 5 : 0, 4 * cell.noise_um + 0.5);
   }
   EXPECT_EQ(rows, p.m.rows());
+}
+
+TEST(FailurePicture, JsonHoldsFindingsSharesAndCells) {
+  Planted p;
+  plant(p.residual, p.m, ObservationKind::kX, [&](Eigen::Index i) { return -5e-6 * p.axis(0)[i]; });
+  nlohmann::ordered_json json;
+  const FailurePicture picture = p.picture();
+  add_failure(json, picture);
+  ASSERT_FALSE(json["findings"].empty());
+  EXPECT_EQ(json["findings"][0]["shape"], "linear");
+  EXPECT_EQ(json["findings"][0]["column"], "X");
+  EXPECT_TRUE(json["findings"][0]["second_column"].is_null());
+  EXPECT_EQ(json["structure"]["omnibus_p"], picture.omnibus_p);
+  EXPECT_EQ(json["structure"]["cells"].size(), picture.cells.size());
+  // Three kinds against 3 axes, 3 senses, feed, t, visit, run, T and 4 decoys.
+  EXPECT_EQ(json["structure"]["shares"].size(), 45U);
 }
 
 TEST(FailurePicture, NothingToTestIsNoError) {

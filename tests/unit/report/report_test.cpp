@@ -31,6 +31,18 @@ Json a_result() {
         {"worst", {{{"row", 2}, {"line", 4}, {"run", kHostile}, {"kind", "x"}, {"residual", 2.0}}}}}}};
 }
 
+Json a_diagnosis() {
+  Json result = a_result();
+  result["verdict"] = "missing-effect";
+  result["explanation"] = kHostile;
+  result["candidates"] = {{{"effect", "backlash"}, {"add", kHostile}, {"why_not", kHostile}}};
+  result["ladder"] = {{{"effect", nullptr}, {"rms_um", 5.0}, {"check_rms_um", nullptr}},
+                      {{"effect", kHostile}, {"rms_um", 1.0}, {"check_rms_um", 1.1}}};
+  result["next_measurement"] = {kHostile};
+  result["findings"] = {{{"observation", "x"}, {"sentence", kHostile}, {"share_after", 0.5}}};
+  return result;
+}
+
 std::size_t count(const std::string& text, const std::string& word) {
   std::size_t found = 0;
   for (auto at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) ++found;
@@ -50,7 +62,8 @@ TEST(Report, HostileTextsStayTexts) {
         improvement_report_html({{"title", kHostile},
                                  {"machine", kHostile},
                                  {"files", {kHostile}},
-                                 {"sections", {{{"title", kHostile}, {"prose", {kHostile}}}}}})}) {
+                                 {"sections", {{{"title", kHostile}, {"prose", {kHostile}}}}}}),
+        diagnose_report_html(a_diagnosis()), improve_report_html(a_diagnosis())}) {
     const std::string own = own_part(html);
     EXPECT_EQ(count(own, "alert('x')</script>"), 0u);
     EXPECT_EQ(count(own, "<img"), 0u);
@@ -86,6 +99,20 @@ TEST(Report, ContradictoryDetailIsRefused) {
   Json result = a_result();
   result["detail"]["observations"]["row"][0] = 99;
   EXPECT_THROW(compare_report_html(result), std::invalid_argument);
+  EXPECT_THROW(diagnose_report_html(result), std::invalid_argument);
+  EXPECT_THROW(improve_report_html(result), std::invalid_argument);
+  EXPECT_THROW(diagnose_report_html(Json::array()), std::invalid_argument);
+}
+
+TEST(Report, PagesOfDiagnoseAndImproveCarryTheResultAsItIs) {
+  for (const auto& [html, type] : {std::pair{diagnose_report_html(a_diagnosis()), "\"type\":\"diagnose\""},
+                                   std::pair{improve_report_html(a_diagnosis()), "\"type\":\"improve\""}}) {
+    EXPECT_NE(html.find(type), std::string::npos);
+    EXPECT_NE(html.find("\"verdict\":\"missing-effect\""), std::string::npos);
+    EXPECT_NE(html.find("\"check_rms_um\":1.1"), std::string::npos);
+    for (const char* word : {"http://", "https://", "src=\"", "@import", "url("})
+      EXPECT_EQ(count(own_part(html), word), 0u) << word;
+  }
 }
 
 TEST(Report, SameResultGivesTheSameBytes) {

@@ -4,6 +4,8 @@ import { circleTable, polarPlot } from './polar.js';
 import { byKind, residualMatrix, unitOf } from './matrix.js';
 import { curves, histogram, ladder } from './plots.js';
 import { volume } from './volume.js';
+import { candidates, falling, next, simulated, verdict } from './diagnosis.js';
+import { failure, findingList } from './failure.js';
 
 const root = document.getElementById('report');
 
@@ -46,12 +48,51 @@ function thinned(detail) {
 const fieldProse = (field) => el('p', {}, 'Deviation of the tool point that the model states, actual minus nominal, over the declared axis ranges, '
   + `in workpiece coordinates: at most ${number(field.max_um, 4)} µm, rms ${number(field.rms_um, 4)} µm. Drag or use the arrow keys to turn it.`);
 
+function failing(result, note) {
+  const parts = failure(result);
+  if (parts.length) section(root, 'Where it fails', parts, note ? el('p', { class: 'note' }, note) : null);
+}
+
+/** Section that is left out where it would be empty. */
+function optional(title, parts) {
+  const list = [parts].flat().filter(Boolean);
+  if (list.length) section(root, title, list);
+}
+
+function diagnosis(result) {
+  const { detail } = result;
+  section(root, 'Verdict', verdict(result).filter(Boolean));
+  optional('Ladder', falling(result));
+  section(root, 'Candidates', candidates(result));
+  optional('Measure next', next(result));
+  failing(result, 'Of the fitted model: its free parameters have had their chance.');
+  if (detail?.observations) section(root, 'Residuals', thinned(detail), residualMatrix(detail, result.findings));
+  if (result.notes?.length) section(root, 'Notes', listOf(result.notes));
+}
+
+function improvement(result) {
+  optional('The error falls', falling(result));
+  optional('In the control loop', simulated(result));
+  if (result.verdict) section(root, 'At the end', verdict(result).filter(Boolean));
+  for (const step of result.steps ?? []) {
+    section(root, step.title ?? 'Step', (step.prose ?? []).map((text) => el('p', {}, text)), step.explanation ? el('p', {}, step.explanation) : null,
+      step.findings ? findingList(step.findings) : null, step.candidates ? candidates(step) : null);
+  }
+  if (result.candidates?.length) section(root, 'Candidates', candidates(result));
+  optional('Measure next', next(result));
+  failing(result, 'Of the model at the end.');
+  if (result.detail?.observations) section(root, 'Residuals', thinned(result.detail), residualMatrix(result.detail, result.findings));
+  if (result.parameters?.length) section(root, 'Parameters', parameterTable(result.parameters));
+  if (result.notes?.length) section(root, 'Notes', listOf(result.notes));
+}
+
 function comparison(result) {
   const detail = result.detail;
   section(root, 'Summary', summary(result), (result.notes?.length ?? 0) ? listOf(result.notes) : null);
+  failing(result, 'Nothing has been fitted here: a wrong offset, squareness or scale is a failure too, which a fit would remove.');
   if (detail?.circular?.length) section(root, 'Circle', circles(detail.circular));
   if (detail?.observations) {
-    section(root, 'Residuals', thinned(detail), residualMatrix(detail));
+    section(root, 'Residuals', thinned(detail), residualMatrix(detail, result.findings));
     section(root, 'Distribution', histograms(detail));
   }
   if (result.field) section(root, 'Error field', fieldProse(result.field), volume(result.field));
@@ -75,6 +116,7 @@ function part(one) {
 }
 
 const data = readData();
-if (data.type === 'compare') comparison(data.result);
+const pages = { compare: comparison, diagnose: diagnosis, improve: improvement };
+if (pages[data.type]) pages[data.type](data.result);
 else for (const one of data.result.sections) part(one);
 document.documentElement.dataset.ready = 'yes';

@@ -112,6 +112,11 @@ function band(group, columns, detail, limit) {
   });
 }
 
+function sentences(findings, kind) {
+  const own = (findings ?? []).filter((one) => one.observation === kind);
+  return own.length ? el('ul', { class: 'note' }, own.map((one) => el('li', {}, one.sentence))) : null;
+}
+
 function limitOf(groups, unit, detail, scale) {
   const { row, residual } = detail.observations;
   const sizes = groups.filter((group) => group.unit === unit).flatMap((group) => group.index)
@@ -122,15 +127,16 @@ function limitOf(groups, unit, detail, scale) {
   return [1, 1.5, 2, 3, 4, 5, 6, 8, 10].map((step) => step * digit).find((one) => one >= size * (1 - 1e-9)) ?? 10 * digit;
 }
 
-/** Residuals of every kind of observation against every quantity, on one scale. */
-export function residualMatrix(detail) {
+/** Residuals of every kind of observation against every quantity, on one scale; what was found stands beside the plots. */
+export function residualMatrix(detail, findings = []) {
   const groups = byKind(detail.observations);
   const { varying, constant } = columnsOf(detail);
   if (groups.length === 0 || varying.length === 0) return [el('p', {}, 'No observation to draw.')];
   const host = el('div');
   const fill = (scale) => host.replaceChildren(...groups.flatMap((group) => [
     el('h3', {}, `Residual of ${group.kind}`, el('small', {}, ` ${group.unit}, measured − model, ${group.index.length} observations`)),
-    band(group, varying, detail, limitOf(groups, group.unit, detail, scale))]));
+    sentences(findings, group.kind),
+    band(group, varying, detail, limitOf(groups, group.unit, detail, scale))].filter(Boolean)));
   fill('1');
   const most = Math.max(...groups.map((group) => group.index.length));
   const stride = Math.ceil(most / kMostPoints);

@@ -37,18 +37,22 @@ export function histogram(detail, unit) {
   return el('figure', {}, plot);
 }
 
-/** Fit and check rms of each step: [{label, rms_um, check_rms_um}]. */
-export function ladder(steps) {
+/** Fit and check rms of each step: [{label, rms_um, check_rms_um}]; the noise floor as a line where it is known. */
+export function ladder(steps, noise = null) {
   return el('figure', {}, chart('Rms of fit and check rows at each step', () => {
     const c = colours();
     const bar = (name, key, color) => ({ name, type: 'bar', data: steps.map((step) => step[key] ?? null), barMaxWidth: 26, itemStyle: { color },
       label: { show: true, position: 'right', color: c.ink, fontSize: 12, formatter: ({ value }) => number(value, 3) } });
     const series = [bar('fit rows', 'rms_um', c.fit)];
     if (steps.some((step) => Number.isFinite(step.check_rms_um))) series.push(bar('check rows (not seen by the fit)', 'check_rms_um', c.check));
+    if (noise !== null) {
+      series[0].markLine = { silent: true, symbol: 'none', data: [{ xAxis: noise }], lineStyle: { color: c.trend, type: 'dashed', width: 1.5 },
+        label: { formatter: `noise ${number(noise, 3)} µm`, color: c.ink, position: 'start', distance: 2 } };
+    }
     return { height: 90 + 58 * steps.length, option: {
       legend: { ...legendStyle(c), top: 0, left: 0 }, tooltip: { ...tooltipStyle(c), trigger: 'axis', axisPointer: { type: 'shadow' }, valueFormatter: (value) => `${number(value, 4)} µm` },
-      grid: { left: 10, right: 60, top: 34, bottom: 44, containLabel: true },
-      xAxis: { ...axisStyle(c), type: 'value', min: 0, name: 'rms [µm]', nameLocation: 'middle', nameGap: 28 },
+      grid: { left: 10, right: 60, top: 34, bottom: noise === null ? 44 : 62, containLabel: true },
+      xAxis: { ...axisStyle(c), type: 'value', min: 0, name: 'rms [µm]', nameLocation: 'middle', nameGap: noise === null ? 28 : 46 },
       yAxis: { ...axisStyle(c), type: 'category', inverse: true, data: steps.map((step) => step.label), splitLine: { show: false },
         axisLabel: { color: c.ink, fontSize: 13, width: 300, overflow: 'break' } }, series } };
   }));
