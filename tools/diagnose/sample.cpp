@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kMadPerSpread = 1.4826;  // of a normal distribution
 constexpr double kHeld = 4, kOutlier = 5;
+constexpr double kMostOutliers = 0.1;  // share of the readings
 constexpr std::size_t kLeastRows = 8;
 /// Directions of a Jacobian below this share of the largest were not determined by the fit.
 constexpr double kRankCutoff = 1e-5;
@@ -130,10 +131,10 @@ std::size_t hold_outliers(Eigen::VectorXd& values) {
   // More than half of the readings exactly met: no spread to judge by.
   if (!(spread > 0)) return 0;
   std::size_t outliers = 0;
-  for (double& value : values) {
-    if (std::abs(value) > kOutlier * spread) ++outliers;
-    value = std::clamp(value, -kHeld * spread, kHeld * spread);
-  }
+  for (const double value : values) outliers += std::abs(value) > kOutlier * spread ? 1U : 0U;
+  // So many are no accidents but what the residual looks like: large on some rows, small on most.
+  if (static_cast<double>(outliers) > kMostOutliers * static_cast<double>(values.size())) return 0;
+  for (double& value : values) value = std::clamp(value, -kHeld * spread, kHeld * spread);
   return outliers;
 }
 

@@ -34,7 +34,8 @@ struct KindSample {
   Eigen::VectorXd without(const FunctionSet& functions) const;
 };
 
-/// Holds values at 4 robust spreads; counts those beyond 5. tool.
+/// Holds values at 4 robust spreads and counts those beyond 5; where more than a tenth are, they are no
+/// outliers: nothing is held, 0. tool.
 std::size_t hold_outliers(Eigen::VectorXd& values);
 
 /// One sample for each kind with at least 8 fit rows and a residual that is not zero throughout. tool.

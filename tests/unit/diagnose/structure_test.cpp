@@ -163,6 +163,20 @@ TEST(FailurePicture, OutliersAreNoStructure) {
   EXPECT_GE(p.picture().outliers, 4U);
 }
 
+TEST(FailurePicture, LargeErrorOnFewRowsKeepsItsSize) {
+  // Proportional to a feed that is small on most rows: no outliers, and a line of full size.
+  Planted p;
+  for (Eigen::Index i = 0; i < p.m.states.feed.size(); ++i)
+    p.m.states.feed[i] = i % 5 == 0 ? 2500.0 : 20.0 + static_cast<double>(i % 3);
+  plant(p.residual, p.m, ObservationKind::kZ, [&](Eigen::Index i) { return -1e-4 * p.m.states.feed[i]; });
+  const FailurePicture picture = p.picture();
+  const Finding f = first(picture);
+  EXPECT_EQ(f.column, "feed");
+  EXPECT_EQ(f.shape, Shape::kLinear);
+  EXPECT_NEAR(f.high_um - f.low_um, 248, 1);
+  EXPECT_EQ(picture.outliers, 0U);
+}
+
 TEST(FailurePicture, SquareIsNamed) {
   Planted p;
   plant(p.residual, p.m, ObservationKind::kY,
