@@ -7,6 +7,7 @@
 #include "tools/cli/results.h"
 #include "tools/diagnose/diagnosis.h"
 #include "tools/model/files.h"
+#include "tools/report/report.h"
 
 namespace vernier {
 namespace {
@@ -56,6 +57,12 @@ void run_diagnose(const DiagnoseArguments& arguments) {
   options.progress = [&](double fraction, const std::string& step) { progress.update(fraction, step); };
   const Diagnosis diagnosis = diagnose(text, machine, m, options);
   const nlohmann::ordered_json json = diagnosis_json(diagnosis, machine, m);
+  if (!arguments.output.empty()) {
+    nlohmann::ordered_json page = json;
+    page["machine"] = machine.name;
+    page["files"] = arguments.measurements;
+    write_file(arguments.output, diagnose_report_html(page));
+  }
   if (!arguments.write.empty()) write_file(arguments.write, diagnosis.machine_text);
   write_json(arguments.json, json);
   std::FILE* out = human_stream(arguments.json);

@@ -2,6 +2,7 @@
 
 #include "tools/cli/results.h"
 #include "tools/diagnose/candidate.h"
+#include "tools/diagnose/structure_json.h"
 
 namespace vernier {
 namespace {
@@ -85,6 +86,8 @@ Json diagnosis_json(const Diagnosis& diagnosis, const Machine& machine, const Me
                          {"label", runner.candidate.label},
                          {"distance", diagnosis.runner_up_distance}};
   }
+  add_failure(json, diagnosis.failure);
+  json["left_p_value"] = diagnosis.left.omnibus_p;
   json["next_measurement"] = diagnosis.next_measurement;
   return json;
 }

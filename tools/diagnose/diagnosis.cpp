@@ -8,6 +8,7 @@
 
 #include "tools/diagnose/acceptance.h"
 #include "tools/diagnose/pool.h"
+#include "tools/diagnose/structure.h"
 #include "tools/diagnose/time_base.h"
 #include "tools/model/chain.h"
 
@@ -39,11 +40,19 @@ class Diagnoser {
 
   Diagnosis run() {
     result_.base = base_;
+    StructureOptions structure;
+    structure.fitted_parameters = static_cast<std::size_t>(base_.observability.rank);
+    result_.failure = failure_picture(base_.machine, measurement_, base_.residual, structure);
     result_.searched = list_.size();
     search();
     weigh_correlation();
     accept();
+    if (!linear_down_to_noise()) {
+      search_products();
+      accept();
+    }
     walk_ladder();
+    if (!chosen_.empty()) rivals_ = rivals_of(chosen_.front());
     list_candidates();
     decide();
     return std::move(result_);
@@ -57,13 +66,48 @@ class Diagnoser {
 
   // ---- search ----
 
-  void scan_beside(const std::vector<std::size_t>& items, double from, double to) {
+  void scan_beside(const std::vector<std::size_t>& items, double from, double to, std::size_t first = 0) {
     const Eigen::MatrixXd beside = orthonormal(pool_.columns(items), 1e-6, nullptr);
-    const auto scored = scanner_.scan(beside, [&](double share) {
-      options_.progress(from + share * (to - from), fmt::format("{} candidates", list_.size()));
-    });
+    const auto scored = scanner_.scan(
+        beside,
+        [&](double share) {
+          options_.progress(from + share * (to - from), fmt::format("{} candidates", list_.size()));
+        },
+        first);
     constexpr std::size_t kMostAtOnce = 50;
     pool_.add(scored, kMostAtOnce, beside);
+  }
+
+  /// Beyond the catalogue: products of recorded quantities, pairs first, then a third factor on the best.
+  void search_products() {
+    std::vector<Product> best;
+    for (int round = 0; round < 2; ++round) {
+      const std::size_t first = list_.size();
+      for (ScannedCandidate& item : enumerate_products(evidence_, best)) list_.push_back(std::move(item));
+      for (const std::vector<std::size_t>& beside : {std::vector<std::size_t>{}, chosen_}) {
+        scan_beside(beside, 0.7, 0.75, first);
+        if (chosen_.empty()) break;
+      }
+      best = best_products();
+    }
+    select_again();
+  }
+
+  /// The products that lower the criterion most, alone.
+  std::vector<Product> best_products() {
+    problem_ = pool_.problem(entry_item_);
+    problem_.correlation_time = correlation_time_;
+    std::vector<std::pair<double, std::size_t>> order;
+    for (std::size_t i = 0; i < pool_.size(); ++i)
+      if (pool_.candidate(i).choice.effect == &custom_effect()) order.emplace_back(-score_alone(i), i);
+    std::sort(order.begin(), order.end());
+    std::vector<Product> best;
+    constexpr std::size_t kExtended = 25;
+    for (std::size_t i = 0; i < std::min(kExtended, order.size()); ++i) {
+      const Choice& choice = pool_.candidate(order[i].second).choice;
+      best.push_back({*choice.place, choice.term, choice.inputs, choice.units});
+    }
+    return best;
   }
 
   void select_again() {
@@ -74,6 +118,31 @@ class Diagnoser {
     for (const std::size_t entry : selection.chosen) chosen_.push_back(entry_item_[entry]);
     criterion_ = selection.criterion;
     chi_square_ = selection.chi_square;
+    simplify();
+  }
+
+  /// A form that holds a simpler one is taken only where what it has more is evidence by itself.
+  void simplify() {
+    for (std::size_t i = 0; i < chosen_.size(); ++i) {
+      std::optional<std::size_t> simplest;
+      Selection best;
+      for (const std::size_t other : entry_item_) {
+        if (pool_[other].columns.cols() >= pool_[chosen_[i]].columns.cols()) continue;
+        if (std::find(chosen_.begin(), chosen_.end(), other) != chosen_.end()) continue;
+        std::vector<std::size_t> set = chosen_;
+        set[i] = other;
+        const Selection trial = evaluate(set);
+        if (trial.criterion - criterion_ >= kEvidence) continue;
+        if (simplest && trial.criterion >= best.criterion) continue;
+        if (!pool_.contains(chosen_[i], other)) continue;
+        simplest = other;
+        best = trial;
+      }
+      if (!simplest) continue;
+      chosen_[i] = *simplest;
+      criterion_ = best.criterion;
+      chi_square_ = best.chi_square;
+    }
   }
 
   void search() {
@@ -300,6 +369,7 @@ class Diagnoser {
     start.rms_um = base_.after.rms_um;
     start.check_rms_um = base_.check.rms_um;
     start.chi_square_per_freedom = base_.chi_square / std::max<double>(1, static_cast<double>(base_.freedom));
+    start.text = text_;
     result_.ladder.push_back(start);
     result_.machine_text = text_;
     result_.end = base_;
@@ -317,6 +387,7 @@ class Diagnoser {
       step.check_rms_um = fitted.fit.check.rms_um;
       step.chi_square_per_freedom =
           fitted.fit.chi_square / std::max<double>(1, static_cast<double>(fitted.fit.freedom));
+      step.text = fitted.text;
       result_.ladder.push_back(step);
       result_.machine_text = fitted.text;
       result_.end = fitted.fit;
@@ -331,9 +402,16 @@ class Diagnoser {
       rest.emplace_back(score_alone(i), i);
     }
     std::sort(rest.begin(), rest.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
-    std::vector<std::size_t> items = chosen_;
+    // The cause, those that cannot be told from it, then the others of the ladder.
+    std::vector<std::size_t> items;
     std::set<std::string> seen;
-    for (const std::size_t item : chosen_) seen.insert(pool_.candidate(item).label);
+    const auto take = [&](std::size_t item) {
+      if (seen.insert(pool_.candidate(item).label).second) items.push_back(item);
+    };
+    if (!chosen_.empty()) take(chosen_.front());
+    for (const std::size_t item : rivals_.close)
+      if (items.size() < options_.shown) take(item);
+    for (const std::size_t item : chosen_) take(item);
     for (const auto& [score, item] : rest) {
       if (items.size() >= options_.shown) break;
       if (seen.insert(pool_.candidate(item).label).second) items.push_back(item);
@@ -393,16 +471,6 @@ class Diagnoser {
 
   // ---- verdict ----
 
-  /// The lag of one axis and the unequal lag of two are one effect (FORMATS section 4): on a circle nothing
-  /// tells which of the two axes is behind.
-  bool both_lags(std::size_t item, std::size_t rival) const {
-    const auto is_lag = [&](std::size_t i) {
-      const std::string& id = pool_.candidate(i).choice.effect->id;
-      return id == "servo-lag" || id == "servo-mismatch";
-    };
-    return is_lag(item) && is_lag(rival);
-  }
-
   struct Rivals {
     std::vector<std::size_t> close;  // other causes that fit nearly as well
     std::vector<std::size_t> same;   // the same columns from the same drivers
@@ -412,33 +480,60 @@ class Diagnoser {
 
   Rivals rivals_of(std::size_t item) const {
     Rivals rivals;
+    std::vector<std::pair<double, std::size_t>> close;
     const std::vector<std::size_t> others = without(item);
     for (const std::size_t rival : entry_item_) {
       if (rival == item || std::find(others.begin(), others.end(), rival) != others.end()) continue;
       std::vector<std::size_t> set = others;
       set.push_back(rival);
       const double distance = evaluate(set).criterion - criterion_;
-      const bool alike = pool_.candidate(item).choice.effect == pool_.candidate(rival).choice.effect ||
-                         pool_.no_simpler(rival, item) || both_lags(item, rival);
-      if (distance < kDistance && alike && (pool_.same_columns(item, rival) || pool_.contains(rival, item))) {
-        rivals.same.push_back(rival);
-        continue;
+      if (distance < kDistance) {
+        // A form that holds this one and more would need evidence of its own: no rival.
+        if (pool_.contains(rival, item)) continue;
+        const bool alike = pool_.candidate(item).choice.effect == pool_.candidate(rival).choice.effect ||
+                           pool_.same_kind(rival, item);
+        if (alike && pool_.same_columns(item, rival)) {
+          rivals.same.push_back(rival);
+          continue;
+        }
       }
       if (pool_.same_cause(item, rival)) continue;
       if (distance < rivals.distance) {
         rivals.distance = distance;
         rivals.best = rival;
       }
-      if (distance < kDistance) rivals.close.push_back(rival);
+      if (distance < kDistance) close.emplace_back(distance, rival);
     }
+    std::sort(close.begin(), close.end());
+    for (const auto& [distance, rival] : close) rivals.close.push_back(rival);
     return rivals;
   }
 
-  bool down_to_noise() const {
+  /// Does what the accepted effects leave look like noise, by the linear estimate?
+  bool linear_down_to_noise() const {
     if (!evidence_.noise_known()) return true;
+    const double freedom = std::max(1.0, evidence_.freedom());
+    return chi_square_ / freedom < 1 + kNoiseSigmas * std::sqrt(2 / freedom);
+  }
+
+  /// Does the fit at the end of the ladder leave noise? By chi^2 where the uncertainty is given; where chi^2
+  /// is above it by so little that the uncertainty itself may be in doubt, and where none is given, by
+  /// whether what is left has any structure.
+  bool down_to_noise() {
+    const Machine& machine = result_.end.machine;
+    const Measurement rows = rebind(measurement_, base_.machine, machine);
+    StructureOptions structure;
+    structure.fitted_parameters = static_cast<std::size_t>(result_.end.observability.rank);
+    result_.left = failure_picture(machine, rows, result_.end.residual, structure);
+    constexpr double kStructure = 1e-4, kDoubtfulUncertainty = 1.5, kMostlyExplained = 0.5;
+    const bool structured = result_.left.omnibus_p < kStructure;
     const double freedom = std::max<double>(1, static_cast<double>(result_.end.freedom));
     const double reduced = result_.end.chi_square / freedom;
-    return reduced < 1 + kNoiseSigmas * std::sqrt(2 / freedom);
+    if (!evidence_.noise_known())
+      return !structured ||
+             (!chosen_.empty() && result_.end.chi_square < (1 - kMostlyExplained) * base_.chi_square);
+    if (reduced < 1 + kNoiseSigmas * std::sqrt(2 / freedom)) return !chosen_.empty() || !structured;
+    return reduced < kDoubtfulUncertainty && !structured;
   }
 
   void decide() {
@@ -449,11 +544,13 @@ class Diagnoser {
       result_.time_base = clock;
       return;
     }
+    const bool noise_is_left = down_to_noise();
     if (chosen_.empty()) {
-      result_.verdict = down_to_noise() ? Verdict::kConsistent : Verdict::kUnexplained;
-      result_.explanation = result_.verdict == Verdict::kConsistent
-                                ? "The residual is noise: there is nothing to add."
-                                : "There is more than noise, and nothing in the catalogue explains it.";
+      result_.verdict = noise_is_left ? Verdict::kConsistent : Verdict::kUnexplained;
+      result_.explanation =
+          result_.verdict == Verdict::kConsistent
+              ? "The residual is noise: there is nothing to add."
+              : "There is more than noise, and nothing in the catalogue explains it." + where_left();
       return;
     }
     if (pool_.candidate(chosen_.front()).choice.effect->id == "time-base") {
@@ -462,10 +559,10 @@ class Diagnoser {
           "The time base of the measurement: the error grows with speed and with the time since the start.";
       return;
     }
-    const Rivals rivals = rivals_of(chosen_.front());
+    const Rivals& rivals = rivals_;
     name_confusions(rivals);
     result_.runner_up_distance = rivals.distance;
-    if (!down_to_noise()) {
+    if (!noise_is_left) {
       result_.verdict = Verdict::kUnexplained;
       result_.explanation =
           "Effects of the catalogue lower the residual, and it does not come down to the noise.";
@@ -478,20 +575,33 @@ class Diagnoser {
     }
   }
 
+  /// Where what is left fails, in up to three sentences.
+  std::string where_left() const {
+    std::string text;
+    constexpr std::size_t kSentences = 3;
+    for (std::size_t i = 0; i < std::min(kSentences, result_.left.findings.size()); ++i)
+      text += " " + result_.left.findings[i].sentence + ".";
+    return text;
+  }
+
   void name_confusions(const Rivals& rivals) {
     const auto id = [&](std::size_t item) { return pool_.candidate(item).choice.effect->id; };
     const auto note = [&](CandidateFinding& finding, const std::string& name) {
       auto& list = finding.confounded_with;
       if (std::find(list.begin(), list.end(), name) == list.end()) list.push_back(name);
     };
+    std::vector<std::size_t> alike = rivals.close;
+    alike.push_back(chosen_.front());
+    const auto is_alike = [&](std::size_t item) {
+      return std::find(alike.begin(), alike.end(), item) != alike.end();
+    };
     for (std::size_t i = 0; i < shown_.size(); ++i) {
       if (rivals.best && shown_[i] == *rivals.best) result_.runner_up = i;
-      if (shown_[i] == chosen_.front()) {
-        for (const std::size_t rival : rivals.close) note(result_.candidates[i], id(rival));
+      if (!is_alike(shown_[i])) continue;
+      for (const std::size_t other : alike)
+        if (other != shown_[i]) note(result_.candidates[i], id(other));
+      if (shown_[i] == chosen_.front())
         for (const std::size_t rival : rivals.same) note(result_.candidates[i], id(rival));
-      } else if (std::find(rivals.close.begin(), rivals.close.end(), shown_[i]) != rivals.close.end()) {
-        note(result_.candidates[i], id(chosen_.front()));
-      }
     }
   }
 
@@ -506,6 +616,7 @@ class Diagnoser {
   Pool pool_;
   SelectionProblem problem_;
   std::vector<std::size_t> entry_item_, chosen_, shown_;
+  Rivals rivals_;
   double criterion_ = 0, chi_square_ = 0, correlation_time_ = 1;
   Diagnosis result_;
 };

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "tools/diagnose/candidate.h"
+#include "tools/diagnose/structure.h"
 #include "tools/diagnose/time_base.h"
 #include "tools/fit/fit.h"
 #include "tools/model/machine.h"
@@ -39,6 +40,7 @@ struct CandidateFinding {
 
 struct LadderStep {
   std::string effect, add, label;  // empty: the model as given
+  std::string text;                // the machine file, fitted
   std::optional<double> rms_um, check_rms_um;
   double chi_square_per_freedom = 0;
 };
@@ -54,6 +56,8 @@ struct Diagnosis {
   double runner_up_distance = 0;         // by how much its criterion is worse
   std::string machine_text;              // with all effects of the ladder, fitted
   FitResult end;                         // of that machine
+  FailurePicture failure;                // where the fitted model fails, before anything is added
+  FailurePicture left;                   // and at the end of the ladder
   TimeBaseFinding time_base;             // `found` where the clock is the likelier cause
   std::size_t searched = 0;              // candidates looked at
 };

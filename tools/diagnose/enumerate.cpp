@@ -56,7 +56,7 @@ class Enumerator {
   /// A trigger needs touches (readings along a normal); readings that a trigger takes have no second clock.
   bool goes_with_readings(const Effect& effect, const EffectForm& form) const {
     if (effect.id == "trigger-delay") return has_normals_;
-    return !(form.place == PlaceRule::kEachAxis && only_normals_);
+    return !(form.place == PlaceRule::kEachAxis && has_normals_);
   }
 
   bool answers(const DofPlace& place) const {
@@ -213,10 +213,10 @@ class Enumerator {
       if (!own_[axis]) continue;
       const bool turns = contains(form.term, "sin({q})") || contains(form.term, "cos({q})");
       if (turns && !machine_.axes[axis].rotary) continue;  // degrees of a turn, not millimetres
+      if (!turns && machine_.axes[axis].rotary && !has_meaning_of_turns(form)) continue;
       Choice one = choice;
       one.axis = axis;
-      one.from = range_[axis].low;
-      one.to = range_[axis].high;
+      set_range(one, axis);
       if (form.place != PlaceRule::kPair) {
         with_place(one);
         continue;
@@ -228,6 +228,25 @@ class Enumerator {
         with_place(two);
       }
     }
+  }
+
+  /// A power of an angle says nothing: errors of a rotary axis are periodic, or a table.
+  static bool has_meaning_of_turns(const EffectForm& form) {
+    const std::string& t = form.term;
+    return !contains(t, "{q}^") && !contains(t, "{mid}") && !contains(t, "*{q}*(") &&
+           !(t.size() >= 4 && t.substr(t.size() - 4) == "*{q}" && form.place != PlaceRule::kOwn);
+  }
+
+  /// Hats stand on the range that was measured, waves on the declared one where that was measured too.
+  void set_range(Choice& choice, std::size_t axis) const {
+    choice.from = range_[axis].low;
+    choice.to = range_[axis].high;
+    const Axis& item = machine_.axes[axis];
+    constexpr double kMostOfIt = 0.8;
+    if (contains(choice.form->term, "{hats") || !item.min || !item.max) return;
+    if (choice.to - choice.from < kMostOfIt * (*item.max - *item.min)) return;
+    choice.from = *item.min;
+    choice.to = *item.max;
   }
 
   void with_place(Choice& choice) {
@@ -276,8 +295,10 @@ class Enumerator {
       case PlaceRule::kSag:
         if (!contains(form.term, "sin(") && !contains(form.term, "cos(") && rotary) return;
         at_each(distinct_, [&](const DofPlace& p) {
-          const bool sags = std::find(sag_.begin(), sag_.end(), p) != sag_.end();
-          return sags && (rotary ? !(p == *own) : !at_own_transform(p));
+          const auto sags = [&](const DofPlace& x) {
+            return std::find(sag_.begin(), sag_.end(), x) != sag_.end();
+          };
+          return rotary ? sags(*own) && !(p == *own) : sags(p) && !at_own_transform(p);
         });
         break;
       case PlaceRule::kJoint:
@@ -409,7 +430,7 @@ class Enumerator {
   std::vector<Evidence::Range> range_;
   std::vector<DofPlace> distinct_, sag_;
   std::vector<std::vector<std::string>> sums_;
-  bool has_normals_ = false, only_normals_ = false;
+  bool has_normals_ = false;
   std::vector<ScannedCandidate> list_;
 };
 

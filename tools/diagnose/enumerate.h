@@ -18,8 +18,17 @@ struct ScannedCandidate {
 std::vector<ScannedCandidate> enumerate_candidates(const Evidence& evidence,
                                                    const std::vector<Effect>& effects);
 
-/// Products of up to three recorded quantities at every place: the search beyond the catalogue.
-std::vector<ScannedCandidate> enumerate_products(const Evidence& evidence);
+/// A product of recorded quantities at one degree of freedom: "k*X*(T-20)".
+struct Product {
+  DofPlace place;
+  std::string term;
+  std::vector<std::string> inputs, units;
+};
+
+/// The search beyond the catalogue: all products of one or two recorded quantities at every place where
+/// `extend` is empty, else each of `extend` with one factor more.
+std::vector<ScannedCandidate> enumerate_products(const Evidence& evidence,
+                                                 const std::vector<Product>& extend);
 
 /// What a logged column is, by its unit (by its name where it has none).
 enum class InputClass : std::uint8_t { kTemperature, kLoad, kFeature, kOther };

@@ -94,12 +94,13 @@ std::optional<std::size_t> axis_of(const Machine& machine, const DofPlace& place
 }
 
 std::vector<DofPlace> carrier_places(const Machine& machine) {
-  const bool workpiece = !machine.workpiece.empty();
-  const auto& branch = branch_of(machine, workpiece);
   std::vector<DofPlace> places;
-  if (branch.empty()) return places;
-  const std::size_t at = workpiece ? branch.size() - 1 : 0;
-  for (std::size_t d = 0; d < branch[at].dof_count(); ++d) places.push_back({workpiece, at, d});
+  const auto take = [&](bool workpiece, std::size_t at) {
+    const std::size_t count = branch_of(machine, workpiece)[at].dof_count();
+    for (std::size_t d = 0; d < count; ++d) places.push_back({workpiece, at, d});
+  };
+  if (!machine.tool.empty()) take(false, 0);
+  if (!machine.workpiece.empty()) take(true, machine.workpiece.size() - 1);
   return places;
 }
 

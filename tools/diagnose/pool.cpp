@@ -9,14 +9,15 @@ namespace vernier {
 
 namespace {
 
-/// Between forms that fit alike the simpler one wins: at the axis' own degree of freedom first, two axes that
-/// share an error before one of them, then across the axis, then anywhere. Far below any evidence.
+/// Between forms that fit alike the simpler one wins: at the axis' own degree of freedom first, then across
+/// the axis, then anywhere. Far below any evidence.
 double rank_of(const Candidate& candidate) {
   constexpr double kStep = 0.05;
   switch (candidate.choice.form->place) {
-    case PlaceRule::kPair:
-      return 0;
     case PlaceRule::kOwn:
+      return 0;
+    case PlaceRule::kPair:
+    case PlaceRule::kEachAxis:
       return kStep;
     case PlaceRule::kCross:
     case PlaceRule::kNormal:
@@ -185,15 +186,18 @@ bool Pool::contains(std::size_t general, std::size_t special) const {
   return static_cast<double>(y.cols()) - (x.transpose() * y).squaredNorm() < 2e-3;
 }
 
-bool Pool::no_simpler(std::size_t a, std::size_t b) const {
-  const auto x = drivers_of(evidence_.machine(), candidate(a)),
-             y = drivers_of(evidence_.machine(), candidate(b));
-  if (!std::includes(x.begin(), x.end(), y.begin(), y.end())) return false;
-  return std::all_of(x.begin(), x.end(), [&](const auto& driver) {
-    const bool mere_count = driver.first == static_cast<int>(SymbolKind::kVisit) ||
-                            driver.first == static_cast<int>(SymbolKind::kSince);
-    return mere_count || y.contains(driver);
-  });
+bool Pool::same_kind(std::size_t a, std::size_t b) const {
+  // An input is a quantity of its own; speed is speed on whatever axis.
+  const auto kinds = [&](std::size_t i) {
+    std::set<std::pair<int, std::size_t>> found;
+    for (const auto& [kind, index] : drivers_of(evidence_.machine(), candidate(i))) {
+      const bool mere_count =
+          kind == static_cast<int>(SymbolKind::kVisit) || kind == static_cast<int>(SymbolKind::kSince);
+      if (!mere_count) found.insert({kind, kind == static_cast<int>(SymbolKind::kInput) ? index : 0});
+    }
+    return found;
+  };
+  return kinds(a) == kinds(b);
 }
 
 }  // namespace vernier

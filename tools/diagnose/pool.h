@@ -32,6 +32,9 @@ class Pool {
   /// The entries that are not banned, as a problem of selection; `items`: which item each entry is.
   SelectionProblem problem(std::vector<std::size_t>& items) const;
 
+  /// Counts the scanner's candidates again, after some were added to its list.
+  void count_instances();
+
   std::size_t size() const { return items_.size(); }
   const Item& operator[](std::size_t i) const { return items_[i]; }
   const Candidate& candidate(std::size_t i) const;
@@ -48,9 +51,9 @@ class Pool {
   bool same_columns(std::size_t a, std::size_t b) const;
   /// Do the columns of `general` hold those of `special`, and more?
   bool contains(std::size_t general, std::size_t special) const;
-  /// Does `a` depend on all that `b` depends on, and on nothing more but the count of rows or the travel
-  /// since a reversal? Then `b` is the simpler way to say the same.
-  bool no_simpler(std::size_t a, std::size_t b) const;
+  /// Do both depend on the same kinds of quantities (positions, count of rows and travel since a reversal do
+  /// not count)? If their columns are the same too, they are two ways to say one thing.
+  bool same_kind(std::size_t a, std::size_t b) const;
   /// How much a candidate costs for having been one of many (twice the logarithm of their number).
   double penalty(std::size_t candidate) const;
 

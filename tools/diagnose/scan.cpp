@@ -112,13 +112,13 @@ void Scanner::scan_part(std::size_t first, std::size_t step, const Eigen::Matrix
       points.push_back({c, scanned});
       if (width >= kBatch) flush();
     }
-    if (first == 0 && progress) progress(static_cast<double>(c) / static_cast<double>(candidates_.size()));
+    if (progress) progress(static_cast<double>(c) / static_cast<double>(candidates_.size()));
   }
   if (width > 0) flush();
 }
 
-std::vector<Scored> Scanner::scan(const Eigen::MatrixXd& beside,
-                                  const std::function<void(double)>& progress) {
+std::vector<Scored> Scanner::scan(const Eigen::MatrixXd& beside, const std::function<void(double)>& progress,
+                                  std::size_t first_candidate) {
   Eigen::VectorXd residual = evidence_.residual();
   if (beside.cols() > 0) residual -= beside * (beside.transpose() * residual);
   std::vector<Scored> best(candidates_.size());
@@ -126,8 +126,8 @@ std::vector<Scored> Scanner::scan(const Eigen::MatrixXd& beside,
   const std::size_t threads = std::max(1U, std::min(4U, std::thread::hardware_concurrency()));
   std::vector<std::thread> others;
   for (std::size_t k = 1; k < threads; ++k)
-    others.emplace_back([&, k] { scan_part(k, threads, beside, residual, best, {}); });
-  scan_part(0, threads, beside, residual, best, progress);
+    others.emplace_back([&, k] { scan_part(first_candidate + k, threads, beside, residual, best, {}); });
+  scan_part(first_candidate, threads, beside, residual, best, progress);
   for (std::thread& thread : others) thread.join();
   std::vector<Scored> seen;
   for (Scored& scored : best)

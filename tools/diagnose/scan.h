@@ -24,9 +24,11 @@ class Scanner {
  public:
   Scanner(const Evidence& evidence, const std::vector<ScannedCandidate>& candidates);
 
-  /// Best values on the grid for every candidate that the data can see at all; in the order of the list.
+  /// Best values on the grid for every candidate that the data can see at all; in the order of the list,
+  /// from `first_candidate` on.
   /// `progress`: share done.
-  std::vector<Scored> scan(const Eigen::MatrixXd& beside, const std::function<void(double)>& progress);
+  std::vector<Scored> scan(const Eigen::MatrixXd& beside, const std::function<void(double)>& progress,
+                           std::size_t first_candidate = 0);
 
   /// The scanned values moved between the grid's neighbours to where the gain is largest.
   void refine(Scored& scored, const Eigen::MatrixXd& beside) const;

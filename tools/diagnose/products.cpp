@@ -1,0 +1,140 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <set>
+
+#include "tools/diagnose/enumerate.h"
+#include "tools/model/numbers.h"
+
+namespace vernier {
+namespace {
+
+/// A recorded quantity as a factor of a term.
+struct Factor {
+  std::string text, input, unit;  // input: name where it is one
+};
+
+bool varies(const Column& column, const std::vector<std::size_t>& rows) {
+  for (const std::size_t row : rows)
+    if (column[static_cast<Eigen::Index>(row)] != column[static_cast<Eigen::Index>(rows[0])]) return true;
+  return false;
+}
+
+double mean(const Column& column, const std::vector<std::size_t>& rows) {
+  double sum = 0;
+  for (const std::size_t row : rows) sum += column[static_cast<Eigen::Index>(row)];
+  return sum / static_cast<double>(rows.size());
+}
+
+/// An input about its reference: the declared one, 20 degC, else a round number near its mean.
+Factor input_factor(const Evidence& evidence, std::size_t index) {
+  const Input& input = evidence.machine().inputs[index];
+  double reference = input.reference;
+  if (index >= evidence.declared_inputs()) {
+    reference = 20;
+    if (class_of_input(input) != InputClass::kTemperature) {
+      const double average = mean(evidence.measurement().states.input[index], evidence.rows());
+      const double digit = std::pow(10, std::floor(std::log10(std::abs(average) + 1e-300)) - 1);
+      reference = std::round(average / digit) * digit;
+      if (std::abs(average) < 1e-9) reference = 0;
+    }
+  }
+  const std::string text = reference == 0  ? input.name
+                           : reference < 0 ? fmt::format("({}+{})", input.name, number_text(-reference))
+                                           : fmt::format("({}-{})", input.name, number_text(reference));
+  return {text, input.name, input.unit};
+}
+
+std::vector<Factor> factors_of(const Evidence& evidence) {
+  const Machine& machine = evidence.machine();
+  const States& s = evidence.measurement().states;
+  std::vector<Factor> list;
+  const auto take = [&](const std::string& text, const Column& column) {
+    if (varies(column, evidence.rows())) list.push_back({text, {}, {}});
+  };
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    const std::string& name = machine.axes[i].name;
+    if (machine.axes[i].rotary) {
+      take("sin(" + name + ")", s.axis[i]);
+      take("cos(" + name + ")", s.axis[i]);
+    } else {
+      take(name, s.axis[i]);
+    }
+    take("dir" + name, s.direction[i]);
+    take("v" + name, s.velocity[i]);
+    take("a" + name, s.acceleration[i]);
+  }
+  take("feed", s.feed);
+  take("curv", s.curvature);
+  take("t", s.time);
+  take("visit", s.visit);
+  for (std::size_t i = 0; i < machine.inputs.size(); ++i)
+    if (varies(s.input[i], evidence.rows())) list.push_back(input_factor(evidence, i));
+  return list;
+}
+
+/// Degrees of freedom that the observations can tell apart.
+std::vector<DofPlace> distinct_places(const Evidence& evidence) {
+  std::vector<DofPlace> places;
+  std::vector<Eigen::VectorXd> seen;
+  for (std::size_t i = 0; i < evidence.places().size(); ++i) {
+    Eigen::VectorXd column = evidence.response(i);
+    const double norm = column.norm();
+    if (norm == 0) continue;
+    column /= norm;
+    bool known = false;
+    for (const Eigen::VectorXd& other : seen) known = known || 1 - std::abs(column.dot(other)) < 1e-7;
+    if (known) continue;
+    seen.push_back(column);
+    places.push_back(evidence.places()[i]);
+  }
+  return places;
+}
+
+ScannedCandidate as_candidate(const Machine& machine, const Product& product) {
+  Choice choice;
+  choice.effect = &custom_effect();
+  choice.form = &custom_effect().forms[0];
+  choice.place = product.place;
+  choice.term = product.term;
+  choice.inputs = product.inputs;
+  choice.units = product.units;
+  ScannedCandidate item;
+  item.candidate = make_candidate(machine, choice);
+  return item;
+}
+
+Product with_factor(Product product, const Factor& factor) {
+  product.term += "*" + factor.text;
+  if (!factor.input.empty() &&
+      std::find(product.inputs.begin(), product.inputs.end(), factor.input) == product.inputs.end()) {
+    product.inputs.push_back(factor.input);
+    product.units.push_back(factor.unit);
+  }
+  return product;
+}
+
+}  // namespace
+
+std::vector<ScannedCandidate> enumerate_products(const Evidence& evidence,
+                                                 const std::vector<Product>& extend) {
+  const std::vector<Factor> factors = factors_of(evidence);
+  std::vector<ScannedCandidate> list;
+  if (!extend.empty()) {
+    for (const Product& product : extend)
+      for (const Factor& factor : factors)
+        if (std::count(product.term.begin(), product.term.end(), '*') < 3)
+          list.push_back(as_candidate(evidence.machine(), with_factor(product, factor)));
+    return list;
+  }
+  for (const DofPlace& place : distinct_places(evidence))
+    for (std::size_t i = 0; i < factors.size(); ++i) {
+      const Product one = with_factor({place, "k", {}, {}}, factors[i]);
+      list.push_back(as_candidate(evidence.machine(), one));
+      for (std::size_t k = i; k < factors.size(); ++k)
+        list.push_back(as_candidate(evidence.machine(), with_factor(one, factors[k])));
+    }
+  return list;
+}
+
+}  // namespace vernier
