@@ -10,6 +10,7 @@
 #include "tools/diagnose/pool.h"
 #include "tools/diagnose/structure.h"
 #include "tools/diagnose/time_base.h"
+#include "tools/fit/statistics.h"
 #include "tools/model/chain.h"
 
 namespace vernier {
@@ -536,6 +537,69 @@ class Diagnoser {
     return reduced < kDoubtfulUncertainty && !structured;
   }
 
+  /// Rows with a reading far from all others of a fit, by line number; `spread` of the others.
+  static std::vector<std::size_t> far_rows(const Measurement& rows, const Eigen::VectorXd& residual,
+                                           bool noise_known) {
+    const Eigen::VectorXd weights = fit_weights(rows);
+    std::vector<double> sizes;
+    for (Eigen::Index i = 0; i < weights.size(); ++i)
+      if (weights[i] > 0) sizes.push_back(std::abs(weights[i] * residual[i]));
+    if (sizes.empty()) return {};
+    std::nth_element(sizes.begin(), sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2),
+                     sizes.end());
+    // The median of |x| of a normal variable is 0.6745 of its standard deviation.
+    double spread = sizes[sizes.size() / 2] / 0.6745;
+    if (noise_known) spread = std::max(spread, 1.0);
+    constexpr double kFar = 6;
+    std::vector<std::size_t> far;
+    for (Eigen::Index i = 0; i < weights.size(); ++i)
+      if (std::abs(weights[i] * residual[i]) > kFar * spread) {
+        const std::size_t row = rows.observations[static_cast<std::size_t>(i)].row;
+        if (far.empty() || far.back() != row) far.push_back(row);
+      }
+    return far;
+  }
+
+  /// A few readings far from all others, and the rest noise once they are left out: that is the instrument (a
+  /// lost beam, a bumped target).
+  bool blame_outliers() {
+    if (!evidence_.noise_known()) return false;  // without u nothing says what the rest should be
+    Measurement rows = rebind(measurement_, base_.machine, result_.end.machine);
+    Eigen::VectorXd residual = result_.end.residual;
+    constexpr double kMostOfThem = 0.03;
+    constexpr int kMostRounds = 5;
+    const double most = kMostOfThem * static_cast<double>(rows.rows());
+    std::vector<std::size_t> lines;
+    FitResult rest;
+    for (int round = 0; round < kMostRounds; ++round) {
+      const std::vector<std::size_t> far = far_rows(rows, residual, true);
+      if (far.empty()) break;
+      std::vector<std::size_t> keep;
+      for (std::size_t row = 0; row < rows.rows(); ++row)
+        if (std::find(far.begin(), far.end(), row) == far.end()) keep.push_back(row);
+      for (const std::size_t row : far) lines.push_back(rows.line[row]);
+      if (static_cast<double>(lines.size()) > most) return false;
+      rows = select_rows(rows, keep);
+      rest = fit(result_.end.machine, rows);
+      residual = rest.residual;
+    }
+    if (lines.empty() || rest.freedom <= 0) return false;
+    const double freedom = static_cast<double>(rest.freedom);
+    if (rest.chi_square / freedom > 1 + kNoiseSigmas * std::sqrt(2 / freedom)) return false;
+    std::sort(lines.begin(), lines.end());
+    result_.verdict = Verdict::kInstrument;
+    result_.explanation = fmt::format(
+        "Outliers: without {} of {} rows (line {}{}) the residual is noise. A lost beam or a bumped target "
+        "is "
+        "likelier than the machine.",
+        lines.size(), measurement_.rows(),
+        fmt::join(lines.begin(),
+                  lines.begin() + std::min<std::ptrdiff_t>(8, static_cast<std::ptrdiff_t>(lines.size())),
+                  ", "),
+        lines.size() > 8 ? ", ..." : "");
+    return true;
+  }
+
   void decide() {
     const TimeBaseFinding clock = examine_time_base(measurement_, base_.residual);
     if (clock.found) {
@@ -545,6 +609,7 @@ class Diagnoser {
       return;
     }
     const bool noise_is_left = down_to_noise();
+    if (!noise_is_left && blame_outliers()) return;
     if (chosen_.empty()) {
       result_.verdict = noise_is_left ? Verdict::kConsistent : Verdict::kUnexplained;
       result_.explanation =

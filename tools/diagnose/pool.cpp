@@ -179,11 +179,14 @@ bool Pool::same_columns(std::size_t a, std::size_t b) const {
   return static_cast<double>(x.cols()) - common < 1e-3;
 }
 
+/// A span that holds all but this of another's squares holds it.
+constexpr double kHeldShare = 0.02;
+
 bool Pool::contains(std::size_t general, std::size_t special) const {
   const Eigen::MatrixXd x = orthonormal(items_[general].columns, 1e-6, nullptr);
   const Eigen::MatrixXd y = orthonormal(items_[special].columns, 1e-6, nullptr);
   if (x.cols() <= y.cols()) return false;
-  return static_cast<double>(y.cols()) - (x.transpose() * y).squaredNorm() < 2e-3;
+  return static_cast<double>(y.cols()) - (x.transpose() * y).squaredNorm() < kHeldShare;
 }
 
 bool Pool::same_kind(std::size_t a, std::size_t b) const {
