@@ -138,8 +138,10 @@ class Improver {
                  {"verdict", last_["verdict"]},
                  {"explanation", last_["explanation"]},
                  {"noise_um", last_["noise_um"]}};
-    json["rms_um"] = first_diagnosis_["rms_um"];
-    json["check_rms_um"] = first_diagnosis_["check_rms_um"];
+    json["rms_before_um"] = first_diagnosis_["rms_um"];
+    json["check_rms_before_um"] = first_diagnosis_["check_rms_um"];
+    json["rms_um"] = last_["rms_um"];
+    json["check_rms_um"] = last_["check_rms_um"];
     json["candidates"] = first_diagnosis_["candidates"];
     json["next_measurement"] = last_["next_measurement"];
     for (const Rung& rung : rungs_) {

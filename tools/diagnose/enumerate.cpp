@@ -239,8 +239,11 @@ class Enumerator {
 
   /// Hats stand on the range that was measured, waves on the declared one where that was measured too.
   void set_range(Choice& choice, std::size_t axis) const {
-    choice.from = range_[axis].low;
-    choice.to = range_[axis].high;
+    // Outwards to a thousandth of the range, so that the term can be read.
+    const double span = range_[axis].high - range_[axis].low;
+    const double digit = span > 0 ? std::pow(10, std::floor(std::log10(span / 1000))) : 1;
+    choice.from = std::floor(range_[axis].low / digit) * digit;
+    choice.to = std::ceil(range_[axis].high / digit) * digit;
     const Axis& item = machine_.axes[axis];
     constexpr double kMostOfIt = 0.8;
     if (contains(choice.form->term, "{hats") || !item.min || !item.max) return;
