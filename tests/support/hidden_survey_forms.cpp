@@ -354,7 +354,8 @@ void Builder::pretravel() {
 void Builder::all_axes(const std::string& text) {
   std::vector<Place> places;
   for (const AxisPlace& a : g_.axes)
-    places.push_back({a.workpiece, a.n, a.dof, fmt::format(fmt::runtime(text), fmt::arg("a", a.name))});
+    places.push_back({a.workpiece, a.n, a.dof,
+                      (a.sense < 0 ? "-" : "") + fmt::format(fmt::runtime(text), fmt::arg("a", a.name))});
   // With one axis, time and the axis' lag are one and the same.
   add(g_.axes.size() == 1 ? g_.axes.front().name : "", std::move(places), {draw_.sign()});
 }

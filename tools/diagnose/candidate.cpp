@@ -30,6 +30,35 @@ std::string number_in_term(double value) {
   return value < 0 ? "(" + text + ")" : text;
 }
 
+/// Unknowns carry this in front of their name until they have their final one, so that an axis or an input
+/// that is called like one of them (L, k, p ...) stays what it is.
+constexpr std::string_view kMark = "unknown__";
+
+bool in_name(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+}
+
+/// The text with every whole name replaced by what `change` makes of it; run labels and placeholders stay.
+template <class Change>
+std::string with_names(const std::string& text, const Change& change) {
+  std::string result;
+  for (std::size_t at = 0; at < text.size();) {
+    if (text[at] == '"' || text[at] == '{') {
+      const auto end = std::min(text.find(text[at] == '"' ? '"' : '}', at + 1), text.size() - 1);
+      result.append(text, at, end - at + 1);
+      at = end + 1;
+    } else if (in_name(text[at])) {
+      std::size_t end = at;
+      while (end < text.size() && in_name(text[end])) ++end;
+      result += change(text.substr(at, end - at));
+      at = end;
+    } else {
+      result += text[at++];
+    }
+  }
+  return result;
+}
+
 /// Works one choice out into terms and unknowns.
 class Maker {
  public:
@@ -41,9 +70,14 @@ class Maker {
   }
 
   Candidate make() {
+    settle_reference();
     result_.choice = choice_;
-    add_terms();
-    name_unknowns();
+    try {
+      add_terms();
+      name_unknowns();
+    } catch (const ExpressionError& error) {
+      throw InputError(choice_.effect->id + ": \"" + error.word + "\": " + error.what() + ", in its term");
+    }
     result_.label = label();
     return std::move(result_);
   }
@@ -53,12 +87,24 @@ class Maker {
     throw InputError(choice_.effect->id + ": " + what + " is missing");
   }
 
+  /// The reference that a term subtracts is the one that the input is declared with: the term is 0 there.
+  void settle_reference() {
+    if (choice_.reference || choice_.inputs.empty() || choice_.effect == &custom_effect()) return;
+    if (choice_.form->term.find("{ref}") == std::string::npos) return;
+    constexpr double kStandardReference_degC = 20, kStandardReference_K = 293.15;  // ISO 1
+    const bool kelvin = !choice_.units.empty() && choice_.units[0] == "K";
+    choice_.reference = kelvin ? kStandardReference_K : kStandardReference_degC;
+    if (const auto known = machine_.find_input(choice_.inputs[0]))
+      choice_.reference = machine_.inputs[*known].reference;
+  }
+
   void add_terms() {
-    const std::string& form = choice_.effect == &custom_effect() ? choice_.term : choice_.form->term;
+    const std::string form = marked(choice_.effect == &custom_effect() ? choice_.term : choice_.form->term);
     switch (choice_.effect == &custom_effect() ? PlaceRule::kOwn : choice_.form->place) {
       case PlaceRule::kEachAxis:
         for (std::size_t axis = 0; axis < machine_.axes.size(); ++axis)
-          if (const auto own = own_place(machine_, axis)) add_term(*own, form, axis);
+          if (const auto own = own_place(machine_, axis))
+            add_term(*own, form, axis, own_sense(machine_, axis) < 0);
         break;
       case PlaceRule::kPair:
         add_pair(form);
@@ -73,14 +119,21 @@ class Maker {
     if (result_.terms.empty()) missing("a degree of freedom to act at");
   }
 
+  /// The term with every unknown marked as one.
+  std::string marked(const std::string& term) const {
+    return with_names(term, [&](const std::string& name) {
+      return choice_.effect->find_unknown(name) == nullptr ? name : std::string(kMark) + name;
+    });
+  }
+
   void add_pair(const std::string& form) {
     const auto bar = form.find('|');
     if (bar == std::string::npos) missing("\"|\" in the term of a pair");
     if (!choice_.axis || !choice_.axis2) missing("axis or axis2");
     const auto first = own_place(machine_, *choice_.axis), second = own_place(machine_, *choice_.axis2);
     if (!first || !second) missing("the degree of freedom of an axis");
-    add_term(*first, form.substr(0, bar), choice_.axis);
-    add_term(*second, form.substr(bar + 1), choice_.axis2);
+    add_term(*first, form.substr(0, bar), choice_.axis, own_sense(machine_, *choice_.axis) < 0);
+    add_term(*second, form.substr(bar + 1), choice_.axis2, own_sense(machine_, *choice_.axis2) < 0);
   }
 
   void add_normal(const std::string& form) {
@@ -90,12 +143,13 @@ class Maker {
       std::string text = form;
       replace_all(text, "{n}", kNormals[i]);
       // The workpiece branch enters inverted: what moves it forward moves the point back.
-      if (base[i].workpiece) text = "-(" + text + ")";
-      add_term(base[i], text, std::nullopt);
+      add_term(base[i], text, std::nullopt, base[i].workpiece);
     }
   }
 
-  void add_term(const DofPlace& place, std::string text, std::optional<std::size_t> axis) {
+  /// `negated`: terms that share a coefficient count in the same sense along the machine's motion.
+  void add_term(const DofPlace& place, std::string text, std::optional<std::size_t> axis,
+                bool negated = false) {
     const auto begin = text.find_first_not_of(' '), end = text.find_last_not_of(' ');
     text = begin == std::string::npos ? std::string() : text.substr(begin, end - begin + 1);
     if (text.find("{q}") != std::string::npos) {
@@ -117,6 +171,11 @@ class Maker {
     }
     fill_hats(text, axis);
     fill_runs(text);
+    if (negated) {
+      const Op op = parse_expression(text)->op;
+      const bool product = (op == Op::kMultiply || op == Op::kDivide) && text[0] != '-';
+      text = product ? "-" + text : "-(" + text + ")";
+    }
     result_.terms.push_back({place, text});
   }
 
@@ -129,12 +188,8 @@ class Maker {
     for (const char* mark : {"{T}", "{L}", "{F}"}) fill(mark, 0);
     fill("{S}", 1);
     if (text.find("{ref}") == std::string::npos) return;
-    constexpr double kStandardReference = 20;  // degC, ISO 1
-    double reference = kStandardReference;
-    if (choice_.reference)
-      reference = *choice_.reference;
-    else if (const auto known = machine_.find_input(choice_.inputs[0]))
-      reference = machine_.inputs[*known].reference;
+    if (!choice_.reference) missing("input");
+    const double reference = *choice_.reference;
     replace_all(text, "-{ref}",
                 reference == 0  ? ""
                 : reference < 0 ? "+" + number_text(-reference)
@@ -159,9 +214,7 @@ class Maker {
       const std::string away = node == 0  ? "abs(" + q + ")"
                                : node < 0 ? fmt::format("abs({}+{})", q, number_text(-node))
                                           : fmt::format("abs({}-{})", q, number_text(node));
-      const std::string name = fmt::format("h{}", i + 1);
-      sum += (i > 0 ? "+" : "") + fmt::format("{}*max(0,1-{}/{})", name, away, number_text(width));
-      numbered_.insert(name);
+      sum += (i > 0 ? "+" : "") + fmt::format("{}h{}*max(0,1-{}/{})", kMark, i + 1, away, number_text(width));
     }
     text.replace(at, end - at + 1, sum);
   }
@@ -172,23 +225,26 @@ class Maker {
     std::string sum;
     for (std::size_t i = 0; i < choice_.runs.size(); ++i) {
       const std::string name = choice_.runs.size() == 1 ? "h" : fmt::format("h{}", i + 1);
-      sum += (i > 0 ? "+" : "") + fmt::format("{}*run(\"{}\")", name, choice_.runs[i]);
-      numbered_.insert(name);
+      sum += (i > 0 ? "+" : "") + fmt::format("{}{}*run(\"{}\")", kMark, name, choice_.runs[i]);
     }
     replace_all(text, "{runs}", sum);
   }
 
-  /// Names in a text that the rules of the effect or the hats declare.
-  std::vector<std::string> unknowns_in(const std::string& text) const {
+  /// The unknowns of a text, in the order of the expression, without their mark.
+  static std::vector<std::string> unknowns_in(const std::string& text) {
     std::vector<std::string> found;
     const ExprPtr expr = parse_expression(text);
     walk(*expr, [&](const Expr& node) {
-      if (node.op != Op::kSymbol) return;
-      const bool known = choice_.effect->find_unknown(node.name) != nullptr || numbered_.contains(node.name);
-      if (known && std::find(found.begin(), found.end(), node.name) == found.end())
-        found.push_back(node.name);
+      if (node.op != Op::kSymbol || node.name.rfind(kMark, 0) != 0) return;
+      const std::string name = node.name.substr(kMark.size());
+      if (std::find(found.begin(), found.end(), name) == found.end()) found.push_back(name);
     });
     return found;
+  }
+
+  bool is_free(const std::string& name) const {
+    return !taken_.contains(name) && !is_reserved_word(name) &&
+           resolve_name(machine_, name).kind == SymbolKind::kUnresolved;
   }
 
   void name_unknowns() {
@@ -200,14 +256,18 @@ class Maker {
     const std::string stem = name_stem();
     std::map<std::string, std::string> renamed;
     for (const std::string& rule : order) {
-      std::string name = order.size() == 1 ? stem : stem + "_" + rule;
-      for (int suffix = 2; taken_.contains(name); ++suffix)
-        name = (order.size() == 1 ? stem : stem + "_" + rule) + "_" + std::to_string(suffix);
+      const std::string first = order.size() == 1 ? stem : stem + "_" + rule;
+      std::string name = first;
+      for (int suffix = 2; !is_free(name); ++suffix) name = first + "_" + std::to_string(suffix);
       taken_.insert(name);
-      renamed[rule] = name;
+      renamed[std::string(kMark) + rule] = name;
       result_.unknowns.push_back(unknown(rule, name));
     }
-    for (CandidateTerm& term : result_.terms) term.text = rename(term.text, renamed);
+    for (CandidateTerm& term : result_.terms)
+      term.text = with_names(term.text, [&](const std::string& name) {
+        const auto found = renamed.find(name);
+        return found == renamed.end() ? name : found->second;
+      });
   }
 
   CandidateUnknown unknown(const std::string& rule_name, const std::string& name) const {
@@ -245,32 +305,7 @@ class Maker {
         stem += fmt::format("_{}{}", dof_name(machine_, *choice_.place),
                             transform_at(machine_, *choice_.place).n);
     }
-    return stem;
-  }
-
-  /// The text with whole names replaced.
-  static std::string rename(const std::string& text, const std::map<std::string, std::string>& names) {
-    const auto in_name = [](char c) {
-      return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
-    };
-    std::string result;
-    for (std::size_t at = 0; at < text.size();) {
-      if (text[at] == '"') {  // a run's label is no name
-        const auto end = std::min(text.find('"', at + 1), text.size() - 1);
-        result.append(text, at, end - at + 1);
-        at = end + 1;
-      } else if (in_name(text[at])) {
-        std::size_t end = at;
-        while (end < text.size() && in_name(text[end])) ++end;
-        const std::string word = text.substr(at, end - at);
-        const auto found = names.find(word);
-        result += found == names.end() ? word : found->second;
-        at = end;
-      } else {
-        result += text[at++];
-      }
-    }
-    return result;
+    return is_name(stem) ? stem : "effect_" + stem;  // an id may begin with a digit
   }
 
   std::string label() const {
@@ -287,9 +322,9 @@ class Maker {
   }
 
   const Machine& machine_;
-  const Choice& choice_;
+  Choice choice_;
   Candidate result_;
-  std::set<std::string> taken_, numbered_;
+  std::set<std::string> taken_;
 };
 
 }  // namespace

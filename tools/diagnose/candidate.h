@@ -23,6 +23,8 @@ const char* dof_name(const Machine& machine, const DofPlace& place);
 bool is_angle(const Machine& machine, const DofPlace& place);
 /// The degree of freedom that an axis moves in the nominal chain; nothing for an axis that moves none.
 std::optional<DofPlace> own_place(const Machine& machine, std::size_t axis);
+/// +1 or -1: sense in which its own degree of freedom follows an axis (-1 for Y="-Y"); 0 for an axis without.
+double own_sense(const Machine& machine, std::size_t axis);
 bool is_own_place(const Machine& machine, std::size_t axis, const DofPlace& place);
 /// The axis that moves a transform (the first one where there are several).
 std::optional<std::size_t> axis_of(const Machine& machine, const DofPlace& place);

@@ -1,9 +1,12 @@
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <set>
 #include <sstream>
 
 #include "tools/diagnose/effect.h"
 #include "tools/model/error.h"
+#include "tools/model/expression.h"
 #include "tools/model/files.h"
 #include "tools/model/numbers.h"
 
@@ -36,7 +39,10 @@ class CatalogueReader {
 
  private:
   [[noreturn]] void fail(const std::string& word, const std::string& what) const {
-    throw InputError(Place{file_, line_}, word, what);
+    fail_at(line_, word, what);
+  }
+  [[noreturn]] void fail_at(std::size_t line, const std::string& word, const std::string& what) const {
+    throw InputError(Place{file_, line}, word, what);
   }
 
   static std::string next_word(std::string& rest) {
@@ -78,6 +84,8 @@ class CatalogueReader {
       if (other.id == id) fail(id, "this effect stands twice");
     effects_.push_back({});
     effects_.back().id = id;
+    first_line_ = line_;
+    form_line_.clear();
   }
 
   void take_form(Effect& effect, std::string rest) {
@@ -92,12 +100,14 @@ class CatalogueReader {
     for (const EffectForm& other : effect.forms)
       if (other.label == form.label) fail(form.label, "this form stands twice");
     effect.forms.push_back(form);
+    form_line_.push_back(line_);
   }
 
   void take_unknown(Effect& effect, std::string rest) {
     UnknownRule rule;
     rule.name = next_word(rest);
-    if (!is_name(rule.name)) fail(rule.name, "not a name");
+    if (!is_name(rule.name) || is_reserved_word(rule.name)) fail(rule.name, "not a name for an unknown");
+    if (effect.find_unknown(rule.name) != nullptr) fail(rule.name, "this unknown stands twice");
     rule.unit = next_word(rest);
     const std::string kind = next_word(rest);
     const auto number = [&] {
@@ -126,17 +136,86 @@ class CatalogueReader {
     } else {
       fail(kind, "expected linear, time, travel, period or grid");
     }
+    if (!rest.empty()) fail(rest, "nothing more is expected in this line");
     effect.unknowns.push_back(rule);
   }
 
   void check(const Effect& effect) const {
-    if (effect.forms.empty()) fail(effect.id, "an effect needs a form");
-    if (effect.title.empty() || effect.signature.empty()) fail(effect.id, "title or signature is missing");
-    if (effect.unknowns.empty()) fail(effect.id, "an effect needs an unknown");
+    if (effect.forms.empty()) fail_at(first_line_, effect.id, "an effect needs a form");
+    if (effect.title.empty() || effect.signature.empty())
+      fail_at(first_line_, effect.id, "title or signature is missing");
+    if (effect.unknowns.empty()) fail_at(first_line_, effect.id, "an effect needs an unknown");
+    std::set<std::string> used;
+    for (std::size_t i = 0; i < effect.forms.size(); ++i) {
+      const std::set<std::string> here = unknowns_of(effect, effect.forms[i], form_line_[i]);
+      if (here.empty())
+        fail_at(form_line_[i], effect.forms[i].term, "the term has no unknown of this effect");
+      used.insert(here.begin(), here.end());
+    }
+    for (const UnknownRule& rule : effect.unknowns)
+      if (!used.contains(rule.name)) fail_at(first_line_, rule.name, "no form uses this unknown");
+  }
+
+  /// The unknowns that a form uses; errors where its term cannot be read.
+  std::set<std::string> unknowns_of(const Effect& effect, const EffectForm& form, std::size_t line) const {
+    std::set<std::string> used;
+    std::string term = filled(form, line, used);
+    const auto bar = term.find('|');
+    if ((bar != std::string::npos) != (form.place == PlaceRule::kPair))
+      fail_at(line, form.term, "a pair has two terms with | between them, other places have one");
+    if (bar != std::string::npos) term = "(" + term.substr(0, bar) + ")+(" + term.substr(bar + 1) + ")";
+    if (used.contains("h") && effect.find_unknown("h") == nullptr)
+      fail_at(line, form.term, "hats and runs need the unknown h");
+    try {
+      walk(*parse_expression(term), [&](const Expr& node) {
+        if (node.op == Op::kSymbol && effect.find_unknown(node.name) != nullptr) used.insert(node.name);
+      });
+    } catch (const ExpressionError& error) {
+      fail_at(line, form.term, error.what());
+    }
+    return used;
+  }
+
+  /// The term with something that an expression may hold in the place of each placeholder.
+  std::string filled(const EffectForm& form, std::size_t line, std::set<std::string>& used) const {
+    static constexpr std::array kNumbers = {"ref", "mid", "from", "to", "span", "sum", "n"};
+    static constexpr std::array kNames = {"q", "T", "S", "L", "F"};
+    std::string text;
+    for (std::size_t at = 0; at < form.term.size(); ++at) {
+      if (form.term[at] == '}') fail_at(line, form.term.substr(at), "} without {");
+      if (form.term[at] != '{') {
+        text += form.term[at];
+        continue;
+      }
+      const auto end = form.term.find('}', at);
+      if (end == std::string::npos) fail_at(line, form.term.substr(at), "{ without }");
+      const std::string mark = form.term.substr(at + 1, end - at - 1);
+      const auto is_mark = [&](const char* known) { return mark == known; };
+      if (std::any_of(kNames.begin(), kNames.end(), is_mark)) {
+        text += "placeholder_" + mark;
+      } else if (mark == "runs" || is_hats(mark)) {
+        used.insert("h");
+        text += "1";
+      } else if (std::any_of(kNumbers.begin(), kNumbers.end(), is_mark)) {
+        text += "1";
+      } else {
+        fail_at(line, "{" + mark + "}", "not a placeholder");
+      }
+      at = end;
+    }
+    return text;
+  }
+
+  static bool is_hats(const std::string& mark) {
+    if (mark.rfind("hats ", 0) != 0) return false;
+    const auto count = parse_number(mark.substr(5));
+    constexpr double kMostHats = 100;
+    return count && *count >= 2 && *count <= kMostHats && *count == std::floor(*count);
   }
 
   std::string file_;
-  std::size_t line_ = 0;
+  std::size_t line_ = 0, first_line_ = 0;  // now, and where the entry begins
+  std::vector<std::size_t> form_line_;     // of the entry's forms
   std::vector<Effect> effects_;
 };
 

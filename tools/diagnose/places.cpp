@@ -80,6 +80,13 @@ std::optional<DofPlace> own_place(const Machine& machine, std::size_t axis) {
   return best;
 }
 
+double own_sense(const Machine& machine, std::size_t axis) {
+  const auto own = own_place(machine, axis);
+  if (!own) return 0;
+  const Machine nominal = nominal_machine(machine);
+  return slope(nominal, *transform_at(nominal, *own).dof[own->dof], axis) < 0 ? -1 : 1;
+}
+
 bool is_own_place(const Machine& machine, std::size_t axis, const DofPlace& place) {
   const std::optional<DofPlace> own = own_place(machine, axis);
   return own.has_value() && own.value() == place;
