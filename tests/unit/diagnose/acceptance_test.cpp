@@ -1,0 +1,154 @@
+// Leaving runs out in one go, against really fitting again without them; the tail of chi^2.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "tools/diagnose/acceptance.h"
+#include "tools/diagnose/evidence.h"
+
+namespace vernier {
+namespace {
+
+constexpr std::uint64_t kSeed = 11;
+
+/// Percentage points of chi^2, NIST/SEMATECH e-Handbook 1.3.6.7.4, and closed forms for even freedom.
+TEST(ChiSquareTail, AgreesWithTheTables) {
+  for (const auto& [value, freedom, tail] : {std::tuple{3.841, 1.0, 0.05},
+                                             {6.635, 1.0, 0.01},
+                                             {10.828, 1.0, 0.001},
+                                             {11.070, 5.0, 0.05},
+                                             {18.307, 10.0, 0.05},
+                                             {29.588, 10.0, 0.001},
+                                             {124.342, 100.0, 0.05},
+                                             {149.449, 100.0, 0.001},
+                                             {77.929, 100.0, 0.95}})
+    EXPECT_NEAR(chi_square_tail(value, freedom), tail, 2e-3 * tail) << value << " " << freedom;
+  for (const double value : {0.1, 1.0, 5.0, 40.0, 600.0}) {
+    EXPECT_NEAR(chi_square_tail(value, 2), std::exp(-value / 2), 1e-12 * std::exp(-value / 2) + 1e-300);
+    EXPECT_NEAR(chi_square_tail(value, 4), (1 + value / 2) * std::exp(-value / 2),
+                1e-11 * std::exp(-value / 2) * value + 1e-300);
+    EXPECT_NEAR(chi_square_tail(value, 1), std::erfc(std::sqrt(value / 2)), 1e-12);
+  }
+  EXPECT_EQ(chi_square_tail(0, 3), 1);
+  EXPECT_EQ(chi_square_tail(-2, 3), 1);
+  EXPECT_GE(chi_square_tail(1e5, 3), 0);
+  EXPECT_LT(chi_square_tail(1e5, 3), 1e-300);
+}
+
+TEST(ChiSquareTail, FallsSteadilyAcrossTheChangeOfMethod) {
+  for (const double freedom : {1.0, 2.0, 7.0, 50.0, 1000.0}) {
+    double before = 1;
+    for (double value = 0.5 * freedom; value < 2 * freedom + 4; value += 0.01 * freedom) {
+      const double now = chi_square_tail(value, freedom);
+      EXPECT_LE(now, before + 1e-12) << freedom << " " << value;
+      before = now;
+    }
+  }
+}
+
+/// One axis with a free offset and scale, three runs of different length, reversal error hidden.
+std::string rows_of(bool shifted_runs) {
+  std::mt19937_64 random(kSeed);
+  std::normal_distribution<double> noise(0, 0.002);
+  std::string text = "X[mm],dirX,x[mm],u[um],run,role\n";
+  for (int run = 0; run < 3; ++run)
+    for (int i = 0; i < 12 + 5 * run; ++i) {
+      const double x = 40.0 * i + 7 * run, dir = i % 3 == 0 ? 1 : -1;
+      const double shift = shifted_runs ? 0.1 * run : 0;
+      const double reading = x + 0.01 + 2e-5 * x + 0.003 * dir + shift + noise(random);
+      text += std::to_string(x) + "," + std::to_string(dir) + "," + std::to_string(reading) + "," +
+              std::to_string(1 + i % 2) + ",r" + std::to_string(run) + ",fit\n";
+    }
+  return text + "5,1,9,1,r0,check\n";  // enters nothing
+}
+
+constexpr const char* kLine =
+    "<machine><variables><static><a value=\"0\" nominal=\"0\"/><s value=\"0\" nominal=\"0\"/>%</static>"
+    "<machineaxes><X min=\"0\" max=\"1000\"/></machineaxes></variables>"
+    "<transforms><sixdof X=\"X+a+s*X\"/></transforms></machine>";
+
+std::string line_text(const std::string& statics) {
+  std::string text = kLine;
+  return text.replace(text.find('%'), 1, statics);
+}
+
+struct Setting {
+  std::string text;
+  Machine machine;
+  Measurement rows;
+  Evidence evidence;
+  Candidate backlash;
+  Eigen::MatrixXd columns;  // projected
+
+  Setting(const std::string& machine_text, const std::string& csv)
+      : text(machine_text),
+        machine(parse_machine(text, "line.xml")),
+        rows(parse_measurement(csv, "rows.csv", machine)),
+        evidence(fit(machine, rows).machine, rows),
+        backlash(make_candidate(machine, parse_add_string("backlash:axis=X", machine, built_in_effects()))),
+        columns(evidence.columns(backlash, {})) {
+    columns -= evidence.absorbed() * (evidence.absorbed().transpose() * columns);
+  }
+
+  /// Sum of squares of one run predicted by a fit to the others; `local_mean`: its own shift is fitted to it.
+  double refitted(const Machine& model, std::size_t run, bool local_mean) const {
+    Measurement others = rows;
+    for (std::size_t row = 0; row < rows.rows(); ++row)
+      if (rows.states.run[row] == run) others.check[row] = 1;
+    const FitResult result = fit(model, others);
+    double weights = 0, mean = 0, sum = 0;
+    for (int pass = 0; pass < 2; ++pass) {
+      sum = 0;
+      for (std::size_t i = 0; i < rows.observations.size(); ++i) {
+        const std::size_t row = rows.observations[i].row;
+        if (rows.states.run[row] != run || rows.check[row] != 0) continue;
+        const double weight = std::pow(rows.uncertainty[static_cast<Eigen::Index>(row)], -2);
+        const double error = result.residual[static_cast<Eigen::Index>(i)];
+        if (pass == 0) {
+          weights += weight;
+          mean += weight * error;
+        }
+        const double left = error - (local_mean ? mean / weights : 0);
+        sum += weight * left * left;
+      }
+      if (pass == 0 && !local_mean) break;
+    }
+    return sum;
+  }
+};
+
+TEST(LeaveRunsOut, IsTheRefitWithoutEachRun) {
+  const Setting s(line_text(""), rows_of(false));
+  const Machine with = parse_machine(add_to_machine_text(s.text, s.machine, s.backlash), "with.xml");
+  double refitted_with = 0, refitted_without = 0;
+  for (std::size_t run = 0; run < 3; ++run) {
+    refitted_with += s.refitted(with, run, false);
+    refitted_without += s.refitted(s.machine, run, false);
+  }
+  const HeldOut held_with = leave_runs_out(s.evidence, s.columns, 0, 1);
+  const HeldOut held_without = leave_runs_out(s.evidence, Eigen::MatrixXd(s.columns.rows(), 0), 0, 0);
+  EXPECT_NEAR(held_with.chi_square, refitted_with, 1e-6 * refitted_with);
+  EXPECT_NEAR(held_without.chi_square, refitted_without, 1e-6 * refitted_without);
+  EXPECT_LT(held_with.chi_square, 0.6 * held_without.chi_square) << "the effect is there";
+  ASSERT_EQ(held_with.agreement.size(), 3U);
+  for (const double cosine : held_with.agreement) EXPECT_NEAR(cosine, 1, 1e-9);  // one column, one sign
+}
+
+/// The shift of a run is known from no other: it is fitted to the run that is left out, nothing else is.
+TEST(LeaveRunsOut, FitsToARunWhatOnlyItDetermines) {
+  const Setting s(line_text("<BaseShift Hide=\"true\"/><BaseShift run=\"r1\" X=\"0\" Y=\"0\" Z=\"0\"/>"
+                            "<BaseShift run=\"r2\" X=\"0\"/>"),
+                  rows_of(true));
+  const Machine with = parse_machine(add_to_machine_text(s.text, s.machine, s.backlash), "with.xml");
+  double refitted = 0;
+  for (std::size_t run = 1; run < 3; ++run) refitted += s.refitted(with, run, true);
+  // r0 has the hidden shift; without it the offset a and the shifts of the others cannot be told apart, and
+  // its own mean is free as well.
+  refitted += s.refitted(with, 0, true);
+  const HeldOut held = leave_runs_out(s.evidence, s.columns, 0, 1);
+  EXPECT_NEAR(held.chi_square, refitted, 1e-5 * refitted);
+}
+
+}  // namespace
+}  // namespace vernier
