@@ -76,7 +76,9 @@ class Maker {
       add_terms();
       name_unknowns();
     } catch (const ExpressionError& error) {
-      throw InputError(choice_.effect->id + ": \"" + error.word + "\": " + error.what() + ", in its term");
+      std::string word = error.word;
+      replace_all(word, kMark, "");
+      throw InputError(choice_.effect->id + ": \"" + word + "\": " + error.what() + ", in its term");
     }
     result_.label = label();
     return std::move(result_);
@@ -242,6 +244,19 @@ class Maker {
     return found;
   }
 
+  /// Every other name of a term is one of the machine's or an input that comes with it.
+  void check_names(const std::string& text) const {
+    const ExprPtr expr = parse_expression(text);
+    walk(*expr, [&](const Expr& node) {
+      if (node.op != Op::kSymbol || node.name.rfind(kMark, 0) == 0) return;
+      const auto& inputs = choice_.inputs;
+      if (resolve_name(machine_, node.name).kind == SymbolKind::kUnresolved &&
+          std::find(inputs.begin(), inputs.end(), node.name) == inputs.end())
+        throw InputError(choice_.effect->id + ": \"" + node.name +
+                         "\": unknown name in its term (a logged column is named by input=NAME)");
+    });
+  }
+
   bool is_free(const std::string& name) const {
     return !taken_.contains(name) && !is_reserved_word(name) &&
            resolve_name(machine_, name).kind == SymbolKind::kUnresolved;
@@ -249,6 +264,7 @@ class Maker {
 
   void name_unknowns() {
     std::vector<std::string> order;
+    for (const CandidateTerm& term : result_.terms) check_names(term.text);
     for (const CandidateTerm& term : result_.terms)
       for (const std::string& name : unknowns_in(term.text))
         if (std::find(order.begin(), order.end(), name) == order.end()) order.push_back(name);

@@ -81,6 +81,11 @@ TEST(AddString, AnAxisNamedLikeAnUnknownStaysAnAxis) {
             "tool 2 Y: load_deflection_k_Y2*k");
 }
 
+TEST(AddString, ACustomTermMayUseALoggedColumn) {
+  EXPECT_EQ(term("custom:input=T_q,unit=degC,branch=tool,transform=2,dof=X,term=k*(T_q-20)*X"),
+            "tool 2 X: custom_T_q_X2*(T_q-20)*X");
+}
+
 TEST(AddString, StartsAreTakenFromItAlone) {
   const Candidate cyclic = candidate("cyclic-error:axis=X,form=plain,start.p=10");
   std::size_t periods = 0;
@@ -126,7 +131,8 @@ TEST(AddString, BadOnesNameTheWord) {
                          Bad{"time-sync:dof=X", "\"time-sync\""},
                          Bad{"offset:branch=tool,dof=X,axis=Y", "\"tool\""},
                          Bad{"custom:branch=tool,transform=2,dof=X", "\"custom\""},
-                         Bad{"custom:branch=tool,transform=2,dof=X,term=k*(X", "custom"},
+                         Bad{"custom:branch=tool,transform=2,dof=X,term=k*(X", "\"k*(X\""},
+                         Bad{"custom:branch=tool,transform=2,dof=X,term=k*T_q", "\"T_q\""},
                          Bad{"custom:branch=tool,transform=2,dof=X,term=X*dirX", "unknown"},
                          Bad{"base-drift:branch=tool,transform=1,dof=X,form=step", "runs"}}) {
     try {
