@@ -69,12 +69,14 @@ class CatalogueReader {
       now.exposed_by = rest;
     else if (key == "impostors")
       while (!rest.empty()) now.impostors.push_back(next_word(rest));
+    else if (key == "rare")
+      now.rare = true;
     else if (key == "form")
       take_form(now, rest);
     else if (key == "unknown")
       take_unknown(now, rest);
     else
-      fail(key, "expected effect, title, formula, signature, exposed, impostors, form or unknown");
+      fail(key, "expected effect, title, formula, signature, exposed, impostors, rare, form or unknown");
   }
 
   void begin(const std::string& id) {

@@ -128,7 +128,6 @@ class Diagnoser {
       std::optional<std::size_t> simplest;
       Selection best;
       for (const std::size_t other : entry_item_) {
-        if (pool_[other].columns.cols() >= pool_[chosen_[i]].columns.cols()) continue;
         if (std::find(chosen_.begin(), chosen_.end(), other) != chosen_.end()) continue;
         std::vector<std::size_t> set = chosen_;
         set[i] = other;
@@ -491,8 +490,9 @@ class Diagnoser {
       if (distance < kDistance) {
         // A form that holds this one and more would need evidence of its own: no rival.
         if (pool_.contains(rival, item)) continue;
-        const bool alike = pool_.candidate(item).choice.effect == pool_.candidate(rival).choice.effect ||
-                           pool_.same_kind(rival, item);
+        const Choice &mine = pool_.candidate(item).choice, &other = pool_.candidate(rival).choice;
+        const bool alike =
+            (mine.effect == other.effect && mine.inputs == other.inputs) || pool_.same_kind(rival, item);
         if (alike && pool_.same_columns(item, rival)) {
           rivals.same.push_back(rival);
           continue;

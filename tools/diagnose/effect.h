@@ -53,6 +53,7 @@ struct EffectForm {
 struct Effect {
   std::string id, title, formula, signature, exposed_by;
   std::vector<std::string> impostors;
+  bool rare = false;  // met seldom: wants more evidence than its rivals
   std::vector<EffectForm> forms;
   std::vector<UnknownRule> unknowns;
 

@@ -233,7 +233,11 @@ class Enumerator {
   /// A power of an angle says nothing: errors of a rotary axis are periodic, or a table.
   static bool has_meaning_of_turns(const EffectForm& form) {
     const std::string& t = form.term;
-    return !contains(t, "{q}^") && !contains(t, "{mid}") && !contains(t, "*{q}*(") &&
+    // The square of a speed does.
+    const auto power = t.find("{q}^");
+    if (power != std::string::npos && (power == 0 || (t[power - 1] != 'v' && t[power - 1] != 'a')))
+      return false;
+    return !contains(t, "{mid}") && !contains(t, "*{q}*(") &&
            !(t.size() >= 4 && t.substr(t.size() - 4) == "*{q}" && form.place != PlaceRule::kOwn);
   }
 

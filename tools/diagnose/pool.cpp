@@ -26,11 +26,16 @@ double rank_of(const Candidate& candidate) {
       return 2 * kStep;
     case PlaceRule::kTurn:
     case PlaceRule::kBaseTurn:
+    case PlaceRule::kLength:
       return 3 * kStep;
     default:
       return 4 * kStep;
   }
 }
+
+/// Twice the logarithm of how much more seldom than the others an effect is met that the catalogue calls
+/// rare.
+constexpr double kRare = 6;
 
 }  // namespace
 
@@ -62,6 +67,7 @@ const Candidate& Pool::candidate(std::size_t i) const {
 double Pool::penalty(std::size_t candidate) const {
   const ScannedCandidate& item = scanner_.candidates()[candidate];
   double cost = 2 * std::log(static_cast<double>(scanner_.candidates().size())) + rank_of(item.candidate);
+  if (item.candidate.choice.effect->rare) cost += kRare;
   // A scanned unknown is as many tries as the grid has values that differ, where that is more than the price
   // of a coefficient.
   constexpr double kPointsPerTry = 2.5;
@@ -185,7 +191,10 @@ constexpr double kHeldShare = 0.02;
 bool Pool::contains(std::size_t general, std::size_t special) const {
   const Eigen::MatrixXd x = orthonormal(items_[general].columns, 1e-6, nullptr);
   const Eigen::MatrixXd y = orthonormal(items_[special].columns, 1e-6, nullptr);
-  if (x.cols() <= y.cols()) return false;
+  const auto unknowns = [&](std::size_t i) {
+    return items_[i].columns.cols() + static_cast<Eigen::Index>(items_[i].scored.scanned.size());
+  };
+  if (unknowns(general) <= unknowns(special) || x.cols() < y.cols()) return false;
   return static_cast<double>(y.cols()) - (x.transpose() * y).squaredNorm() < kHeldShare;
 }
 

@@ -49,7 +49,7 @@ class Pool {
   bool same_cause(std::size_t a, std::size_t b) const;
   /// Do two items span the same columns (all but a thousandth of their squares)?
   bool same_columns(std::size_t a, std::size_t b) const;
-  /// Do the columns of `general` hold those of `special`, and more?
+  /// Does `general` have more unknowns than `special`, and hold its columns (all but 2 % of their squares)?
   bool contains(std::size_t general, std::size_t special) const;
   /// Do both depend on the same kinds of quantities (positions, count of rows and travel since a reversal do
   /// not count)? If their columns are the same too, they are two ways to say one thing.
