@@ -122,7 +122,8 @@ class Diagnoser {
     simplify();
   }
 
-  /// A form that holds a simpler one is taken only where what it has more is evidence by itself.
+  /// A form that holds a simpler one is taken only where what it has more is evidence by itself; of forms
+  /// with the same columns the one nearest to the axis.
   void simplify() {
     for (std::size_t i = 0; i < chosen_.size(); ++i) {
       std::optional<std::size_t> simplest;
@@ -134,7 +135,12 @@ class Diagnoser {
         const Selection trial = evaluate(set);
         if (trial.criterion - criterion_ >= kEvidence) continue;
         if (simplest && trial.criterion >= best.criterion) continue;
-        if (!pool_.contains(chosen_[i], other)) continue;
+        // The same columns from a place further from the axis are only the longer way to say it.
+        const bool same_but_nearer = pool_.same_kind(chosen_[i], other) &&
+                                     pool_.penalty(pool_[other].scored.candidate) <
+                                         pool_.penalty(pool_[chosen_[i]].scored.candidate) &&
+                                     pool_.same_columns(chosen_[i], other);
+        if (!same_but_nearer && !pool_.contains(chosen_[i], other)) continue;
         simplest = other;
         best = trial;
       }

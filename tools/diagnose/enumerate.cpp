@@ -188,7 +188,10 @@ class Enumerator {
       Choice one = choice;
       one.inputs = {machine_.inputs[i].name};
       one.units = {machine_.inputs[i].unit};
-      if (needs("{ref}")) one.reference = i < evidence_.declared_inputs() ? machine_.inputs[i].reference : 20;
+      if (needs("{ref}"))
+        one.reference = i < evidence_.declared_inputs()  ? machine_.inputs[i].reference
+                        : machine_.inputs[i].unit == "K" ? 293.15
+                                                         : 20;
       if (!needs("{S}")) {
         with_axis(one);
         continue;
