@@ -1,0 +1,315 @@
+#include "tools/diagnose/finder.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+
+#include "tools/diagnose/acceptance.h"
+#include "tools/model/chain.h"
+
+namespace vernier {
+namespace {
+
+/// Of what an effect removes from the rows it was fitted to, this much must be removed from runs left out.
+constexpr double kHeldOutShare = 0.2;
+
+}  // namespace
+
+Finder::Finder(const Machine& fitted, const Measurement& measurement, const std::vector<Effect>& effects,
+               std::size_t most_effects, std::function<void(double, const std::string&)> progress)
+    : most_effects_(most_effects),
+      progress_(std::move(progress)),
+      evidence_(fitted, measurement),
+      list_(enumerate_candidates(evidence_, effects)),
+      scanner_(evidence_, list_),
+      pool_(evidence_, scanner_) {}
+
+void Finder::find() {
+  search();
+  weigh_correlation();
+  accept();
+  if (linear_down_to_noise()) return;
+  search_products();
+  accept();
+}
+
+void Finder::scan_beside(const std::vector<std::size_t>& items, double from, double to, std::size_t first) {
+  const Eigen::MatrixXd beside = orthonormal(pool_.columns(items), 1e-6, nullptr);
+  const auto scored = scanner_.scan(
+      beside,
+      [&](double share) {
+        progress_(from + share * (to - from), fmt::format("{} candidates", list_.size()));
+      },
+      first);
+  constexpr std::size_t kMostAtOnce = 50;
+  pool_.add(scored, kMostAtOnce, beside);
+}
+
+void Finder::search_products() {
+  std::vector<Product> best;
+  for (int round = 0; round < 2; ++round) {
+    const std::size_t first = list_.size();
+    for (ScannedCandidate& item : enumerate_products(evidence_, best)) list_.push_back(std::move(item));
+    for (const std::vector<std::size_t>& beside : {std::vector<std::size_t>{}, chosen_}) {
+      scan_beside(beside, 0.7, 0.75, first);
+      if (chosen_.empty()) break;
+    }
+    best = best_products();
+  }
+  select_again();
+}
+
+std::vector<Product> Finder::best_products() {
+  problem_ = pool_.problem(entry_item_);
+  problem_.correlation_time = correlation_time_;
+  std::vector<std::pair<double, std::size_t>> order;
+  for (std::size_t i = 0; i < pool_.size(); ++i)
+    if (pool_.candidate(i).choice.effect == &custom_effect()) order.emplace_back(-score_alone(i), i);
+  std::sort(order.begin(), order.end());
+  std::vector<Product> best;
+  constexpr std::size_t kExtended = 25;
+  for (std::size_t i = 0; i < std::min(kExtended, order.size()); ++i) {
+    const Choice& choice = pool_.candidate(order[i].second).choice;
+    best.push_back({*choice.place, choice.term, choice.inputs, choice.units});
+  }
+  return best;
+}
+
+void Finder::select_again() {
+  problem_ = pool_.problem(entry_item_);
+  problem_.correlation_time = correlation_time_;
+  const Selection selection = select(problem_, most_effects_);
+  chosen_.clear();
+  for (const std::size_t entry : selection.chosen) chosen_.push_back(entry_item_[entry]);
+  criterion_ = selection.criterion;
+  chi_square_ = selection.chi_square;
+  simplify();
+}
+
+void Finder::simplify() {
+  for (std::size_t i = 0; i < chosen_.size(); ++i) {
+    std::optional<std::size_t> simplest;
+    Selection best;
+    for (const std::size_t other : entry_item_) {
+      if (std::find(chosen_.begin(), chosen_.end(), other) != chosen_.end()) continue;
+      std::vector<std::size_t> set = chosen_;
+      set[i] = other;
+      const Selection trial = evaluate(set);
+      if (trial.criterion - criterion_ >= kEvidence) continue;
+      if (simplest && trial.criterion >= best.criterion) continue;
+      // The same columns from a place further from the axis are only the longer way to say it.
+      const bool same_but_nearer =
+          pool_.same_kind(chosen_[i], other) &&
+          pool_.penalty(pool_[other].scored.candidate) < pool_.penalty(pool_[chosen_[i]].scored.candidate) &&
+          pool_.same_columns(chosen_[i], other);
+      if (!same_but_nearer && !pool_.contains(chosen_[i], other)) continue;
+      simplest = other;
+      best = trial;
+    }
+    if (!simplest) continue;
+    chosen_[i] = *simplest;
+    criterion_ = best.criterion;
+    chi_square_ = best.chi_square;
+  }
+}
+
+void Finder::search() {
+  scan_beside({}, 0.05, 0.3);
+  select_again();
+  constexpr int kMostScans = 6;
+  for (int round = 0; round < kMostScans && !chosen_.empty(); ++round) {
+    const std::vector<std::size_t> before = chosen_;
+    const double criterion = criterion_;
+    scan_beside(chosen_, 0.3 + 0.08 * round, 0.34 + 0.08 * round);
+    // Rivals of each accepted one, the others given.
+    if (chosen_.size() > 1)
+      for (const std::size_t item : before) {
+        std::vector<std::size_t> others;
+        for (const std::size_t other : before)
+          if (other != item) others.push_back(other);
+        scan_beside(others, 0.34 + 0.08 * round, 0.38 + 0.08 * round);
+      }
+    select_again();
+    if (criterion_ > criterion - 1e-6) break;
+  }
+}
+
+void Finder::weigh_correlation() {
+  const Eigen::MatrixXd all = orthonormal(pool_.columns(chosen_), 1e-6, nullptr);
+  const Eigen::VectorXd left = evidence_.residual() - all * (all.transpose() * evidence_.residual());
+  // A little of it (several points at one pose, out and back) is the model's misfit; more is oversampling.
+  constexpr double kOversampled = 2.5;
+  const double time = evidence_.correlation_time(left);
+  if (time < kOversampled) return;
+  correlation_time_ = time;
+  select_again();
+}
+
+std::vector<std::size_t> Finder::without(std::size_t item) const {
+  std::vector<std::size_t> others;
+  for (const std::size_t other : chosen_)
+    if (other != item) others.push_back(other);
+  return others;
+}
+
+Selection Finder::evaluate(const std::vector<std::size_t>& items) const {
+  std::vector<std::size_t> entries;
+  for (const std::size_t item : items)
+    entries.push_back(static_cast<std::size_t>(std::find(entry_item_.begin(), entry_item_.end(), item) -
+                                               entry_item_.begin()));
+  return evaluate_selection(problem_, entries);
+}
+
+std::string Finder::failed_test(std::size_t item) const {
+  const Selection rest = evaluate(without(item));
+  if (rest.criterion - criterion_ < kEvidence) return "evidence: the fall of the criterion is below 6";
+  const Eigen::Index count = pool_[item].columns.cols();
+  std::vector<std::size_t> others = without(item), all = {item};
+  all.insert(all.end(), others.begin(), others.end());
+  const bool of_run = !pool_.candidate(item).choice.runs.empty();
+  const HeldOut with = leave_runs_out(evidence_, pool_.columns(all), 0, count, of_run);
+  const HeldOut less = leave_runs_out(evidence_, pool_.columns(others), 0, 0, of_run);
+  const double gain = rest.chi_square - chi_square_;
+  if (less.chi_square - with.chi_square < kHeldOutShare * gain)
+    return "held out: it does not help on runs that were left out";
+  std::size_t agree = 0;
+  for (const double cosine : with.agreement) agree += cosine > 0.5 ? 1 : 0;
+  if (static_cast<double>(agree) < 0.75 * static_cast<double>(with.agreement.size()))
+    return "stability: its coefficients change when a run is left out";
+  return too_large(item);
+}
+
+std::string Finder::too_large(std::size_t item) const {
+  const Candidate& candidate = pool_.candidate(item);
+  const Eigen::VectorXd k = own_coefficients(item);
+  std::size_t linear = 0;
+  for (const CandidateUnknown& unknown : candidate.unknowns) {
+    if (unknown.kind != UnknownKind::kLinear) continue;
+    const auto kept = std::find(pool_[item].kept.begin(), pool_[item].kept.end(), linear++);
+    if (kept == pool_[item].kept.end() || unknown.limit <= 0) continue;
+    const double size =
+        std::abs(k[kept - pool_[item].kept.begin()]) * typical_size(candidate, linear - 1, item);
+    if (size > unknown.limit)
+      return fmt::format("size: the term would reach {:.3g}, no machine shows more than {:g}", size,
+                         unknown.limit);
+  }
+  return {};
+}
+
+double Finder::typical_size(const Candidate& candidate, std::size_t linear, std::size_t item) const {
+  Machine scratch = evidence_.machine();
+  std::size_t index = 0, scanned = 0;
+  for (const CandidateUnknown& unknown : candidate.unknowns) {
+    Static value;
+    value.name = unknown.name;
+    value.value = unknown.kind == UnknownKind::kLinear ? (index++ == linear ? 1 : 0)
+                                                       : pool_[item].scored.scanned[scanned++];
+    scratch.statics.push_back(value);
+  }
+  double largest = 0;
+  for (const CandidateTerm& term : candidate.terms) {
+    const Column column = ::vernier::evaluate(scratch, *parse_expression_for(scratch, term.text),
+                                              evidence_.measurement().states);
+    for (const std::size_t row : evidence_.rows())
+      largest = std::max(largest, std::abs(column[static_cast<Eigen::Index>(row)]));
+  }
+  return largest;
+}
+
+Eigen::VectorXd Finder::own_coefficients(std::size_t item) const {
+  std::vector<std::size_t> entries, set = chosen_;
+  if (std::find(set.begin(), set.end(), item) == set.end()) set = {item};
+  Eigen::Index first = 0, at = 0;
+  for (const std::size_t one : set) {
+    if (one == item) first = at;
+    at += pool_[one].columns.cols();
+    entries.push_back(static_cast<std::size_t>(std::find(entry_item_.begin(), entry_item_.end(), one) -
+                                               entry_item_.begin()));
+  }
+  if (std::find(entries.begin(), entries.end(), entry_item_.size()) != entries.end()) {
+    const Eigen::MatrixXd c = pool_[item].columns;
+    return c.colPivHouseholderQr().solve(evidence_.residual());
+  }
+  const Eigen::VectorXd all = coefficients(problem_, entries);
+  Eigen::VectorXd own = all.segment(first, pool_[item].columns.cols());
+  for (Eigen::Index j = 0; j < own.size(); ++j) own[j] /= pool_[item].columns.col(j).norm();
+  return own;
+}
+
+void Finder::accept() {
+  constexpr int kMostRounds = 12;
+  for (int round = 0; round < kMostRounds; ++round) {
+    bool all_pass = true;
+    for (const std::size_t item : std::vector<std::size_t>(chosen_.rbegin(), chosen_.rend())) {
+      const std::string failed = failed_test(item);
+      if (failed.empty()) continue;
+      pool_.ban(item, failed);
+      all_pass = false;
+      break;
+    }
+    if (all_pass) return;
+    select_again();
+  }
+  chosen_.clear();
+}
+
+double Finder::score_alone(std::size_t item) const {
+  const auto entry = std::find(entry_item_.begin(), entry_item_.end(), item);
+  if (entry == entry_item_.end()) return -1e300;
+  return evaluate_selection(problem_, {}).criterion -
+         evaluate_selection(problem_, {static_cast<std::size_t>(entry - entry_item_.begin())}).criterion;
+}
+
+double Finder::p_value(std::size_t item) const {
+  const Eigen::MatrixXd basis = orthonormal(pool_[item].columns, 1e-6, nullptr);
+  const double gain = (basis.transpose() * evidence_.residual()).squaredNorm();
+  const double left = evidence_.chi_square() - gain;
+  double variance = left / std::max(1.0, evidence_.freedom() - static_cast<double>(basis.cols()));
+  if (evidence_.noise_known()) variance = std::max(1.0, variance);
+  const double unknowns =
+      static_cast<double>(basis.cols()) + static_cast<double>(pool_[item].scored.scanned.size());
+  return std::min(
+      1.0, static_cast<double>(list_.size()) * chi_square_tail(gain / std::max(variance, 1e-300), unknowns));
+}
+
+Rivals Finder::rivals_of(std::size_t item) const {
+  Rivals rivals;
+  std::vector<std::pair<double, std::size_t>> close;
+  const std::vector<std::size_t> others = without(item);
+  for (const std::size_t rival : entry_item_) {
+    if (rival == item || std::find(others.begin(), others.end(), rival) != others.end()) continue;
+    std::vector<std::size_t> set = others;
+    set.push_back(rival);
+    const double distance = evaluate(set).criterion - criterion_;
+    if (distance < kDistance) {
+      // A form that holds this one and more would need evidence of its own: no rival.
+      if (pool_.contains(rival, item)) continue;
+      const Choice &mine = pool_.candidate(item).choice, &other = pool_.candidate(rival).choice;
+      const bool alike =
+          (mine.effect == other.effect && mine.inputs == other.inputs) || pool_.same_kind(rival, item);
+      if (alike && pool_.same_columns(item, rival)) {
+        rivals.same.push_back(rival);
+        continue;
+      }
+    }
+    if (pool_.same_cause(item, rival)) continue;
+    if (distance < rivals.distance) {
+      rivals.distance = distance;
+      rivals.best = rival;
+    }
+    if (distance < kDistance) close.emplace_back(distance, rival);
+  }
+  std::sort(close.begin(), close.end());
+  for (const auto& [distance, rival] : close) rivals.close.push_back(rival);
+  return rivals;
+}
+
+bool Finder::linear_down_to_noise() const {
+  if (!evidence_.noise_known()) return true;
+  const double freedom = std::max(1.0, evidence_.freedom());
+  return chi_square_ / freedom < 1 + kNoiseSigmas * std::sqrt(2 / freedom);
+}
+
+}  // namespace vernier

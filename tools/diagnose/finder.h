@@ -1,0 +1,93 @@
+#pragma once
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/diagnose/enumerate.h"
+#include "tools/diagnose/evidence.h"
+#include "tools/diagnose/pool.h"
+#include "tools/diagnose/scan.h"
+#include "tools/diagnose/selection.h"
+
+namespace vernier {
+
+/// Fall of the criterion that counts as evidence (Kass and Raftery 1995: strong), and the distance a rival
+/// must keep for a name to be given with confidence.
+inline constexpr double kEvidence = 6, kDistance = 6;
+/// chi^2 per degree of freedom up to this many of its own standard deviations above 1 is noise.
+inline constexpr double kNoiseSigmas = 4;
+
+/// What could stand in the place of an accepted effect. All are items of the pool.
+struct Rivals {
+  std::vector<std::size_t> close;  // other causes that fit nearly as well, best first
+  std::vector<std::size_t> same;   // the same columns from the same kinds of quantities
+  double distance = 1e300;         // of the best other cause
+  std::optional<std::size_t> best;
+};
+
+/// Searches the candidates of one fitted machine for the set that explains its residual, and keeps of it what
+/// passes every test of acceptance. All on the linearised problem; nothing is fitted again. tool.
+class Finder {
+ public:
+  /// `fitted`: the machine at its best fit. `progress`: share of the whole diagnosis, and what is being done.
+  Finder(const Machine& fitted, const Measurement& measurement, const std::vector<Effect>& effects,
+         std::size_t most_effects, std::function<void(double, const std::string&)> progress);
+  Finder(const Finder&) = delete;
+  Finder& operator=(const Finder&) = delete;
+
+  /// Catalogue first; products of quantities where what is left is more than noise.
+  void find();
+
+  /// Accepted items of the pool, the one that explains most first.
+  const std::vector<std::size_t>& chosen() const { return chosen_; }
+  const Pool& pool() const { return pool_; }
+  const Evidence& evidence() const { return evidence_; }
+  const std::vector<ScannedCandidate>& candidates() const { return list_; }
+
+  /// Coefficients of an item's columns within the accepted set, in the unit of its unknowns.
+  Eigen::VectorXd own_coefficients(std::size_t item) const;
+  /// Fall of the criterion that an item brings alone.
+  double score_alone(std::size_t item) const;
+  /// Chance of such a gain on noise alone, times the number of candidates looked at.
+  double p_value(std::size_t item) const;
+  /// What fits nearly as well in the place of an accepted item, the others given.
+  Rivals rivals_of(std::size_t item) const;
+  /// Does what the accepted effects leave look like noise, by the linear estimate?
+  bool linear_down_to_noise() const;
+
+ private:
+  void scan_beside(const std::vector<std::size_t>& items, double from, double to, std::size_t first = 0);
+  /// Beyond the catalogue: products of recorded quantities, pairs first, then a third factor on the best.
+  void search_products();
+  /// The products that lower the criterion most, alone.
+  std::vector<Product> best_products();
+  void select_again();
+  /// A form that holds a simpler one is taken only where what it has more is evidence by itself; of forms
+  /// with the same columns the one nearest to the axis.
+  void simplify();
+  void search();
+  /// Where neighbouring readings hang together even after the richest explanation, they count for less.
+  void weigh_correlation();
+  std::vector<std::size_t> without(std::size_t item) const;
+  Selection evaluate(const std::vector<std::size_t>& items) const;
+  /// The first test of acceptance that an accepted item fails; empty where it passes all.
+  std::string failed_test(std::size_t item) const;
+  /// Is the term larger than any machine shows it?
+  std::string too_large(std::size_t item) const;
+  /// Largest value over the fit rows that a linear unknown of 1 gives its term, mm or deg.
+  double typical_size(const Candidate& candidate, std::size_t linear, std::size_t item) const;
+  void accept();
+
+  std::size_t most_effects_;
+  std::function<void(double, const std::string&)> progress_;
+  Evidence evidence_;
+  std::vector<ScannedCandidate> list_;
+  Scanner scanner_;
+  Pool pool_;
+  SelectionProblem problem_;
+  std::vector<std::size_t> entry_item_, chosen_;
+  double criterion_ = 0, chi_square_ = 0, correlation_time_ = 1;
+};
+
+}  // namespace vernier
