@@ -20,10 +20,15 @@ struct DiagnoseArguments {
 
 void print_ladder(std::FILE* out, const Diagnosis& d) {
   fmt::print(out, "{:<58} {:>12} {:>12}\n", "ladder", "fit rows", "check rows");
-  for (const LadderStep& step : d.ladder)
-    fmt::print(out, "  {:<56} {:>12} {:>12}\n",
+  const LadderStep* before = nullptr;
+  for (const LadderStep& step : d.ladder) {
+    const bool rises = before != nullptr && step.check_rms_um && *step.check_rms_um > *before->check_rms_um;
+    fmt::print(out, "  {:<56} {:>12} {:>12}{}\n",
                step.effect.empty() ? "the model as given" : "+ " + step.label,
-               number_or_dash(step.rms_um, "um"), number_or_dash(step.check_rms_um, "um"));
+               number_or_dash(step.rms_um, "um"), number_or_dash(step.check_rms_um, "um"),
+               rises ? "  the check rows do not confirm this step" : "");
+    before = &step;
+  }
   fmt::print(out, "  {:<56} {:>12}\n", "noise", number_or_dash(d.base.noise_um, "um"));
 }
 

@@ -70,14 +70,19 @@ Json diagnosis_json(const Diagnosis& diagnosis, const Machine& machine, const Me
   for (const CandidateFinding& finding : diagnosis.candidates)
     json["candidates"].push_back(candidate_json(finding, machine));
   json["ladder"] = Json::array();
+  std::optional<double> check_before;
   for (const LadderStep& step : diagnosis.ladder) {
     const bool given = step.effect.empty();
-    json["ladder"].push_back({{"effect", given ? Json(nullptr) : Json(step.effect)},
-                              {"add", given ? Json(nullptr) : Json(step.add)},
-                              {"label", given ? "the model as given" : step.label},
-                              {"rms_um", optional(step.rms_um)},
-                              {"check_rms_um", optional(step.check_rms_um)},
-                              {"chi2_per_dof", step.chi_square_per_freedom}});
+    const bool judged = !given && step.check_rms_um && check_before;
+    json["ladder"].push_back(
+        {{"effect", given ? Json(nullptr) : Json(step.effect)},
+         {"add", given ? Json(nullptr) : Json(step.add)},
+         {"label", given ? "the model as given" : step.label},
+         {"rms_um", optional(step.rms_um)},
+         {"check_rms_um", optional(step.check_rms_um)},
+         {"confirmed", judged ? Json(*step.check_rms_um <= *check_before) : Json(nullptr)},
+         {"chi2_per_dof", step.chi_square_per_freedom}});
+    check_before = step.check_rms_um;
   }
   json["runner_up"] = Json(nullptr);
   if (diagnosis.runner_up) {

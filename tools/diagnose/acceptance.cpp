@@ -22,6 +22,17 @@ std::vector<Eigen::Index> rows_of(const std::vector<int>& blocks, int block) {
   return rows;
 }
 
+/// What of the model's free parameters only the rows left out determine (their own set-up), as orthonormal
+/// columns over these rows: it is fitted to them. New columns are not, they must come from the other rows.
+Eigen::MatrixXd fitted_to_block_alone(const Eigen::MatrixXd& model_rows) {
+  const Eigen::MatrixXd normal =
+      Eigen::MatrixXd::Identity(model_rows.cols(), model_rows.cols()) - model_rows.transpose() * model_rows;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(normal);
+  Eigen::Index lost = 0;
+  while (lost < model_rows.cols() && eigen.eigenvalues()[lost] < kDetermined) ++lost;
+  return orthonormal(model_rows * eigen.eigenvectors().leftCols(lost), 1e-6, nullptr);
+}
+
 }  // namespace
 
 HeldOut leave_runs_out(const Evidence& evidence, const Eigen::MatrixXd& columns, Eigen::Index watched_first,
@@ -59,11 +70,8 @@ HeldOut leave_runs_out(const Evidence& evidence, const Eigen::MatrixXd& columns,
     const Eigen::MatrixXd v = eigen.eigenvectors().rightCols(seen);
     const Eigen::VectorXd theta = v * (v.transpose() * moment).cwiseQuotient(eigen.eigenvalues().tail(seen));
     Eigen::VectorXd error = r_out - left_out * theta;
-    if (lost > 0) {
-      const Eigen::MatrixXd local =
-          orthonormal(left_out * eigen.eigenvectors().leftCols(lost), 1e-6, nullptr);
-      error -= local * (local.transpose() * error);
-    }
+    const Eigen::MatrixXd own_of_block = fitted_to_block_alone(left_out.leftCols(q.cols()));
+    error -= own_of_block * (own_of_block.transpose() * error);
     result.chi_square += error.squaredNorm();
     const Eigen::VectorXd part = watched_part(theta);
     if (part.size() > 0)
