@@ -18,6 +18,7 @@ void register_compare(CLI::App& vernier);
 void register_diagnose(CLI::App& vernier);
 void register_add(CLI::App& vernier);
 void register_effects(CLI::App& vernier);
+void register_plan(CLI::App& vernier);
 void register_improve(CLI::App& vernier);
 void register_derive(CLI::App& vernier);
 void register_compile(CLI::App& vernier);

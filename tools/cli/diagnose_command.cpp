@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "tools/cli/command.h"
@@ -7,6 +8,7 @@
 #include "tools/cli/results.h"
 #include "tools/diagnose/diagnosis.h"
 #include "tools/model/files.h"
+#include "tools/plan/plan.h"
 #include "tools/report/report.h"
 
 namespace vernier {
@@ -51,6 +53,21 @@ void print_candidates(std::FILE* out, const Diagnosis& d) {
   }
 }
 
+/// What to measure next where the first candidate and one that it is confounded with explain the rows alike.
+std::vector<std::string> plan_for(const std::string& text, const Machine& machine, const Measurement& m,
+                                  const Diagnosis& d, const std::vector<Effect>& effects) {
+  if (d.verdict != Verdict::kAmbiguous || d.candidates.empty()) return {};
+  const CandidateFinding& first = d.candidates.front();
+  const std::string& id = first.candidate.choice.effect->id;
+  for (const CandidateFinding& other : d.candidates) {
+    const auto& names = other.confounded_with;
+    if (&other == &first || std::find(names.begin(), names.end(), id) == names.end()) continue;
+    return next_measurement(text, machine, m, first.add, other.add, effects);
+  }
+  if (first.confounded_with.empty()) return {};
+  return next_measurement(text, machine, m, first.add, first.confounded_with.front(), effects);
+}
+
 void run_diagnose(const DiagnoseArguments& arguments) {
   const std::string text = read_file(arguments.machine);
   const Machine machine = parse_machine(text, arguments.machine);
@@ -60,7 +77,8 @@ void run_diagnose(const DiagnoseArguments& arguments) {
   options.most_effects = arguments.most;
   Progress progress("diagnose");
   options.progress = [&](double fraction, const std::string& step) { progress.update(fraction, step); };
-  const Diagnosis diagnosis = diagnose(text, machine, m, options);
+  Diagnosis diagnosis = diagnose(text, machine, m, options);
+  diagnosis.next_measurement = plan_for(text, machine, m, diagnosis, options.effects);
   const nlohmann::ordered_json json = diagnosis_json(diagnosis, machine, m);
   if (!arguments.output.empty()) {
     nlohmann::ordered_json page = json;

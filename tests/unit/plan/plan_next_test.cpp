@@ -1,0 +1,73 @@
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <iostream>
+
+#include "tests/unit/plan/confusable.h"
+#include "tools/diagnose/diagnosis.h"
+#include "tools/plan/offers.h"
+
+namespace vernier::plan_test {
+namespace {
+
+constexpr std::uint64_t kSeed = 7001;
+
+/// Surveys per pair and truth; VERNIER_PLAN_SURVEYS asks for more.
+int surveys() {
+  const char* wanted = std::getenv("VERNIER_PLAN_SURVEYS");
+  constexpr int kUsual = 1;
+  return wanted != nullptr ? std::max(1, std::atoi(wanted)) : kUsual;
+}
+
+/// Does a diagnosis of old and new rows give the right name with confidence?
+bool named(const Machine& machine, const Measurement& old, const Measurement& next,
+           const std::string& effect) {
+  const DiagnoseOptions options;  // holds the effects that the candidates point to
+  const Diagnosis d = diagnose(model_text(), machine, append_rows(old, next), options);
+  const bool right =
+      d.verdict == Verdict::kMissingEffect && d.candidates.front().candidate.choice.effect->id == effect;
+  if (!right)
+    std::cout << "    " << verdict_name(d.verdict) << " "
+              << (d.candidates.empty() ? "" : d.candidates.front().candidate.label) << "\n";
+  return right;
+}
+
+class PlanNext : public testing::TestWithParam<int> {};
+
+TEST_P(PlanNext, RowsLetADiagnosisNameTheRightOneOfTwo) {
+  const Confusable pair = confusable_pairs()[static_cast<std::size_t>(GetParam())];
+  const Machine machine = parse_machine(model_text(), "model.xml");
+  int right = 0, by_chance = 0, all = 0, points = 0;
+  for (int survey_number = 0; survey_number < surveys(); ++survey_number)
+    for (int truth = 0; truth < 2; ++truth) {
+      // GIVEN a survey that cannot tell the two
+      const std::uint64_t seed = kSeed + 10 * static_cast<std::uint64_t>(survey_number);
+      const Measurement old = survey(pair, truth, machine, seed);
+      // WHEN the next rows are planned and measured on the true machine
+      const Plan plan = plan_next(model_text(), machine, old, pair.by_id ? pair.effects[0] : pair.adds[0],
+                                  pair.by_id ? pair.effects[1] : pair.adds[1], built_in_effects());
+      std::cout << "seed " << seed << ", true: " << pair.effects[truth] << ". " << plan.sentence << "\n"
+                << fmt::format("  non-centrality {:.3g} -> {:.3g}, needed {:.3g}\n", plan.worse().now,
+                               plan.worse().planned, plan.worse().needed);
+      ASSERT_FALSE(plan.told_already);
+      ASSERT_TRUE(plan.separable);
+      Measurement next = plan.rows;
+      read(next, machine, pair, truth, seed + 1);
+      Measurement drawn = random_rows(plan, old, seed + 2);
+      read(drawn, machine, pair, truth, seed + 3);
+      // THEN a diagnosis of all rows names it
+      right += named(machine, old, next, pair.effects[truth]) ? 1 : 0;
+      by_chance += named(machine, old, drawn, pair.effects[truth]) ? 1 : 0;
+      points += static_cast<int>(plan.rows.rows());
+      ++all;
+    }
+  std::cout << fmt::format("{}: planned {}/{}, random rows {}/{}, {:.1f} points\n", pair.name, right, all,
+                           by_chance, all, points / static_cast<double>(all));
+  EXPECT_GE(right, 0.95 * all);
+}
+
+INSTANTIATE_TEST_SUITE_P(Pairs, PlanNext, testing::Range(0, 4));
+
+}  // namespace
+}  // namespace vernier::plan_test

@@ -1,0 +1,87 @@
+#include <gtest/gtest.h>
+
+#include <regex>
+
+#include "tests/unit/plan/confusable.h"
+#include "tools/plan/sheets.h"
+
+namespace vernier::plan_test {
+namespace {
+
+Plan plan_of_lag() {
+  const Machine machine = parse_machine(model_text(), "model.xml");
+  const Confusable pair = confusable_pairs()[0];
+  const Measurement old = survey(pair, 0, machine, 5);
+  return plan_next(model_text(), machine, old, pair.adds[0], pair.adds[1], built_in_effects());
+}
+
+TEST(PlanCsv, ReadsBackAsTheSameRowsOnceReadingsAreIn) {
+  const Plan plan = plan_of_lag();
+  // Readings of 0 where the person would write his own.
+  const std::string csv = std::regex_replace(plan_csv(plan), std::regex(",,,,"), ",0,0,0,");
+  const Measurement back = parse_measurement(csv, "plan.csv", plan.machine);
+  ASSERT_EQ(back.rows(), plan.rows.rows());
+  EXPECT_EQ(back.observations.size(), plan.rows.observations.size());
+  for (std::size_t a = 0; a < 3; ++a) {
+    // Nine digits are written.
+    EXPECT_TRUE(back.states.axis[a].isApprox(plan.rows.states.axis[a], 1e-8));
+    EXPECT_TRUE((back.states.direction[a] == plan.rows.states.direction[a]).all());
+    EXPECT_TRUE(back.states.velocity[a].isApprox(plan.rows.states.velocity[a], 1e-8));
+  }
+}
+
+TEST(PlanGcode, ApproachesEveryPointFromTheSideOfItsSense) {
+  const Plan plan = plan_of_lag();
+  const std::string text = plan_gcode(plan);
+  const std::regex move(R"(G1 X(\S+) Y(\S+) Z(\S+) F(\S+)( ; point (\d+))?.*)");
+  std::array<double, 3> before{};
+  std::size_t seen = 0;
+  for (std::sregex_iterator it(text.begin(), text.end(), move), end; it != end; ++it) {
+    const std::array<double, 3> now = {std::stod((*it)[1]), std::stod((*it)[2]), std::stod((*it)[3])};
+    // Inside the declared ranges.
+    EXPECT_TRUE(now[0] >= 0 && now[0] <= 600 && now[1] >= 0 && now[1] <= 400 && now[2] >= -300 &&
+                now[2] <= 0);
+    if ((*it)[6].matched) {
+      const auto row = static_cast<Eigen::Index>(std::stoul((*it)[6]) - 1);
+      const double sense = plan.rows.states.direction[0][row];
+      EXPECT_GT((now[0] - before[0]) * sense, 0) << it->str();
+      EXPECT_NEAR(std::stod((*it)[4]), plan.rows.states.feed[row], 1e-6);
+      ++seen;
+    }
+    before = now;
+  }
+  EXPECT_EQ(seen, plan.rows.rows());
+}
+
+TEST(PlanNextOne, SaysSoWhereOnlyADecoyWouldSeparate) {
+  // GIVEN a logged column that nobody can set, constant beside a scale error's column
+  const Machine machine = parse_machine(model_text(), "model.xml");
+  Confusable pair = confusable_pairs()[1];
+  pair.header = "X[mm],Y[mm],Z[mm],dirX,t[s],V_supply[V]";
+  pair.adds[1] = "custom:axis=X,input=V_supply,branch=tool,transform=2,dof=X,unit=V,term=k*X*V_supply";
+  const Measurement old = survey(pair, 0, machine, 11);
+  // WHEN the two are to be separated
+  const Plan plan = plan_next(model_text(), machine, old, pair.adds[0], pair.adds[1], built_in_effects());
+  // THEN no row does, and the column is named
+  EXPECT_FALSE(plan.separable);
+  EXPECT_NE(plan.sentence.find("cannot be separated by"), std::string::npos) << plan.sentence;
+  EXPECT_NE(plan.sentence.find("V_supply is logged"), std::string::npos) << plan.sentence;
+}
+
+TEST(PlanNextOne, TakesTheWishedNumberOfPoints) {
+  const Machine machine = parse_machine(model_text(), "model.xml");
+  const Confusable pair = confusable_pairs()[0];
+  const Measurement old = survey(pair, 1, machine, 12);
+  PlanOptions options;
+  options.points = 9;
+  const Plan nine =
+      plan_next(model_text(), machine, old, pair.adds[0], pair.adds[1], built_in_effects(), options);
+  EXPECT_EQ(nine.rows.rows(), 9U);
+  options.points = 3;
+  const Plan three =
+      plan_next(model_text(), machine, old, pair.adds[0], pair.adds[1], built_in_effects(), options);
+  EXPECT_LT(three.worse().planned, nine.worse().planned);
+}
+
+}  // namespace
+}  // namespace vernier::plan_test

@@ -1,0 +1,29 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tools/model/error.h"
+#include "tools/plan/rival.h"
+
+namespace vernier {
+namespace {
+
+using testing::ElementsAre;
+
+TEST(SplitRivals, CutsOnlyWhereAnEffectBegins) {
+  const std::vector<Effect>& all = built_in_effects();
+  EXPECT_THAT(split_rivals({"backlash,servo-lag"}, all), ElementsAre("backlash", "servo-lag"));
+  EXPECT_THAT(split_rivals({"backlash:axis=X,dof=X,servo-lag:axis=X,form=plain"}, all),
+              ElementsAre("backlash:axis=X,dof=X", "servo-lag:axis=X,form=plain"));
+  EXPECT_THAT(split_rivals({"backlash:axis=X,dof=X", "servo-lag"}, all),
+              ElementsAre("backlash:axis=X,dof=X", "servo-lag"));
+}
+
+TEST(SplitRivals, WantsTwo) {
+  const std::vector<Effect>& all = built_in_effects();
+  EXPECT_THROW(split_rivals({"backlash"}, all), InputError);
+  EXPECT_THROW(split_rivals({"backlash,servo-lag,creep"}, all), InputError);
+  EXPECT_THROW(split_rivals({"backlash,no-such-effect"}, all), InputError);
+}
+
+}  // namespace
+}  // namespace vernier

@@ -1,0 +1,84 @@
+#include "tools/plan/discrimination.h"
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <numbers>
+
+namespace vernier {
+namespace {
+
+/// Of a column's squared length over all rows: directions that the rows see less than this are free.
+constexpr double kRidge = 1e-10;
+
+}  // namespace
+
+Discrimination::Discrimination(Eigen::MatrixXd jacobian, Eigen::VectorXd difference,
+                               std::vector<Eigen::Index> first, std::size_t existing)
+    : jacobian_(std::move(jacobian)),
+      difference_(std::move(difference)),
+      first_(std::move(first)),
+      existing_(existing) {
+  for (Eigen::Index j = 0; j < jacobian_.cols(); ++j)
+    if (const double length = jacobian_.col(j).norm(); length > 0) jacobian_.col(j) /= length;
+  const Eigen::Index count = first_[existing_];
+  const auto old = jacobian_.topRows(count);
+  information_ = old.transpose() * old;
+  information_.diagonal().array() += kRidge;
+  moment_ = old.transpose() * difference_.head(count);
+  square_ = difference_.head(count).squaredNorm();
+  assume({});
+}
+
+void Discrimination::add_row(std::size_t row, Eigen::MatrixXd& information, Eigen::VectorXd& moment,
+                             double& square) const {
+  const auto j = jacobian_.middleRows(first_[row], first_[row + 1] - first_[row]);
+  const auto d = difference_.segment(first_[row], j.rows());
+  information.noalias() += j.transpose() * j;
+  moment.noalias() += j.transpose() * d;
+  square += d.squaredNorm();
+}
+
+void Discrimination::assume(const std::vector<std::size_t>& chosen) {
+  Eigen::MatrixXd information = information_;
+  Eigen::VectorXd moment = moment_;
+  double square = square_;
+  for (const std::size_t offer : chosen) add_row(existing_ + offer, information, moment, square);
+  const Eigen::LDLT<Eigen::MatrixXd> factor(information);
+  inverse_ = factor.solve(Eigen::MatrixXd::Identity(information.rows(), information.cols()));
+  solution_ = factor.solve(moment);
+  lambda_ = std::max(0.0, square - moment.dot(solution_));
+}
+
+Eigen::VectorXd Discrimination::gains() const {
+  const Eigen::Index from = first_[existing_], count = jacobian_.rows() - from;
+  const auto offered = jacobian_.bottomRows(count);
+  const Eigen::MatrixXd spread = offered * inverse_;
+  const Eigen::VectorXd rest = difference_.tail(count) - offered * solution_;
+  Eigen::VectorXd gains(static_cast<Eigen::Index>(offers()));
+  for (std::size_t offer = 0; offer < offers(); ++offer) {
+    const Eigen::Index at = first_[existing_ + offer] - from;
+    const Eigen::Index size = first_[existing_ + offer + 1] - from - at;
+    Eigen::MatrixXd covariance = spread.middleRows(at, size) * offered.middleRows(at, size).transpose();
+    covariance.diagonal().array() += 1;
+    const Eigen::VectorXd r = rest.segment(at, size);
+    gains[static_cast<Eigen::Index>(offer)] = std::max(0.0, r.dot(covariance.llt().solve(r)));
+  }
+  return gains;
+}
+
+double normal_quantile(double p) {
+  double low = -40, high = 40;
+  for (int i = 0; i < 100; ++i) {
+    const double middle = 0.5 * (low + high);
+    (0.5 * std::erfc(-middle / std::numbers::sqrt2) < p ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+double needed_non_centrality(double confidence, double lead) {
+  const double z = normal_quantile(confidence);
+  const double root = z + std::sqrt(z * z + lead);
+  return root * root;
+}
+
+}  // namespace vernier

@@ -1,0 +1,46 @@
+#pragma once
+#include <Eigen/Core>
+#include <vector>
+
+namespace vernier {
+
+/// How well rows tell two rivals apart when one of them is true and the other one, with all free parameters
+/// of the model, is fitted to the rows. The non-centrality of the rest's chi^2 is
+///   lambda = min over theta of |d - J theta|^2 = d'd - (J'd)' (J'J)^-1 (J'd),
+/// d the difference between the two predictions and J the wrong model's Jacobian, both weighted by 1/u
+/// (T-optimal discrimination: Atkinson and Fedorov, Biometrika 62 (1975) 57-70, eq. 2.3).
+class Discrimination {
+ public:
+  /// `jacobian`, `difference`: weighted, one row per observation. `first`: the first observation of each row
+  /// of the measurement, and one past the last. The first `existing` rows count; the others are offers. tool.
+  Discrimination(Eigen::MatrixXd jacobian, Eigen::VectorXd difference, std::vector<Eigen::Index> first,
+                 std::size_t existing);
+
+  std::size_t offers() const { return first_.size() - 1 - existing_; }
+  /// Takes these offers (with repeats) into account beside the existing rows; costs a factorisation.
+  void assume(const std::vector<std::size_t>& chosen);
+  double non_centrality() const { return lambda_; }
+  /// What each offer would add: r' (I + J_row (J'J)^-1 J_row')^-1 r, r its difference after the refit.
+  Eigen::VectorXd gains() const;
+
+ private:
+  void add_row(std::size_t row, Eigen::MatrixXd& information, Eigen::VectorXd& moment, double& square) const;
+
+  Eigen::MatrixXd jacobian_;  // columns of length 1
+  Eigen::VectorXd difference_;
+  std::vector<Eigen::Index> first_;
+  std::size_t existing_;
+  Eigen::MatrixXd information_, inverse_;  // of the existing rows; of all assumed
+  Eigen::VectorXd moment_, solution_;
+  double square_ = 0, lambda_ = 0;
+};
+
+/// Non-centrality at which a chi^2 difference falls on the right side with this confidence: the difference of
+/// the two fits is distributed as lambda + 2 sqrt(lambda) z, and it must exceed `lead`. Hence
+/// sqrt(lambda) = z + sqrt(z^2 + lead). confidence: 0.5 to 1, both exclusive. tool.
+double needed_non_centrality(double confidence, double lead);
+
+/// Quantile of the standard normal distribution (bisection of erfc). p: 0 to 1, exclusive.
+double normal_quantile(double p);
+
+}  // namespace vernier

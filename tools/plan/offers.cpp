@@ -1,0 +1,307 @@
+#include "tools/plan/offers.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "tools/diagnose/enumerate.h"
+
+namespace vernier {
+namespace {
+
+constexpr double kTemperatureStep = 5;  // K, what a shop can do to a machine without harm
+constexpr double kLoadFactor = 1.5;     // beyond the largest recorded load
+constexpr double kEdge = 0.02;          // of the range, kept free for the approach
+/// Multiples of the recorded speed, and the travel since the reversal as a share of the range.
+constexpr std::array<double, 3> kSpeeds = {0.5, 1, 2};
+constexpr std::array<double, 3> kSince = {0.002, 0.02, 0.2};
+
+/// Points of the unit interval, one sequence per dimension, evenly spread together: fractions of multiples of
+/// square roots of primes (Kronecker; Niederreiter 1992, ch. 3).
+class Spread {
+ public:
+  explicit Spread(std::size_t index) : index_(static_cast<double>(index + 1)) {}
+  double next() {
+    const double root = std::sqrt(static_cast<double>(next_prime()));
+    return std::fmod(index_ * root, 1.0);
+  }
+  template <class List>
+  auto pick(const List& list) {
+    return list[std::min(list.size() - 1,
+                         static_cast<std::size_t>(next() * static_cast<double>(list.size())))];
+  }
+
+ private:
+  int next_prime() {
+    for (++prime_;; ++prime_) {
+      bool prime = true;
+      for (int d = 2; d * d <= prime_ && prime; ++d) prime = prime_ % d != 0;
+      if (prime) return prime_;
+    }
+  }
+  double index_;
+  int prime_ = 1;
+};
+
+Column picked(const Column& column, const std::vector<std::size_t>& which) {
+  Column result(static_cast<Eigen::Index>(which.size()));
+  for (std::size_t i = 0; i < which.size(); ++i)
+    result[static_cast<Eigen::Index>(i)] = column[static_cast<Eigen::Index>(which[i])];
+  return result;
+}
+
+template <class T>
+std::vector<T> picked(const std::vector<T>& list, const std::vector<std::size_t>& which) {
+  std::vector<T> result;
+  for (const std::size_t i : which) result.push_back(list[i]);
+  return result;
+}
+
+Eigen::Matrix3Xd picked(const Eigen::Matrix3Xd& points, const std::vector<std::size_t>& which) {
+  Eigen::Matrix3Xd result(3, points.cols() == 0 ? 0 : static_cast<Eigen::Index>(which.size()));
+  for (Eigen::Index i = 0; i < result.cols(); ++i)
+    result.col(i) = points.col(static_cast<Eigen::Index>(which[static_cast<std::size_t>(i)]));
+  return result;
+}
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+std::vector<double> values_of(const Column& column) { return {column.begin(), column.end()}; }
+
+bool moves(const States& states, std::size_t row) {
+  for (const Column& v : states.velocity)
+    if (v[static_cast<Eigen::Index>(row)] != 0) return true;
+  return false;
+}
+
+/// Draws the offered rows one by one into the columns.
+class Offerer {
+ public:
+  Offerer(const Machine& machine, const Measurement& existing, const Drivers& drivers, std::size_t count)
+      : machine_(machine), old_(existing), drivers_(drivers), count_(count) {}
+
+  Offers offer() {
+    find_ranges();
+    choose_levels();
+    append_templates();
+    for (std::size_t i = 0; i < count_; ++i) draw(i);
+    return std::move(result_);
+  }
+
+ private:
+  bool driven(SymbolKind kind) const { return drivers_.kinds.contains(kind); }
+  bool any_recorded(const char* prefix) const {
+    return std::any_of(machine_.axes.begin(), machine_.axes.end(),
+                       [&](const Axis& axis) { return old_.has_recorded(prefix + axis.name); });
+  }
+
+  void find_ranges() {
+    for (std::size_t a = 0; a < machine_.axes.size(); ++a) {
+      const Column& q = old_.states.axis[a];
+      double low = machine_.axes[a].min.value_or(q.minCoeff());
+      double high = machine_.axes[a].max.value_or(q.maxCoeff());
+      const double edge = kEdge * (high - low);
+      low_.push_back(low + edge);
+      high_.push_back(high - edge);
+    }
+  }
+
+  /// Levels of a column: its range, and beyond it what can be set; the middle alone where nobody uses it.
+  std::vector<double> levels(const Column& column, const Input& input) {
+    const double middle = median(values_of(column));
+    if (!drivers_.inputs.contains(input.name)) return {middle};
+    const double low = column.minCoeff(), high = column.maxCoeff();
+    switch (class_of_input(input)) {
+      case InputClass::kTemperature:
+        return {low - kTemperatureStep, low, high, high + kTemperatureStep};
+      case InputClass::kLoad:
+        return {0, low, high, std::max(kLoadFactor * high, high)};
+      default:
+        result_.not_settable.push_back(input.name);
+        return {middle};
+    }
+  }
+
+  void choose_levels() {
+    for (std::size_t i = 0; i < machine_.inputs.size(); ++i)
+      input_levels_.push_back(levels(old_.states.input[i], machine_.inputs[i]));
+    for (const CandidateInput& candidate : old_.candidates) {
+      std::vector<double> known;
+      for (const double value : candidate.value)
+        if (std::isfinite(value)) known.push_back(value);
+      const Column column = Eigen::Map<const Column>(known.data(), static_cast<Eigen::Index>(known.size()));
+      Input input;
+      input.name = candidate.name;
+      input.unit = candidate.unit;
+      candidate_levels_.push_back(known.empty() ? std::vector<double>{0} : levels(column, input));
+    }
+    const double begin = old_.states.time.minCoeff(), end = old_.states.time.maxCoeff();
+    time_levels_ = {end + step_of_time()};
+    if (driven(SymbolKind::kTime))
+      for (const double share : {0.5, 1.0}) time_levels_.push_back(end + share * (end - begin));
+    bool moving = false;
+    for (std::size_t row = 0; row < old_.rows(); ++row) moving = moving || moves(old_.states, row);
+    speeds_ = moving ? std::vector<double>(kSpeeds.begin(), kSpeeds.end()) : std::vector<double>{1};
+    senses_ = any_recorded("dir") || driven(SymbolKind::kDirection);
+    since_ = any_recorded("since") || driven(SymbolKind::kSince);
+  }
+
+  double step_of_time() const {
+    const double span = old_.states.time.maxCoeff() - old_.states.time.minCoeff();
+    return span / std::max(1.0, static_cast<double>(old_.rows()) - 1);
+  }
+
+  void append_templates() {
+    std::vector<std::size_t> which(old_.rows());
+    for (std::size_t row = 0; row < which.size(); ++row) which[row] = row;
+    result_.existing = old_.rows();
+    for (std::size_t i = 0; i < count_; ++i)
+      which.push_back(std::min(
+          old_.rows() - 1, static_cast<std::size_t>(Spread(i).next() * static_cast<double>(old_.rows()))));
+    Measurement& rows = result_.rows = take_rows(old_, which);
+    const double u = median(values_of(old_.uncertainty));
+    for (std::size_t row = result_.existing; row < rows.rows(); ++row) {
+      rows.uncertainty[static_cast<Eigen::Index>(row)] = u;
+      rows.states.run[row] = rows.states.run_names.size();
+      rows.states.run_names.emplace_back(kPlanRun);
+      rows.states.visit[static_cast<Eigen::Index>(row)] = 0;
+    }
+    fixed_pose_.assign(rows.rows(), 0);
+    for (const Observation& o : rows.observations)
+      if (o.kind == ObservationKind::kLength || o.kind == ObservationKind::kD) fixed_pose_[o.row] = 1;
+  }
+
+  void draw(std::size_t offer) {
+    const std::size_t row = result_.existing + offer;
+    const auto at = static_cast<Eigen::Index>(row);
+    Spread spread(offer);
+    spread.next();  // has chosen the template
+    draw_motion(at, spread);
+    // Half of the poses are recorded ones: what an arm or an instrument reaches is not all of the ranges.
+    const bool recorded_pose = spread.next() < 0.5;
+    for (std::size_t a = 0; a < machine_.axes.size(); ++a) {
+      const double place = spread.next();
+      if (fixed_pose_[row] != 0 || recorded_pose) continue;
+      const double inside = std::clamp((place - 0.3) / 0.4, 0.0, 1.0);
+      result_.rows.states.axis[a][at] = low_[a] + inside * (high_[a] - low_[a]);
+    }
+    result_.rows.states.time[at] = spread.pick(time_levels_);
+    for (std::size_t i = 0; i < input_levels_.size(); ++i)
+      result_.rows.states.input[i][at] = spread.pick(input_levels_[i]);
+    for (std::size_t i = 0; i < candidate_levels_.size(); ++i)
+      result_.rows.candidates[i].value[at] = spread.pick(candidate_levels_[i]);
+  }
+
+  /// The template's motion, at another speed and in either sense: the same path, so that accelerations go
+  /// with the square.
+  void draw_motion(Eigen::Index at, Spread& spread) {
+    States& s = result_.rows.states;
+    const double speed = spread.pick(speeds_), sense = spread.next() < 0.5 ? -1 : 1;
+    const double since = spread.pick(kSince);
+    const bool alike = spread.next() < 0.5;
+    s.feed[at] *= speed;
+    for (std::size_t a = 0; a < machine_.axes.size(); ++a) {
+      s.velocity[a][at] *= speed * sense;
+      s.acceleration[a][at] *= speed * speed;
+      const double own = alike ? sense : spread.next() < 0.5 ? -1 : 1;
+      if (senses_) s.direction[a][at] = s.velocity[a][at] != 0 ? (s.velocity[a][at] > 0 ? 1 : -1) : own;
+      if (since_) s.since[a][at] = since * (high_[a] - low_[a]);
+    }
+  }
+
+  const Machine& machine_;
+  const Measurement& old_;
+  const Drivers& drivers_;
+  std::size_t count_;
+  Offers result_;
+  std::vector<double> low_, high_, speeds_, time_levels_;
+  std::vector<std::vector<double>> input_levels_, candidate_levels_;
+  std::vector<char> fixed_pose_;
+  bool senses_ = false, since_ = false;
+};
+
+}  // namespace
+
+Measurement take_rows(const Measurement& all, const std::vector<std::size_t>& which) {
+  Measurement result;
+  result.files = all.files;
+  result.states = select_states(all.states, which);
+  std::vector<std::vector<Observation>> of_row(all.rows());
+  for (const Observation& o : all.observations) of_row[o.row].push_back(o);
+  for (std::size_t i = 0; i < which.size(); ++i)
+    for (Observation o : of_row[which[i]]) {
+      o.row = i;
+      result.observations.push_back(o);
+    }
+  for (const CandidateInput& candidate : all.candidates)
+    result.candidates.push_back({candidate.name, candidate.unit, picked(candidate.value, which)});
+  result.uncertainty = picked(all.uncertainty, which);
+  result.check = picked(all.check, which);
+  result.file = picked(all.file, which);
+  result.line = picked(all.line, which);
+  result.centre = picked(all.centre, which);
+  result.nominal_point = picked(all.nominal_point, which);
+  result.recorded = all.recorded;
+  return result;
+}
+
+Measurement append_rows(const Measurement& first, const Measurement& second) {
+  std::vector<std::size_t> which(first.rows() + second.rows(), 0);
+  for (std::size_t row = 0; row < first.rows(); ++row) which[row] = row;
+  Measurement all = take_rows(first, which);
+  std::erase_if(all.observations, [&](const Observation& o) { return o.row >= first.rows(); });
+  const auto from = static_cast<Eigen::Index>(first.rows()), count = static_cast<Eigen::Index>(second.rows());
+  const auto put = [&](Column& to, const Column& what) { to.segment(from, count) = what; };
+  States& s = all.states;
+  const States& t = second.states;
+  for (auto list : {&States::axis, &States::velocity, &States::acceleration, &States::direction,
+                    &States::since, &States::input})
+    for (std::size_t i = 0; i < (s.*list).size(); ++i) put((s.*list)[i], (t.*list)[i]);
+  for (auto column : {&States::feed, &States::curvature, &States::time, &States::visit})
+    put(s.*column, t.*column);
+  for (std::size_t i = 0; i < s.normal.size(); ++i) put(s.normal[i], t.normal[i]);
+  for (std::size_t i = 0; i < all.candidates.size(); ++i)
+    put(all.candidates[i].value, second.candidates[i].value);
+  put(all.uncertainty, second.uncertainty);
+  if (second.centre.cols() > 0) all.centre.rightCols(count) = second.centre;
+  if (second.nominal_point.cols() > 0) all.nominal_point.rightCols(count) = second.nominal_point;
+  for (std::size_t row = 0; row < second.rows(); ++row) {
+    s.run[first.rows() + row] = s.run_names.size() + t.run[row];
+    all.check[first.rows() + row] = second.check[row];
+  }
+  s.run_names.insert(s.run_names.end(), t.run_names.begin(), t.run_names.end());
+  for (Observation o : second.observations) {
+    o.row += first.rows();
+    all.observations.push_back(o);
+  }
+  return all;
+}
+
+Measurement rows_to_build_on(const Measurement& all, const Drivers& drivers, std::size_t most) {
+  std::vector<char> read(all.rows(), 0);
+  for (const Observation& o : all.observations) read[o.row] = 1;
+  std::vector<std::size_t> keep;
+  for (std::size_t row = 0; row < all.rows(); ++row) {
+    bool known = all.check[row] == 0 && read[row] != 0;
+    for (const CandidateInput& candidate : all.candidates)
+      if (drivers.inputs.contains(candidate.name))
+        known = known && std::isfinite(candidate.value[static_cast<Eigen::Index>(row)]);
+    if (known) keep.push_back(row);
+  }
+  const std::size_t stride = (keep.size() + most - 1) / std::max<std::size_t>(1, most);
+  std::vector<std::size_t> thinned;
+  for (std::size_t i = 0; i < keep.size(); i += std::max<std::size_t>(1, stride)) thinned.push_back(keep[i]);
+  return take_rows(all, thinned);
+}
+
+Offers offer_rows(const Machine& machine, const Measurement& existing, const Drivers& drivers,
+                  std::size_t count) {
+  return Offerer(machine, existing, drivers, count).offer();
+}
+
+}  // namespace vernier

@@ -1,0 +1,224 @@
+#include "tools/plan/plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tools/diagnose/diagnosis.h"
+#include "tools/fit/fit.h"
+#include "tools/fit/statistics.h"
+#include "tools/model/prediction.h"
+#include "tools/plan/choice.h"
+#include "tools/plan/offers.h"
+#include "tools/plan/sentence.h"
+
+namespace vernier {
+namespace {
+
+/// The distance that a diagnosis asks of a rival before it gives a name with confidence.
+constexpr double kLead = 6;
+/// One reading must not decide.
+constexpr std::size_t kLeastPoints = 4;
+constexpr std::size_t kMostExisting = 1500;
+/// Time for a part to take on a new temperature before it is measured again, s.
+constexpr double kSoakS = 3600;
+
+/// First observation of each row, and one past the last.
+std::vector<Eigen::Index> first_observations(const Measurement& m) {
+  std::vector<Eigen::Index> first(m.rows() + 1, 0);
+  for (const Observation& o : m.observations) ++first[o.row + 1];
+  for (std::size_t row = 0; row < m.rows(); ++row) first[row + 1] += first[row];
+  return first;
+}
+
+class Planner {
+ public:
+  Planner(const std::string& text, const Machine& machine, const Measurement& measurement,
+          const std::string& a, const std::string& b, const std::vector<Effect>& effects,
+          const PlanOptions& options)
+      : options_(options), model_(fit_model(text, machine, measurement)) {
+    plan_.a = fit_rival(model_, measurement, a, effects);
+    plan_.b = fit_rival(model_, measurement, b, effects);
+    plan_.machine = model_.machine;
+    free_shift_of_plan(plan_.a.machine);
+    free_shift_of_plan(plan_.b.machine);
+    drivers_ = drivers_of(std::vector<const FittedRival*>{&plan_.a, &plan_.b});
+    existing_ = rows_to_build_on(measurement, drivers_, kMostExisting);
+    spread_ = spread();
+  }
+
+  Plan plan() {
+    Offers offers = offer_rows(model_.machine, existing_, drivers_, options_.offers);
+    plan_.not_settable = offers.not_settable;
+    TwoSides sides = sides_of(offers.rows, offers.existing);
+    plan_.a_true.needed = sides.needed[0];
+    plan_.b_true.needed = sides.needed[1];
+    note(sides, &Separation::now);
+    plan_.told_already = sides.reached() >= 1;
+    if (!plan_.told_already || options_.points) choose(offers, sides);
+    plan_.sentence = Explanation(plan_, existing_).sentence();
+    return std::move(plan_);
+  }
+
+ private:
+  /// Where every run has a BaseShift of its own, so will the new one.
+  static void free_shift_of_plan(Machine& machine) {
+    bool own = false, plain = false;
+    for (const BaseShift& shift : machine.base_shifts) {
+      own = own || (shift.run && !shift.hidden);
+      plain = plain || !shift.run;
+    }
+    if (!own || plain) return;
+    BaseShift shift;
+    shift.run = kPlanRun;
+    machine.base_shifts.push_back(shift);
+  }
+
+  Measurement bound_to(const Measurement& rows, const FittedRival& rival) const {
+    return rebind(rows, model_.machine, rival.machine);
+  }
+
+  /// What a weight of 1/u must be divided by: the spread of the better rival's residual, not below 1 where u
+  /// is given.
+  double spread() const {
+    double least = 1e300;
+    for (const FittedRival* rival : {&plan_.a, &plan_.b}) {
+      const Measurement bound = bound_to(existing_, *rival);
+      const Eigen::VectorXd r = residuals(rival->machine, bound).cwiseProduct(fit_weights(bound));
+      const double freedom = std::max<double>(
+          1, static_cast<double>(r.size()) - static_cast<double>(parameters_of(*rival).size()));
+      least = std::min(least, std::sqrt(r.squaredNorm() / freedom));
+    }
+    if (has_uncertainty(existing_)) return std::max(1.0, least);
+    return std::max(least, 1e-9);  // exact readings: a picometre
+  }
+
+  ParameterSet parameters_of(const FittedRival& rival) const {
+    std::vector<std::string> runs = existing_.states.run_names;
+    runs.emplace_back(kPlanRun);
+    return {rival.machine, runs};
+  }
+
+  /// Rows [0, existing) count, the others are offers.
+  TwoSides sides_of(const Measurement& rows, std::size_t existing) const {
+    const Measurement of_a = bound_to(rows, plan_.a), of_b = bound_to(rows, plan_.b);
+    const Linearisation a = linearise(plan_.a.machine, of_a, parameters_of(plan_.a));
+    const Linearisation b = linearise(plan_.b.machine, of_b, parameters_of(plan_.b));
+    const Eigen::VectorXd weights = fit_weights(of_a) / spread_;
+    const Eigen::VectorXd d = weights.cwiseProduct(a.predicted - b.predicted);
+    const std::vector<Eigen::Index> first = first_observations(rows);
+    const auto weighted = [&](const Linearisation& l) -> Eigen::MatrixXd {
+      return weights.asDiagonal() * Eigen::MatrixXd(l.jacobian);
+    };
+    const double more = (static_cast<double>(plan_.a.candidate.unknowns.size()) -
+                         static_cast<double>(plan_.b.candidate.unknowns.size())) *
+                        std::log(static_cast<double>(first[existing_.rows()]));
+    return {
+        {Discrimination(weighted(b), d, first, existing), Discrimination(weighted(a), d, first, existing)},
+        {needed_non_centrality(options_.confidence, kLead + std::max(0.0, more)),
+         needed_non_centrality(options_.confidence, kLead + std::max(0.0, -more))}};
+  }
+
+  void note(const TwoSides& sides, double Separation::*what) {
+    plan_.a_true.*what = sides.side[0].non_centrality();
+    plan_.b_true.*what = sides.side[1].non_centrality();
+  }
+
+  void choose(const Offers& offers, TwoSides& sides) {
+    const std::size_t least = options_.points.value_or(kLeastPoints);
+    const std::size_t most = options_.points.value_or(std::max(kLeastPoints, options_.most_points));
+    std::vector<std::size_t> chosen;
+    double goal = 1;
+    constexpr int kRounds = 4;
+    for (int round = 0; round < kRounds; ++round) {
+      choose_rows(sides, chosen, least, most, goal);
+      exchange_rows(sides, chosen);
+      // In their real order, at their real times, they may be worth less than one by one.
+      plan_.rows = carried_out(offers, chosen);
+      const TwoSides real = sides_of(joined(plan_.rows), existing_.rows() + plan_.rows.rows());
+      note(real, &Separation::planned);
+      plan_.separable = real.reached() >= 1;
+      if (plan_.separable || chosen.size() >= most) break;
+      goal = std::max(goal, sides.reached()) / std::max(real.reached(), 0.2);
+    }
+  }
+
+  /// Grouped by time, then by inputs (a temperature is set once), then by speed and place; one run.
+  Measurement carried_out(const Offers& offers, const std::vector<std::size_t>& chosen) const {
+    std::vector<std::size_t> order;
+    for (const std::size_t offer : chosen) order.push_back(offers.existing + offer);
+    const Measurement& all = offers.rows;
+    const auto settings = [&](std::size_t row) {
+      const auto at = static_cast<Eigen::Index>(row);
+      std::vector<double> values;
+      for (const Column& column : all.states.input) values.push_back(column[at]);
+      for (const CandidateInput& candidate : all.candidates) values.push_back(candidate.value[at]);
+      return values;
+    };
+    const auto key = [&](std::size_t row) {
+      const auto at = static_cast<Eigen::Index>(row);
+      std::vector<double> rest = {all.states.feed[at]};
+      for (const Column& q : all.states.axis) rest.push_back(q[at]);
+      return std::tuple(all.states.time[at], settings(row), rest);
+    };
+    std::sort(order.begin(), order.end(), [&](std::size_t x, std::size_t y) { return key(x) < key(y); });
+    Measurement rows = take_rows(all, order);
+    rows.states.run_names = {kPlanRun};
+    double time = -1e300;
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      const bool other = i > 0 && settings(order[i]) != settings(order[i - 1]);
+      const auto at = static_cast<Eigen::Index>(i);
+      time = std::max(rows.states.time[at], i == 0 ? -1e300 : time + (other ? kSoakS : pace()));
+      rows.states.time[at] = time;
+      rows.states.visit[at] = static_cast<double>(i);
+      rows.states.run[i] = 0;
+    }
+    return rows;
+  }
+
+  /// Time from one row to the next as it was recorded.
+  double pace() const {
+    const Column& t = existing_.states.time;
+    return (t.maxCoeff() - t.minCoeff()) / std::max(1.0, static_cast<double>(existing_.rows()) - 1);
+  }
+
+  Measurement joined(const Measurement& planned) const { return append_rows(existing_, planned); }
+
+  const PlanOptions& options_;
+  FittedModel model_;
+  Plan plan_;
+  Drivers drivers_;
+  Measurement existing_;
+  double spread_ = 1;
+};
+
+}  // namespace
+
+const Separation& Plan::worse() const {
+  const auto reached = [](const Separation& s) {
+    return std::max(s.planned, s.now) / std::max(s.needed, 1e-300);
+  };
+  return reached(a_true) < reached(b_true) ? a_true : b_true;
+}
+
+Plan plan_next(const std::string& text, const Machine& machine, const Measurement& measurement,
+               const std::string& a, const std::string& b, const std::vector<Effect>& effects,
+               const PlanOptions& options) {
+  return Planner(text, machine, measurement, a, b, effects, options).plan();
+}
+
+std::vector<std::string> next_measurement(const std::string& text, const Machine& machine,
+                                          const Measurement& measurement, const std::string& a,
+                                          const std::string& b, const std::vector<Effect>& effects,
+                                          const PlanOptions& options) {
+  const Plan plan = plan_next(text, machine, measurement, a, b, effects, options);
+  std::vector<std::string> list = {plan.sentence};
+  if (plan.separable)
+    list.push_back(
+        fmt::format("The rows: vernier plan MACHINE MEAS --separate '{}' --separate '{}' -o plan.csv",
+                    plan.a.add, plan.b.add));
+  return list;
+}
+
+}  // namespace vernier

@@ -1,0 +1,168 @@
+#include "tools/plan/rival.h"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+
+#include "tools/diagnose/diagnosis.h"
+#include "tools/diagnose/pool.h"
+#include "tools/fit/fit.h"
+#include "tools/model/error.h"
+
+namespace vernier {
+namespace {
+
+const Effect* effect_named(const std::vector<Effect>& effects, const std::string& id) {
+  for (const Effect& effect : effects)
+    if (effect.id == id) return &effect;
+  return id == custom_effect().id ? &custom_effect() : nullptr;
+}
+
+std::string id_of(const std::string& text) { return text.substr(0, text.find(':')); }
+
+/// Values of the unknowns that are no coefficients, in their order.
+std::vector<double> scanned_values(const Candidate& candidate) {
+  std::vector<double> values;
+  for (const CandidateUnknown& unknown : candidate.unknowns)
+    if (unknown.kind != UnknownKind::kLinear) values.push_back(unknown.start);
+  return values;
+}
+
+/// Fall of chi^2 in units of the noise less the price of the unknowns (BIC).
+double value_of(const Scored& scored, const Evidence& evidence) {
+  const double spread = evidence.chi_square() / std::max(1.0, evidence.freedom());
+  const double variance = evidence.noise_known() ? 1 : std::max(spread, 1e-300);
+  return scored.gain / variance -
+         static_cast<double>(scored.unknowns) * std::log(static_cast<double>(evidence.rows().size()));
+}
+
+/// A time constant or decay length at the short end of what was looked at: the term has become a constant or
+/// a spike, and tells nothing of the effect that it is named for.
+bool degenerate(const Scored& scored, const ScannedCandidate& item) {
+  std::size_t next = 0;
+  for (const CandidateUnknown& unknown : item.candidate.unknowns) {
+    if (unknown.kind == UnknownKind::kLinear) continue;
+    const std::vector<double>& grid = item.grid[next];
+    const bool decays = unknown.kind == UnknownKind::kTime || unknown.kind == UnknownKind::kTravel;
+    if (decays && grid.size() > 1 && scored.scanned[next] < 0.5 * (grid[0] + grid[1])) return true;
+    ++next;
+  }
+  return false;
+}
+
+/// The `add` string of the candidate of one effect that fits the rows best.
+std::string best_of_effect(const Evidence& evidence, const Effect& effect) {
+  const std::vector<Effect> one = {effect};
+  const std::vector<ScannedCandidate> list = enumerate_candidates(evidence, one);
+  Scanner scanner(evidence, list);
+  const Eigen::MatrixXd none(evidence.residual().size(), 0);
+  std::vector<Scored> scored = scanner.scan(none, {});
+  if (scored.empty())
+    throw InputError("\"" + effect.id +
+                     "\": these rows show nothing of it at any place (give an add string)");
+  const auto value = [&](const Scored& item) {
+    constexpr double kPriceOfDegenerate = 6;
+    return value_of(item, evidence) - (degenerate(item, list[item.candidate]) ? kPriceOfDegenerate : 0);
+  };
+  const auto worse = [&](const Scored& a, const Scored& b) { return value(a) < value(b); };
+  std::sort(scored.rbegin(), scored.rend(), worse);
+  constexpr std::size_t kRefined = 6;
+  scored.resize(std::min(scored.size(), kRefined));
+  for (Scored& item : scored) scanner.refine(item, none);
+  const Scored& best = *std::max_element(scored.begin(), scored.end(), worse);
+  Candidate candidate = list[best.candidate].candidate;
+  std::size_t next = 0;
+  for (const CandidateUnknown& unknown : candidate.unknowns)
+    if (unknown.kind != UnknownKind::kLinear) candidate.choice.start[unknown.rule] = best.scanned[next++];
+  return add_string(evidence.machine(), candidate);
+}
+
+/// The coefficients from the projected columns: a time constant has no derivative while its term is 0.
+void start_at_linear_estimate(Machine& machine, const Evidence& evidence, const Candidate& candidate) {
+  const Eigen::MatrixXd raw = evidence.columns(candidate, scanned_values(candidate));
+  const Eigen::MatrixXd& q = evidence.absorbed();
+  const Eigen::MatrixXd own = raw - q * (q.transpose() * raw);
+  // Columns that the model absorbs leave only rounding here; it must not become a coefficient.
+  constexpr double kLeastOwn = 1e-6;
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(own);
+  qr.setThreshold(kLeastOwn);
+  if (own.norm() < kLeastOwn * raw.norm()) return;
+  const Eigen::VectorXd k = qr.solve(evidence.residual());
+  Eigen::Index next = 0;
+  for (const CandidateUnknown& unknown : candidate.unknowns)
+    if (unknown.kind == UnknownKind::kLinear)
+      machine.statics[*machine.find_static(unknown.name)].value = k[next++];
+}
+
+void hide_scanned(Machine& machine, const Candidate& candidate, bool hidden) {
+  for (const CandidateUnknown& unknown : candidate.unknowns)
+    if (unknown.kind != UnknownKind::kLinear)
+      machine.statics[*machine.find_static(unknown.name)].hidden = hidden;
+}
+
+}  // namespace
+
+FittedModel fit_model(const std::string& text, const Machine& machine, const Measurement& measurement) {
+  FittedModel model;
+  model.machine = fit(machine, measurement).machine;
+  model.text = update_machine_text(text, model.machine, true);
+  return model;
+}
+
+FittedRival fit_rival(const FittedModel& model, const Measurement& measurement, const std::string& name,
+                      const std::vector<Effect>& effects) {
+  const Effect* effect = effect_named(effects, id_of(name));
+  if (effect == nullptr)
+    throw InputError("\"" + id_of(name) + "\": unknown effect (`vernier effects` lists them)");
+  const Evidence evidence(model.machine, measurement);
+  FittedRival rival;
+  rival.add = name.find(':') == std::string::npos ? best_of_effect(evidence, *effect) : name;
+  const Machine& base = model.machine;
+  rival.candidate = make_candidate(base, parse_add_string(rival.add, base, effects));
+  rival.machine = parse_machine(add_to_machine_text(model.text, base, rival.candidate), base.file);
+  start_at_linear_estimate(rival.machine, evidence, rival.candidate);
+  // What the scan found is held: data that cannot tell two effects apart do not settle a period either.
+  hide_scanned(rival.machine, rival.candidate, true);
+  rival.machine = fit(rival.machine, rebind(measurement, base, rival.machine)).machine;
+  hide_scanned(rival.machine, rival.candidate, false);
+  return rival;
+}
+
+std::vector<std::string> split_rivals(const std::vector<std::string>& arguments,
+                                      const std::vector<Effect>& effects) {
+  std::vector<std::string> parts;
+  for (const std::string& argument : arguments) {
+    std::size_t from = 0;
+    for (std::size_t at = argument.find(','); at != std::string::npos; at = argument.find(',', at + 1)) {
+      const auto end = argument.find_first_of(",:", at + 1);
+      if (effect_named(effects, argument.substr(at + 1, end - at - 1)) == nullptr) continue;
+      parts.push_back(argument.substr(from, at - from));
+      from = at + 1;
+    }
+    parts.push_back(argument.substr(from));
+  }
+  if (parts.size() != 2)
+    throw InputError("--separate wants two effects, there are " + std::to_string(parts.size()));
+  return parts;
+}
+
+Drivers drivers_of(const std::vector<const FittedRival*>& rivals) {
+  Drivers drivers;
+  for (const FittedRival* rival : rivals)
+    for (const auto& [kind, index] : drivers_of(rival->machine, rival->candidate)) {
+      if (kind < 0) continue;  // a run by its label: new rows have a label of their own
+      drivers.kinds.insert(static_cast<SymbolKind>(kind));
+      if (static_cast<SymbolKind>(kind) == SymbolKind::kInput)
+        drivers.inputs.insert(rival->machine.inputs[index].name);
+    }
+  return drivers;
+}
+
+Machine without_effect(const FittedRival& rival) {
+  Machine machine = rival.machine;
+  for (const CandidateUnknown& unknown : rival.candidate.unknowns)
+    if (unknown.kind == UnknownKind::kLinear) machine.statics[*machine.find_static(unknown.name)].value = 0;
+  return machine;
+}
+
+}  // namespace vernier

@@ -1,0 +1,47 @@
+#pragma once
+#include <set>
+#include <string>
+#include <vector>
+
+#include "tools/diagnose/candidate.h"
+#include "tools/model/machine.h"
+#include "tools/model/measurement.h"
+
+namespace vernier {
+
+/// A machine at its best fit, with the text that says so: what rivals are added to.
+struct FittedModel {
+  std::string text;
+  Machine machine;
+};
+FittedModel fit_model(const std::string& text, const Machine& machine, const Measurement& measurement);
+
+/// An effect added to a fitted machine and fitted to the same rows.
+struct FittedRival {
+  Candidate candidate;
+  std::string add;
+  Machine machine;  // with the effect, at its best fit; all unknowns of the effect are free
+};
+
+/// `name`: an effect id (the candidate of that effect which fits the rows best) or a complete `add` string.
+/// The effects must outlive the result. Throws InputError: unknown effect, no candidate of it in these rows.
+/// tool.
+FittedRival fit_rival(const FittedModel& model, const Measurement& measurement, const std::string& name,
+                      const std::vector<Effect>& effects);
+
+/// The parts of `--separate`: cut at a comma only where what follows begins with the id of an effect.
+/// Throws InputError where they are not two. tool.
+std::vector<std::string> split_rivals(const std::vector<std::string>& arguments,
+                                      const std::vector<Effect>& effects);
+
+/// What the rivals depend on besides positions and constants.
+struct Drivers {
+  std::set<SymbolKind> kinds;
+  std::set<std::string> inputs;
+};
+Drivers drivers_of(const std::vector<const FittedRival*>& rivals);
+
+/// The rival's machine with the effect taken back: its coefficients 0.
+Machine without_effect(const FittedRival& rival);
+
+}  // namespace vernier

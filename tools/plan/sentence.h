@@ -1,0 +1,42 @@
+#pragma once
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "tools/model/measurement.h"
+#include "tools/plan/plan.h"
+
+namespace vernier {
+
+/// Says in one sentence why the planned rows tell the rivals apart: which state they have that the existing
+/// rows lack, and what that does to each rival. Keeps references. tool.
+class Explanation {
+ public:
+  /// `existing`: the rows that the plan builds on, bound to the plan's machine.
+  Explanation(const Plan& plan, const Measurement& existing);
+  std::string sentence() const;
+
+ private:
+  /// A state that was changed: the planned rows at its farthest level, and the same rows with it as it was.
+  struct Contrast {
+    std::string where;     // "at T_bed 15 and 35 degC (so far 20 to 25)"
+    std::string farthest;  // "35 degC"
+    Measurement planned, as_was;
+    bool usable = false;
+  };
+  struct Answer {
+    double a = 1, b = 1;  // size of the effect, planned over as it was
+  };
+  std::vector<Contrast> contrasts() const;
+  Contrast speed() const;
+  Contrast sense(std::size_t axis) const;
+  Contrast level(const std::string& name, const std::string& unit, const Column& planned, const Column& old,
+                 const std::function<void(Measurement&, double)>& set) const;
+  Answer answer(const Contrast& contrast) const;
+  double ratio(const FittedRival& rival, const Contrast& contrast) const;
+
+  const Plan& plan_;
+  const Measurement& existing_;
+};
+
+}  // namespace vernier

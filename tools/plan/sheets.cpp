@@ -1,0 +1,250 @@
+#include "tools/plan/sheets.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <set>
+#include <vector>
+
+#include "tools/model/numbers.h"
+#include "tools/plan/offers.h"
+
+namespace vernier {
+namespace {
+
+/// A feed for approaches where none is recorded, mm/min, and the share of the range that an approach takes.
+constexpr double kApproachFeed = 1000, kApproachShare = 0.05;
+
+struct SheetColumn {
+  std::string header;
+  std::function<std::string(std::size_t)> cell;
+};
+
+/// Six significant digits: far finer than any axis is set or read.
+std::string cell_text(double value) { return number_text(std::stod(fmt::format("{:.9g}", value))); }
+
+bool any_nonzero(const Column& column) { return (column != 0).any(); }
+
+class Sheet {
+ public:
+  explicit Sheet(const Plan& plan) : plan_(plan), rows_(plan.rows) {
+    drivers_ = drivers_of(std::vector<const FittedRival*>{&plan.a, &plan.b});
+    const std::vector<Axis>& axes = plan.machine.axes;
+    for (std::size_t a = 0; a < axes.size(); ++a)
+      add(axes[a].name + (axes[a].rotary ? "[deg]" : "[mm]"), rows_.states.axis[a]);
+    for (std::size_t a = 0; a < axes.size(); ++a) motion(a, axes[a]);
+    if (any_nonzero(rows_.states.feed)) add("feed[mm/min]", rows_.states.feed);
+    if (any_nonzero(rows_.states.curvature)) add("curv[1/mm]", rows_.states.curvature);
+    if (rows_.has_recorded("t")) add("t[s]", rows_.states.time);
+    for (std::size_t i = 0; i < plan.machine.inputs.size(); ++i)
+      add(header(plan.machine.inputs[i].name, plan.machine.inputs[i].unit), rows_.states.input[i]);
+    for (const CandidateInput& candidate : rows_.candidates)
+      if (drivers_.inputs.contains(candidate.name))
+        add(header(candidate.name, candidate.unit), candidate.value);
+  }
+
+  std::vector<SheetColumn> columns;
+
+  void add_readings() {
+    std::set<ObservationKind> kinds;
+    for (const Observation& o : rows_.observations) kinds.insert(o.kind);
+    for (const ObservationKind kind : kinds)
+      columns.push_back({std::string(kObservationNames[static_cast<std::size_t>(kind)]) +
+                             (is_rotation(kind) ? "[deg]" : "[mm]"),
+                         [](std::size_t) { return std::string(); }});
+    if (kinds.contains(ObservationKind::kLength)) add_points({"cx[mm]", "cy[mm]", "cz[mm]"}, rows_.centre);
+    if (kinds.contains(ObservationKind::kD)) {
+      add_points({"px[mm]", "py[mm]", "pz[mm]"}, rows_.nominal_point);
+      static constexpr std::array<const char*, 3> kNormals = {"nx", "ny", "nz"};
+      for (std::size_t i = 0; i < kNormals.size(); ++i) add(kNormals[i], rows_.states.normal[i]);
+    }
+    if (any_nonzero(rows_.uncertainty)) add("u[mm]", rows_.uncertainty);
+    columns.push_back({"run", [](std::size_t) { return std::string(kPlanRun); }});
+  }
+
+ private:
+  static std::string header(const std::string& name, const std::string& unit) {
+    return unit.empty() ? name : name + "[" + unit + "]";
+  }
+
+  void add(const std::string& header, const Column& column) {
+    columns.push_back(
+        {header, [&column](std::size_t row) { return cell_text(column[static_cast<Eigen::Index>(row)]); }});
+  }
+
+  void add_points(const std::array<const char*, 3>& names, const Eigen::Matrix3Xd& points) {
+    for (Eigen::Index i = 0; i < 3; ++i)
+      columns.push_back({names[static_cast<std::size_t>(i)], [&points, i](std::size_t row) {
+                           return cell_text(points(i, static_cast<Eigen::Index>(row)));
+                         }});
+  }
+
+  void motion(std::size_t a, const Axis& axis) {
+    const std::string unit = axis.rotary ? "deg" : "mm";
+    if (any_nonzero(rows_.states.direction[a])) add("dir" + axis.name, rows_.states.direction[a]);
+    if (any_nonzero(rows_.states.velocity[a]))
+      add("v" + axis.name + "[" + unit + "/s]", rows_.states.velocity[a]);
+    if (any_nonzero(rows_.states.acceleration[a]))
+      add("a" + axis.name + "[" + unit + "/s^2]", rows_.states.acceleration[a]);
+    if ((rows_.states.since[a] < kLongWay).all())
+      add("since" + axis.name + "[" + unit + "]", rows_.states.since[a]);
+  }
+
+  const Plan& plan_;
+  const Measurement& rows_;
+  Drivers drivers_;
+};
+
+/// Writes one row's moves.
+class MoveWriter {
+ public:
+  MoveWriter(const Plan& plan, std::string& out) : plan_(plan), out_(out) {}
+
+  void write(std::size_t row) {
+    const auto at = static_cast<Eigen::Index>(row);
+    const States& s = plan_.rows.states;
+    std::vector<double> from, to, through;
+    double speed = 0;
+    for (std::size_t a = 0; a < plan_.machine.axes.size(); ++a) {
+      const double q = s.axis[a][at], way = way_of(a, at);
+      const double v = s.velocity[a][at];
+      speed += v * v;
+      from.push_back(inside(a, q - s.direction[a][at] * way));
+      to.push_back(q);
+    }
+    speed = std::sqrt(speed);
+    for (std::size_t a = 0; a < to.size() && speed > 0; ++a) {
+      const double along = s.velocity[a][at] / speed * run_up(at);
+      from[a] = s.velocity[a][at] != 0 ? inside(a, to[a] - along) : from[a];
+      through.push_back(inside(a, to[a] + along));
+    }
+    const double feed = s.feed[at] > 0 ? s.feed[at] : speed > 0 ? 60 * speed : kApproachFeed;
+    out_ += fmt::format("G1{} F{}\n", words(from), cell_text(std::max(feed, kApproachFeed)));
+    if (speed > 0 && turned(from, to, at)) {
+      // The axes that stand still come from their own side first.
+      std::vector<double> ready = to;
+      for (std::size_t a = 0; a < to.size(); ++a)
+        if (s.velocity[a][at] != 0) ready[a] = from[a];
+      out_ += fmt::format("G1{} F{}\n", words(ready), cell_text(kApproachFeed));
+    }
+    out_ += fmt::format("G1{} F{} ; point {}{}\n", words(to), cell_text(feed), row + 1,
+                        speed > 0 ? ": read in passing" : "");
+    if (speed > 0)
+      out_ += fmt::format("G1{} F{}\n", words(through), cell_text(feed));
+    else
+      out_ += "G4 P2 ; read\n";
+  }
+
+ private:
+  double inside(std::size_t a, double q) const {
+    const Axis& axis = plan_.machine.axes[a];
+    if (axis.rollover) return q;
+    return std::clamp(q, axis.min.value_or(-1e300), axis.max.value_or(1e300));
+  }
+
+  double span(std::size_t a) const {
+    const Axis& axis = plan_.machine.axes[a];
+    const Column& q = plan_.rows.states.axis[a];
+    return axis.min && axis.max ? *axis.max - *axis.min : q.maxCoeff() - q.minCoeff();
+  }
+
+  double way_of(std::size_t a, Eigen::Index at) const {
+    const double since = plan_.rows.states.since[a][at];
+    return since < kLongWay ? since : kApproachShare * span(a);
+  }
+
+  /// Way before and behind a point that is passed: the least that any moving axis is given.
+  double run_up(Eigen::Index at) const {
+    double way = 1e300;
+    for (std::size_t a = 0; a < plan_.machine.axes.size(); ++a)
+      if (plan_.rows.states.velocity[a][at] != 0) way = std::min(way, way_of(a, at));
+    return way;
+  }
+
+  bool turned(const std::vector<double>& from, const std::vector<double>& to, Eigen::Index at) const {
+    for (std::size_t a = 0; a < to.size(); ++a)
+      if (plan_.rows.states.velocity[a][at] == 0 && from[a] != to[a]) return true;
+    return false;
+  }
+
+  std::string words(const std::vector<double>& q) const {
+    std::string text;
+    for (std::size_t a = 0; a < q.size(); ++a)
+      text += " " + plan_.machine.axes[a].name + fmt::format("{:.4f}", q[a]);
+    return text;
+  }
+
+  const Plan& plan_;
+  std::string& out_;
+};
+
+/// What a person sets before a row: inputs that the rivals use.
+std::string settings(const Plan& plan, const Drivers& drivers, std::size_t row) {
+  std::string text;
+  const auto add = [&](const std::string& name, const std::string& unit, double value) {
+    if (drivers.inputs.contains(name))
+      text += fmt::format("{}{} = {:.4g}{}", text.empty() ? "" : ", ", name, value,
+                          unit.empty() ? "" : " " + unit);
+  };
+  const auto at = static_cast<Eigen::Index>(row);
+  for (std::size_t i = 0; i < plan.machine.inputs.size(); ++i)
+    add(plan.machine.inputs[i].name, plan.machine.inputs[i].unit, plan.rows.states.input[i][at]);
+  for (const CandidateInput& candidate : plan.rows.candidates)
+    add(candidate.name, candidate.unit, candidate.value[at]);
+  return text;
+}
+
+}  // namespace
+
+std::string plan_csv(const Plan& plan) {
+  Sheet sheet(plan);
+  sheet.add_readings();
+  std::string text = "# " + plan.sentence + "\n";
+  for (std::size_t i = 0; i < sheet.columns.size(); ++i) text += (i ? "," : "") + sheet.columns[i].header;
+  text += "\n";
+  for (std::size_t row = 0; row < plan.rows.rows(); ++row) {
+    for (std::size_t i = 0; i < sheet.columns.size(); ++i)
+      text += (i ? "," : "") + sheet.columns[i].cell(row);
+    text += "\n";
+  }
+  return text;
+}
+
+std::string plan_gcode(const Plan& plan) {
+  std::string text = "; " + plan.sentence + "\n; check clearances before running\nG21 G90 G94\n";
+  const Drivers drivers = drivers_of(std::vector<const FittedRival*>{&plan.a, &plan.b});
+  const bool timed = drivers.kinds.contains(SymbolKind::kTime);
+  MoveWriter writer(plan, text);
+  std::string before;
+  double time = -1e300, step = 0;
+  for (std::size_t row = 0; row < plan.rows.rows(); ++row) {
+    const std::string now = settings(plan, drivers, row);
+    const double t = plan.rows.states.time[static_cast<Eigen::Index>(row)];
+    if (now != before)
+      text += fmt::format("M0 ; set {}\n", now);
+    else if (timed && t - time > 2 * step + 1)
+      text += fmt::format("M0 ; wait until t = {:.0f} s\n", t);
+    if (row > 0) step = t - time;
+    before = now;
+    time = t;
+    writer.write(row);
+  }
+  return text + "M30\n";
+}
+
+std::string plan_table(const Plan& plan) {
+  const Sheet sheet(plan);
+  std::string text;
+  for (const SheetColumn& column : sheet.columns) text += fmt::format("{:>14}", column.header);
+  text += "\n";
+  for (std::size_t row = 0; row < plan.rows.rows(); ++row) {
+    for (const SheetColumn& column : sheet.columns)
+      text += fmt::format("{:>14}", fmt::format("{:.6g}", std::stod(column.cell(row))));
+    text += "\n";
+  }
+  return text;
+}
+
+}  // namespace vernier

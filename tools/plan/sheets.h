@@ -1,0 +1,20 @@
+#pragma once
+#include <string>
+
+#include "tools/plan/plan.h"
+
+namespace vernier {
+
+/// The planned rows as a measurement file whose readings are left to be filled in: units in the header, run
+/// kPlanRun. Only columns that the existing rows have or the rivals use. tool.
+std::string plan_csv(const Plan& plan);
+
+/// The planned rows as G-code: each pose is approached from the side that gives the sense of motion (rows at
+/// speed are passed through along their velocity); what a person must set stands in comments. Millimetres,
+/// degrees, mm/min; axes are called as in the machine file. Approaches end within the declared ranges. tool.
+std::string plan_gcode(const Plan& plan);
+
+/// The same rows as a table for people.
+std::string plan_table(const Plan& plan);
+
+}  // namespace vernier
