@@ -64,6 +64,8 @@ Json plan_json(const Plan& plan, double confidence) {
   json["rows"] = Json::array();
   for (std::size_t row = 0; row < plan.rows.rows(); ++row) json["rows"].push_back(row_json(plan, row));
   json["not_settable"] = plan.not_settable;
+  json["ruled_out"] = plan.ruled_out;
+  json["not_ruled_out"] = plan.not_ruled_out;
   json["sentence"] = plan.sentence;
   return json;
 }
@@ -87,6 +89,8 @@ void run_plan(const PlanArguments& arguments) {
     fmt::print(out, "if {} is true: non-centrality now {:.3g}, planned {:.3g}, needed {:.3g}\n",
                rival->candidate.label, side->now, plan.rows.rows() > 0 ? side->planned : side->now,
                side->needed);
+  for (const std::string& other : plan.ruled_out) fmt::print(out, "rules out as well: {}\n", other);
+  for (const std::string& other : plan.not_ruled_out) fmt::print(out, "does not rule out: {}\n", other);
   if (plan.rows.rows() > 0) fmt::print(out, "\n{}", plan_table(plan));
 }
 

@@ -5,30 +5,34 @@
 namespace vernier {
 namespace {
 
-/// What the worse direction reaches with each offer; half of the better one's share breaks ties early on.
-std::size_t best_offer(const TwoSides& sides, double& value) {
-  const Eigen::ArrayXd first =
-      (sides.side[0].gains().array() + sides.side[0].non_centrality()) / sides.needed[0];
-  const Eigen::ArrayXd second =
-      (sides.side[1].gains().array() + sides.side[1].non_centrality()) / sides.needed[1];
+/// What the worst side reaches with each offer; the others' sum, as far as they need it, breaks ties.
+std::size_t best_offer(const Sides& sides, double& value) {
   constexpr double kTie = 1e-3;
-  const Eigen::ArrayXd all = first.min(second) + kTie * first.max(second);
+  Eigen::ArrayXd worst, sum;
+  for (std::size_t i = 0; i < sides.side.size(); ++i) {
+    const Eigen::ArrayXd one =
+        (sides.side[i].gains().array() + sides.side[i].non_centrality()) / sides.needed[i];
+    worst = i == 0 ? one : Eigen::ArrayXd(worst.min(one));
+    sum = i == 0 ? Eigen::ArrayXd(one.min(1)) : Eigen::ArrayXd(sum + one.min(1));
+  }
   Eigen::Index best = 0;
-  value = all.maxCoeff(&best);
+  value = (worst + kTie * sum).maxCoeff(&best);
   return static_cast<std::size_t>(best);
 }
 
 }  // namespace
 
-double TwoSides::reached() const {
-  return std::min(side[0].non_centrality() / needed[0], side[1].non_centrality() / needed[1]);
+double Sides::reached(std::size_t count) const {
+  double worst = 1e300;
+  for (std::size_t i = 0; i < count; ++i) worst = std::min(worst, side[i].non_centrality() / needed[i]);
+  return worst;
 }
 
-void TwoSides::assume(const std::vector<std::size_t>& chosen) {
+void Sides::assume(const std::vector<std::size_t>& chosen) {
   for (Discrimination& one : side) one.assume(chosen);
 }
 
-void choose_rows(TwoSides& sides, std::vector<std::size_t>& chosen, std::size_t least, std::size_t most,
+void choose_rows(Sides& sides, std::vector<std::size_t>& chosen, std::size_t least, std::size_t most,
                  double goal) {
   sides.assume(chosen);
   while (chosen.size() < most && (chosen.size() < least || sides.reached() < goal)) {
@@ -38,7 +42,7 @@ void choose_rows(TwoSides& sides, std::vector<std::size_t>& chosen, std::size_t 
   }
 }
 
-void exchange_rows(TwoSides& sides, std::vector<std::size_t>& chosen) {
+void exchange_rows(Sides& sides, std::vector<std::size_t>& chosen) {
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     sides.assume(chosen);
     const double before = sides.reached();

@@ -9,6 +9,7 @@
 #include "tools/fit/fit.h"
 #include "tools/fit/statistics.h"
 #include "tools/model/prediction.h"
+#include "tools/plan/bystanders.h"
 #include "tools/plan/choice.h"
 #include "tools/plan/offers.h"
 #include "tools/plan/sentence.h"
@@ -23,6 +24,9 @@ constexpr std::size_t kLeastPoints = 4;
 constexpr std::size_t kMostExisting = 1500;
 /// Time for a part to take on a new temperature before it is measured again, s.
 constexpr double kSoakS = 3600;
+
+/// Sides of the two named rivals, in front of those of the bystanders.
+constexpr std::size_t kPair = 2;
 
 /// First observation of each row, and one past the last.
 std::vector<Eigen::Index> first_observations(const Measurement& m) {
@@ -46,17 +50,22 @@ class Planner {
     drivers_ = drivers_of(std::vector<const FittedRival*>{&plan_.a, &plan_.b});
     existing_ = rows_to_build_on(measurement, drivers_, kMostExisting);
     spread_ = spread();
+    bystanders_ =
+        find_bystanders(model_, measurement, {&plan_.a, &plan_.b}, effects, options.most_bystanders);
+    for (FittedRival& other : bystanders_) free_shift_of_plan(other.machine);
+    keep_complete_bystanders();
   }
 
   Plan plan() {
     Offers offers = offer_rows(model_.machine, existing_, drivers_, options_.offers);
     plan_.not_settable = offers.not_settable;
-    TwoSides sides = sides_of(offers.rows, offers.existing);
+    const Sides sides = sides_of(offers.rows, offers.existing);
     plan_.a_true.needed = sides.needed[0];
     plan_.b_true.needed = sides.needed[1];
     note(sides, &Separation::now);
-    plan_.told_already = sides.reached() >= 1;
-    if (!plan_.told_already || options_.points) choose(offers, sides);
+    plan_.told_already = sides.reached(kPair) >= 1;
+    if (!plan_.told_already || options_.points) choose(offers);
+    for (const FittedRival& other : bystanders_) plan_.ruled_out.push_back(other.candidate.label);
     plan_.sentence = Explanation(plan_, existing_).sentence();
     return std::move(plan_);
   }
@@ -100,34 +109,84 @@ class Planner {
     return {rival.machine, runs};
   }
 
-  /// Rows [0, existing) count, the others are offers.
-  TwoSides sides_of(const Measurement& rows, std::size_t existing) const {
-    const Measurement of_a = bound_to(rows, plan_.a), of_b = bound_to(rows, plan_.b);
-    const Linearisation a = linearise(plan_.a.machine, of_a, parameters_of(plan_.a));
-    const Linearisation b = linearise(plan_.b.machine, of_b, parameters_of(plan_.b));
-    const Eigen::VectorXd weights = fit_weights(of_a) / spread_;
-    const Eigen::VectorXd d = weights.cwiseProduct(a.predicted - b.predicted);
-    const std::vector<Eigen::Index> first = first_observations(rows);
-    const auto weighted = [&](const Linearisation& l) -> Eigen::MatrixXd {
-      return weights.asDiagonal() * Eigen::MatrixXd(l.jacobian);
-    };
-    const double more = (static_cast<double>(plan_.a.candidate.unknowns.size()) -
-                         static_cast<double>(plan_.b.candidate.unknowns.size())) *
-                        std::log(static_cast<double>(first[existing_.rows()]));
-    return {
-        {Discrimination(weighted(b), d, first, existing), Discrimination(weighted(a), d, first, existing)},
-        {needed_non_centrality(options_.confidence, kLead + std::max(0.0, more)),
-         needed_non_centrality(options_.confidence, kLead + std::max(0.0, -more))}};
+  /// A bystander with an input that the rows lack here and there is left aside.
+  void keep_complete_bystanders() {
+    std::erase_if(bystanders_, [&](const FittedRival& other) {
+      return bound_to(existing_, other).rows() != existing_.rows();
+    });
   }
 
-  void note(const TwoSides& sides, double Separation::*what) {
+  /// A rival's readings and what its free parameters do to them, weighted.
+  struct Linear {
+    const FittedRival* rival;
+    Eigen::VectorXd predicted;
+    Eigen::MatrixXd jacobian;
+  };
+  Linear linear(const Measurement& rows, const FittedRival& rival) const {
+    const Measurement bound = bound_to(rows, rival);
+    const Linearisation all = linearise(rival.machine, bound, parameters_of(rival));
+    const Eigen::VectorXd weights = fit_weights(bound) / spread_;
+    return {&rival, weights.cwiseProduct(all.predicted),
+            weights.asDiagonal() * Eigen::MatrixXd(all.jacobian)};
+  }
+
+  /// Rows [0, existing) count, the others are offers. A true and B refitted, B true and A refitted, then each
+  /// of them true and a bystander refitted.
+  Sides sides_of(const Measurement& rows, std::size_t existing) const {
+    const std::vector<Eigen::Index> first = first_observations(rows);
+    Sides sides;
+    const auto add = [&](const Linear& truth, const Linear& rival) {
+      sides.side.emplace_back(rival.jacobian, truth.predicted - rival.predicted, first, existing);
+      // A truth with more unknowns pays for them in a diagnosis.
+      const double more = static_cast<double>(truth.rival->candidate.unknowns.size()) -
+                          static_cast<double>(rival.rival->candidate.unknowns.size());
+      const double price = std::log(static_cast<double>(first[existing_.rows()]));
+      sides.needed.push_back(needed_non_centrality(options_.confidence, kLead + std::max(0.0, more) * price));
+    };
+    const Linear a = linear(rows, plan_.a), b = linear(rows, plan_.b);
+    add(a, b);
+    add(b, a);
+    for (const FittedRival& other : bystanders_) {
+      const Linear c = linear(rows, other);
+      add(a, c);
+      add(b, c);
+    }
+    return sides;
+  }
+
+  void note(const Sides& sides, double Separation::*what) {
     plan_.a_true.*what = sides.side[0].non_centrality();
     plan_.b_true.*what = sides.side[1].non_centrality();
   }
 
-  void choose(const Offers& offers, TwoSides& sides) {
-    const std::size_t least = options_.points.value_or(kLeastPoints);
+  void choose(const Offers& offers) {
     const std::size_t most = options_.points.value_or(std::max(kLeastPoints, options_.most_points));
+    choose_at_most(offers, most);
+    // What no moderate number of rows rules out must not take the rows from what they can tell.
+    while (!bystanders_.empty() && drop_unreached()) choose_at_most(offers, most);
+  }
+
+  /// Takes the bystanders out that the plan does not rule out. False: there are none.
+  bool drop_unreached() {
+    const Sides real = sides_of(append_rows(existing_, plan_.rows), existing_.rows() + plan_.rows.rows());
+    std::vector<FittedRival> kept;
+    for (std::size_t i = 0; i < bystanders_.size(); ++i) {
+      bool reached = true;
+      for (const std::size_t side : {kPair + 2 * i, kPair + 2 * i + 1})
+        reached = reached && real.side[side].non_centrality() >= real.needed[side];
+      if (reached)
+        kept.push_back(bystanders_[i]);
+      else
+        plan_.not_ruled_out.push_back(bystanders_[i].candidate.label);
+    }
+    const bool any = kept.size() < bystanders_.size();
+    bystanders_ = std::move(kept);
+    return any;
+  }
+
+  void choose_at_most(const Offers& offers, std::size_t most) {
+    Sides sides = sides_of(offers.rows, offers.existing);
+    const std::size_t least = options_.points.value_or(kLeastPoints);
     std::vector<std::size_t> chosen;
     double goal = 1;
     constexpr int kRounds = 4;
@@ -136,10 +195,10 @@ class Planner {
       exchange_rows(sides, chosen);
       // In their real order, at their real times, they may be worth less than one by one.
       plan_.rows = carried_out(offers, chosen);
-      const TwoSides real = sides_of(joined(plan_.rows), existing_.rows() + plan_.rows.rows());
+      const Sides real = sides_of(append_rows(existing_, plan_.rows), existing_.rows() + plan_.rows.rows());
       note(real, &Separation::planned);
-      plan_.separable = real.reached() >= 1;
-      if (plan_.separable || chosen.size() >= most) break;
+      plan_.separable = real.reached(kPair) >= 1;
+      if (real.reached() >= 1 || chosen.size() >= most) break;
       goal = std::max(goal, sides.reached()) / std::max(real.reached(), 0.2);
     }
   }
@@ -183,13 +242,12 @@ class Planner {
     return (t.maxCoeff() - t.minCoeff()) / std::max(1.0, static_cast<double>(existing_.rows()) - 1);
   }
 
-  Measurement joined(const Measurement& planned) const { return append_rows(existing_, planned); }
-
   const PlanOptions& options_;
   FittedModel model_;
   Plan plan_;
   Drivers drivers_;
   Measurement existing_;
+  std::vector<FittedRival> bystanders_;
   double spread_ = 1;
 };
 

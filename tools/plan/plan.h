@@ -15,6 +15,7 @@ struct PlanOptions {
   double confidence = 0.95;           // that the chi^2 difference names the right one
   std::optional<std::size_t> points;  // exactly so many; none: as few as the confidence needs
   std::size_t most_points = 60;       // more are no plan
+  std::size_t most_bystanders = 4;    // other effects that a diagnosis would weigh beside the two
   std::size_t offers = 1000;          // rows to choose from
 };
 
@@ -29,10 +30,12 @@ struct Plan {
   Machine machine;   // that `rows` is bound to
   Measurement rows;  // planned rows in time order, readings 0; empty: nothing helps
   Separation a_true, b_true;
-  bool told_already = false;              // the existing rows are enough
-  bool separable = false;                 // the planned rows reach what the confidence needs
-  std::vector<std::string> not_settable;  // inputs that a rival uses and nobody can set
-  std::string sentence;                   // for people
+  bool told_already = false;               // the existing rows are enough
+  bool separable = false;                  // the planned rows reach what the confidence needs
+  std::vector<std::string> not_settable;   // inputs that a rival uses and nobody can set
+  std::vector<std::string> ruled_out;      // other effects that explain the rows so far, and will no more
+  std::vector<std::string> not_ruled_out;  // ... and that no such plan tells from the two
+  std::string sentence;                    // for people
   const Separation& worse() const;
 };
 

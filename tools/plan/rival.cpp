@@ -28,14 +28,6 @@ std::vector<double> scanned_values(const Candidate& candidate) {
   return values;
 }
 
-/// Fall of chi^2 in units of the noise less the price of the unknowns (BIC).
-double value_of(const Scored& scored, const Evidence& evidence) {
-  const double spread = evidence.chi_square() / std::max(1.0, evidence.freedom());
-  const double variance = evidence.noise_known() ? 1 : std::max(spread, 1e-300);
-  return scored.gain / variance -
-         static_cast<double>(scored.unknowns) * std::log(static_cast<double>(evidence.rows().size()));
-}
-
 /// A time constant or decay length at the short end of what was looked at: the term has become a constant or
 /// a spike, and tells nothing of the effect that it is named for.
 bool degenerate(const Scored& scored, const ScannedCandidate& item) {
@@ -70,11 +62,7 @@ std::string best_of_effect(const Evidence& evidence, const Effect& effect) {
   scored.resize(std::min(scored.size(), kRefined));
   for (Scored& item : scored) scanner.refine(item, none);
   const Scored& best = *std::max_element(scored.begin(), scored.end(), worse);
-  Candidate candidate = list[best.candidate].candidate;
-  std::size_t next = 0;
-  for (const CandidateUnknown& unknown : candidate.unknowns)
-    if (unknown.kind != UnknownKind::kLinear) candidate.choice.start[unknown.rule] = best.scanned[next++];
-  return add_string(evidence.machine(), candidate);
+  return add_string_at(evidence, list[best.candidate].candidate, best.scanned);
 }
 
 /// The coefficients from the projected columns: a time constant has no derivative while its term is 0.
@@ -102,6 +90,20 @@ void hide_scanned(Machine& machine, const Candidate& candidate, bool hidden) {
 
 }  // namespace
 
+double value_of(const Scored& scored, const Evidence& evidence) {
+  const double spread = evidence.chi_square() / std::max(1.0, evidence.freedom());
+  const double variance = evidence.noise_known() ? 1 : std::max(spread, 1e-300);
+  return scored.gain / variance -
+         static_cast<double>(scored.unknowns) * std::log(static_cast<double>(evidence.rows().size()));
+}
+
+std::string add_string_at(const Evidence& evidence, Candidate candidate, const std::vector<double>& scanned) {
+  std::size_t next = 0;
+  for (const CandidateUnknown& unknown : candidate.unknowns)
+    if (unknown.kind != UnknownKind::kLinear) candidate.choice.start[unknown.rule] = scanned[next++];
+  return add_string(evidence.machine(), candidate);
+}
+
 FittedModel fit_model(const std::string& text, const Machine& machine, const Measurement& measurement) {
   FittedModel model;
   model.machine = fit(machine, measurement).machine;
@@ -111,10 +113,14 @@ FittedModel fit_model(const std::string& text, const Machine& machine, const Mea
 
 FittedRival fit_rival(const FittedModel& model, const Measurement& measurement, const std::string& name,
                       const std::vector<Effect>& effects) {
+  return fit_rival(model, Evidence(model.machine, measurement), measurement, name, effects);
+}
+
+FittedRival fit_rival(const FittedModel& model, const Evidence& evidence, const Measurement& measurement,
+                      const std::string& name, const std::vector<Effect>& effects) {
   const Effect* effect = effect_named(effects, id_of(name));
   if (effect == nullptr)
     throw InputError("\"" + id_of(name) + "\": unknown effect (`vernier effects` lists them)");
-  const Evidence evidence(model.machine, measurement);
   FittedRival rival;
   rival.add = name.find(':') == std::string::npos ? best_of_effect(evidence, *effect) : name;
   const Machine& base = model.machine;

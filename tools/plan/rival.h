@@ -4,6 +4,8 @@
 #include <vector>
 
 #include "tools/diagnose/candidate.h"
+#include "tools/diagnose/evidence.h"
+#include "tools/diagnose/scan.h"
 #include "tools/model/machine.h"
 #include "tools/model/measurement.h"
 
@@ -28,6 +30,15 @@ struct FittedRival {
 /// tool.
 FittedRival fit_rival(const FittedModel& model, const Measurement& measurement, const std::string& name,
                       const std::vector<Effect>& effects);
+
+/// The same with the evidence of the model and the rows at hand.
+FittedRival fit_rival(const FittedModel& model, const Evidence& evidence, const Measurement& measurement,
+                      const std::string& name, const std::vector<Effect>& effects);
+
+/// Fall of chi^2 in units of the noise less the price of the unknowns (BIC).
+double value_of(const Scored& scored, const Evidence& evidence);
+/// The `add` string of a candidate with these values of its scanned unknowns.
+std::string add_string_at(const Evidence& evidence, Candidate candidate, const std::vector<double>& scanned);
 
 /// The parts of `--separate`: cut at a comma only where what follows begins with the id of an effect.
 /// Throws InputError where they are not two. tool.

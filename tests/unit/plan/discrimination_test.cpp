@@ -98,9 +98,7 @@ TEST(ChooseRows, ReachesTheGoalWithNoMoreRowsThanRandomOnes) {
   Problem p = random_problem(220, kSeed + 2);
   for (Eigen::Index i = 40; i < p.difference.size(); ++i) p.difference[i] *= (i / 2) % 10 == 0 ? 1.0 : 0.1;
   p.difference.head(40).setZero();
-  TwoSides sides{{Discrimination(p.jacobian, p.difference, p.first, 20),
-                  Discrimination(p.jacobian, p.difference, p.first, 20)},
-                 {100, 100}};
+  Sides sides{{Discrimination(p.jacobian, p.difference, p.first, 20)}, {100}};
   std::vector<std::size_t> chosen;
   choose_rows(sides, chosen, 1, 60, 1);
   exchange_rows(sides, chosen);

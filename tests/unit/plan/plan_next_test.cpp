@@ -27,9 +27,14 @@ bool named(const Machine& machine, const Measurement& old, const Measurement& ne
   const Diagnosis d = diagnose(model_text(), machine, append_rows(old, next), options);
   const bool right =
       d.verdict == Verdict::kMissingEffect && d.candidates.front().candidate.choice.effect->id == effect;
-  if (!right)
-    std::cout << "    " << verdict_name(d.verdict) << " "
-              << (d.candidates.empty() ? "" : d.candidates.front().candidate.label) << "\n";
+  if (!right) {
+    std::cout << "    " << verdict_name(d.verdict);
+    for (std::size_t i = 0; i < d.candidates.size() && i < 3; ++i)
+      std::cout << (i == 0 ? ": " : ", ") << d.candidates[i].add << " " << d.candidates[i].score;
+    if (d.runner_up)
+      std::cout << "; runner-up " << d.candidates[*d.runner_up].add << " " << d.runner_up_distance;
+    std::cout << "\n";
+  }
   return right;
 }
 
