@@ -21,6 +21,8 @@ namespace {
 constexpr double kLead = 6;
 /// One reading must not decide.
 constexpr std::size_t kLeastPoints = 4;
+/// So many points may always be spent on the other effects that explain the rows.
+constexpr std::size_t kModerate = 16;
 constexpr std::size_t kMostExisting = 1500;
 /// Time for a part to take on a new temperature before it is measured again, s.
 constexpr double kSoakS = 3600;
@@ -161,9 +163,16 @@ class Planner {
 
   void choose(const Offers& offers) {
     const std::size_t most = options_.points.value_or(std::max(kLeastPoints, options_.most_points));
+    const std::vector<FittedRival> others = std::move(bystanders_);
+    bystanders_.clear();
     choose_at_most(offers, most);
+    if (!plan_.separable || others.empty()) return;
+    bystanders_ = others;
     // What no moderate number of rows rules out must not take the rows from what they can tell.
-    while (!bystanders_.empty() && drop_unreached()) choose_at_most(offers, most);
+    const std::size_t moderate =
+        options_.points.value_or(std::min(most, std::max(kModerate, 3 * plan_.rows.rows())));
+    choose_at_most(offers, moderate);
+    while (drop_unreached()) choose_at_most(offers, bystanders_.empty() ? most : moderate);
   }
 
   /// Takes the bystanders out that the plan does not rule out. False: there are none.
