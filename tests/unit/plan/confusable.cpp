@@ -66,8 +66,9 @@ Confusable warmup_or_scale() {
                {0.040, 2.4e-5},
                false};
   for (int i = 0; i < kRows; ++i) {
-    const Spot s = spot(i);
-    c.rows.push_back(fmt::format("{},{},{},1,{}", 6 + 6.0 * i, s.y, s.z, 12 * i));
+    // Y and Z vary beside X: in step with X they would turn its scale into squareness and datum.
+    c.rows.push_back(
+        fmt::format("{},{},{},1,{}", 6 + 6.0 * i, 50 + 100 * (i % 4), -30 - 80 * (i / 4 % 3), 12 * i));
   }
   return c;
 }
