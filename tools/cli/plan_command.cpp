@@ -101,13 +101,14 @@ void register_plan(CLI::App& vernier) {
   CLI::App* command =
       vernier.add_subcommand("plan", "Propose the next measurement that tells two effects apart");
   command->add_option("MACHINE", arguments->machine, "machine file (XML)")->required();
-  // One value each, so that `--separate A MEAS` is not ambiguous.
   command->add_option("MEAS", arguments->measurements, "measurement files (CSV)")->required();
+  // One value each time: what follows it may be a measurement file.
   command
       ->add_option("--separate", arguments->separate,
                    "A,B: effect ids or `add` strings; or twice, once for each")
       ->required()
       ->expected(1)
+      ->allow_extra_args(false)
       ->take_all();
   command->add_option("-o,--output", arguments->output, "the rows, readings to be filled in (CSV)");
   command->add_option("--gcode", arguments->gcode, "the rows as G-code");

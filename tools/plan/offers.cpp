@@ -188,9 +188,12 @@ class Offerer {
     const bool recorded_pose = spread.next() < 0.5;
     for (std::size_t a = 0; a < machine_.axes.size(); ++a) {
       const double place = spread.next();
-      if (fixed_pose_[row] != 0 || recorded_pose) continue;
+      if (fixed_pose_[row] != 0) continue;
+      double& q = result_.rows.states.axis[a][at];
+      q = std::clamp(q, low_[a], high_[a]);  // room for an approach from either side
+      if (recorded_pose) continue;
       const double inside = std::clamp((place - 0.3) / 0.4, 0.0, 1.0);
-      result_.rows.states.axis[a][at] = low_[a] + inside * (high_[a] - low_[a]);
+      q = low_[a] + inside * (high_[a] - low_[a]);
     }
     result_.rows.states.time[at] = spread.pick(time_levels_);
     for (std::size_t i = 0; i < input_levels_.size(); ++i)
