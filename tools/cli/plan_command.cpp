@@ -59,6 +59,7 @@ Json plan_json(const Plan& plan, double confidence) {
   json["second_true"] = side(plan.b_true);
   json["confidence"] = confidence;
   json["separable"] = plan.separable || plan.told_already;
+  json["lead_of_first"] = plan.lead_of_a;
   json["told_already"] = plan.told_already;
   json["points"] = plan.rows.rows();
   json["rows"] = Json::array();

@@ -12,6 +12,7 @@ namespace {
 constexpr double kTemperatureStep = 5;  // K, what a shop can do to a machine without harm
 constexpr double kLoadFactor = 1.5;     // beyond the largest recorded load
 constexpr double kEdge = 0.02;          // of the range, kept free for the approach
+constexpr double kWorkingDayS = 8 * 3600;
 /// How much later rows may be taken, as a share of the time measured so far.
 constexpr std::array<double, 3> kLater = {0.5, 1, 3};
 /// Multiples of the recorded speed, and the travel since the reversal as a share of the range.
@@ -145,7 +146,8 @@ class Offerer {
     const double begin = old_.states.time.minCoeff(), end = old_.states.time.maxCoeff();
     time_levels_ = {end + step_of_time()};
     if (driven(SymbolKind::kTime))
-      for (const double share : kLater) time_levels_.push_back(end + share * (end - begin));
+      for (const double share : kLater)
+        time_levels_.push_back(end + std::min(share * (end - begin), std::max(end - begin, kWorkingDayS)));
     bool moving = false;
     for (std::size_t row = 0; row < old_.rows(); ++row) moving = moving || moves(old_.states, row);
     speeds_ = moving ? std::vector<double>(kSpeeds.begin(), kSpeeds.end()) : std::vector<double>{1};

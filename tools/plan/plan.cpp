@@ -50,6 +50,7 @@ class Planner {
     free_shift_of_plan(plan_.a.machine);
     free_shift_of_plan(plan_.b.machine);
     drivers_ = drivers_of(std::vector<const FittedRival*>{&plan_.a, &plan_.b});
+    plan_.rows = take_rows(measurement, {});
     existing_ = rows_to_build_on(measurement, drivers_, kMostExisting);
     spread_ = spread();
     bystanders_ =
@@ -65,9 +66,12 @@ class Planner {
     plan_.a_true.needed = sides.needed[0];
     plan_.b_true.needed = sides.needed[1];
     note(sides, &Separation::now);
-    plan_.told_already = sides.reached(kPair) >= 1;
+    plan_.lead_of_a = lead_of_a();
+    // Told by what the rows could show, or by what they do show.
+    plan_.told_already = sides.reached(kPair) >= 1 || std::abs(plan_.lead_of_a) > plan_.worse().needed;
     if (!plan_.told_already || options_.points) choose(offers);
-    for (const FittedRival& other : bystanders_) plan_.ruled_out.push_back(other.candidate.label);
+    if (plan_.rows.rows() > 0 && plan_.separable)
+      for (const FittedRival& other : bystanders_) plan_.ruled_out.push_back(other.candidate.label);
     plan_.sentence = Explanation(plan_, existing_).sentence();
     return std::move(plan_);
   }
@@ -90,19 +94,32 @@ class Planner {
     return rebind(rows, model_.machine, rival.machine);
   }
 
+  double weighted_square(const FittedRival& rival) const {
+    const Measurement bound = bound_to(existing_, rival);
+    return residuals(rival.machine, bound).cwiseProduct(fit_weights(bound)).squaredNorm();
+  }
+
   /// What a weight of 1/u must be divided by: the spread of the better rival's residual, not below 1 where u
   /// is given.
   double spread() const {
     double least = 1e300;
     for (const FittedRival* rival : {&plan_.a, &plan_.b}) {
-      const Measurement bound = bound_to(existing_, *rival);
-      const Eigen::VectorXd r = residuals(rival->machine, bound).cwiseProduct(fit_weights(bound));
-      const double freedom = std::max<double>(
-          1, static_cast<double>(r.size()) - static_cast<double>(parameters_of(*rival).size()));
-      least = std::min(least, std::sqrt(r.squaredNorm() / freedom));
+      const double freedom = std::max<double>(1, static_cast<double>(existing_.observations.size()) -
+                                                     static_cast<double>(parameters_of(*rival).size()));
+      least = std::min(least, std::sqrt(weighted_square(*rival) / freedom));
     }
     if (has_uncertainty(existing_)) return std::max(1.0, least);
     return std::max(least, 1e-9);  // exact readings: a picometre
+  }
+
+  /// By how much B explains the rows so far worse than A: chi^2 and the price of the unknowns (BIC).
+  double lead_of_a() const {
+    const double price = std::log(static_cast<double>(existing_.observations.size()));
+    const auto cost = [&](const FittedRival& rival) {
+      return weighted_square(rival) / (spread_ * spread_) +
+             price * static_cast<double>(rival.candidate.unknowns.size());
+    };
+    return cost(plan_.b) - cost(plan_.a);
   }
 
   ParameterSet parameters_of(const FittedRival& rival) const {

@@ -30,7 +30,8 @@ struct Plan {
   Machine machine;   // that `rows` is bound to
   Measurement rows;  // planned rows in time order, readings 0; empty: nothing helps
   Separation a_true, b_true;
-  bool told_already = false;               // the existing rows are enough
+  double lead_of_a = 0;                    // by how much B explains the rows so far worse than A (BIC)
+  bool told_already = false;               // that, or what they could show, is enough to name one of them
   bool separable = false;                  // the planned rows reach what the confidence needs
   std::vector<std::string> not_settable;   // inputs that a rival uses and nobody can set
   std::vector<std::string> ruled_out;      // other effects that explain the rows so far, and will no more

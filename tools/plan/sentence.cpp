@@ -193,8 +193,10 @@ std::string Explanation::sentence() const {
     beyond += fmt::format(" {} is logged but nothing that a plan can set.", name);
   if (plan_.told_already && plan_.rows.rows() == 0)
     return fmt::format(
-        "The rows measured so far already tell {} and {} apart (non-centrality {:.3g}, needed {:.3g}).", a, b,
-        worse.now, worse.needed);
+        "The rows measured so far already tell the two apart: {} explains them better than {} by {:.3g} "
+        "(non-centrality {:.3g}, needed {:.3g}).",
+        plan_.lead_of_a > 0 ? a : b, plan_.lead_of_a > 0 ? b : a, std::abs(plan_.lead_of_a), worse.now,
+        worse.needed);
   if (!plan_.separable)
     return fmt::format(
         "{} and {} cannot be separated by {} points of any admissible pose, sense, speed, time or "

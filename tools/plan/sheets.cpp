@@ -217,6 +217,8 @@ std::string plan_gcode(const Plan& plan) {
   const Drivers drivers = drivers_of(std::vector<const FittedRival*>{&plan.a, &plan.b});
   const bool timed = drivers.kinds.contains(SymbolKind::kTime);
   MoveWriter writer(plan, text);
+  const bool tethered = std::any_of(plan.rows.observations.begin(), plan.rows.observations.end(),
+                                    [](const Observation& o) { return o.kind == ObservationKind::kLength; });
   std::string before;
   double time = -1e300, step = 0;
   for (std::size_t row = 0; row < plan.rows.rows(); ++row) {
@@ -229,6 +231,8 @@ std::string plan_gcode(const Plan& plan) {
     if (row > 0) step = t - time;
     before = now;
     time = t;
+    // A bar between tool and centre bears its short stroke only, not the straight way to the next point.
+    if (tethered) text += "M0 ; take the bar off before this move, put it on again at its end\n";
     writer.write(row);
   }
   return text + "M30\n";

@@ -141,7 +141,15 @@ TEST_F(ElsewhereData, ARobotBendsAtItsSecondJoint) {
 
 TEST_F(ElsewhereData, APrinterGrowsWithItsFrame) {
   if (!found("voron_2004")) GTEST_SKIP() << "VERNIER_EXTRA_DATA has no voron_2004";
-  expect_ladder(0.1, {"thermal-offset"});
+  const json answer = diagnose(folder_);
+  EXPECT_EQ(answer.at("verdict"), "missing-effect");
+  EXPECT_EQ(effects_of_ladder(answer)[0], "thermal-offset");
+  // The key's two temperatures reach 8.7 / 6.9 um. With their lags the fit gets below the key's third step;
+  // on the check rows it does not: what would help there (the hot end) moved in one block only, and nothing
+  // that one block alone shows is accepted.
+  const json& end = answer.at("ladder").back();
+  EXPECT_LE(end.at("rms_um").get<double>(), 6.943);
+  EXPECT_LE(end.at("check_rms_um").get<double>(), 6.891);
 }
 
 }  // namespace

@@ -68,6 +68,18 @@ TEST(PlanNextOne, SaysSoWhereOnlyADecoyWouldSeparate) {
   EXPECT_NE(plan.sentence.find("V_supply is logged"), std::string::npos) << plan.sentence;
 }
 
+TEST(PlanNextOne, ProposesNothingWhereTheRowsTellAlready) {
+  // GIVEN two effects that one and the same survey shows quite differently
+  const Machine machine = parse_machine(model_text(), "model.xml");
+  const Measurement old = survey(confusable_pairs()[0], 0, machine, 13);
+  const Plan plan = plan_next(model_text(), machine, old, "backlash", "scale-error", built_in_effects());
+  // THEN there is nothing to measure, and the sheets are empty but sound
+  EXPECT_TRUE(plan.told_already) << plan.sentence;
+  EXPECT_EQ(plan.rows.rows(), 0U);
+  EXPECT_EQ(plan_gcode(plan).find("G1"), std::string::npos);
+  EXPECT_NE(plan_csv(plan).find("X[mm],Y[mm],Z[mm]"), std::string::npos);
+}
+
 TEST(PlanNextOne, TakesTheWishedNumberOfPoints) {
   const Machine machine = parse_machine(model_text(), "model.xml");
   const Confusable pair = confusable_pairs()[0];
