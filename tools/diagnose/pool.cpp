@@ -67,7 +67,8 @@ const Candidate& Pool::candidate(std::size_t i) const {
 double Pool::penalty(std::size_t candidate) const {
   const ScannedCandidate& item = scanner_.candidates()[candidate];
   double cost = 2 * std::log(static_cast<double>(scanner_.candidates().size())) + rank_of(item.candidate);
-  if (item.candidate.choice.effect->rare) cost += kRare;
+  // A jump between runs follows any slow drift: it is named only where no continuous effect does as well.
+  if (item.candidate.choice.effect->rare || !item.candidate.choice.runs.empty()) cost += kRare;
   // A scanned unknown is as many tries as the grid has values that differ, where that is more than the price
   // of a coefficient.
   constexpr double kPointsPerTry = 2.5;
