@@ -1,0 +1,212 @@
+// The equation of one reference machine in every form, and its peers, over the same seeded poses:
+// machine_bench DIR list | count CASE N | time | check. Built by tests/bench/run, which prints the table.
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <memory>
+
+#include "comp/verify.h"
+#include "equation.h"
+#include "tests/bench/kernels/counted.h"
+#include "tests/bench/kernels/frame_peers.h"
+#include "tests/bench/poses.h"
+
+#ifdef __x86_64__
+#include <emmintrin.h>
+#endif
+
+#ifndef VERNIER_NO_FLAT
+namespace vernier::VERNIER_FLAT {
+void flat(const double* channel, double* deviation);
+}
+#endif
+
+namespace vernier::bench {
+namespace {
+
+constexpr std::size_t kPoses = 64;
+
+struct Bench {
+  std::unique_ptr<std::uint64_t[]> words;
+  std::uint32_t bytes = 0;
+  ImageView view;
+  std::vector<CycleInput> poses;
+  std::vector<std::vector<std::int32_t>> registers;  // per pose, constants and channels in place
+  std::vector<std::vector<double>> real_channels;    // the same in double
+  std::unique_ptr<Compensator> compensator;
+  LagState lags[kMaxLags] = {};
+  std::vector<Chain> chains;
+
+  const Program& program() const { return view.program(); }
+};
+
+// Units of one count: mm or deg, mm/s..., 1; as the compiler takes them.
+double unit_of(const Bench& b, const Channel& c) {
+  const bool rotary = c.kind <= ChannelKind::kSince && (b.view.axes()[c.index].flags & kRotary) != 0;
+  switch (c.kind) {
+    case ChannelKind::kSense:
+    case ChannelKind::kVisit:
+      return 1;
+    case ChannelKind::kCurvature:
+      return 1e-9;
+    default:
+      return rotary ? 360 / 4294967296.0 : 1e-6;
+  }
+}
+
+double quantity_of(const Bench& b, const Channel& c, const CycleInput& input) {
+  const auto value = [&]() -> std::int64_t {
+    const AxisInput& axis = input.axis[c.index % kMaxAxes];
+    switch (c.kind) {
+      case ChannelKind::kPosition:
+        return axis.position.count;
+      case ChannelKind::kVelocity:
+        return axis.velocity.count;
+      case ChannelKind::kAcceleration:
+        return axis.acceleration.count;
+      case ChannelKind::kSense:
+        return axis.sense;
+      case ChannelKind::kSince:
+        return axis.since.count;
+      case ChannelKind::kInput:
+        return input.input[c.index].count;
+      case ChannelKind::kFeed:
+        return input.feed.count;
+      case ChannelKind::kCurvature:
+        return input.curvature.count;
+      case ChannelKind::kTime:
+        return input.time.count;
+      default:
+        return input.visit.count;
+    }
+  }();
+  return static_cast<double>(std::clamp(value, c.low, c.high)) * unit_of(b, c);
+}
+
+void read_image(const std::string& directory, Bench& b) {
+  std::ifstream file(directory + "/machine.vimg", std::ios::binary);
+  std::vector<char> bytes((std::istreambuf_iterator<char>(file)), {});
+  b.bytes = static_cast<std::uint32_t>(bytes.size());
+  b.words = std::make_unique<std::uint64_t[]>(bytes.size() / 8 + 8);
+  std::copy(bytes.begin(), bytes.end(), reinterpret_cast<char*>(b.words.get()));
+  static ImageWorkspace workspace;
+  const ImageFault fault =
+      b.view.open(reinterpret_cast<const std::uint8_t*>(b.words.get()), b.bytes, workspace);
+  if (fault != ImageFault::kNone)
+    std::fprintf(stderr, "%s: %s\n", directory.c_str(), describe(fault)), std::exit(1);
+}
+
+void make_poses(Bench& b) {
+  Poses poses(b.view);
+  b.compensator = std::make_unique<Compensator>(b.program());
+  const std::uint32_t inputs = b.program().equation.first_result();
+  for (std::size_t i = 0; i < kPoses; ++i) {
+    b.poses.push_back(poses.next());
+    b.compensator->step(b.poses.back());
+    std::vector<std::int32_t> registers(kMaxRegisters);
+    for (std::uint32_t r = 0; r < inputs; ++r) registers[r] = b.compensator->register_value(r);
+    b.registers.push_back(std::move(registers));
+    std::vector<double> real;
+    for (const Channel& c : b.program().channels) real.push_back(quantity_of(b, c, b.poses.back()));
+    b.real_channels.push_back(std::move(real));
+  }
+  b.compensator->reset();
+}
+
+void print_equation(Bench& b, std::size_t i, std::int32_t* deviation) {
+  generated::equation(b.registers[i].data() + b.program().equation.first_channel(), b.lags, i == 0,
+                      deviation);
+}
+
+/// Printed against executed, bit for bit, and against the same equation in double.
+int check(Bench& b) {
+  LagState lags[kMaxLags] = {};
+  double worst_nm = 0;
+  for (std::size_t i = 0; i < kPoses; ++i) {
+    run_equation(b.program().equation, b.registers[i].data(), lags, i == 0);
+    std::int32_t printed[kMaxAxes] = {};
+    double flat[kMaxAxes] = {};
+    print_equation(b, i, printed);
+#ifndef VERNIER_NO_FLAT
+    VERNIER_FLAT::flat(b.real_channels[i].data(), flat);
+#else
+    std::fill(flat, flat + kMaxAxes, NAN);
+#endif
+    for (std::uint32_t k = 0; k < b.program().outputs.size; ++k) {
+      const Output& out = b.program().outputs[k];
+      const std::int32_t executed = b.registers[i][out.source];
+      if (executed != printed[k])
+        return std::fprintf(stderr, "printed and executed form differ at pose %zu\n", i), 1;
+      const double nm =
+          std::ldexp(static_cast<double>(executed) * out.multiplier, -static_cast<int>(out.shift));
+      worst_nm = std::isnan(flat[k]) ? NAN : std::max(worst_nm, std::abs(nm - flat[k] * 1e6));
+    }
+  }
+  std::printf("operations %u\nimage_bytes %u\nnm_from_double %.3f\n", b.program().equation.instructions.size,
+              b.bytes, worst_nm);
+  return 0;
+}
+
+void flush(const void* from, std::size_t bytes) {
+#ifdef __x86_64__
+  const char* const at = static_cast<const char*>(from);
+  for (std::size_t i = 0; i < bytes; i += 64) _mm_clflush(at + i);
+  _mm_mfence();
+#else
+  (void)from, (void)bytes;
+#endif
+}
+
+std::vector<Case> cases_of(Bench& b) {
+  std::vector<Case> cases;
+  const auto over_poses = [&cases](const char* name, auto body) {
+    cases.push_back({name, [body](std::size_t n) {
+                       for (std::size_t i = 0; i < n; ++i) body(i % kPoses);
+                     }});
+  };
+  over_poses("step", [&b](std::size_t i) { keep(b.compensator->step(b.poses[i])); });
+  over_poses("executed", [&b](std::size_t i) {
+    run_equation(b.program().equation, b.registers[i].data(), b.lags, false);
+  });
+  over_poses("printed", [&b](std::size_t i) {
+    std::int32_t deviation[kMaxAxes];
+    generated::equation(b.registers[i].data() + b.program().equation.first_channel(), b.lags, false,
+                        deviation);
+    keep(deviation);
+  });
+#ifndef VERNIER_NO_FLAT
+  over_poses("double", [&b](std::size_t i) {
+    double deviation[kMaxAxes];
+    VERNIER_FLAT::flat(b.real_channels[i].data(), deviation);
+    keep(deviation);
+  });
+#endif
+#ifdef VERNIER_WITH_EIGEN
+  over_poses("eigen", [&b](std::size_t i) { keep(eigen_chain(b.chains[i])); });
+#endif
+#ifdef VERNIER_WITH_KDL
+  over_poses("kdl", [&b](std::size_t i) { keep(kdl_chain(b.chains[i])); });
+#endif
+  over_poses("step_cold", [&b](std::size_t i) {
+    flush(b.words.get(), b.bytes);
+    keep(b.compensator->step(b.poses[i]));
+  });
+  over_poses("flush_alone", [&b](std::size_t) { flush(b.words.get(), b.bytes); });
+  over_poses("step_low", [&b](std::size_t) { keep(b.compensator->step(b.poses[0])); });
+  return cases;
+}
+
+}  // namespace
+}  // namespace vernier::bench
+
+int main(int argc, char** argv) {
+  if (argc < 3)
+    return std::fprintf(stderr, "usage: machine_bench DIR list | count CASE N | time | check\n"), 1;
+  using namespace vernier::bench;
+  static Bench bench;
+  read_image(argv[1], bench);
+  make_poses(bench);
+  bench.chains = read_chains(std::string(argv[1]) + "/chain.txt");
+  if (std::string(argv[2]) == "check") return check(bench);
+  return measure(cases_of(bench), argc - 1, argv + 1);
+}
