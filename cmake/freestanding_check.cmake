@@ -6,7 +6,7 @@ if(NOT CXX OR CXX MATCHES "NOTFOUND" OR NOT NM OR NM MATCHES "NOTFOUND")
   return()
 endif()
 file(GLOB sources ${SOURCE_DIR}/comp/*.cpp ${SOURCE_DIR}/tables/*.cpp)
-file(GLOB headers ${SOURCE_DIR}/comp/*.h ${SOURCE_DIR}/tables/*.h)
+file(GLOB headers ${SOURCE_DIR}/comp/*.h ${SOURCE_DIR}/comp/generated/*.h ${SOURCE_DIR}/tables/*.h)
 file(MAKE_DIRECTORY ${WORK_DIR})
 set(findings "")
 # Soft float (f, d, conversions), division helpers, heap, exceptions, locks of statics.

@@ -43,7 +43,7 @@ std::int64_t unrolled(const Channel& channel, std::int64_t value) noexcept {
 
 std::int32_t channel_value(const Channel& channel, std::int64_t value) noexcept {
   const std::int64_t limited = clamp(value, channel.low, channel.high);
-  return multiply(narrow(round_shift(limited, channel.pre_shift)), channel.multiplier, channel.shift);
+  return narrow(multiply(narrow(round_shift(limited, channel.pre_shift)), channel.multiplier, channel.shift));
 }
 
 Compensator::Compensator(const Program& program) noexcept : program_(program) {
@@ -85,7 +85,7 @@ CycleOutput Compensator::step(const CycleInput& input, WeightQ16 weight) noexcep
     const std::int32_t wanted = correction_for(deviation).counts;
     const std::int32_t limited = clamp(wanted, -out.limit, out.limit);
     SlewLimit& slew = slew_[out.axis];
-    output.correction[out.axis] = Correction{slew.approach(multiply(limited, share, 16), out.slew)};
+    output.correction[out.axis] = Correction{slew.approach(narrow(multiply(limited, share, 16)), out.slew)};
     if (saturated || limited != wanted) output.flags |= kSaturated;
     if (slew.limiting()) output.flags |= kSlewing;
   }

@@ -2,23 +2,33 @@
 #include "comp/equation.h"
 
 #include "comp/fixed.h"
+#include "comp/sine.h"
 
 namespace vernier {
 namespace {
 
-std::int32_t run_lag(const Instruction& step, std::int32_t u, LagState* lags, bool starting) noexcept {
+Word run_lag(const Instruction& step, Word u, LagState* lags, bool starting) noexcept {
   LagState& state = lags[step.b];
-  if (starting) start_lag(state, u);
-  return step_lag(state, u, step.k, step.shift);
+  if (starting) start_lag(state, static_cast<std::int32_t>(u));
+  return step_lag(state, static_cast<std::int32_t>(u), step.k, step.shift);
+}
+
+Word run_dot(const Instruction& step, const ProductTerm* terms, const std::int32_t* r) noexcept {
+  std::int64_t sum = std::int64_t{step.k} * (std::int64_t{1} << step.c);
+  const ProductTerm* t = terms + step.l;
+  for (const ProductTerm* const end = t + step.a; t != end; ++t) sum += product(r[t->a], r[t->b]) >> t->shift;
+  for (const ProductTerm* const end = t + step.b; t != end; ++t) sum -= product(r[t->a], r[t->b]) >> t->shift;
+  return word_of(round_shift(sum, step.shift));
 }
 
 }  // namespace
 
 void run_equation(const Equation& equation, std::int32_t* registers, LagState* lags, bool starting) noexcept {
   const std::int32_t* const r = registers;
+  const ProductTerm* const terms = equation.terms.data;
   std::int32_t* out = registers + equation.first_result();
   for (const Instruction& step : equation.instructions) {
-    std::int32_t result = 0;
+    Word result = 0;
     switch (step.op) {
       case OpCode::kLinear:
         result = linear(r[step.a], step.k, r[step.b], step.l, step.shift);
@@ -26,8 +36,8 @@ void run_equation(const Equation& equation, std::int32_t* registers, LagState* l
       case OpCode::kMultiply:
         result = multiply(r[step.a], r[step.b], step.shift);
         break;
-      case OpCode::kMultiplyAdd:
-        result = multiply_add(r[step.a], r[step.b], r[step.c], step.k, step.shift);
+      case OpCode::kDot:
+        result = run_dot(step, terms, r);
         break;
       case OpCode::kAbs:
         result = magnitude(r[step.a]);
@@ -50,25 +60,21 @@ void run_equation(const Equation& equation, std::int32_t* registers, LagState* l
       case OpCode::kWrap:
         result = wrapped(equation.wraps[step.b], r[step.a]);
         break;
-      case OpCode::kSegment:
-        result = static_cast<std::int32_t>(segment_of(equation.tables[step.b], r[step.a]));
-        break;
-      case OpCode::kFraction:
-        result = fraction_in(equation.tables[step.b][static_cast<std::uint32_t>(r[step.c])], r[step.a]);
-        break;
-      case OpCode::kLinearColumn: {
-        const std::int32_t* const near = equation.columns[step.b].data + r[step.c];
-        result = linear_between(near[0], near[1], r[step.a]);
+      case OpCode::kLookUp:
+        look_up(equation.tables[step.b], r[step.a], out);
+        out += equation.tables[step.b].columns;
+        continue;
+      case OpCode::kSineCosine: {
+        const SineCosine both = sine_cosine(turns_of(r[step.a], step.k, step.shift));
+        *out++ = both.sine;
+        result = both.cosine;
         break;
       }
-      case OpCode::kCubicColumn:
-        result = cubic_between(equation.columns[step.b].data + std::ptrdiff_t{4} * r[step.c], r[step.a]);
-        break;
       case OpCode::kLag:
         result = run_lag(step, r[step.a], lags, starting);
         break;
     }
-    *out++ = result;
+    *out++ = static_cast<std::int32_t>(result);
   }
 }
 

@@ -15,7 +15,6 @@ constexpr std::uint32_t kMaxInputs = 24;
 constexpr std::uint32_t kMaxRegisters = 1024;
 constexpr std::uint32_t kMaxLags = 16;
 constexpr std::uint32_t kMaxTables = 64;
-constexpr std::uint32_t kMaxColumns = 192;
 /// Largest magnitude of the immediate factors k and l of an instruction.
 constexpr std::int32_t kMaxFactor = std::int32_t{1} << 30;
 constexpr unsigned kMaxShift = 61;
@@ -23,25 +22,32 @@ constexpr unsigned kMaxShift = 61;
 /// What an instruction does with its operands a, b, c (registers, or an index where said) and immediates k,
 /// l. All registers are int32 in a binary format that the compiler chose and that this machine need not know.
 enum class OpCode : std::uint8_t {
-  kLinear,        // (a*k + b*l) >> shift, rounded
-  kMultiply,      // (a*b) >> shift, rounded
-  kMultiplyAdd,   // (a*b + c*k) >> shift, rounded
-  kAbs,           // |a|
-  kMin,           // lower of a, b
-  kMax,           // higher of a, b
-  kSign,          // -1, 0, +1
-  kEqual,         // a == b ? 1 : 0
-  kLess,          // a < b ? 1 : 0
-  kWrap,          // a brought into the period of wrap b
-  kSegment,       // number of the segment of table b that holds a
-  kFraction,      // fraction (Q30) of a within segment c (a register) of table b
-  kLinearColumn,  // between stations c and c+1 of column b, fraction a
-  kCubicColumn,   // cubic of segment c of column b, fraction a
-  kLag,           // state b += k/2^shift * (a - state b); the state
+  kLinear,      // (a*k + b*l) >> shift, rounded
+  kMultiply,    // (a*b) >> shift, rounded
+  kDot,         // (k << c, + the first a terms from term l on, - the b terms after them) >> shift, rounded
+  kAbs,         // |a|
+  kMin,         // lower of a, b
+  kMax,         // higher of a, b
+  kSign,        // -1, 0, +1
+  kEqual,       // a == b ? 1 : 0
+  kLess,        // a < b ? 1 : 0
+  kWrap,        // a brought into the period of wrap b
+  kLookUp,      // all columns of table b at position a: one result a column
+  kSineCosine,  // of the angle (a*k) >> shift, 2^-32 turn: two results, 30 fraction bits
+  kLag,         // state b += k/2^shift * (a - state b); the state
 };
 constexpr std::uint8_t kOpCodeCount = static_cast<std::uint8_t>(OpCode::kLag) + 1;
 
-/// One step of the straight-line program; its result goes to the next register. 16 bytes, as in the image.
+/// One product of a sum of products: (register a * register b) >> shift, truncated. A factor may be one of
+/// the constants. The compiler gives the sum so many guard bits that the truncation does not show.
+struct ProductTerm {
+  std::uint16_t a, b;
+  std::uint16_t shift;  // 0..62
+};
+static_assert(sizeof(ProductTerm) == 6);
+constexpr std::uint32_t kMaxTerms = 4096;
+
+/// One step of the straight-line program; its results go to the next registers. 16 bytes, as in the image.
 struct Instruction {
   OpCode op;
   std::uint8_t shift;
@@ -50,21 +56,30 @@ struct Instruction {
 };
 static_assert(sizeof(Instruction) == 16);
 
-/// The error equation of a machine: registers are first the constants, then the channels, then one per
-/// instruction (static single assignment: an instruction reads only registers before its own). Non-owning.
+/// The error equation of a machine: registers are first the constants, then the channels, then the
+/// results in order (static single assignment: an instruction reads only registers before its own).
+/// Non-owning.
 struct Equation {
   View<std::int32_t> constants;
   std::uint32_t channel_count = 0;
   View<Instruction> instructions;
-  View<View<Segment>> tables;
-  View<View<std::int32_t>> columns;  // linear: one value a station; cubic: four coefficients a segment
+  View<ProductTerm> terms;
+  View<ErrorTable> tables;
   View<Wrap> wraps;
   std::uint32_t lag_count = 0;
+  std::uint32_t result_count = 0;  // of all instructions together
 
   constexpr std::uint32_t first_channel() const { return constants.size; }
   constexpr std::uint32_t first_result() const { return constants.size + channel_count; }
-  constexpr std::uint32_t register_count() const { return first_result() + instructions.size; }
+  constexpr std::uint32_t register_count() const { return first_result() + result_count; }
 };
+
+/// Number of results of an instruction; 0 where its table is not there.
+constexpr std::uint32_t results_of(const Instruction& step, View<ErrorTable> tables) noexcept {
+  if (step.op == OpCode::kSineCosine) return 2;
+  if (step.op != OpCode::kLookUp) return 1;
+  return step.b < tables.size ? tables[step.b].columns : 0;
+}
 
 /// Executes a VERIFIED equation (comp/verify.h): the constants and channels are in `registers`, the results
 /// are added. registers: register_count() long; lags: lag_count states; `starting` puts every lag on its

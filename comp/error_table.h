@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstddef>
 #include <cstdint>
 
 #include "comp/fixed.h"
-#include "comp/view.h"
 
 namespace vernier {
 
@@ -21,6 +21,9 @@ struct Segment {
   std::uint32_t shift;  // 0..33
 };
 
+static_assert(sizeof(Segment) == 16);
+constexpr std::uint32_t kSegmentWords = 4;
+
 /// A periodic axis: positions are brought into [first, first + period) before the look-up.
 struct Wrap {
   std::int32_t first;
@@ -29,44 +32,114 @@ struct Wrap {
   std::uint32_t shift;      // 0..61
 };
 
-/// Number of the segment that holds `position`; 0 before the first station, the last one beyond the last
-/// station. A position on a station belongs to the segment that starts there. segments: at least one, starts
-/// increasing. Branch-free bisection: the number of steps depends on the table's length alone. Exact.
-/// realtime.
-inline std::uint32_t segment_of(View<Segment> segments, std::int32_t position) noexcept {
+/// Errors of one axis as functions of its position: polynomial pieces between stations, all columns of a
+/// piece beside each other, so that a look-up finds everything in one or two cache lines. Non-owning.
+///
+/// Record of a piece: the four words of its Segment, then for each column its coefficients in the column's
+/// format, in powers of the fraction: two where degree is 1 (value at the near station, rise to the far one),
+/// four where it is 3. Node rule: station i is the start of piece i, the last station the end of the last
+/// piece. Edge rule: beyond the first and the last station their values hold.
+struct ErrorTable {
+  const std::int32_t* records = nullptr;
+  std::uint32_t pieces = 0;   // > 0
+  std::uint16_t columns = 0;  // > 0
+  std::uint16_t degree = 1;   // 1 or 3
+  // Evenly spaced stations: piece = distance * grid_multiplier >> grid_shift. 0: not evenly, by bisection.
+  std::uint32_t grid_multiplier = 0;
+  std::uint32_t grid_shift = 0;  // 0..63
+
+  constexpr std::uint32_t stride() const noexcept { return kSegmentWords + columns * (degree + 1u); }
+  constexpr const std::int32_t* record(std::uint32_t piece) const noexcept {
+    return records + std::size_t{piece} * stride();
+  }
+};
+
+/// Head of a record. realtime.
+constexpr Segment segment_at(const std::int32_t* record) noexcept {
+  return {record[0], static_cast<std::uint32_t>(record[1]), static_cast<std::uint32_t>(record[2]),
+          static_cast<std::uint32_t>(record[3])};
+}
+
+/// Piece of an evenly spaced table: exact within one count beyond a station, where the two pieces meet in the
+/// same value, and never a piece that starts beyond the position. The last piece beyond the last station.
+/// position: from the first station on. One multiplication. realtime.
+constexpr std::uint32_t grid_piece(const ErrorTable& table, std::int32_t position) noexcept {
+  const std::uint64_t inside =
+      static_cast<std::uint32_t>(position) - static_cast<std::uint32_t>(table.records[0]);
+  const std::uint64_t piece = (inside * table.grid_multiplier) >> table.grid_shift;
+  return static_cast<std::uint32_t>(lower<std::uint64_t>(piece, table.pieces - 1));
+}
+
+/// Number of the piece that holds `position`, which is not before the first station; the last one beyond the
+/// last station. The work depends on the table alone, never on the position: one multiplication where the
+/// stations are even, else a branch-free bisection. realtime.
+constexpr std::uint32_t piece_of(const ErrorTable& table, std::int32_t position) noexcept {
+  if (table.grid_multiplier != 0) return grid_piece(table, position);
   std::uint32_t base = 0;
-  for (std::uint32_t count = segments.size; count > 1;) {
+  for (std::uint32_t count = table.pieces; count > 1;) {
     const std::uint32_t half = count / 2;
-    base += position >= segments[base + half].start ? half : 0;
+    base += position >= table.record(base + half)[0] ? half : 0;
     count -= half;
   }
   return base;
 }
 
-/// How far `position` lies into the segment, 0..kFractionOne (Q30); held at 0 before and at one beyond it.
-/// Truncates: error < 2^-30 + 2^-31 of the segment, exact at both ends. realtime.
-inline std::int32_t fraction_in(const Segment& segment, std::int32_t position) noexcept {
-  const std::int64_t distance = std::int64_t{position} - segment.start;
-  const std::uint64_t inside =
-      static_cast<std::uint64_t>(clamp<std::int64_t>(distance, 0, std::int64_t{segment.length}));
-  const std::uint64_t fraction = (inside * segment.reciprocal) >> segment.shift;
-  return static_cast<std::int32_t>(lower<std::uint64_t>(fraction, kFractionOne));
+/// How far `position`, not before its start, lies into the segment, 0..kFractionOne (Q30); held at one beyond
+/// it. Truncates: error < 2^-30 + 2^-31 of the segment, exact at both ends (the verifier accepts no
+/// reciprocal that misses one at the far end). realtime.
+constexpr std::int64_t fraction_in(const Segment& segment, std::int32_t position) noexcept {
+  const std::uint32_t distance =
+      static_cast<std::uint32_t>(position) - static_cast<std::uint32_t>(segment.start);
+  const std::uint64_t inside = lower(distance, segment.length);
+  return static_cast<std::int64_t>((inside * segment.reciprocal) >> segment.shift);
 }
 
-/// Value between two stations: near + fraction * (far - near), rounded once (<= 1/2 LSB of the column).
-/// Stays within the two; |far - near| < 2^32, product < 2^62. realtime.
-inline std::int32_t linear_between(std::int32_t near, std::int32_t far, std::int32_t fraction) noexcept {
-  return narrow(near + round_shift((std::int64_t{far} - near) * fraction, 30));
+/// Value between two stations: near + fraction * rise, c = {near, rise}, rounded once, ties up (<= 1/2 LSB of
+/// the column). Stays within the two; product < 2^62. realtime.
+constexpr std::int32_t linear_between(const std::int32_t* c, std::int64_t fraction) noexcept {
+  return c[0] + narrow(round_shift(c[1] * fraction, 30));
 }
 
 /// Value of the cubic c[0] + f (c[1] + f (c[2] + f c[3])), f the fraction (Q30), all in the column's format.
-/// Three roundings, together <= 3/2 LSB. |c[1]|, |c[2]|, |c[3]| sums < 2^31 (proved by the verifier).
-/// realtime.
-inline std::int32_t cubic_between(const std::int32_t* c, std::int32_t fraction) noexcept {
-  const std::int64_t f = fraction;
-  const std::int64_t second = c[2] + round_shift(c[3] * f, 30);
-  const std::int64_t first = c[1] + round_shift(second * f, 30);
-  return narrow(c[0] + round_shift(first * f, 30));
+/// The inner two products are truncated, the last is rounded: together within -5/2 and +1/2 LSB. Every
+/// partial sum is below 2^31 (proved by the verifier). realtime.
+constexpr std::int32_t cubic_between(const std::int32_t* c, std::int64_t fraction) noexcept {
+  const std::int32_t second = c[2] + narrow((c[3] * fraction) >> 30);
+  const std::int32_t first = c[1] + narrow((second * fraction) >> 30);
+  return c[0] + narrow(round_shift(first * fraction, 30));
+}
+
+/// Values of kColumns columns of one record. Recursion so that nothing is left of the loop. realtime.
+template <unsigned kDegree, unsigned kColumns>
+constexpr void piece_values(const std::int32_t* c, std::int64_t fraction, std::int32_t* out) noexcept {
+  static_assert(kDegree == 1 || kDegree == 3);
+  *out = kDegree == 1 ? linear_between(c, fraction) : cubic_between(c, fraction);
+  if constexpr (kColumns > 1) piece_values<kDegree, kColumns - 1>(c + kDegree + 1, fraction, out + 1);
+}
+
+/// All columns of a table at `position`; the table has kDegree and kColumns. out: kColumns values, each in
+/// the format of its column. Error: <= 1/2 LSB of the column (linear) or 5/2 LSB (cubic), and the fraction's
+/// 2^-29 of the rise. realtime.
+template <unsigned kDegree, unsigned kColumns>
+inline void look_up(const ErrorTable& table, std::int32_t position, std::int32_t* out) noexcept {
+  const std::int32_t held = higher(position, table.records[0]);
+  const std::int32_t* const record =
+      table.records + std::size_t{piece_of(table, held)} * (kSegmentWords + kColumns * (kDegree + 1));
+  piece_values<kDegree, kColumns>(record + kSegmentWords, fraction_in(segment_at(record), held), out);
+}
+
+/// The same where degree and columns are known only when it runs; the same values. realtime.
+inline void look_up(const ErrorTable& table, std::int32_t position, std::int32_t* out) noexcept {
+  const std::int32_t held = higher(position, table.records[0]);
+  const std::int32_t* const record = table.record(piece_of(table, held));
+  const std::int64_t fraction = fraction_in(segment_at(record), held);
+  const std::int32_t* c = record + kSegmentWords;
+  const std::int32_t* const end = record + table.stride();
+  if (table.degree == 1) {
+    for (; c != end; c += 2) *out++ = linear_between(c, fraction);
+  } else {
+    for (; c != end; c += 4) *out++ = cubic_between(c, fraction);
+  }
 }
 
 /// position brought into [first, first + period) by whole periods. Exact where the verifier accepted the wrap

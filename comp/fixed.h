@@ -26,6 +26,14 @@ constexpr std::int64_t round_shift(std::int64_t value, unsigned shift) noexcept 
   return (value + half) >> shift;
 }
 
+/// A register's value in flight: at least 32 bits, the size that the processor multiplies fastest. It holds
+/// an int32 on every target (proved by the verifier), so that results do not depend on its width.
+using Word = std::int_fast32_t;
+
+/// A value that the caller has proved to fit int32, as a Word: no instruction where that is 64 bits wide.
+/// realtime.
+constexpr Word word_of(std::int64_t value) noexcept { return static_cast<Word>(value); }
+
 /// The low 32 bits of a value that the caller has proved to fit (program verifier). realtime.
 constexpr std::int32_t narrow(std::int64_t value) noexcept { return static_cast<std::int32_t>(value); }
 
@@ -37,35 +45,27 @@ constexpr std::int32_t saturate(std::int64_t value, bool& saturated) noexcept {
   return narrow(limited);
 }
 
+/// a * b, exact: two registers' values, below 2^62. realtime.
+constexpr std::int64_t product(Word a, Word b) noexcept { return std::int64_t{a} * b; }
+
 /// a * b / 2^shift. a: format Qm, b: Qn, result: Q(m+n-shift); 64-bit product, one rounding (<= 1/2 LSB).
 /// The result must fit int32 (proved by the caller). shift: 0..61. realtime.
-constexpr std::int32_t multiply(std::int32_t a, std::int32_t b, unsigned shift) noexcept {
-  return narrow(round_shift(std::int64_t{a} * b, shift));
-}
-
-/// (a * b + c * k) / 2^shift with one rounding. a: Qm, b: Qn, c * k aligned to Q(m+n) by the choice of k, |k|
-/// <= 2^30. Accumulator 64 bit: 2^62 + 2^61 + 2^60 < 2^63. shift: 0..61; the result fits int32 (proved by the
-/// caller). realtime.
-constexpr std::int32_t multiply_add(std::int32_t a, std::int32_t b, std::int32_t c, std::int32_t k,
-                                    unsigned shift) noexcept {
-  return narrow(round_shift(std::int64_t{a} * b + std::int64_t{c} * k, shift));
+constexpr Word multiply(Word a, Word b, unsigned shift) noexcept {
+  return word_of(round_shift(product(a, b), shift));
 }
 
 /// (a * k + b * l) / 2^shift with one rounding: weighted sum of two values of any formats, |k|, |l| <= 2^30.
 /// shift: 0..61; the result fits int32 (proved by the caller). Sum, difference, scaling and change of format.
 /// realtime.
-constexpr std::int32_t linear(std::int32_t a, std::int32_t k, std::int32_t b, std::int32_t l,
-                              unsigned shift) noexcept {
-  return narrow(round_shift(std::int64_t{a} * k + std::int64_t{b} * l, shift));
+constexpr Word linear(Word a, std::int32_t k, Word b, std::int32_t l, unsigned shift) noexcept {
+  return word_of(round_shift(product(a, k) + product(b, l), shift));
 }
 
 /// -1, 0 or +1. realtime.
-constexpr std::int32_t sign_of(std::int32_t value) noexcept {
-  return (value > 0 ? 1 : 0) - (value < 0 ? 1 : 0);
-}
+constexpr Word sign_of(Word value) noexcept { return (value > 0 ? 1 : 0) - (value < 0 ? 1 : 0); }
 
 /// |value|; value > INT32_MIN (proved by the caller). realtime.
-constexpr std::int32_t magnitude(std::int32_t value) noexcept { return value < 0 ? -value : value; }
+constexpr Word magnitude(Word value) noexcept { return value < 0 ? -value : value; }
 
 /// |value|, 64 bit; value > INT64_MIN (proved by the caller). realtime.
 constexpr std::int64_t magnitude_of(std::int64_t value) noexcept { return value < 0 ? -value : value; }

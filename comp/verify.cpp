@@ -2,6 +2,7 @@
 #include "comp/verify.h"
 
 #include "comp/fixed.h"
+#include "comp/sine.h"
 
 namespace vernier {
 namespace {
@@ -26,20 +27,24 @@ constexpr ValueRange hull(const ValueRange& a, const ValueRange& b) {
 }
 constexpr bool factor_ok(std::int32_t k) { return k >= -kMaxFactor && k <= kMaxFactor; }
 
-bool table_ok(const View<Segment>& table) {
-  if (table.size == 0) return false;
-  for (std::uint32_t i = 0; i < table.size; ++i) {
-    const Segment& segment = table[i];
-    const std::int64_t next = std::int64_t{segment.start} + segment.length;
-    if (segment.length == 0 || next > kHigh || segment.shift > 33) return false;
-    if (i + 1 < table.size && table[i + 1].start != next) return false;
-    // The reciprocal is the smallest that reaches one at the far end: 2^(30+shift) <= length*reciprocal <
-    // that + length.
-    const std::uint64_t one = std::uint64_t{1} << (30 + segment.shift);
-    const std::uint64_t reach = std::uint64_t{segment.length} * segment.reciprocal;
-    if (reach < one || reach - one >= segment.length) return false;
+bool segment_ok(const Segment& s) {
+  if (s.length == 0 || std::int64_t{s.start} + s.length > kHigh || s.shift > 33) return false;
+  // The reciprocal is the smallest that reaches one at the far end, and reaches no more than one:
+  // 2^(30+shift) <= length*reciprocal < that + the smaller of length and 2^shift.
+  const std::uint64_t one = std::uint64_t{1} << (30 + s.shift);
+  const std::uint64_t reach = std::uint64_t{s.length} * s.reciprocal;
+  return reach >= one && reach - one < s.length && (reach - one) >> s.shift == 0;
+}
+
+bool table_ok(const ErrorTable& table) {
+  if (table.pieces == 0 || table.columns == 0 || table.columns > kMaxRegisters) return false;
+  if (table.degree != 1 && table.degree != 3) return false;
+  for (std::uint32_t i = 0; i < table.pieces; ++i) {
+    const Segment s = segment_at(table.record(i));
+    if (!segment_ok(s)) return false;
+    if (i + 1 < table.pieces && table.record(i + 1)[0] != std::int64_t{s.start} + s.length) return false;
   }
-  return true;
+  return table.grid_multiplier == 0 ? table.grid_shift == 0 : grid_finds_every_piece(table);
 }
 
 bool wrap_ok(const Wrap& wrap) {
@@ -52,64 +57,67 @@ bool wrap_ok(const Wrap& wrap) {
   return error <= (one >> 32) * wrap.period;
 }
 
-ValueRange column_range(const View<std::int32_t>& column) {
-  ValueRange range = constant(column[0]);
-  for (const std::int32_t value : column) range = hull(range, constant(value));
-  return range;
+constexpr ValueRange truncated(const ValueRange& a) { return {a.low >> 30, a.high >> 30}; }
+
+bool cubic_range(const std::int32_t* c, ValueRange& range) {
+  const ValueRange fraction{0, kFractionOne};
+  const ValueRange third = truncated(product(constant(c[3]), fraction));
+  const ValueRange second = sum(constant(c[2]), third);
+  if (!fits(second)) return false;
+  const ValueRange first = sum(constant(c[1]), truncated(product(second, fraction)));
+  if (!fits(first)) return false;
+  range = sum(constant(c[0]), shifted(product(first, fraction), 30));
+  return fits(range);
 }
 
-bool cubic_range(const View<std::int32_t>& column, std::uint32_t segments, ValueRange& range) {
-  const ValueRange fraction{0, kFractionOne};
-  for (std::uint32_t i = 0; i < segments; ++i) {
-    const std::int32_t* const c = column.data + std::size_t{4} * i;
-    const ValueRange second = sum(constant(c[2]), shifted(product(constant(c[3]), fraction), 30));
-    const ValueRange first = sum(constant(c[1]), shifted(product(second, fraction), 30));
-    if (!fits(second) || !fits(first)) return false;
-    const ValueRange value = sum(constant(c[0]), shifted(product(first, fraction), 30));
-    range = i == 0 ? value : hull(range, value);
+// The range of a column over all pieces of its table.
+ProgramFault column_range(const ErrorTable& table, std::uint32_t column, ValueRange& out) {
+  for (std::uint32_t i = 0; i < table.pieces; ++i) {
+    const std::int32_t* const c = table.record(i) + kSegmentWords + column * (table.degree + 1u);
+    ValueRange piece = hull(constant(c[0]), constant(std::int64_t{c[0]} + c[1]));
+    if (table.degree == 3 ? !cubic_range(c, piece) : !fits(piece)) return ProgramFault::kOverflow;
+    out = i == 0 ? piece : hull(out, piece);
   }
-  return true;
+  return ProgramFault::kNone;
 }
 
 bool second_operand_is_register(OpCode op) {
-  return op == OpCode::kLinear || op == OpCode::kMultiply || op == OpCode::kMultiplyAdd ||
-         op == OpCode::kMin || op == OpCode::kMax || op == OpCode::kEqual || op == OpCode::kLess;
+  return op == OpCode::kLinear || op == OpCode::kMultiply || op == OpCode::kMin || op == OpCode::kMax ||
+         op == OpCode::kEqual || op == OpCode::kLess;
 }
-bool third_operand_is_register(OpCode op) {
-  return op == OpCode::kMultiplyAdd || op == OpCode::kFraction || op == OpCode::kLinearColumn ||
-         op == OpCode::kCubicColumn;
-}
-bool is_look_up(OpCode op) {
-  return op == OpCode::kSegment || op == OpCode::kFraction || op == OpCode::kLinearColumn ||
-         op == OpCode::kCubicColumn;
+// |sum| stays below 2^62, so that it and its rounding fit 64 bits.
+bool sum_fits(const ValueRange& r) {
+  constexpr std::int64_t kFar = std::int64_t{1} << 62;
+  return r.low > -kFar && r.high < kFar;
 }
 
-ProgramFault look_up_range(const Equation& e, const Instruction& s, const ValueRange* r, ValueRange& out) {
-  const ValueRange& a = r[s.a];
-  if (s.op == OpCode::kSegment) {
-    if (s.b >= e.tables.size) return ProgramFault::kOperand;
-    out = {0, std::int64_t{e.tables[s.b].size} - 1};
-    return ProgramFault::kNone;
+ProgramFault dot_range(const Equation& e, const Instruction& s, std::uint32_t position, const ValueRange* r,
+                       ValueRange& out) {
+  const std::uint64_t terms = std::uint64_t{s.a} + s.b;
+  if (s.l < 0 || static_cast<std::uint32_t>(s.l) + terms > e.terms.size || terms == 0)
+    return ProgramFault::kOperand;
+  if (s.c > 31) return ProgramFault::kShift;
+  out = constant(std::int64_t{s.k} * (std::int64_t{1} << s.c));
+  for (std::uint32_t i = 0; i < terms; ++i) {
+    const ProductTerm& t = e.terms[static_cast<std::uint32_t>(s.l) + i];
+    if (t.a >= position || t.b >= position) return ProgramFault::kOperand;
+    if (t.shift > 62) return ProgramFault::kShift;
+    const ValueRange p = product(r[t.a], r[t.b]);
+    const ValueRange part{p.low >> t.shift, p.high >> t.shift};
+    // Each part is at most 2^62 and the sum so far below 2^62: their sum is below 2^63.
+    out = i < s.a ? sum(out, part) : sum(out, {-part.high, -part.low});
+    if (!sum_fits(out)) return ProgramFault::kOverflow;
   }
-  const ValueRange& segment = r[s.c];
-  if (segment.low < 0) return ProgramFault::kSegmentRange;
-  if (s.op == OpCode::kFraction) {
-    if (s.b >= e.tables.size) return ProgramFault::kOperand;
-    if (segment.high >= e.tables[s.b].size) return ProgramFault::kSegmentRange;
-    out = {0, kFractionOne};
-    return ProgramFault::kNone;
-  }
-  if (s.b >= e.columns.size) return ProgramFault::kOperand;
-  if (a.low < 0 || a.high > kFractionOne) return ProgramFault::kOverflow;
-  const View<std::int32_t>& column = e.columns[s.b];
-  if (s.op == OpCode::kLinearColumn) {
-    if (segment.high + 1 >= column.size) return ProgramFault::kSegmentRange;
-    out = column_range(column);
-    return ProgramFault::kNone;
-  }
-  if (4 * (segment.high + 1) > column.size) return ProgramFault::kSegmentRange;
-  return cubic_range(column, static_cast<std::uint32_t>(segment.high + 1), out) ? ProgramFault::kNone
-                                                                                : ProgramFault::kOverflow;
+  out = shifted(out, s.shift);
+  return ProgramFault::kNone;
+}
+
+ProgramFault look_up_range(const Equation& e, const Instruction& s, ValueRange* results) {
+  if (s.b >= e.tables.size) return ProgramFault::kOperand;
+  for (std::uint32_t c = 0; c < e.tables[s.b].columns; ++c)
+    if (const ProgramFault fault = column_range(e.tables[s.b], c, results[c]); fault != ProgramFault::kNone)
+      return fault;
+  return ProgramFault::kNone;
 }
 
 ProgramFault arithmetic_range(const Equation& e, const Instruction& s, const ValueRange* r, ValueRange& out) {
@@ -117,13 +125,11 @@ ProgramFault arithmetic_range(const Equation& e, const Instruction& s, const Val
   const ValueRange& b = second_operand_is_register(s.op) ? r[s.b] : a;  // s.b may be an index of another kind
   switch (s.op) {
     case OpCode::kLinear:
+      if (!factor_ok(s.k) || !factor_ok(s.l)) return ProgramFault::kShift;
       out = shifted(sum(product(a, constant(s.k)), product(b, constant(s.l))), s.shift);
       break;
     case OpCode::kMultiply:
       out = shifted(product(a, b), s.shift);
-      break;
-    case OpCode::kMultiplyAdd:
-      out = shifted(sum(product(a, b), product(r[s.c], constant(s.k))), s.shift);
       break;
     case OpCode::kAbs:
       out = {a.low > 0 ? a.low : (a.high < 0 ? -a.high : 0),
@@ -145,6 +151,10 @@ ProgramFault arithmetic_range(const Equation& e, const Instruction& s, const Val
     case OpCode::kWrap:
       if (s.b >= e.wraps.size) return ProgramFault::kOperand;
       out = {e.wraps[s.b].first, std::int64_t{e.wraps[s.b].first} + e.wraps[s.b].period - 1};
+      break;
+    case OpCode::kSineCosine:
+      if (s.k <= 0) return ProgramFault::kShift;
+      out = {-kSineLimit, kSineLimit};
       break;
     case OpCode::kLag:
       if (s.b >= e.lag_count) return ProgramFault::kLag;
@@ -182,10 +192,9 @@ ProgramFault verify_channels(const Program& program, ValueRange* ranges) {
 }
 
 ProgramFault verify_stores(const Equation& e) {
-  for (const View<Segment>& table : e.tables)
+  if (e.tables.size > kMaxTables || e.terms.size > kMaxTerms) return ProgramFault::kTooLong;
+  for (const ErrorTable& table : e.tables)
     if (!table_ok(table)) return ProgramFault::kTable;
-  for (const View<std::int32_t>& column : e.columns)
-    if (column.size == 0) return ProgramFault::kColumn;
   for (const Wrap& wrap : e.wraps)
     if (!wrap_ok(wrap)) return ProgramFault::kWrap;
   return ProgramFault::kNone;
@@ -205,7 +214,8 @@ ProgramFault verify_outputs(const Program& program) {
 ProgramFault verify_size(const Program& program) {
   const Equation& e = program.equation;
   constexpr std::uint32_t kMost = kMaxRegisters;
-  if (e.constants.size > kMost || e.channel_count > kMost || e.instructions.size > kMost)
+  if (e.constants.size > kMost || e.channel_count > kMost || e.instructions.size > kMost ||
+      e.result_count > kMost)
     return ProgramFault::kTooLong;
   if (e.register_count() > kMost || e.lag_count > kMaxLags) return ProgramFault::kTooLong;
   if (program.axis_count > kMaxAxes || program.input_count > kMaxInputs) return ProgramFault::kTooLong;
@@ -214,19 +224,33 @@ ProgramFault verify_size(const Program& program) {
 
 }  // namespace
 
+bool grid_finds_every_piece(const ErrorTable& table) noexcept {
+  if (table.grid_shift > 63) return false;
+  for (std::uint32_t i = 0; i < table.pieces; ++i) {
+    const Segment s = segment_at(table.record(i));
+    if (grid_piece(table, narrow(std::int64_t{s.start} + s.length - 1)) != i) return false;
+    if (s.length > 1 && grid_piece(table, narrow(std::int64_t{s.start} + 1)) != i) return false;
+  }
+  return true;
+}
+
 ProgramFault range_of(const Equation& equation, const Instruction& step, std::uint32_t position,
-                      const ValueRange* ranges, ValueRange& result) noexcept {
+                      const ValueRange* ranges, ValueRange* results) noexcept {
   if (static_cast<std::uint8_t>(step.op) >= kOpCodeCount) return ProgramFault::kOpCode;
-  if (step.a >= position) return ProgramFault::kOperand;
-  if (second_operand_is_register(step.op) && step.b >= position) return ProgramFault::kOperand;
-  if (third_operand_is_register(step.op) && step.c >= position) return ProgramFault::kOperand;
   if (step.shift > kMaxShift) return ProgramFault::kShift;
-  if (step.op == OpCode::kLinear && !(factor_ok(step.k) && factor_ok(step.l))) return ProgramFault::kShift;
-  if (step.op == OpCode::kMultiplyAdd && !factor_ok(step.k)) return ProgramFault::kShift;
-  const ProgramFault fault = is_look_up(step.op) ? look_up_range(equation, step, ranges, result)
-                                                 : arithmetic_range(equation, step, ranges, result);
+  ProgramFault fault = ProgramFault::kNone;
+  if (step.op == OpCode::kDot) {
+    fault = dot_range(equation, step, position, ranges, *results);
+  } else if (step.a >= position || (second_operand_is_register(step.op) && step.b >= position)) {
+    fault = ProgramFault::kOperand;
+  } else if (step.op == OpCode::kLookUp) {
+    return look_up_range(equation, step, results);
+  } else {
+    fault = arithmetic_range(equation, step, ranges, *results);
+    if (step.op == OpCode::kSineCosine) results[1] = results[0];
+  }
   if (fault != ProgramFault::kNone) return fault;
-  return fits(result) ? ProgramFault::kNone : ProgramFault::kOverflow;
+  return fits(*results) ? ProgramFault::kNone : ProgramFault::kOverflow;
 }
 
 ProgramFault verify_program(const Program& program, ValueRange* ranges) noexcept {
@@ -240,16 +264,19 @@ ProgramFault verify_program(const Program& program, ValueRange* ranges) noexcept
   std::uint32_t lags_used = 0;
   std::uint32_t position = e.first_result();
   for (const Instruction& step : e.instructions) {
-    // The operands are checked before arithmetic_range reads them: a register index below `position` is in
+    // The operands are checked before their ranges are read: a register index below `position` is in
     // `ranges`.
-    fault = range_of(e, step, position, ranges, ranges[position]);
+    const std::uint32_t results = results_of(step, e.tables);
+    if (position + results > e.register_count()) return ProgramFault::kTooLong;
+    fault = range_of(e, step, position, ranges, ranges + position);
     if (fault != ProgramFault::kNone) return fault;
     if (step.op == OpCode::kLag) {
       if ((lags_used >> step.b & 1u) != 0) return ProgramFault::kLag;
       lags_used |= 1u << step.b;
     }
-    ++position;
+    position += results;
   }
+  if (position != e.register_count()) return ProgramFault::kTooLong;
   if (lags_used != (std::uint32_t{1} << e.lag_count) - 1) return ProgramFault::kLag;
   return verify_outputs(program);
 }

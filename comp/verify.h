@@ -9,18 +9,16 @@ namespace vernier {
 /// Why a program is not safe to run.
 enum class ProgramFault : std::uint8_t {
   kNone,
-  kTooLong,       // more registers, lags, axes or inputs than the cycle has memory for
-  kChannel,       // channel index, limits, shift or multiplier out of range
-  kTable,         // stations not increasing, lengths or reciprocals inconsistent
-  kColumn,        // a column without values
-  kWrap,          // period, reciprocal or shift inconsistent
-  kOpCode,        // unknown operation
-  kOperand,       // a register that is not written yet, or an index outside
-  kShift,         // shift or factor outside the limits of fixed.h
-  kOverflow,      // a result that could leave int32
-  kSegmentRange,  // a segment number that could leave its table or column
-  kLag,           // a state used twice or not at all
-  kOutput,        // output axis, source, shift or limits out of range
+  kTooLong,   // more registers, lags, axes or inputs than the cycle has memory for
+  kChannel,   // channel index, limits, shift or multiplier out of range
+  kTable,     // stations not increasing, lengths, reciprocals or grid inconsistent
+  kWrap,      // period, reciprocal or shift inconsistent
+  kOpCode,    // unknown operation
+  kOperand,   // a register that is not written yet, or an index outside
+  kShift,     // shift or factor outside the limits of fixed.h
+  kOverflow,  // a result that could leave int32
+  kLag,       // a state used twice or not at all
+  kOutput,    // output axis, source, shift or limits out of range
 };
 
 /// All values that a register can take, whatever the inputs.
@@ -34,9 +32,13 @@ struct ValueRange {
 /// but the views' own sizes. setup.
 ProgramFault verify_program(const Program& program, ValueRange* ranges) noexcept;
 
-/// Range of the result of one instruction, given the ranges of all earlier registers; the compiler chooses
-/// formats with it. `position` is the register that the instruction writes. setup.
+/// Whether grid_piece finds every piece from one count after its start to one before its end; at a station
+/// both neighbours have the same value. The segments must be in order. setup.
+bool grid_finds_every_piece(const ErrorTable& table) noexcept;
+
+/// Ranges of the results of one instruction (results_of many), given the ranges of all earlier registers; the
+/// compiler chooses formats with it. `position` is the first register that the instruction writes. setup.
 ProgramFault range_of(const Equation& equation, const Instruction& step, std::uint32_t position,
-                      const ValueRange* ranges, ValueRange& result) noexcept;
+                      const ValueRange* ranges, ValueRange* results) noexcept;
 
 }  // namespace vernier

@@ -16,7 +16,7 @@ namespace vernier {
 static_assert(std::endian::native == std::endian::little, "images are read in place");
 
 constexpr std::uint8_t kImageMagic[8] = {'V', 'E', 'R', 'N', 'I', 'E', 'R', '\n'};
-constexpr std::uint32_t kImageFormatVersion = 1;
+constexpr std::uint32_t kImageFormatVersion = 2;
 constexpr std::uint32_t kMaxImageBytes = 16u << 20;
 constexpr std::uint32_t kImageAlignment = 8;
 constexpr std::uint32_t kImageNameBytes = 24;
@@ -44,10 +44,9 @@ enum class SectionType : std::uint32_t {
   kConstants,     // int32
   kChannels,      // Channel (comp/compensator.h)
   kInstructions,  // Instruction (comp/equation.h)
-  kSegments,      // Segment (comp/error_table.h), all tables one after the other
-  kTables,        // Range: the segments of each table
-  kValues,        // int32, all columns one after the other
-  kColumns,       // Range: the values of each column
+  kTerms,         // ProductTerm, for the instructions that sum products
+  kTables,        // TableRecord
+  kRecords,       // int32: the records of all tables one after the other (comp/error_table.h), no gaps
   kWraps,         // Wrap
   kOutputs,       // Output
 };
@@ -61,10 +60,17 @@ struct SectionEntry {
 };
 static_assert(sizeof(SectionEntry) == 16);
 
-/// A stretch of the section that holds the values of all tables or columns.
-struct Range {
-  std::uint32_t first, count;
+/// Shape of a table; its records are pieces * (4 + columns * (degree + 1)) words of kRecords: of each piece
+/// its Segment (start, length, reciprocal, shift), then the coefficients of column after column. Six linear
+/// columns make records of 64 bytes: a look-up touches two cache lines at most.
+struct TableRecord {
+  std::uint32_t pieces;
+  std::uint16_t columns;
+  std::uint16_t degree;           // 1 linear, 3 cubic
+  std::uint32_t grid_multiplier;  // evenly spaced stations, else 0 (ErrorTable)
+  std::uint32_t grid_shift;
 };
+static_assert(sizeof(TableRecord) == 16);
 
 enum AxisFlag : std::uint32_t { kRotary = 1u << 0, kRollover = 1u << 1 };
 

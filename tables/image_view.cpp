@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tables/image_view.h"
 
+#include "comp/fixed.h"
 #include "tables/checksum.h"
 
 namespace vernier {
@@ -12,10 +13,9 @@ constexpr std::uint32_t kRecordBytes[kSectionCount] = {1,
                                                        4,
                                                        sizeof(Channel),
                                                        sizeof(Instruction),
-                                                       sizeof(Segment),
-                                                       sizeof(Range),
+                                                       sizeof(ProductTerm),
+                                                       sizeof(TableRecord),
                                                        4,
-                                                       sizeof(Range),
                                                        sizeof(Wrap),
                                                        sizeof(Output)};
 
@@ -100,18 +100,6 @@ View<T> section(const std::uint8_t* bytes, SectionType type) {
   return {at<T>(bytes, entry.offset), entry.count};
 }
 
-template <class T>
-ImageFault slice(View<T> all, View<Range> ranges, View<T>* out, std::uint32_t room) {
-  if (ranges.size > room) return ImageFault::kTooMany;
-  std::uint32_t next = 0;
-  for (std::uint32_t i = 0; i < ranges.size; ++i) {
-    if (ranges[i].first != next || ranges[i].count > all.size - next) return ImageFault::kRange;
-    out[i] = View<T>{all.data + next, ranges[i].count};
-    next += ranges[i].count;
-  }
-  return next == all.size ? ImageFault::kNone : ImageFault::kRange;
-}
-
 ImageFault fault_of(ProgramFault fault) {
   if (fault == ProgramFault::kNone) return ImageFault::kNone;
   return static_cast<ImageFault>(static_cast<int>(ImageFault::kProgramTooLong) + static_cast<int>(fault) -
@@ -122,13 +110,26 @@ static_assert(static_cast<int>(ImageFault::kProgramOutput) - static_cast<int>(Im
 
 }  // namespace
 
-ImageFault ImageView::read_tables(View<Segment> segments, View<Range> tables, View<std::int32_t> values,
-                                  View<Range> columns) noexcept {
-  ImageFault fault = slice(segments, tables, tables_, kMaxTables);
-  if (fault == ImageFault::kNone) fault = slice(values, columns, columns_, kMaxColumns);
+ImageFault ImageView::read_tables(View<TableRecord> tables, View<std::int32_t> words) noexcept {
+  if (tables.size > kMaxTables) return ImageFault::kTooMany;
+  std::uint64_t next = 0;
+  for (std::uint32_t i = 0; i < tables.size; ++i) {
+    const TableRecord& t = tables[i];
+    const std::int32_t* const records = words.data + next;
+    tables_[i] = {records, t.pieces, t.columns, t.degree, t.grid_multiplier, t.grid_shift};
+    next += std::uint64_t{t.pieces} * tables_[i].stride();
+    if (next > words.size) return ImageFault::kRange;
+  }
   program_.equation.tables = {tables_, tables.size};
-  program_.equation.columns = {columns_, columns.size};
-  return fault;
+  return next == words.size ? ImageFault::kNone : ImageFault::kRange;
+}
+
+// Wide enough that no number of instructions can bring it round; the verifier bounds it.
+void ImageView::count_results() noexcept {
+  Equation& equation = program_.equation;
+  std::uint64_t results = 0;
+  for (const Instruction& step : equation.instructions) results += results_of(step, equation.tables);
+  equation.result_count = static_cast<std::uint32_t>(lower<std::uint64_t>(results, UINT32_MAX));
 }
 
 ImageFault ImageView::read_sections(const std::uint8_t* bytes) noexcept {
@@ -152,9 +153,11 @@ ImageFault ImageView::read_sections(const std::uint8_t* bytes) noexcept {
   equation.instructions = section<Instruction>(bytes, SectionType::kInstructions);
   equation.wraps = section<Wrap>(bytes, SectionType::kWraps);
   equation.lag_count = header_->lag_count;
-  return read_tables(
-      section<Segment>(bytes, SectionType::kSegments), section<Range>(bytes, SectionType::kTables),
-      section<std::int32_t>(bytes, SectionType::kValues), section<Range>(bytes, SectionType::kColumns));
+  equation.terms = section<ProductTerm>(bytes, SectionType::kTerms);
+  const ImageFault fault = read_tables(section<TableRecord>(bytes, SectionType::kTables),
+                                       section<std::int32_t>(bytes, SectionType::kRecords));
+  count_results();
+  return fault;
 }
 
 ImageFault ImageView::read(const std::uint8_t* bytes, std::uint32_t size,
@@ -208,17 +211,15 @@ const char* describe(ImageFault fault) noexcept {
     case ImageFault::kInput:
       return "input record: name, unit or range";
     case ImageFault::kRange:
-      return "table or column: leaves its section";
+      return "table: its records leave their section";
     case ImageFault::kTooMany:
-      return "tables or columns: more than there is room for";
+      return "tables: more than there is room for";
     case ImageFault::kProgramTooLong:
       return "program: more registers, lags, axes or inputs than there is room for";
     case ImageFault::kProgramChannel:
       return "program: channel index, limits, shift or multiplier";
     case ImageFault::kProgramTable:
-      return "program: stations or reciprocals of a table inconsistent";
-    case ImageFault::kProgramColumn:
-      return "program: a column without values";
+      return "program: stations, reciprocals or grid of a table inconsistent";
     case ImageFault::kProgramWrap:
       return "program: period of an axis inconsistent";
     case ImageFault::kProgramOpCode:
@@ -229,8 +230,6 @@ const char* describe(ImageFault fault) noexcept {
       return "program: shift or factor out of range";
     case ImageFault::kProgramOverflow:
       return "program: a result could overflow";
-    case ImageFault::kProgramSegmentRange:
-      return "program: a look-up could leave its table";
     case ImageFault::kProgramLag:
       return "program: lag states do not match";
     case ImageFault::kProgramOutput:

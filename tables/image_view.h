@@ -20,18 +20,16 @@ enum class ImageFault : std::uint8_t {
   kFingerprint,     // the equation is not the one that the header names
   kAxis,            // axis record: name, flags or range
   kInput,           // input record: name, unit or range
-  kRange,           // a table or column that leaves its section
-  kTooMany,         // more tables or columns than the views have room for
+  kRange,           // a table whose records leave their section
+  kTooMany,         // more tables than the views have room for
   kProgramTooLong,  // the causes of comp/verify.h, in its order
   kProgramChannel,
   kProgramTable,
-  kProgramColumn,
   kProgramWrap,
   kProgramOpCode,
   kProgramOperand,
   kProgramShift,
   kProgramOverflow,
-  kProgramSegmentRange,
   kProgramLag,
   kProgramOutput,
 };
@@ -67,8 +65,8 @@ class ImageView {
  private:
   ImageFault read(const std::uint8_t* bytes, std::uint32_t size, ImageWorkspace& workspace) noexcept;
   ImageFault read_sections(const std::uint8_t* bytes) noexcept;
-  ImageFault read_tables(View<Segment> segments, View<Range> tables, View<std::int32_t> values,
-                         View<Range> columns) noexcept;
+  ImageFault read_tables(View<TableRecord> tables, View<std::int32_t> words) noexcept;
+  void count_results() noexcept;
   void close() noexcept;
 
   const ImageHeader* header_ = nullptr;
@@ -76,8 +74,7 @@ class ImageView {
   View<AxisRecord> axes_;
   View<InputRecord> inputs_;
   Program program_;
-  View<Segment> tables_[kMaxTables];
-  View<std::int32_t> columns_[kMaxColumns];
+  ErrorTable tables_[kMaxTables];
 };
 
 }  // namespace vernier

@@ -1,7 +1,10 @@
 #include "tools/compile/builder.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
+
+#include "comp/sine.h"
 
 namespace vernier {
 namespace {
@@ -18,104 +21,20 @@ std::string identifier(const std::string& name) {
 
 /// Words that mean something else in the printed program.
 std::set<std::string> taken_names() {
-  return {"lower",
-          "higher",
-          "linear",
-          "multiply",
-          "multiply_add",
-          "magnitude",
-          "sign_of",
-          "wrapped",
-          "segment_of",
-          "fraction_in",
-          "linear_between",
-          "cubic_between",
-          "lagged",
-          "step_lag",
-          "start_lag",
-          "channel",
-          "lag",
-          "starting",
-          "deviation",
-          "equation",
-          "clamp",
-          "narrow",
-          "round_shift",
-          "saturate",
-          "std",
-          "vernier",
-          "generated",
-          "View",
-          "Segment",
-          "Wrap",
-          "LagState",
-          "alignas",
-          "and",
-          "asm",
-          "auto",
-          "bool",
-          "break",
-          "case",
-          "catch",
-          "char",
-          "class",
-          "const",
-          "continue",
-          "default",
-          "delete",
-          "do",
-          "double",
-          "else",
-          "enum",
-          "explicit",
-          "export",
-          "extern",
-          "false",
-          "float",
-          "for",
-          "friend",
-          "goto",
-          "if",
-          "inline",
-          "int",
-          "long",
-          "mutable",
-          "namespace",
-          "new",
-          "not",
-          "operator",
-          "or",
-          "private",
-          "protected",
-          "public",
-          "register",
-          "requires",
-          "return",
-          "short",
-          "signed",
-          "sizeof",
-          "static",
-          "struct",
-          "switch",
-          "template",
-          "this",
-          "throw",
-          "true",
-          "try",
-          "typedef",
-          "typename",
-          "union",
-          "unsigned",
-          "using",
-          "virtual",
-          "void",
-          "volatile",
-          "while",
-          "xor",
-          "concept",
-          "constexpr",
-          "nullptr",
-          "noexcept"};
+  return {
+      "lower",       "higher",    "linear",  "multiply", "magnitude", "sign_of",    "wrapped",   "look_up",
+      "sine_cosine", "turns_of",  "product", "word_of",  "Word",      "ErrorTable", "lagged",    "step_lag",
+      "start_lag",   "channel",   "lag",     "starting", "deviation", "equation",   "clamp",     "narrow",
+      "round_shift", "saturate",  "std",     "vernier",  "generated", "View",       "Segment",   "Wrap",
+      "LagState",    "alignas",   "and",     "asm",      "auto",      "bool",       "break",     "case",
+      "catch",       "char",      "class",   "const",    "continue",  "default",    "delete",    "do",
+      "double",      "else",      "enum",    "explicit", "export",    "extern",     "false",     "float",
+      "for",         "friend",    "goto",    "if",       "inline",    "int",        "long",      "mutable",
+      "namespace",   "new",       "not",     "operator", "or",        "private",    "protected", "public",
+      "register",    "requires",  "return",  "short",    "signed",    "sizeof",     "static",    "struct",
+      "switch",      "template",  "this",    "throw",    "true",      "try",        "typedef",   "typename",
+      "union",       "unsigned",  "using",   "virtual",  "void",      "volatile",   "while",     "xor",
+      "concept",     "constexpr", "nullptr", "noexcept"};
 }
 
 /// Two real factors as integers over one power of two: k ~ first / 2^shift, |first|, |second| <= kMaxFactor.
@@ -162,8 +81,8 @@ std::string ProgramBuilder::unique(const std::string& name) {
 
 Equation ProgramBuilder::view() const {
   Equation e;
+  e.terms = {p_.terms.data(), static_cast<std::uint32_t>(p_.terms.size())};
   e.tables = {table_views_.data(), static_cast<std::uint32_t>(table_views_.size())};
-  e.columns = {column_views_.data(), static_cast<std::uint32_t>(column_views_.size())};
   e.wraps = {p_.wraps.data(), static_cast<std::uint32_t>(p_.wraps.size())};
   e.lag_count = p_.lag_count;
   return e;
@@ -213,26 +132,33 @@ ProgramBuilder::Id ProgramBuilder::channel(Channel channel, double unit, double 
   return id;
 }
 
-ProgramBuilder::Id ProgramBuilder::append(const Instruction& step, const Register& meta, bool& overflow) {
+ProgramBuilder::Id ProgramBuilder::append(const Instruction& step, std::vector<Register> results,
+                                          bool& overflow) {
   const Id id = static_cast<Id>(registers_.size());
-  ValueRange range;
-  const ProgramFault fault = range_of(view(), step, id, ranges_.data(), range);
+  std::vector<ValueRange> ranges(results.size());
+  const ProgramFault fault = range_of(view(), step, id, ranges_.data(), ranges.data());
   overflow = fault == ProgramFault::kOverflow;
   if (overflow) return 0;
   if (fault != ProgramFault::kNone)
-    throw std::logic_error("the compiler wrote an instruction that its verifier refuses: " + meta.name +
+    throw std::logic_error("the compiler wrote an instruction that its verifier refuses: " + results[0].name +
                            ", fault " + std::to_string(static_cast<int>(fault)));
-  registers_.push_back(meta);
-  Register& r = registers_.back();
-  r.name = unique(meta.name);
-  r.error = r.own_error;
-  for (const Register::Use& use : r.uses) r.error += use.gain * registers_[use.from].error;
-  ranges_.push_back(range);
+  for (Register& r : results) {
+    r.name = unique(r.name);
+    r.error = r.own_error;
+    for (const Register::Use& use : r.uses) r.error += use.gain * registers_[use.from].error;
+    registers_.push_back(std::move(r));
+  }
+  ranges_.insert(ranges_.end(), ranges.begin(), ranges.end());
   p_.instructions.push_back(step);
-  if (p_.instructions.size() + p_.constants.size() + p_.channels.size() > kMaxRegisters)
+  if (registers_.size() - kFirstResult + p_.constants.size() + p_.channels.size() > kMaxRegisters)
     throw InputError("cannot be compiled: the equation needs more than " + std::to_string(kMaxRegisters) +
                      " registers");
   return id;
+}
+
+double ProgramBuilder::largest_count(Id id) const {
+  return std::max(std::abs(static_cast<double>(ranges_[id].low)),
+                  std::abs(static_cast<double>(ranges_[id].high)));
 }
 
 ProgramBuilder::Id ProgramBuilder::linear(double k, Id a, double l, Id b, const Interval& exact,
@@ -248,12 +174,8 @@ ProgramBuilder::Id ProgramBuilder::linear(double k, Id a, double l, Id b, const 
     if (f.shift < 0) continue;
     meta.fraction_bits = bits;
     const double unit = std::ldexp(1.0, -bits);
-    const auto largest = [&](Id id) {
-      return std::max(std::abs(static_cast<double>(ranges_[id].low)),
-                      std::abs(static_cast<double>(ranges_[id].high)));
-    };
-    meta.own_error = std::abs(std::ldexp(f.first, -f.shift) - first) * largest(a) * unit +
-                     std::abs(std::ldexp(f.second, -f.shift) - second) * largest(b) * unit +
+    meta.own_error = std::abs(std::ldexp(f.first, -f.shift) - first) * largest_count(a) * unit +
+                     std::abs(std::ldexp(f.second, -f.shift) - second) * largest_count(b) * unit +
                      (f.shift > 0 ? unit / 2 : 0);
     meta.uses = {{a, std::abs(k)}};
     if (l != 0) meta.uses.push_back({b, std::abs(l)});
@@ -265,7 +187,7 @@ ProgramBuilder::Id ProgramBuilder::linear(double k, Id a, double l, Id b, const 
                      f.first,
                      f.second};
     bool overflow = false;
-    const Id id = append(step, meta, overflow);
+    const Id id = append(step, {meta}, overflow);
     if (!overflow) return id;
   }
   throw InputError("cannot be compiled: " + name + " is too large for 32 bits over the declared ranges");
@@ -291,11 +213,58 @@ ProgramBuilder::Id ProgramBuilder::product(Id a, Id b, const Interval& exact, co
                      0,
                      0};
     bool overflow = false;
-    const Id id = append(step, meta, overflow);
+    const Id id = append(step, {meta}, overflow);
     if (!overflow) return id;
   }
   throw InputError("cannot be compiled: the product " + name +
                    " does not fit 32 bits over the declared ranges");
+}
+
+ProgramBuilder::Id ProgramBuilder::dot(double constant, std::vector<Product> products, const Interval& exact,
+                                       const std::string& name) {
+  std::stable_partition(products.begin(), products.end(), [](const Product& p) { return !p.minus; });
+  double size = std::abs(constant), input_error = 0;
+  int finest = 100;
+  Register meta;
+  meta.name = name;
+  meta.range = exact;
+  for (const Product& p : products) {
+    const Register &a = at(p.a), &b = at(p.b);
+    finest = std::min(finest, a.fraction_bits + b.fraction_bits);
+    size += largest_count(p.a) * lsb(p.a) * largest_count(p.b) * lsb(p.b);
+    meta.uses.push_back({p.a, b.range.magnitude() + b.error});
+    meta.uses.push_back({p.b, a.range.magnitude()});
+    input_error += (b.range.magnitude() + b.error) * a.error + a.range.magnitude() * b.error;
+  }
+  // The sum keeps as many bits as fit below 2^62.
+  finest = std::min(finest, 61 - std::ilogb(std::max(size, 1e-15) * 1.001) - 1);
+  const auto first_term = static_cast<std::int32_t>(p_.terms.size());
+  for (int bits = std::min(fraction_bits_for(exact.magnitude() + input_error), finest); bits >= kFewestBits;
+       --bits) {
+    const int sum_bits = std::min(finest, bits + static_cast<int>(kMaxShift));
+    Instruction step{OpCode::kDot, static_cast<std::uint8_t>(sum_bits - bits), 0, 0, 0, 0, first_term};
+    meta.own_error = sum_bits > bits ? std::ldexp(0.5, -bits) : 0;
+    for (const Product& p : products) {
+      const int shift = at(p.a).fraction_bits + at(p.b).fraction_bits - sum_bits;
+      if (shift > 0) meta.own_error += std::ldexp(1.0, -sum_bits);
+      if (shift > 62) continue;  // a product is below 2^62: all of it is less than that unit
+      p_.terms.push_back({static_cast<std::uint16_t>(p.a), static_cast<std::uint16_t>(p.b),
+                          static_cast<std::uint16_t>(shift)});
+      ++(p.minus ? step.b : step.a);
+    }
+    if (constant != 0) {
+      const int lift = std::max(0, std::ilogb(std::ldexp(constant, sum_bits)) - 29);
+      step.c = static_cast<std::uint16_t>(lift);
+      step.k = static_cast<std::int32_t>(std::llround(std::ldexp(constant, sum_bits - lift)));
+      meta.own_error += std::abs(std::ldexp(step.k, lift - sum_bits) - constant);
+    }
+    meta.fraction_bits = bits;
+    bool overflow = false;
+    const Id id = append(step, {meta}, overflow);
+    if (!overflow) return id;
+    p_.terms.resize(static_cast<std::size_t>(first_term));
+  }
+  throw InputError("cannot be compiled: " + name + " is too large for 32 bits over the declared ranges");
 }
 
 ProgramBuilder::Id ProgramBuilder::plain(Instruction step, int fraction_bits, const Interval& exact,
@@ -309,7 +278,7 @@ ProgramBuilder::Id ProgramBuilder::plain(Instruction step, int fraction_bits, co
   meta.source = source;
   meta.uses = std::move(uses);
   bool overflow = false;
-  const Id id = append(step, meta, overflow);
+  const Id id = append(step, {meta}, overflow);
   if (overflow)
     throw InputError("cannot be compiled: " + name + " does not fit 32 bits over the declared ranges");
   return id;
@@ -332,21 +301,52 @@ ProgramBuilder::Id ProgramBuilder::reformat(Id a, int fraction_bits) {
                ErrorSource::kRounding, {{a, 1}}, at(a).name + "_aligned");
 }
 
-std::uint16_t ProgramBuilder::add_table(std::vector<Segment> segments, const std::string& name) {
+ProgramBuilder::Id ProgramBuilder::look_up(Id position, LoweredTable table, std::vector<Register> results) {
   if (p_.tables.size() >= kMaxTables) throw InputError("cannot be compiled: more tables than an image holds");
-  p_.tables.push_back(std::move(segments));
-  p_.table_names.push_back(name);
-  table_views_.push_back({p_.tables.back().data(), static_cast<std::uint32_t>(p_.tables.back().size())});
-  return static_cast<std::uint16_t>(p_.tables.size() - 1);
+  const Instruction step{OpCode::kLookUp,
+                         0,
+                         static_cast<std::uint16_t>(position),
+                         static_cast<std::uint16_t>(p_.tables.size()),
+                         0,
+                         0,
+                         0};
+  table.name = unique(table.name);
+  names_.insert({table.name + "_values", table.name + "_records"});
+  p_.tables.push_back(std::move(table));
+  table_views_.push_back(p_.tables.back().view());
+  const std::string name = results[0].name;
+  bool overflow = false;
+  const Id id = append(step, std::move(results), overflow);
+  if (overflow) throw InputError("cannot be compiled: " + name + " rises too steeply for 32 bits");
+  return id;
 }
 
-std::uint16_t ProgramBuilder::add_column(std::vector<std::int32_t> values, const std::string& name) {
-  if (p_.columns.size() >= kMaxColumns)
-    throw InputError("cannot be compiled: more table columns than an image holds");
-  p_.columns.push_back(std::move(values));
-  p_.column_names.push_back(name);
-  column_views_.push_back({p_.columns.back().data(), static_cast<std::uint32_t>(p_.columns.back().size())});
-  return static_cast<std::uint16_t>(p_.columns.size() - 1);
+ProgramBuilder::Id ProgramBuilder::sine_cosine(Id angle, const Interval& sine, const Interval& cosine) {
+  const double per_count = std::ldexp(4294967296.0 / 360, -at(angle).fraction_bits);
+  const int shift = std::min(30 - std::ilogb(per_count), static_cast<int>(kMaxShift));
+  if (shift < 0) throw InputError("cannot be compiled: an angle of too many turns: " + at(angle).name);
+  const double multiplier = std::round(std::ldexp(per_count, shift));
+  // Where rounding reaches 2^31, one less is as good.
+  const auto k = static_cast<std::int32_t>(std::min(multiplier, 2147483647.0));
+  constexpr double kRad = 3.14159265358979323846 / 180;
+  const double turning =
+      std::abs(std::ldexp(k, -shift) / per_count - 1) * largest_count(angle) * lsb(angle) * kRad +
+      std::ldexp(2 * 3.14159265358979323846, -32);
+  Register r;
+  r.fraction_bits = 30;
+  r.own_error = turning + kSineErrorMilliLsb * 1e-3 * std::ldexp(1.0, -30);
+  r.source = ErrorSource::kFunction;
+  r.uses = {{angle, kRad}};
+  std::vector<Register> results(2, r);
+  const std::string name = at(angle).name.size() <= 36 ? at(angle).name : "angle";
+  results[0].name = "sin_" + name;
+  results[0].range = sine;
+  results[1].name = "cos_" + name;
+  results[1].range = cosine;
+  bool overflow = false;
+  return append(
+      {OpCode::kSineCosine, static_cast<std::uint8_t>(shift), static_cast<std::uint16_t>(angle), 0, 0, k, 0},
+      std::move(results), overflow);
 }
 
 std::uint16_t ProgramBuilder::add_wrap(const Wrap& wrap) {
@@ -370,13 +370,13 @@ LoweredProgram ProgramBuilder::finish(const std::vector<std::pair<Output, Id>>& 
     operand = static_cast<std::uint16_t>(final_id(operand));
   };
   for (Instruction& s : p_.instructions) {
+    if (s.op == OpCode::kDot) continue;
     move_operand(s.a);
-    const bool lookup =
-        s.op == OpCode::kFraction || s.op == OpCode::kLinearColumn || s.op == OpCode::kCubicColumn;
-    const bool index = lookup || s.op == OpCode::kSegment || s.op == OpCode::kWrap || s.op == OpCode::kLag;
-    if (!index && s.op != OpCode::kAbs && s.op != OpCode::kSign) move_operand(s.b);
-    if (lookup || s.op == OpCode::kMultiplyAdd) move_operand(s.c);
+    const bool index = s.op == OpCode::kLookUp || s.op == OpCode::kWrap || s.op == OpCode::kLag;
+    const bool one_operand = s.op == OpCode::kAbs || s.op == OpCode::kSign || s.op == OpCode::kSineCosine;
+    if (!index && !one_operand) move_operand(s.b);
   }
+  for (ProductTerm& t : p_.terms) move_operand(t.a), move_operand(t.b);
   for (Id id = 0; id < registers_.size(); ++id) {
     const bool gap =
         (id >= constants && id < kFirstChannel) || (id >= kFirstChannel + channels && id < kFirstResult);

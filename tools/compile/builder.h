@@ -25,14 +25,24 @@ class ProgramBuilder {
   /// k*a + l*b. exact: interval of the exact value.
   Id linear(double k, Id a, double l, Id b, const Interval& exact, const std::string& name);
   Id product(Id a, Id b, const Interval& exact, const std::string& name);
+  /// A product of two registers, added or subtracted.
+  struct Product {
+    Id a, b;
+    bool minus = false;
+  };
+  /// constant + the sum of products, rounded once. exact: interval of the exact value.
+  Id dot(double constant, std::vector<Product> products, const Interval& exact, const std::string& name);
   /// An operation whose result has the given format and needs no shift; error: its own, in the result's unit.
   Id plain(Instruction step, int fraction_bits, const Interval& exact, double error, ErrorSource source,
            std::vector<Register::Use> uses, const std::string& name);
+  /// One look-up: a result for each column, in the order of `results` (name, format, range, own error and
+  /// uses). Returns the first.
+  Id look_up(Id position, LoweredTable table, std::vector<Register> results);
+  /// Sine and cosine of an angle in deg; the cosine is the register after the one returned.
+  Id sine_cosine(Id angle, const Interval& sine, const Interval& cosine);
   /// a in the given format (no instruction where it has it).
   Id reformat(Id a, int fraction_bits);
 
-  std::uint16_t add_table(std::vector<Segment> segments, const std::string& name);
-  std::uint16_t add_column(std::vector<std::int32_t> values, const std::string& name);
   std::uint16_t add_wrap(const Wrap& wrap);
   std::uint16_t add_lag();
 
@@ -42,7 +52,8 @@ class ProgramBuilder {
   LoweredProgram finish(const std::vector<std::pair<Output, Id>>& outputs);
 
  private:
-  Id append(const Instruction& step, const Register& meta, bool& overflow);
+  Id append(const Instruction& step, std::vector<Register> results, bool& overflow);
+  double largest_count(Id id) const;
   std::string unique(const std::string& name);
   Equation view() const;
 
@@ -51,8 +62,7 @@ class ProgramBuilder {
   std::vector<ValueRange> ranges_;
   std::map<double, Id> known_constants_;
   std::set<std::string> names_;
-  std::vector<View<Segment>> table_views_;
-  std::vector<View<std::int32_t>> column_views_;
+  std::vector<ErrorTable> table_views_;
 };
 
 /// Most fraction bits with which `magnitude` fits int32; at most 50.

@@ -80,16 +80,6 @@ std::vector<InputRecord> input_records(const Machine& machine) {
   return records;
 }
 
-template <class T>
-std::vector<T> joined(const std::vector<std::vector<T>>& parts, std::vector<Range>& ranges) {
-  std::vector<T> all;
-  for (const std::vector<T>& part : parts) {
-    ranges.push_back({static_cast<std::uint32_t>(all.size()), static_cast<std::uint32_t>(part.size())});
-    all.insert(all.end(), part.begin(), part.end());
-  }
-  return all;
-}
-
 }  // namespace
 
 std::vector<std::uint8_t> write_image(const Machine& machine, const LoweredProgram& program,
@@ -104,11 +94,15 @@ std::vector<std::uint8_t> write_image(const Machine& machine, const LoweredProgr
   writer.section(SectionType::kConstants, program.constants);
   writer.section(SectionType::kChannels, program.channels);
   writer.section(SectionType::kInstructions, program.instructions);
-  std::vector<Range> tables, columns;
-  writer.section(SectionType::kSegments, joined(program.tables, tables));
+  writer.section(SectionType::kTerms, program.terms);
+  std::vector<TableRecord> tables;
+  std::vector<std::int32_t> records;
+  for (const LoweredTable& t : program.tables) {
+    tables.push_back({t.pieces, t.columns, t.degree, t.grid_multiplier, t.grid_shift});
+    records.insert(records.end(), t.records.begin(), t.records.end());
+  }
   writer.section(SectionType::kTables, tables);
-  writer.section(SectionType::kValues, joined(program.columns, columns));
-  writer.section(SectionType::kColumns, columns);
+  writer.section(SectionType::kRecords, records);
   writer.section(SectionType::kWraps, program.wraps);
   writer.section(SectionType::kOutputs, program.outputs);
   ImageHeader header{};

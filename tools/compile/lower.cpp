@@ -1,6 +1,8 @@
 #include "tools/compile/lower.h"
 
+#include <algorithm>
 #include <cmath>
+#include <set>
 #include <stdexcept>
 
 #include "tools/compile/builder.h"
@@ -67,6 +69,7 @@ class Lowering {
       : machine_(machine), d_(d), g_(d.graph), tick_us_(tick_us) {}
 
   LoweredProgram run() {
+    for (const AxisDeviation& out : d_.outputs) note_use(out.value);
     std::vector<std::pair<Output, ProgramBuilder::Id>> outputs;
     for (const AxisDeviation& out : d_.outputs) {
       wanted_name_ = "deviation_" + machine_.axes[out.axis].name;
@@ -152,8 +155,44 @@ class Lowering {
     return b_.channel(c, unit, reach, channel_name(machine_, n.channel, n.index[0]));
   }
 
+  // What the outputs need: columns of tables are looked up together, sine and cosine computed together.
+  void note_use(NodeId node) {
+    if (!used_.insert(node).second) return;
+    const Node& n = g_[node];
+    if (n.kind == NodeKind::kTable) columns_[n.index[0]][n.index[1]] = node;
+    if (n.kind == NodeKind::kFunction && n.function == Function::kSin) sines_[n.args[0]] = node;
+    if (n.kind == NodeKind::kFunction && n.function == Function::kCos) cosines_[n.args[0]] = node;
+    for (const NodeId arg : n.args) note_use(arg);
+    for (const Term& term : n.terms) note_use(term.node);
+  }
+
+  // A product within a sum is no register of its own: it is added at full length and rounded with the sum.
+  bool fuses(const Term& term) const {
+    return g_[term.node].kind == NodeKind::kProduct && std::abs(term.coefficient) == 1;
+  }
+  Id dot(const Node& n, const std::string& name) {
+    std::vector<ProgramBuilder::Product> products;
+    Id largest = 0;
+    double size = -1;
+    for (const Term& term : n.terms) {
+      const Node& part = g_[term.node];
+      const bool minus = term.coefficient < 0;
+      if (fuses(term))
+        products.push_back({value(part.args[0]), value(part.args[1]), minus});
+      else
+        products.push_back({value(term.node), b_.constant(std::abs(term.coefficient)), minus});
+      const double here = std::abs(term.coefficient) * part.range.magnitude();
+      if (here > size) size = here, largest = products.back().a;
+    }
+    const std::string base = name.empty() ? short_name("sum_with_" + b_.at(largest).name, "sum") : name;
+    return b_.dot(n.number, std::move(products), n.range, base);
+  }
+
   // Terms in order of size, so that partial sums keep the finest format as long as they can.
   Id sum(const Node& n, const std::string& name) {
+    const std::size_t count = n.terms.size() + (n.number != 0 ? 1 : 0);
+    if (count > 2 || std::any_of(n.terms.begin(), n.terms.end(), [&](const Term& t) { return fuses(t); }))
+      return dot(n, name);
     struct Part {
       double k;
       Id id;
@@ -179,21 +218,6 @@ class Lowering {
     return so_far.id;
   }
 
-  struct Spot {
-    Id segment, fraction, position;
-    std::uint16_t table;
-  };
-
-  Spot look_up(Id position, std::uint16_t table, std::size_t segments, const std::string& name) {
-    const auto at = static_cast<std::uint16_t>(position);
-    const Id segment =
-        b_.plain({OpCode::kSegment, 0, at, table, 0, 0, 0}, 0, {0, static_cast<double>(segments) - 1}, 0,
-                 ErrorSource::kTable, {}, "segment_" + name);
-    const Id fraction = b_.plain({OpCode::kFraction, 0, at, table, static_cast<std::uint16_t>(segment), 0, 0},
-                                 30, {0, 1}, 0, ErrorSource::kTable, {}, "fraction_" + name);
-    return {segment, fraction, position, table};
-  }
-
   Id wrapped(Id position, double first, double period, const std::string& name, double slope_for_error) {
     const int bits = b_.at(position).fraction_bits;
     const double exact = std::ldexp(period, bits);
@@ -206,16 +230,8 @@ class Lowering {
                     name + "_in_period");
   }
 
-  Spot spot_of(std::size_t axis, NodeId position_node) {
-    const auto found = spots_.find(axis);
-    if (found != spots_.end()) return found->second;
-    const Table& table = *machine_.table_of(axis);
-    const std::string& name = machine_.axes[axis].name;
-    const double first = table.stations.front().loc, last = table.stations.back().loc;
-    Id position = value(position_node);
-    const Interval range = g_[position_node].range;
-    if (table.periodic && (range.low < first || range.high > last))
-      position = wrapped(position, first, last - first, name, 1);
+  // Stations as counts of the position's register.
+  std::vector<Segment> segments_of(const Table& table, Id position) const {
     std::vector<std::int64_t> stations;
     for (const Station& s : table.stations) {
       const double count = std::ldexp(s.loc, b_.at(position).fraction_bits);
@@ -227,46 +243,68 @@ class Lowering {
         throw InputError({machine_.file, table.line}, s.loc_text,
                          "cannot be compiled: stations closer than the axis format resolves");
     }
-    const std::uint16_t index = b_.add_table(make_segments(stations), "stations_" + name);
-    return spots_.emplace(axis, look_up(position, index, stations.size() - 1, name)).first->second;
+    return make_segments(stations);
   }
 
   Id table(const Node& n) {
-    const Table& t = *machine_.table_of(n.index[0]);
-    const Spot spot = spot_of(n.index[0], n.args[0]);
-    constexpr const char* kLetters[6] = {"X", "Y", "Z", "A", "B", "C"};
-    const std::string name = std::string("E") + kLetters[n.index[1]] + machine_.axes[n.index[0]].name;
+    const std::size_t axis = n.index[0];
+    const auto found = looked_up_.find(axis);
+    if (found != looked_up_.end()) return found->second.at(n.index[1]);
+    const Table& t = *machine_.table_of(axis);
+    const std::string& name = machine_.axes[axis].name;
+    const double first = t.stations.front().loc, last = t.stations.back().loc;
+    Id position = value(n.args[0]);
+    const Interval range = g_[n.args[0]].range;
+    if (t.periodic && (range.low < first || range.high > last))
+      position = wrapped(position, first, last - first, name, 1);
     const bool cubic = t.interpolation == Interpolation::kCubic && t.stations.size() > 2;
-    return cubic ? cubic_column(t, n, spot, name) : linear_column(t, n, spot, name);
+    std::vector<std::vector<std::int32_t>> coefficients;
+    std::vector<Register> results;
+    for (const auto& [column, node] : columns_.at(axis)) {
+      Register r;
+      r.name = std::string("E") + "XYZABC"[column] + name;
+      r.range = g_[node].range;
+      r.source = ErrorSource::kTable;
+      coefficients.push_back(cubic ? cubic_column(t, column, b_.lsb(position), r)
+                                   : linear_column(t, column, b_.lsb(position), r));
+      r.uses[0].from = position;
+      results.push_back(r);
+    }
+    Id id = b_.look_up(position,
+                       make_table("stations_" + name, segments_of(t, position), cubic ? 3 : 1, coefficients),
+                       std::move(results));
+    for (const auto& [column, node] : columns_.at(axis)) looked_up_[axis][column] = id++;
+    return looked_up_[axis].at(n.index[1]);
   }
 
-  Id linear_column(const Table& t, const Node& n, const Spot& spot, const std::string& name) {
-    const int bits = fraction_bits_for(n.range.magnitude());
-    std::vector<std::int32_t> values;
+  // Coefficients of one column, and what the register that looks it up is like.
+  static std::vector<std::int32_t> linear_column(const Table& t, std::size_t column, double position_lsb,
+                                                 Register& r) {
     double slope = 0, step = 0;
-    for (std::size_t i = 0; i < t.stations.size(); ++i) {
-      const double v = t.stations[i].value[n.index[1]];
-      values.push_back(static_cast<std::int32_t>(std::llround(std::ldexp(v, bits))));
-      if (i == 0) continue;
-      const double rise = std::abs(v - t.stations[i - 1].value[n.index[1]]);
+    for (std::size_t i = 1; i < t.stations.size(); ++i) {
+      const double rise = std::abs(t.stations[i].value[column] - t.stations[i - 1].value[column]);
       slope = std::max(slope, rise / (t.stations[i].loc - t.stations[i - 1].loc));
       step = std::max(step, rise);
     }
+    r.fraction_bits = fraction_bits_for(std::max(r.range.magnitude(), step) * 1.0000001);
+    const auto count = [&](std::size_t i) {
+      return std::llround(std::ldexp(t.stations[i].value[column], r.fraction_bits));
+    };
+    std::vector<std::int32_t> values;
+    for (std::size_t i = 0; i + 1 < t.stations.size(); ++i) {
+      values.push_back(static_cast<std::int32_t>(count(i)));
+      values.push_back(static_cast<std::int32_t>(count(i + 1) - count(i)));
+    }
     // Value and interpolation half an LSB each; a station half an LSB of the position off; fraction below
     // 2^-29.
-    const double error =
-        std::ldexp(1.0, -bits) + 2 * slope * 0.5 * b_.lsb(spot.position) + step * std::ldexp(1.0, -29);
-    const Instruction op{OpCode::kLinearColumn,
-                         0,
-                         static_cast<std::uint16_t>(spot.fraction),
-                         b_.add_column(values, name),
-                         static_cast<std::uint16_t>(spot.segment),
-                         0,
-                         0};
-    return b_.plain(op, bits, n.range, error, ErrorSource::kTable, {{spot.position, slope}}, name);
+    r.own_error =
+        std::ldexp(1.0, -r.fraction_bits) + 2 * slope * 0.5 * position_lsb + step * std::ldexp(1.0, -29);
+    r.uses = {{0, slope}};
+    return values;
   }
 
-  Id cubic_column(const Table& t, const Node& n, const Spot& spot, const std::string& name) {
+  static std::vector<std::int32_t> cubic_column(const Table& t, std::size_t column, double position_lsb,
+                                                Register& r) {
     const StationTable exact(t);
     std::vector<CubicPiece> pieces;
     double size = 0, slope = 0;
@@ -275,9 +313,9 @@ class Lowering {
       // A cubic is fixed by its values at four places; end slopes come from them without touching the held
       // ends.
       const auto at = [&](double f) {
-        return f == 0   ? t.stations[i].value[n.index[1]]
-               : f == 1 ? t.stations[i + 1].value[n.index[1]]
-                        : exact.values(a + f * h)[n.index[1]];
+        return f == 0   ? t.stations[i].value[column]
+               : f == 1 ? t.stations[i + 1].value[column]
+                        : exact.values(a + f * h)[column];
       };
       const double v0 = at(0), v1 = at(1.0 / 3), v2 = at(2.0 / 3), v3 = at(1);
       const double near_slope = (-11 * v0 + 18 * v1 - 9 * v2 + 2 * v3) / 2,
@@ -287,29 +325,23 @@ class Lowering {
       size = std::max(size, std::abs(c[0]) + std::abs(c[1]) + std::abs(c[2]) + std::abs(c[3]));
       slope = std::max(slope, (std::abs(c[1]) + 2 * std::abs(c[2]) + 3 * std::abs(c[3])) / h);
     }
-    const int bits = fraction_bits_for(size * 1.001);
+    r.fraction_bits = fraction_bits_for(size * 1.001);
     std::vector<std::int32_t> values;
     for (const CubicPiece& p : pieces)
       for (const double c : p.c)
-        values.push_back(static_cast<std::int32_t>(std::llround(std::ldexp(c, bits))));
-    const double error = 3.5 * std::ldexp(1.0, -bits) + 2 * slope * 0.5 * b_.lsb(spot.position) +
-                         3 * size * std::ldexp(1.0, -29);
-    const Instruction op{OpCode::kCubicColumn,
-                         0,
-                         static_cast<std::uint16_t>(spot.fraction),
-                         b_.add_column(values, name),
-                         static_cast<std::uint16_t>(spot.segment),
-                         0,
-                         0};
-    return b_.plain(op, bits, n.range, error, ErrorSource::kTable, {{spot.position, slope}}, name);
+        values.push_back(static_cast<std::int32_t>(std::llround(std::ldexp(c, r.fraction_bits))));
+    // Four coefficients half an LSB each, the evaluation 5/2; fraction and station as for a linear column.
+    r.own_error = 4.5 * std::ldexp(1.0, -r.fraction_bits) + 2 * slope * 0.5 * position_lsb +
+                  3 * size * std::ldexp(1.0, -29);
+    r.uses = {{0, slope}};
+    return values;
   }
 
   Id function(const Node& n) {
     Id argument = value(n.args[0]);
-    const bool periodic = n.function == Function::kSin || n.function == Function::kCos;
+    if (n.function == Function::kSin || n.function == Function::kCos) return sine_or_cosine(n, argument);
     const std::string name =
         short_name(std::string(name_of(n.function)) + "_" + b_.at(argument).name, name_of(n.function));
-    if (periodic && b_.at(argument).range.magnitude() > 361) argument = wrapped_once(argument);
     FunctionPieces pieces;
     try {
       pieces = make_pieces(n.function, b_.counts(argument).low, b_.counts(argument).high,
@@ -317,24 +349,26 @@ class Lowering {
     } catch (const std::domain_error& e) {
       throw InputError("cannot be compiled: " + name + ": " + e.what());
     }
-    const std::size_t count = pieces.segments.size();
-    const Spot spot =
-        look_up(argument, b_.add_table(std::move(pieces.segments), "pieces_" + name), count, name);
-    const Instruction op{OpCode::kCubicColumn,
-                         0,
-                         static_cast<std::uint16_t>(spot.fraction),
-                         b_.add_column(std::move(pieces.coefficients), name),
-                         static_cast<std::uint16_t>(spot.segment),
-                         0,
-                         0};
-    return b_.plain(op, pieces.fraction_bits, n.range, pieces.error, ErrorSource::kFunction,
-                    {{argument, pieces.slope}}, name);
+    Register r;
+    r.name = name;
+    r.fraction_bits = pieces.fraction_bits;
+    r.range = n.range;
+    r.own_error = pieces.error;
+    r.source = ErrorSource::kFunction;
+    r.uses = {{argument, pieces.slope}};
+    return b_.look_up(argument, make_table("pieces_" + name, pieces.segments, 3, {pieces.coefficients}), {r});
   }
 
-  Id wrapped_once(Id argument) {
-    const auto found = wrapped_.find(argument);
-    if (found != wrapped_.end()) return found->second;
-    return wrapped_[argument] = wrapped(argument, -180, 360, b_.at(argument).name, 1);
+  Id sine_or_cosine(const Node& n, Id argument) {
+    auto found = turns_.find(argument);
+    if (found == turns_.end()) {
+      const auto range = [&](const std::map<NodeId, NodeId>& nodes) {
+        const auto node = nodes.find(n.args[0]);
+        return node == nodes.end() ? Interval{-1, 1} : g_[node->second].range;
+      };
+      found = turns_.emplace(argument, b_.sine_cosine(argument, range(sines_), range(cosines_))).first;
+    }
+    return found->second + (n.function == Function::kCos ? 1 : 0);
   }
 
   Id choice(const Node& n) {
@@ -393,8 +427,11 @@ class Lowering {
   ProgramBuilder b_;
   std::string wanted_name_;
   std::map<NodeId, Id> done_;
-  std::map<std::size_t, Spot> spots_;
-  std::map<Id, Id> wrapped_;
+  std::set<NodeId> used_;
+  std::map<std::size_t, std::map<std::size_t, NodeId>> columns_;  // axis -> column -> node
+  std::map<std::size_t, std::map<std::size_t, Id>> looked_up_;    // axis -> column -> register
+  std::map<NodeId, NodeId> sines_, cosines_;                      // argument -> node
+  std::map<Id, Id> turns_;                                        // angle -> its sine
 };
 
 }  // namespace

@@ -28,22 +28,34 @@ struct Register {
   std::vector<Use> uses;
 };
 
+/// A table of the program, owned (comp/error_table.h says what its records hold).
+struct LoweredTable {
+  std::string name;
+  std::uint16_t columns = 0, degree = 1;
+  std::uint32_t pieces = 0;
+  std::uint32_t grid_multiplier = 0, grid_shift = 0;
+  std::vector<std::int32_t> records;
+
+  ErrorTable view() const { return {records.data(), pieces, columns, degree, grid_multiplier, grid_shift}; }
+};
+
 /// A fixed-point program with its stores, owned.
 struct LoweredProgram {
   std::vector<std::int32_t> constants;
   std::vector<Channel> channels;
   std::vector<Instruction> instructions;
-  std::vector<std::vector<Segment>> tables;
-  std::vector<std::string> table_names;
-  std::vector<std::vector<std::int32_t>> columns;
-  std::vector<std::string> column_names;
+  std::vector<ProductTerm> terms;
+  std::vector<LoweredTable> tables;
   std::vector<Wrap> wraps;
   std::vector<Output> outputs;
   std::uint32_t lag_count = 0;
-  std::vector<Register> registers;  // one per constant, channel and instruction
+  std::vector<Register> registers;  // one per constant, channel and result
 
   std::uint32_t first_result() const {
     return static_cast<std::uint32_t>(constants.size() + channels.size());
+  }
+  std::uint32_t results_of(const Instruction& step) const {
+    return step.op == OpCode::kLookUp ? tables[step.b].columns : step.op == OpCode::kSineCosine ? 2u : 1u;
   }
 };
 

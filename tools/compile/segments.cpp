@@ -48,6 +48,45 @@ std::vector<Segment> make_segments(const std::vector<std::int64_t>& positions) {
   return segments;
 }
 
+namespace {
+
+// The grid over the mean spacing; kept only where the board's own rule finds every piece with it.
+void set_grid(LoweredTable& table) {
+  const Segment last = segment_at(table.view().record(table.pieces - 1));
+  const double span = static_cast<double>(last.start) + last.length - table.records[0];
+  const double spacing = span / table.pieces;
+  const int shift = std::min(63, 31 + std::ilogb(spacing));
+  const double multiplier = std::round(std::ldexp(1.0, shift) / spacing);
+  if (multiplier < 1 || multiplier > 4294967295.0) return;
+  table.grid_multiplier = static_cast<std::uint32_t>(multiplier);
+  table.grid_shift = static_cast<std::uint32_t>(shift);
+  if (grid_finds_every_piece(table.view())) return;
+  table.grid_multiplier = table.grid_shift = 0;
+}
+
+}  // namespace
+
+LoweredTable make_table(const std::string& name, const std::vector<Segment>& segments, std::uint16_t degree,
+                        const std::vector<std::vector<std::int32_t>>& columns) {
+  LoweredTable table;
+  table.name = name;
+  table.degree = degree;
+  table.columns = static_cast<std::uint16_t>(columns.size());
+  table.pieces = static_cast<std::uint32_t>(segments.size());
+  const std::ptrdiff_t width = degree + 1;
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    const Segment& s = segments[i];
+    for (const std::uint32_t word : {static_cast<std::uint32_t>(s.start), s.length, s.reciprocal, s.shift})
+      table.records.push_back(static_cast<std::int32_t>(word));
+    for (const std::vector<std::int32_t>& column : columns) {
+      const auto first = column.begin() + static_cast<std::ptrdiff_t>(i) * width;
+      table.records.insert(table.records.end(), first, first + width);
+    }
+  }
+  set_grid(table);
+  return table;
+}
+
 Wrap make_wrap(std::int64_t first, std::int64_t period) {
   if (period < 4 || period > INT32_MAX)
     throw InputError("cannot be compiled: a period that does not fit the format");
@@ -97,9 +136,9 @@ FunctionPieces make_pieces(Function f, std::int64_t low, std::int64_t high, int 
     for (const double c : piece.c)
       result.coefficients.push_back(
           static_cast<std::int32_t>(std::llround(std::ldexp(c, result.fraction_bits))));
-  // Four coefficients and three products, each half an LSB; the fraction truncates by less than 2^-29 of a
+  // Four coefficients half an LSB each, the evaluation 5/2; the fraction truncates by less than 2^-29 of a
   // piece.
-  result.error += 3.5 * std::ldexp(1.0, -result.fraction_bits) + size * std::ldexp(1.0, -29);
+  result.error += 4.5 * std::ldexp(1.0, -result.fraction_bits) + size * std::ldexp(1.0, -29);
   result.slope = slope_bound(f, x);
   return result;
 }

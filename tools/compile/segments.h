@@ -4,6 +4,7 @@
 
 #include "comp/error_table.h"
 #include "tools/compile/graph.h"
+#include "tools/compile/lower.h"
 
 namespace vernier {
 
@@ -12,6 +13,11 @@ Segment make_segment(std::int64_t start, std::int64_t end);
 
 /// Segments between consecutive positions (strictly increasing, at least two).
 std::vector<Segment> make_segments(const std::vector<std::int64_t>& positions);
+
+/// A table from its segments and, for each column, its coefficients piece after piece (degree + 1 a piece);
+/// with a grid where the stations are even. tool.
+LoweredTable make_table(const std::string& name, const std::vector<Segment>& segments, std::uint16_t degree,
+                        const std::vector<std::vector<std::int32_t>>& columns);
 
 /// A wrap of `period` counts from `first` that comp/verify.h accepts. period: 4 .. 2^31 - 1.
 Wrap make_wrap(std::int64_t first, std::int64_t period);

@@ -1,5 +1,7 @@
 #pragma once
+#ifdef VERNIER_WITH_BENCHMARK
 #include <benchmark/benchmark.h>
+#endif
 
 #include <cstdio>
 #include <cstdlib>
@@ -19,7 +21,7 @@ struct Case {
 /// Makes the compiler believe that a value is used.
 template <class T>
 inline void keep(const T& value) {
-  benchmark::DoNotOptimize(value);
+  asm volatile("" : : "g"(&value) : "memory");
 }
 
 }  // namespace vernier::bench
@@ -45,6 +47,7 @@ inline int measure(const std::vector<Case>& cases, int argc, char** argv) {
     return std::fprintf(stderr, "no case %s\n", argv[2]), 1;
   }
   if (mode != "time") return std::fprintf(stderr, "usage: list | count CASE N | time [benchmark flags]\n"), 1;
+#ifdef VERNIER_WITH_BENCHMARK
   for (const Case& c : cases)
     benchmark::RegisterBenchmark(c.name.c_str(), [&c](benchmark::State& state) {
       constexpr std::size_t kBatch = 64;
@@ -54,6 +57,9 @@ inline int measure(const std::vector<Case>& cases, int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
   benchmark::RunSpecifiedBenchmarks();
   return 0;
+#else
+  return std::fprintf(stderr, "built without Google Benchmark\n"), 1;
+#endif
 }
 
 }  // namespace vernier::bench

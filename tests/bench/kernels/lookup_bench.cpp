@@ -5,6 +5,8 @@
 #include <random>
 
 #include "comp/error_table.h"
+#include "comp/sine.h"
+#include "comp/verify.h"
 #include "tests/bench/kernels/counted.h"
 
 #ifdef VERNIER_WITH_GSL
@@ -17,41 +19,69 @@ namespace {
 constexpr std::size_t kStations = 64, kAxes = 3, kColumns = 6, kPoses = 256;
 constexpr std::int32_t kLength = 9375000;  // nm between stations
 
+constexpr std::uint32_t kPieces = kStations - 1;
+
+/// One axis as the compiler writes it: even stations, six columns.
+template <unsigned kDegree>
+struct Axis {
+  static constexpr std::uint32_t kStride = kSegmentWords + kColumns * (kDegree + 1);
+  alignas(64) std::int32_t records[kPieces * kStride];
+  ErrorTable table{records, kPieces, kColumns, kDegree, kGridMultiplier, kGridShift};
+  static constexpr std::uint32_t kGridShift = 54;
+  static constexpr auto kGridMultiplier =
+      static_cast<std::uint32_t>(((std::uint64_t{1} << kGridShift) + kLength / 2) / kLength);
+};
+
 struct Tables {
   double at[kStations];
   double value[kAxes][kStations][kColumns];   // interleaved
   double column[kAxes][kColumns][kStations];  // the same, column by column
-  std::int32_t integer[kAxes][kColumns][kStations];
-  Segment segments[kStations - 1];
+  Axis<1> linear[kAxes];
+  Axis<3> cubic[kAxes];
   std::int32_t position[kPoses][kAxes];
 };
 Tables t;
 
+using Positions = std::int32_t[kPoses][kAxes];
+Positions first_station, last_station, far_beyond;
+
+template <unsigned kDegree>
+void fill_axis(Axis<kDegree>& axis, std::size_t a, std::mt19937_64& random) {
+  for (std::size_t s = 0; s < kPieces; ++s) {
+    std::int32_t* record = axis.records + s * Axis<kDegree>::kStride;
+    const Segment segment{static_cast<std::int32_t>(s) * kLength, kLength,
+                          static_cast<std::uint32_t>(((std::uint64_t{1} << 54) + kLength - 1) / kLength), 24};
+    std::memcpy(record, &segment, sizeof(segment));
+    record += kSegmentWords;
+    for (std::size_t c = 0; c < kColumns; ++c) {
+      *record++ = static_cast<std::int32_t>(t.value[a][s][c]);
+      *record++ = static_cast<std::int32_t>(t.value[a][s + 1][c] - t.value[a][s][c]);
+      for (unsigned k = 2; k <= kDegree; ++k) *record++ = static_cast<std::int32_t>(random() % 20001) - 10000;
+    }
+  }
+  if (!grid_finds_every_piece(axis.table))
+    std::fprintf(stderr, "the bench's own grid is wrong\n"), std::exit(1);
+}
+
 void fill() {
   std::mt19937_64 random(20261121);
   for (std::size_t s = 0; s < kStations; ++s) t.at[s] = static_cast<double>(s) * kLength;
-  for (std::size_t s = 0; s + 1 < kStations; ++s)
-    t.segments[s] = {static_cast<std::int32_t>(s) * kLength, kLength,
-                     static_cast<std::uint32_t>(((std::uint64_t{1} << 54) + kLength - 1) / kLength), 24};
   for (std::size_t a = 0; a < kAxes; ++a)
     for (std::size_t s = 0; s < kStations; ++s)
-      for (std::size_t c = 0; c < kColumns; ++c) {
-        const auto v = static_cast<std::int32_t>(random() % 100001) - 50000;  // nm, nrad
-        t.value[a][s][c] = t.column[a][c][s] = t.integer[a][c][s] = v;
-      }
-  for (auto& pose : t.position)
-    for (std::int32_t& p : pose)
-      p = static_cast<std::int32_t>(random() % (std::uint64_t{kStations - 1} * kLength));
-}
-
-void look_up_now(const std::int32_t* position, std::int32_t out[kAxes][kColumns]) {
+      for (std::size_t c = 0; c < kColumns; ++c)
+        t.value[a][s][c] = t.column[a][c][s] =
+            static_cast<std::int32_t>(random() % 100001) - 50000;  // nm, nrad
   for (std::size_t a = 0; a < kAxes; ++a) {
-    const View<Segment> view{t.segments, kStations - 1};
-    const std::uint32_t i = segment_of(view, position[a]);
-    const std::int32_t f = fraction_in(view[i], position[a]);
-    for (std::size_t c = 0; c < kColumns; ++c)
-      out[a][c] = linear_between(t.integer[a][c][i], t.integer[a][c][i + 1], f);
+    fill_axis(t.linear[a], a, random);
+    fill_axis(t.cubic[a], a, random);
   }
+  for (std::size_t i = 0; i < kPoses; ++i)
+    for (std::size_t a = 0; a < kAxes; ++a) {
+      last_station[i][a] = static_cast<std::int32_t>(kPieces) * kLength;
+      far_beyond[i][a] = a == 1 ? INT32_MAX : INT32_MIN;
+    }
+  for (auto& pose : t.position)
+    for (std::int32_t& p : pose) p = static_cast<std::int32_t>(random() % (std::uint64_t{kPieces} * kLength));
 }
 
 void look_up_double(const double* position, double out[kAxes][kColumns]) {
@@ -64,13 +94,78 @@ void look_up_double(const double* position, double out[kAxes][kColumns]) {
   }
 }
 
+template <unsigned kDegree>
+void look_up_fixed(const Axis<kDegree>* axes, const std::int32_t* position,
+                   std::int32_t out[kAxes][kColumns]) {
+  for (std::size_t a = 0; a < kAxes; ++a) look_up<kDegree, kColumns>(axes[a].table, position[a], out[a]);
+}
+template <unsigned kDegree>
+void look_up_any(const Axis<kDegree>* axes, const std::int32_t* position, std::int32_t out[kAxes][kColumns]) {
+  for (std::size_t a = 0; a < kAxes; ++a) look_up(axes[a].table, position[a], out[a]);
+}
+
+template <auto kLookUp, unsigned kDegree>
+Case over(const char* name, const Positions& positions, const Axis<kDegree>* axes) {
+  return {name, [=, &positions](std::size_t n) {
+            for (std::size_t i = 0; i < n; ++i) {
+              std::int32_t out[kAxes][kColumns];
+              kLookUp(axes, positions[i % kPoses], out);
+              keep(out);
+            }
+          }};
+}
+
+/// Error, bias and cache lines of the linear look-up over many positions, in the tables' own LSB.
+int check() {
+  std::mt19937_64 random_position(7);
+  constexpr int kCount = 1000000;
+  double worst = 0, sum = 0;
+  std::size_t lines = 0;
+  for (int i = 0; i < kCount; ++i) {
+    const std::size_t a = random_position() % kAxes;
+    const auto p = static_cast<std::int32_t>(random_position() % (std::uint64_t{kPieces} * kLength));
+    std::int32_t out[kColumns];
+    look_up<1, kColumns>(t.linear[a].table, p, out);
+    const auto piece = static_cast<std::size_t>(p / kLength);
+    const double f = static_cast<double>(p % kLength) / kLength;
+    for (std::size_t c = 0; c < kColumns; ++c) {
+      const double error =
+          out[c] - (t.value[a][piece][c] + f * (t.value[a][piece + 1][c] - t.value[a][piece][c]));
+      worst = std::max(worst, std::abs(error));
+      sum += error;
+    }
+  }
+  // The records as an image holds them start at any multiple of 8 bytes.
+  constexpr std::size_t kBytes = Axis<1>::kStride * 4;
+  for (std::size_t start = 0; start < 64; start += 8) lines = std::max(lines, (start + kBytes - 1) / 64 + 1);
+  std::printf(
+      "linear look-up: max error %.4f LSB, bias %+.6f LSB, %zu cache lines for 3 axes (%zu where the buffer "
+      "is aligned to 64)\n",
+      worst, sum / (kCount * static_cast<double>(kColumns)), kAxes * lines, kAxes * ((kBytes + 63) / 64));
+  return worst <= 0.51 && std::abs(sum) <= 0.01 * kCount * kColumns ? 0 : 1;
+}
+
 std::vector<Case> cases() {
   std::vector<Case> list;
-  list.push_back({"linear_6x3/vernier", [](std::size_t n) {
+  list.push_back(over<look_up_fixed<1>>("linear_6x3/vernier", t.position, t.linear));
+  list.push_back(over<look_up_fixed<1>>("linear_6x3/vernier_first_station", first_station, t.linear));
+  list.push_back(over<look_up_fixed<1>>("linear_6x3/vernier_last_station", last_station, t.linear));
+  list.push_back(over<look_up_fixed<1>>("linear_6x3/vernier_far_beyond", far_beyond, t.linear));
+  list.push_back(over<look_up_any<1>>("linear_6x3/vernier_in_programs", t.position, t.linear));
+  list.push_back(over<look_up_fixed<3>>("cubic_6x3/vernier", t.position, t.cubic));
+  list.push_back(over<look_up_any<3>>("cubic_6x3/vernier_in_programs", t.position, t.cubic));
+  list.push_back({"sine_cosine/vernier", [](std::size_t n) {
                     for (std::size_t i = 0; i < n; ++i) {
-                      std::int32_t out[kAxes][kColumns];
-                      look_up_now(t.position[i % kPoses], out);
-                      keep(out);
+                      const SineCosine both =
+                          sine_cosine(static_cast<std::uint32_t>(t.position[i % kPoses][0]) * 8);
+                      keep(both);
+                    }
+                  }});
+  list.push_back({"sine_cosine/libm", [](std::size_t n) {
+                    for (std::size_t i = 0; i < n; ++i) {
+                      const double angle = t.position[i % kPoses][0] * 1e-8;
+                      double both[2] = {std::sin(angle), std::cos(angle)};
+                      keep(both);
                     }
                   }});
   list.push_back({"linear_6x3/double_interleaved", [](std::size_t n) {
@@ -111,6 +206,6 @@ std::vector<Case> cases() {
 
 int main(int argc, char** argv) {
   vernier::bench::fill();
-  if (argc > 1 && std::string(argv[1]) == "check") return 0;
+  if (argc > 1 && std::string(argv[1]) == "check") return vernier::bench::check();
   return vernier::bench::measure(vernier::bench::cases(), argc, argv);
 }

@@ -18,6 +18,7 @@ struct Quarter {
     Program p;
     p.equation.channel_count = 1;
     p.equation.instructions = {steps, 1};
+    p.equation.result_count = 1;
     p.channels = {channels, 1};
     p.outputs = {outputs, 1};
     p.axis_count = 1;

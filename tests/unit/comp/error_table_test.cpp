@@ -6,6 +6,8 @@
 #include <random>
 #include <vector>
 
+#include "comp/verify.h"
+
 namespace vernier {
 namespace {
 
@@ -20,24 +22,35 @@ Segment segment(std::int32_t start, std::uint32_t length) {
   }
 }
 
+/// One linear column over any stations, searched by bisection or (where asked) by the grid.
 struct Stations {
-  std::vector<Segment> segments;
-  std::vector<std::int32_t> values;
+  std::vector<std::int32_t> records;
+  ErrorTable table;
 
-  Stations(const std::vector<std::int32_t>& at, const std::vector<std::int32_t>& v) : values(v) {
-    for (std::size_t i = 0; i + 1 < at.size(); ++i)
-      segments.push_back(segment(at[i], static_cast<std::uint32_t>(std::int64_t{at[i + 1]} - at[i])));
+  Stations(const std::vector<std::int32_t>& at, const std::vector<std::int32_t>& v) {
+    for (std::size_t i = 0; i + 1 < at.size(); ++i) {
+      const Segment s = segment(at[i], static_cast<std::uint32_t>(std::int64_t{at[i + 1]} - at[i]));
+      for (const std::uint32_t word : {static_cast<std::uint32_t>(s.start), s.length, s.reciprocal, s.shift})
+        records.push_back(static_cast<std::int32_t>(word));
+      records.push_back(v[i]);
+      records.push_back(v[i + 1] - v[i]);
+    }
+    table = {records.data(), static_cast<std::uint32_t>(at.size() - 1), 1, 1, 0, 0};
   }
+  Stations(const Stations&) = delete;
+  Stations& operator=(const Stations&) = delete;
   std::int32_t operator()(std::int32_t position) const {
-    const View<Segment> view{segments.data(), static_cast<std::uint32_t>(segments.size())};
-    const std::uint32_t i = segment_of(view, position);
-    return linear_between(values[i], values[i + 1], fraction_in(view[i], position));
+    std::int32_t fixed = 0, any = 0;
+    look_up<1, 1>(table, position, &fixed);
+    look_up(table, position, &any);
+    EXPECT_EQ(fixed, any);
+    return fixed;
   }
 };
 
 TEST(ErrorTable, MeetsEveryStationExactly) {
   const std::vector<std::int32_t> at = {-2000000000, -5, -4, 1000, 77777, 2000000000};
-  const std::vector<std::int32_t> values = {7, INT32_MIN, INT32_MAX, -3, 500000000, -500000000};
+  const std::vector<std::int32_t> values = {7, INT32_MIN, -1, INT32_MAX, 500000000, -500000000};
   const Stations table(at, values);
   for (std::size_t i = 0; i < at.size(); ++i) EXPECT_EQ(table(at[i]), values[i]) << "station " << i;
 }
@@ -89,13 +102,65 @@ TEST(ErrorTable, IsWithinOneLsbOfTheStraightLine) {
   }
 }
 
+TEST(ErrorTable, FindsPiecesOfEvenStationsByItsGrid) {
+  constexpr unsigned kSeed = 100;
+  std::mt19937_64 random(kSeed);
+  int gridded = 0;
+  for (int round = 0; round < 300; ++round) {
+    const auto count = 1 + random() % 200;
+    const double spacing = 3 + static_cast<double>(random() % 10000000) * 0.37;
+    const auto first = static_cast<std::int32_t>(random() % 1000000) - 500000;
+    std::vector<std::int32_t> at, values;
+    for (std::uint64_t i = 0; i <= count; ++i) {
+      at.push_back(first + static_cast<std::int32_t>(std::lround(static_cast<double>(i) * spacing)));
+      values.push_back(static_cast<std::int32_t>(random() % 2000000) - 1000000);
+    }
+    Stations even(at, values);
+    const int shift = std::min(63, 31 + std::ilogb(spacing));
+    ErrorTable grid = even.table;
+    grid.grid_multiplier = static_cast<std::uint32_t>(std::lround(std::ldexp(1.0, shift) / spacing));
+    grid.grid_shift = static_cast<std::uint32_t>(shift);
+    if (!grid_finds_every_piece(grid)) continue;
+    ++gridded;
+    for (const std::int32_t station : at)
+      for (std::int32_t p = station - 3; p <= station + 3; ++p) {
+        std::int32_t by_grid = 0;
+        look_up<1, 1>(grid, p, &by_grid);
+        ASSERT_EQ(by_grid, even(p)) << "position " << p << " seed " << kSeed;
+      }
+  }
+  EXPECT_GT(gridded, 250);
+}
+
+TEST(ErrorTable, LooksUpAllColumnsOfAPieceAtOnce) {
+  std::vector<std::int32_t> records;
+  for (std::int32_t i = 0; i < 3; ++i) {
+    const Segment s = segment(i * 1000, 1000);
+    for (const std::uint32_t word : {static_cast<std::uint32_t>(s.start), s.length, s.reciprocal, s.shift})
+      records.push_back(static_cast<std::int32_t>(word));
+    for (std::int32_t c = 0; c < 12; ++c) records.push_back(1000 * c + 7 * i - 20 * (c % 4));
+  }
+  const ErrorTable linear{records.data(), 3, 6, 1, 0, 0}, cubic{records.data(), 3, 3, 3, 0, 0};
+  for (std::int32_t p = -5; p < 3010; ++p) {
+    std::int32_t fixed[6], any[6];
+    look_up<1, 6>(linear, p, fixed);
+    look_up(linear, p, any);
+    for (int c = 0; c < 6; ++c) ASSERT_EQ(fixed[c], any[c]);
+    look_up<3, 3>(cubic, p, fixed);
+    look_up(cubic, p, any);
+    for (int c = 0; c < 3; ++c) ASSERT_EQ(fixed[c], any[c]);
+  }
+}
+
 TEST(CubicPiece, FollowsItsPolynomial) {
   const std::int32_t c[4] = {100000000, -70000000, 250000000, -90000000};
   EXPECT_EQ(cubic_between(c, 0), c[0]);
   EXPECT_EQ(cubic_between(c, kFractionOne), c[0] + c[1] + c[2] + c[3]);
   for (std::int32_t f = 0; f < kFractionOne; f += 9999991) {
     const double x = f / 1073741824.0;
-    ASSERT_NEAR(cubic_between(c, f), c[0] + x * (c[1] + x * (c[2] + x * c[3])), 1.5);
+    const double error = cubic_between(c, f) - (c[0] + x * (c[1] + x * (c[2] + x * c[3])));
+    ASSERT_LE(error, 0.5);
+    ASSERT_GE(error, -2.5);
   }
 }
 
