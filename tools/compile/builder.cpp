@@ -359,13 +359,15 @@ std::uint16_t ProgramBuilder::add_lag() {
   return static_cast<std::uint16_t>(p_.lag_count++);
 }
 
+ProgramBuilder::Id ProgramBuilder::final_id(Id id) const {
+  if (id < kFirstChannel) return id;
+  const auto constants = static_cast<Id>(p_.constants.size());
+  if (id < kFirstResult) return id - kFirstChannel + constants;
+  return id - kFirstResult + constants + static_cast<Id>(p_.channels.size());
+}
+
 LoweredProgram ProgramBuilder::finish(const std::vector<std::pair<Output, Id>>& outputs) {
   const auto constants = static_cast<Id>(p_.constants.size()), channels = static_cast<Id>(p_.channels.size());
-  const auto final_id = [&](Id id) {
-    if (id < kFirstChannel) return id;
-    if (id < kFirstResult) return id - kFirstChannel + constants;
-    return id - kFirstResult + constants + channels;
-  };
   const auto move_operand = [&](std::uint16_t& operand) {
     operand = static_cast<std::uint16_t>(final_id(operand));
   };

@@ -49,6 +49,8 @@ class ProgramBuilder {
   const Register& at(Id id) const { return registers_[id]; }
   const ValueRange& counts(Id id) const { return ranges_[id]; }
   double lsb(Id id) const;
+  /// The place of a register in the finished program; valid once nothing is added any more.
+  Id final_id(Id id) const;
   LoweredProgram finish(const std::vector<std::pair<Output, Id>>& outputs);
 
  private:

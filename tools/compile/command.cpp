@@ -36,9 +36,16 @@ nlohmann::ordered_json to_json(const OutputBound& b) {
   for (const Contribution& c : b.contributions)
     if (terms.size() < 20)
       terms.push_back({{"term", c.name}, {"source", c.source}, {"bound_um", c.bound_um}});
-  return {{"axis", b.axis},         {"total_um", b.total_um},       {"linearisation_um", b.linearisation_um},
-          {"table_um", b.table_um}, {"function_um", b.function_um}, {"rounding_um", b.rounding_um},
-          {"input_um", b.input_um}, {"lag_um", b.lag_um},           {"deviation_um", b.deviation_um},
+  return {{"axis", b.axis},
+          {"total_um", b.total_um},
+          {"linearisation_um", b.linearisation_um},
+          {"table_um", b.table_um},
+          {"function_um", b.function_um},
+          {"rounding_um", b.rounding_um},
+          {"input_um", b.input_um},
+          {"lag_um", b.lag_um},
+          {"second_order_um", b.second_order_um},
+          {"deviation_um", b.deviation_um},
           {"largest_terms", terms}};
 }
 
@@ -52,6 +59,7 @@ nlohmann::ordered_json to_json(const CompiledMachine& c) {
   return {{"bound_um", total},
           {"outputs", bounds},
           {"switching", c.switching},
+          {"notes", c.notes},
           {"operations", c.program.instructions.size()},
           {"registers", c.program.registers.size()},
           {"tables", c.program.tables.size()},

@@ -7,60 +7,14 @@
 #include <cstring>
 
 #include "tables/checksum.h"
+#include "tools/compile/bound.h"
 #include "tools/model/files.h"
 
 namespace vernier {
 namespace {
 
-constexpr double kUmPerMm = 1000;
 // What is left out at first, and the finest that is tried to meet a budget.
 constexpr double kNeglect_mm = 5e-6, kFinestNeglect_mm = 5e-9;
-
-/// How strongly each register's error shows in the register `output`: reverse accumulation of the gains.
-std::vector<double> gains_to(const LoweredProgram& p, std::uint32_t output) {
-  std::vector<double> gain(p.registers.size(), 0);
-  gain[output] = 1;
-  for (std::size_t i = p.registers.size(); i-- > 0;)
-    for (const Register::Use& use : p.registers[i].uses) gain[use.from] += gain[i] * use.gain;
-  return gain;
-}
-
-double& share_of(OutputBound& bound, const std::string& source) {
-  if (source == "table") return bound.table_um;
-  if (source == "function") return bound.function_um;
-  if (source == "input") return bound.input_um;
-  if (source == "lag") return bound.lag_um;
-  if (source == "linearisation") return bound.linearisation_um;
-  return bound.rounding_um;
-}
-
-OutputBound bound_of(const Machine& machine, const Derivation& d, const LoweredProgram& p, std::size_t i) {
-  const Output& out = p.outputs[i];
-  const Register& result = p.registers[out.source];
-  OutputBound bound;
-  bound.axis = machine.axes[out.axis].name;
-  bound.deviation_um = result.range.magnitude() * kUmPerMm;
-  const auto blame = [&](const std::string& name, const std::string& source, double mm) {
-    if (mm <= 0) return;
-    bound.contributions.push_back({name, source, mm * kUmPerMm});
-    share_of(bound, source) += mm * kUmPerMm;
-  };
-  const std::vector<double> gain = gains_to(p, out.source);
-  double first_order = 0;
-  for (std::size_t r = 0; r < p.registers.size(); ++r) {
-    blame(p.registers[r].name, name_of(p.registers[r].source), gain[r] * p.registers[r].own_error);
-    first_order += gain[r] * p.registers[r].own_error;
-  }
-  blame("errors multiplied with each other", "rounding", result.error - first_order);
-  const double factor = std::ldexp(out.multiplier, -static_cast<int>(out.shift)),
-               exact = std::ldexp(1e6, -result.fraction_bits);
-  blame("output in nm", "rounding", 0.5e-6 + result.range.magnitude() * std::abs(factor / exact - 1));
-  for (const Neglected& n : d.neglected) blame(n.what, "linearisation", n.bound_mm * d.outputs[i].row_norm);
-  for (const Contribution& c : bound.contributions) bound.total_um += c.bound_um;
-  std::stable_sort(bound.contributions.begin(), bound.contributions.end(),
-                   [](const auto& a, const auto& b) { return a.bound_um > b.bound_um; });
-  return bound;
-}
 
 const OutputBound& worst(const std::vector<OutputBound>& bounds) {
   return *std::max_element(bounds.begin(), bounds.end(),
@@ -72,8 +26,9 @@ CompiledMachine compile_once(const Machine& machine, std::uint32_t tick_us, doub
   const Derivation d = derive(machine, neglect_mm);
   result.program = lower(machine, d, tick_us);
   result.switching = d.switching;
-  for (std::size_t i = 0; i < result.program.outputs.size(); ++i)
-    result.bounds.push_back(bound_of(machine, d, result.program, i));
+  result.notes = d.notes;
+  result.least_squares = d.least_squares;
+  result.bounds = bounds_of(machine, d, result.program);
   return result;
 }
 

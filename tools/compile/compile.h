@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "tables/image_view.h"
-#include "tools/compile/lower.h"
+#include "tools/compile/bound.h"
 
 namespace vernier {
 
@@ -15,29 +15,14 @@ struct CompileOptions {
   std::optional<double> budget_um;  // largest error bound allowed on any axis
 };
 
-/// One cause of error in an output and the most it can be.
-struct Contribution {
-  std::string name;
-  std::string source;  // "linearisation", "table", "function", "rounding", "input", "lag"
-  double bound_um = 0;
-};
-
-/// Proved bound of |fixed-point correction - exact correction| along one axis, over the declared ranges, away
-/// from the steps of comparisons; before magnitude limit, ramp and slew limit.
-struct OutputBound {
-  std::string axis;
-  double total_um = 0;
-  double linearisation_um = 0, table_um = 0, function_um = 0, rounding_um = 0, input_um = 0, lag_um = 0;
-  double deviation_um = 0;                  // largest |deviation| over the declared ranges, by intervals
-  std::vector<Contribution> contributions;  // largest first, all of them
-};
-
 struct CompiledMachine {
   std::vector<std::uint8_t> image;
   LoweredProgram program;
   std::vector<OutputBound> bounds;
-  std::vector<std::string> switching;
-  std::string header, source;  // equation.h, equation.cpp
+  std::optional<LeastSquares> least_squares;  // where turning axes are corrected too
+  std::vector<std::string> switching;         // comparisons and the like: the bound holds away from their steps
+  std::vector<std::string> notes;      // what the user should know of the correction, a sentence each
+  std::string header, source;          // equation.h, equation.cpp
   std::uint64_t fingerprint = 0;
 };
 

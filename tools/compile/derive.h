@@ -1,10 +1,15 @@
 #pragma once
+#include <array>
+#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "tools/compile/graph.h"
 
 namespace vernier {
+
+using NodeVector = std::array<NodeId, 3>;
 
 /// A part of the exact deviation that the equation leaves out, and how much it can be over the declared
 /// ranges.
@@ -13,18 +18,48 @@ struct Neglected {
   double bound_mm;   // norm
 };
 
-/// The deviation along one linear axis: axis * value has the deviation's effect on the tool point.
+/// The deviation along one axis: moving the axis by value has the deviation's effect on the tool point.
 struct AxisDeviation {
   std::size_t axis;
-  NodeId value;     // mm along the axis
-  double row_norm;  // turns a norm in the workpiece frame into a bound along this axis
+  NodeId value;     // mm or deg
+  double row_norm;  // turns a norm in the workpiece frame, mm, into a bound along this axis
+  double lever;     // mm of tool point per mm or deg of the axis, at most
+};
+
+/// The least squares x = J' w, w = adj(J J') deviation / max(det(J J'), floor) of a machine that is corrected
+/// by turning axes too. Rows of J: directions of the tool point; columns: axes, each divided by its lever.
+struct LeastSquares {
+  std::vector<std::vector<NodeId>> jacobian, square, adjugate;  // J, J J', adj(J J')
+  std::vector<NodeId> deviation, weights;
+  std::vector<double> lever;  // mm per axis unit
+  NodeId determinant = 0, reciprocal = 0;
+  double floor = 0;      // det(J J') below it: the correction fades
+  double trace = 0;      // sum of the squares of J's singular values, at most
+  double largest = 0;    // |adj(J J')| at most
+  double gain = 0;       // |J' (J J')^-1| at most, where the correction does not fade
+  double spread_mm = 0;  // |deviation| at most
+};
+
+/// How the nominal tool point moves with an axis: mm per mm or per deg, in the frame of the deviation.
+struct AxisColumn {
+  std::size_t axis;
+  NodeVector direction;
+  double norm;  // its length at most
 };
 
 /// The symbolic error equation of a machine.
 struct Derivation {
   Graph graph;
   std::vector<AxisDeviation> outputs;
+  std::vector<AxisColumn> columns;        // of the corrected axes
+  NodeVector deviation{};                 // of the tool point, mm, in a frame of the chain
+  double spread_mm = 0;                   // its length at most
+  std::map<std::size_t, double> turning;  // axes that turn that frame: rad per mm or deg
+  std::map<NodeId, double> table_slopes;  // of each table value: mm or deg per axis unit at most
   std::vector<Neglected> neglected;
+  std::vector<std::string> notes;  // what the user should know of the correction, a sentence each
+  std::optional<LeastSquares> least_squares;
+  std::optional<double> fading;  // share of the poses where it fades, because the axes do not reach there
   std::vector<std::string> switching;  // comparisons and the like: the bound holds away from their steps
 };
 
@@ -34,11 +69,11 @@ Interval axis_range(const Machine& machine, std::size_t axis);
 Interval input_range(const Input& input);
 Interval channel_range(const Machine& machine, ChannelKind kind, std::size_t index);
 
-/// Derives p(actual) - p(nominal) in factored form along the chain, seen along the linear axes.
-/// neglect_mm: a higher-order term smaller than this over the declared ranges is left out and entered in
-/// `neglected`. Throws InputError in one line where the machine cannot be compiled: a free static without
-/// nominal, an axis without range, linear axes whose directions turn with a rotary axis that they carry, an
-/// expression that the program has no operation for. tool.
+/// Derives p(actual) - p(nominal) in factored form along the chain, seen along the linear axes where they
+/// span it, else along the rotary ones too. neglect_mm: a higher-order term smaller than this over the
+/// declared ranges is left out and entered in `neglected`. Throws InputError in one line where the machine
+/// cannot be compiled: a free static without nominal, an axis without range, an axis whose nominal motion has
+/// a step, an expression that the program has no operation for. tool.
 Derivation derive(const Machine& machine, double neglect_mm);
 
 }  // namespace vernier

@@ -1,5 +1,6 @@
 #include "tools/compile/dual.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -28,6 +29,22 @@ Interval column_range(const Table& table, std::size_t column) {
   return range;
 }
 
+// The steepest that a column gets: a cubic piece's slope stays within the control values of its derivative.
+double column_slope(const Table& table, std::size_t column) {
+  const StationTable look_up(table);
+  double steepest = 0;
+  for (std::size_t i = 0; i + 1 < table.stations.size(); ++i) {
+    const double loc = table.stations[i].loc, width = table.stations[i + 1].loc - loc;
+    const double mean = (table.stations[i + 1].value[column] - table.stations[i].value[column]) / width;
+    steepest = std::max(steepest, std::abs(mean));
+    if (table.interpolation == Interpolation::kLinear) continue;
+    const double near = look_up.slopes(loc + 1e-9 * width)[column],
+                 far = look_up.slopes(loc + width - 1e-9 * width)[column];
+    steepest = std::max({steepest, std::abs(near), std::abs(far), std::abs(3 * mean - near - far)});
+  }
+  return steepest * (1 + 1e-6);
+}
+
 }  // namespace
 
 NodeId Translator::channel(ChannelKind kind, std::size_t index) {
@@ -40,8 +57,10 @@ NodeId Translator::table_value(std::size_t index) {
   if (table == nullptr) return g_.constant(0);
   const Interval range = column_range(*table, column);
   if (range.low == range.high) return g_.constant(range.low);
-  return g_.table(static_cast<std::uint32_t>(axis), static_cast<std::uint32_t>(column),
-                  channel(ChannelKind::kPosition, axis), range);
+  const NodeId value = g_.table(static_cast<std::uint32_t>(axis), static_cast<std::uint32_t>(column),
+                                channel(ChannelKind::kPosition, axis), range);
+  d_.table_slopes[value] = column_slope(*table, column);
+  return value;
 }
 
 Dual Translator::symbol(const Expr& expr) {
@@ -78,11 +97,16 @@ Dual Translator::symbol(const Expr& expr) {
     case SymbolKind::kVisit:
       return {channel(ChannelKind::kVisit, 0), zero};
     case SymbolKind::kNormal:
-      throw std::domain_error("the normal of a probed row, which a running machine does not know");
+      note("nx, ny and nz are 0: a running machine touches nothing");
+      return {zero, zero};
     case SymbolKind::kUnresolved:
       break;
   }
   throw std::domain_error("the name \"" + expr.name + "\", which is not resolved");
+}
+
+void Translator::note(const std::string& text) {
+  if (std::find(d_.notes.begin(), d_.notes.end(), text) == d_.notes.end()) d_.notes.push_back(text);
 }
 
 Dual Translator::product(const Dual& a, const Dual& b) {
@@ -112,6 +136,8 @@ NodeId Translator::power(NodeId base, NodeId exponent) {
 
 // atan2 over the half plane where one of the two operands keeps its sign; elsewhere it has a step.
 NodeId Translator::angle_of(NodeId y, NodeId x) {
+  const auto v = g_.constant_value(y), u = g_.constant_value(x);
+  if (v && u) return g_.constant(apply(Op::kAtan2, *v, *u));
   const Interval along = g_[x].range, across = g_[y].range;
   if (along.low > 0)
     return g_.function(Function::kArcTangent, g_.product(y, g_.function(Function::kReciprocal, x)));
@@ -164,7 +190,10 @@ NodeId Translator::apply_to(Op op, NodeId a, NodeId b) {
 Dual Translator::visit(const Expr& expr) {
   if (expr.op == Op::kNumber) return constant(expr.number, 0);
   if (expr.op == Op::kSymbol) return symbol(expr);
-  if (expr.op == Op::kRunIs) throw std::domain_error("run(...): a running machine is in no measurement run");
+  if (expr.op == Op::kRunIs) {
+    note("run(\"" + expr.name + "\") is 0: a running machine is in no measurement run");
+    return constant(0, 0);
+  }
   const Dual a = visit(*expr.args[0]);
   const Dual b = expr.args.size() > 1 ? visit(*expr.args[1]) : a;
   switch (expr.op) {

@@ -23,6 +23,7 @@ class Translator {
   NodeId channel(ChannelKind kind, std::size_t index);
 
  private:
+  void note(const std::string& text);
   Dual visit(const Expr& expr);
   Dual symbol(const Expr& expr);
   Dual product(const Dual& a, const Dual& b);

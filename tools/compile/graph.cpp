@@ -1,6 +1,8 @@
 #include "tools/compile/graph.h"
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 
 namespace vernier {
@@ -8,17 +10,21 @@ namespace {
 
 // Coefficients that only rounding of cos 90 deg and the like keeps from being zero.
 constexpr double kRoundOff = 1e-15;
+constexpr double kRad = std::numbers::pi / 180;
 
-Interval range_of_function(Function f, const Interval& x) {
-  switch (f) {
-    case Function::kSin:
-    case Function::kCos:
-      return {-1, 1};
-    case Function::kReciprocal:
-      return {1 / x.high, 1 / x.low};
-    default:
-      return {value_of(f, x.low), value_of(f, x.high)};
-  }
+// Sine over an interval in degrees: its ends, and the crests and troughs at 90 + 360 k and -90 + 360 k
+// between.
+Interval range_of_sine(const Interval& x) {
+  if (x.high - x.low >= 360) return {-1, 1};
+  constexpr double kSlack = 1e-15;  // of the library's sine
+  Interval range = hull({std::sin(x.low * kRad), std::sin(x.low * kRad)},
+                        {std::sin(x.high * kRad), std::sin(x.high * kRad)});
+  const auto reaches = [&](double angle) {
+    return std::floor((x.high - angle) / 360) >= std::ceil((x.low - angle) / 360);
+  };
+  if (reaches(90)) range.high = 1;
+  if (reaches(-90)) range.low = -1;
+  return {std::max(-1.0, range.low - kSlack), std::min(1.0, range.high + kSlack)};
 }
 
 void check_domain(Function f, const Interval& x) {
@@ -27,21 +33,6 @@ void check_domain(Function f, const Interval& x) {
   if (f == Function::kReciprocal && x.contains(0))
     throw std::domain_error("division by a value that can reach zero");
   if (f == Function::kExp && x.high > 200) throw std::domain_error("exp of a value that can exceed 200");
-}
-
-Interval range_of_choice(NodeKind kind, const Interval& a, const Interval& b) {
-  switch (kind) {
-    case NodeKind::kAbs:
-      return {a.contains(0) ? 0 : std::min(std::abs(a.low), std::abs(a.high)), a.magnitude()};
-    case NodeKind::kMin:
-      return {std::min(a.low, b.low), std::min(a.high, b.high)};
-    case NodeKind::kMax:
-      return {std::max(a.low, b.low), std::max(a.high, b.high)};
-    case NodeKind::kSign:
-      return {a.low > 0 ? 1.0 : (a.low == 0 ? 0.0 : -1.0), a.high < 0 ? -1.0 : (a.high == 0 ? 0.0 : 1.0)};
-    default:
-      return {0, 1};
-  }
 }
 
 double value_of_choice(NodeKind kind, double a, double b) {
@@ -64,6 +55,34 @@ double value_of_choice(NodeKind kind, double a, double b) {
 }
 
 }  // namespace
+
+Interval range_of_function(Function f, const Interval& x) {
+  switch (f) {
+    case Function::kSin:
+      return range_of_sine(x);
+    case Function::kCos:
+      return range_of_sine({x.low + 90, x.high + 90});
+    case Function::kReciprocal:
+      return {1 / x.high, 1 / x.low};
+    default:
+      return {value_of(f, x.low), value_of(f, x.high)};
+  }
+}
+
+Interval range_of_choice(NodeKind kind, const Interval& a, const Interval& b) {
+  switch (kind) {
+    case NodeKind::kAbs:
+      return {a.contains(0) ? 0 : std::min(std::abs(a.low), std::abs(a.high)), a.magnitude()};
+    case NodeKind::kMin:
+      return {std::min(a.low, b.low), std::min(a.high, b.high)};
+    case NodeKind::kMax:
+      return {std::max(a.low, b.low), std::max(a.high, b.high)};
+    case NodeKind::kSign:
+      return {a.low > 0 ? 1.0 : (a.low == 0 ? 0.0 : -1.0), a.high < 0 ? -1.0 : (a.high == 0 ? 0.0 : 1.0)};
+    default:
+      return {0, 1};
+  }
+}
 
 NodeId Graph::intern(Node node) {
   Key key{node.kind,
@@ -148,10 +167,7 @@ NodeId Graph::product(NodeId a, NodeId b) {
   node.kind = NodeKind::kProduct;
   node.args = {std::min(a, b), std::max(a, b)};
   node.range = nodes_[a].range * nodes_[b].range;
-  if (a == b) {
-    const Interval size = range_of_choice(NodeKind::kAbs, nodes_[a].range, {});
-    node.range = {size.low * size.low, size.high * size.high};
-  }
+  if (a == b) node.range = square(nodes_[a].range);
   return scale(coefficient, intern(std::move(node)));
 }
 
@@ -198,12 +214,18 @@ NodeId Graph::lag(NodeId input, double tau_s) {
 }
 
 bool Graph::depends_on(NodeId id, NodeId other) const {
-  if (id == other) return true;
-  for (const NodeId arg : nodes_[id].args)
-    if (depends_on(arg, other)) return true;
-  for (const Term& term : nodes_[id].terms)
-    if (depends_on(term.node, other)) return true;
-  return false;
+  // Operands come before their node, so one pass from `other` upwards decides it.
+  if (id < other) return false;
+  std::vector<char> reached(id + 1 - other, 0);
+  reached[0] = 1;
+  for (NodeId i = other + 1; i <= id; ++i) {
+    const auto is_reached = [&](NodeId n) { return n >= other && reached[n - other] != 0; };
+    const Node& node = nodes_[i];
+    reached[i - other] = std::any_of(node.args.begin(), node.args.end(), is_reached) ||
+                         std::any_of(node.terms.begin(), node.terms.end(),
+                                     [&](const Term& term) { return is_reached(term.node); });
+  }
+  return reached.back() != 0;
 }
 
 std::optional<double> Graph::constant_slope(NodeId id, NodeId channel) const {

@@ -80,9 +80,10 @@ class Graph {
   /// d node / d channel where that is a constant; nothing where it varies or cannot be told.
   std::optional<double> constant_slope(NodeId id, NodeId channel) const;
 
+  bool depends_on(NodeId id, NodeId other) const;
+
  private:
   NodeId intern(Node node);
-  bool depends_on(NodeId id, NodeId other) const;
 
   std::vector<Node> nodes_;
   using Key = std::tuple<NodeKind, double, int, int, std::uint32_t, std::uint32_t, std::vector<NodeId>,
@@ -99,5 +100,8 @@ double slope_of(Function f, double x);
 double slope_bound(Function f, const Interval& x);
 double fourth_derivative_bound(Function f, const Interval& x);
 const char* name_of(Function f);
+/// All values of a function over an interval of its domain, and of a choice.
+Interval range_of_function(Function f, const Interval& x);
+Interval range_of_choice(NodeKind kind, const Interval& a, const Interval& b);
 
 }  // namespace vernier

@@ -20,6 +20,10 @@ inline Interval operator*(const Interval& a, const Interval& b) {
   const auto [low, high] = std::minmax({a.low * b.low, a.low * b.high, a.high * b.low, a.high * b.high});
   return {low, high};
 }
+inline Interval square(const Interval& a) {
+  const double far = a.magnitude(), near = a.contains(0) ? 0 : std::min(std::abs(a.low), std::abs(a.high));
+  return {near * near, far * far};
+}
 inline Interval hull(const Interval& a, const Interval& b) {
   return {std::min(a.low, b.low), std::max(a.high, b.high)};
 }

@@ -12,7 +12,6 @@
 namespace vernier {
 namespace {
 
-constexpr double kNmPerMm = 1e6;
 constexpr int kUnitBits =
     30;  // format of -1, 0, 1: as fine as int32 allows, so that factors keep their digits
 const double kTurnUnit = 360.0 / 4294967296.0;  // deg of one count of a rotary axis
@@ -76,7 +75,11 @@ class Lowering {
       const Id id = value(out.value);
       outputs.emplace_back(output_of(out.axis, id), id);
     }
-    return b_.finish(outputs);
+    std::map<NodeId, std::uint32_t> register_of;
+    for (const auto& [node, id] : done_) register_of[node] = b_.final_id(id);
+    LoweredProgram program = b_.finish(outputs);
+    program.register_of = std::move(register_of);
+    return program;
   }
 
  private:
@@ -84,17 +87,19 @@ class Lowering {
 
   Output output_of(std::size_t axis, Id id) const {
     const Axis& a = machine_.axes[axis];
-    const double factor = std::ldexp(kNmPerMm, -b_.at(id).fraction_bits);
+    const double per_unit = 1 / unit_of(machine_, ChannelKind::kPosition, axis);
+    const double factor = std::ldexp(per_unit, -b_.at(id).fraction_bits);
     const int shift = std::clamp(29 - std::ilogb(factor), 0, static_cast<int>(kMaxShift));
-    const auto counts = [](std::optional<double> mm, double per) {
-      return mm ? static_cast<std::int32_t>(std::min(2147483647.0, std::floor(*mm * per + 1e-6))) : INT32_MAX;
+    const auto counts = [](std::optional<double> units, double per) {
+      return units ? static_cast<std::int32_t>(std::min(2147483647.0, std::floor(*units * per + 1e-6)))
+                   : INT32_MAX;
     };
     Output out{};
     out.axis = static_cast<std::uint16_t>(axis);
     out.shift = static_cast<std::uint32_t>(shift);
     out.multiplier = static_cast<std::int32_t>(std::llround(std::ldexp(factor, shift)));
-    out.limit = counts(a.max_correction, kNmPerMm);
-    out.slew = counts(a.max_slew, kNmPerMm * tick_us_ * 1e-6);
+    out.limit = counts(a.max_correction, per_unit);
+    out.slew = counts(a.max_slew, per_unit * tick_us_ * 1e-6);
     return out;
   }
 
@@ -380,9 +385,12 @@ class Lowering {
     if (n.kind == NodeKind::kAbs) return one(OpCode::kAbs, b_.at(a).fraction_bits, 1, "abs_");
     if (n.kind == NodeKind::kSign) return b_.reformat(one(OpCode::kSign, 0, 0, "sign_"), kUnitBits);
     Id b = value(n.args[1]);
-    // The finest format that holds both.
-    const double size =
-        std::max(b_.at(a).range.magnitude() + b_.at(a).error, b_.at(b).range.magnitude() + b_.at(b).error);
+    // The finest format that holds both, whatever their registers can take.
+    const auto reach = [&](Id id) {
+      const ValueRange& r = b_.counts(id);
+      return b_.lsb(id) * static_cast<double>(std::max(std::abs(r.low), std::abs(r.high)) + 1);
+    };
+    const double size = std::max(reach(a), reach(b));
     const int bits =
         std::min(fraction_bits_for(size), std::max(b_.at(a).fraction_bits, b_.at(b).fraction_bits));
     a = b_.reformat(a, bits);

@@ -1,4 +1,5 @@
 #pragma once
+#include <map>
 #include <string>
 #include <vector>
 
@@ -49,7 +50,8 @@ struct LoweredProgram {
   std::vector<Wrap> wraps;
   std::vector<Output> outputs;
   std::uint32_t lag_count = 0;
-  std::vector<Register> registers;  // one per constant, channel and result
+  std::vector<Register> registers;              // one per constant, channel and result
+  std::map<NodeId, std::uint32_t> register_of;  // of the nodes that have one
 
   std::uint32_t first_result() const {
     return static_cast<std::uint32_t>(constants.size() + channels.size());

@@ -1,6 +1,7 @@
 #pragma once
 #include <cmath>
 #include <cstdlib>
+#include <memory>
 #include <random>
 #include <string>
 #include <vector>
@@ -22,6 +23,30 @@ inline std::string machine_path(const std::string& name) {
   return std::string(VERNIER_SOURCE_DIR) + "/tests/unit/compile/machines/" + name + ".xml";
 }
 
+/// The machine with every error that it can have: seeded values of all statics with a nominal and of all
+/// tables; what the file leaves open for `compile` (nominal values, ranges of axes) is filled in.
+inline Machine disturbed(Machine machine, unsigned seed) {
+  std::mt19937_64 random(seed);
+  const auto within = [&](double size) {
+    return std::uniform_real_distribution<double>(-size, size)(random);
+  };
+  for (Static& s : machine.statics) {
+    if (!s.hidden && !s.nominal) s.nominal = s.value;
+    if (!s.nominal) continue;
+    s.value += within(s.unit == "mm" ? 0.1 : s.unit == "deg" ? 0.01 : s.unit == "rad" ? 1e-4 : 1e-3);
+  }
+  for (Axis& axis : machine.axes) {
+    if (!axis.min) axis.min = axis.rotary ? -180 : 0;
+    if (!axis.max) axis.max = axis.rotary ? 180 : 1500;
+  }
+  for (Table& table : machine.tables)
+    for (Station& station : table.stations)
+      for (std::size_t c = 0; c < 6; ++c) station.value[c] += within(c < 3 ? 0.02 : 0.002);
+  for (Table& table : machine.tables)
+    if (table.periodic) table.stations.back().value = table.stations.front().value;
+  return machine;
+}
+
 /// A machine of machines/, compiled and opened, with the random poses that its image and its double chain
 /// both see.
 struct TestMachine {
@@ -29,10 +54,10 @@ struct TestMachine {
   CompiledMachine compiled;
   std::unique_ptr<LoadedImage> loaded;
 
-  explicit TestMachine(const std::string& name) {
-    const std::string text = read_file(machine_path(name));
-    machine = parse_machine(text, machine_path(name));
-    compiled = compile_machine(machine, text, {});
+  explicit TestMachine(const std::string& name)
+      : TestMachine(read_machine(machine_path(name)), read_file(machine_path(name))) {}
+  explicit TestMachine(Machine m, const std::string& text = {}, const CompileOptions& options = {})
+      : machine(std::move(m)), compiled(compile_machine(machine, text, options)) {
     loaded = load_image(compiled.image, machine);
   }
 
@@ -61,6 +86,8 @@ struct TestMachine {
       for (std::size_t i = 0; i < machine.inputs.size(); ++i) {
         const Interval range = input_range(machine.inputs[i]);
         p.input[i] = InputMicro(counts(range.low, range.high, 1e-6));
+        // A hidden axis is mostly a number that selects a tool.
+        if (machine.inputs[i].hidden_axis) p.input[i] = InputMicro((p.input[i].count / 1000000) * 1000000);
       }
       p.feed = FeedNmPerMin(counts(0, 20000, 1e-6));
       p.curvature = CurvatureNanoPerMm(counts(0, 0.2, 1e-9));
@@ -93,12 +120,12 @@ struct TestMachine {
     return s;
   }
 
-  /// Deviation of output k after a step, before limits, as the output stage rounds it.
-  double deviation_um(const Compensator& compensator, std::size_t k) const {
+  /// Deviation of output k after a step, mm or deg, before limits, as the output stage rounds it.
+  double deviation_units(const Compensator& compensator, std::size_t k) const {
     const Output& out = loaded->view.program().outputs[static_cast<std::uint32_t>(k)];
     return static_cast<double>(round_shift(
-               std::int64_t{compensator.register_value(out.source)} * out.multiplier, out.shift)) /
-           1000;
+               std::int64_t{compensator.register_value(out.source)} * out.multiplier, out.shift)) *
+           axis_unit(out.axis);
   }
 };
 

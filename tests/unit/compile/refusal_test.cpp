@@ -40,26 +40,29 @@ TEST(Compile, RefusesInOneLineWithTheReason) {
   expect_one_line(refusal("<BX value=\"0.0021\" nominal=\"0\"", "<BX value=\"0.0021\""), "BX",
                   "without nominal");
   expect_one_line(refusal("min=\"0\" max=\"600\"", "min=\"0\""), "X", "min and max");
-  expect_one_line(refusal("BY*dirY", "BY*nx"), "BY*nx", "normal");
-  expect_one_line(refusal("BY*dirY", "BY*run(&quot;a&quot;)"), "run", "measurement run");
   expect_one_line(refusal("BY*dirY", "BY*log(Y)"), "BY*log(Y)", "log");
   expect_one_line(refusal("BY*dirY", "BY/(Y-100)"), "BY/(Y-100)", "division");
   expect_one_line(refusal("BY*dirY", "BY*atan2(Y-5,X-5)"), "atan2", "180 deg");
   expect_one_line(refusal("lag(T_column-20,600)", "lag(T_column-20,100+Y)"), "lag", "time constant");
-  expect_one_line(refusal("Z=\"lYz\"", "Z=\"X^2\""), "X", "direction or scale");
+  expect_one_line(refusal("Z=\"lYz\"", "Z=\"abs(X-100)\""), "X", "direction of motion with a step");
 }
 
-TEST(Compile, RefusesAnAxisThatARotaryAxisCarries) {
-  std::string text = read_file(machine_path("five_axis"));
-  text = replaced(text, "X=\"X\" Y=\"0\" Z=\"0\" rX=\"180\"", "X=\"0\" Y=\"0\" Z=\"0\" rX=\"180\"");
-  text = replaced(text, "X=\"lCx\"", "X=\"X+lCx\"");
-  // A stands between Y (in the frame of the machine) and X (on the table): no constant pair of directions.
-  try {
-    compile_text(text);
-    FAIL() << "an axis whose direction turns";
-  } catch (const InputError& error) {
-    expect_one_line(error.what(), "\"Y\"", "direction or scale");
-  }
+TEST(Compile, TakesRunAndNormalAsZeroWithANote) {
+  const std::string text = read_file(machine_path("bridge"));
+  const auto program_with = [&](const std::string& term) {
+    return compile_text(replaced(text, "BY*dirY", "BY*dirY" + term));
+  };
+  const CompiledMachine plain = program_with(""), normal = program_with("+BY*nx"),
+                        pretravel = program_with("+BY*cos(3*atan2(ny,nx))*ny"),
+                        run = program_with("+BY*run(&quot;a&quot;)");
+  EXPECT_TRUE(plain.notes.empty());
+  ASSERT_EQ(normal.notes.size(), 1u);
+  EXPECT_NE(normal.notes[0].find("nx, ny and nz are 0"), std::string::npos);
+  ASSERT_EQ(run.notes.size(), 1u);
+  EXPECT_NE(run.notes[0].find("run(\"a\") is 0"), std::string::npos);
+  // The image differs in the hash of its source alone: the equation is the same.
+  for (const CompiledMachine* other : {&normal, &pretravel, &run})
+    EXPECT_EQ(plain.fingerprint, other->fingerprint);
 }
 
 TEST(Compile, NamesTheTermToBlameForABudget) {

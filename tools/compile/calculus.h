@@ -1,0 +1,75 @@
+#pragma once
+#include <Eigen/Core>
+#include <map>
+#include <vector>
+
+#include "tools/compile/graph.h"
+
+namespace vernier {
+
+/// d node / d channel as a node. Throws std::domain_error where the node has a step or a table there. tool.
+class Derivative {
+ public:
+  Derivative(Graph& graph, NodeId channel) : g_(graph), channel_(channel) {}
+  NodeId of(NodeId node);
+
+ private:
+  NodeId make(NodeId node);
+
+  Graph& g_;
+  NodeId channel_;
+  std::map<NodeId, NodeId> known_;
+};
+
+/// Values of nodes at random places of their channels' ranges (seeded: the same every time). A table or a lag
+/// has no value here: asking for a node that reads one throws std::domain_error. tool.
+class Samples {
+ public:
+  Samples(const Graph& graph, Eigen::Index count) : graph_(graph), count_(count) {}
+  const Eigen::ArrayXd& of(NodeId node);
+
+ private:
+  Eigen::ArrayXd evaluate(NodeId node);
+
+  const Graph& graph_;
+  Eigen::Index count_;
+  std::map<NodeId, Eigen::ArrayXd> known_;
+};
+
+/// The value of a node that is one number at every sample (a trigonometric identity), nothing otherwise.
+std::optional<double> sampled_constant(Samples& samples, NodeId node);
+
+/// Intervals over a part of the declared ranges: the channels of `box` have their part, others the whole.
+class Enclosure {
+ public:
+  Enclosure(const Graph& graph, const std::map<NodeId, Interval>& box) : graph_(graph), box_(box) {}
+  Interval of(NodeId node);
+
+ private:
+  const Graph& graph_;
+  const std::map<NodeId, Interval>& box_;
+  std::map<NodeId, Interval> known_;
+};
+
+/// A lower bound of a node over the declared ranges, by bisection of the positions that it depends on; at
+/// most `boxes` parts are looked at. Never above the true minimum. tool.
+double lower_bound_of(const Graph& graph, NodeId node, std::size_t boxes);
+
+/// |d node / d channel| at most, over the declared ranges: tables by their steepest piece, choices by either
+/// side, steps of comparisons left out. tables: largest slope of each column, per graph node. tool.
+class Slopes {
+ public:
+  Slopes(const Graph& graph, NodeId channel, const std::map<NodeId, double>& table_slopes)
+      : graph_(graph), channel_(channel), table_slopes_(table_slopes) {}
+  Interval of(NodeId node);
+
+ private:
+  Interval slope(const Node& node);
+
+  const Graph& graph_;
+  NodeId channel_;
+  const std::map<NodeId, double>& table_slopes_;
+  std::map<NodeId, Interval> known_;
+};
+
+}  // namespace vernier

@@ -1,0 +1,267 @@
+#include "tools/compile/solve.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+
+#include "tools/compile/calculus.h"
+
+namespace vernier {
+namespace {
+
+constexpr Eigen::Index kSamples = 512;
+constexpr std::size_t kBoxes = 4096;
+/// A singular value this small against the largest is none.
+constexpr double kFlat = 1e-9;
+/// Where det(J J') is below this share of its largest sampled value, the correction fades.
+constexpr double kFloorShare = 1.0 / 256;
+
+using Matrix = std::vector<std::vector<NodeId>>;  // rows
+
+/// Small matrices of nodes.
+class Algebra {
+ public:
+  explicit Algebra(Graph& graph) : g(graph), samples_(graph, kSamples) {}
+
+  NodeId minor_of(const Matrix& m, std::size_t row, std::size_t column) {
+    std::vector<std::size_t> r, c;
+    for (std::size_t i = 0; i < m.size(); ++i) {
+      if (i != row) r.push_back(i);
+      if (i != column) c.push_back(i);
+    }
+    if (r.empty()) return g.constant(1);
+    if (r.size() == 1) return m[r[0]][c[0]];
+    return g.subtract(g.product(m[r[0]][c[0]], m[r[1]][c[1]]), g.product(m[r[0]][c[1]], m[r[1]][c[0]]));
+  }
+  Matrix adjugate(const Matrix& m) {
+    Matrix result(m.size(), std::vector<NodeId>(m.size()));
+    for (std::size_t i = 0; i < m.size(); ++i)
+      for (std::size_t j = 0; j < m.size(); ++j)
+        result[i][j] = simplified(g.scale((i + j) % 2 == 0 ? 1 : -1, minor_of(m, j, i)));
+    return result;
+  }
+  NodeId determinant(const Matrix& m, const Matrix& adjugate) {
+    std::vector<Term> terms;
+    for (std::size_t j = 0; j < m.size(); ++j) terms.push_back({1, g.product(m[0][j], adjugate[j][0])});
+    return simplified(g.sum(0, terms));
+  }
+  NodeId dot(const std::vector<NodeId>& a, const std::vector<NodeId>& b) {
+    std::vector<Term> terms;
+    for (std::size_t i = 0; i < a.size(); ++i) terms.push_back({1, g.product(a[i], b[i])});
+    return g.sum(0, terms);
+  }
+  /// A number where the node is one: cos^2 + sin^2 and the like.
+  NodeId simplified(NodeId node) {
+    if (g.constant_value(node)) return node;
+    const auto value = sampled_constant(samples_, node);
+    return value ? g.constant(*value) : node;
+  }
+  const Eigen::ArrayXd& sampled(NodeId node) { return samples_.of(node); }
+
+  Graph& g;
+
+ private:
+  Samples samples_;
+};
+
+bool is_constant(const Graph& g, const AxisColumn& column) {
+  return std::all_of(column.direction.begin(), column.direction.end(),
+                     [&](NodeId id) { return g.constant_value(id).has_value(); });
+}
+
+std::vector<Term> row_terms(const Eigen::RowVectorXd& row, const std::vector<NodeId>& nodes) {
+  std::vector<Term> terms;
+  for (std::size_t c = 0; c < nodes.size(); ++c) {
+    const double k = row[static_cast<Eigen::Index>(c)];
+    terms.push_back({std::abs(k) < 1e-14 * row.norm() ? 0 : k, nodes[c]});
+  }
+  return terms;
+}
+
+void solve_by_numbers(Derivation& d, const std::vector<AxisColumn>& columns, const NodeVector& deviation) {
+  Eigen::Matrix3Xd j(3, static_cast<Eigen::Index>(columns.size()));
+  for (std::size_t i = 0; i < columns.size(); ++i)
+    for (std::size_t c = 0; c < 3; ++c)
+      j(static_cast<Eigen::Index>(c), static_cast<Eigen::Index>(i)) =
+          *d.graph.constant_value(columns[i].direction[c]);
+  const Eigen::MatrixXd to_axes = j.completeOrthogonalDecomposition().pseudoInverse();
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    const Eigen::RowVector3d row = to_axes.row(static_cast<Eigen::Index>(i));
+    if (row.norm() == 0) continue;
+    const NodeId value = d.graph.sum(0, row_terms(row, {deviation.begin(), deviation.end()}));
+    d.outputs.push_back({columns[i].axis, value, row.norm(), j.col(static_cast<Eigen::Index>(i)).norm()});
+  }
+}
+
+/// Columns and deviation in the directions that the axes span at all.
+struct Reduced {
+  Matrix rows;  // rank x axes, columns scaled to at most 1
+  std::vector<NodeId> deviation;
+  std::vector<double> lever;  // mm per axis unit that a column was divided by
+};
+
+Reduced reduce(Graph& g, Algebra& algebra, const std::vector<AxisColumn>& columns,
+               const NodeVector& deviation, const Eigen::Matrix3Xd& basis) {
+  Reduced r;
+  for (const AxisColumn& column : columns)
+    r.lever.push_back(std::exp2(std::ceil(std::log2(std::max(1e-9, column.norm)))));
+  for (Eigen::Index i = 0; i < basis.cols(); ++i) {
+    const Eigen::RowVector3d direction = basis.col(i).transpose();
+    r.deviation.push_back(g.sum(0, row_terms(direction, {deviation.begin(), deviation.end()})));
+    std::vector<NodeId> row;
+    for (std::size_t k = 0; k < columns.size(); ++k) {
+      const NodeVector& column = columns[k].direction;
+      const NodeId along = g.sum(0, row_terms(direction, {column.begin(), column.end()}));
+      row.push_back(algebra.simplified(g.scale(1 / r.lever[k], along)));
+    }
+    r.rows.push_back(row);
+  }
+  return r;
+}
+
+/// Square and regular over the whole ranges: x = J^-1 deviation. False where that is not proved.
+bool solve_square(Derivation& d, Algebra& algebra, const std::vector<AxisColumn>& columns, const Reduced& r) {
+  if (r.rows.size() != columns.size()) return false;
+  Graph& g = d.graph;
+  const Matrix adjugate = algebra.adjugate(r.rows);
+  NodeId determinant = algebra.determinant(r.rows, adjugate);
+  const double sign = algebra.sampled(determinant)[0] < 0 ? -1 : 1;
+  determinant = g.scale(sign, determinant);
+  const double low = lower_bound_of(g, determinant, kBoxes);
+  if (low < kFlat) return false;
+  if (!g.constant_value(determinant) && g[determinant].range.low < low)
+    determinant = g.choice(NodeKind::kMax, determinant, g.constant(low * (1 - 1e-6)));
+  const NodeId reciprocal = g.function(Function::kReciprocal, determinant);
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    std::vector<NodeId> row;
+    double norm = 0;
+    for (const NodeId entry : adjugate[i]) {
+      row.push_back(algebra.simplified(g.scale(sign / r.lever[i], g.product(entry, reciprocal))));
+      const double size = g[row.back()].range.magnitude();
+      norm += size * size;
+    }
+    d.outputs.push_back({columns[i].axis, algebra.dot(row, r.deviation), std::sqrt(norm), columns[i].norm});
+  }
+  return true;
+}
+
+NodeId limited(Graph& g, NodeId node, double magnitude) {
+  if (g[node].range.magnitude() <= 1.25 * magnitude) return node;
+  if (g[node].range.low < -magnitude) node = g.choice(NodeKind::kMax, node, g.constant(-magnitude));
+  return g[node].range.high > magnitude ? g.choice(NodeKind::kMin, node, g.constant(magnitude)) : node;
+}
+
+/// det(J J') held at a floor, and the note on what that means.
+NodeId held_determinant(Derivation& d, Algebra& algebra, NodeId determinant, double& floor) {
+  Graph& g = d.graph;
+  const Eigen::ArrayXd seen = algebra.sampled(determinant);
+  floor = kFloorShare * seen.maxCoeff();
+  const double low = g[determinant].range.low > 0 ? g[determinant].range.low
+                                                  : lower_bound_of(g, determinant, kBoxes) * (1 - 1e-6);
+  if (low > floor) {
+    floor = low;
+  } else {
+    d.fading = static_cast<double>((seen < floor).count()) / static_cast<double>(seen.size());
+    d.notes.push_back(
+        fmt::format("the corrected axes do not reach every direction in every pose: towards such "
+                    "poses (about {:.1f} % of the declared ranges) the correction fades",
+                    100 * *d.fading));
+  }
+  if (g[determinant].range.low >= floor) return determinant;
+  return g.choice(NodeKind::kMax, determinant, g.constant(floor));
+}
+
+// x = J' (J J')^-1 deviation, the columns scaled alike so that no axis is asked to move the tool point more
+// than another. Known lengths limit what intervals overrate: a turn keeps a length, but not a component's
+// interval.
+void solve_least(Derivation& d, Algebra& algebra, const std::vector<AxisColumn>& columns, const Reduced& r) {
+  Graph& g = d.graph;
+  LeastSquares least;
+  least.jacobian = r.rows;
+  least.lever = r.lever;
+  least.deviation = r.deviation;
+  least.spread_mm = d.spread_mm;
+  for (std::size_t k = 0; k < columns.size(); ++k)
+    least.trace += columns[k].norm * columns[k].norm / (r.lever[k] * r.lever[k]);
+  const std::size_t rank = r.rows.size();
+  for (std::vector<NodeId>& row : least.jacobian)
+    for (std::size_t k = 0; k < columns.size(); ++k)
+      row[k] = limited(g, row[k], columns[k].norm / r.lever[k]);
+  Matrix square(rank, std::vector<NodeId>(rank));
+  for (std::size_t i = 0; i < rank; ++i)
+    for (std::size_t k = i; k < rank; ++k)
+      square[i][k] = square[k][i] = limited(g, algebra.simplified(algebra.dot(least.jacobian[i], least.jacobian[k])),
+                                            i == k ? least.trace : least.trace / 2);
+  // Of adj(J J'): the product of its two largest singular values, of a sum trace at most.
+  least.largest = rank == 3 ? least.trace * least.trace / 4 : rank == 2 ? least.trace : 1;
+  least.square = square;
+  least.adjugate = algebra.adjugate(square);
+  for (std::vector<NodeId>& row : least.adjugate)
+    for (NodeId& entry : row) entry = limited(g, entry, least.largest);
+  const NodeId determinant = algebra.determinant(square, least.adjugate);
+  // A determinant is at most that of the equal singular values of the same sum.
+  const double most = std::pow(least.trace / static_cast<double>(rank), static_cast<double>(rank));
+  least.determinant = limited(g, held_determinant(d, algebra, determinant, least.floor), most);
+  least.reciprocal = g.function(Function::kReciprocal, least.determinant);
+  for (const std::vector<NodeId>& row : least.adjugate)
+    least.weights.push_back(
+        g.product(least.reciprocal, limited(g, algebra.dot(row, r.deviation), least.largest * d.spread_mm)));
+  least.gain = (rank == 3   ? least.trace / 2
+                : rank == 2 ? std::sqrt(least.trace)
+                            : 1) /
+               std::sqrt(least.floor);
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    std::vector<NodeId> column;
+    for (const std::vector<NodeId>& row : least.jacobian) column.push_back(row[k]);
+    const NodeId value = g.scale(1 / r.lever[k], algebra.dot(column, least.weights));
+    d.outputs.push_back({columns[k].axis, value, least.gain / r.lever[k], columns[k].norm});
+  }
+  d.least_squares = std::move(least);
+}
+
+}  // namespace
+
+Span span_of(const Derivation& d, const std::vector<AxisColumn>& columns) {
+  const auto n = static_cast<Eigen::Index>(columns.size());
+  Span span;
+  if (n == 0) return span;
+  Samples samples(d.graph, kSamples);
+  Eigen::Matrix3Xd all(3, n * kSamples);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const AxisColumn& column = columns[static_cast<std::size_t>(i)];
+    const double size = std::max(1e-9, column.norm);
+    for (std::size_t c = 0; c < 3; ++c)
+      for (Eigen::Index s = 0; s < kSamples; ++s)
+        all(static_cast<Eigen::Index>(c), s * n + i) = samples.of(column.direction[c])[s] / size;
+  }
+  const Eigen::JacobiSVD<Eigen::Matrix3Xd> svd(all, Eigen::ComputeThinU);
+  span.rank = static_cast<int>((svd.singularValues().array() > kFlat * svd.singularValues()[0]).count());
+  span.basis = Eigen::Matrix3Xd::Identity(3, 3);
+  if (span.rank < 3) {
+    span.basis = svd.matrixU().leftCols(span.rank);
+    for (double& v : span.basis.reshaped())
+      if (std::abs(v) < 1e-12) v = 0;
+  }
+  span.everywhere = true;
+  for (Eigen::Index s = 0; s < kSamples; ++s) {
+    const Eigen::MatrixXd here = span.basis.transpose() * all.middleCols(s * n, n);
+    const Eigen::MatrixXd square = here * here.transpose();
+    span.everywhere = span.everywhere && square.determinant() > kFloorShare * kFloorShare;
+  }
+  return span;
+}
+
+void solve_axes(Derivation& d) {
+  const std::vector<AxisColumn>& columns = d.columns;
+  const NodeVector& deviation = d.deviation;
+  if (std::all_of(columns.begin(), columns.end(),
+                  [&](const AxisColumn& c) { return is_constant(d.graph, c); }))
+    return solve_by_numbers(d, columns, deviation);
+  Algebra algebra(d.graph);
+  const Span span = span_of(d, columns);
+  const Reduced r = reduce(d.graph, algebra, columns, deviation, span.basis);
+  if (!solve_square(d, algebra, columns, r)) solve_least(d, algebra, columns, r);
+}
+
+}  // namespace vernier

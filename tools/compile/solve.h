@@ -1,0 +1,23 @@
+#pragma once
+#include <Eigen/Core>
+
+#include "tools/compile/walk.h"
+
+namespace vernier {
+
+/// What the columns of some axes span over the declared ranges, as sampled.
+struct Span {
+  int rank = 0;             // of all directions together: 3 where the axes reach every direction somewhere
+  bool everywhere = false;  // no sampled pose has a lower rank
+  Eigen::Matrix3Xd basis;   // 3 x rank, orthonormal
+};
+Span span_of(const Derivation& derivation, const std::vector<AxisColumn>& columns);
+
+/// Solves J(q) x = deviation (derivation.columns, derivation.deviation) for the deviation along each axis and
+/// enters the outputs: by numbers where the directions are constant; by the inverse of a 3 x 3 J(q) that is
+/// proved regular over the declared ranges; else by the least squares of the motions, J' (J J')^-1, whose
+/// determinant is held at a floor, so that the correction fades where the axes no longer reach every
+/// direction. tool.
+void solve_axes(Derivation& derivation);
+
+}  // namespace vernier

@@ -1,0 +1,181 @@
+#include "tools/compile/walk.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace vernier {
+namespace {
+
+constexpr double kRad = std::numbers::pi / 180;
+
+/// The elementary steps of one transform in the order in which a point beyond it meets them.
+std::vector<Step> steps_of(const Transform& t, const char* branch, Translator& translate) {
+  std::vector<Step> steps;
+  const auto push = [&](bool turn, int axis, std::size_t dof) {
+    const std::string where =
+        std::string(t.dof_name(dof)) + " of transform " + std::to_string(t.n) + " (" + branch + ")";
+    steps.push_back({turn, axis, translate.translate(*t.dof[dof], t.text[dof], t.line), where});
+  };
+  if (t.kind == TransformKind::kSixDof) {
+    for (int axis = 2; axis >= 0; --axis) push(true, axis, static_cast<std::size_t>(axis) + 3);
+    for (int axis = 0; axis < 3; ++axis) push(false, axis, static_cast<std::size_t>(axis));
+  } else {
+    push(true, 0, 3);   // alpha
+    push(false, 0, 2);  // a
+    push(true, 2, 0);   // theta
+    push(false, 2, 1);  // d
+  }
+  return steps;
+}
+
+}  // namespace
+
+std::vector<Step> all_steps(const Machine& machine, Translator& translate, Graph& graph) {
+  std::vector<Step> steps;
+  for (auto t = machine.tool.rbegin(); t != machine.tool.rend(); ++t)
+    for (Step& step : steps_of(*t, "tool", translate)) steps.push_back(std::move(step));
+  for (const Transform& t : machine.workpiece) {
+    std::vector<Step> back = steps_of(t, "workpiece", translate);
+    for (auto step = back.rbegin(); step != back.rend(); ++step) {
+      step->by = {graph.scale(-1, step->by.nominal), graph.scale(-1, step->by.delta)};
+      steps.push_back(std::move(*step));
+    }
+  }
+  return steps;
+}
+
+Walk::Walk(Derivation& derivation, double neglect_mm)
+    : d_(derivation), g_(derivation.graph), neglect_mm_(neglect_mm) {
+  nominal_.fill(g_.constant(0));
+  deviation_.fill(g_.constant(0));
+}
+
+void Walk::take(const Step& step) {
+  if (step.turn) {
+    deviate_by_turn(step);
+    turn_nominal(step);
+  } else {
+    const auto axis = static_cast<std::size_t>(step.axis);
+    add_deviation(only(axis, step.by.delta));
+    nominal_[axis] = g_.add(nominal_[axis], step.by.nominal);
+    reach_mm_ += g_[step.by.nominal].range.magnitude();
+    spread_mm_ += g_[step.by.delta].range.magnitude();
+  }
+}
+
+NodeVector Walk::only(std::size_t axis, NodeId value) {
+  NodeVector v;
+  v.fill(g_.constant(0));
+  v[axis] = value;
+  return v;
+}
+
+NodeVector Walk::plus(const NodeVector& a, const NodeVector& b) {
+  return {g_.add(a[0], b[0]), g_.add(a[1], b[1]), g_.add(a[2], b[2])};
+}
+
+double Walk::norm_of(const NodeVector& v) const {
+  double sum = 0;
+  for (const NodeId id : v) sum += g_[id].range.magnitude() * g_[id].range.magnitude();
+  return std::sqrt(sum);
+}
+
+double Walk::reach_mm() const { return std::min(reach_mm_, norm_of(nominal_)); }
+double Walk::spread_mm() const { return std::min(spread_mm_, norm_of(deviation_)); }
+
+// Cosine and sine; exact where the angle is a multiple of 90 deg, so that a machine built of right angles
+// stays sparse.
+std::pair<NodeId, NodeId> Walk::direction_of(NodeId angle_deg) {
+  const auto value = g_.constant_value(angle_deg);
+  if (!value) return {g_.function(Function::kCos, angle_deg), g_.function(Function::kSin, angle_deg)};
+  const double quarter = *value / 90;
+  if (quarter != std::round(quarter))
+    return {g_.constant(std::cos(*value * kRad)), g_.constant(std::sin(*value * kRad))};
+  const int q = ((static_cast<int>(std::fmod(quarter, 4)) % 4) + 4) % 4;
+  constexpr std::array<double, 4> kCosine = {1, 0, -1, 0}, kSine = {0, 1, 0, -1};
+  return {g_.constant(kCosine[static_cast<std::size_t>(q)]), g_.constant(kSine[static_cast<std::size_t>(q)])};
+}
+
+NodeVector Walk::turned(const NodeVector& v, int axis, NodeId angle_deg) {
+  const auto [c, s] = direction_of(angle_deg);
+  const auto a = static_cast<std::size_t>((axis + 1) % 3), b = static_cast<std::size_t>((axis + 2) % 3);
+  NodeVector out = v;
+  out[a] = g_.subtract(g_.product(c, v[a]), g_.product(s, v[b]));
+  out[b] = g_.add(g_.product(s, v[a]), g_.product(c, v[b]));
+  return out;
+}
+
+void Walk::turn_nominal(const Step& step) {
+  if (g_.is_zero(step.by.nominal)) return;
+  nominal_ = turned(nominal_, step.axis, step.by.nominal);
+  if (frozen_) {
+    turns_.push_back(step);
+  } else {
+    deviation_ = turned(deviation_, step.axis, step.by.nominal);
+  }
+}
+
+NodeVector Walk::deviation_here() {
+  NodeVector v = deviation_;
+  for (const Step& step : turns_) v = turned(v, step.axis, step.by.nominal);
+  return v;
+}
+
+void Walk::add_deviation(NodeVector v) {
+  for (auto step = turns_.rbegin(); step != turns_.rend(); ++step)
+    v = turned(v, step->axis, g_.scale(-1, step->by.nominal));
+  deviation_ = plus(deviation_, v);
+}
+
+bool Walk::small(double bound_mm, const std::string& what) {
+  if (bound_mm > neglect_mm_) return false;
+  if (bound_mm > 0) d_.neglected.push_back({what, bound_mm});
+  return true;
+}
+
+// (R(delta) - 1) (nominal + deviation): sine and 1 - cosine of the small angle by their series, as far as
+// they matter.
+void Walk::deviate_by_turn(const Step& step) {
+  if (g_.is_zero(step.by.delta)) return;
+  const auto a = static_cast<std::size_t>((step.axis + 1) % 3),
+             b = static_cast<std::size_t>((step.axis + 2) % 3);
+  const double size = g_[step.by.delta].range.magnitude() * kRad;
+  NodeVector point = nominal_;
+  const NodeVector so_far = deviation_here();
+  const NodeVector across = {g_.constant(0), so_far[a], so_far[b]};
+  const double across_mm = std::min(spread_mm_, norm_of(across)),
+               nominal_mm = std::min(reach_mm_, norm_of({g_.constant(0), point[a], point[b]}));
+  double reach = nominal_mm;
+  if (!small(2 * std::sin(std::min(size, 3.0) / 2) * across_mm, "turn of the deviation by " + step.where)) {
+    point = plus(point, so_far);
+    reach += across_mm;
+  }
+  spread_mm_ += 2 * std::sin(std::min(size, 3.0) / 2) * (nominal_mm + across_mm);
+  const NodeId sine = sine_of(step, size, reach), bend = bend_of(step, size, reach);
+  NodeVector moved;
+  moved.fill(g_.constant(0));
+  moved[a] = g_.sum(0, {{-1, g_.product(bend, point[a])}, {-1, g_.product(sine, point[b])}});
+  moved[b] = g_.sum(0, {{1, g_.product(sine, point[a])}, {-1, g_.product(bend, point[b])}});
+  add_deviation(moved);
+}
+
+NodeId Walk::sine_of(const Step& step, double size, double reach) {
+  if (const auto angle = g_.constant_value(step.by.delta)) return g_.constant(std::sin(*angle * kRad));
+  const NodeId angle = g_.scale(kRad, step.by.delta);
+  if (small(std::pow(size, 3) / 6 * reach, "third order of " + step.where)) return angle;
+  if (small(std::pow(size, 5) / 120 * reach, "fifth order of " + step.where))
+    return g_.sum(0, {{1, angle}, {-1.0 / 6, g_.product(angle, g_.product(angle, angle))}});
+  return g_.function(Function::kSin, step.by.delta);
+}
+
+NodeId Walk::bend_of(const Step& step, double size, double reach) {
+  if (const auto angle = g_.constant_value(step.by.delta)) return g_.constant(1 - std::cos(*angle * kRad));
+  if (small(size * size / 2 * reach, "second order of " + step.where)) return g_.constant(0);
+  const NodeId angle = g_.scale(kRad, step.by.delta), square = g_.product(angle, angle);
+  if (small(std::pow(size, 4) / 24 * reach, "fourth order of " + step.where)) return g_.scale(0.5, square);
+  if (small(std::pow(size, 6) / 720 * reach, "sixth order of " + step.where))
+    return g_.sum(0, {{0.5, square}, {-1.0 / 24, g_.product(square, square)}});
+  return g_.sum(1, {{-1, g_.function(Function::kCos, step.by.delta)}});
+}
+
+}  // namespace vernier

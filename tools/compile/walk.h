@@ -1,0 +1,65 @@
+#pragma once
+#include <array>
+#include <string>
+#include <vector>
+
+#include "tools/compile/dual.h"
+
+namespace vernier {
+
+/// One elementary step along the chain, as the point meets it: a turn about a coordinate axis, or a shift
+/// along it.
+struct Step {
+  bool turn;
+  int axis;  // 0..2: X Y Z
+  Dual by;   // deg or mm
+  std::string where;
+};
+
+/// The elementary steps of the chain from the tool point through the tool branch to the base, and on through
+/// the workpiece branch, reversed, to the workpiece.
+std::vector<Step> all_steps(const Machine& machine, Translator& translate, Graph& graph);
+
+/// Carries a point through the chain: its nominal place, and what the actual chain adds to it. tool.
+class Walk {
+ public:
+  /// neglect_mm: a higher-order term smaller than this is left out and entered in derivation.neglected.
+  Walk(Derivation& derivation, double neglect_mm);
+
+  void take(const Step& step);
+  /// From here on no corrected axis moves: nominal turns no longer turn the deviation (they turn the axes
+  /// alike).
+  void freeze() { frozen_ = true; }
+
+  const NodeVector& nominal() const { return nominal_; }
+  /// In the frame in which the walk was frozen.
+  const NodeVector& deviation() const { return deviation_; }
+  /// Bounds of the two vectors' lengths, mm: turns keep a length, so these do not grow with every turn as
+  /// the components' intervals do.
+  double reach_mm() const;
+  double spread_mm() const;
+
+ private:
+  NodeVector only(std::size_t axis, NodeId value);
+  NodeVector plus(const NodeVector& a, const NodeVector& b);
+  double norm_of(const NodeVector& v) const;
+  std::pair<NodeId, NodeId> direction_of(NodeId angle_deg);
+  NodeVector turned(const NodeVector& v, int axis, NodeId angle_deg);
+  void turn_nominal(const Step& step);
+  NodeVector deviation_here();
+  void add_deviation(NodeVector v);
+  bool small(double bound_mm, const std::string& what);
+  void deviate_by_turn(const Step& step);
+  NodeId sine_of(const Step& step, double size, double reach);
+  NodeId bend_of(const Step& step, double size, double reach);
+
+  Derivation& d_;
+  Graph& g_;
+  double neglect_mm_;
+  NodeVector nominal_, deviation_;
+  double reach_mm_ = 0, spread_mm_ = 0;
+  bool frozen_ = false;
+  std::vector<Step> turns_;  // nominal turns since freeze()
+};
+
+}  // namespace vernier
