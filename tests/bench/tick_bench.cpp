@@ -1,5 +1,5 @@
 // Runs N ticks of an image over seeded poses and prints a hash of all corrections: the host's half of the
-// comparison with other targets, and the program under callgrind (tests/bench/callgrind).
+// comparison with other targets (tests/bench/targets).
 #include <cstdio>
 #include <cstdlib>
 #include <memory>

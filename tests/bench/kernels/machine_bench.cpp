@@ -15,6 +15,9 @@
 #include <emmintrin.h>
 #endif
 
+namespace vernier::given {
+void equation(const std::int32_t* channel, LagState* lag, bool starting, std::int32_t* deviation) noexcept;
+}
 #ifndef VERNIER_NO_FLAT
 namespace vernier::VERNIER_FLAT {
 void flat(const double* channel, double* deviation);
@@ -32,6 +35,7 @@ struct Bench {
   ImageView view;
   std::vector<CycleInput> poses;
   std::vector<std::vector<std::int32_t>> registers;  // per pose, constants and channels in place
+  std::vector<std::vector<std::int32_t>> given;      // channels, then sines and cosines
   std::vector<std::vector<double>> real_channels;    // the same in double
   std::unique_ptr<Compensator> compensator;
   LagState lags[kMaxLags] = {};
@@ -96,6 +100,20 @@ void read_image(const std::string& directory, Bench& b) {
     std::fprintf(stderr, "%s: %s\n", directory.c_str(), describe(fault)), std::exit(1);
 }
 
+std::vector<std::int32_t> given_channels(const Bench& b) {
+  const Equation& e = b.program().equation;
+  std::vector<std::int32_t> given;
+  for (std::uint32_t r = e.first_channel(); r < e.first_result(); ++r)
+    given.push_back(b.compensator->register_value(r));
+  std::uint32_t at = e.first_result();
+  for (const Instruction& step : e.instructions) {
+    if (step.op == OpCode::kSineCosine)
+      for (std::uint32_t k = 0; k < 2; ++k) given.push_back(b.compensator->register_value(at + k));
+    at += results_of(step, e.tables);
+  }
+  return given;
+}
+
 void make_poses(Bench& b) {
   Poses poses(b.view);
   b.compensator = std::make_unique<Compensator>(b.program());
@@ -106,6 +124,7 @@ void make_poses(Bench& b) {
     std::vector<std::int32_t> registers(kMaxRegisters);
     for (std::uint32_t r = 0; r < inputs; ++r) registers[r] = b.compensator->register_value(r);
     b.registers.push_back(std::move(registers));
+    b.given.push_back(given_channels(b));
     std::vector<double> real;
     for (const Channel& c : b.program().channels) real.push_back(quantity_of(b, c, b.poses.back()));
     b.real_channels.push_back(std::move(real));
@@ -127,6 +146,12 @@ int check(Bench& b) {
     std::int32_t printed[kMaxAxes] = {};
     double flat[kMaxAxes] = {};
     print_equation(b, i, printed);
+    std::int32_t given[kMaxAxes] = {};
+    if (b.program().equation.lag_count == 0) {
+      given::equation(b.given[i].data(), lags, false, given);
+      if (!std::equal(given, given + kMaxAxes, printed))
+        return std::fprintf(stderr, "given sines differ\n"), 1;
+    }
 #ifndef VERNIER_NO_FLAT
     VERNIER_FLAT::flat(b.real_channels[i].data(), flat);
 #else
@@ -172,6 +197,11 @@ std::vector<Case> cases_of(Bench& b) {
     std::int32_t deviation[kMaxAxes];
     generated::equation(b.registers[i].data() + b.program().equation.first_channel(), b.lags, false,
                         deviation);
+    keep(deviation);
+  });
+  over_poses("given", [&b](std::size_t i) {
+    std::int32_t deviation[kMaxAxes];
+    given::equation(b.given[i].data(), b.lags, false, deviation);
     keep(deviation);
   });
 #ifndef VERNIER_NO_FLAT

@@ -1,7 +1,7 @@
 // bench_generate NAME DIR: everything that the benches run of one reference machine: machine.vimg, the
-// printed equation.h/.cpp, flat.cpp (the same equation in double), chain.txt (degrees of freedom of every
-// transform at seeded poses, for the peers that multiply frames) and poses.bin's counterpart, the double
-// deviations.
+// printed equation.h/.cpp, given.cpp (the same with sines and cosines given), flat.cpp (the same equation in
+// double), chain.txt (degrees of freedom of every transform at seeded poses, for the peers that multiply
+// frames) and poses.bin's counterpart, the double deviations.
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -54,12 +54,47 @@ std::string print_chain(const Machine& machine, const ImageView& view) {
   return text;
 }
 
+/// The program with its sines and cosines given as further channels, in the order of its instructions: what
+/// the rest of the equation costs.
+LoweredProgram with_sines_given(const LoweredProgram& p) {
+  LoweredProgram out = p;
+  std::vector<std::uint32_t> sines, others;
+  std::uint32_t at = p.first_result();
+  out.instructions.clear();
+  for (const Instruction& s : p.instructions) {
+    const bool sine = s.op == OpCode::kSineCosine;
+    if (!sine) out.instructions.push_back(s);
+    for (std::uint32_t i = 0; i < p.results_of(s); ++i) (sine ? sines : others).push_back(at++);
+  }
+  std::vector<std::uint16_t> moved(p.registers.size());
+  out.registers.assign(p.registers.begin(), p.registers.begin() + p.first_result());
+  for (std::uint32_t i = 0; i < p.first_result(); ++i) moved[i] = static_cast<std::uint16_t>(i);
+  for (const std::vector<std::uint32_t>* part : {&sines, &others})
+    for (const std::uint32_t id : *part) {
+      moved[id] = static_cast<std::uint16_t>(out.registers.size());
+      out.registers.push_back(p.registers[id]);
+    }
+  out.channels.resize(p.channels.size() + sines.size());
+  const auto move = [&](std::uint16_t& operand) { operand = moved[operand]; };
+  for (Instruction& s : out.instructions) {
+    if (s.op == OpCode::kDot) continue;
+    move(s.a);
+    const bool two = s.op == OpCode::kLinear || s.op == OpCode::kMultiply || s.op == OpCode::kMin ||
+                     s.op == OpCode::kMax || s.op == OpCode::kEqual || s.op == OpCode::kLess;
+    if (two) move(s.b);
+  }
+  for (ProductTerm& t : out.terms) move(t.a), move(t.b);
+  for (Output& o : out.outputs) move(o.source);
+  return out;
+}
+
 void generate(const std::string& name, const std::string& directory) {
   std::filesystem::create_directories(directory);
   const ReferenceMachine reference(name);
   const CompiledMachine& c = reference.compiled;
   write_file(directory + "/equation.h", c.header);
   write_file(directory + "/equation.cpp", c.source);
+  write_file(directory + "/given.cpp", print_source(reference.machine, with_sines_given(c.program), 0));
   write_file(directory + "/machine.vimg", {c.image.begin(), c.image.end()});
   const auto loaded = load_image(c.image, reference.machine);
   write_file(directory + "/chain.txt", print_chain(reference.machine, loaded->view));

