@@ -6,7 +6,6 @@
 #include <memory>
 
 #include "comp/verify.h"
-#include "equation.h"
 #include "tests/bench/kernels/counted.h"
 #include "tests/bench/kernels/frame_peers.h"
 #include "tests/bench/poses.h"
@@ -15,6 +14,10 @@
 #include <emmintrin.h>
 #endif
 
+// The printed equation of the machine, and the same with its sines and cosines given.
+namespace vernier::generated {
+void equation(const std::int32_t* channel, LagState* lag, bool starting, std::int32_t* deviation) noexcept;
+}
 namespace vernier::given {
 void equation(const std::int32_t* channel, LagState* lag, bool starting, std::int32_t* deviation) noexcept;
 }

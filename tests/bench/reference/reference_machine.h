@@ -8,8 +8,8 @@
 namespace vernier::bench {
 
 /// The machines that the benches of the run-time core run on. three_axis, five_axis, seven_axis and six_r are
-/// those of tables/machines with every error of their chain set (seven_axis_chain: without tables, one tool point in place of a choice); the
-/// others are test machines as they stand.
+/// those of tables/machines with every error of their chain set (seven_axis_chain: without tables, one tool
+/// point in place of a choice); the others are test machines as they stand.
 inline constexpr std::array<const char*, 7> kReferenceMachines = {
     "three_axis", "five_axis",          "seven_axis_chain", "seven_axis",
     "six_r",      "three_axis_effects", "five_axis_effects"};

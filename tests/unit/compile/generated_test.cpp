@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "tests/unit/compile/poses.h"
+#include "tools/compile/sine_table.h"
 
 namespace vernier {
 namespace {
@@ -74,6 +75,12 @@ TEST_P(Generated, HasTheSameBytesForTheSameInput) {
   EXPECT_EQ(first.compiled.image, second.compiled.image);
   EXPECT_EQ(first.compiled.source, second.compiled.source);
   EXPECT_EQ(first.compiled.header, second.compiled.header);
+}
+
+TEST(SineTable, IsWhatItsGeneratorPrints) {
+  const std::string path = std::string(VERNIER_SOURCE_DIR) + "/comp/generated/sine_table.h";
+  if (std::getenv("VERNIER_UPDATE_GOLDEN") != nullptr) write_file(path, print_sine_table());
+  EXPECT_EQ(read_file(path), print_sine_table());
 }
 
 INSTANTIATE_TEST_SUITE_P(Machines, Generated, testing::Values("bridge", "five_axis", "planar"));
