@@ -94,7 +94,11 @@ ProgramBuilder::Id ProgramBuilder::constant(double value) {
   const Id id = static_cast<Id>(p_.constants.size());
   if (id >= kFirstChannel) throw InputError("cannot be compiled: more constants than a program holds");
   Register& r = registers_[id];
+  // All its digits, however small: a coefficient may meet a large register.
+  constexpr int kMostDigits = 90;
   r.fraction_bits = fraction_bits_for(std::abs(value));
+  if (value != 0 && r.fraction_bits == kMostBits)
+    r.fraction_bits = std::min(kMostDigits, static_cast<int>(std::log2(2147483647.0 / std::abs(value))));
   const auto count = std::llround(std::ldexp(value, r.fraction_bits));
   r.name = unique("constant_" + std::to_string(id + 1));
   r.range = {value, value};

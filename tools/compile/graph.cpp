@@ -153,7 +153,9 @@ NodeId Graph::sum(double constant_part, std::vector<Term> terms) {
 }
 
 NodeId Graph::product(NodeId a, NodeId b) {
-  // Coefficients move out of products, so that k*x*y and x*y share the product.
+  // Coefficients move out of products, so that k*x*y and x*y share the product; not where they keep it small.
+  constexpr double kHuge = 1e12;
+  const NodeId whole_a = a, whole_b = b;
   double coefficient = 1;
   for (NodeId* id : {&a, &b}) {
     const Node& node = nodes_[*id];
@@ -163,6 +165,7 @@ NodeId Graph::product(NodeId a, NodeId b) {
       *id = node.terms[0].node;
     }
   }
+  if ((nodes_[a].range * nodes_[b].range).magnitude() > kHuge) a = whole_a, b = whole_b, coefficient = 1;
   Node node;
   node.kind = NodeKind::kProduct;
   node.args = {std::min(a, b), std::max(a, b)};

@@ -345,6 +345,7 @@ class Lowering {
   Id function(const Node& n) {
     Id argument = value(n.args[0]);
     if (n.function == Function::kSin || n.function == Function::kCos) return sine_or_cosine(n, argument);
+    argument = held_in_domain(n, argument);
     const std::string name =
         short_name(std::string(name_of(n.function)) + "_" + b_.at(argument).name, name_of(n.function));
     FunctionPieces pieces;
@@ -362,6 +363,28 @@ class Lowering {
     r.source = ErrorSource::kFunction;
     r.uses = {{argument, pieces.slope}};
     return b_.look_up(argument, make_table("pieces_" + name, pieces.segments, 3, {pieces.coefficients}), {r});
+  }
+
+  // A register may reach zero (by rounding, or because its integers know less) where the exact value cannot:
+  // held at the exact value's edge, which takes nothing from its accuracy.
+  Id held_in_domain(const Node& n, Id argument) {
+    const bool open =
+        n.function == Function::kLog || n.function == Function::kSqrt || n.function == Function::kReciprocal;
+    const Interval exact = g_[n.args[0]].range;
+    const ValueRange& counts = b_.counts(argument);
+    if (!open || counts.low > 0 || counts.high < 0) return argument;
+    const bool positive = exact.low > 0;
+    const Id edge =
+        b_.reformat(b_.constant(0.999 * (positive ? exact.low : exact.high)), b_.at(argument).fraction_bits);
+    const Instruction step{positive ? OpCode::kMax : OpCode::kMin,
+                           0,
+                           static_cast<std::uint16_t>(argument),
+                           static_cast<std::uint16_t>(edge),
+                           0,
+                           0,
+                           0};
+    return b_.plain(step, b_.at(argument).fraction_bits, exact, 0, ErrorSource::kRounding, {{argument, 1}},
+                    b_.at(argument).name + "_held");
   }
 
   Id sine_or_cosine(const Node& n, Id argument) {

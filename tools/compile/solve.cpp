@@ -157,8 +157,8 @@ NodeId held_determinant(Derivation& d, Algebra& algebra, NodeId determinant, dou
   Graph& g = d.graph;
   const Eigen::ArrayXd seen = algebra.sampled(determinant);
   floor = kFloorShare * seen.maxCoeff();
-  const double low = g[determinant].range.low > 0 ? g[determinant].range.low
-                                                  : lower_bound_of(g, determinant, kBoxes) * (1 - 1e-6);
+  double low = g[determinant].range.low;
+  if (low < floor && seen.minCoeff() > floor) low = lower_bound_of(g, determinant, kBoxes) * (1 - 1e-6);
   if (low > floor) {
     floor = low;
   } else {
@@ -191,8 +191,9 @@ void solve_least(Derivation& d, Algebra& algebra, const std::vector<AxisColumn>&
   Matrix square(rank, std::vector<NodeId>(rank));
   for (std::size_t i = 0; i < rank; ++i)
     for (std::size_t k = i; k < rank; ++k)
-      square[i][k] = square[k][i] = limited(g, algebra.simplified(algebra.dot(least.jacobian[i], least.jacobian[k])),
-                                            i == k ? least.trace : least.trace / 2);
+      square[i][k] = square[k][i] =
+          limited(g, algebra.simplified(algebra.dot(least.jacobian[i], least.jacobian[k])),
+                  i == k ? least.trace : least.trace / 2);
   // Of adj(J J'): the product of its two largest singular values, of a sum trace at most.
   least.largest = rank == 3 ? least.trace * least.trace / 4 : rank == 2 ? least.trace : 1;
   least.square = square;

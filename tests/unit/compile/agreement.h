@@ -72,8 +72,10 @@ inline Agreement compare(const TestMachine& test, std::size_t batches, std::size
         const Eigen::VectorXd exact = directions.completeOrthogonalDecomposition().solve(exact_mm.col(at));
         for (std::size_t k = 0; k < axes.size(); ++k) {
           const auto column = static_cast<Eigen::Index>(k);
-          take(1000 * std::abs(fixed[column] - exact[column]), test.compiled.bounds[k].total_um,
-               1000 * std::abs(exact[column]));
+          // Of a rotary axis: as motion of the tool point.
+          const double um = 1000 * (test.machine.axes[axes[k]].rotary ? directions.col(column).norm() : 1);
+          take(um * std::abs(fixed[column] - exact[column]), test.compiled.bounds[k].total_um,
+               um * std::abs(exact[column]));
         }
       }
       ++seen.poses;

@@ -1,8 +1,7 @@
 #include <gtest/gtest.h>
 
-#include <filesystem>
-
 #include "tests/unit/compile/agreement.h"
+#include "tests/unit/diagnose/candidates.h"
 
 namespace vernier {
 namespace {
@@ -24,21 +23,11 @@ TEST_P(ErrorBound, HoldsAgainstTheDoubleChainOverRandomPoses) {
   EXPECT_GT(seen.worst_um, 1e-7);   // and the two derivations are not the same arithmetic
 }
 
-std::vector<std::string> reference_machines() {
-  std::vector<std::string> names;
-  for (const auto& file :
-       std::filesystem::directory_iterator(std::string(VERNIER_SOURCE_DIR) + "/tables/machines"))
-    names.push_back(file.path().stem());
-  std::sort(names.begin(), names.end());
-  return names;
-}
-
 class ReferenceMachine : public testing::TestWithParam<std::string> {};
 
 TEST_P(ReferenceMachine, CompilesWithAllErrorsAndKeepsItsBound) {
   constexpr unsigned kSeed = 41;
-  const std::string file = std::string(VERNIER_SOURCE_DIR) + "/tables/machines/" + GetParam() + ".xml";
-  const TestMachine test(disturbed(read_machine(file), kSeed));
+  const TestMachine test(disturbed(read_machine(diagnose_test::machine_path(GetParam())), kSeed));
   const Agreement seen = compare(test, 4, 2000, kSeed);
   const double bound = largest_bound_um(test.compiled);
   std::printf(
@@ -51,7 +40,7 @@ TEST_P(ReferenceMachine, CompilesWithAllErrorsAndKeepsItsBound) {
   EXPECT_GT(seen.poses, 4000u);
 }
 
-INSTANTIATE_TEST_SUITE_P(Machines, ReferenceMachine, testing::ValuesIn(reference_machines()),
+INSTANTIATE_TEST_SUITE_P(Machines, ReferenceMachine, testing::ValuesIn(diagnose_test::reference_machines()),
                          [](const auto& test) { return test.param; });
 
 INSTANTIATE_TEST_SUITE_P(Machines, ErrorBound, testing::Values("bridge", "five_axis", "planar"));

@@ -60,6 +60,11 @@ struct TestMachine {
       : machine(std::move(m)), compiled(compile_machine(machine, text, options)) {
     loaded = load_image(compiled.image, machine);
   }
+  struct Uncompiled {};
+  TestMachine(Machine m, Uncompiled) : machine(std::move(m)) {}
+
+  /// The poses of another machine with these axes (not its image).
+  static TestMachine poses_of(const Machine& m) { return TestMachine(m, Uncompiled()); }
 
   double axis_unit(std::size_t i) const { return machine.axes[i].rotary ? 360 / 4294967296.0 : 1e-6; }
 
