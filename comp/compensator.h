@@ -121,6 +121,10 @@ class Compensator {
   /// realtime.
   CycleOutput step(const CycleInput& input, WeightQ16 weight = kFullWeight) noexcept;
 
+  /// The slew of an axis goes on from a correction that its drive already has, so that taking a program over
+  /// makes no step. setup.
+  void start_from(std::uint32_t axis, Correction held) noexcept { slew_[axis].start_from(held.counts); }
+
   /// Forgets lags and slew state: the next step starts from zero correction. setup.
   void reset() noexcept;
 

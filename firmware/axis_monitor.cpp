@@ -90,6 +90,10 @@ Fault AxisMonitor::take(bool present, const AxisReading& reading, Health& health
   }
   known_ = true;
   missing_ = 0;
+  if (!reading.referenced) {
+    ++health.unreferenced;
+    return Fault::kReferenceLost;
+  }
   return fault;
 }
 

@@ -21,6 +21,10 @@ const char* name_of(Fault fault) noexcept {
       return "overrun";
     case Fault::kClock:
       return "clock";
+    case Fault::kReferenceLost:
+      return "reference-lost";
+    case Fault::kInputImplausible:
+      return "input-implausible";
   }
   return "unknown";
 }

@@ -9,17 +9,20 @@ namespace vernier {
 /// Why the correction was taken out. One enumerator per cause; the first one latches.
 enum class Fault : std::uint8_t {
   kNone,
-  kPositionMissing,  // an axis was silent for longer than tolerated
-  kPositionFrozen,   // an axis claims speed and does not move
-  kPositionJump,     // an axis moved further in a tick than it can
-  kInputMissing,     // a sensor was silent for longer than tolerated
-  kWriteFailed,      // the controller refused a correction
-  kOverrun,          // too many ticks in a row ended after the next was due
-  kClock,            // the timer failed
+  kPositionMissing,   // an axis was silent for longer than tolerated
+  kPositionFrozen,    // an axis claims speed and does not move
+  kPositionJump,      // an axis moved further in a tick than it can
+  kInputMissing,      // a sensor was silent for longer than tolerated
+  kWriteFailed,       // the controller refused a correction
+  kOverrun,           // too many ticks in a row ended after the next was due
+  kClock,             // the timer failed, or time jumped
+  kReferenceLost,     // an axis does not know its zero any more
+  kInputImplausible,  // a sensor reads beyond its plausible range or jumps
 };
 
 /// One line for people: "position-missing".
 const char* name_of(Fault fault) noexcept;
+constexpr std::uint8_t kFaultCount = static_cast<std::uint8_t>(Fault::kInputImplausible) + 1;
 
 /// What the firmware counts. Counters only go up and survive the clearing of a fault.
 struct Health {
@@ -31,14 +34,17 @@ struct Health {
   std::uint64_t missing_inputs = 0;
   std::uint64_t frozen_readings = 0;
   std::uint64_t jumps = 0;
+  std::uint64_t unreferenced = 0;  // readings of an axis that lost its reference
+  std::uint64_t implausible = 0;   // readings of a sensor
   std::uint64_t failed_writes = 0;
   std::uint64_t saturated = 0;     // ticks with a correction at its limit
   std::uint64_t slewing = 0;       // ticks with a correction on its way
   std::uint64_t beyond_range = 0;  // ticks with a channel beyond its declared range
   std::uint64_t faults = 0;        // latched so far
   std::uint64_t refused_commands = 0;
-  Histogram latency;    // of wake-ups, behind the moment that was asked for
-  Histogram execution;  // of a tick: read, step, write
+  std::uint64_t programs = 0;  // taken over while running
+  Histogram latency;           // of wake-ups, behind the moment that was asked for
+  Histogram execution;         // of a tick: read, step, write
 };
 
 }  // namespace vernier

@@ -38,6 +38,7 @@ void ModeControl::obey(Command command, Health& health) noexcept {
   const bool in = mode_ == Mode::kActive || (mode_ == Mode::kReady && engaging_);
   if (command == Command::kActivate && mode_ == Mode::kReady) {
     engaging_ = true;
+    holding_ = false;
   } else if (command == Command::kDeactivate && in) {
     engaging_ = false;
     mode_ = Mode::kRampOut;
@@ -45,6 +46,10 @@ void ModeControl::obey(Command command, Health& health) noexcept {
     latched_ = Fault::kNone;
     mode_ = Mode::kChecking;
     good_ticks_ = 0;
+  } else if (command == Command::kHold && mode_ == Mode::kActive) {
+    holding_ = true;
+  } else if (command == Command::kRelease && holding()) {
+    holding_ = false;
   } else {
     ++health.refused_commands;
   }

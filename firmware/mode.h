@@ -27,7 +27,15 @@ enum class Mode : std::uint8_t {
 const char* name_of(Mode mode) noexcept;
 
 /// What an operator may ask for. A command that does not fit the mode is refused and counted.
-enum class Command : std::uint8_t { kNone, kActivate, kDeactivate, kClearFault };
+enum class Command : std::uint8_t {
+  kNone,
+  kActivate,
+  kDeactivate,
+  kClearFault,
+  kHold,    // Active only: every correction stays as it is
+  kRelease  // ends a hold
+};
+constexpr std::uint8_t kCommandCount = static_cast<std::uint8_t>(Command::kRelease) + 1;
 
 /// Ticks without fault before Checking becomes Ready.
 constexpr std::uint32_t kCheckTicks = 100;
@@ -47,6 +55,8 @@ class ModeControl {
 
   Mode mode() const noexcept { return mode_; }
   WeightQ16 weight() const noexcept { return weight_; }
+  /// Are the corrections held as they are? Only in Active.
+  bool holding() const noexcept { return holding_ && mode_ == Mode::kActive; }
   /// The first fault since the last clearing.
   Fault latched() const noexcept { return latched_; }
 
@@ -59,7 +69,7 @@ class ModeControl {
   Mode mode_ = Mode::kBoot;
   Fault latched_ = Fault::kNone;
   WeightQ16 weight_;
-  bool engaging_ = false;
+  bool engaging_ = false, holding_ = false;
   std::uint32_t good_ticks_ = 0;
 };
 

@@ -6,11 +6,13 @@ namespace {
 
 // Ticks that are left out one by one; a longer stop starts a new count.
 constexpr int kMostSkipped = 1000;
+// A wake-up so much later than asked is no late wake-up: time was set, or the machine stood still.
+constexpr InstantNs kClockStep(1'000'000'000);
 
 }  // namespace
 
 Runner::Runner(Cycle& cycle, Clock& clock, TimeUs period) noexcept
-    : cycle_(cycle), clock_(clock), period_(period), due_(clock.now() + instant_ns(period)) {}
+    : cycle_(cycle), clock_(clock), period_(period), last_(clock.now()), due_(last_ + instant_ns(period)) {}
 
 void Runner::schedule(InstantNs ended) noexcept {
   due_ = due_ + instant_ns(period_);
@@ -33,6 +35,9 @@ TickReport Runner::step(Command command) noexcept {
   Fault outer = overruns_ >= kMostOverruns ? Fault::kOverrun : Fault::kNone;
   if (clock_.sleep_until(due_) != HalFault::kNone) outer = Fault::kClock;
   const InstantNs woke = clock_.now();
+  // A monotonic clock that runs backwards is broken, whatever the reason.
+  if (woke < last_ || woke - due_ > kClockStep) outer = Fault::kClock;
+  last_ = woke;
   const TickReport report = cycle_.tick(time_, command, outer);
   const InstantNs ended = clock_.now();
   cycle_.health().latency.add((woke - due_).count);

@@ -22,6 +22,8 @@ class Runner {
   TickReport step(Command command) noexcept;
   /// The machine file's t of the next tick; for a run that starts in the middle of a machine's day. setup.
   void set_time(TimeUs time) noexcept { time_ = time; }
+  /// The machine file's t of the next tick.
+  TimeUs time() const noexcept { return time_; }
   /// The moment at which the next tick is due.
   InstantNs due() const noexcept { return due_; }
 
@@ -31,6 +33,7 @@ class Runner {
   Cycle& cycle_;
   Clock& clock_;
   TimeUs period_;
+  InstantNs last_;  // wake-up before
   InstantNs due_;
   TimeUs time_;
   std::uint32_t overruns_ = 0;  // in a row

@@ -12,6 +12,7 @@ struct AxisReading {
   AxisAcceleration acceleration;
   AxisTravel since{INT64_MAX};  // travel since the last reversal; a long way where unknown
   std::int8_t sense = 0;        // -1, 0, +1: sense of the last motion
+  bool referenced = true;       // the controller knows where its zero is
 };
 
 /// What a controller says about the path as a whole.

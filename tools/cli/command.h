@@ -30,6 +30,12 @@ void register_solve(CLI::App& vernier);
 void register_export(CLI::App& vernier);
 void register_import_tables(CLI::App& vernier);
 void register_map(CLI::App& vernier);
+void register_keys(CLI::App& vernier);
+void register_upload(CLI::App& vernier);
+void register_board(CLI::App& vernier);
+void register_status(CLI::App& vernier);
+void register_watch(CLI::App& vernier);
+void register_record(CLI::App& vernier);
 
 /// Writes the result for programs: to a file, or to standard output for "-"; nothing for an empty path.
 /// Numbers that are not finite become null.

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+
+#include "comp/fixed.h"
+
+namespace vernier {
+
+/// An acceleration that bounds nothing: every way that there is, is gone in one tick.
+constexpr std::int64_t kAnyAcceleration = std::int64_t{1} << 40;
+
+/// Most that a correction may move its axis, in counts a tick, and change that by, in counts a tick each
+/// tick.
+struct MotionBounds {
+  std::int64_t slew = INT32_MAX;                 // 0 .. 2^31 - 1
+  std::int64_t acceleration = kAnyAcceleration;  // 1 .. 2^31 - 1, or that
+};
+
+/// Moves a value towards its target within a speed and an acceleration, and brakes in time: it does not
+/// overshoot a target that stands still. |change| <= slew and |change of change| <= acceleration hold for
+/// every sequence of targets while the bounds stay the same; a target that comes nearer than the way to brake
+/// is overshot, within the acceleration.
+class MotionLimit {
+ public:
+  /// target: counts, |target| <= 2^31. Returns the new value. Time: constant (31 steps). realtime.
+  constexpr std::int64_t approach(std::int64_t target, const MotionBounds& bounds) noexcept {
+    const std::int64_t way = target - value_;
+    const std::int64_t low = higher(speed_ - bounds.acceleration, -bounds.slew),
+                       high = lower(speed_ + bounds.acceleration, bounds.slew);
+    const std::int64_t wanted =
+        way >= 0 ? braking_speed(way, bounds.acceleration) : -braking_speed(-way, bounds.acceleration);
+    // Bounds that were lowered while moving: braking comes first.
+    speed_ = low <= high ? clamp(wanted, low, high) : (speed_ > 0 ? low : high);
+    value_ += speed_;
+    return value_;
+  }
+  constexpr std::int64_t value() const noexcept { return value_; }
+  constexpr std::int64_t speed() const noexcept { return speed_; }
+  /// Stands at `value`: a drive that refused to move, or a start.
+  constexpr void stop_at(std::int64_t value) noexcept { value_ = value, speed_ = 0; }
+
+  /// A speed from which `way` counts suffice to stop: (v + a/2)^2 <= 2 a way, which is at least the sum
+  /// v + (v - a) + (v - 2a) ... of the ticks to a stop, and at most a/8 more; `way` itself where one tick
+  /// does. way: >= 0; acceleration: as in MotionBounds; both sides stay below 2^64. realtime.
+  static constexpr std::int64_t braking_speed(std::int64_t way, std::int64_t acceleration) noexcept {
+    if (way <= acceleration) return way;
+    const auto a = static_cast<std::uint64_t>(acceleration);
+    const std::uint64_t room =
+        static_cast<std::uint64_t>(lower<std::int64_t>(way, std::int64_t{1} << 31)) * a * 2;
+    std::uint64_t speed = 0;
+    for (std::uint64_t bit = std::uint64_t{1} << 30; bit != 0; bit >>= 1) {
+      const std::uint64_t next = speed | bit;
+      if (next * (next + a) + (a * a + 3) / 4 <= room) speed = next;
+    }
+    return static_cast<std::int64_t>(speed);
+  }
+
+ private:
+  std::int64_t value_ = 0, speed_ = 0;
+};
+
+}  // namespace vernier

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "firmware/service.h"
+
+namespace vernier {
+
+/// How a signal of the board reaches a device: a kind that main.cpp knows, and its settings as written.
+struct SignalSource {
+  std::string kind;                          // "can", "iio", "pwm", "sim" ...; empty: not wired
+  std::map<std::string, std::string> texts;  // every setting that is a text
+  std::map<std::string, double> numbers;     // every setting that is a number
+  int line = 0;                              // of the board file
+
+  const std::string& text(const std::string& name) const;  // throws BoardError where absent
+  double number(const std::string& name) const;            // the same
+  double number(const std::string& name, double otherwise) const;
+  std::string text(const std::string& name, const std::string& otherwise) const;
+};
+
+/// One axis or input of the board file.
+struct AxisEntry {
+  Wiring::Axis wiring;
+  double low = 0, high = 0;  // mm or deg; what a simulated axis moves over
+  SignalSource position, output;
+};
+struct InputEntry {
+  std::string name, unit;
+  SignalSource source;
+  double reference = 0;  // what a simulated one reads
+};
+
+/// A board file (TOML), read and checked: tools/docs/board.md describes it.
+struct BoardFile {
+  std::string path;
+  std::string store;  // directory of the slots
+  std::uint32_t slot_bytes = 1u << 20;
+  ServiceOptions service;
+  std::vector<AxisEntry> axes;
+  std::vector<InputEntry> inputs;
+  std::vector<SignalSource> links;  // kind: "modbus-tcp", "modbus-rtu", "isotp"
+  int priority = 80;                // SCHED_FIFO
+};
+
+/// What is wrong with a board file: "board.toml:12: axis.X: kind: 'lineal' is neither linear nor rotary".
+struct BoardError {
+  std::string what;
+};
+
+/// Reads and checks a board file; key files are read too. Throws BoardError. setup.
+BoardFile read_board_file(const std::string& path);
+
+/// The 32 bytes of a public key file (base64 after a first line that says so). Throws BoardError. setup.
+PublicKey read_public_key(const std::string& path);
+
+}  // namespace vernier

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+
+#include "firmware/cycle.h"
+
+namespace vernier {
+
+/// What the operating system granted a realtime run, for the report.
+struct GrantReport {
+  bool fifo = false, locked = false, awake = false;
+};
+
+/// Tells people (standard output, standard error where json is "-") and programs (json: a file, "-" or empty)
+/// what a run did. False where the file cannot be written. tool.
+bool report_run(const Cycle& cycle, const GrantReport& grant, const std::string& json);
+
+}  // namespace vernier

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <vector>
+
+#include "hal/axis_reader.h"
+#include "hal/correction_writer.h"
+#include "hal/input_reader.h"
+
+namespace vernier {
+
+/// A device's own place within its backend.
+template <class Port>
+struct Route {
+  Port* port = nullptr;     // null: not wired
+  std::uint32_t index = 0;  // the backend's own
+};
+
+/// The board's axes, spread over several backends. The first route's backend speaks for the path.
+class RoutedAxes : public AxisReader {
+ public:
+  explicit RoutedAxes(std::vector<Route<AxisReader>> routes) : routes_(std::move(routes)) {}
+  HalFault read_axis(std::uint32_t axis, AxisReading& reading) noexcept override {
+    if (axis >= routes_.size()) return HalFault::kNoDevice;
+    return routes_[axis].port->read_axis(routes_[axis].index, reading);
+  }
+  HalFault read_path(PathReading& reading) noexcept override {
+    return routes_.empty() ? HalFault::kNoDevice : routes_.front().port->read_path(reading);
+  }
+  bool gives_motion() const noexcept override {
+    for (const auto& route : routes_)
+      if (!route.port->gives_motion()) return false;
+    return true;
+  }
+
+ private:
+  std::vector<Route<AxisReader>> routes_;
+};
+
+/// The board's inputs, spread over several backends.
+class RoutedInputs : public InputReader {
+ public:
+  explicit RoutedInputs(std::vector<Route<InputReader>> routes) : routes_(std::move(routes)) {}
+  HalFault read_input(std::uint32_t input, InputMicro& value) noexcept override {
+    if (input >= routes_.size()) return HalFault::kNoDevice;
+    return routes_[input].port->read_input(routes_[input].index, value);
+  }
+
+ private:
+  std::vector<Route<InputReader>> routes_;
+};
+
+/// The board's outputs. A correction for an axis without one is refused unless it is zero: an image that
+/// corrects what the board cannot move must not look as if it did.
+class RoutedOutputs : public CorrectionWriter {
+ public:
+  explicit RoutedOutputs(std::vector<Route<CorrectionWriter>> routes) : routes_(std::move(routes)) {}
+  HalFault write_correction(std::uint32_t axis, AxisTravel correction) noexcept override {
+    if (axis >= routes_.size()) return HalFault::kNoDevice;
+    if (routes_[axis].port == nullptr)
+      return correction == AxisTravel{} ? HalFault::kNone : HalFault::kNoDevice;
+    return routes_[axis].port->write_correction(routes_[axis].index, correction);
+  }
+
+ private:
+  std::vector<Route<CorrectionWriter>> routes_;
+};
+
+}  // namespace vernier

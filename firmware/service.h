@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "firmware/cycle.h"
+#include "firmware/exchange.h"
+#include "firmware/link.h"
+#include "firmware/runner.h"
+#include "firmware/uploader.h"
+#include "hal/board.h"
+#include "hal/command_link.h"
+#include "hal/slot_store.h"
+
+namespace vernier {
+
+/// What a board's daemon is made with.
+struct ServiceOptions {
+  Wiring wiring;
+  CycleLimits limits;
+  Uploader::Options upload;
+  bool activate = false;  // bring the correction in whenever the board becomes ready for the first time
+};
+
+/// The board's program: on one side the tick, which never waits; on the other, in a thread of their own,
+/// uploads and links. Between them stands Exchange.
+class Service : private CommandHandler {
+ public:
+  /// board, store: outlive the service. setup.
+  Service(ServiceOptions options, const Board& board, SlotStore& store);
+
+  /// Checks what the store holds and offers it to the first tick. setup.
+  UploadResult boot() { return uploader_.boot(); }
+
+  /// Sleeps until the next tick is due and runs it. realtime.
+  TickReport tick() noexcept;
+
+  /// From the next tick on the correction is taken out and nothing brings it in again. realtime.
+  void end() noexcept { ending_ = true; }
+
+  /// Waits at most `wait` for requests of one link, answers them, and looks after trials and programs. setup.
+  HalFault serve(CommandLink& link, TimeUs wait) noexcept;
+  /// The same without a link: hands programs over, ends trials. setup.
+  void look_after_programs() noexcept;
+
+  const Cycle& cycle() const noexcept { return *cycle_; }
+  Cycle& cycle() noexcept { return *cycle_; }
+  const Uploader& uploader() const noexcept { return uploader_; }
+  const Exchange& exchange() const noexcept { return *exchange_; }
+
+ private:
+  std::uint32_t answer(const std::uint8_t* request, std::uint32_t size, std::uint8_t* reply) override;
+  void fill_registers(std::uint16_t* values) override { link_.fill_registers(values); }
+  bool give(std::uint16_t command) override;
+  TimeUs now() noexcept { return TimeUs(board_.clock.now().count / 1000); }
+  void take_over() noexcept;
+  Command next_command() noexcept;
+  void publish(const TickReport& report) noexcept;
+  void publish_health() noexcept;
+
+  ServiceOptions options_;
+  Board board_;
+  Uploader uploader_;
+  std::unique_ptr<Exchange> exchange_;
+  std::unique_ptr<Cycle> cycle_;
+  Runner runner_;
+  Link link_;
+  // Owned outside the tick: what runs, and what has been offered to it.
+  std::unique_ptr<LoadedProgram> running_, offered_, waiting_;
+  // Owned by the tick.
+  HealthRecord health_;
+  TickRecord record_;
+  bool activated_ = false, ending_ = false;
+};
+
+}  // namespace vernier

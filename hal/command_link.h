@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+
+#include "comp/quantity.h"
+#include "hal/fault.h"
+
+namespace vernier {
+
+/// What answers the requests that a link brings in.
+class CommandHandler {
+ public:
+  virtual ~CommandHandler() = default;
+  /// request: any bytes; reply: room for the longest. Returns the bytes of the reply, 0: none. setup.
+  virtual std::uint32_t answer(const std::uint8_t* request, std::uint32_t size, std::uint8_t* reply) = 0;
+  /// The live registers for masters that know nothing but registers. setup.
+  virtual void fill_registers(std::uint16_t* values) = 0;
+  /// A command from such a master: false where it is none, or cannot be taken now. setup.
+  virtual bool give(std::uint16_t command) = 0;
+};
+
+/// A way in from outside. Runs outside the tick.
+class CommandLink {
+ public:
+  virtual ~CommandLink() = default;
+  /// Waits at most `wait` for requests and answers those that came. kRefused: the link is broken and has been
+  /// taken up again, or will be at the next call; a peer that misbehaves is no fault. setup.
+  virtual HalFault serve(CommandHandler& handler, TimeUs wait) noexcept = 0;
+};
+
+}  // namespace vernier

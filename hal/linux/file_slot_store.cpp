@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hal/linux/file_slot_store.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+
+namespace vernier {
+namespace {
+
+/// A descriptor that closes itself; close() tells whether all went well.
+class File {
+ public:
+  File(const std::string& path, int flags) noexcept : fd_(::open(path.c_str(), flags | O_CLOEXEC, 0600)) {}
+  ~File() {
+    if (fd_ >= 0) ::close(fd_);
+  }
+  File(const File&) = delete;
+  File& operator=(const File&) = delete;
+  bool opened() const noexcept { return fd_ >= 0; }
+  int fd() const noexcept { return fd_; }
+  bool close() noexcept {
+    const int fd = fd_;
+    fd_ = -1;
+    return ::close(fd) == 0;
+  }
+
+ private:
+  int fd_;
+};
+
+HalFault read_at(const std::string& path, std::uint32_t offset, std::uint8_t* bytes,
+                 std::uint32_t size) noexcept {
+  const File file(path, O_RDONLY);
+  if (!file.opened()) return errno == ENOENT ? HalFault::kNoReading : HalFault::kRefused;
+  for (std::uint32_t done = 0; done < size;) {
+    const ssize_t got = ::pread(file.fd(), bytes + done, size - done, off_t{offset} + done);
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) return HalFault::kRefused;
+    if (got == 0) return HalFault::kNoReading;
+    done += static_cast<std::uint32_t>(got);
+  }
+  return HalFault::kNone;
+}
+
+bool write_all(int fd, std::uint32_t offset, const std::uint8_t* bytes, std::uint32_t size) noexcept {
+  for (std::uint32_t done = 0; done < size;) {
+    const ssize_t put = ::pwrite(fd, bytes + done, size - done, off_t{offset} + done);
+    if (put < 0 && errno == EINTR) continue;
+    if (put <= 0) return false;
+    done += static_cast<std::uint32_t>(put);
+  }
+  return true;
+}
+
+// A new file is on the medium only when its directory is.
+bool sync_directory(const std::string& directory) noexcept {
+  File file(directory, O_RDONLY | O_DIRECTORY);
+  return file.opened() && ::fsync(file.fd()) == 0;
+}
+
+}  // namespace
+
+FileSlotStore::FileSlotStore(std::string directory, std::uint32_t capacity)
+    : directory_(std::move(directory)), capacity_(capacity) {
+  for (std::size_t i = 0; i < 2; ++i) {
+    records_[i] = directory_ + "/record" + std::to_string(i);
+    slots_[i] = directory_ + "/slot" + std::to_string(i) + ".vup";
+  }
+}
+
+HalFault FileSlotStore::read_record(std::uint32_t place, std::uint8_t* bytes, std::uint32_t size) noexcept {
+  return place < 2 ? read_at(records_[place], 0, bytes, size) : HalFault::kNoDevice;
+}
+
+HalFault FileSlotStore::write_record(std::uint32_t place, const std::uint8_t* bytes,
+                                     std::uint32_t size) noexcept {
+  if (place >= 2) return HalFault::kNoDevice;
+  File file(records_[place], O_WRONLY | O_CREAT);
+  if (!file.opened() || !write_all(file.fd(), 0, bytes, size)) return HalFault::kRefused;
+  if (::fsync(file.fd()) != 0 || !file.close()) return HalFault::kRefused;
+  return sync_directory(directory_) ? HalFault::kNone : HalFault::kRefused;
+}
+
+HalFault FileSlotStore::read_image(std::uint32_t slot, std::uint32_t offset, std::uint8_t* bytes,
+                                   std::uint32_t size) noexcept {
+  return slot < 2 ? read_at(slots_[slot], offset, bytes, size) : HalFault::kNoDevice;
+}
+
+HalFault FileSlotStore::write_image(std::uint32_t slot, std::uint32_t offset, const std::uint8_t* bytes,
+                                    std::uint32_t size) noexcept {
+  if (slot >= 2 || offset > capacity_ || size > capacity_ - offset) return HalFault::kNoDevice;
+  File file(slots_[slot], O_WRONLY | O_CREAT);
+  if (!file.opened() || !write_all(file.fd(), offset, bytes, size) || !file.close())
+    return HalFault::kRefused;
+  return HalFault::kNone;
+}
+
+HalFault FileSlotStore::finish_image(std::uint32_t slot, std::uint32_t size) noexcept {
+  if (slot >= 2) return HalFault::kNoDevice;
+  File file(slots_[slot], O_WRONLY);
+  if (!file.opened() || ::ftruncate(file.fd(), off_t{size}) != 0) return HalFault::kRefused;
+  if (::fsync(file.fd()) != 0 || !file.close()) return HalFault::kRefused;
+  return sync_directory(directory_) ? HalFault::kNone : HalFault::kRefused;
+}
+
+}  // namespace vernier

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+
+#include "hal/slot_store.h"
+
+namespace vernier {
+
+/// Slots as files of a directory: slot0.vup, slot1.vup, record0, record1; every finished write is synced.
+class FileSlotStore : public SlotStore {
+ public:
+  /// directory: exists and may be written; capacity: most bytes of a slot. setup.
+  FileSlotStore(std::string directory, std::uint32_t capacity);
+
+  std::uint32_t capacity() const noexcept override { return capacity_; }
+  HalFault read_record(std::uint32_t place, std::uint8_t* bytes, std::uint32_t size) noexcept override;
+  HalFault write_record(std::uint32_t place, const std::uint8_t* bytes, std::uint32_t size) noexcept override;
+  HalFault read_image(std::uint32_t slot, std::uint32_t offset, std::uint8_t* bytes,
+                      std::uint32_t size) noexcept override;
+  HalFault write_image(std::uint32_t slot, std::uint32_t offset, const std::uint8_t* bytes,
+                       std::uint32_t size) noexcept override;
+  HalFault finish_image(std::uint32_t slot, std::uint32_t size) noexcept override;
+
+ private:
+  std::string directory_;
+  std::string records_[2], slots_[2];
+  std::uint32_t capacity_;
+};
+
+}  // namespace vernier

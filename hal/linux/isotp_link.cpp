@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hal/linux/isotp_link.h"
+
+#include <linux/can.h>
+#include <linux/can/isotp.h>
+#include <net/if.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+namespace vernier {
+namespace {
+
+constexpr std::uint32_t kMostBytes = 4095;  // of a message with a 12-bit length
+
+canid_t identifier(std::uint32_t id) { return id > CAN_SFF_MASK ? (id | CAN_EFF_FLAG) : id; }
+
+}  // namespace
+
+std::unique_ptr<IsotpLink> IsotpLink::open(const std::string& interface, std::uint32_t receive,
+                                           std::uint32_t transmit, std::string& error) {
+  const auto failed = [&](const char* what, int fd) {
+    error = interface + ": " + what + ": " + std::strerror(errno);
+    if (fd >= 0) ::close(fd);
+    return nullptr;
+  };
+  const int fd = ::socket(PF_CAN, SOCK_DGRAM | SOCK_CLOEXEC, CAN_ISOTP);
+  if (fd < 0) return failed("no ISO-TP in this kernel", fd);
+  sockaddr_can address{};
+  address.can_family = AF_CAN;
+  address.can_ifindex = static_cast<int>(::if_nametoindex(interface.c_str()));
+  if (address.can_ifindex == 0) return failed("no such interface", fd);
+  address.can_addr.tp.rx_id = identifier(receive);
+  address.can_addr.tp.tx_id = identifier(transmit);
+  if (::bind(fd, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) != 0)
+    return failed("cannot be used", fd);
+  return std::unique_ptr<IsotpLink>(new IsotpLink(fd));
+}
+
+IsotpLink::~IsotpLink() { ::close(fd_); }
+
+HalFault IsotpLink::serve(CommandHandler& handler, TimeUs wait) noexcept {
+  pollfd waiting{fd_, POLLIN, 0};
+  const int ready = ::poll(&waiting, 1, static_cast<int>(wait.count / 1000));
+  if (ready <= 0) return ready == 0 || errno == EINTR ? HalFault::kNone : HalFault::kRefused;
+  std::uint8_t request[kMostBytes], reply[256];
+  const ssize_t size = ::read(fd_, request, sizeof(request));
+  // A peer that stopped in the middle of a message shows as an error of the socket and is forgotten with it.
+  if (size < 0) return errno == ENETDOWN || errno == ENODEV ? HalFault::kRefused : HalFault::kNone;
+  const std::uint32_t answered = handler.answer(request, static_cast<std::uint32_t>(size), reply);
+  if (answered > 0 && ::write(fd_, reply, answered) < 0) return HalFault::kRefused;
+  return HalFault::kNone;
+}
+
+int IsotpLink::ask(const std::uint8_t* request, std::uint32_t size, std::uint8_t* reply, std::uint32_t room,
+                   TimeUs wait) noexcept {
+  if (::write(fd_, request, size) != static_cast<ssize_t>(size)) return -1;
+  pollfd waiting{fd_, POLLIN, 0};
+  const int ready = ::poll(&waiting, 1, static_cast<int>(wait.count / 1000));
+  if (ready == 0) errno = ETIMEDOUT;
+  return ready > 0 ? static_cast<int>(::read(fd_, reply, room)) : -1;
+}
+
+}  // namespace vernier

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <memory>
+#include <string>
+
+#include "hal/command_link.h"
+
+namespace vernier {
+
+/// Requests and replies as ISO 15765-2 messages on a CAN interface, by the kernel's own protocol.
+class IsotpLink : public CommandLink {
+ public:
+  /// interface: "can0"; receive, transmit: identifiers, 11 bits, or 29 bits where above 0x7ff. Null with
+  /// `error` set where the kernel refuses. setup.
+  static std::unique_ptr<IsotpLink> open(const std::string& interface, std::uint32_t receive,
+                                         std::uint32_t transmit, std::string& error);
+  ~IsotpLink() override;
+  IsotpLink(const IsotpLink&) = delete;
+  IsotpLink& operator=(const IsotpLink&) = delete;
+
+  HalFault serve(CommandHandler& handler, TimeUs wait) noexcept override;
+
+  /// The asking side: sends a request and waits for its reply. Returns the bytes of the reply, -1 with errno
+  /// set where none came. setup.
+  int ask(const std::uint8_t* request, std::uint32_t size, std::uint8_t* reply, std::uint32_t room,
+          TimeUs wait) noexcept;
+
+ private:
+  explicit IsotpLink(int fd) : fd_(fd) {}
+  int fd_;
+};
+
+}  // namespace vernier

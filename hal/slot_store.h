@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+
+#include "hal/fault.h"
+
+namespace vernier {
+
+/// A place that survives a power cut: two slots for images, and two places for a small record. A write that
+/// is cut leaves any mixture of old and new bytes in the stretch that was being written, and nothing
+/// elsewhere changes. Never called in the tick.
+class SlotStore {
+ public:
+  virtual ~SlotStore() = default;
+  /// Bytes that a slot holds.
+  virtual std::uint32_t capacity() const noexcept = 0;
+  /// kNoReading: nothing has been written there yet. setup.
+  virtual HalFault read_record(std::uint32_t place, std::uint8_t* bytes, std::uint32_t size) noexcept = 0;
+  /// Returns when the bytes are on the medium. kRefused: they may be there in part. setup.
+  virtual HalFault write_record(std::uint32_t place, const std::uint8_t* bytes,
+                                std::uint32_t size) noexcept = 0;
+  /// kNoReading: beyond what was written. setup.
+  virtual HalFault read_image(std::uint32_t slot, std::uint32_t offset, std::uint8_t* bytes,
+                              std::uint32_t size) noexcept = 0;
+  /// kNoDevice: beyond the capacity; kRefused: the medium is full or broken. setup.
+  virtual HalFault write_image(std::uint32_t slot, std::uint32_t offset, const std::uint8_t* bytes,
+                               std::uint32_t size) noexcept = 0;
+  /// Cuts the slot to `size` bytes and returns when they are on the medium. setup.
+  virtual HalFault finish_image(std::uint32_t slot, std::uint32_t size) noexcept = 0;
+};
+
+}  // namespace vernier

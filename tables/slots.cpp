@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tables/slots.h"
+
+#include <cstddef>
+
+#include "tables/checksum.h"
+
+namespace vernier {
+namespace {
+
+std::uint32_t checksum_of(const SlotRecord& record) noexcept {
+  return crc32c(reinterpret_cast<const std::uint8_t*>(&record), offsetof(SlotRecord, checksum));
+}
+
+bool is_slot(std::uint8_t slot) noexcept { return slot < kSlotCount || slot == kNoSlot; }
+
+}  // namespace
+
+bool is_valid(const SlotRecord& record) noexcept {
+  return record.magic == kSlotMagic && record.reserved == 0 && record.checksum == checksum_of(record) &&
+         is_slot(record.confirmed) && is_slot(record.trial) &&
+         (record.trial == kNoSlot || record.trial != record.confirmed);
+}
+
+Slots Slots::load(const SlotRecord& first, const SlotRecord& second) noexcept {
+  Slots slots;
+  const bool one = is_valid(first), two = is_valid(second);
+  if (!one && !two) return slots;
+  // Sequences differ by one in a store that this machine wrote; unsigned distance survives their wrap.
+  const bool second_counts = two && (!one || second.sequence - first.sequence < UINT32_MAX / 2);
+  slots.now_ = second_counts ? second : first;
+  slots.next_place_ = second_counts ? 0 : 1;
+  return slots;
+}
+
+std::uint8_t Slots::free_slot() const noexcept {
+  if (now_.trial != kNoSlot) return kNoSlot;
+  return now_.confirmed == 0 ? 1 : 0;
+}
+
+SlotChange Slots::change_to(SlotRecord next) const noexcept {
+  next.sequence = now_.sequence + 1;
+  next.checksum = checksum_of(next);
+  return {next_place_, next};
+}
+
+SlotChange Slots::start_trial(std::uint64_t issued) const noexcept {
+  SlotRecord next = now_;
+  next.trial = free_slot();
+  next.trial_issued = issued;
+  return change_to(next);
+}
+
+SlotChange Slots::confirm() const noexcept {
+  SlotRecord next = now_;
+  if (now_.trial != kNoSlot) {
+    next.confirmed = now_.trial;
+    next.issued = now_.trial_issued;
+  }
+  next.trial = kNoSlot;
+  next.trial_issued = 0;
+  return change_to(next);
+}
+
+SlotChange Slots::revert() const noexcept {
+  SlotRecord next = now_;
+  next.trial = kNoSlot;
+  next.trial_issued = 0;
+  return change_to(next);
+}
+
+void Slots::stored(const SlotChange& change) noexcept {
+  now_ = change.record;
+  next_place_ = 1 - change.place;
+}
+
+}  // namespace vernier

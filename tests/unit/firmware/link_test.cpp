@@ -1,0 +1,175 @@
+#include "firmware/link.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <random>
+
+#include "tests/unit/firmware/upload_rig.h"
+#include "tools/upload/client.h"
+
+namespace vernier {
+namespace {
+
+/// A client whose requests go straight into the board's link; between two of them the board ticks.
+class Direct : public Transport {
+ public:
+  Direct(Link& link, UploadRig& rig) : link_(link), rig_(rig) {}
+  std::vector<std::uint8_t> ask(const std::vector<std::uint8_t>& request) override {
+    std::vector<std::uint8_t> reply(kMaxReplyBytes);
+    reply.resize(
+        link_.answer(request.data(), static_cast<std::uint32_t>(request.size()), reply.data(), TimeUs(1)));
+    rig_.run(2);
+    return reply;
+  }
+
+ private:
+  Link& link_;
+  UploadRig& rig_;
+};
+
+class LinkTest : public testing::Test {
+ protected:
+  SigningKey key_ = new_key();
+  SimSlotStore store_{1 << 16};
+  UploadRig rig_{store_, key_};
+  Wiring wiring_{{{"X"}, {"Y"}}, {"T"}};
+  Link link_{const_cast<Exchange&>(rig_.service().exchange()), rig_.uploader(), wiring_, TimeUs(1000),
+             key_.public_part()};
+  Client client() { return Client(std::make_unique<Direct>(link_, rig_)); }
+};
+
+TEST_F(LinkTest, WholeJourneyOfAnImage) {
+  rig_.run(10);
+  Client board = client();
+  EXPECT_EQ(board.info().axes[1].name, "Y");
+  EXPECT_EQ(board.info().inputs[0], "T");
+  EXPECT_EQ(board.slots().confirmed, kNoSlot);
+  EXPECT_FALSE(board.confirmed([](double) {}).has_value());
+  const auto upload = make_upload(small_image_bytes(2e-5), key_, 5, 0);
+  double share = 0;
+  board.upload(upload, [&](double now) { share = now; });
+  EXPECT_EQ(share, 1);
+  EXPECT_EQ(board.slots().trial, 0);
+  board.confirm();
+  EXPECT_EQ(board.slots().confirmed, 0);
+  EXPECT_EQ(board.confirmed([](double) {}), upload);
+  rig_.run(3000);
+  const BoardTick tick = board.newest();
+  EXPECT_EQ(tick.mode, Mode::kActive);
+  EXPECT_NEAR(tick.correction[1], -1e-4 * tick.position[1], 3e-6);
+  EXPECT_NEAR(tick.input[0], 21, 1e-3);
+  EXPECT_GT(board.health().active_ticks, 1000u);
+  board.command(Command::kDeactivate);
+  rig_.run(1000);
+  EXPECT_EQ(board.newest().mode, Mode::kReady);
+}
+
+TEST_F(LinkTest, RefusalTellsTheReason) {
+  rig_.run(10);
+  Client board = client();
+  try {
+    board.upload(make_upload(small_image_bytes(2e-5), new_key(), 5, 0), [](double) {});
+    FAIL();
+  } catch (const LimitNotMet& refusal) {
+    EXPECT_STREQ(refusal.what(), "the board refuses: signed with a key that the board does not trust");
+  }
+}
+
+TEST_F(LinkTest, HistoryIsCompleteOrSaysWhatIsLost) {
+  rig_.run(100);
+  Client board = client();
+  const std::uint64_t first = board.newest().number;
+  std::uint64_t next = first, seen = 0;
+  while (next < first + 500) {
+    const BoardHistory history = board.history(next, 1);
+    EXPECT_EQ(history.lost, 0u);
+    for (const BoardTick& tick : history.ticks)
+      EXPECT_EQ(tick.number, next + static_cast<std::uint64_t>(&tick - history.ticks.data()));
+    seen += history.ticks.size();
+    next = history.next;
+  }
+  EXPECT_EQ(seen, next - first);
+  rig_.run(2 * Exchange::kHistory);
+  const BoardHistory late = board.history(first, 1);
+  EXPECT_GT(late.lost, Exchange::kHistory / 2);
+  EXPECT_EQ(late.ticks.front().number, first + late.lost);
+}
+
+TEST_F(LinkTest, LiveRegistersSayWhatTheTickSays) {
+  rig_.run(10);
+  Client board = client();
+  board.upload(make_upload(small_image_bytes(2e-5), key_, 5, 0), [](double) {});
+  rig_.run(3000);
+  std::uint16_t registers[kLiveRegisters];
+  link_.fill_registers(registers);
+  const std::uint64_t count = rig_.service().exchange().ticks.count();
+  TickRecord tick;
+  ASSERT_TRUE(rig_.service().exchange().ticks.read(count - 1, tick));
+  const auto pair = [&](int at) {
+    return static_cast<std::int32_t>(static_cast<std::uint32_t>(registers[at]) << 16 | registers[at + 1]);
+  };
+  EXPECT_EQ(registers[kLiveMode], static_cast<std::uint16_t>(Mode::kActive));
+  EXPECT_EQ(pair(kLiveTicks), static_cast<std::int32_t>(count));
+  EXPECT_EQ(pair(kLiveAxes), tick.position[0] / 1000);
+  EXPECT_EQ(pair(kLiveAxes + 2), tick.correction[0] / 10);
+  EXPECT_EQ(pair(kLiveInputs), tick.input[0] / 1000);
+}
+
+std::uint64_t from_environment(const char* name, std::uint64_t value) {
+  const char* text = std::getenv(name);
+  return text != nullptr ? std::strtoull(text, nullptr, 10) : value;
+}
+
+// Any bytes get an answer of bounded size, harm nothing, and never bring an image in. VERNIER_SEED and
+// VERNIER_COUNT repeat or extend a run.
+TEST_F(LinkTest, AnyRequestIsAnsweredAndNoneGetsAnImageIn) {
+  const std::uint64_t seed = from_environment("VERNIER_SEED", 20241),
+                      count = from_environment("VERNIER_COUNT", 200000);
+  std::printf("seed %llu, %llu requests\n", static_cast<unsigned long long>(seed),
+              static_cast<unsigned long long>(count));
+  rig_.run(50);
+  std::mt19937_64 random(seed);
+  // Good uploads of a stranger are part of the attack.
+  const auto stranger = make_upload(small_image_bytes(9e-5), new_key(), 1'000'000, 0);
+  std::uint64_t answered = 0;
+  for (std::uint64_t i = 0; i < count; ++i) {
+    std::uint8_t request[kMaxRequestBytes + 20], reply[kMaxReplyBytes];
+    auto size = static_cast<std::uint32_t>(random() % sizeof(request));
+    for (std::uint8_t& byte : request) byte = static_cast<std::uint8_t>(random());
+    if (random() % 2 == 0) request[0] = static_cast<std::uint8_t>(random() % (kLinkOpCount + 1));
+    if (random() % 3 == 0) size = static_cast<std::uint32_t>(random() % 12);
+    const auto op = static_cast<LinkOp>(request[0]);
+    if (op == LinkOp::kBegin && random() % 2 == 0) {
+      const auto bytes =
+          static_cast<std::uint32_t>(random() % 2 == 0 ? stranger.size() : random() % (1 << 17));
+      std::memcpy(request + 2, &bytes, sizeof(bytes)), size = 6;
+    }
+    if (op == LinkOp::kData && random() % 2 == 0) {
+      const auto offset = static_cast<std::uint32_t>(random() % stranger.size() / 230 * 230);
+      const auto piece = std::min<std::uint32_t>(230, static_cast<std::uint32_t>(stranger.size()) - offset);
+      std::memcpy(request + 2, &offset, sizeof(offset)),
+          std::memcpy(request + 6, stranger.data() + offset, piece);
+      size = 6 + piece;
+    }
+    const std::uint32_t bytes = link_.answer(request, size, reply, TimeUs(1));
+    ASSERT_LE(bytes, kMaxReplyBytes);
+    if (size < kRequestHeaderBytes) {
+      ASSERT_EQ(bytes, 0u);
+      continue;
+    }
+    ASSERT_GE(bytes, kReplyHeaderBytes);
+    ASSERT_EQ(std::memcmp(reply, request, 2), 0);
+    ASSERT_LT(reply[2], kLinkStatusCount);
+    ++answered;
+    ASSERT_EQ(rig_.uploader().slots().trial(), kNoSlot);
+    ASSERT_EQ(rig_.uploader().slots().confirmed(), kNoSlot);
+    if (i % 1000 == 0) rig_.run(1);
+  }
+  EXPECT_GT(answered, count / 2);
+}
+
+}  // namespace
+}  // namespace vernier

@@ -1,0 +1,301 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstring>
+#include <random>
+
+#include "tests/unit/firmware/upload_rig.h"
+
+namespace vernier {
+namespace {
+
+constexpr std::uint64_t kIssued = 1'000'000;
+
+class Upload : public testing::Test {
+ protected:
+  std::vector<std::uint8_t> upload(double scale, std::uint64_t issued = kIssued,
+                                   std::uint64_t replaces = 0) const {
+    return make_upload(small_image_bytes(scale), key_, issued, replaces);
+  }
+  /// The correction of X that its drive holds, per mm of its position: minus the scale error of what runs.
+  static double slope(UploadRig& rig) {
+    AxisReading x;
+    // Far enough out that a nanometre does not count, and not where the sense just turned.
+    for (int i = 0; i < 60000; ++i) {
+      rig.plant().read_axis(0, x);
+      if (x.position.count > 200'000'000 && x.since.count > 20'000'000) break;
+      rig.run(1);
+    }
+    return -static_cast<double>(rig.plant().written(0).count + 4000 * x.sense) /
+           static_cast<double>(x.position.count);
+  }
+
+  SigningKey key_ = new_key();
+  SimSlotStore store_{1 << 16};
+};
+
+TEST_F(Upload, BlankBoardCorrectsNothingUntilAnImageIsTried) {
+  UploadRig rig(store_, key_);
+  EXPECT_EQ(rig.boot_result().fault, UploadFault::kNone);
+  rig.run(1000);
+  EXPECT_EQ(rig.service().cycle().mode(), Mode::kChecking);
+  ASSERT_EQ(rig.send(upload(2e-5)).fault, UploadFault::kNone);
+  rig.run(3000);
+  EXPECT_EQ(rig.service().cycle().mode(), Mode::kActive);
+  EXPECT_NEAR(slope(rig), 2e-5, 1e-7);
+  EXPECT_EQ(rig.uploader().confirm().fault, UploadFault::kNone);
+}
+
+TEST_F(Upload, IsTakenOverWithoutAStepAndRevertsOnItsTimer) {
+  UploadRig rig(store_, key_);
+  ASSERT_EQ(rig.send(upload(2e-5)).fault, UploadFault::kNone);
+  ASSERT_EQ(rig.uploader().confirm().fault, UploadFault::kNone);
+  rig.run(4000);
+  ASSERT_EQ(rig.service().cycle().mode(), Mode::kActive);
+  // WHEN another one is tried while the first is Active
+  ASSERT_EQ(rig.send(upload(4e-5, kIssued + 1)).fault, UploadFault::kNone);
+  rig.run(1500);
+  // THEN it runs, no drive has moved faster than its slew limit, and the board never left Active
+  EXPECT_NEAR(slope(rig), 4e-5, 1e-7);
+  EXPECT_EQ(rig.service().cycle().mode(), Mode::kActive);
+  // and nobody having confirmed it, the first one runs again
+  rig.run(6000);
+  EXPECT_NEAR(slope(rig), 2e-5, 1e-7);
+  EXPECT_EQ(rig.uploader().slots().trial(), kNoSlot);
+  EXPECT_EQ(rig.uploader().confirm().fault, UploadFault::kNoTrial);
+  EXPECT_LE(rig.worst_step(0), kSmallSlewX);
+  EXPECT_LE(rig.worst_step(1), kSmallSlewY);
+  EXPECT_EQ(rig.service().cycle().health().faults, 0u);
+}
+
+TEST_F(Upload, ResetRevertsATrialAndKeepsAConfirmedOne) {
+  {
+    UploadRig rig(store_, key_);
+    ASSERT_EQ(rig.send(upload(2e-5)).fault, UploadFault::kNone);
+    ASSERT_EQ(rig.uploader().confirm().fault, UploadFault::kNone);
+    ASSERT_EQ(rig.send(upload(4e-5, kIssued + 1)).fault, UploadFault::kNone);
+    rig.run(3000);
+  }
+  UploadRig rig(store_, key_);
+  rig.run(3000);
+  EXPECT_NEAR(slope(rig), 2e-5, 1e-7);
+  EXPECT_EQ(rig.uploader().slots().issued(), kIssued);
+}
+
+struct Refused {
+  const char* name;
+  UploadFault fault;
+  std::function<void(std::vector<std::uint8_t>&, const SigningKey&)> spoil;
+};
+
+class UploadRefusal : public Upload, public testing::WithParamInterface<Refused> {};
+
+TEST_P(UploadRefusal, SaysWhyAndChangesNothing) {
+  UploadRig rig(store_, key_);
+  ASSERT_EQ(rig.send(upload(2e-5)).fault, UploadFault::kNone);
+  ASSERT_EQ(rig.uploader().confirm().fault, UploadFault::kNone);
+  rig.run(3000);
+  std::vector<std::uint8_t> bad = upload(4e-5, kIssued + 1);
+  GetParam().spoil(bad, key_);
+  const UploadResult result = rig.send(bad);
+  EXPECT_EQ(result.fault, GetParam().fault) << describe(result);
+  rig.run(1500);
+  EXPECT_NEAR(slope(rig), 2e-5, 1e-7);
+  EXPECT_EQ(rig.uploader().slots().trial(), kNoSlot);
+  // and a good one is still taken
+  EXPECT_EQ(rig.send(upload(3e-5, kIssued + 2)).fault, UploadFault::kNone);
+}
+
+std::vector<std::uint8_t> signed_again(const std::vector<std::uint8_t>& image, const SigningKey& key,
+                                       std::uint64_t issued = kIssued + 1, std::uint64_t replaces = 0) {
+  return make_upload(image, key, issued, replaces);
+}
+
+/// The small machine with words of its file replaced.
+std::vector<std::uint8_t> other_machine(const std::vector<std::pair<std::string, std::string>>& words) {
+  std::string text = kSmallMachine;
+  for (const auto& [from, to] : words) text.replace(text.find(from), from.size(), to);
+  return small_image_bytes(2e-5, text);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Kinds, UploadRefusal,
+    testing::Values(
+        Refused{"Unsigned", UploadFault::kSignature,
+                [](auto& bytes, const auto&) { std::fill_n(bytes.begin() + 64, 64, std::uint8_t{0}); }},
+        Refused{"ForeignKey", UploadFault::kForeignKey,
+                [](auto& bytes, const auto&) {
+                  bytes = signed_again({bytes.begin() + sizeof(UploadHeader), bytes.end()}, new_key());
+                }},
+        Refused{"ForeignKeyUnderOurName", UploadFault::kSignature,
+                [](auto& bytes, const auto& key) {
+                  bytes = signed_again({bytes.begin() + sizeof(UploadHeader), bytes.end()}, new_key());
+                  std::memcpy(bytes.data() + offsetof(UploadHeader, key), key.public_part().data(), 24);
+                }},
+        Refused{"Truncated", UploadFault::kNotAnUpload,
+                [](auto& bytes, const auto&) { bytes.resize(bytes.size() - 8); }},
+        Refused{"OnlyAHeader", UploadFault::kNotAnUpload,
+                [](auto& bytes, const auto&) { bytes.resize(sizeof(UploadHeader)); }},
+        Refused{"LessThanAHeader", UploadFault::kNotAnUpload,
+                [](auto& bytes, const auto&) { bytes.resize(100); }},
+        Refused{"Oversized", UploadFault::kTooLarge, [](auto& bytes, const auto&) { bytes.resize(1 << 17); }},
+        Refused{"LongerThanItSays", UploadFault::kNotAnUpload,
+                [](auto& bytes, const auto&) { bytes.push_back(0); }},
+        Refused{"NoImageInside", UploadFault::kImage,
+                [](auto& bytes, const auto& key) {
+                  std::vector<std::uint8_t> image(bytes.begin() + sizeof(UploadHeader), bytes.end());
+                  image[0] = 'X';
+                  bytes = signed_again(image, key);
+                }},
+        Refused{"WrongChecksum", UploadFault::kImage,
+                [](auto& bytes, const auto& key) {
+                  std::vector<std::uint8_t> image(bytes.begin() + sizeof(UploadHeader), bytes.end());
+                  image.back() = static_cast<std::uint8_t>(image.back() ^ 1);
+                  bytes = signed_again(image, key);
+                }},
+        Refused{"Mutated", UploadFault::kSignature,
+                [](auto& bytes, const auto&) { bytes.back() = static_cast<std::uint8_t>(bytes.back() ^ 1); }},
+        Refused{"HeaderChanged", UploadFault::kSignature,
+                [](auto& bytes, const auto&) { bytes[offsetof(UploadHeader, issued)] ^= 1; }},
+        Refused{
+            "ForeignAxis", UploadFault::kForeignMachine,
+            [](auto& bytes, const auto& key) {
+              bytes = signed_again(other_machine({{"<Y rotary", "<W rotary"}, {"Y+cte*Y", "W+cte*W"}}), key);
+            }},
+        Refused{"ForeignSensor", UploadFault::kForeignMachine,
+                [](auto& bytes, const auto& key) {
+                  bytes = signed_again(other_machine({{"<T unit", "<T_air unit"}, {"(T-20)", "(T_air-20)"}}),
+                                       key);
+                }},
+        Refused{"Replayed", UploadFault::kOlder,
+                [](auto& bytes, const auto& key) {
+                  bytes = signed_again({bytes.begin() + sizeof(UploadHeader), bytes.end()}, key, kIssued);
+                }},
+        Refused{"Older", UploadFault::kOlder,
+                [](auto& bytes, const auto& key) {
+                  bytes = signed_again({bytes.begin() + sizeof(UploadHeader), bytes.end()}, key, kIssued - 1);
+                }},
+        Refused{"ForcedOverAnother", UploadFault::kOlder,
+                [](auto& bytes, const auto& key) {
+                  bytes = signed_again({bytes.begin() + sizeof(UploadHeader), bytes.end()}, key, kIssued - 1,
+                                       kIssued - 2);
+                }}),
+    [](const auto& parameter) { return parameter.param.name; });
+
+TEST_F(Upload, OlderImageIsTakenWhereItsSignerForcedItOverTheConfirmedOne) {
+  UploadRig rig(store_, key_);
+  ASSERT_EQ(rig.send(upload(2e-5)).fault, UploadFault::kNone);
+  ASSERT_EQ(rig.uploader().confirm().fault, UploadFault::kNone);
+  EXPECT_EQ(rig.send(upload(4e-5, kIssued - 5, kIssued)).fault, UploadFault::kNone);
+}
+
+TEST_F(Upload, BoardWithoutAKeyTrustsNobody) {
+  const Wiring wiring{{{"X"}, {"Y"}}, {"T"}};
+  Uploader uploader(store_, wiring, {});
+  EXPECT_EQ(uploader.boot().fault, UploadFault::kNone);
+  EXPECT_EQ(uploader.begin(1000).fault, UploadFault::kNoKey);
+}
+
+TEST_F(Upload, FullStoreIsSaidAndTheOldImageRuns) {
+  UploadRig rig(store_, key_);
+  ASSERT_EQ(rig.send(upload(2e-5)).fault, UploadFault::kNone);
+  ASSERT_EQ(rig.uploader().confirm().fault, UploadFault::kNone);
+  store_.fill_up_to(500);
+  EXPECT_EQ(rig.send(upload(4e-5, kIssued + 1)).fault, UploadFault::kStore);
+  rig.run(3000);
+  EXPECT_NEAR(slope(rig), 2e-5, 1e-7);
+}
+
+TEST_F(Upload, PiecesOutOfOrderAreRefusedAndARepeatedOneIsNot) {
+  UploadRig rig(store_, key_);
+  const std::vector<std::uint8_t> bytes = upload(2e-5);
+  Uploader& uploader = rig.uploader();
+  EXPECT_EQ(uploader.add(0, bytes.data(), 10).fault, UploadFault::kNoUpload);
+  EXPECT_EQ(uploader.finish(TimeUs{}).fault, UploadFault::kNoUpload);
+  ASSERT_EQ(uploader.begin(static_cast<std::uint32_t>(bytes.size())).fault, UploadFault::kNone);
+  EXPECT_EQ(uploader.add(0, bytes.data(), 100).fault, UploadFault::kNone);
+  EXPECT_EQ(uploader.add(0, bytes.data(), 100).fault, UploadFault::kNone);
+  EXPECT_EQ(uploader.add(200, bytes.data() + 200, 100).fault, UploadFault::kOutOfOrder);
+  EXPECT_EQ(uploader.add(50, bytes.data() + 50, 100).fault, UploadFault::kOutOfOrder);
+  EXPECT_EQ(uploader.finish(TimeUs{}).fault, UploadFault::kIncomplete);
+  const auto rest = static_cast<std::uint32_t>(bytes.size() - 100);
+  EXPECT_EQ(uploader.add(100, bytes.data() + 100, rest + 1).fault, UploadFault::kTooLarge);
+  EXPECT_EQ(uploader.add(100, bytes.data() + 100, rest).fault, UploadFault::kNone);
+  EXPECT_EQ(uploader.finish(TimeUs{}).fault, UploadFault::kNone);
+}
+
+// The power fails after every single byte that an upload, its trial and its confirmation write.
+TEST_F(Upload, PowerLostAtAnyWriteLeavesOldOrNewTable) {
+  SimSlotStore blank = store_;
+  {
+    UploadRig rig(blank, key_);
+    ASSERT_EQ(rig.send(upload(2e-5)).fault, UploadFault::kNone);
+    ASSERT_EQ(rig.uploader().confirm().fault, UploadFault::kNone);
+  }
+  const std::vector<std::uint8_t> next = upload(4e-5, kIssued + 1);
+  const auto replace = [&](SimSlotStore& store) {
+    UploadRig rig(store, key_);
+    if (rig.send(next).fault != UploadFault::kNone) return false;
+    return rig.uploader().confirm().fault == UploadFault::kNone;
+  };
+  SimSlotStore counted = blank;
+  ASSERT_TRUE(replace(counted));
+  const std::uint64_t bytes = counted.written() - blank.written();
+  std::uint64_t old_ones = 0, new_ones = 0;
+  for (std::uint64_t cut = 0; cut <= bytes; ++cut) {
+    SimSlotStore store = blank;
+    store.cut_power_after(cut);
+    const bool said_done = replace(store);
+    store.restore_power();
+    UploadRig rig(store, key_);
+    ASSERT_EQ(rig.boot_result().fault, UploadFault::kNone) << "cut after byte " << cut;
+    const bool is_new = rig.uploader().slots().issued() == kIssued + 1;
+    ASSERT_TRUE(is_new || rig.uploader().slots().issued() == kIssued);
+    ASSERT_TRUE(is_new || !said_done) << "what was said to be done must stay";
+    (is_new ? new_ones : old_ones) += 1;
+  }
+  std::printf("%llu cuts: %llu old, %llu new\n", static_cast<unsigned long long>(bytes + 1),
+              static_cast<unsigned long long>(old_ones), static_cast<unsigned long long>(new_ones));
+  EXPECT_GT(old_ones, 0u);
+  EXPECT_GT(new_ones, 0u);
+}
+
+TEST_F(Upload, HoldKeepsEveryCorrectionAndReleaseMovesOnWithoutAStep) {
+  UploadRig rig(store_, key_);
+  ASSERT_EQ(rig.send(upload(2e-5)).fault, UploadFault::kNone);
+  ASSERT_EQ(rig.uploader().confirm().fault, UploadFault::kNone);
+  rig.run(4000);
+  ASSERT_EQ(rig.service().cycle().mode(), Mode::kActive);
+  auto& command = const_cast<Exchange&>(rig.service().exchange()).command;
+  command = Command::kHold;
+  rig.run(1);
+  const AxisTravel held = rig.plant().written(0);
+  rig.run(500);
+  EXPECT_EQ(rig.plant().written(0), held);
+  EXPECT_TRUE(rig.service().cycle().holding());
+  command = Command::kRelease;
+  rig.run(500);
+  EXPECT_NE(rig.plant().written(0), held);
+  EXPECT_NEAR(slope(rig), 2e-5, 1e-7);
+  EXPECT_LE(rig.worst_step(0), kSmallSlewX);
+}
+
+TEST_F(Upload, WeightOfAnAxisScalesItsCorrectionAloneAndWithoutAStep) {
+  UploadRig rig(store_, key_);
+  ASSERT_EQ(rig.send(upload(2e-5)).fault, UploadFault::kNone);
+  ASSERT_EQ(rig.uploader().confirm().fault, UploadFault::kNone);
+  rig.run(4000);
+  const_cast<Exchange&>(rig.service().exchange()).axis_weight[0] = kFullWeight.count / 2;
+  rig.run(1000);
+  AxisReading x, y;
+  rig.plant().read_axis(0, x), rig.plant().read_axis(1, y);
+  const double whole = -(2e-5 * static_cast<double>(x.position.count) + 4000 * x.sense);
+  EXPECT_NEAR(static_cast<double>(rig.plant().written(0).count), whole / 2, 3);
+  EXPECT_NEAR(static_cast<double>(rig.plant().written(1).count),
+              -1e-4 * static_cast<double>(y.position.count), 3);
+  EXPECT_LE(rig.worst_step(0), kSmallSlewX);
+}
+
+}  // namespace
+}  // namespace vernier

@@ -1,0 +1,226 @@
+#include "tools/upload/client.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <thread>
+
+#include "firmware/uploader.h"
+#include "tools/model/error.h"
+
+namespace vernier {
+namespace {
+
+constexpr double kNmPerMm = 1e6, kCountsPerDeg = static_cast<double>(kTurnCounts) / 360;
+constexpr std::uint32_t kPieceBytes = kMaxRequestBytes - kRequestHeaderBytes - 4;
+constexpr std::uint32_t kReadBytes = 232;
+constexpr int kTriesWhileNotReady = 50;
+
+void append(std::vector<std::uint8_t>& bytes, const void* from, std::size_t size) {
+  const std::size_t before = bytes.size();
+  bytes.resize(before + size);
+  if (size > 0) std::memcpy(bytes.data() + before, from, size);
+}
+
+template <class T>
+void put(std::vector<std::uint8_t>& bytes, const T& value) {
+  append(bytes, &value, sizeof(T));
+}
+
+template <class T>
+T get(const std::vector<std::uint8_t>& bytes, std::size_t offset) {
+  T value{};
+  if (offset > bytes.size() || sizeof(T) > bytes.size() - offset)
+    throw InputError("the board's reply is too short");
+  std::memcpy(&value, bytes.data() + offset, sizeof(T));
+  return value;
+}
+
+[[noreturn]] void refused(const std::vector<std::uint8_t>& payload) {
+  UploadResult result;
+  const auto fault = get<std::uint8_t>(payload, 0), image = get<std::uint8_t>(payload, 1),
+             binding = get<std::uint8_t>(payload, 2);
+  if (fault >= kUploadFaultCount) throw LimitNotMet("the board refuses: unknown reason");
+  result.fault = static_cast<UploadFault>(fault);
+  result.image = static_cast<ImageFault>(image);
+  result.bind = static_cast<BindFault>(binding);
+  result.offender.assign(payload.begin() + 3, payload.end());
+  throw LimitNotMet("the board refuses: " + describe(result));
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> Client::ask(LinkOp op, const std::vector<std::uint8_t>& payload) {
+  std::vector<std::uint8_t> request;
+  put(request, static_cast<std::uint8_t>(op));
+  put(request, ++sequence_);
+  append(request, payload.data(), payload.size());
+  for (int attempt = 0;; ++attempt) {
+    const std::vector<std::uint8_t> reply = transport_->ask(request);
+    if (reply.size() < kReplyHeaderBytes || reply[0] != request[0] || reply[1] != request[1])
+      throw InputError("the board's reply does not belong to the request");
+    const std::vector<std::uint8_t> rest(reply.begin() + kReplyHeaderBytes, reply.end());
+    switch (static_cast<LinkStatus>(reply[2])) {
+      case LinkStatus::kDone:
+        return rest;
+      case LinkStatus::kRefused:
+        refused(rest);
+      case LinkStatus::kNotReady:
+        if (attempt >= kTriesWhileNotReady) throw InputError("the board is not ready");
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+        continue;
+      case LinkStatus::kUnknownOp:
+        throw InputError("the board does not know this request");
+      case LinkStatus::kBadLength:
+      case LinkStatus::kBadValue:
+        throw InputError("the board finds the request senseless");
+    }
+    throw InputError("the board's reply has an unknown status");
+  }
+}
+
+Client::Client(std::unique_ptr<Transport> transport) : transport_(std::move(transport)) {
+  info_.hello = get<HelloReply>(ask(LinkOp::kHello), 0);
+  if (info_.hello.link_version != kLinkVersion)
+    throw InputError(fmt::format("the board speaks version {} of the link, this tool {}",
+                                 info_.hello.link_version, kLinkVersion));
+  if (info_.hello.axes > kMaxAxes || info_.hello.inputs > kMaxInputs)
+    throw InputError("the board claims more axes or inputs than there can be");
+  const auto name = [this](std::uint8_t kind, std::uint8_t index, std::uint8_t& flags) {
+    const auto reply = ask(LinkOp::kName, {kind, index});
+    if (reply.size() != kImageNameBytes + 1) throw InputError("the board's reply is of the wrong size");
+    flags = reply[kImageNameBytes];
+    const auto* const text = reinterpret_cast<const char*>(reply.data());
+    return std::string(text, strnlen(text, kImageNameBytes));
+  };
+  std::uint8_t flags = 0;
+  for (std::uint8_t i = 0; i < info_.hello.axes; ++i) {
+    BoardSignal axis;
+    axis.name = name(0, i, flags);
+    axis.rotary = (flags & kRotary) != 0;
+    axis.rollover = (flags & kRollover) != 0;
+    info_.axes.push_back(axis);
+  }
+  for (std::uint8_t i = 0; i < info_.hello.inputs; ++i) info_.inputs.push_back(name(1, i, flags));
+}
+
+std::size_t Client::tick_bytes() const {
+  return sizeof(LinkTick) + info_.axes.size() * sizeof(LinkAxis) + info_.inputs.size() * sizeof(LinkInput);
+}
+
+BoardTick Client::parse_tick(const std::uint8_t* bytes) const {
+  LinkTick head;
+  std::memcpy(&head, bytes, sizeof(head));
+  bytes += sizeof(head);
+  BoardTick tick;
+  tick.number = head.number;
+  tick.time_s = static_cast<double>(head.time_us) * 1e-6;
+  tick.feed_mm_per_min = static_cast<double>(head.feed_nm_per_min) / kNmPerMm;
+  tick.mode = static_cast<Mode>(head.mode);
+  tick.fault = static_cast<Fault>(head.fault);
+  tick.holding = head.holding != 0;
+  for (const BoardSignal& signal : info_.axes) {
+    LinkAxis axis;
+    std::memcpy(&axis, bytes, sizeof(axis));
+    bytes += sizeof(axis);
+    const double counts = signal.rotary ? kCountsPerDeg : kNmPerMm;
+    tick.position.push_back(static_cast<double>(axis.position) / counts);
+    tick.correction.push_back(axis.correction / counts);
+    tick.sense.push_back(axis.sense);
+  }
+  for (std::size_t i = 0; i < info_.inputs.size(); ++i) {
+    LinkInput input;
+    std::memcpy(&input, bytes, sizeof(input));
+    bytes += sizeof(input);
+    tick.input.push_back(input.value * 1e-3);
+  }
+  return tick;
+}
+
+BoardTick Client::newest() {
+  const auto reply = ask(LinkOp::kTick);
+  if (reply.size() != tick_bytes()) throw InputError("the board's reply is of the wrong size");
+  return parse_tick(reply.data());
+}
+
+BoardHistory Client::history(std::uint64_t first, std::uint16_t every) {
+  std::vector<std::uint8_t> payload;
+  put(payload, first);
+  put(payload, every);
+  const auto reply = ask(LinkOp::kHistory, payload);
+  BoardHistory history;
+  history.next = get<std::uint64_t>(reply, 0);
+  history.lost = get<std::uint16_t>(reply, 8);
+  if ((reply.size() - 10) % tick_bytes() != 0) throw InputError("the board's reply is of the wrong size");
+  for (std::size_t at = 10; at < reply.size(); at += tick_bytes())
+    history.ticks.push_back(parse_tick(reply.data() + at));
+  return history;
+}
+
+HealthRecord Client::health() {
+  constexpr std::size_t kCounters = sizeof(HealthRecord) / sizeof(std::uint64_t);
+  std::uint64_t words[kCounters] = {};
+  for (std::size_t have = 0; have < kCounters;) {
+    const auto reply = ask(LinkOp::kHealth, {static_cast<std::uint8_t>(have)});
+    if (get<std::uint8_t>(reply, 0) != kCounters || reply.size() < 9)
+      throw InputError("the board counts other things than this tool knows");
+    for (std::size_t at = 1; at + 8 <= reply.size() && have < kCounters; at += 8)
+      words[have++] = get<std::uint64_t>(reply, at);
+  }
+  HealthRecord record;
+  std::memcpy(&record, words, sizeof(record));
+  return record;
+}
+
+SlotsReply Client::slots() { return get<SlotsReply>(ask(LinkOp::kSlots), 0); }
+
+void Client::upload(const std::vector<std::uint8_t>& bytes, const std::function<void(double)>& progress) {
+  std::vector<std::uint8_t> payload;
+  put(payload, static_cast<std::uint32_t>(bytes.size()));
+  ask(LinkOp::kBegin, payload);
+  for (std::size_t at = 0; at < bytes.size(); at += kPieceBytes) {
+    payload.clear();
+    put(payload, static_cast<std::uint32_t>(at));
+    const std::size_t end = std::min<std::size_t>(bytes.size(), at + kPieceBytes);
+    append(payload, bytes.data() + at, end - at);
+    ask(LinkOp::kData, payload);
+    progress(static_cast<double>(end) / static_cast<double>(bytes.size()));
+  }
+  ask(LinkOp::kFinish);
+}
+
+void Client::confirm() { ask(LinkOp::kConfirm); }
+void Client::revert() { ask(LinkOp::kRevert); }
+
+std::optional<std::vector<std::uint8_t>> Client::confirmed(const std::function<void(double)>& progress) {
+  if (slots().confirmed == kNoSlot) return std::nullopt;
+  const auto piece = [this](std::uint32_t offset, std::uint8_t size) {
+    std::vector<std::uint8_t> payload;
+    put(payload, offset);
+    put(payload, size);
+    return ask(LinkOp::kRead, payload);
+  };
+  std::vector<std::uint8_t> bytes = piece(0, sizeof(UploadHeader));
+  const std::size_t total = sizeof(UploadHeader) + get<UploadHeader>(bytes, 0).image_bytes;
+  if (total > info_.hello.capacity) throw InputError("the board's image is larger than its slot");
+  while (bytes.size() < total) {
+    const auto size = static_cast<std::uint8_t>(std::min<std::size_t>(kReadBytes, total - bytes.size()));
+    const auto more = piece(static_cast<std::uint32_t>(bytes.size()), size);
+    if (more.size() != size) throw InputError("the board's reply is of the wrong size");
+    append(bytes, more.data(), more.size());
+    progress(static_cast<double>(bytes.size()) / static_cast<double>(total));
+  }
+  return bytes;
+}
+
+void Client::command(Command command) { ask(LinkOp::kCommand, {static_cast<std::uint8_t>(command)}); }
+
+void Client::weight(std::uint8_t axis, double share) {
+  std::vector<std::uint8_t> payload = {axis};
+  put(payload, static_cast<std::uint32_t>(std::lround(share * kFullWeight.count)));
+  ask(LinkOp::kWeight, payload);
+}
+
+}  // namespace vernier

@@ -1,0 +1,81 @@
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "firmware/exchange.h"
+#include "firmware/link_format.h"
+#include "firmware/mode.h"
+#include "tables/slots.h"
+#include "tools/upload/transport.h"
+
+namespace vernier {
+
+/// An axis or input as the board names it.
+struct BoardSignal {
+  std::string name;
+  bool rotary = false, rollover = false;
+};
+
+/// What a board is.
+struct BoardInfo {
+  HelloReply hello;
+  std::vector<BoardSignal> axes;
+  std::vector<std::string> inputs;
+};
+
+/// One tick as the board told it, in the units of the machine file: mm or deg, mm or deg, the input's unit.
+struct BoardTick {
+  std::uint64_t number = 0;
+  double time_s = 0, feed_mm_per_min = 0;
+  Mode mode = Mode::kBoot;
+  Fault fault = Fault::kNone;
+  bool holding = false;
+  std::vector<double> position, correction, input;
+  std::vector<int> sense;
+};
+
+/// Ticks that were asked for, and how many before them had been overwritten.
+struct BoardHistory {
+  std::vector<BoardTick> ticks;
+  std::uint64_t next = 0;
+  std::uint32_t lost = 0;
+};
+
+/// Talks to a board. Every call throws InputError where no or a senseless reply comes, and LimitNotMet with
+/// the board's reason where the board refuses. tool.
+class Client {
+ public:
+  explicit Client(std::unique_ptr<Transport> transport);
+
+  const BoardInfo& info() const { return info_; }
+  BoardTick newest();
+  /// Ticks from number `first`, each `every`th.
+  BoardHistory history(std::uint64_t first, std::uint16_t every);
+  HealthRecord health();
+  SlotsReply slots();
+  /// Sends an upload (tables/upload_format.h) and has it checked; it is on trial when this returns. progress:
+  /// 0..1.
+  void upload(const std::vector<std::uint8_t>& bytes, const std::function<void(double)>& progress);
+  void confirm();
+  void revert();
+  /// The confirmed upload, header and image; nothing where none is.
+  std::optional<std::vector<std::uint8_t>> confirmed(const std::function<void(double)>& progress);
+  /// The next tick takes it; whether it fitted shows in the mode and in `refused_commands`.
+  void command(Command command);
+  void weight(std::uint8_t axis, double share);
+
+ private:
+  std::vector<std::uint8_t> ask(LinkOp op, const std::vector<std::uint8_t>& payload = {});
+  BoardTick parse_tick(const std::uint8_t* bytes) const;
+  std::size_t tick_bytes() const;
+
+  std::unique_ptr<Transport> transport_;
+  std::uint8_t sequence_ = 0;
+  BoardInfo info_{};
+};
+
+}  // namespace vernier

@@ -1,0 +1,101 @@
+#include "tools/upload/live.h"
+
+#include <fmt/format.h>
+
+#include <iterator>
+
+namespace vernier {
+namespace {
+
+struct Counter {
+  const char* name;
+  std::uint64_t HealthRecord::*value;
+};
+
+constexpr Counter kCounters[] = {{"ticks", &HealthRecord::ticks},
+                                 {"active_ticks", &HealthRecord::active_ticks},
+                                 {"overruns", &HealthRecord::overruns},
+                                 {"skipped", &HealthRecord::skipped},
+                                 {"missing_readings", &HealthRecord::missing_readings},
+                                 {"missing_inputs", &HealthRecord::missing_inputs},
+                                 {"frozen_readings", &HealthRecord::frozen_readings},
+                                 {"jumps", &HealthRecord::jumps},
+                                 {"unreferenced", &HealthRecord::unreferenced},
+                                 {"implausible", &HealthRecord::implausible},
+                                 {"failed_writes", &HealthRecord::failed_writes},
+                                 {"saturated", &HealthRecord::saturated},
+                                 {"slewing", &HealthRecord::slewing},
+                                 {"beyond_range", &HealthRecord::beyond_range},
+                                 {"faults", &HealthRecord::faults},
+                                 {"refused_commands", &HealthRecord::refused_commands},
+                                 {"programs", &HealthRecord::programs}};
+
+nlohmann::ordered_json times_json(const std::int64_t (&ns)[4]) {
+  const auto us = [&](int i) { return static_cast<double>(ns[i]) * 1e-3; };
+  return {{"p50", us(0)}, {"p99", us(1)}, {"p999", us(2)}, {"max", us(3)}};
+}
+
+nlohmann::ordered_json image_json(std::uint8_t slot, std::uint64_t fingerprint) {
+  if (slot == kNoSlot) return nullptr;
+  return fmt::format("{:016x}", fingerprint);
+}
+
+std::string times_text(const char* name, const std::int64_t (&ns)[4]) {
+  const auto us = [&](int i) { return static_cast<double>(ns[i]) * 1e-3; };
+  return fmt::format("{:<20} p50 {:8.2f}  p99 {:8.2f}  p99.9 {:8.2f}  max {:9.2f} us\n", name, us(0), us(1),
+                     us(2), us(3));
+}
+
+}  // namespace
+
+nlohmann::ordered_json live_json(const BoardInfo& info, const BoardTick& tick, const HealthRecord& health,
+                                 const SlotsReply& slots) {
+  nlohmann::ordered_json result = {{"tick", tick.number},
+                                   {"t", tick.time_s},
+                                   {"mode", name_of(tick.mode)},
+                                   {"fault", name_of(tick.fault)},
+                                   {"holding", tick.holding},
+                                   {"confirmed", image_json(slots.confirmed, slots.confirmed_fingerprint)},
+                                   {"trial", image_json(slots.trial, slots.trial_fingerprint)},
+                                   {"trial_left_s", slots.trial_left_ms * 1e-3}};
+  for (std::size_t i = 0; i < info.axes.size(); ++i)
+    result["axes"][info.axes[i].name] = {{"position", tick.position[i]},
+                                         {"correction", tick.correction[i]},
+                                         {"sense", tick.sense[i]},
+                                         {"unit", info.axes[i].rotary ? "deg" : "mm"}};
+  result["inputs"] = nlohmann::ordered_json::object();
+  for (std::size_t i = 0; i < info.inputs.size(); ++i) result["inputs"][info.inputs[i]] = tick.input[i];
+  for (const Counter& counter : kCounters) result["health"][counter.name] = health.*counter.value;
+  result["latency_us"] = times_json(health.latency_ns);
+  result["execution_us"] = times_json(health.execution_ns);
+  return result;
+}
+
+std::string live_text(const BoardInfo& info, const BoardTick& tick, const HealthRecord& health,
+                      const SlotsReply& slots) {
+  std::string text = fmt::format("t {:.3f} s  mode {}{}  fault {}\n", tick.time_s, name_of(tick.mode),
+                                 tick.holding ? " (held)" : "", name_of(tick.fault));
+  auto out = std::back_inserter(text);
+  if (slots.confirmed == kNoSlot && slots.trial == kNoSlot) fmt::format_to(out, "image none\n");
+  if (slots.confirmed != kNoSlot)
+    fmt::format_to(out, "image {:016x} confirmed\n", slots.confirmed_fingerprint);
+  if (slots.trial != kNoSlot)
+    fmt::format_to(out, "image {:016x} on trial, {:.0f} s left\n", slots.trial_fingerprint,
+                   slots.trial_left_ms * 1e-3);
+  fmt::format_to(out, "{:<12} {:>16} {:>16}\n", "axis", "position", "correction");
+  for (std::size_t i = 0; i < info.axes.size(); ++i)
+    fmt::format_to(out, "{:<12} {:>13.4f} {:<3}{:>12.3f} {}\n", info.axes[i].name, tick.position[i],
+                   info.axes[i].rotary ? "deg" : "mm", 1e3 * tick.correction[i],
+                   info.axes[i].rotary ? "mdeg" : "um");
+  for (std::size_t i = 0; i < info.inputs.size(); ++i)
+    fmt::format_to(out, "{:<12} {:>13.4f}\n", info.inputs[i], tick.input[i]);
+  text += times_text("wake-up latency", health.latency_ns) +
+          times_text("execution of a tick", health.execution_ns);
+  std::string counted;
+  for (const Counter& counter : kCounters)
+    if (health.*counter.value != 0)
+      counted += fmt::format("{}{} {}", counted.empty() ? "" : ", ", counter.name, health.*counter.value);
+  return text + counted + "\n";
+}
+
+}  // namespace vernier

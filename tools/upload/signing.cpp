@@ -1,0 +1,98 @@
+#include "tools/upload/signing.h"
+
+#include <sodium.h>
+#include <sys/stat.h>
+
+#include <cstring>
+#include <sstream>
+
+#include "tables/image_format.h"
+#include "tools/model/error.h"
+#include "tools/model/files.h"
+
+namespace vernier {
+namespace {
+
+constexpr const char* kSecretTitle = "vernier board secret key";
+constexpr const char* kPublicTitle = "vernier board public key";
+
+std::string base64(const std::uint8_t* bytes, std::size_t size) {
+  std::string text(sodium_base64_ENCODED_LEN(size, sodium_base64_VARIANT_ORIGINAL), '\0');
+  sodium_bin2base64(text.data(), text.size(), bytes, size, sodium_base64_VARIANT_ORIGINAL);
+  text.resize(std::strlen(text.c_str()));
+  return text;
+}
+
+void start_sodium() {
+  if (sodium_init() < 0) throw std::runtime_error("the cryptographic library does not start");
+}
+
+}  // namespace
+
+std::array<std::uint8_t, kPublicKeyBytes> SigningKey::public_part() const {
+  std::array<std::uint8_t, kPublicKeyBytes> key{};
+  crypto_sign_ed25519_sk_to_pk(key.data(), secret.data());
+  return key;
+}
+
+SigningKey new_key() {
+  start_sodium();
+  SigningKey key{};
+  std::array<std::uint8_t, kPublicKeyBytes> unused{};
+  crypto_sign_keypair(unused.data(), key.secret.data());
+  return key;
+}
+
+std::string secret_key_text(const SigningKey& key) {
+  return std::string(kSecretTitle) + "\n" + base64(key.secret.data(), key.secret.size()) + "\n";
+}
+
+std::string public_key_text(const SigningKey& key) {
+  const auto part = key.public_part();
+  return std::string(kPublicTitle) + "\n" + base64(part.data(), part.size()) + "\n";
+}
+
+SigningKey read_secret_key(const std::string& path) {
+  start_sodium();
+  std::istringstream text(read_file(path));
+  struct stat info {};
+  if (::stat(path.c_str(), &info) == 0 && (info.st_mode & (S_IRWXG | S_IRWXO)) != 0)
+    throw InputError(path + ": others may read this secret key: chmod 600 it");
+  std::string title, line;
+  std::getline(text, title);
+  std::getline(text, line);
+  SigningKey key{};
+  std::size_t size = 0;
+  if (title != kSecretTitle ||
+      sodium_base642bin(key.secret.data(), key.secret.size(), line.c_str(), line.size(), nullptr, &size,
+                        nullptr, sodium_base64_VARIANT_ORIGINAL) != 0 ||
+      size != key.secret.size())
+    throw InputError(path + ":1: not a secret key of vernier keys");
+  return key;
+}
+
+std::vector<std::uint8_t> make_upload(const std::vector<std::uint8_t>& image, const SigningKey& key,
+                                      std::uint64_t issued, std::uint64_t replaces) {
+  start_sodium();
+  ImageHeader inside;
+  std::memcpy(&inside, image.data(), sizeof(inside));
+  UploadHeader header{};
+  std::memcpy(header.magic, kUploadMagic, sizeof(header.magic));
+  header.header_bytes = sizeof(UploadHeader);
+  header.image_bytes = static_cast<std::uint32_t>(image.size());
+  header.issued = issued;
+  header.replaces = replaces;
+  header.fingerprint = inside.fingerprint;
+  std::memcpy(header.key, key.public_part().data(), sizeof(header.key));
+  crypto_sign_state state;
+  crypto_sign_init(&state);
+  crypto_sign_update(&state, reinterpret_cast<const std::uint8_t*>(&header), kSignedHeaderBytes);
+  crypto_sign_update(&state, image.data(), image.size());
+  crypto_sign_final_create(&state, header.signature, nullptr, key.secret.data());
+  std::vector<std::uint8_t> upload(sizeof(header) + image.size());
+  std::memcpy(upload.data(), &header, sizeof(header));
+  std::memcpy(upload.data() + sizeof(header), image.data(), image.size());
+  return upload;
+}
+
+}  // namespace vernier

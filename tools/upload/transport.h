@@ -1,0 +1,23 @@
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "tools/upload/url.h"
+
+namespace vernier {
+
+/// Carries one request to a board and its reply back (firmware/link_format.h).
+class Transport {
+ public:
+  virtual ~Transport() = default;
+  /// request: at most kMaxRequestBytes. Throws InputError where no reply comes; the transport can be used
+  /// again.
+  virtual std::vector<std::uint8_t> ask(const std::vector<std::uint8_t>& request) = 0;
+};
+
+/// Opens the way to a board. Throws InputError naming the address. tool.
+std::unique_ptr<Transport> open_transport(const BoardUrl& url);
+
+}  // namespace vernier

@@ -1,0 +1,23 @@
+#pragma once
+#include <cstdint>
+#include <map>
+#include <string>
+
+namespace vernier {
+
+/// Where a board is: `tcp://HOST[:PORT]`, `rtu://DEVICE[?baud=..&parity=..&unit=..]`,
+/// `can://INTERFACE?send=ID&receive=ID`.
+struct BoardUrl {
+  std::string scheme;  // "tcp", "rtu", "can"
+  std::string place;   // host, device or interface
+  int port = 1502;
+  std::map<std::string, std::string> options;
+
+  /// An option as a number (0x for hexadecimal); `otherwise` where it is absent. Throws InputError.
+  std::uint32_t number(const std::string& name, std::uint32_t otherwise) const;
+};
+
+/// Throws InputError naming the word. `HOST:PORT` alone is TCP. tool.
+BoardUrl parse_url(const std::string& text);
+
+}  // namespace vernier
