@@ -4,6 +4,7 @@
 
 #include "tools/cli/circles.h"
 #include "tools/cli/results.h"
+#include "tools/model/optional_json.h"
 
 namespace vernier {
 namespace {
@@ -134,19 +135,17 @@ ordered_json circle_summary(const Circle& circle, const Measurement& m) {
       {"nominal_radius_mm", circle.nominal_radius_mm},
       {"runs", ordered_json::array()}};
   for (const CircularPassResult& pass : result.passes)
-    json["runs"].push_back(
-        {{"label", pass.label},
-         {"direction", pass.direction},
-         {"centre_mm", {pass.centre_a_mm, pass.centre_b_mm}},
-         {"radius_mm", pass.radius_mm},
-         {"feed_mm_min", pass.feed_mm_min ? ordered_json(*pass.feed_mm_min) : ordered_json(nullptr)},
-         {"circular_deviation_um", pass.circular_deviation_um},
-         {"max_radial_um", pass.max_radial_um},
-         {"max_radial_deg", pass.max_deg},
-         {"min_radial_um", pass.min_radial_um},
-         {"min_radial_deg", pass.min_deg}});
-  json["bidirectional_um"] =
-      result.bidirectional_um ? ordered_json(*result.bidirectional_um) : ordered_json(nullptr);
+    json["runs"].push_back({{"label", pass.label},
+                            {"direction", pass.direction},
+                            {"centre_mm", {pass.centre_a_mm, pass.centre_b_mm}},
+                            {"radius_mm", pass.radius_mm},
+                            {"feed_mm_min", or_null(pass.feed_mm_min)},
+                            {"circular_deviation_um", pass.circular_deviation_um},
+                            {"max_radial_um", pass.max_radial_um},
+                            {"max_radial_deg", pass.max_deg},
+                            {"min_radial_um", pass.min_radial_um},
+                            {"min_radial_deg", pass.min_deg}});
+  json["bidirectional_um"] = or_null(result.bidirectional_um);
   json["hysteresis_um"] = hysteresis(result.hysteresis, false);
   json["hysteresis_deg"] = hysteresis(result.hysteresis, true);
   json["hysteresis_by_angle_um"] = hysteresis(result.hysteresis_by_angle, false);

@@ -3,16 +3,15 @@
 #include "tools/cli/results.h"
 #include "tools/diagnose/candidate.h"
 #include "tools/diagnose/structure_json.h"
+#include "tools/model/optional_json.h"
 
 namespace vernier {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json optional(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
-
 Json parameter_json(const ParameterEstimate& item) {
-  return {{"name", item.name}, {"value", item.value}, {"std", optional(item.std)}, {"unit", item.unit}};
+  return {{"name", item.name}, {"value", item.value}, {"std", or_null(item.std)}, {"unit", item.unit}};
 }
 
 std::string term_text(const Candidate& candidate) {
@@ -38,9 +37,9 @@ Json candidate_json(const CandidateFinding& finding, const Machine& machine) {
   json["term"] = term_text(finding.candidate);
   json["parameters"] = Json::array();
   for (const ParameterEstimate& item : finding.parameters) json["parameters"].push_back(parameter_json(item));
-  json["rms_after_um"] = optional(finding.rms_after_um);
-  json["check_rms_before_um"] = optional(finding.check_rms_before_um);
-  json["check_rms_after_um"] = optional(finding.check_rms_after_um);
+  json["rms_after_um"] = or_null(finding.rms_after_um);
+  json["check_rms_before_um"] = or_null(finding.check_rms_before_um);
+  json["check_rms_after_um"] = or_null(finding.check_rms_after_um);
   json["share"] = finding.share;
   json["p_value"] = finding.p_value;
   json["score"] = finding.score;
@@ -59,9 +58,9 @@ Json diagnosis_json(const Diagnosis& diagnosis, const Machine& machine, const Me
   Json json;
   json["verdict"] = verdict_name(diagnosis.verdict);
   json["explanation"] = diagnosis.explanation;
-  json["rms_um"] = optional(diagnosis.base.after.rms_um);
-  json["check_rms_um"] = optional(diagnosis.base.check.rms_um);
-  json["noise_um"] = optional(diagnosis.base.noise_um);
+  json["rms_um"] = or_null(diagnosis.base.after.rms_um);
+  json["check_rms_um"] = or_null(diagnosis.base.check.rms_um);
+  json["noise_um"] = or_null(diagnosis.base.noise_um);
   json["n_obs"] = diagnosis.base.before.count;
   json["n_params"] = diagnosis.base.parameters.size();
   json["n_excluded"] = measurement.excluded;
@@ -78,8 +77,8 @@ Json diagnosis_json(const Diagnosis& diagnosis, const Machine& machine, const Me
         {{"effect", given ? Json(nullptr) : Json(step.effect)},
          {"add", given ? Json(nullptr) : Json(step.add)},
          {"label", given ? "the model as given" : step.label},
-         {"rms_um", optional(step.rms_um)},
-         {"check_rms_um", optional(step.check_rms_um)},
+         {"rms_um", or_null(step.rms_um)},
+         {"check_rms_um", or_null(step.check_rms_um)},
          {"confirmed", judged ? Json(*step.check_rms_um <= *check_before) : Json(nullptr)},
          {"chi2_per_dof", step.chi_square_per_freedom}});
     check_before = step.check_rms_um;

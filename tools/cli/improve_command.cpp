@@ -10,6 +10,7 @@
 #include "tools/compile/compile.h"
 #include "tools/diagnose/diagnosis.h"
 #include "tools/model/error.h"
+#include "tools/model/optional_json.h"
 #include "tools/report/report.h"
 #include "tools/simulate/replay.h"
 
@@ -57,8 +58,7 @@ Json replayed(const Rung& rung, const Measurement& rows, const Machine& from) {
     const auto image = load_image(compiled.image, machine);
     const ReplayResult r = replay(*image, m, {});
     const auto rms = [&](const Eigen::VectorXd& residual, bool check) {
-      const auto value = role_statistics(m, residual, check).rms_um;
-      return value ? Json(*value) : Json(nullptr);
+      return or_null(role_statistics(m, residual, check).rms_um);
     };
     return {{"label", rung.label},
             {"ticks", r.ticks},
@@ -149,8 +149,8 @@ class Improver {
                    {"add", rung.add.empty() ? Json(nullptr) : Json(rung.add)},
                    {"label", rung.label},
                    {"machine", rung.file}};
-      step["rms_um"] = rung.rms_um ? Json(*rung.rms_um) : Json(nullptr);
-      step["check_rms_um"] = rung.check_rms_um ? Json(*rung.check_rms_um) : Json(nullptr);
+      step["rms_um"] = or_null(rung.rms_um);
+      step["check_rms_um"] = or_null(rung.check_rms_um);
       json["ladder"].push_back(step);
     }
     simulate(json);

@@ -5,6 +5,7 @@
 #include "tools/cli/command.h"
 #include "tools/cli/replay_report.h"
 #include "tools/model/error.h"
+#include "tools/model/optional_json.h"
 #include "tools/report/report.h"
 #include "tools/simulate/replay.h"
 
@@ -19,9 +20,6 @@ struct Arguments {
 };
 
 nlohmann::ordered_json role_json(const RoleStatistics& role) {
-  const auto or_null = [](const std::optional<double>& v) {
-    return v ? nlohmann::ordered_json(*v) : nlohmann::ordered_json(nullptr);
-  };
   return {{"rms_um", or_null(role.rms_um)},
           {"max_um", or_null(role.max_um)},
           {"rms_urad", or_null(role.rms_urad)},

@@ -4,15 +4,12 @@
 
 #include "tools/cli/results.h"
 #include "tools/fit/fit.h"
+#include "tools/model/optional_json.h"
 
 namespace vernier {
 namespace {
 
 using nlohmann::ordered_json;
-
-ordered_json or_null(const std::optional<double>& value) {
-  return value ? ordered_json(*value) : ordered_json(nullptr);
-}
 
 ordered_json rung(const std::string& label, const Measurement& m, const Eigen::VectorXd& residual) {
   return {{"label", label},

@@ -1,4 +1,5 @@
 #include "tools/cli/results.h"
+#include "tools/model/optional_json.h"
 
 #include <fmt/format.h>
 
@@ -9,10 +10,6 @@ namespace vernier {
 namespace {
 
 using nlohmann::ordered_json;
-
-ordered_json or_null(const std::optional<double>& value) {
-  return value ? ordered_json(*value) : ordered_json(nullptr);
-}
 
 std::size_t observations_of_fit_rows(const Measurement& m) {
   std::size_t count = 0;

@@ -1,14 +1,10 @@
 #include "tools/diagnose/structure_json.h"
+#include "tools/model/optional_json.h"
 
 namespace vernier {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-template <class T>
-Json or_null(const std::optional<T>& value) {
-  return value ? Json(*value) : Json(nullptr);
-}
 
 Json name_or_null(const std::string& name) { return name.empty() ? Json(nullptr) : Json(name); }
 

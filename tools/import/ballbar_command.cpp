@@ -10,16 +10,12 @@
 #include "tools/import/kinds.h"
 #include "tools/import/printed_results.h"
 #include "tools/import/repair_report.h"
+#include "tools/model/optional_json.h"
 
 namespace vernier {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-template <class T>
-Json optional_json(const std::optional<T>& value) {
-  return value ? Json(*value) : Json(nullptr);
-}
 
 Json hysteresis_json(const std::optional<Hysteresis>& hysteresis) {
   return hysteresis ? Json{{"um", hysteresis->um}, {"deg", hysteresis->deg}} : Json(nullptr);
@@ -39,14 +35,14 @@ Json circle_json(const BallbarFile& file, const CircularResult& circle) {
                     {"max_radial_deg", pass.max_deg},
                     {"min_radial_um", pass.min_radial_um},
                     {"min_radial_deg", pass.min_deg},
-                    {"feed_mm_min", optional_json(pass.feed_mm_min)}});
+                    {"feed_mm_min", or_null(pass.feed_mm_min)}});
   }
   return {{"file", file.path},
           {"plane", {file.axis_a, file.axis_b}},
           {"nominal_radius_mm", circle.nominal_radius_mm},
           {"runs", runs},
-          {"bidirectional_um", optional_json(circle.bidirectional_um)},
-          {"non_roundness_um", optional_json(circle.non_roundness_um)},
+          {"bidirectional_um", or_null(circle.bidirectional_um)},
+          {"non_roundness_um", or_null(circle.non_roundness_um)},
           {"hysteresis", hysteresis_json(circle.hysteresis)},
           {"hysteresis_by_angle", hysteresis_json(circle.hysteresis_by_angle)}};
 }

@@ -1,4 +1,5 @@
 #include "tools/import/repair_report.h"
+#include "tools/model/optional_json.h"
 
 #include <fmt/format.h>
 
@@ -8,11 +9,6 @@ namespace vernier {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-template <class T>
-Json optional_json(const std::optional<T>& value) {
-  return value ? Json(*value) : Json(nullptr);
-}
 
 Json agreement_json(const PassAgreement& a) {
   return {{"difference_um", a.difference_um},
@@ -37,8 +33,8 @@ Json run_json(const RunRepair& run) {
           {"turn_uncertainty", run.turn_uncertainty},
           {"gaps", gaps},
           {"start_shift_deg", run.start_shift_deg},
-          {"start_uncertainty_deg", optional_json(run.start_uncertainty_deg)},
-          {"start_correlation", optional_json(run.start_correlation)},
+          {"start_uncertainty_deg", or_null(run.start_uncertainty_deg)},
+          {"start_correlation", or_null(run.start_correlation)},
           {"start_from", run.start_from},
           {"feed_in_samples", run.feed_in},
           {"before", agreement_json(run.before)},
@@ -51,9 +47,9 @@ Json error_json(const RepeatingError& error) {
     steps.push_back({{"stations", step.stations},
                      {"left_out_um", step.left_out_um},
                      {"fit_um", step.fit_um},
-                     {"other_turn_um", optional_json(step.other_turn_um)},
-                     {"other_turn_usual_um", optional_json(step.other_turn_usual_um)},
-                     {"other_direction_um", optional_json(step.other_direction_um)}});
+                     {"other_turn_um", or_null(step.other_turn_um)},
+                     {"other_turn_usual_um", or_null(step.other_turn_usual_um)},
+                     {"other_direction_um", or_null(step.other_direction_um)}});
   }
   return {{"run", error.run},
           {"fit_samples", error.fit_samples},

@@ -1,0 +1,13 @@
+#pragma once
+#include <nlohmann/json.hpp>
+#include <optional>
+
+namespace vernier {
+
+/// The value, or JSON's null where there is none. tool.
+template <class T>
+nlohmann::ordered_json or_null(const std::optional<T>& value) {
+  return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
+}
+
+}  // namespace vernier
