@@ -3,8 +3,6 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 #include "tools/diagnose/scan.h"
 
@@ -22,15 +20,21 @@ std::vector<Eigen::Index> rows_of(const std::vector<int>& blocks, int block) {
   return rows;
 }
 
+/// How many directions the other runs do not determine. `information`: theirs of each direction, increasing.
+Eigen::Index lost_directions(const Eigen::VectorXd& information) {
+  Eigen::Index lost = 0;
+  while (lost < information.size() && information[lost] < kDetermined) ++lost;
+  return lost;
+}
+
 /// What of the model's free parameters only the rows left out determine (their own set-up), as orthonormal
 /// columns over these rows: it is fitted to them. New columns are not, they must come from the other rows.
 Eigen::MatrixXd fitted_to_block_alone(const Eigen::MatrixXd& model_rows) {
   const Eigen::MatrixXd normal =
       Eigen::MatrixXd::Identity(model_rows.cols(), model_rows.cols()) - model_rows.transpose() * model_rows;
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(normal);
-  Eigen::Index lost = 0;
-  while (lost < model_rows.cols() && eigen.eigenvalues()[lost] < kDetermined) ++lost;
-  return orthonormal(model_rows * eigen.eigenvectors().leftCols(lost), 1e-6, nullptr);
+  return orthonormal(model_rows * eigen.eigenvectors().leftCols(lost_directions(eigen.eigenvalues())), 1e-6,
+                     nullptr);
 }
 
 }  // namespace
@@ -64,8 +68,7 @@ HeldOut leave_runs_out(const Evidence& evidence, const Eigen::MatrixXd& columns,
         Eigen::MatrixXd::Identity(basis.cols(), basis.cols()) - left_out.transpose() * left_out;
     const Eigen::VectorXd moment = all - left_out.transpose() * r_out;
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(normal);
-    Eigen::Index lost = 0;
-    while (lost < basis.cols() && eigen.eigenvalues()[lost] < kDetermined) ++lost;
+    const Eigen::Index lost = lost_directions(eigen.eigenvalues());
     const Eigen::Index seen = basis.cols() - lost;
     const Eigen::MatrixXd v = eigen.eigenvectors().rightCols(seen);
     const Eigen::VectorXd theta = v * (v.transpose() * moment).cwiseQuotient(eigen.eigenvalues().tail(seen));
@@ -78,34 +81,6 @@ HeldOut leave_runs_out(const Evidence& evidence, const Eigen::MatrixXd& columns,
       result.agreement.push_back(part.dot(whole) / std::max(part.norm() * whole.norm(), 1e-300));
   }
   return result;
-}
-
-double chi_square_tail(double value, double freedom) {
-  if (!(value > 0)) return 1;
-  const double a = freedom / 2, x = value / 2;
-  const double front = std::exp(-x + a * std::log(x) - std::lgamma(a));
-  constexpr int kMost = 10000;
-  constexpr double kSmall = 1e-15;
-  if (x < a + 1) {  // series
-    double term = 1 / a, sum = term;
-    for (int k = 1; k < kMost && term > kSmall * sum; ++k) {
-      term *= x / (a + k);
-      sum += term;
-    }
-    return std::max(0.0, 1 - sum * front);
-  }
-  double b = x + 1 - a, c = 1e300, d = 1 / b, h = d;  // continued fraction, Lentz
-  for (int i = 1; i < kMost; ++i) {
-    const double an = -i * (i - a);
-    b += 2;
-    d = an * d + b;
-    d = std::abs(d) < 1e-300 ? 1e300 : 1 / d;
-    c = b + an / c;
-    if (std::abs(c) < 1e-300) c = 1e-300;
-    h *= d * c;
-    if (std::abs(d * c - 1) < kSmall) break;
-  }
-  return front * h;
 }
 
 }  // namespace vernier

@@ -19,8 +19,4 @@ struct HeldOut {
 HeldOut leave_runs_out(const Evidence& evidence, const Eigen::MatrixXd& columns, Eigen::Index watched_first,
                        Eigen::Index watched_count, bool within_runs = false);
 
-/// Probability that chi^2 with `freedom` degrees of freedom exceeds `value` (Numerical Recipes' incomplete
-/// gamma function is Abramowitz and Stegun 6.5).
-double chi_square_tail(double value, double freedom);
-
 }  // namespace vernier

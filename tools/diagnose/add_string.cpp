@@ -62,7 +62,7 @@ std::string joined(const std::vector<std::string>& list) {
 class AddReader {
  public:
   AddReader(const std::string& text, const Machine& machine, const std::vector<Effect>& effects)
-      : text_(text), machine_(machine), effects_(effects) {}
+      : text_(text), machine_(machine), axes_(machine), effects_(effects) {}
 
   Choice read() {
     split();
@@ -173,7 +173,7 @@ class AddReader {
   void read_place() {
     transform_ = named_transform();
     dof_ = take("dof");
-    if (!transform_ && dof_ && choice_.axis) transform_ = own_place(machine_, *choice_.axis);
+    if (!transform_ && dof_ && choice_.axis) transform_ = axes_.own(*choice_.axis);
     if (!transform_ && dof_) {
       const std::vector<DofPlace> base = base_places(machine_);
       if (!base.empty()) transform_ = base[0];
@@ -188,7 +188,7 @@ class AddReader {
           choice_.place = DofPlace{transform_->workpiece, transform_->transform, d};
       if (!choice_.place) fail(*dof_, "not a degree of freedom of this transform");
     }
-    const auto driver = choice_.axis ? std::nullopt : axis_of(machine_, *transform_);
+    const auto driver = choice_.axis ? std::nullopt : axes_.axis_of(*transform_);
     default_axis_ = driver;
   }
 
@@ -203,7 +203,7 @@ class AddReader {
     if (!choice_.place) return true;
     if (!acts_at_one(form)) return false;
     const bool angle = is_angle(machine_, *choice_.place);
-    const bool at_own = axis && is_own_place(machine_, *axis, *choice_.place);
+    const bool at_own = axis && axes_.is_own(*axis, *choice_.place);
     switch (form.place) {
       case PlaceRule::kOwn:
       case PlaceRule::kJoint:
@@ -252,7 +252,7 @@ class AddReader {
     }
     if (choice_.place) return;
     const bool own = choice_.form->place == PlaceRule::kOwn || choice_.form->place == PlaceRule::kJoint;
-    if (own && choice_.axis) choice_.place = own_place(machine_, *choice_.axis);
+    if (own && choice_.axis) choice_.place = axes_.own(*choice_.axis);
     if (!choice_.place) fail(id_, "needs branch, transform and dof: where does it act?");
   }
 
@@ -297,6 +297,7 @@ class AddReader {
 
   const std::string& text_;
   const Machine& machine_;
+  AxisPlaces axes_;
   const std::vector<Effect>& effects_;
   std::string id_;
   std::map<std::string, std::string> values_;

@@ -62,7 +62,8 @@ std::string with_names(const std::string& text, const Change& change) {
 /// Works one choice out into terms and unknowns.
 class Maker {
  public:
-  Maker(const Machine& machine, const Choice& choice) : machine_(machine), choice_(choice) {
+  Maker(const Machine& machine, const AxisPlaces& axes, const Choice& choice)
+      : machine_(machine), axes_(axes), choice_(choice) {
     for (const Static& item : machine.statics) taken_.insert(item.name);
     for (const Axis& item : machine.axes) taken_.insert(item.name);
     for (const Input& item : machine.inputs) taken_.insert(item.name);
@@ -105,8 +106,7 @@ class Maker {
     switch (choice_.effect == &custom_effect() ? PlaceRule::kOwn : choice_.form->place) {
       case PlaceRule::kEachAxis:
         for (std::size_t axis = 0; axis < machine_.axes.size(); ++axis)
-          if (const auto own = own_place(machine_, axis))
-            add_term(*own, form, axis, own_sense(machine_, axis) < 0);
+          if (const auto& own = axes_.own(axis)) add_term(*own, form, axis, axes_.sense(axis) < 0);
         break;
       case PlaceRule::kPair:
         add_pair(form);
@@ -132,10 +132,10 @@ class Maker {
     const auto bar = form.find('|');
     if (bar == std::string::npos) missing("\"|\" in the term of a pair");
     if (!choice_.axis || !choice_.axis2) missing("axis or axis2");
-    const auto first = own_place(machine_, *choice_.axis), second = own_place(machine_, *choice_.axis2);
+    const auto &first = axes_.own(*choice_.axis), &second = axes_.own(*choice_.axis2);
     if (!first || !second) missing("the degree of freedom of an axis");
-    add_term(*first, form.substr(0, bar), choice_.axis, own_sense(machine_, *choice_.axis) < 0);
-    add_term(*second, form.substr(bar + 1), choice_.axis2, own_sense(machine_, *choice_.axis2) < 0);
+    add_term(*first, form.substr(0, bar), choice_.axis, axes_.sense(*choice_.axis) < 0);
+    add_term(*second, form.substr(bar + 1), choice_.axis2, axes_.sense(*choice_.axis2) < 0);
   }
 
   void add_normal(const std::string& form) {
@@ -317,7 +317,7 @@ class Maker {
     if (choice_.axis) stem += "_" + machine_.axes[*choice_.axis].name;
     for (const std::string& input : choice_.inputs) stem += "_" + input;
     if (choice_.place) {
-      if (!choice_.axis || !is_own_place(machine_, *choice_.axis, *choice_.place))
+      if (!choice_.axis || !axes_.is_own(*choice_.axis, *choice_.place))
         stem += fmt::format("_{}{}", dof_name(machine_, *choice_.place),
                             transform_at(machine_, *choice_.place).n);
     }
@@ -338,6 +338,7 @@ class Maker {
   }
 
   const Machine& machine_;
+  const AxisPlaces& axes_;
   Choice choice_;
   Candidate result_;
   std::set<std::string> taken_;
@@ -360,8 +361,12 @@ const Effect& custom_effect() {
   return effect;
 }
 
+Candidate make_candidate(const Machine& machine, const AxisPlaces& axes, const Choice& choice) {
+  return Maker(machine, axes, choice).make();
+}
+
 Candidate make_candidate(const Machine& machine, const Choice& choice) {
-  return Maker(machine, choice).make();
+  return make_candidate(machine, AxisPlaces(machine), choice);
 }
 
 }  // namespace vernier

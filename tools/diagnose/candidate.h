@@ -21,18 +21,30 @@ const Transform& transform_at(const Machine& machine, const DofPlace& place);
 const char* dof_name(const Machine& machine, const DofPlace& place);
 /// Is the degree of freedom an angle (deg), no length (mm)?
 bool is_angle(const Machine& machine, const DofPlace& place);
-/// The degree of freedom that an axis moves in the nominal chain; nothing for an axis that moves none.
-std::optional<DofPlace> own_place(const Machine& machine, std::size_t axis);
-/// +1 or -1: sense in which its own degree of freedom follows an axis (-1 for Y="-Y"); 0 for an axis without.
-double own_sense(const Machine& machine, std::size_t axis);
-bool is_own_place(const Machine& machine, std::size_t axis, const DofPlace& place);
-/// The axis that moves a transform (the first one where there are several).
-std::optional<std::size_t> axis_of(const Machine& machine, const DofPlace& place);
+/// Which degree of freedom every axis moves in the nominal chain. Worked out once for a machine: that means
+/// to evaluate its chain at every place. tool.
+class AxisPlaces {
+ public:
+  explicit AxisPlaces(const Machine& machine);
+
+  /// Nothing for an axis that moves none.
+  const std::optional<DofPlace>& own(std::size_t axis) const { return own_.at(axis); }
+  /// +1 or -1: sense in which its own degree of freedom follows an axis (-1 for Y="-Y"); 0 for an axis
+  /// without.
+  double sense(std::size_t axis) const { return sense_.at(axis); }
+  bool is_own(std::size_t axis, const DofPlace& place) const { return own(axis) == place; }
+  /// The axis that moves a transform (the first one where there are several).
+  std::optional<std::size_t> axis_of(const DofPlace& place) const;
+
+ private:
+  std::vector<std::optional<DofPlace>> own_;
+  std::vector<double> sense_;
+};
 /// The lengths X Y Z that shift the whole measuring frame, where the chain has such a transform: the first
 /// one of a chain without workpiece branch, the last one of a workpiece branch that does not turn there.
 std::vector<DofPlace> base_places(const Machine& machine);
-/// The degrees of freedom of the transform that carries everything: the first one of a chain without
-/// workpiece branch, else the last one of that branch.
+/// The degrees of freedom of the transforms that carry everything: the first one of the tool branch and the
+/// last one of the workpiece branch, each where the chain has that branch.
 std::vector<DofPlace> carrier_places(const Machine& machine);
 /// All degrees of freedom, tool branch first.
 std::vector<DofPlace> all_places(const Machine& machine);
@@ -76,8 +88,9 @@ struct Candidate {
   std::string label;  // for people: "backlash of X"
 };
 
-/// Fills the placeholders and names the unknowns so that they clash with nothing in the machine. Throws
-/// InputError where the choice leaves something open that the form needs. tool.
+/// Fills the placeholders and names the unknowns so that they clash with nothing in the machine. `axes`: of
+/// the same machine. Throws InputError where the choice leaves something open that the form needs. tool.
+Candidate make_candidate(const Machine& machine, const AxisPlaces& axes, const Choice& choice);
 Candidate make_candidate(const Machine& machine, const Choice& choice);
 
 /// The `add` string of a choice, and back (FORMATS section 3). What the string leaves open is filled with the

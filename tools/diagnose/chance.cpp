@@ -73,6 +73,8 @@ double log_chi_square_tail(double x, double k) {
   return front + std::log(h);
 }
 
+double chi_square_tail(double x, double k) { return std::exp(log_chi_square_tail(x, k)); }
+
 double log_correlation_tail(double r, double pairs) {
   const double freedom = pairs - 2;
   if (freedom <= 0) return 0;

@@ -12,6 +12,9 @@ double log_f_tail(double f, double d1, double d2);
 /// DLMF 8.2, 8.9.
 double log_chi_square_tail(double x, double k);
 
+/// The same as a probability; 1 for x <= 0, 0 below the smallest double. tool.
+double chi_square_tail(double x, double k);
+
 /// log P(R >= r) of the correlation coefficient of `pairs` independent pairs of normal numbers (one-sided).
 /// tool.
 double log_correlation_tail(double r, double pairs);

@@ -173,6 +173,7 @@ class Diagnoser {
 
   void list_candidates() {
     const std::vector<std::size_t> items = shown_items();
+    const AxisPlaces axes(machine_);
     for (std::size_t i = 0; i < items.size(); ++i) {
       options_.progress(0.9 + 0.1 * static_cast<double>(i) / static_cast<double>(items.size()),
                         "fitting the candidates");
@@ -184,7 +185,7 @@ class Diagnoser {
       finding.add = add_string_of(item);
       const Choice& choice = finding.candidate.choice;
       finding.axis = choice.axis;
-      if (!finding.axis && choice.place) finding.axis = axis_of(machine_, *choice.place);
+      if (!finding.axis && choice.place) finding.axis = axes.axis_of(*choice.place);
       for (const CandidateUnknown& unknown : finding.candidate.unknowns)
         for (const ParameterEstimate& estimate : fitted.fit.estimates)
           if (estimate.name == unknown.name) finding.parameters.push_back(estimate);
@@ -203,10 +204,9 @@ class Diagnoser {
 
   /// Does the fit at the end of the ladder leave noise? By chi^2 where the uncertainty is given; where chi^2
   /// is above it by so little that the uncertainty itself may be in doubt, and where none is given, by
-  /// whether what is left has any structure.
-  bool down_to_noise() {
+  /// whether what is left has any structure. `rows`: for the machine at that end.
+  bool down_to_noise(const Measurement& rows) {
     const Machine& machine = result_.end.machine;
-    const Measurement rows = rebind(measurement_, base_.machine, machine);
     StructureOptions structure;
     structure.fitted_parameters = static_cast<std::size_t>(result_.end.observability.rank);
     result_.left = failure_picture(machine, rows, result_.end.residual, structure);
@@ -229,9 +229,9 @@ class Diagnoser {
       result_.time_base = clock;
       return;
     }
-    const bool noise_is_left = down_to_noise();
+    const Measurement rows = rebind(measurement_, base_.machine, result_.end.machine);
+    const bool noise_is_left = down_to_noise(rows);
     if (!noise_is_left) {
-      const Measurement rows = rebind(measurement_, base_.machine, result_.end.machine);
       if (const auto sentence = outliers_to_blame(result_.end.machine, rows, result_.end.residual)) {
         result_.verdict = Verdict::kInstrument;
         result_.explanation = *sentence;
@@ -258,7 +258,8 @@ class Diagnoser {
     if (!noise_is_left) {
       result_.verdict = Verdict::kUnexplained;
       result_.explanation =
-          "Effects of the catalogue lower the residual, and it does not come down to the noise.";
+          "Effects of the catalogue lower the residual, and it does not come down to the noise." +
+          where_left();
     } else if (!rivals.close.empty()) {
       result_.verdict = Verdict::kAmbiguous;
       result_.explanation = fmt::format("One of {} causes that explain these data alike, {} first.",

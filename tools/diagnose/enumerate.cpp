@@ -4,14 +4,12 @@
 #include <cmath>
 #include <set>
 
+#include "tools/diagnose/probe.h"
 #include "tools/model/chain_rows.h"
-#include "tools/model/xml_text.h"
 
 namespace vernier {
 namespace {
 
-/// Two degrees of freedom whose effects on all observations differ by less than this are one.
-constexpr double kSamePlace = 1e-7;
 constexpr double kShare = 0.3;  // of a unit vector along or across gravity
 
 bool contains(const std::string& text, std::string_view part) { return text.find(part) != std::string::npos; }
@@ -27,12 +25,12 @@ std::vector<double> logarithmic(double low, double high, std::size_t count) {
 class Enumerator {
  public:
   Enumerator(const Evidence& evidence, const std::vector<Effect>& effects)
-      : evidence_(evidence), machine_(evidence.machine()), effects_(effects) {
+      : evidence_(evidence), machine_(evidence.machine()), axes_(machine_), effects_(effects) {
     for (std::size_t axis = 0; axis < machine_.axes.size(); ++axis) {
-      own_.push_back(own_place(machine_, axis));
+      own_.push_back(axes_.own(axis));
       range_.push_back(evidence.range_of(axis));
     }
-    find_distinct();
+    distinct_ = distinct_places(evidence, true);
     find_sag();
     find_sums();
     has_normals_ =
@@ -63,39 +61,12 @@ class Enumerator {
     return evidence_.response(evidence_.index_of(place)).squaredNorm() > 0;
   }
 
-  void find_distinct() {
-    std::vector<Eigen::VectorXd> seen;
-    for (std::size_t i = 0; i < evidence_.places().size(); ++i) {
-      Eigen::VectorXd column = evidence_.response(i);
-      const double norm = column.norm();
-      if (norm == 0) continue;
-      column /= norm;
-      const bool angle = is_angle(machine_, evidence_.places()[i]);
-      bool known = false;
-      for (std::size_t k = 0; k < seen.size() && !known; ++k)
-        known = is_angle(machine_, distinct_[k]) == angle && 1 - std::abs(column.dot(seen[k])) < kSamePlace;
-      if (known) continue;
-      seen.push_back(column);
-      distinct_.push_back(evidence_.places()[i]);
-    }
-  }
-
   /// Which places turn about a horizontal axis or move along gravity, on average over some rows.
   void find_sag() {
     Machine probed = machine_;
     std::vector<char> active(probed.statics.size(), 0);
-    for (const DofPlace& place : evidence_.places()) {
-      Static probe;
-      probe.name = "probe";
-      probed.statics.push_back(probe);
-      active.push_back(1);
-      Expr symbol;
-      symbol.op = Op::kSymbol;
-      symbol.symbol = {SymbolKind::kStatic, probed.statics.size() - 1};
-      auto& branch = place.workpiece ? probed.workpiece : probed.tool;
-      ExprPtr& dof = branch[place.transform].dof[place.dof];
-      dof = make_node(Op::kAdd, {dof, std::make_shared<const Expr>(symbol)});
-    }
+    for (const DofPlace& place : evidence_.places()) add_probe(probed, place);
+    active.resize(probed.statics.size(), 1);
     active.resize(probed.statics.size() + 6 * probed.axes.size(), 0);
     Machine table = machine_;
     table.tool.clear();  // W^-1 alone: from the base frame to the workpiece
@@ -142,17 +113,8 @@ class Enumerator {
     const States zero = make_states(1, nominal.axes.size(), references);
     Machine probed = nominal;
     std::vector<char> active(probed.statics.size(), 0);
-    for (const std::size_t axis : rotary) {
-      Static probe;
-      probe.name = "probe";
-      probed.statics.push_back(probe);
-      active.push_back(1);
-      Expr symbol;
-      symbol.op = Op::kSymbol;
-      symbol.symbol = {SymbolKind::kStatic, probed.statics.size() - 1};
-      ExprPtr& dof = probed.tool[own_[axis]->transform].dof[own_[axis]->dof];
-      dof = make_node(Op::kAdd, {dof, std::make_shared<const Expr>(symbol)});
-    }
+    for (const std::size_t axis : rotary) add_probe(probed, *own_[axis]);
+    active.resize(probed.statics.size(), 1);
     active.resize(probed.statics.size() + 6 * probed.axes.size(), 0);
     std::vector<Eigen::Vector3d> direction(rotary.size(), Eigen::Vector3d::Zero());
     const ChainRows chain(probed, zero, active);
@@ -266,7 +228,6 @@ class Enumerator {
         if (answers(place) && admitted(place)) {
           Choice one = choice;
           one.place = place;
-          if (!one.axis) one.axis = std::nullopt;
           with_sum(one);
         }
     };
@@ -415,7 +376,7 @@ class Enumerator {
       if (grid.empty()) return;
       choice.start[rule.name] = grid[grid.size() / 2];
     }
-    item.candidate = make_candidate(machine_, choice);
+    item.candidate = make_candidate(machine_, axes_, choice);
     for (const CandidateUnknown& unknown : item.candidate.unknowns)
       if (unknown.kind != UnknownKind::kLinear)
         item.grid.push_back(grid_of(choice, *choice.effect->find_unknown(unknown.rule)));
@@ -435,6 +396,7 @@ class Enumerator {
 
   const Evidence& evidence_;
   const Machine& machine_;
+  AxisPlaces axes_;
   const std::vector<Effect>& effects_;
   std::vector<std::optional<DofPlace>> own_;
   std::vector<Evidence::Range> range_;
@@ -459,6 +421,27 @@ InputClass class_of_input(const Input& input) {
   if (has("load") || has("force") || has("mass") || has("torque") || has("weight")) return InputClass::kLoad;
   if (has("vib") || has("acc") || has("rms")) return InputClass::kFeature;
   return InputClass::kOther;
+}
+
+std::vector<DofPlace> distinct_places(const Evidence& evidence, bool angles_apart) {
+  constexpr double kSamePlace = 1e-7;
+  std::vector<DofPlace> places;
+  std::vector<Eigen::VectorXd> seen;
+  for (std::size_t i = 0; i < evidence.places().size(); ++i) {
+    Eigen::VectorXd column = evidence.response(i);
+    const double norm = column.norm();
+    if (norm == 0) continue;
+    column /= norm;
+    const auto is_kind = [&](const DofPlace& place) { return is_angle(evidence.machine(), place); };
+    bool known = false;
+    for (std::size_t k = 0; k < seen.size() && !known; ++k)
+      known = (!angles_apart || is_kind(places[k]) == is_kind(evidence.places()[i])) &&
+              1 - std::abs(column.dot(seen[k])) < kSamePlace;
+    if (known) continue;
+    seen.push_back(column);
+    places.push_back(evidence.places()[i]);
+  }
+  return places;
 }
 
 std::vector<ScannedCandidate> enumerate_candidates(const Evidence& evidence,

@@ -30,6 +30,10 @@ struct Product {
 std::vector<ScannedCandidate> enumerate_products(const Evidence& evidence,
                                                  const std::vector<Product>& extend);
 
+/// The degrees of freedom that the observations can tell apart: of those that do the same to all observations
+/// (all but 1e-7 of the direction) the first one. `angles_apart`: the first angle and the first length. tool.
+std::vector<DofPlace> distinct_places(const Evidence& evidence, bool angles_apart);
+
 /// What a logged column is, by its unit (by its name where it has none).
 enum class InputClass : std::uint8_t { kTemperature, kLoad, kFeature, kOther };
 InputClass class_of_input(const Input& input);

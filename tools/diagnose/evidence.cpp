@@ -6,6 +6,8 @@
 #include <cmath>
 #include <set>
 
+#include "tools/diagnose/probe.h"
+#include "tools/fit/solve.h"
 #include "tools/fit/statistics.h"
 #include "tools/model/evaluate.h"
 #include "tools/model/prediction.h"
@@ -37,20 +39,10 @@ Measurement thinned(const Measurement& all, std::size_t parameters) {
   return select_rows(all, keep);
 }
 
-std::vector<std::string> runs_with_fit_rows(const Measurement& m) {
-  std::vector<std::string> runs;
-  std::vector<char> seen(m.states.run_names.size(), 0);
-  for (const Observation& o : m.observations)
-    if (m.check[o.row] == 0) seen[m.states.run[o.row]] = 1;
-  for (std::size_t i = 0; i < seen.size(); ++i)
-    if (seen[i] != 0) runs.push_back(m.states.run_names[i]);
-  return runs;
-}
-
 }  // namespace
 
 Evidence::Evidence(const Machine& fitted, const Measurement& measurement) : machine_(fitted) {
-  const ParameterSet parameters(fitted, runs_with_fit_rows(measurement));
+  const ParameterSet parameters(fitted, runs_of_fit_rows(measurement));
   measurement_ = thinned(measurement, parameters.size());
   declared_ = fitted.inputs.size();
   noise_known_ = has_uncertainty(measurement_);
@@ -92,18 +84,7 @@ void Evidence::respond() {
   places_ = all_places(machine_);
   Machine probed = machine_;
   hold_all(probed);
-  for (std::size_t i = 0; i < places_.size(); ++i) {
-    Static probe;
-    probe.name = "probe of place " + std::to_string(i);  // no name that an expression could write
-    probed.statics.push_back(probe);
-    Expr symbol;
-    symbol.op = Op::kSymbol;
-    symbol.name = probe.name;
-    symbol.symbol = {SymbolKind::kStatic, probed.statics.size() - 1};
-    auto& branch = places_[i].workpiece ? probed.workpiece : probed.tool;
-    ExprPtr& dof = branch[places_[i].transform].dof[places_[i].dof];
-    dof = make_node(Op::kAdd, {dof, std::make_shared<const Expr>(symbol)});
-  }
+  for (const DofPlace& place : places_) add_probe(probed, place);
   const ParameterSet probes(probed, {});
   const Linearisation linear = linearise(probed, measurement_, probes);
   const Eigen::MatrixXd all(linear.jacobian);
@@ -117,7 +98,7 @@ void Evidence::respond() {
 }
 
 void Evidence::absorb() {
-  const ParameterSet parameters(machine_, runs_with_fit_rows(measurement_));
+  const ParameterSet parameters(machine_, runs_of_fit_rows(measurement_));
   absorbed_.resize(residual_.size(), 0);
   if (parameters.size() == 0) return;
   const Linearisation linear = linearise(machine_, measurement_, parameters);
@@ -170,7 +151,6 @@ void Evidence::split_blocks() {
         static_cast<std::size_t>(std::lower_bound(rows.begin(), rows.end(), rows_[i]) - rows.begin());
     block_[i] = static_cast<int>(first[run] + at * parts[run] / rows.size());
   }
-  blocks_ = static_cast<int>(next);
 }
 
 double Evidence::correlation_time(const Eigen::VectorXd& residual) const {
@@ -221,39 +201,47 @@ std::size_t Evidence::index_of(const DofPlace& place) const {
   return static_cast<std::size_t>(std::find(places_.begin(), places_.end(), place) - places_.begin());
 }
 
-Eigen::MatrixXd Evidence::columns(const Candidate& candidate, const std::vector<double>& scanned) const {
-  Machine scratch = machine_;
-  std::vector<char> active(scratch.statics.size(), 0);
+ColumnMaker::ColumnMaker(const Evidence& evidence)
+    : evidence_(evidence), scratch_(evidence.machine()), own_statics_(scratch_.statics.size()) {}
+
+Eigen::MatrixXd ColumnMaker::columns(const Candidate& candidate, const std::vector<double>& scanned) {
+  scratch_.statics.resize(own_statics_);
+  std::vector<char> active(own_statics_, 0);
   std::vector<std::size_t> linear;
   std::size_t next = 0;
   for (const CandidateUnknown& unknown : candidate.unknowns) {
     Static item;
     item.name = unknown.name;
     if (unknown.kind == UnknownKind::kLinear)
-      linear.push_back(scratch.statics.size());
+      linear.push_back(scratch_.statics.size());
     else
       item.value = scanned.at(next++);
     active.push_back(unknown.kind == UnknownKind::kLinear ? 1 : 0);
-    scratch.statics.push_back(item);
+    scratch_.statics.push_back(item);
   }
-  active.resize(scratch.statics.size() + 6 * scratch.axes.size(), 0);
-  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(residual_.size(), static_cast<Eigen::Index>(linear.size()));
-  Evaluator evaluate(scratch, measurement_.states, active);
+  active.resize(scratch_.statics.size() + 6 * scratch_.axes.size(), 0);
+  const std::vector<std::size_t>& rows = evidence_.rows();
+  Eigen::MatrixXd result =
+      Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(linear.size()));
+  Evaluator evaluate(scratch_, evidence_.measurement().states, active);
   for (const CandidateTerm& term : candidate.terms) {
-    const ExprPtr expr = parse_expression_for(scratch, term.text);
-    const Dual dual = evaluate(*expr);
-    const auto answer = response(index_of(term.place));
+    const Dual dual = evaluate(*parse_expression_for(scratch_, term.text));
+    const auto answer = evidence_.response(evidence_.index_of(term.place));
     for (const auto& [key, value] : dual.by) {
       const auto found = std::find(linear.begin(), linear.end(), key);
       if (found == linear.end()) continue;
       auto column = result.col(found - linear.begin());
-      for (std::size_t i = 0; i < rows_.size(); ++i) {
+      for (std::size_t i = 0; i < rows.size(); ++i) {
         const auto at = static_cast<Eigen::Index>(i);
-        column[at] += answer[at] * value[rows_[i]];
+        column[at] += answer[at] * value[rows[i]];
       }
     }
   }
   return result;
+}
+
+Eigen::MatrixXd Evidence::columns(const Candidate& candidate, const std::vector<double>& scanned) const {
+  return ColumnMaker(*this).columns(candidate, scanned);
 }
 
 Evidence::Range Evidence::range_of(std::size_t axis) const {

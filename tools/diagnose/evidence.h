@@ -48,7 +48,6 @@ class Evidence {
   const std::vector<int>& blocks() const { return block_; }
   /// The same with every run cut into parts that are left out in turn.
   std::vector<int> parts_of_runs() const;
-  int block_count() const { return blocks_; }
 
   /// Over how many readings of one kind and run a residual hangs together: 1 + 2 * sum of its
   /// autocorrelations as long as pairs of them are positive (Geyer 1992); 1 for white noise.
@@ -75,8 +74,20 @@ class Evidence {
   Eigen::MatrixXd response_, absorbed_;
   Eigen::VectorXd weight_, residual_;
   std::vector<int> block_;
-  int blocks_ = 0;
   bool noise_known_ = false;
+};
+
+/// Works out the columns of one candidate after the other (Evidence::columns), on one copy of the machine.
+/// One for each thread. tool.
+class ColumnMaker {
+ public:
+  explicit ColumnMaker(const Evidence& evidence);
+  Eigen::MatrixXd columns(const Candidate& candidate, const std::vector<double>& scanned);
+
+ private:
+  const Evidence& evidence_;
+  Machine scratch_;
+  std::size_t own_statics_;
 };
 
 }  // namespace vernier

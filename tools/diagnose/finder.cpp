@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "tools/diagnose/acceptance.h"
+#include "tools/diagnose/chance.h"
 #include "tools/model/chain.h"
 
 namespace vernier {
@@ -61,9 +62,19 @@ void Finder::search_products() {
   select_again();
 }
 
-std::vector<Product> Finder::best_products() {
+void Finder::pose_problem() {
   problem_ = pool_.problem(entry_item_);
   problem_.correlation_time = correlation_time_;
+}
+
+std::optional<std::size_t> Finder::entry_of(std::size_t item) const {
+  const auto entry = std::find(entry_item_.begin(), entry_item_.end(), item);
+  if (entry == entry_item_.end()) return std::nullopt;
+  return static_cast<std::size_t>(entry - entry_item_.begin());
+}
+
+std::vector<Product> Finder::best_products() {
+  pose_problem();
   std::vector<std::pair<double, std::size_t>> order;
   for (std::size_t i = 0; i < pool_.size(); ++i)
     if (pool_.candidate(i).choice.effect == &custom_effect()) order.emplace_back(-score_alone(i), i);
@@ -78,8 +89,7 @@ std::vector<Product> Finder::best_products() {
 }
 
 void Finder::select_again() {
-  problem_ = pool_.problem(entry_item_);
-  problem_.correlation_time = correlation_time_;
+  pose_problem();
   const Selection selection = select(problem_, most_effects_);
   chosen_.clear();
   for (const std::size_t entry : selection.chosen) chosen_.push_back(entry_item_[entry]);
@@ -125,12 +135,8 @@ void Finder::search() {
     scan_beside(chosen_, 0.3 + 0.08 * round, 0.34 + 0.08 * round);
     // Rivals of each accepted one, the others given.
     if (chosen_.size() > 1)
-      for (const std::size_t item : before) {
-        std::vector<std::size_t> others;
-        for (const std::size_t other : before)
-          if (other != item) others.push_back(other);
-        scan_beside(others, 0.34 + 0.08 * round, 0.38 + 0.08 * round);
-      }
+      for (const std::size_t item : before)
+        scan_beside(without(item), 0.34 + 0.08 * round, 0.38 + 0.08 * round);
     select_again();
     if (criterion_ > criterion - 1e-6) break;
   }
@@ -156,9 +162,7 @@ std::vector<std::size_t> Finder::without(std::size_t item) const {
 
 Selection Finder::evaluate(const std::vector<std::size_t>& items) const {
   std::vector<std::size_t> entries;
-  for (const std::size_t item : items)
-    entries.push_back(static_cast<std::size_t>(std::find(entry_item_.begin(), entry_item_.end(), item) -
-                                               entry_item_.begin()));
+  for (const std::size_t item : items) entries.push_back(entry_of(item).value());
   return evaluate_selection(problem_, entries);
 }
 
@@ -223,14 +227,14 @@ Eigen::VectorXd Finder::own_coefficients(std::size_t item) const {
   if (std::find(set.begin(), set.end(), item) == set.end()) set = {item};
   Eigen::Index first = 0, at = 0;
   for (const std::size_t one : set) {
+    const std::optional<std::size_t> entry = entry_of(one);
+    if (!entry) {  // banned
+      const Eigen::MatrixXd c = pool_[item].columns;
+      return c.colPivHouseholderQr().solve(evidence_.residual());
+    }
     if (one == item) first = at;
     at += pool_[one].columns.cols();
-    entries.push_back(static_cast<std::size_t>(std::find(entry_item_.begin(), entry_item_.end(), one) -
-                                               entry_item_.begin()));
-  }
-  if (std::find(entries.begin(), entries.end(), entry_item_.size()) != entries.end()) {
-    const Eigen::MatrixXd c = pool_[item].columns;
-    return c.colPivHouseholderQr().solve(evidence_.residual());
+    entries.push_back(*entry);
   }
   const Eigen::VectorXd all = coefficients(problem_, entries);
   Eigen::VectorXd own = all.segment(first, pool_[item].columns.cols());
@@ -256,10 +260,9 @@ void Finder::accept() {
 }
 
 double Finder::score_alone(std::size_t item) const {
-  const auto entry = std::find(entry_item_.begin(), entry_item_.end(), item);
-  if (entry == entry_item_.end()) return -1e300;
-  return evaluate_selection(problem_, {}).criterion -
-         evaluate_selection(problem_, {static_cast<std::size_t>(entry - entry_item_.begin())}).criterion;
+  const std::optional<std::size_t> entry = entry_of(item);
+  if (!entry) return -1e300;
+  return evaluate_selection(problem_, {}).criterion - evaluate_selection(problem_, {*entry}).criterion;
 }
 
 double Finder::p_value(std::size_t item) const {

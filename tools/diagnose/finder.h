@@ -62,6 +62,10 @@ class Finder {
   void search_products();
   /// The products that lower the criterion most, alone.
   std::vector<Product> best_products();
+  /// The pool's entries as they stand, ready for a selection.
+  void pose_problem();
+  /// Position of an item in the problem; nothing for one that is banned.
+  std::optional<std::size_t> entry_of(std::size_t item) const;
   void select_again();
   /// A form that holds a simpler one is taken only where what it has more is evidence by itself; of forms
   /// with the same columns the one nearest to the axis.

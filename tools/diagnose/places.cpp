@@ -66,37 +66,29 @@ std::vector<DofPlace> all_places(const Machine& machine) {
   return places;
 }
 
-std::optional<DofPlace> own_place(const Machine& machine, std::size_t axis) {
+AxisPlaces::AxisPlaces(const Machine& machine) {
   const Machine nominal = nominal_machine(machine);
-  std::optional<DofPlace> best;
-  double largest = 0.01;  // an axis moves its own degree of freedom one to one; errors are far smaller
-  for (const DofPlace& place : all_places(nominal)) {
-    const double size = std::abs(slope(nominal, *transform_at(nominal, place).dof[place.dof], axis));
-    if (size > largest * 1.01) {
-      largest = size;
+  const std::vector<DofPlace> places = all_places(nominal);
+  for (std::size_t axis = 0; axis < machine.axes.size(); ++axis) {
+    std::optional<DofPlace> best;
+    double most = 0;
+    double largest = 0.01;  // an axis moves its own degree of freedom one to one; errors are far smaller
+    for (const DofPlace& place : places) {
+      const double change = slope(nominal, *transform_at(nominal, place).dof[place.dof], axis);
+      if (std::abs(change) <= largest * 1.01) continue;
+      largest = std::abs(change);
+      most = change;
       best = place;
     }
+    own_.push_back(best);
+    sense_.push_back(!best ? 0 : most < 0 ? -1 : 1);
   }
-  return best;
 }
 
-double own_sense(const Machine& machine, std::size_t axis) {
-  const auto own = own_place(machine, axis);
-  if (!own) return 0;
-  const Machine nominal = nominal_machine(machine);
-  return slope(nominal, *transform_at(nominal, *own).dof[own->dof], axis) < 0 ? -1 : 1;
-}
-
-bool is_own_place(const Machine& machine, std::size_t axis, const DofPlace& place) {
-  const std::optional<DofPlace> own = own_place(machine, axis);
-  return own.has_value() && own.value() == place;
-}
-
-std::optional<std::size_t> axis_of(const Machine& machine, const DofPlace& place) {
-  for (std::size_t axis = 0; axis < machine.axes.size(); ++axis) {
-    const auto own = own_place(machine, axis);
-    if (own && own->workpiece == place.workpiece && own->transform == place.transform) return axis;
-  }
+std::optional<std::size_t> AxisPlaces::axis_of(const DofPlace& place) const {
+  for (std::size_t axis = 0; axis < own_.size(); ++axis)
+    if (own_[axis] && own_[axis]->workpiece == place.workpiece && own_[axis]->transform == place.transform)
+      return axis;
   return std::nullopt;
 }
 

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "tools/diagnose/enumerate.h"
 #include "tools/model/numbers.h"
@@ -73,25 +73,7 @@ std::vector<Factor> factors_of(const Evidence& evidence) {
   return list;
 }
 
-/// Degrees of freedom that the observations can tell apart.
-std::vector<DofPlace> distinct_places(const Evidence& evidence) {
-  std::vector<DofPlace> places;
-  std::vector<Eigen::VectorXd> seen;
-  for (std::size_t i = 0; i < evidence.places().size(); ++i) {
-    Eigen::VectorXd column = evidence.response(i);
-    const double norm = column.norm();
-    if (norm == 0) continue;
-    column /= norm;
-    bool known = false;
-    for (const Eigen::VectorXd& other : seen) known = known || 1 - std::abs(column.dot(other)) < 1e-7;
-    if (known) continue;
-    seen.push_back(column);
-    places.push_back(evidence.places()[i]);
-  }
-  return places;
-}
-
-ScannedCandidate as_candidate(const Machine& machine, const Product& product) {
+ScannedCandidate as_candidate(const Machine& machine, const AxisPlaces& axes, const Product& product) {
   Choice choice;
   choice.effect = &custom_effect();
   choice.form = &custom_effect().forms[0];
@@ -100,7 +82,7 @@ ScannedCandidate as_candidate(const Machine& machine, const Product& product) {
   choice.inputs = product.inputs;
   choice.units = product.units;
   ScannedCandidate item;
-  item.candidate = make_candidate(machine, choice);
+  item.candidate = make_candidate(machine, axes, choice);
   return item;
 }
 
@@ -119,20 +101,21 @@ Product with_factor(Product product, const Factor& factor) {
 std::vector<ScannedCandidate> enumerate_products(const Evidence& evidence,
                                                  const std::vector<Product>& extend) {
   const std::vector<Factor> factors = factors_of(evidence);
+  const AxisPlaces axes(evidence.machine());
   std::vector<ScannedCandidate> list;
   if (!extend.empty()) {
     for (const Product& product : extend)
       for (const Factor& factor : factors)
         if (std::count(product.term.begin(), product.term.end(), '*') < 3)
-          list.push_back(as_candidate(evidence.machine(), with_factor(product, factor)));
+          list.push_back(as_candidate(evidence.machine(), axes, with_factor(product, factor)));
     return list;
   }
-  for (const DofPlace& place : distinct_places(evidence))
+  for (const DofPlace& place : distinct_places(evidence, false))
     for (std::size_t i = 0; i < factors.size(); ++i) {
       const Product one = with_factor({place, "k", {}, {}}, factors[i]);
-      list.push_back(as_candidate(evidence.machine(), one));
+      list.push_back(as_candidate(evidence.machine(), axes, one));
       for (std::size_t k = i; k < factors.size(); ++k)
-        list.push_back(as_candidate(evidence.machine(), with_factor(one, factors[k])));
+        list.push_back(as_candidate(evidence.machine(), axes, with_factor(one, factors[k])));
     }
   return list;
 }

@@ -79,6 +79,7 @@ void Scanner::scan_part(std::size_t first, std::size_t step, const Eigen::Matrix
                         const std::function<void(double)>& progress) const {
   std::vector<Point> points;
   std::vector<Eigen::MatrixXd> raw;
+  ColumnMaker maker(evidence_);
   Eigen::Index width = 0;
   const auto flush = [&] {
     Eigen::MatrixXd batch(evidence_.residual().size(), width);
@@ -106,7 +107,7 @@ void Scanner::scan_part(std::size_t first, std::size_t step, const Eigen::Matrix
   };
   for (std::size_t c = first; c < candidates_.size(); c += step) {
     for (const std::vector<double>& scanned : grid_points(candidates_[c].grid)) {
-      Eigen::MatrixXd columns = evidence_.columns(candidates_[c].candidate, scanned);
+      Eigen::MatrixXd columns = maker.columns(candidates_[c].candidate, scanned);
       width += columns.cols();
       raw.push_back(std::move(columns));
       points.push_back({c, scanned});
@@ -141,8 +142,9 @@ void Scanner::refine(Scored& scored, const Eigen::MatrixXd& beside) const {
   Eigen::VectorXd residual = evidence_.residual();
   if (beside.cols() > 0) residual -= beside * (beside.transpose() * residual);
   const Eigen::MatrixXd& q = evidence_.absorbed();
+  ColumnMaker maker(evidence_);
   const auto gain_at = [&](const std::vector<double>& scanned) {
-    const Eigen::MatrixXd raw = evidence_.columns(item.candidate, scanned);
+    const Eigen::MatrixXd raw = maker.columns(item.candidate, scanned);
     Scored trial = scored;
     const Eigen::MatrixXd projected = raw - q * (q.transpose() * raw);
     return score(raw, projected, beside, residual, trial) ? trial.gain : 0.0;

@@ -28,7 +28,7 @@ std::optional<double> chi_tail(const Measurement& m, const Eigen::VectorXd& resi
   const auto readings = static_cast<double>((weights.array() > 0).count());
   const double freedom = readings - static_cast<double>(parameters);
   if (freedom <= 0) return std::nullopt;
-  return std::exp(log_chi_square_tail(weights.cwiseProduct(residual).squaredNorm(), freedom));
+  return chi_square_tail(weights.cwiseProduct(residual).squaredNorm(), freedom);
 }
 
 /// Strongest first: by the readings' variance that each removes, in units of what is left of its own kind's.

@@ -5,6 +5,7 @@
 #include <random>
 
 #include "tools/diagnose/acceptance.h"
+#include "tools/diagnose/chance.h"
 #include "tools/diagnose/evidence.h"
 
 namespace vernier {

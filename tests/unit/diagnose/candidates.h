@@ -31,7 +31,7 @@ inline std::vector<std::string> reference_machines() {
 inline std::vector<DofPlace> places_for(const Machine& machine, const EffectForm& form,
                                         std::optional<std::size_t> axis) {
   const bool driven = axis.has_value();
-  const DofPlace own = driven ? own_place(machine, *axis).value() : DofPlace{};
+  const DofPlace own = driven ? AxisPlaces(machine).own(*axis).value() : DofPlace{};
   std::vector<DofPlace> places;
   for (const DofPlace& place : all_places(machine)) {
     const bool angle = is_angle(machine, place);
@@ -95,7 +95,7 @@ inline std::vector<Choice> choices_of(const Machine& machine, const Effect& effe
   for (std::size_t axis = 0; axis < (driven ? machine.axes.size() : 1); ++axis) {
     Choice one = base;
     if (driven) {
-      if (!own_place(machine, axis)) continue;
+      if (!AxisPlaces(machine).own(axis)) continue;
       one.axis = axis;
       one.from = machine.axes[axis].min.value_or(-100);
       one.to = machine.axes[axis].max.value_or(400);

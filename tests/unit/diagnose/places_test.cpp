@@ -13,10 +13,11 @@ using diagnose_test::machine_path;
 /// Read off the machine files: branch, n, degree of freedom, sense.
 std::string place_text(const Machine& machine, const char* axis) {
   const std::size_t index = *machine.find_axis(axis);
-  const auto own = own_place(machine, index);
+  const AxisPlaces places(machine);
+  const auto& own = places.own(index);
   if (!own) return "none";
   return fmt::format("{} {} {} {:+}", own->workpiece ? "workpiece" : "tool", transform_at(machine, *own).n,
-                     dof_name(machine, *own), static_cast<int>(own_sense(machine, index)));
+                     dof_name(machine, *own), static_cast<int>(places.sense(index)));
 }
 
 TEST(OwnPlace, IsFoundForEveryAxisOfTheReferenceMachines) {
@@ -83,8 +84,8 @@ TEST(OwnPlace, IsNotWhereAnErrorOfTheAxisActs) {
   EXPECT_EQ(place_text(machine, "X"), "tool 2 X +1");
   EXPECT_EQ(place_text(machine, "Y"), "tool 2 Y +1");
   EXPECT_EQ(place_text(machine, "C"), "tool 2 rZ +1");
-  EXPECT_EQ(axis_of(machine, {false, 1, 4}), machine.find_axis("X"));
-  EXPECT_FALSE(axis_of(machine, {false, 0, 0}).has_value());
+  EXPECT_EQ(AxisPlaces(machine).axis_of({false, 1, 4}), machine.find_axis("X"));
+  EXPECT_FALSE(AxisPlaces(machine).axis_of({false, 0, 0}).has_value());
 }
 
 TEST(OwnPlace, IsNothingForAnAxisThatMovesNothing) {
