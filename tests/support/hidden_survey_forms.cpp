@@ -78,6 +78,9 @@ class Builder {
   void cyclic();
   void straightness();
   void angular();
+  void positioning() {
+    for (const AxisPlace& a : g_.axes) own(a, smooth(a), {some(), some(), 0.6 * some()});
+  }
   void thermal_scale();
   void thermal_offset();
   void thermal_bend();
@@ -120,6 +123,7 @@ const std::map<std::string, Builder::Make>& Builder::table() {
                                                     {"cyclic-error", &Builder::cyclic},
                                                     {"straightness", &Builder::straightness},
                                                     {"angular-error", &Builder::angular},
+                                                    {"positioning-error", &Builder::positioning},
                                                     {"thermal-scale", &Builder::thermal_scale},
                                                     {"thermal-offset", &Builder::thermal_offset},
                                                     {"thermal-bend", &Builder::thermal_bend},
@@ -343,7 +347,7 @@ void Builder::along_normal(const std::string& text) {
 }
 
 void Builder::pretravel() {
-  if (draw_.chance(0.5)) return along_normal("k1*{n}");
+  along_normal("k1*{n}");
   if (!g_.all_linear() || g_.axes.size() < 3) return;
   // A kinematic seat of three balls: the trip force, so the stylus' bending, has three lobes about its axis.
   along_normal("(k1*sin(3*atan2(ny,nx))+k2*cos(3*atan2(ny,nx)))*{n}");
@@ -366,7 +370,8 @@ void Builder::base_drift() {
   for (const std::string& dof : base.dofs) {
     add("", {{false, base.n, dof, "k1*t/3600"}}, {some()});
     if (runs_.size() > 1 && !is_angle(dof))
-      add("", {{false, base.n, dof, fmt::format("k1*run(\"{}\")", runs_[1])}}, {some()});
+      for (const std::string& run : runs_)
+        add("", {{false, base.n, dof, fmt::format("k1*run(\"{}\")", run)}}, {some()});
   }
 }
 
@@ -403,34 +408,15 @@ std::vector<Form> forms_of(const std::string& effect, const Geometry& geometry,
 }
 
 const std::vector<EffectScan>& effect_scans() {
-  static const std::vector<EffectScan> scans = {{"scale-error", 1},
-                                                {"squareness", 1},
-                                                {"offset", 1},
-                                                {"backlash", 1},
-                                                {"lateral-play", 1},
-                                                {"reversal-spike", 6},
-                                                {"cyclic-error", 45},
-                                                {"straightness", 1},
-                                                {"angular-error", 1},
-                                                {"thermal-scale", 1},
-                                                {"thermal-offset", 8},
-                                                {"thermal-bend", 1},
-                                                {"warmup-drift", 8},
-                                                {"gravity-sag", 1},
-                                                {"joint-compliance", 1},
-                                                {"load-deflection", 1},
-                                                {"servo-lag", 1},
-                                                {"servo-mismatch", 1},
-                                                {"inertial-deflection", 1},
-                                                {"centrifugal", 1},
-                                                {"trigger-delay", 1},
-                                                {"probe-pretravel", 4},
-                                                {"tool-radius", 1},
-                                                {"time-sync", 1},
-                                                {"time-base", 1},
-                                                {"base-drift", 1},
-                                                {"creep", 1},
-                                                {"vibration", 1}};
+  static const std::vector<EffectScan> scans = {
+      {"scale-error", 1},     {"squareness", 1},        {"offset", 1},          {"backlash", 1},
+      {"lateral-play", 1},    {"reversal-spike", 6},    {"cyclic-error", 45},   {"straightness", 1},
+      {"angular-error", 1},   {"positioning-error", 1}, {"thermal-scale", 1},   {"thermal-offset", 8},
+      {"thermal-bend", 1},    {"warmup-drift", 8},      {"gravity-sag", 1},     {"joint-compliance", 1},
+      {"load-deflection", 1}, {"servo-lag", 1},         {"servo-mismatch", 1},  {"inertial-deflection", 1},
+      {"centrifugal", 1},     {"trigger-delay", 1},     {"probe-pretravel", 4}, {"tool-radius", 1},
+      {"time-sync", 1},       {"time-base", 1},         {"base-drift", 1},      {"creep", 1},
+      {"vibration", 1}};
   return scans;
 }
 

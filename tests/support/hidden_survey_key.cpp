@@ -37,6 +37,7 @@ std::vector<std::string> effects_of(Family family) {
     if (g.axes.size() < 3 &&
         (demands_of(effect).bare || effect == "angular-error" || effect == "thermal-bend"))
       continue;
+    if (effect == "positioning-error") continue;  // no id of FORMATS: a rival only
     if (effect == "offset" && !rotary) continue;
     if (effect == "gravity-sag" && g.bends.empty()) continue;
     if (effect == "thermal-scale" &&

@@ -46,7 +46,8 @@ std::string four_factors(const Geometry& g, const std::vector<LoggedColumn>& col
 }  // namespace
 
 Form outside_form(const Geometry& g, const std::vector<LoggedColumn>& columns, Draw& draw) {
-  const std::size_t shape = draw.index(4);
+  // A smooth field over one axis is an error along that axis, which the catalogue holds.
+  const std::size_t shape = g.axes.size() > 1 ? draw.index(4) : draw.chance(0.5) ? 1 : 3;
   const char* const names[] = {"outside:field", "outside:four-factors", "outside:bump", "outside:chirp"};
   Form form;
   form.cause.effect = names[shape];

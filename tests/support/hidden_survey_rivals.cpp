@@ -12,15 +12,26 @@ double missed(const Eigen::MatrixXd& basis, const Eigen::VectorXd& truth) {
   return 1 - (basis.transpose() * truth).squaredNorm() / truth.squaredNorm();
 }
 
-void judge(const RivalCourt& court, const Form& form, std::vector<Cause>& accept,
+/// Temperatures and loads have a zero of their own (their reference); what a voltage is at zero nobody knows.
+bool has_zero(const RivalCourt& court, const Form& form) {
+  return std::none_of(court.columns.begin(), court.columns.end(), [&](const LoggedColumn& c) {
+    return c.unit == std::string("V") &&
+           std::find(form.inputs.begin(), form.inputs.end(), c.name) != form.inputs.end();
+  });
+}
+
+/// `with_reference`: an input's reference is one more unknown of the rival.
+void judge(const RivalCourt& court, const Form& form, bool with_reference, std::vector<Cause>& accept,
            std::vector<Rival>& rivals) {
   if (is_accepted(accept, form.cause)) return;
-  const Eigen::MatrixXd basis = orthonormal(court.form_columns(form, true));
+  const Eigen::MatrixXd basis = orthonormal(court.form_columns(form, with_reference));
   if (basis.cols() == 0) return;
   const bool same_inputs = form.inputs == court.inputs;
   const double unseen = missed(basis, court.truth);
-  if (basis.cols() + form.free_numbers > court.truth_width && unseen < 0.02)
-    return;  // a smooth function that can also be a line
+  // A smooth function that can also be a line says the same; a quantity that the truth does not know, without
+  // a constant beside it, says something else however close it comes.
+  const bool other_quantity = !with_reference && !same_inputs && !form.inputs.empty();
+  if (!other_quantity && basis.cols() + form.free_numbers > court.truth_width && unseen < 0.02) return;
   if (same_inputs && unseen < 1e-4) return accept.push_back(form.cause);
   const double excess = court.residual.squaredNorm() - (basis.transpose() * court.residual).squaredNorm() -
                         court.truth_chi_square;
@@ -53,7 +64,9 @@ std::vector<Rival> find_rivals(const RivalCourt& court, std::vector<Cause>& acce
       // Half as wide again on both sides: a search may wander out of what is plausible.
       const Share share = [&] { return 2 * (step + 0.5) / scan.steps - 0.5; };
       for (const Form& form : forms_of(scan.effect, court.geometry, court.columns, court.runs, share, draw))
-        judge(court, form, accept, rivals);
+        for (const bool with_reference : {true, false})
+          if (with_reference || (!form.reference_factor.empty() && has_zero(court, form)))
+            judge(court, form, with_reference, accept, rivals);
     }
   // A twin that was found late may have been a rival under another of its forms.
   std::erase_if(rivals, [&](const Rival& r) { return is_accepted(accept, r.cause); });
