@@ -7,6 +7,7 @@
 
 #include "tools/diagnose/finder.h"
 #include "tools/diagnose/outliers.h"
+#include "tools/diagnose/pieces.h"
 #include "tools/diagnose/structure.h"
 #include "tools/diagnose/time_base.h"
 
@@ -217,7 +218,13 @@ class Diagnoser {
     if (!finder_.evidence().noise_known())
       return !structured ||
              (!chosen_.empty() && result_.end.chi_square < (1 - kMostlyExplained) * base_.chi_square);
-    if (reduced < 1 + kNoiseSigmas * std::sqrt(2 / freedom)) return !chosen_.empty() || !structured;
+    // The number alone is enough for one effect or two that hit the noise; what is near it only, or was put
+    // together from more, must leave no structure either.
+    constexpr double kHit = 2;
+    constexpr std::size_t kFew = 2;
+    const double sigmas = (reduced - 1) / std::sqrt(2 / freedom);
+    if (sigmas < kHit && !chosen_.empty() && chosen_.size() <= kFew) return true;
+    if (sigmas < kNoiseSigmas) return !structured;
     return reduced < kDoubtfulUncertainty && !structured;
   }
 
@@ -260,6 +267,16 @@ class Diagnoser {
       result_.explanation =
           "Effects of the catalogue lower the residual, and it does not come down to the noise." +
           where_left();
+    } else if (const auto pieces = pieces_of_one_function(finder_.evidence(), pool_, chosen_);
+               !pieces.empty()) {
+      result_.verdict = Verdict::kUnexplained;
+      result_.explanation = fmt::format(
+          "{} effects come down to the noise together, and are more likely the pieces of one function of the "
+          "position that is none of the catalogue's: {}",
+          pieces.size(), pool_.candidate(pieces.front()).label);
+      for (std::size_t i = 1; i < pieces.size(); ++i)
+        result_.explanation += "; " + pool_.candidate(pieces[i]).label;
+      result_.explanation += ".";
     } else if (!rivals.close.empty()) {
       result_.verdict = Verdict::kAmbiguous;
       result_.explanation = fmt::format("One of {} causes that explain these data alike, {} first.",

@@ -44,5 +44,52 @@ TEST(Verdict, UnexplainedSaysWhereTheRestFailsBehindALadder) {
       << answer.explanation;
 }
 
+/// An error whose period shrinks along the axis, alike in all runs, at uneven places.
+std::string chirp() {
+  std::mt19937_64 random(kSeed);
+  std::normal_distribution<double> noise(0, 0.001);
+  std::uniform_real_distribution<double> place(0, 500);
+  std::string text = "X[mm],x[mm],u[um],run\n";
+  for (int run = 0; run < 4; ++run)
+    for (int i = 0; i < 120; ++i) {
+      const double x = place(random), part = x / 500;
+      const double error = 0.004 * std::sin(2 * 3.14159265358979 * 6 * part * part);
+      text += fmt::format("{:.3f},{:.6f},1,r{}\n", x, x + error + noise(random), run);
+    }
+  return text;
+}
+
+TEST(Verdict, NamesNothingWhereTheLadderIsPiecesOfOneFunction) {
+  const Machine machine = parse_machine(kAxis, "m.xml");
+  const Measurement rows = parse_measurement(chirp(), "m.csv", machine);
+
+  const Diagnosis answer = diagnose(kAxis, machine, rows);
+
+  EXPECT_EQ(answer.verdict, Verdict::kUnexplained) << "seed " << kSeed << ": " << answer.explanation;
+  EXPECT_GE(answer.ladder.size(), 4U);
+}
+
+/// Two waves at one place are two effects: a screw and its encoder.
+TEST(Verdict, TwoPeriodsOfOneAxisAreNamed) {
+  std::mt19937_64 random(kSeed);
+  std::normal_distribution<double> noise(0, 0.001);
+  std::uniform_real_distribution<double> place(0, 500);
+  std::string text = "X[mm],x[mm],u[um],run\n";
+  for (int run = 0; run < 4; ++run)
+    for (int i = 0; i < 120; ++i) {
+      const double x = place(random), turn = 2 * 3.14159265358979 * x;
+      const double error = 0.004 * std::sin(turn / 40) + 0.003 * std::sin(turn / 17);
+      text += fmt::format("{:.3f},{:.6f},1,r{}\n", x, x + error + noise(random), run);
+    }
+  const Machine machine = parse_machine(kAxis, "m.xml");
+
+  const Diagnosis answer = diagnose(kAxis, machine, parse_measurement(text, "m.csv", machine));
+
+  EXPECT_EQ(answer.verdict, Verdict::kMissingEffect) << "seed " << kSeed << ": " << answer.explanation;
+  ASSERT_EQ(answer.ladder.size(), 3U);
+  EXPECT_EQ(answer.ladder[1].effect, "cyclic-error");
+  EXPECT_EQ(answer.ladder[2].effect, "cyclic-error");
+}
+
 }  // namespace
 }  // namespace vernier

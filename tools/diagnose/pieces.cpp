@@ -1,0 +1,94 @@
+#include "tools/diagnose/pieces.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace vernier {
+namespace {
+
+/// Period of an item in the unit of its axis; 0 for one that has none.
+double period_of(const Pool& pool, std::size_t item) {
+  std::size_t scanned = 0;
+  for (const CandidateUnknown& unknown : pool.candidate(item).unknowns) {
+    if (unknown.kind == UnknownKind::kPeriod) return pool[item].scored.scanned[scanned];
+    if (unknown.kind != UnknownKind::kLinear) ++scanned;
+  }
+  return 0;
+}
+
+bool harmonics(double a, double b) {
+  constexpr double kSame = 0.03;
+  if (a <= 0 || b <= 0) return false;
+  const double ratio = std::max(a, b) / std::min(a, b);
+  return std::abs(ratio - std::round(ratio)) < kSame * ratio;
+}
+
+bool is_function_of_its_axis(const Evidence& evidence, const Candidate& candidate) {
+  return candidate.choice.axis && candidate.choice.place && candidate.terms.size() == 1 &&
+         drivers_of(evidence.machine(), candidate).empty();
+}
+
+bool moves_alike(const Evidence& evidence, const DofPlace& a, const DofPlace& b) {
+  constexpr double kAlike = 0.9;
+  const auto x = evidence.response(evidence.index_of(a)), y = evidence.response(evidence.index_of(b));
+  return std::abs(x.dot(y)) > kAlike * x.norm() * y.norm();
+}
+
+/// The largest group of functions, seen from each of them; `alike` says which belong together.
+template <class Counts, class Alike>
+std::vector<std::size_t> largest_group(const Pool& pool, const std::vector<std::size_t>& items,
+                                       const Counts& counts, const Alike& alike) {
+  std::vector<std::size_t> most;
+  for (const std::size_t first : items) {
+    if (!counts(first)) continue;
+    std::vector<std::size_t> group;
+    for (const std::size_t item : items) {
+      if (!counts(item) || !alike(first, item)) continue;
+      const bool harmonic = std::any_of(group.begin(), group.end(), [&](std::size_t other) {
+        return harmonics(period_of(pool, item), period_of(pool, other));
+      });
+      if (!harmonic) group.push_back(item);
+    }
+    if (group.size() > most.size()) most = group;
+  }
+  return most;
+}
+
+bool has_one_reading_a_row(const Evidence& evidence) {
+  const std::vector<Observation>& all = evidence.measurement().observations;
+  return std::all_of(all.begin(), all.end(),
+                     [&](const Observation& o) { return o.kind == all.front().kind; });
+}
+
+/// Position, or what follows from it along a path at a steady feed.
+bool follows_from_position(const Evidence& evidence, const Candidate& candidate) {
+  const auto drivers = drivers_of(evidence.machine(), candidate);
+  return std::all_of(drivers.begin(), drivers.end(), [](const auto& driver) {
+    return driver.first == static_cast<int>(SymbolKind::kAcceleration) ||
+           driver.first == static_cast<int>(SymbolKind::kVelocity) ||
+           driver.first == static_cast<int>(SymbolKind::kFeed) ||
+           driver.first == static_cast<int>(SymbolKind::kCurvature);
+  });
+}
+
+}  // namespace
+
+std::vector<std::size_t> pieces_of_one_function(const Evidence& evidence, const Pool& pool,
+                                                const std::vector<std::size_t>& items) {
+  constexpr std::size_t kMostOfOneAxis = 2, kMostOfOneReading = 3;
+  const auto choice = [&](std::size_t item) -> const Choice& { return pool.candidate(item).choice; };
+  std::vector<std::size_t> group = largest_group(
+      pool, items, [&](std::size_t item) { return is_function_of_its_axis(evidence, pool.candidate(item)); },
+      [&](std::size_t a, std::size_t b) {
+        return choice(a).axis == choice(b).axis && moves_alike(evidence, *choice(a).place, *choice(b).place);
+      });
+  if (group.size() > kMostOfOneAxis) return group;
+  if (!has_one_reading_a_row(evidence)) return {};
+  group = largest_group(
+      pool, items, [&](std::size_t item) { return follows_from_position(evidence, pool.candidate(item)); },
+      [](std::size_t, std::size_t) { return true; });
+  if (group.size() > kMostOfOneReading) return group;
+  return {};
+}
+
+}  // namespace vernier

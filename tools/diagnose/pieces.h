@@ -1,0 +1,18 @@
+#pragma once
+#include <vector>
+
+#include "tools/diagnose/evidence.h"
+#include "tools/diagnose/pool.h"
+
+namespace vernier {
+
+/// Items that are more likely the pieces of one function that the catalogue does not hold than as many
+/// causes; empty where there are no such. A curve and a period of one axis may well stand beside each other;
+/// a third function of that axis at the same degree of freedom (or at places that move the readings alike)
+/// takes the place of what was not found. Where every row has but one reading, of one kind, a fourth function
+/// of position does, of whatever axis: on a circle all of them are functions of its angle. Periods that are
+/// harmonics of one another count once. tool.
+std::vector<std::size_t> pieces_of_one_function(const Evidence& evidence, const Pool& pool,
+                                                const std::vector<std::size_t>& items);
+
+}  // namespace vernier
