@@ -71,12 +71,18 @@ class CatalogueReader {
       while (!rest.empty()) now.impostors.push_back(next_word(rest));
     else if (key == "rare")
       now.rare = true;
+    else if (key == "cause")
+      now.cause = next_word(rest);
+    else if (key == "seldom")
+      take_seldom(now, rest);
     else if (key == "form")
       take_form(now, rest);
     else if (key == "unknown")
       take_unknown(now, rest);
     else
-      fail(key, "expected effect, title, formula, signature, exposed, impostors, rare, form or unknown");
+      fail(key,
+           "expected effect, title, formula, signature, exposed, impostors, rare, cause, seldom, form or "
+           "unknown");
   }
 
   void begin(const std::string& id) {
@@ -103,6 +109,16 @@ class CatalogueReader {
       if (other.label == form.label) fail(form.label, "this form stands twice");
     effect.forms.push_back(form);
     form_line_.push_back(line_);
+  }
+
+  void take_seldom(Effect& effect, std::string rest) const {
+    while (!rest.empty()) {
+      const std::string label = next_word(rest);
+      const auto form = std::find_if(effect.forms.begin(), effect.forms.end(),
+                                     [&](const EffectForm& f) { return f.label == label; });
+      if (form == effect.forms.end()) fail(label, "no form of this label stands above");
+      form->rare = true;
+    }
   }
 
   void take_unknown(Effect& effect, std::string rest) {

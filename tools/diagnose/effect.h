@@ -47,6 +47,7 @@ struct EffectForm {
   std::string label;
   PlaceRule place = PlaceRule::kOwn;
   std::string term;
+  bool rare = false;  // met more seldom than the effect's other forms
 };
 
 /// An entry of the catalogue: what a user may be told is missing.
@@ -54,6 +55,7 @@ struct Effect {
   std::string id, title, formula, signature, exposed_by;
   std::vector<std::string> impostors;
   bool rare = false;  // met seldom: wants more evidence than its rivals
+  std::string cause;  // effects of one cause on one axis differ in the place only: no rivals
   std::vector<EffectForm> forms;
   std::vector<UnknownRule> unknowns;
 

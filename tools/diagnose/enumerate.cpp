@@ -357,7 +357,9 @@ class Enumerator {
     std::vector<double> grid;
     if (length <= 0 || range.step <= 0) return grid;
     constexpr double kMostPeriods = 100, kPerRange = 2.5, kLongest = 0.4;
-    const double fastest = std::min(1 / (2.1 * range.step), kMostPeriods / length);
+    // Even steps cannot tell a period below two of them from a longer one; uneven steps can.
+    const double shortest = range.even ? 2.1 * range.step : 0;
+    const double fastest = kMostPeriods / std::max(length, kMostPeriods * shortest);
     for (double f = 1 / (kLongest * length); f <= fastest; f += 1 / (kPerRange * length))
       grid.push_back(1 / f);
     if (machine_.axes[axis].rotary)

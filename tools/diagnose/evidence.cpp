@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <tuple>
 
+#include "tools/diagnose/chance.h"
 #include "tools/diagnose/probe.h"
 #include "tools/fit/solve.h"
 #include "tools/fit/statistics.h"
@@ -107,6 +109,7 @@ void Evidence::absorb() {
   for (std::size_t i = 0; i < observation_.size(); ++i)
     jacobian.row(static_cast<Eigen::Index>(i)) =
         weight_[static_cast<Eigen::Index>(i)] * all.row(static_cast<Eigen::Index>(observation_[i]));
+  whiten(jacobian);
   Eigen::VectorXd scale = jacobian.colwise().norm();
   const double tiny = 1e-12 * std::max(scale.maxCoeff(), 1e-300);
   for (double& s : scale) s = s > tiny ? 1 / s : 0;
@@ -180,6 +183,66 @@ double Evidence::correlation_time(const Eigen::VectorXd& residual) const {
   return time;
 }
 
+std::vector<std::vector<Eigen::Index>> Evidence::readings_at_one_pose() const {
+  std::map<std::tuple<std::size_t, int, std::vector<double>>, std::vector<Eigen::Index>> poses;
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    std::vector<double> position;
+    for (const Column& axis : measurement_.states.axis)
+      position.push_back(axis[static_cast<Eigen::Index>(rows_[i])]);
+    const auto kind = static_cast<int>(measurement_.observations[observation_[i]].kind);
+    poses[{measurement_.states.run[rows_[i]], kind, position}].push_back(static_cast<Eigen::Index>(i));
+  }
+  std::vector<std::vector<Eigen::Index>> groups;
+  for (auto& [pose, readings] : poses)
+    if (readings.size() > 1) groups.push_back(std::move(readings));
+  return groups;
+}
+
+double Evidence::shared_pose_error(const Eigen::VectorXd& residual, const Eigen::MatrixXd& fitted) const {
+  const std::vector<std::vector<Eigen::Index>> groups = readings_at_one_pose();
+  // Squares of the poses' means and of what differs within them; what was fitted takes its share of both.
+  double between = 0, within = 0, freedom_between = 0, freedom_within = 0, count = 0;
+  for (const std::vector<Eigen::Index>& readings : groups) {
+    const auto n = static_cast<double>(readings.size());
+    const Eigen::VectorXd part = residual(readings);
+    const double mean = part.sum() * part.sum() / n;
+    between += mean;
+    within += part.squaredNorm() - mean;
+    double taken_mean = 0, taken = 0;
+    for (const Eigen::MatrixXd* basis : {&absorbed_, &fitted}) {
+      const Eigen::MatrixXd rows = (*basis)(readings, Eigen::all);
+      taken_mean += rows.colwise().sum().squaredNorm() / n;
+      taken += rows.squaredNorm();
+    }
+    freedom_between += 1 - taken_mean;
+    freedom_within += n - 1 - (taken - taken_mean);
+    count += n;
+  }
+  constexpr double kLeastFreedom = 10, kChance = 1e-3;
+  if (freedom_between < kLeastFreedom || freedom_within < kLeastFreedom || within <= 0) return 1;
+  const double f = (between / freedom_between) / (within / freedom_within);
+  if (log_f_tail(f, freedom_between, freedom_within) > std::log(kChance)) return 1;
+  return (f - 1) * static_cast<double>(groups.size()) / count;
+}
+
+void Evidence::weigh_poses(double share) {
+  poses_ = readings_at_one_pose();
+  pose_share_ = share;
+  Eigen::MatrixXd residual = residual_;
+  whiten(residual);
+  residual_ = residual;
+  absorb();
+}
+
+void Evidence::whiten(Eigen::MatrixXd& columns) const {
+  for (const std::vector<Eigen::Index>& readings : poses_) {
+    const auto n = static_cast<double>(readings.size());
+    const double taken = (1 - 1 / std::sqrt(1 + n * pose_share_)) / n;
+    const Eigen::RowVectorXd shift = taken * columns(readings, Eigen::all).colwise().sum();
+    for (const Eigen::Index i : readings) columns.row(i) -= shift;
+  }
+}
+
 std::vector<int> Evidence::parts_of_runs() const {
   constexpr std::size_t kParts = 4;
   std::map<std::size_t, std::vector<std::size_t>> rows_of_run;
@@ -237,6 +300,7 @@ Eigen::MatrixXd ColumnMaker::columns(const Candidate& candidate, const std::vect
       }
     }
   }
+  evidence_.whiten(result);
   return result;
 }
 
@@ -253,6 +317,14 @@ Evidence::Range Evidence::range_of(std::size_t axis) const {
   range.low = *values.begin();
   range.high = *values.rbegin();
   range.step = (range.high - range.low) / std::max<double>(1, static_cast<double>(values.size() - 1));
+  constexpr double kUneven = 0.05;
+  double least = range.high - range.low;
+  for (auto next = std::next(values.begin()); next != values.end(); ++next)
+    least = std::min(least, *next - *std::prev(next));
+  for (const double value : values) {
+    const double steps = (value - range.low) / std::max(least, 1e-300);
+    range.even = range.even && std::abs(steps - std::round(steps)) < kUneven;
+  }
   return range;
 }
 

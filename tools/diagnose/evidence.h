@@ -53,9 +53,21 @@ class Evidence {
   /// autocorrelations as long as pairs of them are positive (Geyer 1992); 1 for white noise.
   double correlation_time(const Eigen::VectorXd& residual) const;
 
-  /// Range of an axis over the fit rows, and its least step between different values.
+  /// Variance of the error that readings of one kind at one pose share, over that of what differs between
+  /// them (one-way analysis of variance, Searle 1992, 3.6). 0 where no pose was read more than once, or where
+  /// it is no more than chance. `residual`: what is left beside the model and the orthonormal columns
+  /// `fitted`.
+  double shared_pose_error(const Eigen::VectorXd& residual, const Eigen::MatrixXd& fitted) const;
+  /// From now on readings at one pose count as sharing an error of `share` times their own variance
+  /// (generalised least squares): residual, columns and what the model absorbs are weighed by it.
+  void weigh_poses(double share);
+  /// That weighing, of columns over the fit observations.
+  void whiten(Eigen::MatrixXd& columns) const;
+
+  /// Range of an axis over the fit rows, and the mean step between different values.
   struct Range {
     double low = 0, high = 0, step = 0;
+    bool even = true;  // the steps are multiples of one, all but a twentieth of it
   };
   Range range_of(std::size_t axis) const;
   Range time_range() const;
@@ -65,6 +77,8 @@ class Evidence {
   void respond();
   void absorb();
   void split_blocks();
+  /// Fit observations of one kind, run and position of all axes, where there are two or more.
+  std::vector<std::vector<Eigen::Index>> readings_at_one_pose() const;
 
   Machine machine_;
   Measurement measurement_;
@@ -74,6 +88,8 @@ class Evidence {
   Eigen::MatrixXd response_, absorbed_;
   Eigen::VectorXd weight_, residual_;
   std::vector<int> block_;
+  std::vector<std::vector<Eigen::Index>> poses_;  // observations that share an error
+  double pose_share_ = 0;
   bool noise_known_ = false;
 };
 

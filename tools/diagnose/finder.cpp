@@ -99,6 +99,7 @@ void Finder::select_again() {
 }
 
 void Finder::simplify() {
+  const double most_price = 2 * std::log(static_cast<double>(entry_item_.size()));
   for (std::size_t i = 0; i < chosen_.size(); ++i) {
     std::optional<std::size_t> simplest;
     Selection best;
@@ -107,7 +108,7 @@ void Finder::simplify() {
       std::vector<std::size_t> set = chosen_;
       set[i] = other;
       const Selection trial = evaluate(set);
-      if (trial.criterion - criterion_ >= kEvidence) continue;
+      if (trial.criterion - criterion_ >= kEvidence + most_price) continue;
       if (simplest && trial.criterion >= best.criterion) continue;
       // The same columns from a place further from the axis are only the longer way to say it.
       const bool same_but_nearer =
@@ -115,6 +116,9 @@ void Finder::simplify() {
           pool_.penalty(pool_[other].scored.candidate) < pool_.penalty(pool_[chosen_[i]].scored.candidate) &&
           pool_.same_columns(chosen_[i], other);
       if (!same_but_nearer && !pool_.contains(chosen_[i], other)) continue;
+      // One of many that hold it fits better by chance: what it has more pays for that.
+      const double price = same_but_nearer ? 0 : 2 * std::log(std::max(1.0, holders_of(other)));
+      if (trial.criterion - criterion_ >= kEvidence + price) continue;
       simplest = other;
       best = trial;
     }
@@ -123,6 +127,12 @@ void Finder::simplify() {
     criterion_ = best.criterion;
     chi_square_ = best.chi_square;
   }
+}
+
+double Finder::holders_of(std::size_t simple) const {
+  double count = 0;
+  for (const std::size_t other : entry_item_) count += pool_.contains(other, simple) ? 1 : 0;
+  return count;
 }
 
 void Finder::search() {
@@ -143,11 +153,20 @@ void Finder::search() {
 }
 
 void Finder::weigh_correlation() {
-  const Eigen::MatrixXd all = orthonormal(pool_.columns(chosen_), 1e-6, nullptr);
-  const Eigen::VectorXd left = evidence_.residual() - all * (all.transpose() * evidence_.residual());
-  // A little of it (several points at one pose, out and back) is the model's misfit; more is oversampling.
+  const auto beside = [&] { return orthonormal(pool_.columns(chosen_), 1e-6, nullptr); };
+  const auto left = [&](const Eigen::MatrixXd& all) -> Eigen::VectorXd {
+    return evidence_.residual() - all * (all.transpose() * evidence_.residual());
+  };
+  Eigen::MatrixXd all = beside();
+  if (const double share = evidence_.shared_pose_error(left(all), all); share > 0) {
+    evidence_.weigh_poses(share);
+    pool_.clear();
+    search();
+    all = beside();
+  }
+  // A little of it (out and back) is the model's misfit; more is oversampling.
   constexpr double kOversampled = 2.5;
-  const double time = evidence_.correlation_time(left);
+  const double time = evidence_.correlation_time(left(all));
   if (time < kOversampled) return;
   correlation_time_ = time;
   select_again();
@@ -172,7 +191,7 @@ std::string Finder::failed_test(std::size_t item) const {
   const Eigen::Index count = pool_[item].columns.cols();
   std::vector<std::size_t> others = without(item), all = {item};
   all.insert(all.end(), others.begin(), others.end());
-  const bool of_run = !pool_.candidate(item).choice.runs.empty();
+  const bool of_run = !pool_.candidate(item).choice.runs.empty() || shows_in_one_block(item);
   const HeldOut with = leave_runs_out(evidence_, pool_.columns(all), 0, count, of_run);
   const HeldOut less = leave_runs_out(evidence_, pool_.columns(others), 0, 0, of_run);
   const double gain = rest.chi_square - chi_square_;
@@ -183,6 +202,16 @@ std::string Finder::failed_test(std::size_t item) const {
   if (static_cast<double>(agree) < 0.75 * static_cast<double>(with.agreement.size()))
     return "stability: its coefficients change when a run is left out";
   return too_large(item);
+}
+
+bool Finder::shows_in_one_block(std::size_t item) const {
+  constexpr double kMostOfIt = 0.8;
+  const Eigen::VectorXd part = pool_[item].columns * own_coefficients(item);
+  std::map<int, double> of_block;
+  for (Eigen::Index i = 0; i < part.size(); ++i)
+    of_block[evidence_.blocks()[static_cast<std::size_t>(i)]] += part[i] * part[i];
+  return std::any_of(of_block.begin(), of_block.end(),
+                     [&](const auto& block) { return block.second > kMostOfIt * part.squaredNorm(); });
 }
 
 std::string Finder::too_large(std::size_t item) const {

@@ -70,13 +70,18 @@ class Finder {
   /// A form that holds a simpler one is taken only where what it has more is evidence by itself; of forms
   /// with the same columns the one nearest to the axis.
   void simplify();
+  /// How many entries hold a simpler one and more.
+  double holders_of(std::size_t simple) const;
   void search();
-  /// Where neighbouring readings hang together even after the richest explanation, they count for less.
+  /// Readings that hang together even after the richest explanation, at one pose or one after the other,
+  /// count for less.
   void weigh_correlation();
   std::vector<std::size_t> without(std::size_t item) const;
   Selection evaluate(const std::vector<std::size_t>& items) const;
   /// The first test of acceptance that an accepted item fails; empty where it passes all.
   std::string failed_test(std::size_t item) const;
+  /// Does one run hold nearly all that an accepted item explains? The other runs cannot tell of it then.
+  bool shows_in_one_block(std::size_t item) const;
   /// Is the term larger than any machine shows it?
   std::string too_large(std::size_t item) const;
   /// Largest value over the fit rows that a linear unknown of 1 gives its term, mm or deg.

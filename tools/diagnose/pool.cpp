@@ -33,9 +33,17 @@ double rank_of(const Candidate& candidate) {
   }
 }
 
-/// Twice the logarithm of how much more seldom than the others an effect is met that the catalogue calls
-/// rare.
+/// Twice the logarithm of how much more seldom than the others an effect or form is met that the catalogue
+/// calls so.
 constexpr double kRare = 6;
+
+/// What an axis moves out bends what carries it. A sag of what it carries, or of the other branch, has no
+/// load that would change with it.
+bool carries_not(const AxisPlaces& axes, const Choice& choice) {
+  if (choice.form->place != PlaceRule::kSag || !choice.axis || !choice.place) return false;
+  const std::optional<DofPlace>& own = axes.own(*choice.axis);
+  return own && (choice.place->workpiece != own->workpiece || choice.place->transform > own->transform);
+}
 
 }  // namespace
 
@@ -58,7 +66,8 @@ std::set<std::pair<int, std::size_t>> drivers_of(const Machine& machine, const C
   return drivers;
 }
 
-Pool::Pool(const Evidence& evidence, const Scanner& scanner) : evidence_(evidence), scanner_(scanner) {}
+Pool::Pool(const Evidence& evidence, const Scanner& scanner)
+    : evidence_(evidence), scanner_(scanner), axes_(evidence.machine()) {}
 
 const Candidate& Pool::candidate(std::size_t i) const {
   return scanner_.candidates()[items_[i].scored.candidate].candidate;
@@ -68,7 +77,9 @@ double Pool::penalty(std::size_t candidate) const {
   const ScannedCandidate& item = scanner_.candidates()[candidate];
   double cost = 2 * std::log(static_cast<double>(scanner_.candidates().size())) + rank_of(item.candidate);
   // A jump between runs follows any slow drift: it is named only where no continuous effect does as well.
-  if (item.candidate.choice.effect->rare || !item.candidate.choice.runs.empty()) cost += kRare;
+  const Choice& choice = item.candidate.choice;
+  if (choice.effect->rare || choice.form->rare || !choice.runs.empty()) cost += kRare;
+  if (carries_not(axes_, choice)) cost += kRare;
   // A scanned unknown is as many tries as the grid has values that differ, where that is more than the price
   // of a coefficient.
   constexpr double kPointsPerTry = 2.5;
@@ -174,7 +185,9 @@ bool Pool::same_cause(std::size_t a, std::size_t b) const {
   const Choice &x = candidate(a).choice, &y = candidate(b).choice;
   if (x.effect == &custom_effect() || y.effect == &custom_effect())
     return x.effect == y.effect && x.term == y.term;
-  return x.effect == y.effect && x.axis == y.axis && x.axis2 == y.axis2 && x.inputs == y.inputs;
+  const bool one_cause =
+      x.effect == y.effect || (!x.effect->cause.empty() && x.effect->cause == y.effect->cause);
+  return one_cause && x.axis == y.axis && x.axis2 == y.axis2 && x.inputs == y.inputs;
 }
 
 bool Pool::same_columns(std::size_t a, std::size_t b) const {
@@ -196,6 +209,10 @@ bool Pool::contains(std::size_t general, std::size_t special) const {
     return items_[i].columns.cols() + static_cast<Eigen::Index>(items_[i].scored.scanned.size());
   };
   if (unknowns(general) <= unknowns(special) || x.cols() < y.cols()) return false;
+  // Time may follow a jump between runs closely, and is no richer way to say it.
+  const auto mine = drivers_of(evidence_.machine(), candidate(general)),
+             its = drivers_of(evidence_.machine(), candidate(special));
+  if (!std::includes(mine.begin(), mine.end(), its.begin(), its.end())) return false;
   return static_cast<double>(y.cols()) - (x.transpose() * y).squaredNorm() < kHeldShare;
 }
 

@@ -29,6 +29,12 @@ class Pool {
   /// are refined first.
   void add(const std::vector<Scored>& scored, std::size_t most, const Eigen::MatrixXd& beside);
 
+  /// Takes all out again.
+  void clear() {
+    items_.clear();
+    keys_.clear();
+  }
+
   /// The entries that are not banned, as a problem of selection; `items`: which item each entry is.
   SelectionProblem problem(std::vector<std::size_t>& items) const;
 
@@ -45,11 +51,13 @@ class Pool {
 
   /// Columns of several items side by side.
   Eigen::MatrixXd columns(const std::vector<std::size_t>& items) const;
-  /// Effect, driving axis and inputs are the same: no different cause.
+  /// Effect (or the cause that the catalogue names), driving axis and inputs are the same: no different
+  /// cause.
   bool same_cause(std::size_t a, std::size_t b) const;
   /// Do two items span the same columns (all but a thousandth of their squares)?
   bool same_columns(std::size_t a, std::size_t b) const;
-  /// Does `general` have more unknowns than `special`, and hold its columns (all but 2 % of their squares)?
+  /// Does `general` have more unknowns than `special`, depend on all that `special` depends on, and hold its
+  /// columns (all but 2 % of their squares)?
   bool contains(std::size_t general, std::size_t special) const;
   /// Do both depend on the same kinds of quantities (positions, count of rows and travel since a reversal do
   /// not count)? If their columns are the same too, they are two ways to say one thing.
@@ -62,6 +70,7 @@ class Pool {
 
   const Evidence& evidence_;
   const Scanner& scanner_;
+  AxisPlaces axes_;
   std::vector<Item> items_;
   std::set<std::string> keys_;
 };

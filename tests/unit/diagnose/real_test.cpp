@@ -135,8 +135,9 @@ TEST_F(ElsewhereData, ARobotBendsAtItsSecondJoint) {
     EXPECT_NEAR(ladder[step].at("rms_um").get<double>(), fit_um, 0.002);
     EXPECT_NEAR(ladder[step].at("check_rms_um").get<double>(), check_um, 0.002);
   }
-  // A known weak spot: a third step (a period of joint 4) lowers the fit and raises the check rms.
-  EXPECT_LT(ladder.back().at("check_rms_um").get<double>(), 80);
+  // No third step: a period of joint 4 would lower the fit to 69 um and raise the check rms. The three points
+  // of a pose share an error, so they are no three witnesses for it.
+  EXPECT_EQ(ladder.size(), 3U);
 }
 
 TEST_F(ElsewhereData, APrinterGrowsWithItsFrame) {
