@@ -79,7 +79,7 @@ double Pool::penalty(std::size_t candidate) const {
   // A jump between runs follows any slow drift: it is named only where no continuous effect does as well.
   const Choice& choice = item.candidate.choice;
   if (choice.effect->rare || choice.form->rare || !choice.runs.empty()) cost += kRare;
-  if (carries_not(axes_, choice)) cost += kRare;
+  if (carries_not(axes_, choice)) cost += 2 * kRare;
   // A scanned unknown is as many tries as the grid has values that differ, where that is more than the price
   // of a coefficient.
   constexpr double kPointsPerTry = 2.5;
