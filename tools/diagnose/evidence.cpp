@@ -219,9 +219,9 @@ double Evidence::shared_pose_error(const Eigen::VectorXd& residual, const Eigen:
     count += n;
   }
   constexpr double kLeastFreedom = 10, kChance = 1e-3;
-  if (freedom_between < kLeastFreedom || freedom_within < kLeastFreedom || within <= 0) return 1;
+  if (freedom_between < kLeastFreedom || freedom_within < kLeastFreedom || within <= 0) return 0;
   const double f = (between / freedom_between) / (within / freedom_within);
-  if (log_f_tail(f, freedom_between, freedom_within) > std::log(kChance)) return 1;
+  if (log_f_tail(f, freedom_between, freedom_within) > std::log(kChance)) return 0;
   return (f - 1) * static_cast<double>(groups.size()) / count;
 }
 

@@ -152,5 +152,47 @@ TEST(LeaveRunsOut, FitsToARunWhatOnlyItDetermines) {
   EXPECT_NEAR(held.chi_square, refitted, 1e-5 * refitted);
 }
 
+/// Three readings at each of 60 places of one run, which share an error of `shared` um beside 1 um of their
+/// own.
+std::string poses(double shared_um) {
+  std::mt19937_64 random(kSeed);
+  std::normal_distribution<double> normal;
+  std::string text = "X[mm],x[mm]\n";
+  for (int pose = 0; pose < 60; ++pose) {
+    const double x = 16.0 * pose, common = 1e-3 * shared_um * normal(random);
+    for (int i = 0; i < 3; ++i)
+      text += std::to_string(x) + "," + std::to_string(x + common + 1e-3 * normal(random)) + "\n";
+  }
+  return text;
+}
+
+TEST(SharedPoseError, IsTheRatioOfVariancesAndNothingForWhiteNoise) {
+  for (const double shared : {0.0, 2.0}) {
+    Setting s(line_text(""), poses(shared));
+    const Eigen::MatrixXd nothing(s.evidence.residual().size(), 0);
+    const double found = s.evidence.shared_pose_error(s.evidence.residual(), nothing);
+    // The spread of a ratio of variances on 58 and 120 degrees of freedom is 23 %; three of them.
+    if (shared > 0)
+      EXPECT_NEAR(found, 4, 0.7 * 4) << "seed " << kSeed;
+    else
+      EXPECT_EQ(found, 0) << "seed " << kSeed;
+  }
+}
+
+/// Weighed by the shared error the residual is white again, and a column that is the same within each pose
+/// keeps 1 / (1 + 3 share) of its square.
+TEST(SharedPoseError, WeighingLeavesWhiteNoise) {
+  Setting s(line_text(""), poses(2));
+  const Eigen::MatrixXd nothing(s.evidence.residual().size(), 0);
+  const double share = s.evidence.shared_pose_error(s.evidence.residual(), nothing);
+  s.evidence.weigh_poses(share);
+  EXPECT_EQ(s.evidence.shared_pose_error(s.evidence.residual(), nothing), 0);
+  Eigen::MatrixXd ones = Eigen::MatrixXd::Ones(nothing.rows(), 1);
+  s.evidence.whiten(ones);
+  EXPECT_NEAR(ones.squaredNorm(), 180 / (1 + 3 * share), 1e-9 * 180);
+  EXPECT_LT((s.evidence.absorbed().transpose() * s.evidence.residual()).norm(),
+            1e-9 * s.evidence.residual().norm());
+}
+
 }  // namespace
 }  // namespace vernier

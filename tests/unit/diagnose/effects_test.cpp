@@ -67,6 +67,18 @@ TEST(Effects, AUsersFileAddsAndReplaces) {
   EXPECT_EQ(found, 1u);
 }
 
+TEST(Effects, AUsersEntrySaysWhatIsSeldomAndWhatCauseItHas) {
+  const std::vector<Effect> one = parse_effects(
+      "effect nap\ntitle A nap\nsignature It sleeps\ncause sleep\nform plain own k*{q}\nform square own "
+      "k*{q}^2\nseldom square\nunknown k mm linear 5\n",
+      "mine.txt");
+  ASSERT_EQ(one.size(), 1U);
+  EXPECT_EQ(one[0].cause, "sleep");
+  EXPECT_FALSE(one[0].rare);
+  EXPECT_FALSE(one[0].forms[0].rare);
+  EXPECT_TRUE(one[0].forms[1].rare);
+}
+
 TEST(Effects, AMissingFileIsAnError) { EXPECT_THROW(effect_catalogue({"/nowhere/effects.txt"}), InputError); }
 
 struct Damage {
@@ -121,6 +133,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Damage{"Grid", with("unknown w mm grid 5 2 7\n"), 6, "w"},
                     Damage{"NoForm", "effect a\ntitle t\nsignature s\nunknown k mm linear\n", 1, "a"},
                     Damage{"NoUnknown", "effect a\ntitle t\nsignature s\nform plain own k\n", 1, "a"},
+                    Damage{"SeldomWhat", with("seldom plain other\n"), 6, "other"},
                     Damage{"NoTitle",
                            "effect a\nsignature s\nform plain own k\nunknown k mm linear\n" +
                                std::string(kSound),
