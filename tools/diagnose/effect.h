@@ -55,7 +55,7 @@ struct Effect {
   std::string id, title, formula, signature, exposed_by;
   std::vector<std::string> impostors;
   bool rare = false;  // met seldom: wants more evidence than its rivals
-  std::string cause;  // effects of one cause on one axis differ in the place only: no rivals
+  std::string cause;  // effects of one cause, axis and input differ in place or shape: no rivals
   std::vector<EffectForm> forms;
   std::vector<UnknownRule> unknowns;
 
