@@ -15,27 +15,26 @@ struct SineCosine {
 /// Largest |result| of sine_cosine: one and its error.
 constexpr std::int32_t kSineLimit = (std::int32_t{1} << 30) + 2;
 
-/// Proved bound of |result - exact| in thousandths of 2^-30: the node's rounding 500 (and 500 times 0.0123
-/// for the other one), the rest of the series and its truncations 80, the last rounding 500.
-constexpr std::int32_t kSineErrorMilliLsb = 1090;
+/// Proved bound of |result - exact| in thousandths of 2^-30: the node's rounding 500 (and 500 times 0.0062
+/// for the other one), what the series leaves out 63, its truncations 50, the last rounding 500.
+constexpr std::int32_t kSineErrorMilliLsb = 1120;
 
-/// Sine and cosine of `turns`, 2^-32 turn, any value: the whole circle without an edge. Nearest of 256 nodes,
-/// then the angle d from it (|d| <= pi/256) by the addition theorem with d - d^3/6 and d^2/2 - d^4/24, all
-/// with 36 fraction bits (remainder d^5/120 < 2.4e-12). No branch, no division; the work never depends on the
-/// angle. realtime.
+/// Sine and cosine of `turns`, 2^-32 turn, any value: the whole circle without an edge. Nearest of 512 nodes,
+/// then the angle d from it (|d| <= pi/512) by the addition theorem with sin d = d - d^3/6 (remainder below
+/// 8e-14) and cos d = 1 - d^2/2 (remainder d^4/24 < 6e-11), in 37 fraction bits. No branch, no division; the
+/// work never depends on the angle. realtime.
 constexpr SineCosine sine_cosine(std::uint32_t turns) noexcept {
-  constexpr std::int64_t kRadPerCount = 1686629713;  // 2 pi 2^(36 + 24 - 32), rounded
+  constexpr std::int64_t kRadPerCount = 1686629713;  // 2 pi 2^(37 + 23 - 32), rounded
   constexpr std::int64_t kSixth = 715827883;         // 2^32 / 6
-  const std::uint32_t node = (turns + (std::uint32_t{1} << 23)) >> 24;
-  const auto count = static_cast<std::int32_t>(turns - (node << 24));  // -2^23 .. 2^23
-  const std::int64_t d = (count * kRadPerCount) >> 24;
-  const std::int64_t square = (d * d) >> 36;
-  const std::int64_t sixth = (square * kSixth) >> 32;
-  const std::int64_t sine = d - ((d * sixth) >> 36);
-  const std::int64_t bend = (square >> 1) - ((square * sixth) >> 38);  // 1 - cosine
+  const std::uint32_t node = (turns + (std::uint32_t{1} << 22)) >> 23;
+  const auto count = static_cast<std::int32_t>(turns - (node << 23));  // -2^22 .. 2^22
+  const std::int64_t d = (count * kRadPerCount) >> 23;
+  const std::int64_t square = (d * d) >> 37;
+  const std::int64_t sine = d - ((d * ((square * kSixth) >> 32)) >> 37);
+  const std::int64_t bend = square >> 1;  // 1 - cosine
   const SineNode& at = kSineTable[node & (kSineNodes - 1)];
-  return {narrow(at.sine + round_shift(at.cosine * sine - at.sine * bend, 36)),
-          narrow(at.cosine - round_shift(at.sine * sine + at.cosine * bend, 36))};
+  return {narrow(at.sine + round_shift(at.cosine * sine - at.sine * bend, 37)),
+          narrow(at.cosine - round_shift(at.sine * sine + at.cosine * bend, 37))};
 }
 
 /// Angle in a register's format as turns: angle * multiplier / 2^shift, truncated, modulo one turn. The

@@ -88,24 +88,34 @@ Equation ProgramBuilder::view() const {
   return e;
 }
 
-ProgramBuilder::Id ProgramBuilder::constant(double value) {
-  const auto found = known_constants_.find(value);
+namespace {
+
+// All digits of a constant, however small: a coefficient may meet a large register.
+int bits_of_constant(double value) {
+  constexpr int kMostDigits = 90;
+  const int bits = fraction_bits_for(std::abs(value));
+  if (value == 0 || bits < kMostBits) return bits;
+  return std::min(kMostDigits, static_cast<int>(std::log2(2147483647.0 / std::abs(value))));
+}
+
+}  // namespace
+
+ProgramBuilder::Id ProgramBuilder::constant(double value) { return constant(value, bits_of_constant(value)); }
+
+ProgramBuilder::Id ProgramBuilder::constant(double value, int fraction_bits) {
+  const auto found = known_constants_.find({value, fraction_bits});
   if (found != known_constants_.end()) return found->second;
   const Id id = static_cast<Id>(p_.constants.size());
   if (id >= kFirstChannel) throw InputError("cannot be compiled: more constants than a program holds");
   Register& r = registers_[id];
-  // All its digits, however small: a coefficient may meet a large register.
-  constexpr int kMostDigits = 90;
-  r.fraction_bits = fraction_bits_for(std::abs(value));
-  if (value != 0 && r.fraction_bits == kMostBits)
-    r.fraction_bits = std::min(kMostDigits, static_cast<int>(std::log2(2147483647.0 / std::abs(value))));
+  r.fraction_bits = fraction_bits;
   const auto count = std::llround(std::ldexp(value, r.fraction_bits));
   r.name = unique("constant_" + std::to_string(id + 1));
   r.range = {value, value};
   r.error = r.own_error = std::abs(std::ldexp(static_cast<double>(count), -r.fraction_bits) - value);
   p_.constants.push_back(static_cast<std::int32_t>(count));
   ranges_[id] = {count, count};
-  known_constants_[value] = id;
+  known_constants_[{value, fraction_bits}] = id;
   return id;
 }
 
@@ -224,49 +234,77 @@ ProgramBuilder::Id ProgramBuilder::product(Id a, Id b, const Interval& exact, co
                    " does not fit 32 bits over the declared ranges");
 }
 
-ProgramBuilder::Id ProgramBuilder::dot(double constant, std::vector<Product> products, const Interval& exact,
-                                       const std::string& name) {
-  std::stable_partition(products.begin(), products.end(), [](const Product& p) { return !p.minus; });
-  double size = std::abs(constant), input_error = 0;
-  int finest = 100;
-  Register meta;
-  meta.name = name;
-  meta.range = exact;
+double ProgramBuilder::largest_value(const Product& p) const {
+  return largest_count(p.a) * lsb(p.a) * (p.b ? largest_count(*p.b) * lsb(*p.b) : p.factor);
+}
+
+void ProgramBuilder::add_terms(const std::vector<Product>& products, int sum_bits, int result_bits,
+                               Instruction& step, Register& meta) {
   for (const Product& p : products) {
-    const Register &a = at(p.a), &b = at(p.b);
-    finest = std::min(finest, a.fraction_bits + b.fraction_bits);
-    size += largest_count(p.a) * lsb(p.a) * largest_count(p.b) * lsb(p.b);
-    meta.uses.push_back({p.a, b.range.magnitude() + b.error});
-    meta.uses.push_back({p.b, a.range.magnitude()});
-    input_error += (b.range.magnitude() + b.error) * a.error + a.range.magnitude() * b.error;
+    Id b = 0;
+    if (p.b) {
+      b = *p.b;
+    } else {
+      // A factor that meets the sum's own format needs no shift; it may cost as much as the result's
+      // rounding.
+      const int wanted = sum_bits - at(p.a).fraction_bits, finest = bits_of_constant(p.factor);
+      const double error = wanted < -60 ? 1 : std::ldexp(0.5, -wanted) * largest_count(p.a) * lsb(p.a);
+      const bool meets = wanted <= finest && error <= std::ldexp(1.0, -result_bits);
+      b = meets ? constant(p.factor, wanted) : constant(p.factor);
+    }
+    const Register &ra = at(p.a), &rb = at(b);
+    meta.uses.push_back({p.a, rb.range.magnitude() + rb.error});
+    meta.uses.push_back({b, ra.range.magnitude()});
+    const int shift = ra.fraction_bits + rb.fraction_bits - sum_bits;
+    if (shift > 0) meta.own_error += std::ldexp(1.0, -sum_bits);
+    if (shift > 62) continue;  // a product is below 2^62: all of it is less than that unit
+    p_.terms.push_back(
+        {static_cast<std::uint16_t>(p.a), static_cast<std::uint16_t>(b), static_cast<std::uint16_t>(shift)});
+    ++(p.minus ? step.b : step.a);
+  }
+}
+
+ProgramBuilder::Id ProgramBuilder::dot(double constant_part, std::vector<Product> products,
+                                       const Interval& exact, const std::string& name) {
+  std::stable_partition(products.begin(), products.end(), [](const Product& p) { return !p.minus; });
+  double size = std::abs(constant_part), input_error = 0;
+  int finest = 100;
+  for (const Product& p : products) {
+    const Register& a = at(p.a);
+    finest = std::min(finest, a.fraction_bits + (p.b ? at(*p.b).fraction_bits : bits_of_constant(p.factor)));
+    size += largest_value(p);
+    input_error += (p.b ? at(*p.b).range.magnitude() + at(*p.b).error : p.factor) * a.error +
+                   (p.b ? a.range.magnitude() * at(*p.b).error : 0);
   }
   // The sum keeps as many bits as fit below 2^62.
-  finest = std::min(finest, 61 - std::ilogb(std::max(size, 1e-15) * 1.001) - 1);
-  const auto first_term = static_cast<std::int32_t>(p_.terms.size());
+  finest = std::min(finest, 60 - std::ilogb(std::max(size, 1e-15) * 1.001));
+  const std::size_t first_term = p_.terms.size();
   for (int bits = std::min(fraction_bits_for(exact.magnitude() + input_error), finest); bits >= kFewestBits;
        --bits) {
     const int sum_bits = std::min(finest, bits + static_cast<int>(kMaxShift));
-    Instruction step{OpCode::kDot, static_cast<std::uint8_t>(sum_bits - bits), 0, 0, 0, 0, first_term};
-    meta.own_error = sum_bits > bits ? std::ldexp(0.5, -bits) : 0;
-    for (const Product& p : products) {
-      const int shift = at(p.a).fraction_bits + at(p.b).fraction_bits - sum_bits;
-      if (shift > 0) meta.own_error += std::ldexp(1.0, -sum_bits);
-      if (shift > 62) continue;  // a product is below 2^62: all of it is less than that unit
-      p_.terms.push_back({static_cast<std::uint16_t>(p.a), static_cast<std::uint16_t>(p.b),
-                          static_cast<std::uint16_t>(shift)});
-      ++(p.minus ? step.b : step.a);
-    }
-    if (constant != 0) {
-      const int lift = std::max(0, std::ilogb(std::ldexp(constant, sum_bits)) - 29);
-      step.c = static_cast<std::uint16_t>(lift);
-      step.k = static_cast<std::int32_t>(std::llround(std::ldexp(constant, sum_bits - lift)));
-      meta.own_error += std::abs(std::ldexp(step.k, lift - sum_bits) - constant);
-    }
+    Register meta;
+    meta.name = name;
+    meta.range = exact;
     meta.fraction_bits = bits;
+    meta.own_error = sum_bits > bits ? std::ldexp(0.5, -bits) : 0;
+    Instruction step{OpCode::kDot,
+                     static_cast<std::uint8_t>(sum_bits - bits),
+                     0,
+                     0,
+                     0,
+                     0,
+                     static_cast<std::int32_t>(first_term)};
+    add_terms(products, sum_bits, bits, step, meta);
+    if (constant_part != 0) {
+      const int lift = std::max(0, std::ilogb(std::ldexp(constant_part, sum_bits)) - 29);
+      step.c = static_cast<std::uint16_t>(lift);
+      step.k = static_cast<std::int32_t>(std::llround(std::ldexp(constant_part, sum_bits - lift)));
+      meta.own_error += std::abs(std::ldexp(step.k, lift - sum_bits) - constant_part);
+    }
     bool overflow = false;
     const Id id = append(step, {meta}, overflow);
     if (!overflow) return id;
-    p_.terms.resize(static_cast<std::size_t>(first_term));
+    p_.terms.resize(first_term);
   }
   throw InputError("cannot be compiled: " + name + " is too large for 32 bits over the declared ranges");
 }

@@ -1,5 +1,6 @@
 #pragma once
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -16,8 +17,9 @@ class ProgramBuilder {
 
   ProgramBuilder();
 
-  /// A constant in the finest format that holds it.
+  /// A constant in the finest format that holds it, or in the given one.
   Id constant(double value);
+  Id constant(double value, int fraction_bits);
   /// counts: the range in the quantity's own counts; unit: size of a count in the machine file's unit.
   /// reach: largest magnitude that must be representable beside the range itself (stations of a table).
   Id channel(Channel kind, double unit, double reach, const std::string& name);
@@ -25,9 +27,11 @@ class ProgramBuilder {
   /// k*a + l*b. exact: interval of the exact value.
   Id linear(double k, Id a, double l, Id b, const Interval& exact, const std::string& name);
   Id product(Id a, Id b, const Interval& exact, const std::string& name);
-  /// A product of two registers, added or subtracted.
+  /// A register times another one, or times a factor; added or subtracted.
   struct Product {
-    Id a, b;
+    Id a;
+    std::optional<Id> b;
+    double factor = 1;  // > 0; where there is no b
     bool minus = false;
   };
   /// constant + the sum of products, rounded once. exact: interval of the exact value.
@@ -56,13 +60,18 @@ class ProgramBuilder {
  private:
   Id append(const Instruction& step, std::vector<Register> results, bool& overflow);
   double largest_count(Id id) const;
+  double largest_value(const Product& p) const;
+  // The terms of a sum in the format of sum_bits, for a result of result_bits; in `meta` their errors and
+  // uses.
+  void add_terms(const std::vector<Product>& products, int sum_bits, int result_bits, Instruction& step,
+                 Register& meta);
   std::string unique(const std::string& name);
   Equation view() const;
 
   LoweredProgram p_;
   std::vector<Register> registers_;
   std::vector<ValueRange> ranges_;
-  std::map<double, Id> known_constants_;
+  std::map<std::pair<double, int>, Id> known_constants_;
   std::set<std::string> names_;
   std::vector<ErrorTable> table_views_;
 };

@@ -131,7 +131,9 @@ NodeId Graph::sum(double constant_part, std::vector<Term> terms) {
     const Node& node = nodes_[term.node];
     if (node.kind == NodeKind::kConstant) {
       constant_part += term.coefficient * node.number;
-    } else if (node.kind == NodeKind::kSum) {
+    } else if (node.kind == NodeKind::kSum && node.terms.size() + (node.number != 0 ? 1 : 0) < 2) {
+      // A sum of several terms stays one value, or its terms would be computed again wherever it is used;
+      // lowering takes those apart that are used once.
       constant_part += term.coefficient * node.number;
       for (const Term& inner : node.terms) collect(term.coefficient * inner.coefficient, inner.node);
     } else {

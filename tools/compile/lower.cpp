@@ -64,11 +64,14 @@ std::string channel_name(const Machine& machine, ChannelKind kind, std::size_t i
 
 class Lowering {
  public:
-  Lowering(const Machine& machine, const Derivation& d, std::uint32_t tick_us)
-      : machine_(machine), d_(d), g_(d.graph), tick_us_(tick_us) {}
+  /// most_shared: sums whose (terms - 1) * (uses - 1) is no more are added term by term wherever they are
+  /// used.
+  Lowering(const Machine& machine, const Derivation& d, std::uint32_t tick_us, std::size_t most_shared)
+      : machine_(machine), d_(d), g_(d.graph), tick_us_(tick_us), most_shared_(most_shared) {}
 
   LoweredProgram run() {
     for (const AxisDeviation& out : d_.outputs) note_use(out.value);
+    keep_least_squares();
     std::vector<std::pair<Output, ProgramBuilder::Id>> outputs;
     for (const AxisDeviation& out : d_.outputs) {
       wanted_name_ = "deviation_" + machine_.axes[out.axis].name;
@@ -160,20 +163,73 @@ class Lowering {
     return b_.channel(c, unit, reach, channel_name(machine_, n.channel, n.index[0]));
   }
 
+  // The bound of the least squares is told apart by these.
+  void keep_least_squares() {
+    if (!d_.least_squares) return;
+    const LeastSquares& l = *d_.least_squares;
+    for (const auto* const matrix : {&l.jacobian, &l.square, &l.adjugate})
+      for (const std::vector<NodeId>& row : *matrix) kept_.insert(row.begin(), row.end());
+    kept_.insert(l.deviation.begin(), l.deviation.end());
+    kept_.insert(l.weights.begin(), l.weights.end());
+    kept_.insert({l.determinant, l.reciprocal});
+  }
+
   // What the outputs need: columns of tables are looked up together, sine and cosine computed together.
   void note_use(NodeId node) {
-    if (!used_.insert(node).second) return;
+    if (++uses_[node] > 1) return;
     const Node& n = g_[node];
     if (n.kind == NodeKind::kTable) columns_[n.index[0]][n.index[1]] = node;
     if (n.kind == NodeKind::kFunction && n.function == Function::kSin) sines_[n.args[0]] = node;
     if (n.kind == NodeKind::kFunction && n.function == Function::kCos) cosines_[n.args[0]] = node;
-    for (const NodeId arg : n.args) note_use(arg);
+    for (const NodeId arg : n.args) {
+      factors_.insert(arg);
+      note_use(arg);
+    }
     for (const Term& term : n.terms) note_use(term.node);
+  }
+
+  // Whether it costs less to add the terms of a sum to the sums that use it than to give it a register: a
+  // register costs a rounding, and a multiplication and an addition a use. Not where a coefficient would part
+  // a product from its fusion.
+  bool goes_into_sums(NodeId id, double coefficient) const {
+    const Node& n = g_[id];
+    if (n.kind != NodeKind::kSum || kept_.count(id) != 0 || factors_.count(id) != 0) return false;
+    const std::size_t more_uses = uses_.at(id) - 1;
+    if (more_uses > 0 && (flat_size(id) - 1) * more_uses > most_shared_) return false;
+    return std::abs(coefficient) == 1 ||
+           std::none_of(n.terms.begin(), n.terms.end(), [&](const Term& t) { return fuses(t); });
+  }
+  void collect(double k, const Node& sum, double& number, std::map<NodeId, double>& terms) const {
+    number += k * sum.number;
+    for (const Term& term : sum.terms) {
+      const Node& inner = g_[term.node];
+      const double coefficient = k * term.coefficient;
+      if (goes_into_sums(term.node, coefficient))
+        collect(coefficient, inner, number, terms);
+      else
+        terms[term.node] += coefficient;
+    }
+  }
+  std::size_t flat_size(NodeId id) const {
+    const auto found = flat_sizes_.find(id);
+    if (found != flat_sizes_.end()) return found->second;
+    return flat_sizes_[id] = std::max<std::size_t>(1, flattened(g_[id]).terms.size());
+  }
+  Node flattened(const Node& sum) const {
+    Node flat = sum;
+    flat.number = 0;
+    flat.terms.clear();
+    std::map<NodeId, double> terms;
+    collect(1, sum, flat.number, terms);
+    for (const auto& [node, coefficient] : terms)
+      if (coefficient != 0) flat.terms.push_back({coefficient, node});
+    return flat;
   }
 
   // A product within a sum is no register of its own: it is added at full length and rounded with the sum.
   bool fuses(const Term& term) const {
-    return g_[term.node].kind == NodeKind::kProduct && std::abs(term.coefficient) == 1;
+    return g_[term.node].kind == NodeKind::kProduct && std::abs(term.coefficient) == 1 &&
+           kept_.count(term.node) == 0;
   }
   Id dot(const Node& n, const std::string& name) {
     std::vector<ProgramBuilder::Product> products;
@@ -183,9 +239,9 @@ class Lowering {
       const Node& part = g_[term.node];
       const bool minus = term.coefficient < 0;
       if (fuses(term))
-        products.push_back({value(part.args[0]), value(part.args[1]), minus});
+        products.push_back({value(part.args[0]), value(part.args[1]), 1, minus});
       else
-        products.push_back({value(term.node), b_.constant(std::abs(term.coefficient)), minus});
+        products.push_back({value(term.node), std::nullopt, std::abs(term.coefficient), minus});
       const double here = std::abs(term.coefficient) * part.range.magnitude();
       if (here > size) size = here, largest = products.back().a;
     }
@@ -194,7 +250,9 @@ class Lowering {
   }
 
   // Terms in order of size, so that partial sums keep the finest format as long as they can.
-  Id sum(const Node& n, const std::string& name) {
+  Id sum(const Node& whole, const std::string& name) {
+    const Node n = flattened(whole);
+    if (n.terms.empty()) return b_.constant(n.number);
     const std::size_t count = n.terms.size() + (n.number != 0 ? 1 : 0);
     if (count > 2 || std::any_of(n.terms.begin(), n.terms.end(), [&](const Term& t) { return fuses(t); }))
       return dot(n, name);
@@ -455,10 +513,14 @@ class Lowering {
   const Derivation& d_;
   const Graph& g_;
   std::uint32_t tick_us_;
+  std::size_t most_shared_;
   ProgramBuilder b_;
   std::string wanted_name_;
   std::map<NodeId, Id> done_;
-  std::set<NodeId> used_;
+  std::map<NodeId, std::size_t> uses_;
+  mutable std::map<NodeId, std::size_t> flat_sizes_;
+  std::set<NodeId> factors_;  // used otherwise than in a sum
+  std::set<NodeId> kept_;     // have a register of their own, whatever it costs
   std::map<std::size_t, std::map<std::size_t, NodeId>> columns_;  // axis -> column -> node
   std::map<std::size_t, std::map<std::size_t, Id>> looked_up_;    // axis -> column -> register
   std::map<NodeId, NodeId> sines_, cosines_;                      // argument -> node
@@ -483,8 +545,26 @@ const char* name_of(ErrorSource source) {
   return "";
 }
 
+namespace {
+
+/// Instructions that the arithmetic takes, about (x86-64, printed form): what tells two forms of one equation
+/// apart.
+std::size_t cost_of(const LoweredProgram& p) {
+  std::size_t cost = 0;
+  for (const Instruction& s : p.instructions) cost += s.op == OpCode::kLinear ? 6 : 3;
+  for (const ProductTerm& t : p.terms) cost += t.shift > 0 ? 3 : 2;
+  return cost;
+}
+
+}  // namespace
+
 LoweredProgram lower(const Machine& machine, const Derivation& derivation, std::uint32_t tick_us) {
-  return Lowering(machine, derivation, tick_us).run();
+  LoweredProgram best = Lowering(machine, derivation, tick_us, 0).run();
+  for (const std::size_t most_shared : {1u, 2u, 4u}) {
+    LoweredProgram other = Lowering(machine, derivation, tick_us, most_shared).run();
+    if (cost_of(other) < cost_of(best)) best = std::move(other);
+  }
+  return best;
 }
 
 }  // namespace vernier

@@ -3,7 +3,7 @@
 
 namespace vernier {
 
-/// The text of comp/generated/sine_table.h: sine and cosine at 256 nodes of a turn, rounded to 30 fraction
+/// The text of comp/generated/sine_table.h: sine and cosine at 512 nodes of a turn, rounded to 30 fraction
 /// bits. A test compares the file with it and writes it anew with VERNIER_UPDATE_GOLDEN=1. tool.
 std::string print_sine_table();
 
