@@ -2,6 +2,7 @@
 #include "comp/compensator.h"
 
 #include "comp/fixed.h"
+#include "comp/shares.h"
 
 namespace vernier {
 namespace {
@@ -70,6 +71,10 @@ void Compensator::read_channels(const CycleInput& input, CycleOutput& output) no
     }
     *out++ = channel_value(channel, value);
   }
+}
+
+void Compensator::shares(const ShareProgram& program, Correction* corrections) noexcept {
+  run_shares(program, program_, registers_, corrections);
 }
 
 CycleOutput Compensator::step(const CycleInput& input, WeightQ16 weight) noexcept {

@@ -109,6 +109,8 @@ struct CycleOutput {
 /// its range. realtime.
 std::int32_t channel_value(const Channel& channel, std::int64_t value) noexcept;
 
+struct ShareProgram;
+
 /// One tick of compensation: equation, magnitude limit, ramp weight, slew limit. Owns the registers, lags and
 /// slew state. The program must have been verified and must outlive the compensator.
 class Compensator {
@@ -127,6 +129,10 @@ class Compensator {
 
   /// Forgets lags and slew state: the next step starts from zero correction. setup.
   void reset() noexcept;
+
+  /// The shares of the effects in the correction of the last step (comp/shares.h); one entry per share.
+  /// realtime, but not needed by the tick.
+  void shares(const ShareProgram& program, Correction* corrections) noexcept;
 
   /// Register i after the last step, for tests and for watching intermediates. setup.
   std::int32_t register_value(std::uint32_t i) const noexcept { return registers_[i]; }

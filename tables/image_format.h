@@ -3,7 +3,7 @@
 #include <bit>
 #include <cstdint>
 
-#include "comp/compensator.h"
+#include "comp/shares.h"
 
 /// The only definition of the machine image (`machine.vimg`), shared by compiler, uploader and firmware.
 ///
@@ -16,7 +16,7 @@ namespace vernier {
 static_assert(std::endian::native == std::endian::little, "images are read in place");
 
 constexpr std::uint8_t kImageMagic[8] = {'V', 'E', 'R', 'N', 'I', 'E', 'R', '\n'};
-constexpr std::uint32_t kImageFormatVersion = 2;
+constexpr std::uint32_t kImageFormatVersion = 3;
 constexpr std::uint32_t kMaxImageBytes = 16u << 20;
 constexpr std::uint32_t kImageAlignment = 8;
 constexpr std::uint32_t kImageNameBytes = 24;
@@ -49,8 +49,15 @@ enum class SectionType : std::uint32_t {
   kRecords,       // int32: the records of all tables one after the other (comp/error_table.h), no gaps
   kWraps,         // Wrap
   kOutputs,       // Output
+  // The shares of the effects (comp/shares.h): an equation of its own.
+  kShareConstants,     // int32
+  kShareSources,       // uint16: registers of the tick
+  kShareInstructions,  // Instruction
+  kShareTerms,         // ProductTerm
+  kShares,             // Share
+  kShareNames,         // ShareName, one per share
 };
-constexpr std::uint32_t kSectionCount = static_cast<std::uint32_t>(SectionType::kOutputs) + 1;
+constexpr std::uint32_t kSectionCount = static_cast<std::uint32_t>(SectionType::kShareNames) + 1;
 
 struct SectionEntry {
   SectionType type;
@@ -90,5 +97,11 @@ struct InputRecord {
   std::int64_t low, high;  // 1e-6 of the unit: range that the error bound covers
 };
 static_assert(sizeof(InputRecord) == 64);
+
+/// What a live display calls a share: "X of transform 2 (tool): BX*dirX", cut where it is longer.
+struct ShareName {
+  char text[64];
+};
+static_assert(sizeof(ShareName) == 64);
 
 }  // namespace vernier

@@ -17,7 +17,13 @@ constexpr std::uint32_t kRecordBytes[kSectionCount] = {1,
                                                        sizeof(TableRecord),
                                                        4,
                                                        sizeof(Wrap),
-                                                       sizeof(Output)};
+                                                       sizeof(Output),
+                                                       4,
+                                                       sizeof(std::uint16_t),
+                                                       sizeof(Instruction),
+                                                       sizeof(ProductTerm),
+                                                       sizeof(Share),
+                                                       sizeof(ShareName)};
 
 template <class T>
 const T* at(const std::uint8_t* bytes, std::uint32_t offset) {
@@ -125,8 +131,7 @@ ImageFault ImageView::read_tables(View<TableRecord> tables, View<std::int32_t> w
 }
 
 // Wide enough that no number of instructions can bring it round; the verifier bounds it.
-void ImageView::count_results() noexcept {
-  Equation& equation = program_.equation;
+void ImageView::count_results(Equation& equation) noexcept {
   std::uint64_t results = 0;
   for (const Instruction& step : equation.instructions) results += results_of(step, equation.tables);
   equation.result_count = static_cast<std::uint32_t>(lower<std::uint64_t>(results, UINT32_MAX));
@@ -156,8 +161,24 @@ ImageFault ImageView::read_sections(const std::uint8_t* bytes) noexcept {
   equation.terms = section<ProductTerm>(bytes, SectionType::kTerms);
   const ImageFault fault = read_tables(section<TableRecord>(bytes, SectionType::kTables),
                                        section<std::int32_t>(bytes, SectionType::kRecords));
-  count_results();
-  return fault;
+  count_results(equation);
+  return fault == ImageFault::kNone ? read_shares(bytes) : fault;
+}
+
+ImageFault ImageView::read_shares(const std::uint8_t* bytes) noexcept {
+  Equation& equation = shares_.equation;
+  equation.constants = section<std::int32_t>(bytes, SectionType::kShareConstants);
+  shares_.sources = section<std::uint16_t>(bytes, SectionType::kShareSources);
+  equation.channel_count = shares_.sources.size;
+  equation.instructions = section<Instruction>(bytes, SectionType::kShareInstructions);
+  equation.terms = section<ProductTerm>(bytes, SectionType::kShareTerms);
+  count_results(equation);
+  shares_.shares = section<Share>(bytes, SectionType::kShares);
+  share_names_ = section<ShareName>(bytes, SectionType::kShareNames);
+  if (share_names_.size != shares_.shares.size) return ImageFault::kSection;
+  for (const ShareName& name : share_names_)
+    if (!text_ok(name.text, sizeof(name.text), false)) return ImageFault::kSection;
+  return ImageFault::kNone;
 }
 
 ImageFault ImageView::read(const std::uint8_t* bytes, std::uint32_t size,
@@ -167,7 +188,8 @@ ImageFault ImageView::read(const std::uint8_t* bytes, std::uint32_t size,
   if (fault != ImageFault::kNone) return fault;
   header_ = at<ImageHeader>(bytes, 0);
   fault = read_sections(bytes);
-  return fault != ImageFault::kNone ? fault : fault_of(verify_program(program_, workspace.ranges));
+  if (fault == ImageFault::kNone) fault = fault_of(verify_program(program_, workspace.ranges));
+  return fault != ImageFault::kNone ? fault : fault_of(verify_shares(shares_, program_, workspace.ranges));
 }
 
 void ImageView::close() noexcept {
@@ -176,6 +198,8 @@ void ImageView::close() noexcept {
   axes_ = {};
   inputs_ = {};
   program_ = {};
+  shares_ = {};
+  share_names_ = {};
 }
 
 ImageFault ImageView::open(const std::uint8_t* bytes, std::uint32_t size,

@@ -59,14 +59,18 @@ class ImageView {
   const char* name() const noexcept { return name_; }
   View<AxisRecord> axes() const noexcept { return axes_; }
   View<InputRecord> inputs() const noexcept { return inputs_; }
+  /// Shares of the effects, for Compensator::shares, and what they are called.
+  const ShareProgram& shares() const noexcept { return shares_; }
+  View<ShareName> share_names() const noexcept { return share_names_; }
   /// Ready for Compensator.
   const Program& program() const noexcept { return program_; }
 
  private:
   ImageFault read(const std::uint8_t* bytes, std::uint32_t size, ImageWorkspace& workspace) noexcept;
   ImageFault read_sections(const std::uint8_t* bytes) noexcept;
+  ImageFault read_shares(const std::uint8_t* bytes) noexcept;
   ImageFault read_tables(View<TableRecord> tables, View<std::int32_t> words) noexcept;
-  void count_results() noexcept;
+  void count_results(Equation& equation) noexcept;
   void close() noexcept;
 
   const ImageHeader* header_ = nullptr;
@@ -74,6 +78,8 @@ class ImageView {
   View<AxisRecord> axes_;
   View<InputRecord> inputs_;
   Program program_;
+  ShareProgram shares_;
+  View<ShareName> share_names_;
   ErrorTable tables_[kMaxTables];
 };
 

@@ -9,7 +9,7 @@
 namespace vernier {
 namespace {
 
-constexpr std::uint32_t kFirstChannel = 512, kFirstResult = 640;
+constexpr std::uint32_t kFirstChannel = 512, kFirstResult = kFirstChannel + kMaxRegisters;
 constexpr int kMostBits = 50, kFewestBits = -30;
 
 std::string identifier(const std::string& name) {
@@ -144,6 +144,21 @@ ProgramBuilder::Id ProgramBuilder::channel(Channel channel, double unit, double 
   p_.channels.push_back(channel);
   ranges_[id] = {channel_value(channel, channel.low), channel_value(channel, channel.high)};
   return id;
+}
+
+ProgramBuilder::Id ProgramBuilder::imported(const LoweredProgram& other, std::uint32_t source) {
+  const Id id = kFirstChannel + static_cast<Id>(p_.channels.size());
+  if (id >= kFirstResult) throw InputError("cannot be compiled: more channels than a program holds");
+  registers_[id] = other.registers[source];
+  registers_[id].name = unique(other.registers[source].name);
+  registers_[id].uses.clear();
+  ranges_[id] = other.ranges[source];
+  p_.channels.push_back({});
+  return id;
+}
+
+std::size_t ProgramBuilder::size() const {
+  return registers_.size() - kFirstResult + p_.constants.size() + p_.channels.size();
 }
 
 ProgramBuilder::Id ProgramBuilder::append(const Instruction& step, std::vector<Register> results,
@@ -427,6 +442,7 @@ LoweredProgram ProgramBuilder::finish(const std::vector<std::pair<Output, Id>>& 
     if (gap) continue;
     for (Register::Use& use : registers_[id].uses) use.from = final_id(use.from);
     p_.registers.push_back(registers_[id]);
+    p_.ranges.push_back(ranges_[id]);
   }
   for (const auto& [output, id] : outputs) {
     p_.outputs.push_back(output);

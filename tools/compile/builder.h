@@ -24,6 +24,9 @@ class ProgramBuilder {
   /// reach: largest magnitude that must be representable beside the range itself (stations of a table).
   Id channel(Channel kind, double unit, double reach, const std::string& name);
 
+  /// A register of another program, `source` there, as a channel of this one.
+  Id imported(const LoweredProgram& other, std::uint32_t source);
+
   /// k*a + l*b. exact: interval of the exact value.
   Id linear(double k, Id a, double l, Id b, const Interval& exact, const std::string& name);
   Id product(Id a, Id b, const Interval& exact, const std::string& name);
@@ -53,6 +56,8 @@ class ProgramBuilder {
   const Register& at(Id id) const { return registers_[id]; }
   const ValueRange& counts(Id id) const { return ranges_[id]; }
   double lsb(Id id) const;
+  /// Registers that are taken so far.
+  std::size_t size() const;
   /// The place of a register in the finished program; valid once nothing is added any more.
   Id final_id(Id id) const;
   LoweredProgram finish(const std::vector<std::pair<Output, Id>>& outputs);

@@ -49,7 +49,19 @@ nlohmann::ordered_json to_json(const OutputBound& b) {
           {"largest_terms", terms}};
 }
 
-nlohmann::ordered_json to_json(const CompiledMachine& c) {
+nlohmann::ordered_json shares_json(const CompiledMachine& c, const Machine& machine) {
+  nlohmann::ordered_json shares = nlohmann::ordered_json::array();
+  for (std::size_t i = 0; i < c.shares.shares.size(); ++i) {
+    const Axis& axis = machine.axes[c.shares.shares[i].axis];
+    shares.push_back({{"effect", c.shares.names[i]},
+                      {"axis", axis.name},
+                      {"max", c.shares.largest[i] * (axis.rotary ? 1 : 1000)},
+                      {"unit", axis.rotary ? "deg" : "um"}});
+  }
+  return shares;
+}
+
+nlohmann::ordered_json to_json(const CompiledMachine& c, const Machine& machine) {
   nlohmann::ordered_json bounds = nlohmann::ordered_json::array();
   double total = 0;
   for (const OutputBound& b : c.bounds) {
@@ -60,6 +72,7 @@ nlohmann::ordered_json to_json(const CompiledMachine& c) {
           {"outputs", bounds},
           {"switching", c.switching},
           {"notes", c.notes},
+          {"shares", shares_json(c, machine)},
           {"operations", c.program.instructions.size()},
           {"registers", c.program.registers.size()},
           {"tables", c.program.tables.size()},
@@ -71,8 +84,9 @@ void run_compile(const Arguments& arguments) {
   const std::string text = read_file(arguments.machine);
   CompileOptions options;
   if (!arguments.budget.empty()) options.budget_um = parse_length_um(arguments.budget);
-  const CompiledMachine compiled = compile_machine(parse_machine(text, arguments.machine), text, options);
-  const nlohmann::ordered_json result = to_json(compiled);
+  const Machine machine = parse_machine(text, arguments.machine);
+  const CompiledMachine compiled = compile_machine(machine, text, options);
+  const nlohmann::ordered_json result = to_json(compiled, machine);
   std::error_code failed;
   std::filesystem::create_directories(arguments.directory, failed);
   if (failed) throw InputError(arguments.directory + ": " + failed.message());

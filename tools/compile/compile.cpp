@@ -25,8 +25,13 @@ CompiledMachine compile_once(const Machine& machine, std::uint32_t tick_us, doub
   CompiledMachine result;
   const Derivation d = derive(machine, neglect_mm);
   result.program = lower(machine, d, tick_us);
+  result.shares = lower_shares(machine, d, result.program);
   result.switching = d.switching;
   result.notes = d.notes;
+  if (result.shares.left_out > 0)
+    result.notes.push_back(
+        fmt::format("{} of {} shares of effects have no room in the image and are left out",
+                    result.shares.left_out, result.shares.left_out + result.shares.shares.size()));
   result.least_squares = d.least_squares;
   result.bounds = bounds_of(machine, d, result.program);
   return result;
@@ -54,7 +59,8 @@ CompiledMachine compile_machine(const Machine& machine, const std::string& machi
         bad.total_um, bad.axis, *options.budget_um, blame.name, blame.source, blame.bound_um));
   }
   const std::uint64_t source_hash = hash_of(machine_text);
-  result.image = write_image(machine, result.program, options.tick_us, source_hash, result.fingerprint);
+  result.image =
+      write_image(machine, result.program, result.shares, options.tick_us, source_hash, result.fingerprint);
   result.header = print_header(machine, result.program, source_hash);
   result.source = print_source(machine, result.program, source_hash);
   load_image(result.image,

@@ -18,9 +18,10 @@ struct CompileOptions {
 struct CompiledMachine {
   std::vector<std::uint8_t> image;
   LoweredProgram program;
+  LoweredShares shares;
   std::vector<OutputBound> bounds;
   std::optional<LeastSquares> least_squares;  // where turning axes are corrected too
-  std::vector<std::string> switching;         // comparisons and the like: the bound holds away from their steps
+  std::vector<std::string> switching;  // comparisons and the like: the bound holds away from their steps
   std::vector<std::string> notes;      // what the user should know of the correction, a sentence each
   std::string header, source;          // equation.h, equation.cpp
   std::uint64_t fingerprint = 0;
@@ -47,8 +48,8 @@ std::unique_ptr<LoadedImage> load_image(const std::vector<std::uint8_t>& image, 
 
 /// The bytes of an image (tables/image_format.h). tool.
 std::vector<std::uint8_t> write_image(const Machine& machine, const LoweredProgram& program,
-                                      std::uint32_t tick_us, std::uint64_t source_hash,
-                                      std::uint64_t& fingerprint);
+                                      const LoweredShares& shares, std::uint32_t tick_us,
+                                      std::uint64_t source_hash, std::uint64_t& fingerprint);
 
 /// The program as readable C++: equation.h and equation.cpp. Same program, same bytes. tool.
 std::string print_header(const Machine& machine, const LoweredProgram& program, std::uint64_t source_hash);

@@ -54,6 +54,7 @@ class Attempt {
     d_.columns = columns_;
     d_.deviation = walk_.deviation();
     d_.spread_mm = walk_.spread_mm();
+    for (const auto& [name, part] : walk_.parts()) d_.parts.push_back({name, part, {}});
     return std::move(d_);
   }
 

@@ -47,6 +47,13 @@ struct AxisColumn {
   double norm;  // its length at most
 };
 
+/// What one term of the chain adds to the deviation, and so to each output.
+struct EffectPart {
+  std::string name;  // "X of transform 2 (tool): BX*dirX"
+  NodeVector deviation;
+  std::vector<NodeId> outputs;  // as Derivation::outputs
+};
+
 /// The symbolic error equation of a machine.
 struct Derivation {
   Graph graph;
@@ -57,6 +64,7 @@ struct Derivation {
   std::map<std::size_t, double> turning;  // axes that turn that frame: rad per mm or deg
   std::map<NodeId, double> table_slopes;  // of each table value: mm or deg per axis unit at most
   std::vector<Neglected> neglected;
+  std::vector<EffectPart> parts;   // their sum is the deviation
   std::vector<std::string> notes;  // what the user should know of the correction, a sentence each
   std::optional<LeastSquares> least_squares;
   std::optional<double> fading;  // share of the poses where it fades, because the axes do not reach there

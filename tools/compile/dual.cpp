@@ -109,6 +109,11 @@ void Translator::note(const std::string& text) {
   if (std::find(d_.notes.begin(), d_.notes.end(), text) == d_.notes.end()) d_.notes.push_back(text);
 }
 
+void Translator::note_step(const std::string& text) {
+  if (std::find(d_.switching.begin(), d_.switching.end(), text) == d_.switching.end())
+    d_.switching.push_back(text);
+}
+
 Dual Translator::product(const Dual& a, const Dual& b) {
   const NodeId delta = g_.add(g_.product(a.nominal, b.delta), g_.product(a.delta, actual(b)));
   return {g_.product(a.nominal, b.nominal), delta};
@@ -211,7 +216,7 @@ Dual Translator::visit(const Expr& expr) {
       break;
   }
   if (expr.op == Op::kEqual || expr.op == Op::kLess || expr.op == Op::kGreater || expr.op == Op::kSign)
-    d_.switching.push_back(to_text(expr));
+    note_step(to_text(expr));
   const NodeId nominal = apply_to(expr.op, a.nominal, b.nominal);
   if (g_.is_zero(a.delta) && g_.is_zero(b.delta)) return {nominal, g_.constant(0)};
   if (expr.op == Op::kDivide && g_.is_zero(b.delta))

@@ -24,6 +24,7 @@ class Translator {
 
  private:
   void note(const std::string& text);
+  void note_step(const std::string& text);
   Dual visit(const Expr& expr);
   Dual symbol(const Expr& expr);
   Dual product(const Dual& a, const Dual& b);

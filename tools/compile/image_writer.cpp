@@ -83,8 +83,8 @@ std::vector<InputRecord> input_records(const Machine& machine) {
 }  // namespace
 
 std::vector<std::uint8_t> write_image(const Machine& machine, const LoweredProgram& program,
-                                      std::uint32_t tick_us, std::uint64_t source_hash,
-                                      std::uint64_t& fingerprint) {
+                                      const LoweredShares& shares, std::uint32_t tick_us,
+                                      std::uint64_t source_hash, std::uint64_t& fingerprint) {
   Writer writer;
   std::vector<char> name(machine.name.begin(), machine.name.end());
   name.push_back('\0');
@@ -105,6 +105,16 @@ std::vector<std::uint8_t> write_image(const Machine& machine, const LoweredProgr
   writer.section(SectionType::kRecords, records);
   writer.section(SectionType::kWraps, program.wraps);
   writer.section(SectionType::kOutputs, program.outputs);
+  writer.section(SectionType::kShareConstants, shares.constants);
+  writer.section(SectionType::kShareSources, shares.sources);
+  writer.section(SectionType::kShareInstructions, shares.instructions);
+  writer.section(SectionType::kShareTerms, shares.terms);
+  writer.section(SectionType::kShares, shares.shares);
+  std::vector<ShareName> names(shares.names.size());
+  for (std::size_t i = 0; i < names.size(); ++i)
+    std::memcpy(names[i].text, shares.names[i].data(),
+                std::min(shares.names[i].size(), sizeof(ShareName) - 1));
+  writer.section(SectionType::kShareNames, names);
   ImageHeader header{};
   header.tick_us = tick_us;
   header.source_hash = source_hash;

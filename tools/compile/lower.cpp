@@ -85,6 +85,40 @@ class Lowering {
     return program;
   }
 
+  /// The first `most` shares; the caller sees from the registers whether they fit.
+  LoweredShares run_shares(const LoweredProgram& tick, std::size_t most, std::size_t& registers) {
+    tick_ = &tick;
+    for (const EffectPart& part : d_.parts)
+      for (const NodeId id : part.outputs) note_use(id);
+    LoweredShares result;
+    std::vector<Id> ids;
+    for (const EffectPart& part : d_.parts)
+      for (std::size_t i = 0; i < d_.outputs.size(); ++i) {
+        if (g_.is_zero(part.outputs[i])) continue;
+        ++result.left_out;
+        if (ids.size() == most) continue;
+        try {
+          ids.push_back(value(part.outputs[i]));
+        } catch (const InputError&) {
+          continue;
+        }
+        const Output out = output_of(d_.outputs[i].axis, ids.back());
+        result.shares.push_back({out.axis, 0, out.shift, out.multiplier});
+        result.names.push_back(part.name);
+        result.largest.push_back(g_[part.outputs[i]].range.magnitude());
+        --result.left_out;
+      }
+    for (std::size_t i = 0; i < ids.size(); ++i)
+      result.shares[i].source = static_cast<std::uint16_t>(b_.final_id(ids[i]));
+    registers = b_.size();
+    LoweredProgram program = b_.finish({});
+    result.constants = std::move(program.constants);
+    result.instructions = std::move(program.instructions);
+    result.terms = std::move(program.terms);
+    result.sources = sources_;
+    return result;
+  }
+
  private:
   using Id = ProgramBuilder::Id;
 
@@ -117,6 +151,16 @@ class Lowering {
 
   Id make(NodeId node, const std::string& name) {
     const Node& n = g_[node];
+    if (tick_ != nullptr && n.kind != NodeKind::kConstant) {
+      const auto known = tick_->register_of.find(node);
+      if (known != tick_->register_of.end()) {
+        sources_.push_back(static_cast<std::uint16_t>(known->second));
+        return b_.imported(*tick_, known->second);
+      }
+      const bool looked_up = n.kind == NodeKind::kChannel || n.kind == NodeKind::kTable ||
+                             n.kind == NodeKind::kFunction || n.kind == NodeKind::kLag;
+      if (looked_up) throw InputError("a share of something that the tick does not compute");
+    }
     switch (n.kind) {
       case NodeKind::kConstant:
         return b_.constant(n.number);
@@ -194,6 +238,7 @@ class Lowering {
   bool goes_into_sums(NodeId id, double coefficient) const {
     const Node& n = g_[id];
     if (n.kind != NodeKind::kSum || kept_.count(id) != 0 || factors_.count(id) != 0) return false;
+    if (tick_ != nullptr && tick_->register_of.count(id) != 0) return false;
     const std::size_t more_uses = uses_.at(id) - 1;
     if (more_uses > 0 && (flat_size(id) - 1) * more_uses > most_shared_) return false;
     return std::abs(coefficient) == 1 ||
@@ -514,6 +559,8 @@ class Lowering {
   const Graph& g_;
   std::uint32_t tick_us_;
   std::size_t most_shared_;
+  const LoweredProgram* tick_ = nullptr;  // whose registers the shares start from
+  std::vector<std::uint16_t> sources_;
   ProgramBuilder b_;
   std::string wanted_name_;
   std::map<NodeId, Id> done_;
@@ -565,6 +612,15 @@ LoweredProgram lower(const Machine& machine, const Derivation& derivation, std::
     if (cost_of(other) < cost_of(best)) best = std::move(other);
   }
   return best;
+}
+
+LoweredShares lower_shares(const Machine& machine, const Derivation& derivation, const LoweredProgram& tick) {
+  for (std::size_t most = kMaxShares;; most = most * 3 / 4) {
+    std::size_t registers = 0;
+    LoweredShares shares = Lowering(machine, derivation, 1000, 1).run_shares(tick, most, registers);
+    if (tick.registers.size() + registers <= kMaxRegisters || most == 0) return shares;
+    most = std::min(most, shares.shares.size());
+  }
 }
 
 }  // namespace vernier

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "comp/verify.h"
+#include "comp/shares.h"
 #include "tools/compile/derive.h"
 
 namespace vernier {
@@ -52,6 +52,7 @@ struct LoweredProgram {
   std::uint32_t lag_count = 0;
   std::vector<Register> registers;              // one per constant, channel and result
   std::map<NodeId, std::uint32_t> register_of;  // of the nodes that have one
+  std::vector<ValueRange> ranges;               // of the registers, as the verifier proves them
 
   std::uint32_t first_result() const {
     return static_cast<std::uint32_t>(constants.size() + channels.size());
@@ -61,9 +62,25 @@ struct LoweredProgram {
   }
 };
 
+/// The shares of the effects in the corrections: an equation whose channels are registers of the tick.
+struct LoweredShares {
+  std::vector<std::int32_t> constants;
+  std::vector<std::uint16_t> sources;
+  std::vector<Instruction> instructions;
+  std::vector<ProductTerm> terms;
+  std::vector<Share> shares;
+  std::vector<std::string> names;  // one per share: the effect's
+  std::vector<double> largest;     // |share| at most, mm or deg
+  std::size_t left_out = 0;        // shares that the image has no room for
+};
+
 /// Chooses formats by interval analysis and writes the straight-line program with a proved error bound per
 /// register. tick_us: the cycle time for lags and slew limits. Throws InputError where a format or the size
 /// does not suffice. tool.
 LoweredProgram lower(const Machine& machine, const Derivation& derivation, std::uint32_t tick_us);
+
+/// The shares of derivation.parts, computed from the registers of `tick` (the same derivation, lowered).
+/// tool.
+LoweredShares lower_shares(const Machine& machine, const Derivation& derivation, const LoweredProgram& tick);
 
 }  // namespace vernier

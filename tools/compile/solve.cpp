@@ -89,7 +89,11 @@ void solve_by_numbers(Derivation& d, const std::vector<AxisColumn>& columns, con
   for (std::size_t i = 0; i < columns.size(); ++i) {
     const Eigen::RowVector3d row = to_axes.row(static_cast<Eigen::Index>(i));
     if (row.norm() == 0) continue;
-    const NodeId value = d.graph.sum(0, row_terms(row, {deviation.begin(), deviation.end()}));
+    const auto along = [&](const NodeVector& v) {
+      return d.graph.sum(0, row_terms(row, {v.begin(), v.end()}));
+    };
+    const NodeId value = along(deviation);
+    for (EffectPart& part : d.parts) part.outputs.push_back(along(part.deviation));
     d.outputs.push_back({columns[i].axis, value, row.norm(), j.col(static_cast<Eigen::Index>(i)).norm()});
   }
 }
@@ -98,23 +102,27 @@ void solve_by_numbers(Derivation& d, const std::vector<AxisColumn>& columns, con
 struct Reduced {
   Matrix rows;  // rank x axes, columns scaled to at most 1
   std::vector<NodeId> deviation;
+  std::vector<std::vector<NodeId>> parts;
   std::vector<double> lever;  // mm per axis unit that a column was divided by
 };
 
-Reduced reduce(Graph& g, Algebra& algebra, const std::vector<AxisColumn>& columns,
+Reduced reduce(Derivation& d, Algebra& algebra, const std::vector<AxisColumn>& columns,
                const NodeVector& deviation, const Eigen::Matrix3Xd& basis) {
+  Graph& g = d.graph;
   Reduced r;
+  r.parts.resize(d.parts.size());
   for (const AxisColumn& column : columns)
     r.lever.push_back(std::exp2(std::ceil(std::log2(std::max(1e-9, column.norm)))));
   for (Eigen::Index i = 0; i < basis.cols(); ++i) {
     const Eigen::RowVector3d direction = basis.col(i).transpose();
-    r.deviation.push_back(g.sum(0, row_terms(direction, {deviation.begin(), deviation.end()})));
+    const auto along = [&](const NodeVector& v) {
+      return g.sum(0, row_terms(direction, {v.begin(), v.end()}));
+    };
+    r.deviation.push_back(along(deviation));
+    for (std::size_t p = 0; p < d.parts.size(); ++p) r.parts[p].push_back(along(d.parts[p].deviation));
     std::vector<NodeId> row;
-    for (std::size_t k = 0; k < columns.size(); ++k) {
-      const NodeVector& column = columns[k].direction;
-      const NodeId along = g.sum(0, row_terms(direction, {column.begin(), column.end()}));
-      row.push_back(algebra.simplified(g.scale(1 / r.lever[k], along)));
-    }
+    for (std::size_t k = 0; k < columns.size(); ++k)
+      row.push_back(algebra.simplified(g.scale(1 / r.lever[k], along(columns[k].direction))));
     r.rows.push_back(row);
   }
   return r;
@@ -142,6 +150,8 @@ bool solve_square(Derivation& d, Algebra& algebra, const std::vector<AxisColumn>
       norm += size * size;
     }
     d.outputs.push_back({columns[i].axis, algebra.dot(row, r.deviation), std::sqrt(norm), columns[i].norm});
+    for (std::size_t p = 0; p < d.parts.size(); ++p)
+      d.parts[p].outputs.push_back(algebra.dot(row, r.parts[p]));
   }
   return true;
 }
@@ -205,9 +215,16 @@ void solve_least(Derivation& d, Algebra& algebra, const std::vector<AxisColumn>&
   const double most = std::pow(least.trace / static_cast<double>(rank), static_cast<double>(rank));
   least.determinant = limited(g, held_determinant(d, algebra, determinant, least.floor), most);
   least.reciprocal = g.function(Function::kReciprocal, least.determinant);
-  for (const std::vector<NodeId>& row : least.adjugate)
-    least.weights.push_back(
-        g.product(least.reciprocal, limited(g, algebra.dot(row, r.deviation), least.largest * d.spread_mm)));
+  const auto weights_of = [&](const std::vector<NodeId>& deviation) {
+    std::vector<NodeId> weights;
+    for (const std::vector<NodeId>& row : least.adjugate)
+      weights.push_back(
+          g.product(least.reciprocal, limited(g, algebra.dot(row, deviation), least.largest * d.spread_mm)));
+    return weights;
+  };
+  least.weights = weights_of(r.deviation);
+  std::vector<std::vector<NodeId>> part_weights;
+  for (const std::vector<NodeId>& part : r.parts) part_weights.push_back(weights_of(part));
   least.gain = (rank == 3   ? least.trace / 2
                 : rank == 2 ? std::sqrt(least.trace)
                             : 1) /
@@ -217,6 +234,8 @@ void solve_least(Derivation& d, Algebra& algebra, const std::vector<AxisColumn>&
     for (const std::vector<NodeId>& row : least.jacobian) column.push_back(row[k]);
     const NodeId value = g.scale(1 / r.lever[k], algebra.dot(column, least.weights));
     d.outputs.push_back({columns[k].axis, value, least.gain / r.lever[k], columns[k].norm});
+    for (std::size_t p = 0; p < d.parts.size(); ++p)
+      d.parts[p].outputs.push_back(g.scale(1 / r.lever[k], algebra.dot(column, part_weights[p])));
   }
   d.least_squares = std::move(least);
 }
@@ -261,7 +280,7 @@ void solve_axes(Derivation& d) {
     return solve_by_numbers(d, columns, deviation);
   Algebra algebra(d.graph);
   const Span span = span_of(d, columns);
-  const Reduced r = reduce(d.graph, algebra, columns, deviation, span.basis);
+  const Reduced r = reduce(d, algebra, columns, deviation, span.basis);
   if (!solve_square(d, algebra, columns, r)) solve_least(d, algebra, columns, r);
 }
 

@@ -8,13 +8,28 @@ namespace {
 
 constexpr double kRad = std::numbers::pi / 180;
 
+/// The terms that an expression is the sum of, each with its own share of the expression's delta.
+void split(const Expr& expr, double sign, Translator& translate, Graph& g, std::size_t line,
+           std::vector<Step::Part>& parts) {
+  if (expr.op == Op::kAdd || expr.op == Op::kSubtract || expr.op == Op::kNegate) {
+    const double second = expr.op == Op::kAdd ? sign : -sign;
+    split(*expr.args[0], expr.op == Op::kNegate ? -sign : sign, translate, g, line, parts);
+    if (expr.op != Op::kNegate) split(*expr.args[1], second, translate, g, line, parts);
+    return;
+  }
+  const std::string text = to_text(expr);
+  const NodeId delta = g.scale(sign, translate.translate(expr, text, line).delta);
+  if (!g.is_zero(delta)) parts.push_back({(sign < 0 ? "-" : "") + text, delta});
+}
+
 /// The elementary steps of one transform in the order in which a point beyond it meets them.
-std::vector<Step> steps_of(const Transform& t, const char* branch, Translator& translate) {
+std::vector<Step> steps_of(const Transform& t, const char* branch, Translator& translate, Graph& graph) {
   std::vector<Step> steps;
   const auto push = [&](bool turn, int axis, std::size_t dof) {
     const std::string where =
         std::string(t.dof_name(dof)) + " of transform " + std::to_string(t.n) + " (" + branch + ")";
-    steps.push_back({turn, axis, translate.translate(*t.dof[dof], t.text[dof], t.line), where});
+    steps.push_back({turn, axis, translate.translate(*t.dof[dof], t.text[dof], t.line), where, {}});
+    split(*t.dof[dof], 1, translate, graph, t.line, steps.back().parts);
   };
   if (t.kind == TransformKind::kSixDof) {
     for (int axis = 2; axis >= 0; --axis) push(true, axis, static_cast<std::size_t>(axis) + 3);
@@ -33,11 +48,12 @@ std::vector<Step> steps_of(const Transform& t, const char* branch, Translator& t
 std::vector<Step> all_steps(const Machine& machine, Translator& translate, Graph& graph) {
   std::vector<Step> steps;
   for (auto t = machine.tool.rbegin(); t != machine.tool.rend(); ++t)
-    for (Step& step : steps_of(*t, "tool", translate)) steps.push_back(std::move(step));
+    for (Step& step : steps_of(*t, "tool", translate, graph)) steps.push_back(std::move(step));
   for (const Transform& t : machine.workpiece) {
-    std::vector<Step> back = steps_of(t, "workpiece", translate);
+    std::vector<Step> back = steps_of(t, "workpiece", translate, graph);
     for (auto step = back.rbegin(); step != back.rend(); ++step) {
       step->by = {graph.scale(-1, step->by.nominal), graph.scale(-1, step->by.delta)};
+      for (Step::Part& part : step->parts) part.delta = graph.scale(-1, part.delta);
       steps.push_back(std::move(*step));
     }
   }
@@ -57,6 +73,8 @@ void Walk::take(const Step& step) {
   } else {
     const auto axis = static_cast<std::size_t>(step.axis);
     add_deviation(only(axis, step.by.delta));
+    for (const Step::Part& part : step.parts)
+      add_part(step.where + ": " + part.term, seen_from_frame(only(axis, part.delta)));
     nominal_[axis] = g_.add(nominal_[axis], step.by.nominal);
     reach_mm_ += g_[step.by.nominal].range.magnitude();
     spread_mm_ += g_[step.by.delta].range.magnitude();
@@ -112,6 +130,7 @@ void Walk::turn_nominal(const Step& step) {
     turns_.push_back(step);
   } else {
     deviation_ = turned(deviation_, step.axis, step.by.nominal);
+    for (auto& [name, part] : parts_) part = turned(part, step.axis, step.by.nominal);
   }
 }
 
@@ -121,10 +140,38 @@ NodeVector Walk::deviation_here() {
   return v;
 }
 
-void Walk::add_deviation(NodeVector v) {
+NodeVector Walk::seen_from_frame(NodeVector v) {
   for (auto step = turns_.rbegin(); step != turns_.rend(); ++step)
     v = turned(v, step->axis, g_.scale(-1, step->by.nominal));
-  deviation_ = plus(deviation_, v);
+  return v;
+}
+
+void Walk::add_deviation(const NodeVector& v) { deviation_ = plus(deviation_, seen_from_frame(v)); }
+
+void Walk::add_part(const std::string& name, const NodeVector& v) {
+  const auto [place, fresh] = parts_.emplace(name, v);
+  if (!fresh) place->second = plus(place->second, v);
+}
+
+// A turn's terms share what is linear in it; what is not belongs to the turn as a whole.
+void Walk::split_turn(const Step& step, const NodeVector& point, const NodeVector& all) {
+  const auto a = static_cast<std::size_t>((step.axis + 1) % 3),
+             b = static_cast<std::size_t>((step.axis + 2) % 3);
+  const auto total = g_.constant_value(step.by.delta);
+  NodeVector rest = all;
+  for (const Step::Part& part : step.parts) {
+    NodeVector share = only(a, g_.constant(0));
+    const auto own = g_.constant_value(part.delta);
+    for (const std::size_t c : {a, b}) {
+      share[c] = total && own
+                     ? g_.scale(*own / *total, all[c])
+                     : g_.scale(c == a ? -kRad : kRad, g_.product(part.delta, point[c == a ? b : a]));
+      rest[c] = g_.subtract(rest[c], share[c]);
+    }
+    add_part(step.where + ": " + part.term, seen_from_frame(share));
+  }
+  if (!total && !(g_.is_zero(rest[a]) && g_.is_zero(rest[b])))
+    add_part(step.where + ": higher orders", seen_from_frame(rest));
 }
 
 bool Walk::small(double bound_mm, const std::string& what) {
@@ -157,6 +204,7 @@ void Walk::deviate_by_turn(const Step& step) {
   moved[a] = g_.sum(0, {{-1, g_.product(bend, point[a])}, {-1, g_.product(sine, point[b])}});
   moved[b] = g_.sum(0, {{1, g_.product(sine, point[a])}, {-1, g_.product(bend, point[b])}});
   add_deviation(moved);
+  split_turn(step, point, moved);
 }
 
 NodeId Walk::sine_of(const Step& step, double size, double reach) {

@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,11 @@ struct Step {
   int axis;  // 0..2: X Y Z
   Dual by;   // deg or mm
   std::string where;
+  struct Part {
+    std::string term;
+    NodeId delta;
+  };
+  std::vector<Part> parts;  // the terms that by.delta is the sum of
 };
 
 /// The elementary steps of the chain from the tool point through the tool branch to the base, and on through
@@ -32,6 +38,8 @@ class Walk {
   void freeze() { frozen_ = true; }
 
   const NodeVector& nominal() const { return nominal_; }
+  /// What each term of the chain adds to the deviation.
+  const std::map<std::string, NodeVector>& parts() const { return parts_; }
   /// In the frame in which the walk was frozen.
   const NodeVector& deviation() const { return deviation_; }
   /// Bounds of the two vectors' lengths, mm: turns keep a length, so these do not grow with every turn as
@@ -47,7 +55,10 @@ class Walk {
   NodeVector turned(const NodeVector& v, int axis, NodeId angle_deg);
   void turn_nominal(const Step& step);
   NodeVector deviation_here();
-  void add_deviation(NodeVector v);
+  NodeVector seen_from_frame(NodeVector v);
+  void add_deviation(const NodeVector& v);
+  void add_part(const std::string& name, const NodeVector& v);
+  void split_turn(const Step& step, const NodeVector& point, const NodeVector& all);
   bool small(double bound_mm, const std::string& what);
   void deviate_by_turn(const Step& step);
   NodeId sine_of(const Step& step, double size, double reach);
@@ -57,6 +68,7 @@ class Walk {
   Graph& g_;
   double neglect_mm_;
   NodeVector nominal_, deviation_;
+  std::map<std::string, NodeVector> parts_;
   double reach_mm_ = 0, spread_mm_ = 0;
   bool frozen_ = false;
   std::vector<Step> turns_;  // nominal turns since freeze()

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+
+#include "comp/compensator.h"
+#include "comp/verify.h"
+
+namespace vernier {
+
+constexpr std::uint32_t kMaxShares = 512;
+
+/// What one effect adds to the correction of one axis: correction = -round(register * multiplier / 2^shift),
+/// axis counts.
+struct Share {
+  std::uint16_t axis;
+  std::uint16_t source;  // register of the share equation
+  std::uint32_t shift;   // 0..61
+  std::int32_t multiplier;
+};
+static_assert(sizeof(Share) == 12);
+
+/// A second equation beside a program's own: its channels are registers of the tick, its results the shares
+/// of the effects. It has no tables, periods and lags (the tick has looked them up) and is run outside the
+/// tick.
+struct ShareProgram {
+  Equation equation;
+  View<std::uint16_t> sources;  // for each channel the register of the tick
+  View<Share> shares;
+};
+
+/// Proves of a share program what verify_program proves of a program. program: verified; ranges: room for
+/// kMaxRegisters, holds the ranges of the program's registers, gets those of the shares behind them. setup.
+ProgramFault verify_shares(const ShareProgram& shares, const Program& program, ValueRange* ranges) noexcept;
+
+/// The shares of the last tick's correction, before its limits and ramps: one entry per share, in their
+/// order. A VERIFIED share program. registers: those of the tick, kMaxRegisters long; what is behind them is
+/// overwritten. realtime, but not needed by the tick.
+void run_shares(const ShareProgram& shares, const Program& program, std::int32_t* registers,
+                Correction* corrections) noexcept;
+
+}  // namespace vernier
