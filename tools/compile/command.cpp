@@ -80,6 +80,31 @@ nlohmann::ordered_json to_json(const CompiledMachine& c, const Machine& machine)
           {"fingerprint", fmt::format("{:016x}", c.fingerprint)}};
 }
 
+void print_for_people(std::FILE* out, const CompiledMachine& c, const Machine& machine) {
+  fmt::print(out, "{}: {} operations a tick, {} tables, {} bytes of image, {} shares of effects\n",
+             machine.name, c.program.instructions.size(), c.program.tables.size(), c.image.size(),
+             c.shares.shares.size());
+  fmt::print(out, "proved bound of each correction, um:\n");
+  fmt::print(out, "  {:<8}{:>10} ={:>12} +{:>8} +{:>10} +{:>9} +{:>8} +{:>8}{:>13}\n", "axis", "bound",
+             "neglected", "tables", "functions", "rounding", "inputs", "lags", "deviation");
+  for (const OutputBound& b : c.bounds) {
+    fmt::print(out,
+               "  {:<8}{:>10.4f} ={:>12.4f} +{:>8.4f} +{:>10.4f} +{:>9.4f} +{:>8.4f} +{:>8.4f}{:>13.1f}\n",
+               b.axis, b.total_um, b.linearisation_um, b.table_um, b.function_um, b.rounding_um, b.input_um,
+               b.lag_um, b.deviation_um);
+    if (!b.contributions.empty())
+      fmt::print(
+          out,
+          "          largest: {} ({}), {:.4f}; beside it the correction's second order, at most {:.3g}\n",
+          b.contributions.front().name, b.contributions.front().source, b.contributions.front().bound_um,
+          b.second_order_um);
+  }
+  if (c.bounds.empty()) fmt::print(out, "  no axis has anything to correct\n");
+  for (const std::string& step : c.switching)
+    fmt::print(out, "note: the bound holds away from the step of {}\n", step);
+  for (const std::string& note : c.notes) fmt::print(out, "note: {}\n", note);
+}
+
 void run_compile(const Arguments& arguments) {
   const std::string text = read_file(arguments.machine);
   CompileOptions options;
@@ -97,26 +122,26 @@ void run_compile(const Arguments& arguments) {
   write_file(arguments.directory + "/machine.vimg", {compiled.image.begin(), compiled.image.end()});
   write_json(arguments.json, result);
   std::FILE* const out = human_stream(arguments.json);
-  fmt::print(out, "{}: {} operations, {} tables, {} bytes of image\n", arguments.directory,
-             compiled.program.instructions.size(), compiled.program.tables.size(), compiled.image.size());
-  for (const OutputBound& b : compiled.bounds)
-    fmt::print(out, "  {}: deviation up to {:.1f} um, error <= {:.4f} um; largest term: {}\n", b.axis,
-               b.deviation_um, b.total_um, b.contributions.empty() ? "none" : b.contributions.front().name);
+  print_for_people(out, compiled, machine);
+  fmt::print(out, "written to {}: machine.vimg, machine.xml, equation.h, equation.cpp, bound.json\n",
+             arguments.directory);
 }
 
 }  // namespace
 
 void register_compile(CLI::App& vernier) {
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* const command =
-      vernier.add_subcommand("compile", "machine file -> fixed-point image, the same as C++, error bound");
+  CLI::App* const command = vernier.add_subcommand(
+      "compile", "machine file -> fixed-point image, the same as C++, error bound (tools/docs/compile.md)");
   command->add_option("machine", arguments->machine, "machine file (XML)")->required();
   command
       ->add_option("-o,--output", arguments->directory,
                    "directory for machine.xml, machine.vimg, equation.h/.cpp, bound.json")
       ->required();
   command->add_option("--json", arguments->json, "result for programs (- is standard output)");
-  command->add_option("--budget", arguments->budget, "largest error bound allowed on an axis, e.g. 0.1um");
+  command->add_option("--budget", arguments->budget,
+                      "largest proved bound allowed on an axis (nm, um, mm; a plain number is um); exceeded: "
+                      "exit status 2, nothing written");
   command->callback([arguments] { run_compile(*arguments); });
 }
 
