@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace vernier {
 namespace {
@@ -75,7 +76,8 @@ bool follows_from_position(const Evidence& evidence, const Candidate& candidate)
 
 std::vector<std::size_t> pieces_of_one_function(const Evidence& evidence, const Pool& pool,
                                                 const std::vector<std::size_t>& items) {
-  constexpr std::size_t kMostOfOneAxis = 2, kMostOfOneReading = 3;
+  constexpr std::size_t kMostOfOneAxis = 2, kMostOfOneReading = 3, kMostBesideACurve = 2;
+  constexpr Eigen::Index kCurve = 3;
   const auto choice = [&](std::size_t item) -> const Choice& { return pool.candidate(item).choice; };
   std::vector<std::size_t> group = largest_group(
       pool, items, [&](std::size_t item) { return is_function_of_its_axis(evidence, pool.candidate(item)); },
@@ -87,7 +89,11 @@ std::vector<std::size_t> pieces_of_one_function(const Evidence& evidence, const 
   group = largest_group(
       pool, items, [&](std::size_t item) { return follows_from_position(evidence, pool.candidate(item)); },
       [](std::size_t, std::size_t) { return true; });
-  if (group.size() > kMostOfOneReading) return group;
+  std::vector<std::size_t> curves;
+  std::copy_if(group.begin(), group.end(), std::back_inserter(curves),
+               [&](std::size_t item) { return pool[item].columns.cols() >= kCurve; });
+  if (group.size() > (curves.empty() ? kMostOfOneReading : kMostBesideACurve)) return group;
+  if (curves.size() > 1) return curves;
   return {};
 }
 

@@ -10,8 +10,9 @@ namespace vernier {
 /// causes; empty where there are no such. A curve and a period of one axis may well stand beside each other;
 /// a third function of that axis at the same degree of freedom (or at places that move the readings alike)
 /// takes the place of what was not found. Where every row has but one reading, of one kind, a fourth function
-/// of position does, of whatever axis: on a circle all of them are functions of its angle. Periods that are
-/// harmonics of one another count once. tool.
+/// of position does, of whatever axis, a third beside a curve (three coefficients or more), or a second
+/// curve: on a circle all of them are functions of its angle, and two curves span every such function.
+/// Periods that are harmonics of one another count once. tool.
 std::vector<std::size_t> pieces_of_one_function(const Evidence& evidence, const Pool& pool,
                                                 const std::vector<std::size_t>& items);
 
