@@ -251,7 +251,9 @@ std::vector<OutputBound> bounds_of(const Machine& machine, const Derivation& d, 
   const double second_order = d.outputs.empty() ? 0 : second_order_mm(d);
   for (std::size_t i = 0; i < bounds.size(); ++i) {
     const bool along = !machine.axes[d.outputs[i].axis].rotary && !d.least_squares;
-    bounds[i].second_order_um = kUmPerMm * second_order * (along ? d.outputs[i].row_norm : 1);
+    const double um = kUmPerMm * second_order * (along ? d.outputs[i].row_norm : 1);
+    // More than the deviation itself says nothing.
+    if (um < std::max(bounds[i].deviation_um, 1e-3)) bounds[i].second_order_um = um;
   }
   return bounds;
 }

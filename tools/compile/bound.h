@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,7 +24,7 @@ struct OutputBound {
   /// What the correction itself adds, because the deviation at the corrected position is another and the
   /// nominal motion is no straight line. No part of the total: it is of the linearised correction, not of the
   /// fixed-point program.
-  double second_order_um = 0;
+  std::optional<double> second_order_um;    // none: no useful bound (least squares near flat poses)
   double deviation_um = 0;                  // largest |deviation| over the declared ranges, by intervals
   std::vector<Contribution> contributions;  // largest first, all of them
 };

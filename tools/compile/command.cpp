@@ -44,7 +44,7 @@ nlohmann::ordered_json to_json(const OutputBound& b) {
           {"rounding_um", b.rounding_um},
           {"input_um", b.input_um},
           {"lag_um", b.lag_um},
-          {"second_order_um", b.second_order_um},
+          {"second_order_um", b.second_order_um ? nlohmann::ordered_json(*b.second_order_um) : nullptr},
           {"deviation_um", b.deviation_um},
           {"largest_terms", terms}};
 }
@@ -92,12 +92,13 @@ void print_for_people(std::FILE* out, const CompiledMachine& c, const Machine& m
                "  {:<8}{:>10.4f} ={:>12.4f} +{:>8.4f} +{:>10.4f} +{:>9.4f} +{:>8.4f} +{:>8.4f}{:>13.1f}\n",
                b.axis, b.total_um, b.linearisation_um, b.table_um, b.function_um, b.rounding_um, b.input_um,
                b.lag_um, b.deviation_um);
+    const std::string second =
+        b.second_order_um
+            ? fmt::format("; the correction's second order beside it, at most {:.3g}", *b.second_order_um)
+            : "";
     if (!b.contributions.empty())
-      fmt::print(
-          out,
-          "          largest: {} ({}), {:.4f}; beside it the correction's second order, at most {:.3g}\n",
-          b.contributions.front().name, b.contributions.front().source, b.contributions.front().bound_um,
-          b.second_order_um);
+      fmt::print(out, "          largest: {} ({}), {:.4f}{}\n", b.contributions.front().name,
+                 b.contributions.front().source, b.contributions.front().bound_um, second);
   }
   if (c.bounds.empty()) fmt::print(out, "  no axis has anything to correct\n");
   for (const std::string& step : c.switching)
