@@ -23,6 +23,7 @@
 #include "hal/linux/modbus_server.h"
 #include "hal/linux/monotonic_clock.h"
 #include "hal/linux/realtime.h"
+#include "hal/linux/service_manager.h"
 #include "hal/sim/plant.h"
 #include "hal/sim/roaming.h"
 
@@ -35,6 +36,7 @@ constexpr int kPriority = 80;  // as cyclictest is usually run, above the kernel
 constexpr double kShareOfRangePerS = 0.1;
 constexpr TimeUs kServeWait(20'000);
 constexpr int kMostTicksToEnd = 30'000;
+constexpr std::uint64_t kTicksBetweenSigns = 100;  // of life, to the service manager
 
 struct Arguments {
   std::string image, board, json;
@@ -253,9 +255,16 @@ void say_image(const UploadResult& result, const Service& service) {
                  static_cast<unsigned long long>(service.uploader().confirmed_fingerprint()));
 }
 
-/// Serves links and looks after programs until told to stop.
+/// Serves links and looks after programs until told to stop. The service manager hears of it only while the
+/// tick moves on: a tick that hangs is a daemon that hangs.
 void serve_until(const std::atomic<bool>& stop, Service& service, Devices& devices) {
+  std::uint64_t ticks_told = 0;
   while (!stop) {
+    if (const std::uint64_t ticks = service.exchange().ticks.count();
+        ticks > ticks_told + kTicksBetweenSigns) {
+      notify_service_manager("WATCHDOG=1");
+      ticks_told = ticks;
+    }
     for (auto& link : devices.links)
       service.serve(*link, TimeUs(kServeWait.count / static_cast<std::int64_t>(devices.links.size())));
     if (devices.links.empty()) {
@@ -298,11 +307,14 @@ int run_board(const Arguments& arguments) {
   std::thread server([&] { serve_until(stop_serving, *service, devices); });
   const GrantReport grant = ask_for_realtime(arguments.realtime, file.priority);
   devices.plant->release();
+  if (!notify_service_manager("READY=1"))
+    std::fputs("vernierd: note: the service manager cannot be told\n", stderr);
   const auto ticks = static_cast<std::int64_t>(arguments.seconds * 1e6) / file.service.upload.tick.count;
   for (std::int64_t tick = 0; (ticks == 0 || tick < ticks) && !stop_asked; ++tick) {
     devices.plant->advance();
     service->tick();
   }
+  notify_service_manager("STOPPING=1");
   take_correction_out(*service, devices);
   stop_serving = true;
   server.join();

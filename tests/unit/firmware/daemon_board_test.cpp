@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <spawn.h>
+#include <sys/socket.h>
+#include <sys/un.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -162,6 +164,31 @@ TEST_F(DaemonBoard, CommandThatDoesNotFitIsCounted) {
   Client client = daemon.client();
   client.command(Command::kClearFault);
   EXPECT_TRUE(wait_for([&] { return client.health().refused_commands == 1; }));
+}
+
+TEST_F(DaemonBoard, TellsTheServiceManagerThatItIsReadyAliveAndStopping) {
+  const std::string path = directory_ + "/notify";
+  const int fd = ::socket(AF_UNIX, SOCK_DGRAM, 0);
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  ASSERT_LT(path.size(), sizeof(address.sun_path));
+  path.copy(address.sun_path, path.size());
+  ASSERT_EQ(::bind(fd, reinterpret_cast<const sockaddr*>(&address), sizeof(address)), 0);
+  ASSERT_EQ(::setenv("NOTIFY_SOCKET", path.c_str(), 1), 0);
+  Daemon daemon(directory_);
+  ::unsetenv("NOTIFY_SOCKET");
+  std::string heard;
+  const auto hears = [&](const char* word) {
+    char text[64];
+    const ssize_t got = ::recv(fd, text, sizeof(text), MSG_DONTWAIT);
+    if (got > 0) heard += std::string(text, static_cast<std::size_t>(got)) + "\n";
+    return heard.find(word) != std::string::npos;
+  };
+  EXPECT_TRUE(wait_for([&] { return hears("READY=1"); })) << heard;
+  EXPECT_TRUE(wait_for([&] { return hears("WATCHDOG=1"); })) << heard;
+  EXPECT_EQ(daemon.end(SIGTERM), 0);
+  EXPECT_TRUE(wait_for([&] { return hears("STOPPING=1"); })) << heard;
+  ::close(fd);
 }
 
 struct BadBoard {

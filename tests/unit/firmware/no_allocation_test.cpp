@@ -1,0 +1,99 @@
+// The tick allocates nothing: every way to the heap is counted while a tick runs, in this thread alone.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <thread>
+
+#include "tests/unit/firmware/upload_rig.h"
+
+namespace {
+
+thread_local bool in_tick = false;
+std::atomic<int> allocations{0};
+
+void count() {
+  if (in_tick) ++allocations;
+}
+
+}  // namespace
+
+// Under the sanitizers the heap is theirs and cannot be taken over.
+#if defined(__SANITIZE_ADDRESS__)
+constexpr bool kCountsAllocations = false;
+#else
+constexpr bool kCountsAllocations = true;
+extern "C" {
+void* __libc_malloc(std::size_t size);
+void* __libc_calloc(std::size_t count, std::size_t size);
+void* __libc_realloc(void* block, std::size_t size);
+void __libc_free(void* block);
+
+void* malloc(std::size_t size) {
+  count();
+  return __libc_malloc(size);
+}
+void* calloc(std::size_t number, std::size_t size) {
+  count();
+  return __libc_calloc(number, size);
+}
+void* realloc(void* block, std::size_t size) {
+  count();
+  return __libc_realloc(block, size);
+}
+void free(void* block) {
+  count();
+  __libc_free(block);
+}
+}
+#endif
+
+namespace vernier {
+namespace {
+
+TEST(Tick, TouchesNoHeapWhileImagesComeInAndFaultsHappen) {
+  if (!kCountsAllocations) GTEST_SKIP() << "the sanitizers own the heap";
+  const SigningKey key = new_key();
+  SimSlotStore store(1 << 16);
+  Roaming motion({{0, 600'000'000}, {0, 200'000'000}}, {InputMicro(21'000'000)}, TimeUs(1000), 0.1, 1);
+  PlantOptions options;
+  options.dropout = 0.001;
+  options.faults = {{PlantFaultKind::kJump, 0, 12000, 1, 5'000'000}};
+  SimPlant plant(motion, 2, 1, options);
+  SimClock clock;
+  ServiceOptions service_options;
+  service_options.wiring = {{{"X"}, {"Y"}}, {"T"}};
+  service_options.upload.key = key.public_part();
+  service_options.activate = true;
+  Service service(service_options, Board{clock, plant, plant, plant}, store);
+  service.boot();
+  plant.release();
+  auto& uploader = const_cast<Uploader&>(service.uploader());
+  for (int tick = 0; tick < 20000; ++tick) {
+    if (tick % 2000 == 1000) {
+      const auto upload =
+          make_upload(small_image_bytes(1e-5 * (1 + tick / 2000)), key, static_cast<std::uint64_t>(tick), 0);
+      uploader.begin(static_cast<std::uint32_t>(upload.size()));
+      uploader.add(0, upload.data(), static_cast<std::uint32_t>(upload.size()));
+      ASSERT_EQ(uploader.finish(TimeUs{}).fault, UploadFault::kNone);
+      ASSERT_EQ(uploader.confirm().fault, UploadFault::kNone);
+    }
+    service.look_after_programs();
+    plant.advance();
+    in_tick = true;
+    service.tick();
+    in_tick = false;
+  }
+  EXPECT_EQ(allocations, 0);
+  EXPECT_EQ(service.cycle().health().programs, 10u);
+  EXPECT_EQ(service.cycle().health().faults, 1u);
+  // The count counts: an allocation inside a tick would be seen.
+  in_tick = true;
+  void* volatile block = std::malloc(10);
+  std::free(block);
+  in_tick = false;
+  EXPECT_EQ(allocations, 2);
+}
+
+}  // namespace
+}  // namespace vernier
