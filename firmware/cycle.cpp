@@ -70,14 +70,14 @@ Fault Cycle::take_input(std::uint32_t input, InputMicro value) noexcept {
   const auto step = static_cast<std::uint64_t>(higher(value.count, before)) -
                     static_cast<std::uint64_t>(lower(value.count, before));
   const bool jumps = heard_[input] && step > static_cast<std::uint64_t>(limits.step);
-  if (value.count < limits.low || value.count > limits.high || jumps) {
-    ++health_.implausible;
-    return Fault::kInputImplausible;
-  }
+  const bool outside = value.count < limits.low || value.count > limits.high;
+  if (jumps || outside) ++health_.implausible;
+  if (outside) return Fault::kInputImplausible;
   inputs_[input] = value;
   heard_[input] = true;
   silent_[input] = 0;
-  return Fault::kNone;
+  // A reading that jumps is a fault once, and the measure of the next ones.
+  return jumps ? Fault::kInputImplausible : Fault::kNone;
 }
 
 Fault Cycle::read_inputs() noexcept {

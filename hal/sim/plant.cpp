@@ -44,12 +44,16 @@ void SimPlant::spoil_axis(std::uint32_t axis) noexcept {
     position = frozen_[axis];
   else
     frozen_[axis] = position;
+  seen_.axis[axis].referenced = active_fault(PlantFaultKind::kReferenceLost, axis) == nullptr;
   const bool dropped =
       options_.dropout > 0 && std::uniform_real_distribution<double>()(random_) < options_.dropout;
   missing_[axis] = dropped || active_fault(PlantFaultKind::kMissingPosition, axis) != nullptr;
 }
 
 void SimPlant::spoil_inputs() noexcept {
+  for (std::uint32_t input = 0; input < inputs_; ++input)
+    if (const PlantFault* wild = active_fault(PlantFaultKind::kSensorWild, input))
+      seen_.input[input].count += wild->counts;
   if (options_.input_noise_micro <= 0) return;
   for (std::uint32_t input = 0; input < inputs_; ++input)
     seen_.input[input].count += std::llround(options_.input_noise_micro * normal_(random_));
@@ -62,6 +66,7 @@ HalFault SimPlant::read_axis(std::uint32_t axis, AxisReading& reading) noexcept 
   if (!options_.gives_motion) {
     seen = AxisReading{};
     seen.position = seen_.axis[axis].position;
+    seen.referenced = seen_.axis[axis].referenced;
   }
   reading = seen;
   return HalFault::kNone;

@@ -17,6 +17,8 @@ enum class PlantFaultKind : std::uint8_t {
   kJump,             // the axis is off by `counts`
   kSensorLost,       // the input gives no reading
   kWriteFailure,     // corrections of the axis are refused
+  kReferenceLost,    // the controller says that the axis does not know its zero
+  kSensorWild,       // the input reads `counts` more than it should
 };
 
 /// One thing that goes wrong during [first, first + ticks) of the plant's own count of ticks.

@@ -65,7 +65,9 @@ TEST_P(CycleFault, RampsOutLatchesAndIsCounted) {
   const Injected& injected = GetParam();
   PlantOptions options;
   options.faults = {{injected.kind, injected.index, 1500, injected.ticks, injected.counts}};
-  Rig rig(options, {}, 5);
+  CycleLimits limits;
+  limits.input[0] = {0, 40'000'000, 500'000};  // 0..40 degC, half a degree between two readings
+  Rig rig(options, limits, 5);
   ASSERT_TRUE(rig.run_to(Mode::kActive));
   while (rig.plant().tick() < 1498) rig.tick();
   ASSERT_EQ(rig.cycle().latched(), Fault::kNone);
@@ -112,7 +114,13 @@ INSTANTIATE_TEST_SUITE_P(
                     Injected{PlantFaultKind::kSensorLost, 0, 200, 0, Fault::kInputMissing,
                              &Health::missing_inputs, "SensorLost"},
                     Injected{PlantFaultKind::kWriteFailure, 1, 20, 0, Fault::kWriteFailed,
-                             &Health::failed_writes, "WriteFailure"}),
+                             &Health::failed_writes, "WriteFailure"},
+                    Injected{PlantFaultKind::kReferenceLost, 1, 30, 0, Fault::kReferenceLost,
+                             &Health::unreferenced, "ReferenceLost"},
+                    Injected{PlantFaultKind::kSensorWild, 0, 40, 300'000'000, Fault::kInputImplausible,
+                             &Health::implausible, "SensorBeyondItsRange"},
+                    Injected{PlantFaultKind::kSensorWild, 0, 40, -700'000, Fault::kInputImplausible,
+                             &Health::implausible, "SensorJumps"}),
     [](const testing::TestParamInfo<Injected>& parameter) { return parameter.param.name; });
 
 TEST(Cycle, ShortSilenceIsCountedAndTolerated) {

@@ -26,6 +26,7 @@ class HostileDevices : public AxisReader, public InputReader, public CorrectionW
     reading.velocity = AxisSpeed(one_in(wild_) ? anything() : small() * 1000);
     reading.acceleration = AxisAcceleration(anything());
     reading.since = AxisTravel(anything());
+    reading.referenced = !one_in(10 * wild_);
     reading.sense = static_cast<std::int8_t>(static_cast<int>(random_() % 3) - 1);
     return HalFault::kNone;
   }
@@ -70,6 +71,8 @@ Command any_command(std::mt19937_64& random) {
   const std::uint64_t choice = random() % 200;
   if (choice < 3) return Command::kActivate;
   if (choice == 3) return Command::kDeactivate;
+  if (choice == 6) return Command::kHold;
+  if (choice == 7) return Command::kRelease;
   return choice < 6 ? Command::kClearFault : Command::kNone;
 }
 
@@ -93,9 +96,19 @@ TEST(CycleInvariant, DriveNeverMovesFasterThanItsSlewLimit) {
     HostileDevices devices(seed + 1, gives_motion);
     SimClock clock;
     const auto cycle = std::make_unique<Cycle>(image->view, Board{clock, devices, devices, devices});
+    // Programs are exchanged at any moment, as uploads do.
+    std::unique_ptr<BoundProgram> running, next;
     AxisTravel before[2];
     for (std::uint64_t tick = 0; tick < count; ++tick) {
       if (tick % 1500 == 0) devices.change_mood();
+      if (random() % 700 == 0) {
+        next = std::make_unique<BoundProgram>(image->view);
+        cycle->use(*next);
+        running = std::move(next);
+      }
+      if (random() % 300 == 0)
+        cycle->set_axis_weight(static_cast<std::uint32_t>(random() % 2),
+                               WeightQ16(static_cast<std::int32_t>(random() % 65537)));
       cycle->tick(TimeUs(static_cast<std::int64_t>(random())), any_command(random), any_outer(random));
       ASSERT_LE(std::abs((devices.held[0] - before[0]).count), kSmallSlewX) << "tick " << tick;
       ASSERT_LE(std::abs((devices.held[1] - before[1]).count), kSmallSlewY) << "tick " << tick;

@@ -95,5 +95,20 @@ TEST(Runner, BrokenTimerIsAFault) {
   EXPECT_EQ(bench.step().latched, Fault::kClock);
 }
 
+TEST(Runner, TimeThatJumpsOrRunsBackwardsIsAClockFault) {
+  for (const std::int64_t jump : {1'500'000'000, -40'000'000}) {
+    RunnerBench bench;
+    while (bench.rig.cycle().mode() != Mode::kReady) bench.step();
+    while (bench.rig.cycle().mode() != Mode::kActive)
+      bench.step(bench.rig.asked() ? Command::kNone : Command::kActivate);
+    bench.clock.late = InstantNs(jump);
+    bench.step();
+    EXPECT_EQ(bench.rig.cycle().latched(), Fault::kClock) << jump;
+    for (int i = 0; i < 1000; ++i) bench.step();
+    EXPECT_EQ(bench.rig.cycle().mode(), Mode::kFaulted);
+    EXPECT_EQ(bench.rig.plant().written(0), AxisTravel(0));
+  }
+}
+
 }  // namespace
 }  // namespace vernier
