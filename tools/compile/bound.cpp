@@ -60,7 +60,11 @@ OutputBound bound_of(const Machine& machine, const Derivation& d, const LoweredP
                exact = std::ldexp(counts_per_unit, -result.fraction_bits);
   blame(rotary ? "output in 2^-32 turn" : "output in nm", "rounding",
         0.5 / counts_per_unit + result.range.magnitude() * std::abs(factor / exact - 1));
-  for (const Neglected& n : d.neglected) blame(n.what, "linearisation", n.bound_mm * d.outputs[i].row_norm);
+  for (const Neglected& n : d.neglected) {
+    double along = 0;
+    for (std::size_t c = 0; c < 3; ++c) along += d.outputs[i].row[c] * n.along_mm[c];
+    blame(n.what, "linearisation", std::min(along, n.bound_mm * d.outputs[i].row_norm));
+  }
   sort_terms(bound);
   return bound;
 }

@@ -14,14 +14,17 @@ using NodeVector = std::array<NodeId, 3>;
 /// A part of the exact deviation that the equation leaves out, and how much it can be over the declared
 /// ranges.
 struct Neglected {
-  std::string what;  // "second order of rZ in transform 3 (tool)"
-  double bound_mm;   // norm
+  std::string what;                // "second order of rZ in transform 3 (tool)"
+  double bound_mm;                 // norm
+  std::array<double, 3> along_mm;  // each component in the frame of the deviation
 };
 
 /// The deviation along one axis: moving the axis by value has the deviation's effect on the tool point.
 struct AxisDeviation {
   std::size_t axis;
-  NodeId value;     // mm or deg
+  NodeId value;  // mm or deg
+  std::array<double, 3>
+      row;          // turns the components of a vector in the frame of the deviation into one, at most
   double row_norm;  // turns a norm in the workpiece frame, mm, into a bound along this axis
   double lever;     // mm of tool point per mm or deg of the axis, at most
 };

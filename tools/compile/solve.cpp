@@ -94,7 +94,11 @@ void solve_by_numbers(Derivation& d, const std::vector<AxisColumn>& columns, con
     };
     const NodeId value = along(deviation);
     for (EffectPart& part : d.parts) part.outputs.push_back(along(part.deviation));
-    d.outputs.push_back({columns[i].axis, value, row.norm(), j.col(static_cast<Eigen::Index>(i)).norm()});
+    d.outputs.push_back({columns[i].axis,
+                         value,
+                         {std::abs(row[0]), std::abs(row[1]), std::abs(row[2])},
+                         row.norm(),
+                         j.col(static_cast<Eigen::Index>(i)).norm()});
   }
 }
 
@@ -144,12 +148,16 @@ bool solve_square(Derivation& d, Algebra& algebra, const std::vector<AxisColumn>
   for (std::size_t i = 0; i < columns.size(); ++i) {
     std::vector<NodeId> row;
     double norm = 0;
+    std::array<double, 3> sizes{};
     for (const NodeId entry : adjugate[i]) {
       row.push_back(algebra.simplified(g.scale(sign / r.lever[i], g.product(entry, reciprocal))));
       const double size = g[row.back()].range.magnitude();
       norm += size * size;
+      sizes[row.size() - 1] = size;
     }
-    d.outputs.push_back({columns[i].axis, algebra.dot(row, r.deviation), std::sqrt(norm), columns[i].norm});
+    norm = std::sqrt(norm);
+    if (row.size() < 3) sizes = {norm, norm, norm};  // in a basis of its own
+    d.outputs.push_back({columns[i].axis, algebra.dot(row, r.deviation), sizes, norm, columns[i].norm});
     for (std::size_t p = 0; p < d.parts.size(); ++p)
       d.parts[p].outputs.push_back(algebra.dot(row, r.parts[p]));
   }
@@ -233,7 +241,8 @@ void solve_least(Derivation& d, Algebra& algebra, const std::vector<AxisColumn>&
     std::vector<NodeId> column;
     for (const std::vector<NodeId>& row : least.jacobian) column.push_back(row[k]);
     const NodeId value = g.scale(1 / r.lever[k], algebra.dot(column, least.weights));
-    d.outputs.push_back({columns[k].axis, value, least.gain / r.lever[k], columns[k].norm});
+    const double gain = least.gain / r.lever[k];
+    d.outputs.push_back({columns[k].axis, value, {gain, gain, gain}, gain, columns[k].norm});
     for (std::size_t p = 0; p < d.parts.size(); ++p)
       d.parts[p].outputs.push_back(g.scale(1 / r.lever[k], algebra.dot(column, part_weights[p])));
   }

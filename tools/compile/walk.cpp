@@ -131,6 +131,7 @@ void Walk::turn_nominal(const Step& step) {
   } else {
     deviation_ = turned(deviation_, step.axis, step.by.nominal);
     for (auto& [name, part] : parts_) part = turned(part, step.axis, step.by.nominal);
+    for (Neglected& n : d_.neglected) turn_sizes(n.along_mm, step.axis, step.by.nominal);
   }
 }
 
@@ -174,10 +175,27 @@ void Walk::split_turn(const Step& step, const NodeVector& point, const NodeVecto
     add_part(step.where + ": higher orders", seen_from_frame(rest));
 }
 
-bool Walk::small(double bound_mm, const std::string& what) {
+// What a turn leaves out lies across its axis.
+bool Walk::small(double bound_mm, const Step& step, const char* what) {
   if (bound_mm > neglect_mm_) return false;
-  if (bound_mm > 0) d_.neglected.push_back({what, bound_mm});
+  if (bound_mm == 0) return true;
+  std::array<double, 3> along{bound_mm, bound_mm, bound_mm};
+  along[static_cast<std::size_t>(step.axis)] = 0;
+  for (auto turn = turns_.rbegin(); turn != turns_.rend(); ++turn)
+    turn_sizes(along, turn->axis, turn->by.nominal);
+  d_.neglected.push_back({what + step.where, bound_mm, along});
   return true;
+}
+
+// Sizes of components after a turn; a cosine's and a sine's size do not depend on its sense.
+void Walk::turn_sizes(std::array<double, 3>& sizes, int axis, NodeId angle_deg) {
+  const auto [c, s] = direction_of(angle_deg);
+  const double cosine = g_[c].range.magnitude(), sine = g_[s].range.magnitude();
+  double &a = sizes[static_cast<std::size_t>((axis + 1) % 3)],
+         &b = sizes[static_cast<std::size_t>((axis + 2) % 3)];
+  const double most = std::hypot(a, b), turned_a = cosine * a + sine * b, turned_b = sine * a + cosine * b;
+  a = std::min(turned_a, most);
+  b = std::min(turned_b, most);
 }
 
 // (R(delta) - 1) (nominal + deviation): sine and 1 - cosine of the small angle by their series, as far as
@@ -193,7 +211,7 @@ void Walk::deviate_by_turn(const Step& step) {
   const double across_mm = std::min(spread_mm_, norm_of(across)),
                nominal_mm = std::min(reach_mm_, norm_of({g_.constant(0), point[a], point[b]}));
   double reach = nominal_mm;
-  if (!small(2 * std::sin(std::min(size, 3.0) / 2) * across_mm, "turn of the deviation by " + step.where)) {
+  if (!small(2 * std::sin(std::min(size, 3.0) / 2) * across_mm, step, "turn of the deviation by ")) {
     point = plus(point, so_far);
     reach += across_mm;
   }
@@ -210,18 +228,18 @@ void Walk::deviate_by_turn(const Step& step) {
 NodeId Walk::sine_of(const Step& step, double size, double reach) {
   if (const auto angle = g_.constant_value(step.by.delta)) return g_.constant(std::sin(*angle * kRad));
   const NodeId angle = g_.scale(kRad, step.by.delta);
-  if (small(std::pow(size, 3) / 6 * reach, "third order of " + step.where)) return angle;
-  if (small(std::pow(size, 5) / 120 * reach, "fifth order of " + step.where))
+  if (small(std::pow(size, 3) / 6 * reach, step, "third order of ")) return angle;
+  if (small(std::pow(size, 5) / 120 * reach, step, "fifth order of "))
     return g_.sum(0, {{1, angle}, {-1.0 / 6, g_.product(angle, g_.product(angle, angle))}});
   return g_.function(Function::kSin, step.by.delta);
 }
 
 NodeId Walk::bend_of(const Step& step, double size, double reach) {
   if (const auto angle = g_.constant_value(step.by.delta)) return g_.constant(1 - std::cos(*angle * kRad));
-  if (small(size * size / 2 * reach, "second order of " + step.where)) return g_.constant(0);
+  if (small(size * size / 2 * reach, step, "second order of ")) return g_.constant(0);
   const NodeId angle = g_.scale(kRad, step.by.delta), square = g_.product(angle, angle);
-  if (small(std::pow(size, 4) / 24 * reach, "fourth order of " + step.where)) return g_.scale(0.5, square);
-  if (small(std::pow(size, 6) / 720 * reach, "sixth order of " + step.where))
+  if (small(std::pow(size, 4) / 24 * reach, step, "fourth order of ")) return g_.scale(0.5, square);
+  if (small(std::pow(size, 6) / 720 * reach, step, "sixth order of "))
     return g_.sum(0, {{0.5, square}, {-1.0 / 24, g_.product(square, square)}});
   return g_.sum(1, {{-1, g_.function(Function::kCos, step.by.delta)}});
 }

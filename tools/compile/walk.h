@@ -59,7 +59,8 @@ class Walk {
   void add_deviation(const NodeVector& v);
   void add_part(const std::string& name, const NodeVector& v);
   void split_turn(const Step& step, const NodeVector& point, const NodeVector& all);
-  bool small(double bound_mm, const std::string& what);
+  bool small(double bound_mm, const Step& step, const char* what);
+  void turn_sizes(std::array<double, 3>& sizes, int axis, NodeId angle_deg);
   void deviate_by_turn(const Step& step);
   NodeId sine_of(const Step& step, double size, double reach);
   NodeId bend_of(const Step& step, double size, double reach);

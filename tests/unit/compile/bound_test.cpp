@@ -38,6 +38,10 @@ TEST_P(ReferenceMachine, CompilesWithAllErrorsAndKeepsItsBound) {
   EXPECT_LE(seen.worst_share, 1.0);
   EXPECT_GT(seen.largest_um, 5.0);
   EXPECT_GT(seen.poses, 4000u);
+  // A bound far beyond what is ever seen is of no use. Looser: the sum of 53 neglected terms, and least
+  // squares.
+  const bool loose = GetParam() == "fibre_placement" || GetParam() == "ur10e";
+  EXPECT_LE(bound, (loose ? 50 : 5) * seen.worst_um);
 }
 
 INSTANTIATE_TEST_SUITE_P(Machines, ReferenceMachine, testing::ValuesIn(diagnose_test::reference_machines()),
