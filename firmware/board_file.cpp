@@ -75,7 +75,7 @@ SignalSource source_of(const toml::table* table, const std::string& file, const 
   SignalSource source;
   if (table == nullptr) return source;
   Table settings(*table, file, where);
-  source.line = static_cast<int>(table->source().begin.line);
+  source.where = file + ":" + std::to_string(table->source().begin.line) + ": " + where;
   for (const auto& [key, node] : *table) {
     if (const auto text = node.value_exact<std::string>())
       source.texts[std::string(key.str())] = *text;
@@ -207,25 +207,41 @@ void read_links(BoardFile& board, const toml::node& node) {
 
 }  // namespace
 
+void SignalSource::fail(const std::string& what) const { throw BoardError{where + ": " + what}; }
+void SignalSource::only(std::initializer_list<const char*> names) const {
+  const auto check = [&](const std::string& name) {
+    if (name != "kind" && std::find(names.begin(), names.end(), name) == names.end())
+      fail("unknown setting " + name + " of kind " + kind);
+  };
+  for (const auto& entry : texts) check(entry.first);
+  for (const auto& entry : numbers) check(entry.first);
+}
 const std::string& SignalSource::text(const std::string& name) const {
   const auto found = texts.find(name);
-  if (found == texts.end())
-    throw BoardError{"line " + std::to_string(line) + ": " + kind + ": " + name + " is missing"};
+  if (found == texts.end()) fail(name + (numbers.contains(name) ? " must be a text" : " is missing"));
   return found->second;
 }
 double SignalSource::number(const std::string& name) const {
   const auto found = numbers.find(name);
-  if (found == numbers.end())
-    throw BoardError{"line " + std::to_string(line) + ": " + kind + ": " + name + " is missing"};
+  if (found == numbers.end()) fail(name + (texts.contains(name) ? " must be a number" : " is missing"));
   return found->second;
 }
+std::int64_t SignalSource::whole(const std::string& name, std::int64_t low, std::int64_t high) const {
+  const double value = number(name);
+  if (!(value >= static_cast<double>(low) && value <= static_cast<double>(high)) ||
+      value != std::floor(value))
+    fail(name + " must be a whole number from " + std::to_string(low) + " to " + std::to_string(high));
+  return static_cast<std::int64_t>(value);
+}
+std::int64_t SignalSource::whole(const std::string& name, std::int64_t otherwise, std::int64_t low,
+                                 std::int64_t high) const {
+  return texts.contains(name) || numbers.contains(name) ? whole(name, low, high) : otherwise;
+}
 double SignalSource::number(const std::string& name, double otherwise) const {
-  const auto found = numbers.find(name);
-  return found == numbers.end() ? otherwise : found->second;
+  return texts.contains(name) || numbers.contains(name) ? number(name) : otherwise;
 }
 std::string SignalSource::text(const std::string& name, const std::string& otherwise) const {
-  const auto found = texts.find(name);
-  return found == texts.end() ? otherwise : found->second;
+  return texts.contains(name) || numbers.contains(name) ? text(name) : otherwise;
 }
 
 BoardFile read_board_file(const std::string& path) {

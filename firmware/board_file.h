@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <initializer_list>
 #include <map>
 #include <string>
 #include <vector>
@@ -14,11 +15,18 @@ struct SignalSource {
   std::string kind;                          // "can", "iio", "pwm", "sim" ...; empty: not wired
   std::map<std::string, std::string> texts;  // every setting that is a text
   std::map<std::string, double> numbers;     // every setting that is a number
-  int line = 0;                              // of the board file
+  std::string where;                         // "board.toml:12: axis.X.output"
 
+  [[noreturn]] void fail(const std::string& what) const;  // throws BoardError
+  /// Throws BoardError where the file has a setting that is not among `names`, apart from kind.
+  void only(std::initializer_list<const char*> names) const;
   const std::string& text(const std::string& name) const;  // throws BoardError where absent
   double number(const std::string& name) const;            // the same
   double number(const std::string& name, double otherwise) const;
+  /// A whole number from low to high; throws BoardError where it is absent or something else.
+  std::int64_t whole(const std::string& name, std::int64_t low, std::int64_t high) const;
+  std::int64_t whole(const std::string& name, std::int64_t otherwise, std::int64_t low,
+                     std::int64_t high) const;
   std::string text(const std::string& name, const std::string& otherwise) const;
 };
 

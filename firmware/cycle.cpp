@@ -51,6 +51,7 @@ BoundProgram* Cycle::use(BoundProgram& next) noexcept {
 
 Fault Cycle::read_axes() noexcept {
   Fault fault = Fault::kNone;
+  board_.axes.begin_tick();
   for (std::uint32_t i = 0; i < now_->program.axis_count; ++i) {
     const std::uint32_t axis = now_->axis[i];
     AxisReading reading;

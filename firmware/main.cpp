@@ -1,24 +1,34 @@
 // SPDX-License-Identifier: Apache-2.0
 // vernierd: the composition root, the only file of the firmware that names a backend.
-#include <getopt.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <thread>
 
+#include "firmware/arguments.h"
 #include "firmware/board_file.h"
+#include "firmware/device_settings.h"
 #include "firmware/image_file.h"
 #include "firmware/report.h"
 #include "firmware/routing.h"
 #include "firmware/runner.h"
 #include "firmware/service.h"
+#include "hal/linux/analogue_output.h"
+#include "hal/linux/can_axes.h"
 #include "hal/linux/file_slot_store.h"
+#include "hal/linux/iio_device.h"
+#include "hal/linux/iio_input.h"
 #include "hal/linux/isotp_link.h"
 #include "hal/linux/modbus_server.h"
 #include "hal/linux/monotonic_clock.h"
@@ -37,61 +47,13 @@ constexpr double kShareOfRangePerS = 0.1;
 constexpr TimeUs kServeWait(20'000);
 constexpr int kMostTicksToEnd = 30'000;
 constexpr std::uint64_t kTicksBetweenSigns = 100;  // of life, to the service manager
-
-struct Arguments {
-  std::string image, board, json;
-  double seconds = 0;
-  unsigned long seed = 1;
-  bool simulate = false, realtime = true, check = false;
-};
-
-constexpr const char* kUsage =
-    "usage: vernierd --board FILE [--check] [--seconds S] [--no-realtime] [--json FILE]\n"
-    "       vernierd --image DIR --simulate [--seconds S] [--seed N] [--no-realtime] [--json FILE]\n"
-    "Runs the 1 kHz compensation cycle.\n"
-    "  --board FILE    the board: its axes, sensors, outputs, links and store (tools/docs/board.md)\n"
-    "  --check         try every device of the board file once, say what is missing, and end\n"
-    "  --image DIR     without a board: the directory that `vernier compile` wrote ...\n"
-    "  --simulate      ... on the simulated machine, in real time: every axis roams through its range\n"
-    "  --seconds S     stop after S seconds (default: never with --board, 10 with --simulate)\n"
-    "  --seed N        seed of the simulated motion (default 1)\n"
-    "  --no-realtime   do not ask for SCHED_FIFO, locked memory and shallow idle states\n"
-    "  --json FILE     result for programs; - is standard output\n"
-    "Exit status: 0 done, 1 bad input or usage, 2 a fault latched, a device is missing or a limit was not "
-    "met.\n";
+constexpr std::int64_t kTicksToZero = 1000;        // at least, for what a drive holds at the start
+constexpr TimeUs kSampleWait(10'000);              // between two samples of the sensors
+constexpr std::int64_t kStaleTicks = 1000;         // ticks after which an unchanged sample is silence
+constexpr TimeUs kPatience(1'000'000), kTrialWait(5'000);
 
 std::atomic<bool> stop_asked{false};
 static_assert(std::atomic<bool>::is_always_lock_free);
-
-bool parse_value(const char* text, double low, double high, double& value) {
-  char* end = nullptr;
-  value = std::strtod(text, &end);
-  return end != text && *end == '\0' && value >= low && value <= high;
-}
-
-bool parse(int argc, char** argv, Arguments& arguments) {
-  const option kOptions[] = {
-      {"image", required_argument, nullptr, 'i'},   {"simulate", no_argument, nullptr, 's'},
-      {"seconds", required_argument, nullptr, 't'}, {"seed", required_argument, nullptr, 'r'},
-      {"no-realtime", no_argument, nullptr, 'n'},   {"json", required_argument, nullptr, 'j'},
-      {"board", required_argument, nullptr, 'b'},   {"check", no_argument, nullptr, 'c'},
-      {"help", no_argument, nullptr, 'h'},          {nullptr, 0, nullptr, 0}};
-  double number = 0;
-  for (int c = 0; (c = getopt_long(argc, argv, "h", kOptions, nullptr)) != -1;) {
-    if (c == 'i') arguments.image = optarg;
-    if (c == 's') arguments.simulate = true;
-    if (c == 'n') arguments.realtime = false;
-    if (c == 'j') arguments.json = optarg;
-    if (c == 'b') arguments.board = optarg;
-    if (c == 'c') arguments.check = true;
-    if (c == 't' && !parse_value(optarg, 0.1, 1e9, arguments.seconds)) return false;
-    if (c == 'r' && !parse_value(optarg, 0, 1e15, number)) return false;
-    if (c == 'r') arguments.seed = static_cast<unsigned long>(number);
-    if (c == 'h') std::fputs(kUsage, stdout), std::exit(kDone);
-    if (c == '?') return false;
-  }
-  return optind == argc && arguments.image.empty() != arguments.board.empty();
-}
 
 GrantReport ask_for_realtime(bool wanted, int priority) {
   if (!wanted) return {};
@@ -163,22 +125,38 @@ int run_image(const Arguments& arguments) {
 
 // ---- a board
 
+/// What `--check` says of a device.
+struct Finding {
+  std::string device;                    // "axis.X.output  pwm"
+  std::string missing;                   // empty: it is there
+  std::function<std::string()> attempt;  // tries it once more; what is missing, or empty
+};
+
+struct Output {
+  std::size_t axis;
+  std::unique_ptr<AnalogueOutput> device;
+};
+
 /// The devices of a board, alive as long as it runs.
 struct Devices {
   MonotonicClock clock;
   std::unique_ptr<Roaming> motion;
   std::unique_ptr<SimPlant> plant;
+  std::map<std::string, std::unique_ptr<CanAxes>> buses;  // by interface
+  std::vector<Output> analogue;
+  std::vector<std::unique_ptr<IioInput>> sensors;
   std::unique_ptr<RoutedAxes> axes;
   std::unique_ptr<RoutedInputs> inputs;
   std::unique_ptr<RoutedOutputs> outputs;
   std::vector<std::unique_ptr<CommandLink>> links;
+  std::vector<Finding> findings;
 
   Board board() { return {clock, *axes, *inputs, *outputs}; }
+  void note(const std::string& device, const std::string& missing,
+            std::function<std::string()> attempt = {}) {
+    findings.push_back({device, missing, std::move(attempt)});
+  }
 };
-
-[[noreturn]] void refuse(const BoardFile& file, const SignalSource& source, const std::string& why) {
-  throw BoardError{file.path + ":" + std::to_string(source.line) + ": " + why};
-}
 
 void make_plant(const BoardFile& file, unsigned long seed, Devices& devices) {
   std::vector<RoamingAxis> ranges;
@@ -197,52 +175,226 @@ void make_plant(const BoardFile& file, unsigned long seed, Devices& devices) {
                                              PlantOptions{.seed = seed, .faults = {}});
 }
 
-void make_devices(const BoardFile& file, unsigned long seed, Devices& devices) {
-  make_plant(file, seed, devices);
-  std::vector<Route<AxisReader>> axes;
-  std::vector<Route<InputReader>> inputs;
-  std::vector<Route<CorrectionWriter>> outputs;
-  for (const AxisEntry& axis : file.axes) {
-    const auto index = static_cast<std::uint32_t>(axes.size());
-    if (axis.position.kind != "sim") refuse(file, axis.position, "no position of kind " + axis.position.kind);
-    axes.push_back({devices.plant.get(), index});
-    if (axis.output.kind.empty())
-      outputs.push_back({});
-    else if (axis.output.kind == "sim")
-      outputs.push_back({devices.plant.get(), index});
-    else
-      refuse(file, axis.output, "no output of kind " + axis.output.kind);
+/// Waits for one frame of an axis.
+std::string hear_axis(Clock& clock, CanAxes& bus, std::uint32_t axis) {
+  const InstantNs end = clock.now() + instant_ns(kPatience);
+  for (AxisReading reading; clock.now() < end; clock.sleep_until(clock.now() + instant_ns(kTrialWait))) {
+    bus.begin_tick();
+    if (bus.read_axis(axis, reading) == HalFault::kNone) return {};
   }
-  for (const InputEntry& input : file.inputs) {
-    if (input.source.kind != "sim") refuse(file, input.source, "no input of kind " + input.source.kind);
-    inputs.push_back({devices.plant.get(), static_cast<std::uint32_t>(inputs.size())});
-  }
-  devices.axes = std::make_unique<RoutedAxes>(std::move(axes));
-  devices.inputs = std::make_unique<RoutedInputs>(std::move(inputs));
-  devices.outputs = std::make_unique<RoutedOutputs>(std::move(outputs));
+  return bus.counts().frames + bus.counts().invalid + bus.counts().stalled == 0
+             ? "no frame has come within 1 s"
+             : "no valid frame within 1 s";
 }
 
-std::unique_ptr<CommandLink> make_link(const BoardFile& file, const SignalSource& source) {
-  const ModbusLayout layout{kMailboxRegister, kMailboxRegisters, kLiveRegisters};
-  std::string error;
-  std::unique_ptr<CommandLink> link;
-  if (source.kind == "modbus-tcp") {
-    const std::string address = source.text("address", "127.0.0.1");
-    auto server = ModbusServer::tcp(address, static_cast<int>(source.number("port", 1502)), layout, error);
-    if (server) std::fprintf(stderr, "vernierd: Modbus TCP on %s:%d\n", address.c_str(), server->port());
-    link = std::move(server);
-  } else if (source.kind == "modbus-rtu") {
-    link = ModbusServer::rtu(source.text("device"), static_cast<int>(source.number("baud", 115200)),
-                             source.text("parity", "E")[0], static_cast<int>(source.number("unit", 1)),
-                             layout, error);
-  } else if (source.kind == "isotp") {
-    link = IsotpLink::open(source.text("interface"), static_cast<std::uint32_t>(source.number("receive")),
-                           static_cast<std::uint32_t>(source.number("transmit")), error);
-  } else {
-    error = "no link of kind " + source.kind;
+/// One bus for all axes that name its interface; routes of the axes are filled in.
+void make_bus(const BoardFile& file, const std::string& interface, std::vector<Route<AxisReader>>& routes,
+              Devices& devices) {
+  std::vector<std::uint32_t> ids;
+  std::vector<std::size_t> axes;
+  for (std::size_t i = 0; i < file.axes.size(); ++i) {
+    const SignalSource& source = file.axes[i].position;
+    if (source.kind != "can" || source.text("interface") != interface) continue;
+    source.only({"interface", "id"});
+    const auto id = static_cast<std::uint32_t>(source.whole("id", 0, (1 << 29) - 1));
+    if (std::find(ids.begin(), ids.end(), id) != ids.end()) source.fail("another axis has this id");
+    axes.push_back(i), ids.push_back(id);
   }
-  if (!link) refuse(file, source, error);
-  return link;
+  std::string error;
+  auto bus = CanAxes::open(interface, ids, error);
+  for (std::uint32_t k = 0; k < axes.size(); ++k) {
+    routes[axes[k]] = {bus.get(), k};
+    char device[96];
+    std::snprintf(device, sizeof(device), "can %s id 0x%x", interface.c_str(), ids[k]);
+    devices.note("axis." + file.axes[axes[k]].wiring.name + ".position  " + device, error,
+                 [&clock = devices.clock, bus = bus.get(), k] { return hear_axis(clock, *bus, k); });
+  }
+  devices.buses[interface] = std::move(bus);
+}
+
+std::vector<Route<AxisReader>> make_positions(const BoardFile& file, Devices& devices) {
+  std::vector<Route<AxisReader>> routes(file.axes.size());
+  for (std::uint32_t i = 0; i < file.axes.size(); ++i) {
+    const SignalSource& source = file.axes[i].position;
+    if (source.kind == "sim") {
+      source.only({});
+      routes[i] = {devices.plant.get(), i};
+      devices.note("axis." + file.axes[i].wiring.name + ".position  sim", "");
+    } else if (source.kind == "can") {
+      const std::string interface = source.text("interface");
+      if (!devices.buses.contains(interface)) make_bus(file, interface, routes, devices);
+    } else {
+      source.fail("no position of kind " + source.kind);
+    }
+  }
+  return routes;
+}
+
+/// Opens a PWM channel or a converter; null with `error` set where it is missing.
+std::unique_ptr<AnalogueOutput> open_analogue(const SignalSource& source, bool rotary, std::string& error) {
+  if (source.kind == "pwm") {
+    source.only({"path", "period_ns", "span", "zero_ns", "low_ns", "high_ns", "polarity"});
+    const std::int64_t period = source.whole("period_ns", 2, 1'000'000'000);
+    return AnalogueOutput::pwm(source.text("path"), period, analogue_scale(source, rotary, period, "_ns"),
+                               error);
+  }
+  if (source.kind != "iio-dac") source.fail("no output of kind " + source.kind);
+  source.only({"root", "device", "channel", "codes", "span", "zero", "low", "high", "polarity"});
+  const AnalogueScale scale = analogue_scale(source, rotary, source.whole("codes", 1, (1 << 24) - 1), "");
+  const auto channel = static_cast<unsigned>(source.whole("channel", 0, 0, 63));
+  const std::string device = find_iio_device(source.text("root", kIioRoot), source.text("device"), error);
+  return device.empty() ? nullptr : AnalogueOutput::iio_dac(device, channel, scale, error);
+}
+
+std::string try_output(AnalogueOutput& output) {
+  const HalFault fault = output.rewrite();
+  if (fault == HalFault::kRefused) return "refuses the value that it has";
+  return fault == HalFault::kNone ? "" : "the value that it has cannot be read";
+}
+
+std::vector<Route<CorrectionWriter>> make_outputs(const BoardFile& file, Devices& devices) {
+  std::vector<Route<CorrectionWriter>> routes(file.axes.size());
+  for (std::uint32_t i = 0; i < file.axes.size(); ++i) {
+    const AxisEntry& axis = file.axes[i];
+    if (axis.output.kind.empty()) continue;
+    const std::string name = "axis." + axis.wiring.name + ".output  " + axis.output.kind;
+    if (axis.output.kind == "sim") {
+      axis.output.only({});
+      routes[i] = {devices.plant.get(), i};
+      devices.note(name, "");
+      continue;
+    }
+    std::string error;
+    auto output = open_analogue(axis.output, axis.wiring.rotary, error);
+    routes[i] = {output.get(), 0};
+    devices.note(name, error, [output = output.get()] { return try_output(*output); });
+    if (output) devices.analogue.push_back({i, std::move(output)});
+  }
+  return routes;
+}
+
+std::vector<Route<InputReader>> make_inputs(const BoardFile& file, Devices& devices) {
+  std::vector<Route<InputReader>> routes(file.inputs.size());
+  for (std::uint32_t i = 0; i < file.inputs.size(); ++i) {
+    const SignalSource& source = file.inputs[i].source;
+    const std::string name = "input." + file.inputs[i].name + "  " + source.kind;
+    if (source.kind == "sim") {
+      source.only({});
+      routes[i] = {devices.plant.get(), i};
+      devices.note(name, "");
+      continue;
+    }
+    if (source.kind != "iio") source.fail("no input of kind " + source.kind);
+    source.only({"root", "device", "attribute", "scale", "offset", "stale_ticks"});
+    const IioScale scale{source.number("offset", 0), source.number("scale")};
+    const auto stale = static_cast<std::uint32_t>(source.whole("stale_ticks", kStaleTicks, 1, 1'000'000));
+    const std::string attribute = source.text("attribute");
+    if (attribute.empty()) source.fail("attribute is empty");
+    std::string error;
+    const std::string device = find_iio_device(source.text("root", kIioRoot), source.text("device"), error);
+    std::unique_ptr<IioInput> input;
+    if (!device.empty()) input = IioInput::open(device + "/" + attribute, scale, stale, error);
+    routes[i] = {input.get(), 0};
+    devices.note(name, error, [input = input.get()] {
+      return input->sample() == HalFault::kNone ? "" : "gives no number";
+    });
+    if (input) devices.sensors.push_back(std::move(input));
+  }
+  return routes;
+}
+
+void make_devices(const BoardFile& file, unsigned long seed, Devices& devices) {
+  make_plant(file, seed, devices);
+  devices.axes = std::make_unique<RoutedAxes>(make_positions(file, devices));
+  devices.outputs = std::make_unique<RoutedOutputs>(make_outputs(file, devices));
+  devices.inputs = std::make_unique<RoutedInputs>(make_inputs(file, devices));
+}
+
+std::unique_ptr<CommandLink> open_link(const SignalSource& source, std::string& error) {
+  const ModbusLayout layout{kMailboxRegister, kMailboxRegisters, kLiveRegisters};
+  if (source.kind == "modbus-tcp") {
+    source.only({"address", "port"});
+    const std::string address = source.text("address", "127.0.0.1");
+    auto server =
+        ModbusServer::tcp(address, static_cast<int>(source.whole("port", 1502, 0, 65535)), layout, error);
+    if (server) std::fprintf(stderr, "vernierd: Modbus TCP on %s:%d\n", address.c_str(), server->port());
+    return server;
+  }
+  if (source.kind == "modbus-rtu") {
+    source.only({"device", "baud", "parity", "unit"});
+    const std::string parity = source.text("parity", "E");
+    if (parity != "E" && parity != "O" && parity != "N") source.fail("parity must be E, O or N");
+    return ModbusServer::rtu(source.text("device"),
+                             static_cast<int>(source.whole("baud", 115200, 1, 10'000'000)), parity[0],
+                             static_cast<int>(source.whole("unit", 1, 1, 247)), layout, error);
+  }
+  if (source.kind != "isotp") source.fail("no link of kind " + source.kind);
+  source.only({"interface", "receive", "transmit"});
+  constexpr std::int64_t kLastId = (1 << 29) - 1;
+  return IsotpLink::open(source.text("interface"),
+                         static_cast<std::uint32_t>(source.whole("receive", 0, kLastId)),
+                         static_cast<std::uint32_t>(source.whole("transmit", 0, kLastId)), error);
+}
+
+void make_links(const BoardFile& file, Devices& devices) {
+  for (const SignalSource& source : file.links) {
+    std::string error;
+    auto link = open_link(source, error);
+    devices.note("link  " + source.kind, error);
+    if (link) devices.links.push_back(std::move(link));
+  }
+}
+
+void make_store(const BoardFile& file, Devices& devices) {
+  std::error_code failed;
+  std::filesystem::create_directories(file.store, failed);
+  std::string missing = failed ? failed.message() : "";
+  if (missing.empty() && ::access(file.store.c_str(), R_OK | W_OK | X_OK) != 0)
+    missing = std::strerror(errno);
+  devices.note("store  " + file.store, missing);
+}
+
+int check_devices(Devices& devices) {
+  int missing = 0;
+  for (Finding& finding : devices.findings) {
+    if (finding.missing.empty() && finding.attempt) finding.missing = finding.attempt();
+    const bool there = finding.missing.empty();
+    std::printf("%s  %s%s%s\n", there ? "ok     " : "missing", finding.device.c_str(), there ? "" : ": ",
+                finding.missing.c_str());
+    missing += there ? 0 : 1;
+  }
+  std::printf(missing == 0 ? "%zu devices: all there\n" : "%zu devices: %d missing\n",
+              devices.findings.size(), missing);
+  return missing == 0 ? kDone : kAnswerIsNo;
+}
+
+bool all_there(const Devices& devices) {
+  bool all = true;
+  for (const Finding& finding : devices.findings) {
+    if (finding.missing.empty()) continue;
+    std::fprintf(stderr, "vernierd: missing: %s: %s\n", finding.device.c_str(), finding.missing.c_str());
+    all = false;
+  }
+  return all;
+}
+
+/// A correction that a killed daemon left in a drive, or the value that a converter wakes up with, is taken
+/// out before the first tick: within the limits of the axis, and over a second at least.
+void take_left_overs_out(const BoardFile& file, Devices& devices) {
+  for (const Output& output : devices.analogue) {
+    AxisTravel held;
+    MotionLimit motion;
+    MotionBounds bounds = file.service.limits.axis[output.axis].motion;
+    if (output.device->read_back(held) == HalFault::kNone) motion.stop_at(held.count);
+    bounds.slew = std::min(bounds.slew, std::abs(held.count) / kTicksToZero + 1);
+    // The zero is written too, as some drivers do not say what they hold; a refusal shows in the first ticks.
+    for (bool zero = false; !zero && !stop_asked;) {
+      const AxisTravel next(motion.approach(0, bounds));
+      zero = next == AxisTravel{} || output.device->write_correction(0, next) != HalFault::kNone;
+      if (zero) output.device->write_correction(0, AxisTravel{});
+      devices.clock.sleep_until(devices.clock.now() + instant_ns(file.service.upload.tick));
+    }
+  }
 }
 
 void say_image(const UploadResult& result, const Service& service) {
@@ -289,22 +441,38 @@ void take_correction_out(Service& service, Devices& devices) {
   }
 }
 
-int run_board(const Arguments& arguments) {
-  BoardFile file = read_board_file(arguments.board);
-  std::filesystem::create_directories(file.store);
-  Devices devices;
-  make_devices(file, arguments.seed, devices);
-  for (const SignalSource& link : file.links) devices.links.push_back(make_link(file, link));
-  if (arguments.check) {
-    std::printf("%zu axes, %zu inputs, %zu links: all there\n", file.axes.size(), file.inputs.size(),
-                devices.links.size());
-    return kDone;
+/// Sensors wait for their drivers, and are sampled beside the tick.
+void sample_until(const std::atomic<bool>& stop, Devices& devices) {
+  while (!stop) {
+    for (auto& sensor : devices.sensors) sensor->sample();
+    devices.clock.sleep_until(devices.clock.now() + instant_ns(kSampleWait));
   }
+}
+
+void say_held(const BoardFile& file, const Devices& devices) {
+  for (const Output& output : devices.analogue)
+    if (output.device->held_at_end() > 0)
+      std::fprintf(stderr, "vernierd: axis.%s.output was held at the end of its range in %llu ticks\n",
+                   file.axes[output.axis].wiring.name.c_str(),
+                   static_cast<unsigned long long>(output.device->held_at_end()));
+}
+
+int run_board(const Arguments& arguments) {
+  const BoardFile file = read_board_file(arguments.board);
+  Devices devices;
+  make_store(file, devices);
+  make_devices(file, arguments.seed, devices);
+  make_links(file, devices);
+  if (arguments.check) return check_devices(devices);
+  if (!all_there(devices)) return kAnswerIsNo;
   FileSlotStore store(file.store, file.slot_bytes);
   const auto service = std::make_unique<Service>(file.service, devices.board(), store);
   say_image(service->boot(), *service);
-  std::atomic<bool> stop_serving{false};
-  std::thread server([&] { serve_until(stop_serving, *service, devices); });
+  for (auto& sensor : devices.sensors) sensor->sample();
+  take_left_overs_out(file, devices);
+  std::atomic<bool> stop_beside{false};
+  std::thread server([&] { serve_until(stop_beside, *service, devices); });
+  std::thread sampler([&] { sample_until(stop_beside, devices); });
   const GrantReport grant = ask_for_realtime(arguments.realtime, file.priority);
   devices.plant->release();
   if (!notify_service_manager("READY=1"))
@@ -316,8 +484,9 @@ int run_board(const Arguments& arguments) {
   }
   notify_service_manager("STOPPING=1");
   take_correction_out(*service, devices);
-  stop_serving = true;
-  server.join();
+  stop_beside = true;
+  server.join(), sampler.join();
+  say_held(file, devices);
   return finish(arguments, service->cycle(), grant);
 }
 
@@ -325,9 +494,13 @@ int run_board(const Arguments& arguments) {
 
 int main(int argc, char** argv) {
   Arguments arguments;
-  if (!parse(argc, argv, arguments)) {
+  if (!parse_arguments(argc, argv, arguments)) {
     std::fputs(kUsage, stderr);
     return kBadInput;
+  }
+  if (arguments.help) {
+    std::fputs(kUsage, stdout);
+    return kDone;
   }
   std::signal(SIGTERM, [](int) { stop_asked = true; });
   std::signal(SIGINT, [](int) { stop_asked = true; });

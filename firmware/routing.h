@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <algorithm>
 #include <vector>
 
 #include "hal/axis_reader.h"
@@ -18,7 +19,15 @@ struct Route {
 /// The board's axes, spread over several backends. The first route's backend speaks for the path.
 class RoutedAxes : public AxisReader {
  public:
-  explicit RoutedAxes(std::vector<Route<AxisReader>> routes) : routes_(std::move(routes)) {}
+  explicit RoutedAxes(std::vector<Route<AxisReader>> routes) : routes_(std::move(routes)) {
+    // A backend of several axes begins a tick once.
+    for (const auto& route : routes_)
+      if (std::find(backends_.begin(), backends_.end(), route.port) == backends_.end())
+        backends_.push_back(route.port);
+  }
+  void begin_tick() noexcept override {
+    for (AxisReader* const backend : backends_) backend->begin_tick();
+  }
   HalFault read_axis(std::uint32_t axis, AxisReading& reading) noexcept override {
     if (axis >= routes_.size()) return HalFault::kNoDevice;
     return routes_[axis].port->read_axis(routes_[axis].index, reading);
@@ -34,6 +43,7 @@ class RoutedAxes : public AxisReader {
 
  private:
   std::vector<Route<AxisReader>> routes_;
+  std::vector<AxisReader*> backends_;
 };
 
 /// The board's inputs, spread over several backends.

@@ -26,6 +26,9 @@ struct PathReading {
 class AxisReader {
  public:
   virtual ~AxisReader() = default;
+  /// A tick of the firmware begins: readings that came in until now are those of this tick, and stay the same
+  /// until the next call. Never waits. realtime.
+  virtual void begin_tick() noexcept {}
   /// Newest reading of an axis. kNoReading: none since the last tick. realtime.
   virtual HalFault read_axis(std::uint32_t axis, AxisReading& reading) noexcept = 0;
   /// Feed and curvature; zero where the controller does not know them. realtime.

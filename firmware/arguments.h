@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+
+namespace vernier {
+
+/// What vernierd was called with.
+struct Arguments {
+  std::string image, board, json;
+  double seconds = 0;
+  unsigned long seed = 1;
+  bool simulate = false, realtime = true, check = false, help = false;
+};
+
+extern const char* const kUsage;
+
+/// False: not understood, kUsage tells why. setup.
+bool parse_arguments(int argc, char** argv, Arguments& arguments);
+
+}  // namespace vernier

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "firmware/board_file.h"
+#include "hal/analogue_scale.h"
+
+namespace vernier {
+
+/// The settings span, zero, low, high and polarity of an analogue output, each name with `suffix` ("_ns")
+/// where it counts codes. codes: those of the whole span. rotary: span is in degrees, else in mm. Throws
+/// BoardError. setup.
+AnalogueScale analogue_scale(const SignalSource& source, bool rotary, std::int64_t codes, const char* suffix);
+
+}  // namespace vernier

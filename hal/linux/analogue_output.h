@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <memory>
+#include <string>
+
+#include "hal/analogue_scale.h"
+#include "hal/correction_writer.h"
+#include "hal/linux/sysfs_attribute.h"
+
+namespace vernier {
+
+/// The correction of one axis as an analogue quantity: the pulse width of a PWM channel, or a channel of a
+/// converter. Its own axis 0 is the only one. Setting up changes no value that a running channel has, so that
+/// a correction which an earlier process left behind can be read back and taken out.
+class AnalogueOutput : public CorrectionWriter {
+ public:
+  /// channel: directory of an exported channel of the PWM class (/sys/class/pwm/pwmchip0/pwm0); scale: in ns
+  /// of on-time; period: ns, >= scale.high. A channel that is off, or has another period, is set to its zero
+  /// and switched on. Null with `error` set where that cannot be done. setup.
+  static std::unique_ptr<AnalogueOutput> pwm(const std::string& channel, std::int64_t period_ns,
+                                             const AnalogueScale& scale, std::string& error);
+  /// device: directory of an IIO device; channel: the N of out_voltageN_raw; scale: in codes. setup.
+  static std::unique_ptr<AnalogueOutput> iio_dac(const std::string& device, unsigned channel,
+                                                 const AnalogueScale& scale, std::string& error);
+
+  /// Held at the ends of the range, and counted then. kRefused: the driver refused the value. realtime, as
+  /// far as the device's bus is quick: an SPI converter takes some ten microseconds.
+  HalFault write_correction(std::uint32_t axis, AxisTravel correction) noexcept override;
+
+  /// The correction that the device holds. kNoReading: the driver does not say. setup.
+  HalFault read_back(AxisTravel& correction) noexcept;
+  /// Reads the code that the device holds and writes the same again, which moves nothing. kNoReading: the
+  /// driver does not say, nothing was written. setup.
+  HalFault rewrite() noexcept;
+  /// Writes that asked for more than the range has.
+  std::uint64_t held_at_end() const noexcept { return held_at_end_; }
+
+ private:
+  AnalogueOutput(SysfsAttribute attribute, const AnalogueScale& scale)
+      : attribute_(std::move(attribute)), scale_(scale) {}
+
+  SysfsAttribute attribute_;
+  AnalogueScale scale_;
+  std::uint64_t held_at_end_ = 0;
+};
+
+}  // namespace vernier

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "hal/fault.h"
+
+namespace vernier {
+
+/// One attribute of a device in sysfs: a number as text. Opened once in setup and then read or written at its
+/// beginning, each time a single system call without allocation.
+class SysfsAttribute {
+ public:
+  enum class Use { kRead, kWrite, kBoth };
+
+  /// Empty with `error` set ("/sys/...: No such file or directory") where it cannot be opened so. setup.
+  static std::optional<SysfsAttribute> open(const std::string& path, Use use, std::string& error);
+  SysfsAttribute(SysfsAttribute&& other) noexcept;
+  SysfsAttribute& operator=(SysfsAttribute&& other) noexcept;
+  ~SysfsAttribute();
+
+  /// Writes the number and a line feed. kRefused: the driver or the device said no. realtime, as far as the
+  /// device's bus is quick.
+  HalFault write(std::int64_t value) noexcept;
+  /// Writes a word ("normal"). setup.
+  HalFault write(const std::string& word) noexcept;
+  /// A decimal number, with a fraction or without, in millionths; further digits are cut off. kNoReading: the
+  /// driver gave an error, nothing, or no number; `micro` stays as it is. Waits as long as the driver does.
+  HalFault read_micro(std::int64_t& micro) noexcept;
+  /// The same for a whole number. setup.
+  HalFault read(std::int64_t& value) noexcept;
+
+ private:
+  explicit SysfsAttribute(int fd) noexcept : fd_(fd) {}
+  HalFault write_text(const char* text, std::size_t size) noexcept;
+
+  int fd_ = -1;
+};
+
+/// Reads "-12.345678\n" as -12345678 millionths. False: no such number, or beyond ±10^12. No allocation.
+bool parse_micro(const char* text, std::size_t size, std::int64_t& micro) noexcept;
+
+}  // namespace vernier

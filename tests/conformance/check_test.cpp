@@ -1,0 +1,135 @@
+// `vernierd --check` as a process: every device is really tried, one line each, and what is missing is named;
+// and what a daemon does to a converter that holds a value from before.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdio>
+
+#include "tests/conformance/linux_devices.h"
+
+namespace vernier {
+namespace {
+
+constexpr const char* kBoard = R"([board]
+store = "store"
+[axis.X]
+max_speed = 100
+position = { kind = "sim" }
+output = { kind = "pwm", path = "ROOT/pwm0", period_ns = 50000, span = 0.25 }
+[axis.Y]
+max_speed = 100
+position = { kind = "sim" }
+output = { kind = "iio-dac", root = "ROOT", device = "mcp4922", channel = 1, codes = 255, span = 0.25, zero = 127, high = 254 }
+[input.T]
+unit = "degC"
+source = { kind = "iio", root = "ROOT", device = "tmp117", attribute = "in_temp_input", scale = 0.001 }
+)";
+
+struct Said {
+  int status;
+  std::string text;
+};
+
+class Check : public testing::Test {
+ protected:
+  Check() {
+    files_.put("pwm0/period", "50000"), files_.put("pwm0/duty_cycle", "25000"),
+        files_.put("pwm0/enable", "1");
+    files_.put("iio:device3/name", "mcp4922"), files_.put("iio:device3/out_voltage1_raw", "200");
+    files_.put("iio:device4/name", "tmp117"), files_.put("iio:device4/in_temp_input", "21500");
+    write(kBoard);
+  }
+  void write(std::string text) const {
+    for (std::size_t at = 0; (at = text.find("ROOT")) != std::string::npos;)
+      text.replace(at, 4, files_.path());
+    files_.put("board.toml", text);
+  }
+  static std::string replaced(std::string text, const std::string& from, const std::string& to) {
+    return text.replace(text.find(from), from.size(), to);
+  }
+  Said run(const std::string& arguments) const {
+    const std::string command = std::string(VERNIER_BIN_DIR) + "/vernierd --board " + files_.path() +
+                                "/board.toml --no-realtime " + arguments + " 2>&1";
+    std::FILE* const pipe = popen(command.c_str(), "r");
+    std::string out;
+    for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe)) out.push_back(static_cast<char>(c));
+    const int status = pclose(pipe);
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, out};
+  }
+  void expect_missing(const std::string& line) const {
+    const Said said = run("--check");
+    EXPECT_EQ(said.status, 2);
+    EXPECT_NE(said.text.find(line), std::string::npos) << said.text;
+    EXPECT_NE(said.text.find(": 1 missing"), std::string::npos) << said.text;
+  }
+  const SysfsDirectory files_{testing::TempDir() + "check_" + std::to_string(getpid()) + "_" +
+                              testing::UnitTest::GetInstance()->current_test_info()->name()};
+};
+
+TEST_F(Check, SaysOneLinePerDeviceAndMovesNothing) {
+  const Said said = run("--check");
+  EXPECT_EQ(said.status, 0) << said.text;
+  for (const char* line :
+       {"ok       axis.X.position  sim\n", "ok       axis.X.output  pwm\n",
+        "ok       axis.Y.output  iio-dac\n", "ok       input.T  iio\n", "6 devices: all there"})
+    EXPECT_NE(said.text.find(line), std::string::npos) << line << said.text;
+  EXPECT_EQ(files_.get("iio:device3/out_voltage1_raw"), "200");
+}
+
+TEST_F(Check, NamesAConverterThatIsNotThere) {
+  std::filesystem::remove(files_.path() + "/iio:device3/out_voltage1_raw");
+  expect_missing("missing  axis.Y.output  iio-dac: ");
+  EXPECT_EQ(run("--seconds 0.1").status, 2) << "it does not run without it";
+}
+
+TEST_F(Check, NamesAConverterThatRefuses) {
+  files_.break_writes("iio:device3/out_voltage1_raw");
+  expect_missing("missing  axis.Y.output  iio-dac: the value that it has cannot be read");
+}
+
+TEST_F(Check, NamesAPulseOutputThatIsNotExported) {
+  std::filesystem::remove_all(files_.path() + "/pwm0");
+  expect_missing("/pwm0/period: No such file or directory");
+}
+
+TEST_F(Check, NamesASensorThatIsSilent) {
+  files_.put("iio:device4/in_temp_input", "");
+  expect_missing("missing  input.T  iio: gives no number");
+}
+
+TEST_F(Check, NamesABusThatIsNotThere) {
+  write(replaced(kBoard, "{ kind = \"sim\" }", "{ kind = \"can\", interface = \"nocan\", id = 0x181 }"));
+  expect_missing("missing  axis.X.position  can nocan id 0x181: nocan: no ");
+}
+
+TEST_F(Check, WrongSettingsAreNamedWithTheirLine) {
+  const std::pair<const char*, const char*> kWrong[] = {{"period_ns = 50000", "period_ns = 0"},
+                                                        {"span = 0.25", "span = -1"},
+                                                        {"channel = 1", "chanel = 1"},
+                                                        {"codes = 255", "codes = 25.5"},
+                                                        {"zero = 127", "zero = 255"},
+                                                        {"scale = 0.001", "scale = \"a\""},
+                                                        {"device = \"tmp117\", ", ""},
+                                                        {"kind = \"pwm\"", "kind = \"pvm\""},
+                                                        {"high = 254", "polarity = \"upside\""},
+                                                        {"attribute = \"in_temp_input\"", "attribute = \"\""},
+                                                        {"{ kind = \"sim\" }", "{ kind = \"can\" }"}};
+  for (const auto& [from, to] : kWrong) {
+    write(replaced(kBoard, from, to));
+    const Said said = run("--check");
+    EXPECT_EQ(said.status, 1) << to << said.text;
+    EXPECT_NE(said.text.find("board.toml:"), std::string::npos) << to << said.text;
+  }
+}
+
+TEST_F(Check, WhatAConverterHoldsFromBeforeIsTakenOut) {
+  files_.put("pwm0/duty_cycle", "30000");
+  const Said said = run("--seconds 0.2");
+  EXPECT_EQ(said.status, 0) << said.text;
+  EXPECT_EQ(files_.get("iio:device3/out_voltage1_raw"), "127");
+  EXPECT_EQ(files_.get("pwm0/duty_cycle"), "25000");
+}
+
+}  // namespace
+}  // namespace vernier
