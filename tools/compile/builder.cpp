@@ -131,7 +131,16 @@ ProgramBuilder::Id ProgramBuilder::channel(Channel channel, double unit, double 
   while (std::ldexp(widest, -channel.pre_shift) > 2147483646.0) ++channel.pre_shift;
   double factor = unit * std::ldexp(1.0, r.fraction_bits + channel.pre_shift);
   while (factor > kMaxFactor) factor /= 2, --r.fraction_bits;
-  const Factors f = factors_for(factor, 0);
+  Factors f = factors_for(factor, 0);
+  // An input may be compared with a number (the selected tool point): coarse enough that whole numbers arrive
+  // as themselves.
+  const auto missed = [&] {
+    return std::abs(std::ldexp(f.first, -f.shift) - factor) * std::ldexp(widest, -channel.pre_shift);
+  };
+  while (channel.kind == ChannelKind::kInput && missed() >= 0.25 && r.fraction_bits > 0) {
+    factor /= 2, --r.fraction_bits;
+    f = factors_for(factor, 0);
+  }
   channel.multiplier = f.first;
   channel.shift = static_cast<std::uint8_t>(f.shift);
   r.name = unique(name);
