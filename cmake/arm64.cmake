@@ -21,3 +21,14 @@ find_program(vernier_arm64_emulator qemu-aarch64-static)
 if(vernier_arm64_emulator)
   set(CMAKE_CROSSCOMPILING_EMULATOR ${vernier_arm64_emulator})
 endif()
+
+# A tree of arm64 packages that are not installed on this machine (tests/board/fetch makes one).
+if(DEFINED ENV{VERNIER_ARM64_ROOT})
+  set(vernier_arm64_root $ENV{VERNIER_ARM64_ROOT})
+  list(APPEND CMAKE_FIND_ROOT_PATH ${vernier_arm64_root})
+  set(ENV{PKG_CONFIG_LIBDIR} ${vernier_arm64_root}/usr/lib/aarch64-linux-gnu/pkgconfig)
+  set(ENV{PKG_CONFIG_SYSROOT_DIR} ${vernier_arm64_root})
+  set(CMAKE_CXX_FLAGS_INIT "-isystem ${vernier_arm64_root}/usr/include")
+  set(CMAKE_EXE_LINKER_FLAGS_INIT
+    "-L${vernier_arm64_root}/usr/lib/aarch64-linux-gnu -Wl,-rpath-link,${vernier_arm64_root}/usr/lib/aarch64-linux-gnu")
+endif()
