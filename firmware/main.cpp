@@ -465,11 +465,11 @@ int run_board(const Arguments& arguments) {
   make_links(file, devices);
   if (arguments.check) return check_devices(devices);
   if (!all_there(devices)) return kAnswerIsNo;
+  for (auto& sensor : devices.sensors) sensor->sample();
+  take_left_overs_out(file, devices);
   FileSlotStore store(file.store, file.slot_bytes);
   const auto service = std::make_unique<Service>(file.service, devices.board(), store);
   say_image(service->boot(), *service);
-  for (auto& sensor : devices.sensors) sensor->sample();
-  take_left_overs_out(file, devices);
   std::atomic<bool> stop_beside{false};
   std::thread server([&] { serve_until(stop_beside, *service, devices); });
   std::thread sampler([&] { sample_until(stop_beside, devices); });

@@ -1,0 +1,64 @@
+// A machine controller on a CAN bus, for the emulated board: sends the positions of two axes at 1 kHz. X goes
+// back and forth over ±30 mm at 20 mm/s; Y is always -X/2, so that a recording can be checked by itself.
+#include <linux/can.h>
+#include <linux/can/raw.h>
+#include <net/if.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+
+#include "hal/linux/can_axis_frame.h"
+
+namespace {
+
+constexpr std::int64_t kPeriodNs = 1'000'000, kNsPerS = 1'000'000'000;
+constexpr std::int64_t kEnd = 30'000'000, kStep = 20'000;  // nm, nm a cycle
+
+bool send(int fd, std::uint32_t id, const vernier::CanAxisFrame& content) {
+  can_frame frame{};
+  frame.can_id = id;
+  frame.can_dlc = vernier::CanAxisFrame::kBytes;
+  vernier::encode_axis_frame(content, frame.data);
+  return ::write(fd, &frame, sizeof(frame)) == static_cast<ssize_t>(sizeof(frame));
+}
+
+int open_bus(const char* interface) {
+  const int fd = ::socket(PF_CAN, SOCK_RAW, CAN_RAW);
+  sockaddr_can address{};
+  address.can_family = AF_CAN;
+  address.can_ifindex = static_cast<int>(::if_nametoindex(interface));
+  if (fd < 0 || address.can_ifindex == 0 ||
+      ::bind(fd, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) != 0)
+    return -1;
+  return fd;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const int fd = argc == 3 ? open_bus(argv[1]) : -1;
+  if (fd < 0) {
+    std::fputs("usage: can_controller INTERFACE FIRST_ID\n", stderr);
+    return 1;
+  }
+  const auto first = static_cast<std::uint32_t>(std::strtoul(argv[2], nullptr, 0));
+  timespec due{};
+  clock_gettime(CLOCK_MONOTONIC, &due);
+  std::int64_t x = 0, step = kStep;
+  for (std::uint64_t cycle = 0;; ++cycle) {
+    if (x + step > kEnd || x + step < -kEnd) step = -step;
+    x += step;
+    const auto counter = static_cast<std::uint8_t>(cycle);
+    const auto stamp = static_cast<std::uint8_t>(cycle * 1000 / 64 % 64);
+    if (!send(fd, first, {x, counter, true, true, stamp}) ||
+        !send(fd, first + 1, {-x / 2, counter, true, true, stamp}))
+      return 2;
+    due.tv_nsec += kPeriodNs;
+    if (due.tv_nsec >= kNsPerS) due.tv_nsec -= kNsPerS, ++due.tv_sec;
+    clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &due, nullptr);
+  }
+}
