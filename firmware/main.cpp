@@ -443,7 +443,7 @@ void take_correction_out(Service& service, Devices& devices) {
 
 /// Sensors wait for their drivers, and are sampled beside the tick.
 void sample_until(const std::atomic<bool>& stop, Devices& devices) {
-  while (!stop) {
+  while (!stop && !devices.sensors.empty()) {
     for (auto& sensor : devices.sensors) sensor->sample();
     devices.clock.sleep_until(devices.clock.now() + instant_ns(kSampleWait));
   }
