@@ -74,13 +74,29 @@ void Compensator::read_channels(const CycleInput& input, CycleOutput& output) no
 }
 
 void Compensator::shares(const ShareProgram& program, Correction* corrections) noexcept {
+  if (printed_ != nullptr) {
+    // The printed form leaves no registers behind: the tick is executed again from where it began.
+    run_equation(program_.equation, registers_, lags_before_, started_now_);
+  }
   run_shares(program, program_, registers_, corrections);
+}
+
+void Compensator::run_printed() noexcept {
+  for (std::uint32_t i = 0; i < program_.equation.lag_count; ++i) lags_before_[i] = lags_[i];
+  started_now_ = starting_;
+  std::int32_t deviation[kMaxAxes];
+  printed_(registers_ + program_.equation.first_channel(), lags_, starting_, deviation);
+  for (std::uint32_t i = 0; i < program_.outputs.size; ++i)
+    registers_[program_.outputs[i].source] = deviation[i];
 }
 
 CycleOutput Compensator::step(const CycleInput& input, WeightQ16 weight) noexcept {
   CycleOutput output;
   read_channels(input, output);
-  run_equation(program_.equation, registers_, lags_, starting_);
+  if (printed_ != nullptr)
+    run_printed();
+  else
+    run_equation(program_.equation, registers_, lags_, starting_);
   starting_ = false;
   const std::int32_t share = clamp(weight.count, std::int32_t{0}, kFullWeight.count);
   for (const Output& out : program_.outputs) {

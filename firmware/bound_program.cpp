@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "firmware/printed_model.h"
+
 namespace vernier {
 
 Wiring wiring_of(const ImageView& view) {
@@ -35,6 +37,9 @@ BoundProgram::BoundProgram(const ImageView& view) noexcept
   for (std::uint32_t i = 0; i < kMaxInputs; ++i) input[i] = i;
   for (std::uint32_t i = 0; i < view.inputs().size; ++i)
     reference[i] = InputMicro(view.inputs()[i].reference);
+  const PrintedModel printed = printed_model();
+  if (printed.equation != nullptr && printed.fingerprint == view.header().fingerprint)
+    compensator.use_printed(printed.equation);
 }
 
 BindFault bind(const ImageView& view, const Wiring& wiring, TimeUs tick, BoundProgram& bound,

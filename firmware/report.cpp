@@ -29,7 +29,9 @@ struct Counter {
 
 void print_result(std::FILE* out, const Cycle& cycle, const GrantReport& grant) {
   const Health& h = cycle.health();
-  std::fprintf(out, "{\n \"mode\": \"%s\",\n \"fault\": \"%s\",\n", name_of(cycle.mode()),
+  std::fprintf(out, "{\n \"equation\": \"%s\",\n",
+               cycle.program().compensator.printed() ? "printed" : "executed");
+  std::fprintf(out, " \"mode\": \"%s\",\n \"fault\": \"%s\",\n", name_of(cycle.mode()),
                name_of(cycle.latched()));
   const Counter counters[] = {{"ticks", h.ticks},
                               {"active_ticks", h.active_ticks},

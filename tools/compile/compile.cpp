@@ -61,7 +61,7 @@ CompiledMachine compile_machine(const Machine& machine, const std::string& machi
   const std::uint64_t source_hash = hash_of(machine_text);
   result.image =
       write_image(machine, result.program, result.shares, options.tick_us, source_hash, result.fingerprint);
-  result.header = print_header(machine, result.program, source_hash);
+  result.header = print_header(machine, result.program, source_hash, result.fingerprint);
   result.source = print_source(machine, result.program, source_hash);
   load_image(result.image,
              machine);  // the compiler's own output passes the board's verifier, or it is no output

@@ -52,7 +52,8 @@ std::vector<std::uint8_t> write_image(const Machine& machine, const LoweredProgr
                                       std::uint64_t source_hash, std::uint64_t& fingerprint);
 
 /// The program as readable C++: equation.h and equation.cpp. Same program, same bytes. tool.
-std::string print_header(const Machine& machine, const LoweredProgram& program, std::uint64_t source_hash);
+std::string print_header(const Machine& machine, const LoweredProgram& program, std::uint64_t source_hash,
+                         std::uint64_t fingerprint);
 std::string print_source(const Machine& machine, const LoweredProgram& program, std::uint64_t source_hash);
 
 /// FNV-1a of a text.

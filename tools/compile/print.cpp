@@ -163,13 +163,15 @@ class Printer {
 
 }  // namespace
 
-std::string print_header(const Machine& machine, const LoweredProgram& program, std::uint64_t source_hash) {
+std::string print_header(const Machine& machine, const LoweredProgram& program, std::uint64_t source_hash,
+                         std::uint64_t fingerprint) {
   return banner(machine, program, source_hash) +
          "#pragma once\n#include <cstdint>\n\n#include \"comp/lag.h\"\n\nnamespace vernier::generated {\n\n" +
          fmt::format(
              "constexpr std::uint32_t kChannelCount = {};\nconstexpr std::uint32_t kDeviationCount = "
-             "{};\nconstexpr std::uint32_t kLagCount = {};\n\n",
-             program.channels.size(), program.outputs.size(), program.lag_count) +
+             "{};\nconstexpr std::uint32_t kLagCount = {};\n"
+             "constexpr std::uint64_t kFingerprint = 0x{:016x};  // of the image's equation\n\n",
+             program.channels.size(), program.outputs.size(), program.lag_count, fingerprint) +
          interface_comment(machine, program) +
          "void equation(const std::int32_t* channel, LagState* lag, bool starting, std::int32_t* deviation) "
          "noexcept;\n\n"

@@ -70,6 +70,27 @@ TEST_P(Generated, IsBitIdenticalToTheExecutedProgram) {
   }
 }
 
+TEST_P(Generated, CorrectsAndSharesAsTheExecutedProgramDoes) {
+  const TestMachine test(GetParam());
+  const Printed printed(GetParam(), test.compiled);
+  const ImageView& view = test.loaded->view;
+  Compensator executed(view.program()), built_in(view.program());
+  built_in.use_printed(printed.equation);
+  std::mt19937_64 random(78);
+  std::size_t tick = 0;
+  for (const CycleInput& input : test.random_poses(20000, random)) {
+    const CycleOutput one = executed.step(input), two = built_in.step(input);
+    ASSERT_EQ(one.flags, two.flags);
+    for (std::uint32_t axis = 0; axis < kMaxAxes; ++axis)
+      ASSERT_EQ(one.correction[axis].counts, two.correction[axis].counts);
+    if (++tick % 100 != 0) continue;
+    std::vector<Correction> first(view.shares().shares.size), second(view.shares().shares.size);
+    executed.shares(view.shares(), first.data());
+    built_in.shares(view.shares(), second.data());
+    for (std::size_t i = 0; i < first.size(); ++i) ASSERT_EQ(first[i].counts, second[i].counts);
+  }
+}
+
 TEST_P(Generated, HasTheSameBytesForTheSameInput) {
   const TestMachine first(GetParam()), second(GetParam());
   EXPECT_EQ(first.compiled.image, second.compiled.image);

@@ -46,6 +46,7 @@ TEST_F(Vernierd, RunsInRealTimeAndReportsEveryTick) {
   ASSERT_EQ(outcome.status, 0) << outcome.out;
   const auto json = nlohmann::json::parse(outcome.out);
   EXPECT_EQ(json["ticks"], 1500);
+  EXPECT_EQ(json["equation"], "executed") << "the firmware of the tests has no machine built in";
   EXPECT_EQ(json["mode"], "active");
   EXPECT_EQ(json["fault"], "none");
   EXPECT_EQ(json["latency_us"]["count"], 1500);

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+
+#include "comp/compensator.h"
+
+namespace vernier {
+
+/// The machine that this firmware was built with (CMake: -DVERNIER_MODEL=DIR of `vernier compile -o DIR`): an
+/// image of the same equation runs its printed form, any other image is executed. equation: null where it was
+/// built with none.
+struct PrintedModel {
+  std::uint64_t fingerprint = 0;
+  PrintedEquation equation = nullptr;
+};
+PrintedModel printed_model() noexcept;
+
+}  // namespace vernier
