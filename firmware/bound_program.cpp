@@ -32,7 +32,10 @@ const char* describe(BindFault fault) noexcept {
 }
 
 BoundProgram::BoundProgram(const ImageView& view) noexcept
-    : program(view.program()), compensator(view.program()) {
+    : program(view.program()),
+      compensator(view.program()),
+      shares(view.shares()),
+      share_names(view.share_names()) {
   for (std::uint32_t i = 0; i < kMaxAxes; ++i) axis[i] = i;
   for (std::uint32_t i = 0; i < kMaxInputs; ++i) input[i] = i;
   for (std::uint32_t i = 0; i < view.inputs().size; ++i)

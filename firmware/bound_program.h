@@ -45,6 +45,8 @@ struct BoundProgram {
 
   Program program;
   Compensator compensator;
+  ShareProgram shares;                   // of the effects, for a live display
+  View<ShareName> share_names;           // one per share
   std::uint32_t axis[kMaxAxes] = {};     // board's axis for each of the image
   std::uint32_t input[kMaxInputs] = {};  // board's input for each of the image
   InputMicro reference[kMaxInputs];      // per input of the image: what it reads before the sensor has spoken

@@ -127,11 +127,20 @@ struct HealthRecord {
 };
 static_assert(sizeof(HealthRecord) % 8 == 0);
 
+/// What each effect adds to the corrections, as others see it.
+struct ShareRecord {
+  std::uint64_t programs = 0;  // HealthRecord::programs when it was taken: which program's shares these are
+  std::uint32_t count = 0, reserved = 0;
+  std::int32_t correction[kMaxShares] = {};  // counts of the share's axis
+};
+static_assert(sizeof(ShareRecord) % 8 == 0);
+
 /// All that passes between the tick and the rest of the daemon. No locks: the tick never waits for anybody.
 struct Exchange {
   static constexpr std::size_t kHistory = 4096;  // ticks, about four seconds
 
   Published<HealthRecord> health;
+  Published<ShareRecord> shares;
   History<TickRecord, kHistory> ticks;
   std::atomic<Command> command{Command::kNone};  // taken by the tick
   std::atomic<std::int32_t> axis_weight[kMaxAxes];

@@ -104,6 +104,10 @@ LinkStatus Link::run(LinkOp op, Reader& in, Writer& out, TimeUs now) {
     }
     case LinkOp::kWeight:
       return weight(in);
+    case LinkOp::kShares:
+      return shares(in, out);
+    case LinkOp::kShareName:
+      return share_name(in, out);
     case LinkOp::kBegin:
     case LinkOp::kData:
     case LinkOp::kFinish:
@@ -233,6 +237,35 @@ LinkStatus Link::weight(Reader& in) {
   if (axis >= wiring_.axes.size() || weight > static_cast<std::uint32_t>(kFullWeight.count))
     return LinkStatus::kBadValue;
   exchange_.axis_weight[axis].store(static_cast<std::int32_t>(weight));
+  return LinkStatus::kDone;
+}
+
+LinkStatus Link::shares(Reader& in, Writer& out) const {
+  const auto first = in.take<std::uint16_t>();
+  if (!in.complete()) return LinkStatus::kBadLength;
+  ShareRecord record;
+  if (program_ == nullptr || !exchange_.shares.read(record)) return LinkStatus::kNotReady;
+  // What was published may be of a program that has gone, or that has not been collected yet.
+  if (record.programs != programs_ || record.count != program_->shares.shares.size)
+    return LinkStatus::kNotReady;
+  if (first > record.count) return LinkStatus::kBadValue;
+  out.put(static_cast<std::uint16_t>(record.count));
+  out.put(static_cast<std::uint32_t>(record.programs));
+  for (std::uint32_t i = first; i < record.count; ++i) {
+    const std::uint32_t axis = program_->axis[program_->shares.shares[i].axis];
+    if (!out.put(LinkShare{static_cast<std::uint8_t>(axis), record.correction[i]})) break;
+  }
+  return LinkStatus::kDone;
+}
+
+LinkStatus Link::share_name(Reader& in, Writer& out) const {
+  const auto index = in.take<std::uint16_t>();
+  const auto programs = in.take<std::uint32_t>();
+  if (!in.complete()) return LinkStatus::kBadLength;
+  if (program_ == nullptr || programs != static_cast<std::uint32_t>(programs_) ||
+      index >= program_->share_names.size)
+    return LinkStatus::kBadValue;
+  out.put(program_->share_names[index]);
   return LinkStatus::kDone;
 }
 

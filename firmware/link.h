@@ -21,6 +21,13 @@ class Link {
   /// 0 where the request is too short to be answered. now: as the uploader's. setup.
   std::uint32_t answer(const std::uint8_t* request, std::uint32_t size, std::uint8_t* reply, TimeUs now);
 
+  /// The program that the tick has taken over, and how many it has taken: for the names of its shares. It
+  /// lives until the next call. setup.
+  void set_program(const BoundProgram& program, std::uint64_t programs) noexcept {
+    program_ = &program;
+    programs_ = programs;
+  }
+
   /// The live registers for plain Modbus masters; values: kLiveRegisters. setup.
   void fill_registers(std::uint16_t* values) const;
   /// A command from a plain master: refused where it is none or the one before has not been taken. setup.
@@ -38,6 +45,8 @@ class Link {
   LinkStatus slots(Writer& out, TimeUs now) const;
   LinkStatus read(Reader& in, Writer& out);
   LinkStatus weight(Reader& in);
+  LinkStatus shares(Reader& in, Writer& out) const;
+  LinkStatus share_name(Reader& in, Writer& out) const;
   LinkStatus upload(LinkOp op, Reader& in, Writer& out, TimeUs now);
   bool put_tick(Writer& out, std::uint64_t number, const TickRecord& tick) const;
 
@@ -46,6 +55,8 @@ class Link {
   const Wiring& wiring_;
   TimeUs tick_;
   std::optional<PublicKey> key_;
+  const BoundProgram* program_ = nullptr;
+  std::uint64_t programs_ = 0;
 };
 
 }  // namespace vernier

@@ -30,8 +30,10 @@ enum class LinkOp : std::uint8_t {
   kRead,       // u32 offset, u8 bytes -> bytes of the confirmed upload
   kCommand,    // u8 Command -> nothing: it is taken by the next tick, and counted where it does not fit
   kWeight,     // u8 axis, u32 weight 0..65536 -> nothing
+  kShares,     // u16 first -> u16 shares in all, u32 programs taken so far, LinkShare each, as many as fit
+  kShareName,  // u16 share, u32 programs -> char[64]; kBadValue where another program runs by now
 };
-constexpr std::uint8_t kLinkOpCount = static_cast<std::uint8_t>(LinkOp::kWeight) + 1;
+constexpr std::uint8_t kLinkOpCount = static_cast<std::uint8_t>(LinkOp::kShareName) + 1;
 
 enum class LinkStatus : std::uint8_t {
   kDone,
@@ -73,6 +75,10 @@ struct SlotsReply {
   std::uint64_t confirmed_fingerprint, trial_fingerprint;
   std::uint64_t issued;         // of the confirmed image
   std::uint32_t trial_left_ms;  // 0 where none runs
+};
+struct LinkShare {
+  std::uint8_t axis;        // board's
+  std::int32_t correction;  // what the effect adds, counts of the axis, before limits and ramps
 };
 #pragma pack(pop)
 static_assert(kReplyHeaderBytes + 10 + sizeof(LinkTick) + kMaxAxes * sizeof(LinkAxis) +

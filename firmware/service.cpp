@@ -8,6 +8,8 @@ namespace {
 
 // A percentile walks a whole histogram; one of the eight is brought up to date every so many ticks.
 constexpr std::uint64_t kTicksPerPercentile = 64;
+// Ten pictures a second of what each effect adds.
+constexpr std::uint64_t kTicksPerShares = 100;
 constexpr std::uint64_t kPerMillion[3] = {500'000, 990'000, 999'000};
 
 }  // namespace
@@ -63,6 +65,15 @@ void Service::publish(const TickReport& report) noexcept {
   record_.holding = cycle_->holding() ? 1 : 0;
   exchange_->ticks.add(record_);
   publish_health();
+  if (cycle_->health().ticks % kTicksPerShares == 0) publish_shares();
+}
+
+void Service::publish_shares() noexcept {
+  cycle_->shares(share_corrections_);
+  shares_.programs = cycle_->health().programs;
+  shares_.count = cycle_->program().shares.shares.size;
+  for (std::uint32_t i = 0; i < shares_.count; ++i) shares_.correction[i] = share_corrections_[i].counts;
+  exchange_->shares.publish(shares_);
 }
 
 void Service::publish_health() noexcept {
@@ -89,6 +100,7 @@ void Service::look_after_programs() noexcept {
   if (exchange_->retired.load(std::memory_order_acquire) != nullptr) {
     // The tick runs what was offered; what it ran before is nobody's any more.
     running_ = std::move(offered_);
+    link_.set_program(*running_->bound, ++programs_);
     exchange_->retired.store(nullptr, std::memory_order_release);
   }
   if (auto next = uploader_.take_next()) waiting_ = std::move(next);

@@ -58,6 +58,7 @@ class Service : private CommandHandler {
   Command next_command() noexcept;
   void publish(const TickReport& report) noexcept;
   void publish_health() noexcept;
+  void publish_shares() noexcept;
 
   ServiceOptions options_;
   Board board_;
@@ -68,9 +69,12 @@ class Service : private CommandHandler {
   Link link_;
   // Owned outside the tick: what runs, and what has been offered to it.
   std::unique_ptr<LoadedProgram> running_, offered_, waiting_;
+  std::uint64_t programs_ = 0;  // taken over by the tick so far
   // Owned by the tick.
   HealthRecord health_;
   TickRecord record_;
+  ShareRecord shares_;
+  Correction share_corrections_[kMaxShares];
   bool activated_ = false, ending_ = false;
 };
 

@@ -174,6 +174,42 @@ HealthRecord Client::health() {
   return record;
 }
 
+std::string Client::share_name(std::uint16_t index, std::uint32_t programs) {
+  std::vector<std::uint8_t> payload;
+  put(payload, index);
+  put(payload, programs);
+  const auto name = get<ShareName>(ask(LinkOp::kShareName, payload), 0);
+  return {name.text, strnlen(name.text, sizeof(name.text))};
+}
+
+std::vector<BoardShare> Client::shares() {
+  std::vector<BoardShare> shares;
+  if (health().programs == 0) return shares;
+  std::uint16_t count = 0;
+  do {
+    std::vector<std::uint8_t> payload;
+    put(payload, static_cast<std::uint16_t>(shares.size()));
+    const auto reply = ask(LinkOp::kShares, payload);
+    count = get<std::uint16_t>(reply, 0);
+    const auto programs = get<std::uint32_t>(reply, 2);
+    if (programs != named_program_) {
+      share_names_.clear();
+      for (std::uint16_t i = 0; i < count; ++i) share_names_.push_back(share_name(i, programs));
+      named_program_ = programs;
+    }
+    const std::size_t before = shares.size();
+    for (std::size_t at = 6; at + sizeof(LinkShare) <= reply.size() && shares.size() < share_names_.size();
+         at += sizeof(LinkShare)) {
+      const auto share = get<LinkShare>(reply, at);
+      if (share.axis >= info_.axes.size()) throw InputError("the board names an axis that it does not have");
+      const double counts = info_.axes[share.axis].rotary ? kCountsPerDeg : kNmPerMm;
+      shares.push_back({share.axis, share_names_[shares.size()], share.correction / counts});
+    }
+    if (shares.size() == before) break;  // nothing more came, or the program changed meanwhile
+  } while (shares.size() < count);
+  return shares;
+}
+
 SlotsReply Client::slots() { return get<SlotsReply>(ask(LinkOp::kSlots), 0); }
 
 void Client::upload(const std::vector<std::uint8_t>& bytes, const std::function<void(double)>& progress) {

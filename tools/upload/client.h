@@ -45,6 +45,13 @@ struct BoardHistory {
   std::uint32_t lost = 0;
 };
 
+/// What one effect or table adds to the correction of an axis just now, before limits and ramps; mm or deg.
+struct BoardShare {
+  std::size_t axis = 0;
+  std::string name;
+  double correction = 0;
+};
+
 /// Talks to a board. Every call throws InputError where no or a senseless reply comes, and LimitNotMet with
 /// the board's reason where the board refuses. tool.
 class Client {
@@ -56,6 +63,8 @@ class Client {
   /// Ticks from number `first`, each `every`th.
   BoardHistory history(std::uint64_t first, std::uint16_t every);
   HealthRecord health();
+  /// Of the program that runs; empty where none does, or it has just been exchanged.
+  std::vector<BoardShare> shares();
   SlotsReply slots();
   /// Sends an upload (tables/upload_format.h) and has it checked; it is on trial when this returns. progress:
   /// 0..1.
@@ -70,11 +79,14 @@ class Client {
 
  private:
   std::vector<std::uint8_t> ask(LinkOp op, const std::vector<std::uint8_t>& payload = {});
+  std::string share_name(std::uint16_t index, std::uint32_t programs);
   BoardTick parse_tick(const std::uint8_t* bytes) const;
   std::size_t tick_bytes() const;
 
   std::unique_ptr<Transport> transport_;
   std::uint8_t sequence_ = 0;
+  std::uint32_t named_program_ = 0;  // whose share names are kept
+  std::vector<std::string> share_names_;
   BoardInfo info_{};
 };
 

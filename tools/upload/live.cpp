@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <iterator>
 
 namespace vernier {
@@ -46,10 +48,27 @@ std::string times_text(const char* name, const std::int64_t (&ns)[4]) {
                      us(2), us(3));
 }
 
+// The largest first: what a person looks for.
+std::string shares_text(const BoardInfo& info, std::vector<BoardShare> shares) {
+  constexpr std::size_t kMostLines = 12;
+  std::erase_if(shares, [](const BoardShare& share) { return share.correction == 0; });
+  std::stable_sort(shares.begin(), shares.end(), [](const BoardShare& a, const BoardShare& b) {
+    return std::abs(a.correction) > std::abs(b.correction);
+  });
+  std::string text;
+  for (std::size_t i = 0; i < shares.size() && i < kMostLines; ++i) {
+    const BoardSignal& axis = info.axes[shares[i].axis];
+    text += fmt::format("  {:<10} {:>12.3f} {:<5}{}\n", axis.name, 1e3 * shares[i].correction,
+                        axis.rotary ? "mdeg" : "um", shares[i].name);
+  }
+  if (shares.size() > kMostLines) text += fmt::format("  and {} smaller ones\n", shares.size() - kMostLines);
+  return text.empty() ? text : "what the effects add\n" + text;
+}
+
 }  // namespace
 
 nlohmann::ordered_json live_json(const BoardInfo& info, const BoardTick& tick, const HealthRecord& health,
-                                 const SlotsReply& slots) {
+                                 const SlotsReply& slots, const std::vector<BoardShare>& shares) {
   nlohmann::ordered_json result = {{"tick", tick.number},
                                    {"t", tick.time_s},
                                    {"mode", name_of(tick.mode)},
@@ -65,6 +84,10 @@ nlohmann::ordered_json live_json(const BoardInfo& info, const BoardTick& tick, c
                                          {"unit", info.axes[i].rotary ? "deg" : "mm"}};
   result["inputs"] = nlohmann::ordered_json::object();
   for (std::size_t i = 0; i < info.inputs.size(); ++i) result["inputs"][info.inputs[i]] = tick.input[i];
+  result["shares"] = nlohmann::ordered_json::array();
+  for (const BoardShare& share : shares)
+    result["shares"].push_back(
+        {{"axis", info.axes[share.axis].name}, {"effect", share.name}, {"correction", share.correction}});
   for (const Counter& counter : kCounters) result["health"][counter.name] = health.*counter.value;
   result["latency_us"] = times_json(health.latency_ns);
   result["execution_us"] = times_json(health.execution_ns);
@@ -72,7 +95,7 @@ nlohmann::ordered_json live_json(const BoardInfo& info, const BoardTick& tick, c
 }
 
 std::string live_text(const BoardInfo& info, const BoardTick& tick, const HealthRecord& health,
-                      const SlotsReply& slots) {
+                      const SlotsReply& slots, const std::vector<BoardShare>& shares) {
   std::string text = fmt::format("t {:.3f} s  mode {}{}  fault {}\n", tick.time_s, name_of(tick.mode),
                                  tick.holding ? " (held)" : "", name_of(tick.fault));
   auto out = std::back_inserter(text);
@@ -89,6 +112,7 @@ std::string live_text(const BoardInfo& info, const BoardTick& tick, const Health
                    info.axes[i].rotary ? "mdeg" : "um");
   for (std::size_t i = 0; i < info.inputs.size(); ++i)
     fmt::format_to(out, "{:<12} {:>13.4f}\n", info.inputs[i], tick.input[i]);
+  text += shares_text(info, shares);
   text += times_text("wake-up latency", health.latency_ns) +
           times_text("execution of a tick", health.execution_ns);
   std::string counted;

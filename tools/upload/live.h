@@ -8,9 +8,9 @@ namespace vernier {
 
 /// What a board does just now, for programs: mode, fault, axes, inputs, counters, latency, slots. tool.
 nlohmann::ordered_json live_json(const BoardInfo& info, const BoardTick& tick, const HealthRecord& health,
-                                 const SlotsReply& slots);
+                                 const SlotsReply& slots, const std::vector<BoardShare>& shares);
 /// The same for people, several lines, each ended. tool.
 std::string live_text(const BoardInfo& info, const BoardTick& tick, const HealthRecord& health,
-                      const SlotsReply& slots);
+                      const SlotsReply& slots, const std::vector<BoardShare>& shares);
 
 }  // namespace vernier

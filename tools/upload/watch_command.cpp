@@ -20,16 +20,17 @@ struct Live {
   BoardTick tick;
   HealthRecord health;
   SlotsReply slots;
+  std::vector<BoardShare> shares;
 };
 
-Live look(Client& client) { return {client.newest(), client.health(), client.slots()}; }
+Live look(Client& client) { return {client.newest(), client.health(), client.slots(), client.shares()}; }
 
 void status(const Arguments& arguments) {
   Client client(open_transport(parse_url(arguments.url)));
   const Live live = look(client);
   fmt::print(human_stream(arguments.json), "{}",
-             live_text(client.info(), live.tick, live.health, live.slots));
-  write_json(arguments.json, live_json(client.info(), live.tick, live.health, live.slots));
+             live_text(client.info(), live.tick, live.health, live.slots, live.shares));
+  write_json(arguments.json, live_json(client.info(), live.tick, live.health, live.slots, live.shares));
 }
 
 // On a terminal the picture is drawn over the one before; into a pipe or file, one block after the other.
@@ -55,9 +56,9 @@ void watch(const Arguments& arguments) {
     std::this_thread::sleep_until(due);
     const Live live = look(client);
     if (arguments.json.empty()) {
-      draw(live_text(client.info(), live.tick, live.health, live.slots), terminal, lines);
+      draw(live_text(client.info(), live.tick, live.health, live.slots, live.shares), terminal, lines);
     } else {
-      fmt::print("{}\n", live_json(client.info(), live.tick, live.health, live.slots).dump());
+      fmt::print("{}\n", live_json(client.info(), live.tick, live.health, live.slots, live.shares).dump());
       std::fflush(stdout);
     }
     due = std::max(due, Clock::now() - period);  // a slow line gets fewer pictures, not a backlog

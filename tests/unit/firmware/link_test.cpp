@@ -67,6 +67,49 @@ TEST_F(LinkTest, WholeJourneyOfAnImage) {
   EXPECT_EQ(board.newest().mode, Mode::kReady);
 }
 
+TEST(LinkShares, NameWhatEachEffectAddsAndSumToTheCorrection) {
+  const SigningKey key = new_key();
+  SimSlotStore store(1 << 16);
+  UploadRig rig(store, key);
+  /// Goes through the service's own link.
+  struct Through : Transport, CommandLink {
+    Through(Service& s, UploadRig& r) : service(s), rig(r) {}
+    std::vector<std::uint8_t> ask(const std::vector<std::uint8_t>& request) override {
+      pending = request;
+      service.serve(*this, TimeUs(0));
+      rig.run(2);
+      return answer;
+    }
+    HalFault serve(CommandHandler& handler, TimeUs) noexcept override {
+      answer.resize(kMaxReplyBytes);
+      answer.resize(
+          handler.answer(pending.data(), static_cast<std::uint32_t>(pending.size()), answer.data()));
+      return HalFault::kNone;
+    }
+    Service& service;
+    UploadRig& rig;
+    std::vector<std::uint8_t> pending, answer;
+  };
+  rig.run(10);
+  Client board(std::make_unique<Through>(rig.service(), rig));
+  EXPECT_TRUE(board.shares().empty());
+  board.upload(make_upload(small_image_bytes(2e-5), key, 5, 0), [](double) {});
+  board.confirm();
+  rig.run(4000);
+  const std::vector<BoardShare> shares = board.shares();
+  ASSERT_EQ(shares.size(), 3u) << "scale and reversal of X, growth of Y";
+  double sum[2] = {};
+  for (const BoardShare& share : shares) {
+    EXPECT_FALSE(share.name.empty());
+    sum[share.axis] += share.correction;
+  }
+  // They are at most a tenth of a second old, in which the axes go 6 and 2 mm.
+  const BoardTick tick = board.newest();
+  EXPECT_NEAR(sum[0], tick.correction[0], 0.01);
+  EXPECT_NEAR(sum[1], tick.correction[1], 0.01);
+  EXPECT_GT(std::abs(sum[0]), 0.002);
+}
+
 TEST_F(LinkTest, RefusalTellsTheReason) {
   rig_.run(10);
   Client board = client();
