@@ -46,6 +46,14 @@ enum class LinkStatus : std::uint8_t {
 };
 constexpr std::uint8_t kLinkStatusCount = static_cast<std::uint8_t>(LinkStatus::kRefused) + 1;
 
+struct SlotsReply {
+  std::uint64_t confirmed_fingerprint, trial_fingerprint;
+  std::uint64_t issued;           // of the confirmed image
+  std::uint32_t trial_left_ms;    // 0 where none runs
+  std::uint8_t confirmed, trial;  // slot, or 255
+  std::uint8_t reserved[2];
+};
+static_assert(sizeof(SlotsReply) == 32);
 #pragma pack(push, 1)
 struct HelloReply {
   std::uint16_t link_version;
@@ -69,12 +77,6 @@ struct LinkAxis {
 };
 struct LinkInput {
   std::int32_t value;  // 1e-3 of its unit, so that a whole tick of the largest board fits a reply
-};
-struct SlotsReply {
-  std::uint8_t confirmed, trial;  // slot, or 255
-  std::uint64_t confirmed_fingerprint, trial_fingerprint;
-  std::uint64_t issued;         // of the confirmed image
-  std::uint32_t trial_left_ms;  // 0 where none runs
 };
 struct LinkShare {
   std::uint8_t axis;        // board's
