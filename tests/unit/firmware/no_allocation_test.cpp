@@ -12,10 +12,6 @@ namespace {
 thread_local bool in_tick = false;
 std::atomic<int> allocations{0};
 
-void count() {
-  if (in_tick) ++allocations;
-}
-
 }  // namespace
 
 // Under the sanitizers the heap is theirs and cannot be taken over.
@@ -23,6 +19,11 @@ void count() {
 constexpr bool kCountsAllocations = false;
 #else
 constexpr bool kCountsAllocations = true;
+
+static void count() {
+  if (in_tick) ++allocations;
+}
+
 extern "C" {
 void* __libc_malloc(std::size_t size);
 void* __libc_calloc(std::size_t count, std::size_t size);
