@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "hal/clock.h"
+#include "hal/fault.h"
+
+namespace vernier {
+
+/// An edge of a probe's line, polarity already undone.
+struct ProbeEdge {
+  InstantNs at;       // by the board's clock, as near to the edge as the device can stamp it
+  bool made = false;  // the probe touched; false: it let go
+};
+
+/// The line over which a touch probe says that it touched.
+class ProbeLine {
+ public:
+  virtual ~ProbeLine() = default;
+  /// Oldest edge that has not been read yet. kNoReading: none is waiting. kRefused: edges were lost since the
+  /// last call; the next call goes on with what is left. Never waits. realtime.
+  virtual HalFault read_edge(ProbeEdge& edge) noexcept = 0;
+  /// How far `at` may be from the edge; 0 where the device does not know. setup.
+  virtual InstantNs resolution() const noexcept = 0;
+};
+
+}  // namespace vernier
