@@ -21,7 +21,11 @@ if(TARGET vernierd)
   list(APPEND CPACK_COMPONENTS_ALL vernierd)
   set(CPACK_DEBIAN_VERNIERD_PACKAGE_NAME vernierd)
   set(CPACK_COMPONENT_VERNIERD_DESCRIPTION "Correction of a machine's axes a thousand times a second")
-  set(CPACK_DEBIAN_VERNIERD_PACKAGE_DEPENDS "libc6, libstdc++6, libmodbus5, libsodium23, adduser")
+  set(vernier_gpiod_package libgpiod2)  # the number is that of the ABI: of libgpiod 1.6
+  if(GPIOD_VERSION VERSION_GREATER_EQUAL 2)
+    set(vernier_gpiod_package libgpiod3)
+  endif()
+  set(CPACK_DEBIAN_VERNIERD_PACKAGE_DEPENDS "libc6, libstdc++6, libmodbus5, libsodium23, ${vernier_gpiod_package}, adduser")
   set(CPACK_DEBIAN_VERNIERD_PACKAGE_CONTROL_EXTRA
     "${CMAKE_SOURCE_DIR}/firmware/package/postinst;${CMAKE_SOURCE_DIR}/firmware/package/prerm;${CMAKE_SOURCE_DIR}/firmware/package/postrm")
 endif()

@@ -15,6 +15,9 @@ namespace {
 
 constexpr double kNmPerMm = 1e6, kCountsPerDeg = static_cast<double>(kTurnCounts) / 360, kMicro = 1e6;
 constexpr double kMostCounts = 1e15;
+constexpr double kMostDelayUs = 1e6;  // of a probe
+
+const std::set<std::string_view> kSections = {"board", "axis", "input", "probe", "digital", "link"};
 
 /// Reads the settings of one table and knows which of them nobody asked for.
 class Table {
@@ -158,6 +161,22 @@ void read_input(BoardFile& board, const std::string& name, const toml::table& ta
   board.inputs.push_back(input);
 }
 
+void read_probe(BoardFile& board, const toml::table& table) {
+  Table settings(table, board.path, "probe");
+  board.probe.line = source_of(settings.table("line"), board.path, "probe.line");
+  if (board.probe.line.kind.empty()) settings.fail("line is missing");
+  board.probe.delay_us = settings.number("delay_us", 0, 0, kMostDelayUs);
+  board.probe.delay_spread_us = settings.number("delay_spread_us", 0, 0, kMostDelayUs);
+  settings.nothing_else();
+}
+
+void read_digital(BoardFile& board, const toml::table& table) {
+  Table settings(table, board.path, "digital");
+  board.enable = source_of(settings.table("enable"), board.path, "digital.enable");
+  board.healthy = source_of(settings.table("healthy"), board.path, "digital.healthy");
+  settings.nothing_else();
+}
+
 std::string beside(const std::string& board_path, const std::string& path) {
   const std::filesystem::path given(path);
   if (given.is_absolute()) return path;
@@ -265,10 +284,11 @@ BoardFile read_board_file(const std::string& path) {
     in_order_of_file(*inputs, path, "input",
                      [&](const auto& name, const auto& t) { read_input(board, name, t); });
   if (board.axes.empty()) settings.fail("no [axis.NAME]");
+  if (const toml::table* const probe = settings.table("probe")) read_probe(board, *probe);
+  if (const toml::table* const digital = settings.table("digital")) read_digital(board, *digital);
   if (settings.has("link")) read_links(board, *file.get("link"));
   for (const auto& [key, node] : file)
-    if (key != "board" && key != "axis" && key != "input" && key != "link")
-      settings.fail("unknown section " + std::string(key.str()), &node);
+    if (!kSections.contains(key.str())) settings.fail("unknown section " + std::string(key.str()), &node);
   return board;
 }
 

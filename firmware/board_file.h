@@ -10,7 +10,8 @@
 
 namespace vernier {
 
-/// How a signal of the board reaches a device: a kind that main.cpp knows, and its settings as written.
+/// How a signal of the board reaches a device: a kind that open_devices.cpp knows, and its settings as
+/// written.
 struct SignalSource {
   std::string kind;                          // "can", "iio", "pwm", "sim" ...; empty: not wired
   std::map<std::string, std::string> texts;  // every setting that is a text
@@ -42,6 +43,13 @@ struct InputEntry {
   double reference = 0;  // what a simulated one reads
 };
 
+/// The touch probe of the board.
+struct ProbeEntry {
+  SignalSource line;
+  double delay_us = 0;         // from the touch to the edge of the line
+  double delay_spread_us = 0;  // standard uncertainty of that
+};
+
 /// A board file (TOML), read and checked: tools/docs/board.md describes it.
 struct BoardFile {
   std::string path;
@@ -50,6 +58,8 @@ struct BoardFile {
   ServiceOptions service;
   std::vector<AxisEntry> axes;
   std::vector<InputEntry> inputs;
+  ProbeEntry probe;
+  SignalSource enable, healthy;     // digital lines from and to the machine's controller
   std::vector<SignalSource> links;  // kind: "modbus-tcp", "modbus-rtu", "isotp"
   int priority = 80;                // SCHED_FIFO
 };

@@ -11,6 +11,13 @@ constexpr double kMostSpan = 1e4;  // mm or deg; beyond any correction, and with
 
 }  // namespace
 
+bool is_inverted(const SignalSource& source) {
+  const std::string polarity = source.text("polarity", "normal");
+  if (polarity != "normal" && polarity != "inverted")
+    source.fail("polarity: '" + polarity + "' is neither normal nor inverted");
+  return polarity == "inverted";
+}
+
 AnalogueScale analogue_scale(const SignalSource& source, bool rotary, std::int64_t codes,
                              const char* suffix) {
   const std::string after(suffix);
@@ -22,10 +29,7 @@ AnalogueScale analogue_scale(const SignalSource& source, bool rotary, std::int64
   scale.low = source.whole("low" + after, 0, 0, codes);
   scale.high = source.whole("high" + after, codes, 0, codes);
   scale.zero = source.whole("zero" + after, codes / 2, 0, codes);
-  const std::string polarity = source.text("polarity", "normal");
-  if (polarity != "normal" && polarity != "inverted")
-    source.fail("polarity: '" + polarity + "' is neither normal nor inverted");
-  scale.inverted = polarity == "inverted";
+  scale.inverted = is_inverted(source);
   if (scale.span < 1) source.fail("span is less than one count of the axis");
   if (!scale.valid())
     source.fail("low" + after + ", zero" + after + ", high" + after + " are not in this order");

@@ -5,6 +5,9 @@
 
 namespace vernier {
 
+/// The setting polarity: "normal", which is the default, or "inverted". Throws BoardError. setup.
+bool is_inverted(const SignalSource& source);
+
 /// The settings span, zero, low, high and polarity of an analogue output, each name with `suffix` ("_ns")
 /// where it counts codes. codes: those of the whole span. rotary: span is in degrees, else in mm. Throws
 /// BoardError. setup.

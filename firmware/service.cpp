@@ -30,9 +30,32 @@ void Service::take_over() noexcept {
   if (next != nullptr) exchange_->retired.store(cycle_->use(*next), std::memory_order_release);
 }
 
+// A line that cannot be read is one that is off: a wire that is cut lets no correction in.
+void Service::read_enable() noexcept {
+  if (board_.enable == nullptr) return;
+  bool on = false;
+  const bool before = enabled_;
+  enabled_ = board_.enable->read_line(on) == HalFault::kNone && on;
+  if (enabled_ && !before) activated_ = false;
+}
+
+void Service::tell_health(const TickReport& report) noexcept {
+  if (board_.healthy == nullptr) return;
+  const bool well = report.latched == Fault::kNone && report.mode != Mode::kBoot &&
+                    report.mode != Mode::kChecking && !ending_;
+  const Told now = well ? Told::kWell : Told::kUnwell;
+  // A line that could not be switched is tried again with the next tick.
+  if (now != told_ && board_.healthy->write_line(well) == HalFault::kNone) told_ = now;
+}
+
 Command Service::next_command() noexcept {
   const Command asked = exchange_->command.exchange(Command::kNone, std::memory_order_acq_rel);
-  if (ending_) return cycle_->weight() == WeightQ16{} ? Command::kNone : Command::kDeactivate;
+  if (ending_ || !enabled_) {
+    const bool in = cycle_->mode() == Mode::kActive ||
+                    (cycle_->mode() == Mode::kReady && cycle_->weight() != WeightQ16{});
+    if (in) return Command::kDeactivate;
+    return asked == Command::kClearFault && !ending_ ? asked : Command::kNone;
+  }
   if (asked != Command::kNone || !options_.activate || activated_) return asked;
   if (cycle_->mode() != Mode::kReady) return Command::kNone;
   activated_ = true;
@@ -41,9 +64,11 @@ Command Service::next_command() noexcept {
 
 TickReport Service::tick() noexcept {
   take_over();
+  read_enable();
   for (std::uint32_t i = 0; i < kMaxAxes; ++i)
     cycle_->set_axis_weight(i, WeightQ16(exchange_->axis_weight[i].load(std::memory_order_relaxed)));
   const TickReport report = runner_.step(next_command());
+  tell_health(report);
   publish(report);
   return report;
 }

@@ -20,7 +20,7 @@ struct ServiceOptions {
   Wiring wiring;
   CycleLimits limits;
   Uploader::Options upload;
-  bool activate = false;  // bring the correction in whenever the board becomes ready for the first time
+  bool activate = false;  // bring the correction in when the board becomes ready, once for each enable
 };
 
 /// The board's program: on one side the tick, which never waits; on the other, in a thread of their own,
@@ -56,6 +56,8 @@ class Service : private CommandHandler {
   TimeUs now() noexcept { return TimeUs(board_.clock.now().count / 1000); }
   void take_over() noexcept;
   Command next_command() noexcept;
+  void read_enable() noexcept;
+  void tell_health(const TickReport& report) noexcept;
   void publish(const TickReport& report) noexcept;
   void publish_health() noexcept;
   void publish_shares() noexcept;
@@ -75,7 +77,8 @@ class Service : private CommandHandler {
   TickRecord record_;
   ShareRecord shares_;
   Correction share_corrections_[kMaxShares];
-  bool activated_ = false, ending_ = false;
+  bool activated_ = false, ending_ = false, enabled_ = true;
+  enum class Told : std::uint8_t { kNothing, kUnwell, kWell } told_ = Told::kNothing;
 };
 
 }  // namespace vernier

@@ -3,16 +3,21 @@
 #include "hal/axis_reader.h"
 #include "hal/clock.h"
 #include "hal/correction_writer.h"
+#include "hal/digital_line.h"
 #include "hal/input_reader.h"
+#include "hal/probe_line.h"
 
 namespace vernier {
 
-/// All devices of a board, non-owning.
+/// All devices of a board, non-owning. Null: not wired.
 struct Board {
   Clock& clock;
   AxisReader& axes;
   InputReader& inputs;
   CorrectionWriter& corrections;
+  ProbeLine* probe = nullptr;
+  DigitalInput* enable = nullptr;    // off: no correction is let in
+  DigitalOutput* healthy = nullptr;  // on: devices answer and no fault is latched
 };
 
 }  // namespace vernier

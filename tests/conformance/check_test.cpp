@@ -103,6 +103,38 @@ TEST_F(Check, NamesABusThatIsNotThere) {
   expect_missing("missing  axis.X.position  can nocan id 0x181: nocan: no ");
 }
 
+TEST_F(Check, NamesLinesWhoseChipIsNotThere) {
+  write(std::string(kBoard) + R"([probe]
+delay_us = 12.5
+delay_spread_us = 0.5
+line = { kind = "gpio", chip = "no_such_chip", line = 3, polarity = "inverted" }
+[digital]
+enable = { kind = "gpio", chip = "no_such_chip", line = 4 }
+healthy = { kind = "gpio", chip = "/dev/no_such_chip", line = 5 }
+)");
+  const Said said = run("--check");
+  EXPECT_EQ(said.status, 2) << said.text;
+  for (const char* line :
+       {"missing  probe.line  gpio: GPIO chip no_such_chip: No such file or directory\n",
+        "missing  digital.enable  gpio: GPIO chip no_such_chip: No such file or directory\n",
+        "missing  digital.healthy  gpio: GPIO chip /dev/no_such_chip: No such file or directory\n",
+        "9 devices: 3 missing"})
+    EXPECT_NE(said.text.find(line), std::string::npos) << line << said.text;
+}
+
+TEST_F(Check, WrongSettingsOfLinesAreNamed) {
+  for (const char* wrong : {"[probe]\ndelay_us = 1\n", "[probe]\nline = { kind = \"gpio\", chip = \"a\" }\n",
+                            "[probe]\nline = { kind = \"gpoi\", chip = \"a\", line = 1 }\n",
+                            "[probe]\ndelay_us = -1\nline = { kind = \"gpio\", chip = \"a\", line = 1 }\n",
+                            "[digital]\nenabel = { kind = \"gpio\", chip = \"a\", line = 1 }\n",
+                            "[digital]\nenable = { kind = \"gpio\", chip = \"a\", line = 1.5 }\n"}) {
+    write(std::string(kBoard) + wrong);
+    const Said said = run("--check");
+    EXPECT_EQ(said.status, 1) << wrong << said.text;
+    EXPECT_NE(said.text.find("board.toml:"), std::string::npos) << wrong << said.text;
+  }
+}
+
 TEST_F(Check, WrongSettingsAreNamedWithTheirLine) {
   const std::pair<const char*, const char*> kWrong[] = {{"period_ns = 50000", "period_ns = 0"},
                                                         {"span = 0.25", "span = -1"},

@@ -25,7 +25,8 @@ inline std::vector<std::uint8_t> small_image_bytes(double scale, const std::stri
 /// A board of the small machine with a store, whose power can be switched off and on.
 class UploadRig {
  public:
-  explicit UploadRig(SimSlotStore& store, const SigningKey& key, TimeUs trial = TimeUs(5'000'000))
+  explicit UploadRig(SimSlotStore& store, const SigningKey& key, TimeUs trial = TimeUs(5'000'000),
+                     DigitalInput* enable = nullptr, DigitalOutput* healthy = nullptr)
       : store_(store),
         motion_({{0, 600'000'000}, {0, 200'000'000}}, {InputMicro(21'000'000)}, TimeUs(1000), 0.1, 1),
         plant_(motion_, 2, 1, {}) {
@@ -34,7 +35,13 @@ class UploadRig {
     options.upload.key = key.public_part();
     options.upload.trial_time = trial;
     options.activate = true;
-    service_ = std::make_unique<Service>(options, Board{clock_, plant_, plant_, plant_}, store_);
+    const Board board{.clock = clock_,
+                      .axes = plant_,
+                      .inputs = plant_,
+                      .corrections = plant_,
+                      .enable = enable,
+                      .healthy = healthy};
+    service_ = std::make_unique<Service>(options, board, store_);
     boot_ = service_->boot();
     plant_.release();
   }

@@ -68,8 +68,11 @@ std::string hal_may_include(std::string_view path, std::string_view target) {
 std::string firmware_may_include(std::string_view path, std::string_view target) {
   const std::string_view top = head(target);
   if (top == "firmware" || top == "comp" || top == "tables" || is_hal_port(target)) return {};
-  if (path == "firmware/main.cpp" && top == "hal") return {};
-  return "firmware may include comp, tables and hal ports; only main.cpp names a backend";
+  const bool root =
+      path == "firmware/main.cpp" || path == "firmware/devices.cpp" || path == "firmware/open_devices.cpp";
+  if (root && top == "hal") return {};
+  return "firmware may include comp, tables and hal ports; only the composition root (main, devices, "
+         "open_devices) names a backend";
 }
 
 // Empty: allowed; else the reason.

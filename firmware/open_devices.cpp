@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+// Part of the composition root: opens the backends that a board file names.
+#include "firmware/open_devices.h"
+
+#include <cstdio>
+
+#include "firmware/device_settings.h"
+#include "firmware/link_format.h"
+#include "hal/linux/analogue_output.h"
+#include "hal/linux/gpio_lines.h"
+#include "hal/linux/iio_device.h"
+#include "hal/linux/iio_input.h"
+#include "hal/linux/isotp_link.h"
+#include "hal/linux/modbus_server.h"
+
+namespace vernier {
+namespace {
+
+constexpr std::int64_t kStaleTicks = 1000;  // ticks after which an unchanged sample is silence
+constexpr std::int64_t kMostLines = 4096;   // of a GPIO chip
+
+GpioAddress gpio_address(const SignalSource& source) {
+  if (source.kind != "gpio") source.fail("no line of kind " + source.kind);
+  return {source.text("chip"), static_cast<unsigned>(source.whole("line", 0, kMostLines - 1)),
+          is_inverted(source)};
+}
+
+}  // namespace
+
+std::unique_ptr<AnalogueOutput> open_analogue(const SignalSource& source, bool rotary, std::string& error) {
+  if (source.kind == "pwm") {
+    source.only({"path", "period_ns", "span", "zero_ns", "low_ns", "high_ns", "polarity"});
+    const std::int64_t period = source.whole("period_ns", 2, 1'000'000'000);
+    return AnalogueOutput::pwm(source.text("path"), period, analogue_scale(source, rotary, period, "_ns"),
+                               error);
+  }
+  if (source.kind != "iio-dac") source.fail("no output of kind " + source.kind);
+  source.only({"root", "device", "channel", "codes", "span", "zero", "low", "high", "polarity"});
+  const AnalogueScale scale = analogue_scale(source, rotary, source.whole("codes", 1, (1 << 24) - 1), "");
+  const auto channel = static_cast<unsigned>(source.whole("channel", 0, 0, 63));
+  const std::string device = find_iio_device(source.text("root", kIioRoot), source.text("device"), error);
+  return device.empty() ? nullptr : AnalogueOutput::iio_dac(device, channel, scale, error);
+}
+
+std::unique_ptr<IioInput> open_sensor(const SignalSource& source, std::string& error) {
+  if (source.kind != "iio") source.fail("no input of kind " + source.kind);
+  source.only({"root", "device", "attribute", "scale", "offset", "stale_ticks"});
+  const IioScale scale{source.number("offset", 0), source.number("scale")};
+  const auto stale = static_cast<std::uint32_t>(source.whole("stale_ticks", kStaleTicks, 1, 1'000'000));
+  const std::string attribute = source.text("attribute");
+  if (attribute.empty()) source.fail("attribute is empty");
+  const std::string device = find_iio_device(source.text("root", kIioRoot), source.text("device"), error);
+  return device.empty() ? nullptr : IioInput::open(device + "/" + attribute, scale, stale, error);
+}
+
+std::unique_ptr<CommandLink> open_link(const SignalSource& source, std::string& error) {
+  const ModbusLayout layout{kMailboxRegister, kMailboxRegisters, kLiveRegisters};
+  if (source.kind == "modbus-tcp") {
+    source.only({"address", "port"});
+    const std::string address = source.text("address", "127.0.0.1");
+    auto server =
+        ModbusServer::tcp(address, static_cast<int>(source.whole("port", 1502, 0, 65535)), layout, error);
+    if (server) std::fprintf(stderr, "vernierd: Modbus TCP on %s:%d\n", address.c_str(), server->port());
+    return server;
+  }
+  if (source.kind == "modbus-rtu") {
+    source.only({"device", "baud", "parity", "unit"});
+    const std::string parity = source.text("parity", "E");
+    if (parity != "E" && parity != "O" && parity != "N") source.fail("parity must be E, O or N");
+    return ModbusServer::rtu(source.text("device"),
+                             static_cast<int>(source.whole("baud", 115200, 1, 10'000'000)), parity[0],
+                             static_cast<int>(source.whole("unit", 1, 1, 247)), layout, error);
+  }
+  if (source.kind != "isotp") source.fail("no link of kind " + source.kind);
+  source.only({"interface", "receive", "transmit"});
+  constexpr std::int64_t kLastId = (1 << 29) - 1;
+  return IsotpLink::open(source.text("interface"),
+                         static_cast<std::uint32_t>(source.whole("receive", 0, kLastId)),
+                         static_cast<std::uint32_t>(source.whole("transmit", 0, kLastId)), error);
+}
+
+std::unique_ptr<ProbeLine> open_probe(const SignalSource& source, std::string& error) {
+  source.only({"chip", "line", "polarity"});
+  return GpioProbeLine::open(gpio_address(source), error);
+}
+
+std::unique_ptr<DigitalInput> open_digital_input(const SignalSource& source, std::string& error) {
+  source.only({"chip", "line", "polarity"});
+  return GpioInput::open(gpio_address(source), error);
+}
+
+std::unique_ptr<DigitalOutput> open_digital_output(const SignalSource& source, std::string& error) {
+  source.only({"chip", "line", "polarity"});
+  return GpioOutput::open(gpio_address(source), error);
+}
+
+}  // namespace vernier

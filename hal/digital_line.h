@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "hal/fault.h"
+
+namespace vernier {
+
+/// A line that is on or off, polarity already undone: what the machine's controller says.
+class DigitalInput {
+ public:
+  virtual ~DigitalInput() = default;
+  /// kRefused: the line cannot be read; `on` stays as it is. realtime.
+  virtual HalFault read_line(bool& on) noexcept = 0;
+};
+
+/// A line that the board switches: what the machine's controller hears.
+class DigitalOutput {
+ public:
+  virtual ~DigitalOutput() = default;
+  /// kRefused: the line may be as it was. realtime.
+  virtual HalFault write_line(bool on) noexcept = 0;
+};
+
+}  // namespace vernier

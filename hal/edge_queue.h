@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+
+#include "hal/probe_line.h"
+
+namespace vernier {
+
+/// Edges that came in and have not been read: keeps their order and knows where some are missing. A probe
+/// touches and lets go in turn, so two edges of one kind in a row have lost one between them; a kernel that
+/// numbers its edges tells of every one.
+class EdgeQueue {
+ public:
+  static constexpr std::uint32_t kRoom = 128;
+  static constexpr std::uint32_t kNoNumber = 0;
+
+  /// number: one more with each edge, from 1; kNoNumber where the device gives none. Without room the edge is
+  /// dropped and told as lost. realtime.
+  void put(const ProbeEdge& edge, std::uint32_t number = kNoNumber) noexcept {
+    if (count_ == kRoom) return put_loss();
+    const bool out_of_turn = known_ && edge.made == last_made_;
+    const bool gap = known_ && number != kNoNumber && number != last_number_ + 1;
+    entries_[(first_ + count_) % kRoom] = {edge, loss_ || out_of_turn || gap};
+    ++count_;
+    loss_ = false;
+    known_ = true;
+    last_made_ = edge.made;
+    last_number_ = number;
+  }
+  /// Edges were lost after the last one that was put in. realtime.
+  void put_loss() noexcept {
+    loss_ = true;
+    known_ = false;
+  }
+  /// Oldest edge. kNoReading: there is none; kRefused: some are missing here, the next call goes on.
+  /// realtime.
+  HalFault take(ProbeEdge& edge) noexcept {
+    bool& missing = count_ > 0 ? entries_[first_].after_loss : loss_;
+    if (missing) {
+      missing = false;
+      ++losses_;
+      return HalFault::kRefused;
+    }
+    if (count_ == 0) return HalFault::kNoReading;
+    edge = entries_[first_].edge;
+    first_ = (first_ + 1) % kRoom;
+    --count_;
+    return HalFault::kNone;
+  }
+  bool empty() const noexcept { return count_ == 0 && !loss_; }
+  /// Edges that can still be put in.
+  std::uint32_t room() const noexcept { return kRoom - count_; }
+  /// Times that edges were missing; only goes up.
+  std::uint64_t losses() const noexcept { return losses_; }
+
+ private:
+  struct Entry {
+    ProbeEdge edge;
+    bool after_loss = false;
+  };
+
+  Entry entries_[kRoom];
+  std::uint32_t first_ = 0, count_ = 0;
+  std::uint32_t last_number_ = 0;
+  bool known_ = false, last_made_ = false, loss_ = false;
+  std::uint64_t losses_ = 0;
+};
+
+}  // namespace vernier

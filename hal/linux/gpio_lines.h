@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "hal/digital_line.h"
+#include "hal/edge_queue.h"
+
+namespace vernier {
+
+/// Where a line is.
+struct GpioAddress {
+  std::string chip;  // "gpiochip0", a path, or the label that the driver gives its chip
+  unsigned line = 0;
+  bool inverted = false;  // on is the low level
+};
+
+/// A line of the kernel's GPIO character device, by libgpiod 1.6 or 2; gpio_lines.cpp alone knows which.
+class GpioLine {
+ public:
+  enum class Use { kInput, kOutput, kEdges };
+
+  /// Requests the line; an output starts off. Null with `error` set where there is no such chip or line, or
+  /// it is in use. setup.
+  static std::unique_ptr<GpioLine> request(const GpioAddress& address, Use use, std::string& error);
+  virtual ~GpioLine() = default;
+
+  /// 1 on, 0 off, -1 with errno set. realtime.
+  virtual int get() noexcept = 0;
+  virtual bool set(bool on) noexcept = 0;
+  /// Moves what the kernel holds into the queue without waiting. realtime.
+  virtual void read_edges(EdgeQueue& queue) noexcept = 0;
+};
+
+/// The edges of a probe's line, stamped by the kernel in the interrupt by CLOCK_MONOTONIC (from Linux 5.7 on;
+/// an edge of an older one, stamped by another clock, is told as lost). Two edges that are closer than the
+/// interrupt's latency are told as a loss, as the kernel reads the level after the interrupt.
+class GpioProbeLine : public ProbeLine {
+ public:
+  static std::unique_ptr<GpioProbeLine> open(const GpioAddress& address, std::string& error);
+
+  HalFault read_edge(ProbeEdge& edge) noexcept override;
+  /// The kernel does not know its interrupt's latency: 0.
+  InstantNs resolution() const noexcept override { return InstantNs{}; }
+  /// Times that edges were missing; only goes up.
+  std::uint64_t losses() const noexcept { return queue_.losses(); }
+  /// 1: the probe touches, 0: it does not, -1: the line cannot be read. setup.
+  int level() noexcept { return line_->get(); }
+
+ private:
+  explicit GpioProbeLine(std::unique_ptr<GpioLine> line) : line_(std::move(line)) {}
+  std::unique_ptr<GpioLine> line_;
+  EdgeQueue queue_;
+};
+
+/// A digital input.
+class GpioInput : public DigitalInput {
+ public:
+  static std::unique_ptr<GpioInput> open(const GpioAddress& address, std::string& error);
+  HalFault read_line(bool& on) noexcept override;
+
+ private:
+  explicit GpioInput(std::unique_ptr<GpioLine> line) : line_(std::move(line)) {}
+  std::unique_ptr<GpioLine> line_;
+};
+
+/// A digital output. Off when it is opened and when it is closed; a process that is killed leaves it as the
+/// chip's driver does, often as it was.
+class GpioOutput : public DigitalOutput {
+ public:
+  static std::unique_ptr<GpioOutput> open(const GpioAddress& address, std::string& error);
+  ~GpioOutput() override;
+  HalFault write_line(bool on) noexcept override;
+
+ private:
+  explicit GpioOutput(std::unique_ptr<GpioLine> line) : line_(std::move(line)) {}
+  std::unique_ptr<GpioLine> line_;
+};
+
+}  // namespace vernier

@@ -1,0 +1,99 @@
+// The lines from and to the machine's controller: enable lets the correction in, healthy says that it may be
+// believed.
+#include <gtest/gtest.h>
+
+#include "tests/unit/firmware/upload_rig.h"
+
+namespace vernier {
+namespace {
+
+struct Switch : DigitalInput, DigitalOutput {
+  HalFault read_line(bool& value) noexcept override {
+    if (broken) return HalFault::kRefused;
+    value = on;
+    return HalFault::kNone;
+  }
+  HalFault write_line(bool value) noexcept override {
+    ++writes;
+    if (broken) return HalFault::kRefused;
+    on = value;
+    return HalFault::kNone;
+  }
+  bool on = false, broken = false;
+  int writes = 0;
+};
+
+class Digital : public testing::Test {
+ protected:
+  Digital() {
+    rig_.send(make_upload(small_image_bytes(2e-5), key_, 5, 0));
+    rig_.uploader().confirm();
+  }
+  Mode mode() { return rig_.service().cycle().mode(); }
+  SigningKey key_ = new_key();
+  SimSlotStore store_{1 << 16};
+  Switch enable_, healthy_;
+  UploadRig rig_{store_, key_, TimeUs(5'000'000), &enable_, &healthy_};
+};
+
+TEST_F(Digital, CorrectionComesInAndGoesOutWithTheEnableLine) {
+  rig_.run(3000);
+  EXPECT_EQ(mode(), Mode::kReady);
+  EXPECT_EQ(rig_.plant().written(1), AxisTravel{});
+  enable_.on = true;
+  rig_.run(3000);
+  EXPECT_EQ(mode(), Mode::kActive);
+  EXPECT_NE(rig_.plant().written(1), AxisTravel{});
+  enable_.on = false;
+  rig_.run(3000);
+  EXPECT_EQ(mode(), Mode::kReady);
+  EXPECT_EQ(rig_.plant().written(1), AxisTravel{});
+  enable_.on = true;
+  rig_.run(3000);
+  EXPECT_EQ(mode(), Mode::kActive) << "comes in again";
+  EXPECT_EQ(rig_.service().cycle().health().refused_commands, 0u);
+  EXPECT_LE(rig_.worst_step(0), 500) << "maxslew of the small machine, 0.5 mm/s";
+  EXPECT_LE(rig_.worst_step(1), 2000);
+}
+
+TEST_F(Digital, EnableLineThatCannotBeReadIsOff) {
+  enable_.on = true;
+  rig_.run(3000);
+  ASSERT_EQ(mode(), Mode::kActive);
+  enable_.broken = true;
+  rig_.run(3000);
+  EXPECT_EQ(mode(), Mode::kReady);
+}
+
+TEST_F(Digital, NobodyActivatesAgainstTheEnableLine) {
+  rig_.run(500);
+  ASSERT_EQ(mode(), Mode::kReady);
+  const_cast<Exchange&>(rig_.service().exchange()).command = Command::kActivate;
+  rig_.run(500);
+  EXPECT_EQ(mode(), Mode::kReady);
+  EXPECT_EQ(rig_.service().cycle().weight(), WeightQ16{});
+}
+
+TEST_F(Digital, HealthySaysSoFromReadyUntilAFault) {
+  enable_.on = true;
+  rig_.run(50);
+  EXPECT_FALSE(healthy_.on) << "still checking";
+  rig_.run(2000);
+  EXPECT_TRUE(healthy_.on);
+  EXPECT_LE(healthy_.writes, 2) << "only what changes is written";
+  rig_.service().end();
+  rig_.run(1);
+  EXPECT_FALSE(healthy_.on);
+}
+
+TEST_F(Digital, HealthyLineThatRefusesIsTriedAgain) {
+  healthy_.broken = true;
+  rig_.run(2000);
+  EXPECT_FALSE(healthy_.on);
+  healthy_.broken = false;
+  rig_.run(1);
+  EXPECT_TRUE(healthy_.on);
+}
+
+}  // namespace
+}  // namespace vernier
