@@ -8,6 +8,7 @@
 #include "tools/diagnose/finder.h"
 #include "tools/diagnose/outliers.h"
 #include "tools/diagnose/pieces.h"
+#include "tools/diagnose/shape.h"
 #include "tools/diagnose/structure.h"
 #include "tools/diagnose/time_base.h"
 
@@ -277,6 +278,10 @@ class Diagnoser {
       for (std::size_t i = 1; i < pieces.size(); ++i)
         result_.explanation += "; " + pool_.candidate(pieces[i]).label;
       result_.explanation += ".";
+    } else if (const std::string doubt = doubt_of_shapes(); !doubt.empty()) {
+      result_.verdict = Verdict::kUnexplained;
+      result_.explanation =
+          "The residual comes down to the noise, and what does it is not given a name: " + doubt + ".";
     } else if (!rivals.close.empty()) {
       result_.verdict = Verdict::kAmbiguous;
       result_.explanation = fmt::format("One of {} causes that explain these data alike, {} first.",
@@ -304,6 +309,14 @@ class Diagnoser {
       text += fmt::format(" With {} effect{} the check rows go from {:.4g} to {:.4g} um.", chosen_.size(),
                           chosen_.size() == 1 ? "" : "s", *first.check_rms_um, *last.check_rms_um);
     return text;
+  }
+
+  /// Why one of the accepted effects cannot be what its name says; empty where all can.
+  std::string doubt_of_shapes() const {
+    for (const std::size_t item : chosen_)
+      if (const std::string doubt = doubt_of_shape(finder_.evidence(), pool_, chosen_, item); !doubt.empty())
+        return doubt;
+    return {};
   }
 
   /// Where what is left fails, in up to three sentences.

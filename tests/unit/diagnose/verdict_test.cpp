@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
+#include <memory>
 #include <random>
 
 #include "tools/diagnose/diagnosis.h"
@@ -89,6 +91,95 @@ TEST(Verdict, TwoPeriodsOfOneAxisAreNamed) {
   ASSERT_EQ(answer.ladder.size(), 3U);
   EXPECT_EQ(answer.ladder[1].effect, "cyclic-error");
   EXPECT_EQ(answer.ladder[2].effect, "cyclic-error");
+}
+
+/// A survey of one axis, four runs of 120 rows at the places that `place` gives, noise 1 um. `error`: mm, of
+/// place in mm and temperature in degC.
+std::string survey(const std::function<double(int)>& place,
+                   const std::function<double(double, double)>& error) {
+  std::mt19937_64 random(kSeed);
+  std::normal_distribution<double> noise(0, 0.001);
+  std::string text = "X[mm],T[degC],x[mm],u[um],run\n";
+  for (int run = 0; run < 4; ++run)
+    for (int i = 0; i < 120; ++i) {
+      const double x = place(i), warm = 20 + 2 * run + 0.02 * i;
+      text += fmt::format("{:.3f},{:.3f},{:.6f},1,r{}\n", x, warm, x + error(x, warm) + noise(random), run);
+    }
+  return text;
+}
+
+/// Places all over the axis, no two alike.
+std::function<double(int)> anywhere() {
+  auto random = std::make_shared<std::mt19937_64>(kSeed + 1);
+  return [random](int) { return std::uniform_real_distribution<double>(0, 500)(*random); };
+}
+
+/// A function of X alone, which a table of 17 stations follows: it takes the error away, and is no smooth
+/// curve.
+TEST(Verdict, ACurveFasterThanSmoothIsNotNamed) {
+  const Machine machine = parse_machine(kAxis, "m.xml");
+  const std::string text = survey(anywhere(), [](double x, double) {
+    return 0.0015 * std::sin(2 * 3.14159265358979 * 4.1 * (x / 500) * (x / 500) + 0.7);
+  });
+
+  const Diagnosis answer = diagnose(kAxis, machine, parse_measurement(text, "m.csv", machine));
+
+  EXPECT_EQ(answer.verdict, Verdict::kUnexplained) << "seed " << kSeed << ": " << answer.explanation;
+  EXPECT_NE(answer.explanation.find("faster than a smooth curve"), std::string::npos) << answer.explanation;
+  ASSERT_GE(answer.ladder.size(), 2U);
+  EXPECT_EQ(answer.ladder[1].effect, "positioning-error");
+}
+
+TEST(Verdict, ASmoothCurveThatIsNoneOfTheFormsIsNamed) {
+  const Machine machine = parse_machine(kAxis, "m.xml");
+  const std::string text = survey(anywhere(), [](double x, double) {
+    const double part = (x / 500 - 0.4) / 0.16;
+    return 0.008 * std::exp(-part * part);
+  });
+
+  const Diagnosis answer = diagnose(kAxis, machine, parse_measurement(text, "m.csv", machine));
+
+  EXPECT_EQ(answer.verdict, Verdict::kMissingEffect) << "seed " << kSeed << ": " << answer.explanation;
+  EXPECT_EQ(answer.ladder.at(1).effect, "positioning-error");
+}
+
+const char* const kTableOfNine = R"(<machine name="m"><variables><static><c value="0" unit="mm"/></static>
+  <machineaxes><X rotary="false" min="0" max="500"/></machineaxes>
+  <comptables><table axis="X" fit="X"><station loc="0"/><station loc="62.5"/><station loc="125"/>
+  <station loc="187.5"/><station loc="250"/><station loc="312.5"/><station loc="375"/><station loc="437.5"/>
+  <station loc="500"/></table></comptables></variables>
+  <transforms branch="tool"><sixdof n="1" X="X+lXx" Y="0" Z="0" rX="0" rY="0" rZ="0"/></transforms></machine>)";
+
+/// Twelve places and a free table of nine stations: three functions of X are left, and any curve fits them.
+TEST(Verdict, ACurveThatNothingCouldRefuteIsNotNamed) {
+  const Machine machine = parse_machine(kTableOfNine, "m.xml");
+  const std::string text = survey(
+      [](int i) { return 500.0 / 11 * (i % 12); },
+      [](double x, double) { return 0.02 * std::sin(2 * 3.14159265358979 * 6 * (x / 500) * (x / 500)); });
+
+  const Diagnosis answer = diagnose(kTableOfNine, machine, parse_measurement(text, "m.csv", machine));
+
+  EXPECT_EQ(answer.verdict, Verdict::kUnexplained) << "seed " << kSeed << ": " << answer.explanation;
+}
+
+/// Thermal growth, in proportion to the place or bent over it by a tenth.
+std::string growth(double bent) {
+  return survey(anywhere(), [bent](double x, double warm) {
+    const double part = x / 500;
+    return 0.0025 * (part - bent * part * part) * (warm - 20);
+  });
+}
+
+TEST(Verdict, ANameThatDoesNotHoldAlongTheAxisIsNotGiven) {
+  const Machine machine = parse_machine(kAxis, "m.xml");
+
+  const Diagnosis straight = diagnose(kAxis, machine, parse_measurement(growth(0), "m.csv", machine));
+  const Diagnosis bent = diagnose(kAxis, machine, parse_measurement(growth(0.22), "m.csv", machine));
+
+  EXPECT_EQ(straight.verdict, Verdict::kMissingEffect) << "seed " << kSeed << ": " << straight.explanation;
+  EXPECT_EQ(straight.ladder.at(1).effect, "thermal-scale");
+  EXPECT_EQ(bent.verdict, Verdict::kUnexplained) << "seed " << kSeed << ": " << bent.explanation;
+  EXPECT_NE(bent.explanation.find("changes along the axes"), std::string::npos) << bent.explanation;
 }
 
 }  // namespace

@@ -1,0 +1,210 @@
+#include "tools/diagnose/shape.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "tools/diagnose/chance.h"
+
+namespace vernier {
+namespace {
+
+using Index = Eigen::Index;
+
+/// Logarithm of 1e-3: what is less likely to be noise is a doubt.
+constexpr double kChance = -6.9;
+
+/// Positions of the fit observations over the range that was read: 0 .. 1.
+Eigen::VectorXd positions(const Evidence& evidence, std::size_t axis) {
+  const Evidence::Range range = evidence.range_of(axis);
+  const double span = std::max(range.high - range.low, 1e-300);
+  Eigen::VectorXd u(static_cast<Index>(evidence.rows().size()));
+  for (Index i = 0; i < u.size(); ++i) {
+    const auto row = static_cast<Index>(evidence.rows()[static_cast<std::size_t>(i)]);
+    u[i] = (evidence.measurement().states.axis[axis][row] - range.low) / span;
+  }
+  return u;
+}
+
+/// How many positions were read, those closer than a 64th of the range counted once.
+int positions_read(Eigen::VectorXd u) {
+  constexpr double kApart = 1.0 / 64;
+  std::sort(u.begin(), u.end());
+  int count = 0;
+  double last = -1;
+  for (const double one : u) {
+    if (one - last < kApart) continue;
+    ++count;
+    last = one;
+  }
+  return count;
+}
+
+Eigen::MatrixXd beyond_model(const Evidence& evidence, const Eigen::MatrixXd& columns) {
+  const Eigen::MatrixXd& q = evidence.absorbed();
+  return columns - q * (q.transpose() * columns);
+}
+
+struct Gain {
+  double chi_square = 0;
+  double rank = 0;
+};
+
+/// What columns explain of the residual beside what the model absorbs and `beside`, in units of the noise.
+Gain gain_of(const Evidence& evidence, const Eigen::MatrixXd& raw, const Eigen::MatrixXd& beside) {
+  // A direction of which the others leave less is none of its own.
+  constexpr double kOwn = 1e-3;
+  Eigen::MatrixXd own = raw;
+  const Eigen::VectorXd before = own.colwise().norm();
+  const Eigen::MatrixXd& q = evidence.absorbed();
+  const Eigen::MatrixXd others = orthonormal(beside, 1e-6, nullptr);
+  for (int pass = 0; pass < 2; ++pass) {
+    own -= q * (q.transpose() * own);
+    own -= others * (others.transpose() * own);
+  }
+  for (Index j = 0; j < own.cols(); ++j)
+    if (own.col(j).norm() < kOwn * before[j]) own.col(j).setZero();
+  const Eigen::MatrixXd basis = orthonormal(own, kOwn, nullptr);
+  const Eigen::VectorXd rest = evidence.residual() - others * (others.transpose() * evidence.residual());
+  const double explained = (basis.transpose() * rest).squaredNorm();
+  const double freedom =
+      std::max(1.0, evidence.freedom() - static_cast<double>(others.cols() + basis.cols()));
+  double variance = (rest.squaredNorm() - explained) / freedom;
+  if (evidence.noise_known()) variance = std::max(1.0, variance);
+  return {explained / std::max(variance, 1e-300), static_cast<double>(basis.cols())};
+}
+
+/// Line and half-waves over the range, as they show in the readings of a place.
+Eigen::MatrixXd half_waves(const Evidence& evidence, const DofPlace& place, const Eigen::VectorXd& u,
+                           int count) {
+  Eigen::MatrixXd columns(u.size(), count + 1);
+  const auto answer = evidence.response(evidence.index_of(place)).array();
+  columns.col(0) = answer * u.array();
+  for (int m = 1; m <= count; ++m)
+    columns.col(m) = answer * (std::numbers::pi * static_cast<double>(m) * u.array()).cos();
+  evidence.whiten(columns);
+  return columns;
+}
+
+/// How an item's columns move with its scanned unknowns, to first order: a period that is a little off is no
+/// change along the axis.
+Eigen::MatrixXd moved(const Evidence& evidence, const Pool& pool, std::size_t item) {
+  constexpr double kStep = 1e-3;
+  const std::vector<double>& scanned = pool[item].scored.scanned;
+  const Candidate& candidate = pool.candidate(item);
+  const Eigen::MatrixXd here = evidence.columns(candidate, scanned);
+  Eigen::MatrixXd all(here.rows(), here.cols() * static_cast<Index>(scanned.size()));
+  for (std::size_t i = 0; i < scanned.size(); ++i) {
+    std::vector<double> there = scanned;
+    there[i] *= 1 + kStep;
+    all.middleCols(static_cast<Index>(i) * here.cols(), here.cols()) =
+        (evidence.columns(candidate, there) - here) / kStep;
+  }
+  return beyond_model(evidence, all);
+}
+
+bool is_function_of_an_axis(const Evidence& evidence, const Pool& pool, std::size_t item) {
+  const Candidate& candidate = pool.candidate(item);
+  return candidate.choice.axis && candidate.choice.place && candidate.terms.size() == 1 &&
+         drivers_of(evidence.machine(), candidate).empty();
+}
+
+/// The others that are no functions of the same axis: those may be pieces of the same one.
+std::vector<std::size_t> of_other_axes(const Evidence& evidence, const Pool& pool,
+                                       const std::vector<std::size_t>& items, std::size_t item) {
+  std::vector<std::size_t> others;
+  for (const std::size_t other : items)
+    if (other != item && !(is_function_of_an_axis(evidence, pool, other) &&
+                           pool.candidate(other).choice.axis == pool.candidate(item).choice.axis))
+      others.push_back(other);
+  return others;
+}
+
+std::string doubt_of_curve(const Evidence& evidence, const Pool& pool, const std::vector<std::size_t>& items,
+                           std::size_t item) {
+  constexpr double kMostFast = 0.15, kCurve = 3;
+  // A period was found among many: it asks for more witnesses than a curve.
+  const double seen_per_unknown = pool[item].scored.scanned.empty() ? 1.5 : 2;
+  const Choice& choice = pool.candidate(item).choice;
+  const AxisFunction shape = function_of_axis(evidence, *choice.axis, *choice.place,
+                                              pool.columns(of_other_axes(evidence, pool, items, item)));
+  const auto coefficients = static_cast<double>(pool[item].columns.cols());
+  const double unknowns = coefficients + static_cast<double>(pool[item].scored.scanned.size());
+  const bool curve = coefficients >= kCurve && pool[item].scored.scanned.empty();
+  if (curve && shape.fast_share > kMostFast && shape.log_p < kChance)
+    return fmt::format(
+        "{} removes it, but {:.0f} % of it changes faster than a smooth curve does (half-waves below {:.3g} "
+        "of "
+        "the axis' unit): it depends on the axis, and its cause has no name",
+        pool.candidate(item).label, 100 * shape.fast_share, shape.resolved);
+  if ((unknowns >= kCurve || shape.own_table) && shape.seen < seen_per_unknown * unknowns)
+    return fmt::format(
+        "{} takes {:.0f} unknowns where the readings show only {:.0f} independent functions of the axis "
+        "beside the model: any function of it would do as well",
+        pool.candidate(item).label, unknowns, shape.seen);
+  return {};
+}
+
+}  // namespace
+
+AxisFunction function_of_axis(const Evidence& evidence, std::size_t axis, const DofPlace& place,
+                              const Eigen::MatrixXd& beside) {
+  constexpr int kMost = 8, kFewest = 3;
+  const Eigen::VectorXd u = positions(evidence, axis);
+  const int read = positions_read(u), slow_count = std::clamp((read - 1) / 2, kFewest, kMost);
+  const int most = std::max(2 * slow_count, std::min(read - 1, 5 * kMost));
+  const Eigen::MatrixXd waves = half_waves(evidence, place, u, most);
+  const Evidence::Range range = evidence.range_of(axis);
+  AxisFunction shape;
+  shape.seen = gain_of(evidence, waves, beside).rank;
+  shape.own_table = shape.seen < std::min(most, read - 1);
+  shape.resolved = (range.high - range.low) / slow_count;
+  const Eigen::MatrixXd slow = beyond_model(evidence, waves.leftCols(slow_count + 1));
+  Eigen::MatrixXd held(slow.rows(), beside.cols() + slow.cols());
+  held << beside, slow;
+  const Gain all = gain_of(evidence, waves.leftCols(2 * slow_count + 1), beside);
+  const Gain fast = gain_of(evidence, waves.middleCols(slow_count + 1, slow_count), held);
+  shape.fast_share = std::max(0.0, fast.chi_square - fast.rank) / std::max(all.chi_square - all.rank, 1e-300);
+  if (fast.rank > 0) shape.log_p = log_chi_square_tail(fast.chi_square, fast.rank);
+  return shape;
+}
+
+double log_p_of_change(const Evidence& evidence, const Pool& pool, const std::vector<std::size_t>& items,
+                       std::size_t item) {
+  const Eigen::MatrixXd raw = evidence.columns(pool.candidate(item), pool[item].scored.scanned);
+  const bool curve = is_function_of_an_axis(evidence, pool, item) && pool[item].scored.scanned.empty();
+  const std::size_t axes = evidence.machine().axes.size();
+  Eigen::MatrixXd changed(raw.rows(), 2 * raw.cols() * static_cast<Index>(axes));
+  Index count = 0;
+  for (std::size_t axis = 0; axis < axes; ++axis) {
+    // A curve of an axis times that axis is a curve of it still.
+    if (curve && axis == *pool.candidate(item).choice.axis) continue;
+    const Eigen::ArrayXd v = 2 * positions(evidence, axis).array() - 1;
+    for (Index j = 0; j < raw.cols(); ++j) {
+      changed.col(count++) = raw.col(j).array() * v;
+      changed.col(count++) = raw.col(j).array() * v.square();
+    }
+  }
+  const Eigen::MatrixXd all = pool.columns(items), more = moved(evidence, pool, item);
+  Eigen::MatrixXd beside(all.rows(), all.cols() + more.cols());
+  beside << all, more;
+  const Gain gain = gain_of(evidence, changed.leftCols(count), beside);
+  return gain.rank == 0 ? 0 : log_chi_square_tail(gain.chi_square, gain.rank);
+}
+
+std::string doubt_of_shape(const Evidence& evidence, const Pool& pool, const std::vector<std::size_t>& items,
+                           std::size_t item) {
+  if (is_function_of_an_axis(evidence, pool, item)) {
+    const std::string doubt = doubt_of_curve(evidence, pool, items, item);
+    if (!doubt.empty()) return doubt;
+  }
+  // Without a given uncertainty nothing says that what is left is noise: it may hold other effects.
+  if (evidence.noise_known() && log_p_of_change(evidence, pool, items, item) < kChance)
+    return fmt::format("{} changes along the axes, which what it is called does not",
+                       pool.candidate(item).label);
+  return {};
+}
+
+}  // namespace vernier
