@@ -16,6 +16,14 @@ nlohmann::json to_json(const Cause& cause) {
   return {{"effect", cause.effect}, {"axis", or_null(cause.axis)}, {"input", or_null(cause.input)}};
 }
 
+/// Why a term counts as outside although it depends on one axis alone.
+const char* why_outside(const std::string& effect) {
+  return effect == "outside:chirp"
+             ? "half-waves shorter than an eighth of the axis: no smooth curve (straightness, positioning "
+               "error), though a table dense enough takes it away; no period either"
+             : "";
+}
+
 }  // namespace
 
 const char* class_name(SurveyClass kind) { return kClassNames[static_cast<std::size_t>(kind)]; }
@@ -68,6 +76,7 @@ std::string HiddenSurvey::key() const {
                  {"ratio", e.ratio},
                  {"remaining", e.remaining},
                  {"statics", e.statics}});
+    if (const std::string why = why_outside(e.cause.effect); !why.empty()) item["why_outside"] = why;
     list.push_back(item);
   }
   for (const Rival& r : rivals) {

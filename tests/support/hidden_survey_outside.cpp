@@ -22,6 +22,9 @@ std::string random_field(const Geometry& g, Draw& draw) {
   return text + ")";
 }
 
+/// 4 to 8 waves whose length goes as 1/q: half of them, and more, have half-waves below an eighth of the
+/// axis. Called straightness or positioning error (smooth functions of q, FORMATS section 4) it would be a
+/// wrong name.
 std::string chirp(const Geometry& g, Draw& draw) {
   const AxisPlace& a = draw.pick(g.axes);
   return fmt::format("sin({:.0f}*({})^2+{:.0f})", draw.uniform(1500, 3000), unit_of(a), draw.uniform(0, 360));
