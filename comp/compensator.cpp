@@ -105,6 +105,7 @@ CycleOutput Compensator::step(const CycleInput& input, WeightQ16 weight) noexcep
         saturate(round_shift(std::int64_t{registers_[out.source]} * out.multiplier, out.shift), saturated)};
     const std::int32_t wanted = correction_for(deviation).counts;
     const std::int32_t limited = clamp(wanted, -out.limit, out.limit);
+    output.wanted[out.axis] = Correction{limited};
     SlewLimit& slew = slew_[out.axis];
     output.correction[out.axis] = Correction{slew.approach(narrow(multiply(limited, share, 16)), out.slew)};
     if (saturated || limited != wanted) output.flags |= kSaturated;

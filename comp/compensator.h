@@ -101,6 +101,7 @@ enum CycleFlag : std::uint32_t {
 
 struct CycleOutput {
   Correction correction[kMaxAxes];    // 0 for axes that are not corrected
+  Correction wanted[kMaxAxes];        // the same at full weight and before the slew limit
   std::uint32_t flags = 0;            // CycleFlag
   std::uint32_t beyond_channels = 0;  // number of channels beyond their range
 };

@@ -32,6 +32,7 @@ struct NanometrePosition;
 struct TurnFraction;
 struct Millikelvin;
 struct Microsecond;
+struct InstantNanosecond;
 struct AxisPositionCount;
 struct AxisTravelCount;
 struct AxisSpeedCount;
@@ -55,6 +56,9 @@ using TurnsQ32 = Quantity<unit::TurnFraction, std::int64_t>;
 using TempMilliK = Quantity<unit::Millikelvin, std::int32_t>;
 /// A time or a duration.
 using TimeUs = Quantity<unit::Microsecond, std::int64_t>;
+/// A moment of a monotonic clock, or the time between two; finer than TimeUs because a tick computes for
+/// about one microsecond and a probe's edge is stamped in nanoseconds.
+using InstantNs = Quantity<unit::InstantNanosecond, std::int64_t>;
 
 /// Motion of an axis, in the axis' own count: 1 nm (linear) or 2^-32 turn (rotary); per s, per s^2.
 using AxisPosition = Quantity<unit::AxisPositionCount, std::int64_t>;

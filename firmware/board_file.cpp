@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kNmPerMm = 1e6, kCountsPerDeg = static_cast<double>(kTurnCounts) / 360, kMicro = 1e6;
 constexpr double kMostCounts = 1e15;
-constexpr double kMostDelayUs = 1e6;  // of a probe
+constexpr double kMostDelayUs = 40'000;  // of a probe: what the latch remembers at 1 kHz, less its settling
 
 const std::set<std::string_view> kSections = {"board", "axis", "input", "probe", "digital", "link"};
 
@@ -163,10 +163,17 @@ void read_input(BoardFile& board, const std::string& name, const toml::table& ta
 
 void read_probe(BoardFile& board, const toml::table& table) {
   Table settings(table, board.path, "probe");
-  board.probe.line = source_of(settings.table("line"), board.path, "probe.line");
-  if (board.probe.line.kind.empty()) settings.fail("line is missing");
-  board.probe.delay_us = settings.number("delay_us", 0, 0, kMostDelayUs);
-  board.probe.delay_spread_us = settings.number("delay_spread_us", 0, 0, kMostDelayUs);
+  board.probe = source_of(settings.table("line"), board.path, "probe.line");
+  if (board.probe.kind.empty()) settings.fail("line is missing");
+  const auto instant = [&](const char* name, double otherwise) {
+    return InstantNs(std::llround(1000 * settings.number(name, otherwise, 0, kMostDelayUs)));
+  };
+  ProbeSettings& probe = board.service.probe;
+  probe.delay = instant("delay_us", 0);
+  probe.delay_spread = instant("delay_spread_us", 0);
+  probe.position_age = instant("position_age_us", 0);
+  probe.age_spread = instant("position_age_spread_us", 0);
+  probe.settle = instant("settle_us", 1000);
   settings.nothing_else();
 }
 

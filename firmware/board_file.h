@@ -43,13 +43,6 @@ struct InputEntry {
   double reference = 0;  // what a simulated one reads
 };
 
-/// The touch probe of the board.
-struct ProbeEntry {
-  SignalSource line;
-  double delay_us = 0;         // from the touch to the edge of the line
-  double delay_spread_us = 0;  // standard uncertainty of that
-};
-
 /// A board file (TOML), read and checked: tools/docs/board.md describes it.
 struct BoardFile {
   std::string path;
@@ -58,7 +51,7 @@ struct BoardFile {
   ServiceOptions service;
   std::vector<AxisEntry> axes;
   std::vector<InputEntry> inputs;
-  ProbeEntry probe;
+  SignalSource probe;               // line of the touch probe; how late it is stands in `service`
   SignalSource enable, healthy;     // digital lines from and to the machine's controller
   std::vector<SignalSource> links;  // kind: "modbus-tcp", "modbus-rtu", "isotp"
   int priority = 80;                // SCHED_FIFO

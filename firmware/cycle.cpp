@@ -29,6 +29,8 @@ void Cycle::set_up(const Wiring& wiring, TimeUs tick) noexcept {
     axes_[i] = AxisMonitor(axis, tick, board_.axes.gives_motion());
   }
   for (WeightQ16& weight : axis_weight_) weight = kFullWeight;
+  axis_count_ = static_cast<std::uint32_t>(wiring.axes.size());
+  input_count_ = static_cast<std::uint32_t>(wiring.inputs.size());
 }
 
 BoundProgram* Cycle::use(BoundProgram& next) noexcept {
@@ -43,6 +45,10 @@ BoundProgram* Cycle::use(BoundProgram& next) noexcept {
     // A program whose axis may not move does not strand what an earlier one has put there.
     if (slew > 0) drive_[axis].slew = slew;
   }
+  for (bool& used : uses_axis_) used = false;
+  for (bool& used : uses_input_) used = false;
+  for (std::uint32_t i = 0; i < next.program.axis_count; ++i) uses_axis_[next.axis[i]] = true;
+  for (std::uint32_t i = 0; i < next.program.input_count; ++i) uses_input_[next.input[i]] = true;
   for (std::uint32_t i = 0; i < next.program.input_count; ++i)
     if (!heard_[next.input[i]]) inputs_[next.input[i]] = next.reference[i];
   ++health_.programs;
@@ -57,6 +63,12 @@ Fault Cycle::read_axes() noexcept {
     AxisReading reading;
     const bool present = board_.axes.read_axis(axis, reading) == HalFault::kNone;
     fault = first_of(fault, axes_[axis].take(present, reading, health_));
+  }
+  // What no program needs is read as well, for records and touches; where it fails nobody is hurt.
+  for (std::uint32_t axis = 0; axis < axis_count_; ++axis) {
+    AxisReading reading;
+    if (!uses_axis_[axis] && board_.axes.read_axis(axis, reading) == HalFault::kNone)
+      axes_[axis].take(true, reading, idle_health_);
   }
   // Feed and curvature of a silent controller are held; its axes are silent too and raise the fault.
   PathReading path;
@@ -93,6 +105,11 @@ Fault Cycle::read_inputs() noexcept {
     ++health_.missing_inputs;
     silent_[input] = silent_[input] < UINT32_MAX ? silent_[input] + 1 : silent_[input];
     if (silent_[input] > limits_.missing_input_ticks) fault = first_of(fault, Fault::kInputMissing);
+  }
+  for (std::uint32_t input = 0; input < input_count_; ++input) {
+    InputMicro value;
+    if (!uses_input_[input] && board_.inputs.read_input(input, value) == HalFault::kNone)
+      inputs_[input] = value;
   }
   return fault;
 }

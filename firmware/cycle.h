@@ -112,7 +112,9 @@ class Cycle {
   std::unique_ptr<BoundProgram> own_;
   BoundProgram* now_;
   ModeControl mode_;
-  Health health_;
+  Health health_, idle_health_;                     // of what a program needs; of the rest
+  std::uint32_t axis_count_ = 0, input_count_ = 0;  // of the board
+  bool uses_axis_[kMaxAxes] = {}, uses_input_[kMaxInputs] = {};
   AxisMonitor axes_[kMaxAxes];
   InputMicro inputs_[kMaxInputs];
   std::uint32_t silent_[kMaxInputs] = {};  // ticks since the last reading

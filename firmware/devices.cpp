@@ -187,9 +187,9 @@ std::vector<Route<InputReader>> Devices::Parts::make_inputs() {
 
 void Devices::Parts::make_lines() {
   std::string error;
-  if (!file.probe.line.kind.empty()) {
-    probe = open_probe(file.probe.line, error);
-    note("probe.line  " + file.probe.line.kind, error);
+  if (!file.probe.kind.empty()) {
+    probe = open_probe(file.probe, error);
+    note("probe.line  " + file.probe.kind, error);
   }
   if (!file.enable.kind.empty()) {
     error.clear();

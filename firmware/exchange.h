@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "comp/workpiece_frame.h"
 #include "firmware/bound_program.h"
 #include "firmware/mode.h"
 
@@ -135,13 +136,39 @@ struct ShareRecord {
 };
 static_assert(sizeof(ShareRecord) % 8 == 0);
 
+/// What is to be known about a touch.
+enum TouchFlag : std::uint8_t {
+  kTouchUncompensated = 1u << 0,  // no program ran: `compensated` is `position`
+  kTouchWhileFaulted = 1u << 1,   // a fault was latched
+  kTouchInWorkpiece = 1u << 2,    // the board has axes X, Y, Z: `workpiece_nm` is there
+};
+
+/// A touch of the probe as others see it. Axes in the board's order, in their counts. The counters say what
+/// was lost until then, so that a reader knows whether touches are missing that never got a number.
+struct TouchRecord {
+  std::int64_t time_ns = 0;              // of the contact, the machine file's t
+  std::int64_t position[kMaxAxes] = {};  // as the controller counts
+  std::int64_t compensated[kMaxAxes] =
+      {};  // where the axis would stand if its correction were all in: the tool
+  std::int64_t uncertainty[kMaxAxes] =
+      {};                             // standard uncertainty from the instant and from the interpolation
+  std::int64_t workpiece_nm[3] = {};  // X, Y, Z
+  std::uint32_t lost_edges = 0, lost_touches = 0, spikes = 0, missing = 0;
+  std::uint8_t kind = 0, fault = 0, flags = 0, bounces = 0;  // TouchKind, LatchFault, TouchFlag
+  std::uint8_t reserved[4] = {};
+};
+static_assert(sizeof(TouchRecord) % 8 == 0);
+
 /// All that passes between the tick and the rest of the daemon. No locks: the tick never waits for anybody.
 struct Exchange {
   static constexpr std::size_t kHistory = 4096;  // ticks, about four seconds
+  static constexpr std::size_t kTouches = 256;
 
   Published<HealthRecord> health;
   Published<ShareRecord> shares;
   History<TickRecord, kHistory> ticks;
+  History<TouchRecord, kTouches> touches;
+  Published<WorkpieceFrame> workpiece;           // written by the links
   std::atomic<Command> command{Command::kNone};  // taken by the tick
   std::atomic<std::int32_t> axis_weight[kMaxAxes];
   std::atomic<BoundProgram*> offered{nullptr};  // to be taken over by the next tick
@@ -149,6 +176,7 @@ struct Exchange {
 
   Exchange() {
     for (auto& weight : axis_weight) weight.store(kFullWeight.count);
+    workpiece.publish({});
   }
 };
 

@@ -108,6 +108,10 @@ LinkStatus Link::run(LinkOp op, Reader& in, Writer& out, TimeUs now) {
       return shares(in, out);
     case LinkOp::kShareName:
       return share_name(in, out);
+    case LinkOp::kTouches:
+      return touches(in, out);
+    case LinkOp::kWorkpiece:
+      return workpiece(in);
     case LinkOp::kBegin:
     case LinkOp::kData:
     case LinkOp::kFinish:
@@ -266,6 +270,41 @@ LinkStatus Link::share_name(Reader& in, Writer& out) const {
       index >= program_->share_names.size)
     return LinkStatus::kBadValue;
   out.put(program_->share_names[index]);
+  return LinkStatus::kDone;
+}
+
+bool Link::put_touch(Writer& out, std::uint64_t number, const TouchRecord& touch) const {
+  if (sizeof(LinkTouch) + wiring_.axes.size() * sizeof(LinkTouchAxis) > out.room()) return false;
+  LinkTouch head{number,       touch.time_ns, {},         touch.lost_edges, touch.lost_touches,
+                 touch.spikes, touch.missing, touch.kind, touch.fault,      touch.flags,
+                 touch.bounces};
+  for (int i = 0; i < 3; ++i) head.workpiece_nm[i] = touch.workpiece_nm[i];
+  out.put(head);
+  for (std::size_t i = 0; i < wiring_.axes.size(); ++i) {
+    const auto uncertainty =
+        static_cast<std::uint32_t>(clamp<std::int64_t>(touch.uncertainty[i], 0, UINT32_MAX));
+    out.put(LinkTouchAxis{touch.position[i], touch.compensated[i], uncertainty});
+  }
+  return true;
+}
+
+LinkStatus Link::touches(Reader& in, Writer& out) const {
+  const auto first = in.take<std::uint64_t>();
+  if (!in.complete()) return LinkStatus::kBadLength;
+  std::uint64_t next = std::max(first, exchange_.touches.oldest());
+  out.put(next);
+  out.put(static_cast<std::uint16_t>(std::min<std::uint64_t>(next - first, UINT16_MAX)));
+  for (TouchRecord touch; exchange_.touches.read(next, touch); ++next)
+    if (!put_touch(out, next, touch)) break;
+  std::memcpy(out.at(0), &next, sizeof(next));
+  return LinkStatus::kDone;
+}
+
+LinkStatus Link::workpiece(Reader& in) {
+  const auto frame = in.take<WorkpieceFrame>();
+  if (!in.complete()) return LinkStatus::kBadLength;
+  if (!frame.valid()) return LinkStatus::kBadValue;
+  exchange_.workpiece.publish(frame);
   return LinkStatus::kDone;
 }
 

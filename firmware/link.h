@@ -47,7 +47,10 @@ class Link {
   LinkStatus weight(Reader& in);
   LinkStatus shares(Reader& in, Writer& out) const;
   LinkStatus share_name(Reader& in, Writer& out) const;
+  LinkStatus touches(Reader& in, Writer& out) const;
+  LinkStatus workpiece(Reader& in);
   LinkStatus upload(LinkOp op, Reader& in, Writer& out, TimeUs now);
+  bool put_touch(Writer& out, std::uint64_t number, const TouchRecord& touch) const;
   bool put_tick(Writer& out, std::uint64_t number, const TickRecord& tick) const;
 
   Exchange& exchange_;

@@ -32,8 +32,10 @@ enum class LinkOp : std::uint8_t {
   kWeight,     // u8 axis, u32 weight 0..65536 -> nothing
   kShares,     // u16 first -> u16 shares in all, u32 programs taken so far, LinkShare each, as many as fit
   kShareName,  // u16 share, u32 programs -> char[64]; kBadValue where another program runs by now
+  kTouches,    // u64 first -> u64 next, u16 lost, then LinkTouch and LinkTouchAxis each, as many as fit
+  kWorkpiece,  // WorkpieceFrame -> nothing; kBadValue where it is no turn
 };
-constexpr std::uint8_t kLinkOpCount = static_cast<std::uint8_t>(LinkOp::kShareName) + 1;
+constexpr std::uint8_t kLinkOpCount = static_cast<std::uint8_t>(LinkOp::kWorkpiece) + 1;
 
 enum class LinkStatus : std::uint8_t {
   kDone,
@@ -82,7 +84,20 @@ struct LinkShare {
   std::uint8_t axis;        // board's
   std::int32_t correction;  // what the effect adds, counts of the axis, before limits and ramps
 };
+struct LinkTouch {
+  std::uint64_t number;  // of the touch since power-on
+  std::int64_t time_ns;  // of the contact, the machine file's t
+  std::int64_t workpiece_nm[3];
+  std::uint32_t lost_edges, lost_touches, spikes, missing;  // until then
+  std::uint8_t kind, fault, flags, bounces;                 // TouchKind, LatchFault, TouchFlag
+};
+struct LinkTouchAxis {
+  std::int64_t position, compensated;  // counts of the axis
+  std::uint32_t uncertainty;           // standard, counts; the largest value: at least that
+};
 #pragma pack(pop)
+static_assert(kReplyHeaderBytes + 10 + sizeof(LinkTouch) + kMaxAxes * sizeof(LinkTouchAxis) <=
+              kMaxReplyBytes);
 static_assert(kReplyHeaderBytes + 10 + sizeof(LinkTick) + kMaxAxes * sizeof(LinkAxis) +
                   kMaxInputs * sizeof(LinkInput) <=
               kMaxReplyBytes);

@@ -24,6 +24,8 @@ class Runner {
   void set_time(TimeUs time) noexcept { time_ = time; }
   /// The machine file's t of the next tick.
   TimeUs time() const noexcept { return time_; }
+  /// The moment at which the last tick read its axes.
+  InstantNs woke() const noexcept { return last_; }
   /// The moment at which the next tick is due.
   InstantNs due() const noexcept { return due_; }
 

@@ -12,6 +12,19 @@ constexpr std::uint64_t kTicksPerPercentile = 64;
 constexpr std::uint64_t kTicksPerShares = 100;
 constexpr std::uint64_t kPerMillion[3] = {500'000, 990'000, 999'000};
 
+ProbeSettings probe_settings(const ServiceOptions& options) {
+  ProbeSettings settings = options.probe;
+  settings.axes = static_cast<std::uint32_t>(options.wiring.axes.size());
+  constexpr const char* kNames[3] = {"X", "Y", "Z"};
+  for (std::uint32_t i = 0; i < settings.axes; ++i) {
+    const Wiring::Axis& axis = options.wiring.axes[i];
+    settings.rollover[i] = axis.rollover;
+    for (int k = 0; k < 3; ++k)
+      if (axis.name == kNames[k] && !axis.rotary) settings.xyz[k] = static_cast<std::uint8_t>(i);
+  }
+  return settings;
+}
+
 }  // namespace
 
 Service::Service(ServiceOptions options, const Board& board, SlotStore& store)
@@ -21,7 +34,9 @@ Service::Service(ServiceOptions options, const Board& board, SlotStore& store)
       exchange_(std::make_unique<Exchange>()),
       cycle_(std::make_unique<Cycle>(options_.wiring, options_.upload.tick, board_, options_.limits)),
       runner_(*cycle_, board_.clock, options_.upload.tick),
-      link_(*exchange_, uploader_, options_.wiring, options_.upload.tick, options_.upload.key) {}
+      link_(*exchange_, uploader_, options_.wiring, options_.upload.tick, options_.upload.key) {
+  if (board_.probe != nullptr) probing_.emplace(*board_.probe, probe_settings(options_));
+}
 
 void Service::take_over() noexcept {
   // What was taken out before must have been collected, or there is nowhere to put the next.
@@ -67,7 +82,9 @@ TickReport Service::tick() noexcept {
   read_enable();
   for (std::uint32_t i = 0; i < kMaxAxes; ++i)
     cycle_->set_axis_weight(i, WeightQ16(exchange_->axis_weight[i].load(std::memory_order_relaxed)));
+  const TimeUs time = runner_.time();
   const TickReport report = runner_.step(next_command());
+  if (probing_) probing_->after_tick(*cycle_, report, runner_.woke(), time, *exchange_);
   tell_health(report);
   publish(report);
   return report;

@@ -7,6 +7,7 @@
 #include "firmware/cycle.h"
 #include "firmware/exchange.h"
 #include "firmware/link.h"
+#include "firmware/probing.h"
 #include "firmware/runner.h"
 #include "firmware/uploader.h"
 #include "hal/board.h"
@@ -20,6 +21,7 @@ struct ServiceOptions {
   Wiring wiring;
   CycleLimits limits;
   Uploader::Options upload;
+  ProbeSettings probe;    // where the board has one; axes are filled in from the wiring
   bool activate = false;  // bring the correction in when the board becomes ready, once for each enable
 };
 
@@ -69,6 +71,7 @@ class Service : private CommandHandler {
   std::unique_ptr<Cycle> cycle_;
   Runner runner_;
   Link link_;
+  std::optional<Probing> probing_;
   // Owned outside the tick: what runs, and what has been offered to it.
   std::unique_ptr<LoadedProgram> running_, offered_, waiting_;
   std::uint64_t programs_ = 0;  // taken over by the tick so far

@@ -5,14 +5,6 @@
 
 namespace vernier {
 
-namespace unit {
-struct InstantNanosecond;
-}  // namespace unit
-
-/// A moment of a monotonic clock, or the time between two; finer than TimeUs because a tick computes for
-/// about one microsecond.
-using InstantNs = Quantity<unit::InstantNanosecond, std::int64_t>;
-
 constexpr InstantNs instant_ns(TimeUs time) { return InstantNs(time.count * 1000); }
 
 /// Time that never runs backwards; its zero means nothing.

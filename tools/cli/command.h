@@ -36,6 +36,7 @@ void register_board(CLI::App& vernier);
 void register_status(CLI::App& vernier);
 void register_watch(CLI::App& vernier);
 void register_record(CLI::App& vernier);
+void register_touches(CLI::App& vernier);
 
 /// Writes the result for programs: to a file, or to standard output for "-"; nothing for an empty path.
 /// Numbers that are not finite become null.

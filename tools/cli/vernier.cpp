@@ -16,7 +16,7 @@ constexpr vernier::RegisterCommand kCommands[] = {
     vernier::register_plan,          vernier::register_improve,  vernier::register_derive,
     vernier::register_compile,       vernier::register_simulate, vernier::register_replay,
     vernier::register_keys,          vernier::register_upload,   vernier::register_board,
-    vernier::register_status,        vernier::register_watch,    vernier::register_record,
+    vernier::register_status,        vernier::register_watch,    vernier::register_record, vernier::register_touches,
     vernier::register_pose,          vernier::register_solve,    vernier::register_export,
     vernier::register_import_tables, vernier::register_map,      vernier::register_part,
 };

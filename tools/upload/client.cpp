@@ -7,6 +7,8 @@
 #include <cstring>
 #include <thread>
 
+#include "comp/latch.h"
+#include "comp/touch_filter.h"
 #include "firmware/uploader.h"
 #include "tools/model/error.h"
 
@@ -252,6 +254,58 @@ std::optional<std::vector<std::uint8_t>> Client::confirmed(const std::function<v
 }
 
 void Client::command(Command command) { ask(LinkOp::kCommand, {static_cast<std::uint8_t>(command)}); }
+
+BoardTouches Client::touches(std::uint64_t first) {
+  std::vector<std::uint8_t> payload;
+  put(payload, first);
+  const auto reply = ask(LinkOp::kTouches, payload);
+  BoardTouches out;
+  out.next = get<std::uint64_t>(reply, 0);
+  out.lost = get<std::uint16_t>(reply, 8);
+  const std::size_t touch_bytes = sizeof(LinkTouch) + info_.axes.size() * sizeof(LinkTouchAxis);
+  if ((reply.size() - 10) % touch_bytes != 0) throw InputError("the board's reply is of the wrong size");
+  for (std::size_t at = 10; at < reply.size(); at += touch_bytes) {
+    const auto head = get<LinkTouch>(reply, at);
+    BoardTouch touch;
+    touch.number = head.number;
+    touch.time_s = static_cast<double>(head.time_ns) * 1e-9;
+    touch.has_position = static_cast<LatchFault>(head.fault) == LatchFault::kNone &&
+                         static_cast<TouchKind>(head.kind) != TouchKind::kMissed;
+    touch.totals = {head.lost_edges, head.lost_touches, head.spikes, head.missing};
+    touch.bounces = head.bounces;
+    for (std::size_t i = 0; i < info_.axes.size(); ++i) {
+      const auto axis = get<LinkTouchAxis>(reply, at + sizeof(LinkTouch) + i * sizeof(LinkTouchAxis));
+      const double counts = info_.axes[i].rotary ? kCountsPerDeg : kNmPerMm;
+      touch.position.push_back(static_cast<double>(axis.position) / counts);
+      touch.compensated.push_back(static_cast<double>(axis.compensated) / counts);
+      touch.uncertainty.push_back(axis.uncertainty / counts);
+    }
+    if ((head.flags & kTouchInWorkpiece) != 0) {
+      touch.workpiece.emplace();
+      for (std::size_t i = 0; i < 3; ++i)
+        (*touch.workpiece)[i] = static_cast<double>(head.workpiece_nm[i]) / kNmPerMm;
+    }
+    out.touches.push_back(std::move(touch));
+  }
+  return out;
+}
+
+void Client::workpiece(const std::array<double, 3>& origin_mm, double angle_deg) {
+  constexpr double kMostMm = 1e8, kRadPerDeg = 3.14159265358979323846 / 180;
+  WorkpieceFrame frame;
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (!(std::abs(origin_mm[i]) < kMostMm)) throw InputError("the workpiece lies beyond 100 km");
+    frame.origin[i] = PositionNm(std::llround(origin_mm[i] * kNmPerMm));
+  }
+  if (!std::isfinite(angle_deg)) throw InputError("the angle of the workpiece is no number");
+  frame.cosine =
+      static_cast<std::int32_t>(std::lround(std::cos(angle_deg * kRadPerDeg) * WorkpieceFrame::kOne));
+  frame.sine =
+      static_cast<std::int32_t>(std::lround(std::sin(angle_deg * kRadPerDeg) * WorkpieceFrame::kOne));
+  std::vector<std::uint8_t> payload;
+  put(payload, frame);
+  ask(LinkOp::kWorkpiece, payload);
+}
 
 void Client::weight(std::uint8_t axis, double share) {
   std::vector<std::uint8_t> payload = {axis};

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -52,6 +53,30 @@ struct BoardShare {
   double correction = 0;
 };
 
+/// What a board has counted on its probe's line until a touch.
+struct TouchTotals {
+  std::uint32_t lost_edges = 0, lost_touches = 0, spikes = 0, missing = 0;
+};
+
+/// A touch of the probe; mm or deg.
+struct BoardTouch {
+  std::uint64_t number = 0;
+  double time_s = 0;
+  bool has_position =
+      false;  // false: an edge was lost, or the samples around it; nothing below `totals` is there
+  TouchTotals totals;
+  int bounces = 0;
+  std::vector<double> position, compensated, uncertainty;  // by axis
+  std::optional<std::array<double, 3>> workpiece;          // X, Y, Z, mm
+};
+
+/// Touches that were asked for, and how many before them had been overwritten.
+struct BoardTouches {
+  std::vector<BoardTouch> touches;
+  std::uint64_t next = 0;
+  std::uint32_t lost = 0;
+};
+
 /// Talks to a board. Every call throws InputError where no or a senseless reply comes, and LimitNotMet with
 /// the board's reason where the board refuses. tool.
 class Client {
@@ -76,6 +101,11 @@ class Client {
   /// The next tick takes it; whether it fitted shows in the mode and in `refused_commands`.
   void command(Command command);
   void weight(std::uint8_t axis, double share);
+  /// Touches from number `first`, as many as one reply carries; empty where none came since.
+  BoardTouches touches(std::uint64_t first);
+  /// Where the workpiece lies: origin in machine coordinates, mm; angle about Z, deg. Counts for later
+  /// touches.
+  void workpiece(const std::array<double, 3>& origin_mm, double angle_deg);
 
  private:
   std::vector<std::uint8_t> ask(LinkOp op, const std::vector<std::uint8_t>& payload = {});

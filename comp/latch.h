@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+
+#include "comp/compensator.h"
+#include "comp/quantity.h"
+
+namespace vernier {
+
+/// Where the axes were at one instant, and what was still missing from their corrections.
+struct LatchSample {
+  InstantNs at;
+  AxisPosition position[kMaxAxes];
+  Correction owed[kMaxAxes];  // wanted minus applied, counts of the axis
+};
+
+/// Why there is no position at an instant.
+enum class LatchFault : std::uint8_t {
+  kNone,
+  kNotYet,   // the samples behind the instant have not come: ask again after the next one
+  kTooOld,   // the ring has forgotten it
+  kUneven,   // samples are missing around it: their distances differ by more than kMostUneven
+  kTooFast,  // an axis moved more than 2^35 counts between two samples
+};
+
+/// The position of an axis at a past instant.
+struct LatchedPosition {
+  AxisPosition position;
+  AxisTravel
+      uncertainty;  // standard uncertainty of the instant times the speed, plus twice `truncation`, counts
+  AxisTravel truncation;  // how far the two parabolas that the cubic is made of lie apart, counts
+  AxisTravel owed;        // Correction::owed at the instant, linear between the samples
+};
+
+/// The latest samples of all axes; gives positions between them by the cubic through the four neighbours,
+/// which holds in acceleration and deceleration and for samples at uneven distances. No division, bounded: at
+/// most six ratios of 33 steps per instant and six products per axis.
+///
+/// Error against the motion itself: 1 count of rounding (linear axis below 2 m/s), and that of the cubic,
+/// h^4/384 of the fourth derivative at even distance h, h^2/16 of a jump in acceleration.
+class LatchRing {
+ public:
+  static constexpr std::uint32_t kSize = 64;
+  static constexpr std::int64_t kMostUneven = 8;
+
+  /// sample.at: later than the one before, or the ring begins anew. realtime.
+  void add(const LatchSample& sample) noexcept;
+
+  /// Goes to an instant. realtime.
+  LatchFault seek(InstantNs when) noexcept;
+
+  /// The position at the instant of the last seek() that found one. axis: below kMaxAxes; rollover: whole
+  /// turns (2^32 counts) between two samples are none. time_uncertainty: standard uncertainty of the instant,
+  /// 0 .. 2^31 ns. kTooFast or kNone. realtime.
+  LatchFault position_of(std::uint32_t axis, bool rollover, InstantNs time_uncertainty,
+                         LatchedPosition& latched) const noexcept;
+
+  /// Instant of the newest sample; meaningless in an empty ring.
+  InstantNs newest() const noexcept { return sample(count_ - 1).at; }
+  bool empty() const noexcept { return count_ == 0; }
+
+ private:
+  const LatchSample& sample(std::uint64_t i) const noexcept { return samples_[i % kSize]; }
+
+  LatchSample samples_[kSize];
+  std::uint64_t count_ = 0, begin_ = 0;  // samples begin_ .. count_ - 1 belong together
+  // Of the last seek(): first of the four neighbours, and (when - t_i) / (t_j - t_i) in Q28.
+  std::uint64_t first_ = 0;
+  std::int64_t r01_ = 0, r12_ = 0, r23_ = 0, r02_ = 0, r13_ = 0, r03_ = 0;
+  std::int64_t gap_[3] = {};  // ns between the neighbours
+};
+
+}  // namespace vernier

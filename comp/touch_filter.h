@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+
+#include "comp/quantity.h"
+
+namespace vernier {
+
+/// What a probe's line has shown.
+enum class TouchKind : std::uint8_t {
+  kTouch,           // closed, and stayed closed through the settling time
+  kReleaseMissing,  // a touch, but the line had not opened since the one before: an edge was lost
+  kMissed,          // the line opened without having closed: the touch was lost, its instant is unknown
+};
+
+/// One touch.
+struct Touch {
+  InstantNs at;  // first edge of the contact; of kMissed: the edge that opened it
+  TouchKind kind = TouchKind::kTouch;
+  std::uint8_t bounces = 0;  // further closing edges while it settled, at most 255
+};
+
+/// What came over the line so far; all only go up.
+struct TouchCounts {
+  std::uint32_t touches = 0;
+  std::uint32_t spikes = 0;   // closed and open again when the settling time was over: no touch
+  std::uint32_t bounces = 0;  // edges while the contact settled, closing or opening
+  std::uint32_t missing = 0;  // touches or releases that were lost
+};
+
+/// Makes touches of edges: the first edge of a contact counts, bounces until it has settled do not, and an
+/// edge that does not last is a spike. Bounded, no heap.
+class TouchFilter {
+ public:
+  /// settle: time after a change of the contact in which further edges belong to it, >= 0. setup.
+  explicit TouchFilter(InstantNs settle = InstantNs(1'000'000)) noexcept : settle_(settle) {}
+
+  /// An edge; not earlier than the one before. Returns true with `touch` where it ended one that was
+  /// settling. realtime.
+  bool edge(InstantNs at, bool made, Touch& touch) noexcept;
+  /// Time has passed without an edge: true with `touch` where the last contact has settled by then. realtime.
+  bool wait(InstantNs now, Touch& touch) noexcept;
+
+  const TouchCounts& counts() const noexcept { return counts_; }
+
+ private:
+  enum class State : std::uint8_t { kOpen, kClosing, kClosed, kOpening };
+  bool conclude(InstantNs until, Touch& touch) noexcept;
+
+  InstantNs settle_;
+  State state_ = State::kOpen;
+  bool made_ = false;  // level after the last edge
+  Touch pending_;      // while closing
+  InstantNs since_;    // first edge of the change
+  TouchCounts counts_;
+};
+
+}  // namespace vernier

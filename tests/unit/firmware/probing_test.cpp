@@ -1,0 +1,150 @@
+#include "firmware/probing.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/approach.h"
+#include "tools/model/error.h"
+#include "tools/upload/client.h"
+
+namespace vernier {
+namespace {
+
+constexpr double kDelay = 6.16e-3;
+constexpr InstantNs kResolution(1000);
+
+ProbeSettings published_probe() {
+  ProbeSettings probe;
+  probe.delay = InstantNs(6'160'000);
+  probe.settle = InstantNs(500'000);
+  return probe;
+}
+
+TEST(Probing, FindsTheContactInAccelerationConstantFeedAndDeceleration) {
+  for (const double feed : {25.4, 127.0, 508.0, 1270.0, 2540.0}) {
+    const Profile profile{.feed_mm_s = feed / 60, .cruise_mm = 0.6};
+    const double ramp = profile.ramp_s(), cruise = profile.cruise_s();
+    for (const double contact : {0.55 * ramp, ramp + 0.5 * cruise, ramp + cruise + 0.4 * ramp}) {
+      TouchRig rig(profile, published_probe(), kResolution);
+      rig.run(profile, {{contact + kDelay, true}, {contact + kDelay + 0.02, false}}, kResolution);
+      const auto touches = rig.touches();
+      ASSERT_EQ(touches.size(), 1u) << feed << " " << contact;
+      ASSERT_EQ(touches[0].fault, 0);
+      const double error_um =
+          std::abs(static_cast<double>(touches[0].position[0]) - profile.at(contact) * 1e6) * 1e-3;
+      EXPECT_LE(error_um, 0.1 + profile.feed_mm_s * 1e3 * 1e-6) << feed << " " << contact;
+      EXPECT_LE(error_um * 1e3, 3 * static_cast<double>(touches[0].uncertainty[0]) + 2)
+          << feed << " " << contact;
+      EXPECT_NEAR(static_cast<double>(touches[0].position[1]),
+                  (50 - (profile.at(contact) - profile.start_mm) / 3) * 1e6, 100 + 15);
+      EXPECT_EQ(touches[0].workpiece_nm[2], -7'000'000);
+      EXPECT_EQ(touches[0].flags, kTouchUncompensated | kTouchInWorkpiece);
+    }
+  }
+}
+
+TEST(Probing, PublishesWithinTwoTicksOfASettledEdgeEvenWithoutADelay) {
+  const Profile profile{.feed_mm_s = 10};
+  ProbeSettings probe;
+  probe.settle = InstantNs(200'000);
+  TouchRig rig(profile, probe, kResolution);
+  for (int i = 0; i < 20; ++i) rig.plant.advance(), rig.service->tick();
+  rig.plant.release();
+  for (int i = 0; i < 100; ++i) rig.plant.advance(), rig.service->tick();
+  rig.line.put(rig.clock.now() + InstantNs(300'000), true);  // between this tick and the next
+  int ticks = 0;
+  for (; rig.touches().empty() && ticks < 10; ++ticks) rig.plant.advance(), rig.service->tick();
+  EXPECT_LE(ticks, 2 + 1) << "the tick after the edge is the first that can know of it";
+}
+
+TEST(Probing, CountsEveryEdgeAndTouchThatIsLost) {
+  const Profile profile{.feed_mm_s = 10};
+  TouchRig rig(profile, published_probe(), kResolution);
+  rig.run(
+      profile,
+      {{0.10, true}, {0.12, false}, {0.14, true}, {0.1401, false}, {0.2, true}, {0.25, true}, {0.3, false}},
+      kResolution);
+  const auto touches = rig.touches();
+  ASSERT_EQ(touches.size(), 3u);
+  EXPECT_EQ(touches[2].kind, static_cast<std::uint8_t>(TouchKind::kReleaseMissing));
+  EXPECT_EQ(touches[2].spikes, 1u);
+  EXPECT_GE(touches[2].lost_edges, 1u);  // the queue saw two of a kind in a row
+}
+
+TEST(Probing, SaysThatTheRingHasForgottenALateEdge) {
+  const Profile profile{.feed_mm_s = 10};
+  ProbeSettings probe = published_probe();
+  probe.delay = InstantNs(90'000'000);
+  TouchRig rig(profile, probe, kResolution);
+  rig.run(profile, {{0.2, true}, {0.22, false}}, kResolution);
+  const auto touches = rig.touches();
+  ASSERT_EQ(touches.size(), 1u);
+  EXPECT_EQ(touches[0].fault, static_cast<std::uint8_t>(LatchFault::kTooOld));
+}
+
+TEST(Probing, TurnsIntoTheWorkpiecesCoordinates) {
+  const Profile profile{.feed_mm_s = 10};
+  TouchRig rig(profile, published_probe(), kResolution);
+  WorkpieceFrame frame;
+  frame.origin[0] = PositionNm(3'000'000), frame.origin[1] = PositionNm(-2'000'000),
+  frame.origin[2] = PositionNm(1'000'000);
+  frame.cosine = static_cast<std::int32_t>(std::lround(std::cos(0.5) * WorkpieceFrame::kOne));
+  frame.sine = static_cast<std::int32_t>(std::lround(std::sin(0.5) * WorkpieceFrame::kOne));
+  ASSERT_TRUE(frame.valid());
+  const_cast<Exchange&>(rig.service->exchange()).workpiece.publish(frame);
+  rig.run(profile, {{0.2, true}, {0.22, false}}, kResolution);
+  const auto touches = rig.touches();
+  ASSERT_EQ(touches.size(), 1u);
+  const double x = static_cast<double>(touches[0].compensated[0]) - 3e6,
+               y = static_cast<double>(touches[0].compensated[1]) + 2e6;
+  EXPECT_NEAR(static_cast<double>(touches[0].workpiece_nm[0]), std::cos(0.5) * x + std::sin(0.5) * y, 2);
+  EXPECT_NEAR(static_cast<double>(touches[0].workpiece_nm[1]), std::cos(0.5) * y - std::sin(0.5) * x, 2);
+  EXPECT_EQ(touches[0].workpiece_nm[2], -8'000'000);
+  frame.sine += 1 << 10;
+  EXPECT_FALSE(frame.valid());
+}
+
+/// Requests that go straight into a board's link.
+class Direct : public Transport {
+ public:
+  explicit Direct(Link& link) : link_(link) {}
+  std::vector<std::uint8_t> ask(const std::vector<std::uint8_t>& request) override {
+    std::vector<std::uint8_t> reply(kMaxReplyBytes);
+    reply.resize(
+        link_.answer(request.data(), static_cast<std::uint32_t>(request.size()), reply.data(), TimeUs(1)));
+    return reply;
+  }
+
+ private:
+  Link& link_;
+};
+
+TEST(Probing, GivesAReaderEveryTouchOrTheNumberOfThoseThatAreGone) {
+  const Profile profile{.feed_mm_s = 10, .cruise_mm = 200};
+  TouchRig rig(profile, published_probe(), kResolution);
+  auto& exchange = const_cast<Exchange&>(rig.service->exchange());
+  const Wiring wiring{{{"X"}, {"Y"}, {"Z"}}, {}};
+  Link link(exchange, const_cast<Uploader&>(rig.service->uploader()), wiring, TimeUs(1000), std::nullopt);
+  Client client(std::make_unique<Direct>(link));
+  client.workpiece({1, 2, 3}, 90);
+  std::vector<std::pair<double, bool>> edges;
+  for (int i = 0; i < 300; ++i) edges.insert(edges.end(), {{0.1 + 0.05 * i, true}, {0.12 + 0.05 * i, false}});
+  rig.run(profile, edges, kResolution);
+  std::uint64_t next = 0, lost = 0, read = 0;
+  for (BoardTouches got; !(got = client.touches(next)).touches.empty(); next = got.next) {
+    lost += got.lost;
+    for (const BoardTouch& touch : got.touches) {
+      EXPECT_EQ(touch.number, lost + read);
+      ++read;
+      ASSERT_TRUE(touch.has_position && touch.workpiece);
+      EXPECT_NEAR((*touch.workpiece)[0], touch.position[1] - 2, 1e-5);
+      EXPECT_NEAR((*touch.workpiece)[1], 1 - touch.position[0], 1e-5);
+      EXPECT_NEAR((*touch.workpiece)[2], -10, 1e-5);
+    }
+  }
+  EXPECT_EQ(read, Exchange::kTouches);
+  EXPECT_EQ(lost + read, 300u);
+  EXPECT_THROW(client.workpiece({1e9, 0, 0}, 0), InputError);
+}
+
+}  // namespace
+}  // namespace vernier
