@@ -21,7 +21,12 @@ bool harmonics(double a, double b) {
   constexpr double kSame = 0.03;
   if (a <= 0 || b <= 0) return false;
   const double ratio = std::max(a, b) / std::min(a, b);
-  return std::abs(ratio - std::round(ratio)) < kSame * ratio;
+  return std::round(ratio) > 1 && std::abs(ratio - std::round(ratio)) < kSame * ratio;
+}
+
+/// Do two periods beat less than once over a length? Then they are one wave whose height or length changes.
+bool unresolved(double a, double b, double length) {
+  return a > 0 && b > 0 && length * std::abs(1 / a - 1 / b) < 1;
 }
 
 bool is_function_of_its_axis(const Evidence& evidence, const Candidate& candidate) {
@@ -55,6 +60,22 @@ std::vector<std::size_t> largest_group(const Pool& pool, const std::vector<std::
   return most;
 }
 
+/// Two periods of one axis at places that move the readings alike, that the range read does not resolve.
+std::vector<std::size_t> unresolved_periods(const Evidence& evidence, const Pool& pool,
+                                            const std::vector<std::size_t>& items) {
+  for (const std::size_t a : items)
+    for (const std::size_t b : items) {
+      if (a >= b) continue;
+      const Candidate &x = pool.candidate(a), &y = pool.candidate(b);
+      if (!is_function_of_its_axis(evidence, x) || !is_function_of_its_axis(evidence, y)) continue;
+      if (x.choice.axis != y.choice.axis || !moves_alike(evidence, *x.choice.place, *y.choice.place))
+        continue;
+      const Evidence::Range range = evidence.range_of(*x.choice.axis);
+      if (unresolved(period_of(pool, a), period_of(pool, b), range.high - range.low)) return {a, b};
+    }
+  return {};
+}
+
 bool has_one_reading_a_row(const Evidence& evidence) {
   const std::vector<Observation>& all = evidence.measurement().observations;
   return std::all_of(all.begin(), all.end(),
@@ -85,6 +106,7 @@ std::vector<std::size_t> pieces_of_one_function(const Evidence& evidence, const 
         return choice(a).axis == choice(b).axis && moves_alike(evidence, *choice(a).place, *choice(b).place);
       });
   if (group.size() > kMostOfOneAxis) return group;
+  if (const auto pair = unresolved_periods(evidence, pool, items); !pair.empty()) return pair;
   if (!has_one_reading_a_row(evidence)) return {};
   group = largest_group(
       pool, items, [&](std::size_t item) { return follows_from_position(evidence, pool.candidate(item)); },

@@ -12,7 +12,8 @@ namespace vernier {
 /// takes the place of what was not found. Where every row has but one reading, of one kind, a fourth function
 /// of position does, of whatever axis, a third beside a curve (three coefficients or more), or a second
 /// curve: on a circle all of them are functions of its angle, and two curves span every such function.
-/// Periods that are harmonics of one another count once. tool.
+/// Periods that are harmonics of one another count once; two periods that beat less than once over the range
+/// that was read are one wave that changes along it, no two causes. tool.
 std::vector<std::size_t> pieces_of_one_function(const Evidence& evidence, const Pool& pool,
                                                 const std::vector<std::size_t>& items);
 

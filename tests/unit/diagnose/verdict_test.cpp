@@ -114,6 +114,20 @@ std::function<double(int)> anywhere() {
   return [random](int) { return std::uniform_real_distribution<double>(0, 500)(*random); };
 }
 
+/// A wave whose height changes along the axis: two periods that the axis is too short to tell apart.
+TEST(Verdict, TwoPeriodsThatTheAxisDoesNotResolveAreNotNamed) {
+  const Machine machine = parse_machine(kAxis, "m.xml");
+  const std::string text = survey(anywhere(), [](double x, double) {
+    const double turn = 2 * 3.14159265358979 * x;
+    return 0.006 * std::sin(turn / 40) + 0.006 * std::sin(turn / 42.6);
+  });
+
+  const Diagnosis answer = diagnose(kAxis, machine, parse_measurement(text, "m.csv", machine));
+
+  EXPECT_EQ(answer.verdict, Verdict::kUnexplained) << "seed " << kSeed << ": " << answer.explanation;
+  EXPECT_GE(answer.ladder.size(), 3U);
+}
+
 /// A function of X alone, which a table of 17 stations follows: it takes the error away, and is no smooth
 /// curve.
 TEST(Verdict, ACurveFasterThanSmoothIsNotNamed) {
