@@ -2,6 +2,7 @@
 // Part of the composition root: puts the devices of a board file together.
 #include "firmware/devices.h"
 
+#include <poll.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -16,8 +17,8 @@
 #include "firmware/routing.h"
 #include "hal/linux/analogue_output.h"
 #include "hal/linux/can_axes.h"
-#include "hal/linux/iio_input.h"
 #include "hal/linux/monotonic_clock.h"
+#include "hal/linux/sampled_input.h"
 #include "hal/sim/plant.h"
 #include "hal/sim/roaming.h"
 
@@ -26,6 +27,7 @@ namespace {
 
 constexpr double kShareOfRangePerS = 0.1;    // speed of a simulated axis
 constexpr std::int64_t kTicksToZero = 1000;  // at least, for what a drive holds at the start
+constexpr std::uint32_t kMostHandles = 64;   // of all links together
 constexpr TimeUs kPatience(1'000'000), kTrialWait(5'000);
 
 struct AnalogueAxis {
@@ -60,7 +62,8 @@ struct Devices::Parts {
   std::unique_ptr<SimPlant> plant;
   std::map<std::string, std::unique_ptr<CanAxes>> buses;  // by interface
   std::vector<AnalogueAxis> analogue;
-  std::vector<std::unique_ptr<IioInput>> sensors;
+  ModbusLines lines;
+  std::vector<std::unique_ptr<SampledInput>> sensors;
   std::unique_ptr<RoutedAxes> axes;
   std::unique_ptr<RoutedInputs> inputs;
   std::unique_ptr<RoutedOutputs> outputs;
@@ -176,7 +179,7 @@ std::vector<Route<InputReader>> Devices::Parts::make_inputs() {
       continue;
     }
     std::string error;
-    auto input = open_sensor(source, error);
+    auto input = open_sensor(source, lines, error);
     routes[i] = {input.get(), 0};
     note(name, error,
          [input = input.get()] { return input->sample() == HalFault::kNone ? "" : "gives no number"; });
@@ -253,6 +256,18 @@ std::vector<Finding>& Devices::findings() noexcept { return parts_->findings; }
 void Devices::release() noexcept { parts_->plant->release(); }
 void Devices::advance() noexcept { parts_->plant->advance(); }
 bool Devices::has_sensors() const noexcept { return !parts_->sensors.empty(); }
+
+// All links are waited for at once: one that is quiet does not keep a request of another waiting.
+void Devices::wait_for_request(TimeUs wait) noexcept {
+  pollfd waiting[kMostHandles];
+  std::uint32_t count = 0;
+  for (const auto& link : parts_->links) {
+    int handles[kMostHandles];
+    const std::uint32_t added = link->handles(handles, kMostHandles - count);
+    for (std::uint32_t i = 0; i < added; ++i) waiting[count++] = {handles[i], POLLIN, 0};
+  }
+  ::poll(waiting, count, static_cast<int>(wait.count / 1000));
+}
 
 void Devices::sample() noexcept {
   for (auto& sensor : parts_->sensors) sensor->sample();

@@ -33,6 +33,8 @@ class Devices {
   Board board() noexcept;
   Clock& clock() noexcept;
   std::vector<std::unique_ptr<CommandLink>>& links() noexcept;
+  /// Waits until a request comes over one of the links, at most `wait`. setup.
+  void wait_for_request(TimeUs wait) noexcept;
   /// One of each device, in the order of the board file. setup.
   std::vector<Finding>& findings() noexcept;
 

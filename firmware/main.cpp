@@ -152,12 +152,9 @@ void serve_until(const std::atomic<bool>& stop, Service& service, Devices& devic
       notify_service_manager("WATCHDOG=1");
       ticks_told = ticks;
     }
-    for (auto& link : devices.links())
-      service.serve(*link, TimeUs(kServeWait.count / static_cast<std::int64_t>(devices.links().size())));
-    if (devices.links().empty()) {
-      service.look_after_programs();
-      devices.clock().sleep_until(devices.clock().now() + instant_ns(kServeWait));
-    }
+    devices.wait_for_request(kServeWait);
+    for (auto& link : devices.links()) service.serve(*link, TimeUs(0));
+    service.look_after_programs();
   }
 }
 

@@ -11,6 +11,7 @@
 #include "hal/linux/iio_device.h"
 #include "hal/linux/iio_input.h"
 #include "hal/linux/isotp_link.h"
+#include "hal/linux/modbus_input.h"
 #include "hal/linux/modbus_server.h"
 
 namespace vernier {
@@ -23,6 +24,55 @@ GpioAddress gpio_address(const SignalSource& source) {
   if (source.kind != "gpio") source.fail("no line of kind " + source.kind);
   return {source.text("chip"), static_cast<unsigned>(source.whole("line", 0, kMostLines - 1)),
           is_inverted(source)};
+}
+
+std::uint32_t stale_ticks(const SignalSource& source) {
+  return static_cast<std::uint32_t>(source.whole("stale_ticks", kStaleTicks, 1, 1'000'000));
+}
+
+char parity(const SignalSource& source) {
+  const std::string word = source.text("parity", "E");
+  if (word != "E" && word != "O" && word != "N") source.fail("parity must be E, O or N");
+  return word[0];
+}
+
+int baud(const SignalSource& source, std::int64_t otherwise) {
+  return static_cast<int>(source.whole("baud", otherwise, 1, 10'000'000));
+}
+
+ModbusValue modbus_value(const SignalSource& source) {
+  using Type = ModbusValue::Type;
+  static const std::map<std::string, Type> kTypes = {{"int16", Type::kInt16},
+                                                     {"uint16", Type::kUint16},
+                                                     {"int32", Type::kInt32},
+                                                     {"float32", Type::kFloat32}};
+  ModbusValue value;
+  value.unit = static_cast<int>(source.whole("unit", 1, 1, 247));
+  value.address = static_cast<int>(source.whole("register", 0, 65534));
+  const std::string kind = source.text("registers", "input"), type = source.text("type", "int16");
+  if (kind != "input" && kind != "holding") source.fail("registers must be input or holding");
+  if (kind == "holding") value.kind = ModbusLine::Registers::kHolding;
+  if (!kTypes.contains(type)) source.fail("type must be int16, uint16, int32 or float32");
+  value.type = kTypes.at(type);
+  value.offset = source.number("offset", 0);
+  value.scale = source.number("scale");
+  return value;
+}
+
+/// The line of a sensor; several sensors of one device share it with the settings of the first.
+std::shared_ptr<ModbusLine> modbus_line(const SignalSource& source, ModbusLines& lines, std::string& error) {
+  const TimeUs wait(1000 * source.whole("timeout_ms", 200, 1, 10'000));
+  const bool rtu = source.kind == "modbus-rtu";
+  const auto port = rtu ? 0 : static_cast<int>(source.whole("port", 502, 1, 65535));
+  const std::string place = rtu ? source.text("device") : source.text("address") + ":" + std::to_string(port);
+  auto& line = lines[place];
+  if (line == nullptr)
+    line = rtu ? ModbusLine::rtu(place, baud(source, 9600), parity(source), wait, error)
+               : ModbusLine::tcp(source.text("address"), port, wait, error);
+  else if (rtu)
+    static_cast<void>(baud(source, 9600)), static_cast<void>(parity(source));
+  if (line == nullptr && error.empty()) error = place + " is missing";
+  return line;
 }
 
 }  // namespace
@@ -42,15 +92,23 @@ std::unique_ptr<AnalogueOutput> open_analogue(const SignalSource& source, bool r
   return device.empty() ? nullptr : AnalogueOutput::iio_dac(device, channel, scale, error);
 }
 
-std::unique_ptr<IioInput> open_sensor(const SignalSource& source, std::string& error) {
+std::unique_ptr<SampledInput> open_sensor(const SignalSource& source, ModbusLines& lines,
+                                          std::string& error) {
+  if (source.kind == "modbus-rtu" || source.kind == "modbus-tcp") {
+    source.only({"device", "baud", "parity", "address", "port", "timeout_ms", "unit", "register", "registers",
+                 "type", "scale", "offset", "stale_ticks"});
+    const ModbusValue value = modbus_value(source);
+    const auto line = modbus_line(source, lines, error);
+    return line ? std::make_unique<ModbusInput>(line, value, stale_ticks(source)) : nullptr;
+  }
   if (source.kind != "iio") source.fail("no input of kind " + source.kind);
   source.only({"root", "device", "attribute", "scale", "offset", "stale_ticks"});
   const IioScale scale{source.number("offset", 0), source.number("scale")};
-  const auto stale = static_cast<std::uint32_t>(source.whole("stale_ticks", kStaleTicks, 1, 1'000'000));
   const std::string attribute = source.text("attribute");
   if (attribute.empty()) source.fail("attribute is empty");
   const std::string device = find_iio_device(source.text("root", kIioRoot), source.text("device"), error);
-  return device.empty() ? nullptr : IioInput::open(device + "/" + attribute, scale, stale, error);
+  return device.empty() ? nullptr
+                        : IioInput::open(device + "/" + attribute, scale, stale_ticks(source), error);
 }
 
 std::unique_ptr<CommandLink> open_link(const SignalSource& source, std::string& error) {
@@ -65,10 +123,7 @@ std::unique_ptr<CommandLink> open_link(const SignalSource& source, std::string& 
   }
   if (source.kind == "modbus-rtu") {
     source.only({"device", "baud", "parity", "unit"});
-    const std::string parity = source.text("parity", "E");
-    if (parity != "E" && parity != "O" && parity != "N") source.fail("parity must be E, O or N");
-    return ModbusServer::rtu(source.text("device"),
-                             static_cast<int>(source.whole("baud", 115200, 1, 10'000'000)), parity[0],
+    return ModbusServer::rtu(source.text("device"), baud(source, 115200), parity(source),
                              static_cast<int>(source.whole("unit", 1, 1, 247)), layout, error);
   }
   if (source.kind != "isotp") source.fail("no link of kind " + source.kind);

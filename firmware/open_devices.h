@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <map>
 #include <memory>
 #include <string>
 
@@ -11,15 +12,19 @@
 namespace vernier {
 
 class AnalogueOutput;
-class IioInput;
+class ModbusLine;
+class SampledInput;
+
+/// Lines that several sensors share, by device or address.
+using ModbusLines = std::map<std::string, std::shared_ptr<ModbusLine>>;
 
 // Each opens one device of the board file. Null with `error` set where it is missing; a kind or a setting
 // that is wrong throws BoardError. setup.
 
 /// A PWM channel or a converter. rotary: spans are in degrees, else in mm.
 std::unique_ptr<AnalogueOutput> open_analogue(const SignalSource& source, bool rotary, std::string& error);
-/// A sensor.
-std::unique_ptr<IioInput> open_sensor(const SignalSource& source, std::string& error);
+/// A sensor. lines: those that are open, and one more where it needs it.
+std::unique_ptr<SampledInput> open_sensor(const SignalSource& source, ModbusLines& lines, std::string& error);
 /// A way in from outside.
 std::unique_ptr<CommandLink> open_link(const SignalSource& source, std::string& error);
 /// Lines of kind "gpio".

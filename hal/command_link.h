@@ -26,6 +26,11 @@ class CommandLink {
   /// Waits at most `wait` for requests and answers those that came. kRefused: the link is broken and has been
   /// taken up again, or will be at the next call; a peer that misbehaves is no fault. setup.
   virtual HalFault serve(CommandHandler& handler, TimeUs wait) noexcept = 0;
+  /// What the operating system can wait on until a request comes: at most `room` handles are put into
+  /// `handles`. Returns how many; 0 where the link has none. setup.
+  virtual std::uint32_t handles(int* handles, std::uint32_t room) const noexcept {
+    return static_cast<void>(handles), static_cast<void>(room), 0;
+  }
 };
 
 }  // namespace vernier

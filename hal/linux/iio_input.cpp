@@ -1,14 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hal/linux/iio_input.h"
 
-#include <cmath>
-
 namespace vernier {
-namespace {
-
-constexpr double kMicro = 1e6, kMostMicro = 1e18;
-
-}  // namespace
 
 std::unique_ptr<IioInput> IioInput::open(const std::string& attribute, const IioScale& scale,
                                          std::uint32_t stale_reads, std::string& error) {
@@ -20,35 +13,8 @@ std::unique_ptr<IioInput> IioInput::open(const std::string& attribute, const Iio
 HalFault IioInput::take(std::int64_t& value) noexcept {
   std::int64_t micro = 0;
   if (attribute_.read_micro(micro) != HalFault::kNone) return HalFault::kNoReading;
-  const double scaled = (static_cast<double>(micro) + scale_.offset * kMicro) * scale_.scale;
-  if (!(std::fabs(scaled) < kMostMicro)) return HalFault::kNoReading;
-  value = std::llround(scaled);
-  return HalFault::kNone;
-}
-
-HalFault IioInput::sample() noexcept {
-  std::int64_t value = 0;
-  const HalFault fault = take(value);
-  if (fault != HalFault::kNone) {
-    good_.store(0, std::memory_order_release);
-    return fault;
-  }
-  // A reader that finds the number of this sample finds its value, or that of a later one.
-  if (++samples_ == 0) samples_ = 1;
-  value_.store(value, std::memory_order_relaxed);
-  good_.store(samples_, std::memory_order_release);
-  return HalFault::kNone;
-}
-
-HalFault IioInput::read_input(std::uint32_t input, InputMicro& value) noexcept {
-  if (input != 0) return HalFault::kNoDevice;
-  const std::uint32_t good = good_.load(std::memory_order_acquire);
-  if (good == 0) return HalFault::kNoReading;
-  reads_ = good == seen_ ? (reads_ < UINT32_MAX ? reads_ + 1 : reads_) : 0;
-  seen_ = good;
-  if (reads_ >= stale_reads_) return HalFault::kNoReading;
-  value = InputMicro(value_.load(std::memory_order_relaxed));
-  return HalFault::kNone;
+  return scaled(static_cast<double>(micro), scale_.offset, scale_.scale, value) ? HalFault::kNone
+                                                                                : HalFault::kNoReading;
 }
 
 }  // namespace vernier

@@ -19,6 +19,10 @@ class IsotpLink : public CommandLink {
   IsotpLink& operator=(const IsotpLink&) = delete;
 
   HalFault serve(CommandHandler& handler, TimeUs wait) noexcept override;
+  std::uint32_t handles(int* handles, std::uint32_t room) const noexcept override {
+    if (room > 0) handles[0] = fd_;
+    return room > 0 ? 1 : 0;
+  }
 
   /// The asking side: sends a request and waits for its reply. Returns the bytes of the reply, -1 with errno
   /// set where none came. setup.

@@ -161,6 +161,14 @@ bool ModbusServer::serve_client(Client& client, CommandHandler& handler) noexcep
   return respond(client, handler, query, size) || serial;
 }
 
+std::uint32_t ModbusServer::handles(int* handles, std::uint32_t room) const noexcept {
+  std::uint32_t count = 0;
+  if (listening_ >= 0 && room > 0) handles[count++] = listening_;
+  for (const Client& client : clients_)
+    if (count < room) handles[count++] = client.fd;
+  return count;
+}
+
 HalFault ModbusServer::serve(CommandHandler& handler, TimeUs wait) noexcept {
   std::vector<pollfd> waiting;
   for (const Client& client : clients_) waiting.push_back({client.fd, POLLIN, 0});

@@ -36,6 +36,7 @@ class ModbusServer : public CommandLink {
   ModbusServer& operator=(const ModbusServer&) = delete;
 
   HalFault serve(CommandHandler& handler, TimeUs wait) noexcept override;
+  std::uint32_t handles(int* handles, std::uint32_t room) const noexcept override;
   /// The port that it listens on; 0 on a serial line.
   int port() const noexcept { return port_; }
 

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "hal/clock.h"
+#include "hal/linux/sampled_input.h"
+
+struct _modbus;
+
+namespace vernier {
+
+/// The asking side of a Modbus line (libmodbus): a serial line that several sensors share, or a connection.
+/// Never used in the tick.
+class ModbusLine {
+ public:
+  /// device: "/dev/ttyS1"; 8 data bits, `parity` N, E or O, one stop bit; wait: for an answer. Null with
+  /// `error` set where the device cannot be used. setup.
+  static std::shared_ptr<ModbusLine> rtu(const std::string& device, int baud, char parity, TimeUs wait,
+                                         std::string& error);
+  /// address: numeric. A peer that is not there is no error: it is tried again with each reading. setup.
+  static std::shared_ptr<ModbusLine> tcp(const std::string& address, int port, TimeUs wait,
+                                         std::string& error);
+  ~ModbusLine();
+  ModbusLine(const ModbusLine&) = delete;
+  ModbusLine& operator=(const ModbusLine&) = delete;
+
+  enum class Registers { kInput, kHolding };
+  /// Reads `count` registers (1 or 2). False: no answer in time, an exception, or an answer to something
+  /// else. After silence the line is left alone for as long again, so that a late answer is not taken for
+  /// that of the next request. setup.
+  bool read(int unit, Registers kind, int address, int count, std::uint16_t* values) noexcept;
+
+ private:
+  ModbusLine(_modbus* context, bool serial, TimeUs wait);
+  bool connected() noexcept;
+
+  _modbus* context_;
+  bool serial_, open_ = false, after_silence_ = false;
+  TimeUs wait_;
+};
+
+/// Where a value stands and what it means: value = (number + offset) * scale in the input's unit.
+struct ModbusValue {
+  /// 32 bits: high word first.
+  enum class Type { kInt16, kUint16, kInt32, kFloat32 };
+  int unit = 1, address = 0;
+  ModbusLine::Registers kind = ModbusLine::Registers::kInput;
+  Type type = Type::kInt16;
+  double offset = 0, scale = 1;
+};
+
+/// A value of a Modbus device as a sensor.
+class ModbusInput : public SampledInput {
+ public:
+  ModbusInput(std::shared_ptr<ModbusLine> line, const ModbusValue& value, std::uint32_t stale_reads)
+      : SampledInput(stale_reads), line_(std::move(line)), value_(value) {}
+
+ private:
+  HalFault take(std::int64_t& micro) noexcept override;
+
+  std::shared_ptr<ModbusLine> line_;
+  ModbusValue value_;
+};
+
+}  // namespace vernier

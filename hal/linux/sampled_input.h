@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <atomic>
+#include <cstdint>
+
+#include "hal/input_reader.h"
+
+namespace vernier {
+
+/// A sensor whose answer takes its time, often milliseconds: a thread of its own takes the samples, and the
+/// tick finds the newest one. Its own input 0 is the only one.
+class SampledInput : public InputReader {
+ public:
+  /// Takes a sample; waits for the device. Returns what the next reads will. One thread, not the tick's.
+  HalFault sample() noexcept;
+  /// The newest sample, once per tick. kNoReading: the last attempt failed, there was none yet, or none came
+  /// for stale_reads reads. realtime.
+  HalFault read_input(std::uint32_t input, InputMicro& value) noexcept override;
+
+ protected:
+  /// stale_reads: reads without a new sample until the sensor counts as silent.
+  explicit SampledInput(std::uint32_t stale_reads) : stale_reads_(stale_reads) {}
+  /// One sample, 1e-6 of the unit of the input. kNoReading: there was none. Waits.
+  virtual HalFault take(std::int64_t& micro) noexcept = 0;
+  /// (raw + offset) * scale of a value in 1e-6; false where that is no number, or too large for an input.
+  static bool scaled(double raw_micro, double offset, double scale, std::int64_t& micro) noexcept;
+
+ private:
+  std::uint32_t stale_reads_;
+  std::atomic<std::int64_t> value_{0};
+  std::atomic<std::uint32_t> good_{0};  // samples so far; 0: the last attempt failed
+  std::uint32_t samples_ = 0;           // of the sampling thread
+  std::uint32_t seen_ = 0, reads_ = 0;  // of the tick
+};
+
+}  // namespace vernier

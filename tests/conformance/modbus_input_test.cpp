@@ -1,0 +1,284 @@
+// Modbus sensors on a joined pseudo terminal, whose far end answers by hand: values to the digit, and what a
+// silent, a late, a babbling and a lying peer look like.
+#include <arpa/inet.h>
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <bit>
+#include <cstring>
+#include <functional>
+#include <mutex>
+#include <random>
+#include <string>
+#include <thread>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "hal/linux/modbus_input.h"
+
+namespace vernier {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+constexpr TimeUs kWait(60'000);
+
+/// CRC-16 of MODBUS over serial line V1.02, 6.2.2.
+Bytes with_crc(Bytes frame) {
+  unsigned crc = 0xffff;
+  for (const std::uint8_t byte : frame) {
+    crc ^= byte;
+    for (int bit = 0; bit < 8; ++bit) crc = (crc & 1) != 0 ? (crc >> 1) ^ 0xa001 : crc >> 1;
+  }
+  frame.push_back(static_cast<std::uint8_t>(crc & 0xff)),
+      frame.push_back(static_cast<std::uint8_t>(crc >> 8));
+  return frame;
+}
+
+/// The sensors' end of a serial line: answers each request of 8 bytes with what `answer` makes of it.
+class FarEnd {
+ public:
+  using Answer = std::function<Bytes(const Bytes&)>;
+  explicit FarEnd(Answer answer) : answer_(std::move(answer)), fd_(::posix_openpt(O_RDWR | O_NOCTTY)) {
+    ::grantpt(fd_), ::unlockpt(fd_);
+    termios raw{};
+    ::tcgetattr(fd_, &raw);
+    ::cfmakeraw(&raw);
+    ::tcsetattr(fd_, TCSANOW, &raw);
+    path_ = ::ptsname(fd_);
+    thread_ = std::thread([this] { serve(); });
+  }
+  ~FarEnd() {
+    stop_ = true;
+    thread_.join();
+    ::close(fd_);
+  }
+  const std::string& path() const { return path_; }
+  void set(Answer answer) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    answer_ = std::move(answer);
+  }
+
+ private:
+  void serve() {
+    Bytes request;
+    while (!stop_) {
+      pollfd waiting{fd_, POLLIN, 0};
+      std::uint8_t byte = 0;
+      if (::poll(&waiting, 1, 5) <= 0 || ::read(fd_, &byte, 1) != 1) continue;
+      request.push_back(byte);
+      if (request.size() < 8) continue;
+      Bytes reply;
+      {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        reply = answer_(request);
+      }
+      EXPECT_EQ(::write(fd_, reply.data(), reply.size()), static_cast<ssize_t>(reply.size()));
+      request.clear();
+    }
+  }
+
+  std::mutex mutex_;
+  Answer answer_;
+  int fd_;
+  std::string path_;
+  std::atomic<bool> stop_{false};
+  std::thread thread_;
+};
+
+/// What a sensor answers that holds `words` from the register that was asked for.
+FarEnd::Answer holds(const std::vector<std::uint16_t>& words) {
+  return [words](const Bytes& request) {
+    Bytes reply = {request[0], request[1], static_cast<std::uint8_t>(2 * words.size())};
+    for (const std::uint16_t word : words)
+      reply.push_back(static_cast<std::uint8_t>(word >> 8)), reply.push_back(static_cast<std::uint8_t>(word));
+    return with_crc(reply);
+  };
+}
+
+class ModbusSensor : public testing::Test {
+ protected:
+  ModbusSensor() : far_(holds({215})), line_(ModbusLine::rtu(far_.path(), 9600, 'N', kWait, error_)) {}
+  ModbusValue value(ModbusValue::Type type = ModbusValue::Type::kInt16) const {
+    return {.unit = 3, .address = 7, .type = type, .scale = 0.1};
+  }
+  std::int64_t reading(ModbusInput& input) {
+    InputMicro micro(-7);
+    if (input.sample() != HalFault::kNone) return INT64_MIN;
+    return input.read_input(0, micro) == HalFault::kNone ? micro.count : INT64_MIN;
+  }
+  std::string error_;
+  FarEnd far_;
+  std::shared_ptr<ModbusLine> line_;
+};
+
+TEST_F(ModbusSensor, AsksForItsRegisterAndGivesItsUnit) {
+  ASSERT_NE(line_, nullptr) << error_;
+  ModbusInput input(line_, value(), 3);
+  InputMicro before;
+  EXPECT_EQ(input.read_input(0, before), HalFault::kNoReading) << "no sample yet";
+  Bytes asked;
+  far_.set([&](const Bytes& request) { return asked = request, holds({215})(request); });
+  EXPECT_EQ(reading(input), 21'500'000);
+  EXPECT_EQ(asked, with_crc({3, 4, 0, 7, 0, 1}));
+  EXPECT_EQ(input.read_input(1, before), HalFault::kNoDevice);
+}
+
+TEST_F(ModbusSensor, ReadsEveryTypeToTheDigit) {
+  using Type = ModbusValue::Type;
+  ASSERT_NE(line_, nullptr) << error_;
+  const auto bits = std::bit_cast<std::uint32_t>(-12.75f);
+  const std::tuple<Type, std::vector<std::uint16_t>, std::int64_t> kCases[] = {
+      {Type::kInt16, {0xff9c}, -10'000'000},
+      {Type::kUint16, {0xff9c}, 6'543'600'000},
+      {Type::kInt32, {0xffff, 0xfc18}, -100'000'000},
+      {Type::kFloat32,
+       {static_cast<std::uint16_t>(bits >> 16), static_cast<std::uint16_t>(bits)},
+       -1'275'000}};
+  for (const auto& [type, words, micro] : kCases) {
+    far_.set(holds(words));
+    ModbusInput input(line_, value(type), 3);
+    EXPECT_EQ(reading(input), micro);
+  }
+  ModbusValue shifted = value();
+  shifted.kind = ModbusLine::Registers::kHolding, shifted.offset = -15;
+  Bytes asked;
+  far_.set([&](const Bytes& request) { return asked = request, holds({215})(request); });
+  ModbusInput holding(line_, shifted, 3);
+  EXPECT_EQ(reading(holding), 20'000'000);
+  EXPECT_EQ(asked[1], 3);
+}
+
+TEST_F(ModbusSensor, LyingPeerGivesNoReading) {
+  ASSERT_NE(line_, nullptr) << error_;
+  ModbusInput input(line_, value(), 3);
+  const std::pair<const char*, FarEnd::Answer> kLies[] = {
+      {"silence", [](const Bytes&) { return Bytes{}; }},
+      {"another unit",
+       [](const Bytes&) {
+         return with_crc({4, 4, 2, 0, 215});
+       }},
+      {"another function",
+       [](const Bytes&) {
+         return with_crc({3, 3, 2, 0, 215});
+       }},
+      {"a wrong checksum", [](const Bytes&) { return Bytes{3, 4, 2, 0, 215, 0, 0}; }},
+      {"more registers",
+       [](const Bytes&) {
+         return with_crc({3, 4, 4, 0, 215, 0, 215});
+       }},
+      {"fewer registers",
+       [](const Bytes&) {
+         return with_crc({3, 4, 0});
+       }},
+      {"an answer cut off",
+       [](const Bytes&) {
+         return Bytes{3, 4, 2, 0};
+       }},
+      {"an exception",
+       [](const Bytes&) {
+         return with_crc({3, 0x84, 2});
+       }},
+      {"babble", [](const Bytes&) { return Bytes(256, 0x55); }}};
+  for (const auto& [what, lie] : kLies) {
+    far_.set(lie);
+    EXPECT_EQ(reading(input), INT64_MIN) << what;
+    far_.set(holds({215}));
+    EXPECT_EQ(reading(input), 21'500'000) << "recovers at once from " << what;
+  }
+}
+
+TEST_F(ModbusSensor, LateAnswerIsNotTakenForTheNext) {
+  ASSERT_NE(line_, nullptr) << error_;
+  ModbusInput input(line_, value(), 3);
+  far_.set([](const Bytes& request) {
+    ::usleep(static_cast<useconds_t>(kWait.count * 3 / 2));
+    return holds({999})(request);
+  });
+  EXPECT_EQ(reading(input), INT64_MIN);
+  far_.set(holds({215}));
+  EXPECT_EQ(reading(input), 21'500'000) << "not the 99.9 that came late";
+}
+
+TEST_F(ModbusSensor, NumberThatIsNoneIsNoReading) {
+  ASSERT_NE(line_, nullptr) << error_;
+  ModbusInput input(line_, value(ModbusValue::Type::kFloat32), 3);
+  far_.set(holds({0x7fc0, 0}));
+  EXPECT_EQ(reading(input), INT64_MIN) << "not a number";
+  far_.set(holds({0x7f80, 0}));
+  EXPECT_EQ(reading(input), INT64_MIN) << "infinite";
+}
+
+TEST_F(ModbusSensor, ChangedFramesAreNeverTaken) {
+  ASSERT_NE(line_, nullptr) << error_;
+  constexpr unsigned kSeed = 1;
+  RecordProperty("seed", kSeed);
+  std::mt19937 random(kSeed);
+  ModbusInput input(line_, value(), 3);
+  const Bytes good = with_crc({3, 4, 2, 0, 215});
+  int refused = 0;
+  // One to three changed bits are always seen by the checksum (its distance is 4 at this length).
+  for (int i = 0; i < 25; ++i) {
+    Bytes changed = good;
+    const int bits = 1 + static_cast<int>(random() % 3);
+    for (int k = 0; k < bits; ++k)
+      changed[random() % changed.size()] ^= static_cast<std::uint8_t>(1u << random() % 8);
+    if (changed == good) continue;
+    far_.set([changed](const Bytes&) { return changed; });
+    ASSERT_EQ(reading(input), INT64_MIN);
+    ++refused;
+  }
+  EXPECT_GT(refused, 15);
+}
+
+TEST(ModbusTcpSensor, PeerThatIsNotThereIsTriedAgain) {
+  // GIVEN a port on which nobody listens
+  const int listener = ::socket(AF_INET, SOCK_STREAM, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof(address);
+  ASSERT_EQ(::bind(listener, reinterpret_cast<sockaddr*>(&address), size), 0);
+  ASSERT_EQ(::getsockname(listener, reinterpret_cast<sockaddr*>(&address), &size), 0);
+  std::string error;
+  ModbusInput input(ModbusLine::tcp("127.0.0.1", ntohs(address.sin_port), kWait, error),
+                    {.unit = 3, .address = 7, .scale = 0.1}, 3);
+  EXPECT_EQ(input.sample(), HalFault::kNoReading);
+  // WHEN it comes up, answers once, and breaks off in the middle of the next answer
+  ASSERT_EQ(::listen(listener, 1), 0);
+  std::thread peer([&] {
+    for (const std::size_t bytes : {std::size_t{11}, std::size_t{5}, std::size_t{11}}) {
+      static int fd = -1;
+      if (fd < 0) fd = ::accept(listener, nullptr, nullptr);
+      std::uint8_t query[12];
+      if (::recv(fd, query, sizeof(query), MSG_WAITALL) != 12) return;
+      const std::uint8_t reply[11] = {query[0], query[1], 0, 0, 0, 5, 3, 4, 2, 0, 215};
+      EXPECT_EQ(::send(fd, reply, bytes, MSG_NOSIGNAL), static_cast<ssize_t>(bytes));
+      if (bytes < 11) ::close(fd), fd = -1;
+    }
+  });
+  // THEN it is read, then silent, then read again
+  EXPECT_EQ(input.sample(), HalFault::kNone);
+  EXPECT_EQ(input.sample(), HalFault::kNoReading);
+  EXPECT_EQ(input.sample(), HalFault::kNone);
+  InputMicro micro;
+  EXPECT_EQ(input.read_input(0, micro), HalFault::kNone);
+  EXPECT_EQ(micro, InputMicro(21'500'000));
+  peer.join();
+  ::close(listener);
+}
+
+TEST(ModbusLineSetUp, MissingDeviceIsNamed) {
+  std::string error;
+  EXPECT_EQ(ModbusLine::rtu("/dev/no_such_line", 9600, 'E', kWait, error), nullptr);
+  EXPECT_NE(error.find("/dev/no_such_line: No such file"), std::string::npos) << error;
+}
+
+}  // namespace
+}  // namespace vernier
