@@ -13,6 +13,7 @@ namespace vernier {
 using RegisterCommand = void (*)(CLI::App& vernier);
 
 void register_import(CLI::App& vernier);
+void register_features(CLI::App& vernier);
 void register_fit(CLI::App& vernier);
 void register_compare(CLI::App& vernier);
 void register_diagnose(CLI::App& vernier);

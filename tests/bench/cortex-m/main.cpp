@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "tables/checksum.h"
+#include "tests/bench/cortex-m/semihost.h"
 #include "tests/bench/poses.h"
 
 extern "C" const std::uint8_t bench_image[];
@@ -16,36 +17,7 @@ namespace {
 #endif
 constexpr int kTicks = BENCH_TICKS;
 
-// Armv7-M ARM B3.3: SysTick control, reload and current value.
-volatile std::uint32_t& at(std::uint32_t address) {
-  return *reinterpret_cast<volatile std::uint32_t*>(address);
-}
-std::uint32_t systick() { return at(0xe000e018); }
-void start_systick() {
-  at(0xe000e014) = 0xffffff;
-  at(0xe000e018) = 0;
-  at(0xe000e010) = 5;
-}
-
-// Semihosting (Arm IHI 0042): r0 the operation, r1 its argument.
-std::uint32_t semihost(std::uint32_t operation, const void* argument) {
-  register std::uint32_t r0 asm("r0") = operation;
-  register const void* r1 asm("r1") = argument;
-  asm volatile("bkpt 0xab" : "+r"(r0) : "r"(r1) : "memory");
-  return r0;
-}
-void print(const char* text) { semihost(4, text); }
-void print_hex(std::uint32_t value) {
-  char text[9] = {};
-  for (int i = 7; i >= 0; --i, value >>= 4) text[i] = "0123456789abcdef"[value & 15u];
-  print(text);
-}
-[[noreturn]] void leave(std::uint32_t status) {
-  const std::uint32_t block[2] = {0x20026, status};
-  semihost(0x20, block);
-  for (;;) {
-  }
-}
+using namespace vernier::bench;
 
 vernier::ImageWorkspace workspace;
 vernier::ImageView view;

@@ -26,9 +26,9 @@ bool is_freestanding(std::string_view header) {
 
 // Order in which the folders of tools build on one another; a folder may use those before it.
 int rank_of_tool(std::string_view folder) {
-  static constexpr std::array<std::string_view, 15> kOrder = {
-      "model",  "import",   "fit",    "kinematics", "exchange", "diagnose", "plan", "compile",
-      "derive", "simulate", "upload", "report",     "part",     "map",      "cli"};
+  static constexpr std::array<std::string_view, 16> kOrder = {
+      "model",   "import", "vibration", "fit",    "kinematics", "exchange", "diagnose", "plan",
+      "compile", "derive", "simulate",  "upload", "report",     "part",     "map",      "cli"};
   const auto found = std::find(kOrder.begin(), kOrder.end(), folder);
   return found == kOrder.end() ? -1 : static_cast<int>(found - kOrder.begin());
 }

@@ -1,0 +1,60 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/model/csv.h"
+#include "tools/vibration/alignment.h"
+#include "tools/vibration/signal_features.h"
+
+namespace vernier {
+
+/// One signal of an accelerometer record.
+struct Signal {
+  std::string name, unit;
+  std::vector<double> value;
+};
+
+/// An accelerometer record: signals sampled evenly, and positions where the record has them (CSV: `t[s]` or a
+/// given rate; every other column is a signal unless it is named as a position).
+struct VibrationRecord {
+  double start_s = 0, rate_Hz = 0;
+  std::vector<Signal> signals, positions;
+  std::size_t samples = 0;
+};
+
+/// `rate_Hz`: of a record without t; else t must be even to 1 % of a sample period and gives the rate. Throws
+/// InputError with line and word: an empty or malformed cell, uneven t, no signal. tool.
+VibrationRecord read_vibration(const CsvFile& file, std::optional<double> rate_Hz,
+                               const std::vector<std::string>& positions);
+
+/// Adds the signal `name` = a - b ("wrist=hand-base"); throws InputError for an unknown signal or a
+/// difference of two units. tool.
+void add_difference(VibrationRecord& record, const std::string& definition);
+
+/// What `vernier features` computes of each signal.
+struct FeatureChoice {
+  std::size_t window = 1500;
+  std::vector<std::size_t> features;  // indices of kFeatureNames
+  bool centred = false;               // the record's mean is taken off first
+};
+
+/// A column for each signal and feature (SIGNAL_FEATURE), signals outermost: features of the window that ends
+/// at each sample of `ends`, as the board has them at that instant; empty where a window is not full or a
+/// feature is 0/0. tool.
+struct FeatureColumns {
+  std::vector<std::string> header;
+  std::vector<std::vector<std::string>> cells;  // by row, then column
+  std::size_t empty_rows = 0;                   // no full window
+};
+FeatureColumns feature_columns(const VibrationRecord& record, const FeatureChoice& choice,
+                               const std::vector<std::optional<std::size_t>>& ends);
+
+/// Column `name` of a measurement file in its base unit (mm, deg, s, ...); throws InputError where it is
+/// absent or a cell is no number. tool.
+std::vector<double> numeric_column(const CsvFile& file, const std::string& name);
+
+/// Second derivative of a position over (uneven) times, as a record: one value less at each end. tool.
+Series acceleration_of(const std::vector<double>& t_s, const std::vector<double>& position);
+
+}  // namespace vernier

@@ -1,0 +1,112 @@
+#include "tools/vibration/integration.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "tools/model/error.h"
+#include "tools/vibration/fourier.h"
+
+namespace vernier {
+namespace {
+
+/// |F|^2/N of the lines above the mean value.
+std::vector<double> line_powers(std::span<const double> x) {
+  Fourier fourier(x.size());
+  const auto lines = fourier.forward(x);
+  std::vector<double> powers;
+  for (std::size_t k = 1; k < lines.size(); ++k)
+    powers.push_back(std::norm(lines[k]) / static_cast<double>(x.size()));
+  return powers;
+}
+
+std::vector<double> cumulated(std::span<const double> x, double step) {
+  std::vector<double> sum(x.size(), 0);
+  for (std::size_t i = 1; i < x.size(); ++i) sum[i] = sum[i - 1] + (x[i - 1] + x[i]) / 2 * step;
+  return sum;
+}
+
+void centre(std::vector<double>& x) {
+  const double mean = std::accumulate(x.begin(), x.end(), 0.0) / static_cast<double>(x.size());
+  for (double& value : x) value -= mean;
+}
+
+void check(const CircularPass& pass) {
+  if (pass.ax.size() < 4 || pass.ay.size() != pass.ax.size() || pass.angle_rad.size() != pass.ax.size())
+    throw InputError("a circular pass needs accelerations of two axes and an angle for each of its samples");
+}
+
+}  // namespace
+
+std::vector<double> kept_lines(std::span<const double> x, double cutoff, SpectralCut* cut) {
+  Fourier fourier(x.size());
+  const auto lines = fourier.forward(x);
+  std::vector<std::complex<double>> kept(lines.begin(), lines.end());
+  kept[0] = 0;
+  std::size_t count = 0;
+  for (std::size_t k = 1; k < kept.size(); ++k) {
+    if (std::norm(kept[k]) / static_cast<double>(x.size()) > cutoff) {
+      ++count;
+    } else {
+      kept[k] = 0;
+    }
+  }
+  if (cut != nullptr) *cut = {cutoff, count, kept.size() - 1};
+  const auto series = fourier.backward(kept);
+  return {series.begin(), series.end()};
+}
+
+std::vector<double> integrate_twice(std::span<const double> x, double rate_Hz, Constants constants) {
+  std::vector<double> speed = cumulated(x, 1 / rate_Hz);
+  if (constants == Constants::kCentred) centre(speed);
+  std::vector<double> travel = cumulated(speed, 1 / rate_Hz);
+  if (constants == Constants::kCentred) centre(travel);
+  return travel;
+}
+
+double noise_floor_cutoff(std::span<const double> x, double records) {
+  std::vector<double> powers = line_powers(x);
+  const auto middle = powers.begin() + static_cast<std::ptrdiff_t>(powers.size() / 2);
+  std::nth_element(powers.begin(), middle, powers.end());
+  return *middle / std::log(2.0) * std::log(static_cast<double>(powers.size()) * records);
+}
+
+double mean_radial_um(const CircularPass& pass, double cutoff, Constants constants) {
+  check(pass);
+  const std::vector<double> x = integrate_twice(kept_lines(pass.ax, cutoff), pass.rate_Hz, constants);
+  const std::vector<double> y = integrate_twice(kept_lines(pass.ay, cutoff), pass.rate_Hz, constants);
+  double sum = 0;
+  for (std::size_t i = 0; i < x.size(); ++i)
+    sum += x[i] * std::cos(pass.angle_rad[i]) + y[i] * std::sin(pass.angle_rad[i]);
+  return sum / static_cast<double>(x.size()) * 1e3;
+}
+
+FittedCut fitted_cutoff(const std::vector<CircularPass>& passes, Constants constants, std::size_t steps) {
+  if (passes.empty()) throw InputError("no circular pass to find a cut-off with");
+  std::vector<double> powers;
+  for (const CircularPass& pass : passes) {
+    check(pass);
+    for (const auto* axis : {&pass.ax, &pass.ay}) {
+      const std::vector<double> more = line_powers(*axis);
+      powers.insert(powers.end(), more.begin(), more.end());
+    }
+  }
+  std::sort(powers.begin(), powers.end(), std::greater<>());
+  FittedCut best{0, HUGE_VAL};
+  std::size_t last = powers.size();
+  for (std::size_t step = 0; step < steps; ++step) {
+    // Even steps of the logarithm of how many lines are kept: the strong ones decide.
+    const double share = static_cast<double>(step) / static_cast<double>(std::max<std::size_t>(steps - 1, 1));
+    const auto kept = static_cast<std::size_t>(std::pow(static_cast<double>(powers.size() - 1), share));
+    if (kept == last) continue;
+    last = kept;
+    const double cutoff = (powers[kept - 1] + powers[kept]) / 2;
+    double objective = 0;
+    for (const CircularPass& pass : passes)
+      objective += std::fabs(pass.mean_ballbar_um - mean_radial_um(pass, cutoff, constants));
+    if (objective < best.objective_um) best = {cutoff, objective};
+  }
+  return best;
+}
+
+}  // namespace vernier

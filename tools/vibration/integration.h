@@ -1,0 +1,53 @@
+#pragma once
+#include <span>
+#include <vector>
+
+namespace vernier {
+
+/// Spectral lines of a record that are kept: |F|^2/N above a cut-off, in the unit of the samples squared (C.
+/// Walker, PhD thesis, University of Strathclyde 2026, section 4; `facts.json` fft_filter).
+struct SpectralCut {
+  double cutoff = 0;
+  std::size_t kept = 0, lines = 0;  // without the mean value
+};
+
+/// What becomes of the two constants of integration.
+enum class Constants {
+  kPublished,  // velocity and displacement start at 0: what the mean of either then is stays in
+  kCentred,    // mean velocity and mean displacement of the record are 0
+};
+
+/// The record without the lines at or below `cutoff`, and without its mean. x: n >= 2 samples. tool.
+std::vector<double> kept_lines(std::span<const double> x, double cutoff, SpectralCut* cut = nullptr);
+
+/// Displacement from acceleration by cumulative trapezoids, twice (equations 4-1, 4-2). x in unit/s^2; result
+/// in that unit. tool.
+std::vector<double> integrate_twice(std::span<const double> x, double rate_Hz, Constants constants);
+
+/// Cut-off that lines of white noise alone pass once in `records` records: the floor is the median line over
+/// ln 2 (lines of noise are exponentially distributed), times ln(lines * records). Half the lines at most may
+/// be signal. tool.
+double noise_floor_cutoff(std::span<const double> x, double records = 20);
+
+/// One pass of a ball bar with an accelerometer at the tool: accelerations in mm/s^2, angle of the commanded
+/// position of each sample in rad, and the mean of the ball bar's deviations, um.
+struct CircularPass {
+  std::vector<double> ax, ay, angle_rad;
+  double rate_Hz = 0;
+  double mean_ballbar_um = 0;
+};
+
+/// Radial displacement of a pass, um, mean over the record, with lines of both axes kept above the cut-off.
+double mean_radial_um(const CircularPass& pass, double cutoff, Constants constants);
+
+/// The cut-off that makes the objective of equation 4-1 least: the sum over passes (clockwise,
+/// counter-clockwise) of |mean(ball bar) - mean(accelerometer)|. The objective changes only where a line is
+/// dropped: it is searched over `steps` cut-offs between the lines of all passes in order of power. Returns
+/// cut-off and objective (um). Throws InputError for records of unequal length or none. tool.
+struct FittedCut {
+  double cutoff = 0, objective_um = 0;
+};
+FittedCut fitted_cutoff(const std::vector<CircularPass>& passes, Constants constants,
+                        std::size_t steps = 200);
+
+}  // namespace vernier
