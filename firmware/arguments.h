@@ -6,7 +6,8 @@ namespace vernier {
 
 /// What vernierd was called with.
 struct Arguments {
-  std::string image, board, json;
+  std::string image, board, json, calibrate, measured;
+  int steps = 11;
   double seconds = 0;
   unsigned long seed = 1;
   bool simulate = false, realtime = true, check = false, help = false;

@@ -115,6 +115,33 @@ AxisSetting setting_of(Table& settings, bool rotary, TimeUs tick) {
   return setting;
 }
 
+std::string beside(const std::string& board_path, const std::string& path) {
+  const std::filesystem::path given(path);
+  if (given.is_absolute()) return path;
+  return (std::filesystem::path(board_path).parent_path() / given).string();
+}
+
+/// What a calibration has found counts instead of the board file's own settings. A file that is not there yet
+/// is missed only where the output is opened.
+void apply_calibration(const std::string& board_path, SignalSource& output) {
+  const std::string path = output.text("calibration", "");
+  if (path.empty()) return;
+  output.texts["calibration"] = beside(board_path, path);
+  toml::table table;
+  try {
+    if (!std::filesystem::exists(output.texts["calibration"])) return;
+    table = toml::parse_file(output.texts["calibration"]);
+  } catch (const toml::parse_error& error) {
+    throw BoardError{output.texts["calibration"] + ":" + std::to_string(error.source().begin.line) + ": " +
+                     std::string(error.description())};
+  }
+  Table settings(table, output.texts["calibration"], "calibration");
+  output.numbers["span"] = settings.number("span", 0, 1e-9, 1e4);
+  output.numbers[output.kind == "pwm" ? "zero_ns" : "zero"] = settings.number("zero", 0, 0, 1e9);
+  output.texts["polarity"] = settings.text("polarity", "");
+  settings.nothing_else();
+}
+
 void read_axis(BoardFile& board, const std::string& name, const toml::table& table) {
   Table settings(table, board.path, "axis." + name);
   if (board.axes.size() == kMaxAxes) settings.fail("more axes than the firmware has room for");
@@ -134,6 +161,7 @@ void read_axis(BoardFile& board, const std::string& name, const toml::table& tab
   axis.position = source_of(settings.table("position"), board.path, "axis." + name + ".position");
   axis.output = source_of(settings.table("output"), board.path, "axis." + name + ".output");
   if (axis.position.kind.empty()) settings.fail("position is missing");
+  apply_calibration(board.path, axis.output);
   settings.nothing_else();
   board.service.wiring.axes.push_back(axis.wiring);
   board.axes.push_back(axis);
@@ -182,12 +210,6 @@ void read_digital(BoardFile& board, const toml::table& table) {
   board.enable = source_of(settings.table("enable"), board.path, "digital.enable");
   board.healthy = source_of(settings.table("healthy"), board.path, "digital.healthy");
   settings.nothing_else();
-}
-
-std::string beside(const std::string& board_path, const std::string& path) {
-  const std::filesystem::path given(path);
-  if (given.is_absolute()) return path;
-  return (std::filesystem::path(board_path).parent_path() / given).string();
 }
 
 void read_board(BoardFile& board, const toml::table& table) {

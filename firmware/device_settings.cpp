@@ -22,6 +22,8 @@ AnalogueScale analogue_scale(const SignalSource& source, bool rotary, std::int64
                              const char* suffix) {
   const std::string after(suffix);
   AnalogueScale scale;
+  if (source.texts.contains("calibration") && !source.numbers.contains("span"))
+    source.fail(source.text("calibration") + " is not there yet; vernierd --calibrate makes it");
   const double span = source.number("span");
   if (!(span > 0 && span <= kMostSpan)) source.fail("span must be above 0 and at most 10000");
   scale.span = std::llround(span * (rotary ? kCountsPerDeg : kNmPerMm));

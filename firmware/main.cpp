@@ -1,21 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
 // vernierd: with devices.cpp and open_devices.cpp the composition root, which alone names backends.
+#include <algorithm>
 #include <atomic>
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <iostream>
 #include <memory>
 #include <string>
 #include <thread>
 
 #include "firmware/arguments.h"
 #include "firmware/board_file.h"
+#include "firmware/calibrate_output.h"
+#include "firmware/device_settings.h"
 #include "firmware/devices.h"
 #include "firmware/image_file.h"
+#include "firmware/open_devices.h"
 #include "firmware/report.h"
 #include "firmware/runner.h"
 #include "firmware/service.h"
+#include "hal/linux/analogue_output.h"
 #include "hal/linux/file_slot_store.h"
 #include "hal/linux/monotonic_clock.h"
 #include "hal/linux/realtime.h"
@@ -181,8 +188,58 @@ void sample_until(const std::atomic<bool>& stop, Devices& devices) {
   }
 }
 
+std::vector<CalibrationPoint> measured_points(const Arguments& arguments, const AxisEntry& axis,
+                                              std::int64_t codes) {
+  if (!arguments.measured.empty()) return read_calibration_points(arguments.measured, axis.wiring.rotary);
+  std::string error;
+  // One count of the axis is less than a code, so that every code can be had.
+  SignalSource source = axis.output;
+  source.numbers["span"] = static_cast<double>(codes) * (axis.wiring.rotary ? 1e-6 : 4e-6);
+  const AnalogueScale scale =
+      analogue_scale(source, axis.wiring.rotary, codes, source.kind == "pwm" ? "_ns" : "");
+  const auto output = open_analogue(source, axis.wiring.rotary, error);
+  if (!output) throw BoardError{"axis." + axis.wiring.name + ".output: " + error};
+  AxisTravel held;
+  const bool known = output->read_back(held) == HalFault::kNone;
+  MonotonicClock clock;
+  return calibrate_output(*output, scale, known ? scale.code_for(held) : scale.zero, arguments.steps, clock,
+                          std::cin, std::cerr, stop_asked);
+}
+
+int calibrate(const Arguments& arguments, const BoardFile& file) {
+  const auto axis = std::find_if(file.axes.begin(), file.axes.end(), [&](const AxisEntry& entry) {
+    return entry.wiring.name == arguments.calibrate;
+  });
+  if (axis == file.axes.end()) throw BoardError{file.path + ": no axis " + arguments.calibrate};
+  const SignalSource& source = axis->output;
+  const bool pwm = source.kind == "pwm";
+  if (!pwm && source.kind != "iio-dac")
+    throw BoardError{file.path + ": axis." + arguments.calibrate + " has no output that can be calibrated"};
+  const std::string path = source.text("calibration");
+  const std::int64_t codes =
+      pwm ? source.whole("period_ns", 2, 1'000'000'000) : source.whole("codes", 1, (1 << 24) - 1);
+  const std::vector<CalibrationPoint> points = measured_points(arguments, *axis, codes);
+  if (arguments.measured.empty() && points.size() != static_cast<std::size_t>(2 * arguments.steps - 1)) {
+    std::fputs("vernierd: ended; nothing is stored\n", stderr);
+    return kAnswerIsNo;
+  }
+  const Calibration found = fit_calibration(points, codes, axis->wiring.rotary);
+  write_calibration(path, found, axis->wiring.name);
+  std::fprintf(arguments.json == "-" ? stderr : stdout,
+               "%s: span %.6f +- %.6f %s, zero %.2f +- %.2f, residual %.3f rms\n", path.c_str(), found.span,
+               found.span_std, axis->wiring.rotary ? "deg" : "mm", found.zero, found.zero_std,
+               found.residual);
+  if (arguments.json.empty()) return kDone;
+  std::FILE* const out = arguments.json == "-" ? stdout : std::fopen(arguments.json.c_str(), "w");
+  if (out == nullptr) throw BoardError{arguments.json + ": " + std::strerror(errno)};
+  std::fputs(calibration_json(found, axis->wiring.name).c_str(), out);
+  if (out != stdout) std::fclose(out);
+  return kDone;
+}
+
 int run_board(const Arguments& arguments) {
   const BoardFile file = read_board_file(arguments.board);
+  if (!arguments.calibrate.empty()) return calibrate(arguments, file);
   Devices devices(file, arguments.seed);
   if (arguments.check) return check_devices(devices);
   if (!all_there(devices)) return kAnswerIsNo;

@@ -48,8 +48,8 @@ class Check : public testing::Test {
   static std::string replaced(std::string text, const std::string& from, const std::string& to) {
     return text.replace(text.find(from), from.size(), to);
   }
-  Said run(const std::string& arguments) const {
-    const std::string command = std::string(VERNIER_BIN_DIR) + "/vernierd --board " + files_.path() +
+  Said run(const std::string& arguments, const std::string& input = "") const {
+    const std::string command = input + std::string(VERNIER_BIN_DIR) + "/vernierd --board " + files_.path() +
                                 "/board.toml --no-realtime " + arguments + " 2>&1";
     std::FILE* const pipe = popen(command.c_str(), "r");
     std::string out;
@@ -153,6 +153,34 @@ TEST_F(Check, WrongSettingsAreNamedWithTheirLine) {
     EXPECT_EQ(said.status, 1) << to << said.text;
     EXPECT_NE(said.text.find("board.toml:"), std::string::npos) << to << said.text;
   }
+}
+
+TEST_F(Check, CalibrationIsStoredAndUsed) {
+  const std::string uncalibrated = "codes = 255, calibration = \"y.toml\", high = 254 }";
+  write(replaced(kBoard, "codes = 255, span = 0.25, zero = 127, high = 254 }", uncalibrated));
+  Said said = run("--check");
+  EXPECT_EQ(said.status, 1) << said.text;
+  EXPECT_NE(said.text.find("y.toml is not there yet; vernierd --calibrate makes it"), std::string::npos)
+      << said.text;
+  // GIVEN what a gauge says at three codes: 0.5 um a code, nothing at code 100, falling
+  const std::string answers = "printf '50\\n-13.5\\n-77\\n-13.5\\n50\\n' | ";
+  said = run("--calibrate Y --steps 3 --json -", answers);
+  EXPECT_EQ(said.status, 0) << said.text;
+  EXPECT_NE(said.text.find("\"span\": 0.1275, "), std::string::npos) << said.text;
+  EXPECT_NE(said.text.find("\"polarity\": \"inverted\""), std::string::npos) << said.text;
+  EXPECT_EQ(files_.get("iio:device3/out_voltage1_raw"), "127") << "at the nominal zero";
+  // THEN the daemon takes the converter to the zero that was found
+  EXPECT_EQ(run("--check").status, 0);
+  EXPECT_EQ(run("--seconds 0.2").status, 0);
+  EXPECT_EQ(files_.get("iio:device3/out_voltage1_raw"), "100");
+  // A calibration that is ended, or has no line, leaves the file as it is.
+  const std::string before = files_.get("y.toml");
+  EXPECT_EQ(run("--calibrate Y --steps 3", "printf '1\\nq\\n' | ").status, 2);
+  files_.put("points.csv", "code,measured[um]\n0,1\n254,x");
+  said = run("--calibrate Y --measured " + files_.path() + "/points.csv");
+  EXPECT_EQ(said.status, 1);
+  EXPECT_NE(said.text.find("points.csv:3: no measured value"), std::string::npos) << said.text;
+  EXPECT_EQ(files_.get("y.toml"), before);
 }
 
 TEST_F(Check, WhatAConverterHoldsFromBeforeIsTakenOut) {

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace vernier {
+
+/// What an instrument said of an axis while its output held a code.
+struct CalibrationPoint {
+  std::int64_t code = 0;
+  double measured = 0;  // um of a linear axis, arcsec of a rotary one; 0 is without a correction
+};
+
+/// Gain and zero of an output with their standard uncertainties, from a straight line through the points.
+struct Calibration {
+  double span = 0, span_std = 0;  // mm or deg that `codes` codes are
+  double zero = 0, zero_std = 0;  // code at which the instrument says 0
+  bool inverted = false;          // the measured value falls as the code rises
+  double residual = 0;  // rms of measured - line, with the freedom of the line taken off; um or arcsec
+  double worst = 0;     // largest of them
+  std::size_t points = 0;
+};
+
+/// Least squares. codes: those of the whole span. Throws BoardError: fewer than three points, one code only,
+/// a slope that is not five times its uncertainty. setup. Source: JCGM 100:2008, H.3 (calibration line).
+Calibration fit_calibration(const std::vector<CalibrationPoint>& points, std::int64_t codes, bool rotary);
+
+/// Reads "code,measured[um]" (rotary: "code,measured[arcsec]"), a header and then a point a line; # comments.
+/// Throws BoardError with file and line. setup.
+std::vector<CalibrationPoint> read_calibration_points(const std::string& path, bool rotary);
+
+/// The file that an output names as its `calibration`: span, zero (the nearest code) and polarity, and for
+/// people their uncertainties. It is there as a whole or, where that fails, as it was; throws BoardError
+/// then. setup.
+void write_calibration(const std::string& path, const Calibration& calibration, const std::string& axis);
+
+/// The same as JSON.
+std::string calibration_json(const Calibration& calibration, const std::string& axis);
+
+}  // namespace vernier
