@@ -38,6 +38,9 @@ void register_status(CLI::App& vernier);
 void register_watch(CLI::App& vernier);
 void register_record(CLI::App& vernier);
 void register_touches(CLI::App& vernier);
+void register_probe_path(CLI::App& vernier);
+void register_probe_cal(CLI::App& vernier);
+void register_feature(CLI::App& vernier);
 
 /// Writes the result for programs: to a file, or to standard output for "-"; nothing for an empty path.
 /// Numbers that are not finite become null.

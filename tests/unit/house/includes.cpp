@@ -26,8 +26,8 @@ bool is_freestanding(std::string_view header) {
 
 // Order in which the folders of tools build on one another; a folder may use those before it.
 int rank_of_tool(std::string_view folder) {
-  static constexpr std::array<std::string_view, 16> kOrder = {
-      "model",   "import", "vibration", "fit",    "kinematics", "exchange", "diagnose", "plan",
+  static constexpr std::array<std::string_view, 17> kOrder = {
+      "model",   "import", "vibration", "fit",    "kinematics", "exchange", "diagnose", "probe", "plan",
       "compile", "derive", "simulate",  "upload", "report",     "part",     "map",      "cli"};
   const auto found = std::find(kOrder.begin(), kOrder.end(), folder);
   return found == kOrder.end() ? -1 : static_cast<int>(found - kOrder.begin());

@@ -1,0 +1,67 @@
+#include "tools/probe/path.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tools/model/error.h"
+#include "tools/model/files.h"
+
+namespace vernier {
+namespace {
+
+ProbePath published() {
+  ProbePath path;
+  path.radius = 9.5255, path.clearance = 0.3 * 25.4, path.inch = true;
+  path.name = "SPHERE", path.title = "SPHERE TEST PROBING";
+  path.comments = {"Fri Mar 11, 1999",
+                   "Tool 5: Touch-trigger probe w/ext. in 7.1\" boring bar holder.",
+                   "Length: Z=-10.7015 X=-7.9315 Offset 5: Z=-0.1000 X=0.0200",
+                   "Touch face of part, then MDI W2.2985 for PROBING START",
+                   "P43 = PROBING START: Machine Z coordinate to which",
+                   "probe moves from the \"standard\" initial machine coordinates",
+                   "[X0, Z10].",
+                   "Probe tip diameter = 0.197\"",
+                   "Feedrate = 100 (inches per minute)",
+                   "Touch face at Z-1.8, part zero is on dome surface.",
+                   "Program probes 81 pts on SPHERE over 200 degrees"};
+  return path;
+}
+
+TEST(ProbePath, IsThePublishedSphereProgramToTheLastCharacter) {
+  EXPECT_EQ(probe_program(published(), Dialect::kTurning),
+            read_file(VERNIER_SOURCE_DIR "/tests/data/probing/a1_sphere.nc"));
+}
+
+TEST(ProbePath, TouchesEveryDirectionAtEveryFeedInEveryDialect) {
+  ProbePath path;
+  path.radius = 12.5, path.clearance = 5, path.ball_radius = 2.5, path.from_deg = 0, path.to_deg = 330,
+  path.step_deg = 30;
+  path.elevations_deg = {0, 45, 90}, path.feeds = {60, 300, 1200};
+  const auto count = [](const std::string& text, const std::string& word) {
+    std::size_t n = 0;
+    for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) ++n;
+    return n;
+  };
+  for (const auto& [dialect, word] : {std::pair{Dialect::kLinuxcnc, "G38.2 "},
+                                      {Dialect::kFanuc, "G31 "},
+                                      {Dialect::kAerobasic, "PROBE ON X Y Z"}}) {
+    const std::string text = probe_program(path, dialect);
+    EXPECT_EQ(count(text, word), 3u * (12 + 12 + 1)) << word;
+    EXPECT_EQ(count(text, "F1200"), 25u);
+  }
+  EXPECT_NE(probe_program(path, Dialect::kLinuxcnc).find("G38.2 X13.00000 Y0.00000 Z0.00000 F60\n"),
+            std::string::npos);
+}
+
+TEST(ProbePath, RefusesAPathWithoutSense) {
+  ProbePath path = published();
+  path.step_deg = 0;
+  EXPECT_THROW(probe_program(path, Dialect::kTurning), InputError);
+  path = published();
+  path.feeds = {100, -1};
+  EXPECT_THROW(probe_program(path, Dialect::kLinuxcnc), InputError);
+}
+
+}  // namespace
+}  // namespace vernier

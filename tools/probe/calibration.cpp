@@ -1,0 +1,286 @@
+#include "tools/probe/calibration.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "tools/diagnose/chance.h"
+#include "tools/model/error.h"
+
+namespace vernier {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+constexpr double kUmPerMm = 1e3, kDegPerRad = 180 / std::numbers::pi;
+constexpr double kSecondsPerMinute = 60;
+/// Feeds that lie closer together than this say nothing about the delay.
+constexpr double kLeastFeedSpread = 0.05;
+/// A gap in the azimuths, or a span of the threefold angle, from which lobes cannot be told from an eccentric
+/// centre.
+constexpr double kLargestGapDeg = 100;
+constexpr double kLobeChance = 0.01;
+
+bool varies(const VectorXd& values) {
+  const double high = values.maxCoeff(), low = values.minCoeff();
+  return high - low > kLeastFeedSpread * std::max(std::abs(high), std::abs(low));
+}
+
+/// Columns of the design that the touches can bear.
+struct Reach {
+  bool delay = false, lobes = false;
+};
+
+void say_feeds(const VectorXd& feed, bool delay, std::vector<std::string>& findings) {
+  if (!delay) {
+    findings.push_back(fmt::format(
+        "All touches have a feed near {:.0f} mm/min: the delay cannot be told from pretravel and tip radius. "
+        "The effective "
+        "tip radius holds at this feed only; touch again at a feed at least twice or half as fast.",
+        feed.mean()));
+  } else if (feed.maxCoeff() < 2 * feed.minCoeff()) {
+    findings.push_back(
+        fmt::format("Feeds reach from {:.0f} to {:.0f} mm/min only: delay and pretravel hang together; a "
+                    "wider range makes both surer.",
+                    feed.minCoeff(), feed.maxCoeff()));
+  }
+}
+
+void say_outliers(const ProbeCalibration& result, const TouchTable& table,
+                  std::vector<std::string>& findings) {
+  for (const TouchOutlier& outlier : result.fit.outliers)
+    findings.push_back(
+        fmt::format("{}:{}: left out: {:+.2f} um from the others, {:.0f} times their scatter (chance {:.1g})",
+                    table.file(), table.line(outlier.touch), outlier.residual * kUmPerMm, std::abs(outlier.t),
+                    outlier.p_value));
+}
+
+void add(ProbeCalibration& result, const std::string& name, const std::string& unit, double factor, Index i,
+         double offset = 0) {
+  result.parameters.push_back(
+      {name, unit, factor * result.fit.value(i) + offset, std::abs(factor) * result.fit.std_of(i)});
+}
+
+// Does a model with further parameters explain more than chance? Both were fitted to the same touches.
+bool explains(const TouchFit& with, const TouchFit& without, double level) {
+  const double more = without.sigma * without.sigma * without.dof - with.sigma * with.sigma * with.dof;
+  const int extra = without.dof - with.dof;
+  if (extra <= 0 || with.dof <= 0 || with.sigma <= 0) return false;
+  return std::exp(log_f_tail(std::max(0.0, more / extra / (with.sigma * with.sigma)), extra, with.dof)) <
+         level;
+}
+
+// ---- gauge block: both faces in turn
+
+ProbeCalibration calibrate_block(TouchTable& table, const CalibrationSetup& setup) {
+  const VectorXd feed = table.need({"feed", "F"}, "feed along the approach");
+  const VectorXd upper = table.need({"upper", "up", "mean_up", "mean_upper"}, "position at the upper face");
+  const VectorXd lower = table.need({"lower", "lp", "mean_lp", "mean_lower"}, "position at the lower face");
+  if (!setup.ball_radius_mm)
+    throw InputError("a block needs the nominal radius of the stylus ball (--ball-radius)");
+  const VectorXd difference = (upper - lower).array() - (setup.size_mm + 2 * *setup.ball_radius_mm);
+  ProbeCalibration result;
+  result.delay_found = varies(feed);
+  // d = intercept - 2 F / 60 * delay: both faces are recorded late.
+  const TouchModel model = [&](const VectorXd& p) -> VectorXd {
+    VectorXd r = difference.array() - p(0);
+    if (result.delay_found) r += 2 / kSecondsPerMinute * p(1) * feed;
+    return r;
+  };
+  TouchFitOptions options;
+  options.outlier_level = setup.outlier_level;
+  result.fit =
+      fit_touches(model, VectorXd::Zero(result.delay_found ? 2 : 1), options, {"tip radius", "delay"});
+  if (result.delay_found) {
+    add(result, "delay", "ms", 1e3, 1);
+    const double slope = -2 / kSecondsPerMinute * kUmPerMm;
+    result.line_slope_um_per_mm_min = slope * result.fit.value(1);
+    result.line_slope_std = std::abs(slope) * result.fit.std_of(1);
+    result.line_intercept_um = result.fit.value(0) * kUmPerMm;
+    result.line_intercept_std_um = result.fit.std_of(0) * kUmPerMm;
+  }
+  add(result, "effective_tip_radius", "mm", 0.5, 0, *setup.ball_radius_mm);
+  add(result, "pretravel", "um", -0.5 * kUmPerMm, 0);
+  say_feeds(feed, result.delay_found, result.findings);
+  result.findings.push_back(
+      "Both faces lie along one line: lobes of the pretravel and its direction are not seen.");
+  return result;
+}
+
+// ---- ring and sphere: a centre, a radius and what hangs on feed and direction
+
+struct RoundTouches {
+  bool sphere = false;
+  VectorXd x, y, z, speed, braking;  // mm, mm/s, mm/s^2
+  double sign = 1;                   // +1: touched from outside
+
+  Index first_extra() const { return sphere ? 4 : 3; }
+  // Distance of a touch from the surface that the parameters describe: centre, radius, [delay], [lobes].
+  VectorXd residual(const VectorXd& p, const Reach& reach) const {
+    VectorXd r(x.size());
+    for (Index i = 0; i < x.size(); ++i) {
+      const double dx = x(i) - p(0), dy = y(i) - p(1), dz = sphere ? z(i) - p(2) : 0;
+      const double across = std::hypot(dx, dy), distance = std::hypot(across, dz);
+      double late = 0;
+      Index next = first_extra();
+      if (reach.delay) {
+        const double delay = p(next++);
+        late += speed(i) * delay - braking(i) * delay * delay / 2;
+      }
+      if (reach.lobes && across > 0) {
+        const double phi = 3 * std::atan2(dy, dx);
+        late += across / distance * (p(next) * std::cos(phi) + p(next + 1) * std::sin(phi));
+      }
+      r(i) = distance - p(first_extra() - 1) + sign * late;
+    }
+    return r;
+  }
+  VectorXd start() const {
+    VectorXd p(first_extra());
+    p(0) = (x.maxCoeff() + x.minCoeff()) / 2, p(1) = (y.maxCoeff() + y.minCoeff()) / 2;
+    if (sphere) p(2) = (z.maxCoeff() + z.minCoeff()) / 2;
+    // Algebraic fit: |m|^2 = 2 m c + k.
+    const Index n = x.size(), d = first_extra() - 1;
+    Eigen::MatrixXd a(n, d + 1);
+    VectorXd b(n);
+    for (Index i = 0; i < n; ++i) {
+      const double m[3] = {x(i) - p(0), y(i) - p(1), sphere ? z(i) - p(2) : 0};
+      b(i) = 0;
+      for (Index k = 0; k < d; ++k) a(i, k) = 2 * m[k], b(i) += m[k] * m[k];
+      a(i, d) = 1;
+    }
+    const VectorXd s = a.colPivHouseholderQr().solve(b);
+    const double square = s(d) + s.head(d).squaredNorm();
+    p.head(d) += s.head(d);
+    p(d) = std::sqrt(std::max(square, 1e-12));
+    return p;
+  }
+  // Largest gap between the azimuths of neighbouring touches, deg.
+  double largest_gap(const VectorXd& p) const {
+    std::vector<double> phi;
+    for (Index i = 0; i < x.size(); ++i) phi.push_back(std::atan2(y(i) - p(1), x(i) - p(0)) * kDegPerRad);
+    std::sort(phi.begin(), phi.end());
+    double gap = phi.front() + 360 - phi.back();
+    for (std::size_t i = 1; i < phi.size(); ++i) gap = std::max(gap, phi[i] - phi[i - 1]);
+    return gap;
+  }
+};
+
+RoundTouches round_touches(TouchTable& table, const CalibrationSetup& setup) {
+  RoundTouches touches;
+  touches.sphere = setup.artefact == Artefact::kSphere;
+  touches.sign = setup.artefact == Artefact::kRing ? -1 : 1;
+  touches.x = table.need({"x", "X"}, "recorded position");
+  touches.y = table.need({"y", "Y"}, "recorded position");
+  if (touches.sphere) touches.z = table.need({"z", "Z"}, "recorded position");
+  touches.speed = table.need({"feed", "F"}, "feed along the approach") / kSecondsPerMinute;
+  touches.braking = VectorXd::Zero(touches.x.size());
+  if (const auto a = table.find({"a", "acceleration"})) touches.braking = *a;
+  return touches;
+}
+
+void say_round(const RoundTouches& touches, const Reach& reach, double gap,
+               std::vector<std::string>& findings) {
+  say_feeds(touches.speed * kSecondsPerMinute, reach.delay, findings);
+  if (!reach.lobes && gap > kLargestGapDeg)
+    findings.push_back(
+        fmt::format("No touch in {:.0f} deg of the azimuth: a three-lobed pretravel cannot be told from an "
+                    "eccentric centre. Touch all round, "
+                    "every 30 deg or closer.",
+                    gap));
+  if (touches.braking.cwiseAbs().maxCoeff() == 0)
+    findings.push_back(
+        "Every touch counts as one at constant feed; where an approach is too short for that, record "
+        "a[mm/s^2].");
+}
+
+ProbeCalibration calibrate_round(TouchTable& table, const CalibrationSetup& setup) {
+  const RoundTouches touches = round_touches(table, setup);
+  TouchFitOptions options;
+  options.outlier_level = setup.outlier_level;
+  if (const auto u = table.find({"u"})) {
+    if (u->minCoeff() <= 0) throw InputError(table.file() + ": u is not above 0 in every row");
+    options.u = *u;
+  }
+  const std::vector<std::string> names =
+      touches.sphere ? std::vector<std::string>{"centre x", "centre y",    "centre z", "tip radius",
+                                                "delay",    "lobe cosine", "lobe sine"}
+                     : std::vector<std::string>{"centre x", "centre y",    "tip radius",
+                                                "delay",    "lobe cosine", "lobe sine"};
+  const VectorXd start = touches.start();
+  const double gap = touches.largest_gap(start);
+  const auto fit_with = [&](const Reach& reach, const TouchFitOptions& how) {
+    VectorXd from = VectorXd::Zero(start.size() + (reach.delay ? 1 : 0) + (reach.lobes ? 2 : 0));
+    from.head(start.size()) = start;
+    std::vector<std::string> used(names.begin(), names.begin() + start.size());
+    if (reach.delay) used.emplace_back("delay");
+    if (reach.lobes) used.insert(used.end(), {"lobe cosine", "lobe sine"});
+    return fit_touches([&, reach](const VectorXd& p) { return touches.residual(p, reach); }, from, how, used);
+  };
+  Reach reach{varies(touches.speed), false};
+  ProbeCalibration result;
+  const bool may_have_lobes = gap <= kLargestGapDeg && touches.x.size() >= start.size() + 6;
+  reach.lobes = may_have_lobes;
+  result.fit = fit_with(reach, options);
+  if (may_have_lobes) {
+    // The same touches without lobes, so that the two can be compared.
+    TouchFitOptions same = options;
+    same.outlier_level = 0;
+    RoundTouches kept = touches;
+    const TouchFit with = fit_with({reach.delay, true}, same), without = fit_with({reach.delay, false}, same);
+    if (result.fit.outliers.empty() ? !explains(with, without, kLobeChance) : false) {
+      reach.lobes = false;
+      result.findings.push_back(
+          "A three-lobed pretravel would show and does not: below the scatter of the touches.");
+      result.fit = fit_with(reach, options);
+    }
+  }
+  result.delay_found = reach.delay, result.lobes_found = reach.lobes;
+  const Index extra = touches.first_extra();
+  if (reach.delay) add(result, "delay", "ms", 1e3, extra);
+  const double half = setup.size_mm / 2;
+  // Outside: distance = half + tip; inside: half - tip.
+  add(result, "effective_tip_radius", "mm", touches.sign, extra - 1, -touches.sign * half);
+  if (setup.ball_radius_mm) {
+    const Calibrated& tip = result.parameters.back();
+    result.parameters.push_back(
+        {"pretravel", "um", (*setup.ball_radius_mm - tip.value) * kUmPerMm, tip.std * kUmPerMm});
+  }
+  if (reach.lobes) {
+    const Index c = extra + (reach.delay ? 1 : 0);
+    const double cosine = result.fit.value(c), sine = result.fit.value(c + 1),
+                 size = std::hypot(cosine, sine);
+    Eigen::Vector2d along(cosine / size, sine / size), across(-sine / size, cosine / size);
+    const Eigen::Matrix2d v = result.fit.covariance.block<2, 2>(c, c);
+    result.parameters.push_back({"lobe", "um", size * kUmPerMm, std::sqrt(along.dot(v * along)) * kUmPerMm});
+    result.parameters.push_back({"lobe_azimuth", "deg", std::atan2(sine, cosine) * kDegPerRad / 3,
+                                 std::sqrt(across.dot(v * across)) / size * kDegPerRad / 3});
+  }
+  const char* const axes[] = {"centre_x", "centre_y", "centre_z"};
+  for (Index i = 0; i < extra - 1; ++i) add(result, axes[i], "mm", 1, i);
+  say_round(touches, reach, gap, result.findings);
+  return result;
+}
+
+}  // namespace
+
+const Calibrated* ProbeCalibration::find(const std::string& name) const {
+  const auto found =
+      std::find_if(parameters.begin(), parameters.end(), [&](const Calibrated& c) { return c.name == name; });
+  return found == parameters.end() ? nullptr : &*found;
+}
+
+ProbeCalibration calibrate_probe(TouchTable& table, const CalibrationSetup& setup) {
+  if (!(setup.size_mm > 0)) throw InputError("the size of the artefact is not above 0 (--size)");
+  ProbeCalibration result =
+      setup.artefact == Artefact::kBlock ? calibrate_block(table, setup) : calibrate_round(table, setup);
+  say_outliers(result, table, result.findings);
+  for (const std::string& note : table.notes()) result.findings.push_back(note);
+  return result;
+}
+
+}  // namespace vernier

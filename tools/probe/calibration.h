@@ -1,0 +1,51 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/probe/touch_fit.h"
+#include "tools/probe/touch_table.h"
+
+namespace vernier {
+
+enum class Artefact { kBlock, kRing, kSphere };
+
+/// A known artefact and a nominal stylus.
+struct CalibrationSetup {
+  Artefact artefact = Artefact::kSphere;
+  double size_mm = 0;  // block: distance of its faces; ring, sphere: diameter
+  std::optional<double> ball_radius_mm = std::nullopt;  // nominal, of the stylus ball
+  double outlier_level = 0.01;
+};
+
+/// A parameter of the calibration with its standard uncertainty.
+struct Calibrated {
+  std::string name, unit;
+  double value = 0, std = 0;
+};
+
+/// What touches of an artefact say about a probe.
+///
+/// A touch at speed v along the approach is recorded late by v * delay - a * delay^2 / 2, and by the
+/// pretravel, which is a constant and, for a probe with three contacts, a lobe p3 cos 3(phi - phi3) of the
+/// azimuth phi of the approach. The constant is one with the radius of the ball: their difference is the
+/// effective tip radius.
+struct ProbeCalibration {
+  TouchFit fit;
+  std::vector<Calibrated> parameters;  // delay_ms first, where it can be found; then what the artefact gives
+  std::optional<double> line_intercept_um, line_slope_um_per_mm_min;  // block: difference against feed
+  std::optional<double> line_intercept_std_um, line_slope_std;
+  bool delay_found = false, lobes_found = false;
+  std::vector<std::string> findings;  // in plain sentences: coverage, outliers, what cannot be told apart
+
+  const Calibrated* find(const std::string& name) const;
+};
+
+/// Reads touches and finds what they determine. Columns: feed[mm/min]; block: upper, lower (mm: recorded
+/// position of the stylus at the upper and the lower face), angle[deg] (of the probe about its axis,
+/// optional); ring, sphere: x, y, z (z not for a ring), a[mm/s^2] along the approach (optional, negative
+/// while braking), u (optional). Throws InputError. tool. Source of the block's form: NISTIR 6415, 1999,
+/// equations 1 and 2.
+ProbeCalibration calibrate_probe(TouchTable& table, const CalibrationSetup& setup);
+
+}  // namespace vernier

@@ -1,0 +1,524 @@
+#include "tools/probe/feature.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <numbers>
+#include <set>
+
+#include "tools/model/error.h"
+
+namespace vernier {
+namespace {
+
+using Eigen::Index;
+using Eigen::Matrix3d;
+using Eigen::MatrixXd;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+constexpr double kDegPerRad = 180 / std::numbers::pi, kReferenceDegC = 20;
+
+/// Touches in a frame of their own: origin at their centroid, third axis along the normal or axis.
+struct Touches {
+  MatrixXd p;  // n x 3, centres of the ball
+  std::optional<MatrixXd> n;
+  std::optional<VectorXd> u;
+
+  Index size() const { return p.rows(); }
+  Vector3d centroid() const { return p.colwise().mean().transpose(); }
+  // Principal directions, greatest scatter first; right-handed.
+  Matrix3d principal() const {
+    const MatrixXd c = p.rowwise() - p.colwise().mean();
+    Eigen::JacobiSVD<MatrixXd> svd(c, Eigen::ComputeFullV);
+    Matrix3d v = svd.matrixV();
+    if (v.determinant() < 0) v.col(2) *= -1;
+    return v;
+  }
+};
+
+Touches read_touches(TouchTable& table, const FeatureSetup& setup, std::vector<std::string>& findings) {
+  Touches touches;
+  const auto rows = static_cast<Index>(table.rows());
+  touches.p.resize(rows, 3);
+  touches.p.col(0) = table.need({"x", "X"}, "recorded point");
+  touches.p.col(1) = table.need({"y", "Y"}, "recorded point");
+  const bool flat = setup.kind == FeatureKind::kLine || setup.kind == FeatureKind::kCircle ||
+                    setup.kind == FeatureKind::kBlock;
+  const auto z = table.find({"z", "Z"});
+  if (!z && !flat) table.need({"z"}, "recorded point");
+  touches.p.col(2) = z ? *z : VectorXd::Zero(rows);
+  if (const auto nx = table.find({"nx"})) {
+    MatrixXd n(rows, 3);
+    n.col(0) = *nx;
+    n.col(1) = table.need({"ny"}, "normal");
+    const auto nz = table.find({"nz"});
+    n.col(2) = nz ? *nz : VectorXd::Zero(rows);
+    for (Index i = 0; i < rows; ++i) {
+      const double length = n.row(i).norm();
+      if (std::abs(length - 1) > 1e-3)
+        throw InputError({table.file(), table.line(static_cast<std::size_t>(i))},
+                         fmt::format("{:.4g}", length), "length of the normal, not 1");
+      n.row(i) /= length;
+    }
+    touches.n = n;
+  }
+  touches.u = table.find({"u"});
+  if (touches.u && touches.u->minCoeff() <= 0)
+    throw InputError(table.file() + ": u is not above 0 in every row");
+  if (!setup.expansion_per_K) return touches;
+  auto t = table.find({"T"});
+  if (!t && setup.temperature_degC) t = VectorXd::Constant(rows, *setup.temperature_degC);
+  if (!t)
+    throw InputError(table.file() +
+                     ": an expansion is given and no temperature (column T[degC], or --temperature)");
+  for (Index i = 0; i < rows; ++i) touches.p.row(i) /= 1 + *setup.expansion_per_K * ((*t)(i)-kReferenceDegC);
+  findings.push_back(
+      fmt::format("Points as at 20 degC: measured at {:.2f} degC in the mean, expansion {:.3g} um/(m K), "
+                  "about the origin.",
+                  t->mean(), *setup.expansion_per_K * 1e6));
+  return touches;
+}
+
+TouchFitOptions options_of(const Touches& touches, const FeatureSetup& setup, std::size_t per_touch = 1) {
+  TouchFitOptions options;
+  options.per_touch = per_touch;
+  options.outlier_level = setup.outlier_level;
+  if (touches.u) {
+    VectorXd u(touches.size() * static_cast<Index>(per_touch));
+    for (Index i = 0; i < u.size(); ++i) u(i) = (*touches.u)(i / static_cast<Index>(per_touch));
+    options.u = u;
+  }
+  return options;
+}
+
+/// A feature in the making: parameters as functions of those of the fit, with their uncertainty carried over.
+struct Maker {
+  Feature& feature;
+  void add(const std::string& name, const std::string& unit,
+           const std::function<double(const VectorXd&)>& of) const {
+    const TouchFit& fit = feature.fit;
+    VectorXd gradient(fit.value.size());
+    for (Index k = 0; k < gradient.size(); ++k) {
+      const double h = 1e-6 * std::max(1.0, std::abs(fit.value(k)));
+      VectorXd up = fit.value, down = fit.value;
+      up(k) += h, down(k) -= h;
+      gradient(k) = (of(up) - of(down)) / (2 * h);
+    }
+    feature.parameters.push_back(
+        {name, unit, of(fit.value), std::sqrt(std::max(0.0, gradient.dot(fit.covariance * gradient)))});
+  }
+  void add_vector(const std::string& name, const std::string& unit,
+                  const std::function<Vector3d(const VectorXd&)>& of) const {
+    const char* const axes[] = {"_x", "_y", "_z"};
+    for (int k = 0; k < 3; ++k) add(name + axes[k], unit, [&of, k](const VectorXd& p) { return of(p)(k); });
+  }
+};
+
+/// Side on which the ball's centres lie: +1 outside, -1 inside, by the normals where there are any.
+double side_of(const Touches& touches, const FeatureSetup& setup,
+               const std::function<Vector3d(Index)>& outward) {
+  if (!touches.n) return setup.inside ? -1 : 1;
+  double sum = 0;
+  for (Index i = 0; i < touches.size(); ++i) sum += touches.n->row(i).dot(outward(i));
+  return sum < 0 ? -1 : 1;
+}
+
+// ---- plane and line
+
+Feature fit_plane(const Touches& touches, const FeatureSetup& setup) {
+  Feature feature;
+  const Vector3d c = touches.centroid();
+  Matrix3d v = touches.principal();
+  if (touches.n ? touches.n->colwise().sum().dot(v.col(2)) < 0 : v(2, 2) < 0) v.col(2) *= -1, v.col(0) *= -1;
+  const MatrixXd local = (touches.p.rowwise() - c.transpose()) * v;
+  const double lift = touches.n ? setup.ball_radius_mm : 0;
+  const TouchModel model = [&](const VectorXd& p) -> VectorXd {
+    const double scale = 1 / std::sqrt(1 + p(1) * p(1) + p(2) * p(2));
+    return scale *
+           (local.col(2).array() - p(0) - p(1) * local.col(0).array() - p(2) * local.col(1).array()).matrix();
+  };
+  feature.fit = fit_touches(model, Vector3d::Zero(), options_of(touches, setup), {"height", "tilt", "tilt"});
+  const auto normal = [v](const VectorXd& p) -> Vector3d {
+    return (v * Vector3d(-p(1), -p(2), 1)).normalized();
+  };
+  const Maker make{feature};
+  make.add_vector("point", "mm", [&](const VectorXd& p) -> Vector3d {
+    const Vector3d n = normal(p);
+    return c + (n.dot(v * Vector3d(0, 0, p(0))) - lift) * n;
+  });
+  make.add_vector("normal", "", normal);
+  make.add("tilt_x", "deg",
+           [&](const VectorXd& p) { return std::atan2(-normal(p)(1), normal(p)(2)) * kDegPerRad; });
+  make.add("tilt_y", "deg",
+           [&](const VectorXd& p) { return std::atan2(normal(p)(0), normal(p)(2)) * kDegPerRad; });
+  feature.normals = normal(feature.fit.value).transpose().replicate(touches.size(), 1);
+  feature.deviation = feature.fit.residual;
+  if (!touches.n && setup.ball_radius_mm > 0)
+    feature.findings.push_back(
+        "Without normals (nx ny nz) this is the plane of the ball's centres: its radius is not taken off.");
+  return feature;
+}
+
+Feature fit_line(const Touches& touches, const FeatureSetup& setup) {
+  Feature feature;
+  const Vector3d c = touches.centroid();
+  Matrix3d v = touches.principal();
+  const bool flat = (touches.p.col(2).array() - c(2)).abs().maxCoeff() < 1e-9;
+  if (flat) {
+    // In the plane z = const the line has one offset and one angle.
+    v.col(2) = Vector3d::UnitZ();
+    v.col(1) = v.col(2).cross(v.col(0));
+  }
+  Index main = 0;
+  v.col(0).cwiseAbs().maxCoeff(&main);
+  if (v(main, 0) < 0) v.col(0) *= -1, v.col(1) *= -1;
+  const Index across = flat ? 1 : 2;
+  const MatrixXd local = (touches.p.rowwise() - c.transpose()) * v;
+  const TouchModel model = [&](const VectorXd& p) -> VectorXd {
+    VectorXd r(across * local.rows());
+    for (Index i = 0; i < local.rows(); ++i) {
+      const Vector3d along = Vector3d(1, p(across), flat ? 0 : p(3)).normalized();
+      const Vector3d from = local.row(i).transpose() - Vector3d(0, p(0), flat ? 0 : p(1));
+      const Vector3d off = from - along * along.dot(from);
+      for (Index k = 0; k < across; ++k) r(across * i + k) = off(k + 1);
+    }
+    return r;
+  };
+  feature.fit = fit_touches(model, VectorXd::Zero(2 * across),
+                            options_of(touches, setup, static_cast<std::size_t>(across)),
+                            flat ? std::vector<std::string>{"offset", "angle"}
+                                 : std::vector<std::string>{"offset", "offset", "angle", "angle"});
+  const auto direction = [v, across, flat](const VectorXd& p) -> Vector3d {
+    return (v * Vector3d(1, p(across), flat ? 0 : p(3))).normalized();
+  };
+  // Towards the material: off the ball's centres by its radius, where normals say on which side it lies.
+  Vector3d off = Vector3d::Zero();
+  if (touches.n) {
+    const Vector3d mean = touches.n->colwise().mean().transpose(), d = direction(feature.fit.value);
+    off = (mean - d * d.dot(mean)).normalized() * setup.ball_radius_mm;
+  }
+  const Maker make{feature};
+  make.add_vector("point", "mm", [&](const VectorXd& p) -> Vector3d {
+    return c + v * Vector3d(0, p(0), flat ? 0 : p(1)) - off;
+  });
+  make.add_vector("direction", "", direction);
+  make.add("angle", "deg",
+           [&](const VectorXd& p) { return std::atan2(direction(p)(1), direction(p)(0)) * kDegPerRad; });
+  feature.normals = MatrixXd::Zero(touches.size(), 3);
+  feature.deviation = VectorXd::Zero(touches.size());
+  for (Index i = 0; i < touches.size(); ++i) {
+    const Vector3d n = touches.n ? Vector3d(touches.n->row(i)) : Vector3d(v.col(1));
+    feature.normals.row(i) = n.transpose();
+    for (Index k = 0; k < across; ++k)
+      feature.deviation(i) += n.dot(v.col(k + 1)) * feature.fit.residual(across * i + k);
+  }
+  if (!touches.n && setup.ball_radius_mm > 0)
+    feature.findings.push_back(
+        "Without normals (nx ny nz) this is the line of the ball's centres: its radius is not taken off.");
+  return feature;
+}
+
+// ---- circle, sphere, cylinder
+
+// Centre and radius that solve |m|^2 = 2 m c + k best; columns of m: as many as the centre has.
+VectorXd algebraic_centre(const MatrixXd& m) {
+  MatrixXd a(m.rows(), m.cols() + 1);
+  a.leftCols(m.cols()) = 2 * m;
+  a.col(m.cols()).setOnes();
+  VectorXd s = a.colPivHouseholderQr().solve(m.rowwise().squaredNorm());
+  s(m.cols()) = std::sqrt(std::max(1e-12, s(m.cols()) + s.head(m.cols()).squaredNorm()));
+  return s;
+}
+
+void add_radius(const Maker& make, const FeatureSetup& setup, double side, Index at) {
+  make.add("radius", "mm", [=](const VectorXd& p) { return p(at) - side * setup.ball_radius_mm; });
+}
+
+Feature fit_circle(const Touches& touches, const FeatureSetup& setup) {
+  Feature feature;
+  const Vector3d c = touches.centroid();
+  Matrix3d v = touches.principal();
+  const bool flat = (touches.p.col(2).array() - c(2)).abs().maxCoeff() < 1e-9;
+  if (flat) v = Matrix3d::Identity();
+  if (v(2, 2) < 0) v.col(2) *= -1, v.col(0) *= -1;
+  const MatrixXd local = (touches.p.rowwise() - c.transpose()) * v;
+  const TouchModel model = [&](const VectorXd& p) -> VectorXd {
+    return ((local.col(0).array() - p(0)).square() + (local.col(1).array() - p(1)).square()).sqrt() - p(2);
+  };
+  feature.fit = fit_touches(model, algebraic_centre(local.leftCols(2)), options_of(touches, setup),
+                            {"centre", "centre", "radius"});
+  const VectorXd& f = feature.fit.value;
+  const auto outward = [&](Index i) -> Vector3d {
+    return (v * Vector3d(local(i, 0) - f(0), local(i, 1) - f(1), 0)).normalized();
+  };
+  const double side = side_of(touches, setup, outward);
+  const Maker make{feature};
+  make.add_vector("centre", "mm",
+                  [&](const VectorXd& p) -> Vector3d { return c + v * Vector3d(p(0), p(1), 0); });
+  if (!flat) make.add_vector("normal", "", [&](const VectorXd&) -> Vector3d { return v.col(2); });
+  add_radius(make, setup, side, 2);
+  feature.normals.resize(touches.size(), 3);
+  for (Index i = 0; i < touches.size(); ++i) feature.normals.row(i) = side * outward(i).transpose();
+  feature.deviation = side * feature.fit.residual;
+  if (!flat)
+    feature.findings.push_back(
+        fmt::format("The circle lies in the touches' own plane; they are up to {:.2f} um off it.",
+                    local.col(2).cwiseAbs().maxCoeff() * 1e3));
+  return feature;
+}
+
+Feature fit_sphere(const Touches& touches, const FeatureSetup& setup) {
+  Feature feature;
+  const Vector3d c = touches.centroid();
+  const MatrixXd local = touches.p.rowwise() - c.transpose();
+  const TouchModel model = [&](const VectorXd& p) -> VectorXd {
+    return (local.rowwise() - p.head(3).transpose()).rowwise().norm().array() - p(3);
+  };
+  feature.fit = fit_touches(model, algebraic_centre(local), options_of(touches, setup),
+                            {"centre x", "centre y", "centre z", "radius"});
+  const VectorXd& f = feature.fit.value;
+  const auto outward = [&](Index i) -> Vector3d {
+    return (local.row(i).transpose() - f.head(3)).normalized();
+  };
+  const double side = side_of(touches, setup, outward);
+  const Maker make{feature};
+  make.add_vector("centre", "mm", [&](const VectorXd& p) -> Vector3d { return c + p.head(3); });
+  add_radius(make, setup, side, 3);
+  feature.normals.resize(touches.size(), 3);
+  for (Index i = 0; i < touches.size(); ++i) feature.normals.row(i) = side * outward(i).transpose();
+  feature.deviation = side * feature.fit.residual;
+  return feature;
+}
+
+// Frame whose third column is the given direction.
+Matrix3d frame_along(const Vector3d& axis) {
+  Index least = 0;
+  axis.cwiseAbs().minCoeff(&least);
+  Matrix3d v;
+  v.col(2) = axis.normalized();
+  v.col(0) = v.col(2).cross(Vector3d::Unit(least)).normalized();
+  v.col(1) = v.col(2).cross(v.col(0));
+  return v;
+}
+
+struct CylinderModel {
+  MatrixXd local;  // touches in the frame of a first axis
+  // p: x, y of the axis at the centroid, its slopes, radius.
+  VectorXd operator()(const VectorXd& p) const {
+    const Vector3d axis = Vector3d(p(2), p(3), 1).normalized(), at(p(0), p(1), 0);
+    VectorXd r(local.rows());
+    for (Index i = 0; i < local.rows(); ++i) r(i) = axis.cross(Vector3d(local.row(i)) - at).norm() - p(4);
+    return r;
+  }
+};
+
+Feature fit_cylinder(const Touches& touches, const FeatureSetup& setup) {
+  const Vector3d c = touches.centroid();
+  const MatrixXd off = touches.p.rowwise() - c.transpose();
+  // Normals know the axis; else the principal directions and those of the machine are tried.
+  std::vector<Vector3d> tries;
+  if (touches.n) {
+    Eigen::SelfAdjointEigenSolver<Matrix3d> e(touches.n->transpose() * *touches.n);
+    tries.push_back(e.eigenvectors().col(0));
+  } else {
+    const Matrix3d v = touches.principal();
+    for (int k = 0; k < 3; ++k) tries.push_back(v.col(k)), tries.push_back(Vector3d::Unit(k));
+  }
+  std::optional<Feature> best;
+  Matrix3d frame;
+  std::string why;
+  for (const Vector3d& axis : tries) {
+    const Matrix3d v = frame_along(axis);
+    const CylinderModel model{off * v};
+    VectorXd start = VectorXd::Zero(5);
+    const VectorXd circle = algebraic_centre(model.local.leftCols(2));
+    start(0) = circle(0), start(1) = circle(1), start(4) = circle(2);
+    try {
+      Feature feature;
+      feature.fit = fit_touches(model, start, options_of(touches, setup),
+                                {"axis x", "axis y", "tilt x", "tilt y", "radius"});
+      if (!best || feature.fit.outliers.size() < best->fit.outliers.size() ||
+          (feature.fit.outliers.size() == best->fit.outliers.size() && feature.fit.rms < best->fit.rms))
+        best = feature, frame = v;
+    } catch (const InputError& error) {
+      why = error.what();
+    }
+  }
+  if (!best) throw InputError(why);
+  Feature& feature = *best;
+  const auto axis = [&](const VectorXd& p) -> Vector3d {
+    const Vector3d a = (frame * Vector3d(p(2), p(3), 1)).normalized();
+    Index main = 0;
+    a.cwiseAbs().maxCoeff(&main);
+    return a(main) < 0 ? Vector3d(-a) : a;
+  };
+  const auto outward = [&](Index i) -> Vector3d {
+    const Vector3d a = axis(feature.fit.value),
+                   at = frame * Vector3d(feature.fit.value(0), feature.fit.value(1), 0);
+    const Vector3d from = Vector3d(off.row(i)) - at;
+    return (from - a * a.dot(from)).normalized();
+  };
+  const double side = side_of(touches, setup, outward);
+  const Maker make{feature};
+  make.add_vector("centre", "mm", [&](const VectorXd& p) -> Vector3d {
+    const Vector3d a = axis(p), at = frame * Vector3d(p(0), p(1), 0);
+    return c + at - a * a.dot(at);
+  });
+  make.add_vector("axis", "", axis);
+  add_radius(make, setup, side, 4);
+  feature.normals.resize(touches.size(), 3);
+  for (Index i = 0; i < touches.size(); ++i) feature.normals.row(i) = side * outward(i).transpose();
+  feature.deviation = side * feature.fit.residual;
+  return feature;
+}
+
+// ---- block
+
+struct BlockModel {
+  const Touches& touches;
+  std::vector<int> axis;     // face across X (0) or Y (1)
+  std::vector<double> side;  // +1, -1
+  // p: angle of the block, position of its centre along its own X and Y.
+  std::array<double, 2> half;
+  double ball;
+  VectorXd operator()(const VectorXd& p) const {
+    const Eigen::Vector2d x(std::cos(p(0)), std::sin(p(0))), y(-x(1), x(0));
+    VectorXd r(touches.size());
+    for (Index i = 0; i < touches.size(); ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      const Eigen::Vector2d m = touches.p.row(i).head(2).transpose();
+      const double along = axis[k] == 0 ? m.dot(x) - p(1) : m.dot(y) - p(2);
+      r(i) = along - side[k] * (half[static_cast<std::size_t>(axis[k])] + ball);
+    }
+    return r;
+  }
+};
+
+Feature fit_block(const Touches& touches, const FeatureSetup& setup) {
+  if (!touches.n) throw InputError("a block needs the normal of the touched face in each row (nx, ny)");
+  if (!(setup.block_size_mm[0] > 0 && setup.block_size_mm[1] > 0))
+    throw InputError("a block needs its size (--size X,Y)");
+  BlockModel model{
+      touches, {}, {}, {setup.block_size_mm[0] / 2, setup.block_size_mm[1] / 2}, setup.ball_radius_mm};
+  std::set<int> faces;
+  for (Index i = 0; i < touches.size(); ++i) {
+    const double nx = (*touches.n)(i, 0), ny = (*touches.n)(i, 1);
+    if (std::max(std::abs(nx), std::abs(ny)) < 0.9)
+      throw InputError(
+          "a normal of the block lies along neither X nor Y (the block is turned by more than 25 deg)");
+    model.axis.push_back(std::abs(nx) > std::abs(ny) ? 0 : 1);
+    model.side.push_back(model.axis.back() == 0 ? (nx > 0 ? 1 : -1) : (ny > 0 ? 1 : -1));
+    faces.insert(model.axis.back());
+  }
+  if (faces.size() < 2) throw InputError("both a face across X and a face across Y must be touched");
+  Feature feature;
+  Vector3d start(0, touches.p.col(0).mean(), touches.p.col(1).mean());
+  feature.fit = fit_touches(model, start, options_of(touches, setup), {"angle", "centre x", "centre y"});
+  const Maker make{feature};
+  const auto centre = [](const VectorXd& p) -> Vector3d {
+    return {p(1) * std::cos(p(0)) - p(2) * std::sin(p(0)), p(1) * std::sin(p(0)) + p(2) * std::cos(p(0)), 0};
+  };
+  make.add("centre_x", "mm", [&](const VectorXd& p) { return centre(p)(0); });
+  make.add("centre_y", "mm", [&](const VectorXd& p) { return centre(p)(1); });
+  make.add("angle", "deg", [](const VectorXd& p) { return p(0) * kDegPerRad; });
+  feature.normals = MatrixXd::Zero(touches.size(), 3);
+  feature.deviation.resize(touches.size());
+  const double a = feature.fit.value(0);
+  for (Index i = 0; i < touches.size(); ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const Vector3d n =
+        model.axis[k] == 0 ? Vector3d(std::cos(a), std::sin(a), 0) : Vector3d(-std::sin(a), std::cos(a), 0);
+    feature.normals.row(i) = model.side[k] * n.transpose();
+    feature.deviation(i) = model.side[k] * feature.fit.residual(i);
+  }
+  return feature;
+}
+
+Feature fit_kind(const Touches& touches, const FeatureSetup& setup) {
+  switch (setup.kind) {
+    case FeatureKind::kPlane:
+      return fit_plane(touches, setup);
+    case FeatureKind::kLine:
+      return fit_line(touches, setup);
+    case FeatureKind::kCircle:
+      return fit_circle(touches, setup);
+    case FeatureKind::kSphere:
+      return fit_sphere(touches, setup);
+    case FeatureKind::kCylinder:
+      return fit_cylinder(touches, setup);
+    case FeatureKind::kBlock:
+      return fit_block(touches, setup);
+  }
+  throw InputError("no such feature");
+}
+
+// Expansion and temperature are the same for all touches: they widen what has a size or a place.
+void widen(Feature& feature, const FeatureSetup& setup, double off_reference_K) {
+  const double relative = std::hypot(setup.expansion_std_per_K * off_reference_K,
+                                     *setup.expansion_per_K * setup.temperature_std_K);
+  for (Calibrated& p : feature.parameters)
+    if (p.unit == "mm") p.std = std::hypot(p.std, relative * p.value);
+}
+
+}  // namespace
+
+const Calibrated* Feature::find(const std::string& name) const {
+  const auto found =
+      std::find_if(parameters.begin(), parameters.end(), [&](const Calibrated& c) { return c.name == name; });
+  return found == parameters.end() ? nullptr : &*found;
+}
+
+Feature fit_feature(TouchTable& table, const FeatureSetup& setup) {
+  std::vector<std::string> findings;
+  const Touches touches = read_touches(table, setup, findings);
+  Feature feature = fit_kind(touches, setup);
+  feature.points = touches.p;
+  if (setup.expansion_per_K) {
+    const auto t = table.find({"T"});
+    widen(feature, setup, (t ? t->mean() : *setup.temperature_degC) - kReferenceDegC);
+  }
+  double low = 0, high = 0;
+  for (Index i = 0; i < feature.deviation.size(); ++i)
+    if (feature.fit.kept[static_cast<std::size_t>(i)])
+      low = std::min(low, feature.deviation(i)), high = std::max(high, feature.deviation(i));
+  feature.form_mm = high - low;
+  if (feature.fit.dof == 0)
+    feature.findings.push_back(
+        "As many touches as unknowns: the feature goes through all of them and nothing checks it.");
+  for (const TouchOutlier& outlier : feature.fit.outliers)
+    feature.findings.push_back(
+        fmt::format("{}:{}: left out: {:+.2f} um from the others, {:.0f} times their scatter (chance {:.1g})",
+                    table.file(), table.line(outlier.touch), outlier.residual * 1e3, std::abs(outlier.t),
+                    outlier.p_value));
+  feature.findings.insert(feature.findings.begin(), findings.begin(), findings.end());
+  feature.findings.insert(feature.findings.end(), table.notes().begin(), table.notes().end());
+  return feature;
+}
+
+std::string feature_csv(const TouchTable& table, const Feature& feature, const FeatureSetup&) {
+  static const std::set<std::string> kReplaced = {"x", "y", "z", "nx", "ny", "nz", "d", "px", "py", "pz"};
+  std::string text;
+  auto out = std::back_inserter(text);
+  const CsvFile& csv = table.csv();
+  for (const CsvColumn& column : csv.columns)
+    if (!kReplaced.contains(column.name))
+      fmt::format_to(out, "{}{},", column.name, column.unit.empty() ? "" : "[" + column.unit + "]");
+  text += "d[mm],nx,ny,nz,px[mm],py[mm],pz[mm]\n";
+  for (std::size_t i = 0; i < csv.rows.size(); ++i) {
+    const auto k = static_cast<Index>(i);
+    // An outlier is no observation of this feature.
+    if (!feature.fit.kept[i]) continue;
+    for (std::size_t c = 0; c < csv.columns.size(); ++c)
+      if (!kReplaced.contains(csv.columns[c].name)) text += csv.rows[i][c] + ",";
+    const Vector3d n = feature.normals.row(k), p = Vector3d(feature.points.row(k)) - feature.deviation(k) * n;
+    fmt::format_to(out, "{:.9g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g}\n", feature.deviation(k),
+                   n(0), n(1), n(2), p(0), p(1), p(2));
+  }
+  return text;
+}
+
+}  // namespace vernier

@@ -1,0 +1,50 @@
+#pragma once
+#include <Eigen/Core>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace vernier {
+
+/// A touch that does not belong to the others.
+struct TouchOutlier {
+  std::size_t touch = 0;
+  double residual = 0;  // of the fit that it was left out of, the observation's unit
+  double t = 0;         // externally studentised residual
+  double p_value = 0;   // after Bonferroni for the number of observations
+};
+
+/// A least squares fit to touches.
+struct TouchFit {
+  Eigen::VectorXd value;
+  Eigen::MatrixXd covariance;
+  Eigen::VectorXd residual;  // per observation, outliers too
+  std::vector<bool> kept;    // per touch
+  std::vector<TouchOutlier> outliers;
+  double rms = 0;        // of the kept residuals
+  double sigma = 0;      // their standard deviation, degrees of freedom considered
+  double condition = 0;  // smallest over largest singular value of the scaled Jacobian
+  int dof = 0;
+
+  double std_of(Eigen::Index i) const { return std::sqrt(covariance(i, i)); }
+};
+
+/// Residuals of all observations at given parameters. Observation k belongs to touch k / per_touch.
+using TouchModel = std::function<Eigen::VectorXd(const Eigen::VectorXd&)>;
+
+struct TouchFitOptions {
+  std::size_t per_touch = 1;
+  std::optional<Eigen::VectorXd> u;  // standard uncertainty per observation
+  double outlier_level = 0.01;       // chance that a good set loses a touch; 0: none is left out
+};
+
+/// Gauss-Newton with step halving from `start`; then, one by one, the touch whose deleted residual is least
+/// likely is left out while its chance (Student's t, Bonferroni) is below the level. Covariance: from u,
+/// times chi^2/dof where that exceeds 1; without u from the residual. Throws InputError: fewer observations
+/// than parameters plus one, or parameters that the touches do not determine (`names` of the weakest). tool.
+/// Source of the test: R. D. Cook, S. Weisberg, Residuals and Influence in Regression, 1982, 2.2.
+TouchFit fit_touches(const TouchModel& model, const Eigen::VectorXd& start, const TouchFitOptions& options,
+                     const std::vector<std::string>& names);
+
+}  // namespace vernier

@@ -1,0 +1,129 @@
+#include "tools/probe/touch_table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "tools/model/error.h"
+#include "tools/model/numbers.h"
+#include "tools/model/units.h"
+
+namespace vernier {
+namespace {
+
+// Units that a name may end with, longest first.
+constexpr std::pair<const char*, const char*> kSuffixes[] = {
+    {"_mm_min", "mm/min"}, {"_mm_s2", "mm/s^2"}, {"_mm_s", "mm/s"}, {"_degC", "degC"}, {"_deg", "deg"},
+    {"_um", "um"},         {"_mm", "mm"},        {"_in", "in"},     {"_ms", "ms"},     {"_s", "s"}};
+constexpr std::string_view kPrinted = "_printed";
+
+bool take_suffix(std::string& name, std::string_view suffix) {
+  if (name.size() <= suffix.size() || name.substr(name.size() - suffix.size()) != suffix) return false;
+  name.resize(name.size() - suffix.size());
+  return true;
+}
+
+std::pair<std::string, std::string> split(const std::string& words, const char* option) {
+  const auto at = words.find('=');
+  if (at == 0 || at == std::string::npos || at + 1 == words.size())
+    throw InputError(fmt::format("{} \"{}\": not of the form column=value", option, words));
+  return {words.substr(0, at), words.substr(at + 1)};
+}
+
+void rename(CsvFile& csv, const std::string& words) {
+  auto [from, to] = split(words, "--column");
+  const auto found = std::find_if(csv.columns.begin(), csv.columns.end(),
+                                  [&](const CsvColumn& c) { return c.name == from; });
+  if (found == csv.columns.end()) throw InputError({csv.file, csv.header_line}, from, "no such column");
+  if (const auto bracket = to.find('['); bracket != std::string::npos && to.back() == ']') {
+    found->unit = to.substr(bracket + 1, to.size() - bracket - 2);
+    to.resize(bracket);
+    if (!find_unit(found->unit)) throw InputError({csv.file, csv.header_line}, found->unit, "unknown unit");
+  }
+  // A column that had the name already steps back.
+  for (CsvColumn& column : csv.columns)
+    if (column.name == to && &column != &*found) column.name += "_before";
+  found->name = to;
+}
+
+void keep_rows(CsvFile& csv, const std::string& words) {
+  const auto [name, value] = split(words, "--where");
+  const auto found = std::find_if(csv.columns.begin(), csv.columns.end(),
+                                  [&, n = name](const CsvColumn& c) { return c.name == n; });
+  if (found == csv.columns.end()) throw InputError({csv.file, csv.header_line}, name, "no such column");
+  const auto index = static_cast<std::size_t>(found - csv.columns.begin());
+  CsvFile kept = csv;
+  kept.rows.clear(), kept.line.clear();
+  for (std::size_t i = 0; i < csv.rows.size(); ++i) {
+    if (csv.rows[i][index] != value) continue;
+    kept.rows.push_back(csv.rows[i]);
+    kept.line.push_back(csv.line[i]);
+  }
+  if (kept.rows.empty()) throw InputError({csv.file, csv.header_line}, value, "no row has this " + name);
+  csv = std::move(kept);
+}
+
+}  // namespace
+
+TouchTable::TouchTable(const std::string& text, const std::string& file,
+                       const std::vector<std::string>& renames, const std::vector<std::string>& where)
+    : csv_(parse_csv(text, file)) {
+  for (const std::string& words : renames) rename(csv_, words);
+  for (const std::string& words : where) keep_rows(csv_, words);
+  for (std::size_t i = 0; i < csv_.columns.size(); ++i) {
+    Column column{csv_.columns[i].name, csv_.columns[i].unit, false, i};
+    column.printed = take_suffix(column.name, kPrinted);
+    for (const auto& [suffix, unit] : kSuffixes)
+      if (column.unit.empty() && take_suffix(column.name, suffix)) column.unit = unit;
+    columns_.push_back(column);
+  }
+}
+
+std::optional<Eigen::VectorXd> TouchTable::find(const std::vector<std::string>& names) {
+  const Column* found = nullptr;
+  for (const std::string& name : names) {
+    for (const Column& column : columns_) {
+      if (column.name != name) continue;
+      if (found != nullptr && found->printed != column.printed)
+        notes_.push_back(fmt::format("{}: as printed, not the repaired column (--column {}={} takes that)",
+                                     name, csv_.columns[(column.printed ? *found : column).index].name,
+                                     names.front()));
+      if (found == nullptr || column.printed) found = &column;
+    }
+    if (found != nullptr) break;
+  }
+  if (found == nullptr) return std::nullopt;
+  const std::string& unit_name = found->unit;
+  const bool per_minute = unit_name == "mm/min";  // the unit of feeds here
+  const auto unit = find_unit(unit_name);
+  Eigen::VectorXd values(static_cast<Eigen::Index>(rows()));
+  for (std::size_t i = 0; i < rows(); ++i) {
+    const std::string& cell = csv_.rows[i][found->index];
+    const auto number = parse_number(cell);
+    if (!number)
+      throw InputError({csv_.file, csv_.line[i]}, cell,
+                       "not a number in column " + csv_.columns[found->index].name);
+    const double value = per_minute || !unit ? *number : unit->factor * *number + unit->offset;
+    values(static_cast<Eigen::Index>(i)) =
+        unit && unit->dimension == Dimension::kSpeed && !per_minute ? 60 * value : value;
+  }
+  return values;
+}
+
+Eigen::VectorXd TouchTable::need(const std::vector<std::string>& names, const std::string& what) {
+  if (auto values = find(names)) return *values;
+  throw InputError({csv_.file, csv_.header_line}, names.front(), "no such column: " + what);
+}
+
+std::optional<std::vector<std::string>> TouchTable::words(const std::string& name) const {
+  for (const Column& column : columns_) {
+    if (column.name != name) continue;
+    std::vector<std::string> out;
+    for (const auto& row : csv_.rows) out.push_back(row[column.index]);
+    return out;
+  }
+  return std::nullopt;
+}
+
+}  // namespace vernier
