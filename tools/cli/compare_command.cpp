@@ -130,6 +130,7 @@ void run_compare(const CompareArguments& arguments) {
   write_json(arguments.json, json);
   for (const std::string& note : machine.notes) fmt::print(stderr, "note: {}\n", note);
   print_result(human_stream(arguments.json), json);
+  print_domains(human_stream(arguments.json), json["domains"]);
 }
 
 }  // namespace

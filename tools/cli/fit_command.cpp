@@ -5,6 +5,7 @@
 
 #include "tools/cli/command.h"
 #include "tools/cli/results.h"
+#include "tools/fit/domain.h"
 #include "tools/fit/fit.h"
 #include "tools/model/machine.h"
 #include "tools/model/measurement.h"
@@ -123,10 +124,12 @@ void run_fit(const FitArguments& arguments) {
   const FitResult result = fit(machine, m, options);
   const nlohmann::ordered_json json = fit_json(result, m);
   if (!arguments.output.empty())
-    write_file(arguments.output, update_machine_text(text, result.machine, true));
+    write_file(arguments.output,
+               close_domains(update_machine_text(text, result.machine, true), result.machine, m));
   write_json(arguments.json, json);
   for (const std::string& note : machine.notes) fmt::print(stderr, "note: {}\n", note);
   print_result(human_stream(arguments.json), result, m);
+  print_domains(human_stream(arguments.json), json["domains"]);
 }
 
 }  // namespace

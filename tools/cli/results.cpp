@@ -1,10 +1,12 @@
 #include "tools/cli/results.h"
-#include "tools/model/optional_json.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <cstdint>
+
+#include "tools/fit/domain.h"
+#include "tools/model/optional_json.h"
 
 namespace vernier {
 namespace {
@@ -75,6 +77,7 @@ ordered_json fit_json(const FitResult& result, const Measurement& m) {
   json["degrees_of_freedom"] = result.freedom;
   json["iterations"] = result.iterations;
   json["converged"] = result.converged;
+  json["domains"] = domains_json(result.machine, m);
   json["notes"] = result.machine.notes;
   return json;
 }
@@ -86,8 +89,35 @@ ordered_json compare_json(const Machine& machine, const Measurement& m, const Ei
   json["unidentifiable"] = ordered_json::array();
   json["stretches"] = stretches_json(m, residual);
   json["circular"] = circular_json(machine, m);
+  json["domains"] = domains_json(machine, m);
   json["notes"] = machine.notes;
   return json;
+}
+
+ordered_json domains_json(const Machine& machine, const Measurement& m) {
+  ordered_json json = ordered_json::array();
+  for (const DomainUse& use : domain_use(machine, m))
+    json.push_back({{"domain", use.range.domain},
+                    {"quantity", use.range.quantity},
+                    {"low", use.range.open ? ordered_json(nullptr) : ordered_json(use.range.low)},
+                    {"high", use.range.open ? ordered_json(nullptr) : ordered_json(use.range.high)},
+                    {"least", use.least},
+                    {"most", use.most},
+                    {"rows_outside", use.faded},
+                    {"rows_without_effect", use.gone}});
+  return json;
+}
+
+void print_domains(std::FILE* out, const ordered_json& domains) {
+  for (const ordered_json& use : domains)
+    if (use["rows_outside"].get<std::size_t>() > 0)
+      fmt::print(out,
+                 "{}: {} goes from {:.4g} to {:.4g}, trained is {:.4g} to {:.4g}: the term fades on {} rows, "
+                 "on {} to nothing\n",
+                 use["domain"].get<std::string>(), use["quantity"].get<std::string>(),
+                 use["least"].get<double>(), use["most"].get<double>(), use["low"].get<double>(),
+                 use["high"].get<double>(), use["rows_outside"].get<std::size_t>(),
+                 use["rows_without_effect"].get<std::size_t>());
 }
 
 ordered_json stretches_json(const Measurement& m, const Eigen::VectorXd& residual) {

@@ -21,6 +21,12 @@ void add_detail(nlohmann::ordered_json& result, const Machine& machine, const Me
 /// last_line, n_obs, rms_um}. Shows where in a run a model holds (an overshoot arc, a warm-up, a late row).
 nlohmann::ordered_json stretches_json(const Measurement& measurement, const Eigen::VectorXd& residual);
 
+/// Where rows stand to the domains of validity of learned terms: {domain, quantity, low, high (trained; null
+/// while open), least, most (of the rows), rows_outside, rows_without_effect}; and as lines for people, where
+/// rows are outside.
+nlohmann::ordered_json domains_json(const Machine& machine, const Measurement& measurement);
+void print_domains(std::FILE* out, const nlohmann::ordered_json& domains);
+
 /// ISO 230-4 numbers of every circular test among the rows (a list, empty where there is none).
 nlohmann::ordered_json circular_json(const Machine& machine, const Measurement& measurement);
 

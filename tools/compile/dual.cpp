@@ -127,12 +127,19 @@ Dual Translator::lag(const Dual& u, const Dual& tau) {
   return {at_nominal, g_.subtract(g_.lag(actual(u), *nominal + *change), at_nominal)};
 }
 
+// An even power is a square, whose range is known not to be negative.
+NodeId Translator::whole_power(NodeId base, int n) {
+  if (n == 0) return g_.constant(1);
+  if (n % 2 != 0) return g_.product(whole_power(base, n - 1), base);
+  const NodeId half = whole_power(base, n / 2);
+  return g_.product(half, half);
+}
+
 NodeId Translator::power(NodeId base, NodeId exponent) {
   const auto n = g_.constant_value(exponent);
   if (const auto b = g_.constant_value(base); n && b) return g_.constant(std::pow(*b, *n));
   if (n && *n == std::round(*n) && std::abs(*n) <= 16) {
-    NodeId result = g_.constant(1);
-    for (int i = 0; i < std::abs(static_cast<int>(*n)); ++i) result = g_.product(result, base);
+    const NodeId result = whole_power(base, std::abs(static_cast<int>(*n)));
     return *n < 0 ? g_.function(Function::kReciprocal, result) : result;
   }
   if (n && *n == 0.5) return g_.function(Function::kSqrt, base);

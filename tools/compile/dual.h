@@ -31,6 +31,7 @@ class Translator {
   Dual lag(const Dual& u, const Dual& tau);
   NodeId apply_to(Op op, NodeId a, NodeId b);
   NodeId power(NodeId base, NodeId exponent);
+  NodeId whole_power(NodeId base, int n);
   NodeId angle_of(NodeId y, NodeId x);
   NodeId table_value(std::size_t index);
 

@@ -475,10 +475,15 @@ class Lowering {
         n.function == Function::kLog || n.function == Function::kSqrt || n.function == Function::kReciprocal;
     const Interval exact = g_[n.args[0]].range;
     const ValueRange& counts = b_.counts(argument);
-    if (!open || counts.low > 0 || counts.high < 0) return argument;
-    const bool positive = exact.low > 0;
-    const Id edge =
-        b_.reformat(b_.constant(0.999 * (positive ? exact.low : exact.high)), b_.at(argument).fraction_bits);
+    // A square is a product to the integers, which may be negative to them: exp(-c x^2) would be a giant.
+    const bool steep =
+        n.function == Function::kExp &&
+        std::ldexp(static_cast<double>(counts.high), -b_.at(argument).fraction_bits) > exact.high + 0.1;
+    if (!steep && (!open || counts.low > 0 || counts.high < 0)) return argument;
+    const bool positive = !steep && exact.low > 0;
+    const int bits = b_.at(argument).fraction_bits;
+    const Id edge = steep ? b_.constant(exact.high + std::ldexp(1.0, -bits), bits)
+                          : b_.reformat(b_.constant(0.999 * (positive ? exact.low : exact.high)), bits);
     const Instruction step{positive ? OpCode::kMax : OpCode::kMin,
                            0,
                            static_cast<std::uint16_t>(argument),

@@ -4,6 +4,7 @@
 #include <Eigen/QR>
 #include <algorithm>
 
+#include "tools/diagnose/enumerate.h"
 #include "tools/diagnose/scan.h"
 
 namespace vernier {
@@ -37,10 +38,31 @@ Eigen::MatrixXd fitted_to_block_alone(const Eigen::MatrixXd& model_rows) {
                      nullptr);
 }
 
+/// Level of each value: levels are apart where neighbours in size are by `least_width`; where that gives one
+/// level or more than eight, thirds of the range, if each third is as wide.
+std::vector<int> levels_of(const std::vector<double>& values, double least_width) {
+  constexpr int kMostLevels = 8, kParts = 3;
+  std::vector<double> sorted = values;
+  std::sort(sorted.begin(), sorted.end());
+  std::vector<double> begins;
+  for (std::size_t i = 1; i < sorted.size(); ++i)
+    if (sorted[i] - sorted[i - 1] > least_width) begins.push_back(sorted[i]);
+  const double width = sorted.back() - sorted.front();
+  if ((begins.empty() || begins.size() >= kMostLevels) && width > kParts * least_width) {
+    begins.clear();
+    for (int i = 1; i < kParts; ++i) begins.push_back(sorted.front() + i * width / kParts);
+  }
+  std::vector<int> levels;
+  for (const double value : values)
+    levels.push_back(
+        static_cast<int>(std::upper_bound(begins.begin(), begins.end(), value) - begins.begin()));
+  return levels;
+}
+
 }  // namespace
 
-HeldOut leave_runs_out(const Evidence& evidence, const Eigen::MatrixXd& columns, Eigen::Index watched_first,
-                       Eigen::Index watched_count, bool within_runs) {
+HeldOut leave_blocks_out(const Evidence& evidence, const Eigen::MatrixXd& columns, Eigen::Index watched_first,
+                         Eigen::Index watched_count, const std::vector<int>& blocks) {
   HeldOut result;
   const Eigen::MatrixXd own = orthonormal(columns, 1e-6, nullptr);
   const Eigen::MatrixXd& q = evidence.absorbed();
@@ -57,7 +79,6 @@ HeldOut leave_runs_out(const Evidence& evidence, const Eigen::MatrixXd& columns,
            coefficient.segment(watched_first, watched_count);
   };
   const Eigen::VectorXd whole = watched_part(all);
-  const std::vector<int> blocks = within_runs ? evidence.parts_of_runs() : evidence.blocks();
   const int count = 1 + *std::max_element(blocks.begin(), blocks.end());
   for (int block = 0; block < count; ++block) {
     const std::vector<Eigen::Index> rows = rows_of(blocks, block);
@@ -81,6 +102,32 @@ HeldOut leave_runs_out(const Evidence& evidence, const Eigen::MatrixXd& columns,
       result.agreement.push_back(part.dot(whole) / std::max(part.norm() * whole.norm(), 1e-300));
   }
   return result;
+}
+
+HeldOut leave_runs_out(const Evidence& evidence, const Eigen::MatrixXd& columns, Eigen::Index watched_first,
+                       Eigen::Index watched_count, bool within_runs) {
+  return leave_blocks_out(evidence, columns, watched_first, watched_count,
+                          within_runs ? evidence.parts_of_runs() : evidence.blocks());
+}
+
+std::vector<std::vector<int>> level_blocks(const Evidence& evidence) {
+  const States& states = evidence.measurement().states;
+  std::vector<std::vector<int>> all;
+  const auto take = [&](const Column& column, double least_width) {
+    std::vector<double> values;
+    for (const std::size_t row : evidence.rows()) values.push_back(column[static_cast<Eigen::Index>(row)]);
+    const std::vector<int> levels = levels_of(values, least_width);
+    if (*std::max_element(levels.begin(), levels.end()) > 0) all.push_back(levels);
+  };
+  constexpr double kSameFeed = 0.05, kLeastWarmth_degC = 1;
+  double fastest = 0;
+  for (const std::size_t row : evidence.rows())
+    fastest = std::max(fastest, states.feed[static_cast<Eigen::Index>(row)]);
+  if (fastest > 0) take(states.feed, kSameFeed * fastest);
+  for (std::size_t i = 0; i < evidence.machine().inputs.size(); ++i)
+    if (class_of_input(evidence.machine().inputs[i]) == InputClass::kTemperature)
+      take(states.input[i], kLeastWarmth_degC);
+  return all;
 }
 
 }  // namespace vernier

@@ -19,4 +19,12 @@ struct HeldOut {
 HeldOut leave_runs_out(const Evidence& evidence, const Eigen::MatrixXd& columns, Eigen::Index watched_first,
                        Eigen::Index watched_count, bool within_runs = false);
 
+/// The same with any blocks left out in turn: an index for each fit observation.
+HeldOut leave_blocks_out(const Evidence& evidence, const Eigen::MatrixXd& columns, Eigen::Index watched_first,
+                         Eigen::Index watched_count, const std::vector<int>& blocks);
+
+/// Whole feeds, and whole temperatures of each thermometer, as blocks: what a term learned on features must
+/// be proved on, for features follow both. One list for each quantity that has two levels or more.
+std::vector<std::vector<int>> level_blocks(const Evidence& evidence);
+
 }  // namespace vernier

@@ -1,8 +1,11 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <pugixml.hpp>
 
 #include "tools/diagnose/candidate.h"
+#include "tools/diagnose/enumerate.h"
+#include "tools/fit/domain.h"
 #include "tools/model/error.h"
 #include "tools/model/numbers.h"
 #include "tools/model/xml_text.h"
@@ -14,7 +17,9 @@ namespace {
 class Adder {
  public:
   Adder(const std::string& text, const Machine& machine, const Candidate& candidate)
-      : text_(text), machine_(machine), candidate_(candidate) {}
+      : text_(text), machine_(machine), candidate_(candidate) {
+    find_domain();
+  }
 
   std::string add() {
     document_.load_buffer(text_.data(), text_.size(), pugi::parse_default, pugi::encoding_utf8);
@@ -34,6 +39,43 @@ class Adder {
       if (equal_no_case(node.name(), "transforms")) chains_.push_back(node);
       if (equal_no_case(node.name(), "variables") || node.parent() == document_) find(node);
     }
+  }
+
+  /// A term learned on accelerometer features gets a domain of validity: over its inputs and the feed, where
+  /// they stand in it, and over every thermometer of the machine, since warmth spoils such terms unseen.
+  void find_domain() {
+    const Choice& choice = candidate_.choice;
+    bool learned = false;
+    for (std::size_t i = 0; i < choice.inputs.size(); ++i) {
+      Input input;
+      input.name = choice.inputs[i];
+      input.unit = i < choice.units.size() ? choice.units[i] : "";
+      if (const auto known = machine_.find_input(input.name)) input = machine_.inputs[*known];
+      learned = learned || class_of_input(input) == InputClass::kFeature;
+      domain_.emplace_back(input.name, input.unit);
+    }
+    if (!learned) return domain_.clear();
+    bool feed = false;
+    for (const CandidateTerm& term : candidate_.terms)
+      walk(*parse_expression(term.text),
+           [&feed](const Expr& e) { feed = feed || (e.op == Op::kSymbol && e.name == "feed"); });
+    if (feed) domain_.emplace_back("feed", "mm/min");
+    for (const Input& input : machine_.inputs) {
+      const bool listed =
+          std::any_of(domain_.begin(), domain_.end(), [&](const auto& q) { return q.first == input.name; });
+      if (!listed && class_of_input(input) == InputClass::kTemperature)
+        domain_.emplace_back(input.name, input.unit);
+    }
+    for (int n = 1;
+         domain_name_.empty() || machine_.find_static(domain_name_ + "_" + domain_[0].first + "_low"); ++n)
+      domain_name_ = fmt::format("domain{}", n);
+  }
+
+  std::string in_domain(const std::string& term) const {
+    if (domain_.empty()) return term;
+    std::vector<std::string> quantities;
+    for (const auto& [quantity, unit] : domain_) quantities.push_back(quantity);
+    return domain_weight(domain_name_, quantities) + "*(" + term + ")";
   }
 
   static std::size_t offset(const pugi::xml_node& node) {
@@ -77,6 +119,10 @@ class Adder {
                            number_text(unknown.start),
                            unknown.kind == UnknownKind::kLinear ? "0" : number_text(unknown.start),
                            escape_attribute(unknown.unit), escape_attribute(candidate_.label));
+    for (const DomainStatic& item : open_domain(domain_name_, domain_))
+      lines += fmt::format(
+          "      <{} value=\"{}\" Hide=\"true\" unit=\"{}\" note=\"where it is valid: {}\"/>\n", item.name,
+          number_text(item.value), escape_attribute(item.unit), escape_attribute(candidate_.label));
     return lines;
   }
 
@@ -138,8 +184,9 @@ class Adder {
   void edit_term(const CandidateTerm& term) {
     const pugi::xml_node node = node_of(term.place);
     const std::string name = dof_name(machine_, term.place);
-    const bool open = is_comparison(*parse_expression(term.text));
-    const std::string value = escape_attribute(open ? "(" + term.text + ")" : term.text);
+    const std::string text = in_domain(term.text);
+    const bool open = is_comparison(*parse_expression(text));
+    const std::string value = escape_attribute(open ? "(" + text + ")" : text);
     const bool closed = !is_comparison(*transform_at(machine_, term.place).dof[term.place.dof]);
     for (const AttributeSpan& span : attribute_spans(text_, offset(node))) {
       if (!equal_no_case(span.name, name)) continue;
@@ -160,6 +207,8 @@ class Adder {
   const std::string& text_;
   const Machine& machine_;
   const Candidate& candidate_;
+  std::string domain_name_;
+  std::vector<std::pair<std::string, std::string>> domain_;  // quantity and unit; empty: not learned
   pugi::xml_document document_;
   pugi::xml_node variables_, static_, inputs_;
   std::vector<pugi::xml_node> chains_;

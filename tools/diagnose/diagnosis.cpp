@@ -11,6 +11,7 @@
 #include "tools/diagnose/shape.h"
 #include "tools/diagnose/structure.h"
 #include "tools/diagnose/time_base.h"
+#include "tools/fit/domain.h"
 
 namespace vernier {
 namespace {
@@ -82,6 +83,7 @@ class Diagnoser {
     result.fit = fit(machine, rows);
     if (hold_runaways(items, result, machine)) result.fit = fit(machine, rows);
     result.text = update_machine_text(result.text, result.fit.machine, true);
+    result.text = close_domains(result.text, result.fit.machine, rows);
     return result;
   }
 

@@ -6,6 +6,7 @@
 
 #include "tools/diagnose/probe.h"
 #include "tools/model/chain_rows.h"
+#include "tools/vibration/signal_features.h"
 
 namespace vernier {
 namespace {
@@ -422,6 +423,8 @@ InputClass class_of_input(const Input& input) {
   if (has("temp") || input.name.rfind("T_", 0) == 0) return InputClass::kTemperature;
   if (has("load") || has("force") || has("mass") || has("torque") || has("weight")) return InputClass::kLoad;
   if (has("vib") || has("acc") || has("rms")) return InputClass::kFeature;
+  for (const char* feature : kFeatureNames)
+    if (input.name.ends_with(std::string("_") + feature)) return InputClass::kFeature;
   return InputClass::kOther;
 }
 

@@ -201,7 +201,22 @@ std::string Finder::failed_test(std::size_t item) const {
   for (const double cosine : with.agreement) agree += cosine > 0.5 ? 1 : 0;
   if (static_cast<double>(agree) < 0.75 * static_cast<double>(with.agreement.size()))
     return "stability: its coefficients change when a run is left out";
+  if (is_learned(item))
+    for (const std::vector<int>& levels : level_blocks(evidence_))
+      if (leave_blocks_out(evidence_, pool_.columns(others), 0, 0, levels).chi_square -
+              leave_blocks_out(evidence_, pool_.columns(all), 0, count, levels).chi_square <
+          kHeldOutShare * gain)
+        return "held out: it does not help at feeds or temperatures that were left out";
   return too_large(item);
+}
+
+bool Finder::is_learned(std::size_t item) const {
+  const Machine& machine = evidence_.machine();
+  const std::vector<std::string>& inputs = pool_.candidate(item).choice.inputs;
+  return std::any_of(inputs.begin(), inputs.end(), [&](const std::string& name) {
+    const auto input = machine.find_input(name);
+    return input && class_of_input(machine.inputs[*input]) == InputClass::kFeature;
+  });
 }
 
 bool Finder::shows_in_one_block(std::size_t item) const {

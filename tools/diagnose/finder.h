@@ -81,6 +81,8 @@ class Finder {
   /// The first test of acceptance that an accepted item fails; empty where it passes all.
   std::string failed_test(std::size_t item) const;
   /// Does one run hold nearly all that an accepted item explains? The other runs cannot tell of it then.
+  /// Does an accelerometer feature stand in its term?
+  bool is_learned(std::size_t item) const;
   bool shows_in_one_block(std::size_t item) const;
   /// Is the term larger than any machine shows it?
   std::string too_large(std::size_t item) const;

@@ -1,0 +1,131 @@
+#include "tools/fit/domain.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <pugixml.hpp>
+
+#include "tools/model/chain.h"
+#include "tools/model/numbers.h"
+#include "tools/model/xml_text.h"
+
+namespace vernier {
+namespace {
+
+constexpr double kOpen = 1e9;
+constexpr double kFadeShare = 0.1;
+
+Column values_of(const Machine& machine, const DomainRange& range, const States& states) {
+  return evaluate(machine, *parse_expression_for(machine, range.quantity), states);
+}
+
+/// Puts values into the hidden statics of a text.
+void visit_statics(const pugi::xml_node& parent, const std::string& text,
+                   const std::vector<std::pair<std::string, double>>& values, std::vector<TextEdit>& edits) {
+  for (const pugi::xml_node node : parent.children()) {
+    if (!equal_no_case(node.name(), "static")) {
+      visit_statics(node, text, values, edits);
+      continue;
+    }
+    for (const pugi::xml_node item : node.children())
+      for (const auto& [name, value] : values) {
+        if (name != item.name()) continue;
+        for (const AttributeSpan& span : attribute_spans(text, static_cast<std::size_t>(item.offset_debug())))
+          if (equal_no_case(span.name, "value"))
+            edits.push_back({span.value_at, span.value_size, number_text(value)});
+      }
+  }
+}
+
+}  // namespace
+
+std::string domain_weight(const std::string& domain, const std::vector<std::string>& quantities) {
+  std::string weight;
+  for (const std::string& q : quantities) {
+    const std::string name = domain + "_" + q;
+    weight += fmt::format("{1}max(0,1-max(0,max({0}_low-{2},{2}-{0}_high))/{0}_fade)", name,
+                          weight.empty() ? "" : "*", q);
+  }
+  return weight;
+}
+
+std::vector<DomainStatic> open_domain(
+    const std::string& domain, const std::vector<std::pair<std::string, std::string>>& quantity_and_unit) {
+  std::vector<DomainStatic> list;
+  for (const auto& [quantity, unit] : quantity_and_unit) {
+    const std::string name = domain + "_" + quantity;
+    list.push_back({name + "_low", unit, -kOpen});
+    list.push_back({name + "_high", unit, kOpen});
+    list.push_back({name + "_fade", unit, kOpen});
+  }
+  return list;
+}
+
+std::vector<DomainRange> domain_ranges(const Machine& machine) {
+  std::vector<DomainRange> list;
+  for (const Static& item : machine.statics) {
+    const auto end = item.name.size() < 4 ? std::string::npos : item.name.rfind("_low");
+    const auto begin = item.name.find('_');
+    if (!item.hidden || end == std::string::npos || end + 4 != item.name.size() || begin >= end) continue;
+    DomainRange range{item.name.substr(0, begin),
+                      item.name.substr(begin + 1, end - begin - 1),
+                      {},
+                      item.value,
+                      0,
+                      0,
+                      false};
+    const auto high = machine.find_static(item.name.substr(0, end) + "_high");
+    const auto fade = machine.find_static(item.name.substr(0, end) + "_fade");
+    range.symbol = resolve_name(machine, range.quantity);
+    if (!high || !fade || range.symbol.kind == SymbolKind::kUnresolved) continue;
+    range.high = machine.statics[*high].value;
+    range.fade = machine.statics[*fade].value;
+    range.open = range.low <= -kOpen && range.high >= kOpen;
+    list.push_back(range);
+  }
+  return list;
+}
+
+std::string close_domains(const std::string& text, const Machine& machine, const Measurement& measurement) {
+  std::vector<std::pair<std::string, double>> values;
+  for (const DomainRange& range : domain_ranges(machine)) {
+    if (!range.open) continue;
+    const Column column = values_of(machine, range, measurement.states);
+    double low = HUGE_VAL, high = -HUGE_VAL;
+    for (std::size_t row = 0; row < measurement.rows(); ++row) {
+      if (measurement.check[row]) continue;
+      low = std::min(low, column[static_cast<Eigen::Index>(row)]);
+      high = std::max(high, column[static_cast<Eigen::Index>(row)]);
+    }
+    if (!(low <= high)) continue;
+    double width = high > low ? high - low : std::fabs(high);
+    if (width == 0) width = 1;
+    const std::string name = range.domain + "_" + range.quantity;
+    values.insert(values.end(),
+                  {{name + "_low", low}, {name + "_high", high}, {name + "_fade", kFadeShare * width}});
+  }
+  pugi::xml_document document;
+  document.load_buffer(text.data(), text.size(), pugi::parse_default, pugi::encoding_utf8);
+  std::vector<TextEdit> edits;
+  visit_statics(document, text, values, edits);
+  return apply_edits(text, std::move(edits));
+}
+
+std::vector<DomainUse> domain_use(const Machine& machine, const Measurement& measurement) {
+  std::vector<DomainUse> list;
+  for (const DomainRange& range : domain_ranges(machine)) {
+    DomainUse use{range, HUGE_VAL, -HUGE_VAL, 0, 0};
+    for (const double value : values_of(machine, range, measurement.states)) {
+      use.least = std::min(use.least, value);
+      use.most = std::max(use.most, value);
+      const double beyond = std::max(range.low - value, value - range.high);
+      use.faded += beyond > 0 ? 1 : 0;
+      use.gone += beyond >= range.fade ? 1 : 0;
+    }
+    list.push_back(use);
+  }
+  return list;
+}
+
+}  // namespace vernier
