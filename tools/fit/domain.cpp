@@ -20,22 +20,50 @@ Column values_of(const Machine& machine, const DomainRange& range, const States&
   return evaluate(machine, *parse_expression_for(machine, range.quantity), states);
 }
 
-/// Puts values into the hidden statics of a text.
-void visit_statics(const pugi::xml_node& parent, const std::string& text,
-                   const std::vector<std::pair<std::string, double>>& values, std::vector<TextEdit>& edits) {
-  for (const pugi::xml_node node : parent.children()) {
-    if (!equal_no_case(node.name(), "static")) {
-      visit_statics(node, text, values, edits);
-      continue;
-    }
+/// New numbers for attributes of the elements in a text's `section` ("static", "inputs"), by element name.
+struct Setting {
+  std::string section, element, attribute;
+  double value;
+};
+
+void edit(const pugi::xml_node& parent, const std::string& text, const std::vector<Setting>& settings,
+          std::vector<TextEdit>& edits) {
+  for (const pugi::xml_node node : parent.children())
     for (const pugi::xml_node item : node.children())
-      for (const auto& [name, value] : values) {
-        if (name != item.name()) continue;
-        for (const AttributeSpan& span : attribute_spans(text, static_cast<std::size_t>(item.offset_debug())))
-          if (equal_no_case(span.name, "value"))
-            edits.push_back({span.value_at, span.value_size, number_text(value)});
+      for (const Setting& one : settings) {
+        if (!equal_no_case(node.name(), one.section) || one.element != item.name()) continue;
+        const auto at = static_cast<std::size_t>(item.offset_debug());
+        bool there = false;
+        for (const AttributeSpan& span : attribute_spans(text, at)) {
+          if (!equal_no_case(span.name, one.attribute)) continue;
+          edits.push_back({span.value_at, span.value_size, number_text(one.value)});
+          there = true;
+        }
+        if (!there)
+          edits.push_back({end_of_attributes(text, at), 0,
+                           fmt::format(" {}=\"{}\"", one.attribute, number_text(one.value))});
       }
-  }
+  for (const pugi::xml_node node : parent.children()) edit(node, text, settings, edits);
+}
+
+/// Statics of a range, and the range of an input that has none.
+void close(const Machine& machine, const DomainRange& range, double low, double high,
+           std::vector<Setting>& settings) {
+  double width = high > low ? high - low : std::fabs(high);
+  if (width == 0) width = 1;
+  const double fade = kFadeShare * width;
+  const std::string name = range.domain + "_" + range.quantity;
+  settings.push_back({"static", name + "_low", "value", low});
+  settings.push_back({"static", name + "_high", "value", high});
+  settings.push_back({"static", name + "_fade", "value", fade});
+  const auto input = machine.find_input(range.quantity);
+  if (!input || machine.inputs[*input].hidden_axis) return;
+  const auto is_set = [&](const Setting& one) {
+    return one.section == "inputs" && one.element == range.quantity;
+  };
+  if (std::any_of(settings.begin(), settings.end(), is_set)) return;  // by another domain over the same rows
+  if (!machine.inputs[*input].min) settings.push_back({"inputs", range.quantity, "min", low - 2 * fade});
+  if (!machine.inputs[*input].max) settings.push_back({"inputs", range.quantity, "max", high + 2 * fade});
 }
 
 }  // namespace
@@ -88,7 +116,7 @@ std::vector<DomainRange> domain_ranges(const Machine& machine) {
 }
 
 std::string close_domains(const std::string& text, const Machine& machine, const Measurement& measurement) {
-  std::vector<std::pair<std::string, double>> values;
+  std::vector<Setting> settings;
   for (const DomainRange& range : domain_ranges(machine)) {
     if (!range.open) continue;
     const Column column = values_of(machine, range, measurement.states);
@@ -98,17 +126,13 @@ std::string close_domains(const std::string& text, const Machine& machine, const
       low = std::min(low, column[static_cast<Eigen::Index>(row)]);
       high = std::max(high, column[static_cast<Eigen::Index>(row)]);
     }
-    if (!(low <= high)) continue;
-    double width = high > low ? high - low : std::fabs(high);
-    if (width == 0) width = 1;
-    const std::string name = range.domain + "_" + range.quantity;
-    values.insert(values.end(),
-                  {{name + "_low", low}, {name + "_high", high}, {name + "_fade", kFadeShare * width}});
+    if (low <= high) close(machine, range, low, high, settings);
   }
+  if (settings.empty()) return text;
   pugi::xml_document document;
   document.load_buffer(text.data(), text.size(), pugi::parse_default, pugi::encoding_utf8);
   std::vector<TextEdit> edits;
-  visit_statics(document, text, values, edits);
+  edit(document, text, settings, edits);
   return apply_edits(text, std::move(edits));
 }
 

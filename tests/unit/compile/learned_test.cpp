@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "tests/unit/compile/agreement.h"
+#include "tools/model/measurement.h"
 
 namespace vernier {
 namespace {

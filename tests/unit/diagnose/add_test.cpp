@@ -5,6 +5,7 @@
 
 #include "tests/unit/diagnose/candidates.h"
 #include "tools/diagnose/diagnosis.h"
+#include "tools/fit/domain.h"
 #include "tools/model/error.h"
 #include "tools/model/prediction.h"
 
@@ -42,7 +43,10 @@ class AddAnywhere : public testing::TestWithParam<std::string> {
     // The term is 0 times something finite: not even a rounding may differ.
     EXPECT_EQ((predict(added, rows) - before_).cwiseAbs().maxCoeff(), 0);
     EXPECT_EQ((predict(nominal_machine(added), rows) - nominal_).cwiseAbs().maxCoeff(), 0);
-    ASSERT_EQ(added.statics.size(), machine_.statics.size() + candidate.unknowns.size());
+    // Low, high and fade of each range of a learned term's domain, beside what the effect brings.
+    const std::size_t of_domains = 3 * (domain_ranges(added).size() - domain_ranges(machine_).size());
+    ASSERT_EQ(added.statics.size(), machine_.statics.size() + candidate.unknowns.size() + of_domains);
+    EXPECT_EQ(of_domains > 0, candidate.choice.effect->id == "vibration");
     for (const CandidateUnknown& unknown : candidate.unknowns) {
       const Static& item = added.statics[*added.find_static(unknown.name)];
       EXPECT_FALSE(item.hidden);

@@ -42,6 +42,8 @@ TEST(Domain, IsClosedAroundTheRowsOfTheFitAlone) {
   EXPECT_DOUBLE_EQ(ranges[1].low, 19);
   EXPECT_DOUBLE_EQ(ranges[1].high, 21);  // the check row of 30 degC is none of training
   EXPECT_DOUBLE_EQ(ranges[1].fade, 0.2);
+  EXPECT_NEAR(*trained.inputs[0].max, 0.34, 1e-12);  // where a board holds the input, and the weight is 0
+  EXPECT_NEAR(*trained.inputs[1].min, 18.6, 1e-12);
   EXPECT_EQ(close_domains(closed, trained, rows), closed);  // closed ones stay
 }
 
