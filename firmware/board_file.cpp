@@ -221,6 +221,10 @@ void read_board(BoardFile& board, const toml::table& table) {
   board.service.upload.trial_time = TimeUs(counts(1e6 * settings.number("trial_s", 60, 0.1, 86400)));
   board.service.activate = settings.flag("activate", false);
   board.priority = static_cast<int>(settings.number("priority", 80, 1, 99));
+  const toml::table* const sync = settings.table("sync");
+  board.sync = source_of(sync, board.path, "board.sync");
+  if (sync != nullptr)
+    board.service.sync_patience = TimeUs(1000 * board.sync.whole("timeout_ms", 20, 1, 1000));
   const std::string key = settings.text("public_key", "");
   if (!key.empty()) board.service.upload.key = read_public_key(beside(board.path, key));
   settings.nothing_else();

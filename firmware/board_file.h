@@ -52,6 +52,7 @@ struct BoardFile {
   std::vector<AxisEntry> axes;
   std::vector<InputEntry> inputs;
   SignalSource probe;               // line of the touch probe; how late it is stands in `service`
+  SignalSource sync;                // of the ticks
   SignalSource enable, healthy;     // digital lines from and to the machine's controller
   std::vector<SignalSource> links;  // kind: "modbus-tcp", "modbus-rtu", "isotp"
   int priority = 80;                // SCHED_FIFO

@@ -68,6 +68,7 @@ struct Devices::Parts {
   std::unique_ptr<RoutedInputs> inputs;
   std::unique_ptr<RoutedOutputs> outputs;
   std::unique_ptr<ProbeLine> probe;
+  std::unique_ptr<TickSync> sync;
   std::unique_ptr<DigitalInput> enable;
   std::unique_ptr<DigitalOutput> healthy;
   std::vector<std::unique_ptr<CommandLink>> links;
@@ -83,6 +84,7 @@ struct Devices::Parts {
   std::vector<Route<AxisReader>> make_positions();
   std::vector<Route<CorrectionWriter>> make_outputs();
   std::vector<Route<InputReader>> make_inputs();
+  void make_sync();
   void make_lines();
   void make_links();
   void make_store();
@@ -188,6 +190,16 @@ std::vector<Route<InputReader>> Devices::Parts::make_inputs() {
   return routes;
 }
 
+void Devices::Parts::make_sync() {
+  if (file.sync.kind.empty()) return;
+  std::string error;
+  sync = open_sync(file.sync, error);
+  note("board.sync  " + file.sync.kind, error, [this] {
+    const InstantNs end = clock.now() + instant_ns(kPatience);
+    return sync->wait_for_sync(end) == HalFault::kNone ? "" : "no sync has come within 1 s";
+  });
+}
+
 void Devices::Parts::make_lines() {
   std::string error;
   if (!file.probe.kind.empty()) {
@@ -234,6 +246,7 @@ Devices::Devices(const BoardFile& file, unsigned long seed) : parts_(std::make_u
   parts_->axes = std::make_unique<RoutedAxes>(parts_->make_positions());
   parts_->outputs = std::make_unique<RoutedOutputs>(parts_->make_outputs());
   parts_->inputs = std::make_unique<RoutedInputs>(parts_->make_inputs());
+  parts_->make_sync();
   parts_->make_lines();
   parts_->make_links();
 }
@@ -246,6 +259,7 @@ Board Devices::board() noexcept {
           .inputs = *parts_->inputs,
           .corrections = *parts_->outputs,
           .probe = parts_->probe.get(),
+          .sync = parts_->sync.get(),
           .enable = parts_->enable.get(),
           .healthy = parts_->healthy.get()};
 }

@@ -265,6 +265,9 @@ int run_board(const Arguments& arguments) {
   stop_beside = true;
   server.join(), sampler.join();
   devices.say_held();
+  if (service->runner().lost_syncs() > 0)
+    std::fprintf(stderr, "vernierd: the sync was lost %llu times\n",
+                 static_cast<unsigned long long>(service->runner().lost_syncs()));
   return finish(arguments, service->cycle(), grant);
 }
 

@@ -7,6 +7,7 @@
 #include "firmware/device_settings.h"
 #include "firmware/link_format.h"
 #include "hal/linux/analogue_output.h"
+#include "hal/linux/can_sync.h"
 #include "hal/linux/gpio_lines.h"
 #include "hal/linux/iio_device.h"
 #include "hal/linux/iio_input.h"
@@ -133,6 +134,13 @@ std::unique_ptr<CommandLink> open_link(const SignalSource& source, std::string& 
   return IsotpLink::open(source.text("interface"),
                          static_cast<std::uint32_t>(source.whole("receive", 0, kLastId)),
                          static_cast<std::uint32_t>(source.whole("transmit", 0, kLastId)), error);
+}
+
+std::unique_ptr<TickSync> open_sync(const SignalSource& source, std::string& error) {
+  if (source.kind != "can") source.fail("no sync of kind " + source.kind);
+  source.only({"interface", "id", "timeout_ms"});
+  return CanSync::open(source.text("interface"),
+                       static_cast<std::uint32_t>(source.whole("id", 0x80, 0, (1 << 29) - 1)), error);
 }
 
 std::unique_ptr<ProbeLine> open_probe(const SignalSource& source, std::string& error) {

@@ -8,6 +8,7 @@
 #include "hal/command_link.h"
 #include "hal/digital_line.h"
 #include "hal/probe_line.h"
+#include "hal/tick_sync.h"
 
 namespace vernier {
 
@@ -27,6 +28,8 @@ std::unique_ptr<AnalogueOutput> open_analogue(const SignalSource& source, bool r
 std::unique_ptr<SampledInput> open_sensor(const SignalSource& source, ModbusLines& lines, std::string& error);
 /// A way in from outside.
 std::unique_ptr<CommandLink> open_link(const SignalSource& source, std::string& error);
+/// The sync of kind "can".
+std::unique_ptr<TickSync> open_sync(const SignalSource& source, std::string& error);
 /// Lines of kind "gpio".
 std::unique_ptr<ProbeLine> open_probe(const SignalSource& source, std::string& error);
 std::unique_ptr<DigitalInput> open_digital_input(const SignalSource& source, std::string& error);

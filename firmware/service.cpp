@@ -33,7 +33,7 @@ Service::Service(ServiceOptions options, const Board& board, SlotStore& store)
       uploader_(store, options_.wiring, options_.upload),
       exchange_(std::make_unique<Exchange>()),
       cycle_(std::make_unique<Cycle>(options_.wiring, options_.upload.tick, board_, options_.limits)),
-      runner_(*cycle_, board_.clock, options_.upload.tick),
+      runner_(*cycle_, board_.clock, options_.upload.tick, board_.sync, options_.sync_patience),
       link_(*exchange_, uploader_, options_.wiring, options_.upload.tick, options_.upload.key) {
   if (board_.probe != nullptr) probing_.emplace(*board_.probe, probe_settings(options_));
 }

@@ -21,6 +21,7 @@ struct ServiceOptions {
   Wiring wiring;
   CycleLimits limits;
   Uploader::Options upload;
+  TimeUs sync_patience;   // beyond a tick's time, until the clock takes the place of the sync
   ProbeSettings probe;    // where the board has one; axes are filled in from the wiring
   bool activate = false;  // bring the correction in when the board becomes ready, once for each enable
 };
@@ -47,6 +48,7 @@ class Service : private CommandHandler {
   void look_after_programs() noexcept;
 
   const Cycle& cycle() const noexcept { return *cycle_; }
+  const Runner& runner() const noexcept { return runner_; }
   Cycle& cycle() noexcept { return *cycle_; }
   const Uploader& uploader() const noexcept { return uploader_; }
   const Exchange& exchange() const noexcept { return *exchange_; }

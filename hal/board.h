@@ -6,6 +6,7 @@
 #include "hal/digital_line.h"
 #include "hal/input_reader.h"
 #include "hal/probe_line.h"
+#include "hal/tick_sync.h"
 
 namespace vernier {
 
@@ -16,6 +17,7 @@ struct Board {
   InputReader& inputs;
   CorrectionWriter& corrections;
   ProbeLine* probe = nullptr;
+  TickSync* sync = nullptr;          // starts the ticks; null: the clock does
   DigitalInput* enable = nullptr;    // off: no correction is let in
   DigitalOutput* healthy = nullptr;  // on: devices answer and no fault is latched
 };

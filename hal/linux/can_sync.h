@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "hal/tick_sync.h"
+
+namespace vernier {
+
+/// The sync frame of a CAN bus (CiA 301 calls it SYNC, identifier 0x80): any frame with its identifier.
+class CanSync : public TickSync {
+ public:
+  /// interface: "can0"; id: 11 bits, or 29 where above 0x7ff. Null with `error` set. setup.
+  static std::unique_ptr<CanSync> open(const std::string& interface, std::uint32_t id, std::string& error);
+  /// Any socket that keeps frames apart and does not block; taken over. setup.
+  explicit CanSync(int socket) : socket_(socket) {}
+  ~CanSync() override;
+  CanSync(const CanSync&) = delete;
+  CanSync& operator=(const CanSync&) = delete;
+
+  HalFault wait_for_sync(InstantNs latest) noexcept override;
+
+ private:
+  bool drain() noexcept;
+  int socket_;
+};
+
+}  // namespace vernier

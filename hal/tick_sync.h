@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "hal/clock.h"
+#include "hal/fault.h"
+
+namespace vernier {
+
+/// The controller's sign that its cycle begins, which starts a tick.
+class TickSync {
+ public:
+  virtual ~TickSync() = default;
+  /// Waits for the next sign. kNoReading: none came until `latest`; kRefused: the device is broken, at once.
+  /// Several that came since the last call count as one. realtime.
+  virtual HalFault wait_for_sync(InstantNs latest) noexcept = 0;
+};
+
+}  // namespace vernier
