@@ -21,6 +21,10 @@ void register_add(CLI::App& vernier);
 void register_effects(CLI::App& vernier);
 void register_plan(CLI::App& vernier);
 void register_improve(CLI::App& vernier);
+void register_set(CLI::App& vernier);
+void register_exclude(CLI::App& vernier);
+void register_workbench(CLI::App& vernier);
+void register_image_diff(CLI::App& vernier);
 void register_derive(CLI::App& vernier);
 void register_compile(CLI::App& vernier);
 void register_simulate(CLI::App& vernier);
@@ -51,7 +55,7 @@ void write_json(const std::string& path, const nlohmann::ordered_json& result);
 std::FILE* human_stream(const std::string& json_path);
 
 /// Progress of a job that may take more than two seconds, on standard error if it is a terminal; else one
-/// line a step.
+/// line a step (all of them, and at once, where VERNIER_PROGRESS=lines says that a program reads them).
 class Progress {
  public:
   explicit Progress(std::string what);

@@ -33,46 +33,14 @@ ordered_json compact(const Column& column) {
   return list;
 }
 
-class ColumnList {
- public:
-  explicit ColumnList(ordered_json& detail) : detail_(detail) {
-    detail["columns"] = ordered_json::array();
-    detail["column_data"] = ordered_json::array();
-  }
-  void add(const std::string& name, const std::string& unit, const char* kind, const Column& data) {
-    detail_["columns"].push_back({{"name", name}, {"unit", unit}, {"kind", kind}});
-    detail_["column_data"].push_back(compact(data));
-  }
-
- private:
-  ordered_json& detail_;
-};
-
 void add_columns(ordered_json& detail, const Machine& machine, const Measurement& m) {
-  ColumnList columns(detail);
-  const States& s = m.states;
-  for (std::size_t i = 0; i < machine.axes.size(); ++i)
-    columns.add(machine.axes[i].name, machine.axes[i].rotary ? "deg" : "mm", "axis", s.axis[i]);
-  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-    const std::string& axis = machine.axes[i].name;
-    const std::string unit = machine.axes[i].rotary ? "deg" : "mm";
-    const auto motion = [&](const std::string& name, const std::string& u, const char* kind,
-                            const Column& data) {
-      if (m.has_recorded(name)) columns.add(name, u, kind, data);
-    };
-    motion("dir" + axis, "", "direction", s.direction[i]);
-    motion("v" + axis, unit + "/s", "motion", s.velocity[i]);
-    motion("a" + axis, unit + "/s^2", "motion", s.acceleration[i]);
-    motion("since" + axis, unit, "motion", s.since[i]);
-  }
-  if (m.has_recorded("feed")) columns.add("feed", "mm/min", "motion", s.feed);
-  if (m.has_recorded("curv")) columns.add("curv", "1/mm", "motion", s.curvature);
-  if (m.has_recorded("t")) columns.add("t", "s", "time", s.time);
-  columns.add("visit", "", "visit", s.visit);
-  for (std::size_t i = 0; i < machine.inputs.size(); ++i)
-    columns.add(machine.inputs[i].name, machine.inputs[i].unit, "input", s.input[i]);
-  for (const CandidateInput& candidate : m.candidates)
-    columns.add(candidate.name, candidate.unit, "candidate", candidate.value);
+  detail["columns"] = ordered_json::array();
+  detail["column_data"] = ordered_json::array();
+  each_column(machine, m,
+              [&](const std::string& name, const std::string& unit, const char* kind, const Column& data) {
+                detail["columns"].push_back({{"name", name}, {"unit", unit}, {"kind", kind}});
+                detail["column_data"].push_back(compact(data));
+              });
 }
 
 void add_observations(ordered_json& detail, const Measurement& m, const Eigen::VectorXd& residual) {
@@ -189,6 +157,47 @@ std::vector<Circle> circles_with_numbers(const Machine& machine, const Measureme
 
 }  // namespace
 
+void each_column(const Machine& machine, const Measurement& m, const VisitColumn& visit) {
+  const States& s = m.states;
+  for (std::size_t i = 0; i < machine.axes.size(); ++i)
+    visit(machine.axes[i].name, machine.axes[i].rotary ? "deg" : "mm", "axis", s.axis[i]);
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    const std::string& axis = machine.axes[i].name;
+    const std::string unit = machine.axes[i].rotary ? "deg" : "mm";
+    const auto motion = [&](const std::string& name, const std::string& u, const char* kind,
+                            const Column& data) {
+      if (m.has_recorded(name)) visit(name, u, kind, data);
+    };
+    motion("dir" + axis, "", "direction", s.direction[i]);
+    motion("v" + axis, unit + "/s", "motion", s.velocity[i]);
+    motion("a" + axis, unit + "/s^2", "motion", s.acceleration[i]);
+    motion("since" + axis, unit, "motion", s.since[i]);
+  }
+  if (m.has_recorded("feed")) visit("feed", "mm/min", "motion", s.feed);
+  if (m.has_recorded("curv")) visit("curv", "1/mm", "motion", s.curvature);
+  if (m.has_recorded("t")) visit("t", "s", "time", s.time);
+  visit("visit", "", "visit", s.visit);
+  for (std::size_t i = 0; i < machine.inputs.size(); ++i)
+    visit(machine.inputs[i].name, machine.inputs[i].unit, "input", s.input[i]);
+  for (const CandidateInput& candidate : m.candidates)
+    visit(candidate.name, candidate.unit, "candidate", candidate.value);
+}
+
+ordered_json circular_detail(const Machine& machine, const Measurement& m, const Eigen::VectorXd& residual,
+                             bool with_rows) {
+  ordered_json list = ordered_json::array();
+  for (const Circle& circle : circles_with_numbers(machine, m)) {
+    list.push_back(circle_summary(circle, m));
+    add_curves(list.back(), circle, m, residual);
+    for (std::size_t k = 0; with_rows && k < circle.runs.size(); ++k) {
+      list.back()["runs"][k]["row"] = ordered_json::array();
+      for (const std::size_t i : circle.runs[k].observation)
+        list.back()["runs"][k]["row"].push_back(m.observations[i].row);
+    }
+  }
+  return list;
+}
+
 ordered_json circular_json(const Machine& machine, const Measurement& m) {
   ordered_json list = ordered_json::array();
   for (const Circle& circle : circles_with_numbers(machine, m)) list.push_back(circle_summary(circle, m));
@@ -205,12 +214,7 @@ void add_detail(ordered_json& result, const Machine& machine, const Measurement&
   for (const char check : m.check) detail["row_check"].push_back(check != 0 ? 1 : 0);
   detail["row_line"] = m.line;
   add_observations(detail, m, residual);
-  detail["circular"] = ordered_json::array();
-  for (const Circle& circle : circles_with_numbers(machine, m)) {
-    ordered_json json = circle_summary(circle, m);
-    add_curves(json, circle, m, residual);
-    detail["circular"].push_back(json);
-  }
+  detail["circular"] = circular_detail(machine, m, residual);
   add_worst(detail, m, residual);
   result["detail"] = std::move(detail);
 }

@@ -3,6 +3,8 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
+#include <string_view>
 
 #include "tools/cli/command.h"
 
@@ -11,6 +13,12 @@ namespace {
 
 /// Progress is shown from this moment on, and at most so often.
 constexpr double kShowAfterS = 1.0, kShowEveryS = 0.2;
+
+/// Does a program read the progress (VERNIER_PROGRESS=lines)? Then every step is a line, at once.
+bool wants_lines() {
+  const char* const how = std::getenv("VERNIER_PROGRESS");
+  return how != nullptr && std::string_view(how) == "lines";
+}
 
 double now_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -39,9 +47,11 @@ Progress::~Progress() {
 
 void Progress::update(double fraction, const std::string& step) {
   const double now = now_s();
-  if (now - started_s_ < kShowAfterS || now - last_s_ < kShowEveryS) return;
+  const bool lines = wants_lines();
+  if ((!lines && now - started_s_ < kShowAfterS) || now - last_s_ < kShowEveryS) return;
   const bool terminal = isatty(STDERR_FILENO) != 0;
-  if (!terminal && shown_ && now - last_s_ < 10) return;  // a log wants a line now and then, not a film
+  if (!terminal && !lines && shown_ && now - last_s_ < 10)
+    return;  // a log wants a line now and then, not a film
   last_s_ = now;
   shown_ = true;
   std::fprintf(stderr, terminal ? "\r\033[K%s: %3.0f %% %s" : "%s: %3.0f %% %s\n", what_.c_str(),

@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -16,6 +17,16 @@ nlohmann::ordered_json compare_json(const Machine& machine, const Measurement& m
 /// "detail" member.
 void add_detail(nlohmann::ordered_json& result, const Machine& machine, const Measurement& measurement,
                 const Eigen::VectorXd& residual);
+
+/// Calls visit(name, unit, kind, values) for everything that was set or recorded in each row: axes, motion,
+/// time, visit, inputs, candidate inputs. kind: axis, direction, motion, time, visit, input or candidate.
+using VisitColumn = std::function<void(const std::string&, const std::string&, const char*, const Column&)>;
+void each_column(const Machine& machine, const Measurement& measurement, const VisitColumn& visit);
+
+/// The circular tests among the rows with their curves: the numbers of circular_json and, for each run,
+/// angle_deg, measured_um, model_um and check of every sample, and its row where asked for.
+nlohmann::ordered_json circular_detail(const Machine& machine, const Measurement& measurement,
+                                       const Eigen::VectorXd& residual, bool with_rows = false);
 
 /// Stretches of rows of one role within each run, in the order of the file: {run, role, first_line,
 /// last_line, n_obs, rms_um}. Shows where in a run a model holds (an overshoot arc, a warm-up, a late row).

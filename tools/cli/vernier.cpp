@@ -11,16 +11,17 @@ constexpr int kDone = 0, kBadInput = 1, kAnswerIsNo = 2, kOurBug = 70;
 
 /// In the order of the journey; `vernier` alone prints them so.
 constexpr vernier::RegisterCommand kCommands[] = {
-    vernier::register_import,    vernier::register_features, vernier::register_fit,
-    vernier::register_compare,   vernier::register_diagnose, vernier::register_add,
-    vernier::register_effects,   vernier::register_plan,     vernier::register_improve,
-    vernier::register_derive,    vernier::register_compile,  vernier::register_simulate,
-    vernier::register_replay,    vernier::register_keys,     vernier::register_upload,
-    vernier::register_board,     vernier::register_status,   vernier::register_watch,
-    vernier::register_record,    vernier::register_touches,  vernier::register_probe_path,
-    vernier::register_probe_cal, vernier::register_feature,  vernier::register_pose,
-    vernier::register_solve,     vernier::register_export,   vernier::register_import_tables,
-    vernier::register_map,       vernier::register_part,
+    vernier::register_import,    vernier::register_features,   vernier::register_fit,
+    vernier::register_compare,   vernier::register_diagnose,   vernier::register_add,
+    vernier::register_effects,   vernier::register_plan,       vernier::register_improve,
+    vernier::register_derive,    vernier::register_compile,    vernier::register_simulate,
+    vernier::register_replay,    vernier::register_keys,       vernier::register_upload,
+    vernier::register_board,     vernier::register_status,     vernier::register_watch,
+    vernier::register_record,    vernier::register_touches,    vernier::register_probe_path,
+    vernier::register_probe_cal, vernier::register_feature,    vernier::register_pose,
+    vernier::register_solve,     vernier::register_export,     vernier::register_import_tables,
+    vernier::register_map,       vernier::register_part,       vernier::register_set,
+    vernier::register_exclude,   vernier::register_image_diff, vernier::register_workbench,
 };
 
 int run(int argc, char** argv) {

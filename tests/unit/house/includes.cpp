@@ -26,9 +26,9 @@ bool is_freestanding(std::string_view header) {
 
 // Order in which the folders of tools build on one another; a folder may use those before it.
 int rank_of_tool(std::string_view folder) {
-  static constexpr std::array<std::string_view, 17> kOrder = {
+  static constexpr std::array<std::string_view, 18> kOrder = {
       "model",   "import", "vibration", "fit",    "kinematics", "exchange", "diagnose", "probe", "plan",
-      "compile", "derive", "simulate",  "upload", "report",     "part",     "map",      "cli"};
+      "compile", "derive", "simulate",  "upload", "report",     "part",     "map",      "cli",   "workbench"};
   const auto found = std::find(kOrder.begin(), kOrder.end(), folder);
   return found == kOrder.end() ? -1 : static_cast<int>(found - kOrder.begin());
 }

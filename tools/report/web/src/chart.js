@@ -17,6 +17,7 @@ export function colours() {
   return {
     ink: colour('ink'), soft: colour('soft'), line: colour('line'), panel: colour('panel'),
     fit: colour('fit'), check: colour('check'), ccw: colour('ccw'), cw: colour('cw'), trend: colour('trend'),
+    accent: colour('accent'), accent2: colour('accent2'),
   };
 }
 
@@ -45,6 +46,8 @@ export function chart(label, options) {
   const { height } = options(1000);
   box.style.height = `${height}px`;
   box.redraw = () => draw(entry, true);
+  box.options = () => options(box.clientWidth || 1000);
+  box.picture = () => { draw(entry); return entry.instance.getDataURL({ pixelRatio: 2, backgroundColor: colours().panel }); };
   return box;
 }
 
@@ -59,12 +62,15 @@ function draw(entry, again = false) {
   entry.instance.setOption({ animation: false, backgroundColor: 'transparent', ...option }, { notMerge: true });
 }
 
+/** Draws every chart that was drawn before once more: the colours have changed. */
+export function redrawCharts() {
+  for (const entry of charts) if (entry.instance) draw(entry);
+}
+
 addEventListener('resize', () => {
   for (const entry of charts) if (entry.instance && entry.box.clientWidth !== entry.width) draw(entry);
 });
-dark.addEventListener('change', () => {
-  for (const entry of charts) if (entry.instance) draw(entry);
-});
+dark.addEventListener('change', redrawCharts);
 addEventListener('beforeprint', () => {
   for (const entry of charts) draw(entry);
 });

@@ -27,9 +27,12 @@ export function verdict(result) {
 
 const stepName = (step, i) => step.label ?? (step.effect ? `${i}. + ${step.effect}${step.axis ? ` of ${step.axis}` : ''}` : i === 0 ? 'model as given' : 'fitted');
 
+/** The steps of a ladder, each with a label. */
+export const labelled = (result) => (result.ladder ?? []).map((step, i) => ({ ...step, label: stepName(step, i) }));
+
 /** The ladder with the noise floor. */
 export function falling(result) {
-  const steps = (result.ladder ?? []).map((step, i) => ({ ...step, label: stepName(step, i) }));
+  const steps = labelled(result);
   if (!steps.length) return null;
   const floor = steps.map((step) => step.noise_um).find(Number.isFinite) ?? result.noise_um;
   return [ladder(steps, Number.isFinite(floor) ? floor : null), el('p', { class: 'note' }, 'Check rows are no part of any fit: only their fall is a gain.')];

@@ -39,7 +39,12 @@ export function histogram(detail, unit) {
 
 /** Fit and check rms of each step: [{label, rms_um, check_rms_um}]; the noise floor as a line where it is known. */
 export function ladder(steps, noise = null) {
-  return el('figure', {}, chart('Rms of fit and check rows at each step', () => {
+  return el('figure', {}, chart('Rms of fit and check rows at each step', ladderOptions(steps, noise)));
+}
+
+/** What `chart` wants for it. */
+export function ladderOptions(steps, noise = null) {
+  return () => {
     const c = colours();
     const bar = (name, key, color) => ({ name, type: 'bar', data: steps.map((step) => step[key] ?? null), barMaxWidth: 26, itemStyle: { color },
       label: { show: true, position: 'right', color: c.ink, fontSize: 12, formatter: ({ value }) => number(value, 3) } });
@@ -55,7 +60,7 @@ export function ladder(steps, noise = null) {
       xAxis: { ...axisStyle(c), type: 'value', min: 0, name: 'rms [µm]', nameLocation: 'middle', nameGap: noise === null ? 28 : 46 },
       yAxis: { ...axisStyle(c), type: 'category', inverse: true, data: steps.map((step) => step.label), splitLine: { show: false },
         axisLabel: { color: c.ink, fontSize: 13, width: 300, overflow: 'break' } }, series } };
-  }));
+  };
 }
 
 /** Curves over one quantity: {x: {name, unit, values}, y: [{name, unit, values}], bars, log}. */

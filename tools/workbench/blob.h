@@ -1,0 +1,29 @@
+#pragma once
+#include <Eigen/Core>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace vernier {
+
+/// JSON with long rows of numbers beside it, for the page: a 4-byte length, the JSON padded with blanks to a
+/// multiple of 4, then the arrays, little-endian, each on a multiple of 4. In the JSON an array is
+/// {"f32": [offset, count]}, {"u32": ...} or {"u8": ...}, the offset from the first byte after the JSON.
+class Blob {
+ public:
+  /// What stands in the JSON for these numbers; what is not finite stays so.
+  nlohmann::ordered_json f32(const std::vector<float>& values);
+  nlohmann::ordered_json f32(const Eigen::ArrayXd& values);
+  nlohmann::ordered_json u32(const std::vector<std::uint32_t>& values);
+  nlohmann::ordered_json u8(const std::vector<std::uint8_t>& values);
+  /// The whole. tool.
+  std::string bytes(const nlohmann::ordered_json& header) const;
+
+ private:
+  nlohmann::ordered_json add(const char* type, const void* data, std::size_t count, std::size_t size);
+
+  std::string arrays_;
+};
+
+}  // namespace vernier

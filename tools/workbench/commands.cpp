@@ -1,0 +1,189 @@
+#include "tools/workbench/commands.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "tools/model/error.h"
+
+namespace vernier {
+namespace {
+
+using nlohmann::json;
+
+enum class FieldKind : std::uint8_t { kIn, kInList, kOut, kText, kTextList, kNumber, kFlag };
+constexpr const char* kFieldKinds[] = {"file", "files", "output", "text", "texts", "number", "flag"};
+
+/// A field of a request and where it stands in the command: behind `option`, or as a word of its own.
+struct Field {
+  const char* key;
+  FieldKind kind;
+  const char* option = "";
+  bool required = false;
+};
+
+struct Allowed {
+  const char* name;
+  bool on_board, for_history;
+  std::vector<Field> fields;
+};
+
+/// All that the page can do; the order of the fields is that of the words.
+const std::vector<Allowed>& allowed() {
+  using K = FieldKind;
+  const Field machine{"machine", K::kIn, "", true}, rows{"measurements", K::kInList, "", true},
+      output{"output", K::kOut, "-o", true}, report{"output", K::kOut, "-o"},
+      url{"to", K::kText, "--to", true};
+  static const std::vector<Allowed> kAll = {
+      {"import",
+       false,
+       true,
+       {{"kind", K::kText, "", true},
+        {"files", K::kInList, "", true},
+        {"repair_time_base", K::kFlag, "--repair-time-base"},
+        {"map", K::kIn, "--map"},
+        {"separator", K::kText, "--separator"},
+        output}},
+      {"fit", false, true, {machine, rows, {"loss", K::kText, "--loss"}, output}},
+      {"compare", false, false, {machine, rows, report}},
+      {"diagnose",
+       false,
+       false,
+       {machine, rows, {"most", K::kNumber, "--most"}, {"machine_out", K::kOut, "--machine-out"}, report}},
+      {"add", false, true, {{"effect", K::kText, "", true}, machine, output}},
+      {"set", false, true, {machine, {"values", K::kTextList, "", true}, output}},
+      {"exclude",
+       false,
+       true,
+       {{"measurement", K::kIn, "", true},
+        {"lines", K::kText, "--lines", true},
+        {"reason", K::kText, "--reason"},
+        {"restore", K::kFlag, "--restore"},
+        output}},
+      {"effects", false, false, {}},
+      {"plan",
+       false,
+       false,
+       {machine,
+        rows,
+        {"separate", K::kTextList, "--separate", true},
+        {"points", K::kNumber, "--points"},
+        {"confidence", K::kNumber, "--confidence"},
+        {"gcode", K::kOut, "--gcode"},
+        report}},
+      {"improve", false, true, {machine, rows, {"yes", K::kFlag, "--yes", true}, output}},
+      {"compile", false, true, {machine, {"budget", K::kText, "--budget"}, output}},
+      {"replay",
+       false,
+       false,
+       {{"measurements", K::kInList, "", true}, {"image", K::kIn, "--image", true}, report}},
+      {"keys", false, false, {output}},
+      {"image-diff",
+       false,
+       false,
+       {{"image", K::kIn, "", true}, {"with", K::kIn, "--with"}, {"to", K::kText, "--to"}}},
+      {"upload",
+       true,
+       true,
+       {{"image", K::kIn},
+        {"confirm", K::kFlag, "--confirm"},
+        {"revert", K::kFlag, "--revert"},
+        {"force", K::kFlag, "--force"},
+        url,
+        {"key", K::kIn, "--key"}}},
+      {"board", true, false, {{"what", K::kText, "", true}, url}},
+      {"status", true, false, {url}},
+  };
+  return kAll;
+}
+
+[[noreturn]] void refuse(const Field& field, const std::string& what) {
+  throw InputError(fmt::format("\"{}\": {}", field.key, what));
+}
+
+std::string text_of(const Field& field, const json& value) {
+  constexpr std::size_t kMost = 4000;
+  if (!value.is_string()) refuse(field, "must be a text");
+  const auto text = value.get<std::string>();
+  if (text.empty() || text.front() == '-' || text.size() > kMost)
+    refuse(field, "must not be empty, very long or start with -");
+  if (std::any_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; }))
+    refuse(field, "must be one line of text");
+  return text;
+}
+
+std::string word_of(const Field& field, const json& value, const Project& project) {
+  switch (field.kind) {
+    case FieldKind::kIn:
+    case FieldKind::kInList: {
+      const std::string name = text_of(field, value);
+      project.existing(name);
+      return name;
+    }
+    case FieldKind::kOut: {
+      const std::string name = text_of(field, value);
+      project.writable(name);
+      return name;
+    }
+    case FieldKind::kNumber:
+      if (!value.is_number()) refuse(field, "must be a number");
+      return fmt::format("{}", value.get<double>());
+    default:
+      return text_of(field, value);
+  }
+}
+
+void add_field(const Field& field, const json& value, const Project& project, PlannedCommand& command) {
+  constexpr std::size_t kMostWords = 200;
+  if (field.kind == FieldKind::kFlag) {
+    if (!value.is_boolean()) refuse(field, "must be true or false");
+    if (value.get<bool>()) command.arguments.emplace_back(field.option);
+    return;
+  }
+  const bool list = field.kind == FieldKind::kInList || field.kind == FieldKind::kTextList;
+  if (list && (!value.is_array() || value.empty() || value.size() > kMostWords))
+    refuse(field, "must be a list with at least one entry");
+  for (const json& one : list ? value : json::array({value})) {
+    if (*field.option != '\0') command.arguments.emplace_back(field.option);
+    command.arguments.push_back(word_of(field, one, project));
+    if (field.kind == FieldKind::kOut) command.outputs.push_back(command.arguments.back());
+  }
+}
+
+}  // namespace
+
+PlannedCommand plan_command(const json& request, const Project& project) {
+  if (!request.is_object() || !request.contains("command") || !request["command"].is_string())
+    throw InputError("a request for a command names it: {\"command\": ...}");
+  const auto name = request["command"].get<std::string>();
+  const auto found =
+      std::find_if(allowed().begin(), allowed().end(), [&](const Allowed& one) { return one.name == name; });
+  if (found == allowed().end()) throw InputError("\"" + name + "\": no command of the workbench");
+  PlannedCommand command{name, {name}, {}, found->on_board, found->for_history};
+  std::size_t known = 1;
+  for (const Field& field : found->fields) {
+    const auto value = request.find(field.key);
+    if (value == request.end() || value->is_null()) {
+      if (field.required) refuse(field, "is missing in a request for " + name);
+      known += value != request.end() ? 1 : 0;
+      continue;
+    }
+    ++known;
+    add_field(field, *value, project, command);
+  }
+  if (known != request.size()) throw InputError("a field that " + name + " does not have");
+  return command;
+}
+
+nlohmann::ordered_json command_list() {
+  nlohmann::ordered_json list = nlohmann::ordered_json::object();
+  for (const Allowed& one : allowed()) {
+    list[one.name] = nlohmann::ordered_json::object();
+    for (const Field& field : one.fields)
+      list[one.name][field.key] = {{"kind", kFieldKinds[static_cast<std::size_t>(field.kind)]},
+                                   {"required", field.required}};
+  }
+  return list;
+}
+
+}  // namespace vernier

@@ -1,0 +1,24 @@
+#pragma once
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/model/machine.h"
+
+namespace vernier {
+
+/// Powers of mm, deg, degC, s, V, N, kg.
+using UnitPowers = std::array<int, 7>;
+
+/// Powers of a unit of FORMATS section 2 ("mm/s", "1/mm"); nothing for a unit that is none of them.
+std::optional<UnitPowers> unit_powers(const std::string& unit);
+/// "mm/degC", "mm", "1" for no unit.
+std::string unit_text(const UnitPowers& powers);
+
+/// The unit of an expression, with `unknown` taken as a pure number; nothing where it cannot be told (a
+/// static without unit, a power that is no number). warnings: what does not go together. tool.
+std::optional<UnitPowers> expression_unit(const Machine& machine, const Expr& expr,
+                                          const std::string& unknown, std::vector<std::string>& warnings);
+
+}  // namespace vernier

@@ -1,0 +1,115 @@
+#include "tools/workbench/history.h"
+
+#include <chrono>
+
+#include "tools/model/error.h"
+#include "tools/model/files.h"
+
+namespace vernier {
+namespace {
+
+namespace fs = std::filesystem;
+constexpr const char* kScript = "history.sh";
+
+fs::path folder(const Project& project) {
+  fs::path path = project.root() / ".vernier";
+  std::error_code failed;
+  if (fs::is_symlink(fs::symlink_status(path, failed)))
+    throw InputError(".vernier: a symbolic link, which the workbench does not follow");
+  return path;
+}
+
+std::int64_t now_s() {
+  return std::chrono::duration_cast<std::chrono::seconds>(std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
+
+nlohmann::ordered_json number_of(const nlohmann::ordered_json& result, const char* key) {
+  if (!result.is_object() || !result.contains(key) || !result[key].is_number()) return nullptr;
+  return result[key];
+}
+
+bool is_entry(const nlohmann::ordered_json& entry) {
+  return entry.is_object() && entry.contains("command") && entry["command"].is_string() &&
+         entry.contains("undone") && entry["undone"].is_boolean() && entry.contains("on_board") &&
+         entry["on_board"].is_boolean();
+}
+
+}  // namespace
+
+CommandHistory::CommandHistory(const Project& project) : project_(project) {
+  const fs::path path = folder(project) / "history.json";
+  std::error_code failed;
+  if (!fs::is_regular_file(fs::symlink_status(path, failed))) return;
+  const auto read = nlohmann::ordered_json::parse(read_file(path.string()), nullptr, false);
+  if (!read.is_array()) throw InputError(path.string() + ": no list of commands");
+  for (const auto& entry : read)
+    if (!is_entry(entry)) throw InputError(path.string() + ": an entry that is no command");
+  entries_ = read;
+}
+
+void CommandHistory::save() const {
+  std::error_code failed;
+  fs::create_directories(folder(project_), failed);
+  write_file((folder(project_) / "history.json").string(), entries_.dump(1) + "\n");
+  project_.save(kScript, script_unguarded());
+}
+
+void CommandHistory::add(const std::string& typed, const PlannedCommand& command,
+                         const nlohmann::ordered_json& result) {
+  const std::scoped_lock lock(guard_);
+  // A new step takes the place of those that were undone.
+  while (!entries_.empty() && entries_.back()["undone"].get<bool>()) entries_.erase(entries_.size() - 1);
+  entries_.push_back({{"command", typed},
+                      {"name", command.name},
+                      {"at", now_s()},
+                      {"undone", false},
+                      {"on_board", command.on_board},
+                      {"outputs", command.outputs},
+                      {"rms_um", number_of(result, "rms_um")},
+                      {"check_rms_um", number_of(result, "check_rms_um")}});
+  save();
+}
+
+void CommandHistory::undo() {
+  const std::scoped_lock lock(guard_);
+  for (auto entry = entries_.rbegin(); entry != entries_.rend(); ++entry) {
+    if ((*entry)["undone"].get<bool>()) continue;
+    (*entry)["undone"] = true;
+    save();
+    return;
+  }
+  throw InputError("nothing to undo");
+}
+
+void CommandHistory::redo() {
+  const std::scoped_lock lock(guard_);
+  for (auto& entry : entries_) {
+    if (!entry["undone"].get<bool>()) continue;
+    entry["undone"] = false;
+    save();
+    return;
+  }
+  throw InputError("nothing to do again");
+}
+
+nlohmann::ordered_json CommandHistory::entries() const {
+  const std::scoped_lock lock(guard_);
+  return entries_;
+}
+
+std::string CommandHistory::script() const {
+  const std::scoped_lock lock(guard_);
+  return script_unguarded();
+}
+
+std::string CommandHistory::script_unguarded() const {
+  std::string text = "#!/bin/sh\n# What was done in this folder; run it there to do it again.\nset -e\n";
+  for (const auto& entry : entries_) {
+    if (entry["undone"].get<bool>()) continue;
+    text += (entry["on_board"].get<bool>() ? "# " : "") + entry["command"].get<std::string>() + "\n";
+  }
+  return text;
+}
+
+}  // namespace vernier

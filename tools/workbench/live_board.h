@@ -1,0 +1,43 @@
+#pragma once
+#include <condition_variable>
+#include <deque>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <thread>
+
+namespace vernier {
+
+/// Watches one board at a time, as `vernier watch` does: a thread of its own asks it kLiveRateHz times a
+/// second, keeps the last pictures, and lets go of the board when nobody has asked for kLetGoS. tool.
+class LiveBoard {
+ public:
+  static constexpr double kLiveRateHz = 20, kLetGoS = 5;
+
+  LiveBoard() = default;
+  ~LiveBoard();
+  LiveBoard(const LiveBoard&) = delete;
+  LiveBoard& operator=(const LiveBoard&) = delete;
+
+  /// Pictures (live_json) with a number above `after`, each with `seq` and `at_s`, as soon as there is one,
+  /// at most after half a second: {"pictures": [...], "error": text or null}. A new url lets go of the board
+  /// before. Throws InputError for what is no board's address.
+  nlohmann::ordered_json pictures(const std::string& url, std::uint64_t after);
+
+ private:
+  void watch(const std::string& url);
+  void look(const std::string& url);
+  void end();
+
+  std::mutex ending_;  // held while one watch is exchanged for another
+  std::mutex guard_;
+  std::condition_variable changed_;
+  std::thread thread_;
+  std::string url_, error_;
+  std::deque<nlohmann::ordered_json> kept_;
+  std::uint64_t next_ = 1;
+  double asked_s_ = 0;
+  bool stop_ = false, running_ = false;
+};
+
+}  // namespace vernier

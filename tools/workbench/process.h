@@ -1,0 +1,36 @@
+#pragma once
+#include <sys/types.h>
+
+#include <atomic>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace vernier {
+
+/// How a program ended, and what it wrote.
+struct ProcessResult {
+  int exit = -1;  // its exit status; 128 + signal where one ended it
+  std::string out, err;
+};
+
+/// A program while it runs, so that another thread can end it.
+struct RunningProcess {
+  std::atomic<pid_t> group{0};  // its process group; 0 before and after
+  std::atomic<bool> cancelled{false};
+  /// Ends it at once, or as soon as it starts.
+  void cancel();
+};
+
+/// Runs `program` with `arguments` in `directory` and waits for its end. It has no standard input, its own
+/// process group, and dies with this program. `on_line`: called with each line of its standard error.
+/// Output beyond `most_bytes` ends it with exit 70. Throws InputError where it cannot be started. tool.
+ProcessResult run_process(const std::string& program, const std::vector<std::string>& arguments,
+                          const std::string& directory, std::size_t most_bytes,
+                          const std::function<void(std::string_view)>& on_line, RunningProcess& running);
+
+/// A command as a shell takes it: words quoted where they must be.
+std::string shell_text(const std::string& program, const std::vector<std::string>& arguments);
+
+}  // namespace vernier

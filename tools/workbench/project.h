@@ -1,0 +1,53 @@
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace vernier {
+
+/// What a file of a project is, by its name.
+enum class FileKind : std::uint8_t { kMachine, kMeasurement, kInstrument, kReport, kImage, kKey, kOther };
+/// As the page writes it: "machine" ...
+const char* kind_name(FileKind kind);
+
+struct ProjectFile {
+  std::string name;  // relative to the project, parts joined by '/'
+  FileKind kind = FileKind::kOther;
+  std::uint64_t bytes = 0;
+  std::int64_t modified_s = 0;  // since 1970
+};
+
+/// May a file of a project be called so? One to three parts between '/', each of 1 to 120 bytes, without
+/// control characters, '\' and ':', not starting with '.', '-', '~' or a blank. tool.
+bool is_project_name(std::string_view name);
+
+/// A folder that the workbench reads and writes, and nothing outside of it: names are checked as above, and
+/// no part of a name may be a symbolic link. tool.
+class Project {
+ public:
+  /// Throws InputError where `directory` is no folder.
+  explicit Project(const std::string& directory);
+
+  const std::filesystem::path& root() const { return root_; }
+  /// Path of a file or folder that is there. Throws InputError with the name: no such name, a link, not
+  /// there.
+  std::filesystem::path existing(const std::string& name) const;
+  /// Path that may be written; it need not be there. Throws InputError as above.
+  std::filesystem::path writable(const std::string& name) const;
+  /// Writes a file; a reader sees the old one or the whole new one.
+  void save(const std::string& name, const std::string& bytes) const;
+  /// What lies in the folder and one level below, by name; hidden files and links are left out, and what
+  /// comes after the first 2000.
+  std::vector<ProjectFile> list() const;
+
+ private:
+  std::filesystem::path checked(const std::string& name) const;
+  void list_folder(const std::filesystem::path& folder, const std::string& prefix, bool deeper,
+                   std::vector<ProjectFile>& files) const;
+
+  std::filesystem::path root_;
+};
+
+}  // namespace vernier

@@ -1,0 +1,186 @@
+#include "tools/workbench/rows.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "tools/cli/results.h"
+#include "tools/diagnose/candidate.h"
+#include "tools/diagnose/diagnosis.h"
+#include "tools/fit/fit.h"
+#include "tools/model/chain.h"
+#include "tools/model/files.h"
+#include "tools/model/optional_json.h"
+#include "tools/workbench/blob.h"
+#include "tools/workbench/values.h"
+
+namespace vernier {
+namespace {
+
+using Json = nlohmann::ordered_json;
+namespace fs = std::filesystem;
+
+constexpr std::size_t kKept = 6;
+constexpr double kUmPerMm = 1e3, kUradPerDeg = std::numbers::pi / 180 * 1e6;
+
+std::vector<float> in_report_units(const Measurement& m, const Eigen::VectorXd& residual) {
+  std::vector<float> values(m.observations.size());
+  for (std::size_t i = 0; i < values.size(); ++i)
+    values[i] = static_cast<float>(residual[static_cast<Eigen::Index>(i)] *
+                                   (is_rotation(m.observations[i].kind) ? kUradPerDeg : kUmPerMm));
+  return values;
+}
+
+void add_figures(Json& json, const Measurement& m, const Eigen::VectorXd& residual) {
+  const RoleStatistics fit = role_statistics(m, residual, false), check = role_statistics(m, residual, true);
+  json["rms_um"] = or_null(fit.rms_um);
+  json["max_um"] = or_null(fit.max_um);
+  json["check_rms_um"] = or_null(check.rms_um);
+  json["check_max_um"] = or_null(check.max_um);
+  json["rms_urad"] = or_null(fit.rms_urad);
+  json["check_rms_urad"] = or_null(check.rms_urad);
+}
+
+Json vectors(Blob& blob, const Eigen::Matrix3Xd& list) {
+  Json json = Json::array();
+  for (Eigen::Index k = 0; k < 3; ++k) json.push_back(blob.f32(Eigen::ArrayXd(list.row(k).transpose())));
+  return json;
+}
+
+/// Unit vectors along which a row's length or d is measured; 0 for rows without.
+Eigen::Matrix3Xd directions(const Measurement& m, const Eigen::Matrix3Xd& point) {
+  Eigen::Matrix3Xd list = Eigen::Matrix3Xd::Zero(3, point.cols());
+  for (const Observation& o : m.observations) {
+    const auto row = static_cast<Eigen::Index>(o.row);
+    if (o.kind == ObservationKind::kLength)
+      list.col(row) = (point.col(row) - m.centre.col(row)).stableNormalized();
+    if (o.kind == ObservationKind::kD)
+      for (std::size_t k = 0; k < 3; ++k) list(static_cast<Eigen::Index>(k), row) = m.states.normal[k][row];
+  }
+  return list;
+}
+
+Json observations_json(Blob& blob, const Measurement& m, const Eigen::VectorXd& residual) {
+  std::vector<std::uint8_t> kind;
+  std::vector<std::uint32_t> row;
+  for (const Observation& o : m.observations) {
+    kind.push_back(static_cast<std::uint8_t>(o.kind));
+    row.push_back(static_cast<std::uint32_t>(o.row));
+  }
+  return {{"kinds", kObservationNames},
+          {"kind", blob.u8(kind)},
+          {"row", blob.u32(row)},
+          {"residual", blob.f32(in_report_units(m, residual))}};
+}
+
+std::vector<std::uint32_t> narrow(const std::vector<std::size_t>& values) {
+  std::vector<std::uint32_t> list;
+  for (const std::size_t value : values) list.push_back(static_cast<std::uint32_t>(value));
+  return list;
+}
+
+}  // namespace
+
+std::string RowCache::key_of(const std::string& machine, const std::vector<std::string>& measurements) const {
+  std::string key;
+  std::vector<std::string> names = {machine};
+  names.insert(names.end(), measurements.begin(), measurements.end());
+  for (const std::string& name : names) {
+    const fs::path path = project_.existing(name);
+    key += name + "\n" + std::to_string(fs::file_size(path)) + " " +
+           std::to_string(fs::last_write_time(path).time_since_epoch().count()) + "\n";
+  }
+  return key;
+}
+
+std::shared_ptr<const LoadedRows> RowCache::get(const std::string& machine,
+                                                const std::vector<std::string>& measurements) {
+  if (measurements.empty()) throw InputError("no measurement is named");
+  const std::string key = key_of(machine, measurements);
+  {
+    const std::scoped_lock lock(guard_);
+    for (const Entry& entry : kept_)
+      if (entry.key == key) return entry.rows;
+  }
+  auto rows = std::make_shared<LoadedRows>();
+  rows->text = read_file(project_.existing(machine).string());
+  rows->machine = parse_machine(rows->text, machine);
+  std::vector<std::string> paths;
+  for (const std::string& name : measurements) paths.push_back(project_.existing(name).string());
+  rows->measurement = read_measurement(paths, rows->machine);
+  rows->measurement.files = measurements;
+  const std::scoped_lock lock(guard_);
+  if (kept_.size() >= kKept) kept_.erase(kept_.begin());
+  kept_.push_back({key, rows});
+  return rows;
+}
+
+std::string rows_blob(const LoadedRows& rows) {
+  const Machine& machine = rows.machine;
+  const Measurement& m = rows.measurement;
+  const Eigen::VectorXd residual = residuals(machine, m);
+  const Eigen::Matrix3Xd point = forward(machine, m.states).position;
+  Blob blob;
+  Json json = {
+      {"machine", machine.name}, {"files", m.files}, {"n_rows", m.rows()}, {"n_excluded", m.excluded}};
+  add_figures(json, m, residual);
+  json["noise_um"] = or_null(noise_um(m));
+  json["columns"] = Json::array();
+  each_column(
+      machine, m,
+      [&](const std::string& name, const std::string& unit, const char* kind, const Column& data) {
+        json["columns"].push_back({{"name", name}, {"unit", unit}, {"kind", kind}, {"data", blob.f32(data)}});
+      });
+  json["runs"] = m.states.run_names;
+  json["row_run"] = blob.u32(narrow(m.states.run));
+  json["row_check"] = blob.u8({m.check.begin(), m.check.end()});
+  json["row_file"] = blob.u32(narrow(m.file));
+  json["row_line"] = blob.u32(narrow(m.line));
+  json["point"] = vectors(blob, point);
+  json["direction"] = vectors(blob, directions(m, point));
+  json["observations"] = observations_json(blob, m, residual);
+  json["circular"] = circular_detail(machine, m, residual, true);
+  return blob.bytes(json);
+}
+
+std::string prediction_blob(const LoadedRows& rows, const std::map<std::string, double>& values) {
+  Machine machine = rows.machine;
+  set_values(machine, values);
+  const Eigen::VectorXd residual = residuals(machine, rows.measurement);
+  Blob blob;
+  Json json;
+  add_figures(json, rows.measurement, residual);
+  json["residual"] = blob.f32(in_report_units(rows.measurement, residual));
+  return blob.bytes(json);
+}
+
+std::string explanation_blob(const LoadedRows& rows, const std::string& add) {
+  const Measurement& m = rows.measurement;
+  const FitResult base = fit(rows.machine, m);
+  const std::string fitted = update_machine_text(rows.text, base.machine, true);
+  const Machine machine = parse_machine(fitted, rows.machine.file);
+  const Candidate candidate = make_candidate(machine, parse_add_string(add, machine, built_in_effects()));
+  const Machine added = parse_machine(add_to_machine_text(fitted, machine, candidate), rows.machine.file);
+  const Measurement bound = rebind(m, machine, added);
+  if (bound.observations.size() != m.observations.size())
+    throw InputError("this effect excludes rows whose input is empty: nothing to lay over all rows");
+  const FitResult with = fit(added, bound);
+  Blob blob;
+  Json json = {{"label", candidate.label}};
+  add_figures(json, bound, with.residual);
+  json["explained"] = blob.f32(in_report_units(m, base.residual - with.residual));
+  json["before"] = blob.f32(in_report_units(m, base.residual));
+  return blob.bytes(json);
+}
+
+nlohmann::ordered_json parameters_json(const LoadedRows& rows) {
+  const ParameterSet parameters(rows.machine, rows.measurement.states.run_names);
+  const Eigen::VectorXd values = parameters.get(rows.machine);
+  Json list = Json::array();
+  for (std::size_t i = 0; i < parameters.size(); ++i)
+    list.push_back({{"name", parameters[i].name},
+                    {"value", values[static_cast<Eigen::Index>(i)]},
+                    {"unit", parameters[i].unit}});
+  return list;
+}
+
+}  // namespace vernier

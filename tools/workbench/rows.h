@@ -1,0 +1,57 @@
+#pragma once
+#include <map>
+#include <memory>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tools/model/machine.h"
+#include "tools/model/measurement.h"
+#include "tools/workbench/project.h"
+
+namespace vernier {
+
+/// A machine and rows of a project, as read.
+struct LoadedRows {
+  std::string text;  // of the machine file
+  Machine machine;
+  Measurement measurement;
+};
+
+/// Reads machines with their measurements and keeps the last few, as long as their files stay as they are.
+/// May be called from several threads. tool.
+class RowCache {
+ public:
+  explicit RowCache(const Project& project) : project_(project) {}
+  /// Names in the project. Throws InputError with file, line and word.
+  std::shared_ptr<const LoadedRows> get(const std::string& machine,
+                                        const std::vector<std::string>& measurements);
+
+ private:
+  struct Entry {
+    std::string key;
+    std::shared_ptr<const LoadedRows> rows;
+  };
+  std::string key_of(const std::string& machine, const std::vector<std::string>& measurements) const;
+
+  const Project& project_;
+  std::mutex guard_;
+  std::vector<Entry> kept_;
+};
+
+/// Everything that the page draws of a machine and rows (Blob): columns, runs, roles, lines, tool points,
+/// directions of lengths, observations with residuals in um or urad, circles, figures. tool.
+std::string rows_blob(const LoadedRows& rows);
+
+/// Residuals and figures with some parameters set otherwise; nothing is written. tool.
+std::string prediction_blob(const LoadedRows& rows, const std::map<std::string, double>& values);
+
+/// What an effect would explain: the change that adding and fitting it makes to the residual of the fitted
+/// model, per observation, um or urad. add: a candidate's `add` string. tool.
+std::string explanation_blob(const LoadedRows& rows, const std::string& add);
+
+/// Free parameters with value and unit, as the page's sliders need them.
+nlohmann::ordered_json parameters_json(const LoadedRows& rows);
+
+}  // namespace vernier

@@ -1,0 +1,41 @@
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "tools/workbench/api.h"
+
+namespace vernier {
+
+/// Largest body of a request, bytes.
+inline constexpr std::size_t kMostBodyBytes = std::size_t{64} << 20;
+
+/// 32 random bytes as hexadecimal digits, from the system's random numbers. tool.
+std::string new_token();
+
+/// The page and its API on 127.0.0.1. A request is answered only where all of this holds: it names this very
+/// host and port (no other name that leads here: DNS rebinding), comes from no other origin, and carries the
+/// session's token as a cookie, which the address that was printed turns into a cookie once. What writes must
+/// carry the header X-Vernier too. tool.
+class WorkbenchServer {
+ public:
+  /// port 0: any free one. Throws InputError where it is taken.
+  WorkbenchServer(Api& api, std::uint16_t port);
+  ~WorkbenchServer();
+  WorkbenchServer(const WorkbenchServer&) = delete;
+  WorkbenchServer& operator=(const WorkbenchServer&) = delete;
+
+  std::uint16_t port() const;
+  const std::string& token() const;
+  /// The address to open, with the token.
+  std::string url() const;
+  /// Serves until stop(), which any thread may call.
+  void serve();
+  void stop();
+
+ private:
+  struct Inside;
+  std::unique_ptr<Inside> inside_;
+};
+
+}  // namespace vernier

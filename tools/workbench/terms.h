@@ -1,0 +1,20 @@
+#pragma once
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tools/model/machine.h"
+
+namespace vernier {
+
+/// Every name that an expression of this machine may use, with its unit and what it is, for completion:
+/// [{name, unit, what}]. `candidates`: columns that the machine does not know yet, which `add` declares.
+/// tool.
+nlohmann::ordered_json expression_names(const Machine& machine);
+
+/// Is `text` a term for a degree of freedom whose unit is `unit` (mm or deg)? The unknown coefficient is `k`.
+/// {"ok", "message", "offset", "word"} where it is no expression of this machine; else {"ok": true, "unit" of
+/// the expression without k, "k_unit": what k must have, "warnings": units that do not go together}. Units
+/// never scale a value (FORMATS section 1), so that they only warn. tool.
+nlohmann::ordered_json check_term(const Machine& machine, const std::string& text, const std::string& unit);
+
+}  // namespace vernier

@@ -1,0 +1,18 @@
+#pragma once
+#include <map>
+#include <string>
+#include <vector>
+
+#include "tools/model/machine.h"
+#include "tools/model/parameters.h"
+
+namespace vernier {
+
+/// The free parameters of a machine with every BaseShift that it has: those of each run, and the plain one.
+ParameterSet all_parameters(const Machine& machine);
+
+/// Sets parameters by name (as in the result of fit); a hidden static too. Throws InputError with a name that
+/// the machine does not have. tool.
+void set_values(Machine& machine, const std::map<std::string, double>& values);
+
+}  // namespace vernier

@@ -1,0 +1,213 @@
+import { choice, el, tiles } from '../../../report/web/src/dom.js';
+import { number } from '../../../report/web/src/data.js';
+import { fileAddress, freeName, getJson, postBlob, postJson, refresh, run } from './api.js';
+import { fallingFigure } from './charts.js';
+import { button, guarded, panel } from './parts.js';
+import { redrawAll } from './plot.js';
+import { choose } from './project.js';
+import { along, loadRows, setResiduals, subject } from './rows.js';
+import { scatter } from './scatter.js';
+import { emit, on, store } from './store.js';
+
+// What was tried in this session, in order: {label, machine, rms_um, check_rms_um, noise_um}.
+const steps = [];
+
+function note(label, machine, result) {
+  steps.push({ label, machine, rms_um: result.rms_um, check_rms_um: result.check_rms_um, noise_um: result.noise_um });
+  emit('steps');
+}
+
+/** Fits a machine into a new file; what came out is a step. */
+async function fitInto(machine, label) {
+  const output = freeName(`${machine.replace(/(-fitted)?(-\d+)?\.xml$/i, '')}-fitted`, '.xml');
+  const { result } = await run({ command: 'fit', machine, measurements: store.measurements, output });
+  note(label, output, result);
+  await choose(output, store.measurements);
+  return result;
+}
+
+/** Adds an effect to the machine that is chosen and fits it: before and after on the same scale. */
+export async function addEffect(effect, error) {
+  location.hash = '#add';
+  await guarded(error ?? document.getElementById('add-error'), async () => {
+    const before = store.machine;
+    if (steps.at(-1)?.machine !== before) await fitInto(before, 'the model, fitted');
+    const output = freeName(`${before.replace(/(-fitted)?(-\d+)?\.xml$/i, '')}-added`, '.xml');
+    const { result } = await run({ command: 'add', effect, machine: store.machine, output });
+    await fitInto(output, `+ ${result.label}`);
+  });
+}
+
+/** Before and after, on fit and on held-out rows; the last step can be taken back. */
+function stepsPanel() {
+  const box = el('div', { id: 'steps' });
+  const undo = button('Take the last step back', async () => {
+    const last = steps.pop();
+    for (const name of [last.machine, last.machine.replace(/-fitted(-\d+)?\.xml$/, '.xml')]) {
+      const entry = [...store.history].reverse().find((one) => !one.undone);
+      if (entry?.outputs?.includes(name)) await postJson('/api/history', { do: 'undo' });
+    }
+    await refresh();
+    emit('steps');
+    if (steps.length) await choose(steps.at(-1).machine, store.measurements);
+  }, { class: 'quiet', id: 'undo-step' });
+  const draw = () => {
+    undo.disabled = steps.length < 2;
+    const last = steps.at(-1);
+    const um = (label, value) => ({ label, value: number(value, 4), unit: 'µm', strong: true });
+    const figures = last ? tiles([um('rms, fit rows', last.rms_um), um('rms, held-out rows', last.check_rms_um), um('noise', last.noise_um)]) : null;
+    if (figures) Object.assign(figures.dataset, { rms: last.rms_um, checkRms: last.check_rms_um });
+    box.replaceChildren(...(last ? [fallingFigure(steps, last.noise_um), figures] : [el('p', { class: 'note' }, 'Fit the model, then add what a diagnosis names, or a term of your own.')]));
+    redrawAll();
+  };
+  on('steps', draw);
+  draw();
+  return panel('Watch the error fall', box, el('div', { class: 'controls' }, undo, el('a', { href: fileAddress('history.sh'), download: 'history.sh' }, 'history.sh'),
+    el('span', { class: 'note' }, 'does all of this again')));
+}
+
+/** One parameter at a time by hand: the residual follows while the slider moves. */
+function sliderPanel(error) {
+  let parameters = [], chosen = null, busy = false, waiting = false, base = null;
+  const select = el('select', { id: 'parameter', 'aria-label': 'parameter' }), slider = el('input', { type: 'range', min: '-1', max: '1', step: '0.002', value: '0', id: 'slider', 'aria-label': 'value' });
+  const value = el('output', { id: 'slider-value' }), numbers = el('span', { id: 'slider-figures', class: 'note' }), span = el('select', { 'aria-label': 'range' });
+  const box = el('div', {});
+  let plot = null;
+  const spans = [1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1, 1, 10];
+  span.append(...spans.map((one) => el('option', { value: one, selected: one === 0.1 ? '' : null }, `± ${one}`)));
+  const now = () => chosen.value + Number(slider.value) * Number(span.value);
+  async function follow() {
+    if (!chosen || !store.rows) return;
+    value.textContent = `${number(now(), 7)} ${chosen.unit}`;
+    if (busy) { waiting = true; return; }
+    busy = true;
+    const start = performance.now();
+    try {
+      const answer = await postBlob('/api/predict', { ...subject(), values: { [chosen.name]: now() } });
+      setResiduals(store.rows, answer.residual);
+      numbers.textContent = `rms ${number(answer.rms_um, 4)} µm on fit rows, ${number(answer.check_rms_um, 4)} µm on held-out rows`;
+      Object.assign(numbers.dataset, { rms: answer.rms_um, ms: (performance.now() - start).toFixed(1) });
+      redrawAll();
+    } finally {
+      busy = false;
+      if (waiting) { waiting = false; follow(); }
+    }
+  }
+  const pick = (name) => {
+    chosen = parameters.find((one) => one.name === name) ?? null;
+    slider.value = '0';
+    if (!chosen) return;
+    const scale = Math.abs(chosen.value) || (chosen.unit === 'rad' ? 1e-4 : 0.1);
+    span.value = String(spans.find((one) => one >= scale) ?? 10);
+    value.textContent = `${number(chosen.value, 7)} ${chosen.unit}`;
+  };
+  select.addEventListener('change', () => pick(select.value));
+  slider.addEventListener('input', follow);
+  span.addEventListener('change', follow);
+  const keep = button('Keep this value', () => guarded(error, async () => {
+    const output = freeName(`${store.machine.replace(/(-set)?(-\d+)?\.xml$/i, '')}-set`, '.xml');
+    await run({ command: 'set', machine: store.machine, values: [`${chosen.name}=${now()}`], output });
+    const { result } = await run({ command: 'compare', machine: output, measurements: store.measurements });
+    note(`${chosen.name} by hand`, output, result);
+    await choose(output, store.measurements);
+  }), { class: 'quiet', id: 'keep-value' });
+  const back = button('Back', async () => { slider.value = '0'; await loadRows(); }, { class: 'quiet' });
+  async function build() {
+    box.replaceChildren();
+    parameters = store.rows ? await getJson('/api/parameters', { machine: store.machine, measurement: store.measurements }).catch(() => []) : [];
+    select.replaceChildren(...parameters.map((one) => el('option', { value: one.name }, one.name)));
+    pick(parameters[0]?.name);
+    if (!store.rows) return;
+    base = store.rows.columns[0];
+    const columns = choice('against', store.rows.columns.map((one, k) => [String(k), one.name]), '0', (k) => { base = store.rows.columns[Number(k)]; plot.reset(); });
+    let kind = 0;
+    const kinds = choice('residual of', store.rows.kinds.map((one, k) => [String(k), one.kind]), '0', (k) => { kind = Number(k); plot.reset(); });
+    plot = scatter('residual while a parameter moves', { height: 260, name: 'by_hand', data: () => {
+      const one = store.rows?.kinds[kind];
+      return one ? { x: along(one, base), y: one.value, row: one.row, check: store.rows.row_check, overlay: null } : null;
+    }, words: () => ({ x: `${base.name} [${base.unit}]`, y: `${store.rows.kinds[kind].kind} [${store.rows.kinds[kind].unit}]` }) });
+    box.append(el('div', { class: 'controls' }, kinds, columns), plot.element);
+    redrawAll();
+  }
+  on('rows', build);
+  build();
+  return panel('By hand', el('div', { class: 'controls' }, select, slider, value, span, keep, back, numbers), box);
+}
+
+/** A term of one's own: checked while it is written, names completed. */
+function termPanel(error) {
+  let names = [], transforms = [], at = 0;
+  const input = el('input', { type: 'text', class: 'term', id: 'term', spellcheck: 'false', autocomplete: 'off', placeholder: 'k*(T_column-20)*Z', 'aria-label': 'term' });
+  const place = el('select', { id: 'term-place', 'aria-label': 'where' }), list = el('ul', { class: 'completion', role: 'listbox', hidden: '' }), words = el('p', { id: 'term-check', class: 'note', role: 'status' });
+  const wordAt = () => input.value.slice(0, input.selectionStart).match(/[A-Za-z_]\w*$/)?.[0] ?? '';
+  const where = () => JSON.parse(place.value);
+  const unit = () => (/^(r[XYZ]|theta|alpha)$/.test(where().dof) ? 'deg' : 'mm');
+  const take = (name) => {
+    const word = wordAt(), start = input.selectionStart - word.length;
+    input.setRangeText(name, start, input.selectionStart, 'end');
+    list.hidden = true;
+    input.focus();
+    check();
+  };
+  const offer = () => {
+    const word = wordAt();
+    const found = word ? names.filter((one) => one.name.toLowerCase().startsWith(word.toLowerCase()) && one.name !== word).slice(0, 8) : [];
+    at = 0;
+    list.hidden = found.length === 0;
+    list.replaceChildren(...found.map((one, i) => {
+      const item = el('li', { role: 'option', 'aria-selected': i === 0 ? 'true' : 'false', 'data-name': one.name }, one.name, el('small', {}, `  ${one.unit} ${one.what}`));
+      item.addEventListener('pointerdown', (event) => { event.preventDefault(); take(one.name); });
+      return item;
+    }));
+  };
+  async function check() {
+    if (!input.value.trim() || !place.value) { words.textContent = ''; return; }
+    const asked = input.value;
+    const answer = await postJson('/api/term', { machine: store.machine, term: asked, unit: unit() }).catch((why) => ({ ok: false, message: why.message, word: '' }));
+    if (asked !== input.value) return;
+    words.dataset.ok = answer.ok;
+    words.className = answer.ok ? 'note' : 'error';
+    words.textContent = answer.ok ? [answer.k_unit === null ? 'the unit of k cannot be told' : `k is in ${answer.k_unit}`, ...answer.warnings].join('; ') : `${answer.message}${answer.word ? `: "${answer.word}"` : ''}`;
+  }
+  input.addEventListener('input', () => { offer(); check(); });
+  place.addEventListener('change', check);
+  input.addEventListener('keydown', (event) => {
+    if (list.hidden) return;
+    const items = [...list.children];
+    const step = { ArrowDown: 1, ArrowUp: -1 }[event.key];
+    if (step) at = (at + step + items.length) % items.length;
+    else if (event.key === 'Tab' || event.key === 'Enter') take(items[at].dataset.name);
+    else if (event.key === 'Escape') list.hidden = true;
+    else return;
+    event.preventDefault();
+    items.forEach((item, i) => item.setAttribute('aria-selected', String(i === at)));
+  });
+  const add = button('Add and fit', () => addEffect(`custom:branch=${where().branch},transform=${where().n},dof=${where().dof},term=${input.value.trim()}`, error), { id: 'add-term' });
+  async function build() {
+    ({ names, transforms } = store.machine ? await getJson('/api/names', { machine: store.machine }).catch(() => ({ names: [], transforms: [] })) : { names: [], transforms: [] });
+    for (const column of store.rows?.columns ?? []) if (column.kind === 'candidate') names.push({ name: column.name, unit: column.unit, what: 'column of the measurement' });
+    place.replaceChildren(...transforms.flatMap((one) => one.dofs.map(({ dof, text }) => el('option', { value: JSON.stringify({ branch: one.branch, n: one.n, dof }) },
+      `${one.branch === 'tool' ? '' : `${one.branch} `}${one.n} ${dof} = ${text}`))));
+    check();
+  }
+  on('rows', build);
+  build();
+  return panel('A term of your own', el('div', { class: 'controls' }, place, input, add), list, words);
+}
+
+export function addView(root) {
+  const error = el('div', { id: 'add-error' });
+  const fit = button('Fit the model', () => guarded(error, () => fitInto(store.machine, 'the model, fitted')), { id: 'fit' });
+  const improve = button('Walk the whole ladder', () => guarded(error, async () => {
+    const output = freeName('better', '');
+    const { result } = await run({ command: 'improve', ...subject(), yes: true, output });
+    for (const step of result.ladder) note(step.label ?? step.effect ?? 'the model', step.machine, { ...step, noise_um: result.noise_um });
+    const last = result.ladder.at(-1)?.machine;
+    if (last) await choose(last, store.measurements);
+    improve.after(' ', el('a', { href: fileAddress(`${output}/improve.html`), target: '_blank', rel: 'noopener' }, `${output}/improve.html`));
+  }), { class: 'quiet' });
+  const effect = el('input', { type: 'text', class: 'term', 'aria-label': 'effect', placeholder: 'backlash:axis=X', id: 'effect' });
+  const add = button('Add and fit', () => addEffect(effect.value.trim(), error), { class: 'quiet', id: 'add-effect' });
+  root.append(error, panel(null, el('div', { class: 'controls' }, fit, improve, effect, add)), stepsPanel(), sliderPanel(error), termPanel(error));
+  return { show: redrawAll };
+}

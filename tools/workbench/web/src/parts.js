@@ -1,0 +1,61 @@
+import { el } from '../../../report/web/src/dom.js';
+import { chart, colours } from '../../../report/web/src/chart.js';
+import { init } from 'echarts/core';
+import { SVGRenderer } from 'echarts/renderers';
+import { use } from 'echarts/core';
+import { getJson, Refused } from './api.js';
+import { exportButtons } from './plot.js';
+
+use([SVGRenderer]);
+
+export function button(label, act, attributes = {}) {
+  const node = el('button', { type: 'button', ...attributes }, label);
+  node.addEventListener('click', async () => {
+    node.disabled = true;
+    try { await act(node); } finally { node.disabled = false; }
+  });
+  return node;
+}
+
+export const panel = (title, ...children) => el('section', { class: 'panel' }, title ? el('h2', {}, title) : null, ...children);
+
+/** A chart of the plotting library with its exports. */
+export function figure(label, options, caption = null) {
+  const box = chart(label, options);
+  const svg = () => {
+    const { height, option } = box.options();
+    const twin = init(null, null, { renderer: 'svg', ssr: true, width: box.clientWidth || 1000, height });
+    twin.setOption({ animation: false, backgroundColor: colours().panel, ...option });
+    const text = twin.renderToSVGString();
+    twin.dispose();
+    return text;
+  };
+  return el('figure', {}, box, exportButtons({ name: label.replace(/[^\w]+/g, '_'), png: async () => (await fetch(box.picture())).blob(), svg }),
+    caption ? el('figcaption', {}, caption) : null);
+}
+
+/** An error in its box: the words, and where they name a line of a file, that line. */
+export async function showError(box, error) {
+  if (!(error instanceof Refused)) throw error;
+  const where = error.message.match(/([^\s:"]+):(\d+): (?:"(.*?)": )?/);
+  box.replaceChildren(el('p', { class: 'error', role: 'alert' }, error.message));
+  if (!where) return;
+  try {
+    const context = await getJson('/api/lines', { name: where[1], line: where[2] });
+    box.append(el('pre', { class: 'source' }, context.lines.map((text, i) => {
+      const number = context.first + i;
+      return el('span', { class: number === Number(where[2]) ? 'bad' : null }, `${String(number).padStart(6)}  ${text}\n`);
+    })));
+  } catch { /* The file was not kept: its words are all there is. */ }
+}
+
+/** Shows the error of a job where it belongs instead of failing silently. */
+export async function guarded(box, act) {
+  box.replaceChildren();
+  try {
+    return await act();
+  } catch (error) {
+    await showError(box, error);
+    return null;
+  }
+}

@@ -1,0 +1,111 @@
+import { colours } from '../../../report/web/src/chart.js';
+import { number } from '../../../report/web/src/data.js';
+import { el } from '../../../report/web/src/dom.js';
+import { CanvasPen, SvgPen } from './pens.js';
+
+const plots = new Set();
+let asked = false, whenDrawn = [];
+
+const shown = (plot) => plot.canvas.isConnected && plot.canvas.clientWidth > 0;
+
+/** Draws every plot that can be seen, once, in the next picture of the browser. `done` is called after that. */
+export function redrawAll(done = null) {
+  if (done) whenDrawn.push(done);
+  if (asked) return;
+  asked = true;
+  requestAnimationFrame(() => {
+    asked = false;
+    for (const plot of plots) {
+      if (!plot.canvas.isConnected) { if (plot.seen) plots.delete(plot); } else if (shown(plot)) plot.draw();
+    }
+    const calls = whenDrawn;
+    whenDrawn = [];
+    for (const call of calls) call();
+  });
+}
+
+export function save(name, blob) {
+  const link = el('a', { href: URL.createObjectURL(blob), download: name });
+  document.body.append(link);
+  link.click();
+  link.remove();
+  setTimeout(() => URL.revokeObjectURL(link.href), 10000);
+}
+
+/** Buttons that export a picture: {name, png() a Blob promise, svg() a text}. */
+export function exportButtons({ name, png, svg }) {
+  const button = (label, act) => {
+    const node = el('button', { type: 'button', class: 'quiet', title: `Save as ${label}` }, label);
+    node.addEventListener('click', act);
+    return node;
+  };
+  return el('span', { class: 'exports' }, button('PNG', async () => save(`${name}.png`, await png())),
+    button('SVG', () => save(`${name}.svg`, new Blob([svg()], { type: 'image/svg+xml' }))));
+}
+
+/** A picture of our own: `paint(pen, colours)` draws it with any pen; pen.width and pen.height are its size. */
+export class Plot {
+  constructor(label, { height, paint, name }) {
+    this.label = label;
+    this.paint = paint;
+    this.canvas = el('canvas', { class: 'plot', role: 'img', tabindex: '0', 'aria-label': label });
+    this.canvas.style.height = `${height}px`;
+    this.seen = false;
+    this.element = el('figure', { class: 'plot' }, this.canvas, exportButtons({ name: name ?? label.replace(/[^\w]+/g, '_'),
+      png: () => new Promise((done) => { this.draw(); this.canvas.toBlob(done); }), svg: () => this.svg() }));
+    plots.add(this);
+    new ResizeObserver(() => { if (shown(this)) this.draw(); }).observe(this.canvas);
+  }
+  draw() {
+    this.seen = true;
+    this.paint(new CanvasPen(this.canvas, this.canvas.clientWidth, this.canvas.clientHeight), colours());
+  }
+  svg() {
+    const c = colours();
+    const pen = new SvgPen(this.canvas.clientWidth, this.canvas.clientHeight, c.panel);
+    this.paint(pen, c);
+    return pen.toString();
+  }
+}
+
+/** About `count` round numbers within [low, high]. */
+export function ticks(low, high, count) {
+  const raw = (high - low) / Math.max(1, count);
+  if (!(raw > 0) || !Number.isFinite(raw)) return [];
+  const power = 10 ** Math.floor(Math.log10(raw));
+  const step = [1, 2, 5, 10].map((k) => k * power).find((one) => one >= raw);
+  const list = [];
+  for (let at = Math.ceil(low / step) * step; at <= high + 1e-9 * step; at += step) list.push(Math.abs(at) < 1e-9 * step ? 0 : at);
+  return list;
+}
+
+/** Frame, grid and words of two axes; view: {x: [low, high], y: [low, high]}. */
+export function axes(pen, area, view, { x, y, title }, c) {
+  const toX = (value) => area.x + ((value - view.x[0]) / (view.x[1] - view.x[0])) * area.w;
+  const toY = (value) => area.y + area.h - ((value - view.y[0]) / (view.y[1] - view.y[0])) * area.h;
+  for (const value of ticks(...view.y, area.h / 34)) {
+    pen.line([area.x, toY(value), area.x + area.w, toY(value)], value === 0 ? c.soft : c.line, 1);
+    pen.text(area.x - 4, toY(value), number(value, 3), { colour: c.soft, align: 'right', size: 10 });
+  }
+  for (const value of ticks(...view.x, area.w / 62)) {
+    pen.line([toX(value), area.y, toX(value), area.y + area.h], c.line, 1);
+    pen.text(toX(value), area.y + area.h + 8, number(value, 3), { colour: c.soft, align: 'center', size: 10 });
+  }
+  pen.rect(area.x, area.y, area.w, area.h, null, c.line);
+  if (x) pen.text(area.x + area.w / 2, area.y + area.h + 21, x, { colour: c.ink, align: 'center', size: 11 });
+  if (y) pen.text(area.x - 38, area.y + area.h / 2, y, { colour: c.ink, align: 'center', size: 11, turn: -Math.PI / 2 });
+  if (title) pen.text(area.x + 2, area.y - 8, title, { colour: c.ink, size: 11, bold: true });
+}
+
+/** Least and largest finite value, a little apart. */
+export function range(values, margin = 0.04) {
+  let low = Infinity, high = -Infinity;
+  for (let i = 0; i < values.length; ++i) {
+    const value = values[i];
+    if (value < low && value > -1e30) low = value;
+    if (value > high && value < 1e8) high = value;
+  }
+  if (!(low <= high)) return [0, 1];
+  const pad = (high - low) * margin || Math.abs(high) * 0.1 || 1;
+  return [low - pad, high + pad];
+}
