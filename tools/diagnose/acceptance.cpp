@@ -31,6 +31,7 @@ Eigen::Index lost_directions(const Eigen::VectorXd& information) {
 /// What of the model's free parameters only the rows left out determine (their own set-up), as orthonormal
 /// columns over these rows: it is fitted to them. New columns are not, they must come from the other rows.
 Eigen::MatrixXd fitted_to_block_alone(const Eigen::MatrixXd& model_rows) {
+  if (model_rows.cols() == 0) return model_rows;  // nothing is free
   const Eigen::MatrixXd normal =
       Eigen::MatrixXd::Identity(model_rows.cols(), model_rows.cols()) - model_rows.transpose() * model_rows;
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(normal);
@@ -85,6 +86,10 @@ HeldOut leave_blocks_out(const Evidence& evidence, const Eigen::MatrixXd& column
     if (rows.empty()) continue;
     const Eigen::MatrixXd left_out = basis(rows, Eigen::all);
     const Eigen::VectorXd r_out = r(rows);
+    if (basis.cols() == 0) {
+      result.chi_square += r_out.squaredNorm();
+      continue;
+    }
     const Eigen::MatrixXd normal =
         Eigen::MatrixXd::Identity(basis.cols(), basis.cols()) - left_out.transpose() * left_out;
     const Eigen::VectorXd moment = all - left_out.transpose() * r_out;

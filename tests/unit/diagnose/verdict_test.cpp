@@ -46,6 +46,31 @@ TEST(Verdict, UnexplainedSaysWhereTheRestFailsBehindALadder) {
       << answer.explanation;
 }
 
+/// A machine whose every parameter is known is a machine too.
+TEST(Verdict, NeedsNoFreeParameter) {
+  std::string fixed = kAxis;
+  fixed.replace(fixed.find("<c value=\"0\""), 12, "<c Hide=\"true\" value=\"0\"");
+  const Machine machine = parse_machine(fixed, "m.xml");
+  for (const double backlash : {0.01, 0.0}) {
+    std::mt19937_64 random(kSeed);
+    std::normal_distribution<double> noise(0, 0.001);
+    std::string text = "X[mm],dirX,x[mm],u[um],run\n";
+    for (int i = 0; i < 200; ++i) {
+      const int dir = i % 2 == 0 ? 1 : -1;
+      text +=
+          fmt::format("{},{},{:.6f},1,r{}\n", 2.5 * i, dir, 2.5 * i + backlash * dir + noise(random), i % 4);
+    }
+    const Measurement rows = parse_measurement(text, "m.csv", machine);
+
+    const Diagnosis answer = diagnose(fixed, machine, rows);
+
+    EXPECT_EQ(answer.verdict, backlash > 0 ? Verdict::kMissingEffect : Verdict::kConsistent)
+        << "seed " << kSeed << ": " << answer.explanation;
+    ASSERT_EQ(answer.ladder.size(), backlash > 0 ? 2U : 1U);
+    EXPECT_EQ(answer.ladder.back().effect, backlash > 0 ? "backlash" : "");
+  }
+}
+
 /// An error whose period shrinks along the axis, alike in all runs, at uneven places.
 std::string chirp() {
   std::mt19937_64 random(kSeed);
