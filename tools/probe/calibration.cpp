@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/QR>
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -153,7 +153,7 @@ struct RoundTouches {
       for (Index k = 0; k < d; ++k) a(i, k) = 2 * m[k], b(i) += m[k] * m[k];
       a(i, d) = 1;
     }
-    const VectorXd s = a.colPivHouseholderQr().solve(b);
+    const VectorXd s = (a.transpose() * a).ldlt().solve(a.transpose() * b);
     const double square = s(d) + s.head(d).squaredNorm();
     p.head(d) += s.head(d);
     p(d) = std::sqrt(std::max(square, 1e-12));

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -33,8 +35,8 @@ struct Touches {
   // Principal directions, greatest scatter first; right-handed.
   Matrix3d principal() const {
     const MatrixXd c = p.rowwise() - p.colwise().mean();
-    Eigen::JacobiSVD<MatrixXd> svd(c, Eigen::ComputeFullV);
-    Matrix3d v = svd.matrixV();
+    const Eigen::SelfAdjointEigenSolver<Matrix3d> eigen(Matrix3d(c.transpose() * c));
+    Matrix3d v = eigen.eigenvectors().rowwise().reverse();
     if (v.determinant() < 0) v.col(2) *= -1;
     return v;
   }
@@ -229,7 +231,8 @@ VectorXd algebraic_centre(const MatrixXd& m) {
   MatrixXd a(m.rows(), m.cols() + 1);
   a.leftCols(m.cols()) = 2 * m;
   a.col(m.cols()).setOnes();
-  VectorXd s = a.colPivHouseholderQr().solve(m.rowwise().squaredNorm());
+  // Only where the fit begins: normal equations are good enough.
+  VectorXd s = (a.transpose() * a).ldlt().solve(a.transpose() * m.rowwise().squaredNorm());
   s(m.cols()) = std::sqrt(std::max(1e-12, s(m.cols()) + s.head(m.cols()).squaredNorm()));
   return s;
 }
