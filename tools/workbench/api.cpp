@@ -265,7 +265,16 @@ ApiReply Api::names(const ApiRequest& request) {
 ApiReply Api::term(const ApiRequest& request) {
   const auto json = body_json(request);
   const std::string name = text_at(json, "machine");
-  const Machine machine = parse_machine(read_file(project_.existing(name).string()), name);
+  Machine machine = parse_machine(read_file(project_.existing(name).string()), name);
+  // Columns of the measurement that the machine does not know: `add` declares what a term uses of them.
+  if (json.contains("columns") && json["columns"].is_array()) {
+    for (const auto& column : json["columns"]) {
+      Input input;
+      input.name = text_at(column, "name");
+      input.unit = text_at(column, "unit");
+      if (resolve_name(machine, input.name).kind == SymbolKind::kUnresolved) machine.inputs.push_back(input);
+    }
+  }
   return json_reply(check_term(machine, text_at(json, "term"), text_at(json, "unit")));
 }
 

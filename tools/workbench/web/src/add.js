@@ -12,6 +12,10 @@ import { emit, on, store } from './store.js';
 // What was tried in this session, in order: {label, machine, rms_um, check_rms_um, noise_um}.
 const steps = [];
 
+/** A machine's name without what earlier steps have put behind it: model-added-2-fitted.xml is of model. */
+const stem = (machine) => machine.replace(/(-(added|set)(-\d+)?)?(-fitted(-\d+)?)?\.xml$/i, '');
+const unfitted = (machine) => machine.replace(/(-fitted(-\d+)?)?\.xml$/i, '');
+
 function note(label, machine, result) {
   steps.push({ label, machine, rms_um: result.rms_um, check_rms_um: result.check_rms_um, noise_um: result.noise_um });
   emit('steps');
@@ -19,7 +23,7 @@ function note(label, machine, result) {
 
 /** Fits a machine into a new file; what came out is a step. */
 async function fitInto(machine, label) {
-  const output = freeName(`${machine.replace(/(-fitted)?(-\d+)?\.xml$/i, '')}-fitted`, '.xml');
+  const output = freeName(`${unfitted(machine)}-fitted`, '.xml');
   const { result } = await run({ command: 'fit', machine, measurements: store.measurements, output });
   note(label, output, result);
   await choose(output, store.measurements);
@@ -32,7 +36,7 @@ export async function addEffect(effect, error) {
   await guarded(error ?? document.getElementById('add-error'), async () => {
     const before = store.machine;
     if (steps.at(-1)?.machine !== before) await fitInto(before, 'the model, fitted');
-    const output = freeName(`${before.replace(/(-fitted)?(-\d+)?\.xml$/i, '')}-added`, '.xml');
+    const output = freeName(`${stem(before)}-added`, '.xml');
     const { result } = await run({ command: 'add', effect, machine: store.machine, output });
     await fitInto(output, `+ ${result.label}`);
   });
@@ -105,7 +109,7 @@ function sliderPanel(error) {
   slider.addEventListener('input', follow);
   span.addEventListener('change', follow);
   const keep = button('Keep this value', () => guarded(error, async () => {
-    const output = freeName(`${store.machine.replace(/(-set)?(-\d+)?\.xml$/i, '')}-set`, '.xml');
+    const output = freeName(`${stem(store.machine)}-set`, '.xml');
     await run({ command: 'set', machine: store.machine, values: [`${chosen.name}=${now()}`], output });
     const { result } = await run({ command: 'compare', machine: output, measurements: store.measurements });
     note(`${chosen.name} by hand`, output, result);
@@ -141,6 +145,12 @@ function termPanel(error) {
   const place = el('select', { id: 'term-place', 'aria-label': 'where' }), list = el('ul', { class: 'completion', role: 'listbox', hidden: '' }), words = el('p', { id: 'term-check', class: 'note', role: 'status' });
   const wordAt = () => input.value.slice(0, input.selectionStart).match(/[A-Za-z_]\w*$/)?.[0] ?? '';
   const where = () => JSON.parse(place.value);
+  // Columns that were recorded and that the machine does not know yet; a term may bring two of them along.
+  const candidates = () => (store.rows?.columns ?? []).filter((one) => one.kind === 'candidate');
+  const brought = () => {
+    const words = new Set(input.value.match(/[A-Za-z_]\w*/g) ?? []);
+    return candidates().filter((one) => words.has(one.name)).map((one, i) => `input${i ? i + 1 : ''}=${one.name},${i === 0 && one.unit ? `unit=${one.unit},` : ''}`).join('');
+  };
   const unit = () => (/^(r[XYZ]|theta|alpha)$/.test(where().dof) ? 'deg' : 'mm');
   const take = (name) => {
     const word = wordAt(), start = input.selectionStart - word.length;
@@ -163,7 +173,7 @@ function termPanel(error) {
   async function check() {
     if (!input.value.trim() || !place.value) { words.textContent = ''; return; }
     const asked = input.value;
-    const answer = await postJson('/api/term', { machine: store.machine, term: asked, unit: unit() }).catch((why) => ({ ok: false, message: why.message, word: '' }));
+    const answer = await postJson('/api/term', { machine: store.machine, term: asked, unit: unit(), columns: candidates().map(({ name, unit: of }) => ({ name, unit: of })) }).catch((why) => ({ ok: false, message: why.message, word: '' }));
     if (asked !== input.value) return;
     words.dataset.ok = answer.ok;
     words.className = answer.ok ? 'note' : 'error';
@@ -182,10 +192,10 @@ function termPanel(error) {
     event.preventDefault();
     items.forEach((item, i) => item.setAttribute('aria-selected', String(i === at)));
   });
-  const add = button('Add and fit', () => addEffect(`custom:branch=${where().branch},transform=${where().n},dof=${where().dof},term=${input.value.trim()}`, error), { id: 'add-term' });
+  const add = button('Add and fit', () => addEffect(`custom:branch=${where().branch},transform=${where().n},dof=${where().dof},${brought()}term=${input.value.trim()}`, error), { id: 'add-term' });
   async function build() {
     ({ names, transforms } = store.machine ? await getJson('/api/names', { machine: store.machine }).catch(() => ({ names: [], transforms: [] })) : { names: [], transforms: [] });
-    for (const column of store.rows?.columns ?? []) if (column.kind === 'candidate') names.push({ name: column.name, unit: column.unit, what: 'column of the measurement' });
+    for (const column of candidates()) names.push({ name: column.name, unit: column.unit, what: 'column of the measurement' });
     place.replaceChildren(...transforms.flatMap((one) => one.dofs.map(({ dof, text }) => el('option', { value: JSON.stringify({ branch: one.branch, n: one.n, dof }) },
       `${one.branch === 'tool' ? '' : `${one.branch} `}${one.n} ${dof} = ${text}`))));
     check();

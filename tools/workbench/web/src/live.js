@@ -28,7 +28,7 @@ export function livePanel(url, getJson) {
       const points = [];
       one.x.forEach((x, i) => points.push(area.x + Math.max(0, 1 + x / kSeconds) * area.w, area.y + area.h * (1 - (one.y[i] - view.y[0]) / (view.y[1] - view.y[0]))));
       pen.line(points, one.colour, 1.6);
-      pen.text(area.x + 60 + 50 * k, 10, one.name, { colour: one.colour, bold: true });
+      pen.text(area.x + area.w - 8 - 26 * (traces.length - 1 - k), 9, one.name, { colour: one.colour, bold: true, align: 'right' });
     });
   } });
   const shares = new Plot('what each effect adds', { height: 230, name: 'live_effects', paint(pen, c) {

@@ -37,7 +37,7 @@ export function scatter(label, { height, data, words, name, fixed = null }) {
     place(d.y);
     const size = n > 20000 ? 1.5 : n > 3000 ? 2 : 3;
     const any = selection.count > 0;
-    for (let i = 0; i < n; ++i) drawn.colour[i] = any || d.overlay ? kDim : d.check[d.row[i]] ? kCheck : kFit;
+    for (let i = 0; i < n; ++i) drawn.colour[i] = any ? kDim : d.check[d.row[i]] ? kCheck : kFit;
     pen.dots(area, drawn.px, drawn.py, drawn.colour, palette(c), size);
     if (any) {
       for (let i = 0; i < n; ++i) drawn.colour[i] = selection.rows[d.row[i]] ? kChosen : kNone;

@@ -1,0 +1,276 @@
+// journey.mjs WHICH BIN SOURCE [PICTURES]: the workbench as a person uses it, in a real headless browser; what the page
+// shows is compared with what the command gives. PICTURES: a folder that gets a picture of each view. Prints
+// "journey: Skipped, ..." where there is no browser.
+import { execFileSync, spawn } from 'node:child_process';
+import { copyFileSync, existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { createServer } from 'node:net';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import assert from 'node:assert/strict';
+import { browserName, Page } from './browser.mjs';
+
+const [, , which, bin, source, pictures] = process.argv;
+const vernier = join(bin, 'vernier');
+const top = mkdtempSync(join(tmpdir(), 'workbench-journey-'));
+const folder = join(top, 'project');
+const started = [];
+
+const json = (...words) => JSON.parse(execFileSync(vernier, [...words, '--json', '-'], { cwd: folder, stdio: ['ignore', 'pipe', 'ignore'], maxBuffer: 1 << 28 }));
+const data = (name) => readFileSync(join(source, 'tests/data', name), 'latin1');
+const freePort = () => new Promise((done) => { const server = createServer().listen(0, '127.0.0.1', () => { const { port } = server.address(); server.close(() => done(port)); }); });
+
+/** A program that runs until the end of the test. */
+function start(name, words, options = {}) {
+  const child = spawn(join(bin, name), words, { stdio: ['ignore', 'pipe', 'inherit'], ...options });
+  started.push(child);
+  return child;
+}
+
+async function workbench() {
+  const child = start('vernier', ['workbench', folder, '--no-browser', '--json', '-']);
+  let text = '';
+  for await (const piece of child.stdout) {
+    text += piece;
+    if (text.includes('}')) break;
+  }
+  return JSON.parse(text).url;
+}
+
+/** A board of the machine's axes, all simulated, which trusts the key of the project. */
+async function board(axes, keys) {
+  const port = await freePort();
+  const axis = ([name, low, high]) => `[axis.${name}]\nlow = ${low}\nhigh = ${high}\nmax_speed = 500\nmax_acceleration = 5000\ncorrection_share = 0.05\nposition = { kind = "sim" }\noutput = { kind = "sim" }\n`;
+  writeFileSync(join(top, 'board.toml'), `[board]\nstore = "store"\npublic_key = "${join(folder, keys, 'vernier.pub')}"\ntrial_s = 60\nactivate = true\n${axes.map(axis).join('')}[[link]]\nkind = "modbus-tcp"\nport = ${port}\n`);
+  start('vernierd', ['--board', join(top, 'board.toml')], { cwd: top, stdio: 'ignore' });
+  const url = `tcp://127.0.0.1:${port}`;
+  for (let i = 0; ; ++i) {
+    try { execFileSync(vernier, ['status', '--to', url], { stdio: 'ignore' }); return url; } catch (why) { if (i > 100) throw why; }
+    await new Promise((done) => setTimeout(done, 50));
+  }
+}
+
+const text = (page, selector) => page.evaluate(`document.querySelector(${JSON.stringify(selector)})?.textContent ?? ''`);
+const attribute = (page, selector, name) => page.evaluate(`document.querySelector(${JSON.stringify(selector)})?.dataset[${JSON.stringify(name)}] ?? null`);
+const view = (page, name) => page.evaluate(`location.hash = '#${name}'`);
+const done = (page, command) => page.until(`document.getElementById('command').textContent.startsWith(${JSON.stringify(command)}) && document.getElementById('job-state').dataset.state === 'done'`, command, 120);
+async function picture(page, name, scroll = null) {
+  if (!pictures) return;
+  if (scroll) await page.evaluate(`document.querySelector(${JSON.stringify(scroll)}).closest('.panel').scrollIntoView({ block: 'start' }); scrollBy(0, -54)`);
+  await new Promise((wait) => setTimeout(wait, 400));
+  await page.picture(join(pictures, `workbench_${name}.png`));
+}
+const near = (shown, wanted, what) => assert.ok(Math.abs(Number(shown) - wanted) <= 1e-9 * Math.max(1, Math.abs(wanted)), `${what}: the page has ${shown}, the command ${wanted}`);
+
+/** The numbers of Compare against those of the command that the page shows. */
+async function checkCompare(page, machine, rows) {
+  await view(page, 'compare');
+  await page.until(`document.getElementById('command').textContent === 'vernier compare ${machine} ${rows}' && document.getElementById('compare-figures')`, 'the numbers of compare');
+  const wanted = json('compare', machine, rows);
+  near(await attribute(page, '#compare-figures', 'rms'), wanted.rms_um, 'rms');
+  near(await attribute(page, '#compare-figures', 'checkRms'), wanted.check_rms_um, 'check rms');
+  assert.ok((await text(page, '#compare-figures')).includes(Number(wanted.rms_um.toPrecision(4)).toString()), 'the rms is readable');
+  return wanted;
+}
+
+/** From an image to a correction that runs on a board. */
+async function bringToBoard(page, axes) {
+  await view(page, 'board');
+  await page.click('#compile');
+  await page.until("document.getElementById('bound')", 'the bound', 60);
+  const image = await page.evaluate("document.getElementById('image').value");
+  const bound = JSON.parse(readFileSync(join(folder, image, 'bound.json')));
+  near(await attribute(page, '#bound', 'bound'), bound.bound_um, 'proved bound');
+  await page.click('#make-key');
+  await done(page, 'vernier keys');
+  const url = await board(axes, 'keys');
+  await page.type('#board-url', url);
+  await page.click('#upload');
+  await done(page, `vernier upload ${image} --to ${url} --key keys/vernier.key`);
+  assert.equal(await attribute(page, '#slots', 'trial'), bound.fingerprint);
+  assert.equal(json('status', '--to', url).trial, bound.fingerprint);
+  await page.click('#confirm');
+  await page.until(`document.getElementById('slots').dataset.confirmed === '${bound.fingerprint}'`, 'the confirmed image');
+  assert.equal(json('status', '--to', url).confirmed, bound.fingerprint);
+  await page.click('#diff');
+  await page.until("document.querySelector('#difference [data-same]')", 'the difference');
+  assert.equal(await attribute(page, '#difference [data-same]', 'same'), 'true');
+  await page.click('#watch');
+  await page.until("Number(document.getElementById('live-state').dataset.rate) >= 10", 'ten pictures a second', 20);
+  await page.until("document.getElementById('live-state').dataset.mode === 'active'", 'the board to be active', 20);
+  await new Promise((wait) => setTimeout(wait, pictures ? 6000 : 500));
+  await picture(page, 'board', '#slots');
+  await picture(page, 'live', '#watch');
+  await picture(page, 'compile', '#compile');
+  await page.click('#watch');
+}
+
+/** The chosen rows are the same in all views, and can be left out with a reason and put back. */
+async function brushAndExclude(page, rows) {
+  await page.evaluate("document.querySelector('.matrix canvas').scrollIntoView({ block: 'center' })");
+  const box = await page.evaluate("(() => { const b = document.querySelector('.matrix canvas').getBoundingClientRect(); return [b.left, b.top, b.width, b.height]; })()");
+  await page.drag([box[0] + 52, box[1] + 20], [box[0] + box[2] * 0.5, box[1] + box[3] - 34]);
+  await page.until("Number(document.getElementById('chosen-count').textContent) > 0", 'a choice of rows');
+  const count = Number(await text(page, '#chosen-count'));
+  await picture(page, 'compare_matrix', '.matrix');
+  await page.evaluate("document.querySelector('.rows').scrollTop = 0");
+  await page.type('input[aria-label="reason"]', 'door was open');
+  await page.click('#exclude');
+  const kept = rows.replace(/\.csv$/, '.kept.csv');
+  await page.until(`document.getElementById('measurement').value === '${kept}'`, 'the rows to be left out');
+  const listed = json('exclude', kept);
+  assert.equal(listed.excluded.length, count);
+  assert.ok(listed.excluded.every((one) => one.reason === 'door was open'));
+  const parts = await page.until("document.querySelector('#excluded-list li')?.textContent", 'the list of excluded rows');
+  assert.ok(parts.includes(`${count} rows`) && parts.includes('door was open'), parts);
+  await page.click('#excluded-list .restore');
+  await page.until("document.querySelector('#excluded-list').textContent.includes('no row is left out')", 'the rows to come back');
+  assert.equal(readFileSync(join(folder, kept), 'latin1'), readFileSync(join(folder, rows), 'latin1'));
+  await page.choose('#machine', await page.evaluate("document.getElementById('machine').value"));
+  await page.choose('#measurement', rows);
+}
+
+async function ballbar(page) {
+  await page.drop([{ name: 'xy.b5r', text: data('ballbar/ur10e_xy_100mm.b5r') }, { name: 'circle.xml', text: readFileSync(join(source, 'tables/machines/xy_ball_bar.xml'), 'utf8') }]);
+  await page.until("document.getElementById('machine').value === 'circle.xml' && document.getElementById('measurement').value === 'xy.csv'", 'the import');
+  await picture(page, 'project');
+  await checkCompare(page, 'circle.xml', 'xy.csv');
+  await page.until("document.querySelectorAll('canvas[aria-label^=Polar]').length === 1", 'the polar plot');
+  await page.evaluate("document.querySelector('canvas[aria-label^=Polar]').scrollIntoView({ block: 'center' })");
+  const polar = await page.evaluate("(() => { const b = document.querySelector('canvas[aria-label^=Polar]').getBoundingClientRect(); return [b.left + b.width / 2, b.top + b.height / 2, Math.min(b.width, b.height) / 2]; })()");
+  await page.drag([polar[0] + 0.8 * polar[2], polar[1] - 5], [polar[0] + 0.1 * polar[2], polar[1] - 0.8 * polar[2]]);
+  await page.until("Number(document.getElementById('chosen-count').textContent) > 100", 'the rows of a sector');
+  await picture(page, 'polar', 'canvas[aria-label^=Polar]');
+  // Lines beyond the file's own are refused where they are: the dropped file with a word that is no number.
+  await view(page, 'project');
+  await page.drop([{ name: 'bad.csv', text: 'X[mm],x[mm]\n1,2\n3,4,5\n' }]);
+  await page.until("document.querySelector('#drop-error .bad')", 'the error at the line');
+  assert.ok((await text(page, '#drop-error .error')).startsWith('bad.csv:3: '));
+  assert.ok((await text(page, '#drop-error .bad')).includes('3,4,5'));
+  assert.ok(!existsSync(join(folder, 'bad.csv')));
+  await view(page, 'add');
+  await page.click('#fit');
+  await page.until("document.querySelector('#steps .tiles')", 'the first step');
+  const fitted = json('fit', 'circle.xml', 'xy.csv');
+  near(await attribute(page, '#steps .tiles', 'rms'), fitted.rms_um, 'fitted rms');
+  near(await attribute(page, '#steps .tiles', 'checkRms'), fitted.check_rms_um, 'fitted check rms');
+  await checkCompare(page, 'circle-fitted.xml', 'xy.csv');
+  await bringToBoard(page, [['X', -60, 60], ['Y', -60, 60]]);
+}
+
+async function survey(page) {
+  const hidden = 'hidden/bridge_lag_cyclic';
+  await page.drop([{ name: 'model.xml', text: data(`${hidden}/model.xml`) }, { name: 'survey.csv', text: data(`${hidden}/survey.csv`) }]);
+  await page.until("document.getElementById('machine').value === 'model.xml' && document.getElementById('measurement').value === 'survey.csv'", 'the files');
+  await checkCompare(page, 'model.xml', 'survey.csv');
+  await brushAndExclude(page, 'survey.csv');
+  await view(page, 'diagnose');
+  await page.click('#run-diagnose');
+  await page.until("document.getElementById('verdict')", 'the verdict', 120);
+  const wanted = json('diagnose', 'model.xml', 'survey.csv');
+  assert.equal(await attribute(page, '#verdict', 'verdict'), wanted.verdict);
+  const shown = await page.evaluate("[...document.querySelectorAll('#candidates tbody tr')].map((row) => row.dataset.add)");
+  assert.deepEqual(shown, wanted.candidates.map((one) => one.add));
+  await page.evaluate("document.querySelector('#candidates tbody tr').focus()");
+  assert.equal(await attribute(page, '#evidence', 'candidate'), wanted.candidates[0].add);
+  assert.ok((await text(page, '#evidence')).includes(wanted.candidates[0].signature));
+  await picture(page, 'diagnose', '#verdict');
+  await new Promise((wait) => setTimeout(wait, 1500));
+  await picture(page, 'candidates', '#candidates');
+  await page.click('#ask-plan');
+  await page.until("document.querySelector('#plan p')", 'the plan', 120);
+  assert.ok(existsSync(join(folder, 'plan.csv')) && existsSync(join(folder, 'plan.nc')));
+  await picture(page, 'plan', '#plan');
+  // The first step of the ladder, by the keyboard alone; then the second by its name.
+  await page.evaluate("document.querySelector('#candidates .add-candidate').focus()");
+  await page.key('Enter');
+  await page.until("document.querySelectorAll('#steps canvas').length === 1 && document.getElementById('machine').value === 'model-added-fitted.xml'", 'the effect to be added', 120);
+  near(await attribute(page, '#steps .tiles', 'rms'), json('fit', 'model-added.xml', 'survey.csv').rms_um, 'rms with the effect');
+  await page.type('#effect', wanted.ladder[2].add);
+  await page.click('#add-effect');
+  await page.until("document.getElementById('machine').value === 'model-added-2-fitted.xml'", 'the second effect', 120);
+  const last = await page.evaluate("document.getElementById('machine').value");
+  const compared = json('compare', last, 'survey.csv');
+  await page.until(`Math.abs(Number(document.querySelector('#steps .tiles').dataset.checkRms) - ${compared.check_rms_um}) < 1e-3`, 'the last step to be drawn');
+  // The fits start elsewhere than the ladder's, and what the data do not determine stays where it started: a few per cent.
+  assert.ok(compared.check_rms_um < 1.05 * wanted.ladder[2].check_rms_um, `held-out ${compared.check_rms_um}, the ladder promised ${wanted.ladder[2].check_rms_um}`);
+  assert.ok(compared.check_rms_um < 0.45 * wanted.ladder[0].check_rms_um, 'the error has fallen');
+  await picture(page, 'add');
+  await tune(page, last);
+  await checkCompare(page, last, 'survey.csv');
+  await bringToBoard(page, [['X', 0, 600], ['Y', 0, 400], ['Z', -300, 0]]);
+  // The script of the history does it all again, to the last byte.
+  const again = join(top, 'again');
+  execFileSync('mkdir', [again]);
+  for (const name of ['model.xml', 'survey.csv', 'history.sh']) copyFileSync(join(folder, name), join(again, name));
+  execFileSync('sh', ['history.sh'], { cwd: again, env: { ...process.env, PATH: `${bin}:${process.env.PATH}` }, stdio: 'ignore' });
+  assert.equal(readFileSync(join(again, last), 'latin1'), readFileSync(join(folder, last), 'latin1'));
+}
+
+/** A slider moves the residual at once; a term of one's own is checked while it is written. */
+async function tune(page, machine) {
+  const parameter = await page.evaluate("document.getElementById('parameter').value");
+  const before = Number(json('compare', machine, 'survey.csv').rms_um);
+  await page.evaluate("(() => { const s = document.getElementById('slider'); s.value = '0.5'; s.dispatchEvent(new Event('input')); })()");
+  await page.until("document.getElementById('slider-figures').dataset.rms", 'the residual to follow');
+  assert.ok(Number(await attribute(page, '#slider-figures', 'rms')) > before, `${parameter} moved by hand`);
+  await picture(page, 'by_hand', '#slider');
+  await page.type('#term', 'k*(T_column-20)*Q');
+  await page.until("document.getElementById('term-check').dataset.ok === 'false'", 'the unknown name to be named');
+  assert.ok((await text(page, '#term-check')).includes('Q'));
+  await page.type('#term', 'k*(X-300)*Y');
+  await page.until("document.getElementById('term-check').dataset.ok === 'true'", 'the term to be taken');
+  assert.ok((await text(page, '#term-check')).startsWith('k is in 1/mm'));
+}
+
+/** Files that mean harm: names and contents are text on the page, and nothing else. */
+async function hostile(page) {
+  const evil = '<img src=x onerror=window.harmed=1>';
+  await page.drop([{ name: `${evil}.csv`, text: `X[mm],Y[mm],x[mm],run\n1,2,1.001,${evil}\n3,4,3.001,${evil}\n5,9,5.002,b\n` },
+    { name: 'm.xml', text: `<machine name="&lt;script&gt;window.harmed=1&lt;/script&gt;"><variables><static><k value="0" nominal="0" note="x"/></static><machineaxes><X/><Y/></machineaxes></variables><transforms><sixdof n="1" X="X+k" Y="Y"/></transforms></machine>` }]);
+  await page.until(`document.getElementById('files').textContent.includes('onerror')`, 'the file with the hostile name');
+  await view(page, 'compare');
+  await page.until("document.getElementById('compare-figures')", 'the numbers of compare');
+  await view(page, 'diagnose');
+  await page.click('#run-diagnose');
+  await page.until("document.getElementById('verdict') || document.querySelector('#view-diagnose .error')", 'an answer');
+  await view(page, 'project');
+  await page.drop([{ name: 'bomb.xml', text: '<!DOCTYPE a [<!ENTITY b "bbbbbbbbbb"><!ENTITY c "&b;&b;&b;&b;&b;&b;">]><machine name="&c;">' },
+    { name: 'late.csv', text: 'X[mm]\n1\n' }]);
+  await page.until("document.querySelector('#drop-error .error')", 'the refusal');
+  assert.equal(await page.evaluate('window.harmed ?? null'), null);
+  assert.equal(await page.evaluate("document.querySelectorAll('img, iframe, object, main script').length"), 0);
+  // Nothing was asked of any other host.
+  const host = await page.evaluate('location.host');
+  assert.deepEqual((page.requests ?? []).filter((url) => /^(http|ws)/.test(url) && new URL(url).host !== host), []);
+  page.complaints = page.complaints.filter((one) => !/422/.test(one));  // the refusals that were asked for
+}
+
+async function main() {
+  if (browserName() === null) {
+    console.log('journey: Skipped, no headless browser');
+    return;
+  }
+  execFileSync('mkdir', [folder]);
+  const url = await workbench();
+  const page = await Page.open();
+  try {
+    await page.go(url);
+    await page.until("document.body.dataset.ready === 'yes'", 'the page');
+    await { ballbar, survey, hostile }[which](page);
+    assert.deepEqual(page.complaints.filter((one) => which !== 'ballbar' || !/422/.test(one)), []);
+    console.log(`journey: ${which} is as it should be`);
+  } finally {
+    await page.close();
+  }
+}
+
+try {
+  await main();
+} catch (why) {
+  console.error(`journey: ${which} fails: ${why.stack}`);
+  process.exitCode = 1;
+} finally {
+  for (const child of started) child.kill('SIGTERM');
+  await Promise.all(started.map((child) => child.exitCode !== null || child.signalCode !== null || new Promise((gone) => child.on('exit', gone))));
+  rmSync(top, { recursive: true, force: true });
+}
