@@ -72,11 +72,11 @@ export class CanvasPen {
       }
     });
   }
-  /** Straight strokes from (ax, ay) to (bx, by), colours as above. */
-  strokes(area, ax, ay, bx, by, colour, palette) {
+  /** Straight strokes from (ax, ay) to (bx, by), colours as above; every `step`th of them. */
+  strokes(area, ax, ay, bx, by, colour, palette, step = 1) {
     this.image(area, (pixels, w, h, r, x0, y0) => {
       const inks = Uint32Array.from(palette, pixelOf);
-      for (let i = 0; i < ax.length; ++i) {
+      for (let i = 0; i < ax.length; i += step) {
         if (colour[i] === 255 || !Number.isFinite(ax[i] + ay[i] + bx[i] + by[i])) continue;
         const x = ax[i] * r - x0, y = ay[i] * r - y0, dx = bx[i] * r - x0 - x, dy = by[i] * r - y0 - y;
         const steps = Math.min(4000, Math.max(1, Math.ceil(Math.max(Math.abs(dx), Math.abs(dy)))));

@@ -8,7 +8,10 @@ let asked = false, whenDrawn = [];
 
 const shown = (plot) => plot.canvas.isConnected && plot.canvas.clientWidth > 0;
 
-/** Draws every plot that can be seen, once, in the next picture of the browser. `done` is called after that. */
+/**
+ * Draws every plot that is in sight, once, in the next picture of the browser; the others when they come into sight.
+ * `done` is called after that.
+ */
 export function redrawAll(done = null) {
   if (done) whenDrawn.push(done);
   if (asked) return;
@@ -16,7 +19,7 @@ export function redrawAll(done = null) {
   requestAnimationFrame(() => {
     asked = false;
     for (const plot of plots) {
-      if (!plot.canvas.isConnected) { if (plot.seen) plots.delete(plot); } else if (shown(plot)) plot.draw();
+      if (!plot.canvas.isConnected) { if (plot.seen) plots.delete(plot); } else if (plot.inSight && shown(plot)) plot.draw(); else plot.late = true;
     }
     const calls = whenDrawn;
     whenDrawn = [];
@@ -50,14 +53,20 @@ export class Plot {
     this.paint = paint;
     this.canvas = el('canvas', { class: 'plot', role: 'img', tabindex: '0', 'aria-label': label });
     this.canvas.style.height = `${height}px`;
-    this.seen = false;
+    this.seen = this.inSight = false;
+    this.late = true;
     this.element = el('figure', { class: 'plot' }, this.canvas, exportButtons({ name: name ?? label.replace(/[^\w]+/g, '_'),
       png: () => new Promise((done) => { this.draw(); this.canvas.toBlob(done); }), svg: () => this.svg() }));
     plots.add(this);
     new ResizeObserver(() => { if (shown(this)) this.draw(); }).observe(this.canvas);
+    new IntersectionObserver((entries) => {
+      this.inSight = entries.at(-1).isIntersecting;
+      if (this.inSight && this.late && shown(this)) this.draw();
+    }, { rootMargin: '120px' }).observe(this.canvas);
   }
   draw() {
     this.seen = true;
+    this.late = false;
     this.paint(new CanvasPen(this.canvas, this.canvas.clientWidth, this.canvas.clientHeight), colours());
   }
   svg() {

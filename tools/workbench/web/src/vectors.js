@@ -36,7 +36,7 @@ function typical(size) {
 /** Residual vectors where the tool was: rotate by dragging or with the arrow keys, zoom with + and -. */
 export function vectorPlot(height, label = 'Residual vectors in the working volume') {
   const view = { turn: -0.6, tilt: 0.45, zoom: 1, gain: 1, colour: 'size' };
-  let kept = null;
+  let kept = null, step = 1, calm = null;
   const prepare = () => {
     // With an overlay: the residual of the fitted model, which it explains a part of.
     const rows = store.overlay ? twinOf(store.overlay, 'before') : store.rows;
@@ -55,7 +55,7 @@ export function vectorPlot(height, label = 'Residual vectors in the working volu
   };
   const strokesOf = (k, cam, v, length) => {
     const { middle } = k.box, [X, Y, Z] = k.rows.point;
-    for (let i = 0; i < X.length; ++i) {
+    for (let i = 0; i < X.length; i += step) {
       const [x, y, z] = [X[i] - middle[0], Y[i] - middle[1], Z[i] - middle[2]];
       k.ax[i] = cam.cx + cam.right[0] * x + cam.right[1] * y;
       k.ay[i] = cam.cy - (cam.up[0] * x + cam.up[1] * y + cam.up[2] * z);
@@ -91,18 +91,23 @@ export function vectorPlot(height, label = 'Residual vectors in the working volu
     shadesOf(k, v, k.rows.size);
     if (selection.count) for (let i = 0; i < k.colour.length; ++i) if (!selection.rows[i]) k.colour[i] = kNone;
     const dimmed = selection.count ? k.colour.map((shade) => (shade === kNone ? 0 : kNone)) : null;
-    if (dimmed) pen.strokes(area, k.ax, k.ay, k.bx, k.by, dimmed, [c.line]);
-    pen.strokes(area, k.ax, k.ay, k.bx, k.by, k.colour, view.colour === 'size' ? kMagnitude : kSigned);
+    if (dimmed) pen.strokes(area, k.ax, k.ay, k.bx, k.by, dimmed, [c.line], step);
+    pen.strokes(area, k.ax, k.ay, k.bx, k.by, k.colour, view.colour === 'size' ? kMagnitude : kSigned, step);
     if (store.overlay) {
       strokesOf(k, cam, twinOf(store.overlay, 'explained').vector, length);
-      pen.strokes(area, k.ax, k.ay, k.bx, k.by, k.colour.fill(0), [c.ccw]);
+      pen.strokes(area, k.ax, k.ay, k.bx, k.by, k.colour.fill(0), [c.ccw], step);
     }
     pen.text(8, pen.height - 12, `colours to ${number(k.typical, 3)} µm${store.overlay ? ', laid over: what the candidate would explain' : ''}`, { colour: c.soft });
   } });
   const turn = (dx, dy) => {
     view.turn += 0.008 * dx;
     view.tilt = Math.max(-1.57, Math.min(1.57, view.tilt + 0.008 * dy));
+    // While it turns some of very many are enough; all of them when it comes to rest.
+    step = Math.max(1, Math.floor((store.rows?.n_rows ?? 0) / 20000));
     plot.draw();
+    step = 1;
+    clearTimeout(calm);
+    if ((store.rows?.n_rows ?? 0) > 20000) calm = setTimeout(() => plot.draw(), 150);
   };
   let held = null;
   plot.canvas.addEventListener('pointerdown', (event) => { held = [event.clientX, event.clientY]; plot.canvas.setPointerCapture(event.pointerId); });
@@ -114,11 +119,10 @@ export function vectorPlot(height, label = 'Residual vectors in the working volu
   for (const end of ['pointerup', 'pointercancel']) plot.canvas.addEventListener(end, () => { held = null; });
   plot.canvas.addEventListener('keydown', (event) => {
     const act = { ArrowLeft: () => turn(-12, 0), ArrowRight: () => turn(12, 0), ArrowUp: () => turn(0, -12), ArrowDown: () => turn(0, 12),
-      '+': () => { view.zoom *= 1.15; }, '-': () => { view.zoom /= 1.15; } }[event.key];
+      '+': () => { view.zoom *= 1.15; plot.draw(); }, '-': () => { view.zoom /= 1.15; plot.draw(); } }[event.key];
     if (!act) return;
     event.preventDefault();
     act();
-    plot.draw();
   });
   const set = (key) => (value) => { view[key] = key === 'colour' ? value : Number(value); redrawAll(); };
   const steps = [0.25, 0.5, 1, 2, 4, 8].map((one) => [String(one), `× ${one}`]);
