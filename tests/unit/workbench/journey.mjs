@@ -129,6 +129,21 @@ async function brushAndExclude(page, rows) {
   await page.choose('#measurement', rows);
 }
 
+/** A plot can be saved, and no view is wider than a small screen. */
+async function exports(page) {
+  await page.evaluate("(() => { const make = URL.createObjectURL; URL.createObjectURL = (blob) => { window.saved = blob; return make.call(URL, blob); }; })()");
+  const press = (label) => page.evaluate(`[...document.querySelector('.matrix figure').querySelectorAll('.exports button')].find((one) => one.textContent === '${label}').click()`);
+  await press('SVG');
+  const svg = await page.evaluate("window.saved.text()");
+  assert.ok(svg.startsWith('<svg ') && svg.endsWith('</svg>') && (svg.match(/h0/g) ?? []).length === 240, 'one dot for each of the 240 rows');
+  await press('PNG');
+  await page.until("window.saved.type === 'image/png' && window.saved.size > 1000", 'the PNG');
+  for (const name of ['project', 'compare', 'diagnose', 'add', 'board']) {
+    await view(page, name);
+    assert.ok(await page.evaluate('document.documentElement.scrollWidth <= innerWidth'), `${name} fits 1280 px`);
+  }
+}
+
 async function ballbar(page) {
   await page.drop([{ name: 'xy.b5r', text: data('ballbar/ur10e_xy_100mm.b5r') }, { name: 'circle.xml', text: readFileSync(join(source, 'tables/machines/xy_ball_bar.xml'), 'utf8') }]);
   await page.until("document.getElementById('machine').value === 'circle.xml' && document.getElementById('measurement').value === 'xy.csv'", 'the import');
@@ -163,7 +178,11 @@ async function survey(page) {
   await page.until("document.getElementById('machine').value === 'model.xml' && document.getElementById('measurement').value === 'survey.csv'", 'the files');
   await checkCompare(page, 'model.xml', 'survey.csv');
   await brushAndExclude(page, 'survey.csv');
+  await exports(page);
   await view(page, 'diagnose');
+  await page.click('#run-diagnose');
+  await page.click('#cancel');
+  await page.until("document.getElementById('job-state').dataset.state === 'cancelled'", 'the end of what was cancelled', 10);
   await page.click('#run-diagnose');
   await page.until("document.getElementById('verdict')", 'the verdict', 120);
   const wanted = json('diagnose', 'model.xml', 'survey.csv');
@@ -185,9 +204,15 @@ async function survey(page) {
   await page.key('Enter');
   await page.until("document.querySelectorAll('#steps canvas').length === 1 && document.getElementById('machine').value === 'model-added-fitted.xml'", 'the effect to be added', 120);
   near(await attribute(page, '#steps .tiles', 'rms'), json('fit', 'model-added.xml', 'survey.csv').rms_um, 'rms with the effect');
+  await page.type('#effect', 'backlash:axis=Y');
+  await page.click('#add-effect');
+  await page.until("document.getElementById('machine').value === 'model-added-2-fitted.xml'", 'a wrong effect', 120);
+  await page.click('#undo-step');
+  await page.until("document.getElementById('machine').value === 'model-added-fitted.xml' && document.querySelectorAll('#history .undone').length === 2", 'the step to be taken back');
+  assert.ok(!readFileSync(join(folder, 'history.sh'), 'utf8').includes('model-added-2'), 'what was undone is not replayed');
   await page.type('#effect', wanted.ladder[2].add);
   await page.click('#add-effect');
-  await page.until("document.getElementById('machine').value === 'model-added-2-fitted.xml'", 'the second effect', 120);
+  await page.until("document.getElementById('machine').value === 'model-added-3-fitted.xml'", 'the second effect', 120);
   const last = await page.evaluate("document.getElementById('machine').value");
   const compared = json('compare', last, 'survey.csv');
   await page.until(`Math.abs(Number(document.querySelector('#steps .tiles').dataset.checkRms) - ${compared.check_rms_um}) < 1e-3`, 'the last step to be drawn');

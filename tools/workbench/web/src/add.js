@@ -49,9 +49,10 @@ function stepsPanel() {
     const last = steps.pop();
     for (const name of [last.machine, last.machine.replace(/-fitted(-\d+)?\.xml$/, '.xml')]) {
       const entry = [...store.history].reverse().find((one) => !one.undone);
-      if (entry?.outputs?.includes(name)) await postJson('/api/history', { do: 'undo' });
+      if (!entry?.outputs?.includes(name)) continue;
+      await postJson('/api/history', { do: 'undo' });
+      await refresh();
     }
-    await refresh();
     emit('steps');
     if (steps.length) await choose(steps.at(-1).machine, store.measurements);
   }, { class: 'quiet', id: 'undo-step' });
