@@ -241,7 +241,7 @@ void register_probe_path(CLI::App& vernier) {
 void register_feature(CLI::App& vernier) {
   const auto arguments = std::make_shared<FeatureArguments>();
   CLI::App* const command = vernier.add_subcommand(
-      "feature", "plane, line, circle, sphere, cylinder, block through touches, with uncertainties");
+      "fit-feature", "plane, line, circle, sphere, cylinder, block through touches, with uncertainties");
   command->add_option("kind", arguments->kind, "plane | line | circle | sphere | cylinder | block")
       ->required()
       ->check(CLI::IsMember({"plane", "line", "circle", "sphere", "cylinder", "block"}));
