@@ -181,6 +181,7 @@ async function survey(page) {
   await exports(page);
   await view(page, 'diagnose');
   await page.click('#run-diagnose');
+  await page.until("document.getElementById('command').textContent.startsWith('vernier diagnose') && document.getElementById('job-state').dataset.state === 'running'", 'the diagnosis to be at work');
   await page.click('#cancel');
   await page.until("document.getElementById('job-state').dataset.state === 'cancelled'", 'the end of what was cancelled', 10);
   await page.click('#run-diagnose');
@@ -204,6 +205,11 @@ async function survey(page) {
   await page.key('Enter');
   await page.until("document.querySelectorAll('#steps canvas').length === 1 && document.getElementById('machine').value === 'model-added-fitted.xml'", 'the effect to be added', 120);
   near(await attribute(page, '#steps .tiles', 'rms'), json('fit', 'model-added.xml', 'survey.csv').rms_um, 'rms with the effect');
+  await page.click('#show-catalogue');
+  const known = json('effects').map((one) => one.id);
+  await page.until("document.querySelector('#catalogue tbody tr')", 'the catalogue');
+  assert.deepEqual(await page.evaluate("[...document.querySelectorAll('#catalogue tbody tr')].map((row) => row.dataset.add)"), known);
+  await page.click('#show-catalogue');
   await page.type('#effect', 'backlash:axis=Y');
   await page.click('#add-effect');
   await page.until("document.getElementById('machine').value === 'model-added-2-fitted.xml'", 'a wrong effect', 120);

@@ -1,4 +1,4 @@
-import { choice, el, tiles } from '../../../report/web/src/dom.js';
+import { choice, el, table, tiles } from '../../../report/web/src/dom.js';
 import { number } from '../../../report/web/src/data.js';
 import { fileAddress, freeName, getJson, postBlob, postJson, refresh, run } from './api.js';
 import { fallingFigure } from './charts.js';
@@ -219,6 +219,19 @@ export function addView(root) {
   }), { class: 'quiet' });
   const effect = el('input', { type: 'text', class: 'term', 'aria-label': 'effect', placeholder: 'backlash:axis=X', id: 'effect' });
   const add = button('Add and fit', () => addEffect(effect.value.trim(), error), { class: 'quiet', id: 'add-effect' });
-  root.append(error, panel(null, el('div', { class: 'controls' }, fit, improve, effect, add)), stepsPanel(), sliderPanel(error), termPanel(error));
+  const catalogue = el('div', { id: 'catalogue' });
+  const list = button('Catalogue', () => guarded(error, async () => {
+    if (catalogue.childElementCount) { catalogue.replaceChildren(); return; }
+    const { result } = await run({ command: 'effects' });
+    const columns = ['effect', 'what', 'term', 'signature', 'exposed by'].map((name) => ({ name, left: true }));
+    catalogue.replaceChildren(table('Effects that can be added', columns, result.map((one) => [one.id, one.title, one.formula, one.signature, one.exposed_by])));
+    catalogue.querySelectorAll('tbody tr').forEach((row, i) => {
+      row.tabIndex = 0;
+      row.dataset.add = result[i].id;
+      row.addEventListener('click', () => { effect.value = `${result[i].id}:axis=`; effect.focus(); });
+      row.addEventListener('keydown', (event) => { if (event.key === 'Enter') row.click(); });
+    });
+  }), { class: 'quiet', id: 'show-catalogue' });
+  root.append(error, panel(null, el('div', { class: 'controls' }, fit, improve, effect, add, list), catalogue), stepsPanel(), sliderPanel(error), termPanel(error));
   return { show: redrawAll };
 }
