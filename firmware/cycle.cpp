@@ -95,6 +95,7 @@ Fault Cycle::take_input(std::uint32_t input, InputMicro value) noexcept {
 
 Fault Cycle::read_inputs() noexcept {
   Fault fault = Fault::kNone;
+  board_.inputs.begin_tick();
   for (std::uint32_t i = 0; i < now_->program.input_count; ++i) {
     const std::uint32_t input = now_->input[i];
     InputMicro value;

@@ -7,12 +7,14 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <map>
 
+#include "firmware/feature_settings.h"
 #include "firmware/open_devices.h"
 #include "firmware/routing.h"
 #include "hal/linux/analogue_output.h"
@@ -66,6 +68,7 @@ struct Devices::Parts {
   std::vector<std::unique_ptr<SampledInput>> sensors;
   std::unique_ptr<RoutedAxes> axes;
   std::unique_ptr<RoutedInputs> inputs;
+  std::unique_ptr<FeatureInputs> features;  // in front of the inputs
   std::unique_ptr<RoutedOutputs> outputs;
   std::unique_ptr<ProbeLine> probe;
   std::unique_ptr<TickSync> sync;
@@ -84,6 +87,8 @@ struct Devices::Parts {
   std::vector<Route<AxisReader>> make_positions();
   std::vector<Route<CorrectionWriter>> make_outputs();
   std::vector<Route<InputReader>> make_inputs();
+  void vibrate(std::uint32_t input, const SignalSource& source);
+  void make_features();
   void make_sync();
   void make_lines();
   void make_links();
@@ -175,11 +180,12 @@ std::vector<Route<InputReader>> Devices::Parts::make_inputs() {
     const SignalSource& source = file.inputs[i].source;
     const std::string name = "input." + file.inputs[i].name + "  " + source.kind;
     if (source.kind == "sim") {
-      source.only({});
+      vibrate(i, source);
       routes[i] = {plant.get(), i};
       note(name, "");
       continue;
     }
+    if (source.kind == "feature") continue;  // served in front of the routes
     std::string error;
     auto input = open_sensor(source, lines, error);
     routes[i] = {input.get(), 0};
@@ -188,6 +194,27 @@ std::vector<Route<InputReader>> Devices::Parts::make_inputs() {
     if (input) sensors.push_back(std::move(input));
   }
   return routes;
+}
+
+/// A simulated input that swings, as an accelerometer does.
+void Devices::Parts::vibrate(std::uint32_t input, const SignalSource& source) {
+  source.only({"amplitude", "frequency_Hz"});
+  const double amplitude = source.number("amplitude", 0), frequency_Hz = source.number("frequency_Hz", 0);
+  if (!(std::abs(amplitude) <= 1e9)) source.fail("amplitude must be at most 1e9");
+  if (!(frequency_Hz >= 0 && frequency_Hz <= 1e6)) source.fail("frequency_Hz must be between 0 and 1e6");
+  motion->vibrate(input, amplitude * 1e6, frequency_Hz);
+}
+
+void Devices::Parts::make_features() {
+  const std::vector<FeatureRequest> requests = feature_requests(file);
+  features = std::make_unique<FeatureInputs>(*inputs, static_cast<std::uint32_t>(file.inputs.size()),
+                                             requests, file.service.upload.tick);
+  if (features->refused() != kNoInput)
+    file.inputs[requests[features->refused()].input].source.fail("no window can be made of it");
+  for (const FeatureRequest& request : requests) {
+    const InputEntry& input = file.inputs[request.input];
+    note("input." + input.name + "  " + input.source.text("feature") + " of " + input.source.text("of"), "");
+  }
 }
 
 void Devices::Parts::make_sync() {
@@ -246,6 +273,7 @@ Devices::Devices(const BoardFile& file, unsigned long seed) : parts_(std::make_u
   parts_->axes = std::make_unique<RoutedAxes>(parts_->make_positions());
   parts_->outputs = std::make_unique<RoutedOutputs>(parts_->make_outputs());
   parts_->inputs = std::make_unique<RoutedInputs>(parts_->make_inputs());
+  parts_->make_features();
   parts_->make_sync();
   parts_->make_lines();
   parts_->make_links();
@@ -256,7 +284,7 @@ Devices::~Devices() = default;
 Board Devices::board() noexcept {
   return {.clock = parts_->clock,
           .axes = *parts_->axes,
-          .inputs = *parts_->inputs,
+          .inputs = *parts_->features,
           .corrections = *parts_->outputs,
           .probe = parts_->probe.get(),
           .sync = parts_->sync.get(),

@@ -25,6 +25,11 @@ Roaming::Roaming(const std::vector<RoamingAxis>& axes, std::vector<InputMicro> i
   }
 }
 
+void Roaming::vibrate(std::uint32_t input, double amplitude_micro, double frequency_Hz) {
+  if (input < inputs_.size() && input < kMaxInputs)
+    vibrations_.push_back({input, amplitude_micro, 2 * kPi * frequency_Hz});
+}
+
 void Roaming::at(std::int64_t tick, PlantState& state) noexcept {
   const double t = static_cast<double>(tick) * tick_s_;
   for (std::size_t i = 0; i < swings_.size() && i < kMaxAxes; ++i) {
@@ -40,6 +45,8 @@ void Roaming::at(std::int64_t tick, PlantState& state) noexcept {
     axis.sense = static_cast<std::int8_t>(speed > 0 ? 1 : speed < 0 ? -1 : 0);
   }
   for (std::size_t i = 0; i < inputs_.size() && i < kMaxInputs; ++i) state.input[i] = inputs_[i];
+  for (const Vibration& vibration : vibrations_)
+    state.input[vibration.input].count += std::llround(vibration.amplitude * std::sin(vibration.rate * t));
 }
 
 }  // namespace vernier

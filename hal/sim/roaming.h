@@ -20,6 +20,8 @@ class Roaming : public Trajectory {
   /// tick: time between two ticks; share_per_s: peak speed over range, 1/s.
   Roaming(const std::vector<RoamingAxis>& axes, std::vector<InputMicro> inputs, TimeUs tick,
           double share_per_s, std::uint64_t seed);
+  /// Lets an input swing around its value as a sine: amplitude in 1e-6 of its unit. setup.
+  void vibrate(std::uint32_t input, double amplitude_micro, double frequency_Hz);
   void at(std::int64_t tick, PlantState& state) noexcept override;
 
  private:
@@ -27,8 +29,13 @@ class Roaming : public Trajectory {
     double middle, amplitude;  // counts
     double rate, phase;        // rad/s, rad
   };
+  struct Vibration {
+    std::size_t input;
+    double amplitude, rate;  // 1e-6 of the unit, rad/s
+  };
   std::vector<Swing> swings_;
   std::vector<InputMicro> inputs_;
+  std::vector<Vibration> vibrations_;
   double tick_s_;
 };
 

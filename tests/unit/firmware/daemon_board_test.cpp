@@ -228,6 +228,23 @@ INSTANTIATE_TEST_SUITE_P(
         BadBoard{"NoPosition", "position = { kind = \"sim\" }\n", "", "axis.X: position is missing"},
         BadBoard{"Device", "source = { kind = \"sim\" }", "source = { kind = \"thermo\" }",
                  "no input of kind thermo"},
+        BadBoard{"FeatureOfNothing", "source = { kind = \"sim\" }",
+                 "source = { kind = \"feature\", of = \"acc\", feature = \"RMS\" }",
+                 "input.T.source: of: the board has no input acc"},
+        BadBoard{"FeatureOfItself", "source = { kind = \"sim\" }",
+                 "source = { kind = \"feature\", of = \"T\", feature = \"RMS\" }", "T is a feature itself"},
+        BadBoard{"FeatureName", "source = { kind = \"sim\" }",
+                 "source = { kind = \"feature\", of = \"A\", feature = \"rms\" }\n[input.A]\n"
+                 "source = { kind = \"sim\" }",
+                 "no feature rms"},
+        BadBoard{"FeatureWindow", "source = { kind = \"sim\" }",
+                 "source = { kind = \"feature\", of = \"A\", feature = \"RMS\", window = 801 }\n[input.A]\n"
+                 "source = { kind = \"sim\" }",
+                 "window must be even"},
+        BadBoard{"FeatureResolution", "source = { kind = \"sim\" }",
+                 "source = { kind = \"feature\", of = \"A\", feature = \"RMS\", resolution = 1.5e-6 }\n"
+                 "[input.A]\nsource = { kind = \"sim\" }",
+                 "resolution must be a whole number of millionths"},
         BadBoard{"Link", "kind = \"modbus-tcp\"", "kind = \"telnet\"", "no link of kind telnet"}),
     [](const auto& parameter) { return parameter.param.name; });
 

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <thread>
 
+#include "firmware/feature_inputs.h"
 #include "tests/unit/firmware/upload_rig.h"
 
 namespace {
@@ -56,17 +57,22 @@ TEST(Tick, TouchesNoHeapWhileImagesComeInAndFaultsHappen) {
   if (!kCountsAllocations) GTEST_SKIP() << "the sanitizers own the heap";
   const SigningKey key = new_key();
   SimSlotStore store(1 << 16);
-  Roaming motion({{0, 600'000'000}, {0, 200'000'000}}, {InputMicro(21'000'000)}, TimeUs(1000), 0.1, 1);
+  Roaming motion({{0, 600'000'000}, {0, 200'000'000}}, {InputMicro(21'000'000), InputMicro(0)}, TimeUs(1000),
+                 0.1, 1);
+  motion.vibrate(1, 1e6, 40);
   PlantOptions options;
   options.dropout = 0.001;
   options.faults = {{PlantFaultKind::kJump, 0, 12000, 1, 5'000'000}};
-  SimPlant plant(motion, 2, 1, options);
+  options.faults.push_back({PlantFaultKind::kSensorLost, 1, 9000, 2000});
+  SimPlant plant(motion, 2, 2, options);
+  FeatureInputs features(plant, 3, {{.input = 2, .of = 1, .window = 800}}, TimeUs(1000));
+  ASSERT_EQ(features.refused(), kNoInput);
   SimClock clock;
   ServiceOptions service_options;
-  service_options.wiring = {{{"X"}, {"Y"}}, {"T"}};
+  service_options.wiring = {{{"X"}, {"Y"}}, {"T", "acc", "acc_RMS"}};
   service_options.upload.key = key.public_part();
   service_options.activate = true;
-  Service service(service_options, Board{clock, plant, plant, plant}, store);
+  Service service(service_options, Board{clock, plant, features, plant}, store);
   service.boot();
   plant.release();
   auto& uploader = const_cast<Uploader&>(service.uploader());
@@ -88,6 +94,7 @@ TEST(Tick, TouchesNoHeapWhileImagesComeInAndFaultsHappen) {
   EXPECT_EQ(allocations, 0);
   EXPECT_EQ(service.cycle().health().programs, 10u);
   EXPECT_EQ(service.cycle().health().faults, 1u);
+  EXPECT_GT(service.cycle().input_value(2).count, 500'000) << "the features were worked out";
   // The count counts: an allocation inside a tick would be seen.
   in_tick = true;
   void* volatile block = std::malloc(10);

@@ -1,0 +1,296 @@
+// Features of an accelerometer at the board: against the definitions in double, and in the tick.
+#include "firmware/feature_inputs.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "firmware/service.h"
+#include "hal/sim/plant.h"
+#include "hal/sim/roaming.h"
+#include "hal/sim/sim_clock.h"
+#include "tests/unit/firmware/small_machine.h"
+#include "tools/vibration/signal_features.h"
+
+namespace vernier {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+/// Inputs whose values a test sets; says how often each was read.
+class SetInputs : public InputReader {
+ public:
+  HalFault read_input(std::uint32_t input, InputMicro& value) noexcept override {
+    ++reads[input];
+    if (silent[input]) return HalFault::kNoReading;
+    value = values[input];
+    return HalFault::kNone;
+  }
+  InputMicro values[kMaxInputs];
+  bool silent[kMaxInputs] = {};
+  int reads[kMaxInputs] = {};
+};
+
+std::vector<FeatureRequest> all_features(std::uint32_t first, std::uint32_t window, std::int64_t lsb) {
+  std::vector<FeatureRequest> requests;
+  for (unsigned i = 0; i < kFeatures; ++i)
+    requests.push_back({.input = first + i,
+                        .of = 0,
+                        .feature = static_cast<Feature>(i),
+                        .window = window,
+                        .lsb = InputMicro(lsb)});
+  return requests;
+}
+
+TEST(FeatureInputs, HaveTheNamesOfTheFeaturesCommand) {
+  for (std::size_t i = 0; i < kFeatureNames.size(); ++i) {
+    Feature feature{};
+    ASSERT_TRUE(feature_of(kFeatureNames[i], feature)) << kFeatureNames[i];
+    EXPECT_EQ(static_cast<std::size_t>(feature), i);
+  }
+  Feature feature{};
+  EXPECT_FALSE(feature_of("rms", feature));
+}
+
+// GIVEN a sine of 0.31 g at 41.3 Hz on 0.02 g, seen through a board at 1 kHz with 10 ug
+// THEN each feature is the one of the samples in double, to half a millionth and the rounding of FREQUENCY.
+TEST(FeatureInputs, AgreeWithTheDefinitionsInDouble) {
+  constexpr std::uint32_t kWindow = 800;
+  constexpr std::int64_t kLsb = 10;
+  SetInputs source;
+  const auto requests = all_features(1, kWindow, kLsb);
+  FeatureInputs inputs(source, 1 + kFeatures, requests, TimeUs(1000));
+  ASSERT_EQ(inputs.refused(), kNoInput);
+  EXPECT_EQ(inputs.windows(), 1u) << "one signal, one window";
+  Fourier fourier(kWindow);
+  std::vector<double> samples;
+  for (int tick = 0; tick < 3000; ++tick) {
+    const double g = 0.02 + 0.31 * std::sin(2 * kPi * 41.3e-3 * tick + 0.4);
+    source.values[0] = InputMicro(std::llround(1e6 * g));
+    inputs.begin_tick();
+    samples.push_back(1e-6 * kLsb *
+                      std::round(static_cast<double>(source.values[0].count) / static_cast<double>(kLsb)));
+    InputMicro value;
+    if (tick + 1 < static_cast<int>(kWindow)) {
+      ASSERT_EQ(inputs.read_input(3, value), HalFault::kNoReading) << "not full in tick " << tick;
+      continue;
+    }
+    if (tick % 17 != 0) continue;
+    const SignalFeatures exact = signal_features(std::span(samples).last(kWindow), 1000, fourier);
+    for (unsigned i = 0; i < kFeatures; ++i) {
+      ASSERT_EQ(inputs.read_input(1 + i, value), HalFault::kNone);
+      const bool frequency = i == static_cast<unsigned>(Feature::kFrequency);
+      // 1e-9 relative for the double's own sums; 1000 Hz * 800 * 2^-36 of 1e-6 Hz for the rounded weights.
+      const double bound = 0.501 + 1e-9 * std::abs(exact[i] * 1e6) + (frequency ? 1e9 * 800 * 0x1p-36 : 0);
+      EXPECT_NEAR(static_cast<double>(value.count), 1e6 * exact[i], bound) << kFeatureNames[i];
+    }
+  }
+  // What a sine must have, whatever computes it: RMS of the tone and its mean value, kurtosis 1.5.
+  InputMicro rms, kurtosis;
+  ASSERT_EQ(inputs.read_input(1 + static_cast<unsigned>(Feature::kRms), rms), HalFault::kNone);
+  ASSERT_EQ(inputs.read_input(1 + static_cast<unsigned>(Feature::kKurtosis), kurtosis), HalFault::kNone);
+  EXPECT_NEAR(static_cast<double>(rms.count) * 1e-6, std::hypot(0.31 / std::sqrt(2), 0.02), 1e-4);
+  EXPECT_NEAR(static_cast<double>(kurtosis.count) * 1e-6, 1.5, 0.01);
+  EXPECT_EQ(source.reads[0], 3000) << "once a tick";
+  EXPECT_EQ(inputs.held(), 0u);
+}
+
+TEST(FeatureInputs, RoundEachSampleToTheNearestResolution) {
+  for (const std::int64_t lsb : {1, 2, 3, 7, 10, 999'999, 1 << 30}) {
+    SetInputs source;
+    FeatureInputs inputs(
+        source, 2, {{.input = 1, .of = 0, .feature = Feature::kPeak, .window = 6, .lsb = InputMicro(lsb)}},
+        TimeUs(1000));
+    ASSERT_EQ(inputs.refused(), kNoInput);
+    const std::int64_t most = FeatureWindow::kLimit * lsb;
+    for (const std::int64_t value :
+         {std::int64_t{0}, lsb / 2, lsb / 2 + 1, (lsb - 1) / 2, lsb, 3 * lsb / 2, 5 * lsb + lsb / 2 - 1, most,
+          most - lsb / 2, most - (lsb - 1) / 2, most / 3})
+      for (const std::int64_t sign : {-1, 1}) {
+        source.values[0] = InputMicro(sign * value);
+        for (int i = 0; i < 6; ++i) inputs.begin_tick();
+        InputMicro peak;
+        ASSERT_EQ(inputs.read_input(1, peak), HalFault::kNone);
+        const std::int64_t nearest = sign * ((value + lsb / 2) / lsb) * lsb;
+        EXPECT_EQ(peak.count, nearest) << "lsb " << lsb << " value " << sign * value;
+      }
+    EXPECT_EQ(inputs.held(), 0u);
+    source.values[0] = InputMicro(INT64_MIN);
+    inputs.begin_tick();
+    EXPECT_EQ(inputs.held(), 1u);
+  }
+}
+
+TEST(FeatureInputs, TakeOneSignalOffAnother) {
+  SetInputs source;
+  FeatureInputs inputs(source, 3, {{.input = 2, .of = 0, .minus = 1, .feature = Feature::kMav, .window = 8}},
+                       TimeUs(1000));
+  for (int tick = 0; tick < 8; ++tick) {
+    source.values[0] = InputMicro(700'000 + (tick % 2 == 0 ? 100'000 : -100'000));
+    source.values[1] = InputMicro(700'000);
+    inputs.begin_tick();
+  }
+  InputMicro mav;
+  ASSERT_EQ(inputs.read_input(2, mav), HalFault::kNone);
+  EXPECT_EQ(mav.count, 100'000);
+}
+
+TEST(FeatureInputs, SampleEverySoManyTicks) {
+  SetInputs source;
+  FeatureInputs inputs(source, 2,
+                       {{.input = 1, .of = 0, .feature = Feature::kFrequency, .window = 40, .every = 10}},
+                       TimeUs(1000));
+  InputMicro frequency;
+  for (int tick = 0; tick < 391; ++tick) {
+    EXPECT_EQ(inputs.read_input(1, frequency), HalFault::kNoReading) << tick;
+    source.values[0] = InputMicro(std::llround(1e6 * std::sin(2 * kPi * 0.025 * tick)));  // 25 Hz of 100
+    inputs.begin_tick();
+  }
+  ASSERT_EQ(inputs.read_input(1, frequency), HalFault::kNone);
+  EXPECT_NEAR(static_cast<double>(frequency.count), 25e6, 100);
+}
+
+TEST(FeatureInputs, BridgeAFewMissingSamplesAndStartAgainAfterMore) {
+  SetInputs source;
+  const FeatureRequest request{.input = 1, .of = 0, .feature = Feature::kRms, .window = 20, .bridged = 3};
+  FeatureInputs inputs(source, 2, {request}, TimeUs(1000));
+  source.values[0] = InputMicro(50'000);
+  InputMicro value;
+  const auto answers = [&](int ticks) {
+    int count = 0;
+    for (int i = 0; i < ticks; ++i) {
+      inputs.begin_tick();
+      if (inputs.read_input(1, value) == HalFault::kNone) ++count;
+    }
+    return count;
+  };
+  EXPECT_EQ(answers(30), 11);
+  source.silent[0] = true;
+  EXPECT_EQ(answers(3), 3) << "bridged";
+  EXPECT_EQ(value.count, 50'000);
+  EXPECT_EQ(inputs.read_input(0, value), HalFault::kNoReading) << "the signal itself is not";
+  EXPECT_EQ(answers(1), 0);
+  source.silent[0] = false;
+  EXPECT_EQ(answers(19), 0) << "the window has a gap";
+  EXPECT_EQ(answers(1), 1);
+}
+
+TEST(FeatureInputs, AreSilentWhereUndefined) {
+  SetInputs source;
+  FeatureInputs inputs(source, 3,
+                       {{.input = 1, .of = 0, .feature = Feature::kRms, .window = 6},
+                        {.input = 2, .of = 0, .feature = Feature::kKurtosis, .window = 6}},
+                       TimeUs(1000));
+  for (int i = 0; i < 6; ++i) inputs.begin_tick();
+  InputMicro value(7);
+  EXPECT_EQ(inputs.read_input(1, value), HalFault::kNone);
+  EXPECT_EQ(value.count, 0);
+  EXPECT_EQ(inputs.read_input(2, value), HalFault::kNoReading) << "a constant has no kurtosis";
+  EXPECT_EQ(inputs.read_input(3, value), HalFault::kNoDevice);
+}
+
+TEST(FeatureInputs, RefuseWhatCannotBeServed) {
+  SetInputs source;
+  const FeatureRequest good{.input = 1, .of = 0};
+  const auto refused = [&](FeatureRequest bad) {
+    return FeatureInputs(source, 3, {good, bad}, TimeUs(1000)).refused() == 1;
+  };
+  EXPECT_FALSE(refused({.input = 2, .of = 0}));
+  EXPECT_TRUE(refused({.input = 2, .of = 1})) << "of a feature";
+  EXPECT_TRUE(refused({.input = 2, .of = 2})) << "of itself";
+  EXPECT_TRUE(refused({.input = 3, .of = 0})) << "beyond the board";
+  EXPECT_TRUE(refused({.input = 2, .of = 0, .minus = 1}));
+  EXPECT_TRUE(refused({.input = 2, .of = 0, .window = 801}));
+  EXPECT_TRUE(refused({.input = 2, .of = 0, .window = 2050}));
+  EXPECT_TRUE(refused({.input = 2, .of = 0, .every = 0}));
+  EXPECT_TRUE(refused({.input = 2, .of = 0, .lsb = InputMicro(0)}));
+}
+
+// A learned term: 1 mm per g of the accelerometer's RMS in X, within 0.05..0.5 g and faded out beyond.
+constexpr const char* kLearnedMachine = R"xml(<machine name="learned">
+  <variables>
+    <static>
+      <k value="0.1" nominal="0" unit="mm/g"/>
+      <low value="0.05" unit="g" Hide="true"/>
+      <high value="0.3" unit="g" Hide="true"/>
+      <fade value="0.1" unit="g" Hide="true"/>
+    </static>
+    <machineaxes>
+      <X rotary="false" min="0" max="600" maxcorrection="0.125" maxslew="5"/>
+    </machineaxes>
+    <inputs><own_RMS unit="g" reference="0" min="0" max="1"/></inputs>
+  </variables>
+  <transforms branch="tool">
+    <sixdof n="1" X="X+max(0,1-max(0,max(low-own_RMS,own_RMS-high))/fade)*k*own_RMS" Y="0" Z="0" rX="0" rY="0" rZ="0"/>
+  </transforms>
+</machine>)xml";
+
+/// The learned machine on a board with an accelerometer of a given amplitude, g.
+class LearnedBoard {
+ public:
+  explicit LearnedBoard(double amplitude_g)
+      : machine_(parse_machine(kLearnedMachine, "learned.xml")),
+        image_(load_image(compile_machine(machine_, kLearnedMachine, {}).image, machine_)),
+        motion_({{0, 600'000'000}}, {InputMicro(0), InputMicro(0)}, TimeUs(1000), 0.01, 1),
+        plant_(motion_, 1, 2),
+        features_(plant_, 2, {{.input = 1, .of = 0, .feature = Feature::kRms, .window = 800}}, TimeUs(1000)),
+        cycle_({{{"X"}}, {"acc_x", "own_RMS"}}, TimeUs(1000), Board{clock_, plant_, features_, plant_}),
+        bound_(image_->view) {
+    motion_.vibrate(0, amplitude_g * 1e6, 50);
+    std::string offender;
+    EXPECT_EQ(bind(image_->view, {{{"X"}}, {"acc_x", "own_RMS"}}, TimeUs(1000), bound_, offender),
+              BindFault::kNone);
+    EXPECT_EQ(bound_.input[0], 1u) << "found by its name";
+    cycle_.use(bound_);
+    plant_.release();
+  }
+  void run(int ticks) {
+    for (int i = 0; i < ticks; ++i) {
+      plant_.advance();
+      const bool ready = cycle_.mode() == Mode::kReady && cycle_.weight() == WeightQ16{};
+      cycle_.tick(TimeUs(1000 * plant_.tick()), ready ? Command::kActivate : Command::kNone);
+    }
+  }
+  Cycle& cycle() { return cycle_; }
+  double correction_um() const { return 1e-3 * static_cast<double>(plant_.written(0).count); }
+
+ private:
+  Machine machine_;
+  std::unique_ptr<LoadedImage> image_;
+  Roaming motion_;
+  SimPlant plant_;
+  SimClock clock_;
+  FeatureInputs features_;
+  Cycle cycle_;
+  BoundProgram bound_;
+};
+
+TEST(FeatureInputs, ALearnedTermIsCorrectedAtTheBoard) {
+  LearnedBoard board(0.25);
+  board.run(700);
+  EXPECT_EQ(board.cycle().mode(), Mode::kChecking) << "the window is not full yet";
+  EXPECT_EQ(board.cycle().latched(), Fault::kNone);
+  board.run(1500);
+  ASSERT_EQ(board.cycle().mode(), Mode::kActive);
+  // 800 ms are forty periods: RMS is amplitude over root 2. 10 ug of resolution are 1 nm, as is the equation.
+  EXPECT_NEAR(board.correction_um(), -100 * 0.25 / std::sqrt(2), 0.002);
+  ASSERT_EQ(board.cycle().program().share_names.size, 1u) << "one effect";
+  Correction shares[kMaxShares];
+  board.cycle().shares(shares);
+  EXPECT_NEAR(1e-3 * shares[0].counts, board.correction_um(), 0.002) << "what watch shows of the effect";
+}
+
+TEST(FeatureInputs, ALearnedTermFadesBeyondItsDomainAtTheBoard) {
+  const double rms = 0.5 / std::sqrt(2);  // 0.054 g above the domain: 46 % are left
+  LearnedBoard half(0.5), outside(1.0);
+  half.run(2500), outside.run(2500);
+  ASSERT_EQ(half.cycle().mode(), Mode::kActive);
+  ASSERT_EQ(outside.cycle().mode(), Mode::kActive);
+  EXPECT_NEAR(half.correction_um(), -100 * rms * (1 - (rms - 0.3) / 0.1), 0.02);
+  EXPECT_NEAR(outside.correction_um(), 0, 0.002);
+}
+
+}  // namespace
+}  // namespace vernier
