@@ -332,6 +332,36 @@ void Devices::take_left_overs_out(const std::atomic<bool>& stop) noexcept {
   }
 }
 
+std::vector<std::string> Devices::output_budget() const {
+  std::vector<std::string> lines;
+  for (const AnalogueAxis& output : parts_->analogue) {
+    const AxisEntry& axis = parts_->file.axes[output.axis];
+    const AnalogueScale& scale = output.device->scale();
+    // um or 0.001 deg
+    const double unit = axis.wiring.rotary ? static_cast<double>(kTurnCounts) / 360e3 : 1e3;
+    const auto of = [&](std::int64_t code) {
+      return static_cast<double>(scale.correction_of(code).count) / unit;
+    };
+    const double step = static_cast<double>(scale.span) / static_cast<double>(scale.codes) / unit;
+    const char* const name = axis.wiring.rotary ? "mdeg" : "um";
+    char text[240];
+    int used = std::snprintf(
+        text, sizeof text, "axis.%s.output: %.6g to %.6g %s, step %.4g, off by at most %.4g (rms %.4g)",
+        axis.wiring.name.c_str(), std::min(of(scale.low), of(scale.high)),
+        std::max(of(scale.low), of(scale.high)), name, step, step / 2, step / std::sqrt(12.0));
+    if (const double delay_ms = axis.output.number("delay_ms", 0); delay_ms > 0) {
+      const double tick_ms = static_cast<double>(parts_->file.service.upload.tick.count) * 1e-3;
+      const auto slew =
+          static_cast<double>(parts_->file.service.limits.axis[output.axis].motion.slew) / unit / tick_ms;
+      std::snprintf(text + used, sizeof text - static_cast<std::size_t>(used),
+                    "; %.4g ms late: at most %.4g more at the correction's fastest", delay_ms,
+                    slew * delay_ms);
+    }
+    lines.emplace_back(text);
+  }
+  return lines;
+}
+
 void Devices::say_held() const {
   for (const AnalogueAxis& output : parts_->analogue)
     if (output.device->held_at_end() > 0)

@@ -49,6 +49,8 @@ class Devices {
   /// Takes a sample of each sensor, which waits for its driver. Not in the tick. setup.
   void sample() noexcept;
   bool has_sensors() const noexcept;
+  /// What each output adds to the error: its step and range, and its delay where the file gives one. setup.
+  std::vector<std::string> output_budget() const;
   /// Says on standard error which outputs were held at the end of their range.
   void say_held() const;
 

@@ -124,6 +124,7 @@ int check_devices(Devices& devices) {
                 finding.missing.c_str());
     missing += there ? 0 : 1;
   }
+  for (const std::string& line : devices.output_budget()) std::printf("budget   %s\n", line.c_str());
   std::printf(missing == 0 ? "%zu devices: all there\n" : "%zu devices: %d missing\n",
               devices.findings().size(), missing);
   return missing == 0 ? kDone : kAnswerIsNo;

@@ -80,14 +80,15 @@ std::shared_ptr<ModbusLine> modbus_line(const SignalSource& source, ModbusLines&
 
 std::unique_ptr<AnalogueOutput> open_analogue(const SignalSource& source, bool rotary, std::string& error) {
   if (source.kind == "pwm") {
-    source.only({"path", "period_ns", "span", "zero_ns", "low_ns", "high_ns", "polarity", "calibration"});
+    source.only(
+        {"path", "period_ns", "span", "zero_ns", "low_ns", "high_ns", "polarity", "calibration", "delay_ms"});
     const std::int64_t period = source.whole("period_ns", 2, 1'000'000'000);
     return AnalogueOutput::pwm(source.text("path"), period, analogue_scale(source, rotary, period, "_ns"),
                                error);
   }
   if (source.kind != "iio-dac") source.fail("no output of kind " + source.kind);
-  source.only(
-      {"root", "device", "channel", "codes", "span", "zero", "low", "high", "polarity", "calibration"});
+  source.only({"root", "device", "channel", "codes", "span", "zero", "low", "high", "polarity", "calibration",
+               "delay_ms"});
   const AnalogueScale scale = analogue_scale(source, rotary, source.whole("codes", 1, (1 << 24) - 1), "");
   const auto channel = static_cast<unsigned>(source.whole("channel", 0, 0, 63));
   const std::string device = find_iio_device(source.text("root", kIioRoot), source.text("device"), error);

@@ -35,6 +35,8 @@ class AnalogueOutput : public CorrectionWriter {
   /// Writes that asked for more than the range has.
   std::uint64_t held_at_end() const noexcept { return held_at_end_; }
 
+  const AnalogueScale& scale() const noexcept { return scale_; }
+
  private:
   AnalogueOutput(SysfsAttribute attribute, const AnalogueScale& scale)
       : attribute_(std::move(attribute)), scale_(scale) {}

@@ -43,7 +43,7 @@ class SimWorld : public World {
   }
   void advance() override {
     plant_.advance();
-    plant_.begin_tick();
+    static_cast<AxisReader&>(plant_).begin_tick();
   }
   AxisReader& axes() override { return plant_; }
   InputReader& inputs() override { return plant_; }

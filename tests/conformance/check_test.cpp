@@ -26,6 +26,16 @@ unit = "degC"
 source = { kind = "iio", root = "ROOT", device = "tmp117", attribute = "in_temp_input", scale = 0.001 }
 )";
 
+/// The published chain of the hybrid mill: 0-10 V, 25 um/V, 8 bit, 127 is 5 V, 12 updates a second.
+constexpr const char* kPublished = R"([board]
+store = "store"
+[axis.X]
+max_speed = 20
+correction_share = 0.01
+position = { kind = "sim" }
+output = { kind = "iio-dac", root = "ROOT", device = "mcp4922", channel = 1, codes = 255, span = 0.25, zero = 127, high = 254, delay_ms = 83.3 }
+)";
+
 struct Said {
   int status;
   std::string text;
@@ -66,6 +76,18 @@ class Check : public testing::Test {
   const SysfsDirectory files_{testing::TempDir() + "check_" + std::to_string(getpid()) + "_" +
                               testing::UnitTest::GetInstance()->current_test_info()->name()};
 };
+
+TEST_F(Check, SaysWhatThePublishedChainAddsToTheError) {
+  write(kPublished);
+  const Said said = run("--check");
+  EXPECT_EQ(said.status, 0) << said.text;
+  // 250 um over 255 codes; 0.2 mm/s for 83.3 ms.
+  EXPECT_NE(said.text.find("budget   axis.X.output: -124.51 to 124.51 um, step 0.9804, off by at most 0.4902 "
+                           "(rms 0.283); 83.3 ms "
+                           "late: at most 16.66 more at the correction's fastest\n"),
+            std::string::npos)
+      << said.text;
+}
 
 TEST_F(Check, SaysOneLinePerDeviceAndMovesNothing) {
   const Said said = run("--check");
