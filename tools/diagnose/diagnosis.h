@@ -64,7 +64,8 @@ struct Diagnosis {
 
 /// Which physical effect is missing? Fits the model, ranks the catalogue at every place, accepts what passes
 /// all tests, and says which of the five answers the data give (FORMATS section 3). `text`: of the machine
-/// file. Check rows enter nothing but the figures that judge. Throws InputError. tool.
+/// file. Check rows enter nothing but the figures that judge. The candidates point
+/// into options.effects, which must outlive them. Throws InputError. tool.
 Diagnosis diagnose(const std::string& text, const Machine& machine, const Measurement& measurement,
                    const DiagnoseOptions& options = {});
 

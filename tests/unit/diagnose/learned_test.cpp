@@ -40,7 +40,8 @@ std::string survey(const std::array<double, 3>& slope_mm_per_g) {
 
 Diagnosis diagnosis_of(const std::string& rows) {
   const Machine machine = parse_machine(kMachine, "m.xml");
-  return diagnose(kMachine, machine, parse_measurement(rows, "m.csv", machine));
+  static const DiagnoseOptions kOptions;  // the candidates point into its catalogue
+  return diagnose(kMachine, machine, parse_measurement(rows, "m.csv", machine), kOptions);
 }
 
 TEST(LearnedTerm, ThatHoldsAtEveryFeedIsWrittenWithinItsDomain) {
