@@ -104,6 +104,9 @@ export class Page {
     const gone = new Promise((done) => this.process.on('exit', done));
     this.process.kill('SIGKILL');
     await gone;
-    rmSync(this.profile, { recursive: true, force: true, maxRetries: 5 });
+    // Its helpers write for a moment longer; a profile that stays in the temporary folder harms nobody.
+    for (let i = 0; i < 50; ++i) {
+      try { return rmSync(this.profile, { recursive: true, force: true }); } catch { await new Promise((wait) => setTimeout(wait, 100)); }
+    }
   }
 }
