@@ -304,5 +304,5 @@ try {
 } finally {
   for (const child of started) child.kill('SIGTERM');
   await Promise.all(started.map((child) => child.exitCode !== null || child.signalCode !== null || new Promise((gone) => child.on('exit', gone))));
-  rmSync(top, { recursive: true, force: true });
+  rmSync(top, { recursive: true, force: true, maxRetries: 20 });
 }
