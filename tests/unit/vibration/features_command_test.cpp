@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <cstdlib>
@@ -12,7 +13,7 @@
 namespace vernier {
 namespace {
 
-const std::string kFolder = testing::TempDir() + "features_command/";
+const std::string kFolder = testing::TempDir() + "features_command_" + std::to_string(getpid()) + "/";
 
 int run(const std::string& arguments) {
   const std::string command = VERNIER_BIN_DIR "/vernier features " + arguments + " > " + kFolder + "out 2>&1";
