@@ -3,13 +3,12 @@
 
 #include <linux/can.h>
 #include <linux/can/error.h>
-#include <linux/can/raw.h>
-#include <net/if.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstring>
+
+#include "hal/linux/can_socket.h"
 
 namespace vernier {
 namespace {
@@ -17,18 +16,6 @@ namespace {
 // Late frames in a row, each with the counter after the other's, that are a controller which started again.
 // A burst of old frames from a queue is shorter, as controllers hold one frame of an axis.
 constexpr std::uint32_t kFramesOfRestart = 4;
-
-canid_t identifier(std::uint32_t id) { return id > CAN_SFF_MASK ? (id | CAN_EFF_FLAG) : id; }
-
-bool subscribe(int fd, const std::vector<std::uint32_t>& ids) {
-  std::vector<can_filter> filters;
-  for (const std::uint32_t id : ids)
-    filters.push_back({identifier(id), CAN_EFF_FLAG | CAN_RTR_FLAG | CAN_EFF_MASK});
-  const can_err_mask_t errors = CAN_ERR_BUSOFF | CAN_ERR_RESTARTED;
-  return ::setsockopt(fd, SOL_CAN_RAW, CAN_RAW_FILTER, filters.data(),
-                      static_cast<socklen_t>(filters.size() * sizeof(can_filter))) == 0 &&
-         ::setsockopt(fd, SOL_CAN_RAW, CAN_RAW_ERR_FILTER, &errors, sizeof(errors)) == 0;
-}
 
 bool usable(const std::vector<std::uint32_t>& ids) {
   for (std::size_t i = 0; i < ids.size(); ++i) {
@@ -43,26 +30,18 @@ bool usable(const std::vector<std::uint32_t>& ids) {
 
 std::unique_ptr<CanAxes> CanAxes::open(const std::string& interface, const std::vector<std::uint32_t>& ids,
                                        std::string& error) {
-  const auto failed = [&](const char* what, int fd) {
-    error = interface + ": " + what + ": " + std::strerror(errno);
-    if (fd >= 0) ::close(fd);
+  if (!usable(ids)) {
+    errno = EINVAL;
+    can_failed(interface, "identifiers", -1, error);
     return nullptr;
-  };
-  if (!usable(ids)) return errno = EINVAL, failed("identifiers", -1);
-  const int fd = ::socket(PF_CAN, SOCK_RAW | SOCK_CLOEXEC | SOCK_NONBLOCK, CAN_RAW);
-  if (fd < 0) return failed("no CAN in this kernel", fd);
-  sockaddr_can address{};
-  address.can_family = AF_CAN;
-  address.can_ifindex = static_cast<int>(::if_nametoindex(interface.c_str()));
-  if (address.can_ifindex == 0) return failed("no such interface", fd);
-  if (!subscribe(fd, ids)) return failed("filters are refused", fd);
-  if (::bind(fd, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) != 0)
-    return failed("cannot be used", fd);
+  }
+  const int fd = open_can(interface, ids, true, error);
+  if (fd < 0) return nullptr;
   return std::make_unique<CanAxes>(fd, ids);
 }
 
 CanAxes::CanAxes(int socket, const std::vector<std::uint32_t>& ids) : socket_(socket), axes_(ids.size()) {
-  for (std::size_t i = 0; i < ids.size(); ++i) axes_[i].id = identifier(ids[i]);
+  for (std::size_t i = 0; i < ids.size(); ++i) axes_[i].id = can_identifier(ids[i]);
 }
 
 CanAxes::~CanAxes() { ::close(socket_); }

@@ -3,40 +3,33 @@
 
 #include <linux/can.h>
 #include <linux/can/isotp.h>
-#include <net/if.h>
 #include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstring>
+#include <string>
+
+#include "hal/linux/can_socket.h"
 
 namespace vernier {
 namespace {
 
 constexpr std::uint32_t kMostBytes = 4095;  // of a message with a 12-bit length
 
-canid_t identifier(std::uint32_t id) { return id > CAN_SFF_MASK ? (id | CAN_EFF_FLAG) : id; }
-
 }  // namespace
 
 std::unique_ptr<IsotpLink> IsotpLink::open(const std::string& interface, std::uint32_t receive,
                                            std::uint32_t transmit, std::string& error) {
-  const auto failed = [&](const char* what, int fd) {
-    error = interface + ": " + what + ": " + std::strerror(errno);
-    if (fd >= 0) ::close(fd);
-    return nullptr;
-  };
   const int fd = ::socket(PF_CAN, SOCK_DGRAM | SOCK_CLOEXEC, CAN_ISOTP);
-  if (fd < 0) return failed("no ISO-TP in this kernel", fd);
+  if (fd < 0) {
+    can_failed(interface, "no ISO-TP in this kernel", fd, error);
+    return nullptr;
+  }
   sockaddr_can address{};
-  address.can_family = AF_CAN;
-  address.can_ifindex = static_cast<int>(::if_nametoindex(interface.c_str()));
-  if (address.can_ifindex == 0) return failed("no such interface", fd);
-  address.can_addr.tp.rx_id = identifier(receive);
-  address.can_addr.tp.tx_id = identifier(transmit);
-  if (::bind(fd, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) != 0)
-    return failed("cannot be used", fd);
+  address.can_addr.tp.rx_id = can_identifier(receive);
+  address.can_addr.tp.tx_id = can_identifier(transmit);
+  if (!bind_can(fd, interface, address, error)) return nullptr;
   return std::unique_ptr<IsotpLink>(new IsotpLink(fd));
 }
 
