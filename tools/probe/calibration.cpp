@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -48,15 +47,6 @@ void say_feeds(const VectorXd& feed, bool delay, std::vector<std::string>& findi
                     "wider range makes both surer.",
                     feed.minCoeff(), feed.maxCoeff()));
   }
-}
-
-void say_outliers(const ProbeCalibration& result, const TouchTable& table,
-                  std::vector<std::string>& findings) {
-  for (const TouchOutlier& outlier : result.fit.outliers)
-    findings.push_back(
-        fmt::format("{}:{}: left out: {:+.2f} um from the others, {:.0f} times their scatter (chance {:.1g})",
-                    table.file(), table.line(outlier.touch), outlier.residual * kUmPerMm, std::abs(outlier.t),
-                    outlier.p_value));
 }
 
 void add(ProbeCalibration& result, const std::string& name, const std::string& unit, double factor, Index i,
@@ -143,20 +133,13 @@ struct RoundTouches {
     VectorXd p(first_extra());
     p(0) = (x.maxCoeff() + x.minCoeff()) / 2, p(1) = (y.maxCoeff() + y.minCoeff()) / 2;
     if (sphere) p(2) = (z.maxCoeff() + z.minCoeff()) / 2;
-    // Algebraic fit: |m|^2 = 2 m c + k.
-    const Index n = x.size(), d = first_extra() - 1;
-    Eigen::MatrixXd a(n, d + 1);
-    VectorXd b(n);
-    for (Index i = 0; i < n; ++i) {
-      const double m[3] = {x(i) - p(0), y(i) - p(1), sphere ? z(i) - p(2) : 0};
-      b(i) = 0;
-      for (Index k = 0; k < d; ++k) a(i, k) = 2 * m[k], b(i) += m[k] * m[k];
-      a(i, d) = 1;
-    }
-    const VectorXd s = (a.transpose() * a).ldlt().solve(a.transpose() * b);
-    const double square = s(d) + s.head(d).squaredNorm();
+    const Index d = first_extra() - 1;
+    Eigen::MatrixXd m(x.size(), d);
+    m.col(0) = x.array() - p(0), m.col(1) = y.array() - p(1);
+    if (sphere) m.col(2) = z.array() - p(2);
+    const VectorXd s = algebraic_centre(m);
     p.head(d) += s.head(d);
-    p(d) = std::sqrt(std::max(square, 1e-12));
+    p(d) = s(d);
     return p;
   }
   // Largest gap between the azimuths of neighbouring touches, deg.
@@ -202,10 +185,7 @@ ProbeCalibration calibrate_round(TouchTable& table, const CalibrationSetup& setu
   const RoundTouches touches = round_touches(table, setup);
   TouchFitOptions options;
   options.outlier_level = setup.outlier_level;
-  if (const auto u = table.find({"u"})) {
-    if (u->minCoeff() <= 0) throw InputError(table.file() + ": u is not above 0 in every row");
-    options.u = *u;
-  }
+  options.u = table.uncertainty();
   const std::vector<std::string> names =
       touches.sphere ? std::vector<std::string>{"centre x", "centre y",    "centre z", "tip radius",
                                                 "delay",    "lobe cosine", "lobe sine"}
@@ -227,12 +207,11 @@ ProbeCalibration calibrate_round(TouchTable& table, const CalibrationSetup& setu
   reach.lobes = may_have_lobes;
   result.fit = fit_with(reach, options);
   if (may_have_lobes) {
-    // The same touches without lobes, so that the two can be compared.
     TouchFitOptions same = options;
     same.outlier_level = 0;
-    RoundTouches kept = touches;
-    const TouchFit with = fit_with({reach.delay, true}, same), without = fit_with({reach.delay, false}, same);
-    if (result.fit.outliers.empty() ? !explains(with, without, kLobeChance) : false) {
+    // Compared over the same touches: all of them.
+    if (result.fit.outliers.empty() &&
+        !explains(result.fit, fit_with({reach.delay, false}, same), kLobeChance)) {
       reach.lobes = false;
       result.findings.push_back(
           "A three-lobed pretravel would show and does not: below the scatter of the touches.");
@@ -268,17 +247,25 @@ ProbeCalibration calibrate_round(TouchTable& table, const CalibrationSetup& setu
 
 }  // namespace
 
-const Calibrated* ProbeCalibration::find(const std::string& name) const {
+const Calibrated* find_calibrated(const std::vector<Calibrated>& parameters, const std::string& name) {
   const auto found =
       std::find_if(parameters.begin(), parameters.end(), [&](const Calibrated& c) { return c.name == name; });
   return found == parameters.end() ? nullptr : &*found;
+}
+
+void say_outliers(const TouchFit& fit, const TouchTable& table, std::vector<std::string>& findings) {
+  for (const TouchOutlier& outlier : fit.outliers)
+    findings.push_back(
+        fmt::format("{}:{}: left out: {:+.2f} um from the others, {:.0f} times their scatter (chance {:.1g})",
+                    table.file(), table.line(outlier.touch), outlier.residual * kUmPerMm, std::abs(outlier.t),
+                    outlier.p_value));
 }
 
 ProbeCalibration calibrate_probe(TouchTable& table, const CalibrationSetup& setup) {
   if (!(setup.size_mm > 0)) throw InputError("the size of the artefact is not above 0 (--size)");
   ProbeCalibration result =
       setup.artefact == Artefact::kBlock ? calibrate_block(table, setup) : calibrate_round(table, setup);
-  say_outliers(result, table, result.findings);
+  say_outliers(result.fit, table, result.findings);
   for (const std::string& note : table.notes()) result.findings.push_back(note);
   return result;
 }

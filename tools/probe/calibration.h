@@ -24,6 +24,12 @@ struct Calibrated {
   double value = 0, std = 0;
 };
 
+/// The parameter of that name; null where there is none.
+const Calibrated* find_calibrated(const std::vector<Calibrated>& parameters, const std::string& name);
+
+/// A sentence for each touch that a fit left out, with its line and by how much it is off.
+void say_outliers(const TouchFit& fit, const TouchTable& table, std::vector<std::string>& findings);
+
 /// What touches of an artefact say about a probe.
 ///
 /// A touch at speed v along the approach is recorded late by v * delay - a * delay^2 / 2, and by the
@@ -38,7 +44,7 @@ struct ProbeCalibration {
   bool delay_found = false, lobes_found = false;
   std::vector<std::string> findings;  // in plain sentences: coverage, outliers, what cannot be told apart
 
-  const Calibrated* find(const std::string& name) const;
+  const Calibrated* find(const std::string& name) const { return find_calibrated(parameters, name); }
 };
 
 /// Reads touches and finds what they determine. Columns: feed[mm/min]; block: upper, lower (mm: recorded

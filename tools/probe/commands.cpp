@@ -161,7 +161,7 @@ void run_feature(FeatureArguments& arguments, const CLI::App& command) {
   setup.temperature_std_K = arguments.temperature_std;
   TouchTable table = read_table(arguments);
   const Feature feature = fit_feature(table, setup);
-  if (!arguments.output.empty()) write_file(arguments.output, feature_csv(table, feature, setup));
+  if (!arguments.output.empty()) write_file(arguments.output, feature_csv(table, feature));
   write_json(arguments.json, {{"feature", arguments.kind},
                               {"n_touches", table.rows()},
                               {"n_excluded", feature.fit.outliers.size()},

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -68,9 +67,7 @@ Touches read_touches(TouchTable& table, const FeatureSetup& setup, std::vector<s
     }
     touches.n = n;
   }
-  touches.u = table.find({"u"});
-  if (touches.u && touches.u->minCoeff() <= 0)
-    throw InputError(table.file() + ": u is not above 0 in every row");
+  touches.u = table.uncertainty();
   if (!setup.expansion_per_K) return touches;
   auto t = table.find({"T"});
   if (!t && setup.temperature_degC) t = VectorXd::Constant(rows, *setup.temperature_degC);
@@ -225,17 +222,6 @@ Feature fit_line(const Touches& touches, const FeatureSetup& setup) {
 }
 
 // ---- circle, sphere, cylinder
-
-// Centre and radius that solve |m|^2 = 2 m c + k best; columns of m: as many as the centre has.
-VectorXd algebraic_centre(const MatrixXd& m) {
-  MatrixXd a(m.rows(), m.cols() + 1);
-  a.leftCols(m.cols()) = 2 * m;
-  a.col(m.cols()).setOnes();
-  // Only where the fit begins: normal equations are good enough.
-  VectorXd s = (a.transpose() * a).ldlt().solve(a.transpose() * m.rowwise().squaredNorm());
-  s(m.cols()) = std::sqrt(std::max(1e-12, s(m.cols()) + s.head(m.cols()).squaredNorm()));
-  return s;
-}
 
 void add_radius(const Maker& make, const FeatureSetup& setup, double side, Index at) {
   make.add("radius", "mm", [=](const VectorXd& p) { return p(at) - side * setup.ball_radius_mm; });
@@ -469,12 +455,6 @@ void widen(Feature& feature, const FeatureSetup& setup, double off_reference_K) 
 
 }  // namespace
 
-const Calibrated* Feature::find(const std::string& name) const {
-  const auto found =
-      std::find_if(parameters.begin(), parameters.end(), [&](const Calibrated& c) { return c.name == name; });
-  return found == parameters.end() ? nullptr : &*found;
-}
-
 Feature fit_feature(TouchTable& table, const FeatureSetup& setup) {
   std::vector<std::string> findings;
   const Touches touches = read_touches(table, setup, findings);
@@ -492,17 +472,13 @@ Feature fit_feature(TouchTable& table, const FeatureSetup& setup) {
   if (feature.fit.dof == 0)
     feature.findings.push_back(
         "As many touches as unknowns: the feature goes through all of them and nothing checks it.");
-  for (const TouchOutlier& outlier : feature.fit.outliers)
-    feature.findings.push_back(
-        fmt::format("{}:{}: left out: {:+.2f} um from the others, {:.0f} times their scatter (chance {:.1g})",
-                    table.file(), table.line(outlier.touch), outlier.residual * 1e3, std::abs(outlier.t),
-                    outlier.p_value));
+  say_outliers(feature.fit, table, feature.findings);
   feature.findings.insert(feature.findings.begin(), findings.begin(), findings.end());
   feature.findings.insert(feature.findings.end(), table.notes().begin(), table.notes().end());
   return feature;
 }
 
-std::string feature_csv(const TouchTable& table, const Feature& feature, const FeatureSetup&) {
+std::string feature_csv(const TouchTable& table, const Feature& feature) {
   static const std::set<std::string> kReplaced = {"x", "y", "z", "nx", "ny", "nz", "d", "px", "py", "pz"};
   std::string text;
   auto out = std::back_inserter(text);

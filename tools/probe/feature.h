@@ -35,7 +35,7 @@ struct Feature {
   Eigen::VectorXd deviation;  // of the touch along its normal from the fitted feature, mm
   std::vector<std::string> findings;
 
-  const Calibrated* find(const std::string& name) const;
+  const Calibrated* find(const std::string& name) const { return find_calibrated(parameters, name); }
 };
 
 /// Columns: x, y, z (z not needed for line, circle and block in the plane z = 0), nx ny nz (outward normals;
@@ -51,6 +51,6 @@ Feature fit_feature(TouchTable& table, const FeatureSetup& setup);
 
 /// The touches as a measurement file: `d` along `nx ny nz` from the fitted feature at `px py pz` (FORMATS
 /// section 2), the other columns as they were, without the recorded point. tool.
-std::string feature_csv(const TouchTable& table, const Feature& feature, const FeatureSetup& setup);
+std::string feature_csv(const TouchTable& table, const Feature& feature);
 
 }  // namespace vernier

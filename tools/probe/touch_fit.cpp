@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Cholesky>
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
@@ -173,6 +174,16 @@ TouchFit fit_touches(const TouchModel& model, const VectorXd& start, const Touch
       pass.scale.cwiseInverse().asDiagonal() * pass.svd.matrixV() * s.cwiseInverse().asDiagonal();
   fit.covariance = half * half.transpose() * (options.u ? std::max(1.0, reduced) : reduced);
   return fit;
+}
+
+VectorXd algebraic_centre(const MatrixXd& points) {
+  MatrixXd a(points.rows(), points.cols() + 1);
+  a.leftCols(points.cols()) = 2 * points;
+  a.col(points.cols()).setOnes();
+  VectorXd s = (a.transpose() * a).ldlt().solve(a.transpose() * points.rowwise().squaredNorm());
+  const double square = s(points.cols()) + s.head(points.cols()).squaredNorm();
+  s(points.cols()) = std::sqrt(std::max(1e-12, square));
+  return s;
 }
 
 }  // namespace vernier

@@ -47,4 +47,9 @@ struct TouchFitOptions {
 TouchFit fit_touches(const TouchModel& model, const Eigen::VectorXd& start, const TouchFitOptions& options,
                      const std::vector<std::string>& names);
 
+/// Centre and radius of the circle or sphere that solves |m|^2 = 2 m c + k best, by normal equations: where a
+/// fit begins. points: a row each, two or three columns, about their middle. Returns centre, then radius.
+/// tool.
+Eigen::VectorXd algebraic_centre(const Eigen::MatrixXd& points);
+
 }  // namespace vernier

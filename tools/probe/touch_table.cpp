@@ -116,14 +116,10 @@ Eigen::VectorXd TouchTable::need(const std::vector<std::string>& names, const st
   throw InputError({csv_.file, csv_.header_line}, names.front(), "no such column: " + what);
 }
 
-std::optional<std::vector<std::string>> TouchTable::words(const std::string& name) const {
-  for (const Column& column : columns_) {
-    if (column.name != name) continue;
-    std::vector<std::string> out;
-    for (const auto& row : csv_.rows) out.push_back(row[column.index]);
-    return out;
-  }
-  return std::nullopt;
+std::optional<Eigen::VectorXd> TouchTable::uncertainty() {
+  auto u = find({"u"});
+  if (u && u->minCoeff() <= 0) throw InputError(csv_.file + ": u is not above 0 in every row");
+  return u;
 }
 
 }  // namespace vernier

@@ -28,8 +28,8 @@ class TouchTable {
   std::optional<Eigen::VectorXd> find(const std::vector<std::string>& names);
   /// The same, where it must be there: `what` says for what.
   Eigen::VectorXd need(const std::vector<std::string>& names, const std::string& what);
-  /// The same as words.
-  std::optional<std::vector<std::string>> words(const std::string& name) const;
+  /// Column u, mm; an InputError where one is not above 0.
+  std::optional<Eigen::VectorXd> uncertainty();
 
   /// What was decided while reading.
   const std::vector<std::string>& notes() const { return notes_; }

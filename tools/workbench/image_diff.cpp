@@ -69,8 +69,11 @@ std::string why_not(const ImageView& a, const ImageView& b) {
 
 /// Point k of the additive recurrence with an irrational of its own for each dimension (Roberts 2018, R_d).
 double spread(std::uint32_t k, std::uint32_t dimension) {
-  double root = 2;
-  for (int i = 0; i < 40; ++i) root = std::pow(1 + root, 1.0 / 15);  // of x^15 = x + 1
+  static const double root = [] {
+    double x = 2;
+    for (int i = 0; i < 40; ++i) x = std::pow(1 + x, 1.0 / 15);  // of x^15 = x + 1
+    return x;
+  }();
   const double x = 0.5 + k * std::pow(root, -1.0 - dimension);
   return x - std::floor(x);
 }

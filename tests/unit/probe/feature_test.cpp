@@ -143,7 +143,7 @@ TEST(Feature, RowsForAFitAreDeviationsFromTheFeature) {
   TouchTable table(plane.text(), "touches.csv", {}, {});
   const FeatureSetup setup{.kind = FeatureKind::kPlane, .ball_radius_mm = 2.5};
   const Feature feature = fit_feature(table, setup);
-  const CsvFile rows = parse_csv(feature_csv(table, feature, setup), "rows.csv");
+  const CsvFile rows = parse_csv(feature_csv(table, feature), "rows.csv");
   ASSERT_EQ(rows.rows.size(), 20u);
   ASSERT_EQ(rows.columns.size(), 7u);
   EXPECT_EQ(rows.columns[0].name, "d");
