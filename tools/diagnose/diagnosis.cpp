@@ -19,12 +19,14 @@ namespace {
 /// One diagnosis, step by step.
 class Diagnoser {
  public:
+  /// `base`: the machine's fit with these options.
   Diagnoser(const std::string& text, const Machine& machine, const Measurement& measurement,
-            const DiagnoseOptions& options)
+            const DiagnoseOptions& options, const FitOptions& fit_options, FitResult base)
       : options_(options),
+        fit_options_(fit_options),
         measurement_(measurement),
         machine_(machine),
-        base_(fit_first(machine, measurement)),
+        base_(std::move(base)),
         text_(update_machine_text(text, base_.machine, true)),
         finder_(base_.machine, measurement, options.effects, options.most_effects, options.progress),
         pool_(finder_.pool()),
@@ -45,11 +47,6 @@ class Diagnoser {
   }
 
  private:
-  FitResult fit_first(const Machine& machine, const Measurement& m) {
-    options_.progress(0, "fitting the model");
-    return fit(machine, m);
-  }
-
   struct Fitted {
     std::string text;
     FitResult fit;
@@ -80,8 +77,8 @@ class Diagnoser {
     for (Static& item : machine.statics)
       if (const auto found = start.find(item.name); found != start.end()) item.value = found->second;
     const Measurement rows = rebind(measurement_, base_.machine, machine);
-    result.fit = fit(machine, rows);
-    if (hold_runaways(items, result, machine)) result.fit = fit(machine, rows);
+    result.fit = fit(machine, rows, fit_options_);
+    if (hold_runaways(items, result, machine)) result.fit = fit(machine, rows, fit_options_);
     result.text = update_machine_text(result.text, result.fit.machine, true);
     result.text = close_domains(result.text, result.fit.machine, rows);
     return result;
@@ -352,6 +349,7 @@ class Diagnoser {
   }
 
   const DiagnoseOptions& options_;
+  const FitOptions& fit_options_;
   const Measurement& measurement_;
   Machine machine_;
   FitResult base_;
@@ -363,6 +361,16 @@ class Diagnoser {
   Rivals rivals_;
   Diagnosis result_;
 };
+
+/// chi^2 and what its parameters cost (Schwarz 1978).
+double criterion_of(const FitResult& fit) {
+  const auto count = static_cast<double>(fit.after.count);
+  return fit.chi_square + (count - static_cast<double>(fit.freedom)) * std::log(count);
+}
+
+bool is_named(Verdict verdict) {
+  return verdict == Verdict::kMissingEffect || verdict == Verdict::kAmbiguous;
+}
 
 }  // namespace
 
@@ -384,7 +392,24 @@ const char* verdict_name(Verdict verdict) {
 
 Diagnosis diagnose(const std::string& text, const Machine& machine, const Measurement& measurement,
                    const DiagnoseOptions& options) {
-  return Diagnoser(text, machine, measurement, options).run();
+  require_time_order(measurement);
+  options.progress(0, "fitting the model");
+  FitOptions all;
+  FitResult followed = fit(machine, measurement, all);
+  if (followed.followed_unseen) {
+    FitOptions near;
+    near.follow_unseen = false;
+    Diagnosis result =
+        Diagnoser(text, machine, measurement, options, near, fit(machine, measurement, near)).run();
+    if (is_named(result.verdict) && criterion_of(result.end) < criterion_of(followed) + kDistance) {
+      result.explanation +=
+          " Directions of the model that its start does not show were left there: following them would "
+          "imitate "
+          "a part of this by products of errors.";
+      return result;
+    }
+  }
+  return Diagnoser(text, machine, measurement, options, all, std::move(followed)).run();
 }
 
 }  // namespace vernier

@@ -59,6 +59,7 @@ void Finder::search_products() {
     }
     best = best_products();
   }
+  ban_hollow_products();
   select_again();
 }
 
@@ -77,7 +78,7 @@ std::vector<Product> Finder::best_products() {
   pose_problem();
   std::vector<std::pair<double, std::size_t>> order;
   for (std::size_t i = 0; i < pool_.size(); ++i)
-    if (pool_.candidate(i).choice.effect == &custom_effect()) order.emplace_back(-score_alone(i), i);
+    if (pool_.is_custom(i)) order.emplace_back(-score_alone(i), i);
   std::sort(order.begin(), order.end());
   std::vector<Product> best;
   constexpr std::size_t kExtended = 25;
@@ -110,11 +111,13 @@ void Finder::simplify() {
       const Selection trial = evaluate(set);
       if (trial.criterion - criterion_ >= kEvidence + most_price) continue;
       if (simplest && trial.criterion >= best.criterion) continue;
-      // The same columns from a place further from the axis are only the longer way to say it.
-      const bool same_but_nearer =
-          pool_.same_kind(chosen_[i], other) &&
-          pool_.penalty(pool_[other].scored.candidate) < pool_.penalty(pool_[chosen_[i]].scored.candidate) &&
-          pool_.same_columns(chosen_[i], other);
+      // The same columns from a place further from the axis, or from a term without a name, are only the
+      // longer way to say it.
+      const bool named = pool_.is_custom(chosen_[i]) && !pool_.is_custom(other);
+      const bool same_but_nearer = pool_.same_kind(chosen_[i], other) &&
+                                   (named || pool_.penalty(pool_[other].scored.candidate) <
+                                                 pool_.penalty(pool_[chosen_[i]].scored.candidate)) &&
+                                   pool_.same_columns(chosen_[i], other);
       if (!same_but_nearer && !pool_.contains(chosen_[i], other)) continue;
       // One of many that hold it fits better by chance: what it has more pays for that.
       const double price = same_but_nearer ? 0 : 2 * std::log(std::max(1.0, holders_of(other)));
@@ -183,6 +186,18 @@ Selection Finder::evaluate(const std::vector<std::size_t>& items) const {
   std::vector<std::size_t> entries;
   for (const std::size_t item : items) entries.push_back(entry_of(item).value());
   return evaluate_selection(problem_, entries);
+}
+
+void Finder::ban_hollow_products() {
+  constexpr double kSame = 0.9, kWitnesses = 10;
+  for (std::size_t i = 0; i < pool_.size(); ++i) {
+    if (!pool_.is_custom(i) || pool_[i].banned) continue;
+    if (pool_.witnesses(i) < kWitnesses) pool_.ban(i, "witnesses: a few readings carry it");
+    for (std::size_t failed = 0; failed < pool_.size() && !pool_[i].banned; ++failed)
+      if (pool_[failed].banned && !pool_.is_custom(failed) && pool_.common_share(i, failed) > kSame)
+        pool_.ban(i, "nearly the same as " + pool_.candidate(failed).label +
+                         ", which failed: " + pool_[failed].why_not);
+  }
 }
 
 std::string Finder::failed_test(std::size_t item) const {
@@ -294,6 +309,7 @@ void Finder::accept() {
       const std::string failed = failed_test(item);
       if (failed.empty()) continue;
       pool_.ban(item, failed);
+      ban_hollow_products();
       all_pass = false;
       break;
     }

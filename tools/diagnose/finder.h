@@ -78,6 +78,9 @@ class Finder {
   void weigh_correlation();
   std::vector<std::size_t> without(std::size_t item) const;
   Selection evaluate(const std::vector<std::size_t>& items) const;
+  /// Bans products that would pass the tests by chance: those that a few readings carry, and those that do
+  /// what an effect of the catalogue does which failed.
+  void ban_hollow_products();
   /// The first test of acceptance that an accepted item fails; empty where it passes all.
   std::string failed_test(std::size_t item) const;
   /// Does one run hold nearly all that an accepted item explains? The other runs cannot tell of it then.

@@ -183,8 +183,7 @@ SelectionProblem Pool::problem(std::vector<std::size_t>& items) const {
 
 bool Pool::same_cause(std::size_t a, std::size_t b) const {
   const Choice &x = candidate(a).choice, &y = candidate(b).choice;
-  if (x.effect == &custom_effect() || y.effect == &custom_effect())
-    return x.effect == y.effect && x.term == y.term;
+  if (is_custom(a) || is_custom(b)) return x.effect == y.effect && x.term == y.term;
   const bool one_cause =
       x.effect == y.effect || (!x.effect->cause.empty() && x.effect->cause == y.effect->cause);
   return one_cause && x.axis == y.axis && x.axis2 == y.axis2 && x.inputs == y.inputs;
@@ -197,6 +196,16 @@ bool Pool::same_columns(std::size_t a, std::size_t b) const {
   // Squares of the cosines between the two spans, the least of them decides.
   const double common = (x.transpose() * y).squaredNorm();
   return static_cast<double>(x.cols()) - common < 1e-3;
+}
+
+double Pool::common_share(std::size_t item, std::size_t other) const {
+  const Eigen::MatrixXd basis = orthonormal(items_[other].columns, 1e-6, nullptr);
+  return (basis.transpose() * items_[item].columns).squaredNorm() / items_[item].columns.squaredNorm();
+}
+
+double Pool::witnesses(std::size_t item) const {
+  const Eigen::VectorXd square = items_[item].columns.rowwise().squaredNorm();
+  return std::pow(square.sum(), 2) / square.squaredNorm();
 }
 
 /// A span that holds all but this of another's squares holds it.

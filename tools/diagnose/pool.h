@@ -51,6 +51,12 @@ class Pool {
 
   /// Columns of several items side by side.
   Eigen::MatrixXd columns(const std::vector<std::size_t>& items) const;
+  /// A term that the search made; it has no name in the catalogue.
+  bool is_custom(std::size_t i) const { return candidate(i).choice.effect == &custom_effect(); }
+  /// Share of the squares of an item's columns that lies in the span of another's.
+  double common_share(std::size_t item, std::size_t other) const;
+  /// How many readings carry an item: squared sum over the sum of squares of its columns' squares.
+  double witnesses(std::size_t item) const;
   /// Effect (or the cause that the catalogue names), driving axis and inputs are the same: no different
   /// cause.
   bool same_cause(std::size_t a, std::size_t b) const;

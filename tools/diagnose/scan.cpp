@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <future>
 #include <thread>
 
 namespace vernier {
@@ -125,11 +126,12 @@ std::vector<Scored> Scanner::scan(const Eigen::MatrixXd& beside, const std::func
   std::vector<Scored> best(candidates_.size());
   // Each thread writes the entries of its own candidates only.
   const std::size_t threads = std::max(1U, std::min(4U, std::thread::hardware_concurrency()));
-  std::vector<std::thread> others;
+  std::vector<std::future<void>> others;  // each hands on what its part throws
   for (std::size_t k = 1; k < threads; ++k)
-    others.emplace_back([&, k] { scan_part(first_candidate + k, threads, beside, residual, best, {}); });
+    others.push_back(std::async(
+        std::launch::async, [&, k] { scan_part(first_candidate + k, threads, beside, residual, best, {}); }));
   scan_part(first_candidate, threads, beside, residual, best, progress);
-  for (std::thread& thread : others) thread.join();
+  for (std::future<void>& part : others) part.get();
   std::vector<Scored> seen;
   for (Scored& scored : best)
     if (scored.unknowns > 0) seen.push_back(std::move(scored));

@@ -13,8 +13,9 @@ namespace {
 
 using Index = Eigen::Index;
 
-/// Logarithm of 1e-3: what is less likely to be noise is a doubt.
-constexpr double kChance = -6.9;
+/// Logarithms of 1e-3 and 1e-4: what is less likely to be noise is a doubt. Every term is asked whether it
+/// changes, and none should be doubted by chance; what is no effect of the catalogue is far beyond.
+constexpr double kChance = -6.9, kChangeChance = -9.2;
 
 /// Positions of the fit observations over the range that was read: 0 .. 1.
 Eigen::VectorXd positions(const Evidence& evidence, std::size_t axis) {
@@ -201,7 +202,7 @@ std::string doubt_of_shape(const Evidence& evidence, const Pool& pool, const std
     if (!doubt.empty()) return doubt;
   }
   // Without a given uncertainty nothing says that what is left is noise: it may hold other effects.
-  if (evidence.noise_known() && log_p_of_change(evidence, pool, items, item) < kChance)
+  if (evidence.noise_known() && log_p_of_change(evidence, pool, items, item) < kChangeChance)
     return fmt::format("{} changes along the axes, which what it is called does not",
                        pool.candidate(item).label);
   return {};

@@ -43,7 +43,8 @@ class Minimiser {
     do {
       descend();
     } while (result_.converged && result_.iterations < options_.max_iterations && releases_ < kMostReleases &&
-             release());
+             options_.follow_unseen && release());
+    result_.followed_unseen = releases_ > 0;
     return result_;
   }
 

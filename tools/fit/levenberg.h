@@ -30,6 +30,8 @@ struct LevenbergOptions {
   /// Chance alone lowers the cost by about this much for each parameter freed (0: every fall counts). It
   /// judges whether a direction that the start did not see is worth following.
   std::function<double(double)> chance = [](double) { return 0.0; };
+  /// False: directions that the start did not see stay where they are, whatever following them promises.
+  bool follow_unseen = true;
   /// J^T W^2 p'' of a point and a step: p'' is the second derivative of the predictions along the step. With
   /// it a step that failed is bent along the valley (geodesic acceleration), without it it is straight.
   std::function<Eigen::VectorXd(const Eigen::VectorXd&, const Eigen::VectorXd&)> bend;
@@ -43,6 +45,7 @@ struct LevenbergResult {
   double cost = 0;
   int iterations = 0;
   bool converged = false;
+  bool followed_unseen = false;  // directions that the start did not see were released
   /// Parameters that stand for the directions left at their start; empty or one entry a parameter.
   std::vector<char> held;
 };

@@ -1,5 +1,7 @@
 #include "tools/model/measurement.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -403,6 +405,20 @@ std::vector<T> pick(const std::vector<T>& all, const std::vector<std::size_t>& k
 
 bool Measurement::has_recorded(std::string_view name) const {
   return std::find(recorded.begin(), recorded.end(), name) != recorded.end();
+}
+
+void require_time_order(const Measurement& m) {
+  std::vector<std::size_t> last(m.states.run_names.size(), m.rows());
+  for (std::size_t row = 0; row < m.rows(); ++row) {
+    std::size_t& before = last[m.states.run[row]];
+    const auto at = static_cast<Eigen::Index>(row), from = static_cast<Eigen::Index>(before);
+    if (before < m.rows() && m.states.time[at] < m.states.time[from])
+      throw InputError(
+          {m.files[m.file[row]], m.line[row]}, "t",
+          fmt::format("falls from {} to {} s in run \"{}\": rows are in the order of time",
+                      m.states.time[from], m.states.time[at], m.states.run_names[m.states.run[row]]));
+    before = row;
+  }
 }
 
 Measurement select_rows(const Measurement& all, const std::vector<std::size_t>& keep) {
