@@ -82,10 +82,10 @@ struct FitResult {
 /// Weighted least squares on the fit rows: residual / u (1 where u is absent). Free parameters that the data
 /// cannot separate keep their start along the unidentified directions and are named in `observability`. So do
 /// directions that the data do not see at the start and only faintly, through products of errors, at the end,
-/// while following them promises no more than chance would. Set-ups that start more than 0.1 deg off are
-/// aligned first.
-/// Standard uncertainty: from u, times sqrt(chi^2 / dof) where that exceeds 1; without u from the residual
-/// (GUM 5.2). Throws InputError where there is nothing to fit. tool.
+/// while following them promises no more than chance would, or would turn something by more than half a
+/// degree. Set-ups that start more than 0.1 deg off are aligned first. Standard uncertainty: from u, times
+/// sqrt(chi^2 / dof) where that exceeds 1; without u from the residual (GUM 5.2). Throws InputError where
+/// there is nothing to fit. tool.
 FitResult fit(const Machine& machine, const Measurement& measurement, const FitOptions& options = {});
 
 /// residual = measured - predicted.

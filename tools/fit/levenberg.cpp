@@ -40,23 +40,35 @@ class Minimiser {
   }
 
   LevenbergResult run() {
-    do {
+    descend();
+    while (result_.converged && result_.iterations < options_.max_iterations && releases_ < kMostReleases &&
+           options_.follow_unseen) {
+      const LevenbergResult before = result_;
+      const Release released = release();
+      if (released == Release::kNone) break;
       descend();
-    } while (result_.converged && result_.iterations < options_.max_iterations && releases_ < kMostReleases &&
-             options_.follow_unseen && release());
-    result_.followed_unseen = releases_ > 0;
+      if (released == Release::kFaintly &&
+          !(result_.converged && options_.believable(before.point, result_.point))) {
+        const int iterations = result_.iterations;
+        result_ = before;
+        result_.iterations = iterations;
+        break;
+      }
+      result_.followed_unseen = true;
+    }
     return result_;
   }
 
  private:
   enum class Step : std::uint8_t { kGood, kPoor, kNothingLeft, kFailed };
+  enum class Release : std::uint8_t { kNone, kFaintly, kPlainly };
 
   void descend();
   void prepare();
   void factorise();
   Step step();
   Step chord();
-  bool release();
+  Release release();
   VectorXd bent(const VectorXd& straight) const;
   Slope look(const VectorXd& point) const;
   VectorXd solve(const VectorXd& gradient) const;
@@ -185,10 +197,11 @@ void Minimiser::descend() {
   }
 }
 
-/// Looks again at the directions left alone: true if some of them are to be followed now.
-bool Minimiser::release() {
+/// Looks again at the directions left alone, and frees them if some are to be followed now: because they are
+/// seen plainly, or for what following them promises.
+Minimiser::Release Minimiser::release() {
   const auto held = static_cast<Index>(std::count(result_.held.begin(), result_.held.end(), 1));
-  if (held == 0) return false;
+  if (held == 0) return Release::kNone;
   prepare();
   damping_ = 0;
   factorise();
@@ -207,10 +220,11 @@ bool Minimiser::release() {
   }
   // Freed for nothing, `count` parameters lower the cost by that many variances, give or take sqrt(2 count).
   const double chance = options_.chance(result_.cost) * (count + 3 * std::sqrt(2 * count));
-  if (count == 0 || (!plain && promise <= std::max(chance, options_.negligible(result_.cost)))) return false;
+  if (count == 0 || (!plain && promise <= std::max(chance, options_.negligible(result_.cost))))
+    return Release::kNone;
   ++releases_;
   result_.held.clear();
-  return true;
+  return plain ? Release::kPlainly : Release::kFaintly;
 }
 
 }  // namespace

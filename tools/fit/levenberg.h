@@ -32,6 +32,9 @@ struct LevenbergOptions {
   std::function<double(double)> chance = [](double) { return 0.0; };
   /// False: directions that the start did not see stay where they are, whatever following them promises.
   bool follow_unseen = true;
+  /// Whether following such directions, faintly seen, may end there (from, to). Where not, the fit goes back.
+  std::function<bool(const Eigen::VectorXd&, const Eigen::VectorXd&)> believable =
+      [](const Eigen::VectorXd&, const Eigen::VectorXd&) { return true; };
   /// J^T W^2 p'' of a point and a step: p'' is the second derivative of the predictions along the step. With
   /// it a step that failed is bent along the valley (geodesic acceleration), without it it is straight.
   std::function<Eigen::VectorXd(const Eigen::VectorXd&, const Eigen::VectorXd&)> bend;

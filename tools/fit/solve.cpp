@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <set>
 
 #include "tools/fit/ceres_solver.h"
@@ -45,6 +46,21 @@ double first_turn_deg(const FitProblem& problem, const ParameterSet& shifts, con
   return turn_deg;
 }
 
+/// Angles that products of errors alone ask for, and by more than this, are an imitation.
+constexpr double kMostTurned_deg = 0.5;
+
+bool turned_little(const ParameterSet& parameters, const Eigen::VectorXd& from, const Eigen::VectorXd& to) {
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    const double turn = std::abs(to[at] - from[at]);
+    const std::string& unit = parameters[i].unit;
+    if ((unit == "deg" && turn > kMostTurned_deg) ||
+        (unit == "rad" && turn * 180 / std::numbers::pi > kMostTurned_deg))
+      return false;
+  }
+  return true;
+}
+
 LevenbergOptions own_options(const FitOptions& options, std::size_t observations, Eigen::Index parameters) {
   LevenbergOptions levenberg;
   levenberg.max_iterations = options.max_iterations;
@@ -83,9 +99,12 @@ LevenbergResult solve_stage(const FitProblem& problem, const Eigen::VectorXd& st
   return result;
 }
 
-LevenbergResult solve_all(const FitProblem& problem, const Eigen::VectorXd& start, const FitOptions& options,
-                          std::size_t observations) {
+LevenbergResult solve_all(const FitProblem& problem, const ParameterSet& parameters,
+                          const Eigen::VectorXd& start, const FitOptions& options, std::size_t observations) {
   LevenbergOptions levenberg = own_options(options, observations, start.size());
+  levenberg.believable = [&](const Eigen::VectorXd& from, const Eigen::VectorXd& to) {
+    return turned_little(parameters, from, to);
+  };
   levenberg.slope = [&](const Eigen::VectorXd& x) { return problem.slope(x); };
   levenberg.bend = [&](const Eigen::VectorXd& x, const Eigen::VectorXd& step) {
     return problem.bend(x, step);
@@ -151,7 +170,7 @@ Eigen::VectorXd solve(const FitProblem& problem, Eigen::VectorXd point, const Fi
     result.converged = outcome.converged;
     return outcome.point;
   }
-  const LevenbergResult outcome = solve_all(problem, point, options, result.before.count);
+  const LevenbergResult outcome = solve_all(problem, result.parameters, point, options, result.before.count);
   result.iterations += outcome.iterations;
   result.converged = outcome.converged;
   result.followed_unseen = outcome.followed_unseen;

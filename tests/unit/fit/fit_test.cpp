@@ -1,5 +1,6 @@
 #include "tools/fit/fit.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -231,6 +232,43 @@ TEST(Statistics, NoiseComesFromUThenFromRepeatsThenNotAtAll) {
   for (int i = 0; i < 6; ++i) repeats += i % 2 == 0 ? "5,0.001\n" : "5,0.003\n";
   EXPECT_NEAR(*noise_um(parse_measurement(repeats, "m.csv", machine)), std::sqrt(6.0 / 5), 1e-9);
   EXPECT_FALSE(noise_um(parse_measurement("X[mm],x[mm]\n0,0\n1,0\n", "m.csv", machine)).has_value());
+}
+
+/// A trunnion: what turns the table about Z at its A axis turns the measuring frame, but for products of
+/// angles.
+std::string trunnion(const std::string& missing) {
+  return R"(<machine name="t"><variables><static>
+    <tAy value="0" nominal="0" unit="deg"/> <tAz value="0" nominal="0" unit="deg"/>
+    <oCy value="0" nominal="0" unit="mm"/> <tCx value="0" nominal="0" unit="deg"/>
+    <BaseShift X="0" Y="0" Z="0" rX="0" rY="0" rZ="0"/></static>
+    <machineaxes><X rotary="false"/><Y rotary="false"/><Z rotary="false"/><A rotary="true"/><C rotary="true"/>
+    </machineaxes></variables>
+    <transforms branch="workpiece"><sixdof n="1" Y="Y"/><sixdof n="2" rX="A" rY="tAy" rZ="tAz"/>
+    <sixdof n="3" Y="oCy" rX="tCx"/><sixdof n="4" X=")" +
+         missing + R"(" rZ="C"/></transforms>
+    <transforms branch="tool"><sixdof n="1" X="X"/><sixdof n="2" Z="Z"/><sixdof n="3" Z="-140"/></transforms>
+    </machine>)";
+}
+
+TEST(Fit, DoesNotImitateAMissingEffectByTurnsOfManyDegrees) {
+  std::mt19937_64 random(kSeed);
+  const Machine truth = parse_machine(trunnion("0.03*sin(C)+0.03*sin(2*C)*cos(A)"), "truth.xml");
+  const Machine start = parse_machine(trunnion("0"), "start.xml");
+  std::uniform_real_distribution<double> length(-300, 300), tilt(-110, 30), turn(-180, 180);
+  std::string csv = "X[mm],Y[mm],Z[mm],A[deg],C[deg],x[mm],y[mm],z[mm],u[mm]\n";
+  for (int row = 0; row < 200; ++row)
+    csv += fmt::format("{},{},{},{},{},0,0,0,0.003\n", length(random), length(random), length(random),
+                       tilt(random), turn(random));
+  Measurement m = parse_measurement(csv, "m.csv", truth);
+  measure(truth, m, 3e-3, random);
+
+  const FitResult result = fit(start, m);
+
+  for (const ParameterEstimate& estimate : result.estimates) {
+    const double angle = estimate.unit == "deg" ? std::abs(estimate.value) : 0;
+    EXPECT_LT(angle, 0.5) << "seed " << kSeed << ": " << estimate.name;
+  }
+  EXPECT_FALSE(result.observability.unidentifiable.empty());
 }
 
 }  // namespace

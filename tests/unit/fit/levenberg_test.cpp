@@ -142,5 +142,37 @@ TEST(Levenberg, DoesNotFollowAFaintDirectionForChance) {
   EXPECT_NEAR(result.point[0], 1e-4, 1e-5);
 }
 
+/// A second parameter that shows only once the first has moved, and faintly: it may be followed, unless the
+/// user of the fit says that its end is not to be believed.
+TEST(Levenberg, GoesBackFromAnEndThatIsNotToBeBelieved) {
+  const VectorXd t = VectorXd::LinSpaced(40, -1, 1);
+  VectorXd y(40);
+  for (Eigen::Index i = 0; i < 40; ++i)
+    y[i] = 2e-3 * t[i] + 2e-3 * std::pow(t[i], 3) + (i % 2 == 0 ? 1e-5 : -1e-5);
+  Problem problem{
+      [=](const VectorXd& x) {
+        return VectorXd{y.array() - x[0] * t.array() - x[1] - x[2] - x[0] * (x[1] - x[2]) * t.array().cube()};
+      },
+      [=](const VectorXd& x) {
+        MatrixXd j(40, 3);
+        j.col(0) = t.array() + (x[1] - x[2]) * t.array().cube();
+        j.col(1) = 1 + x[0] * t.array().cube();
+        j.col(2) = 1 - x[0] * t.array().cube();
+        return j;
+      }};
+  LevenbergOptions options = judged_by_chance();
+  const LevenbergResult followed = problem.solve(VectorXd::Zero(3), options);
+  options.believable = [](const VectorXd&, const VectorXd& to) { return std::abs(to[1] - to[2]) < 0.5; };
+  const LevenbergResult kept = problem.solve(VectorXd::Zero(3), options);
+
+  EXPECT_TRUE(followed.followed_unseen);
+  EXPECT_GT(std::abs(followed.point[1] - followed.point[2]), 0.5);
+  EXPECT_TRUE(kept.converged);
+  EXPECT_FALSE(kept.followed_unseen);
+  EXPECT_LT(std::abs(kept.point[1] - kept.point[2]), 0.1);
+  EXPECT_EQ(std::count(kept.held.begin(), kept.held.end(), 1), 1);
+  EXPECT_LT(followed.cost, kept.cost);
+}
+
 }  // namespace
 }  // namespace vernier
