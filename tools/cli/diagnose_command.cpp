@@ -59,13 +59,21 @@ std::vector<std::string> plan_for(const std::string& text, const Machine& machin
   if (d.verdict != Verdict::kAmbiguous || d.candidates.empty()) return {};
   const CandidateFinding& first = d.candidates.front();
   const std::string& id = first.candidate.choice.effect->id;
+  // A finding is not lost because no advice can be made of it.
+  const auto advice = [&](const std::string& a, const std::string& b) -> std::vector<std::string> {
+    try {
+      return next_measurement(text, machine, m, a, b, effects);
+    } catch (const InputError& error) {
+      return {fmt::format("no advice on {} against {}: {}", a, b, error.what())};
+    }
+  };
   for (const CandidateFinding& other : d.candidates) {
     const auto& names = other.confounded_with;
     if (&other == &first || std::find(names.begin(), names.end(), id) == names.end()) continue;
-    return next_measurement(text, machine, m, first.add, other.add, effects);
+    return advice(first.add, other.add);
   }
   if (first.confounded_with.empty()) return {};
-  return next_measurement(text, machine, m, first.add, first.confounded_with.front(), effects);
+  return advice(first.add, first.confounded_with.front());
 }
 
 void run_diagnose(const DiagnoseArguments& arguments) {

@@ -29,8 +29,7 @@ class Diagnoser {
         base_(std::move(base)),
         text_(update_machine_text(text, base_.machine, true)),
         finder_(base_.machine, measurement, options.effects, options.most_effects, options.progress),
-        pool_(finder_.pool()),
-        chosen_(finder_.chosen()) {}
+        pool_(finder_.pool()) {}
 
   Diagnosis run() {
     result_.base = base_;
@@ -38,6 +37,7 @@ class Diagnoser {
     structure.fitted_parameters = static_cast<std::size_t>(base_.observability.rank);
     result_.failure = failure_picture(base_.machine, measurement_, base_.residual, structure);
     finder_.find();
+    chosen_ = finder_.chosen();
     result_.searched = finder_.candidates().size();
     walk_ladder();
     if (!chosen_.empty()) rivals_ = finder_.rivals_of(chosen_.front());
@@ -117,6 +117,12 @@ class Diagnoser {
     return add_string(finder_.evidence().machine(), candidate);
   }
 
+  /// Fall of chi^2, or of what stands for it where nothing says how large the noise is.
+  double fall_of(const FitResult& before, const FitResult& after) const {
+    if (finder_.evidence().noise_known()) return before.chi_square - after.chi_square;
+    return static_cast<double>(before.after.count) * std::log(before.chi_square / after.chi_square);
+  }
+
   void walk_ladder() {
     LadderStep start;
     start.rms_um = base_.after.rms_um;
@@ -126,12 +132,18 @@ class Diagnoser {
     result_.ladder.push_back(start);
     result_.machine_text = text_;
     result_.end = base_;
-    for (std::size_t count = 1; count <= chosen_.size(); ++count) {
-      options_.progress(0.8 + 0.1 * static_cast<double>(count) / static_cast<double>(chosen_.size()),
+    const std::size_t found = chosen_.size();
+    for (std::size_t count = 1; count <= chosen_.size();) {
+      options_.progress(0.8 + 0.1 * static_cast<double>(count) / static_cast<double>(found),
                         "fitting the ladder");
       const std::vector<std::size_t> items(chosen_.begin(),
                                            chosen_.begin() + static_cast<std::ptrdiff_t>(count));
       const Fitted fitted = fit_with(items);
+      // What the linear estimate promised and the fit does not keep is no step.
+      if (fall_of(result_.end, fitted.fit) < kEvidence) {
+        chosen_.erase(chosen_.begin() + static_cast<std::ptrdiff_t>(count - 1));
+        continue;
+      }
       LadderStep step;
       step.effect = pool_.candidate(items.back()).choice.effect->id;
       step.add = add_string_of(items.back());
@@ -144,6 +156,7 @@ class Diagnoser {
       result_.ladder.push_back(step);
       result_.machine_text = fitted.text;
       result_.end = fitted.fit;
+      ++count;
     }
   }
 
@@ -211,7 +224,7 @@ class Diagnoser {
     StructureOptions structure;
     structure.fitted_parameters = static_cast<std::size_t>(result_.end.observability.rank);
     result_.left = failure_picture(machine, rows, result_.end.residual, structure);
-    constexpr double kStructure = 1e-4, kDoubtfulUncertainty = 1.5, kMostlyExplained = 0.5;
+    constexpr double kStructure = 1e-4, kDoubtfulUncertainty = 2, kMostlyExplained = 0.5;
     const bool structured = result_.left.omnibus_p < kStructure;
     const double freedom = std::max<double>(1, static_cast<double>(result_.end.freedom));
     const double reduced = result_.end.chi_square / freedom;
@@ -238,7 +251,8 @@ class Diagnoser {
     }
     const Measurement rows = rebind(measurement_, base_.machine, result_.end.machine);
     const bool noise_is_left = down_to_noise(rows);
-    if (!noise_is_left) {
+    const std::vector<std::size_t> pieces = pieces_of_one_function(finder_.evidence(), pool_, chosen_);
+    if (!noise_is_left && pieces.empty()) {
       if (const auto sentence = outliers_to_blame(result_.end.machine, rows, result_.end.residual)) {
         result_.verdict = Verdict::kInstrument;
         result_.explanation = *sentence;
@@ -267,8 +281,7 @@ class Diagnoser {
       result_.explanation =
           "Effects of the catalogue lower the residual, and it does not come down to the noise." +
           where_left();
-    } else if (const auto pieces = pieces_of_one_function(finder_.evidence(), pool_, chosen_);
-               !pieces.empty()) {
+    } else if (!pieces.empty()) {
       result_.verdict = Verdict::kUnexplained;
       result_.explanation = fmt::format(
           "{} effects come down to the noise together, and are more likely the pieces of one function of the "
@@ -277,6 +290,15 @@ class Diagnoser {
       for (std::size_t i = 1; i < pieces.size(); ++i)
         result_.explanation += "; " + pool_.candidate(pieces[i]).label;
       result_.explanation += ".";
+    } else if (const auto nameless = std::count_if(chosen_.begin(), chosen_.end(),
+                                                   [&](std::size_t item) { return pool_.is_custom(item); });
+               nameless > 1) {
+      result_.verdict = Verdict::kUnexplained;
+      result_.explanation = fmt::format(
+          "The residual comes down to the noise with {} terms that only a search found: more likely pieces "
+          "of what "
+          "the catalogue does not hold.",
+          nameless);
     } else if (const std::string doubt = doubt_of_shapes(); !doubt.empty()) {
       result_.verdict = Verdict::kUnexplained;
       result_.explanation =
@@ -355,8 +377,8 @@ class Diagnoser {
   FitResult base_;
   std::string text_;  // of the machine, fitted
   Finder finder_;
-  const Pool& pool_;                        // the finder's
-  const std::vector<std::size_t>& chosen_;  // the finder's
+  const Pool& pool_;                 // the finder's
+  std::vector<std::size_t> chosen_;  // the finder's, without those that gain nothing in the fit
   std::vector<std::size_t> shown_;
   Rivals rivals_;
   Diagnosis result_;
@@ -370,6 +392,29 @@ double criterion_of(const FitResult& fit) {
 
 bool is_named(Verdict verdict) {
   return verdict == Verdict::kMissingEffect || verdict == Verdict::kAmbiguous;
+}
+
+/// The search near the start first: following directions that it does not show lets a model imitate what it
+/// lacks.
+Diagnosis diagnose_rows(const std::string& text, const Machine& machine, const Measurement& measurement,
+                        const DiagnoseOptions& options) {
+  options.progress(0, "fitting the model");
+  FitOptions all;
+  FitResult followed = fit(machine, measurement, all);
+  if (followed.followed_unseen) {
+    FitOptions near;
+    near.follow_unseen = false;
+    Diagnosis result =
+        Diagnoser(text, machine, measurement, options, near, fit(machine, measurement, near)).run();
+    if (is_named(result.verdict) && criterion_of(result.end) < criterion_of(followed) + kDistance) {
+      result.explanation +=
+          " Directions of the model that its start does not show were left there: following them would "
+          "imitate "
+          "a part of this by products of errors.";
+      return result;
+    }
+  }
+  return Diagnoser(text, machine, measurement, options, all, std::move(followed)).run();
 }
 
 }  // namespace
@@ -393,23 +438,14 @@ const char* verdict_name(Verdict verdict) {
 Diagnosis diagnose(const std::string& text, const Machine& machine, const Measurement& measurement,
                    const DiagnoseOptions& options) {
   require_time_order(measurement);
-  options.progress(0, "fitting the model");
-  FitOptions all;
-  FitResult followed = fit(machine, measurement, all);
-  if (followed.followed_unseen) {
-    FitOptions near;
-    near.follow_unseen = false;
-    Diagnosis result =
-        Diagnoser(text, machine, measurement, options, near, fit(machine, measurement, near)).run();
-    if (is_named(result.verdict) && criterion_of(result.end) < criterion_of(followed) + kDistance) {
-      result.explanation +=
-          " Directions of the model that its start does not show were left there: following them would "
-          "imitate "
-          "a part of this by products of errors.";
-      return result;
-    }
-  }
-  return Diagnoser(text, machine, measurement, options, all, std::move(followed)).run();
+  Diagnosis all = diagnose_rows(text, machine, measurement, options);
+  if (all.verdict != Verdict::kUnexplained) return all;
+  const auto rest = without_gross_outliers(machine, measurement, all.base.residual);
+  if (!rest) return all;
+  Diagnosis clean = diagnose_rows(text, machine, rest->rows, options);
+  if (!is_named(clean.verdict)) return all;
+  clean.explanation += " " + rest->sentence;
+  return clean;
 }
 
 }  // namespace vernier

@@ -13,9 +13,9 @@
 namespace vernier {
 namespace {
 
-/// Rows with a reading far from all others of a fit, by line number; `spread` of the others.
-std::vector<std::size_t> far_rows(const Measurement& rows, const Eigen::VectorXd& residual,
-                                  bool noise_known) {
+/// Rows with a reading more than `far` spreads from the fit; the spread is that of most of them, and u at
+/// least.
+std::vector<std::size_t> far_rows(const Measurement& rows, const Eigen::VectorXd& residual, double far) {
   const Eigen::VectorXd weights = fit_weights(rows);
   std::vector<double> sizes;
   for (Eigen::Index i = 0; i < weights.size(); ++i)
@@ -24,15 +24,52 @@ std::vector<std::size_t> far_rows(const Measurement& rows, const Eigen::VectorXd
   std::nth_element(sizes.begin(), sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2), sizes.end());
   // The median of |x| of a normal variable is 0.6745 of its standard deviation.
   double spread = sizes[sizes.size() / 2] / 0.6745;
-  if (noise_known) spread = std::max(spread, 1.0);
-  constexpr double kFar = 6;
-  std::vector<std::size_t> far;
+  if (has_uncertainty(rows)) spread = std::max(spread, 1.0);
+  std::vector<std::size_t> found;
   for (Eigen::Index i = 0; i < weights.size(); ++i)
-    if (std::abs(weights[i] * residual[i]) > kFar * spread) {
+    if (std::abs(weights[i] * residual[i]) > far * spread) {
       const std::size_t row = rows.observations[static_cast<std::size_t>(i)].row;
-      if (far.empty() || far.back() != row) far.push_back(row);
+      if (found.empty() || found.back() != row) found.push_back(row);
     }
-  return far;
+  return found;
+}
+
+struct Peeled {
+  Measurement rows;                // that are left
+  std::vector<std::size_t> lines;  // of those that are not, in order
+  FitResult fit;                   // to the rows that are left
+};
+
+/// Leaves out far rows and fits again, until there are none; nothing where there never were, or more than
+/// `most`.
+std::optional<Peeled> peel(const Machine& machine, const Measurement& all, const Eigen::VectorXd& of_all,
+                           double far, double most) {
+  Peeled peeled{all, {}, {}};
+  peeled.fit.residual = of_all;
+  constexpr int kMostRounds = 5;
+  for (int round = 0; round < kMostRounds; ++round) {
+    const std::vector<std::size_t> found = far_rows(peeled.rows, peeled.fit.residual, far);
+    if (found.empty()) break;
+    std::vector<std::size_t> keep;
+    for (std::size_t row = 0; row < peeled.rows.rows(); ++row)
+      if (std::find(found.begin(), found.end(), row) == found.end()) keep.push_back(row);
+    for (const std::size_t row : found) peeled.lines.push_back(peeled.rows.line[row]);
+    if (static_cast<double>(peeled.lines.size()) > most) return std::nullopt;
+    peeled.rows = select_rows(peeled.rows, keep);
+    peeled.fit = fit(machine, peeled.rows);
+  }
+  if (peeled.lines.empty()) return std::nullopt;
+  std::sort(peeled.lines.begin(), peeled.lines.end());
+  return peeled;
+}
+
+/// "12 of 400 rows (line 14, 142, ...)"
+std::string rows_in_words(const Peeled& peeled, const Measurement& all) {
+  constexpr std::ptrdiff_t kNamed = 8;
+  const auto count = static_cast<std::ptrdiff_t>(peeled.lines.size());
+  return fmt::format("{} of {} rows (line {}{})", count, all.rows(),
+                     fmt::join(peeled.lines.begin(), peeled.lines.begin() + std::min(kNamed, count), ", "),
+                     count > kNamed ? ", ..." : "");
 }
 
 }  // namespace
@@ -40,37 +77,29 @@ std::vector<std::size_t> far_rows(const Measurement& rows, const Eigen::VectorXd
 std::optional<std::string> outliers_to_blame(const Machine& machine, const Measurement& measurement,
                                              const Eigen::VectorXd& of_all) {
   if (!has_uncertainty(measurement)) return std::nullopt;  // nothing says what the rest should be
-  Measurement rows = measurement;
-  Eigen::VectorXd residual = of_all;
-  constexpr double kMostOfThem = 0.03;
-  constexpr int kMostRounds = 5;
-  const double most = kMostOfThem * static_cast<double>(rows.rows());
-  std::vector<std::size_t> lines;
-  FitResult rest;
-  for (int round = 0; round < kMostRounds; ++round) {
-    const std::vector<std::size_t> far = far_rows(rows, residual, true);
-    if (far.empty()) break;
-    std::vector<std::size_t> keep;
-    for (std::size_t row = 0; row < rows.rows(); ++row)
-      if (std::find(far.begin(), far.end(), row) == far.end()) keep.push_back(row);
-    for (const std::size_t row : far) lines.push_back(rows.line[row]);
-    if (static_cast<double>(lines.size()) > most) return std::nullopt;
-    rows = select_rows(rows, keep);
-    rest = fit(machine, rows);
-    residual = rest.residual;
-  }
-  if (lines.empty() || rest.freedom <= 0) return std::nullopt;
-  const double freedom = static_cast<double>(rest.freedom);
-  if (rest.chi_square / freedom > 1 + kNoiseSigmas * std::sqrt(2 / freedom)) return std::nullopt;
-  std::sort(lines.begin(), lines.end());
+  constexpr double kFar = 6, kMostOfThem = 0.03;
+  const auto peeled =
+      peel(machine, measurement, of_all, kFar, kMostOfThem * static_cast<double>(measurement.rows()));
+  if (!peeled || peeled->fit.freedom <= 0) return std::nullopt;
+  const double freedom = static_cast<double>(peeled->fit.freedom);
+  if (peeled->fit.chi_square / freedom > 1 + kNoiseSigmas * std::sqrt(2 / freedom)) return std::nullopt;
   return fmt::format(
-      "Outliers: without {} of {} rows (line {}{}) the residual is noise. A lost beam or a bumped target "
-      "is "
-      "likelier than the machine.",
-      lines.size(), measurement.rows(),
-      fmt::join(lines.begin(),
-                lines.begin() + std::min<std::ptrdiff_t>(8, static_cast<std::ptrdiff_t>(lines.size())), ", "),
-      lines.size() > 8 ? ", ..." : "");
+      "Outliers: without {} the residual is noise. A lost beam or a bumped target is likelier than the "
+      "machine.",
+      rows_in_words(*peeled, measurement));
+}
+
+std::optional<WithoutOutliers> without_gross_outliers(const Machine& machine, const Measurement& measurement,
+                                                      const Eigen::VectorXd& of_all) {
+  constexpr double kFar = 15, kMostOfThem = 0.01;
+  auto peeled = peel(machine, measurement, of_all, kFar,
+                     std::max(1.0, kMostOfThem * static_cast<double>(measurement.rows())));
+  if (!peeled) return std::nullopt;
+  return WithoutOutliers{
+      std::move(peeled->rows),
+      fmt::format("Left out: {}, off by more than {:.0f} times the spread of the others, as a lost "
+                  "beam or a bumped target is.",
+                  rows_in_words(*peeled, measurement), kFar)};
 }
 
 }  // namespace vernier

@@ -15,4 +15,15 @@ namespace vernier {
 std::optional<std::string> outliers_to_blame(const Machine& machine, const Measurement& measurement,
                                              const Eigen::VectorXd& of_all);
 
+/// Measurement without its gross outliers, and the sentence that says which.
+struct WithoutOutliers {
+  Measurement rows;
+  std::string sentence;
+};
+
+/// Leaves out up to a hundredth of the rows (one at least) that lie so far off that they hide what the others
+/// show; nothing where there are none. tool.
+std::optional<WithoutOutliers> without_gross_outliers(const Machine& machine, const Measurement& measurement,
+                                                      const Eigen::VectorXd& of_all);
+
 }  // namespace vernier

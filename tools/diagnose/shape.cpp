@@ -106,6 +106,27 @@ Eigen::MatrixXd moved(const Evidence& evidence, const Pool& pool, std::size_t it
   return beyond_model(evidence, all);
 }
 
+struct Jump {
+  double at = 0;    // share of the range that was read
+  double gain = 0;  // chi^2 that a jump there explains
+};
+
+/// The jump along the axis, at one degree of freedom, that explains most.
+Jump best_jump(const Evidence& evidence, const DofPlace& place, const Eigen::VectorXd& u,
+               const Eigen::MatrixXd& beside) {
+  constexpr int kPlaces = 64;
+  const Eigen::ArrayXd answer = evidence.response(evidence.index_of(place)).array();
+  Jump best;
+  for (int k = 1; k < kPlaces; ++k) {
+    const double at = static_cast<double>(k) / kPlaces;
+    Eigen::MatrixXd column = answer * (u.array() > at).cast<double>();
+    evidence.whiten(column);
+    if (const Gain gain = gain_of(evidence, column, beside); gain.chi_square > best.gain)
+      best = {at, gain.chi_square};
+  }
+  return best;
+}
+
 bool is_function_of_an_axis(const Evidence& evidence, const Pool& pool, std::size_t item) {
   const Candidate& candidate = pool.candidate(item);
   return candidate.choice.axis && candidate.choice.place && candidate.terms.size() == 1 &&
@@ -129,8 +150,8 @@ std::string doubt_of_curve(const Evidence& evidence, const Pool& pool, const std
   // A period was found among many: it asks for more witnesses than a curve.
   const double seen_per_unknown = pool[item].scored.scanned.empty() ? 1.5 : 2;
   const Choice& choice = pool.candidate(item).choice;
-  const AxisFunction shape = function_of_axis(evidence, *choice.axis, *choice.place,
-                                              pool.columns(of_other_axes(evidence, pool, items, item)));
+  const Eigen::MatrixXd beside = pool.columns(of_other_axes(evidence, pool, items, item));
+  const AxisFunction shape = function_of_axis(evidence, *choice.axis, *choice.place, beside);
   const auto coefficients = static_cast<double>(pool[item].columns.cols());
   const double unknowns = coefficients + static_cast<double>(pool[item].scored.scanned.size());
   const bool curve = coefficients >= kCurve && pool[item].scored.scanned.empty();
@@ -140,6 +161,15 @@ std::string doubt_of_curve(const Evidence& evidence, const Pool& pool, const std
         "of "
         "the axis' unit): it depends on the axis, and its cause has no name",
         pool.candidate(item).label, 100 * shape.fast_share, shape.resolved);
+  if (curve) {
+    const Jump jump = best_jump(evidence, *choice.place, positions(evidence, *choice.axis), beside);
+    const Evidence::Range range = evidence.range_of(*choice.axis);
+    if (jump.gain > gain_of(evidence, evidence.columns(pool.candidate(item), {}), beside).chi_square)
+      return fmt::format(
+          "a jump at {:.4g} of the axis explains more than {}: it depends on the axis, and its cause has no "
+          "name",
+          range.low + jump.at * (range.high - range.low), pool.candidate(item).label);
+  }
   if ((unknowns >= kCurve || shape.own_table) && shape.seen < seen_per_unknown * unknowns)
     return fmt::format(
         "{} takes {:.0f} unknowns where the readings show only {:.0f} independent functions of the axis "

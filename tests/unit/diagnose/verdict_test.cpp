@@ -201,7 +201,7 @@ TEST(Verdict, ACurveThatNothingCouldRefuteIsNotNamed) {
   EXPECT_EQ(answer.verdict, Verdict::kUnexplained) << "seed " << kSeed << ": " << answer.explanation;
 }
 
-/// Thermal growth, in proportion to the place or bent over it by a tenth.
+/// Thermal growth, in proportion to the place or bent over it.
 std::string growth(double bent) {
   return survey(anywhere(), [bent](double x, double warm) {
     const double part = x / 500;
@@ -213,12 +213,55 @@ TEST(Verdict, ANameThatDoesNotHoldAlongTheAxisIsNotGiven) {
   const Machine machine = parse_machine(kAxis, "m.xml");
 
   const Diagnosis straight = diagnose(kAxis, machine, parse_measurement(growth(0), "m.csv", machine));
-  const Diagnosis bent = diagnose(kAxis, machine, parse_measurement(growth(0.22), "m.csv", machine));
+  const Diagnosis bent = diagnose(kAxis, machine, parse_measurement(growth(0.3), "m.csv", machine));
 
   EXPECT_EQ(straight.verdict, Verdict::kMissingEffect) << "seed " << kSeed << ": " << straight.explanation;
   EXPECT_EQ(straight.ladder.at(1).effect, "thermal-scale");
   EXPECT_EQ(bent.verdict, Verdict::kUnexplained) << "seed " << kSeed << ": " << bent.explanation;
   EXPECT_NE(bent.explanation.find("changes along the axes"), std::string::npos) << bent.explanation;
+}
+
+/// A jump is a function of the axis, too, and no smooth one.
+TEST(Verdict, AJumpIsNoSmoothCurve) {
+  const Machine machine = parse_machine(kAxis, "m.xml");
+  const std::string text = survey(anywhere(), [](double x, double) { return x > 210 ? 0.0025 : 0.0; });
+
+  const Diagnosis answer = diagnose(kAxis, machine, parse_measurement(text, "m.csv", machine));
+
+  EXPECT_EQ(answer.verdict, Verdict::kUnexplained) << "seed " << kSeed << ": " << answer.explanation;
+  EXPECT_NE(answer.explanation.find("a jump at 2"), std::string::npos) << answer.explanation;
+}
+
+/// One lost reading among many, and reversal error in all the others.
+TEST(Verdict, AGrossOutlierDoesNotHideACause) {
+  const Machine machine = parse_machine(kAxis, "m.xml");
+  std::mt19937_64 random(kSeed);
+  std::normal_distribution<double> noise(0, 0.001);
+  std::string text = "X[mm],dirX,x[mm],u[um],run\n";
+  for (int i = 0; i < 200; ++i) {
+    const int dir = i % 2 == 0 ? 1 : -1;
+    const double lost = i == 77 ? 0.7 : 0;
+    text += fmt::format("{},{},{:.6f},1,r{}\n", 2.5 * i, dir, 2.5 * i + 0.002 * dir + lost + noise(random),
+                        i / 50);
+  }
+
+  const Diagnosis answer = diagnose(kAxis, machine, parse_measurement(text, "m.csv", machine));
+
+  EXPECT_EQ(answer.verdict, Verdict::kMissingEffect) << "seed " << kSeed << ": " << answer.explanation;
+  EXPECT_EQ(answer.ladder.back().effect, "backlash");
+  EXPECT_NE(answer.explanation.find("line 79"), std::string::npos) << answer.explanation;
+}
+
+TEST(Verdict, RowsOutOfTheOrderOfTimeAreToldWithTheirLine) {
+  const Machine machine = parse_machine(kAxis, "m.xml");
+  const Measurement rows =
+      parse_measurement("X[mm],t[s],x[mm],run\n0,0,0,a\n1,5,1,a\n0,1,0,b\n2,4,2,a\n", "m.csv", machine);
+  try {
+    diagnose(kAxis, machine, rows);
+    FAIL() << "no error";
+  } catch (const InputError& error) {
+    EXPECT_EQ(std::string(error.what()).find("m.csv:5: \"t\": falls from 5 to 4"), 0U) << error.what();
+  }
 }
 
 }  // namespace
