@@ -53,8 +53,8 @@ struct Measurement {
 /// to the unit that the machine declares). Throws InputError with file, line and word. tool.
 Measurement read_measurement(const std::vector<std::string>& paths, const Machine& machine);
 
-/// Throws InputError with file and line where `t` falls from one row of a run to its next: what depends on time
-/// or lags has no meaning there. tool.
+/// Throws InputError with file and line where `t` falls from one row of a run to its next: what depends on
+/// time or lags has no meaning there. tool.
 void require_time_order(const Measurement& measurement);
 
 /// The rows `keep` (increasing) of a measurement, with their observations.
