@@ -87,7 +87,7 @@ void run_diagnose(const DiagnoseArguments& arguments) {
   options.progress = [&](double fraction, const std::string& step) { progress.update(fraction, step); };
   Diagnosis diagnosis = diagnose(text, machine, m, options);
   diagnosis.next_measurement = plan_for(text, machine, m, diagnosis, options.effects);
-  const nlohmann::ordered_json json = diagnosis_json(diagnosis, machine, m);
+  const nlohmann::ordered_json json = diagnosis_json(diagnosis, m);
   if (!arguments.output.empty()) {
     nlohmann::ordered_json page = json;
     page["machine"] = machine.name;

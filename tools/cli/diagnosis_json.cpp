@@ -54,7 +54,7 @@ Json candidate_json(const CandidateFinding& finding, const Machine& machine) {
 
 }  // namespace
 
-Json diagnosis_json(const Diagnosis& diagnosis, const Machine& machine, const Measurement& measurement) {
+Json diagnosis_json(const Diagnosis& diagnosis, const Measurement& measurement) {
   Json json;
   json["verdict"] = verdict_name(diagnosis.verdict);
   json["explanation"] = diagnosis.explanation;
@@ -67,7 +67,7 @@ Json diagnosis_json(const Diagnosis& diagnosis, const Machine& machine, const Me
   json["n_searched"] = diagnosis.searched;
   json["candidates"] = Json::array();
   for (const CandidateFinding& finding : diagnosis.candidates)
-    json["candidates"].push_back(candidate_json(finding, machine));
+    json["candidates"].push_back(candidate_json(finding, diagnosis.base.machine));
   json["ladder"] = Json::array();
   std::optional<double> check_before;
   for (const LadderStep& step : diagnosis.ladder) {

@@ -5,8 +5,7 @@
 
 namespace vernier {
 
-/// The result of `diagnose` for programs (FORMATS section 3, and more keys). `machine`: the user's.
-nlohmann::ordered_json diagnosis_json(const Diagnosis& diagnosis, const Machine& machine,
-                                      const Measurement& measurement);
+/// The result of `diagnose` for programs (FORMATS section 3, and more keys).
+nlohmann::ordered_json diagnosis_json(const Diagnosis& diagnosis, const Measurement& measurement);
 
 }  // namespace vernier

@@ -61,7 +61,7 @@ void run_effects(const EffectsArguments& arguments) {
 
 void run_add(const AddArguments& arguments) {
   const std::string text = read_file(arguments.machine);
-  const Machine machine = parse_machine(text, arguments.machine);
+  const Machine machine = with_base_row(parse_machine(text, arguments.machine));
   const std::vector<Effect> effects = effect_catalogue(arguments.files);
   const Candidate candidate = make_candidate(machine, parse_add_string(arguments.effect, machine, effects));
   const std::string added = add_to_machine_text(text, machine, candidate);

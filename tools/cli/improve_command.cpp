@@ -103,7 +103,7 @@ class Improver {
     Progress progress("diagnose");
     options.progress = [&](double share, const std::string& step) { progress.update(share, step); };
     const Diagnosis d = diagnose(text_, machine_, rows_, options);
-    last_ = diagnosis_json(d, machine_, rows_);
+    last_ = diagnosis_json(d, rows_);
     if (round == 0) {
       first_diagnosis_ = last_;
       take({"the model as given, fitted", "", "", "", d.ladder[0].text, d.ladder[0].rms_um,

@@ -26,7 +26,12 @@ class Adder {
     find(document_);
     if (variables_.empty()) throw InputError(machine_.file + ": no <variables> to add to");
     insert_variables();
-    for (const CandidateTerm& term : candidate_.terms) edit_term(term);
+    for (const CandidateTerm& term : candidate_.terms)
+      if (is_stand_in(machine_, term.place))
+        base_row_ += " " + std::string(dof_name(machine_, term.place)) + "=\"" + value_of(term) + "\"";
+      else
+        edit_term(term);
+    if (!base_row_.empty()) insert_base_row();
     return apply_edits(text_, std::move(edits_));
   }
 
@@ -161,19 +166,35 @@ class Adder {
     return list;
   }
 
-  pugi::xml_node node_of(const DofPlace& place) const {
+  pugi::xml_node chain_of(bool of_workpiece) const {
     for (const pugi::xml_node chain : chains_) {
       bool workpiece = false;
       for (const pugi::xml_attribute item : chain.attributes())
         if (equal_no_case(item.name(), "branch")) workpiece = item.value() == std::string("workpiece");
-      if (workpiece != place.workpiece) continue;
-      // By position: `n` may be left out.
-      std::size_t index = 0;
-      for (const pugi::xml_node node : chain.children())
-        if (node.type() == pugi::node_element && index++ == place.transform) return node;
+      if (workpiece == of_workpiece) return chain;
     }
+    return {};
+  }
+
+  /// The row of the file at a place that is no stand-in.
+  pugi::xml_node node_of(const DofPlace& place) const {
+    // By position: `n` may be left out.
+    std::size_t index = !place.workpiece && is_stand_in(machine_, {false, 0, 0}) ? 1 : 0;
+    for (const pugi::xml_node node : chain_of(place.workpiece).children())
+      if (node.type() == pugi::node_element && index++ == place.transform) return node;
     throw InputError(
         fmt::format("{}: transform {} was not found again", machine_.file, transform_at(machine_, place).n));
+  }
+
+  /// Writes the row that stands in at the base: first of the tool branch, last of the workpiece branch.
+  void insert_base_row() {
+    const DofPlace place = candidate_.terms[0].place;
+    const std::string row = fmt::format("<sixdof n=\"{}\"{}/>", transform_at(machine_, place).n, base_row_);
+    if (place.workpiece) return append(chain_of(true), "    " + row + "\n");
+    const std::size_t first = offset(node_of({false, 1, 0})) - 1;
+    const std::size_t line = text_.rfind('\n', first) + 1;  // 0 on the first line
+    const bool alone = text_.find_first_not_of(" \t", line) == first;
+    edits_.push_back({first, 0, row + (alone ? "\n" + text_.substr(line, first - line) : "")});
   }
 
   /// Comparisons bind loosest: beside something else they need parentheses.
@@ -181,12 +202,17 @@ class Adder {
     return expr.op == Op::kEqual || expr.op == Op::kLess || expr.op == Op::kGreater;
   }
 
+  /// The term as it stands in an attribute, beside others or alone.
+  std::string value_of(const CandidateTerm& term) const {
+    const std::string text = in_domain(term.text);
+    const bool open = is_comparison(*parse_expression(text));
+    return escape_attribute(open ? "(" + text + ")" : text);
+  }
+
   void edit_term(const CandidateTerm& term) {
     const pugi::xml_node node = node_of(term.place);
     const std::string name = dof_name(machine_, term.place);
-    const std::string text = in_domain(term.text);
-    const bool open = is_comparison(*parse_expression(text));
-    const std::string value = escape_attribute(open ? "(" + text + ")" : text);
+    const std::string value = value_of(term);
     const bool closed = !is_comparison(*transform_at(machine_, term.place).dof[term.place.dof]);
     for (const AttributeSpan& span : attribute_spans(text_, offset(node))) {
       if (!equal_no_case(span.name, name)) continue;
@@ -212,6 +238,7 @@ class Adder {
   pugi::xml_document document_;
   pugi::xml_node variables_, static_, inputs_;
   std::vector<pugi::xml_node> chains_;
+  std::string base_row_;  // attributes of the row to write
   std::vector<TextEdit> edits_;
 };
 

@@ -43,8 +43,16 @@ class AxisPlaces {
 /// The lengths X Y Z that shift the whole measuring frame, where the chain has such a transform: the first
 /// one of a chain without workpiece branch, the last one of a workpiece branch that does not turn there.
 std::vector<DofPlace> base_places(const Machine& machine);
+/// The machine with a place for rigid motions of the whole: where it has no base_places, because the row
+/// there turns (a DH row, a table), an identity sixdof stands in at that end of the chain, numbered one below
+/// the first row or one above the last. Predictions are the same; add_to_machine_text writes the row once it
+/// takes a term. Places of diagnose, plan and `add` are those of this machine. tool.
+Machine with_base_row(Machine machine);
+/// Is the transform of this place one that with_base_row put in? It stands on no line of the file.
+bool is_stand_in(const Machine& machine, const DofPlace& place);
 /// The degrees of freedom of the transforms that carry everything: the first one of the tool branch and the
-/// last one of the workpiece branch, each where the chain has that branch.
+/// last one of the workpiece branch, each where the chain has that branch; beside a stand-in the row next to
+/// it.
 std::vector<DofPlace> carrier_places(const Machine& machine);
 /// All degrees of freedom, tool branch first.
 std::vector<DofPlace> all_places(const Machine& machine);

@@ -57,7 +57,10 @@ class Diagnoser {
   Fitted fit_with(const std::vector<std::size_t>& items) const {
     Fitted result;
     result.text = text_;
-    Machine machine = parse_machine(text_, machine_.file);
+    const auto parse = [this](const std::string& text) {
+      return with_base_row(parse_machine(text, machine_.file));
+    };
+    Machine machine = parse(text_);
     std::map<std::string, double> start;
     for (const std::size_t item : items) {
       Choice choice = pool_.candidate(item).choice;
@@ -71,7 +74,7 @@ class Diagnoser {
         if (kept != pool_[item].kept.end()) start[unknown.name] = k[kept - pool_[item].kept.begin()];
       }
       result.text = add_to_machine_text(result.text, machine, candidate);
-      machine = parse_machine(result.text, machine_.file);
+      machine = parse(result.text);
       result.candidates.push_back(candidate);
     }
     for (Static& item : machine.statics)
@@ -435,9 +438,10 @@ const char* verdict_name(Verdict verdict) {
   return "consistent";
 }
 
-Diagnosis diagnose(const std::string& text, const Machine& machine, const Measurement& measurement,
+Diagnosis diagnose(const std::string& text, const Machine& given, const Measurement& measurement,
                    const DiagnoseOptions& options) {
   require_time_order(measurement);
+  const Machine machine = with_base_row(given);
   Diagnosis all = diagnose_rows(text, machine, measurement, options);
   if (all.verdict != Verdict::kUnexplained) return all;
   const auto rest = without_gross_outliers(machine, measurement, all.base.residual);

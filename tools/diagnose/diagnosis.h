@@ -45,6 +45,7 @@ struct LadderStep {
   double chi_square_per_freedom = 0;
 };
 
+/// Places of the candidates are those of base.machine, which may hold a stand-in row (with_base_row).
 struct Diagnosis {
   Verdict verdict = Verdict::kConsistent;
   std::string explanation;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <set>
 
 #include "tools/diagnose/probe.h"
@@ -60,6 +61,13 @@ class Enumerator {
 
   bool answers(const DofPlace& place) const {
     return evidence_.response(evidence_.index_of(place)).squaredNorm() > 0;
+  }
+
+  /// The row that stands in at the base takes what no row of the file can express, and nothing that an axis
+  /// drives: what moves or bends with an axis is carried by it.
+  bool is_open(const DofPlace& place, const Choice& choice) const {
+    if (!is_stand_in(machine_, place)) return true;
+    return !choice.axis && std::find(distinct_.begin(), distinct_.end(), place) != distinct_.end();
   }
 
   /// Which places turn about a horizontal axis or move along gravity, on average over some rows.
@@ -226,7 +234,7 @@ class Enumerator {
     const EffectForm& form = *choice.form;
     const auto at_each = [&](const std::vector<DofPlace>& places, const auto& admitted) {
       for (const DofPlace& place : places)
-        if (answers(place) && admitted(place)) {
+        if (answers(place) && is_open(place, choice) && admitted(place)) {
           Choice one = choice;
           one.place = place;
           with_sum(one);
@@ -432,7 +440,12 @@ std::vector<DofPlace> distinct_places(const Evidence& evidence, bool angles_apar
   constexpr double kSamePlace = 1e-7;
   std::vector<DofPlace> places;
   std::vector<Eigen::VectorXd> seen;
-  for (std::size_t i = 0; i < evidence.places().size(); ++i) {
+  std::vector<std::size_t> order(evidence.places().size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_partition(order.begin(), order.end(), [&](std::size_t i) {
+    return !is_stand_in(evidence.machine(), evidence.places()[i]);
+  });
+  for (const std::size_t i : order) {
     Eigen::VectorXd column = evidence.response(i);
     const double norm = column.norm();
     if (norm == 0) continue;

@@ -31,7 +31,8 @@ std::vector<ScannedCandidate> enumerate_products(const Evidence& evidence,
                                                  const std::vector<Product>& extend);
 
 /// The degrees of freedom that the observations can tell apart: of those that do the same to all observations
-/// (all but 1e-7 of the direction) the first one. `angles_apart`: the first angle and the first length. tool.
+/// (all but 1e-7 of the direction) the first one, rows of the file before one that stands in. `angles_apart`:
+/// the first angle and the first length. tool.
 std::vector<DofPlace> distinct_places(const Evidence& evidence, bool angles_apart);
 
 /// What a logged column is, by its unit (by its name where it has none).

@@ -98,9 +98,32 @@ std::vector<DofPlace> carrier_places(const Machine& machine) {
     const std::size_t count = branch_of(machine, workpiece)[at].dof_count();
     for (std::size_t d = 0; d < count; ++d) places.push_back({workpiece, at, d});
   };
-  if (!machine.tool.empty()) take(false, 0);
-  if (!machine.workpiece.empty()) take(true, machine.workpiece.size() - 1);
+  const auto &tool = machine.tool, &workpiece = machine.workpiece;
+  if (!tool.empty()) take(false, 0);
+  if (tool.size() > 1 && is_stand_in(machine, {false, 0, 0})) take(false, 1);
+  if (!workpiece.empty()) take(true, workpiece.size() - 1);
+  if (workpiece.size() > 1 && is_stand_in(machine, {true, workpiece.size() - 1, 0}))
+    take(true, workpiece.size() - 2);
   return places;
+}
+
+bool is_stand_in(const Machine& machine, const DofPlace& place) {
+  return transform_at(machine, place).line == 0;
+}
+
+Machine with_base_row(Machine machine) {
+  const bool workpiece = !machine.workpiece.empty();
+  std::vector<Transform>& branch = workpiece ? machine.workpiece : machine.tool;
+  if (branch.empty() || !base_places(machine).empty()) return machine;
+  Transform row;
+  row.line = 0;  // of no file
+  row.n = workpiece ? branch.back().n + 1 : branch.front().n - 1;
+  for (std::size_t d = 0; d < row.dof_count(); ++d) {
+    row.text[d] = "0";
+    row.dof[d] = parse_expression(row.text[d]);
+  }
+  branch.insert(workpiece ? branch.end() : branch.begin(), row);
+  return machine;
 }
 
 std::vector<DofPlace> base_places(const Machine& machine) {

@@ -106,7 +106,7 @@ std::string add_string_at(const Evidence& evidence, Candidate candidate, const s
 
 FittedModel fit_model(const std::string& text, const Machine& machine, const Measurement& measurement) {
   FittedModel model;
-  model.machine = fit(machine, measurement).machine;
+  model.machine = fit(with_base_row(machine), measurement).machine;
   model.text = update_machine_text(text, model.machine, true);
   return model;
 }

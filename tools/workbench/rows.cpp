@@ -157,7 +157,7 @@ std::string explanation_blob(const LoadedRows& rows, const std::string& add) {
   const Measurement& m = rows.measurement;
   const FitResult base = fit(rows.machine, m);
   const std::string fitted = update_machine_text(rows.text, base.machine, true);
-  const Machine machine = parse_machine(fitted, rows.machine.file);
+  const Machine machine = with_base_row(parse_machine(fitted, rows.machine.file));
   const Candidate candidate = make_candidate(machine, parse_add_string(add, machine, built_in_effects()));
   const Machine added = parse_machine(add_to_machine_text(fitted, machine, candidate), rows.machine.file);
   const Measurement bound = rebind(m, machine, added);

@@ -31,7 +31,7 @@ class AddAnywhere : public testing::TestWithParam<std::string> {
  protected:
   AddAnywhere()
       : text_(read_file(machine_path(GetParam()))),
-        machine_(parse_machine(text_, GetParam())),
+        machine_(with_base_row(parse_machine(text_, GetParam()))),
         random_(kSeed),
         rows_(diagnose_test::random_rows(machine_, 6, random_)),
         before_(predict(machine_, rows_)),
@@ -94,7 +94,7 @@ TEST_P(AddAnywhere, NamesNeverClash) {
   const std::vector<Choice> choices = all_choices(machine_, 1);
   for (std::size_t i = 0; i < choices.size(); i += 1 + choices.size() / 12)
     for (int twice = 0; twice < 2; ++twice) {
-      const Machine machine = parse_machine(text, "grown.xml");
+      const Machine machine = with_base_row(parse_machine(text, "grown.xml"));
       const Candidate candidate = make_candidate(machine, choices[i]);
       for (const CandidateUnknown& unknown : candidate.unknowns) {
         names.insert(unknown.name);

@@ -18,7 +18,7 @@ class Columns : public testing::TestWithParam<std::string> {
  protected:
   Columns()
       : text_(read_file(diagnose_test::machine_path(GetParam()))),
-        machine_(disturbed(parse_machine(text_, GetParam()))),
+        machine_(disturbed(with_base_row(parse_machine(text_, GetParam())))),
         rows_(diagnose_test::random_rows(machine_, 12, random_)) {}
 
   /// Errors of ordinary size, so that nothing is tried at a point where everything is 0.
