@@ -19,14 +19,12 @@ namespace {
 /// One diagnosis, step by step.
 class Diagnoser {
  public:
-  /// `base`: the machine's fit with these options.
   Diagnoser(const std::string& text, const Machine& machine, const Measurement& measurement,
-            const DiagnoseOptions& options, const FitOptions& fit_options, FitResult base)
+            const DiagnoseOptions& options)
       : options_(options),
-        fit_options_(fit_options),
         measurement_(measurement),
         machine_(machine),
-        base_(std::move(base)),
+        base_(fit_first(machine, measurement)),
         text_(update_machine_text(text, base_.machine, true)),
         finder_(base_.machine, measurement, options.effects, options.most_effects, options.progress),
         pool_(finder_.pool()) {}
@@ -47,6 +45,11 @@ class Diagnoser {
   }
 
  private:
+  FitResult fit_first(const Machine& machine, const Measurement& m) {
+    options_.progress(0, "fitting the model");
+    return fit(machine, m);
+  }
+
   struct Fitted {
     std::string text;
     FitResult fit;
@@ -80,8 +83,8 @@ class Diagnoser {
     for (Static& item : machine.statics)
       if (const auto found = start.find(item.name); found != start.end()) item.value = found->second;
     const Measurement rows = rebind(measurement_, base_.machine, machine);
-    result.fit = fit(machine, rows, fit_options_);
-    if (hold_runaways(items, result, machine)) result.fit = fit(machine, rows, fit_options_);
+    result.fit = fit(machine, rows);
+    if (hold_runaways(items, result, machine)) result.fit = fit(machine, rows);
     result.text = update_machine_text(result.text, result.fit.machine, true);
     result.text = close_domains(result.text, result.fit.machine, rows);
     return result;
@@ -374,7 +377,6 @@ class Diagnoser {
   }
 
   const DiagnoseOptions& options_;
-  const FitOptions& fit_options_;
   const Measurement& measurement_;
   Machine machine_;
   FitResult base_;
@@ -387,37 +389,8 @@ class Diagnoser {
   Diagnosis result_;
 };
 
-/// chi^2 and what its parameters cost (Schwarz 1978).
-double criterion_of(const FitResult& fit) {
-  const auto count = static_cast<double>(fit.after.count);
-  return fit.chi_square + (count - static_cast<double>(fit.freedom)) * std::log(count);
-}
-
 bool is_named(Verdict verdict) {
   return verdict == Verdict::kMissingEffect || verdict == Verdict::kAmbiguous;
-}
-
-/// The search near the start first: following directions that it does not show lets a model imitate what it
-/// lacks.
-Diagnosis diagnose_rows(const std::string& text, const Machine& machine, const Measurement& measurement,
-                        const DiagnoseOptions& options) {
-  options.progress(0, "fitting the model");
-  FitOptions all;
-  FitResult followed = fit(machine, measurement, all);
-  if (followed.followed_unseen) {
-    FitOptions near;
-    near.follow_unseen = false;
-    Diagnosis result =
-        Diagnoser(text, machine, measurement, options, near, fit(machine, measurement, near)).run();
-    if (is_named(result.verdict) && criterion_of(result.end) < criterion_of(followed) + kDistance) {
-      result.explanation +=
-          " Directions of the model that its start does not show were left there: following them would "
-          "imitate "
-          "a part of this by products of errors.";
-      return result;
-    }
-  }
-  return Diagnoser(text, machine, measurement, options, all, std::move(followed)).run();
 }
 
 }  // namespace
@@ -442,11 +415,11 @@ Diagnosis diagnose(const std::string& text, const Machine& given, const Measurem
                    const DiagnoseOptions& options) {
   require_time_order(measurement);
   const Machine machine = with_base_row(given);
-  Diagnosis all = diagnose_rows(text, machine, measurement, options);
+  Diagnosis all = Diagnoser(text, machine, measurement, options).run();
   if (all.verdict != Verdict::kUnexplained) return all;
   const auto rest = without_gross_outliers(machine, measurement, all.base.residual);
   if (!rest) return all;
-  Diagnosis clean = diagnose_rows(text, machine, rest->rows, options);
+  Diagnosis clean = Diagnoser(text, machine, rest->rows, options).run();
   if (!is_named(clean.verdict)) return all;
   clean.explanation += " " + rest->sentence;
   return clean;

@@ -27,9 +27,6 @@ struct FitOptions {
   double loss_scale = 3;  // in units of u (of the residual's spread where u is absent)
   Solver solver = Solver::kNormalEquations;
   int max_iterations = 100;
-  /// False: directions that the data do not see at the start stay there, even where following them promises
-  /// more than chance: products of errors can imitate an effect that the model lacks.
-  bool follow_unseen = true;
   /// Fitted one after the other before everything is fitted together: patterns of the parameters freed in
   /// each stage.
   std::vector<std::vector<std::string>> stages;
@@ -75,8 +72,7 @@ struct FitResult {
   std::vector<char> held;  // parameters that stand for directions left at their start; empty: none
   int iterations = 0;
   bool converged = false;
-  bool followed_unseen = false;  // directions that the data did not see at the start were followed
-  Eigen::VectorXd residual;      // measured - model per observation, mm or deg
+  Eigen::VectorXd residual;  // measured - model per observation, mm or deg
 };
 
 /// Weighted least squares on the fit rows: residual / u (1 where u is absent). Free parameters that the data

@@ -41,8 +41,7 @@ class Minimiser {
 
   LevenbergResult run() {
     descend();
-    while (result_.converged && result_.iterations < options_.max_iterations && releases_ < kMostReleases &&
-           options_.follow_unseen) {
+    while (result_.converged && result_.iterations < options_.max_iterations && releases_ < kMostReleases) {
       const LevenbergResult before = result_;
       const Release released = release();
       if (released == Release::kNone) break;

@@ -30,9 +30,8 @@ struct LevenbergOptions {
   /// Chance alone lowers the cost by about this much for each parameter freed (0: every fall counts). It
   /// judges whether a direction that the start did not see is worth following.
   std::function<double(double)> chance = [](double) { return 0.0; };
-  /// False: directions that the start did not see stay where they are, whatever following them promises.
-  bool follow_unseen = true;
-  /// Whether following such directions, faintly seen, may end there (from, to). Where not, the fit goes back.
+  /// Whether following directions that the start did not see and the end sees faintly may end there (from,
+  /// to). Where not, the fit goes back.
   std::function<bool(const Eigen::VectorXd&, const Eigen::VectorXd&)> believable =
       [](const Eigen::VectorXd&, const Eigen::VectorXd&) { return true; };
   /// J^T W^2 p'' of a point and a step: p'' is the second derivative of the predictions along the step. With

@@ -64,7 +64,6 @@ bool turned_little(const ParameterSet& parameters, const Eigen::VectorXd& from, 
 LevenbergOptions own_options(const FitOptions& options, std::size_t observations, Eigen::Index parameters) {
   LevenbergOptions levenberg;
   levenberg.max_iterations = options.max_iterations;
-  levenberg.follow_unseen = options.follow_unseen;
   levenberg.progress = options.progress;
   const double freedom = std::max(1.0, static_cast<double>(observations) - static_cast<double>(parameters));
   levenberg.negligible = [freedom](double cost) {
@@ -173,7 +172,6 @@ Eigen::VectorXd solve(const FitProblem& problem, Eigen::VectorXd point, const Fi
   const LevenbergResult outcome = solve_all(problem, result.parameters, point, options, result.before.count);
   result.iterations += outcome.iterations;
   result.converged = outcome.converged;
-  result.followed_unseen = outcome.followed_unseen;
   result.held = outcome.held;
   return outcome.point;
 }
