@@ -95,14 +95,15 @@ class Diagnoser {
   bool hold_runaways(const std::vector<std::size_t>& items, const Fitted& fitted, Machine& machine) const {
     bool any = false;
     for (std::size_t i = 0; i < items.size(); ++i) {
-      const auto& grid = finder_.candidates()[pool_[items[i]].scored.candidate].grid;
-      std::size_t scanned = 0;
+      const Scored& scored = pool_[items[i]].scored;
+      std::size_t next = 0;
       for (const CandidateUnknown& unknown : fitted.candidates[i].unknowns) {
         if (unknown.kind == UnknownKind::kLinear) continue;
-        const std::vector<double>& range = grid[scanned++];
+        const std::size_t index = next++;
         const auto at = fitted.fit.machine.find_static(unknown.name);
         const double value = fitted.fit.machine.statics[*at].value;
-        if (value >= range.front() / 2 && value <= range.back() * 2) continue;
+        if (!finder_.candidates()[scored.candidate].is_driven_out(index, scored.scanned[index], value))
+          continue;
         machine.statics[*machine.find_static(unknown.name)].hidden = true;
         any = true;
       }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <set>
 
@@ -31,6 +32,7 @@ class Enumerator {
     for (std::size_t axis = 0; axis < machine_.axes.size(); ++axis) {
       own_.push_back(axes_.own(axis));
       range_.push_back(evidence.range_of(axis));
+      shortest_.push_back(shortest_told_apart(evidence, axis));
     }
     distinct_ = distinct_places(evidence, true);
     find_sag();
@@ -367,7 +369,7 @@ class Enumerator {
     if (length <= 0 || range.step <= 0) return grid;
     constexpr double kMostPeriods = 100, kPerRange = 2.5, kLongest = 0.4;
     // Even steps cannot tell a period below two of them from a longer one; uneven steps can.
-    const double shortest = range.even ? 2.1 * range.step : 0;
+    const double shortest = std::max(range.even ? 2.1 * range.step : 0, shortest_[axis]);
     const double fastest = kMostPeriods / std::max(length, kMostPeriods * shortest);
     for (double f = 1 / (kLongest * length); f <= fastest; f += 1 / (kPerRange * length))
       grid.push_back(1 / f);
@@ -392,7 +394,23 @@ class Enumerator {
       if (unknown.kind != UnknownKind::kLinear)
         item.grid.push_back(grid_of(choice, *choice.effect->find_unknown(unknown.rule)));
     item.may_lose_columns = contains(choice.form->term, "{hats") || choice.runs.size() > 1;
+    add_fine_periods(item);
     list_.push_back(std::move(item));
+  }
+
+  /// A wave by itself is looked for below the grid too.
+  void add_fine_periods(ScannedCandidate& item) {
+    if (item.grid.size() != 1 || !item.candidate.choice.axis) return;
+    for (const CandidateUnknown& unknown : item.candidate.unknowns)
+      if (unknown.kind != UnknownKind::kLinear && unknown.kind != UnknownKind::kPeriod) return;
+    const std::size_t axis = *item.candidate.choice.axis;
+    const auto known = fine_.find(axis);
+    FinePeriods fine = known != fine_.end()
+                           ? known->second
+                           : fine_[axis] = fine_periods(evidence_, axis, item.grid[0], shortest_.at(axis));
+    if (!fine.any()) return;
+    fine.carrier = carrier_of(evidence_, item.candidate, fine);
+    if (fine.carrier.size() > 0) item.fine = std::move(fine);
   }
 
   static bool uses(const std::string& term, const std::string& name) {
@@ -411,6 +429,8 @@ class Enumerator {
   const std::vector<Effect>& effects_;
   std::vector<std::optional<DofPlace>> own_;
   std::vector<Evidence::Range> range_;
+  std::vector<double> shortest_;             // period that the positions of an axis tell from longer ones
+  std::map<std::size_t, FinePeriods> fine_;  // of an axis, without carrier
   std::vector<DofPlace> distinct_, sag_;
   std::vector<std::vector<std::string>> sums_;
   bool has_normals_ = false;
@@ -418,6 +438,13 @@ class Enumerator {
 };
 
 }  // namespace
+
+bool ScannedCandidate::is_driven_out(std::size_t unknown, double found, double value) const {
+  const std::vector<double>& range = grid[unknown];
+  // From one wave to the next that the range tells apart.
+  if (fine.holds(found)) return !(std::abs(1 / value - 1 / found) * fine.length <= 1);
+  return !(value >= range.front() / 2 && value <= range.back() * 2);
+}
 
 InputClass class_of_input(const Input& input) {
   const std::string& unit = input.unit;

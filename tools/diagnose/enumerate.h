@@ -3,6 +3,7 @@
 
 #include "tools/diagnose/candidate.h"
 #include "tools/diagnose/evidence.h"
+#include "tools/diagnose/periods.h"
 
 namespace vernier {
 
@@ -11,6 +12,10 @@ struct ScannedCandidate {
   Candidate candidate;
   std::vector<std::vector<double>> grid;  // one list per unknown that is no coefficient, increasing
   bool may_lose_columns = false;          // hats: the model may absorb a part of their span
+  FinePeriods fine;                       // of a wave: the periods below its grid
+
+  /// Did a fit drive a scanned unknown from where it was found out of the range in which it was looked for?
+  bool is_driven_out(std::size_t unknown, double found, double value) const;
 };
 
 /// Every effect of the catalogue at every place of the machine that the rule of its form admits and that the

@@ -38,12 +38,13 @@ void Finder::find() {
 
 void Finder::scan_beside(const std::vector<std::size_t>& items, double from, double to, std::size_t first) {
   const Eigen::MatrixXd beside = orthonormal(pool_.columns(items), 1e-6, nullptr);
-  const auto scored = scanner_.scan(
+  std::vector<Scored> scored = scanner_.scan(
       beside,
       [&](double share) {
         progress_(from + share * (to - from), fmt::format("{} candidates", list_.size()));
       },
       first);
+  for (Scored& fine : scanner_.scan_fine(beside, first)) scored.push_back(std::move(fine));
   constexpr std::size_t kMostAtOnce = 50;
   pool_.add(scored, kMostAtOnce, beside);
 }
@@ -114,10 +115,10 @@ void Finder::simplify() {
       // The same columns from a place further from the axis, or from a term without a name, are only the
       // longer way to say it.
       const bool named = pool_.is_custom(chosen_[i]) && !pool_.is_custom(other);
-      const bool same_but_nearer = pool_.same_kind(chosen_[i], other) &&
-                                   (named || pool_.penalty(pool_[other].scored.candidate) <
-                                                 pool_.penalty(pool_[chosen_[i]].scored.candidate)) &&
-                                   pool_.same_columns(chosen_[i], other);
+      const bool same_but_nearer =
+          pool_.same_kind(chosen_[i], other) &&
+          (named || pool_.penalty(pool_[other].scored) < pool_.penalty(pool_[chosen_[i]].scored)) &&
+          pool_.same_columns(chosen_[i], other);
       if (!same_but_nearer && !pool_.contains(chosen_[i], other)) continue;
       // One of many that hold it fits better by chance: what it has more pays for that.
       const double price = same_but_nearer ? 0 : 2 * std::log(std::max(1.0, holders_of(other)));
@@ -333,8 +334,11 @@ double Finder::p_value(std::size_t item) const {
   if (evidence_.noise_known()) variance = std::max(1.0, variance);
   const double unknowns =
       static_cast<double>(basis.cols()) + static_cast<double>(pool_[item].scored.scanned.size());
-  return std::min(
-      1.0, static_cast<double>(list_.size()) * chi_square_tail(gain / std::max(variance, 1e-300), unknowns));
+  const Scored& scored = pool_[item].scored;
+  const FinePeriods& fine = list_[scored.candidate].fine;
+  const double tries = scored.scanned.size() == 1 && fine.holds(scored.scanned[0]) ? fine.tries() : 1;
+  return std::min(1.0, tries * static_cast<double>(list_.size()) *
+                           chi_square_tail(gain / std::max(variance, 1e-300), unknowns));
 }
 
 Rivals Finder::rivals_of(std::size_t item) const {

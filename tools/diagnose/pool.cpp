@@ -73,8 +73,8 @@ const Candidate& Pool::candidate(std::size_t i) const {
   return scanner_.candidates()[items_[i].scored.candidate].candidate;
 }
 
-double Pool::penalty(std::size_t candidate) const {
-  const ScannedCandidate& item = scanner_.candidates()[candidate];
+double Pool::penalty(const Scored& scored) const {
+  const ScannedCandidate& item = scanner_.candidates()[scored.candidate];
   double cost = 2 * std::log(static_cast<double>(scanner_.candidates().size())) + rank_of(item.candidate);
   // A jump between runs follows any slow drift: it is named only where no continuous effect does as well.
   const Choice& choice = item.candidate.choice;
@@ -83,9 +83,11 @@ double Pool::penalty(std::size_t candidate) const {
   // A scanned unknown is as many tries as the grid has values that differ, where that is more than the price
   // of a coefficient.
   constexpr double kPointsPerTry = 2.5;
-  for (const std::vector<double>& grid : item.grid)
-    cost += std::max(0.0, 2 * std::log(static_cast<double>(grid.size()) / kPointsPerTry) -
-                              std::log(static_cast<double>(evidence_.rows().size())));
+  for (std::size_t i = 0; i < item.grid.size(); ++i) {
+    double tries = static_cast<double>(item.grid[i].size()) / kPointsPerTry;
+    if (item.fine.holds(scored.scanned.at(i))) tries += item.fine.tries();
+    cost += std::max(0.0, 2 * std::log(tries) - std::log(static_cast<double>(evidence_.rows().size())));
+  }
   return cost;
 }
 
@@ -115,7 +117,7 @@ void Pool::add(const std::vector<Scored>& scored, std::size_t most, const Eigen:
     value[i] =
         scored[i].gain / scale -
         static_cast<double>(scored[i].unknowns) * std::log(static_cast<double>(evidence_.rows().size())) -
-        penalty(scored[i].candidate);
+        penalty(scored[i]);
   }
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return value[a] > value[b]; });
   std::map<std::string, int> of_effect;
@@ -164,7 +166,7 @@ SelectionProblem Pool::problem(std::vector<std::size_t>& items) const {
     SelectionEntry entry;
     entry.first = at;
     entry.count = item.columns.cols();
-    entry.penalty = penalty(item.scored.candidate);
+    entry.penalty = penalty(item.scored);
     entry.scanned = item.scored.scanned.size();
     entry.cause = causes.emplace(place_key(item.scored), causes.size()).first->second;
     at += entry.count;

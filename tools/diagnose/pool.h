@@ -69,7 +69,7 @@ class Pool {
   /// not count)? If their columns are the same too, they are two ways to say one thing.
   bool same_kind(std::size_t a, std::size_t b) const;
   /// How much a candidate costs for having been one of many (twice the logarithm of their number).
-  double penalty(std::size_t candidate) const;
+  double penalty(const Scored& scored) const;
 
  private:
   std::string place_key(const Scored& scored) const;

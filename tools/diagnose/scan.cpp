@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <future>
+#include <map>
 #include <thread>
+#include <utility>
 
 namespace vernier {
 namespace {
@@ -12,6 +14,14 @@ namespace {
 constexpr Eigen::Index kBatch = 192;
 /// Less than this share of a column's length outside of the model's reach: the data cannot see it.
 constexpr double kLeastOwn = 1e-3;
+/// 1/value of the values looked at on both sides of one that was.
+std::pair<double, double> neighbours(const ScannedCandidate& item, std::size_t unknown, double value) {
+  if (item.fine.holds(value)) return {1 / value - item.fine.step, 1 / value + item.fine.step};
+  const std::vector<double>& grid = item.grid[unknown];
+  const auto at = static_cast<std::size_t>(std::lower_bound(grid.begin(), grid.end(), value) - grid.begin());
+  return {1 / grid[std::min(at + 1, grid.size() - 1)], 1 / grid[at > 0 ? at - 1 : 0]};
+}
+
 /// A column of hats that repeats the others is dropped below this share.
 constexpr double kLeastIndependent = 1e-3;
 
@@ -138,6 +148,46 @@ std::vector<Scored> Scanner::scan(const Eigen::MatrixXd& beside, const std::func
   return seen;
 }
 
+Scored Scanner::best_period(std::size_t candidate, const std::vector<double>& periods,
+                            const Eigen::MatrixXd& beside, const Eigen::VectorXd& residual) const {
+  const Eigen::MatrixXd& q = evidence_.absorbed();
+  std::vector<Scored> seen;
+  double most = 0;
+  for (const double period : periods) {
+    Scored scored{candidate, {period}, 0, 0, 0};
+    const Eigen::MatrixXd raw = evidence_.columns(candidates_[candidate].candidate, scored.scanned);
+    if (!score(raw, raw - q * (q.transpose() * raw), beside, residual, scored)) continue;
+    most = std::max(most, scored.gain);
+    seen.push_back(std::move(scored));
+  }
+  // As far apart as rivals must be to be told apart.
+  constexpr double kApart = 6;
+  const double near = most - kApart * residual.squaredNorm() / std::max(1.0, evidence_.freedom());
+  Scored best;
+  for (Scored& scored : seen)
+    if (scored.gain >= near && (best.unknowns == 0 || scored.scanned[0] > best.scanned[0])) best = scored;
+  return best;
+}
+
+std::vector<Scored> Scanner::scan_fine(const Eigen::MatrixXd& beside, std::size_t first_candidate) const {
+  Eigen::VectorXd residual = evidence_.residual();
+  if (beside.cols() > 0) residual -= beside * (beside.transpose() * residual);
+  std::map<std::size_t, std::vector<std::size_t>> of_axis;
+  for (std::size_t c = first_candidate; c < candidates_.size(); ++c)
+    if (candidates_[c].fine.any()) of_axis[candidates_[c].fine.axis].push_back(c);
+  std::vector<Scored> found;
+  for (const auto& [axis, list] : of_axis) {
+    std::vector<const FinePeriods*> fine;
+    for (const std::size_t c : list) fine.push_back(&candidates_[c].fine);
+    const std::vector<std::vector<double>> periods = promising_periods(evidence_, fine, residual);
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      Scored best = best_period(list[i], periods[i], beside, residual);
+      if (best.unknowns > 0) found.push_back(std::move(best));
+    }
+  }
+  return found;
+}
+
 void Scanner::refine(Scored& scored, const Eigen::MatrixXd& beside) const {
   const ScannedCandidate& item = candidates_[scored.candidate];
   if (item.grid.empty()) return;
@@ -152,11 +202,8 @@ void Scanner::refine(Scored& scored, const Eigen::MatrixXd& beside) const {
     return score(raw, projected, beside, residual, trial) ? trial.gain : 0.0;
   };
   for (std::size_t i = 0; i < item.grid.size(); ++i) {
-    const std::vector<double>& grid = item.grid[i];
-    const auto at = static_cast<std::size_t>(std::lower_bound(grid.begin(), grid.end(), scored.scanned[i]) -
-                                             grid.begin());
     // In 1/value between the neighbours: phases of a period move evenly there.
-    double low = 1 / grid[std::min(at + 1, grid.size() - 1)], high = 1 / grid[at > 0 ? at - 1 : 0];
+    auto [low, high] = neighbours(item, i, scored.scanned[i]);
     constexpr double kGolden = 0.381966011250105;
     std::vector<double> point = scored.scanned;
     const auto value = [&](double inverse) {

@@ -30,6 +30,10 @@ class Scanner {
   std::vector<Scored> scan(const Eigen::MatrixXd& beside, const std::function<void(double)>& progress,
                            std::size_t first_candidate = 0);
 
+  /// Waves below the periods of the grid: of each candidate that has them the best one that stands out of
+  /// chance; of those that do as well the longest, by whose name a field engineer would call the family.
+  std::vector<Scored> scan_fine(const Eigen::MatrixXd& beside, std::size_t first_candidate = 0) const;
+
   /// The scanned values moved between the grid's neighbours to where the gain is largest.
   void refine(Scored& scored, const Eigen::MatrixXd& beside) const;
 
@@ -47,6 +51,9 @@ class Scanner {
   void scan_part(std::size_t first, std::size_t step, const Eigen::MatrixXd& beside,
                  const Eigen::VectorXd& residual, std::vector<Scored>& best,
                  const std::function<void(double)>& progress) const;
+  /// Best of a candidate's periods, by what they explain in full.
+  Scored best_period(std::size_t candidate, const std::vector<double>& periods, const Eigen::MatrixXd& beside,
+                     const Eigen::VectorXd& residual) const;
   bool score(const Eigen::MatrixXd& raw, const Eigen::MatrixXd& projected, const Eigen::MatrixXd& beside,
              const Eigen::VectorXd& residual, Scored& scored) const;
 

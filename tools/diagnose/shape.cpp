@@ -92,7 +92,8 @@ Eigen::MatrixXd half_waves(const Evidence& evidence, const DofPlace& place, cons
 /// How an item's columns move with its scanned unknowns, to first order: a period that is a little off is no
 /// change along the axis.
 Eigen::MatrixXd moved(const Evidence& evidence, const Pool& pool, std::size_t item) {
-  constexpr double kStep = 1e-3;
+  // Small against the phase of a thousandth of a period at the end of the range.
+  constexpr double kStep = 1e-6;
   const std::vector<double>& scanned = pool[item].scored.scanned;
   const Candidate& candidate = pool.candidate(item);
   const Eigen::MatrixXd here = evidence.columns(candidate, scanned);

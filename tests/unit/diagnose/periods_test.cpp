@@ -1,0 +1,202 @@
+// Waves far shorter than the range of the axis: the pitch of a screw, the lines of a scale.
+#include "tools/diagnose/periods.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <random>
+
+#include "tools/diagnose/diagnosis.h"
+#include "tools/diagnose/enumerate.h"
+
+namespace vernier {
+namespace {
+
+constexpr std::uint64_t kSeed = 11;
+constexpr double kLength_mm = 1200, kNoise_mm = 0.001;
+constexpr int kRuns = 3;
+
+const char* const kAxis = R"(<machine name="m"><variables><static><c value="0" unit="mm"/></static>
+  <machineaxes><X rotary="false" min="0" max="1200"/></machineaxes></variables>
+  <transforms branch="tool"><sixdof n="1" X="X+c" Y="0" Z="0" rX="0" rY="0" rZ="0"/></transforms></machine>)";
+
+double wave(double x_mm, double period_mm) { return std::sin(2 * std::numbers::pi * x_mm / period_mm + 0.7); }
+
+/// Rows with an error of the position: `place` gives the position of row i of a run.
+std::string survey(int rows, const std::function<double(int)>& place,
+                   const std::function<double(double)>& error_mm, std::mt19937_64& random,
+                   bool with_u = true) {
+  std::normal_distribution<double> noise(0, kNoise_mm);
+  std::string text = with_u ? "X[mm],x[mm],u[um],run\n" : "X[mm],x[mm],run\n";
+  for (int run = 0; run < kRuns; ++run)
+    for (int i = 0; i < rows; ++i) {
+      const double x = std::round(place(i) * 1e3) / 1e3;
+      text +=
+          fmt::format("{:.3f},{:.6f},{}r{}\n", x, x + error_mm(x) + noise(random), with_u ? "1," : "", run);
+    }
+  return text;
+}
+
+Diagnosis diagnosed(const std::string& rows) {
+  const Machine machine = parse_machine(kAxis, "m.xml");
+  return diagnose(kAxis, machine, parse_measurement(rows, "m.csv", machine));
+}
+
+const ParameterEstimate& period_of(const Diagnosis& answer) {
+  for (const ParameterEstimate& p : answer.candidates.at(0).parameters)
+    if (p.name.ends_with("_p")) return p;
+  throw std::runtime_error("no period");
+}
+
+class FinePeriod : public testing::TestWithParam<std::tuple<double, bool>> {};
+
+TEST_P(FinePeriod, IsNamedAndFitted) {
+  const auto [period, with_u] = GetParam();
+  std::mt19937_64 random(kSeed);
+  std::uniform_real_distribution<double> anywhere(0, kLength_mm);
+  const auto place = [&](int) { return anywhere(random); };
+
+  const Diagnosis answer = diagnosed(survey(
+      90, place, [p = period](double x) { return 0.003 * wave(x, p); }, random, with_u));
+
+  ASSERT_EQ(answer.verdict, Verdict::kMissingEffect) << "seed " << kSeed << ": " << answer.explanation;
+  EXPECT_EQ(answer.ladder.back().effect, "cyclic-error");
+  EXPECT_EQ(answer.ladder.size(), 2U);
+  const ParameterEstimate& fitted = period_of(answer);
+  ASSERT_TRUE(fitted.std);
+  // Five standard deviations: the fit stands in the right valley, and those are a tenth of a wave apart.
+  EXPECT_NEAR(fitted.value, period, 5 * *fitted.std);
+  EXPECT_LT(*fitted.std * kLength_mm / (period * period), 0.03);
+}
+
+// 12 mm is where the grid ends, 11.95 lies between the two.
+INSTANTIATE_TEST_SUITE_P(Pitches, FinePeriod,
+                         testing::Combine(testing::Values(2.5, 4, 5, 8, 10, 11.95, 12), testing::Bool()));
+
+TEST(FinePeriods, StandBesideALongOne) {
+  std::mt19937_64 random(kSeed);
+  std::uniform_real_distribution<double> anywhere(0, kLength_mm);
+  const auto place = [&](int) { return anywhere(random); };
+
+  const Diagnosis answer = diagnosed(survey(
+      120, place, [](double x) { return 0.004 * wave(x, 210) + 0.003 * wave(x, 5); }, random));
+
+  EXPECT_EQ(answer.verdict, Verdict::kMissingEffect) << "seed " << kSeed << ": " << answer.explanation;
+  EXPECT_EQ(answer.ladder.size(), 3U);
+}
+
+/// Even steps of 27 mm see a pitch of 10 mm as 90 mm; so do steps that are even but for 0.02 mm.
+class EvenSteps : public testing::TestWithParam<double> {};
+
+TEST_P(EvenSteps, NameTheLongestOfTheAliases) {
+  std::mt19937_64 random(kSeed);
+  std::uniform_real_distribution<double> off(-GetParam(), GetParam());
+  const auto place = [&](int i) { return 27.0 * i + off(random); };
+
+  const Diagnosis answer = diagnosed(survey(
+      45, place, [](double x) { return 0.003 * wave(x, 10); }, random));
+
+  ASSERT_EQ(answer.verdict, Verdict::kMissingEffect) << "seed " << kSeed << ": " << answer.explanation;
+  EXPECT_NEAR(period_of(answer).value, 90, 0.5);
+}
+
+INSTANTIATE_TEST_SUITE_P(Aliases, EvenSteps, testing::Values(0.0, 0.02));
+
+TEST(FinePeriods, OfWhichTheStepsAreMultiplesAreNotSeen) {
+  std::mt19937_64 random(kSeed);
+
+  const Diagnosis answer = diagnosed(survey(
+      41, [](int i) { return 30.0 * i; }, [](double x) { return 0.003 * wave(x, 10); }, random));
+
+  EXPECT_EQ(answer.verdict, Verdict::kConsistent) << "seed " << kSeed << ": " << answer.explanation;
+}
+
+FinePeriods range_of(int rows, const std::function<double(int)>& place, const std::vector<double>& grid) {
+  std::mt19937_64 random(kSeed);
+  const Machine machine = parse_machine(kAxis, "m.xml");
+  const Measurement measurement = parse_measurement(survey(
+                                                        rows, place, [](double) { return 0.0; }, random),
+                                                    "m.csv", machine);
+  const Evidence evidence(machine, measurement);
+  return fine_periods(evidence, 0, grid, shortest_told_apart(evidence, 0));
+}
+
+TEST(FinePeriods, ReachDownToWhatThePositionsCanTell) {
+  std::mt19937_64 random(kSeed);
+  std::uniform_real_distribution<double> anywhere(0, kLength_mm);
+  const auto uneven = [&](int) { return anywhere(random); };
+  // 1200 positions: a thousandth of the range. 60 positions: 2.5 periods for each of them.
+  const FinePeriods many = range_of(400, uneven, {12, 400}), few = range_of(20, uneven, {12, 400});
+  EXPECT_NEAR(many.fastest * many.length, 1000, 1e-6);
+  EXPECT_NEAR(few.fastest * few.length, 150, 1e-6);
+  EXPECT_TRUE(many.holds(10));
+  EXPECT_FALSE(many.holds(20));
+  // Steps of 3 mm: 6.3 mm. Half of the positions left out, at random, the steps are still 3 mm.
+  const FinePeriods even = range_of(400, [](int i) { return 3.0 * i; }, {12, 400});
+  EXPECT_NEAR(even.fastest, 1 / 6.3, 1e-4);
+  std::uniform_int_distribution<int> some(0, 400);
+  const FinePeriods gaps = range_of(70, [&](int) { return 3.0 * some(random); }, {12, 400});
+  EXPECT_NEAR(gaps.fastest, 1 / 6.3, 1e-4);
+  // Too few positions for more than the grid, and an axis without grid.
+  EXPECT_FALSE(range_of(10, uneven, {12, 400}).any());
+  EXPECT_FALSE(range_of(400, uneven, {}).any());
+}
+
+TEST(FinePeriods, StandOutOfThePeriodogramAtTheirPlace) {
+  std::mt19937_64 random(kSeed);
+  std::uniform_real_distribution<double> anywhere(0, kLength_mm);
+  const Machine machine = parse_machine(kAxis, "m.xml");
+  const auto place = [&](int) { return anywhere(random); };
+  const Measurement rows =
+      parse_measurement(survey(
+                            100, place, [](double x) { return 0.002 * wave(x, 5); }, random),
+                        "m.csv", machine);
+  const Evidence evidence(machine, rows);
+
+  const FinePeriods* own = nullptr;
+  const std::vector<ScannedCandidate> list = enumerate_candidates(evidence, built_in_effects());
+  for (const ScannedCandidate& item : list)
+    if (item.fine.any() && item.candidate.choice.form->place == PlaceRule::kOwn) own = &item.fine;
+  ASSERT_NE(own, nullptr);
+  // A sine at the axis' own length moves the reading by itself.
+  EXPECT_LT((own->carrier - evidence.weights()).norm(), 1e-6 * own->carrier.norm());
+
+  const auto found = promising_periods(evidence, {own}, evidence.residual());
+  ASSERT_FALSE(found.at(0).empty());
+  // A twentieth of what the range tells apart.
+  EXPECT_NEAR(1 / found[0][0], 1 / 5.0, 0.05 / kLength_mm);
+}
+
+TEST(FinePeriods, AreNotNamedInNoise) {
+  constexpr int kSurveys = 25;
+  std::mt19937_64 random(kSeed);
+  std::uniform_real_distribution<double> anywhere(0, kLength_mm);
+  const auto place = [&](int) { return anywhere(random); };
+  for (int k = 0; k < kSurveys; ++k) {
+    const Diagnosis answer = diagnosed(survey(
+        60, place, [](double) { return 0.0; }, random, k % 2 == 0));
+    EXPECT_EQ(answer.verdict, Verdict::kConsistent)
+        << "seed " << kSeed << ", survey " << k << ": " << answer.explanation;
+  }
+}
+
+/// The fit may not leave the wave that was found for a neighbour, nor a grid for where nothing was looked
+/// for.
+TEST(FinePeriods, AreDrivenOutByAWholeWave) {
+  ScannedCandidate item;
+  item.grid = {{12, 100, 400}};
+  item.fine.slowest = 1 / 12.5;
+  item.fine.fastest = 1;
+  item.fine.length = kLength_mm;
+  EXPECT_FALSE(item.is_driven_out(0, 5, 5.01));
+  EXPECT_TRUE(item.is_driven_out(0, 5, 5.03));  // 1.4 waves more over the range
+  EXPECT_TRUE(item.is_driven_out(0, 5, -5));
+  EXPECT_FALSE(item.is_driven_out(0, 100, 300));
+  EXPECT_TRUE(item.is_driven_out(0, 100, 801));
+}
+
+}  // namespace
+}  // namespace vernier

@@ -1,0 +1,230 @@
+#include "tools/diagnose/periods.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+namespace vernier {
+namespace {
+
+using Index = Eigen::Index;
+constexpr double kTurn = 2 * std::numbers::pi;
+
+double position(const Evidence& evidence, std::size_t axis, std::size_t reading) {
+  return evidence.measurement().states.axis[axis][static_cast<Index>(evidence.rows()[reading])];
+}
+
+/// The different positions of an axis, and sums of columns over the readings at each.
+struct Positions {
+  Eigen::ArrayXd at;
+  Eigen::MatrixXd sum;
+};
+
+Positions by_position(const Evidence& evidence, std::size_t axis, const Eigen::MatrixXd& columns) {
+  std::map<double, Index> index;
+  for (std::size_t i = 0; i < evidence.rows().size(); ++i) index.emplace(position(evidence, axis, i), 0);
+  Positions result{Eigen::ArrayXd(static_cast<Index>(index.size())),
+                   Eigen::MatrixXd::Zero(static_cast<Index>(index.size()), columns.cols())};
+  Index next = 0;
+  for (auto& [value, at] : index) {
+    at = next++;
+    result.at[at] = value;
+  }
+  for (std::size_t i = 0; i < evidence.rows().size(); ++i)
+    result.sum.row(index[position(evidence, axis, i)]) += columns.row(static_cast<Index>(i));
+  return result;
+}
+
+/// |sum over the positions of column * exp(2 pi i f q)|^2 at one frequency.
+double power_at(const Positions& positions, Index column, double frequency) {
+  const Eigen::ArrayXd phase = kTurn * frequency * positions.at;
+  const Eigen::ArrayXd value = positions.sum.col(column).array();
+  return std::pow((value * phase.cos()).sum(), 2) + std::pow((value * phase.sin()).sum(), 2);
+}
+
+/// The same of every column (one row each) at frequencies first + k * step. Sines follow from the ones before
+/// by a rotation; that loses a digit in a thousand steps.
+Eigen::MatrixXd powers(const Positions& positions, double first, double step, Index count) {
+  constexpr Index kBlock = 32;
+  const Index size = positions.at.size();
+  const Eigen::ArrayXd turn_cos = (kTurn * step * positions.at).cos(),
+                       turn_sin = (kTurn * step * positions.at).sin();
+  Eigen::ArrayXd now_cos = (kTurn * first * positions.at).cos(),
+                 now_sin = (kTurn * first * positions.at).sin();
+  Eigen::MatrixXd cosines(size, kBlock), sines(size, kBlock), result(positions.sum.cols(), count);
+  for (Index at = 0; at < count; at += kBlock) {
+    const Index width = std::min(kBlock, count - at);
+    for (Index k = 0; k < width; ++k) {
+      cosines.col(k) = now_cos;
+      sines.col(k) = now_sin;
+      const Eigen::ArrayXd next = now_cos * turn_cos - now_sin * turn_sin;
+      now_sin = now_sin * turn_cos + now_cos * turn_sin;
+      now_cos = next;
+    }
+    const Eigen::MatrixXd in = positions.sum.transpose() * cosines.leftCols(width),
+                          quadrature = positions.sum.transpose() * sines.leftCols(width);
+    result.middleCols(at, width) = in.cwiseAbs2() + quadrature.cwiseAbs2();
+  }
+  return result;
+}
+
+/// The frequency between two others where the power is largest, by golden sections.
+double peak_between(const Positions& positions, Index column, double low, double high) {
+  constexpr double kGolden = 0.381966011250105;
+  constexpr int kSections = 12;
+  const auto power = [&](double frequency) { return power_at(positions, column, frequency); };
+  double a = low + kGolden * (high - low), b = high - kGolden * (high - low);
+  double at_a = power(a), at_b = power(b);
+  for (int k = 0; k < kSections; ++k) {
+    if (at_a > at_b) {
+      high = b;
+      b = a;
+      at_b = at_a;
+      a = low + kGolden * (high - low);
+      at_a = power(a);
+    } else {
+      low = a;
+      a = b;
+      at_a = at_b;
+      b = high - kGolden * (high - low);
+      at_b = power(b);
+    }
+  }
+  return at_a > at_b ? a : b;
+}
+
+/// Frequencies looked at for each that the range tells apart: a peak between two of them keeps nine tenths.
+constexpr double kPerRange = 3;
+
+/// More waves than these over the range are not looked for, nor more for each position.
+constexpr double kMostPeriods = 1000, kPerPosition = 2.5;
+
+/// The positions of an axis, one of those that a wave as short as any looked for does not tell apart: where
+/// an axis stood, and not how often. A weight of 1 each.
+Positions stations(const Evidence& evidence, std::size_t axis, double length) {
+  constexpr double kApart = 1 / (4 * kMostPeriods);
+  std::vector<double> all;
+  for (std::size_t i = 0; i < evidence.rows().size(); ++i) all.push_back(position(evidence, axis, i));
+  std::sort(all.begin(), all.end());
+  std::vector<double> kept;
+  for (const double one : all)
+    if (kept.empty() || one - kept.back() > kApart * length) kept.push_back(one);
+  const auto count = static_cast<Index>(kept.size());
+  return {Eigen::Map<const Eigen::ArrayXd>(kept.data(), count), Eigen::MatrixXd::Ones(count, 1)};
+}
+
+double most_frequency(const Positions& positions, double length) {
+  return std::min(kMostPeriods, kPerPosition * static_cast<double>(positions.at.size())) / length;
+}
+
+/// Peaks of a row of powers worth a closer look: the highest ones, and the slowest of those that come within
+/// `margin` of the highest.
+std::vector<Index> best_peaks(const Eigen::MatrixXd& power, Index row, double least, double margin) {
+  constexpr std::size_t kPeaks = 3;
+  std::vector<Index> peaks;
+  for (Index k = 1; k + 1 < power.cols(); ++k)
+    if (power(row, k) > least && power(row, k) >= power(row, k - 1) && power(row, k) > power(row, k + 1))
+      peaks.push_back(k);
+  if (peaks.size() <= kPeaks) return peaks;
+  std::vector<Index> order = peaks;
+  std::sort(order.begin(), order.end(), [&](Index a, Index b) { return power(row, a) > power(row, b); });
+  const double near = power(row, order[0]) - margin;
+  order.resize(kPeaks);
+  const Index slowest =
+      *std::find_if(peaks.begin(), peaks.end(), [&](Index k) { return power(row, k) >= near; });
+  if (std::find(order.begin(), order.end(), slowest) == order.end()) order.push_back(slowest);
+  return order;
+}
+
+}  // namespace
+
+double shortest_told_apart(const Evidence& evidence, std::size_t axis) {
+  // The waves that look the same at two positions have a frequency at which all positions look alike.
+  constexpr double kStepsPerAlias = 2.1, kPerWindow = 5, kNear = 0.8, kSame = 0.98;
+  const Evidence::Range range = evidence.range_of(axis);
+  const double length = range.high - range.low;
+  if (length <= 0) return 0;
+  const Positions positions = stations(evidence, axis, length);
+  const double step = 1 / (kPerWindow * length), first = 1.5 / length;
+  const auto count =
+      static_cast<Index>(std::ceil((kStepsPerAlias * most_frequency(positions, length) - first) / step));
+  if (count < 3) return 0;
+  const Eigen::MatrixXd window = powers(positions, first, step, count);
+  const double all = std::pow(positions.sum.sum(), 2);
+  for (Index k = 1; k + 1 < count; ++k) {
+    if (window(0, k) < kNear * all || window(0, k) < window(0, k - 1) || window(0, k) < window(0, k + 1))
+      continue;
+    const double middle = first + static_cast<double>(k) * step;
+    const double peak = peak_between(positions, 0, middle - step, middle + step);
+    if (power_at(positions, 0, peak) > kSame * all) return kStepsPerAlias / peak;
+  }
+  return 0;
+}
+
+FinePeriods fine_periods(const Evidence& evidence, std::size_t axis, const std::vector<double>& grid,
+                         double shortest) {
+  constexpr double kFewest = 4;  // frequencies that are worth the search
+  if (grid.empty()) return {};
+  const Evidence::Range range = evidence.range_of(axis);
+  FinePeriods fine;
+  fine.axis = axis;
+  fine.length = range.high - range.low;
+  fine.step = 1 / (kPerRange * fine.length);
+  // The two lists overlap, so that a peak between them is one of this.
+  fine.slowest = 1 / grid.front() - 3 * fine.step;
+  fine.fastest = most_frequency(stations(evidence, axis, fine.length), fine.length);
+  if (shortest > 0) fine.fastest = std::min(fine.fastest, 1 / shortest);
+  return fine.fastest > fine.slowest + kFewest * fine.step ? fine : FinePeriods{};
+}
+
+Eigen::VectorXd carrier_of(const Evidence& evidence, const Candidate& candidate, const FinePeriods& fine) {
+  constexpr double kSame = 1e-9;
+  Eigen::VectorXd carrier;
+  for (const double frequency : {fine.slowest, fine.fastest}) {
+    const Eigen::MatrixXd columns = evidence.columns(candidate, {1 / frequency});
+    if (columns.cols() != 2) return {};
+    Eigen::ArrayXd phase(columns.rows());
+    for (Index i = 0; i < phase.size(); ++i)
+      phase[i] = kTurn * frequency * position(evidence, fine.axis, static_cast<std::size_t>(i));
+    if (carrier.size() == 0)
+      carrier = columns.col(0).array() * phase.sin() + columns.col(1).array() * phase.cos();
+    const double allowed = kSame * carrier.norm();
+    if (!((columns.col(0).array() - carrier.array() * phase.sin()).matrix().norm() <= allowed) ||
+        !((columns.col(1).array() - carrier.array() * phase.cos()).matrix().norm() <= allowed))
+      return {};
+  }
+  return carrier;
+}
+
+std::vector<std::vector<double>> promising_periods(const Evidence& evidence,
+                                                   const std::vector<const FinePeriods*>& of_axis,
+                                                   const Eigen::VectorXd& residual) {
+  std::vector<std::vector<double>> found(of_axis.size());
+  if (of_axis.empty()) return found;
+  const FinePeriods& fine = *of_axis.front();
+  // The columns are weighed as the residual is; a symmetric weighing of the residual once more does as well.
+  Eigen::MatrixXd weighed = residual;
+  evidence.whiten(weighed);
+  Eigen::MatrixXd products(residual.size(), static_cast<Index>(of_axis.size()));
+  for (std::size_t i = 0; i < of_axis.size(); ++i)
+    products.col(static_cast<Index>(i)) = of_axis[i]->carrier.cwiseProduct(weighed.col(0));
+  const Positions positions = by_position(evidence, fine.axis, products);
+  const auto count = static_cast<Index>(std::floor((fine.fastest - fine.slowest) / fine.step)) + 1;
+  const Eigen::MatrixXd power = powers(positions, fine.slowest, fine.step, count);
+  // Power at which the wave explains as much as the highest of so many waves does of noise.
+  const double variance = residual.squaredNorm() / std::max(1.0, evidence.freedom());
+  constexpr double kNearlyAsWell = 10;
+  for (std::size_t i = 0; i < of_axis.size(); ++i) {
+    const double unit = variance * of_axis[i]->carrier.squaredNorm() / 2;
+    const double least = unit * 2 * std::log(fine.tries());
+    for (const Index k : best_peaks(power, static_cast<Index>(i), least, unit * kNearlyAsWell)) {
+      const double middle = fine.slowest + static_cast<double>(k) * fine.step;
+      found[i].push_back(
+          1 / peak_between(positions, static_cast<Index>(i), middle - fine.step, middle + fine.step));
+    }
+  }
+  return found;
+}
+
+}  // namespace vernier
