@@ -27,7 +27,7 @@ enum class UnknownKind : std::uint8_t {
   kLinear,  // the term is linear in it
   kTime,    // a time constant: scanned from the spacing of the rows to a few times their duration, s
   kTravel,  // a decay length: scanned from the spacing to the range of q
-  kPeriod,  // a period of q: scanned from twice the spacing to most of the range; a whole fraction of a turn
+  kPeriod,  // a period of q: scanned from 1/100 of the range (a plain wave: 1/1000) to most of it
   kGrid,    // scanned over the values that the catalogue names
 };
 
