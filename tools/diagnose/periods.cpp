@@ -141,7 +141,7 @@ std::vector<Index> best_peaks(const Eigen::MatrixXd& power, Index row, double le
 
 double shortest_told_apart(const Evidence& evidence, std::size_t axis) {
   // The waves that look the same at two positions have a frequency at which all positions look alike.
-  constexpr double kStepsPerAlias = 2.1, kPerWindow = 5, kNear = 0.8, kSame = 0.98;
+  constexpr double kStepsPerAlias = 2.1, kPerWindow = 5, kNear = 0.8, kSame = 0.9999;
   const Evidence::Range range = evidence.range_of(axis);
   const double length = range.high - range.low;
   if (length <= 0) return 0;
