@@ -184,6 +184,18 @@ TEST(HiddenSurvey, CannotTellWhatIsConfusableByDesign) {
   }
 }
 
+TEST(HiddenSurvey, CannotTellTheDelayOfATriggerFromAConstantAtOneFeed) {
+  SurveySpec spec = spec_of(Family::kBridge, "trigger-delay");
+  EXPECT_TRUE(make_survey(spec).can_tell);
+  spec.feeds = 1;
+  const HiddenSurvey survey = make_survey(spec);
+  EXPECT_FALSE(survey.can_tell);
+  EXPECT_NEAR(survey.rivals.at(0).excess, 0, 1e-6);
+  EXPECT_TRUE(survey.rivals[0].cause.effect == "tool-radius" ||
+              survey.rivals[0].cause.effect == "probe-pretravel")
+      << survey.rivals[0].cause.effect;
+}
+
 // A rival's excess is claimed from linear columns: the fits themselves must agree.
 TEST(HiddenSurvey, TellsByChiSquareWhatFitsTell) {
   const HiddenSurvey survey = make_survey(spec_of(Family::kFiveAxis, "backlash"));
