@@ -304,7 +304,7 @@ void Attempt::judge(HiddenSurvey& survey) {
                      0,
                      orthonormal(true_columns).cols() + forms_[e].free_numbers,
                      forms_[e].inputs,
-                     is_by_feed(forms_[e])};
+                     is_by_speed(forms_[e])};
     court.truth_chi_square = chi_square_with(true_columns, court.residual);
     std::vector<Rival> rivals = find_rivals(court, survey.effects[e].accept, draw_);
     survey.can_tell = survey.can_tell && (rivals.empty() || rivals.front().excess >= kTells);

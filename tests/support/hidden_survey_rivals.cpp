@@ -32,7 +32,8 @@ void judge(const RivalCourt& court, const Form& form, bool with_reference, std::
   // a constant beside it, says something else however close it comes.
   const bool other_quantity = !with_reference && !same_inputs && !form.inputs.empty();
   if (!other_quantity && basis.cols() + form.free_numbers > court.truth_width && unseen < 0.02) return;
-  if (same_inputs && is_by_feed(form) == court.by_feed && unseen < 1e-4) return accept.push_back(form.cause);
+  if (same_inputs && is_by_speed(form) == court.by_speed && unseen < 1e-4)
+    return accept.push_back(form.cause);
   const double excess = court.residual.squaredNorm() - (basis.transpose() * court.residual).squaredNorm() -
                         court.truth_chi_square;
   const auto same =
@@ -46,9 +47,10 @@ void judge(const RivalCourt& court, const Form& form, bool with_reference, std::
 
 }  // namespace
 
-bool is_by_feed(const Form& form) {
-  return std::any_of(form.places.begin(), form.places.end(),
-                     [](const Place& place) { return place.text.find("feed") != std::string::npos; });
+bool is_by_speed(const Form& form) {
+  return std::any_of(form.places.begin(), form.places.end(), [](const Place& place) {
+    return place.text.find("feed") != std::string::npos || place.text.find("*v") != std::string::npos;
+  });
 }
 
 double chi_square_with(const Eigen::MatrixXd& columns, const Eigen::VectorXd& residual) {

@@ -17,18 +17,17 @@ struct RivalCourt {
   double truth_chi_square = 0;   // of the fit with the true form
   Eigen::Index truth_width = 1;  // independent columns and free numbers of the true form
   std::vector<std::string> inputs;
-  bool by_feed = false;  // the true form
+  bool by_speed = false;  // the true form
 };
 
-/// Does the feed drive it? At one feed such a form looks like one that it does not drive, and is another
-/// cause.
-bool is_by_feed(const Form& form);
+/// Does feed or velocity drive it? At one feed it may look like a form that they do not drive: another cause.
+bool is_by_speed(const Form& form);
 
 /// chi^2 that is left when these projected columns are fitted too.
 double chi_square_with(const Eigen::MatrixXd& columns, const Eigen::VectorXd& residual);
 
 /// Every other form of every effect against the truth, best first, one per cause. A form whose columns hold
-/// the truth's, without more coefficients, with the same inputs and both driven by the feed or neither, is
+/// the truth's, without more coefficients, with the same inputs and both driven by speed or neither, is
 /// the same effect under another name: added to `accept`. One with more coefficients only says the same more
 /// loosely and is no rival.
 std::vector<Rival> find_rivals(const RivalCourt& court, std::vector<Cause>& accept, Draw& draw);
