@@ -417,7 +417,10 @@ Diagnosis diagnose(const std::string& text, const Machine& given, const Measurem
   require_time_order(measurement);
   const Machine machine = with_base_row(given);
   Diagnosis all = Diagnoser(text, machine, measurement, options).run();
-  if (all.verdict != Verdict::kUnexplained) return all;
+  // Outliers beside effects that were found are not the whole answer either.
+  const bool more_than_outliers =
+      all.verdict == Verdict::kInstrument && all.ladder.size() > 1 && !all.time_base.found;
+  if (all.verdict != Verdict::kUnexplained && !more_than_outliers) return all;
   const auto rest = without_gross_outliers(machine, measurement, all.base.residual);
   if (!rest) return all;
   Diagnosis clean = Diagnoser(text, machine, rest->rows, options).run();
