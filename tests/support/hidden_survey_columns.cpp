@@ -14,6 +14,7 @@ namespace {
 
 /// Orthonormal basis of what the scaled columns span.
 Eigen::MatrixXd span(Eigen::MatrixXd columns, double cutoff) {
+  if (columns.cols() == 0) return columns;  // a model with nothing free
   const double largest = columns.colwise().norm().maxCoeff();
   for (Eigen::Index c = 0; c < columns.cols(); ++c) {
     const double norm = columns.col(c).norm();

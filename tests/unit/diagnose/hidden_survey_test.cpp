@@ -146,5 +146,16 @@ TEST_P(ConfusableByDesign, IsNotGivenAWrongName) {
 }
 INSTANTIATE_TEST_SUITE_P(First, ConfusableByDesign, testing::Range<std::uint64_t>(1, kSeeds + 1));
 
+/// Nearly all of the second effect stands in one reading, at an acceleration a hundred times the others'.
+TEST(TwoEffects, WhatOneReadingCarriesIsGivenNoName) {
+  SurveySpec spec = spec_of(SurveyClass::kTwo, Family::kColumn, 45760137600);
+  spec.rows = 400;
+  const HiddenSurvey survey = make_survey(spec);
+  ASSERT_EQ(survey.effects.size(), 2U);
+  ASSERT_EQ(survey.effects[1].cause.effect, "inertial-deflection");
+  const bench::Judgement judgement = diagnosed(survey);
+  EXPECT_NE(judgement.outcome, Outcome::kWrong) << judgement.said;
+}
+
 }  // namespace
 }  // namespace vernier
