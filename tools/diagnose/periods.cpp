@@ -5,6 +5,8 @@
 #include <map>
 #include <numbers>
 
+#include "tools/diagnose/golden.h"
+
 namespace vernier {
 namespace {
 
@@ -69,29 +71,12 @@ Eigen::MatrixXd powers(const Positions& positions, double first, double step, In
   return result;
 }
 
-/// The frequency between two others where the power is largest, by golden sections.
+/// The frequency between two others where the power is largest.
 double peak_between(const Positions& positions, Index column, double low, double high) {
-  constexpr double kGolden = 0.381966011250105;
   constexpr int kSections = 12;
-  const auto power = [&](double frequency) { return power_at(positions, column, frequency); };
-  double a = low + kGolden * (high - low), b = high - kGolden * (high - low);
-  double at_a = power(a), at_b = power(b);
-  for (int k = 0; k < kSections; ++k) {
-    if (at_a > at_b) {
-      high = b;
-      b = a;
-      at_b = at_a;
-      a = low + kGolden * (high - low);
-      at_a = power(a);
-    } else {
-      low = a;
-      a = b;
-      at_a = at_b;
-      b = high - kGolden * (high - low);
-      at_b = power(b);
-    }
-  }
-  return at_a > at_b ? a : b;
+  return golden_peak([&](double frequency) { return power_at(positions, column, frequency); }, low, high,
+                     kSections)
+      .at;
 }
 
 /// Frequencies looked at for each that the range tells apart: a peak between two of them keeps nine tenths.

@@ -7,6 +7,8 @@
 #include <thread>
 #include <utility>
 
+#include "tools/diagnose/golden.h"
+
 namespace vernier {
 namespace {
 
@@ -203,34 +205,18 @@ void Scanner::refine(Scored& scored, const Eigen::MatrixXd& beside) const {
   };
   for (std::size_t i = 0; i < item.grid.size(); ++i) {
     // In 1/value between the neighbours: phases of a period move evenly there.
-    auto [low, high] = neighbours(item, i, scored.scanned[i]);
-    constexpr double kGolden = 0.381966011250105;
+    const auto [low, high] = neighbours(item, i, scored.scanned[i]);
+    constexpr int kSections = 14;
     std::vector<double> point = scored.scanned;
-    const auto value = [&](double inverse) {
-      point[i] = 1 / inverse;
-      return gain_at(point);
-    };
-    double a = low + kGolden * (high - low), b = high - kGolden * (high - low);
-    double gain_a = value(a), gain_b = value(b);
-    for (int k = 0; k < 14; ++k) {
-      if (gain_a > gain_b) {
-        high = b;
-        b = a;
-        gain_b = gain_a;
-        a = low + kGolden * (high - low);
-        gain_a = value(a);
-      } else {
-        low = a;
-        a = b;
-        gain_a = gain_b;
-        b = high - kGolden * (high - low);
-        gain_b = value(b);
-      }
-    }
-    const double best = std::max(gain_a, gain_b);
-    if (best > scored.gain) {
-      scored.gain = best;
-      scored.scanned[i] = 1 / (gain_a > gain_b ? a : b);
+    const Peak best = golden_peak(
+        [&](double inverse) {
+          point[i] = 1 / inverse;
+          return gain_at(point);
+        },
+        low, high, kSections);
+    if (best.value > scored.gain) {
+      scored.gain = best.value;
+      scored.scanned[i] = 1 / best.at;
     }
   }
 }

@@ -1,0 +1,34 @@
+#pragma once
+
+namespace vernier {
+
+struct Peak {
+  double at = 0, value = 0;
+};
+
+/// Where a function is largest between two points, by golden sections: the better of the last two looked at.
+/// The function has one peak there, else one of them is found. tool.
+template <typename Function>
+Peak golden_peak(const Function& value, double low, double high, int sections) {
+  constexpr double kGolden = 0.381966011250105;
+  double a = low + kGolden * (high - low), b = high - kGolden * (high - low);
+  double at_a = value(a), at_b = value(b);
+  for (int k = 0; k < sections; ++k) {
+    if (at_a > at_b) {
+      high = b;
+      b = a;
+      at_b = at_a;
+      a = low + kGolden * (high - low);
+      at_a = value(a);
+    } else {
+      low = a;
+      a = b;
+      at_a = at_b;
+      b = high - kGolden * (high - low);
+      at_b = value(b);
+    }
+  }
+  return at_a > at_b ? Peak{a, at_a} : Peak{b, at_b};
+}
+
+}  // namespace vernier
