@@ -117,14 +117,14 @@ TEST(Levenberg, ReleasesWhatIsPlainlySeenThoughTheStartWasRight) {
   EXPECT_EQ(std::count(result.held.begin(), result.held.end(), 1), 0);
 }
 
-/// The second parameter acts by its product with the first, of which it takes 1e-4: the scale of its column
-/// is that of its largest, at a start of 1.
-TEST(Levenberg, DoesNotFollowAFaintDirectionForChance) {
+/// Readings slope t + cubic t^3 and an alternating 1e-5, predicted as x0 t + x1 + x2 + x0 (x1 - x2) t^3: x1
+/// and x2 are one constant but for the product.
+Problem product(double slope, double cubic) {
   const VectorXd t = VectorXd::LinSpaced(40, -1, 1);
   VectorXd y(40);
-  for (Eigen::Index i = 0; i < 40; ++i) y[i] = 1e-4 * t[i] + (i % 2 == 0 ? 1e-5 : -1e-5);
-  // Predicted: x0 t + x1 + x2 + x0 (x1 - x2) t^3; x1 and x2 are one constant but for the product.
-  Problem problem{
+  for (Eigen::Index i = 0; i < 40; ++i)
+    y[i] = slope * t[i] + cubic * std::pow(t[i], 3) + (i % 2 == 0 ? 1e-5 : -1e-5);
+  return {
       [=](const VectorXd& x) {
         return VectorXd{y.array() - x[0] * t.array() - x[1] - x[2] - x[0] * (x[1] - x[2]) * t.array().cube()};
       },
@@ -135,6 +135,12 @@ TEST(Levenberg, DoesNotFollowAFaintDirectionForChance) {
         j.col(2) = 1 - x[0] * t.array().cube();
         return j;
       }};
+}
+
+/// The second parameter acts by its product with the first, of which it takes 1e-4: the scale of its column
+/// is that of its largest, at a start of 1.
+TEST(Levenberg, DoesNotFollowAFaintDirectionForChance) {
+  Problem problem = product(1e-4, 0);
   const LevenbergResult result = problem.solve(VectorXd::Zero(3), judged_by_chance());
   EXPECT_TRUE(result.converged);
   EXPECT_EQ(std::count(result.held.begin(), result.held.end(), 1), 1);
@@ -145,21 +151,7 @@ TEST(Levenberg, DoesNotFollowAFaintDirectionForChance) {
 /// A second parameter that shows only once the first has moved, and faintly: it may be followed, unless the
 /// user of the fit says that its end is not to be believed.
 TEST(Levenberg, GoesBackFromAnEndThatIsNotToBeBelieved) {
-  const VectorXd t = VectorXd::LinSpaced(40, -1, 1);
-  VectorXd y(40);
-  for (Eigen::Index i = 0; i < 40; ++i)
-    y[i] = 2e-3 * t[i] + 2e-3 * std::pow(t[i], 3) + (i % 2 == 0 ? 1e-5 : -1e-5);
-  Problem problem{
-      [=](const VectorXd& x) {
-        return VectorXd{y.array() - x[0] * t.array() - x[1] - x[2] - x[0] * (x[1] - x[2]) * t.array().cube()};
-      },
-      [=](const VectorXd& x) {
-        MatrixXd j(40, 3);
-        j.col(0) = t.array() + (x[1] - x[2]) * t.array().cube();
-        j.col(1) = 1 + x[0] * t.array().cube();
-        j.col(2) = 1 - x[0] * t.array().cube();
-        return j;
-      }};
+  Problem problem = product(2e-3, 2e-3);
   LevenbergOptions options = judged_by_chance();
   const LevenbergResult followed = problem.solve(VectorXd::Zero(3), options);
   options.believable = [](const VectorXd&, const VectorXd& to) { return std::abs(to[1] - to[2]) < 0.5; };
