@@ -1,19 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware/calibration.h"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 
 #include "firmware/board_file.h"
+#include "hal/support/output_file.h"
 
 namespace vernier {
 namespace {
@@ -37,15 +34,6 @@ CalibrationPoint parse_point(const std::string& line, const std::string& where) 
   if (end == begin || *end != '\0' || !std::isfinite(point.measured))
     throw BoardError{where + "no measured value: " + line};
   return point;
-}
-
-/// Writes and waits until it is on the medium.
-bool write_whole(const std::string& path, const std::string& content) {
-  const int fd = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  if (fd < 0) return false;
-  const bool written =
-      ::write(fd, content.data(), content.size()) == static_cast<ssize_t>(content.size()) && ::fsync(fd) == 0;
-  return ::close(fd) == 0 && written;
 }
 
 }  // namespace
@@ -112,16 +100,7 @@ void write_calibration(const std::string& path, const Calibration& c, const std:
       "span = " + text("%.9g", c.span) + "  # +- " + text("%.3g", c.span_std) + "\n" +
       "zero = " + text("%.0f", std::round(c.zero)) + "  # " + text("%.3f", c.zero) + " +- " +
       text("%.3g", c.zero_std) + "\n" + "polarity = \"" + (c.inverted ? "inverted" : "normal") + "\"\n";
-  const std::string next = path + ".next";
-  const std::string folder = std::filesystem::path(path).parent_path().string();
-  if (!write_whole(next, content) || ::rename(next.c_str(), path.c_str()) != 0) {
-    const int error = errno;
-    ::unlink(next.c_str());
-    throw BoardError{path + ": " + std::strerror(error)};
-  }
-  // The new name too must survive a power cut.
-  const int fd = ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (fd >= 0) ::fsync(fd), ::close(fd);
+  if (const auto failed = write_output(path, content)) throw BoardError{path + ": " + failed.message()};
 }
 
 std::string calibration_json(const Calibration& c, const std::string& axis) {

@@ -31,8 +31,8 @@ Calibration fit_calibration(const std::vector<CalibrationPoint>& points, std::in
 std::vector<CalibrationPoint> read_calibration_points(const std::string& path, bool rotary);
 
 /// The file that an output names as its `calibration`: span, zero (the nearest code) and polarity, and for
-/// people their uncertainties. It is there as a whole or, where that fails, as it was; throws BoardError
-/// then. setup.
+/// people their uncertainties. Written by write_output: there as a whole or, where that fails, as it was;
+/// throws BoardError then. setup.
 void write_calibration(const std::string& path, const Calibration& calibration, const std::string& axis);
 
 /// The same as JSON.

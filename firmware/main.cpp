@@ -2,7 +2,6 @@
 // vernierd: with devices.cpp and open_devices.cpp the composition root, which alone names backends.
 #include <algorithm>
 #include <atomic>
-#include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -230,12 +229,7 @@ int calibrate(const Arguments& arguments, const BoardFile& file) {
                "%s: span %.6f +- %.6f %s, zero %.2f +- %.2f, residual %.3f rms\n", path.c_str(), found.span,
                found.span_std, axis->wiring.rotary ? "deg" : "mm", found.zero, found.zero_std,
                found.residual);
-  if (arguments.json.empty()) return kDone;
-  std::FILE* const out = arguments.json == "-" ? stdout : std::fopen(arguments.json.c_str(), "w");
-  if (out == nullptr) throw BoardError{arguments.json + ": " + std::strerror(errno)};
-  std::fputs(calibration_json(found, axis->wiring.name).c_str(), out);
-  if (out != stdout) std::fclose(out);
-  return kDone;
+  return write_result(arguments.json, calibration_json(found, axis->wiring.name)) ? kDone : kBadInput;
 }
 
 int run_board(const Arguments& arguments) {

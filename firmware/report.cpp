@@ -3,7 +3,11 @@
 
 #include <cerrno>
 #include <cstdio>
-#include <cstring>
+#include <cstdlib>
+#include <memory>
+#include <new>
+
+#include "hal/support/output_file.h"
 
 namespace vernier {
 namespace {
@@ -59,6 +63,17 @@ void print_result(std::FILE* out, const Cycle& cycle, const GrantReport& grant) 
   std::fputs("\n}\n", out);
 }
 
+std::string result_text(const Cycle& cycle, const GrantReport& grant) {
+  char* text = nullptr;
+  std::size_t size = 0;
+  std::FILE* const out = ::open_memstream(&text, &size);
+  if (out == nullptr) throw std::bad_alloc();
+  print_result(out, cycle, grant);
+  std::fclose(out);
+  const std::unique_ptr<char, decltype(&std::free)> owned(text, &std::free);
+  return {text, size};
+}
+
 }  // namespace
 
 bool report_run(const Cycle& cycle, const GrantReport& grant, const std::string& json) {
@@ -69,15 +84,19 @@ bool report_run(const Cycle& cycle, const GrantReport& grant, const std::string&
       static_cast<unsigned long long>(health.overruns), name_of(cycle.mode()), name_of(cycle.latched()));
   print_histogram(people, "wake-up latency", health.latency);
   print_histogram(people, "execution of a tick", health.execution);
-  if (json == "-") print_result(stdout, cycle, grant);
-  if (json.empty() || json == "-") return true;
-  std::FILE* const file = std::fopen(json.c_str(), "w");
-  if (file == nullptr) {
-    std::fprintf(stderr, "vernierd: %s: %s\n", json.c_str(), std::strerror(errno));
-    return false;
+  return write_result(json, result_text(cycle, grant));
+}
+
+bool write_result(const std::string& json, const std::string& text) {
+  std::error_code failed;
+  if (json == "-") {
+    if (std::fputs(text.c_str(), stdout) == EOF || std::fflush(stdout) != 0)
+      failed = {errno, std::generic_category()};
+  } else if (!json.empty()) {
+    failed = write_output(json, text);
   }
-  print_result(file, cycle, grant);
-  return std::fclose(file) == 0;
+  if (failed) std::fprintf(stderr, "vernierd: %s: %s\n", json.c_str(), failed.message().c_str());
+  return !failed;
 }
 
 }  // namespace vernier

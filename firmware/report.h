@@ -15,4 +15,8 @@ struct GrantReport {
 /// what a run did. False where the file cannot be written. tool.
 bool report_run(const Cycle& cycle, const GrantReport& grant, const std::string& json);
 
+/// Writes a result for programs: json is a file, "-" for standard output, or empty for none. False, and said
+/// on standard error, where it cannot be written. tool.
+bool write_result(const std::string& json, const std::string& text);
+
 }  // namespace vernier

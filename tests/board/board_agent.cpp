@@ -109,21 +109,26 @@ int probe(const char* chip, unsigned line, const char* pull_path, int count) {
   return 0;
 }
 
-// ---- edges from outside: says each
+// ---- edges from outside: says each when it has heard it, so that the next can be pulled
 
-int say_edges(const char* chip, unsigned line, double seconds) {
+int say_edges(const char* chip, unsigned line, int count) {
   MonotonicClock clock;
   std::string error;
   const auto probe_line = GpioProbeLine::open({chip, line, false}, error);
   if (!probe_line) return std::printf("agent: FAILED: %s\n", error.c_str()), 1;
   std::printf("agent: listening\n");
   std::fflush(stdout);
-  const InstantNs end = clock.now() + InstantNs(static_cast<std::int64_t>(seconds * 1e9));
   int made = 0, let_go = 0, losses = 0;
-  for (ProbeEdge edge; clock.now() < end;) {
+  // After the last one a while longer: none comes that nobody pulled.
+  for (bool quiet = false; made + let_go < count || !quiet;) {
+    ProbeEdge edge;
     const HalFault fault = wait_for_edge(*probe_line, clock, edge);
-    if (fault == HalFault::kNone) ++(edge.made ? made : let_go);
+    quiet = fault == HalFault::kNoReading;
     losses += fault == HalFault::kRefused ? 1 : 0;
+    if (fault != HalFault::kNone) continue;
+    ++(edge.made ? made : let_go);
+    std::printf("agent: edge %d %s\n", made + let_go, edge.made ? "made" : "let go");
+    std::fflush(stdout);
   }
   std::printf("agent: heard %d made %d let go %d losses\n", made, let_go, losses);
   return 0;
@@ -223,13 +228,13 @@ int main(int argc, char** argv) {
   if (what == "probe" && argc == 6)
     return probe(argv[2], static_cast<unsigned>(std::atoi(argv[3])), argv[4], std::atoi(argv[5]));
   if (what == "edges" && argc == 5)
-    return say_edges(argv[2], static_cast<unsigned>(std::atoi(argv[3])), std::atof(argv[4]));
+    return say_edges(argv[2], static_cast<unsigned>(std::atoi(argv[3])), std::atoi(argv[4]));
   if (what == "bitrate" && argc == 4) return set_bit_rate(argv[2], static_cast<unsigned>(std::atoi(argv[3])));
   if (what == "isotp" && argc == 6)
     return talk(argv[2], static_cast<std::uint32_t>(std::strtoul(argv[3], nullptr, 0)),
                 static_cast<std::uint32_t>(std::strtoul(argv[4], nullptr, 0)), std::atoi(argv[5]));
   std::fputs(
-      "usage: board_agent probe CHIP LINE PULL COUNT | edges CHIP LINE SECONDS | bitrate INTERFACE N |\n"
+      "usage: board_agent probe CHIP LINE PULL COUNT | edges CHIP LINE COUNT | bitrate INTERFACE N |\n"
       "       isotp INTERFACE SEND RECEIVE COUNT\n",
       stderr);
   return 1;

@@ -121,8 +121,15 @@ TEST_F(CalibrationFile, IsReplacedAsAWhole) {
   EXPECT_NE(get().find("\nspan = 0.25  # "), std::string::npos) << get();
   EXPECT_NE(get().find("\nzero = 127  # 127.000 "), std::string::npos) << get();
   EXPECT_NE(get().find("\npolarity = \"normal\"\n"), std::string::npos) << get();
-  EXPECT_NE(::access((path_ + ".next").c_str(), F_OK), 0);
-  EXPECT_THROW(write_calibration("/dev/null/x", Calibration{}, "X"), BoardError);
+  EXPECT_THROW(write_calibration(path_ + "/x", Calibration{}, "X"), BoardError);
+}
+
+TEST_F(CalibrationFile, MayBeALink) {
+  const std::string link = path_ + ".link";
+  ASSERT_EQ(::symlink(path_.c_str(), link.c_str()), 0);
+  write_calibration(link, fit_calibration(chain(11, 0, 1), kCodes, false), "X");
+  EXPECT_EQ(::unlink(link.c_str()), 0);
+  EXPECT_NE(get().find("\nspan = 0.25  # "), std::string::npos) << get();
 }
 
 /// A converter, and the axis behind it with another gain and zero than the board thinks.
