@@ -32,7 +32,8 @@ struct ImageHeader {
   std::uint64_t fingerprint;  // of the equation: FNV-1a over the sections from kConstants on
   std::uint64_t source_hash;  // FNV-1a of the machine file that it was compiled from
   std::uint32_t lag_count;
-  std::uint32_t reserved[3];  // 0
+  std::uint32_t accepted_rules;  // bit n: rule n of "safe to run?" was overridden by the user (tools/safety)
+  std::uint32_t reserved[2];     // 0
 };
 static_assert(sizeof(ImageHeader) == 64);
 constexpr std::uint32_t kChecksumStart = 16;  // first byte under the checksum

@@ -53,7 +53,7 @@ ImageFault check_header(const std::uint8_t* bytes, std::uint32_t size) {
     return ImageFault::kHeader;
   if (header.image_bytes > size) return ImageFault::kTruncated;
   if (header.section_count != kSectionCount || header.tick_us == 0) return ImageFault::kHeader;
-  if ((header.reserved[0] | header.reserved[1] | header.reserved[2]) != 0) return ImageFault::kHeader;
+  if ((header.reserved[0] | header.reserved[1]) != 0) return ImageFault::kHeader;
   if (crc32c(bytes + kChecksumStart, header.image_bytes - kChecksumStart) != header.checksum)
     return ImageFault::kChecksum;
   return ImageFault::kNone;

@@ -69,7 +69,7 @@ const std::vector<Known>& known() {
         {"J5", {-150, 150}},
         {"J6", {-170, 170}}},
        {}},
-      {"ball-bar", "xy_circle.xml", 0.0005, 4000, {}, {}},
+      {"ball-bar", "", 0.0005, 4000, {}, {}},
       {"single-axis", "", 0.0005, 6000, {}, {}}};
   return all;
 }
@@ -89,6 +89,26 @@ const char* const kSingleAxis = R"XML(<machine name="single-axis">
   <transforms branch="tool">
     <sixdof n="1" X="X+x0+lXx" Y="lXy" Z="lXz" rX="rXx" rY="rXy" rZ="rXz"/>
     <sixdof n="2" Z="TPZ"/>
+  </transforms>
+</machine>
+)XML";
+
+// The circle's centre is a static here, so that surveys hide what the machine does and not how it was set up.
+const char* const kBallBarCircle = R"XML(<machine name="xy-circle">
+  <variables>
+    <static>
+      <x0 value="0" nominal="0" unit="mm" note="centre of the circle in the bar's frame"/>
+      <y0 value="0" nominal="0" unit="mm"/>
+      <k value="0" nominal="0" note="common scale error of both axes: radius error / radius"/>
+      <BaseShift X="0" Y="0" Z="0" rX="0" rY="0" rZ="0" Hide="true"/>
+    </static>
+    <machineaxes>
+      <X rotary="false" min="-150" max="150" maxcorrection="0.5" maxslew="20"/>
+      <Y rotary="false" min="-150" max="150" maxcorrection="0.5" maxslew="20"/>
+    </machineaxes>
+  </variables>
+  <transforms branch="tool">
+    <sixdof n="1" X="X*(1+k)+x0" Y="Y*(1+k)+y0"/>
   </transforms>
 </machine>
 )XML";
@@ -224,8 +244,10 @@ Geometry geometry_of(Family family) {
   g.u_mm = entry.u_mm;
   g.feed = entry.feed;
   g.bends = entry.bends;
-  g.text = *entry.file == 0 ? kSingleAxis
-                            : read_file(std::string(VERNIER_SOURCE_DIR "/tables/machines/") + entry.file);
+  g.text = family == Family::kSingleAxis ? kSingleAxis
+           : family == Family::kBallBar
+               ? kBallBarCircle
+               : read_file(std::string(VERNIER_SOURCE_DIR "/tables/machines/") + entry.file);
   set_ranges(entry, g.text);
   const Machine machine = nominal_machine(parse_machine(g.text, "family.xml"));
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {

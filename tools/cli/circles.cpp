@@ -60,7 +60,7 @@ std::vector<Circle> find_circles(const Machine& machine, const Measurement& m) {
   const bool any = std::any_of(m.observations.begin(), m.observations.end(),
                                [](const Observation& o) { return o.kind == ObservationKind::kLength; });
   if (!any) return {};
-  const Poses nominal = forward(nominal_machine(machine), m.states);
+  const Poses nominal = forward(nominal_machine(machine), commanded_states(m));
   for (std::size_t i = 0; i < m.observations.size(); ++i) {
     const Observation& o = m.observations[i];
     if (o.kind != ObservationKind::kLength) continue;

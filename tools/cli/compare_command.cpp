@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "tools/cli/before_after_result.h"
 #include "tools/cli/command.h"
 #include "tools/cli/results.h"
 #include "tools/diagnose/structure_json.h"
@@ -11,13 +12,14 @@
 #include "tools/model/machine.h"
 #include "tools/model/measurement.h"
 #include "tools/report/report.h"
+#include "tools/simulate/corrected.h"
 
 namespace vernier {
 namespace {
 
 struct CompareArguments {
-  std::string machine, output, json;
-  std::vector<std::string> measurements;
+  std::string machine, output, json, images;
+  std::vector<std::string> measurements, before, after;
 };
 
 std::optional<double> value_of(const nlohmann::ordered_json& json, const char* key) {
@@ -97,6 +99,9 @@ void print_result(std::FILE* out, const nlohmann::ordered_json& json) {
   if (const auto rotations = value_of(json, "rms_urad"))
     fmt::print(out, "rms rotations   {}\n", number_or_dash(rotations, "urad"));
   fmt::print(out, "noise           {}\n", number_or_dash(value_of(json, "noise_um"), "um"));
+  if (const auto& known = json["prediction_std_um"]; !known.is_null())
+    fmt::print(out, "model known to  {:.4g} um on average over these rows, {:.4g} um at worst\n",
+               known["rms"].get<double>(), known["max"].get<double>());
   fmt::print(out, "{} observations, {} of them check, {} rows excluded\n",
              json["n_obs"].get<std::size_t>() + json["n_check"].get<std::size_t>(),
              json["n_check"].get<std::size_t>(), json["n_excluded"].get<std::size_t>());
@@ -115,9 +120,35 @@ void add_field(nlohmann::ordered_json& json, const Machine& machine) {
     json["field_note"] = "No error field over the volume is drawn: " + why_not;
 }
 
-void run_compare(const CompareArguments& arguments) {
+/// Did it help?
+void run_before_after(const CompareArguments& arguments) {
+  if (arguments.before.empty() || arguments.after.empty())
+    throw InputError("--before and --after belong together");
+  if (!arguments.measurements.empty())
+    throw InputError("\"" + arguments.measurements.front() +
+                     "\": with --before and --after there are no other measurement files");
   const Machine machine = read_machine(arguments.machine);
-  const Measurement m = read_measurement(arguments.measurements, machine);
+  const ImageCorrection images = corrections_of_images(arguments.images);
+  const BeforeAfter result =
+      compare_before_after(machine, read_measurement(arguments.before, machine, images),
+                           read_measurement(arguments.after, machine, images));
+  if (!arguments.output.empty()) {
+    std::vector<std::string> files = arguments.before;
+    files.insert(files.end(), arguments.after.begin(), arguments.after.end());
+    write_file(arguments.output, improvement_report_html(before_after_page(result, machine.name, files)));
+  }
+  write_json(arguments.json, before_after_json(result));
+  for (const std::string& note : machine.notes) fmt::print(stderr, "note: {}\n", note);
+  print_before_after(human_stream(arguments.json), result);
+}
+
+void run_compare(const CompareArguments& arguments) {
+  if (!arguments.before.empty() || !arguments.after.empty()) return run_before_after(arguments);
+  if (arguments.measurements.empty())
+    throw InputError("compare needs measurement files: MEAS, or --before and --after");
+  const Machine machine = read_machine(arguments.machine);
+  const Measurement m =
+      read_measurement(arguments.measurements, machine, corrections_of_images(arguments.images));
   const Eigen::VectorXd residual = residuals(machine, m);
   nlohmann::ordered_json json = compare_json(machine, m, residual);
   add_failure(json, failure_picture(machine, m, residual));
@@ -140,7 +171,14 @@ void register_compare(CLI::App& vernier) {
   CLI::App* command = vernier.add_subcommand(
       "compare", "Compare a model as it is with measurements: how well, and where it fails");
   command->add_option("MACHINE", arguments->machine, "machine file (XML)")->required();
-  command->add_option("MEAS", arguments->measurements, "measurement files (CSV)")->required();
+  command->add_option("MEAS", arguments->measurements, "measurement files (CSV)");
+  // One value each time: what follows it may be the machine file.
+  const auto files = [command](const char* option, std::vector<std::string>& list, const char* what) {
+    command->add_option(option, list, what)->expected(1)->allow_extra_args(false)->take_all();
+  };
+  files("--before", arguments->before, "did it help? measured without the correction (CSV); may be repeated");
+  files("--after", arguments->after, "the same with it; may be repeated; MEAS is not given then");
+  command->add_option("--images", arguments->images, kImagesHelp);
   command->add_option("-o,--output", arguments->output, "the report, one HTML file that opens offline");
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->footer(
@@ -149,6 +187,9 @@ void register_compare(CLI::App& vernier) {
       "model's error field over the volume. Nothing is fitted, so a wrong offset, squareness or scale "
       "counts\n"
       "as a failure here that a fit would remove: run `fit` first to see what no parameter can explain.\n"
+      "With --before and --after: the error against the nominal machine in the best set-up of each, how "
+      "much\n"
+      "smaller it became, in all, by reading and feed, and between which limits (tools/docs/compare.md).\n"
       "Exit status 0 done, 1 bad input.");
   command->callback([arguments] { run_compare(*arguments); });
 }

@@ -160,7 +160,7 @@ std::vector<Circle> circles_with_numbers(const Machine& machine, const Measureme
 void each_column(const Machine& machine, const Measurement& m, const VisitColumn& visit) {
   const States& s = m.states;
   for (std::size_t i = 0; i < machine.axes.size(); ++i)
-    visit(machine.axes[i].name, machine.axes[i].rotary ? "deg" : "mm", "axis", s.axis[i]);
+    visit(machine.axes[i].name, machine.axes[i].rotary ? "deg" : "mm", "axis", commanded(m, i));
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
     const std::string& axis = machine.axes[i].name;
     const std::string unit = machine.axes[i].rotary ? "deg" : "mm";

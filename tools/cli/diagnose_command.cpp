@@ -10,12 +10,13 @@
 #include "tools/model/files.h"
 #include "tools/plan/plan.h"
 #include "tools/report/report.h"
+#include "tools/simulate/corrected.h"
 
 namespace vernier {
 namespace {
 
 struct DiagnoseArguments {
-  std::string machine, output, json, write;
+  std::string machine, output, json, write, images;
   std::vector<std::string> measurements, effects;
   std::size_t most = 5;
 };
@@ -47,8 +48,7 @@ void print_candidates(std::FILE* out, const Diagnosis& d) {
       fmt::print(out, "    alike in these data: {}\n", fmt::join(c.confounded_with, ", "));
     if (!c.accepted) continue;
     for (const ParameterEstimate& p : c.parameters)
-      fmt::print(out, "    {} = {:.6g} +- {} {}\n", p.name, p.value,
-                 p.std ? fmt::format("{:.2g}", *p.std) : "-", p.unit);
+      fmt::print(out, "    {} = {:.6g} +- {} {}\n", p.name, p.value, fmt::format("{:.2g}", p.std), p.unit);
     fmt::print(out, "    vernier add '{}' MACHINE -o NEW\n", c.add);
   }
 }
@@ -79,7 +79,8 @@ std::vector<std::string> plan_for(const std::string& text, const Machine& machin
 void run_diagnose(const DiagnoseArguments& arguments) {
   const std::string text = read_file(arguments.machine);
   const Machine machine = parse_machine(text, arguments.machine);
-  const Measurement m = read_measurement(arguments.measurements, machine);
+  const Measurement m =
+      read_measurement(arguments.measurements, machine, corrections_of_images(arguments.images));
   DiagnoseOptions options;
   options.effects = effect_catalogue(arguments.effects);
   options.most_effects = arguments.most;
@@ -117,6 +118,7 @@ void register_diagnose(CLI::App& vernier) {
   command->add_option("--machine-out", arguments->write,
                       "the machine file with the effects of the ladder, fitted");
   command->add_option("--effects", arguments->effects, "files with effects of your own; may be repeated");
+  command->add_option("--images", arguments->images, kImagesHelp);
   command->add_option("--most", arguments->most, "most effects in the ladder")
       ->check(CLI::Range(1, 10))
       ->capture_default_str();

@@ -11,7 +11,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json parameter_json(const ParameterEstimate& item) {
-  return {{"name", item.name}, {"value", item.value}, {"std", or_null(item.std)}, {"unit", item.unit}};
+  return {{"name", item.name}, {"value", item.value}, {"std", item.std}, {"unit", item.unit}};
 }
 
 std::string term_text(const Candidate& candidate) {

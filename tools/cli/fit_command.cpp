@@ -5,31 +5,41 @@
 
 #include "tools/cli/command.h"
 #include "tools/cli/results.h"
+#include "tools/fit/decisions.h"
 #include "tools/fit/domain.h"
 #include "tools/fit/fit.h"
+#include "tools/fit/freedom.h"
 #include "tools/model/machine.h"
 #include "tools/model/measurement.h"
 #include "tools/model/numbers.h"
+#include "tools/simulate/corrected.h"
 
 namespace vernier {
 namespace {
 
 struct FitArguments {
-  std::string machine, output, json;
+  std::string machine, output, json, images;
   std::vector<std::string> measurements;
-  std::vector<std::string> stages, priors;
+  std::vector<std::string> stages, priors, free, hold;
   std::string loss = "squared", solver = "normal-equations";
   double loss_scale = 3;
 };
 
-void print_group(std::FILE* out, const FitResult& result, const std::vector<std::size_t>& group) {
-  std::string names;
-  constexpr std::size_t kMost = 8;
-  for (std::size_t i = 0; i < group.size() && i < kMost; ++i)
-    names += (i ? ", " : "") + result.parameters[group[i]].name;
-  if (group.size() > kMost) names += fmt::format(" and {} more", group.size() - kMost);
-  fmt::print(out, "  {} {}\n", names,
-             group.size() == 1 ? "has no effect on these data" : "cannot be told apart with these data");
+/// What the readings left open, largest reach first.
+void print_decisions(std::FILE* out, const FitResult& result) {
+  const std::vector<Decision> decisions = decisions_of(result);
+  if (decisions.empty()) return;
+  fmt::print(out, "decided by convention (nearest to nominal in units of each scale):\n");
+  for (const Decision& decision : decisions) fmt::print(out, "  {}\n", decision.sentence);
+}
+
+void print_stages(std::FILE* out, const FitResult& result) {
+  for (std::size_t i = 0; i < result.stages.size(); ++i) {
+    const StageFigures& stage = result.stages[i];
+    fmt::print(out, "stage {}: {} parameters ({}), {} iterations: fit rows {}, check rows {}\n", i + 1,
+               stage.parameters, stage.patterns, stage.iterations, number_or_dash(stage.fit.rms_um, "um"),
+               number_or_dash(stage.check.rms_um, "um"));
+  }
 }
 
 /// The combination that the data see least, where it is weak enough to matter.
@@ -50,26 +60,24 @@ void print_verdict(std::FILE* out, const FitResult& result) {
   if (result.normalised_check)
     fmt::print(out, "check rows over the uncertainty of reading and model: rms {:.3f}, {:.1f} % within 3\n",
                result.normalised_check->rms, 100 * result.normalised_check->within_3);
-  if (!result.noise_um || !result.after.rms_um || result.freedom <= 0) return;
+  if (!result.noise_um || !result.after.rms_um || result.freedom < 0.5) return;
   // chi^2 / dof has a standard deviation of sqrt(2 / dof) where the residual is noise.
   const double reduced = std::pow(*result.after.rms_um / *result.noise_um, 2) *
-                         static_cast<double>(result.before.count) / static_cast<double>(result.freedom);
-  if (reduced > 1 + 5 * std::sqrt(2.0 / static_cast<double>(result.freedom)))
+                         static_cast<double>(result.before.count) / result.freedom;
+  if (reduced > 1 + 5 * std::sqrt(2.0 / result.freedom))
     fmt::print(out, "the residual is {:.2g} times the noise: something is missing from this model\n",
                std::sqrt(reduced));
 }
 
 void print_result(std::FILE* out, const FitResult& result, const Measurement& m) {
-  fmt::print(out, "{:<24} {:>15} {:>12}  {}\n", "parameter", "value", "std", "unit");
+  print_stages(out, result);
+  fmt::print(out, "{:<24} {:>15} {:>12}  {:<6} {}\n", "parameter", "value", "std", "unit", "from");
   for (const ParameterEstimate& item : result.estimates)
-    fmt::print(out, "{:<24} {:>15.6g} {:>12}  {}\n", item.name, item.value,
-               item.std ? fmt::format("{:.2g}", *item.std) : "-", item.unit);
-  if (!result.observability.unidentifiable.empty()) {
-    fmt::print(out, "not determined (left at their start along these combinations):\n");
-    for (const auto& group : result.observability.unidentifiable) print_group(out, result, group);
-  }
+    fmt::print(out, "{:<24} {:>15.6g} {:>12.2g}  {:<6} {}\n", item.name, item.value, item.std, item.unit,
+               item.from == Origin::kPrior ? "not measured: only the prior" : origin_name(item.from));
+  print_decisions(out, result);
   for (const auto& [name, std] : result.priors)
-    fmt::print(out, "held near its start as if measured there: {} with std {:g}\n", name, std);
+    fmt::print(out, "held near nominal as if measured there: {} with std {:g}\n", name, std);
   print_weakest(out, result);
   fmt::print(out, "rms before      {}\n", number_or_dash(result.before.rms_um, "um"));
   fmt::print(out, "rms fit rows    {}   max {}\n", number_or_dash(result.after.rms_um, "um"),
@@ -97,6 +105,13 @@ std::vector<std::string> split_list(const std::string& text) {
   return list;
 }
 
+std::vector<std::string> split_all(const std::vector<std::string>& texts) {
+  std::vector<std::string> all;
+  for (const std::string& text : texts)
+    for (std::string& one : split_list(text)) all.push_back(std::move(one));
+  return all;
+}
+
 Prior prior_of(const std::string& text) {
   const auto at = text.rfind('=');
   const auto std = at == std::string::npos ? std::nullopt : parse_number(text.substr(at + 1));
@@ -106,8 +121,10 @@ Prior prior_of(const std::string& text) {
 
 void run_fit(const FitArguments& arguments) {
   const std::string text = read_file(arguments.machine);
-  const Machine machine = parse_machine(text, arguments.machine);
-  const Measurement m = read_measurement(arguments.measurements, machine);
+  const Machine machine = with_freedom(parse_machine(text, arguments.machine), split_all(arguments.free),
+                                       split_all(arguments.hold));
+  const Measurement m =
+      read_measurement(arguments.measurements, machine, corrections_of_images(arguments.images));
   FitOptions options;
   options.loss = arguments.loss == "huber"    ? Loss::kHuber
                  : arguments.loss == "cauchy" ? Loss::kCauchy
@@ -122,6 +139,7 @@ void run_fit(const FitArguments& arguments) {
                     fmt::format("iteration {}, weighted sum of squares {:.6g}", iteration, cost));
   };
   const FitResult result = fit(machine, m, options);
+  if (!result.absurd.empty()) throw LimitNotMet(result.absurd + "; nothing is written");
   const nlohmann::ordered_json json = fit_json(result, m);
   if (!arguments.output.empty())
     write_file(arguments.output,
@@ -141,6 +159,7 @@ void register_fit(CLI::App& vernier) {
   command->add_option("MACHINE", arguments->machine, "machine file (XML)")->required();
   command->add_option("MEAS", arguments->measurements, "measurement files (CSV)")->required();
   command->add_option("-o,--output", arguments->output, "the fitted machine file");
+  command->add_option("--images", arguments->images, kImagesHelp);
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->add_option("--loss", arguments->loss, "squared, huber or cauchy")
       ->check(CLI::IsMember({"squared", "huber", "cauchy"}))
@@ -153,14 +172,20 @@ void register_fit(CLI::App& vernier) {
   command->add_option(
       "--stage", arguments->stages,
       "patterns (comma between them) of the parameters freed in a stage before all are; may be repeated");
+  command->add_option("--free", arguments->free,
+                      "patterns of what is free besides what the file says: statics, table.X.rY, BaseShift, "
+                      "scalefactor.X; may be repeated");
+  command->add_option("--hold", arguments->hold, "patterns of what is held, after --free; may be repeated");
   command->add_option("--prior", arguments->priors,
-                      "NAME=STD: hold parameters near their start as if measured there; may be repeated");
+                      "NAME=STD: hold parameters near nominal as if measured there; may be repeated");
   command->add_option("--solver", arguments->solver, "normal-equations, or ceres as a cross-check")
       ->check(CLI::IsMember({"normal-equations", "ceres"}))
       ->capture_default_str();
   command->footer(
-      "Weighted least squares (1/u^2) on rows with role fit. Parameters that the data cannot separate are\n"
-      "named and left at their start along those combinations. Exit status 0 done, 1 bad input.");
+      "Weighted least squares (1/u^2) on rows with role fit. What the readings leave open is as near\n"
+      "to nominal as it can be, in units of each parameter's scale, and said (tools/docs/fit.md). Exit "
+      "status 0 done,\n"
+      "1 bad input, 2 the fit did not converge or the readings are not of this machine: nothing written.");
   command->callback([arguments] { run_fit(*arguments); });
 }
 

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <iostream>
 #include <memory>
 
@@ -12,6 +11,8 @@
 #include "tools/model/error.h"
 #include "tools/model/optional_json.h"
 #include "tools/report/report.h"
+#include "tools/safety/safety_json.h"
+#include "tools/simulate/corrected.h"
 #include "tools/simulate/replay.h"
 
 namespace vernier {
@@ -20,7 +21,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct ImproveArguments {
-  std::string machine, output, json;
+  std::string machine, output, json, images;
   std::vector<std::string> measurements, effects;
   bool yes = false;
 };
@@ -83,12 +84,12 @@ class Improver {
         text_(read_file(arguments.machine)),
         machine_(parse_machine(text_, arguments.machine)),
         first_(machine_),
-        rows_(read_measurement(arguments.measurements, machine_)),
+        rows_(read_measurement(arguments.measurements, machine_, corrections_of_images(arguments.images))),
         all_rows_(rows_),
         effects_(effect_catalogue(arguments.effects)) {}
 
   void run() {
-    std::filesystem::create_directories(arguments_.output);
+    make_folder(arguments_.output);
     constexpr int kMostRounds = 4;
     for (int round = 0; round < kMostRounds; ++round)
       if (!climb(round)) break;
@@ -154,6 +155,7 @@ class Improver {
       json["ladder"].push_back(step);
     }
     simulate(json);
+    judge(json);
     const std::string page = arguments_.output + "/improve.html";
     write_file(page, improve_report_html(json));
     write_file(arguments_.output + "/improve.json", json.dump(1) + "\n");
@@ -183,6 +185,18 @@ class Improver {
     }
   }
 
+  /// May the last machine run? Said, not decided: nothing runs yet.
+  void judge(Json& json) {
+    json["safe_to_run"] = nullptr;
+    try {
+      const SafetySheet sheet = safety_sheet(parse_machine(rungs_.back().text, rungs_.back().file));
+      json["safe_to_run"] = safety_json(sheet);
+      fmt::print(out_, "{}\n", sheet.ok() ? "safe to run: every rule of the sheet holds" : sheet.refusal());
+    } catch (const InputError& error) {
+      fmt::print(out_, "safe to run: not judged: {}\n", error.what());
+    }
+  }
+
   const ImproveArguments& arguments_;
   std::FILE* out_;
   std::string text_;
@@ -206,6 +220,7 @@ void register_improve(CLI::App& vernier) {
                    "folder for machine files, improve.json and improve.html")
       ->required();
   command->add_option("--effects", arguments->effects, "files with effects of your own; may be repeated");
+  command->add_option("--images", arguments->images, kImagesHelp);
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->add_flag("--yes", arguments->yes, "add every effect that is found, without asking");
   command->footer(

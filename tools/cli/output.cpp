@@ -1,12 +1,15 @@
 #include <unistd.h>
 
+#include <cerrno>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <string_view>
 
 #include "tools/cli/command.h"
+#include "tools/model/error.h"
 
 namespace vernier {
 namespace {
@@ -31,10 +34,9 @@ void write_json(const std::string& path, const nlohmann::ordered_json& result) {
   // The library writes numbers that are not finite as null.
   const std::string text =
       result.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
-  if (path == "-")
-    std::fputs(text.c_str(), stdout);
-  else
-    write_file(path, text);
+  if (path != "-") return write_file(path, text);
+  if (std::fputs(text.c_str(), stdout) == EOF || std::fflush(stdout) != 0)
+    throw InputError({"standard output", 0}, "", std::string("cannot be written: ") + std::strerror(errno));
 }
 
 std::FILE* human_stream(const std::string& json_path) { return json_path == "-" ? stderr : stdout; }

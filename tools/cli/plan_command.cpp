@@ -9,6 +9,7 @@
 #include "tools/model/measurement.h"
 #include "tools/plan/plan.h"
 #include "tools/plan/sheets.h"
+#include "tools/simulate/corrected.h"
 
 namespace vernier {
 namespace {
@@ -16,7 +17,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct PlanArguments {
-  std::string machine, output, gcode, json;
+  std::string machine, output, gcode, json, images;
   std::vector<std::string> measurements, separate, effects;
   std::size_t points = 0;
   double confidence = 0.95;
@@ -74,7 +75,8 @@ Json plan_json(const Plan& plan, double confidence) {
 void run_plan(const PlanArguments& arguments) {
   const std::string text = read_file(arguments.machine);
   const Machine machine = parse_machine(text, arguments.machine);
-  const Measurement m = read_measurement(arguments.measurements, machine);
+  const Measurement m =
+      read_measurement(arguments.measurements, machine, corrections_of_images(arguments.images));
   const std::vector<Effect> effects = effect_catalogue(arguments.effects);
   const std::vector<std::string> rivals = split_rivals(arguments.separate, effects);
   PlanOptions options;
@@ -119,6 +121,7 @@ void register_plan(CLI::App& vernier) {
       ->check(CLI::Range(0.5001, 0.9999))
       ->capture_default_str();
   command->add_option("--effects", arguments->effects, "files with effects of your own; may be repeated");
+  command->add_option("--images", arguments->images, kImagesHelp);
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->footer(
       "Fits the model with either effect, then chooses the rows whose readings differ most after the wrong\n"

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <cstdint>
 
+#include "tools/fit/decisions.h"
 #include "tools/fit/domain.h"
+#include "tools/fit/reach.h"
 #include "tools/model/optional_json.h"
 
 namespace vernier {
@@ -40,6 +42,16 @@ ordered_json shared(const Machine& machine, const Measurement& m, const RoleStat
           {"n_excluded", m.excluded}};
 }
 
+/// How well the model itself is known where it was compared: rms and largest over the rows, um. Null for a
+/// machine that was never fitted.
+ordered_json prediction_std_json(const Machine& machine, const Measurement& m) {
+  const Reach reach(machine);
+  if (!reach.known() || m.rows() == 0) return nullptr;
+  const Eigen::VectorXd std_um = reach.std_um(m.states);
+  return {{"rms", std::sqrt(std_um.squaredNorm() / static_cast<double>(std_um.size()))},
+          {"max", std_um.maxCoeff()}};
+}
+
 }  // namespace
 
 ordered_json fit_json(const FitResult& result, const Measurement& m) {
@@ -47,14 +59,35 @@ ordered_json fit_json(const FitResult& result, const Measurement& m) {
       shared(result.machine, m, result.before, result.after, result.check, result.parameters.size());
   json["parameters"] = ordered_json::array();
   for (const ParameterEstimate& item : result.estimates)
-    json["parameters"].push_back(
-        {{"name", item.name}, {"value", item.value}, {"std", or_null(item.std)}, {"unit", item.unit}});
+    json["parameters"].push_back({{"name", item.name},
+                                  {"value", item.value},
+                                  {"std", item.std},
+                                  {"unit", item.unit},
+                                  {"from", origin_name(item.from)},
+                                  {"scale", item.scale}});
   json["unidentifiable"] = ordered_json::array();
   for (const auto& group : result.observability.unidentifiable) {
     ordered_json names = ordered_json::array();
     for (const std::size_t i : group) names.push_back(result.parameters[i].name);
     json["unidentifiable"].push_back(names);
   }
+  json["convention"] = ordered_json::array();
+  for (const Decision& decision : decisions_of(result))
+    json["convention"].push_back({{"parameters", decision.parameters},
+                                  {"reach_um", decision.reach_um},
+                                  {"sentence", decision.sentence}});
+  json["stages"] = ordered_json::array();
+  for (const StageFigures& stage : result.stages)
+    json["stages"].push_back({{"patterns", stage.patterns},
+                              {"n_params", stage.parameters},
+                              {"iterations", stage.iterations},
+                              {"rms_um", or_null(stage.fit.rms_um)},
+                              {"check_rms_um", or_null(stage.check.rms_um)}});
+  json["noise_model"] = {{"kind", has_uncertainty(m) ? "white, u given" : "white, from the residual"},
+                         {"scale_of_u", has_uncertainty(m) ? ordered_json(std::sqrt(result.variance_factor))
+                                                           : ordered_json(nullptr)}};
+  json["misfit_um"] = 1000 * result.misfit_mm;
+  json["reach_mm"] = result.reach_mm;
   json["weakest"] = ordered_json::array();
   for (const Observability::Weak& weak : result.observability.weakest) {
     ordered_json names = ordered_json::array();
@@ -87,6 +120,7 @@ ordered_json compare_json(const Machine& machine, const Measurement& m, const Ei
   ordered_json json = shared(machine, m, fit, fit, check, 0);
   json["parameters"] = ordered_json::array();
   json["unidentifiable"] = ordered_json::array();
+  json["prediction_std_um"] = prediction_std_json(machine, m);
   json["stretches"] = stretches_json(m, residual);
   json["circular"] = circular_json(machine, m);
   json["domains"] = domains_json(machine, m);

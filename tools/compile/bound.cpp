@@ -1,7 +1,9 @@
 #include "tools/compile/bound.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numbers>
 #include <set>
 
 #include "tools/compile/calculus.h"
@@ -11,13 +13,30 @@ namespace {
 
 constexpr double kUmPerMm = 1000;
 
+constexpr double kRad = std::numbers::pi / 180;
+using Registers = std::set<std::uint32_t>;
+
 /// How strongly each register's error shows in the register `output`: reverse accumulation of the gains.
+/// Registers that are given have no error: what follows is meant for the value that they have.
 std::vector<double> gains_to(const LoweredProgram& p, std::uint32_t output) {
   std::vector<double> gain(p.registers.size(), 0);
   gain[output] = 1;
-  for (std::size_t i = p.registers.size(); i-- > 0;)
+  for (std::size_t i = p.registers.size(); i-- > 0;) {
+    if (i != output && p.registers[i].given) gain[i] = 0;
     for (const Register::Use& use : p.registers[i].uses) gain[use.from] += gain[i] * use.gain;
+  }
   return gain;
+}
+
+/// Outputs in front of those that correct the direction.
+std::size_t linear_outputs(const Derivation& d) {
+  return d.outputs.size() - (d.orientation ? d.orientation->axes.size() : 0);
+}
+
+double error_along(const AxisDeviation& out, const Neglected& n) {
+  double along = 0;
+  for (std::size_t c = 0; c < 3; ++c) along += out.row[c] * n.along_mm[c];
+  return std::min(along, n.bound_mm * out.row_norm);
 }
 
 double& share_of(OutputBound& bound, const std::string& source) {
@@ -42,7 +61,7 @@ OutputBound bound_of(const Machine& machine, const Derivation& d, const LoweredP
   bound.axis = machine.axes[out.axis].name;
   const bool rotary = machine.axes[out.axis].rotary;
   const double um_per_unit = kUmPerMm * (rotary ? d.outputs[i].lever : 1);
-  bound.deviation_um = result.range.magnitude() * um_per_unit;
+  bound.deviation_um = (d.before.empty() ? result.range.magnitude() : d.before[0].range[i]) * um_per_unit;
   const auto blame = [&](const std::string& name, const std::string& source, double units) {
     if (units <= 0) return;
     bound.contributions.push_back({name, source, units * um_per_unit});
@@ -60,12 +79,18 @@ OutputBound bound_of(const Machine& machine, const Derivation& d, const LoweredP
                exact = std::ldexp(counts_per_unit, -result.fraction_bits);
   blame(rotary ? "output in 2^-32 turn" : "output in nm", "rounding",
         0.5 / counts_per_unit + result.range.magnitude() * std::abs(factor / exact - 1));
-  for (const Neglected& n : d.neglected) {
-    double along = 0;
-    for (std::size_t c = 0; c < 3; ++c) along += d.outputs[i].row[c] * n.along_mm[c];
-    blame(n.what, "linearisation", std::min(along, n.bound_mm * d.outputs[i].row_norm));
-  }
+  for (std::size_t k = linear_outputs(d); k < d.outputs.size(); ++k)
+    blame("counts of " + machine.axes[d.outputs[k].axis].name, "rounding",
+          0.5 * d.outputs[k].lever * 360 / static_cast<double>(kTurnCounts) * d.outputs[i].row_norm);
+  for (const Neglected& n : d.neglected) blame(n.what, "linearisation", error_along(d.outputs[i], n));
   sort_terms(bound);
+  return bound;
+}
+
+OutputBound bound_of_direction(const Machine& machine, const Derivation& d, std::size_t i) {
+  OutputBound bound;
+  bound.axis = machine.axes[d.outputs[i].axis].name;
+  bound.deviation_deg = d.graph[d.outputs[i].value].range.magnitude();
   return bound;
 }
 
@@ -76,6 +101,7 @@ double error_from(const LoweredProgram& p, std::uint32_t target, const std::set<
   double error = 0;
   for (std::size_t i = target + 1; i-- > 0;) {
     if (gain[i] == 0 || given.count(static_cast<std::uint32_t>(i)) != 0) continue;
+    if (i != target && p.registers[i].given) continue;
     error += gain[i] * p.registers[i].own_error;
     for (const Register::Use& use : p.registers[i].uses) gain[use.from] += gain[i] * use.gain;
   }
@@ -91,8 +117,9 @@ class LeastSquaresBound {
   LeastSquaresBound(const Derivation& d, const LoweredProgram& p)
       : g_(d.graph), least_(*d.least_squares), outputs_(d.outputs), p_(p) {}
 
-  std::vector<Contribution> terms() const {
-    const double most = least_.largest / least_.floor, size = least_.spread_mm;
+  /// size: |deviation| that is solved for, mm.
+  std::vector<Contribution> terms(double size) const {
+    const double most = least_.largest / least_.floor;
     const std::set<std::uint32_t> jacobian = registers(least_.jacobian), square = registers(least_.square);
     std::set<std::uint32_t> pieces = registers(least_.adjugate);
     for (const NodeId id : least_.deviation) insert(pieces, id);
@@ -110,7 +137,7 @@ class LeastSquaresBound {
     add("adjugate", "rounding", least_.trace * error_of(least_.adjugate, square) / least_.floor * size);
     add("J J'", "rounding", error_of(least_.square, jacobian) * most * size);
     add("J", "function", error_of(least_.jacobian, {}) * least_.gain * size);
-    std::set<std::uint32_t> last = jacobian;
+    Registers last = jacobian;
     double weights = 0;
     for (const NodeId id : least_.weights) {
       weights += std::pow(error_of(id, pieces), 2);
@@ -181,8 +208,8 @@ class LeastSquaresBound {
 };
 
 std::vector<OutputBound> least_squares_bounds(const Machine& machine, const Derivation& d,
-                                              const LoweredProgram& p) {
-  std::vector<Contribution> shared = LeastSquaresBound(d, p).terms();
+                                              const LoweredProgram& p, double size_mm) {
+  std::vector<Contribution> shared = LeastSquaresBound(d, p).terms(size_mm);
   for (const Neglected& n : d.neglected) shared.push_back({n.what, "linearisation", n.bound_mm * kUmPerMm});
   double counts = 0;
   for (const AxisDeviation& out : d.outputs)
@@ -202,64 +229,214 @@ std::vector<OutputBound> least_squares_bounds(const Machine& machine, const Deri
   return bounds;
 }
 
-/// Largest correction of each output, axis units.
+/// Largest correction of each linear output, axis units.
 std::vector<double> largest_corrections(const Derivation& d) {
   std::vector<double> largest;
-  for (const AxisDeviation& out : d.outputs) {
-    const double range = d.graph[out.value].range.magnitude();
-    largest.push_back(std::min(range, d.spread_mm * out.row_norm));
+  for (std::size_t k = 0; k < linear_outputs(d); ++k) {
+    const double range =
+        d.before.empty() ? d.graph[d.outputs[k].value].range.magnitude() : d.before[0].range[k];
+    largest.push_back(std::min(range, d.spread_mm * d.outputs[k].row_norm));
   }
   return largest;
 }
 
-/// deviation(q + c) - deviation(q) and what bends the nominal motion, mm at the tool point.
-double second_order_mm(const Derivation& d) {
-  const std::vector<double> c = largest_corrections(d);
-  double slope[3] = {0, 0, 0}, turned = 0, bent = 0;
+std::optional<NodeId> position_of(const Graph& graph, std::size_t axis) {
+  std::optional<NodeId> channel;
+  for (NodeId id = 0; id < graph.size(); ++id)
+    if (graph[id].kind == NodeKind::kChannel && graph[id].channel == ChannelKind::kPosition &&
+        graph[id].index[0] == axis)
+      channel = id;
+  return channel;
+}
+
+/// How fast the components of a vector change with an axis, at most; corrections of direction stay as they
+/// are.
+std::array<double, 3> slopes_of(const Derivation& d, const NodeVector& v, std::size_t axis) {
+  const auto channel = position_of(d.graph, axis);
+  if (!channel) return {0, 0, 0};
+  Slopes by_axis(d.graph, *channel, d.table_slopes);
+  if (d.orientation) {
+    for (const NodeId id : d.orientation->values) by_axis.hold(id);
+    for (const Evaluation& e : d.before)
+      for (const NodeId id : e.orientation) by_axis.hold(id);
+  }
+  return {by_axis.of(v[0]).magnitude(), by_axis.of(v[1]).magnitude(), by_axis.of(v[2]).magnitude()};
+}
+
+double norm_of(const std::array<double, 3>& v) { return std::hypot(v[0], v[1], v[2]); }
+
+/// What a step of Newton's iteration leaves at the tool point, mm: moving by `step`, somewhere within `reach`
+/// of the command, changes deviation(q) and bends the nominal motion. A first step begins at the command
+/// (step = reach), which halves what a straight line misses.
+double left_by_step(const Derivation& d, const std::vector<double>& reach, const std::vector<double>& step,
+                    bool first) {
+  std::array<double, 3> slope{};
+  double turned = 0, bent = 0;
   const auto turning = [&](std::size_t axis) {
     const auto found = d.turning.find(axis);
     return found == d.turning.end() ? 0 : found->second;
   };
-  for (std::size_t k = 0; k < d.outputs.size(); ++k) {
+  for (std::size_t k = 0; k < step.size(); ++k) {
     const std::size_t axis = d.outputs[k].axis;
-    std::optional<NodeId> channel;
-    for (NodeId id = 0; id < d.graph.size(); ++id)
-      if (d.graph[id].kind == NodeKind::kChannel && d.graph[id].channel == ChannelKind::kPosition &&
-          d.graph[id].index[0] == axis)
-        channel = id;
-    if (!channel) continue;
-    Slopes by_axis(d.graph, *channel, d.table_slopes);
-    for (std::size_t i = 0; i < 3; ++i) slope[i] += by_axis.of(d.deviation[i]).magnitude() * c[k];
-    turned += turning(axis) * c[k] * d.spread_mm;
-    for (std::size_t j = 0; j < d.outputs.size(); ++j)
+    const std::array<double, 3> own = slopes_of(d, d.deviation, axis);
+    for (std::size_t i = 0; i < 3; ++i) slope[i] += own[i] * step[k];
+    turned += turning(axis) * step[k] * d.spread_mm;
+    for (std::size_t j = 0; j < step.size(); ++j)
       for (const AxisColumn& column : d.columns)
         if (column.axis == d.outputs[j].axis) {
-          double bend = 0;
-          for (const NodeId id : column.direction) bend += std::pow(by_axis.of(id).magnitude(), 2);
+          const double bend = norm_of(slopes_of(d, column.direction, axis));
           // The frame's own turn is seen from one side only, so it counts for both.
-          bent += (0.5 * std::sqrt(bend) + turning(axis) * column.norm * (j == k ? 0.5 : 1)) * c[k] * c[j];
+          const double part = first ? 0.5 * bend + turning(axis) * column.norm * (j == k ? 0.5 : 1)
+                                    : bend + 2 * turning(axis) * column.norm;
+          bent += part * reach[k] * step[j];
         }
   }
-  return std::sqrt(slope[0] * slope[0] + slope[1] * slope[1] + slope[2] * slope[2]) + turned + bent;
+  return norm_of(slope) + turned + bent;
+}
+
+/// What an evaluation in front of the last is wrong by along output k, axis units: its program and what it
+/// neglects.
+double error_of_evaluation(const Derivation& d, const LoweredProgram& p, const Evaluation& e, std::size_t k) {
+  double error = 0;
+  for (const Neglected& n : e.neglected) error += error_along(d.outputs[k], n);
+  const auto place = p.register_of.find(e.values[k]);
+  return place == p.register_of.end() ? error : error + p.registers[place->second].error;
+}
+
+/// The tilt that a step leaves, rad: `reach` and `step` of all outputs, in the units of their axes. A unit
+/// vector's second derivative by two angles is at most 1.
+double tilt_left_by_step(const Derivation& d, const std::vector<double>& reach,
+                         const std::vector<double>& step, bool first) {
+  const Orientation& o = *d.orientation;
+  double left = 0, turned = 0, reached = 0;
+  for (std::size_t k = 0; k < d.outputs.size(); ++k) {
+    left += norm_of(slopes_of(d, o.deviation, d.outputs[k].axis)) * step[k];
+    if (k < linear_outputs(d)) continue;
+    const double lever = o.lever[k - linear_outputs(d)];
+    turned += lever * step[k];
+    reached += lever * reach[k];
+  }
+  return left + o.spread * turned + (first ? 0.5 : 1) * reached * turned;
+}
+
+/// What the program is wrong by in the direction's deviation and in the axes' motion that follows from it,
+/// rad.
+double tilt_error(const Derivation& d, const LoweredProgram& p) {
+  const Orientation& o = *d.orientation;
+  double sum = 0, error = 0;
+  for (const Neglected& n : o.neglected) error += n.bound_mm;
+  Registers pieces;
+  for (const NodeId id : d.last_direction) {
+    const auto place = p.register_of.find(id);
+    if (place == p.register_of.end()) continue;
+    sum += std::pow(error_from(p, place->second, {}), 2);
+    pieces.insert(place->second);
+  }
+  error += std::sqrt(sum);
+  for (std::size_t k = 0; k < o.axes.size(); ++k) {
+    const auto place = p.register_of.find(o.values[k]);
+    if (place == p.register_of.end()) continue;
+    const double counts = 0.5 * 360 / static_cast<double>(kTurnCounts);
+    error += o.lever[k] * (error_from(p, place->second, pieces) + counts);
+  }
+  return error;
+}
+
+/// Largest corrections of the outputs, those of the direction too.
+std::vector<double> all_corrections(const Derivation& d) {
+  std::vector<double> reach = largest_corrections(d);
+  const Orientation& o = *d.orientation;
+  for (std::size_t k = 0; k < o.axes.size(); ++k)
+    reach.push_back(std::min(o.limit_deg[k], o.gain * o.spread / o.lever[k]));
+  return reach;
+}
+
+/// What Newton's steps leave: mm at the tool point, rad of its direction.
+struct Remainder {
+  double point_mm = 0, tilt = 0;
+};
+
+/// The same after each evaluation: every step's size follows from what the one before left. least_mm: what
+/// the fixed-point least squares leave.
+std::vector<Remainder> remainders_of(const Derivation& d, const LoweredProgram& p, double least_mm) {
+  const std::size_t linear = linear_outputs(d);
+  const std::vector<double> reach = d.orientation ? all_corrections(d) : largest_corrections(d);
+  const std::vector<double> point(reach.begin(), reach.begin() + static_cast<std::ptrdiff_t>(linear));
+  std::vector<Remainder> left(1);
+  left[0].point_mm = left_by_step(d, point, point, true);
+  if (d.orientation) left[0].tilt = tilt_left_by_step(d, reach, reach, true);
+  for (const Evaluation& e : d.before) {
+    std::vector<double> step, turns;
+    double swung_mm = 0;  // by the direction's new correction
+    if (d.orientation) {
+      const Orientation& o = *d.orientation;
+      double tilt = left.back().tilt + tilt_error(d, p);
+      for (const Neglected& n : e.neglected_direction) tilt += n.bound_mm;
+      for (std::size_t k = 0; k < o.axes.size(); ++k) {
+        turns.push_back(std::min(2 * o.limit_deg[k], o.gain * tilt / o.lever[k]));
+        swung_mm += d.outputs[linear + k].lever * turns.back();
+      }
+    }
+    for (std::size_t k = 0; k < linear; ++k) {
+      const double own = d.least_squares ? least_mm * d.outputs[k].row_norm : error_of_evaluation(d, p, e, k);
+      step.push_back((left.back().point_mm + swung_mm) * d.outputs[k].row_norm + own);
+    }
+    Remainder next;
+    next.point_mm = left_by_step(d, point, step, false);
+    step.insert(step.end(), turns.begin(), turns.end());
+    if (d.orientation) next.tilt = tilt_left_by_step(d, reach, step, false);
+    left.push_back(next);
+  }
+  return left;
+}
+
+double sum_um(const std::vector<Contribution>& terms) {
+  double sum = 0;
+  for (const Contribution& c : terms) sum += c.bound_um;
+  return sum;
 }
 
 }  // namespace
 
 std::vector<OutputBound> bounds_of(const Machine& machine, const Derivation& d, const LoweredProgram& p) {
+  if (d.outputs.empty()) return {};
+  double least_mm = 0;
+  if (d.least_squares && !d.before.empty()) {
+    least_mm = sum_um(LeastSquaresBound(d, p).terms(d.spread_mm)) / kUmPerMm;
+    for (const Neglected& n : d.before.back().neglected) least_mm += n.bound_mm;
+  }
+  const std::vector<Remainder> remainders = remainders_of(d, p, least_mm);
   std::vector<OutputBound> bounds;
   if (d.least_squares) {
-    bounds = least_squares_bounds(machine, d, p);
+    const double size =
+        d.before.empty() ? d.spread_mm : remainders[remainders.size() - 2].point_mm + least_mm;
+    bounds = least_squares_bounds(machine, d, p, std::min(size, d.spread_mm));
   } else {
-    for (std::size_t i = 0; i < p.outputs.size(); ++i) bounds.push_back(bound_of(machine, d, p, i));
+    for (std::size_t i = 0; i < p.outputs.size(); ++i)
+      bounds.push_back(i < linear_outputs(d) ? bound_of(machine, d, p, i)
+                                             : bound_of_direction(machine, d, i));
   }
-  const double second_order = d.outputs.empty() ? 0 : second_order_mm(d);
-  for (std::size_t i = 0; i < bounds.size(); ++i) {
+  const double left_mm = remainders.back().point_mm;
+  for (std::size_t i = 0; i < linear_outputs(d); ++i) {
     const bool along = !machine.axes[d.outputs[i].axis].rotary && !d.least_squares;
-    const double um = kUmPerMm * second_order * (along ? d.outputs[i].row_norm : 1);
-    // More than the deviation itself says nothing.
-    if (um < std::max(bounds[i].deviation_um, 1e-3)) bounds[i].second_order_um = um;
+    const double um = kUmPerMm * left_mm * (along ? d.outputs[i].row_norm : 1);
+    // Of least squares near flat poses: more than the deviation itself says nothing.
+    if (d.least_squares && um >= std::max(bounds[i].deviation_um, 1e-3)) continue;
+    bounds[i].second_order_um = um;
+    bounds[i].total_um += um;
   }
   return bounds;
+}
+
+std::optional<TiltBound> tilt_bound_of(const Derivation& d, const LoweredProgram& p) {
+  if (!d.orientation) return std::nullopt;
+  const Orientation& o = *d.orientation;
+  TiltBound bound;
+  bound.deviation_deg = o.spread / kRad;
+  const double error = tilt_error(d, p);
+  bound.fixed_point_deg = error / kRad;
+  bound.second_order_deg = remainders_of(d, p, 0).back().tilt / kRad;
+  return bound;
 }
 
 }  // namespace vernier

@@ -183,7 +183,7 @@ ProgramBuilder::Id ProgramBuilder::append(const Instruction& step, std::vector<R
   for (Register& r : results) {
     r.name = unique(r.name);
     r.error = r.own_error;
-    for (const Register::Use& use : r.uses) r.error += use.gain * registers_[use.from].error;
+    for (const Register::Use& use : r.uses) r.error += use.gain * error_of(use.from);
     registers_.push_back(std::move(r));
   }
   ranges_.insert(ranges_.end(), ranges.begin(), ranges.end());
@@ -204,7 +204,7 @@ ProgramBuilder::Id ProgramBuilder::linear(double k, Id a, double l, Id b, const 
   Register meta;
   meta.name = name;
   meta.range = exact;
-  const double input_error = std::abs(k) * at(a).error + (l == 0 ? 0 : std::abs(l) * at(b).error);
+  const double input_error = std::abs(k) * error_of(a) + (l == 0 ? 0 : std::abs(l) * error_of(b));
   for (int bits = fraction_bits_for(exact.magnitude() + input_error); bits >= kFewestBits; --bits) {
     const double first = std::ldexp(k, bits - at(a).fraction_bits),
                  second = std::ldexp(l, bits - at(b).fraction_bits);
@@ -233,7 +233,7 @@ ProgramBuilder::Id ProgramBuilder::linear(double k, Id a, double l, Id b, const 
 
 ProgramBuilder::Id ProgramBuilder::product(Id a, Id b, const Interval& exact, const std::string& name) {
   const double size_a = at(a).range.magnitude(), size_b = at(b).range.magnitude();
-  const double input_error = size_b * at(a).error + size_a * at(b).error + at(a).error * at(b).error;
+  const double input_error = size_b * error_of(a) + size_a * error_of(b) + error_of(a) * error_of(b);
   const int sum_bits = at(a).fraction_bits + at(b).fraction_bits;
   const int finest = std::min(sum_bits, fraction_bits_for(exact.magnitude() + input_error));
   for (int bits = finest; bits >= kFewestBits && sum_bits - bits <= static_cast<int>(kMaxShift); --bits) {
@@ -242,7 +242,7 @@ ProgramBuilder::Id ProgramBuilder::product(Id a, Id b, const Interval& exact, co
     meta.range = exact;
     meta.fraction_bits = bits;
     meta.own_error = sum_bits > bits ? std::ldexp(0.5, -bits) : 0;
-    meta.uses = {{a, size_b + at(b).error}, {b, size_a}};
+    meta.uses = {{a, size_b + error_of(b)}, {b, size_a}};
     Instruction step{OpCode::kMultiply,
                      static_cast<std::uint8_t>(sum_bits - bits),
                      static_cast<std::uint16_t>(a),
@@ -277,7 +277,7 @@ void ProgramBuilder::add_terms(const std::vector<Product>& products, int sum_bit
       b = meets ? constant(p.factor, wanted) : constant(p.factor);
     }
     const Register &ra = at(p.a), &rb = at(b);
-    meta.uses.push_back({p.a, rb.range.magnitude() + rb.error});
+    meta.uses.push_back({p.a, rb.range.magnitude() + error_of(b)});
     meta.uses.push_back({b, ra.range.magnitude()});
     const int shift = ra.fraction_bits + rb.fraction_bits - sum_bits;
     if (shift > 0) meta.own_error += std::ldexp(1.0, -sum_bits);
@@ -297,8 +297,8 @@ ProgramBuilder::Id ProgramBuilder::dot(double constant_part, std::vector<Product
     const Register& a = at(p.a);
     finest = std::min(finest, a.fraction_bits + (p.b ? at(*p.b).fraction_bits : bits_of_constant(p.factor)));
     size += largest_value(p);
-    input_error += (p.b ? at(*p.b).range.magnitude() + at(*p.b).error : p.factor) * a.error +
-                   (p.b ? a.range.magnitude() * at(*p.b).error : 0);
+    input_error += (p.b ? at(*p.b).range.magnitude() + error_of(*p.b) : p.factor) * error_of(p.a) +
+                   (p.b ? a.range.magnitude() * error_of(*p.b) : 0);
   }
   // The sum keeps as many bits as fit below 2^62.
   finest = std::min(finest, 60 - std::ilogb(std::max(size, 1e-15) * 1.001));

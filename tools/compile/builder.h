@@ -50,6 +50,9 @@ class ProgramBuilder {
   /// a in the given format (no instruction where it has it).
   Id reformat(Id a, int fraction_bits);
 
+  /// From here on the register's value counts as exact (Register::given).
+  void give(Id id) { registers_[id].given = true; }
+
   std::uint16_t add_wrap(const Wrap& wrap);
   std::uint16_t add_lag();
 
@@ -64,6 +67,8 @@ class ProgramBuilder {
 
  private:
   Id append(const Instruction& step, std::vector<Register> results, bool& overflow);
+  /// Error that a register carries on.
+  double error_of(Id id) const { return registers_[id].given ? 0 : registers_[id].error; }
   double largest_count(Id id) const;
   double largest_value(const Product& p) const;
   // The terms of a sum in the format of sum_bits, for a result of result_bits; in `meta` their errors and

@@ -201,7 +201,7 @@ Interval Slopes::of(NodeId id) {
   if (found != known_.end()) return found->second;
   const Interval result = slope(graph_[id]);
   if (const auto table = table_slopes_.find(id); table != table_slopes_.end())
-    return known_[id] = graph_[id].args[0] == channel_ ? Interval{-table->second, table->second} : Interval{};
+    return known_[id] = Interval{-table->second, table->second} * of(graph_[id].args[0]);
   return known_[id] = result;
 }
 

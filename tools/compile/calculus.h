@@ -1,6 +1,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <map>
+#include <utility>
 #include <vector>
 
 #include "tools/compile/graph.h"
@@ -27,6 +28,8 @@ class Samples {
  public:
   Samples(const Graph& graph, Eigen::Index count) : graph_(graph), count_(count) {}
   const Eigen::ArrayXd& of(NodeId node);
+  /// Values of a channel other than random ones, before it is asked for.
+  void set(NodeId channel, Eigen::ArrayXd values) { known_[channel] = std::move(values); }
 
  private:
   Eigen::ArrayXd evaluate(NodeId node);
@@ -61,6 +64,8 @@ class Slopes {
  public:
   Slopes(const Graph& graph, NodeId channel, const std::map<NodeId, double>& table_slopes)
       : graph_(graph), channel_(channel), table_slopes_(table_slopes) {}
+  /// This node counts as given: it does not change with the channel.
+  void hold(NodeId node) { known_[node] = {}; }
   Interval of(NodeId node);
 
  private:

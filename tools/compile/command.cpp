@@ -2,16 +2,16 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
-
 #include "tools/compile/compile.h"
 #include "tools/model/files.h"
+#include "tools/safety/safety_json.h"
 
 namespace vernier {
 namespace {
 
 struct Arguments {
   std::string machine, directory, json, budget;
+  std::vector<std::string> accept;
 };
 
 /// A length such as 0.1um, 100nm, 0.001mm; a bare number is um. Result in um.
@@ -36,6 +36,8 @@ nlohmann::ordered_json to_json(const OutputBound& b) {
   for (const Contribution& c : b.contributions)
     if (terms.size() < 20)
       terms.push_back({{"term", c.name}, {"source", c.source}, {"bound_um", c.bound_um}});
+  if (b.deviation_deg)
+    return {{"axis", b.axis}, {"corrects", "direction"}, {"deviation_deg", *b.deviation_deg}};
   return {{"axis", b.axis},
           {"total_um", b.total_um},
           {"linearisation_um", b.linearisation_um},
@@ -47,6 +49,18 @@ nlohmann::ordered_json to_json(const OutputBound& b) {
           {"second_order_um", b.second_order_um ? nlohmann::ordered_json(*b.second_order_um) : nullptr},
           {"deviation_um", b.deviation_um},
           {"largest_terms", terms}};
+}
+
+nlohmann::ordered_json tilt_json(const CompiledMachine& c, const Machine& machine) {
+  if (!c.tilt || !c.orientation) return nullptr;
+  nlohmann::ordered_json axes = nlohmann::ordered_json::array();
+  for (const std::size_t axis : c.orientation->axes) axes.push_back(machine.axes[axis].name);
+  return {{"axes", axes},
+          {"deviation_deg", c.tilt->deviation_deg},
+          {"left_deg", c.tilt->left_deg()},
+          {"fixed_point_deg", c.tilt->fixed_point_deg},
+          {"second_order_deg", c.tilt->second_order_deg},
+          {"damped_share", c.orientation->damped.value_or(0)}};
 }
 
 nlohmann::ordered_json shares_json(const CompiledMachine& c, const Machine& machine) {
@@ -70,10 +84,13 @@ nlohmann::ordered_json to_json(const CompiledMachine& c, const Machine& machine)
   }
   return {{"bound_um", total},
           {"outputs", bounds},
+          {"tilt", tilt_json(c, machine)},
           {"switching", c.switching},
           {"notes", c.notes},
           {"shares", shares_json(c, machine)},
           {"operations", c.program.instructions.size()},
+          {"evaluations", c.evaluations},
+          {"operations_of_one_evaluation", c.operations_of_one},
           {"registers", c.program.registers.size()},
           {"tables", c.program.tables.size()},
           {"image_bytes", c.image.size()},
@@ -84,22 +101,34 @@ void print_for_people(std::FILE* out, const CompiledMachine& c, const Machine& m
   fmt::print(out, "{}: {} operations a tick, {} tables, {} bytes of image, {} shares of effects\n",
              machine.name, c.program.instructions.size(), c.program.tables.size(), c.image.size(),
              c.shares.shares.size());
-  fmt::print(out, "proved bound of each correction, um:\n");
-  fmt::print(out, "  {:<8}{:>10} ={:>12} +{:>8} +{:>10} +{:>9} +{:>8} +{:>8}{:>13}\n", "axis", "bound",
-             "neglected", "tables", "functions", "rounding", "inputs", "lags", "deviation");
-  for (const OutputBound& b : c.bounds) {
+  if (c.evaluations > 1)
     fmt::print(out,
-               "  {:<8}{:>10.4f} ={:>12.4f} +{:>8.4f} +{:>10.4f} +{:>9.4f} +{:>8.4f} +{:>8.4f}{:>13.1f}\n",
-               b.axis, b.total_um, b.linearisation_um, b.table_um, b.function_um, b.rounding_um, b.input_um,
-               b.lag_um, b.deviation_um);
-    const std::string second =
-        b.second_order_um
-            ? fmt::format("; the correction's second order beside it, at most {:.3g}", *b.second_order_um)
-            : "";
+               "{} evaluations of the deviation, each where the one before leads; with one, {} operations\n",
+               c.evaluations, c.operations_of_one);
+  fmt::print(out, "proved bound of each correction, um:\n");
+  fmt::print(out, "  {:<8}{:>10} ={:>12} +{:>8} +{:>10} +{:>9} +{:>8} +{:>8} +{:>11}{:>13}\n", "axis",
+             "bound", "neglected", "tables", "functions", "rounding", "inputs", "lags", "2nd order",
+             "deviation");
+  for (const OutputBound& b : c.bounds) {
+    if (b.deviation_deg) {
+      fmt::print(out, "  {:<8}corrects the direction by up to {:.4g} deg\n", b.axis, *b.deviation_deg);
+      continue;
+    }
+    const std::string second = b.second_order_um ? fmt::format("{:.4f}", *b.second_order_um) : "not bounded";
+    fmt::print(
+        out,
+        "  {:<8}{:>10.4f} ={:>12.4f} +{:>8.4f} +{:>10.4f} +{:>9.4f} +{:>8.4f} +{:>8.4f} +{:>11}{:>13.1f}\n",
+        b.axis, b.total_um, b.linearisation_um, b.table_um, b.function_um, b.rounding_um, b.input_um,
+        b.lag_um, second, b.deviation_um);
     if (!b.contributions.empty())
-      fmt::print(out, "          largest: {} ({}), {:.4f}{}\n", b.contributions.front().name,
-                 b.contributions.front().source, b.contributions.front().bound_um, second);
+      fmt::print(out, "          largest: {} ({}), {:.4f}\n", b.contributions.front().name,
+                 b.contributions.front().source, b.contributions.front().bound_um);
   }
+  if (c.tilt)
+    fmt::print(out,
+               "tilt of the tool: up to {:.4g} deg, {:.2g} left where it is neither damped nor at a limit "
+               "(program {:.2g}, 2nd order {:.2g})\n",
+               c.tilt->deviation_deg, c.tilt->left_deg(), c.tilt->fixed_point_deg, c.tilt->second_order_deg);
   if (c.bounds.empty()) fmt::print(out, "  no axis has anything to correct\n");
   for (const std::string& step : c.switching)
     fmt::print(out, "note: the bound holds away from the step of {}\n", step);
@@ -111,11 +140,15 @@ void run_compile(const Arguments& arguments) {
   CompileOptions options;
   if (!arguments.budget.empty()) options.budget_um = parse_length_um(arguments.budget);
   const Machine machine = parse_machine(text, arguments.machine);
-  const CompiledMachine compiled = compile_machine(machine, text, options);
-  const nlohmann::ordered_json result = to_json(compiled, machine);
-  std::error_code failed;
-  std::filesystem::create_directories(arguments.directory, failed);
-  if (failed) throw InputError(arguments.directory + ": " + failed.message());
+  const std::vector<SafetyRule> accepted = rules_named(arguments.accept);
+  CompiledMachine compiled = compile_machine(machine, text, options);
+  const SafetySheet sheet = safety_sheet(machine, accepted);
+  if (!sheet.ok()) throw LimitNotMet(sheet.refusal());
+  if (options.accepted_rules = sheet.accepted_mask(); options.accepted_rules != 0)
+    compiled = compile_machine(machine, text, options);
+  nlohmann::ordered_json result = to_json(compiled, machine);
+  result["safe_to_run"] = safety_json(sheet);
+  make_folder(arguments.directory);
   write_file(arguments.directory + "/machine.xml", text);
   write_file(arguments.directory + "/equation.h", compiled.header);
   write_file(arguments.directory + "/equation.cpp", compiled.source);
@@ -124,6 +157,7 @@ void run_compile(const Arguments& arguments) {
   write_json(arguments.json, result);
   std::FILE* const out = human_stream(arguments.json);
   print_for_people(out, compiled, machine);
+  print_safety(out, sheet);
   fmt::print(out, "written to {}: machine.vimg, machine.xml, equation.h, equation.cpp, bound.json\n",
              arguments.directory);
 }
@@ -143,6 +177,14 @@ void register_compile(CLI::App& vernier) {
   command->add_option("--budget", arguments->budget,
                       "largest proved bound allowed on an axis (nm, um, mm; a plain number is um); exceeded: "
                       "exit status 2, nothing written");
+  command->add_option(
+      "--accept", arguments->accept,
+      "a rule of the sheet \"safe to run?\" to override, recorded in the image; may be repeated");
+  command->footer(
+      "The sheet judges the correction over <volume> (else the axes' ranges) and with the <tools> of the "
+      "file.\n"
+      "Exit status 0 done, 1 bad input, 2 the bound exceeds the budget or the sheet says no: nothing "
+      "written.");
   command->callback([arguments] { run_compile(*arguments); });
 }
 

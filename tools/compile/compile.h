@@ -7,12 +7,17 @@
 
 #include "tables/image_view.h"
 #include "tools/compile/bound.h"
+#include "tools/model/states.h"
 
 namespace vernier {
 
 struct CompileOptions {
-  std::uint32_t tick_us = 1000;     // cycle time that lags and slew limits are computed for
-  std::optional<double> budget_um;  // largest error bound allowed on any axis
+  std::uint32_t tick_us = 1000;      // cycle time that lags and slew limits are computed for
+  std::optional<double> budget_um;   // largest error bound allowed on any axis
+  std::uint32_t accepted_rules = 0;  // of the safety sheet, recorded in the image
+  /// A correction whose one step leaves more than this is evaluated again at the corrected position.
+  double most_second_order_um = 0.1;
+  double most_second_order_deg = 2e-4;  // the same of the tool's direction: a tenth of what is asked for
 };
 
 struct CompiledMachine {
@@ -21,6 +26,10 @@ struct CompiledMachine {
   LoweredShares shares;
   std::vector<OutputBound> bounds;
   std::optional<LeastSquares> least_squares;  // where turning axes are corrected too
+  std::optional<Orientation> orientation;     // where the direction of the tool is corrected
+  std::optional<TiltBound> tilt;
+  int evaluations = 1;                 // of the deviation: more where one step is not enough
+  std::size_t operations_of_one = 0;   // a tick, with one evaluation
   std::vector<std::string> switching;  // comparisons and the like: the bound holds away from their steps
   std::vector<std::string> notes;      // what the user should know of the correction, a sentence each
   std::string header, source;          // equation.h, equation.cpp
@@ -32,6 +41,10 @@ struct CompiledMachine {
 /// tool.
 CompiledMachine compile_machine(const Machine& machine, const std::string& machine_text,
                                 const CompileOptions& options);
+
+/// Of each state: does it stand where two axes tilt the tool nearly the same way, so that the correction of
+/// its direction is damped? All false where no direction is corrected. tool.
+std::vector<bool> damped_poses(const Machine& machine, const States& states);
 
 /// A compiled directory (`vernier compile -o DIR`) ready to run: DIR/machine.xml and DIR/machine.vimg.
 struct LoadedImage {
@@ -49,7 +62,8 @@ std::unique_ptr<LoadedImage> load_image(const std::vector<std::uint8_t>& image, 
 /// The bytes of an image (tables/image_format.h). tool.
 std::vector<std::uint8_t> write_image(const Machine& machine, const LoweredProgram& program,
                                       const LoweredShares& shares, std::uint32_t tick_us,
-                                      std::uint64_t source_hash, std::uint64_t& fingerprint);
+                                      std::uint64_t source_hash, std::uint32_t accepted_rules,
+                                      std::uint64_t& fingerprint);
 
 /// The program as readable C++: equation.h and equation.cpp. Same program, same bytes. tool.
 std::string print_header(const Machine& machine, const LoweredProgram& program, std::uint64_t source_hash,

@@ -1,10 +1,13 @@
 #include "tools/compile/derive.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
+#include <utility>
 
 #include "tools/compile/calculus.h"
+#include "tools/compile/orientation.h"
 #include "tools/compile/solve.h"
 #include "tools/compile/walk.h"
 
@@ -26,24 +29,44 @@ void check_machine(const Machine& machine) {
 /// A derivation on the way: the corrected axes are chosen between its two halves.
 class Attempt {
  public:
-  Attempt(const Machine& machine, double neglect_mm, bool rotary_too)
+  /// begun: what is derived already; added: the corrections of axes that it does not choose.
+  Attempt(const Machine& machine, double neglect_mm, bool rotary_too, Derivation begun = {},
+          const Additions& added = {})
       : machine_(machine),
-        translate_(machine, d_),
+        d_(std::move(begun)),
+        translate_(machine, d_, added),
         steps_(all_steps(machine, translate_, d_.graph)),
-        walk_(d_, neglect_mm) {
+        walk_(d_, neglect_mm, d_.neglected) {
     for (std::size_t i = 0; i < machine.axes.size(); ++i)
       if (!machine.axes[i].rotary || rotary_too) axes_.push_back(i);
     const std::size_t end = end_of_motion();
     // The last motion, if it is a turn, is taken as one: in front of it nothing else has to be turned.
     const bool turn_last = end > 0 && steps_[end - 1].turn;
-    const std::size_t frozen_from = turn_last ? end - 1 : end;
-    for (std::size_t i = 0; i < frozen_from; ++i) {
+    frozen_from_ = turn_last ? end - 1 : end;
+    for (std::size_t i = 0; i < frozen_from_; ++i) {
       taken_.push_back(walk_.reach_mm());
       walk_.take(steps_[i]);
     }
     find_columns(turn_last ? &steps_[end - 1] : nullptr);
     walk_.freeze();
-    for (std::size_t i = frozen_from; i < steps_.size(); ++i) walk_.take(steps_[i]);
+    for (std::size_t i = frozen_from_; i < steps_.size(); ++i) {
+      reach_mm_.push_back(walk_.reach_mm());
+      walk_.take(steps_[i]);
+    }
+  }
+
+  /// Steps of the chain in front of the frame of the deviation.
+  std::size_t frozen_from() const { return frozen_from_; }
+  /// mm of tool point per mm or deg of any axis, at most.
+  double lever_of(std::size_t axis) {
+    Derivative by_axis(d_.graph, channel(axis));
+    double length = 0;
+    for (std::size_t i = 0; i < steps_.size(); ++i) {
+      const double speed = d_.graph[by_axis.of(steps_[i].by.nominal)].range.magnitude();
+      const double reach = i < frozen_from_ ? taken_[i] : reach_mm_[i - frozen_from_];
+      length += speed * (steps_[i].turn ? kRad * reach : 1);
+    }
+    return length;
   }
 
   const std::vector<AxisColumn>& columns() const { return columns_; }
@@ -81,18 +104,8 @@ class Attempt {
   }
 
   NodeVector column_of(std::size_t axis, const NodeVector& point, const Step* last_turn) {
-    Graph& g = d_.graph;
-    NodeVector column{};
     try {
-      Derivative by_axis(g, channel(axis));
-      for (std::size_t c = 0; c < 3; ++c) column[c] = by_axis.of(point[c]);
-      if (last_turn == nullptr) return column;
-      const NodeId speed = g.scale(kRad, by_axis.of(last_turn->by.nominal));
-      const auto a = static_cast<std::size_t>((last_turn->axis + 1) % 3),
-                 b = static_cast<std::size_t>((last_turn->axis + 2) % 3);
-      column[a] = g.subtract(column[a], g.product(speed, point[b]));
-      column[b] = g.add(column[b], g.product(speed, point[a]));
-      return column;
+      return motion_of(d_.graph, channel(axis), point, last_turn);
     } catch (const std::domain_error& reason) {
       throw InputError({machine_.file, machine_.axes[axis].line}, machine_.axes[axis].name,
                        std::string("cannot be compiled: the nominal chain gives this axis ") + reason.what());
@@ -119,7 +132,8 @@ class Attempt {
   Translator translate_;
   std::vector<Step> steps_;
   Walk walk_;
-  std::vector<double> taken_;  // reach of the point when each step was taken, mm
+  std::size_t frozen_from_ = 0;
+  std::vector<double> taken_, reach_mm_;  // reach of the point when each step was taken, mm: before, after
   std::vector<std::size_t> axes_;
   std::vector<AxisColumn> columns_;
 };
@@ -139,32 +153,186 @@ std::string names_of(const Machine& machine, const Derivation& d) {
   return names;
 }
 
-Derivation solved(const Machine& machine, Attempt& attempt) {
-  Derivation d = attempt.finish();
-  solve_axes(d);
+/// A derivation with its outputs, and what a second evaluation needs to know of it.
+struct Solution {
+  Derivation derivation;
+  Solver solve;
+  std::size_t frozen_from = 0;
+  std::optional<Tilting> tilting;
+};
+
+Solution solved(const Machine& machine, Attempt& attempt) {
+  Solution result;
+  result.frozen_from = attempt.frozen_from();
+  result.derivation = attempt.finish();
+  Derivation& d = result.derivation;
+  result.solve = solve_axes(d);
   const Span span = span_of(d, d.columns);
   if (span.rank < 3 && !holds(d.graph, span, d.deviation))
     d.notes.push_back("the axes " + names_of(machine, d) +
                       " do not reach every direction: what lies across them is not corrected");
-  return d;
+  return result;
 }
 
-}  // namespace
+/// Do the axes span the deviation in every pose?
+bool spans(const Attempt& attempt, const Span& reach) {
+  if (!reach.everywhere) return false;
+  return reach.rank == 3 || (reach.rank > 0 && holds(attempt.derivation().graph, reach, attempt.deviation()));
+}
 
-Derivation derive(const Machine& machine, double neglect_mm) {
-  check_machine(machine);
+Solution position_only(const Machine& machine, double neglect_mm) {
   Attempt linear(machine, neglect_mm, false);
   const Span reach = span_of(linear.derivation(), linear.columns());
-  const bool spans =
-      (reach.rank == 3 && reach.everywhere) ||
-      (reach.rank > 0 && reach.everywhere && holds(linear.derivation().graph, reach, linear.deviation()));
-  if (spans) return solved(machine, linear);
+  if (spans(linear, reach)) return solved(machine, linear);
   Attempt all(machine, neglect_mm, true);
   if (all.columns().empty())
     throw InputError({machine.file, 0}, machine.name, "cannot be compiled: no axis moves the tool point");
   const Span whole = span_of(all.derivation(), all.columns());
   if (whole.rank <= reach.rank && reach.everywhere) return solved(machine, linear);
   return solved(machine, all);
+}
+
+/// What the terms of the chain add to the rotary axes that correct the direction, beside the linear ones'
+/// parts.
+void merge_parts(Derivation& d, std::size_t linear_outputs) {
+  const NodeId zero = d.graph.constant(0);
+  const std::size_t outputs = d.outputs.size();
+  for (EffectPart& part : d.parts) part.outputs.resize(outputs, zero);
+  for (const EffectPart& own : d.orientation->parts) {
+    auto place = std::find_if(d.parts.begin(), d.parts.end(),
+                              [&](const EffectPart& part) { return part.name == own.name; });
+    if (place == d.parts.end()) {
+      const NodeVector none{zero, zero, zero};
+      place = d.parts.insert(place, {own.name, none, std::vector<NodeId>(outputs, zero)});
+    }
+    for (std::size_t k = 0; k < own.outputs.size(); ++k) place->outputs[linear_outputs + k] = own.outputs[k];
+  }
+}
+
+/// The smallest turn that matters is a length at this lever, mm.
+constexpr double kLever_mm = 1000;
+
+Additions taken_back(Graph& g, const std::vector<std::size_t>& axes, const std::vector<NodeId>& values) {
+  Additions added;
+  for (std::size_t k = 0; k < axes.size(); ++k) added[axes[k]] = g.scale(-1, values[k]);
+  return added;
+}
+
+Solution position_and_direction(const Machine& machine, double neglect_mm) {
+  Derivation begun;
+  auto tilting = solve_direction(machine, begun, neglect_mm / kLever_mm);
+  if (!tilting) {
+    Solution result = position_only(machine, neglect_mm);
+    result.derivation.notes.push_back("no rotary axis tilts the tool: its direction is not corrected");
+    return result;
+  }
+  const Additions added = taken_back(begun.graph, begun.orientation->axes, begun.orientation->values);
+  Attempt linear(machine, neglect_mm, false, std::move(begun), added);
+  if (!spans(linear, span_of(linear.derivation(), linear.columns())))
+    throw InputError(
+        {machine.file, 0}, "position orientation",
+        "cannot be compiled: the direction of the tool is corrected only where linear axes alone "
+        "put its point right");
+  std::vector<AxisDeviation> rotary;
+  const Orientation& o = *linear.derivation().orientation;
+  for (std::size_t k = 0; k < o.axes.size(); ++k)
+    rotary.push_back({o.axes[k], o.values[k], {0, 0, 0}, 0, linear.lever_of(o.axes[k])});
+  Solution result = solved(machine, linear);
+  Derivation& d = result.derivation;
+  const std::size_t linear_outputs = d.outputs.size();
+  d.outputs.insert(d.outputs.end(), rotary.begin(), rotary.end());
+  d.last_direction = d.orientation->deviation;
+  merge_parts(d, linear_outputs);
+  result.tilting = std::move(tilting);
+  return result;
+}
+
+/// A hold of a correction leaves this much room beyond what the first order can be.
+constexpr double kRoom = 1.25;
+
+/// Takes the corrections so far as given, held within what they can be.
+Evaluation taken_as_given(Derivation& d) {
+  Graph& g = d.graph;
+  Evaluation given;
+  given.neglected = std::exchange(d.neglected, {});
+  const std::size_t rotary = d.orientation ? d.orientation->axes.size() : 0;
+  for (std::size_t k = 0; k + rotary < d.outputs.size(); ++k) {
+    const AxisDeviation& out = d.outputs[k];
+    const bool first = d.before.empty();
+    const double range = std::min(g[out.value].range.magnitude(), d.spread_mm * out.row_norm);
+    given.range.push_back(first ? range : d.before.front().range[k]);
+    given.values.push_back(held_within(g, out.value, kRoom * given.range.back()));
+  }
+  if (d.orientation) {
+    given.orientation = d.orientation->values;
+    given.neglected_direction = std::exchange(d.orientation->neglected, {});
+  }
+  return given;
+}
+
+/// The direction again at the corrected position; `added` gets the new corrections of its axes.
+std::vector<NodeId> direction_again(const Machine& machine, Derivation& d, const Tilting& tilting,
+                                    double neglect_mm, Additions& added) {
+  Graph& g = d.graph;
+  Orientation& o = *d.orientation;
+  Additions all = taken_back(g, o.axes, o.values);
+  all.insert(added.begin(), added.end());
+  d.last_direction =
+      walked(machine, d, all, tilting.frozen_from, Walk::of_direction(d, neglect_mm / kLever_mm, o.neglected))
+          .deviation();
+  std::vector<NodeId> turned = tilting.solve(g, d.last_direction, o.values);
+  const std::size_t first = d.outputs.size() - o.axes.size();
+  for (std::size_t k = 0; k < o.axes.size(); ++k) {
+    o.values[k] = held_within(g, g.add(o.values[k], turned[k]), o.limit_deg[k]);
+    d.outputs[first + k].value = o.values[k];
+  }
+  added.merge(taken_back(g, o.axes, o.values));
+  return turned;
+}
+
+/// One more evaluation: the direction at the corrected position, then the point with the direction's new
+/// correction.
+void evaluate_again(const Machine& machine, Solution& so_far, double neglect_mm) {
+  Derivation& d = so_far.derivation;
+  Graph& g = d.graph;
+  d.before.push_back(taken_as_given(d));
+  const std::vector<NodeId>& values = d.before.back().values;
+  std::vector<std::size_t> axes;
+  for (std::size_t k = 0; k < values.size(); ++k) axes.push_back(d.outputs[k].axis);
+  Additions added = taken_back(g, axes, values);
+  std::vector<NodeId> turned;
+  if (d.orientation) turned = direction_again(machine, d, *so_far.tilting, neglect_mm, added);
+  const Walk walk = walked(machine, d, added, so_far.frozen_from, Walk(d, neglect_mm, d.neglected));
+  const Solved again = so_far.solve(g, walk.deviation());
+  for (std::size_t k = 0; k < values.size(); ++k) d.outputs[k].value = g.add(values[k], again.values[k]);
+  if (d.least_squares) {
+    d.least_squares->deviation = again.components;
+    d.least_squares->weights = again.weights;
+  }
+  EffectPart rest{
+      "evaluation " + std::to_string(d.before.size() + 1) + ", at the corrected position", {}, {}};
+  rest.deviation.fill(g.constant(0));
+  rest.outputs = again.values;
+  rest.outputs.insert(rest.outputs.end(), turned.begin(), turned.end());
+  d.parts.push_back(std::move(rest));
+}
+
+/// What an evaluation that is not the last may leave out: the next takes it back but for the slope of the
+/// errors.
+constexpr double kCoarseNeglect_mm = 1e-4;
+
+}  // namespace
+
+Derivation derive(const Machine& machine, double neglect_mm, int evaluations) {
+  check_machine(machine);
+  const auto neglect_in = [&](int evaluation) {
+    return evaluation < evaluations ? std::max(neglect_mm, kCoarseNeglect_mm) : neglect_mm;
+  };
+  Solution solution = machine.correct_orientation ? position_and_direction(machine, neglect_in(1))
+                                                  : position_only(machine, neglect_in(1));
+  if (solution.derivation.outputs.empty()) return std::move(solution.derivation);
+  for (int i = 2; i <= evaluations; ++i) evaluate_again(machine, solution, neglect_in(i));
+  return std::move(solution.derivation);
 }
 
 }  // namespace vernier

@@ -57,6 +57,32 @@ struct EffectPart {
   std::vector<NodeId> outputs;  // as Derivation::outputs
 };
 
+/// The correction of the tool's direction by rotary axes. Vectors are of length 1, so deviations are in rad.
+struct Orientation {
+  std::vector<std::size_t> axes;  // one or two, that tilt the tool
+  std::vector<double> lever;      // rad of direction per deg of the axis, at most
+  std::vector<NodeId> values;     // the deviation along each of them, deg: what the board takes back
+  std::vector<double> limit_deg;  // |value| at most: the axis' maxcorrection, or what the solution can reach
+  NodeVector deviation{};         // of the direction, in a frame of the chain
+  double spread = 0;              // its length at most
+  std::vector<Neglected> neglected;
+  NodeId determinant = 0;        // of J'J, J the motion of the direction with the axes, each by its lever
+  double floor = 0;              // damped where the determinant is below it
+  std::optional<double> damped;  // share of the poses; nothing: proved that there are none
+  double gain = 0;               // |(J'J)^-1 J'| at most, where not damped
+  std::vector<EffectPart> parts;
+};
+
+/// One of several evaluations of the deviation: the equation is evaluated again where it leads to. What the
+/// next is wrong by does not depend on how exact this one is, only on how far apart they are.
+struct Evaluation {
+  std::vector<NodeId> values;        // as the outputs', of those in front of the axes of the direction
+  std::vector<NodeId> orientation;   // as Orientation::values
+  std::vector<double> range;         // |value| at most
+  std::vector<Neglected> neglected;  // of the position
+  std::vector<Neglected> neglected_direction;
+};
+
 /// The symbolic error equation of a machine.
 struct Derivation {
   Graph graph;
@@ -70,6 +96,9 @@ struct Derivation {
   std::vector<EffectPart> parts;   // their sum is the deviation
   std::vector<std::string> notes;  // what the user should know of the correction, a sentence each
   std::optional<LeastSquares> least_squares;
+  std::optional<Orientation> orientation;  // its axes are the last outputs
+  std::vector<Evaluation> before;          // evaluations in front of the last one
+  NodeVector last_direction{};             // deviation of the direction in the last evaluation
   std::optional<double> fading;  // share of the poses where it fades, because the axes do not reach there
   std::vector<std::string> switching;  // comparisons and the like: the bound holds away from their steps
 };
@@ -82,9 +111,13 @@ Interval channel_range(const Machine& machine, ChannelKind kind, std::size_t ind
 
 /// Derives p(actual) - p(nominal) in factored form along the chain, seen along the linear axes where they
 /// span it, else along the rotary ones too. neglect_mm: a higher-order term smaller than this over the
-/// declared ranges is left out and entered in `neglected`. Throws InputError in one line where the machine
-/// cannot be compiled: a free static without nominal, an axis without range, an axis whose nominal motion has
-/// a step, an expression that the program has no operation for. tool.
-Derivation derive(const Machine& machine, double neglect_mm);
+/// declared ranges is left out and entered in `neglected`. evaluations: beyond the first, the deviation is
+/// evaluated again with the correction so far, p(actual, corrected) - p(nominal), and what is left of it
+/// corrected too: a step of Newton's iteration with the nominal Jacobian. Of a machine that corrects
+/// orientation the rotary axes put the direction right first, the linear ones the point, with what the rotary
+/// ones do. Throws InputError in one line where the machine cannot be compiled: a free static without
+/// nominal, an axis without range, an axis whose nominal motion has a step, an expression that the program
+/// has no operation for. tool.
+Derivation derive(const Machine& machine, double neglect_mm, int evaluations = 1);
 
 }  // namespace vernier

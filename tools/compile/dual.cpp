@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <stdexcept>
 
 #include "tools/model/station_table.h"
@@ -57,8 +58,11 @@ NodeId Translator::table_value(std::size_t index) {
   if (table == nullptr) return g_.constant(0);
   const Interval range = column_range(*table, column);
   if (range.low == range.high) return g_.constant(range.low);
-  const NodeId value = g_.table(static_cast<std::uint32_t>(axis), static_cast<std::uint32_t>(column),
-                                channel(ChannelKind::kPosition, axis), range);
+  const auto added = added_.find(axis);
+  NodeId position = channel(ChannelKind::kPosition, axis);
+  if (added != added_.end()) position = g_.add(position, added->second);
+  const NodeId value =
+      g_.table(static_cast<std::uint32_t>(axis), static_cast<std::uint32_t>(column), position, range);
   d_.table_slopes[value] = column_slope(*table, column);
   return value;
 }
@@ -74,7 +78,10 @@ Dual Translator::symbol(const Expr& expr) {
     }
     case SymbolKind::kAxis: {
       const NodeId raw = channel(ChannelKind::kPosition, i);
-      return {raw, g_.scale(machine_.axes[i].scale_factor, raw)};
+      const double factor = machine_.axes[i].scale_factor;
+      const auto added = added_.find(i);
+      if (added == added_.end()) return {raw, g_.scale(factor, raw)};
+      return {raw, g_.sum(0, {{factor, raw}, {1 + factor, added->second}})};
     }
     case SymbolKind::kTableValue:
       return {zero, table_value(i)};
@@ -112,6 +119,38 @@ void Translator::note(const std::string& text) {
 void Translator::note_step(const std::string& text) {
   if (std::find(d_.switching.begin(), d_.switching.end(), text) == d_.switching.end())
     d_.switching.push_back(text);
+}
+
+namespace {
+
+// The terms of a sum of sums.
+void expand(const Graph& g, double k, NodeId id, double& number, std::map<NodeId, double>& terms,
+            std::map<NodeId, double>& sizes) {
+  const Node& node = g[id];
+  if (node.kind != NodeKind::kSum) {
+    terms[id] += k;
+    sizes[id] += std::abs(k);
+    return;
+  }
+  number += k * node.number;
+  for (const Term& term : node.terms) expand(g, k * term.coefficient, term.node, number, terms, sizes);
+}
+
+}  // namespace
+
+// A function of an axis that is added to is not its nominal value plus a difference, whose intervals know
+// nothing of each other: where the two cancel, what is left of them is taken.
+NodeId Translator::actual(const Dual& a) {
+  if (added_.empty() || g_.is_zero(a.delta)) return g_.add(a.nominal, a.delta);
+  constexpr double kRounding = 1e-12;
+  double number = 0;
+  std::map<NodeId, double> terms, sizes;
+  expand(g_, 1, a.nominal, number, terms, sizes);
+  expand(g_, 1, a.delta, number, terms, sizes);
+  std::vector<Term> left;
+  for (const auto& [node, k] : terms)
+    if (std::abs(k) > kRounding * sizes[node]) left.push_back({k, node});
+  return left.size() == terms.size() ? g_.add(a.nominal, a.delta) : g_.sum(number, left);
 }
 
 Dual Translator::product(const Dual& a, const Dual& b) {

@@ -1,4 +1,8 @@
 #pragma once
+#include <map>
+#include <string>
+#include <utility>
+
 #include "tools/compile/derive.h"
 
 namespace vernier {
@@ -10,16 +14,20 @@ struct Dual {
   NodeId delta;
 };
 
+/// What is added to the command of axes, mm or deg: the actual chain stands there, the nominal one at the
+/// command.
+using Additions = std::map<std::size_t, NodeId>;
+
 /// Turns expressions of the machine file into duals. tool.
 class Translator {
  public:
-  Translator(const Machine& machine, Derivation& derivation)
-      : machine_(machine), d_(derivation), g_(derivation.graph) {}
+  Translator(const Machine& machine, Derivation& derivation, Additions added = {})
+      : machine_(machine), d_(derivation), g_(derivation.graph), added_(std::move(added)) {}
 
   /// Throws InputError naming `text` where the expression has no fixed-point form.
   Dual translate(const Expr& expr, const std::string& text, std::size_t line);
   Dual constant(double nominal, double delta) { return {g_.constant(nominal), g_.constant(delta)}; }
-  NodeId actual(const Dual& a) { return g_.add(a.nominal, a.delta); }
+  NodeId actual(const Dual& a);
   NodeId channel(ChannelKind kind, std::size_t index);
 
  private:
@@ -38,6 +46,7 @@ class Translator {
   const Machine& machine_;
   Derivation& d_;
   Graph& g_;
+  Additions added_;
 };
 
 }  // namespace vernier

@@ -84,7 +84,8 @@ std::vector<InputRecord> input_records(const Machine& machine) {
 
 std::vector<std::uint8_t> write_image(const Machine& machine, const LoweredProgram& program,
                                       const LoweredShares& shares, std::uint32_t tick_us,
-                                      std::uint64_t source_hash, std::uint64_t& fingerprint) {
+                                      std::uint64_t source_hash, std::uint32_t accepted_rules,
+                                      std::uint64_t& fingerprint) {
   Writer writer;
   std::vector<char> name(machine.name.begin(), machine.name.end());
   name.push_back('\0');
@@ -119,6 +120,7 @@ std::vector<std::uint8_t> write_image(const Machine& machine, const LoweredProgr
   header.tick_us = tick_us;
   header.source_hash = source_hash;
   header.lag_count = program.lag_count;
+  header.accepted_rules = accepted_rules;
   fingerprint = writer.fingerprint();
   return writer.finish(header);
 }

@@ -71,7 +71,7 @@ class Lowering {
 
   LoweredProgram run() {
     for (const AxisDeviation& out : d_.outputs) note_use(out.value);
-    keep_least_squares();
+    keep_pieces_of_bounds();
     std::vector<std::pair<Output, ProgramBuilder::Id>> outputs;
     for (const AxisDeviation& out : d_.outputs) {
       wanted_name_ = "deviation_" + machine_.axes[out.axis].name;
@@ -146,6 +146,7 @@ class Lowering {
     const std::string name = std::exchange(wanted_name_, {});
     const Id id = make(node, name);
     done_[node] = id;
+    if (given_.count(node) != 0) b_.give(id);
     return id;
   }
 
@@ -207,8 +208,16 @@ class Lowering {
     return b_.channel(c, unit, reach, channel_name(machine_, n.channel, n.index[0]));
   }
 
-  // The bound of the least squares is told apart by these.
-  void keep_least_squares() {
+  // The bounds of the least squares and of the direction are told apart by these.
+  void keep_pieces_of_bounds() {
+    for (const Evaluation& e : d_.before) {
+      given_.insert(e.values.begin(), e.values.end());
+      given_.insert(e.orientation.begin(), e.orientation.end());
+    }
+    if (d_.orientation) {
+      given_.insert(d_.orientation->values.begin(), d_.orientation->values.end());
+      kept_.insert(d_.last_direction.begin(), d_.last_direction.end());
+    }
     if (!d_.least_squares) return;
     const LeastSquares& l = *d_.least_squares;
     for (const auto* const matrix : {&l.jacobian, &l.square, &l.adjugate})
@@ -222,7 +231,7 @@ class Lowering {
   void note_use(NodeId node) {
     if (++uses_[node] > 1) return;
     const Node& n = g_[node];
-    if (n.kind == NodeKind::kTable) columns_[n.index[0]][n.index[1]] = node;
+    if (n.kind == NodeKind::kTable) columns_[{n.index[0], n.args[0]}][n.index[1]] = node;
     if (n.kind == NodeKind::kFunction && n.function == Function::kSin) sines_[n.args[0]] = node;
     if (n.kind == NodeKind::kFunction && n.function == Function::kCos) cosines_[n.args[0]] = node;
     for (const NodeId arg : n.args) {
@@ -356,19 +365,25 @@ class Lowering {
 
   Id table(const Node& n) {
     const std::size_t axis = n.index[0];
-    const auto found = looked_up_.find(axis);
+    const Place place{axis, n.args[0]};
+    const auto found = looked_up_.find(place);
     if (found != looked_up_.end()) return found->second.at(n.index[1]);
     const Table& t = *machine_.table_of(axis);
     const std::string& name = machine_.axes[axis].name;
     const double first = t.stations.front().loc, last = t.stations.back().loc;
     Id position = value(n.args[0]);
     const Interval range = g_[n.args[0]].range;
+    // A corrected position is no channel, whose format knows the stations beyond the range.
+    const int bits =
+        fraction_bits_for(std::max({std::abs(first), std::abs(last), range.magnitude()}) * (1 + 1e-6));
+    if (g_[n.args[0]].kind != NodeKind::kChannel && b_.at(position).fraction_bits > bits)
+      position = b_.reformat(position, bits);
     if (t.periodic && (range.low < first || range.high > last))
       position = wrapped(position, first, last - first, name, 1);
     const bool cubic = t.interpolation == Interpolation::kCubic && t.stations.size() > 2;
     std::vector<std::vector<std::int32_t>> coefficients;
     std::vector<Register> results;
-    for (const auto& [column, node] : columns_.at(axis)) {
+    for (const auto& [column, node] : columns_.at(place)) {
       Register r;
       r.name = std::string("E") + "XYZABC"[column] + name;
       r.range = g_[node].range;
@@ -381,8 +396,8 @@ class Lowering {
     Id id = b_.look_up(position,
                        make_table("stations_" + name, segments_of(t, position), cubic ? 3 : 1, coefficients),
                        std::move(results));
-    for (const auto& [column, node] : columns_.at(axis)) looked_up_[axis][column] = id++;
-    return looked_up_[axis].at(n.index[1]);
+    for (const auto& [column, node] : columns_.at(place)) looked_up_[place][column] = id++;
+    return looked_up_[place].at(n.index[1]);
   }
 
   // Coefficients of one column, and what the register that looks it up is like.
@@ -571,12 +586,14 @@ class Lowering {
   std::map<NodeId, Id> done_;
   std::map<NodeId, std::size_t> uses_;
   mutable std::map<NodeId, std::size_t> flat_sizes_;
-  std::set<NodeId> factors_;  // used otherwise than in a sum
-  std::set<NodeId> kept_;     // have a register of their own, whatever it costs
-  std::map<std::size_t, std::map<std::size_t, NodeId>> columns_;  // axis -> column -> node
-  std::map<std::size_t, std::map<std::size_t, Id>> looked_up_;    // axis -> column -> register
-  std::map<NodeId, NodeId> sines_, cosines_;                      // argument -> node
-  std::map<Id, Id> turns_;                                        // angle -> its sine
+  std::set<NodeId> factors_;                     // used otherwise than in a sum
+  std::set<NodeId> given_;                       // corrections that are taken back elsewhere as they are
+  std::set<NodeId> kept_;                        // have a register of their own, whatever it costs
+  using Place = std::pair<std::size_t, NodeId>;  // axis of a table, and where it is looked up
+  std::map<Place, std::map<std::size_t, NodeId>> columns_;  // column -> node
+  std::map<Place, std::map<std::size_t, Id>> looked_up_;    // column -> register
+  std::map<NodeId, NodeId> sines_, cosines_;                // argument -> node
+  std::map<Id, Id> turns_;                                  // angle -> its sine
 };
 
 }  // namespace

@@ -22,6 +22,7 @@ struct Register {
   double error = 0;      // bound of |register - exact value|, same unit
   double own_error = 0;  // the part that arises in this register
   ErrorSource source = ErrorSource::kRounding;
+  bool given = false;  // what uses it is meant for the value that it has: its error does not go on
   struct Use {
     std::uint32_t from;
     double gain;  // |d this / d from| at most

@@ -138,9 +138,9 @@ class Printer {
       case OpCode::kAbs:
         return fmt::format("magnitude({})", name(s.a));
       case OpCode::kMin:
-        return fmt::format("lower({}, {})", name(s.a), name(s.b));
+        return fmt::format("lower<Word>({}, {})", name(s.a), name(s.b));
       case OpCode::kMax:
-        return fmt::format("higher({}, {})", name(s.a), name(s.b));
+        return fmt::format("higher<Word>({}, {})", name(s.a), name(s.b));
       case OpCode::kSign:
         return fmt::format("sign_of({})", name(s.a));
       case OpCode::kEqual:

@@ -19,6 +19,12 @@ constexpr double kFloorShare = 1.0 / 256;
 
 using Matrix = std::vector<std::vector<NodeId>>;  // rows
 
+NodeId product_sum(Graph& g, const std::vector<NodeId>& a, const std::vector<NodeId>& b) {
+  std::vector<Term> terms;
+  for (std::size_t i = 0; i < a.size(); ++i) terms.push_back({1, g.product(a[i], b[i])});
+  return g.sum(0, terms);
+}
+
 /// Small matrices of nodes.
 class Algebra {
  public:
@@ -46,11 +52,7 @@ class Algebra {
     for (std::size_t j = 0; j < m.size(); ++j) terms.push_back({1, g.product(m[0][j], adjugate[j][0])});
     return simplified(g.sum(0, terms));
   }
-  NodeId dot(const std::vector<NodeId>& a, const std::vector<NodeId>& b) {
-    std::vector<Term> terms;
-    for (std::size_t i = 0; i < a.size(); ++i) terms.push_back({1, g.product(a[i], b[i])});
-    return g.sum(0, terms);
-  }
+  NodeId dot(const std::vector<NodeId>& a, const std::vector<NodeId>& b) { return product_sum(g, a, b); }
   /// A number where the node is one: cos^2 + sin^2 and the like.
   NodeId simplified(NodeId node) {
     if (g.constant_value(node)) return node;
@@ -79,16 +81,18 @@ std::vector<Term> row_terms(const Eigen::RowVectorXd& row, const std::vector<Nod
   return terms;
 }
 
-void solve_by_numbers(Derivation& d, const std::vector<AxisColumn>& columns, const NodeVector& deviation) {
+Solver solve_by_numbers(Derivation& d, const std::vector<AxisColumn>& columns, const NodeVector& deviation) {
   Eigen::Matrix3Xd j(3, static_cast<Eigen::Index>(columns.size()));
   for (std::size_t i = 0; i < columns.size(); ++i)
     for (std::size_t c = 0; c < 3; ++c)
       j(static_cast<Eigen::Index>(c), static_cast<Eigen::Index>(i)) =
           *d.graph.constant_value(columns[i].direction[c]);
   const Eigen::MatrixXd to_axes = j.completeOrthogonalDecomposition().pseudoInverse();
+  std::vector<Eigen::RowVector3d> rows;
   for (std::size_t i = 0; i < columns.size(); ++i) {
     const Eigen::RowVector3d row = to_axes.row(static_cast<Eigen::Index>(i));
     if (row.norm() == 0) continue;
+    rows.push_back(row);
     const auto along = [&](const NodeVector& v) {
       return d.graph.sum(0, row_terms(row, {v.begin(), v.end()}));
     };
@@ -100,10 +104,25 @@ void solve_by_numbers(Derivation& d, const std::vector<AxisColumn>& columns, con
                          row.norm(),
                          j.col(static_cast<Eigen::Index>(i)).norm()});
   }
+  return [rows](Graph& g, const NodeVector& v) {
+    Solved x;
+    for (const Eigen::RowVector3d& row : rows)
+      x.values.push_back(g.sum(0, row_terms(row, {v.begin(), v.end()})));
+    return x;
+  };
+}
+
+/// The components of a vector in the directions that the axes span.
+std::vector<NodeId> components(Graph& g, const Eigen::Matrix3Xd& basis, const NodeVector& v) {
+  std::vector<NodeId> along;
+  for (Eigen::Index i = 0; i < basis.cols(); ++i)
+    along.push_back(g.sum(0, row_terms(basis.col(i).transpose(), {v.begin(), v.end()})));
+  return along;
 }
 
 /// Columns and deviation in the directions that the axes span at all.
 struct Reduced {
+  Eigen::Matrix3Xd basis;
   Matrix rows;  // rank x axes, columns scaled to at most 1
   std::vector<NodeId> deviation;
   std::vector<std::vector<NodeId>> parts;
@@ -114,6 +133,7 @@ Reduced reduce(Derivation& d, Algebra& algebra, const std::vector<AxisColumn>& c
                const NodeVector& deviation, const Eigen::Matrix3Xd& basis) {
   Graph& g = d.graph;
   Reduced r;
+  r.basis = basis;
   r.parts.resize(d.parts.size());
   for (const AxisColumn& column : columns)
     r.lever.push_back(std::exp2(std::ceil(std::log2(std::max(1e-9, column.norm)))));
@@ -132,19 +152,21 @@ Reduced reduce(Derivation& d, Algebra& algebra, const std::vector<AxisColumn>& c
   return r;
 }
 
-/// Square and regular over the whole ranges: x = J^-1 deviation. False where that is not proved.
-bool solve_square(Derivation& d, Algebra& algebra, const std::vector<AxisColumn>& columns, const Reduced& r) {
-  if (r.rows.size() != columns.size()) return false;
+/// Square and regular over the whole ranges: x = J^-1 deviation. Nothing where that is not proved.
+Solver solve_square(Derivation& d, Algebra& algebra, const std::vector<AxisColumn>& columns,
+                    const Reduced& r) {
+  if (r.rows.size() != columns.size()) return {};
   Graph& g = d.graph;
   const Matrix adjugate = algebra.adjugate(r.rows);
   NodeId determinant = algebra.determinant(r.rows, adjugate);
   const double sign = algebra.sampled(determinant)[0] < 0 ? -1 : 1;
   determinant = g.scale(sign, determinant);
   const double low = lower_bound_of(g, determinant, kBoxes);
-  if (low < kFlat) return false;
+  if (low < kFlat) return {};
   if (!g.constant_value(determinant) && g[determinant].range.low < low)
     determinant = g.choice(NodeKind::kMax, determinant, g.constant(low * (1 - 1e-6)));
   const NodeId reciprocal = g.function(Function::kReciprocal, determinant);
+  Matrix inverse;
   for (std::size_t i = 0; i < columns.size(); ++i) {
     std::vector<NodeId> row;
     double norm = 0;
@@ -160,8 +182,14 @@ bool solve_square(Derivation& d, Algebra& algebra, const std::vector<AxisColumn>
     d.outputs.push_back({columns[i].axis, algebra.dot(row, r.deviation), sizes, norm, columns[i].norm});
     for (std::size_t p = 0; p < d.parts.size(); ++p)
       d.parts[p].outputs.push_back(algebra.dot(row, r.parts[p]));
+    inverse.push_back(std::move(row));
   }
-  return true;
+  return [inverse, basis = r.basis](Graph& graph, const NodeVector& v) {
+    Solved x;
+    x.components = components(graph, basis, v);
+    for (const std::vector<NodeId>& row : inverse) x.values.push_back(product_sum(graph, row, x.components));
+    return x;
+  };
 }
 
 NodeId limited(Graph& g, NodeId node, double magnitude) {
@@ -193,7 +221,8 @@ NodeId held_determinant(Derivation& d, Algebra& algebra, NodeId determinant, dou
 // x = J' (J J')^-1 deviation, the columns scaled alike so that no axis is asked to move the tool point more
 // than another. Known lengths limit what intervals overrate: a turn keeps a length, but not a component's
 // interval.
-void solve_least(Derivation& d, Algebra& algebra, const std::vector<AxisColumn>& columns, const Reduced& r) {
+Solver solve_least(Derivation& d, Algebra& algebra, const std::vector<AxisColumn>& columns,
+                   const Reduced& r) {
   Graph& g = d.graph;
   LeastSquares least;
   least.jacobian = r.rows;
@@ -246,7 +275,23 @@ void solve_least(Derivation& d, Algebra& algebra, const std::vector<AxisColumn>&
     for (std::size_t p = 0; p < d.parts.size(); ++p)
       d.parts[p].outputs.push_back(g.scale(1 / r.lever[k], algebra.dot(column, part_weights[p])));
   }
-  d.least_squares = std::move(least);
+  d.least_squares = least;
+  return [least, basis = r.basis](Graph& graph, const NodeVector& v) {
+    Solved x;
+    x.components = components(graph, basis, v);
+    for (NodeId& component : x.components) component = limited(graph, component, least.spread_mm);
+    for (const std::vector<NodeId>& row : least.adjugate) {
+      const NodeId weight =
+          limited(graph, product_sum(graph, row, x.components), least.largest * least.spread_mm);
+      x.weights.push_back(graph.product(least.reciprocal, weight));
+    }
+    for (std::size_t k = 0; k < least.lever.size(); ++k) {
+      std::vector<NodeId> column;
+      for (const std::vector<NodeId>& row : least.jacobian) column.push_back(row[k]);
+      x.values.push_back(graph.scale(1 / least.lever[k], product_sum(graph, column, x.weights)));
+    }
+    return x;
+  };
 }
 
 }  // namespace
@@ -281,7 +326,7 @@ Span span_of(const Derivation& d, const std::vector<AxisColumn>& columns) {
   return span;
 }
 
-void solve_axes(Derivation& d) {
+Solver solve_axes(Derivation& d) {
   const std::vector<AxisColumn>& columns = d.columns;
   const NodeVector& deviation = d.deviation;
   if (std::all_of(columns.begin(), columns.end(),
@@ -290,7 +335,8 @@ void solve_axes(Derivation& d) {
   Algebra algebra(d.graph);
   const Span span = span_of(d, columns);
   const Reduced r = reduce(d, algebra, columns, deviation, span.basis);
-  if (!solve_square(d, algebra, columns, r)) solve_least(d, algebra, columns, r);
+  if (Solver solver = solve_square(d, algebra, columns, r)) return solver;
+  return solve_least(d, algebra, columns, r);
 }
 
 }  // namespace vernier

@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Core>
+#include <functional>
 
 #include "tools/compile/walk.h"
 
@@ -13,11 +14,19 @@ struct Span {
 };
 Span span_of(const Derivation& derivation, const std::vector<AxisColumn>& columns);
 
+/// x with J(q) x = v: a value for each output; of least squares what they came from too.
+struct Solved {
+  std::vector<NodeId> values;
+  std::vector<NodeId> components, weights;  // as LeastSquares::deviation and ::weights
+};
+/// The same of any vector v in the frame of the deviation. The graph is that of the derivation.
+using Solver = std::function<Solved(Graph&, const NodeVector& v)>;
+
 /// Solves J(q) x = deviation (derivation.columns, derivation.deviation) for the deviation along each axis and
 /// enters the outputs: by numbers where the directions are constant; by the inverse of a 3 x 3 J(q) that is
 /// proved regular over the declared ranges; else by the least squares of the motions, J' (J J')^-1, whose
 /// determinant is held at a floor, so that the correction fades where the axes no longer reach every
-/// direction. tool.
-void solve_axes(Derivation& derivation);
+/// direction. The solver serves a second evaluation of the deviation. tool.
+Solver solve_axes(Derivation& derivation);
 
 }  // namespace vernier

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "tools/compile/calculus.h"
+
 namespace vernier {
 namespace {
 
@@ -60,17 +62,49 @@ std::vector<Step> all_steps(const Machine& machine, Translator& translate, Graph
   return steps;
 }
 
-Walk::Walk(Derivation& derivation, double neglect_mm)
-    : d_(derivation), g_(derivation.graph), neglect_mm_(neglect_mm) {
+NodeVector motion_of(Graph& g, NodeId axis, const NodeVector& point, const Step* last_turn) {
+  NodeVector column{};
+  Derivative by_axis(g, axis);
+  for (std::size_t c = 0; c < 3; ++c) column[c] = by_axis.of(point[c]);
+  if (last_turn == nullptr) return column;
+  const NodeId speed = g.scale(kRad, by_axis.of(last_turn->by.nominal));
+  const auto a = static_cast<std::size_t>((last_turn->axis + 1) % 3),
+             b = static_cast<std::size_t>((last_turn->axis + 2) % 3);
+  column[a] = g.subtract(column[a], g.product(speed, point[b]));
+  column[b] = g.add(column[b], g.product(speed, point[a]));
+  return column;
+}
+
+Walk walked(const Machine& machine, Derivation& derivation, const Additions& added, std::size_t frozen_from,
+            Walk walk) {
+  Translator translate(machine, derivation, added);
+  const std::vector<Step> steps = all_steps(machine, translate, derivation.graph);
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    if (i == frozen_from) walk.freeze();
+    walk.take(steps[i]);
+  }
+  return walk;
+}
+
+Walk::Walk(Derivation& derivation, double neglect_mm, std::vector<Neglected>& neglected)
+    : g_(derivation.graph), neglect_mm_(neglect_mm), neglected_(neglected) {
   nominal_.fill(g_.constant(0));
   deviation_.fill(g_.constant(0));
+}
+
+Walk Walk::of_direction(Derivation& derivation, double neglect, std::vector<Neglected>& neglected) {
+  Walk walk(derivation, neglect, neglected);
+  walk.direction_ = true;
+  walk.nominal_[2] = walk.g_.constant(1);
+  walk.reach_mm_ = 1;
+  return walk;
 }
 
 void Walk::take(const Step& step) {
   if (step.turn) {
     deviate_by_turn(step);
     turn_nominal(step);
-  } else {
+  } else if (!direction_) {
     const auto axis = static_cast<std::size_t>(step.axis);
     add_deviation(only(axis, step.by.delta));
     for (const Step::Part& part : step.parts)
@@ -131,7 +165,7 @@ void Walk::turn_nominal(const Step& step) {
   } else {
     deviation_ = turned(deviation_, step.axis, step.by.nominal);
     for (auto& [name, part] : parts_) part = turned(part, step.axis, step.by.nominal);
-    for (Neglected& n : d_.neglected) turn_sizes(n.along_mm, step.axis, step.by.nominal);
+    for (Neglected& n : neglected_) turn_sizes(n.along_mm, step.axis, step.by.nominal);
   }
 }
 
@@ -183,7 +217,7 @@ bool Walk::small(double bound_mm, const Step& step, const char* what) {
   along[static_cast<std::size_t>(step.axis)] = 0;
   for (auto turn = turns_.rbegin(); turn != turns_.rend(); ++turn)
     turn_sizes(along, turn->axis, turn->by.nominal);
-  d_.neglected.push_back({what + step.where, bound_mm, along});
+  neglected_.push_back({what + step.where, bound_mm, along});
   return true;
 }
 

@@ -26,11 +26,18 @@ struct Step {
 /// the workpiece branch, reversed, to the workpiece.
 std::vector<Step> all_steps(const Machine& machine, Translator& translate, Graph& graph);
 
+/// How a point moves with an axis, mm per mm or deg, in the frame in front of `last_turn` (null: where the
+/// point is), a turn behind it that the axis may drive too. Throws std::domain_error where it has a step.
+NodeVector motion_of(Graph& graph, NodeId axis, const NodeVector& point, const Step* last_turn);
+
 /// Carries a point through the chain: its nominal place, and what the actual chain adds to it. tool.
 class Walk {
  public:
-  /// neglect_mm: a higher-order term smaller than this is left out and entered in derivation.neglected.
-  Walk(Derivation& derivation, double neglect_mm);
+  /// neglect_mm: a higher-order term smaller than this is left out and entered in `neglected`.
+  Walk(Derivation& derivation, double neglect_mm, std::vector<Neglected>& neglected);
+  /// The same for the direction of the tool, the z axis of its last frame, in place of a point: shifts leave
+  /// it alone, and all lengths are of a vector of length 1.
+  static Walk of_direction(Derivation& derivation, double neglect, std::vector<Neglected>& neglected);
 
   void take(const Step& step);
   /// From here on no corrected axis moves: nominal turns no longer turn the deviation (they turn the axes
@@ -65,14 +72,20 @@ class Walk {
   NodeId sine_of(const Step& step, double size, double reach);
   NodeId bend_of(const Step& step, double size, double reach);
 
-  Derivation& d_;
   Graph& g_;
   double neglect_mm_;
+  std::vector<Neglected>& neglected_;
+  bool direction_ = false;
   NodeVector nominal_, deviation_;
   std::map<std::string, NodeVector> parts_;
   double reach_mm_ = 0, spread_mm_ = 0;
   bool frozen_ = false;
   std::vector<Step> turns_;  // nominal turns since freeze()
 };
+
+/// A walk along the whole chain with `added` on the axes, seen from the frame that `frozen_from` steps lead
+/// to.
+Walk walked(const Machine& machine, Derivation& derivation, const Additions& added, std::size_t frozen_from,
+            Walk walk);
 
 }  // namespace vernier

@@ -134,7 +134,7 @@ class Diagnoser {
     LadderStep start;
     start.rms_um = base_.after.rms_um;
     start.check_rms_um = base_.check.rms_um;
-    start.chi_square_per_freedom = base_.chi_square / std::max<double>(1, static_cast<double>(base_.freedom));
+    start.chi_square_per_freedom = base_.chi_square / std::max(1.0, base_.freedom);
     start.text = text_;
     result_.ladder.push_back(start);
     result_.machine_text = text_;
@@ -157,8 +157,7 @@ class Diagnoser {
       step.label = pool_.candidate(items.back()).label;
       step.rms_um = fitted.fit.after.rms_um;
       step.check_rms_um = fitted.fit.check.rms_um;
-      step.chi_square_per_freedom =
-          fitted.fit.chi_square / std::max<double>(1, static_cast<double>(fitted.fit.freedom));
+      step.chi_square_per_freedom = fitted.fit.chi_square / std::max(1.0, fitted.fit.freedom);
       step.text = fitted.text;
       result_.ladder.push_back(step);
       result_.machine_text = fitted.text;
@@ -233,7 +232,7 @@ class Diagnoser {
     result_.left = failure_picture(machine, rows, result_.end.residual, structure);
     constexpr double kStructure = 1e-4, kDoubtfulUncertainty = 2, kMostlyExplained = 0.5;
     const bool structured = result_.left.omnibus_p < kStructure;
-    const double freedom = std::max<double>(1, static_cast<double>(result_.end.freedom));
+    const double freedom = std::max(1.0, result_.end.freedom);
     const double reduced = result_.end.chi_square / freedom;
     if (!finder_.evidence().noise_known())
       return !structured ||
@@ -327,7 +326,7 @@ class Diagnoser {
     constexpr std::size_t kFew = 3;
     if (cause.parameters.size() <= kFew)
       for (const ParameterEstimate& p : cause.parameters)
-        if (p.std) text += fmt::format(", {} = {:.4g} +- {:.2g} {}", p.name, p.value, *p.std, p.unit);
+        text += fmt::format(", {} = {:.4g} +- {:.2g} {}", p.name, p.value, p.std, p.unit);
     text += ".";
     if (rivals_.best)
       text += fmt::format(" The next best other cause, {}, is {:.0f} behind.",

@@ -46,6 +46,7 @@ Measurement thinned(const Measurement& all, std::size_t parameters) {
 Evidence::Evidence(const Machine& fitted, const Measurement& measurement) : machine_(fitted) {
   const ParameterSet parameters(fitted, runs_of_fit_rows(measurement));
   measurement_ = thinned(measurement, parameters.size());
+  position_ = commanded_states(measurement_).axis;
   declared_ = fitted.inputs.size();
   noise_known_ = has_uncertainty(measurement_);
   take_inputs();
@@ -187,8 +188,7 @@ std::vector<std::vector<Eigen::Index>> Evidence::readings_at_one_pose() const {
   std::map<std::tuple<std::size_t, int, std::vector<double>>, std::vector<Eigen::Index>> poses;
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     std::vector<double> position;
-    for (const Column& axis : measurement_.states.axis)
-      position.push_back(axis[static_cast<Eigen::Index>(rows_[i])]);
+    for (const Column& axis : position_) position.push_back(axis[static_cast<Eigen::Index>(rows_[i])]);
     const auto kind = static_cast<int>(measurement_.observations[observation_[i]].kind);
     poses[{measurement_.states.run[rows_[i]], kind, position}].push_back(static_cast<Eigen::Index>(i));
   }
@@ -310,8 +310,7 @@ Eigen::MatrixXd Evidence::columns(const Candidate& candidate, const std::vector<
 
 Evidence::Range Evidence::range_of(std::size_t axis) const {
   std::set<double> values;
-  for (const std::size_t row : rows_)
-    values.insert(measurement_.states.axis[axis][static_cast<Eigen::Index>(row)]);
+  for (const std::size_t row : rows_) values.insert(position_[axis][static_cast<Eigen::Index>(row)]);
   Range range;
   if (values.empty()) return range;
   range.low = *values.begin();

@@ -30,6 +30,9 @@ class Evidence {
   auto response(std::size_t place) const { return response_.col(static_cast<Eigen::Index>(place)); }
   /// Row of each fit observation.
   const std::vector<std::size_t>& rows() const { return rows_; }
+  /// Position that an axis was commanded to in each row of the measurement: a correction would make a pose
+  /// of its own of every reading.
+  const Column& position(std::size_t axis) const { return position_[axis]; }
   const Eigen::VectorXd& weights() const { return weight_; }
   /// (measured - model) / u of the fit observations, its part within reach of the model removed.
   const Eigen::VectorXd& residual() const { return residual_; }
@@ -88,6 +91,7 @@ class Evidence {
   Eigen::MatrixXd response_, absorbed_;
   Eigen::VectorXd weight_, residual_;
   std::vector<int> block_;
+  std::vector<Column> position_;
   std::vector<std::vector<Eigen::Index>> poses_;  // observations that share an error
   double pose_share_ = 0;
   bool noise_known_ = false;

@@ -81,7 +81,7 @@ std::optional<std::string> outliers_to_blame(const Machine& machine, const Measu
   const auto peeled =
       peel(machine, measurement, of_all, kFar, kMostOfThem * static_cast<double>(measurement.rows()));
   if (!peeled || peeled->fit.freedom <= 0) return std::nullopt;
-  const double freedom = static_cast<double>(peeled->fit.freedom);
+  const double freedom = peeled->fit.freedom;
   if (peeled->fit.chi_square / freedom > 1 + kNoiseSigmas * std::sqrt(2 / freedom)) return std::nullopt;
   return fmt::format(
       "Outliers: without {} the residual is noise. A lost beam or a bumped target is likelier than the "

@@ -14,7 +14,7 @@ using Index = Eigen::Index;
 constexpr double kTurn = 2 * std::numbers::pi;
 
 double position(const Evidence& evidence, std::size_t axis, std::size_t reading) {
-  return evidence.measurement().states.axis[axis][static_cast<Index>(evidence.rows()[reading])];
+  return evidence.position(axis)[static_cast<Index>(evidence.rows()[reading])];
 }
 
 /// The different positions of an axis, and sums of columns over the readings at each.

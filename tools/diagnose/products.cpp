@@ -55,10 +55,10 @@ std::vector<Factor> factors_of(const Evidence& evidence) {
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
     const std::string& name = machine.axes[i].name;
     if (machine.axes[i].rotary) {
-      take("sin(" + name + ")", s.axis[i]);
-      take("cos(" + name + ")", s.axis[i]);
+      take("sin(" + name + ")", evidence.position(i));
+      take("cos(" + name + ")", evidence.position(i));
     } else {
-      take(name, s.axis[i]);
+      take(name, evidence.position(i));
     }
     take("dir" + name, s.direction[i]);
     take("v" + name, s.velocity[i]);

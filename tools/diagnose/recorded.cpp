@@ -263,8 +263,8 @@ std::vector<RecordedColumn> recorded_columns(const Machine& machine, const Measu
   Recorder recorder(rows, list);
   const States& s = m.states;
   for (std::size_t i = 0; i < machine.axes.size(); ++i)
-    recorder.add(machine.axes[i].name, machine.axes[i].rotary ? "deg" : "mm", ColumnKind::kAxis, s.axis[i],
-                 machine.axes[i].rotary);
+    recorder.add(machine.axes[i].name, machine.axes[i].rotary ? "deg" : "mm", ColumnKind::kAxis,
+                 commanded(m, i), machine.axes[i].rotary);
   add_motion(recorder, machine, m);
   if (m.has_recorded("t")) recorder.add("t", "s", ColumnKind::kTime, s.time);
   recorder.add("visit", "", ColumnKind::kVisit, s.visit);

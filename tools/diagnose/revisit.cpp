@@ -100,9 +100,10 @@ double return_to(const Eigen::MatrixXd& points, const std::vector<Index>& near, 
 
 }  // namespace
 
-Eigen::MatrixXd path_points(const States& states, const std::vector<std::size_t>& rows) {
+Eigen::MatrixXd path_points(const Measurement& m, const std::vector<std::size_t>& rows) {
   std::vector<Eigen::VectorXd> columns;
-  for (const Column& axis : states.axis) {
+  for (std::size_t a = 0; a < m.states.axis.size(); ++a) {
+    const Column axis = commanded(m, a);
     Eigen::VectorXd column(static_cast<Index>(rows.size()));
     for (std::size_t i = 0; i < rows.size(); ++i)
       column[static_cast<Index>(i)] = axis[static_cast<Index>(rows[i])];

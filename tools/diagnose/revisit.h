@@ -4,13 +4,13 @@
 #include <optional>
 #include <vector>
 
-#include "tools/model/states.h"
+#include "tools/model/measurement.h"
 
 namespace vernier {
 
-/// Axis positions of some rows as points: rows x axes, each axis in shares of its range over those rows; an
-/// axis that stands still is left out. tool.
-Eigen::MatrixXd path_points(const States& states, const std::vector<std::size_t>& rows);
+/// Commanded axis positions of some rows as points: rows x axes, each axis in shares of its range over those
+/// rows; an axis that stands still is left out. tool.
+Eigen::MatrixXd path_points(const Measurement& m, const std::vector<std::size_t>& rows);
 
 /// How many rows later the path passes each point again in the same sense, the row between two by projection;
 /// NaN where it does not. A pause at a point is no return; poses set one by one (steps of a tenth of the

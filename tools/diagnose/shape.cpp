@@ -24,7 +24,7 @@ Eigen::VectorXd positions(const Evidence& evidence, std::size_t axis) {
   Eigen::VectorXd u(static_cast<Index>(evidence.rows().size()));
   for (Index i = 0; i < u.size(); ++i) {
     const auto row = static_cast<Index>(evidence.rows()[static_cast<std::size_t>(i)]);
-    u[i] = (evidence.measurement().states.axis[axis][row] - range.low) / span;
+    u[i] = (evidence.position(axis)[row] - range.low) / span;
   }
   return u;
 }

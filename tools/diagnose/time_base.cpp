@@ -90,7 +90,7 @@ struct Revisits {
 // Passes over the same poses within one run.
 Revisits examine_run(const Measurement& m, const Series& run, const RepeatOptions& options) {
   Revisits revisits;
-  const Eigen::VectorXd implied = revisit_lags(path_points(m.states, run.rows));
+  const Eigen::VectorXd implied = revisit_lags(path_points(m, run.rows));
   revisits.blocks = compare_repeats(run.residual_um, implied, options);
   revisits.chance = chance_of_shift(revisits.blocks, options);
   return revisits;
@@ -111,7 +111,7 @@ std::optional<TimeRunMatch> examine_pair(const Measurement& m, const Series& a, 
     return std::nullopt;
   std::vector<std::size_t> both = a.rows;
   both.insert(both.end(), b.rows.begin(), b.rows.end());
-  const Eigen::MatrixXd points = path_points(m.states, both);
+  const Eigen::MatrixXd points = path_points(m, both);
   const auto implied = map_paths(points.topRows(static_cast<Index>(a.rows.size())),
                                  points.bottomRows(static_cast<Index>(b.rows.size())));
   if (!implied) return std::nullopt;
@@ -233,7 +233,7 @@ TimeBaseFinding examine_time_base(const Measurement& measurement, const Eigen::V
       finding.why += (finding.why.empty() ? "" : " ") + sentence_of_run(measurement, run, mine, repeats);
       add_gaps(run, mine, repeats, finding);
     }
-    if (const auto closure = examine_closure(path_points(measurement.states, run.rows), run.residual_um))
+    if (const auto closure = examine_closure(path_points(measurement, run.rows), run.residual_um))
       finding.closures.push_back({run.run, *closure});
   }
   examine_pairs(measurement, runs, options, finding);

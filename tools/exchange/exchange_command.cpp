@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <memory>
 
 #include "tools/cli/command.h"
@@ -9,6 +8,7 @@
 #include "tools/exchange/screw_comp.h"
 #include "tools/exchange/table_text.h"
 #include "tools/kinematics/at.h"
+#include "tools/safety/safety_sheet.h"
 
 namespace vernier {
 namespace {
@@ -17,6 +17,7 @@ using Json = nlohmann::ordered_json;
 
 struct ExchangeArguments {
   std::string machine, file, output, json, axis, at, reversal;
+  std::vector<std::string> accept;
   int type = 1;
   double tolerance_um = 0.1;
   bool leave_out = false;
@@ -26,6 +27,12 @@ std::size_t axis_named(const Machine& machine, const std::string& name) {
   const auto axis = machine.find_axis(name);
   if (!axis) throw InputError({machine.file, 0}, name, "no axis of that name");
   return *axis;
+}
+
+/// What is written runs on a machine as an image does.
+void require_safe(const Machine& machine, const ExchangeArguments& arguments) {
+  const SafetySheet sheet = safety_sheet(machine, rules_named(arguments.accept));
+  if (!sheet.ok()) throw LimitNotMet(sheet.refusal());
 }
 
 void finish(const ExchangeArguments& arguments, const char* format, const std::vector<LeftOut>& left_out,
@@ -60,6 +67,7 @@ void export_screw(const ExchangeArguments& arguments) {
   for (const std::size_t axis : axes)
     for (LeftOut& one : beyond_own_axis(machine, axis, at)) left_out.push_back(std::move(one));
   refuse(machine, "a screw-compensation file", left_out, arguments.leave_out);
+  require_safe(machine, arguments);
   std::vector<std::string> texts;
   for (const std::size_t axis : axes)
     texts.push_back(screw_text(screw_points(machine, axis, at, arguments.tolerance_um), type));
@@ -67,7 +75,7 @@ void export_screw(const ExchangeArguments& arguments) {
   if (!arguments.axis.empty()) {
     files = {arguments.output};
   } else {
-    std::filesystem::create_directories(arguments.output);
+    make_folder(arguments.output);
     for (const std::size_t axis : axes)
       files.push_back(arguments.output + "/" + machine.axes[axis].name + ".comp");
   }
@@ -80,12 +88,13 @@ void export_tables(const ExchangeArguments& arguments, bool isg) {
   if (machine.tables.empty()) throw InputError({machine.file, 0}, "", "this machine has no table to export");
   const std::vector<LeftOut> left_out = beyond_tables(machine, state_of(machine, arguments));
   refuse(machine, isg ? "a list of component errors" : "a CSV file per axis", left_out, arguments.leave_out);
+  require_safe(machine, arguments);
   Json files = Json::array();
   if (isg) {
     files.push_back(arguments.output);
     write_file(arguments.output, isg_csv(machine));
   } else {
-    std::filesystem::create_directories(arguments.output);
+    make_folder(arguments.output);
     for (const Table& table : machine.tables) {
       files.push_back(arguments.output + "/" + machine.axes[table.axis].name + ".csv");
       write_file(files.back().get<std::string>(), axis_csv(machine, table));
@@ -133,6 +142,9 @@ CLI::App* add_export(CLI::App* parent, const char* kind, const char* what, const
                     "write what the format can hold, and tell what it cannot");
   command->add_option("--at", arguments->at,
                       "what the other axes and inputs stand at: \"Y=0,T=25\"; default: middle of the ranges");
+  command->add_option(
+      "--accept", arguments->accept,
+      "a rule of the sheet \"safe to run?\" to override (tools/docs/safety.md); may be repeated");
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   return command;
 }

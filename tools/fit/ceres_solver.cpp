@@ -2,6 +2,7 @@
 
 #include <ceres/ceres.h>
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
@@ -58,6 +59,44 @@ class OneObservation : public ceres::CostFunction {
   std::vector<int> columns_;
 };
 
+/// A row of L^T (value - centre), L L^T the precision of the priors.
+class HeldNear : public ceres::CostFunction {
+ public:
+  HeldNear(std::vector<double> factor, std::vector<double> centre)
+      : factor_(std::move(factor)), centre_(std::move(centre)) {
+    set_num_residuals(1);
+    mutable_parameter_block_sizes()->assign(factor_.size(), 1);
+  }
+  bool Evaluate(double const* const* values, double* residuals, double** jacobians) const override {
+    residuals[0] = 0;
+    for (std::size_t i = 0; i < factor_.size(); ++i) {
+      residuals[0] += factor_[i] * (values[i][0] - centre_[i]);
+      if (jacobians != nullptr && jacobians[i] != nullptr) jacobians[i][0] = factor_[i];
+    }
+    return true;
+  }
+
+ private:
+  std::vector<double> factor_, centre_;
+};
+
+void add_priors(const FitProblem& problem, Eigen::VectorXd& point, ceres::Problem& to) {
+  const Eigen::VectorXd& centre = problem.prior_centre();
+  if (centre.size() == 0) return;
+  const Eigen::MatrixXd lower = Eigen::MatrixXd(problem.prior_precision()).llt().matrixL();
+  for (Eigen::Index column = 0; column < lower.cols(); ++column) {
+    std::vector<double> factor, near;
+    std::vector<double*> blocks;
+    for (Eigen::Index row = column; row < lower.rows(); ++row) {
+      if (lower(row, column) == 0) continue;
+      factor.push_back(lower(row, column));
+      near.push_back(centre[row]);
+      blocks.push_back(point.data() + row);
+    }
+    to.AddResidualBlock(new HeldNear(std::move(factor), std::move(near)), nullptr, blocks);
+  }
+}
+
 /// Spread of weighted residuals, from their median size (1.4826: standard deviation of a normal
 /// distribution).
 double spread(const Eigen::VectorXd& residual) {
@@ -104,6 +143,7 @@ CeresOutcome solve_once(const FitProblem& problem, const Eigen::VectorXd& start,
     ceres_problem.AddResidualBlock(new OneObservation(all, row, std::move(columns)),
                                    loss_of(options.loss, scale), blocks);
   }
+  add_priors(problem, outcome.point, ceres_problem);
   ceres::Solver::Options solver;
   solver.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
   solver.initial_trust_region_radius = 1e8;

@@ -1,12 +1,17 @@
 #include "tools/fit/fit.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "tools/fit/convention.h"
 #include "tools/fit/problem.h"
+#include "tools/fit/settle.h"
 #include "tools/fit/solve.h"
 #include "tools/model/evaluate.h"
+#include "tools/model/fit_record.h"
 #include "tools/model/prediction.h"
 
 namespace vernier {
@@ -21,44 +26,71 @@ Measurement rows_for_fit(const Machine& machine, const Measurement& all) {
   return keep.size() == all.rows() ? all : select_rows(all, keep);
 }
 
-void estimate(FitResult& result, const FitProblem& problem, bool has_u) {
-  const Eigen::VectorXd values = result.parameters.get(result.machine);
-  const NormalEquations end = problem.equations(values);
-  result.observability = observe(end.normal, kUnseenShare, result.held);
-  result.chi_square = end.cost;
-  result.freedom = static_cast<Eigen::Index>(result.before.count) - result.observability.rank;
-  const double reduced = result.freedom > 0 ? result.chi_square / static_cast<double>(result.freedom)
-                                            : std::numeric_limits<double>::quiet_NaN();
-  result.variance_factor = has_u ? (reduced > 1 ? reduced : 1) : reduced;
+/// An estimate rests on data where the convention may have moved it by less than this share of its standard
+/// uncertainty (three times it, one time in 400, is still 1 %); on the prior where it is known no better than
+/// that.
+constexpr double kMovedByConvention = 0.003, kFromPrior = 0.95;
+
+Origin origin_of(const FitResult& result, std::size_t i, double std, const Settled& end) {
+  const auto at = static_cast<Eigen::Index>(i);
+  if (std > kFromPrior * end.scale[at]) return Origin::kPrior;
+  if (result.observability.determined[i] == 0) {
+    const auto& groups = result.observability.unidentifiable;
+    const bool alone = std::any_of(groups.begin(), groups.end(),
+                                   [&](const auto& group) { return group.size() == 1 && group[0] == i; });
+    return alone ? Origin::kPrior : Origin::kConvention;
+  }
+  return end.bias[at] <= kMovedByConvention * std ? Origin::kData : Origin::kConvention;
+}
+
+void estimate(FitResult& result, const Settled& end) {
+  result.observability = observe(end.normal);
+  result.observability.covariance = end.covariance / end.variance;
+  result.covariance = end.covariance;
+  result.chi_square = end.chi_square;
+  result.freedom = end.freedom;
+  result.variance_factor = end.variance;
   for (std::size_t i = 0; i < result.parameters.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
-    ParameterEstimate item{result.parameters[i].name, result.parameters[i].unit, values[at], std::nullopt};
-    const double variance = result.variance_factor * result.observability.covariance(at, at);
-    if (result.observability.determined[i] != 0 && std::isfinite(variance)) item.std = std::sqrt(variance);
-    result.estimates.push_back(item);
+    const double std = std::sqrt(std::max(0.0, end.covariance(at, at)));
+    result.estimates.push_back({result.parameters[i].name, result.parameters[i].unit, end.point[at], std,
+                                end.scale[at], origin_of(result, i, std, end)});
   }
 }
 
 /// 1 / std^2 of each parameter that a prior names, 0 for the others. A prior that names nothing is a mistake.
-Eigen::VectorXd prior_weights(FitResult& result, const FitOptions& options) {
-  Eigen::VectorXd weights = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(result.parameters.size()));
+StatedPriors stated_priors(FitResult& result, const FitOptions& options, const Convention& convention) {
+  StatedPriors stated{Eigen::VectorXd::Zero(static_cast<Eigen::Index>(result.parameters.size())),
+                      convention.centre};
   for (const Prior& prior : options.priors) {
     bool found = false;
     for (std::size_t i = 0; i < result.parameters.size(); ++i) {
       if (!matches_pattern(prior.pattern, result.parameters[i].name)) continue;
       found = true;
-      weights[static_cast<Eigen::Index>(i)] = 1 / (prior.std * prior.std);
+      stated.weight[static_cast<Eigen::Index>(i)] = 1 / (prior.std * prior.std);
       result.priors.emplace_back(result.parameters[i].name, prior.std);
     }
     if (!found) throw InputError("\"" + prior.pattern + "\": no free parameter has this name");
   }
-  return weights;
+  return stated;
+}
+
+/// A model in which nothing is free: only how well it fits.
+Settled nothing_free(const FitProblem& problem, std::size_t observations, bool with_u) {
+  Settled end;
+  end.point.resize(0);
+  end.chi_square = problem.cost(end.point);
+  end.freedom = static_cast<double>(observations);
+  const double reduced = end.chi_square / end.freedom;
+  end.variance = with_u ? std::max(1.0, reduced) : reduced;
+  end.converged = true;
+  return end;
 }
 
 std::vector<Correlation> strong_correlations(const Observability& seen) {
   constexpr double kStrong = 0.9;
   std::vector<Correlation> list;
-  const Eigen::VectorXd std = seen.covariance.diagonal().cwiseSqrt();
+  const Eigen::VectorXd std = seen.covariance.diagonal().cwiseMax(0).cwiseSqrt();
   for (Eigen::Index i = 0; i < std.size(); ++i)
     for (Eigen::Index k = 0; k < i; ++k) {
       const auto first = static_cast<std::size_t>(k), second = static_cast<std::size_t>(i);
@@ -71,9 +103,64 @@ std::vector<Correlation> strong_correlations(const Observability& seen) {
   return list;
 }
 
+/// What the fit left, mm; rotations at the reach.
+double left_mm(const FitResult& result) {
+  const double turns_mm = result.after.rms_urad.value_or(0) * 1e-6 * result.reach_mm;
+  return std::max(result.after.rms_um.value_or(0) * 1e-3, turns_mm);
+}
+
+void judge(FitResult& result, const Machine& machine, const Measurement& measurement) {
+  result.worst = worst_reading(measurement, result.residual);
+  const bool misses = left_mm(result) > kAbsurdResidual * result.reach_mm;
+  // Free tables can follow two swapped columns: the nominal machine, which cannot, is asked too.
+  const bool far_off = result.misfit_mm > kFarOff * result.reach_mm;
+  if (result.converged && !misses && !far_off) return;
+  const std::string mistake = likely_mistake(machine, measurement, result.worst);
+  if (result.converged && !misses && mistake.empty()) return;
+  result.absurd =
+      !result.converged ? fmt::format("the fit did not converge in {} iterations", result.iterations)
+      : misses ? fmt::format("the fit leaves {:.3g} mm of a measured box of +- {:.3g} mm", left_mm(result),
+                             result.reach_mm)
+               : fmt::format("the nominal machine is off by {:.3g} mm in a measured box of +- {:.3g} mm",
+                             result.misfit_mm, result.reach_mm);
+  if (!mistake.empty()) result.absurd += ": " + mistake;
+}
+
+/// What the machine file keeps of the fit.
+void remember(FitResult& result, const Measurement& rows) {
+  auto record = std::make_shared<FitRecord>();
+  record->converged = result.converged;
+  record->rms_mm = left_mm(result);
+  record->reach_mm = result.reach_mm;
+  record->worst = result.worst.ratio;
+  record->worst_reading = result.worst.reading;
+  record->culprit = result.absurd;
+  record->values.resize(static_cast<Eigen::Index>(result.estimates.size()));
+  for (std::size_t i = 0; i < result.estimates.size(); ++i) {
+    record->parameters.push_back(result.estimates[i].name);
+    record->values[static_cast<Eigen::Index>(i)] = result.estimates[i].value;
+  }
+  record->factor = covariance_factor(result.covariance);
+  const auto add = [&](const std::string& name, const Column& column) {
+    FitRecord::Range range{name, std::numeric_limits<double>::infinity(),
+                           -std::numeric_limits<double>::infinity()};
+    for (std::size_t row = 0; row < rows.rows(); ++row) {
+      if (rows.check[row] != 0) continue;
+      range.min = std::min(range.min, column[static_cast<Eigen::Index>(row)]);
+      range.max = std::max(range.max, column[static_cast<Eigen::Index>(row)]);
+    }
+    if (range.min <= range.max) record->measured.push_back(range);
+  };
+  for (std::size_t i = 0; i < result.machine.axes.size(); ++i)
+    add(result.machine.axes[i].name, commanded(rows, i));
+  for (std::size_t i = 0; i < result.machine.inputs.size(); ++i)
+    add(result.machine.inputs[i].name, rows.states.input[i]);
+  result.machine.fitted = std::move(record);
+}
+
 /// residual / sqrt(u^2 + g C g^T) over the check rows; u is the reading's own, without it the fit's spread.
 std::optional<NormalisedError> normalised_error(const FitResult& result, const Measurement& m) {
-  if (result.check.count == 0 || result.freedom <= 0) return std::nullopt;
+  if (result.check.count == 0 || result.freedom < 0.5) return std::nullopt;
   std::vector<std::size_t> keep;
   for (std::size_t row = 0; row < m.rows(); ++row)
     if (m.check[row] != 0) keep.push_back(row);
@@ -103,6 +190,11 @@ std::optional<NormalisedError> normalised_error(const FitResult& result, const M
 
 }  // namespace
 
+const char* origin_name(Origin origin) {
+  constexpr const char* kNames[] = {"data", "convention", "prior"};
+  return kNames[static_cast<std::size_t>(origin)];
+}
+
 Eigen::VectorXd residuals(const Machine& machine, const Measurement& m) {
   const Eigen::VectorXd predicted = predict(machine, m);
   Eigen::VectorXd result(predicted.size());
@@ -122,16 +214,31 @@ FitResult fit(const Machine& machine, const Measurement& measurement, const FitO
   if (result.before.count == 0) throw InputError("no observation with role fit: there is nothing to fit");
   result.noise_um = noise_um(measurement);
   const Measurement rows = rows_for_fit(machine, measurement);
+  const Convention convention = convention_of(machine, rows, result.parameters);
+  result.misfit_mm = convention.misfit_mm;
+  result.reach_mm = convention.reach_mm;
   FitProblem problem(machine, rows, result.parameters);
-  const Eigen::VectorXd start = result.parameters.get(machine);
-  problem.set_priors(prior_weights(result, options), start);
-  const Eigen::VectorXd end =
-      solve(problem, align_set_ups(machine, rows, result.parameters, start), options, result);
-  result.parameters.set(result.machine, end);
+  const StatedPriors stated = stated_priors(result, options, convention);
+  const bool with_u = has_uncertainty(measurement);
+  Settled end;
+  if (result.parameters.size() == 0) {
+    end = nothing_free(problem, result.before.count, with_u);
+    result.converged = true;
+  } else {
+    const Eigen::VectorXd near = solve(problem, machine, convention, stated, options, result);
+    const bool squared = options.loss == Loss::kSquared;
+    end = squared ? settle(problem, near, convention, stated, result.before.count, with_u)
+                  : describe(problem, near, convention, stated, result.before.count, with_u);
+    result.iterations += squared ? end.iterations : 0;
+    result.converged = result.converged && (!squared || end.converged);
+  }
+  result.parameters.set(result.machine, end.point);
   result.residual = residuals(result.machine, measurement);
   result.after = role_statistics(measurement, result.residual, false);
   result.check = role_statistics(measurement, result.residual, true);
-  estimate(result, problem, has_uncertainty(measurement));
+  estimate(result, end);
+  judge(result, machine, measurement);
+  remember(result, rows);
   result.correlations = strong_correlations(result.observability);
   result.normalised_check = normalised_error(result, measurement);
   return result;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "tools/fit/observability.h"
+#include "tools/fit/sanity.h"
 #include "tools/fit/statistics.h"
 #include "tools/model/machine.h"
 #include "tools/model/measurement.h"
@@ -16,7 +17,8 @@ namespace vernier {
 enum class Loss : std::uint8_t { kSquared, kHuber, kCauchy };
 enum class Solver : std::uint8_t { kNormalEquations, kCeres };
 
-/// A parameter that is held near its start: as if it had been measured there with this standard uncertainty.
+/// A parameter that is held near its nominal value (its start, where the file gives none): as if it had been
+/// measured there with this standard uncertainty.
 struct Prior {
   std::string pattern;  // name, with * and ? as in file names
   double std = 0;       // in the parameter's unit
@@ -30,15 +32,25 @@ struct FitOptions {
   /// Fitted one after the other before everything is fitted together: patterns of the parameters freed in
   /// each stage.
   std::vector<std::vector<std::string>> stages;
-  std::vector<Prior> priors;  // none: nothing is regularised
+  std::vector<Prior> priors;  // besides the convention's own
   /// Called after every iteration with its number and the weighted sum of squares.
   std::function<void(int, double)> progress;
 };
 
+/// What a value rests on.
+enum class Origin : std::uint8_t {
+  kData,        // readings: the convention moves it by less than 1 % of its standard uncertainty
+  kConvention,  // it takes part in a combination that the readings do not determine
+  kPrior,       // not measured: nominal, give or take its scale
+};
+const char* origin_name(Origin origin);
+
 struct ParameterEstimate {
   std::string name, unit;
   double value = 0;
-  std::optional<double> std;  // nothing where the data do not determine it
+  double std = 0;    // of data and convention; finite
+  double scale = 0;  // how far from nominal it may plausibly be
+  Origin from = Origin::kData;
 };
 
 /// How the check rows agree with the model's own claim: residual over the uncertainty of reading and model
@@ -55,6 +67,14 @@ struct Correlation {
   double value = 0;  // -1..1
 };
 
+/// Where a fit stood after one of its stages.
+struct StageFigures {
+  std::string patterns;  // of the parameters freed
+  std::size_t parameters = 0;
+  int iterations = 0;
+  RoleStatistics fit, check;
+};
+
 struct FitResult {
   Machine machine;  // with the fitted values
   ParameterSet parameters;
@@ -62,26 +82,30 @@ struct FitResult {
   Observability observability;
   RoleStatistics before, after, check;
   std::optional<double> noise_um;
+  double misfit_mm = 0, reach_mm = 0;     // what the scales were made from (tools/fit/convention.h)
+  Eigen::MatrixXd covariance;             // of all parameters, convention included
   double chi_square = 0;                  // weighted sum of squares at the end
-  Eigen::Index freedom = 0;               // observations - rank
+  double freedom = 0;                     // observations less what was fitted of them
   double variance_factor = 1;             // what the covariance was multiplied by
   std::vector<Correlation> correlations;  // above 0.9 in size, largest first
   std::optional<NormalisedError>
       normalised_check;  // where there are check rows and an uncertainty of their readings
   std::vector<std::pair<std::string, double>> priors;  // parameter, standard uncertainty
-  std::vector<char> held;  // parameters that stand for directions left at their start; empty: none
+  std::vector<StageFigures> stages;                    // as asked for, then one of all together
+  WorstReading worst;
+  /// Why the readings are not those of this machine; empty where they are.
+  std::string absurd;
   int iterations = 0;
   bool converged = false;
   Eigen::VectorXd residual;  // measured - model per observation, mm or deg
 };
 
-/// Weighted least squares on the fit rows: residual / u (1 where u is absent). Free parameters that the data
-/// cannot separate keep their start along the unidentified directions and are named in `observability`. So do
-/// directions that the data do not see at the start and only faintly, through products of errors, at the end,
-/// while following them promises no more than chance would, or would turn something by more than half a
-/// degree. Set-ups that start more than 0.1 deg off are aligned first. Standard uncertainty: from u, times
-/// sqrt(chi^2 / dof) where that exceeds 1; without u from the residual (GUM 5.2). Throws InputError where
-/// there is nothing to fit. tool.
+/// Weighted least squares on the fit rows: residual / u (1 where u is absent), and the convention of
+/// tools/fit/convention.h: what the data leave open is as near to nominal as it can be, in units of each
+/// parameter's scale. The answer does not depend on the start, the order of the rows or the stages. What the
+/// data cannot separate is named in `observability`. Standard uncertainty: from u, times sqrt(chi^2 / dof)
+/// where that exceeds 1; without u from the residual (GUM 5.2); where data say little, from the scale. Throws
+/// InputError where there is nothing to fit. tool.
 FitResult fit(const Machine& machine, const Measurement& measurement, const FitOptions& options = {});
 
 /// residual = measured - predicted.

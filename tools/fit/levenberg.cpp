@@ -1,7 +1,6 @@
 #include "tools/fit/levenberg.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -23,13 +22,6 @@ constexpr double kMostBend = 0.75;
 constexpr double kTrue = 0.9;
 /// A chord step that leaves more than this share of what the last one had to gain: time for a new factor.
 constexpr double kSlowChord = 0.1;
-/// A direction with a scaled square above this is seen plainly (a standard uncertainty within 300 times the
-/// best one's), whatever the start saw of it.
-constexpr double kPlain = 1e-5;
-
-/// What the new start does not see either would be released and held for ever.
-constexpr int kMostReleases = 3;
-
 class Minimiser {
  public:
   Minimiser(const VectorXd& start, const std::function<NormalEquations(const VectorXd&)>& equations,
@@ -41,33 +33,17 @@ class Minimiser {
 
   LevenbergResult run() {
     descend();
-    while (result_.converged && result_.iterations < options_.max_iterations && releases_ < kMostReleases) {
-      const LevenbergResult before = result_;
-      const Release released = release();
-      if (released == Release::kNone) break;
-      descend();
-      if (released == Release::kFaintly &&
-          !(result_.converged && options_.believable(before.point, result_.point))) {
-        const int iterations = result_.iterations;
-        result_ = before;
-        result_.iterations = iterations;
-        break;
-      }
-      result_.followed_unseen = true;
-    }
     return result_;
   }
 
  private:
   enum class Step : std::uint8_t { kGood, kPoor, kNothingLeft, kFailed };
-  enum class Release : std::uint8_t { kNone, kFaintly, kPlainly };
 
   void descend();
   void prepare();
   void factorise();
   Step step();
   Step chord();
-  Release release();
   VectorXd bent(const VectorXd& straight) const;
   Slope look(const VectorXd& point) const;
   VectorXd solve(const VectorXd& gradient) const;
@@ -84,7 +60,6 @@ class Minimiser {
   double damping_ = 0, growth_ = 2, promised_ = 0;
   bool troubled_ = false;  // the last step fell short of its promise
   int quiet_ = 0;          // steps in a row that changed nothing
-  int releases_ = 0;
 };
 
 /// The normal equations at the current point, scaled.
@@ -194,36 +169,6 @@ void Minimiser::descend() {
     }
     prepare();
   }
-}
-
-/// Looks again at the directions left alone, and frees them if some are to be followed now: because they are
-/// seen plainly, or for what following them promises.
-Minimiser::Release Minimiser::release() {
-  const auto held = static_cast<Index>(std::count(result_.held.begin(), result_.held.end(), 1));
-  if (held == 0) return Release::kNone;
-  prepare();
-  damping_ = 0;
-  factorise();
-  // What of the held directions is seen once the others have adapted, and what following them promises.
-  const MatrixXd seen = unseen_.transpose() * (scaled_.selfadjointView<Eigen::Lower>() * unseen_);
-  const VectorXd slope = unseen_.transpose() * gradient_;
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(seen);
-  double promise = 0, count = 0;
-  bool plain = false;
-  for (Index i = 0; i < eigen.eigenvalues().size(); ++i) {
-    const double square = eigen.eigenvalues()[i];
-    if (square < options_.unseen) continue;
-    plain = plain || square > kPlain;
-    promise += std::pow(eigen.eigenvectors().col(i).dot(slope), 2) / square;
-    ++count;
-  }
-  // Freed for nothing, `count` parameters lower the cost by that many variances, give or take sqrt(2 count).
-  const double chance = options_.chance(result_.cost) * (count + 3 * std::sqrt(2 * count));
-  if (count == 0 || (!plain && promise <= std::max(chance, options_.negligible(result_.cost))))
-    return Release::kNone;
-  ++releases_;
-  result_.held.clear();
-  return plain ? Release::kPlainly : Release::kFaintly;
 }
 
 }  // namespace

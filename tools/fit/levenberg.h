@@ -27,13 +27,6 @@ struct LevenbergOptions {
   /// A fall of the cost below this is nothing: the fit passes the variance of an observation times a small
   /// share, so that no parameter would move by more than a few percent of its standard uncertainty.
   std::function<double(double)> negligible = [](double cost) { return 1e-14 * cost; };
-  /// Chance alone lowers the cost by about this much for each parameter freed (0: every fall counts). It
-  /// judges whether a direction that the start did not see is worth following.
-  std::function<double(double)> chance = [](double) { return 0.0; };
-  /// Whether following directions that the start did not see and the end sees faintly may end there (from,
-  /// to). Where not, the fit goes back.
-  std::function<bool(const Eigen::VectorXd&, const Eigen::VectorXd&)> believable =
-      [](const Eigen::VectorXd&, const Eigen::VectorXd&) { return true; };
   /// J^T W^2 p'' of a point and a step: p'' is the second derivative of the predictions along the step. With
   /// it a step that failed is bent along the valley (geodesic acceleration), without it it is straight.
   std::function<Eigen::VectorXd(const Eigen::VectorXd&, const Eigen::VectorXd&)> bend;
@@ -47,16 +40,14 @@ struct LevenbergResult {
   double cost = 0;
   int iterations = 0;
   bool converged = false;
-  bool followed_unseen = false;  // directions that the start did not see were released
   /// Parameters that stand for the directions left at their start; empty or one entry a parameter.
   std::vector<char> held;
 };
 
 /// Gauss-Newton in the directions that the data see, with column scaling; Levenberg-Marquardt where a step
 /// fails (Nocedal and Wright, Numerical Optimization, 2nd ed., section 10.3; damping update by gain ratio,
-/// Nielsen 1999). Directions that are not seen at the start are left there, not damped: they are looked at
-/// again at the end and released where the data see them plainly or where following them promises more than
-/// chance. `cost` evaluates the cost alone and may return infinity for a point where the model is undefined.
+/// Nielsen 1999). Directions that are not seen at the start are left there, not damped. `cost` evaluates the
+/// cost alone and may return infinity for a point where the model is undefined.
 LevenbergResult minimise(const Eigen::VectorXd& start,
                          const std::function<NormalEquations(const Eigen::VectorXd&)>& equations,
                          const std::function<double(const Eigen::VectorXd&)>& cost,

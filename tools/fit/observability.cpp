@@ -134,14 +134,13 @@ void find_weak(Parts& parts) {
 }
 
 /// Nothing where a direction is so near the limit that only the eigenvalues can tell.
-std::optional<Parts> by_pivots(const Eigen::MatrixXd& scaled, double limit_share,
-                               const std::vector<char>& held) {
+std::optional<Parts> by_pivots(const Eigen::MatrixXd& scaled, double limit_share) {
   const Eigen::Index n = scaled.rows();
   Parts parts;
   parts.largest = largest_eigenvalue(scaled);
   const double limit = limit_share * parts.largest;
   // A remaining square bounds the smallest eigenvalue left from above, and n times it the largest.
-  const PivotedCholesky factor(scaled, limit / static_cast<double>(n), held);
+  const PivotedCholesky factor(scaled, limit / static_cast<double>(n));
   parts.rank = factor.rank();
   if (parts.rank == 0) return std::nullopt;
   parts.unseen = factor.null_basis();
@@ -151,25 +150,23 @@ std::optional<Parts> by_pivots(const Eigen::MatrixXd& scaled, double limit_share
   return parts;
 }
 
-Parts take_apart(const Eigen::MatrixXd& scaled, double limit_share, const std::vector<char>& held) {
+Parts take_apart(const Eigen::MatrixXd& scaled, double limit_share) {
   constexpr Eigen::Index kMany = 200;  // an eigen-decomposition of fewer takes no time
   if (scaled.rows() > kMany)
-    if (auto parts = by_pivots(scaled, limit_share, held)) return *parts;
-  if (std::count(held.begin(), held.end(), 1) == 0) return by_eigenvectors(scaled, limit_share);
-  const Eigen::MatrixXd unseen = PivotedCholesky(scaled, limit_share, held).null_basis();
-  return by_eigenvectors(without(scaled, unseen), limit_share);
+    if (auto parts = by_pivots(scaled, limit_share)) return *parts;
+  return by_eigenvectors(scaled, limit_share);
 }
 
 }  // namespace
 
-Observability observe(const Eigen::MatrixXd& normal, double cutoff, const std::vector<char>& held) {
+Observability observe(const Eigen::MatrixXd& normal, double cutoff) {
   const Eigen::Index n = normal.rows();
   Observability result;
   result.covariance = Eigen::MatrixXd::Zero(n, n);
   result.determined.assign(static_cast<std::size_t>(n), 1);
   if (n == 0) return result;
   const Eigen::VectorXd scale = unit_scale(normal);
-  const Parts parts = take_apart(scale.asDiagonal() * normal * scale.asDiagonal(), cutoff * cutoff, held);
+  const Parts parts = take_apart(scale.asDiagonal() * normal * scale.asDiagonal(), cutoff * cutoff);
   result.rank = parts.rank;
   if (parts.rank > 0) {
     result.condition = std::sqrt(parts.largest / parts.weak_squares[0]);

@@ -30,10 +30,8 @@ struct Observability {
 /// what rounding leaves of an exact dependence (1e-8) and below any direction that real data determine.
 inline constexpr double kUnseenShare = 1e-5;
 
-/// normal: J^T W^2 J, n x n. `held`: parameters that stand for directions which were left at their start (one
-/// each; empty: none); those directions count as unidentified too. Above 200 parameters by pivoted Cholesky
+/// normal: J^T W^2 J, n x n. Above 200 parameters by pivoted Cholesky
 /// and inverse iteration, the whole eigen-decomposition only where the rank is not plain from that. tool.
-Observability observe(const Eigen::MatrixXd& normal, double cutoff = kUnseenShare,
-                      const std::vector<char>& held = {});
+Observability observe(const Eigen::MatrixXd& normal, double cutoff = kUnseenShare);
 
 }  // namespace vernier

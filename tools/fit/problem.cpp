@@ -95,14 +95,15 @@ Machine FitProblem::at(const Eigen::VectorXd& point) const {
   return machine;
 }
 
-void FitProblem::set_priors(const Eigen::VectorXd& weights, const Eigen::VectorXd& centre) {
-  prior_weights_ = weights;
-  prior_centre_ = centre;
+void FitProblem::set_priors(Eigen::SparseMatrix<double> precision, Eigen::VectorXd centre) {
+  prior_precision_ = std::move(precision);
+  prior_centre_ = std::move(centre);
 }
 
 double FitProblem::prior_cost(const Eigen::VectorXd& point) const {
-  if (prior_weights_.size() == 0) return 0;
-  return prior_weights_.dot((point - prior_centre_).cwiseAbs2());
+  if (prior_centre_.size() == 0) return 0;
+  const Eigen::VectorXd off = point - prior_centre_;
+  return off.dot(prior_precision_ * off);
 }
 
 double FitProblem::cost(const Eigen::VectorXd& point) const {
@@ -141,10 +142,10 @@ NormalEquations FitProblem::equations(const Eigen::VectorXd& point) const {
   });
   result.normal.triangularView<Eigen::StrictlyUpper>() = result.normal.transpose();
   silence_rounding(result, weights_.squaredNorm());
-  if (prior_weights_.size() > 0) {
+  if (prior_centre_.size() > 0) {
     result.cost += prior_cost(point);
-    result.normal.diagonal() += prior_weights_;
-    result.gradient += prior_weights_.cwiseProduct(prior_centre_ - point);
+    result.normal += prior_precision_;
+    result.gradient += prior_precision_ * (prior_centre_ - point);
   }
   return result;
 }
@@ -171,7 +172,7 @@ Slope FitProblem::slope(const Eigen::VectorXd& point) const {
     return result;
   }
   result.cost += prior_cost(point);
-  if (prior_weights_.size() > 0) result.gradient += prior_weights_.cwiseProduct(prior_centre_ - point);
+  if (prior_centre_.size() > 0) result.gradient += prior_precision_ * (prior_centre_ - point);
   return result;
 }
 

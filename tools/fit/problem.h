@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Core>
+#include <Eigen/SparseCore>
 
 #include "tools/fit/levenberg.h"
 #include "tools/model/linearizer.h"
@@ -16,8 +17,9 @@ class FitProblem {
   /// Keeps references to `measurement` and `parameters`. Check rows have weight 0.
   FitProblem(const Machine& machine, const Measurement& measurement, const ParameterSet& parameters);
 
-  /// Parameters held near `centre`: weight * (value - centre)^2 is added to the cost.
-  void set_priors(const Eigen::VectorXd& weights, const Eigen::VectorXd& centre);
+  /// Parameters held near `centre`: (value - centre)^T precision (value - centre) is added to the cost.
+  void set_priors(Eigen::SparseMatrix<double> precision, Eigen::VectorXd centre);
+  void clear_priors() { prior_centre_.resize(0); }
 
   /// Sum of squared weighted residuals and priors; infinity where the model is undefined at this point.
   double cost(const Eigen::VectorXd& point) const;
@@ -32,6 +34,8 @@ class FitProblem {
   Eigen::VectorXd weighted_residuals(const Eigen::VectorXd& point, SparseRows* jacobian) const;
 
   std::size_t parameter_count() const { return parameters_.size(); }
+  const Eigen::SparseMatrix<double>& prior_precision() const { return prior_precision_; }
+  const Eigen::VectorXd& prior_centre() const { return prior_centre_; }  // empty: no priors
   const Measurement& measurement() const { return measurement_; }
 
  private:
@@ -43,7 +47,8 @@ class FitProblem {
   const ParameterSet& parameters_;
   Linearizer linearizer_;
   Eigen::VectorXd weights_, measured_;
-  Eigen::VectorXd prior_weights_, prior_centre_;  // empty: none
+  Eigen::SparseMatrix<double> prior_precision_;
+  Eigen::VectorXd prior_centre_;
 };
 
 }  // namespace vernier

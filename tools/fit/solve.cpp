@@ -8,6 +8,7 @@
 
 #include "tools/fit/ceres_solver.h"
 #include "tools/fit/levenberg.h"
+#include "tools/fit/statistics.h"
 
 namespace vernier {
 namespace {
@@ -17,9 +18,8 @@ namespace {
 /// a millionth.
 constexpr double kNegligible = 1e-3, kNegligibleShare = 1e-6;
 
-/// Where the set-ups stand is whatever the start says, and a set-up that is turned by more than this (deg)
-/// has its turn's second order, half its square times the reach, taken for errors of the axes.
-constexpr double kTurned_deg = 0.1;
+/// Before the readings' spread is known, without u: this share of what the nominal machine leaves of them.
+constexpr double kFirstNoise = 0.1;
 
 std::vector<Eigen::Index> freed_in(const std::vector<std::string>& patterns, const ParameterSet& parameters) {
   std::set<Eigen::Index> freed;
@@ -35,32 +35,6 @@ std::vector<Eigen::Index> freed_in(const std::vector<std::string>& patterns, con
   return {freed.begin(), freed.end()};
 }
 
-/// The largest turn (deg) in the first step of a problem of BaseShifts.
-double first_turn_deg(const FitProblem& problem, const ParameterSet& shifts, const Eigen::VectorXd& from) {
-  NormalEquations first = problem.equations(from);
-  first.normal.diagonal() *= 1 + 1e-9;  // a set-up seen at too few points stays where it is
-  const Eigen::VectorXd step = first.normal.ldlt().solve(first.gradient);
-  double turn_deg = 0;
-  for (std::size_t i = 0; i < shifts.size(); ++i)
-    if (shifts[i].column >= 3) turn_deg = std::max(turn_deg, std::abs(step[static_cast<Eigen::Index>(i)]));
-  return turn_deg;
-}
-
-/// Angles that products of errors alone ask for, and by more than this, are an imitation.
-constexpr double kMostTurned_deg = 0.5;
-
-bool turned_little(const ParameterSet& parameters, const Eigen::VectorXd& from, const Eigen::VectorXd& to) {
-  for (std::size_t i = 0; i < parameters.size(); ++i) {
-    const auto at = static_cast<Eigen::Index>(i);
-    const double turn = std::abs(to[at] - from[at]);
-    const std::string& unit = parameters[i].unit;
-    if ((unit == "deg" && turn > kMostTurned_deg) ||
-        (unit == "rad" && turn * 180 / std::numbers::pi > kMostTurned_deg))
-      return false;
-  }
-  return true;
-}
-
 LevenbergOptions own_options(const FitOptions& options, std::size_t observations, Eigen::Index parameters) {
   LevenbergOptions levenberg;
   levenberg.max_iterations = options.max_iterations;
@@ -69,7 +43,6 @@ LevenbergOptions own_options(const FitOptions& options, std::size_t observations
   levenberg.negligible = [freedom](double cost) {
     return cost * std::max(kNegligible / freedom, kNegligibleShare);
   };
-  levenberg.chance = [freedom](double cost) { return cost / freedom; };
   return levenberg;
 }
 
@@ -98,12 +71,9 @@ LevenbergResult solve_stage(const FitProblem& problem, const Eigen::VectorXd& st
   return result;
 }
 
-LevenbergResult solve_all(const FitProblem& problem, const ParameterSet& parameters,
-                          const Eigen::VectorXd& start, const FitOptions& options, std::size_t observations) {
+LevenbergResult solve_all(const FitProblem& problem, const Eigen::VectorXd& start, const FitOptions& options,
+                          std::size_t observations) {
   LevenbergOptions levenberg = own_options(options, observations, start.size());
-  levenberg.believable = [&](const Eigen::VectorXd& from, const Eigen::VectorXd& to) {
-    return turned_little(parameters, from, to);
-  };
   levenberg.slope = [&](const Eigen::VectorXd& x) { return problem.slope(x); };
   levenberg.bend = [&](const Eigen::VectorXd& x, const Eigen::VectorXd& step) {
     return problem.bend(x, step);
@@ -111,6 +81,42 @@ LevenbergResult solve_all(const FitProblem& problem, const ParameterSet& paramet
   return minimise(
       start, [&](const Eigen::VectorXd& x) { return problem.equations(x); },
       [&](const Eigen::VectorXd& x) { return problem.cost(x); }, levenberg);
+}
+
+/// Scales and stated priors in the problem's cost.
+void hold_near_centre(FitProblem& problem, const Convention& convention, const StatedPriors& stated) {
+  const Measurement& m = problem.measurement();
+  double variance = 1;
+  if (!has_uncertainty(m)) {
+    const auto noise = noise_um(m);
+    variance = std::pow(noise ? 1e-3 * *noise : kFirstNoise * convention.misfit_mm, 2);
+    variance = std::max(variance, std::pow(1e-6 * convention.misfit_mm, 2));
+  }
+  Eigen::SparseMatrix<double> precision = variance * scaled_precision(convention, convention.scale);
+  precision += Eigen::SparseMatrix<double>(stated.weight.asDiagonal());
+  problem.set_priors(std::move(precision), convention.centre);
+}
+
+/// The machine's own values, its set-ups aligned, or the convention's centre: whichever is nearer. Set-ups
+/// always start where they fit best: what no reading sees of them stays at 0.
+Eigen::VectorXd nearer_start(const FitProblem& problem, const Machine& machine, const Convention& convention,
+                             const ParameterSet& parameters) {
+  const Eigen::VectorXd given = parameters.get(set_up(machine, problem.measurement()));
+  return problem.cost(given) < problem.cost(convention.centre) ? given : convention.centre;
+}
+
+/// `point` with the shape parameters (periods, time constants) of `given`.
+Eigen::VectorXd with_shapes_of(const Eigen::VectorXd& given, const Convention& convention,
+                               Eigen::VectorXd point) {
+  for (std::size_t i = 0; i < convention.shape.size(); ++i)
+    if (convention.shape[i] != 0) point[static_cast<Eigen::Index>(i)] = given[static_cast<Eigen::Index>(i)];
+  return point;
+}
+
+std::string joined(const std::vector<std::string>& patterns) {
+  std::string text;
+  for (const std::string& pattern : patterns) text += (text.empty() ? "" : ",") + pattern;
+  return text;
 }
 
 }  // namespace
@@ -134,46 +140,47 @@ bool matches_pattern(std::string_view pattern, std::string_view name) {
          matches_pattern(pattern.substr(1), name.substr(1));
 }
 
-Eigen::VectorXd align_set_ups(const Machine& machine, const Measurement& rows, const ParameterSet& all,
-                              const Eigen::VectorXd& start) {
-  Machine rigid = machine;
-  for (Static& item : rigid.statics) item.hidden = true;
-  for (Table& table : rigid.tables) table.free.fill(false);
-  const ParameterSet shifts(rigid, runs_of_fit_rows(rows));
-  if (shifts.size() == 0 || shifts.size() == all.size()) return start;
-  const FitProblem problem(rigid, rows, shifts);
-  const Eigen::VectorXd from = shifts.get(rigid);
-  if (!(first_turn_deg(problem, shifts, from) > kTurned_deg)) return start;
-  LevenbergOptions options;
-  options.negligible = [](double cost) { return 1e-3 * cost; };
-  options.slope = [&](const Eigen::VectorXd& x) { return problem.slope(x); };
-  shifts.set(rigid, minimise(
-                        from, [&](const Eigen::VectorXd& x) { return problem.equations(x); },
-                        [&](const Eigen::VectorXd& x) { return problem.cost(x); }, options)
-                        .point);
-  return all.get(rigid);
-}
-
-Eigen::VectorXd solve(const FitProblem& problem, Eigen::VectorXd point, const FitOptions& options,
-                      FitResult& result) {
+Eigen::VectorXd solve(FitProblem& problem, const Machine& machine, const Convention& convention,
+                      const StatedPriors& stated, const FitOptions& options, FitResult& result) {
+  hold_near_centre(problem, convention, stated);
+  Eigen::VectorXd point = nearer_start(problem, machine, convention, result.parameters);
+  const auto figures = [&](std::string patterns, std::size_t count, int iterations) {
+    Machine there = machine;
+    result.parameters.set(there, point);
+    const Eigen::VectorXd left = residuals(there, problem.measurement());
+    result.stages.push_back({std::move(patterns), count, iterations,
+                             role_statistics(problem.measurement(), left, false),
+                             role_statistics(problem.measurement(), left, true)});
+  };
   for (const auto& patterns : options.stages) {
-    const LevenbergResult stage =
-        solve_stage(problem, point, freed_in(patterns, result.parameters), options, result.before.count);
+    const std::vector<Eigen::Index> freed = freed_in(patterns, result.parameters);
+    const LevenbergResult stage = solve_stage(problem, point, freed, options, result.before.count);
     point = stage.point;
     result.iterations += stage.iterations;
+    figures(joined(patterns), freed.size(), stage.iterations);
   }
+  int iterations = 0;
   if (options.solver == Solver::kCeres || options.loss != Loss::kSquared) {
-    if (!options.priors.empty()) throw InputError("priors go with the squared loss and the own solver");
-    const CeresOutcome outcome = solve_with_ceres(problem, point, options);
-    result.iterations += outcome.iterations;
+    CeresOutcome outcome = solve_with_ceres(problem, point, options);
+    iterations = outcome.iterations;
     result.converged = outcome.converged;
-    return outcome.point;
+    point = std::move(outcome.point);
+  } else {
+    LevenbergResult outcome = solve_all(problem, point, options, result.before.count);
+    // A period or a time constant has more than one valley: the file's own start is tried beside the nominal
+    // one.
+    const Eigen::VectorXd given = with_shapes_of(result.parameters.get(machine), convention, point);
+    if (given != point) {
+      LevenbergResult other = solve_all(problem, given, options, result.before.count);
+      if (other.converged && other.cost < outcome.cost) outcome = std::move(other);
+    }
+    iterations = outcome.iterations;
+    result.converged = outcome.converged;
+    point = std::move(outcome.point);
   }
-  const LevenbergResult outcome = solve_all(problem, result.parameters, point, options, result.before.count);
-  result.iterations += outcome.iterations;
-  result.converged = outcome.converged;
-  result.held = outcome.held;
-  return outcome.point;
+  result.iterations += iterations;
+  if (!options.stages.empty()) figures("*", result.parameters.size(), iterations);
+  return point;
 }
 
 }  // namespace vernier

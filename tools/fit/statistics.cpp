@@ -10,7 +10,8 @@ std::vector<double> row_conditions(const Measurement& m, std::size_t row) {
   const auto at = static_cast<Eigen::Index>(row);
   const States& s = m.states;
   std::vector<double> key;
-  for (const auto* columns : {&s.axis, &s.velocity, &s.acceleration, &s.direction, &s.since, &s.input})
+  for (std::size_t i = 0; i < s.axis.size(); ++i) key.push_back(commanded(m, i, at));
+  for (const auto* columns : {&s.velocity, &s.acceleration, &s.direction, &s.since, &s.input})
     for (const Column& column : *columns) key.push_back(column[at]);
   for (const Column& normal : s.normal) key.push_back(normal[at]);
   for (Eigen::Index k = 0; k < 3; ++k) {
@@ -31,6 +32,10 @@ constexpr double kUradPerDeg = std::numbers::pi / 180 * 1e6;
 /// Fewer pooled degrees of freedom than this say too little about the noise (its own uncertainty would exceed
 /// 30 %).
 constexpr std::size_t kLeastRepeatFreedom = 5;
+
+/// Readings at one pose are repeats where the corrections agree to this, mm or deg: they differ by less than
+/// any instrument here resolves.
+constexpr double kCorrectionStep = 1e-4;
 
 struct Pool {
   double sum = 0, largest = 0;
@@ -54,7 +59,10 @@ std::optional<double> repeat_noise_um(const Measurement& m) {
   std::map<std::pair<std::vector<double>, int>, Group> groups;
   for (const Observation& o : m.observations) {
     if (m.check[o.row] != 0 || is_rotation(o.kind)) continue;
-    Group& group = groups[{row_conditions(m, o.row), static_cast<int>(o.kind)}];
+    std::vector<double> key = row_conditions(m, o.row);
+    for (const Column& correction : m.correction)
+      key.push_back(std::round(correction[static_cast<Eigen::Index>(o.row)] / kCorrectionStep));
+    Group& group = groups[{std::move(key), static_cast<int>(o.kind)}];
     const double value = o.value * kUmPerMm;
     // Deviations from the group's first value would do; a running mean keeps the digits.
     ++group.count;

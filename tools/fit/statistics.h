@@ -18,12 +18,12 @@ struct RoleStatistics {
 RoleStatistics role_statistics(const Measurement& m, const Eigen::VectorXd& residual, bool check);
 
 /// All that was set or logged in a row besides time and the measured values: rows with the same numbers are
-/// repeats. tool.
+/// repeats. What a board added is not in it: a residual is beside it, a reading is not. tool.
 std::vector<double> row_conditions(const Measurement& m, std::size_t row);
 
 /// Noise of the measurement, um: rms of u over the fit rows' lengths; without u from repeats (rows with the
-/// same axes, motion, inputs and candidates in the same run or another, pooled standard deviation, at least 5
-/// degrees of freedom); else nothing.
+/// same axes, corrections, motion, inputs and candidates in the same run or another, pooled standard
+/// deviation, at least 5 degrees of freedom); else nothing.
 std::optional<double> noise_um(const Measurement& m);
 
 /// Weight of each observation in a fit: 1/u, 1 where u is absent, 0 for check rows. Multiplies the residual.

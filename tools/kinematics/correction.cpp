@@ -8,9 +8,7 @@
 #include "tools/kinematics/jacobian.h"
 
 namespace vernier {
-namespace {
-
-Column tilt(const Poses& actual, const Poses& nominal) {
+Column tilt_between(const Poses& actual, const Poses& nominal) {
   Column result(static_cast<Eigen::Index>(actual.rotation.size()));
   for (std::size_t i = 0; i < actual.rotation.size(); ++i) {
     const Eigen::Vector3d a = actual.rotation[i].col(2), b = nominal.rotation[i].col(2);
@@ -19,14 +17,12 @@ Column tilt(const Poses& actual, const Poses& nominal) {
   return result;
 }
 
-}  // namespace
-
 CorrectionResult correct(const Machine& machine, const States& states, const CorrectionOptions& options) {
   const Poses nominal = forward(nominal_machine(machine), states), actual = forward(machine, states);
   CorrectionResult result;
   result.offset.assign(machine.axes.size(), Column::Zero(static_cast<Eigen::Index>(states.count)));
   result.before = actual.position - nominal.position;
-  result.tilt_before = tilt(actual, nominal);
+  result.tilt_before = tilt_between(actual, nominal);
   InverseOptions solving;
   solving.match = options.with_rotary ? Match::kDirection : Match::kPosition;
   if (!options.with_rotary) solving.axes = linear_axes(machine);
@@ -41,7 +37,7 @@ CorrectionResult correct(const Machine& machine, const States& states, const Cor
     result.offset[i] = solved.states.axis[i] - states.axis[i];
   const Poses corrected = forward(machine, solved.states);
   result.after = corrected.position - nominal.position;
-  result.tilt_after = tilt(corrected, nominal);
+  result.tilt_after = tilt_between(corrected, nominal);
   result.each = std::move(solved.each);
   return result;
 }

@@ -19,6 +19,9 @@ struct CorrectionResult {
   std::vector<Inverse> each;       // of each state; residuals are those of `after`
 };
 
+/// Angle between the tool directions (the z axes of the last frame) of two lists of poses, deg. tool.
+Column tilt_between(const Poses& actual, const Poses& nominal);
+
 /// The axis offsets that put the actual tool point (and direction) of `machine` where its nominal chain has
 /// it at the same commands. They are found on the forward solution of the whole chain, so that an axis on the
 /// workpiece side gets its sign by itself. Motion and inputs stay as they are. What the axes cannot reach

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "tools/fit/reach.h"
 #include "tools/kinematics/at.h"
 
 namespace vernier {
@@ -28,13 +29,21 @@ Json field_json(const Machine& machine, const ErrorField& field) {
   Eigen::Index worst = 0;
   const double max_um = size_um.maxCoeff(&worst);
   const Eigen::Vector3d at = field.nominal.col(worst);
-  return {{"axes", axes},
-          {"counts", field.counts},
-          {"max_um", max_um},
-          {"rms_um", std::sqrt(size_um.squaredNorm() / static_cast<double>(size_um.size()))},
-          {"max_at_mm", {at.x(), at.y(), at.z()}},
-          {"point_mm", vectors(field.nominal, 1)},
-          {"deviation_um", vectors(field.deviation, 1000)}};
+  Json json = {{"axes", axes},
+               {"counts", field.counts},
+               {"max_um", max_um},
+               {"rms_um", std::sqrt(size_um.squaredNorm() / static_cast<double>(size_um.size()))},
+               {"max_at_mm", {at.x(), at.y(), at.z()}},
+               {"point_mm", vectors(field.nominal, 1)},
+               {"deviation_um", vectors(field.deviation, 1000)}};
+  json["std_um"] = nullptr;
+  if (const Reach reach(machine); reach.known()) {
+    const Eigen::VectorXd std_um = reach.std_um(field.states);
+    json["std_um"] = std::vector<double>(std_um.begin(), std_um.end());
+    json["max_std_um"] = std_um.maxCoeff();
+    json["rms_std_um"] = std::sqrt(std_um.squaredNorm() / static_cast<double>(std_um.size()));
+  }
+  return json;
 }
 
 States middle_state(const Machine& machine, const std::string& words) {

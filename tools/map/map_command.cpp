@@ -163,6 +163,10 @@ void run_map(const MapArguments& arguments) {
   fmt::print(out, "largest deviation {:.4g} um, rms {:.4g} um over {} nodes\n",
              json["field"]["max_um"].get<double>(), json["field"]["rms_um"].get<double>(),
              json["field"]["point_mm"].size());
+  if (!json["field"]["std_um"].is_null())
+    fmt::print(out,
+               "known to {:.4g} um on average, {:.4g} um at worst (standard uncertainty, measured or not)\n",
+               json["field"]["rms_std_um"].get<double>(), json["field"]["max_std_um"].get<double>());
   if (!closed) return;
   for (const Json& line : json["diagonals"])
     fmt::print(out, "diagonal {:<9} E {:.4g} um  M {:.4g} um  B {:.4g} um\n", line["name"].get<std::string>(),

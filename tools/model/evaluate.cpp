@@ -160,7 +160,10 @@ Dual Evaluator::symbol(const Symbol& symbol) {
     }
     case SymbolKind::kAxis: {
       const double scale = 1 + machine_.axes[symbol.index].scale_factor;
-      return {Value(Column(states_.axis[symbol.index] * scale)), {}};
+      Dual result{Value(Column(states_.axis[symbol.index] * scale)), {}};
+      if (active(scale_key(symbol.index)))
+        result.by.emplace_back(scale_key(symbol.index), Value(states_.axis[symbol.index]));
+      return result;
     }
     case SymbolKind::kInput:
       return {Value(states_.input[symbol.index]), {}};

@@ -30,7 +30,7 @@ class Value {
 
 /// A value and its derivatives by the quantities that a fit may change. Keys: the index of a static, or
 /// statics.size() + axis * 6 + column of a table value (the station weights come later, they are the same for
-/// all).
+/// all), or statics.size() + 6 * axes.size() + axis of a scale factor.
 struct Dual {
   Value value;
   std::vector<std::pair<std::size_t, Value>> by;
@@ -46,14 +46,16 @@ class Evaluator {
   Dual operator()(const Expr& expr);
 
   std::size_t table_key(std::size_t table_value) const { return machine_.statics.size() + table_value; }
-  std::size_t key_count() const { return machine_.statics.size() + 6 * machine_.axes.size(); }
+  std::size_t scale_key(std::size_t axis) const {
+    return machine_.statics.size() + 6 * machine_.axes.size() + axis;
+  }
 
  private:
   Dual symbol(const Symbol& symbol);
   Value table_value(std::size_t index);
   Value run_is(const std::string& label) const;
   Dual lag(const Dual& input, const Dual& tau) const;
-  bool active(std::size_t key) const { return !active_.empty() && active_[key] != 0; }
+  bool active(std::size_t key) const { return key < active_.size() && active_[key] != 0; }
 
   const Machine& machine_;
   const States& states_;

@@ -1,14 +1,12 @@
 #include "tools/model/files.h"
 
-#include <unistd.h>
-
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 
+#include "hal/support/output_file.h"
 #include "tools/model/error.h"
 
 namespace vernier {
@@ -24,18 +22,13 @@ std::string read_file(const std::string& path) {
 }
 
 void write_file(const std::string& path, const std::string& text) {
-  const std::string temporary = path + ".new" + std::to_string(getpid());
-  const auto fail = [&] {
-    const int reason = errno;
-    std::remove(temporary.c_str());
-    throw InputError({path, 0}, "", std::string("cannot be written: ") + std::strerror(reason));
-  };
-  std::FILE* file = std::fopen(temporary.c_str(), "wb");
-  if (file == nullptr) fail();
-  const bool written = std::fwrite(text.data(), 1, text.size(), file) == text.size() &&
-                       std::fflush(file) == 0 && fsync(fileno(file)) == 0;
-  if (std::fclose(file) != 0 || !written) fail();
-  if (std::rename(temporary.c_str(), path.c_str()) != 0) fail();
+  if (const auto failed = write_output(path, text))
+    throw InputError({path, 0}, "", "cannot be written: " + failed.message());
+}
+
+void make_folder(const std::string& path) {
+  if (const auto failed = make_output_folder(path))
+    throw InputError({path, 0}, "", "cannot be made a folder: " + failed.message());
 }
 
 }  // namespace vernier

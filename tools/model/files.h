@@ -3,9 +3,14 @@
 
 namespace vernier {
 
-/// Writes `text` to `path` by way of a temporary file beside it, so that a reader sees the old file or the
-/// whole new one. Throws InputError with the path where it cannot. tool.
+/// Writes `text` to `path` as write_output (hal/support/output_file.h) does: an ordinary file as a whole or
+/// not at all, a device or pipe by writing to it, links followed. Throws InputError with the path where it
+/// cannot. tool.
 void write_file(const std::string& path, const std::string& text);
+
+/// Makes the folder `path` for outputs, with those above it; one that is there is good. Throws InputError
+/// with the path where it cannot. tool.
+void make_folder(const std::string& path);
 
 /// The whole of a file. Throws InputError where it cannot be read. tool.
 std::string read_file(const std::string& path);

@@ -22,7 +22,7 @@ std::vector<std::size_t> row_starts(const Measurement& m) {
 Linearizer::Linearizer(const Machine& machine, const Measurement& measurement, const ParameterSet& parameters)
     : measurement_(measurement), start_(row_starts(measurement)) {
   const std::size_t statics = machine.statics.size();
-  active_.assign(statics + 6 * machine.axes.size(), 0);
+  active_.assign(statics + 7 * machine.axes.size(), 0);
   slot_of_key_.assign(active_.size(), -1);
   base_parameter_.resize(machine.base_shifts.size());
   for (auto& six : base_parameter_) six.fill(-1);
@@ -31,13 +31,15 @@ Linearizer::Linearizer(const Machine& machine, const Measurement& measurement, c
     const auto parameter = static_cast<Index>(i);
     if (p.kind == ParameterKind::kBaseShift) {
       base_parameter_[p.item][p.column] = parameter;
-    } else if (p.kind == ParameterKind::kStatic) {
+    } else if (p.kind != ParameterKind::kStation) {
+      const std::size_t key =
+          p.kind == ParameterKind::kStatic ? p.item : statics + 6 * machine.axes.size() + p.item;
       if (static_groups_.empty() ||
           static_groups_.back().first_weight[0].first + static_groups_.back().width != parameter)
         static_groups_.push_back({slots_, 0, {{parameter, 1.0}}});
       ++static_groups_.back().width;
-      active_[p.item] = 1;
-      slot_of_key_[p.item] = slots_++;
+      active_[key] = 1;
+      slot_of_key_[key] = slots_++;
     } else if (p.station == 0) {
       const std::size_t axis = machine.tables[p.item].axis, key = statics + axis * 6 + p.column;
       if (tables_.empty() || tables_.back().axis != axis)

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "tools/model/numbers.h"
+
 namespace vernier {
 namespace {
 
@@ -64,6 +66,26 @@ const Table* Machine::table_of(std::size_t axis) const {
   for (const Table& table : tables)
     if (table.axis == axis) return &table;
   return nullptr;
+}
+
+std::optional<std::array<double, 2>> work_range(const Machine& machine, std::size_t axis) {
+  for (const WorkRange& range : machine.volume)
+    if (range.axis == axis) return std::array{range.min, range.max};
+  const Axis& item = machine.axes[axis];
+  if (item.min && item.max) return std::array{*item.min, *item.max};
+  return std::nullopt;
+}
+
+Machine with_tool(const Machine& machine, const std::array<double, 3>& point) {
+  Machine longer = machine;
+  Transform shift;
+  shift.n = machine.tool.empty() ? 1 : machine.tool.back().n + 1;
+  for (std::size_t i = 0; i < shift.dof_count(); ++i) {
+    shift.text[i] = i < 3 ? number_text(point[i]) : "0";
+    shift.dof[i] = parse_expression_for(machine, shift.text[i]);
+  }
+  longer.tool.push_back(std::move(shift));
+  return longer;
 }
 
 Symbol resolve_name(const Machine& machine, std::string_view name) {

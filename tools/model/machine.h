@@ -22,7 +22,8 @@ struct Static {
   double value = 0;
   std::optional<double> nominal;
   std::string unit, note;
-  bool hidden = false;  // not free in a fit
+  bool hidden = false;          // not free in a fit
+  std::optional<double> scale;  // how large value - nominal may plausibly be, own unit: the prior of a fit
   std::size_t line = 0;
 };
 
@@ -33,6 +34,7 @@ struct Axis {
   std::optional<double> max_correction, max_slew;  // axis unit; axis unit per s
   bool rollover = false;
   double scale_factor = 0;
+  bool scale_free = false;  // the scale factor is a parameter of a fit (no attribute: a fit is told so)
   std::size_t line = 0;
 };
 
@@ -56,9 +58,10 @@ enum class Interpolation : std::uint8_t { kLinear, kCubic };
 struct Table {
   std::size_t axis = 0;
   Interpolation interpolation = Interpolation::kLinear;
-  bool periodic = false;          // the axis has rollover: periodic over first..last station
-  std::array<bool, 6> free{};     // columns freed in a fit
-  std::vector<Station> stations;  // loc strictly increasing
+  bool periodic = false;                         // the axis has rollover: periodic over first..last station
+  std::array<bool, 6> free{};                    // columns freed in a fit
+  std::array<std::optional<double>, 6> scale{};  // as a static's, of a column; mm or deg
+  std::vector<Station> stations;                 // loc strictly increasing
   std::size_t line = 0;
 };
 
@@ -67,6 +70,20 @@ struct BaseShift {
   std::array<double, 6> value{};   // mm, deg
   bool hidden = false;
   std::size_t line = 0;
+};
+
+/// A tool by its name: where its point stands in the frame at the end of the tool branch. The tool of the
+/// file, at its origin, has no name.
+struct Tool {
+  std::string name;
+  std::array<double, 3> point{};  // mm
+  std::size_t line = 0;
+};
+
+/// The positions of an axis among which the machine works.
+struct WorkRange {
+  std::size_t axis = 0;
+  double min = 0, max = 0;  // mm or deg
 };
 
 enum class TransformKind : std::uint8_t { kSixDof, kDh };
@@ -83,6 +100,8 @@ struct Transform {
   }
 };
 
+struct FitRecord;
+
 /// A machine file: chain, statics, axes, inputs, tables. Value type; expressions are resolved against it.
 struct Machine {
   std::string name, file;
@@ -93,13 +112,23 @@ struct Machine {
   std::vector<Table> tables;
   std::vector<BaseShift> base_shifts;
   std::vector<Transform> tool, workpiece;
-  std::vector<std::string> notes;  // what was read but ignored (`multiply` and the like)
+  std::vector<Tool> tools;                  // besides the tool of the file
+  std::vector<WorkRange> volume;            // of the axes that <volume> names
+  bool correct_orientation = false;         // correct="position orientation": the direction of the tool too
+  std::shared_ptr<const FitRecord> fitted;  // what its last fit knew of it; null: never fitted
+  std::vector<std::string> notes;           // what was read but ignored (`multiply` and the like)
 
   std::optional<std::size_t> find_static(std::string_view n) const;
   std::optional<std::size_t> find_axis(std::string_view n) const;
   std::optional<std::size_t> find_input(std::string_view n) const;
   const Table* table_of(std::size_t axis) const;
 };
+
+/// The machine with another tool: the tool branch ends in one more shift, by `point` (mm, its last frame).
+Machine with_tool(const Machine& machine, const std::array<double, 3>& point);
+
+/// Where an axis works: <volume>, else its min and max. Nothing where neither is given.
+std::optional<std::array<double, 2>> work_range(const Machine& machine, std::size_t axis);
 
 /// Reads a machine file. Throws InputError with file, line and word. tool.
 Machine read_machine(const std::string& path);

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "tools/model/files.h"
+#include "tools/model/fit_record.h"
 #include "tools/model/machine.h"
 #include "tools/model/numbers.h"
 #include "tools/model/xml_text.h"
@@ -62,12 +63,40 @@ class Reader {
         read_variables(node);
       } else if (is(node, "transforms")) {
         read_transforms(node, branches);
+      } else if (is(node, "fitted")) {
+        if (machine_.fitted) fail(node, node.name(), "this element stands twice");
+        read_fitted(node);
       } else {
         unknown(node);
       }
     }
     if (machine_.tool.empty() && machine_.workpiece.empty())
       fail(root, root.name(), "no <transforms> with a transform");
+  }
+
+  void read_fitted(const pugi::xml_node& fitted) {
+    auto record = std::make_shared<FitRecord>();
+    record->line = line(fitted);
+    record->converged = boolean(fitted, "converged", true);
+    record->rms_mm = number(fitted, "rms", 0);
+    record->reach_mm = number(fitted, "reach", 0);
+    record->worst = number(fitted, "worst", 0);
+    record->worst_reading = attribute(fitted, "reading").value_or("");
+    record->culprit = attribute(fitted, "culprit").value_or("");
+    for (const pugi::xml_node node : children(fitted)) {
+      if (is(node, "measured")) {
+        for (const pugi::xml_node range : children(node))
+          record->measured.push_back({range.name(), number(range, "min", 0), number(range, "max", 0)});
+      } else if (is(node, "covariance")) {
+        std::istringstream words(attribute(node, "parameters").value_or(""));
+        for (std::string name; std::getline(words, name, '|');) record->parameters.push_back(name);
+        if (!read_fit_numbers(attribute(node, "numbers").value_or(""), record->parameters.size(), *record))
+          fail_attribute(node, "numbers", "numbers", "these are not the numbers of the parameters named");
+      } else {
+        unknown(node);
+      }
+    }
+    machine_.fitted = std::move(record);
   }
 
   void read_gravity(const pugi::xml_node& root, const std::string& value) {
@@ -88,7 +117,8 @@ class Reader {
   void read_variables(const pugi::xml_node& variables) {
     check_attributes(variables, {"note"});
     bool statics = false, axes = false, inputs = false, tables = false;
-    pugi::xml_node table_node;
+    bool tools = false, volume = false;
+    pugi::xml_node table_node, volume_node;
     for (const pugi::xml_node node : children(variables)) {
       if (is(node, "static")) {
         once(node, statics);
@@ -102,11 +132,57 @@ class Reader {
       } else if (is(node, "comptables")) {
         once(node, tables);
         table_node = node;
+      } else if (is(node, "tools")) {
+        once(node, tools);
+        read_tools(node);
+      } else if (is(node, "volume")) {
+        once(node, volume);
+        volume_node = node;
       } else {
         unknown(node);
       }
     }
     if (table_node) read_tables(table_node);
+    if (volume_node) read_volume(volume_node);
+  }
+
+  void read_tools(const pugi::xml_node& list) {
+    check_attributes(list, {"note"});
+    for (const pugi::xml_node node : children(list)) {
+      no_children(node);
+      check_attributes(node, {"X", "Y", "Z", "note"});
+      Tool tool{node.name(), {}, line(node)};
+      for (const Tool& other : machine_.tools)
+        if (other.name == tool.name) fail(node, tool.name, "a second tool of this name");
+      for (std::size_t i = 0; i < 3; ++i) tool.point[i] = number(node, kSixDofNames[i], 0);
+      machine_.tools.push_back(std::move(tool));
+    }
+  }
+
+  void read_volume(const pugi::xml_node& list) {
+    check_attributes(list, {"note"});
+    for (const pugi::xml_node node : children(list)) {
+      no_children(node);
+      check_attributes(node, {"min", "max", "note"});
+      const auto axis = machine_.find_axis(node.name());
+      if (!axis) fail(node, node.name(), "no such axis");
+      for (const WorkRange& other : machine_.volume)
+        if (other.axis == *axis) fail(node, node.name(), "this axis stands twice");
+      for (const char* end : {"min", "max"})
+        if (!attribute(node, end)) fail(node, node.name(), std::string("the volume needs a ") + end);
+      const WorkRange range{*axis, number(node, "min", 0), number(node, "max", 0)};
+      if (range.min >= range.max)
+        fail_attribute(node, "max", *attribute(node, "max"), "max must be greater than min");
+      machine_.volume.push_back(range);
+    }
+  }
+
+  std::optional<double> positive(const pugi::xml_node& node, const char* name) {
+    const auto value = optional_number(node, name);
+    if (value && *value <= 0)
+      fail_attribute(node, name, *attribute(node, name),
+                     std::string("a ") + name + " must be greater than 0");
+    return value;
   }
 
   void read_statics(const pugi::xml_node& list) {
@@ -117,7 +193,7 @@ class Reader {
         read_base_shift(node);
         continue;
       }
-      check_attributes(node, {"value", "nominal", "unit", "note", "Hide"});
+      check_attributes(node, {"value", "nominal", "unit", "note", "Hide", "scale"});
       Static item;
       item.name = new_name(node);
       item.line = line(node);
@@ -130,6 +206,7 @@ class Reader {
         item.value = number(node, "value", 0);
       }
       if (attribute(node, "nominal")) item.nominal = number(node, "nominal", 0);
+      item.scale = positive(node, "scale");
       item.unit = attribute(node, "unit").value_or("");
       item.note = attribute(node, "note").value_or("");
       item.hidden = boolean(node, "Hide", item.hidden);
@@ -150,8 +227,23 @@ class Reader {
     machine_.base_shifts.push_back(shift);
   }
 
+  void read_correct(const pugi::xml_node& list) {
+    std::istringstream words(attribute(list, "correct").value_or("position"));
+    std::string word;
+    bool position = false;
+    while (words >> word) {
+      if (!equal_no_case(word, "position") && !equal_no_case(word, "orientation"))
+        fail_attribute(list, "correct", word, "correct is \"position\" or \"position orientation\"");
+      (equal_no_case(word, "position") ? position : machine_.correct_orientation) = true;
+    }
+    if (!position)
+      fail_attribute(list, "correct", *attribute(list, "correct"),
+                     "correct is \"position\" or \"position orientation\"");
+  }
+
   void read_axes(const pugi::xml_node& list) {
-    check_attributes(list, {"note"});
+    check_attributes(list, {"note", "correct"});
+    read_correct(list);
     for (const pugi::xml_node node : children(list)) {
       no_children(node);
       check_attributes(node, {"rotary", "min", "max", "maxcorrection", "maxslew", "rollover", "scalefactor",
@@ -200,7 +292,7 @@ class Reader {
     check_attributes(list, {"note"});
     for (const pugi::xml_node node : children(list)) {
       if (!is(node, "table")) unknown(node);
-      check_attributes(node, {"axis", "interpolation", "fit", "note"});
+      check_attributes(node, {"axis", "interpolation", "fit", "scale", "note"});
       Table table;
       table.line = line(node);
       const std::string axis_name = attribute(node, "axis").value_or("");
@@ -215,6 +307,7 @@ class Reader {
         fail_attribute(node, "interpolation", interpolation, "interpolation is linear or cubic");
       table.interpolation = interpolation == "cubic" ? Interpolation::kCubic : Interpolation::kLinear;
       read_free_columns(node, table);
+      read_scales(node, table);
       for (const pugi::xml_node station : children(node)) read_station(station, table);
       check_table(node, table);
       machine_.tables.push_back(std::move(table));
@@ -229,6 +322,28 @@ class Reader {
       if (found == kSixDofNames.end()) fail_attribute(node, "fit", word, "columns are X Y Z rX rY rZ");
       table.free[static_cast<std::size_t>(found - kSixDofNames.begin())] = true;
     }
+  }
+
+  /// scale: one number for each column that `fit` names, in that order, or one for all (each in its unit).
+  void read_scales(const pugi::xml_node& node, Table& table) {
+    std::vector<std::size_t> columns;
+    std::istringstream names(attribute(node, "fit").value_or(""));
+    for (std::string word; names >> word;)
+      columns.push_back(static_cast<std::size_t>(std::find(kSixDofNames.begin(), kSixDofNames.end(), word) -
+                                                 kSixDofNames.begin()));
+    std::vector<double> scales;
+    std::istringstream words(attribute(node, "scale").value_or(""));
+    for (std::string word; words >> word;) {
+      const auto value = parse_number(word);
+      if (!value || *value <= 0) fail_attribute(node, "scale", word, "a scale must be greater than 0");
+      scales.push_back(*value);
+    }
+    if (scales.empty()) return;
+    if (scales.size() != 1 && scales.size() != columns.size())
+      fail_attribute(node, "scale", *attribute(node, "scale"),
+                     "scale is one number, or one for each column of fit");
+    for (std::size_t i = 0; i < columns.size(); ++i)
+      table.scale[columns[i]] = scales[scales.size() == 1 ? 0 : i];
   }
 
   void read_station(const pugi::xml_node& node, Table& table) {

@@ -1,5 +1,6 @@
 #include <pugixml.hpp>
 
+#include "tools/model/fit_record.h"
 #include "tools/model/machine.h"
 #include "tools/model/numbers.h"
 #include "tools/model/xml_text.h"
@@ -27,6 +28,8 @@ class Writer {
         for (const pugi::xml_node child : node.children()) edit_static(child);
       else if (equal_no_case(node.name(), "table"))
         edit_table(node);
+      else if (equal_no_case(node.name(), "machineaxes"))
+        for (const pugi::xml_node child : node.children()) edit_axis(child);
       else
         visit(node);
     }
@@ -48,6 +51,12 @@ class Writer {
     if (item.hidden) return;
     set(node, "value", number_text(item.value));
     if (set_nominal_ && !item.nominal) set(node, "nominal", before);
+  }
+
+  void edit_axis(const pugi::xml_node& node) {
+    const auto axis = machine_.find_axis(node.name());
+    if (axis && machine_.axes[*axis].scale_free)
+      set(node, "scalefactor", number_text(machine_.axes[*axis].scale_factor));
   }
 
   void edit_table(const pugi::xml_node& node) {
@@ -95,7 +104,8 @@ class Writer {
 }  // namespace
 
 std::string update_machine_text(const std::string& text, const Machine& machine, bool set_nominal) {
-  return Writer(text, machine, set_nominal).write();
+  const std::string written = Writer(text, machine, set_nominal).write();
+  return machine.fitted ? with_fit_record(written, *machine.fitted) : written;
 }
 
 }  // namespace vernier

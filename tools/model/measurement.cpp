@@ -18,6 +18,8 @@ namespace vernier {
 namespace {
 
 constexpr double kAbsent = std::numeric_limits<double>::quiet_NaN();
+/// Columns that say what a board had added: before an axis' name, and the image that ran.
+const std::string kCorrection = "correction", kCorrected = "corrected";
 
 /// One file's columns as numbers in their base units; NaN for an empty cell.
 class FileReader {
@@ -108,6 +110,7 @@ class Builder {
   Measurement build() {
     check_names();
     read_axes();
+    read_corrections();
     read_motion();
     read_inputs();
     read_labels();
@@ -123,9 +126,11 @@ class Builder {
 
  private:
   void check_names() {
-    const auto reserved = [](const std::string& name) {
+    const auto reserved = [this](const std::string& name) {
+      for (const Axis& axis : machine_.axes)
+        if (name == kCorrection + axis.name) return true;
       for (const char* word : {"x", "y", "z", "rx", "ry", "rz", "length", "cx", "cy", "cz", "d", "px", "py",
-                               "pz", "u", "run", "role"})
+                               "pz", "u", "run", "role", "corrected"})
         if (name == word) return true;
       return false;
     };
@@ -147,6 +152,39 @@ class Builder {
       result_.states.axis[i] =
           reader_.numbers(axis.name, axis.rotary ? Dimension::kAngle : Dimension::kLength, true);
     }
+  }
+
+  /// What a board had added; axis positions stay as commanded until it is known in all rows.
+  void read_corrections() {
+    const auto zero = Column::Zero(static_cast<Eigen::Index>(reader_.rows()));
+    for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
+      const std::string name = kCorrection + machine_.axes[i].name;
+      if (!reader_.has(name)) continue;
+      if (result_.correction.empty()) result_.correction.assign(machine_.axes.size(), zero);
+      const Column read =
+          reader_.numbers(name, machine_.axes[i].rotary ? Dimension::kAngle : Dimension::kLength, false);
+      result_.correction[i] = read.isNaN().select(0, read);
+    }
+    for (const CsvColumn& column : reader_.unused())
+      if (column.name.starts_with(kCorrection) && reader_.has(column.name.substr(kCorrection.size())))
+        throw InputError(reader_.header(), column.name, "the machine file has no such axis");
+    if (reader_.has(kCorrected)) read_fingerprints();
+  }
+
+  void read_fingerprints() {
+    result_.corrected = reader_.words(kCorrected);
+    bool any = false;
+    for (std::size_t row = 0; row < reader_.rows(); ++row) {
+      std::string& word = result_.corrected[row];
+      if (word.empty()) continue;
+      any = true;
+      std::transform(word.begin(), word.end(), word.begin(),
+                     [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+      if (word.size() != 16 || word.find_first_not_of("0123456789abcdef") != std::string::npos)
+        throw InputError(reader_.place(row), reader_.cell(kCorrected, row),
+                         "the fingerprint of an image has 16 hexadecimal digits");
+    }
+    if (!any) result_.corrected.clear();
   }
 
   void motion(const std::string& name, Dimension dimension, Column& target, double factor = 1) {
@@ -364,8 +402,20 @@ void append_candidates(Measurement& all, const Measurement& next) {
           {candidate.name, candidate.unit, join(Column::Constant(before, kAbsent), candidate.value)});
 }
 
+/// Where only one of two has a correction, the other's is 0; and so with the images.
+void append_corrections(Measurement& all, Measurement& next) {
+  for (auto [one, other] : {std::pair(&all, &next), std::pair(&next, &all)}) {
+    if (one->correction.empty() && !other->correction.empty())
+      one->correction.assign(other->correction.size(), Column::Zero(static_cast<Eigen::Index>(one->rows())));
+    if (one->corrected.empty() && !other->corrected.empty()) one->corrected.resize(one->rows());
+  }
+  join_all(all.correction, next.correction);
+  append(all.corrected, next.corrected);
+}
+
 void append_measurement(Measurement& all, Measurement next) {
   append_candidates(all, next);
+  append_corrections(all, next);
   for (Observation observation : next.observations) {
     observation.row += all.rows();
     all.observations.push_back(observation);
@@ -382,6 +432,25 @@ void append_measurement(Measurement& all, Measurement next) {
   for (const std::string& name : next.recorded)
     if (!all.has_recorded(name)) all.recorded.push_back(name);
   append_states(all.states, next.states);
+}
+
+/// Fills the corrections of rows that name only the image, and moves the axes to where the machine stood.
+void add_corrections(Measurement& m, const Machine& machine, const std::string& text,
+                     const ImageCorrection& images) {
+  if (m.correction.empty() && !m.corrected.empty()) {
+    const auto row = static_cast<std::size_t>(
+        std::find_if(m.corrected.begin(), m.corrected.end(), [](const auto& word) { return !word.empty(); }) -
+        m.corrected.begin());
+    if (row == m.rows()) return;  // the rows that it ran in are excluded
+    if (!images)
+      throw InputError({m.files.front(), m.line[row]}, m.corrected[row],
+                       "what this image added is not known: say where it is (--images DIR), or give columns "
+                       "correction" +
+                           machine.axes.front().name + " and so on");
+    m.correction.assign(machine.axes.size(), Column::Zero(static_cast<Eigen::Index>(m.rows())));
+    images(m, machine, text);
+  }
+  for (std::size_t i = 0; i < m.correction.size(); ++i) m.states.axis[i] += m.correction[i];
 }
 
 /// Leaves out the rows that are marked, and counts them.
@@ -402,6 +471,23 @@ std::vector<T> pick(const std::vector<T>& all, const std::vector<std::size_t>& k
 }
 
 }  // namespace
+
+Column commanded(const Measurement& m, std::size_t axis) {
+  if (m.correction.empty()) return m.states.axis[axis];
+  // Adding and taking away loses the last bit; what somebody wrote has fewer than nine decimals.
+  return ((m.states.axis[axis] - m.correction[axis]) * 1e9).round() / 1e9;
+}
+
+double commanded(const Measurement& m, std::size_t axis, Eigen::Index row) {
+  if (m.correction.empty()) return m.states.axis[axis][row];
+  return std::round((m.states.axis[axis][row] - m.correction[axis][row]) * 1e9) / 1e9;
+}
+
+States commanded_states(const Measurement& m) {
+  States states = m.states;
+  for (std::size_t i = 0; i < m.correction.size(); ++i) states.axis[i] = commanded(m, i);
+  return states;
+}
 
 bool Measurement::has_recorded(std::string_view name) const {
   return std::find(recorded.begin(), recorded.end(), name) != recorded.end();
@@ -434,6 +520,7 @@ Measurement select_rows(const Measurement& all, const std::vector<std::size_t>& 
     }
   const auto count = static_cast<Eigen::Index>(keep.size());
   result.uncertainty.resize(count);
+  result.correction.assign(all.correction.size(), Column(count));
   result.centre.resize(3, count);
   result.nominal_point.resize(3, count);
   for (const CandidateInput& candidate : all.candidates)
@@ -441,11 +528,14 @@ Measurement select_rows(const Measurement& all, const std::vector<std::size_t>& 
   for (Eigen::Index to = 0; to < count; ++to) {
     const auto from = static_cast<Eigen::Index>(keep[static_cast<std::size_t>(to)]);
     result.uncertainty[to] = all.uncertainty[from];
+    for (std::size_t k = 0; k < all.correction.size(); ++k)
+      result.correction[k][to] = all.correction[k][from];
     result.centre.col(to) = all.centre.col(from);
     result.nominal_point.col(to) = all.nominal_point.col(from);
     for (std::size_t k = 0; k < all.candidates.size(); ++k)
       result.candidates[k].value[to] = all.candidates[k].value[from];
   }
+  if (!all.corrected.empty()) result.corrected = pick(all.corrected, keep);
   result.check = pick(all.check, keep);
   result.file = pick(all.file, keep);
   result.line = pick(all.line, keep);
@@ -454,18 +544,22 @@ Measurement select_rows(const Measurement& all, const std::vector<std::size_t>& 
   return result;
 }
 
-Measurement parse_measurement(const std::string& text, const std::string& file, const Machine& machine) {
+Measurement parse_measurement(const std::string& text, const std::string& file, const Machine& machine,
+                              const ImageCorrection& images) {
   const CsvFile csv = parse_csv(text, file);
   Builder builder(csv, machine);
   const Measurement all = builder.build();
-  return without(all, builder.excluded());
+  Measurement rows = without(all, builder.excluded());
+  add_corrections(rows, machine, text, images);
+  return rows;
 }
 
-Measurement read_measurement(const std::vector<std::string>& paths, const Machine& machine) {
+Measurement read_measurement(const std::vector<std::string>& paths, const Machine& machine,
+                             const ImageCorrection& images) {
   if (paths.empty()) throw InputError("no measurement file");
   Measurement all;
   for (std::size_t i = 0; i < paths.size(); ++i) {
-    Measurement next = parse_measurement(read_file(paths[i]), paths[i], machine);
+    Measurement next = parse_measurement(read_file(paths[i]), paths[i], machine, images);
     if (i == 0)
       all = std::move(next);
     else

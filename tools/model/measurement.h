@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Core>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -40,18 +41,37 @@ struct Measurement {
   Column uncertainty;                   // u of the row, mm (deg for its rotations); 0 where not given
   std::vector<char> check;              // role of the row
   std::vector<std::size_t> file, line;  // where the row stands
-  Eigen::Matrix3Xd centre;              // of `length`, measuring frame, mm
-  Eigen::Matrix3Xd nominal_point;       // of `d`, workpiece coordinates, mm
-  std::size_t excluded = 0;             // rows with an empty input cell
-  std::vector<std::string> recorded;    // names of the columns of motion that some file has (vX, feed, t ...)
+  /// What a board had added in each row, an entry an axis, mm or deg; empty: nothing. states.axis is where
+  /// the machine stood, the commanded position with this added.
+  std::vector<Column> correction;
+  std::vector<std::string> corrected;  // fingerprint of the image that ran in each row; empty: none in all
+  Eigen::Matrix3Xd centre;             // of `length`, measuring frame, mm
+  Eigen::Matrix3Xd nominal_point;      // of `d`, workpiece coordinates, mm
+  std::size_t excluded = 0;            // rows with an empty input cell
+  std::vector<std::string> recorded;   // names of the columns of motion that some file has (vX, feed, t ...)
 
   std::size_t rows() const { return states.count; }
   bool has_recorded(std::string_view name) const;
 };
 
+/// The position that an axis was commanded to in each row (read, where that was logged), mm or deg: what was
+/// set, and so what tells whether two rows are at one pose. states.axis less the correction, to 1e-9 as it
+/// was written. tool.
+Column commanded(const Measurement& measurement, std::size_t axis);
+double commanded(const Measurement& measurement, std::size_t axis, Eigen::Index row);
+/// The rows as they were commanded, without a correction. tool.
+States commanded_states(const Measurement& measurement);
+
+/// Fills `correction` (0 in all rows when called) of one file's rows where `corrected` names an image.
+/// states.axis is as commanded. text: the file's own.
+using ImageCorrection =
+    std::function<void(Measurement& rows, const Machine& machine, const std::string& text)>;
+
 /// Reads measurement files for a machine; columns in any order, units converted to the base units (an input
-/// to the unit that the machine declares). Throws InputError with file, line and word. tool.
-Measurement read_measurement(const std::vector<std::string>& paths, const Machine& machine);
+/// to the unit that the machine declares). images: for files that name an image and have no column of a
+/// correction; without it such a file is refused. Throws InputError with file, line and word. tool.
+Measurement read_measurement(const std::vector<std::string>& paths, const Machine& machine,
+                             const ImageCorrection& images = {});
 
 /// Throws InputError with file and line where `t` falls from one row of a run to its next: what depends on
 /// time or lags has no meaning there. tool.
@@ -61,6 +81,7 @@ void require_time_order(const Measurement& measurement);
 Measurement select_rows(const Measurement& all, const std::vector<std::size_t>& keep);
 
 /// The same from text (one file), for tests and imports.
-Measurement parse_measurement(const std::string& text, const std::string& file, const Machine& machine);
+Measurement parse_measurement(const std::string& text, const std::string& file, const Machine& machine,
+                              const ImageCorrection& images = {});
 
 }  // namespace vernier

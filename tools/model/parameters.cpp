@@ -9,6 +9,8 @@ double& slot(Machine& machine, const Parameter& p) {
   switch (p.kind) {
     case ParameterKind::kStatic:
       return machine.statics[p.item].value;
+    case ParameterKind::kScaleFactor:
+      return machine.axes[p.item].scale_factor;
     case ParameterKind::kStation:
       return machine.tables[p.item].stations[p.station].value[p.column];
     case ParameterKind::kBaseShift:
@@ -32,6 +34,9 @@ ParameterSet::ParameterSet(const Machine& machine, const std::vector<std::string
   for (std::size_t i = 0; i < machine.statics.size(); ++i)
     if (!machine.statics[i].hidden)
       list_.push_back({machine.statics[i].name, machine.statics[i].unit, ParameterKind::kStatic, i, 0, 0});
+  for (std::size_t i = 0; i < machine.axes.size(); ++i)
+    if (machine.axes[i].scale_free)
+      list_.push_back({"scalefactor." + machine.axes[i].name, "", ParameterKind::kScaleFactor, i, 0, 0});
   for (std::size_t i = 0; i < machine.tables.size(); ++i) {
     const Table& table = machine.tables[i];
     const std::size_t count = table.stations.size() - (table.periodic ? 1 : 0);

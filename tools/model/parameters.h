@@ -7,18 +7,19 @@
 
 namespace vernier {
 
-enum class ParameterKind : std::uint8_t { kStatic, kStation, kBaseShift };
+enum class ParameterKind : std::uint8_t { kStatic, kScaleFactor, kStation, kBaseShift };
 
 /// One number of a machine that a fit may change.
 struct Parameter {
-  std::string name, unit;  // as in the JSON result: `alpha`, `table.X[100].rY`, `BaseShift[s2].rZ`
+  std::string name,
+      unit;  // as in the JSON result: `alpha`, `scalefactor.X`, `table.X[100].rY`, `BaseShift[s2].rZ`
   ParameterKind kind = ParameterKind::kStatic;
-  std::size_t item = 0;     // index of the static, table or BaseShift
+  std::size_t item = 0;     // index of the static, axis, table or BaseShift
   std::size_t station = 0;  // kStation
   std::size_t column = 0;   // kStation, kBaseShift: 0..5 = X Y Z rX rY rZ
 };
 
-/// The free parameters of a machine, in a fixed order: statics, stations, BaseShifts.
+/// The free parameters of a machine, in a fixed order: statics, scale factors, stations, BaseShifts.
 class ParameterSet {
  public:
   ParameterSet() = default;

@@ -115,9 +115,7 @@ void run_s_shape(const Arguments& arguments) {
     files.emplace_back(fmt::format("path_{}.csv", flank), path_csv(job.machine, one));
     files.emplace_back(fmt::format("path_{}.nc", flank), path_gcode(one, path));
   }
-  std::error_code failed;
-  std::filesystem::create_directories(arguments.output, failed);
-  if (failed) throw InputError({arguments.output, 0}, arguments.output, failed.message());
+  make_folder(arguments.output);
   for (const auto& [name, text] : files)
     write_file((std::filesystem::path(arguments.output) / name).string(), text);
   write_json(arguments.json, result);

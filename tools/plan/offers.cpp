@@ -105,7 +105,7 @@ class Offerer {
 
   void find_ranges() {
     for (std::size_t a = 0; a < machine_.axes.size(); ++a) {
-      const Column& q = old_.states.axis[a];
+      const Column q = commanded(old_, a);
       double low = machine_.axes[a].min.value_or(q.minCoeff());
       double high = machine_.axes[a].max.value_or(q.maxCoeff());
       const double edge = kEdge * (high - low);
@@ -169,6 +169,7 @@ class Offerer {
           old_.rows() - 1, static_cast<std::size_t>(Spread(i).next() * static_cast<double>(old_.rows()))));
     Measurement& rows = result_.rows = take_rows(old_, which);
     const double u = median(values_of(old_.uncertainty));
+    plan_without_correction(rows);
     for (std::size_t row = result_.existing; row < rows.rows(); ++row) {
       rows.uncertainty[static_cast<Eigen::Index>(row)] = u;
       rows.states.run[row] = rows.states.run_names.size();
@@ -178,6 +179,16 @@ class Offerer {
     fixed_pose_.assign(rows.rows(), 0);
     for (const Observation& o : rows.observations)
       if (o.kind == ObservationKind::kLength || o.kind == ObservationKind::kD) fixed_pose_[o.row] = 1;
+  }
+
+  /// The offered rows are commanded where the templates were, and nothing is added to them.
+  void plan_without_correction(Measurement& rows) const {
+    const auto from = static_cast<Eigen::Index>(result_.existing), count = static_cast<Eigen::Index>(count_);
+    for (std::size_t a = 0; a < rows.correction.size(); ++a) {
+      rows.states.axis[a].segment(from, count) = commanded(rows, a).segment(from, count);
+      rows.correction[a].segment(from, count).setZero();
+    }
+    for (std::size_t row = result_.existing; row < rows.corrected.size(); ++row) rows.corrected[row].clear();
   }
 
   void draw(std::size_t offer) {
@@ -247,6 +258,8 @@ Measurement take_rows(const Measurement& all, const std::vector<std::size_t>& wh
     }
   for (const CandidateInput& candidate : all.candidates)
     result.candidates.push_back({candidate.name, candidate.unit, picked(candidate.value, which)});
+  for (const Column& column : all.correction) result.correction.push_back(picked(column, which));
+  if (!all.corrected.empty()) result.corrected = picked(all.corrected, which);
   result.uncertainty = picked(all.uncertainty, which);
   result.check = picked(all.check, which);
   result.file = picked(all.file, which);
@@ -274,6 +287,13 @@ Measurement append_rows(const Measurement& first, const Measurement& second) {
   for (std::size_t i = 0; i < s.normal.size(); ++i) put(s.normal[i], t.normal[i]);
   for (std::size_t i = 0; i < all.candidates.size(); ++i)
     put(all.candidates[i].value, second.candidates[i].value);
+  for (std::size_t a = 0; a < all.correction.size(); ++a)
+    if (second.correction.empty())
+      all.correction[a].segment(from, count).setZero();
+    else
+      put(all.correction[a], second.correction[a]);
+  for (std::size_t row = 0; row < second.rows() && !all.corrected.empty(); ++row)
+    all.corrected[first.rows() + row] = second.corrected.empty() ? "" : second.corrected[row];
   put(all.uncertainty, second.uncertainty);
   if (second.centre.cols() > 0) all.centre.rightCols(count) = second.centre;
   if (second.nominal_point.cols() > 0) all.nominal_point.rightCols(count) = second.nominal_point;

@@ -163,7 +163,7 @@ std::vector<Explanation::Contrast> Explanation::contrasts() const {
                        [](Measurement& m, double value) { m.states.time.setConstant(value); }));
   for (std::size_t a = 0; a < machine.axes.size(); ++a)
     list.push_back(level(machine.axes[a].name, machine.axes[a].rotary ? "deg" : "mm", next.states.axis[a],
-                         existing_.states.axis[a],
+                         commanded(existing_, a),
                          [a](Measurement& m, double value) { m.states.axis[a].setConstant(value); }));
   return list;
 }

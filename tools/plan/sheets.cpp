@@ -202,6 +202,9 @@ std::string plan_csv(const Plan& plan) {
   Sheet sheet(plan);
   sheet.add_readings();
   std::string text = "# " + plan.sentence + "\n";
+  if (!plan.rows.correction.empty())
+    text += "# with the correction off (or give what it adds in columns correction" +
+            plan.machine.axes.front().name + " and so on)\n";
   for (std::size_t i = 0; i < sheet.columns.size(); ++i) text += (i ? "," : "") + sheet.columns[i].header;
   text += "\n";
   for (std::size_t row = 0; row < plan.rows.rows(); ++row) {

@@ -21,6 +21,9 @@ void print_result(std::FILE* out, const SimulateResult& r, const LoopOptions& op
              options.dac_bits ? fmt::format("{} bit converter", *options.dac_bits) : "one image unit");
   fmt::print(out, "error before   rms {:.4g} um   max {:.4g} um\n", r.rms_before_um, r.max_before_um);
   fmt::print(out, "error after    rms {:.4g} um   max {:.4g} um\n", r.rms_after_um, r.max_after_um);
+  fmt::print(out, "tilt before    max {:.4g} deg\n", r.tilt_before.maxCoeff());
+  fmt::print(out, "tilt after     max {:.4g} deg{}\n", r.tilt_after.maxCoeff(),
+             r.damped > 0 ? fmt::format(", damped towards singular poses in {} ticks", r.damped) : "");
   fmt::print(out, "ticks saturated {}, slewing {}, beyond a declared range {}, overrun {}\n",
              r.loop.saturated, r.loop.slewing, r.loop.beyond_range, r.loop.health.overruns);
   if (r.loop.fault != Fault::kNone)
@@ -61,7 +64,8 @@ void register_simulate(CLI::App& vernier) {
   command->add_option("--seed", arguments->loop.seed, "seed of the noise")->capture_default_str();
   command->footer(
       "Error of a tick: p_truth(q + correction) - p_nominal(q) after the best rigid alignment of the whole\n"
-      "path; before: correction 0. Ticks are counted from the first one in Active: until then the machine\n"
+      "path; before: correction 0. Tilt: the angle between the two tool directions, not aligned. Ticks are "
+      "counted from the first one in Active: until then the machine\n"
       "stands at the path's first point, in the motion state of the first tick. The analogue chain: 0-10 V,\n"
       "25 um/V, 5 V = zero; 8 bit: step 0.98 um, +-124.5 um.\n"
       "Exit status 0 done, 1 bad input, 2 the firmware never became active.");

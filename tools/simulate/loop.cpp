@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <memory>
 
 #include "firmware/runner.h"
@@ -10,20 +9,13 @@
 #include "hal/sim/plant.h"
 #include "hal/sim/sim_clock.h"
 #include "tools/model/error.h"
+#include "tools/simulate/counts.h"
 
 namespace vernier {
 namespace {
 
-/// Axis counts of a mm, and of a degree.
-constexpr double kCountsPerMm = 1e6, kCountsPerDeg = static_cast<double>(kTurnCounts) / 360;
 /// Half an hour at 1 kHz: a correction that takes longer to come in has a slew limit that is a mistake.
 constexpr std::size_t kMostPreRoll = 1'800'000;
-
-/// Nearest count, held well inside 64 bits.
-std::int64_t counts(double value) {
-  constexpr double kMost = 4e18;
-  return std::llround(std::clamp(value, -kMost, kMost));
-}
 
 /// The path as the controller of the simulated machine knows it.
 class PathTrajectory : public Trajectory {

@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "hal/sim/analogue_chain.h"
+#include "tools/kinematics/correction.h"
 #include "tools/model/chain.h"
 #include "tools/model/error.h"
 
@@ -32,10 +33,11 @@ double rms_um(const Eigen::Matrix3Xd& error) {
 
 double max_um(const Eigen::Matrix3Xd& error) { return 1e3 * error.colwise().norm().maxCoeff(); }
 
-Eigen::Matrix3Xd error_of(const Machine& truth, const States& states, const Eigen::Matrix3Xd& nominal) {
-  const Eigen::Matrix3Xd actual = forward(truth, states).position;
-  return aligned_error(align(actual, nominal), actual, nominal);
+Eigen::Matrix3Xd error_of(const Poses& actual, const Poses& nominal) {
+  return aligned_error(align(actual.position, nominal.position), actual.position, nominal.position);
 }
+
+double rms_deg(const Column& tilt) { return std::sqrt(tilt.square().mean()); }
 
 double percentile_ns(const Histogram& h, std::uint64_t per_million) {
   return static_cast<double>(h.percentile_ns(per_million));
@@ -50,11 +52,17 @@ SimulateResult simulate(const Machine& truth, const LoadedImage& image, const Pa
   SimulateResult result;
   result.states = path_states(path, image.machine, ticks);
   States actual = path_states(path, truth, ticks);
-  const Eigen::Matrix3Xd nominal = forward(nominal_machine(image.machine), result.states).position;
-  result.error_before = error_of(truth, actual, nominal);
+  const Poses nominal = forward(nominal_machine(image.machine), result.states),
+              before = forward(truth, actual);
+  result.error_before = error_of(before, nominal);
+  result.tilt_before = tilt_between(before, nominal);
   result.loop = run_loop(image.view, image.machine, result.states, options);
   for (std::size_t i = 0; i < match.size(); ++i) actual.axis[match[i]] += result.loop.correction[i];
-  result.error_after = error_of(truth, actual, nominal);
+  const Poses after = forward(truth, actual);
+  result.error_after = error_of(after, nominal);
+  result.tilt_after = tilt_between(after, nominal);
+  if (image.machine.correct_orientation)
+    for (const bool damped : damped_poses(image.machine, result.states)) result.damped += damped ? 1 : 0;
   result.rms_before_um = rms_um(result.error_before);
   result.rms_after_um = rms_um(result.error_after);
   result.max_before_um = max_um(result.error_before);
@@ -72,10 +80,17 @@ nlohmann::ordered_json simulate_json(const SimulateResult& result, const Machine
                               {"beyond_range", loop.beyond_range},   {"not_active", loop.not_active},
                               {"pre_roll_ticks", loop.pre_roll},     {"mode", name_of(loop.mode)},
                               {"fault", name_of(loop.fault)}};
+  json["tilt_before_deg"] = rms_deg(result.tilt_before);
+  json["tilt_after_deg"] = rms_deg(result.tilt_after);
+  json["max_tilt_before_deg"] = result.tilt_before.maxCoeff();
+  json["max_tilt_after_deg"] = result.tilt_after.maxCoeff();
+  json["damped"] = result.damped;
   json["dac_bits"] = options.dac_bits ? nlohmann::ordered_json(*options.dac_bits) : nullptr;
   json["dac_step_um"] =
       options.dac_bits ? nlohmann::ordered_json(1e-3 * AnalogueChain(*options.dac_bits).step_nm()) : nullptr;
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    if (machine.axes[i].rotary && loop.correction[i].abs().maxCoeff() > 0)
+      json["max_correction_deg"][machine.axes[i].name] = loop.correction[i].abs().maxCoeff();
     if (machine.axes[i].rotary) continue;
     json["max_correction_um"][machine.axes[i].name] = 1e3 * loop.correction[i].abs().maxCoeff();
   }
@@ -88,7 +103,9 @@ std::string ticks_csv(const SimulateResult& result, const Machine& machine) {
   std::string text = "t[s]";
   for (const Axis& axis : machine.axes) text += "," + axis.name + (axis.rotary ? "[deg]" : "[mm]");
   for (const Axis& axis : machine.axes) text += ",corr_" + axis.name + (axis.rotary ? "[deg]" : "[um]");
-  text += ",before_x[um],before_y[um],before_z[um],after_x[um],after_y[um],after_z[um]\n";
+  text +=
+      ",before_x[um],before_y[um],before_z[um],after_x[um],after_y[um],after_z[um],before_tilt[deg],after_"
+      "tilt[deg]\n";
   auto out = std::back_inserter(text);
   for (Eigen::Index k = 0; k < static_cast<Eigen::Index>(result.states.count); ++k) {
     fmt::format_to(out, "{:.6f}", result.states.time[k]);
@@ -97,6 +114,7 @@ std::string ticks_csv(const SimulateResult& result, const Machine& machine) {
       fmt::format_to(out, ",{:.6f}", result.loop.correction[i][k] * (machine.axes[i].rotary ? 1 : 1e3));
     for (const Eigen::Matrix3Xd* error : {&result.error_before, &result.error_after})
       for (Eigen::Index row = 0; row < 3; ++row) fmt::format_to(out, ",{:.5f}", 1e3 * (*error)(row, k));
+    fmt::format_to(out, ",{:.7f},{:.7f}", result.tilt_before[k], result.tilt_after[k]);
     text += '\n';
   }
   return text;

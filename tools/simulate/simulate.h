@@ -17,6 +17,11 @@ struct SimulateResult {
   Eigen::Matrix3Xd error_before, error_after;
   double rms_before_um = 0, rms_after_um = 0;  // over ticks and x, y, z
   double max_before_um = 0, max_after_um = 0;  // largest norm
+  /// Angle between the true and the nominal direction of the tool, deg a tick; not aligned, for a rigid
+  /// motion that fits points of a short path turns as it likes.
+  Column tilt_before, tilt_after;
+  /// Ticks in poses where the image's correction of direction is damped (compile.h).
+  std::size_t damped = 0;
 };
 
 /// Runs the firmware with `image` on the true machine along a path. Axes and inputs of the two machines are

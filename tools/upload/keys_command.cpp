@@ -30,7 +30,7 @@ void write_secret(const std::string& path, const std::string& text) {
 }
 
 void run(const Arguments& arguments) {
-  std::filesystem::create_directories(arguments.directory);
+  make_folder(arguments.directory);
   const std::string secret = arguments.directory + "/vernier.key",
                     open = arguments.directory + "/vernier.pub";
   if (std::filesystem::exists(open)) throw InputError(open + ": exists; a key is never overwritten");

@@ -2,29 +2,38 @@
 
 #include <chrono>
 #include <iterator>
+#include <optional>
 #include <thread>
 
 #include "tools/cli/command.h"
 #include "tools/model/error.h"
+#include "tools/model/machine.h"
 #include "tools/upload/client.h"
 
 namespace vernier {
 namespace {
 
 struct Arguments {
-  std::string url, output, json, run;
+  std::string url, output, json, run, machine;
   double seconds = 10;
   int every = 10;
 };
 
+/// The unit of an input as the machine file declares it, in brackets: the board knows the number only.
+std::string unit_of(const std::string& input, const std::optional<Machine>& machine) {
+  const auto found = machine ? machine->find_input(input) : std::nullopt;
+  if (!found || machine->inputs[*found].unit.empty()) return "";
+  return "[" + machine->inputs[*found].unit + "]";
+}
+
 // Columns of FORMATS section 2; a measured tool point is added by whoever measures.
-std::string header(const BoardInfo& info) {
+std::string header(const BoardInfo& info, const std::optional<Machine>& machine) {
   std::string text = "t[s]";
   for (const BoardSignal& axis : info.axes)
     text += fmt::format(",{}[{}]", axis.name, axis.rotary ? "deg" : "mm");
   for (const BoardSignal& axis : info.axes) text += ",dir" + axis.name;
   text += ",feed[mm/min]";
-  for (const std::string& input : info.inputs) text += "," + input;
+  for (const std::string& input : info.inputs) text += "," + input + unit_of(input, machine);
   for (const BoardSignal& axis : info.axes)
     text += fmt::format(",correction{}[{}]", axis.name, axis.rotary ? "deg" : "mm");
   return text + ",run\n";
@@ -43,9 +52,11 @@ void append(std::string& text, const BoardTick& tick, const std::string& run) {
 
 void run(const Arguments& arguments) {
   using Clock = std::chrono::steady_clock;
+  std::optional<Machine> machine;
+  if (!arguments.machine.empty()) machine = read_machine(arguments.machine);
   Client client(open_transport(parse_url(arguments.url)));
   Progress progress("record");
-  std::string text = header(client.info());
+  std::string text = header(client.info(), machine);
   std::uint64_t rows = 0, lost = 0;
   const double tick_s = client.info().hello.tick_us * 1e-6;
   std::uint64_t next = client.newest().number;
@@ -89,6 +100,8 @@ void register_record(CLI::App& vernier) {
   command->add_option("--every", arguments->every, "every so many ticks a row")
       ->check(CLI::Range(1, 10000))
       ->capture_default_str();
+  command->add_option("--machine", arguments->machine,
+                      "machine file (XML) whose units the inputs have; without it those columns have none");
   command->add_option("--run", arguments->run, "label of the run column")->default_val("record");
   command->add_option("--json", arguments->json, "result for programs; - is standard output");
   command->callback([arguments] { run(*arguments); });

@@ -5,7 +5,9 @@
 
 #include "firmware/image_file.h"
 #include "tools/cli/command.h"
+#include "tools/compile/compile.h"
 #include "tools/model/error.h"
+#include "tools/safety/safety_sheet.h"
 #include "tools/upload/client.h"
 #include "tools/upload/signing.h"
 
@@ -48,8 +50,21 @@ nlohmann::ordered_json slots_json(const SlotsReply& slots) {
           {"trial_left_s", slots.trial_left_ms * 1e-3}};
 }
 
+/// The sheet once more: the machine file beside the image may have been changed, or compiled elsewhere. What
+/// was accepted at compilation stands in the image.
+void require_safe(const std::string& directory) {
+  const auto image = load_image_dir(directory);
+  std::vector<SafetyRule> accepted;
+  for (std::size_t rule = 0; rule < kSafetyRuleCount; ++rule)
+    if ((image->view.header().accepted_rules >> rule & 1U) != 0)
+      accepted.push_back(static_cast<SafetyRule>(rule));
+  const SafetySheet sheet = safety_sheet(image->machine, accepted);
+  if (!sheet.ok()) throw LimitNotMet(sheet.refusal());
+}
+
 void send(const Arguments& arguments, Client& client) {
   const std::vector<std::uint8_t> image = read_image(arguments.directory);
+  require_safe(arguments.directory);
   const SigningKey key = read_secret_key(key_path(arguments));
   const SlotsReply slots = client.slots();
   // A forced upload names what it replaces, so that nobody can force it a second time over something else.

@@ -12,10 +12,14 @@ namespace fs = std::filesystem;
 constexpr const char* kScript = "history.sh";
 
 fs::path folder(const Project& project) {
-  fs::path path = project.root() / ".vernier";
-  std::error_code failed;
-  if (fs::is_symlink(fs::symlink_status(path, failed)))
-    throw InputError(".vernier: a symbolic link, which the workbench does not follow");
+  const fs::path path = project.root() / ".vernier";
+  refuse_special(path, ".vernier");
+  return path;
+}
+
+fs::path list_of_entries(const Project& project) {
+  const fs::path path = folder(project) / "history.json";
+  refuse_special(path, ".vernier/history.json");
   return path;
 }
 
@@ -38,9 +42,8 @@ bool is_entry(const nlohmann::ordered_json& entry) {
 }  // namespace
 
 CommandHistory::CommandHistory(const Project& project) : project_(project) {
-  const fs::path path = folder(project) / "history.json";
-  std::error_code failed;
-  if (!fs::is_regular_file(fs::symlink_status(path, failed))) return;
+  const fs::path path = list_of_entries(project);
+  if (std::error_code failed; !fs::exists(path, failed)) return;
   const auto read = nlohmann::ordered_json::parse(read_file(path.string()), nullptr, false);
   if (!read.is_array()) throw InputError(path.string() + ": no list of commands");
   for (const auto& entry : read)
@@ -49,9 +52,8 @@ CommandHistory::CommandHistory(const Project& project) : project_(project) {
 }
 
 void CommandHistory::save() const {
-  std::error_code failed;
-  fs::create_directories(folder(project_), failed);
-  write_file((folder(project_) / "history.json").string(), entries_.dump(1) + "\n");
+  make_folder(folder(project_).string());
+  write_file(list_of_entries(project_).string(), entries_.dump(1) + "\n");
   project_.save(kScript, script_unguarded());
 }
 

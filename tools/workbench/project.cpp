@@ -63,6 +63,15 @@ bool is_project_name(std::string_view name) {
   }
 }
 
+void refuse_special(const fs::path& path, const std::string& name) {
+  std::error_code failed;
+  const fs::file_status status = fs::symlink_status(path, failed);
+  if (fs::is_symlink(status))
+    throw InputError("\"" + name + "\": a symbolic link, which the workbench does not follow");
+  if (fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status))
+    throw InputError("\"" + name + "\": neither a file nor a folder");
+}
+
 Project::Project(const std::string& directory) {
   std::error_code failed;
   root_ = fs::canonical(directory, failed);
@@ -74,9 +83,7 @@ fs::path Project::checked(const std::string& name) const {
   fs::path path = root_;
   for (const fs::path& part : fs::path(name)) {
     path /= part;
-    std::error_code failed;
-    if (fs::is_symlink(fs::symlink_status(path, failed)))
-      throw InputError("\"" + name + "\": a symbolic link, which the workbench does not follow");
+    refuse_special(path, name);
   }
   return path;
 }
@@ -89,7 +96,14 @@ fs::path Project::existing(const std::string& name) const {
   return path;
 }
 
-fs::path Project::writable(const std::string& name) const { return checked(name); }
+fs::path Project::writable(const std::string& name) const {
+  fs::path path = checked(name);
+  // A command that is given a folder writes files in it, by names of its own.
+  std::error_code failed;
+  for (fs::directory_iterator at(path, failed), end; !failed && at != end; at.increment(failed))
+    refuse_special(at->path(), name + "/" + at->path().filename().string());
+  return path;
+}
 
 void Project::save(const std::string& name, const std::string& bytes) const {
   write_file(writable(name).string(), bytes);

@@ -23,8 +23,11 @@ struct ProjectFile {
 /// control characters, '\' and ':', not starting with '.', '-', '~' or a blank. tool.
 bool is_project_name(std::string_view name);
 
+/// Throws InputError with the name where `path` is a symbolic link, a device or a pipe. tool.
+void refuse_special(const std::filesystem::path& path, const std::string& name);
+
 /// A folder that the workbench reads and writes, and nothing outside of it: names are checked as above, and
-/// no part of a name may be a symbolic link. tool.
+/// no part of a name may be a symbolic link, a device or a pipe. tool.
 class Project {
  public:
   /// Throws InputError where `directory` is no folder.
@@ -34,7 +37,8 @@ class Project {
   /// Path of a file or folder that is there. Throws InputError with the name: no such name, a link, not
   /// there.
   std::filesystem::path existing(const std::string& name) const;
-  /// Path that may be written; it need not be there. Throws InputError as above.
+  /// Path that may be written; it need not be there. Throws InputError as above, and where a folder holds a
+  /// link, a device or a pipe.
   std::filesystem::path writable(const std::string& name) const;
   /// Writes a file; a reader sees the old one or the whole new one.
   void save(const std::string& name, const std::string& bytes) const;

@@ -169,25 +169,6 @@ void fill(const Survey& survey, Configuration configuration, Blocks& blocks, cer
   }
 }
 
-/// Keeps the parameters that `held` marks where they are.
-void hold(const std::vector<char>& held, Blocks& blocks, ceres::Problem& problem) {
-  std::vector<std::pair<double*, int>> list{{blocks.tool, 3}};  // in the order of ParameterSet
-  for (const std::size_t k : {std::size_t{1}, std::size_t{0}, std::size_t{2}})
-    for (std::size_t i = 0; i < blocks.station[k].size(); i += 6)
-      list.emplace_back(blocks.station[k].data() + i, 6);
-  for (auto& base : blocks.base) list.emplace_back(base, 6);
-  std::size_t at = 0;
-  for (const auto& [block, size] : list) {
-    std::vector<int> constant;
-    for (int c = 0; c < size && !held.empty(); ++c)
-      if (held[at++] != 0) constant.push_back(c);
-    if (static_cast<int>(constant.size()) == size)
-      problem.SetParameterBlockConstant(block);
-    else if (!constant.empty())
-      problem.SetManifold(block, new ceres::SubsetManifold(size, constant));
-  }
-}
-
 class Watch : public ceres::IterationCallback {
  public:
   Watch(Race& result, double from) : result_(result), from_(from) {}
@@ -209,13 +190,12 @@ double thread_seconds() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-Race race_ceres(const Survey& survey, Configuration configuration, const std::vector<char>& held) {
+Race race_ceres(const Survey& survey, Configuration configuration) {
   Race race;
   const double from = thread_seconds();
   Blocks blocks;
   ceres::Problem problem;
   fill(survey, configuration, blocks, problem);
-  hold(held, blocks, problem);
   ceres::Solver::Options options;
   options.num_threads = 1;
   options.logging_type = ceres::SILENT;

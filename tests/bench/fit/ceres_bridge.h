@@ -27,8 +27,7 @@ double thread_seconds();
 enum class Configuration { kBest, kDefaults };
 
 /// The survey written for Ceres by hand: one cost function a point (three residuals), a block of six for each
-/// station and each BaseShift. `held`: parameters that stay, in the order of ParameterSet (empty: none).
-/// tool.
-Race race_ceres(const Survey& survey, Configuration configuration, const std::vector<char>& held);
+/// station and each BaseShift. tool.
+Race race_ceres(const Survey& survey, Configuration configuration);
 
 }  // namespace vernier::bench

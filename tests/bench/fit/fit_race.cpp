@@ -111,18 +111,14 @@ int main(int argc, char** argv) {
              targets == Targets::kOneTarget ? "one target" : "five targets",
              start == Start::kFar ? "set-ups unknown" : "set-ups aligned");
   const Outcome own = in_its_own_process([&] { return race_own(survey); });
-  const Outcome same =
-      in_its_own_process([&] { return race_ceres(survey, Configuration::kBest, known.held); });
-  const Outcome best = in_its_own_process([&] { return race_ceres(survey, Configuration::kBest, {}); });
-  const Outcome plain = in_its_own_process([&] { return race_ceres(survey, Configuration::kDefaults, {}); });
+  const Outcome best = in_its_own_process([&] { return race_ceres(survey, Configuration::kBest); });
+  const Outcome plain = in_its_own_process([&] { return race_ceres(survey, Configuration::kDefaults); });
   double best_s = 1e300;
-  for (const Outcome* one : {&same, &best})
-    if (const auto there = time_to(one->race, target)) best_s = std::min(best_s, *there);
+  if (const auto there = time_to(best.race, target)) best_s = *there;
   if (best_s == 1e300) best_s = 0;
   fmt::print("{:<34} {:>10} {:>5} {:>11} {:>11} {:>4} {:>14} {:>12}\n", "", "same cost", "ratio", "own stop",
              "in all", "it", "cost", "peak");
   print("own, no derivative written", own, target, best_s);
-  print("Ceres best, the same held", same, target, best_s);
   print("Ceres best, all free", best, target, best_s);
   print("Ceres automatic derivatives", plain, target, best_s);
   return 0;

@@ -86,22 +86,5 @@ TEST(Observability, NamesTheWeakestDirectionThatIsStillSeen) {
             (std::set<std::size_t>{1, 4}));
 }
 
-/// A direction left at its start counts as unidentified although the matrix sees something of it.
-TEST(Observability, HeldDirectionsCountAsUnidentified) {
-  for (const Eigen::Index n : {Eigen::Index{6}, Eigen::Index{220}}) {
-    Eigen::MatrixXd jacobian = Eigen::MatrixXd::Random(2 * n, n);
-    jacobian.col(2) = jacobian.col(0) + 1e-4 * jacobian.col(2);
-    const Eigen::MatrixXd normal = jacobian.transpose() * jacobian;
-    EXPECT_EQ(observe(normal).rank, n);
-    std::vector<char> held(static_cast<std::size_t>(n), 0);
-    held[2] = 1;
-    const Observability seen = observe(normal, kUnseenShare, held);
-    EXPECT_EQ(seen.rank, n - 1);
-    ASSERT_EQ(seen.unidentifiable.size(), 1U);
-    EXPECT_EQ(std::set<std::size_t>(seen.unidentifiable[0].begin(), seen.unidentifiable[0].end()),
-              (std::set<std::size_t>{0, 2}));
-  }
-}
-
 }  // namespace
 }  // namespace vernier

@@ -26,9 +26,10 @@ bool is_freestanding(std::string_view header) {
 
 // Order in which the folders of tools build on one another; a folder may use those before it.
 int rank_of_tool(std::string_view folder) {
-  static constexpr std::array<std::string_view, 18> kOrder = {
-      "model",   "import", "vibration", "fit",    "kinematics", "exchange", "diagnose", "probe", "plan",
-      "compile", "derive", "simulate",  "upload", "report",     "part",     "map",      "cli",   "workbench"};
+  static constexpr std::array<std::string_view, 19> kOrder = {
+      "model",    "import", "vibration", "fit",     "kinematics", "safety",   "exchange",
+      "diagnose", "probe",  "plan",      "compile", "derive",     "simulate", "upload",
+      "report",   "part",   "map",       "cli",     "workbench"};
   const auto found = std::find(kOrder.begin(), kOrder.end(), folder);
   return found == kOrder.end() ? -1 : static_cast<int>(found - kOrder.begin());
 }
@@ -36,6 +37,9 @@ int rank_of_tool(std::string_view folder) {
 bool is_hal_port(std::string_view path) {
   return starts_with(path, "hal/") && path.substr(4).find('/') == std::string_view::npos;
 }
+
+// What daemon and tools share.
+bool is_hal_support(std::string_view path) { return starts_with(path, "hal/support/"); }
 
 std::string_view second_folder(std::string_view path) {
   const auto slash = path.find('/');
@@ -45,7 +49,7 @@ std::string_view second_folder(std::string_view path) {
 std::string tool_may_include(std::string_view path, std::string_view target) {
   const std::string_view folder = second_folder(path);
   const std::string_view top = head(target);
-  if (top == "comp" || top == "tables") return {};
+  if (top == "comp" || top == "tables" || is_hal_support(target)) return {};
   if (top == "firmware" || top == "hal") {
     const bool runs_firmware = folder == "simulate" || folder == "upload" || folder == "cli";
     return runs_firmware ? "" : "only simulate, upload and watch may use firmware and hal";
@@ -59,6 +63,8 @@ std::string tool_may_include(std::string_view path, std::string_view target) {
 std::string hal_may_include(std::string_view path, std::string_view target) {
   if (target == "comp/quantity.h" || is_hal_port(target)) return {};
   if (is_hal_port(path)) return "a hal port may include only ports and comp/quantity.h";
+  if (is_hal_support(path))
+    return is_hal_support(target) ? "" : "hal/support may include ports and system libraries";
   const bool sim = starts_with(path, "hal/sim/");
   if (sim && (head(target) == "comp" || starts_with(target, "hal/sim/"))) return {};
   if (!sim && starts_with(target, "hal/linux/")) return {};
@@ -67,11 +73,13 @@ std::string hal_may_include(std::string_view path, std::string_view target) {
 
 std::string firmware_may_include(std::string_view path, std::string_view target) {
   const std::string_view top = head(target);
-  if (top == "firmware" || top == "comp" || top == "tables" || is_hal_port(target)) return {};
+  if (top == "firmware" || top == "comp" || top == "tables" || is_hal_port(target) || is_hal_support(target))
+    return {};
   const bool root =
       path == "firmware/main.cpp" || path == "firmware/devices.cpp" || path == "firmware/open_devices.cpp";
   if (root && top == "hal") return {};
-  return "firmware may include comp, tables and hal ports; only the composition root (main, devices, "
+  return "firmware may include comp, tables, hal ports and hal/support; only the composition root (main, "
+         "devices, "
          "open_devices) names a backend";
 }
 

@@ -66,6 +66,42 @@ TEST(MachineFile, ReadsAllThatTheFormatNames) {
   EXPECT_EQ(machine.notes.size(), 1U);
 }
 
+TEST(MachineFile, ReadsScalesToolsAndVolume) {
+  const auto text = [](const std::string& volume, const std::string& scale) {
+    return with("<alpha value=\"0\" unit=\"rad\" scale=\"0.002\"/>\n",
+                "<X min=\"0\" max=\"600\"/>\n<Y min=\"0\" max=\"400\"/>\n",
+                "<tools><long Z=\"-150\"/><bent X=\"20\" Y=\"5\"/></tools>\n<volume>" + volume +
+                    "</volume>\n<comptables><table axis=\"X\" fit=\"rZ X\" scale=\"" + scale +
+                    "\"><station loc=\"0\"/></table></comptables>\n");
+  };
+  const Machine machine = parse_machine(text("<X min=\"100\" max=\"300\"/>", "0.001 0.2"), "m.xml");
+  EXPECT_EQ(machine.statics[0].scale, 0.002);
+  ASSERT_EQ(machine.tools.size(), 2U);
+  EXPECT_EQ(machine.tools[1].name, "bent");
+  EXPECT_EQ(machine.tools[1].point, (std::array<double, 3>{20, 5, 0}));
+  EXPECT_EQ(work_range(machine, 0), (std::array<double, 2>{100, 300}));
+  EXPECT_EQ(work_range(machine, 1), (std::array<double, 2>{0, 400}));  // not named: all it has
+  EXPECT_EQ(machine.tables[0].scale[5], 0.001);
+  EXPECT_EQ(machine.tables[0].scale[0], 0.2);
+  EXPECT_EQ(parse_machine(text("", "0.1"), "m.xml").tables[0].scale[5], 0.1);
+  EXPECT_EQ(with_tool(machine, {1, 2, -30}).tool.size(), 2U);
+  EXPECT_NE(error_of(text("<Q min=\"0\" max=\"1\"/>", "0.1")).find("no such axis"), std::string::npos);
+  EXPECT_NE(error_of(text("<X min=\"0\"/>", "0.1")).find("needs a max"), std::string::npos);
+  EXPECT_NE(error_of(text("", "0.1 0.2 0.3")).find("one for each column"), std::string::npos);
+  EXPECT_NE(error_of(text("", "-1")).find("greater than 0"), std::string::npos);
+}
+
+TEST(MachineFile, ReadsWhatIsCorrected) {
+  const auto text = [](const std::string& correct) {
+    return "<machine><variables><machineaxes correct=\"" + correct +
+           "\"><X/></machineaxes></variables><transforms><sixdof X=\"X\"/></transforms></machine>";
+  };
+  EXPECT_FALSE(parse_machine(text("position"), "m.xml").correct_orientation);
+  EXPECT_TRUE(parse_machine(text("position orientation"), "m.xml").correct_orientation);
+  EXPECT_NE(error_of(text("orientation")).find("correct is"), std::string::npos);
+  EXPECT_NE(error_of(text("position tilt")).find("tilt"), std::string::npos);
+}
+
 TEST(MachineFile, ErrorsNameFileLineAndWord) {
   EXPECT_EQ(error_of(with("<k value=\"1\"/>\n", "<X/>\n", "", "X+alhpa")).substr(0, 44),
             "m.xml:11: \"alhpa\": unknown name, in X=\"X+alh");

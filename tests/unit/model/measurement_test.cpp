@@ -1,8 +1,12 @@
 #include "tools/model/measurement.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
+#include <filesystem>
+
+#include "tools/model/files.h"
 
 namespace vernier {
 namespace {
@@ -89,6 +93,65 @@ TEST(MeasurementFile, SelectedRowsKeepTheirObservations) {
   EXPECT_EQ(some.observations[2].row, 1U);
   EXPECT_EQ(some.observations[2].value, 5);
   EXPECT_EQ(some.line[1], 4U);
+}
+
+constexpr const char* kOnAndOff =
+    "X[mm],B[deg],x[mm],correctionX[um],correctionB[arcsec],load[kg]\n"
+    "100.1,10,1,2.5,-7.2,1\n100.1,10,2,,,2\n0.3,-4,3,-1,0,3\n";
+
+TEST(MeasurementFile, TheMachineStoodWhereItWasCommandedPlusWhatTheBoardAdded) {
+  const Measurement m = read(kOnAndOff);
+  EXPECT_DOUBLE_EQ(m.correction[0][0], 2.5e-3);
+  EXPECT_DOUBLE_EQ(m.correction[1][0], -2e-3);
+  EXPECT_EQ(m.correction[0][1], 0);  // an empty cell: nothing was added
+  EXPECT_DOUBLE_EQ(m.states.axis[0][0], 100.1025);
+  EXPECT_DOUBLE_EQ(m.states.axis[1][0], 9.998);
+  EXPECT_EQ(m.states.axis[0][1], 100.1);
+  // As it was written, to the last bit: both rows are at one pose.
+  EXPECT_EQ(commanded(m, 0)[0], 100.1);
+  EXPECT_EQ(commanded(m, 0)[2], 0.3);
+  EXPECT_EQ(commanded(m, 1, 0), 10);
+  ASSERT_EQ(m.candidates.size(), 1U);
+  EXPECT_EQ(m.candidates[0].name, "load");
+}
+
+TEST(MeasurementFile, CorrectionsGoWithTheirRows) {
+  const Measurement some = select_rows(read(kOnAndOff), {1, 2});
+  ASSERT_EQ(some.correction.size(), 2U);
+  EXPECT_EQ(some.correction[0][1], -1e-3);
+  EXPECT_DOUBLE_EQ(some.states.axis[0][1], 0.299);
+  const Measurement left = read("X[mm],B[deg],x[mm],correctionX[mm],T[degC]\n1,0,1,1,\n2,0,1,0.5,20\n");
+  EXPECT_EQ(left.excluded, 1U);
+  EXPECT_EQ(left.correction[0][0], 0.5);
+  EXPECT_EQ(left.correction[1][0], 0);  // no column: nothing was added to this axis
+  EXPECT_EQ(left.states.axis[0][0], 2.5);
+}
+
+TEST(MeasurementFile, FilesWithAndWithoutCorrectionsMix) {
+  const std::string folder = testing::TempDir() + "mixed_" + std::to_string(getpid());
+  const std::vector<std::string> paths = {folder + "_off.csv", folder + "_on.csv", folder + "_again.csv"};
+  write_file(paths[0], "X[mm],B[deg],x[mm]\n1,0,1\n");
+  write_file(paths[1], "X[mm],B[deg],x[mm],correctionB[deg],corrected\n1,0,1,0.5,00000000deadBEEF\n");
+  write_file(paths[2], "X[mm],B[deg],x[mm]\n3,0,1\n");
+  const Measurement m = read_measurement(paths, machine());
+  for (const std::string& path : paths) std::filesystem::remove(path);
+  EXPECT_EQ(m.correction[1][0], 0);
+  EXPECT_EQ(m.correction[1][1], 0.5);
+  EXPECT_EQ(m.correction[1][2], 0);
+  EXPECT_EQ(m.states.axis[1][1], 0.5);
+  // The columns say it: the image need not be at hand.
+  EXPECT_EQ(m.corrected, (std::vector<std::string>{"", "00000000deadbeef", ""}));
+}
+
+TEST(MeasurementFile, RefusesACorrectionThatItCannotTakeAway) {
+  EXPECT_EQ(error_of("X[mm],B[deg],x[mm],corrected\n1,2,3,\n1,2,3,0123456789abcdef\n").substr(0, 27),
+            "m.csv:3: \"0123456789abcdef\"");
+  EXPECT_EQ(error_of("X[mm],B[deg],x[mm],corrected\n1,2,3,on\n").substr(0, 13), "m.csv:2: \"on\"");
+  EXPECT_EQ(error_of("X[mm],B[deg],C[deg],x[mm],correctionC[deg]\n1,2,3,4,0\n"),
+            "m.csv:1: \"correctionC\": the machine file has no such axis");
+  EXPECT_EQ(error_of("X[mm],B[deg],x[mm],correctionX[deg]\n1,2,3,0\n").substr(0, 28),
+            "m.csv:1: \"correctionX[deg]\":");
+  EXPECT_EQ(error_of("X[mm],B[deg],x[mm],corrected\n1,2,3,\n"), "accepted");  // no image ran
 }
 
 }  // namespace

@@ -73,7 +73,9 @@ TEST_P(HiddenSurveyOf, IsTheModelOnceTheTermIsZero) {
   const Measurement exact = without_noise(survey, truth);
   for (std::size_t i = 0; i < m.observations.size(); ++i)
     m.observations[i].value = exact.observations[i].value;
-  EXPECT_LT(left_over(fit(model, m)), 0.02);  // of u: what the fit's own tolerance leaves
+  // Of u: what the convention's pull leaves of readings without noise, in directions known to about their
+  // scale.
+  EXPECT_LT(left_over(fit(model, m)), 0.05);
 }
 
 TEST_P(HiddenSurveyOf, CanShowEachOfItsEffects) {

@@ -1,7 +1,10 @@
 #include "tools/workbench/project.h"
 
+#include <sys/stat.h>
+
 #include "tests/unit/workbench/rig.h"
 #include "tools/model/error.h"
+#include "tools/workbench/history.h"
 
 namespace vernier {
 namespace {
@@ -30,6 +33,36 @@ TEST(Project, FollowsNoLinkOutOfTheFolder) {
   EXPECT_EQ(read_file(folder.beside("secret.csv")), "secret");
   EXPECT_TRUE(std::filesystem::is_empty(folder.beside("outside")));
   EXPECT_TRUE(project.list().empty());  // links are not shown either
+}
+
+TEST(Project, WritesToNoDeviceOrPipeAndIntoNoFolderThatHoldsOne) {
+  const test::Folder folder;
+  write_file(folder.beside("secret.csv"), "secret");
+  for (const char* name : {"linked", "piped", "good"}) std::filesystem::create_directory(folder.in(name));
+  std::filesystem::create_symlink(folder.beside("secret.csv"), folder.in("linked/machine.xml"));
+  ASSERT_EQ(::mkfifo(folder.in("piped/machine.vimg").c_str(), 0600), 0);
+  ASSERT_EQ(::mkfifo(folder.in("pipe.csv").c_str(), 0600), 0);
+  write_file(folder.in("good/machine.xml"), "old");
+  const Project project(folder.project());
+  EXPECT_THROW(project.save("pipe.csv", "x"), InputError);
+  EXPECT_THROW(project.writable("linked"), InputError);
+  EXPECT_THROW(project.writable("piped"), InputError);
+  EXPECT_EQ(project.writable("good"), std::filesystem::canonical(folder.in("good")));
+  EXPECT_EQ(read_file(folder.beside("secret.csv")), "secret");
+}
+
+TEST(CommandHistory, FollowsNoLinkOutOfTheFolder) {
+  const test::Folder folder;
+  write_file(folder.beside("secret.json"), "[]");
+  std::filesystem::create_directory(folder.in(".vernier"));
+  std::filesystem::create_symlink(folder.beside("secret.json"), folder.in(".vernier/history.json"));
+  const Project project(folder.project());
+  EXPECT_THROW(CommandHistory history(project), InputError);
+  std::filesystem::remove(folder.in(".vernier/history.json"));
+  CommandHistory history(project);
+  std::filesystem::create_symlink(folder.beside("secret.json"), folder.in(".vernier/history.json"));
+  EXPECT_THROW(history.add("vernier effects", {}, {}), InputError);
+  EXPECT_EQ(read_file(folder.beside("secret.json")), "[]");
 }
 
 TEST(Project, ListsFilesByKindAndOneLevelDown) {

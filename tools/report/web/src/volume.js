@@ -71,7 +71,19 @@ function drawArrow(pen, from, to, colour) {
   pen.stroke();
 }
 
-/** The vectors of a field, turned by hand: {axes, counts, point_mm[][3], deviation_um[][3], max_um}. */
+/** A ring of one standard uncertainty: what the arrow's end may be off. */
+function drawRing(pen, at, radius, colour) {
+  pen.strokeStyle = colour;
+  pen.lineWidth = 0.8;
+  pen.setLineDash([2, 2]);
+  pen.beginPath();
+  pen.arc(at[0], at[1], radius, 0, 2 * Math.PI);
+  pen.stroke();
+  pen.setLineDash([]);
+}
+
+/** The vectors of a field, turned by hand: {axes, counts, point_mm[][3], deviation_um[][3], max_um}, std_um[] where a
+ * fit said how well it knows them. Where that is no better than half the deviation, the arrow is grey and ringed. */
 export function volume(field) {
   const box = frame(field.point_mm);
   const view = { turn: -0.62, tilt: 0.42, zoom: 1, gain: 1, layer: 'all', only: 'all' };
@@ -105,11 +117,17 @@ export function volume(field) {
     drawAxes(pen, project, box, c);
     const longest = field.max_um > 0 ? (view.gain * 0.16 * box.reach) / field.max_um : 0;
     const keep = (v) => (view.only === 'all' ? v : v.map((one, k) => (k === Number(view.only) ? one : 0)));
-    const nodes = shown().map((i) => ({ from: project(field.point_mm[i]), point: field.point_mm[i], v: keep(field.deviation_um[i]) }));
+    const nodes = shown().map((i) => ({ from: project(field.point_mm[i]), point: field.point_mm[i], v: keep(field.deviation_um[i]),
+      std: field.std_um?.[i] ?? 0 }));
     nodes.sort((a, b) => b.from[2] - a.from[2]);
-    for (const { from, point, v } of nodes) {
+    for (const { from, point, v, std } of nodes) {
       const to = project(point.map((one, k) => one + longest * v[k]));
-      drawArrow(pen, from, to, shade(field.max_um > 0 ? Math.hypot(...v) / field.max_um : 0));
+      const known = std <= 0.5 * Math.hypot(...v);
+      drawArrow(pen, from, to, known ? shade(field.max_um > 0 ? Math.hypot(...v) / field.max_um : 0) : c.soft);
+      if (!known) {
+        const edge = project(point.map((one, k) => one + longest * (v[k] + (k === 0 ? std : 0))));
+        drawRing(pen, to, Math.hypot(edge[0] - to[0], edge[1] - to[1]), c.soft);
+      }
     }
   }
   function turn(dx, dy) {
@@ -139,7 +157,8 @@ export function volume(field) {
   const set = (key) => (value) => { view[key] = value; draw(); };
   const steps = (list) => list.map((one) => [String(one), `× ${one}`]);
   const legend = el('div', { class: 'key' }, '0', el('span', { style: `width:140px;height:10px;border-radius:3px;background:linear-gradient(90deg,${
-    kStops.map((_, i) => shade(i / (kStops.length - 1))).join(',')})` }), `${number(field.max_um, 4)} µm`);
+    kStops.map((_, i) => shade(i / (kStops.length - 1))).join(',')})` }), `${number(field.max_um, 4)} µm`,
+  field.std_um ? el('span', {}, `grey, ringed: not known to half of itself (worst ${number(field.max_std_um, 3)} µm)`) : null);
   const controls = el('div', { class: 'controls' }, choice('show', layers, 'all', set('layer')),
     choice('component', [['all', 'all'], ['0', 'x'], ['1', 'y'], ['2', 'z']], 'all', set('only')),
     choice('arrows', steps([0.5, 1, 2, 4, 8]), '1', (value) => set('gain')(Number(value))),

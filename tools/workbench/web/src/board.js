@@ -21,6 +21,13 @@ function differenceWords(diff) {
       { name: 'largest at', left: true }], rows) : null].filter(Boolean);
 }
 
+/** The sheet of compile: every rule with its value, limit and what counts most. */
+function safetyTable(sheet) {
+  const rows = sheet.map((one) => [one.rule, one.value === null ? '–' : number(one.value, 3), number(one.limit, 3), one.unit,
+    one.value === null ? 'not known' : one.ok ? 'ok' : one.accepted ? 'accepted' : 'no', one.culprit]);
+  return table('Safe to run?', [{ name: 'rule', left: true }, { name: 'value' }, { name: 'limit' }, { name: 'unit', left: true }, { name: '', left: true }, { name: 'most by', left: true }], rows);
+}
+
 export function boardView(root) {
   const error = el('div', { id: 'board-error' }), budget = el('div', { id: 'budget' }), difference = el('div', { id: 'difference' }), slots = el('p', { id: 'slots', role: 'status' });
   const image = el('select', { id: 'image', 'aria-label': 'image' }), key = el('select', { id: 'key', 'aria-label': 'key' }), other = el('select', { 'aria-label': 'other image' });
@@ -43,7 +50,7 @@ export function boardView(root) {
       el('a', { href: fileAddress(`${output}/equation.cpp`) }, 'the same as C++'));
     summary.dataset.bound = result.bound_um;
     summary.dataset.fingerprint = result.fingerprint;
-    budget.replaceChildren(budgetFigure(result, store.compare?.noise_um), summary);
+    budget.replaceChildren(budgetFigure(result, store.compare?.noise_um), summary, safetyTable(result.safe_to_run));
   }, { id: 'compile' });
   const diff = step('What would change?', async () => {
     const { result } = await run({ command: 'image-diff', image: image.value, ...(other.value ? { with: other.value } : { to: url.value }) });

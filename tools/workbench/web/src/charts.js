@@ -17,14 +17,14 @@ export function ladderFigure(result) {
 export const fallingFigure = (steps, noise) => figure('before and after', ladderOptions(steps, Number.isFinite(noise) ? noise : null));
 
 const kShares = [['linearisation_um', 'neglected terms'], ['table_um', 'tables (truncation)'], ['function_um', 'functions'], ['rounding_um', 'rounding'],
-  ['input_um', 'inputs (quantisation)'], ['lag_um', 'lags']];
+  ['input_um', 'inputs (quantisation)'], ['lag_um', 'lags'], ['second_order_um', 'second order']];
 
 /** What the proved bound of each output is made of, the noise of the measurement beside it. */
 export function budgetFigure(bound, noise) {
   const outputs = bound.outputs.filter((one) => one.total_um > 0);
   return figure('error budget', () => {
     const c = colours();
-    const inks = [c.fit, c.check, c.ccw, c.cw, c.accent2, c.soft];
+    const inks = [c.fit, c.check, c.ccw, c.cw, c.accent2, c.soft, c.accent];
     const rows = [...outputs.map((one) => one.axis), ...(Number.isFinite(noise) ? ['noise'] : [])];
     const series = kShares.map(([key, name], k) => ({ name, type: 'bar', stack: 'bound', barMaxWidth: 30, itemStyle: { color: inks[k] }, data: outputs.map((one) => one[key]) }));
     if (Number.isFinite(noise)) series.push({ name: 'noise of the measurement', type: 'bar', stack: 'bound', barMaxWidth: 30, itemStyle: { color: c.line }, data: [...outputs.map(() => null), noise] });

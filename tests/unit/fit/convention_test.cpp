@@ -1,0 +1,267 @@
+#include "tools/fit/convention.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <numeric>
+#include <random>
+
+#include "tests/support/machines.h"
+#include "tools/fit/fit.h"
+#include "tools/fit/reach.h"
+#include "tools/model/chain.h"
+#include "tools/model/fit_record.h"
+#include "tools/model/prediction.h"
+
+namespace vernier {
+namespace {
+
+constexpr std::uint64_t kSeed = 7;
+constexpr double kU_mm = 1e-3;
+
+/// A bridge whose tables, squareness and set-ups are free, its true errors, and 300 points measured with one
+/// tool.
+struct Bridge {
+  Machine model = parse_machine(support::bridge_text(7), "bridge.xml"), truth = model;
+  Measurement rows;
+
+  explicit Bridge(std::uint64_t seed = kSeed) {
+    std::mt19937_64 random(seed);
+    std::normal_distribution<double> normal;
+    for (Machine* machine : {&model, &truth})
+      for (Static& item : machine->statics) item.nominal = item.value;
+    for (Table& table : truth.tables)
+      for (std::size_t c = 0; c < 6; ++c) {
+        double value = 0;
+        for (Station& station : table.stations)
+          if (table.free[c]) station.value[c] = value += (c < 3 ? 5e-3 : 5e-4) * normal(random);
+      }
+    for (Static& item : truth.statics)
+      if (!item.hidden) item.value += 1e-5 * normal(random);
+    for (BaseShift& shift : truth.base_shifts)
+      for (std::size_t c = 0; c < 6; ++c) shift.value[c] = (c < 3 ? 5.0 : 0.05) * normal(random);
+    std::string csv = "X[mm],Y[mm],Z[mm],x[mm],y[mm],z[mm],u[mm],run\n";
+    std::uniform_real_distribution<double> place(0, 1);
+    for (int row = 0; row < 300; ++row) {
+      std::string line;
+      for (const Axis& axis : model.axes)
+        line += std::to_string(*axis.min + (*axis.max - *axis.min) * place(random)) + ",";
+      const auto& shift = model.base_shifts[static_cast<std::size_t>(row) % model.base_shifts.size()];
+      csv += line + "0,0,0," + std::to_string(kU_mm) + "," + shift.run.value_or("") + "\n";
+    }
+    rows = parse_measurement(csv, "bridge.csv", model);
+    const Eigen::VectorXd exact = predict(truth, rows);
+    for (std::size_t i = 0; i < rows.observations.size(); ++i)
+      rows.observations[i].value = exact[static_cast<Eigen::Index>(i)] + kU_mm * normal(random);
+  }
+};
+
+/// Largest difference of two fits, in units of the parameters' scales.
+double difference(const FitResult& a, const FitResult& b) {
+  double largest = 0;
+  for (std::size_t i = 0; i < a.estimates.size(); ++i)
+    largest = std::max(largest, std::abs(a.estimates[i].value - b.estimates[i].value) / a.estimates[i].scale);
+  return largest;
+}
+
+TEST(Convention, TheAnswerDoesNotDependOnTheStart) {
+  const Bridge bridge;
+  const FitResult reference = fit(bridge.model, bridge.rows);
+  ASSERT_TRUE(reference.converged);
+  std::mt19937_64 random(kSeed);
+  std::normal_distribution<double> normal;
+  for (int start = 0; start < 20; ++start) {
+    Machine from = bridge.model;
+    for (Table& table : from.tables)
+      for (Station& station : table.stations)
+        for (std::size_t c = 0; c < 6; ++c) station.value[c] = (c < 3 ? 0.05 : 0.05) * normal(random);
+    for (Static& item : from.statics)
+      if (!item.hidden) item.value += 1e-3 * normal(random);
+    EXPECT_LT(difference(reference, fit(from, bridge.rows)), 1e-6) << "start " << start << ", seed " << kSeed;
+  }
+  EXPECT_LT(difference(reference, fit(reference.machine, bridge.rows)), 1e-6);  // refits to itself
+}
+
+TEST(Convention, TheAnswerDoesNotDependOnTheOrderOfRowsOrStages) {
+  const Bridge bridge;
+  const FitResult reference = fit(bridge.model, bridge.rows);
+  std::mt19937_64 random(kSeed);
+  std::vector<std::size_t> order(bridge.rows.rows());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  for (int turn = 0; turn < 20; ++turn) {
+    std::shuffle(order.begin(), order.end(), random);
+    Measurement shuffled = bridge.rows;
+    shuffled.states = select_states(bridge.rows.states, order);
+    shuffled.observations.clear();
+    for (std::size_t to = 0; to < order.size(); ++to)
+      for (Observation o : bridge.rows.observations)
+        if (o.row == order[to]) {
+          o.row = to;
+          shuffled.observations.push_back(o);
+        }
+    EXPECT_LT(difference(reference, fit(bridge.model, shuffled)), 1e-6) << "order " << turn;
+  }
+  FitOptions staged;
+  staged.stages = {{"BaseShift*"}, {"table.*.rX"}, {"table.*"}};
+  const FitResult result = fit(bridge.model, bridge.rows, staged);
+  EXPECT_LT(difference(reference, result), 1e-6);
+  ASSERT_EQ(result.stages.size(), 4U);  // a line of figures each, and one for all together
+  EXPECT_GT(*result.stages[0].fit.rms_um, *result.stages[3].fit.rms_um);
+}
+
+/// Scales a hundred times wider: what the data determine stays where it was.
+TEST(Convention, LeavesWhatTheDataDetermine) {
+  Bridge bridge;
+  for (Machine* machine : {&bridge.model, &bridge.truth}) {
+    for (Static& item : machine->statics) item.hidden = true;
+    machine->base_shifts = bridge.truth.base_shifts;
+    machine->base_shifts[0].hidden = true;
+    for (std::size_t t = 0; t < 3; ++t) {
+      machine->tables[t].free.fill(false);
+      machine->tables[t].free[t] = machine->tables[t].free[(t + 1) % 3] = t < 2;
+      if (t == 2) machine->tables[t] = bridge.truth.tables[t];
+    }
+    machine->tables[2].free.fill(false);
+  }
+  std::mt19937_64 random(kSeed);
+  std::normal_distribution<double> normal;
+  Machine truth = bridge.model;
+  for (std::size_t t = 0; t < 2; ++t)
+    for (Station& station : truth.tables[t].stations)
+      for (std::size_t c = 0; c < 3; ++c)
+        if (truth.tables[t].free[c]) station.value[c] = 5e-3 * normal(random);
+  const Eigen::VectorXd exact = predict(truth, bridge.rows);
+  for (std::size_t i = 0; i < bridge.rows.observations.size(); ++i)
+    bridge.rows.observations[i].value = exact[static_cast<Eigen::Index>(i)] + kU_mm * normal(random);
+
+  const FitResult weak = fit(bridge.model, bridge.rows);
+  Machine wide = bridge.model;
+  for (Table& table : wide.tables) table.scale.fill(5);
+  const FitResult none = fit(wide, bridge.rows);
+
+  std::size_t determined = 0;
+  for (std::size_t i = 0; i < weak.estimates.size(); ++i) {
+    const ParameterEstimate& estimate = weak.estimates[i];
+    if (estimate.from != Origin::kData) continue;
+    ++determined;
+    EXPECT_LT(std::abs(estimate.value - none.estimates[i].value), 0.01 * none.estimates[i].std)
+        << estimate.name;
+  }
+  EXPECT_GE(determined, 14U);  // the others share the level of Y between the two tables
+}
+
+TEST(Convention, PutsRigidMotionIntoTheSetUpAndNothingBeyondItsScale) {
+  const Bridge bridge;
+  const FitResult result = fit(bridge.model, bridge.rows);
+  for (const ParameterEstimate& estimate : result.estimates) {
+    EXPECT_TRUE(std::isfinite(estimate.std)) << estimate.name;
+    EXPECT_LE(estimate.std, 1.01 * estimate.scale) << estimate.name;
+    if (estimate.name.rfind("table", 0) == 0) {
+      EXPECT_LT(std::abs(estimate.value), 4 * estimate.scale) << estimate.name;
+    }
+  }
+  double largest = 0, largest_true = 0;
+  for (std::size_t t = 0; t < result.machine.tables.size(); ++t)
+    for (std::size_t s = 0; s < result.machine.tables[t].stations.size(); ++s)
+      for (std::size_t c = 3; c < 6; ++c) {
+        largest = std::max(largest, std::abs(result.machine.tables[t].stations[s].value[c]));
+        largest_true = std::max(largest_true, std::abs(bridge.truth.tables[t].stations[s].value[c]));
+      }
+  EXPECT_LT(largest, 2 * largest_true);
+}
+
+TEST(Convention, SaysWhatItDecided) {
+  const Machine machine = parse_machine(
+      "<machine><variables><static><a value=\"0\" unit=\"mm\"/><b value=\"0\" unit=\"mm\"/>"
+      "<c value=\"0\" unit=\"mm\" scale=\"0.02\"/><d value=\"0\" unit=\"mm\"/></static>"
+      "<machineaxes><X/></machineaxes></variables>"
+      "<transforms><sixdof X=\"X+a+b\" Y=\"d\" Z=\"c*0\"/></transforms></machine>",
+      "m.xml");
+  std::string csv = "X[mm],x[mm],y[mm],u[mm]\n";
+  for (int i = 0; i < 20; ++i) csv += fmt::format("{},{},{},0.001\n", 10 * i, 10 * i + 0.2, 0.1);
+  const FitResult result = fit(machine, parse_measurement(csv, "m.csv", machine));
+  EXPECT_EQ(result.estimates[0].from, Origin::kConvention);  // a and b share what is seen of their sum
+  EXPECT_NEAR(result.estimates[0].value, 0.1, 1e-4);
+  EXPECT_NEAR(result.estimates[1].value, 0.1, 1e-4);
+  EXPECT_EQ(result.estimates[2].from, Origin::kPrior);
+  EXPECT_DOUBLE_EQ(result.estimates[2].scale, 0.02);
+  EXPECT_NEAR(result.estimates[2].std, 0.02, 1e-6);
+  EXPECT_EQ(result.estimates[3].from, Origin::kData);
+}
+
+/// 40 machines, a tool that was not measured: the 95 % interval holds the truth 95 times in 100.
+TEST(Reach, CoversTheTruthWithAToolThatWasNotMeasured) {
+  std::size_t covered = 0, asked = 0;
+  for (std::uint64_t seed = 100; seed < 140; ++seed) {
+    const Bridge bridge(seed);
+    const FitResult result = fit(bridge.model, bridge.rows);
+    const Machine said = with_tool(result.machine, {50, -50, -80}),
+                  is = with_tool(bridge.truth, {50, -50, -80});
+    const Reach reach(said);
+    ASSERT_TRUE(reach.known());
+    std::vector<std::size_t> some(100);
+    std::iota(some.begin(), some.end(), std::size_t{0});
+    const States poses = select_states(bridge.rows.states, some);
+    const auto covariance = reach.covariance(poses);
+    const Eigen::Matrix3Xd from = forward(said, poses).position, to = forward(is, poses).position;
+    const Eigen::Matrix4d motion = Eigen::umeyama(from, to, false);
+    const Eigen::Matrix3Xd off =
+        ((motion.topLeftCorner<3, 3>() * from).colwise() + motion.topRightCorner<3, 1>()) - to;
+    for (Eigen::Index i = 0; i < off.cols(); ++i)
+      for (Eigen::Index c = 0; c < 3; ++c) {
+        covered +=
+            std::abs(off(c, i)) < 1.96 * std::sqrt(covariance[static_cast<std::size_t>(i)](c, c)) ? 1 : 0;
+        ++asked;
+      }
+  }
+  // The poses of one machine go together: some 40 x 5 independent answers, +- 1.5 % each side of 95 %.
+  const double share = static_cast<double>(covered) / static_cast<double>(asked);
+  EXPECT_GT(share, 0.90);
+  EXPECT_LT(share, 0.99);
+}
+
+TEST(FitRecord, TravelsInTheMachineFile) {
+  const Bridge bridge;
+  const FitResult result = fit(bridge.model, bridge.rows);
+  const std::string text = update_machine_text(support::bridge_text(7), result.machine, true);
+  const Machine read = parse_machine(text, "fitted.xml");
+  ASSERT_TRUE(read.fitted);
+  EXPECT_EQ(read.fitted->parameters.size(), result.estimates.size());
+  const Reach before(result.machine), after(read);
+  EXPECT_TRUE(after.stale().empty());
+  const States states = bridge.rows.states;
+  EXPECT_LT((before.std_um(states) - after.std_um(states)).cwiseAbs().maxCoeff(), 1e-6);
+  // Written again it replaces itself, and a value set by hand is told.
+  EXPECT_TRUE(update_machine_text(text, read, false) == text);
+  Machine changed = read;
+  changed.tables[0].stations[2].value[0] += 1e-3;
+  EXPECT_EQ(Reach(changed).stale().size(), 1U);
+  EXPECT_FALSE(Reach(bridge.model).known());
+}
+
+TEST(Sanity, NamesTheMistakeInTheReadings) {
+  const Bridge bridge;
+  const auto absurd = [&](Measurement rows) { return fit(bridge.model, rows).absurd; };
+  EXPECT_EQ(absurd(bridge.rows), "");
+  Measurement swapped = bridge.rows;
+  std::swap(swapped.states.axis[0], swapped.states.axis[1]);
+  const std::string said = absurd(swapped);
+  EXPECT_NE(said.find("columns X and Y look swapped"), std::string::npos) << said;
+  Measurement readings = bridge.rows;
+  for (Observation& o : readings.observations)
+    if (o.kind != ObservationKind::kX)
+      o.kind = o.kind == ObservationKind::kY ? ObservationKind::kZ : ObservationKind::kY;
+  EXPECT_NE(absurd(readings).find("columns y and z look swapped"), std::string::npos) << absurd(readings);
+  Measurement inches = bridge.rows;
+  for (Observation& o : inches.observations) o.value /= 25.4;
+  EXPECT_NE(absurd(inches).find("inches"), std::string::npos) << absurd(inches);
+  Measurement typed = bridge.rows;
+  typed.observations[40].value = 999876;
+  EXPECT_NE(absurd(typed).find("bridge.csv:"), std::string::npos) << absurd(typed);
+  EXPECT_NE(absurd(typed).find("stands alone"), std::string::npos) << absurd(typed);
+}
+
+}  // namespace
+}  // namespace vernier

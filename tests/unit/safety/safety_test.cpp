@@ -1,0 +1,174 @@
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "tests/support/machines.h"
+#include "tools/fit/fit.h"
+#include "tools/model/fit_record.h"
+#include "tools/model/prediction.h"
+#include "tools/safety/safety_sheet.h"
+#include "tools/safety/sources.h"
+
+namespace vernier {
+namespace {
+
+constexpr std::uint64_t kSeed = 11;
+
+/// A column machine of three axes: squareness, a tool length, a roll of Z.
+Machine small_machine(const std::string& statics, const std::string& variables = "",
+                      const std::string& x = "X-alpha*Y", const std::string& z = "Z") {
+  return parse_machine("<machine name=\"small\"><variables><static>" + statics +
+                           "<BaseShift X=\"0\"/></static><machineaxes><X min=\"0\" max=\"600\" "
+                           "maxcorrection=\"0.1\"/><Y min=\"0\" "
+                           "max=\"400\"/><Z min=\"-300\" max=\"0\"/></machineaxes>" +
+                           variables + "</variables><transforms><sixdof X=\"" + x + "\" Y=\"Y\" Z=\"" + z +
+                           "\"/></transforms></machine>",
+                       "small.xml");
+}
+
+const SafetyFinding& finding(const SafetySheet& sheet, SafetyRule rule) {
+  return sheet.findings.at(static_cast<std::size_t>(rule));
+}
+
+Measurement survey(const Machine& truth, const Machine& model, double u_mm, const std::string& header = "") {
+  std::mt19937_64 random(kSeed);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> place(0, 1);
+  std::string csv = "X[mm],Y[mm],Z[mm],x[mm],y[mm],z[mm],u[mm]" + header + "\n";
+  for (int row = 0; row < 120; ++row)
+    csv += std::to_string(600 * place(random)) + "," + std::to_string(400 * place(random)) + "," +
+           std::to_string(-300 * place(random)) + ",0,0,0," + std::to_string(u_mm) + "\n";
+  Measurement m = parse_measurement(csv, "survey.csv", model);
+  const Eigen::VectorXd exact = predict(truth, m);
+  for (std::size_t i = 0; i < m.observations.size(); ++i)
+    m.observations[i].value = exact[static_cast<Eigen::Index>(i)] + u_mm * normal(random);
+  return m;
+}
+
+TEST(SafetySheet, PassesAMachineOfSmallErrors) {
+  const Machine machine = small_machine("<alpha value=\"1e-4\" nominal=\"0\" unit=\"rad\"/>");
+  const SafetySheet sheet = safety_sheet(machine);
+  EXPECT_TRUE(sheet.ok()) << sheet.refusal();
+  ASSERT_EQ(sheet.findings.size(), kSafetyRuleCount);
+  EXPECT_FALSE(finding(sheet, SafetyRule::kUncertainty).value.has_value());   // never fitted: not known
+  EXPECT_NEAR(*finding(sheet, SafetyRule::kMaxCorrection).value, 0.4, 0.02);  // 400 mm * 1e-4 of 0.1 mm
+}
+
+TEST(SafetySheet, RefusesAbsurdAnglesAndNamesThem) {
+  const Machine machine = small_machine("<alpha value=\"-2.4\" nominal=\"0\" unit=\"rad\"/>");
+  const SafetySheet sheet = safety_sheet(machine);
+  EXPECT_FALSE(sheet.ok());
+  EXPECT_NE(sheet.refusal().find("alpha"), std::string::npos) << sheet.refusal();
+  EXPECT_EQ(finding(sheet, SafetyRule::kCorrection).culprit, "alpha");
+  // One rule overridden is one rule overridden.
+  const SafetySheet part = safety_sheet(machine, {SafetyRule::kCorrection});
+  EXPECT_FALSE(part.ok());
+  const SafetySheet all = safety_sheet(machine, {SafetyRule::kCorrection, SafetyRule::kMaxCorrection});
+  EXPECT_TRUE(all.ok()) << all.refusal();
+  EXPECT_EQ(all.accepted_mask(), 3U);
+}
+
+TEST(SafetySheet, RefusesTermsThatCancel) {
+  const Machine machine = small_machine(
+      "<alpha value=\"5e-3\" nominal=\"0\" unit=\"rad\"/><beta value=\"-4.99e-3\" nominal=\"0\" "
+      "unit=\"rad\"/>",
+      "", "X-alpha*Y-beta*Y");
+  const SafetySheet sheet = safety_sheet(machine);
+  EXPECT_NEAR(*finding(sheet, SafetyRule::kCancellation).value, 999, 2);
+  EXPECT_FALSE(finding(sheet, SafetyRule::kCancellation).ok);
+}
+
+TEST(SafetySheet, RefusesSetUpThatWouldReachAnAxis) {
+  const Machine machine = small_machine("<x0 value=\"0.065\" nominal=\"0\" unit=\"mm\"/>", "", "X+x0");
+  const SafetySheet sheet = safety_sheet(machine);
+  EXPECT_NEAR(*finding(sheet, SafetyRule::kSetUp).value, 65, 1e-9);
+  EXPECT_FALSE(finding(sheet, SafetyRule::kSetUp).ok);
+  EXPECT_EQ(finding(sheet, SafetyRule::kSetUp).culprit, "x0");
+}
+
+TEST(SafetySheet, JudgesWhereItWorksAgainstWhereItWasMeasured) {
+  const std::string statics = "<alpha value=\"0\" nominal=\"0\" unit=\"rad\"/>";
+  Machine truth = small_machine(statics);
+  truth.statics[0].value = 5e-5;
+  const Machine model = small_machine(statics);
+  Measurement m = survey(truth, model, 1e-3);
+  m.states.axis[1] *= 0.5;  // Y measured up to 200 of 400 mm
+  const Eigen::VectorXd exact = predict(truth, m);
+  for (std::size_t i = 0; i < m.observations.size(); ++i)
+    m.observations[i].value = exact[static_cast<Eigen::Index>(i)];
+  Machine fitted = fit(model, m).machine;
+  EXPECT_NEAR(*finding(safety_sheet(fitted), SafetyRule::kMeasuredRange).value, 1, 0.05);
+  EXPECT_EQ(finding(safety_sheet(fitted), SafetyRule::kMeasuredRange).culprit, "axis Y");
+  fitted.volume = {{1, 0, 200}};  // <volume>: it works where it was measured
+  EXPECT_TRUE(safety_sheet(fitted).ok()) << safety_sheet(fitted).refusal();
+}
+
+TEST(SafetySheet, JudgesEveryDeclaredTool) {
+  const std::string statics = "<alpha value=\"0\" nominal=\"0\" unit=\"rad\"/>";
+  const std::string tables =
+      "<tools><long Z=\"-400\"/></tools><comptables><table axis=\"Z\" fit=\"rX\">"
+      "<station loc=\"-300\"/><station loc=\"0\"/></table></comptables>";
+  const auto machine_of = [&](const std::string& text) {
+    return parse_machine(
+        "<machine><variables><static>" + statics +
+            "<BaseShift X=\"0\"/></static><machineaxes><X min=\"0\" max=\"600\"/><Y min=\"0\" "
+            "max=\"400\"/><Z min=\"-300\" max=\"0\"/></machineaxes>" +
+            text +
+            "</variables><transforms><sixdof X=\"X-alpha*Y\" Y=\"Y\" Z=\"Z\" rX=\"rZx\"/>"
+            "</transforms></machine>",
+        "tools.xml");
+  };
+  Machine truth = machine_of(tables);
+  truth.statics[0].value = 5e-5;
+  const Machine fitted = fit(machine_of(tables), survey(truth, machine_of(tables), 1e-3)).machine;
+  const SafetySheet sheet = safety_sheet(fitted);
+  const SafetyFinding& found = finding(sheet, SafetyRule::kUncertainty);
+  EXPECT_EQ(found.culprit, "tool long");
+  // The angle of Z was never seen: only the long tool asks for it.
+  Machine without = fitted;
+  without.tools.clear();
+  EXPECT_LT(*finding(safety_sheet(without), SafetyRule::kUncertainty).value, 0.2 * *found.value);
+}
+
+TEST(SafetySheet, RefusesAFitThatOneReadingBent) {
+  const std::string statics = "<alpha value=\"0\" nominal=\"0\" unit=\"rad\"/>";
+  const Machine model = small_machine(statics);
+  Machine truth = model;
+  truth.statics[0].value = 5e-5;
+  Measurement m = survey(truth, model, 1e-3);
+  m.observations[100].value += 5;
+  const SafetySheet sheet = safety_sheet(fit(model, m).machine);
+  EXPECT_FALSE(finding(sheet, SafetyRule::kOutlier).ok);
+  EXPECT_EQ(finding(sheet, SafetyRule::kOutlier).culprit,
+            "survey.csv:35 y");  // reading 100: row 33, header first
+}
+
+TEST(SafetySheet, RulesHaveTheirNamesAndNumbers) {
+  // These numbers stand in images: they stay.
+  const char* const kNames[] = {"correction",     "max-correction", "cancellation", "uncertainty",
+                                "measured-range", "input-range",    "set-up",       "converged",
+                                "residual",       "outlier"};
+  for (std::size_t i = 0; i < kSafetyRuleCount; ++i) {
+    EXPECT_STREQ(rule_name(static_cast<SafetyRule>(i)), kNames[i]);
+    EXPECT_EQ(rule_named(kNames[i]), static_cast<SafetyRule>(i));
+  }
+  EXPECT_THROW(rules_named({"nothing"}), InputError);
+}
+
+TEST(ErrorSources, SayWhatEachDoesAlone) {
+  const Machine machine =
+      small_machine("<alpha value=\"1e-4\" nominal=\"0\" unit=\"rad\"/><x0 value=\"0.01\" nominal=\"0\"/>",
+                    "", "X-alpha*Y+x0");
+  States states = make_states(2, 3, {});
+  states.axis[1] << 0, 400;
+  const std::vector<Source> sources = error_sources(machine, states);
+  ASSERT_EQ(sources.size(), 2U);
+  EXPECT_NEAR(sources[0].varying_rms_mm, 0.02, 1e-12);
+  EXPECT_NEAR(sources[0].mean_mm.x(), -0.02, 1e-12);
+  EXPECT_NEAR(sources[1].varying_rms_mm, 0, 1e-12);
+  EXPECT_TRUE(acts(machine, {SymbolKind::kAxis, 1}));
+  EXPECT_FALSE(acts(machine, {SymbolKind::kVelocity, 1}));
+}
+
+}  // namespace
+}  // namespace vernier

@@ -1,0 +1,97 @@
+#include "tools/fit/decisions.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <numbers>
+
+namespace vernier {
+namespace {
+
+constexpr double kUmPerMm = 1000, kRadPerDeg = std::numbers::pi / 180;
+
+/// The parameter, or the column of a table that it belongs to.
+std::string column_of(const FitResult& result, std::size_t i) {
+  const Parameter& p = result.parameters[i];
+  if (p.kind != ParameterKind::kStation) return p.name;
+  return "table." + result.machine.axes[result.machine.tables[p.item].axis].name + "." +
+         kSixDofNames[p.column];
+}
+
+/// One standard uncertainty of a parameter at the edge of the measured box. A coefficient of no known unit
+/// counts by its scale, which is what three times the misfit would be.
+double reach_um(const FitResult& result, std::size_t i) {
+  const ParameterEstimate& e = result.estimates[i];
+  if (e.unit == "mm") return kUmPerMm * e.std;
+  if (e.unit == "deg") return kUmPerMm * e.std * kRadPerDeg * result.reach_mm;
+  if (e.unit == "rad") return kUmPerMm * e.std * result.reach_mm;
+  return e.scale > 0 ? kUmPerMm * 3 * result.misfit_mm * e.std / e.scale : 0;
+}
+
+struct Group {
+  std::vector<std::string> names;
+  double reach_um = 0;
+  std::size_t open = 0, unseen = 0;  // parameters settled by convention, and of which nothing was read
+};
+
+std::string joined(const std::vector<std::string>& names) {
+  constexpr std::size_t kMost = 6;
+  std::string text;
+  for (std::size_t i = 0; i < names.size() && i < kMost; ++i) text += (i > 0 ? ", " : "") + names[i];
+  return names.size() > kMost ? text + fmt::format(" and {} more", names.size() - kMost) : text;
+}
+
+Decision decision_of(const Group& group) {
+  const std::string names = joined(group.names);
+  const char* said = group.unseen == group.open ? "not measured: only the prior"
+                     : group.names.size() > 1
+                         ? "not told apart by these readings: as near to nominal as can be"
+                         : "determined in part: the rest as near to nominal as can be";
+  return {group.names, group.reach_um,
+          fmt::format("{}: {}; +- {:.3g} um at the edge of the measured box", names, said, group.reach_um)};
+}
+
+}  // namespace
+
+std::vector<Decision> decisions_of(const FitResult& result, std::size_t most) {
+  // Combinations join the columns that take part in them; what is open alone stands alone.
+  std::map<std::string, std::string> head;
+  const auto root = [&](std::string name) {
+    while (head.count(name) > 0 && head[name] != name) name = head[name];
+    return name;
+  };
+  const auto is_set_up = [&](std::size_t i) {
+    return result.parameters[i].kind == ParameterKind::kBaseShift;
+  };
+  for (const auto& parts : result.observability.unidentifiable) {
+    std::string first;
+    for (const std::size_t i : parts) {
+      if (is_set_up(i)) continue;
+      const std::string name = root(column_of(result, i));
+      if (first.empty())
+        first = name;
+      else
+        head[name] = first;
+    }
+  }
+  std::map<std::string, Group> groups;
+  for (std::size_t i = 0; i < result.estimates.size(); ++i) {
+    const Origin from = result.estimates[i].from;
+    if (is_set_up(i) || from == Origin::kData) continue;
+    const std::string column = column_of(result, i);
+    Group& group = groups[root(column)];
+    if (std::find(group.names.begin(), group.names.end(), column) == group.names.end())
+      group.names.push_back(column);
+    group.reach_um = std::max(group.reach_um, reach_um(result, i));
+    ++group.open;
+    group.unseen += from == Origin::kPrior ? 1 : 0;
+  }
+  std::vector<Decision> list;
+  for (const auto& [name, group] : groups) list.push_back(decision_of(group));
+  std::sort(list.begin(), list.end(), [](const auto& a, const auto& b) { return a.reach_um > b.reach_um; });
+  if (list.size() > most) list.resize(most);
+  return list;
+}
+
+}  // namespace vernier

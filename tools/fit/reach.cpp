@@ -1,0 +1,141 @@
+#include "tools/fit/reach.h"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <array>
+#include <map>
+
+#include "tools/model/chain.h"
+#include "tools/model/fit_record.h"
+#include "tools/model/measurement.h"
+#include "tools/model/prediction.h"
+#include "tools/model/work_poses.h"
+
+namespace vernier {
+namespace {
+
+/// A file keeps 17 digits: a value that differs by more was changed.
+bool changed(double now, double fitted) { return std::abs(now - fitted) > 1e-9 * std::abs(fitted); }
+
+/// Readings x, y, z in workpiece coordinates at every state.
+Measurement readings_at(const States& states) {
+  Measurement m;
+  m.states = states;
+  m.uncertainty = Column::Zero(static_cast<Eigen::Index>(states.count));
+  m.check.assign(states.count, 0);
+  for (std::size_t row = 0; row < states.count; ++row)
+    for (const ObservationKind kind : {ObservationKind::kX, ObservationKind::kY, ObservationKind::kZ})
+      m.observations.push_back({kind, row, 0});
+  return m;
+}
+
+/// Velocity of each point under the six rigid motions about the origin, 3 N x 6.
+Eigen::MatrixXd rigid_motions(const Eigen::Matrix3Xd& points) {
+  Eigen::MatrixXd motions = Eigen::MatrixXd::Zero(3 * points.cols(), 6);
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    motions.block<3, 3>(3 * i, 0).setIdentity();
+    const Eigen::Vector3d p = points.col(i);
+    motions.block<3, 3>(3 * i, 3) << 0, p.z(), -p.y(), -p.z(), 0, p.x(), p.y(), -p.x(), 0;
+  }
+  return motions;
+}
+
+/// Where a fit measured: its ranges, else what the file says of an axis, else where it stands.
+std::vector<std::array<double, 2>> measured_ranges(const Machine& machine) {
+  std::vector<std::array<double, 2>> ranges;
+  for (std::size_t a = 0; a < machine.axes.size(); ++a) {
+    std::array<double, 2> range = work_range(machine, a).value_or(std::array{0.0, 0.0});
+    for (const FitRecord::Range& measured : machine.fitted->measured)
+      if (measured.name == machine.axes[a].name) range = {measured.min, measured.max};
+    ranges.push_back(range);
+  }
+  return ranges;
+}
+
+/// The machine in workpiece coordinates alone, its scale factors free where the fit freed them.
+Machine without_set_up(const Machine& machine) {
+  Machine bare = machine;
+  bare.base_shifts.clear();
+  if (!machine.fitted) return bare;
+  const std::vector<std::string>& names = machine.fitted->parameters;
+  for (Axis& axis : bare.axes)
+    axis.scale_free = std::find(names.begin(), names.end(), "scalefactor." + axis.name) != names.end();
+  return bare;
+}
+
+}  // namespace
+
+Reach::Reach(const Machine& machine) : machine_(without_set_up(machine)), known_(machine.fitted != nullptr) {
+  if (!known_) return;
+  const FitRecord& record = *machine.fitted;
+  parameters_ = ParameterSet(machine_, {});
+  std::map<std::string, Eigen::Index> place;
+  for (std::size_t i = 0; i < record.parameters.size(); ++i)
+    place[record.parameters[i]] = static_cast<Eigen::Index>(i);
+  // What was added since then and does nothing yet needs no cover.
+  const Eigen::VectorXd values = parameters_.get(machine_),
+                        nominal = parameters_.get(nominal_machine(machine_));
+  factor_ = Eigen::MatrixXd::Zero(values.size(), record.factor.cols());
+  std::vector<std::pair<Eigen::Index, double>> hand_set;
+  for (std::size_t i = 0; i < parameters_.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    const auto found = place.find(parameters_[i].name);
+    if (found != place.end()) factor_.row(at) = record.factor.row(found->second);
+    const double moved = values[at] - (found == place.end() ? nominal[at] : record.values[found->second]);
+    const bool stale = found == place.end() ? moved != 0 : changed(values[at], record.values[found->second]);
+    if (!stale) continue;
+    stale_.push_back(parameters_[i].name);
+    hand_set.emplace_back(at, moved);
+  }
+  // What was set by hand is as uncertain as it was moved.
+  const Eigen::Index known = factor_.cols();
+  factor_.conservativeResize(Eigen::NoChange, known + static_cast<Eigen::Index>(hand_set.size()));
+  factor_.rightCols(static_cast<Eigen::Index>(hand_set.size())).setZero();
+  for (std::size_t k = 0; k < hand_set.size(); ++k)
+    factor_(hand_set[k].first, known + static_cast<Eigen::Index>(k)) = hand_set[k].second;
+  if (parameters_.size() == 0) return;
+  measured_ = poses_over(machine_, measured_ranges(machine)).states;
+}
+
+Eigen::MatrixXd Reach::rigid_part(const States& like, Eigen::Index row) const {
+  States over = measured_;
+  for (std::size_t i = 0; i < machine_.inputs.size(); ++i)
+    if (machine_.inputs[i].hidden_axis) over.input[i].setConstant(like.input[i][row]);
+  return rigid_motions(forward(machine_, over).position)
+      .completeOrthogonalDecomposition()
+      .solve(spread_at(over));
+}
+
+Eigen::MatrixXd Reach::spread_at(const States& states) const {
+  return linearise(machine_, readings_at(states), parameters_).jacobian * factor_;  // 3 N x k
+}
+
+std::vector<Eigen::Matrix3d> Reach::covariance(const States& states) const {
+  std::vector<Eigen::Matrix3d> result(states.count, Eigen::Matrix3d::Zero());
+  if (!known_ || parameters_.size() == 0) return result;
+  const Eigen::MatrixXd spread = spread_at(states),
+                        motions = rigid_motions(forward(machine_, states).position);
+  std::map<std::vector<double>, Eigen::MatrixXd> rigid;
+  for (std::size_t i = 0; i < states.count; ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    std::vector<double> tool;
+    for (std::size_t k = 0; k < machine_.inputs.size(); ++k)
+      if (machine_.inputs[k].hidden_axis) tool.push_back(states.input[k][row]);
+    auto found = rigid.find(tool);
+    if (found == rigid.end()) found = rigid.emplace(tool, rigid_part(states, row)).first;
+    const Eigen::MatrixXd rows =
+        spread.middleRows(3 * row, 3) - motions.middleRows(3 * row, 3) * found->second;
+    result[i] = rows * rows.transpose();
+  }
+  return result;
+}
+
+Eigen::VectorXd Reach::std_um(const States& states) const {
+  Eigen::VectorXd result(static_cast<Eigen::Index>(states.count));
+  const auto each = covariance(states);
+  for (std::size_t i = 0; i < each.size(); ++i)
+    result[static_cast<Eigen::Index>(i)] = 1000 * std::sqrt(each[i].trace());
+  return result;
+}
+
+}  // namespace vernier

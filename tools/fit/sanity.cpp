@@ -1,0 +1,171 @@
+#include "tools/fit/sanity.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "tools/fit/convention.h"
+#include "tools/fit/statistics.h"
+
+namespace vernier {
+namespace {
+
+constexpr double kDegPerRad = 180 / std::numbers::pi;
+
+std::string reading_name(const Measurement& m, const Observation& o) {
+  return fmt::format("{}:{} {}", m.files[m.file[o.row]], m.line[o.row],
+                     kObservationNames[static_cast<std::size_t>(o.kind)]);
+}
+
+struct Mistake {
+  std::string sentence;
+  std::function<void(Measurement&)> undo;
+};
+
+void swap_kinds(Measurement& m, ObservationKind a, ObservationKind b) {
+  for (Observation& o : m.observations) o.kind = o.kind == a ? b : o.kind == b ? a : o.kind;
+}
+
+void scale_readings(Measurement& m, bool rotations, double factor) {
+  for (Observation& o : m.observations)
+    if (is_rotation(o.kind) == rotations) o.value *= factor;
+}
+
+std::vector<Mistake> mistakes_of(const Machine& machine) {
+  std::vector<Mistake> list;
+  constexpr std::array kKinds = {ObservationKind::kX, ObservationKind::kY, ObservationKind::kZ};
+  for (std::size_t a = 0; a < 3; ++a)
+    for (std::size_t b = a + 1; b < 3; ++b)
+      list.push_back(
+          {fmt::format("the columns {} and {} look swapped", kObservationNames[a], kObservationNames[b]),
+           [=](Measurement& rows) { swap_kinds(rows, kKinds[a], kKinds[b]); }});
+  for (std::size_t a = 0; a < 3; ++a)
+    list.push_back({fmt::format("the column {} looks as if its sign were turned", kObservationNames[a]),
+                    [=](Measurement& rows) {
+                      for (Observation& o : rows.observations)
+                        if (o.kind == kKinds[a]) o.value = -o.value;
+                    }});
+  constexpr std::array<std::pair<const char*, double>, 4> kUnits = {
+      {{"in inches", 25.4},
+       {"a thousand times too small (metres, or mm called um)", 1000},
+       {"a thousand times too large (um called mm)", 1e-3},
+       {"millimetres taken for inches", 1 / 25.4}}};
+  for (const auto& [unit, factor] : kUnits)
+    list.push_back({fmt::format("the readings look as if they were {}", unit),
+                    [factor = factor](Measurement& rows) { scale_readings(rows, false, factor); }});
+  list.push_back({"the rotations look as if they were in radians",
+                  [](Measurement& rows) { scale_readings(rows, true, kDegPerRad); }});
+  list.push_back({"the rotations look as if radians had been written and degrees meant",
+                  [](Measurement& rows) { scale_readings(rows, true, 1 / kDegPerRad); }});
+  for (std::size_t a = 0; a < machine.axes.size(); ++a) {
+    const std::string& name = machine.axes[a].name;
+    for (std::size_t b = a + 1; b < machine.axes.size(); ++b)
+      if (machine.axes[a].rotary == machine.axes[b].rotary)
+        list.push_back({fmt::format("the columns {} and {} look swapped", name, machine.axes[b].name),
+                        [=](Measurement& rows) { std::swap(rows.states.axis[a], rows.states.axis[b]); }});
+    const auto scaled = [&](const char* what, double factor) {
+      list.push_back({fmt::format("the column {} looks as if it were {}", name, what),
+                      [=](Measurement& rows) { rows.states.axis[a] *= factor; }});
+    };
+    scaled("of the other sign", -1);
+    if (machine.axes[a].rotary) {
+      scaled("in radians", kDegPerRad);
+      scaled("degrees taken for radians", 1 / kDegPerRad);
+    } else {
+      scaled("in inches", 25.4);
+      scaled("a thousand times too small (metres, or mm called um)", 1000);
+      scaled("a thousand times too large (um called mm)", 1e-3);
+    }
+  }
+  return list;
+}
+
+std::size_t positions_out_of_range(const Machine& machine, const Measurement& m) {
+  std::size_t count = 0;
+  for (std::size_t a = 0; a < machine.axes.size(); ++a) {
+    const Axis& axis = machine.axes[a];
+    if (!axis.min || !axis.max || axis.rollover) continue;
+    for (const double q : m.states.axis[a]) count += q < *axis.min || q > *axis.max ? 1 : 0;
+  }
+  return count;
+}
+
+/// The first axis position that stands outside the axis' range by more than half of it; empty: none.
+std::string cell_out_of_range(const Machine& machine, const Measurement& m) {
+  for (std::size_t a = 0; a < machine.axes.size(); ++a) {
+    const Axis& axis = machine.axes[a];
+    if (!axis.min || !axis.max || axis.rollover) continue;
+    const double margin = 0.5 * (*axis.max - *axis.min);
+    for (std::size_t row = 0; row < m.rows(); ++row) {
+      const double q = m.states.axis[a][static_cast<Eigen::Index>(row)];
+      if (m.check[row] != 0 || (q >= *axis.min - margin && q <= *axis.max + margin)) continue;
+      return fmt::format("{}:{} {} {:g} lies far outside the axis' range", m.files[m.file[row]], m.line[row],
+                         axis.name, q);
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+WorstReading worst_reading(const Measurement& m, const Eigen::VectorXd& residual) {
+  const Eigen::VectorXd weights = fit_weights(m);
+  std::vector<double> sizes;
+  double squares = 0, largest = 0;
+  WorstReading worst;
+  for (std::size_t i = 0; i < m.observations.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    if (weights[at] == 0) continue;
+    const double size = std::abs(weights[at] * residual[at]);
+    sizes.push_back(size);
+    squares += size * size;
+    if (size <= largest) continue;
+    largest = size;
+    worst.reading = reading_name(m, m.observations[i]);
+  }
+  if (sizes.empty() || largest <= 0) return worst;
+  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+  std::nth_element(sizes.begin(), middle, sizes.end());
+  // A spread below the stated uncertainty, or below what a file's digits hold, is none.
+  const double least = has_uncertainty(m) ? 1 : 1e-4;
+  worst.ratio = largest / std::max(1.4826 * *middle, least);
+  worst.share = largest * largest / squares;
+  return worst;
+}
+
+std::string likely_mistake(const Machine& machine, const Measurement& rows, const WorstReading& worst) {
+  constexpr double kMostOfAll = 0.5, kFivefold = 0.2, kAsGood = 1.5;
+  if (const std::string cell = cell_out_of_range(machine, rows); !cell.empty()) return cell;
+  if (worst.share > kMostOfAll) return worst.reading + " stands alone against all others";
+  const ParameterSet none;
+  const double misfit_mm = convention_of(machine, rows, none).misfit_mm;
+  struct Found {
+    double left_mm = 0;
+    std::size_t outside = 0;  // axis positions beyond their range once it is undone
+    std::string sentence;
+  };
+  std::vector<Found> found;
+  for (const Mistake& mistake : mistakes_of(machine)) {
+    Measurement mended = rows;
+    mistake.undo(mended);
+    const double left_mm = convention_of(machine, mended, none).misfit_mm;
+    if (left_mm < kFivefold * misfit_mm)
+      found.push_back({left_mm, positions_out_of_range(machine, mended), mistake.sentence});
+  }
+  if (found.empty()) return {};
+  // A mirror has several names: all that do as well, but for those that put axes where they cannot stand.
+  const auto less = [](const Found& a, const Found& b) { return a.left_mm < b.left_mm; };
+  const double least_mm = std::min_element(found.begin(), found.end(), less)->left_mm;
+  std::erase_if(found, [&](const Found& one) { return one.left_mm > kAsGood * least_mm; });
+  std::size_t outside = found.front().outside;
+  for (const Found& one : found) outside = std::min(outside, one.outside);
+  std::string sentence;
+  for (const Found& one : found)
+    if (one.outside == outside) sentence += (sentence.empty() ? "" : ", or ") + one.sentence;
+  return sentence;
+}
+
+}  // namespace vernier

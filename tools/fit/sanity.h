@@ -1,0 +1,30 @@
+#pragma once
+#include <Eigen/Core>
+#include <string>
+
+#include "tools/model/machine.h"
+#include "tools/model/measurement.h"
+
+namespace vernier {
+
+/// A model that leaves more of the readings than this share of what it reaches has not been measured: they
+/// are of something else. Machines leave 1e-5, hand-made robots 1e-2.
+inline constexpr double kAbsurdResidual = 0.02;
+
+/// Beyond this share of the reach the nominal machine is asked whether a known mistake explains it.
+inline constexpr double kFarOff = 0.05;
+
+/// The reading that stands furthest from the others after a fit.
+struct WorstReading {
+  double ratio = 0;     // its weighted residual over the spread of all (from their median)
+  double share = 0;     // of the sum of squares
+  std::string reading;  // "survey.csv:57 z"
+};
+WorstReading worst_reading(const Measurement& rows, const Eigen::VectorXd& residual);
+
+/// Why readings are not those of this machine, in a sentence: one gross reading, two columns swapped, a unit,
+/// a sign. Each is tried; what lowers the misfit of the nominal machine fivefold is it. Empty: nothing found.
+/// tool.
+std::string likely_mistake(const Machine& machine, const Measurement& rows, const WorstReading& worst);
+
+}  // namespace vernier

@@ -1,0 +1,260 @@
+#include "tools/fit/settle.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "tools/fit/statistics.h"
+
+namespace vernier {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using Sparse = Eigen::SparseMatrix<double>;
+
+/// Scales follow the machine's own errors within these shares of the convention's.
+constexpr double kLeastShare = 1e-3;
+/// Entries that the data determine (in sum of shares) before their kind's scale follows them.
+constexpr double kLeastDetermined = 4;
+constexpr int kRounds = 6, kRoundsOfMany = 2;
+constexpr Index kMany = 400;  // above it an inverse takes a tenth of a second and more
+constexpr int kMostSteps = 12;
+/// Times that the penalty is applied: iterated Tikhonov regularisation (Engl, Hanke, Neubauer, Regularization
+/// of inverse problems, 1996, section 5.1). A direction known to share r of its scale is moved by r^(2 n -
+/// 1).
+constexpr int kPasses = 3;
+/// A step below this share of every parameter's standard deviation is none (squared, in the cost's metric).
+constexpr double kSettled = 1e-14;
+/// ... and below this one the answer counts as converged.
+constexpr double kConverged = 1e-6;
+/// Readings count as no finer than this share of what the nominal machine leaves of them: beyond it the
+/// convention would drown in rounding (readings written with six decimals, simulations without noise).
+constexpr double kLeastNoise = 1e-3;
+
+/// Cholesky, and its form for matrices that rounding made indefinite.
+MatrixXd solve_scaled(const MatrixXd& matrix, const MatrixXd& right) {
+  const Eigen::LLT<MatrixXd> llt(matrix);
+  if (llt.info() == Eigen::Success) return llt.solve(right);
+  return matrix.ldlt().solve(right);
+}
+
+/// Symmetric inverse of a positive definite matrix of unequal scales.
+MatrixXd inverse_of(const MatrixXd& matrix) {
+  const VectorXd shrink = matrix.diagonal().cwiseSqrt().cwiseInverse();
+  MatrixXd scaled = shrink.asDiagonal() * matrix * shrink.asDiagonal();
+  const MatrixXd inverse = solve_scaled(scaled, MatrixXd::Identity(matrix.rows(), matrix.cols()));
+  return shrink.asDiagonal() * (0.5 * (inverse + inverse.transpose())) * shrink.asDiagonal();
+}
+
+VectorXd solution_of(const MatrixXd& matrix, const VectorXd& right) {
+  const VectorXd shrink = matrix.diagonal().cwiseSqrt().cwiseInverse();
+  const MatrixXd scaled = shrink.asDiagonal() * matrix * shrink.asDiagonal();
+  return shrink.cwiseProduct(solve_scaled(scaled, shrink.cwiseProduct(right)).col(0));
+}
+
+class Settler {
+ public:
+  Settler(FitProblem& problem, const Convention& convention, const StatedPriors& stated,
+          std::size_t observations, bool with_u)
+      : problem_(problem),
+        convention_(convention),
+        stated_(stated),
+        observations_(static_cast<double>(observations)),
+        with_u_(with_u),
+        mean_weight_(fit_weights(problem.measurement()).squaredNorm() / std::max(1.0, observations_)),
+        scale_(convention.scale) {
+    problem_.clear_priors();
+  }
+
+  Settled describe(const VectorXd& point) {
+    result_.point = point;
+    linearise();
+    result_.variance = first_variance();
+    finish();
+    return std::move(result_);
+  }
+
+  Settled run(const VectorXd& start) {
+    result_.point = start;
+    linearise();
+    result_.variance = first_variance();
+    const int rounds = start.size() > kMany ? kRoundsOfMany : kRounds;
+    for (int round = 0; round < rounds; ++round) adapt();
+    // The quadratic model is good near its own minimum: scales and noise once more from there.
+    step_to(convention_.centre);
+    for (int round = 0; round < rounds; ++round) adapt();
+    descend(convention_.centre);
+    for (int pass = 1; pass < kPasses; ++pass) descend(result_.point);
+    finish();
+    return std::move(result_);
+  }
+
+ private:
+  Sparse weak() const {
+    return std::max(result_.variance, floor_of_variance()) * scaled_precision(convention_, scale_);
+  }
+  double stated_unit() const { return with_u_ ? 1 : std::max(result_.variance, floor_of_variance()); }
+
+  /// The readings' quadratic model here.
+  void linearise() {
+    const NormalEquations now = problem_.equations(result_.point);
+    result_.chi_square = now.cost;
+    readings_ = now.normal;
+    gradient_ = now.gradient;
+    ++result_.iterations;
+  }
+
+  /// In the cost's unit: squares of weighted readings.
+  double floor_of_variance() const {
+    return std::pow(kLeastNoise * convention_.misfit_mm, 2) * mean_weight_ + 1e-300;
+  }
+
+  double first_variance() const {
+    if (with_u_) return 1;
+    return std::max(result_.chi_square / observations_, 1e-300);
+  }
+
+  /// Scales and noise that fit the quadratic model, one round.
+  void adapt() {
+    const Sparse weak_now = weak();
+    MatrixXd all = readings_ + weak_now;
+    all.diagonal() += stated_unit() * stated_.weight;
+    const MatrixXd inverse = inverse_of(all);
+    const VectorXd step =
+        inverse * (gradient_ + weak_now * (convention_.centre - result_.point) +
+                   stated_unit() * stated_.weight.cwiseProduct(stated_.centre - result_.point));
+    const VectorXd value = result_.point + step;
+    const VectorXd from_data = VectorXd::Ones(value.size()) - (inverse * weak_now).diagonal();
+    const VectorXd off = (value - convention_.centre).cwiseQuotient(scale_);
+    const VectorXd squares = off.cwiseProduct(convention_.precision * off);
+    const double chi_square =
+        std::max(0.0, result_.chi_square - 2 * step.dot(gradient_) + step.dot(readings_ * step));
+    const double freedom = observations_ - from_data.sum();
+    if (freedom > 0.5) {
+      const double reduced = chi_square / freedom;
+      result_.variance = with_u_ ? std::max(1.0, reduced) : std::max(reduced, 1e-300);
+    }
+    struct Kind {
+      double squares = 0, determined = 0;  // the first in units of the scale, squared
+    };
+    std::map<int, Kind> kinds;
+    for (Index i = 0; i < value.size(); ++i) {
+      Kind& kind = kinds[convention_.kind[static_cast<std::size_t>(i)]];
+      kind.squares += squares[i];
+      kind.determined += from_data[i];
+    }
+    for (Index i = 0; i < value.size(); ++i) {
+      const int number = convention_.kind[static_cast<std::size_t>(i)];
+      const Kind& kind = kinds[number];
+      if (number == 0 || kind.determined < kLeastDetermined) continue;
+      scale_[i] = std::clamp(scale_[i] * std::sqrt(kind.squares / kind.determined),
+                             kLeastShare * convention_.scale[i], convention_.scale[i]);
+    }
+  }
+
+  MatrixXd normal_with_priors() const {
+    MatrixXd all = readings_ + weak();
+    all.diagonal() += stated_unit() * stated_.weight;
+    return all;
+  }
+
+  VectorXd gradient_with_priors(const VectorXd& centre) const {
+    return gradient_ + weak() * (centre - result_.point) +
+           stated_unit() * stated_.weight.cwiseProduct(stated_.centre - result_.point);
+  }
+
+  double cost(const VectorXd& centre) const {
+    const VectorXd off = result_.point - centre;
+    return result_.chi_square + off.dot(weak() * off) +
+           stated_unit() * stated_.weight.dot((result_.point - stated_.centre).cwiseAbs2());
+  }
+
+  /// One Gauss-Newton step, shortened until it does not raise the cost; its size in standard deviations,
+  /// squared.
+  double step_to(const VectorXd& centre) {
+    const VectorXd gradient = gradient_with_priors(centre);
+    VectorXd step = solution_of(normal_with_priors(), gradient);
+    const double size = step.dot(gradient) / std::max(result_.variance, floor_of_variance());
+    const VectorXd from = result_.point;
+    const double before = cost(centre);
+    for (int halved = 0; halved < 8; ++halved, step *= 0.5) {
+      result_.point = from + step;
+      try {
+        linearise();
+      } catch (const InputError&) {
+        continue;  // the model has no value there
+      }
+      // A millionth of a reading's variance is rounding of a large sum.
+      if (cost(centre) <= before + 1e-6 * result_.variance + 1e-9 * before) return size;
+    }
+    result_.point = from;
+    linearise();
+    return std::numeric_limits<double>::infinity();
+  }
+
+  void descend(const VectorXd& centre) {
+    double last = std::numeric_limits<double>::infinity();
+    const VectorXd fixed = centre;  // may be result_.point itself
+    for (int i = 0; i < kMostSteps; ++i) {
+      const double size = step_to(fixed);
+      result_.converged = std::isfinite(size) && size < kConverged;
+      if (!(size > kSettled) || (i > 2 && !(size < last))) return;
+      last = size;
+    }
+  }
+
+  void finish() {
+    result_.scale = scale_;
+    MatrixXd data = readings_;
+    data.diagonal() += stated_unit() * stated_.weight;
+    const Sparse weak_now = weak();
+    const MatrixXd inverse = inverse_of(data + weak_now);
+    // What stays of a true value: (inverse * weak)^n, and what a reading adds.
+    const MatrixXd once = inverse * weak_now;
+    MatrixXd left = once, gain = inverse;
+    for (int pass = 1; pass < kPasses; ++pass) {
+      gain = inverse + once * gain;
+      left = once * left;
+    }
+    const double fitted = static_cast<double>(once.rows()) - (left * left).trace();
+    result_.freedom = observations_ - fitted;
+    if (result_.freedom > 0.5) {
+      const double reduced = result_.chi_square / result_.freedom;
+      result_.variance = with_u_ ? std::max(1.0, reduced) : std::max(reduced, 1e-300);
+    }
+    const MatrixXd spread = scale_.asDiagonal() * convention_.correlation * scale_.asDiagonal();
+    const MatrixXd bias = left * spread * left.transpose();
+    result_.bias = bias.diagonal().cwiseMax(0).cwiseSqrt();
+    result_.covariance = result_.variance * (gain * data * gain.transpose()) + bias;
+    result_.normal = std::move(data);
+  }
+
+  FitProblem& problem_;
+  const Convention& convention_;
+  const StatedPriors& stated_;
+  const double observations_;
+  const bool with_u_;
+  const double mean_weight_;  // of the readings, squared: 1 / u^2
+  VectorXd scale_;
+  Settled result_;
+  MatrixXd readings_;
+  VectorXd gradient_;
+};
+
+}  // namespace
+
+Settled settle(FitProblem& problem, const VectorXd& point, const Convention& convention,
+               const StatedPriors& stated, std::size_t observations, bool with_u) {
+  return Settler(problem, convention, stated, observations, with_u).run(point);
+}
+
+Settled describe(FitProblem& problem, const VectorXd& point, const Convention& convention,
+                 const StatedPriors& stated, std::size_t observations, bool with_u) {
+  return Settler(problem, convention, stated, observations, with_u).describe(point);
+}
+
+}  // namespace vernier

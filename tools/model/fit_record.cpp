@@ -1,0 +1,150 @@
+#include "tools/model/fit_record.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <pugixml.hpp>
+
+#include "tools/model/numbers.h"
+#include "tools/model/xml_text.h"
+
+namespace vernier {
+namespace {
+
+constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+
+std::string to_base64(const std::vector<std::uint8_t>& bytes) {
+  std::string text;
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    std::uint32_t group = static_cast<std::uint32_t>(bytes[i]) << 16U;
+    if (i + 1 < bytes.size()) group |= static_cast<std::uint32_t>(bytes[i + 1]) << 8U;
+    if (i + 2 < bytes.size()) group |= bytes[i + 2];
+    for (unsigned k = 0; k < 4; ++k)
+      text += i + k > bytes.size() ? '=' : kDigits[(group >> (18U - 6U * k)) & 63U];
+  }
+  return text;
+}
+
+/// Empty where a letter does not belong there.
+std::vector<std::uint8_t> from_base64(std::string_view text) {
+  std::array<int, 256> value{};
+  value.fill(-1);
+  for (int i = 0; i < 64; ++i) value[static_cast<unsigned char>(kDigits[i])] = i;
+  std::vector<std::uint8_t> bytes;
+  std::uint32_t group = 0, bits = 0;
+  for (const char c : text) {
+    if (c == '=' || std::isspace(static_cast<unsigned char>(c)) != 0) continue;
+    const int digit = value[static_cast<unsigned char>(c)];
+    if (digit < 0) return {};
+    group = (group << 6U) | static_cast<std::uint32_t>(digit);
+    bits += 6;
+    if (bits < 8) continue;
+    bits -= 8;
+    bytes.push_back(static_cast<std::uint8_t>((group >> bits) & 255U));
+  }
+  return bytes;
+}
+
+// Little-endian, whatever the machine.
+template <class Word>
+void put(std::vector<std::uint8_t>& bytes, Word word) {
+  for (std::size_t i = 0; i < sizeof(Word); ++i)
+    bytes.push_back(static_cast<std::uint8_t>((word >> (8 * i)) & 255U));
+}
+
+template <class Word>
+Word take(const std::vector<std::uint8_t>& bytes, std::size_t& at) {
+  Word word = 0;
+  for (std::size_t i = 0; i < sizeof(Word); ++i) word |= static_cast<Word>(bytes[at++]) << (8 * i);
+  return word;
+}
+
+}  // namespace
+
+Eigen::MatrixXd covariance_factor(const Eigen::MatrixXd& covariance) {
+  const Eigen::VectorXd std = covariance.diagonal().cwiseMax(0).cwiseSqrt();
+  const Eigen::VectorXd shrink = std.unaryExpr([](double s) { return s > 0 ? 1 / s : 0.0; });
+  Eigen::MatrixXd scaled = shrink.asDiagonal() * covariance * shrink.asDiagonal();
+  // Rounding may leave the smallest of its eigenvalues below zero: raised until it factorises.
+  for (double lift = 0; lift<1e-3; lift = lift> 0 ? 10 * lift : 1e-14) {
+    scaled.diagonal().array() = 1 + lift;
+    const Eigen::LLT<Eigen::MatrixXd> llt(scaled);
+    if (llt.info() != Eigen::Success) continue;
+    const Eigen::MatrixXd lower = std.asDiagonal() * Eigen::MatrixXd(llt.matrixL());
+    return lower.cast<float>().cast<double>();
+  }
+  return Eigen::MatrixXd(std.asDiagonal());
+}
+
+std::string fit_record_xml(const FitRecord& record) {
+  std::string text = "  <fitted converged=\"" + std::string(record.converged ? "true" : "false") +
+                     "\" rms=\"" + number_text(record.rms_mm) + "\" reach=\"" + number_text(record.reach_mm) +
+                     "\" worst=\"" + number_text(record.worst) + "\" reading=\"" +
+                     escape_attribute(record.worst_reading) + "\"";
+  if (!record.culprit.empty()) text += " culprit=\"" + escape_attribute(record.culprit) + "\"";
+  text += ">\n    <measured>";
+  for (const FitRecord::Range& range : record.measured)
+    text +=
+        "<" + range.name + " min=\"" + number_text(range.min) + "\" max=\"" + number_text(range.max) + "\"/>";
+  text += "</measured>\n    <covariance parameters=\"";
+  for (std::size_t i = 0; i < record.parameters.size(); ++i)
+    text += (i > 0 ? "|" : "") + escape_attribute(record.parameters[i]);
+  // Values whole, since they are compared; the factor as 4-byte numbers, 1e-7 of its largest part.
+  std::vector<std::uint8_t> bytes;
+  for (const double value : record.values) {
+    std::uint64_t word = 0;
+    std::memcpy(&word, &value, sizeof word);
+    put(bytes, word);
+  }
+  for (Eigen::Index row = 0; row < record.factor.rows(); ++row)
+    for (Eigen::Index column = 0; column <= row; ++column) {
+      const auto value = static_cast<float>(record.factor(row, column));
+      std::uint32_t word = 0;
+      std::memcpy(&word, &value, sizeof word);
+      put(bytes, word);
+    }
+  return text + "\" numbers=\"" + to_base64(bytes) + "\"/>\n  </fitted>\n";
+}
+
+bool read_fit_numbers(std::string_view text, std::size_t n, FitRecord& record) {
+  const std::vector<std::uint8_t> bytes = from_base64(text);
+  if (bytes.size() != 8 * n + 2 * n * (n + 1)) return false;
+  const auto size = static_cast<Eigen::Index>(n);
+  record.values.resize(size);
+  record.factor = Eigen::MatrixXd::Zero(size, size);
+  std::size_t at = 0;
+  for (double& value : record.values) {
+    const auto word = take<std::uint64_t>(bytes, at);
+    std::memcpy(&value, &word, sizeof value);
+  }
+  for (Eigen::Index row = 0; row < size; ++row)
+    for (Eigen::Index column = 0; column <= row; ++column) {
+      const auto word = take<std::uint32_t>(bytes, at);
+      float value = 0;
+      std::memcpy(&value, &word, sizeof value);
+      record.factor(row, column) = static_cast<double>(value);
+    }
+  return record.values.allFinite() && record.factor.allFinite();
+}
+
+std::string with_fit_record(const std::string& text, const FitRecord& record) {
+  pugi::xml_document document;
+  document.load_buffer(text.data(), text.size(), pugi::parse_default, pugi::encoding_utf8);
+  const std::string element = fit_record_xml(record);
+  for (const pugi::xml_node node : document.document_element().children()) {
+    if (!equal_no_case(node.name(), "fitted")) continue;
+    std::size_t begin = text.rfind('<', static_cast<std::size_t>(node.offset_debug()));
+    const std::size_t end = text.find('>', text.find("</", begin)) + 1;
+    const std::size_t close = text.find("</fitted", begin);
+    const std::size_t stop = close == std::string::npos ? end : text.find('>', close) + 1;
+    while (begin > 0 && text[begin - 1] == ' ') --begin;
+    return text.substr(0, begin) + element + text.substr(text[stop] == '\n' ? stop + 1 : stop);
+  }
+  const std::size_t root_end = text.rfind("</");
+  return text.substr(0, root_end) + element + text.substr(root_end);
+}
+
+}  // namespace vernier

@@ -1,0 +1,44 @@
+#pragma once
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+namespace vernier {
+
+struct Machine;
+
+/// What a fit knew of the machine that it wrote, kept in the machine file (`<fitted>`): without it a file of
+/// numbers cannot say how well it knows them, nor where it was measured.
+struct FitRecord {
+  struct Range {
+    std::string name;  // of an axis or input
+    double min = 0, max = 0;
+  };
+  std::vector<std::string> parameters;  // names as in the JSON of `fit`
+  Eigen::VectorXd values;               // as fitted: a value changed since then is not covered
+  /// n x n lower triangle L, covariance = L L^T in the parameters' units: of data and of what stands in where
+  /// they say nothing.
+  Eigen::MatrixXd factor;
+  std::vector<Range> measured;  // of the fit rows
+  bool converged = true;
+  double rms_mm = 0, reach_mm = 0;  // what was left of the readings; half the diagonal of the measured box
+  double worst = 0;                 // largest residual over the spread of all
+  std::string worst_reading;        // "survey.csv:57 z"
+  std::string culprit;              // what makes the readings not those of this machine; empty: nothing found
+  std::size_t line = 0;
+};
+
+/// L of a covariance (its lower triangle is read), rounded as the machine file keeps it.
+Eigen::MatrixXd covariance_factor(const Eigen::MatrixXd& covariance);
+
+/// The element, indented by two, with its line end.
+std::string fit_record_xml(const FitRecord& record);
+
+/// Numbers of a covariance element: `values` and L, n and n (n + 1) / 2 of them. False where the text is not
+/// that.
+bool read_fit_numbers(std::string_view text, std::size_t n, FitRecord& record);
+
+/// The text with its `<fitted>` replaced, or put before the end of the root. tool.
+std::string with_fit_record(const std::string& text, const FitRecord& record);
+
+}  // namespace vernier

@@ -1,0 +1,59 @@
+#include "tools/model/work_poses.h"
+
+#include <algorithm>
+#include <array>
+
+#include "tools/model/chain.h"
+
+namespace vernier {
+namespace {
+
+constexpr std::size_t kPoses = 500;
+
+/// Element of van der Corput's sequence in a prime base (Halton 1960): 0..1.
+double radical_inverse(std::size_t index, std::size_t base) {
+  double result = 0, digit = 1;
+  for (; index > 0; index /= base) {
+    digit /= static_cast<double>(base);
+    result += digit * static_cast<double>(index % base);
+  }
+  return result;
+}
+
+}  // namespace
+
+WorkPoses poses_over(const Machine& machine, const std::vector<std::array<double, 2>>& ranges) {
+  constexpr std::array<std::size_t, 12> kPrimes = {2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37};
+  std::vector<double> references;
+  for (const Input& input : machine.inputs) references.push_back(input.reference);
+  WorkPoses poses{make_states(kPoses, machine.axes.size(), references), 0};
+  for (std::size_t a = 0; a < machine.axes.size(); ++a) {
+    const auto [low, high] = ranges[a];
+    Column& q = poses.states.axis[a];
+    q[0] = low;
+    q[1] = high;
+    for (std::size_t i = 2; i < kPoses; ++i)
+      q[static_cast<Eigen::Index>(i)] = low + (high - low) * radical_inverse(i, kPrimes[a % kPrimes.size()]);
+    for (std::size_t i = 0; i < kPoses; ++i)
+      poses.states.direction[a][static_cast<Eigen::Index>(i)] = (i >> (a % 8)) % 2 == 0 ? 1 : -1;
+  }
+  const Eigen::Matrix3Xd points = forward(nominal_machine(machine), poses.states).position;
+  poses.extent_mm = std::max(1.0, (points.rowwise().maxCoeff() - points.rowwise().minCoeff()).norm());
+  return poses;
+}
+
+WorkPoses work_poses(const Machine& machine) {
+  std::vector<std::array<double, 2>> ranges;
+  for (std::size_t a = 0; a < machine.axes.size(); ++a) {
+    auto range = work_range(machine, a);
+    if (const Table* table = machine.table_of(a); !range && table != nullptr && table->stations.size() > 1)
+      range = std::array{table->stations.front().loc, table->stations.back().loc};
+    if (!range)
+      throw InputError({machine.file, machine.axes[a].line}, machine.axes[a].name,
+                       "an axis needs min and max, or a place in <volume>");
+    ranges.push_back(*range);
+  }
+  return poses_over(machine, ranges);
+}
+
+}  // namespace vernier

@@ -1,0 +1,16 @@
+#pragma once
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "tools/safety/safety_sheet.h"
+
+namespace vernier {
+
+/// [{"rule":…, "value":…, "limit":…, "unit":…, "ok":…, "accepted":…, "culprit":…, "reason":…}…]; value null
+/// where the file cannot tell.
+nlohmann::ordered_json safety_json(const SafetySheet& sheet);
+
+/// The sheet for people, a line a rule.
+void print_safety(std::FILE* out, const SafetySheet& sheet);
+
+}  // namespace vernier

@@ -1,0 +1,301 @@
+#include "tools/safety/safety_sheet.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include "tools/fit/reach.h"
+#include "tools/kinematics/correction.h"
+#include "tools/kinematics/jacobian.h"
+#include "tools/model/chain.h"
+#include "tools/model/fit_record.h"
+#include "tools/model/work_poses.h"
+#include "tools/safety/sources.h"
+
+namespace vernier {
+namespace {
+
+constexpr double kUmPerMm = 1000;
+
+struct RuleText {
+  const char *name, *unit, *reason;
+  double limit;
+};
+
+/// Limits, each with its reason. Ratios have no unit.
+const RuleText& text_of(SafetyRule rule) {
+  static const std::array<RuleText, kSafetyRuleCount> kTexts = {{
+      {"correction", "of the working volume",
+       "a machine that is off by more than 1 % of its volume is not the machine of this file", 0.01},
+      {"max-correction", "of maxcorrection", "beyond it the correction would be cut off", 1},
+      {"cancellation", "times the correction",
+       "terms ten times larger than their sum hold only where they were measured together", 10},
+      {"uncertainty", "of the correction",
+       "a correction known to no better than half of itself may do as much harm as good", 0.5},
+      {"measured-range", "of the measured range",
+       "tables hold their ends and terms go on: further out nobody has looked", 0.25},
+      {"input-range", "of the measured range", "a term in an input is a line through what was measured", 1},
+      {"set-up", "um", "a shift that is the same at every pose belongs to how the instrument stood", 2},
+      {"converged", "", "numbers on the way to an answer are none", 1},
+      {"residual", "of the measured box",
+       "readings that the model misses by so much are not readings of this machine", 0.02},
+      {"outlier", "times the residual's spread",
+       "one reading that stands so far from all others has bent the fit", 20},
+  }};
+  return kTexts[static_cast<std::size_t>(rule)];
+}
+
+class Judge {
+ public:
+  Judge(const Machine& machine, const std::vector<SafetyRule>& accepted)
+      : machine_(machine),
+        accepted_(accepted),
+        poses_(work_poses(machine)),
+        deviation_(deviation(machine, poses_.states)) {}
+
+  SafetySheet run() {
+    judge_correction();
+    judge_cancellation();
+    judge_uncertainty();
+    judge_ranges();
+    judge_set_up();
+    judge_fit();
+    std::sort(sheet_.findings.begin(), sheet_.findings.end(),
+              [](const auto& a, const auto& b) { return a.rule < b.rule; });
+    return std::move(sheet_);
+  }
+
+ private:
+  void add(SafetyRule rule, std::optional<double> value, std::string culprit) {
+    const RuleText& text = text_of(rule);
+    SafetyFinding finding{rule, value, text.limit, text.unit, true, false, std::move(culprit), text.reason};
+    finding.ok = !value || *value <= text.limit;
+    if (!finding.ok)
+      finding.accepted = std::find(accepted_.begin(), accepted_.end(), rule) != accepted_.end();
+    sheet_.findings.push_back(std::move(finding));
+  }
+
+  /// The source that moves the tool most, of those that the machine has.
+  std::string largest_source() {
+    const std::vector<Source>& sources = sources_of_machine();
+    const auto largest = std::max_element(sources.begin(), sources.end(),
+                                          [](const auto& a, const auto& b) { return a.rms_mm < b.rms_mm; });
+    return largest == sources.end() ? "" : largest->name;
+  }
+
+  const std::vector<Source>& sources_of_machine() {
+    if (!sources_) sources_ = error_sources(machine_, poses_.states);
+    return *sources_;
+  }
+
+  /// What each axis would be moved by: the linear axes where there are any, else all (least squares, mm and
+  /// deg).
+  std::vector<Column> offsets() const {
+    if (!linear_axes(machine_).empty()) return first_order_offset(machine_, poses_.states);
+    std::vector<std::size_t> all(machine_.axes.size());
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    const auto count = static_cast<Eigen::Index>(poses_.states.count);
+    std::vector<Column> result(all.size(), Column::Zero(count));
+    const std::vector<Eigen::MatrixXd> jacobians =
+        axis_jacobian(nominal_machine(machine_), poses_.states, all, Match::kPosition, poses_.extent_mm);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const Eigen::VectorXd move =
+          jacobians[static_cast<std::size_t>(i)].completeOrthogonalDecomposition().solve(
+              Eigen::VectorXd(deviation_.col(i)));
+      for (std::size_t a = 0; a < all.size(); ++a) result[a][i] = -move[static_cast<Eigen::Index>(a)];
+    }
+    return result;
+  }
+
+  void judge_correction() {
+    const std::vector<Column> offset = offsets();
+    double most = deviation_.colwise().norm().maxCoeff(), against_limit = 0;
+    std::string of_limit;
+    bool limited = false;
+    for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
+      const double largest = offset[i].size() > 0 ? offset[i].abs().maxCoeff() : 0;
+      if (!machine_.axes[i].rotary) most = std::max(most, largest);
+      if (!machine_.axes[i].max_correction) continue;
+      limited = true;
+      if (const double share = largest / *machine_.axes[i].max_correction; share >= against_limit) {
+        against_limit = share;
+        of_limit = machine_.axes[i].name;
+      }
+    }
+    add(SafetyRule::kCorrection, most / poses_.extent_mm, largest_source());
+    const std::string source = largest_source();
+    add(SafetyRule::kMaxCorrection, limited ? std::optional(against_limit) : std::nullopt,
+        of_limit.empty() ? "" : "axis " + of_limit + (source.empty() ? "" : ", most by " + source));
+  }
+
+  /// Without its mean: a shift of the whole is no correction anybody would miss.
+  double varying_rms_mm() const {
+    const Eigen::Matrix3Xd off = deviation_.colwise() - deviation_.rowwise().mean();
+    return std::sqrt(off.squaredNorm() / static_cast<double>(off.cols()));
+  }
+
+  void judge_cancellation() {
+    double sum = 0;
+    for (const Source& source : sources_of_machine()) sum += source.varying_rms_mm;
+    // Below the finest instrument's resolution there is nothing to compare.
+    constexpr double kNothing_mm = 1e-4;
+    add(SafetyRule::kCancellation, sum / std::max(varying_rms_mm(), kNothing_mm), largest_source());
+  }
+
+  void judge_uncertainty() {
+    const Reach reach(machine_);
+    if (!reach.known()) {
+      add(SafetyRule::kUncertainty, std::nullopt, "");
+      return;
+    }
+    double worst = 0;
+    std::string of = "the tool of the file";
+    const auto judge_tool = [&](const Machine& machine, const std::string& name) {
+      const Reach with(machine);
+      const double rms_um =
+          std::sqrt(with.std_um(poses_.states).squaredNorm() / static_cast<double>(poses_.states.count));
+      const double share = rms_um / std::max(kUmPerMm * correction_rms_mm(machine), 0.1);
+      if (share <= worst) return;
+      worst = share;
+      of = name;
+    };
+    judge_tool(machine_, of);
+    for (const Tool& tool : machine_.tools) judge_tool(with_tool(machine_, tool.point), "tool " + tool.name);
+    add(SafetyRule::kUncertainty, worst, of);
+    sheet_.stale = reach.stale();
+  }
+
+  /// What there is to correct with this tool, and what the noise of a good fit may leave of nothing.
+  double correction_rms_mm(const Machine& machine) const {
+    const Eigen::Matrix3Xd d = deviation(machine, poses_.states);
+    const Eigen::Matrix3Xd off = d.colwise() - d.rowwise().mean();
+    return std::sqrt(off.squaredNorm() / static_cast<double>(off.cols()));
+  }
+
+  void judge_ranges() {
+    if (!machine_.fitted) {
+      add(SafetyRule::kMeasuredRange, std::nullopt, "");
+      add(SafetyRule::kInputRange, std::nullopt, "");
+      return;
+    }
+    double axis_worst = 0, input_worst = 0;
+    std::string axis_of, input_of;
+    const auto overhang = [&](const FitRecord::Range& measured, double low, double high) {
+      const double outside = std::max(0.0, measured.min - low) + std::max(0.0, high - measured.max);
+      return outside / std::max(measured.max - measured.min, 1e-3 * (high - low));
+    };
+    for (const FitRecord::Range& measured : machine_.fitted->measured) {
+      if (const auto axis = machine_.find_axis(measured.name)) {
+        const auto range = work_range(machine_, *axis);
+        if (!range || !acts(machine_, {SymbolKind::kAxis, *axis})) continue;
+        if (const double share = overhang(measured, (*range)[0], (*range)[1]); share > axis_worst) {
+          axis_worst = share;
+          axis_of = "axis " + measured.name;
+        }
+      } else if (const auto input = machine_.find_input(measured.name)) {
+        const Input& item = machine_.inputs[*input];
+        if (!item.min || !item.max || !acts(machine_, {SymbolKind::kInput, *input})) continue;
+        if (const double share = overhang(measured, *item.min, *item.max); share > input_worst) {
+          input_worst = share;
+          input_of = "input " + measured.name;
+        }
+      }
+    }
+    add(SafetyRule::kMeasuredRange, axis_worst, axis_of);
+    add(SafetyRule::kInputRange, input_worst, input_of);
+  }
+
+  void judge_set_up() {
+    // A source that moves the tool point the same way everywhere, by its mean.
+    constexpr double kSameEverywhere = 0.01;
+    double worst_um = 0;
+    std::string of;
+    for (const Source& source : sources_of_machine()) {
+      const double mean_mm = source.mean_mm.norm();
+      if (source.is_table || source.varying_rms_mm > kSameEverywhere * mean_mm) continue;
+      if (kUmPerMm * mean_mm <= worst_um) continue;
+      worst_um = kUmPerMm * mean_mm;
+      of = source.name;
+    }
+    add(SafetyRule::kSetUp, worst_um, of);
+  }
+
+  void judge_fit() {
+    const FitRecord* record = machine_.fitted.get();
+    const auto known = [&](double value) { return record ? std::optional(value) : std::nullopt; };
+    add(SafetyRule::kConverged, known(record && !record->converged ? 2 : 0), "");
+    add(SafetyRule::kResidual, known(record ? record->rms_mm / std::max(record->reach_mm, 1e-9) : 0),
+        record ? record->culprit : "");
+    add(SafetyRule::kOutlier, known(record ? record->worst : 0), record ? record->worst_reading : "");
+  }
+
+  const Machine& machine_;
+  const std::vector<SafetyRule>& accepted_;
+  const WorkPoses poses_;
+  const Eigen::Matrix3Xd deviation_;
+  std::optional<std::vector<Source>> sources_;
+  SafetySheet sheet_;
+};
+
+}  // namespace
+
+const char* rule_name(SafetyRule rule) { return text_of(rule).name; }
+
+std::optional<SafetyRule> rule_named(const std::string& name) {
+  for (std::size_t i = 0; i < kSafetyRuleCount; ++i)
+    if (name == rule_name(static_cast<SafetyRule>(i))) return static_cast<SafetyRule>(i);
+  return std::nullopt;
+}
+
+std::vector<SafetyRule> rules_named(const std::vector<std::string>& names) {
+  std::vector<SafetyRule> rules;
+  for (const std::string& name : names) {
+    const auto rule = rule_named(name);
+    if (!rule) {
+      std::string all;
+      for (std::size_t i = 0; i < kSafetyRuleCount; ++i)
+        all += (i > 0 ? ", " : "") + std::string(rule_name(static_cast<SafetyRule>(i)));
+      throw InputError("--accept \"" + name + "\": no such rule; there are " + all);
+    }
+    rules.push_back(*rule);
+  }
+  return rules;
+}
+
+bool SafetySheet::ok() const {
+  return std::all_of(findings.begin(), findings.end(), [](const auto& f) { return f.ok || f.accepted; });
+}
+
+std::uint32_t SafetySheet::accepted_mask() const {
+  std::uint32_t mask = 0;
+  for (const SafetyFinding& finding : findings)
+    if (finding.accepted) mask |= 1U << static_cast<unsigned>(finding.rule);
+  return mask;
+}
+
+std::string SafetySheet::refusal() const {
+  const SafetyFinding* worst = nullptr;
+  double most = 0;
+  for (const SafetyFinding& finding : findings) {
+    if (finding.ok || finding.accepted) continue;
+    const double times = *finding.value / std::max(finding.limit, 1e-9);
+    if (worst != nullptr && times <= most) continue;
+    worst = &finding;
+    most = times;
+  }
+  if (worst == nullptr) return {};
+  std::string text = fmt::format("not safe to run: {} {:.3g} {}, limit {:g}", rule_name(worst->rule),
+                                 *worst->value, worst->unit, worst->limit);
+  if (!worst->culprit.empty()) text += ": " + worst->culprit;
+  return text + fmt::format(" ({}); --accept {} overrides", worst->reason, rule_name(worst->rule));
+}
+
+SafetySheet safety_sheet(const Machine& machine, const std::vector<SafetyRule>& accepted) {
+  return Judge(machine, accepted).run();
+}
+
+}  // namespace vernier

@@ -1,0 +1,57 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/model/machine.h"
+
+namespace vernier {
+
+/// What must hold of a machine file before its correction may run. The numbers travel in images: they stay.
+enum class SafetyRule : std::uint8_t {
+  kCorrection = 0,     // how far an axis would be moved
+  kMaxCorrection = 1,  // against the axis' own limit, which would cut it off
+  kCancellation = 2,   // terms that are much larger than what they add up to
+  kUncertainty = 3,    // how well the correction is known where the machine works, with its tools
+  kMeasuredRange = 4,  // how far it works outside what was measured
+  kInputRange = 5,     // the same for temperatures and other inputs
+  kSetUp = 6,          // set-up of the measurement that would reach an axis
+  kConverged = 7,      // the fit came to an end
+  kResidual = 8,       // what the fit left of the readings
+  kOutlier = 9,        // one reading against all the others
+};
+inline constexpr std::size_t kSafetyRuleCount = 10;
+const char* rule_name(SafetyRule rule);
+std::optional<SafetyRule> rule_named(const std::string& name);
+
+struct SafetyFinding {
+  SafetyRule rule = SafetyRule::kCorrection;
+  std::optional<double> value;  // nothing where the file cannot tell (a machine that was never fitted)
+  double limit = 0;
+  std::string unit;
+  bool ok = true;
+  bool accepted = false;  // not ok, and the user takes it
+  std::string culprit;    // parameter, axis, input or reading that counts most
+  std::string reason;     // why there is a limit
+};
+
+/// One sheet, for `compile`, `export`, `upload` and the workbench.
+struct SafetySheet {
+  std::vector<SafetyFinding> findings;  // one a rule, in the order of their numbers
+  /// Parameters that were added or set by hand since the fit: uncertain by as much as they were moved.
+  std::vector<std::string> stale;
+  bool ok() const;
+  std::uint32_t accepted_mask() const;  // bit n: rule n
+  /// One line: the rule that fails by most, its value, limit and culprit. Empty where all is well.
+  std::string refusal() const;
+};
+
+/// Judges a machine over its <volume> (else its axes' ranges) and with its <tools>, at the references of its
+/// inputs. `accepted`: rules that the user overrides. Throws InputError for an axis without a range. tool.
+SafetySheet safety_sheet(const Machine& machine, const std::vector<SafetyRule>& accepted = {});
+
+/// Rules by their names. Throws InputError for one that does not exist, naming those that do.
+std::vector<SafetyRule> rules_named(const std::vector<std::string>& names);
+
+}  // namespace vernier

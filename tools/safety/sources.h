@@ -1,0 +1,26 @@
+#pragma once
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "tools/model/machine.h"
+#include "tools/model/states.h"
+
+namespace vernier {
+
+/// One cause of deviation: a static away from nominal, a column of a table, a scale factor.
+struct Source {
+  std::string name;  // `alpha`, `table.X.rY`, `scalefactor.X`
+  bool is_table = false;
+  Eigen::Vector3d mean_mm =
+      Eigen::Vector3d::Zero();            // of what it alone does to the tool point, over the states
+  double rms_mm = 0, varying_rms_mm = 0;  // with and without the mean
+};
+
+/// What each source does alone, the others at nominal. Sources that do nothing are left out. tool.
+std::vector<Source> error_sources(const Machine& machine, const States& states);
+
+/// Does the symbol stand anywhere in the chain (tables of an axis count)?
+bool acts(const Machine& machine, const Symbol& symbol);
+
+}  // namespace vernier

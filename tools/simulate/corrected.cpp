@@ -1,0 +1,208 @@
+#include "tools/simulate/corrected.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <map>
+#include <memory>
+
+#include "comp/compensator.h"
+#include "tools/compile/compile.h"
+#include "tools/model/files.h"
+#include "tools/simulate/counts.h"
+
+namespace vernier {
+namespace {
+
+using Index = Eigen::Index;
+namespace fs = std::filesystem;
+
+/// Half a day of a board's ticks; an equation takes about a microsecond of ours.
+constexpr double kMostTicks = 4e7;
+
+std::string fingerprint_text(std::uint64_t fingerprint) { return fmt::format("{:016x}", fingerprint); }
+
+/// The compiled directories below a folder, opened when a row asks for one.
+class ImageFolder {
+ public:
+  explicit ImageFolder(std::string directory) : directory_(std::move(directory)) {
+    std::error_code failed;
+    const fs::path root(directory_);
+    if (!fs::is_directory(root, failed)) throw InputError("\"" + directory_ + "\": no such directory");
+    look_at(root);
+    for (fs::recursive_directory_iterator it(root, fs::directory_options::skip_permission_denied, failed),
+         end;
+         !failed && it != end; it.increment(failed))
+      if (it->is_directory(failed)) look_at(it->path());
+    if (failed) throw InputError("\"" + directory_ + "\": " + failed.message());
+  }
+
+  /// Throws InputError where no directory holds it.
+  const LoadedImage& image(const std::string& fingerprint, const Place& place) {
+    const auto found = directories_.find(fingerprint);
+    if (found == directories_.end())
+      throw InputError(place, fingerprint, "no image below " + directory_ + " has this fingerprint");
+    std::unique_ptr<LoadedImage>& open = open_[fingerprint];
+    if (!open) open = load_image_dir(found->second);
+    return *open;
+  }
+
+ private:
+  void look_at(const fs::path& directory) {
+    std::error_code failed;
+    if (!fs::is_regular_file(directory / "machine.vimg", failed) ||
+        !fs::is_regular_file(directory / "machine.xml", failed))
+      return;
+    const std::string bytes = read_file((directory / "machine.vimg").string());
+    ImageHeader header;
+    if (bytes.size() < sizeof(header)) return;  // no image, and no row can mean it
+    std::memcpy(&header, bytes.data(), sizeof(header));
+    directories_.emplace(fingerprint_text(header.fingerprint), directory.string());
+  }
+
+  std::string directory_;
+  std::map<std::string, std::string> directories_;
+  std::map<std::string, std::unique_ptr<LoadedImage>> open_;
+};
+
+/// What the board reads in a row of states bound to the image's machine.
+CycleInput cycle_input(const Machine& machine, const States& s, Index row) {
+  CycleInput input;
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    const double scale = machine.axes[i].rotary ? kCountsPerDeg : kCountsPerMm;
+    AxisInput& axis = input.axis[i];
+    axis.position = AxisPosition(counts(scale * s.axis[i][row]));
+    axis.velocity = AxisSpeed(counts(scale * s.velocity[i][row]));
+    axis.acceleration = AxisAcceleration(counts(scale * s.acceleration[i][row]));
+    axis.since =
+        s.since[i][row] >= kLongWay ? AxisTravel(INT64_MAX) : AxisTravel(counts(scale * s.since[i][row]));
+    axis.sense = static_cast<std::int8_t>(s.direction[i][row]);
+  }
+  for (std::size_t i = 0; i < machine.inputs.size(); ++i)
+    input.input[i] = InputMicro(counts(1e6 * s.input[i][row]));
+  input.feed = FeedNmPerMin(counts(1e6 * s.feed[row]));
+  input.curvature = CurvatureNanoPerMm(counts(1e9 * s.curvature[row]));
+  input.time = TimeUs(counts(1e6 * s.time[row]));
+  input.visit = VisitCount(counts(s.visit[row]));
+  return input;
+}
+
+/// A tick between two rows: what moves goes on in a straight line, what is held is that of the first.
+CycleInput between(const CycleInput& from, const CycleInput& to, double share) {
+  CycleInput mid = from;
+  const auto mix = [share](auto& value, const auto& target) {
+    const auto way = static_cast<double>(target.count - value.count);
+    value.count += static_cast<decltype(value.count)>(std::llround(share * way));
+  };
+  for (std::size_t i = 0; i < kMaxAxes; ++i) {
+    mix(mid.axis[i].position, to.axis[i].position);
+    mix(mid.axis[i].velocity, to.axis[i].velocity);
+    mix(mid.axis[i].acceleration, to.axis[i].acceleration);
+  }
+  for (std::size_t i = 0; i < kMaxInputs; ++i) mix(mid.input[i], to.input[i]);
+  mix(mid.feed, to.feed);
+  mix(mid.curvature, to.curvature);
+  mix(mid.time, to.time);
+  return mid;
+}
+
+/// The corrections of one image along the rows of a measurement that is bound to the image's machine: mm or
+/// deg, by axis of the image.
+class ImageRun {
+ public:
+  ImageRun(const LoadedImage& image, const Measurement& rows)
+      : image_(image), rows_(rows), compensator_(std::make_unique<Compensator>(image.view.program())) {
+    result_.assign(image.machine.axes.size(), Column::Zero(static_cast<Index>(rows.rows())));
+  }
+
+  std::vector<Column> corrections() {
+    const bool remembers = image_.view.program().equation.lag_count > 0;
+    if (remembers && !rows_.has_recorded("t"))
+      throw InputError({rows_.files.front(), 0}, "t", "the image that ran has lags: it needs this column");
+    if (remembers) require_time_order(rows_);
+    std::vector<std::size_t> last(rows_.states.run_names.size(), rows_.rows());
+    // Run by run, since a lag starts anew with each.
+    for (std::size_t run = 0; run < last.size(); ++run) {
+      compensator_->reset();
+      for (std::size_t row = 0; row < rows_.rows(); ++row) {
+        if (rows_.states.run[row] != run) continue;
+        if (remembers && last[run] < rows_.rows()) walk(last[run], row);
+        last[run] = row;
+        note(row, compensator_->step(input_of(row)));
+      }
+    }
+    return std::move(result_);
+  }
+
+ private:
+  /// The ticks between two rows, so that lags are where they were.
+  void walk(std::size_t before, std::size_t after) {
+    const Column& t = rows_.states.time;
+    const double ticks =
+        (t[static_cast<Index>(after)] - t[static_cast<Index>(before)]) * 1e6 / image_.view.header().tick_us;
+    if ((ticks_ += ticks) > kMostTicks)
+      throw InputError({rows_.files.front(), rows_.line[after]}, "t",
+                       "the image that ran has lags, and more than forty million ticks lie before this row");
+    const auto count = std::llround(ticks);
+    const CycleInput from = input_of(before), to = input_of(after);
+    for (long long k = 1; k < count; ++k)
+      compensator_->step(between(from, to, static_cast<double>(k) / static_cast<double>(count)));
+  }
+
+  CycleInput input_of(std::size_t row) const {
+    return cycle_input(image_.machine, rows_.states, static_cast<Index>(row));
+  }
+
+  void note(std::size_t row, const CycleOutput& output) {
+    for (std::size_t i = 0; i < result_.size(); ++i)
+      result_[i][static_cast<Index>(row)] =
+          output.wanted[i].counts / (image_.machine.axes[i].rotary ? kCountsPerDeg : kCountsPerMm);
+  }
+
+  const LoadedImage& image_;
+  const Measurement& rows_;
+  std::unique_ptr<Compensator> compensator_;
+  std::vector<Column> result_;
+  double ticks_ = 0;
+};
+
+/// The correction of one image in the rows of a file that it ran in.
+void apply(const LoadedImage& image, const std::string& fingerprint, const Machine& machine,
+           const std::string& text, Measurement& m) {
+  // Bound to the image's machine: its inputs may be columns that this machine does not know.
+  const Measurement own = parse_measurement(text, m.files.front(), image.machine, [](auto&&...) {});
+  std::map<std::size_t, Index> row_on_line;
+  for (std::size_t row = 0; row < own.rows(); ++row) row_on_line[own.line[row]] = static_cast<Index>(row);
+  const std::vector<Column> corrections = ImageRun(image, own).corrections();
+  for (std::size_t row = 0; row < m.rows(); ++row) {
+    if (m.corrected[row] != fingerprint) continue;
+    const Place place{m.files.front(), m.line[row]};
+    const auto found = row_on_line.find(m.line[row]);
+    if (found == row_on_line.end())
+      throw InputError(place, fingerprint, "an input of this image is empty in this row");
+    for (std::size_t i = 0; i < corrections.size(); ++i) {
+      const auto axis = machine.find_axis(image.machine.axes[i].name);
+      if (!axis)
+        throw InputError(place, image.machine.axes[i].name, "the machine file lacks this axis of the image");
+      m.correction[*axis][static_cast<Index>(row)] = corrections[i][found->second];
+    }
+  }
+}
+
+}  // namespace
+
+ImageCorrection corrections_of_images(const std::string& directory) {
+  if (directory.empty()) return {};
+  return [folder = std::make_shared<ImageFolder>(directory)](Measurement& m, const Machine& machine,
+                                                             const std::string& text) {
+    std::map<std::string, std::size_t> first_row;
+    for (std::size_t row = 0; row < m.rows(); ++row)
+      if (!m.corrected[row].empty()) first_row.emplace(m.corrected[row], row);
+    for (const auto& [fingerprint, row] : first_row)
+      apply(folder->image(fingerprint, {m.files.front(), m.line[row]}), fingerprint, machine, text, m);
+  };
+}
+
+}  // namespace vernier

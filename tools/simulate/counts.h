@@ -1,0 +1,19 @@
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "comp/quantity.h"
+
+namespace vernier {
+
+/// Axis counts of a mm, and of a degree.
+inline constexpr double kCountsPerMm = 1e6, kCountsPerDeg = static_cast<double>(kTurnCounts) / 360;
+
+/// Nearest count, held well inside 64 bits.
+inline std::int64_t counts(double value) {
+  constexpr double kMost = 4e18;
+  return std::llround(std::clamp(value, -kMost, kMost));
+}
+
+}  // namespace vernier
