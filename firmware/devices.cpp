@@ -75,7 +75,7 @@ struct Devices::Parts {
   std::unique_ptr<DigitalInput> enable;
   std::unique_ptr<DigitalOutput> healthy;
   std::vector<std::unique_ptr<CommandLink>> links;
-  std::vector<Finding> findings;
+  std::vector<DeviceFinding> findings;
 
   explicit Parts(const BoardFile& board_file) : file(board_file) {}
   void note(const std::string& device, const std::string& missing,
@@ -294,7 +294,7 @@ Board Devices::board() noexcept {
 
 Clock& Devices::clock() noexcept { return parts_->clock; }
 std::vector<std::unique_ptr<CommandLink>>& Devices::links() noexcept { return parts_->links; }
-std::vector<Finding>& Devices::findings() noexcept { return parts_->findings; }
+std::vector<DeviceFinding>& Devices::findings() noexcept { return parts_->findings; }
 void Devices::release() noexcept { parts_->plant->release(); }
 void Devices::advance() noexcept { parts_->plant->advance(); }
 bool Devices::has_sensors() const noexcept { return !parts_->sensors.empty(); }

@@ -13,7 +13,7 @@
 namespace vernier {
 
 /// What `--check` says of a device.
-struct Finding {
+struct DeviceFinding {
   std::string device;                    // "axis.X.output  pwm"
   std::string missing;                   // empty: it is there
   std::function<std::string()> attempt;  // tries it once more; what is missing, or empty
@@ -36,7 +36,7 @@ class Devices {
   /// Waits until a request comes over one of the links, at most `wait`. setup.
   void wait_for_request(TimeUs wait) noexcept;
   /// One of each device, in the order of the board file. setup.
-  std::vector<Finding>& findings() noexcept;
+  std::vector<DeviceFinding>& findings() noexcept;
 
   /// A correction that a killed daemon left in a drive, or the value that a converter wakes up with, is taken
   /// out before the first tick: within the limits of the axis, and over a second at least. stop: ends it

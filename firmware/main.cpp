@@ -116,7 +116,7 @@ int run_image(const Arguments& arguments) {
 
 int check_devices(Devices& devices) {
   int missing = 0;
-  for (Finding& finding : devices.findings()) {
+  for (DeviceFinding& finding : devices.findings()) {
     if (finding.missing.empty() && finding.attempt) finding.missing = finding.attempt();
     const bool there = finding.missing.empty();
     std::printf("%s  %s%s%s\n", there ? "ok     " : "missing", finding.device.c_str(), there ? "" : ": ",
@@ -131,7 +131,7 @@ int check_devices(Devices& devices) {
 
 bool all_there(Devices& devices) {
   bool all = true;
-  for (const Finding& finding : devices.findings()) {
+  for (const DeviceFinding& finding : devices.findings()) {
     if (finding.missing.empty()) continue;
     std::fprintf(stderr, "vernierd: missing: %s: %s\n", finding.device.c_str(), finding.missing.c_str());
     all = false;

@@ -11,7 +11,7 @@
 #include "hal/sim/analogue_chain.h"
 #include "tests/conformance/linux_devices.h"
 
-namespace vernier {
+namespace vernier::analogue_test {
 namespace {
 
 // The published chain of 8 bits: 255 codes are 250 um, code 127 is no correction, 254 the last used.
@@ -222,4 +222,4 @@ TEST(SysfsAttribute, ReadsDecimalNumbersAndNothingElse) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::analogue_test

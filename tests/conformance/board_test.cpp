@@ -15,7 +15,7 @@
 #include "hal/sim/roaming.h"
 #include "tests/conformance/linux_devices.h"
 
-namespace vernier {
+namespace vernier::board_test {
 namespace {
 
 constexpr std::uint32_t kAxes = 3, kInputs = 2, kFirstId = 0x180;
@@ -221,4 +221,4 @@ INSTANTIATE_TEST_SUITE_P(Backends, DeviceConformance,
                          });
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::board_test

@@ -7,7 +7,7 @@
 #include "hal/linux/can_axes.h"
 #include "tests/conformance/linux_devices.h"
 
-namespace vernier {
+namespace vernier::can_axes_test {
 namespace {
 
 constexpr std::uint32_t kX = 0x180, kC = 0x1234567;
@@ -182,4 +182,4 @@ TEST(CanAxes, RefusesWhatCannotBe) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::can_axes_test

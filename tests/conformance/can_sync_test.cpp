@@ -8,7 +8,7 @@
 #include "hal/linux/monotonic_clock.h"
 #include "tests/conformance/linux_devices.h"
 
-namespace vernier {
+namespace vernier::can_sync_test {
 namespace {
 
 class Sync : public testing::Test {
@@ -55,4 +55,4 @@ TEST(SyncSetUp, MissingBusIsNamed) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::can_sync_test

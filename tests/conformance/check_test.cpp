@@ -8,7 +8,7 @@
 
 #include "tests/conformance/linux_devices.h"
 
-namespace vernier {
+namespace vernier::check_test {
 namespace {
 
 constexpr const char* kBoard = R"([board]
@@ -214,4 +214,4 @@ TEST_F(Check, WhatAConverterHoldsFromBeforeIsTakenOut) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::check_test

@@ -7,7 +7,7 @@
 #include "hal/linux/monotonic_clock.h"
 #include "hal/sim/sim_clock.h"
 
-namespace vernier {
+namespace vernier::clock_test {
 namespace {
 
 struct Backend {
@@ -71,4 +71,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const testing::TestParamInfo<Backend>& parameter) { return parameter.param.name; });
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::clock_test

@@ -20,7 +20,7 @@
 #include "hal/linux/modbus_server.h"
 #include "tools/upload/transport.h"
 
-namespace vernier {
+namespace vernier::link_conformance_test {
 namespace {
 
 /// Answers a request with its bytes, reversed and one more; counts what it was given.
@@ -262,4 +262,4 @@ TEST(ModbusServerSetUp, SaysWhyItCannotListen) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::link_conformance_test

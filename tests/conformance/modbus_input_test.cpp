@@ -23,7 +23,7 @@
 
 #include "hal/linux/modbus_input.h"
 
-namespace vernier {
+namespace vernier::modbus_input_test {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
@@ -281,4 +281,4 @@ TEST(ModbusLineSetUp, MissingDeviceIsNamed) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::modbus_input_test

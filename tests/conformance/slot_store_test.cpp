@@ -9,7 +9,7 @@
 #include "hal/linux/file_slot_store.h"
 #include "hal/sim/sim_slot_store.h"
 
-namespace vernier {
+namespace vernier::slot_store_test {
 namespace {
 
 constexpr std::uint32_t kCapacity = 5000;
@@ -98,4 +98,4 @@ TEST(FileSlotStore, MissingDirectoryAndFullMediumAreFaults) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::slot_store_test

@@ -16,9 +16,9 @@
 #include <numbers>
 #include <random>
 
-#include "tools/model/files.h"
+#include "tools/text/files.h"
 
-namespace vernier {
+namespace vernier::cautionary_tale_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -171,4 +171,4 @@ TEST_F(CautionaryTale, ALearnedModelIsBoundedAndTheMissingCauseNamed) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::cautionary_tale_test

@@ -8,10 +8,10 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "tools/model/csv.h"
-#include "tools/model/files.h"
+#include "tools/text/csv.h"
+#include "tools/text/files.h"
 
-namespace vernier {
+namespace vernier::command_test {
 namespace {
 
 constexpr const char* kMachine = R"xml(<machine name="m"><variables>
@@ -78,4 +78,4 @@ TEST_F(SimulateCommand, BadInputIsStatusOneAndWritesNothing) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::command_test

@@ -10,10 +10,10 @@
 #include <memory>
 
 #include "hal/sim/analogue_chain.h"
-#include "tools/model/error.h"
 #include "tools/simulate/simulate.h"
+#include "tools/text/error.h"
 
-namespace vernier {
+namespace vernier::known_truth_test {
 namespace {
 
 /// A bridge machine with squareness (deg), backlash (mm), servo lag (s), thermal scale (1/K) and a table on
@@ -209,4 +209,4 @@ TEST(KnownTruth, SlewLimitBelowACountIsRefusedAndNotWaitedFor) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::known_truth_test

@@ -8,9 +8,9 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "tools/model/files.h"
+#include "tools/text/files.h"
 
-namespace vernier {
+namespace vernier::measured_on_command_test {
 namespace {
 
 /// A scale error of 1e-4 on X and nothing else.
@@ -91,4 +91,4 @@ TEST_F(MeasuredOnCommand, BeforeAndAfterAreComparedAndTold) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::measured_on_command_test

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "tools/model/chain.h"
-#include "tools/model/numbers.h"
+#include "tools/text/numbers.h"
 
 namespace vernier::support {
 namespace {

@@ -11,9 +11,9 @@
 #include <stdexcept>
 
 #include "tools/model/chain.h"
-#include "tools/model/files.h"
-#include "tools/model/numbers.h"
 #include "tools/model/parameters.h"
+#include "tools/text/files.h"
+#include "tools/text/numbers.h"
 
 namespace vernier::support {
 namespace {

@@ -3,17 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <set>
 
 #include "tools/compile/calculus.h"
+#include "tools/maths/factors.h"
 
 namespace vernier {
 namespace {
 
-constexpr double kUmPerMm = 1000;
-
-constexpr double kRad = std::numbers::pi / 180;
 using Registers = std::set<std::uint32_t>;
 
 /// How strongly each register's error shows in the register `output`: reverse accumulation of the gains.
@@ -432,10 +429,10 @@ std::optional<TiltBound> tilt_bound_of(const Derivation& d, const LoweredProgram
   if (!d.orientation) return std::nullopt;
   const Orientation& o = *d.orientation;
   TiltBound bound;
-  bound.deviation_deg = o.spread / kRad;
+  bound.deviation_deg = o.spread / kRadPerDeg;
   const double error = tilt_error(d, p);
-  bound.fixed_point_deg = error / kRad;
-  bound.second_order_deg = remainders_of(d, p, 0).back().tilt / kRad;
+  bound.fixed_point_deg = error / kRadPerDeg;
+  bound.second_order_deg = remainders_of(d, p, 0).back().tilt / kRadPerDeg;
   return bound;
 }
 

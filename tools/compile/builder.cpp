@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "comp/sine.h"
+#include "tools/maths/factors.h"
 
 namespace vernier {
 namespace {
@@ -394,15 +395,14 @@ ProgramBuilder::Id ProgramBuilder::sine_cosine(Id angle, const Interval& sine, c
   const double multiplier = std::round(std::ldexp(per_count, shift));
   // Where rounding reaches 2^31, one less is as good.
   const auto k = static_cast<std::int32_t>(std::min(multiplier, 2147483647.0));
-  constexpr double kRad = 3.14159265358979323846 / 180;
   const double turning =
-      std::abs(std::ldexp(k, -shift) / per_count - 1) * largest_count(angle) * lsb(angle) * kRad +
+      std::abs(std::ldexp(k, -shift) / per_count - 1) * largest_count(angle) * lsb(angle) * kRadPerDeg +
       std::ldexp(2 * 3.14159265358979323846, -32);
   Register r;
   r.fraction_bits = 30;
   r.own_error = turning + kSineErrorMilliLsb * 1e-3 * std::ldexp(1.0, -30);
   r.source = ErrorSource::kFunction;
-  r.uses = {{angle, kRad}};
+  r.uses = {{angle, kRadPerDeg}};
   std::vector<Register> results(2, r);
   const std::string name = at(angle).name.size() <= 36 ? at(angle).name : "angle";
   results[0].name = "sin_" + name;

@@ -1,24 +1,24 @@
 #include "tools/compile/calculus.h"
 
 #include <cmath>
-#include <numbers>
 #include <queue>
 #include <random>
 #include <set>
 #include <stdexcept>
 
+#include "tools/maths/factors.h"
+
 namespace vernier {
 namespace {
 
-constexpr double kRad = std::numbers::pi / 180;
 constexpr unsigned kSeed = 20260701;
 
 NodeId slope_node(Graph& g, Function f, NodeId a) {
   switch (f) {
     case Function::kSin:
-      return g.scale(kRad, g.function(Function::kCos, a));
+      return g.scale(kRadPerDeg, g.function(Function::kCos, a));
     case Function::kCos:
-      return g.scale(-kRad, g.function(Function::kSin, a));
+      return g.scale(-kRadPerDeg, g.function(Function::kSin, a));
     case Function::kExp:
       return g.function(Function::kExp, a);
     case Function::kLog:
@@ -30,7 +30,7 @@ NodeId slope_node(Graph& g, Function f, NodeId a) {
       return g.scale(-1, g.product(r, r));
     }
     case Function::kArcTangent:
-      return g.scale(1 / kRad, g.function(Function::kReciprocal, g.sum(1, {{1, g.product(a, a)}})));
+      return g.scale(1 / kRadPerDeg, g.function(Function::kReciprocal, g.sum(1, {{1, g.product(a, a)}})));
   }
   throw std::logic_error("unknown function");
 }

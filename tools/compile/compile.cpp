@@ -8,7 +8,7 @@
 
 #include "tables/checksum.h"
 #include "tools/compile/bound.h"
-#include "tools/model/files.h"
+#include "tools/text/files.h"
 
 namespace vernier {
 namespace {

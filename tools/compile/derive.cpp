@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 #include <utility>
 
@@ -10,11 +9,10 @@
 #include "tools/compile/orientation.h"
 #include "tools/compile/solve.h"
 #include "tools/compile/walk.h"
+#include "tools/maths/factors.h"
 
 namespace vernier {
 namespace {
-
-constexpr double kRad = std::numbers::pi / 180;
 
 void check_machine(const Machine& machine) {
   for (const Static& s : machine.statics)
@@ -64,7 +62,7 @@ class Attempt {
     for (std::size_t i = 0; i < steps_.size(); ++i) {
       const double speed = d_.graph[by_axis.of(steps_[i].by.nominal)].range.magnitude();
       const double reach = i < frozen_from_ ? taken_[i] : reach_mm_[i - frozen_from_];
-      length += speed * (steps_[i].turn ? kRad * reach : 1);
+      length += speed * (steps_[i].turn ? kRadPerDeg * reach : 1);
     }
     return length;
   }
@@ -119,10 +117,10 @@ class Attempt {
     for (std::size_t i = 0; i < taken_.size(); ++i) {
       const Step& step = steps_[i];
       const double speed = d_.graph[by_axis.of(step.by.nominal)].range.magnitude();
-      length += speed * (step.turn ? kRad * taken_[i] : 1);
+      length += speed * (step.turn ? kRadPerDeg * taken_[i] : 1);
     }
     if (last_turn == nullptr) return length;
-    const double turning = kRad * d_.graph[by_axis.of(last_turn->by.nominal)].range.magnitude();
+    const double turning = kRadPerDeg * d_.graph[by_axis.of(last_turn->by.nominal)].range.magnitude();
     if (turning > 0) d_.turning[axis] = turning;
     return length + turning * walk_.reach_mm();
   }

@@ -1,22 +1,18 @@
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 
 #include "tools/compile/graph.h"
+#include "tools/maths/factors.h"
 
 namespace vernier {
-namespace {
-
-constexpr double kRad = std::numbers::pi / 180;
-
-}  // namespace
+namespace {}  // namespace
 
 double value_of(Function f, double x) {
   switch (f) {
     case Function::kSin:
-      return std::sin(x * kRad);
+      return std::sin(x * kRadPerDeg);
     case Function::kCos:
-      return std::cos(x * kRad);
+      return std::cos(x * kRadPerDeg);
     case Function::kExp:
       return std::exp(x);
     case Function::kLog:
@@ -26,7 +22,7 @@ double value_of(Function f, double x) {
     case Function::kReciprocal:
       return 1 / x;
     case Function::kArcTangent:
-      return std::atan(x) / kRad;
+      return std::atan(x) / kRadPerDeg;
   }
   throw std::logic_error("unknown function");
 }
@@ -34,9 +30,9 @@ double value_of(Function f, double x) {
 double slope_of(Function f, double x) {
   switch (f) {
     case Function::kSin:
-      return kRad * std::cos(x * kRad);
+      return kRadPerDeg * std::cos(x * kRadPerDeg);
     case Function::kCos:
-      return -kRad * std::sin(x * kRad);
+      return -kRadPerDeg * std::sin(x * kRadPerDeg);
     case Function::kExp:
       return std::exp(x);
     case Function::kLog:
@@ -46,7 +42,7 @@ double slope_of(Function f, double x) {
     case Function::kReciprocal:
       return -1 / (x * x);
     case Function::kArcTangent:
-      return 1 / (1 + x * x) / kRad;
+      return 1 / (1 + x * x) / kRadPerDeg;
   }
   throw std::logic_error("unknown function");
 }
@@ -58,11 +54,11 @@ double slope_bound(Function f, const Interval& x) {
   switch (f) {
     case Function::kSin:
     case Function::kCos:
-      return kRad;
+      return kRadPerDeg;
     case Function::kExp:
       return std::exp(x.high);
     case Function::kArcTangent:
-      return 1 / kRad;
+      return 1 / kRadPerDeg;
     default:
       return std::abs(slope_of(f, nearest));
   }
@@ -73,7 +69,7 @@ double fourth_derivative_bound(Function f, const Interval& x) {
   switch (f) {
     case Function::kSin:
     case Function::kCos:
-      return kRad * kRad * kRad * kRad;
+      return kRadPerDeg * kRadPerDeg * kRadPerDeg * kRadPerDeg;
     case Function::kExp:
       return std::exp(x.high);
     case Function::kLog:
@@ -83,7 +79,7 @@ double fourth_derivative_bound(Function f, const Interval& x) {
     case Function::kReciprocal:
       return 24 / std::pow(nearest, 5);
     case Function::kArcTangent:
-      return 4.67 / kRad;  // max of |24 x (1 - x^2) / (1 + x^2)^4| is 4.669
+      return 4.67 / kRadPerDeg;  // max of |24 x (1 - x^2) / (1 + x^2)^4| is 4.669
   }
   throw std::logic_error("unknown function");
 }

@@ -2,23 +2,23 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
+
+#include "tools/maths/factors.h"
 
 namespace vernier {
 namespace {
 
 // Coefficients that only rounding of cos 90 deg and the like keeps from being zero.
 constexpr double kRoundOff = 1e-15;
-constexpr double kRad = std::numbers::pi / 180;
 
 // Sine over an interval in degrees: its ends, and the crests and troughs at 90 + 360 k and -90 + 360 k
 // between.
 Interval range_of_sine(const Interval& x) {
   if (x.high - x.low >= 360) return {-1, 1};
   constexpr double kSlack = 1e-15;  // of the library's sine
-  Interval range = hull({std::sin(x.low * kRad), std::sin(x.low * kRad)},
-                        {std::sin(x.high * kRad), std::sin(x.high * kRad)});
+  Interval range = hull({std::sin(x.low * kRadPerDeg), std::sin(x.low * kRadPerDeg)},
+                        {std::sin(x.high * kRadPerDeg), std::sin(x.high * kRadPerDeg)});
   const auto reaches = [&](double angle) {
     return std::floor((x.high - angle) / 360) >= std::ceil((x.low - angle) / 360);
   };

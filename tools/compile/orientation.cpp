@@ -4,22 +4,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 
 #include "tools/compile/calculus.h"
 #include "tools/compile/compile.h"
+#include "tools/compile/solve.h"
+#include "tools/maths/factors.h"
 
 namespace vernier {
 namespace {
 
-constexpr double kRad = std::numbers::pi / 180;
-constexpr Eigen::Index kSamples = 512;
-constexpr std::size_t kBoxes = 4096;
-/// Below this share of its largest sampled value the determinant is damped; as solve.cpp has it.
-constexpr double kFloorShare = 1.0 / 256;
 /// A column this small against 1 rad per rad tilts nothing.
-constexpr double kFlat = 1e-9;
+constexpr double kTiltsNothing = 1e-9;
 /// One pair of axes is better than one nearer to the tool if its determinant is larger by this factor.
 constexpr double kBetter = 1.05;
 
@@ -87,10 +83,10 @@ class DirectionChain {
       Derivative by_axis(g, channel(axis));
       double speed = 0;
       for (const Step& step : steps_)
-        if (step.turn) speed += kRad * g[by_axis.of(step.by.nominal)].range.magnitude();
+        if (step.turn) speed += kRadPerDeg * g[by_axis.of(step.by.nominal)].range.magnitude();
       Eigen::ArrayXd length = Eigen::ArrayXd::Zero(kSamples);
       for (const NodeId component : direction) length += sampled(g, component).square();
-      if (length.maxCoeff() < kFlat * kFlat) return std::nullopt;
+      if (length.maxCoeff() < kTiltsNothing * kTiltsNothing) return std::nullopt;
       const double lever = std::exp2(std::ceil(std::log2(speed)));
       for (NodeId& component : direction) component = simplified(g, g.scale(1 / lever, component));
       return Tilt{axis, direction, lever};
@@ -145,7 +141,7 @@ std::vector<Tilt> best_pair(Graph& g, const std::vector<Tilt>& tilts) {
     for (std::size_t k = i + 1; k < tilts.size(); ++k) {
       const std::vector<Tilt> pair = {tilts[i], tilts[k]};
       const NodeId determinant = normal_of(g, pair).determinant;
-      if (sampled(g, determinant).maxCoeff() < kFlat) continue;
+      if (sampled(g, determinant).maxCoeff() < kTiltsNothing) continue;
       const double here = usual(g, determinant);
       if (best.empty() || here > kBetter * most) most = here, best = pair;
     }
@@ -281,7 +277,7 @@ std::optional<Tilting> solve_direction(const Machine& machine, Derivation& d, do
 std::vector<bool> damped_poses(const Machine& machine, const States& states) {
   std::vector<bool> result(states.count, false);
   Derivation d;
-  if (!machine.correct_orientation || !solve_direction(machine, d, kFlat) || !d.orientation->damped)
+  if (!machine.correct_orientation || !solve_direction(machine, d, kTiltsNothing) || !d.orientation->damped)
     return result;
   Samples values(d.graph, static_cast<Eigen::Index>(states.count));
   for (std::size_t i = 0; i < machine.axes.size(); ++i)

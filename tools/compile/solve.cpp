@@ -10,12 +10,8 @@
 namespace vernier {
 namespace {
 
-constexpr Eigen::Index kSamples = 512;
-constexpr std::size_t kBoxes = 4096;
 /// A singular value this small against the largest is none.
 constexpr double kFlat = 1e-9;
-/// Where det(J J') is below this share of its largest sampled value, the correction fades.
-constexpr double kFloorShare = 1.0 / 256;
 
 using Matrix = std::vector<std::vector<NodeId>>;  // rows
 

@@ -6,6 +6,13 @@
 
 namespace vernier {
 
+/// Poses over the declared ranges at which a determinant is looked at, and boxes into which they are cut
+/// where a bound is wanted: more change the damping by less than a tenth.
+inline constexpr Eigen::Index kSamples = 512;
+inline constexpr std::size_t kBoxes = 4096;
+/// Where a determinant is below this share of its largest sampled value, the correction fades.
+inline constexpr double kFloorShare = 1.0 / 256;
+
 /// What the columns of some axes span over the declared ranges, as sampled.
 struct Span {
   int rank = 0;             // of all directions together: 3 where the axes reach every direction somewhere

@@ -1,14 +1,12 @@
 #include "tools/compile/walk.h"
 
 #include <cmath>
-#include <numbers>
 
 #include "tools/compile/calculus.h"
+#include "tools/maths/factors.h"
 
 namespace vernier {
 namespace {
-
-constexpr double kRad = std::numbers::pi / 180;
 
 /// The terms that an expression is the sum of, each with its own share of the expression's delta.
 void split(const Expr& expr, double sign, Translator& translate, Graph& g, std::size_t line,
@@ -67,7 +65,7 @@ NodeVector motion_of(Graph& g, NodeId axis, const NodeVector& point, const Step*
   Derivative by_axis(g, axis);
   for (std::size_t c = 0; c < 3; ++c) column[c] = by_axis.of(point[c]);
   if (last_turn == nullptr) return column;
-  const NodeId speed = g.scale(kRad, by_axis.of(last_turn->by.nominal));
+  const NodeId speed = g.scale(kRadPerDeg, by_axis.of(last_turn->by.nominal));
   const auto a = static_cast<std::size_t>((last_turn->axis + 1) % 3),
              b = static_cast<std::size_t>((last_turn->axis + 2) % 3);
   column[a] = g.subtract(column[a], g.product(speed, point[b]));
@@ -142,7 +140,7 @@ std::pair<NodeId, NodeId> Walk::direction_of(NodeId angle_deg) {
   if (!value) return {g_.function(Function::kCos, angle_deg), g_.function(Function::kSin, angle_deg)};
   const double quarter = *value / 90;
   if (quarter != std::round(quarter))
-    return {g_.constant(std::cos(*value * kRad)), g_.constant(std::sin(*value * kRad))};
+    return {g_.constant(std::cos(*value * kRadPerDeg)), g_.constant(std::sin(*value * kRadPerDeg))};
   const int q = ((static_cast<int>(std::fmod(quarter, 4)) % 4) + 4) % 4;
   constexpr std::array<double, 4> kCosine = {1, 0, -1, 0}, kSine = {0, 1, 0, -1};
   return {g_.constant(kCosine[static_cast<std::size_t>(q)]), g_.constant(kSine[static_cast<std::size_t>(q)])};
@@ -198,9 +196,9 @@ void Walk::split_turn(const Step& step, const NodeVector& point, const NodeVecto
     NodeVector share = only(a, g_.constant(0));
     const auto own = g_.constant_value(part.delta);
     for (const std::size_t c : {a, b}) {
-      share[c] = total && own
-                     ? g_.scale(*own / *total, all[c])
-                     : g_.scale(c == a ? -kRad : kRad, g_.product(part.delta, point[c == a ? b : a]));
+      share[c] = total && own ? g_.scale(*own / *total, all[c])
+                              : g_.scale(c == a ? -kRadPerDeg : kRadPerDeg,
+                                         g_.product(part.delta, point[c == a ? b : a]));
       rest[c] = g_.subtract(rest[c], share[c]);
     }
     add_part(step.where + ": " + part.term, seen_from_frame(share));
@@ -238,7 +236,7 @@ void Walk::deviate_by_turn(const Step& step) {
   if (g_.is_zero(step.by.delta)) return;
   const auto a = static_cast<std::size_t>((step.axis + 1) % 3),
              b = static_cast<std::size_t>((step.axis + 2) % 3);
-  const double size = g_[step.by.delta].range.magnitude() * kRad;
+  const double size = g_[step.by.delta].range.magnitude() * kRadPerDeg;
   NodeVector point = nominal_;
   const NodeVector so_far = deviation_here();
   const NodeVector across = {g_.constant(0), so_far[a], so_far[b]};
@@ -260,8 +258,8 @@ void Walk::deviate_by_turn(const Step& step) {
 }
 
 NodeId Walk::sine_of(const Step& step, double size, double reach) {
-  if (const auto angle = g_.constant_value(step.by.delta)) return g_.constant(std::sin(*angle * kRad));
-  const NodeId angle = g_.scale(kRad, step.by.delta);
+  if (const auto angle = g_.constant_value(step.by.delta)) return g_.constant(std::sin(*angle * kRadPerDeg));
+  const NodeId angle = g_.scale(kRadPerDeg, step.by.delta);
   if (small(std::pow(size, 3) / 6 * reach, step, "third order of ")) return angle;
   if (small(std::pow(size, 5) / 120 * reach, step, "fifth order of "))
     return g_.sum(0, {{1, angle}, {-1.0 / 6, g_.product(angle, g_.product(angle, angle))}});
@@ -269,9 +267,10 @@ NodeId Walk::sine_of(const Step& step, double size, double reach) {
 }
 
 NodeId Walk::bend_of(const Step& step, double size, double reach) {
-  if (const auto angle = g_.constant_value(step.by.delta)) return g_.constant(1 - std::cos(*angle * kRad));
+  if (const auto angle = g_.constant_value(step.by.delta))
+    return g_.constant(1 - std::cos(*angle * kRadPerDeg));
   if (small(size * size / 2 * reach, step, "second order of ")) return g_.constant(0);
-  const NodeId angle = g_.scale(kRad, step.by.delta), square = g_.product(angle, angle);
+  const NodeId angle = g_.scale(kRadPerDeg, step.by.delta), square = g_.product(angle, angle);
   if (small(std::pow(size, 4) / 24 * reach, step, "fourth order of ")) return g_.scale(0.5, square);
   if (small(std::pow(size, 6) / 720 * reach, step, "sixth order of "))
     return g_.sum(0, {{0.5, square}, {-1.0 / 24, g_.product(square, square)}});

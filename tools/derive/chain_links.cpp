@@ -15,16 +15,16 @@ namespace {
 using GiNaC::ex;
 
 /// Which degree of freedom of a transform comes when, from the side of the base.
-struct Step {
+struct LinkStep {
   std::size_t dof;
   bool rotation;
   int axis;
 };
-constexpr std::array<Step, 6> kSixDofSteps = {
+constexpr std::array<LinkStep, 6> kSixDofSteps = {
     {{0, false, 0}, {1, false, 1}, {2, false, 2}, {3, true, 0}, {4, true, 1}, {5, true, 2}}};
-constexpr std::array<Step, 4> kDhSteps = {{{1, false, 2}, {0, true, 2}, {2, false, 0}, {3, true, 0}}};
+constexpr std::array<LinkStep, 4> kDhSteps = {{{1, false, 2}, {0, true, 2}, {2, false, 0}, {3, true, 0}}};
 
-ex motion_value(const Machine& machine, const Transform& transform, const Step& step, SymbolBook& book) {
+ex motion_value(const Machine& machine, const Transform& transform, const LinkStep& step, SymbolBook& book) {
   try {
     const ex value = book.value(*transform.dof[step.dof]);
     return step.rotation ? expand_inside(to_rad(value)) : expand_inside(value);
@@ -40,8 +40,8 @@ void append(const Machine& machine, bool workpiece, SymbolBook& book,
   for (std::size_t link = 0; link < branch.size(); ++link) {
     const Transform& transform = branch[link];
     const bool dh = transform.kind == TransformKind::kDh;
-    const Step* const first = dh ? kDhSteps.data() : kSixDofSteps.data();
-    for (const Step* step = first; step != first + transform.dof_count(); ++step) {
+    const LinkStep* const first = dh ? kDhSteps.data() : kSixDofSteps.data();
+    for (const LinkStep* step = first; step != first + transform.dof_count(); ++step) {
       const ex value = motion_value(machine, transform, *step, book);
       if (!value.is_zero())
         motions.push_back({step->rotation, step->axis, value, workpiece, link, step->dof});

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/derive/interval.h"
+#include "tools/derive/symbol_book.h"
 
 #include <cmath>
 #include <limits>
@@ -11,11 +12,6 @@ namespace {
 
 using GiNaC::ex;
 using std::numbers::pi;
-
-/// Is it a call of the function of this name?
-bool is_call(const ex& e, const char* name) {
-  return GiNaC::is_a<GiNaC::function>(e) && GiNaC::ex_to<GiNaC::function>(e).get_name() == name;
-}
 
 Interval widened(const Interval& a) {
   if (!std::isfinite(a.low) || !std::isfinite(a.high)) throw NoRange("a value without bound");

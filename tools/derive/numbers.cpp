@@ -6,7 +6,7 @@
 #include <numbers>
 #include <string>
 
-#include "tools/model/numbers.h"
+#include "tools/text/numbers.h"
 
 namespace vernier {
 namespace {

@@ -33,7 +33,7 @@ std::vector<std::string> component_terms(const ErrorEquation& equation, std::siz
   return terms;
 }
 
-std::string joined(const std::vector<std::string>& terms, const std::string& separator) {
+std::string sum_text(const std::vector<std::string>& terms, const std::string& separator) {
   if (terms.empty()) return "0";
   std::string text = terms[0][0] == '-' ? "-" + terms[0].substr(2) : terms[0].substr(2);
   for (std::size_t i = 1; i < terms.size(); ++i) text += separator + terms[i];
@@ -82,7 +82,7 @@ std::string vector_text(const std::array<ex, 3>& v, Notation notation) {
 
 std::string print_component(const ErrorEquation& equation, std::size_t component, Notation notation,
                             const std::string& separator) {
-  return joined(component_terms(equation, component, notation), separator);
+  return sum_text(component_terms(equation, component, notation), separator);
 }
 
 std::string print_text(const DerivedMachine& derived) {

@@ -41,7 +41,7 @@ Travel travel_of(const ErrorEquation& equation, const ElementaryMotion& motion, 
 }
 
 /// Box of a vector and a bound of its norm.
-struct Reach {
+struct TermReach {
   std::array<Interval, 3> box{};
   double norm = 0;
 
@@ -140,7 +140,7 @@ SecondOrder bound_of(const ErrorEquation& equation, const Ranges& ranges) {
   std::vector<Travel> travels;
   std::vector<double> levers(equation.motions.size());
   for (const ElementaryMotion& m : equation.motions) travels.push_back(travel_of(equation, m, ranges));
-  Reach tip;
+  TermReach tip;
   for (std::size_t j = equation.motions.size(); j-- > 0;) {
     const ElementaryMotion& m = equation.motions[j];
     const auto axis = static_cast<std::size_t>(m.axis);

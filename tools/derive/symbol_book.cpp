@@ -3,17 +3,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "tools/derive/numbers.h"
 #include "tools/derive/tidy.h"
+#include "tools/maths/factors.h"
 #include "tools/model/chain.h"
 
 namespace vernier {
 namespace {
 
 using GiNaC::ex;
-constexpr double kDegPerRad = 180 / std::numbers::pi;
 constexpr int kCubicSteps = 16;  // looks between two stations for the largest value of a spline
 
 /// Component errors of ISO 230-1 by the columns X Y Z rX rY rZ of a table.
@@ -246,6 +245,10 @@ void SymbolBook::settle_sizes(const ErrorSizes& sizes) {
     if (p.from_file) continue;
     p.magnitude = p.unit == "mm" ? sizes.length_mm : p.unit == "rad" ? sizes.angle_rad : sizes.number;
   }
+}
+
+bool is_call(const GiNaC::ex& e, const char* name) {
+  return GiNaC::is_a<GiNaC::function>(e) && GiNaC::ex_to<GiNaC::function>(e).get_name() == name;
 }
 
 }  // namespace vernier

@@ -60,4 +60,7 @@ class SymbolBook {
       rough_;  // stands for a derivative that does not exist
 };
 
+/// Is it a call of the function of this name?
+bool is_call(const GiNaC::ex& e, const char* name);
+
 }  // namespace vernier

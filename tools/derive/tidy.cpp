@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/derive/tidy.h"
+#include "tools/derive/symbol_book.h"
 
 namespace vernier {
 namespace {
@@ -7,11 +8,6 @@ namespace {
 using GiNaC::ex;
 /// Sums longer than this are not factored: it would take seconds and find nothing.
 constexpr std::size_t kFactorTerms = 24;
-
-/// Is it a call of the function of this name?
-bool is_call(const ex& e, const char* name) {
-  return GiNaC::is_a<GiNaC::function>(e) && GiNaC::ex_to<GiNaC::function>(e).get_name() == name;
-}
 
 /// sin(x)^n with n >= 2, wherever it stands.
 class SquaresOfSines : public GiNaC::map_function {

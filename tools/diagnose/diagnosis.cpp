@@ -9,9 +9,9 @@
 #include "tools/diagnose/outliers.h"
 #include "tools/diagnose/pieces.h"
 #include "tools/diagnose/shape.h"
-#include "tools/diagnose/structure.h"
-#include "tools/diagnose/time_base.h"
 #include "tools/fit/domain.h"
+#include "tools/residual/structure.h"
+#include "tools/timebase/time_base.h"
 
 namespace vernier {
 namespace {

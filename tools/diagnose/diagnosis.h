@@ -4,12 +4,12 @@
 #include <string>
 #include <vector>
 
-#include "tools/diagnose/candidate.h"
-#include "tools/diagnose/structure.h"
-#include "tools/diagnose/time_base.h"
+#include "tools/effects/candidate.h"
 #include "tools/fit/fit.h"
 #include "tools/model/machine.h"
 #include "tools/model/measurement.h"
+#include "tools/residual/structure.h"
+#include "tools/timebase/time_base.h"
 
 namespace vernier {
 

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <set>
 
-#include "tools/diagnose/probe.h"
+#include "tools/effects/probe.h"
 #include "tools/model/chain_rows.h"
 #include "tools/vibration/signal_features.h"
 
@@ -162,9 +162,8 @@ class Enumerator {
       one.inputs = {machine_.inputs[i].name};
       one.units = {machine_.inputs[i].unit};
       if (needs("{ref}"))
-        one.reference = i < evidence_.declared_inputs()  ? machine_.inputs[i].reference
-                        : machine_.inputs[i].unit == "K" ? 293.15
-                                                         : 20;
+        one.reference = i < evidence_.declared_inputs() ? machine_.inputs[i].reference
+                                                        : standard_reference(machine_.inputs[i].unit);
       if (!needs("{S}")) {
         with_axis(one);
         continue;
@@ -444,23 +443,6 @@ bool ScannedCandidate::is_driven_out(std::size_t unknown, double found, double v
   // From one wave to the next that the range tells apart.
   if (fine.holds(found)) return !(std::abs(1 / value - 1 / found) * fine.length <= 1);
   return !(value >= range.front() / 2 && value <= range.back() * 2);
-}
-
-InputClass class_of_input(const Input& input) {
-  const std::string& unit = input.unit;
-  if (unit == "degC" || unit == "K") return InputClass::kTemperature;
-  if (unit == "N" || unit == "kg") return InputClass::kLoad;
-  if (unit == "mm/s^2" || unit == "m/s^2" || unit == "deg/s^2" || unit == "g") return InputClass::kFeature;
-  if (!unit.empty() && unit != "V" && unit != "mV") return InputClass::kOther;
-  std::string lower;
-  for (const char c : input.name) lower += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  const auto has = [&](const char* part) { return contains(lower, part); };
-  if (has("temp") || input.name.rfind("T_", 0) == 0) return InputClass::kTemperature;
-  if (has("load") || has("force") || has("mass") || has("torque") || has("weight")) return InputClass::kLoad;
-  if (has("vib") || has("acc") || has("rms")) return InputClass::kFeature;
-  for (const char* feature : kFeatureNames)
-    if (input.name.ends_with(std::string("_") + feature)) return InputClass::kFeature;
-  return InputClass::kOther;
 }
 
 std::vector<DofPlace> distinct_places(const Evidence& evidence, bool angles_apart) {

@@ -1,9 +1,10 @@
 #pragma once
 #include <vector>
 
-#include "tools/diagnose/candidate.h"
 #include "tools/diagnose/evidence.h"
 #include "tools/diagnose/periods.h"
+#include "tools/effects/candidate.h"
+#include "tools/effects/input_class.h"
 
 namespace vernier {
 
@@ -39,9 +40,5 @@ std::vector<ScannedCandidate> enumerate_products(const Evidence& evidence,
 /// (all but 1e-7 of the direction) the first one, rows of the file before one that stands in. `angles_apart`:
 /// the first angle and the first length. tool.
 std::vector<DofPlace> distinct_places(const Evidence& evidence, bool angles_apart);
-
-/// What a logged column is, by its unit (by its name where it has none).
-enum class InputClass : std::uint8_t { kTemperature, kLoad, kFeature, kOther };
-InputClass class_of_input(const Input& input);
 
 }  // namespace vernier

@@ -7,10 +7,10 @@
 #include <set>
 #include <tuple>
 
-#include "tools/diagnose/chance.h"
-#include "tools/diagnose/probe.h"
+#include "tools/effects/probe.h"
 #include "tools/fit/solve.h"
 #include "tools/fit/statistics.h"
+#include "tools/maths/chance.h"
 #include "tools/model/evaluate.h"
 #include "tools/model/prediction.h"
 
@@ -288,7 +288,7 @@ Eigen::MatrixXd ColumnMaker::columns(const Candidate& candidate, const std::vect
       Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(linear.size()));
   Evaluator evaluate(scratch_, evidence_.measurement().states, active);
   for (const CandidateTerm& term : candidate.terms) {
-    const Dual dual = evaluate(*parse_expression_for(scratch_, term.text));
+    const ValueAndSlopes dual = evaluate(*parse_expression_for(scratch_, term.text));
     const auto answer = evidence_.response(evidence_.index_of(term.place));
     for (const auto& [key, value] : dual.by) {
       const auto found = std::find(linear.begin(), linear.end(), key);

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/diagnose/candidate.h"
+#include "tools/effects/candidate.h"
 #include "tools/fit/fit.h"
 #include "tools/model/machine.h"
 #include "tools/model/measurement.h"

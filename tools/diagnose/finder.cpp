@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "tools/diagnose/acceptance.h"
-#include "tools/diagnose/chance.h"
+#include "tools/maths/chance.h"
 #include "tools/model/chain.h"
 
 namespace vernier {

@@ -5,7 +5,7 @@
 #include <map>
 #include <numbers>
 
-#include "tools/diagnose/golden.h"
+#include "tools/maths/golden.h"
 
 namespace vernier {
 namespace {

@@ -2,8 +2,8 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "tools/diagnose/candidate.h"
 #include "tools/diagnose/evidence.h"
+#include "tools/effects/candidate.h"
 
 namespace vernier {
 

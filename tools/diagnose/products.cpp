@@ -4,13 +4,13 @@
 #include <cmath>
 
 #include "tools/diagnose/enumerate.h"
-#include "tools/model/numbers.h"
+#include "tools/text/numbers.h"
 
 namespace vernier {
 namespace {
 
 /// A recorded quantity as a factor of a term.
-struct Factor {
+struct ProductFactor {
   std::string text, input, unit;  // input: name where it is one
 };
 
@@ -27,11 +27,11 @@ double mean(const Column& column, const std::vector<std::size_t>& rows) {
 }
 
 /// An input about its reference: the declared one, 20 degC, else a round number near its mean.
-Factor input_factor(const Evidence& evidence, std::size_t index) {
+ProductFactor input_factor(const Evidence& evidence, std::size_t index) {
   const Input& input = evidence.machine().inputs[index];
   double reference = input.reference;
   if (index >= evidence.declared_inputs()) {
-    reference = 20;
+    reference = standard_reference(input.unit);
     if (class_of_input(input) != InputClass::kTemperature) {
       const double average = mean(evidence.measurement().states.input[index], evidence.rows());
       const double digit = std::pow(10, std::floor(std::log10(std::abs(average) + 1e-300)) - 1);
@@ -45,10 +45,10 @@ Factor input_factor(const Evidence& evidence, std::size_t index) {
   return {text, input.name, input.unit};
 }
 
-std::vector<Factor> factors_of(const Evidence& evidence) {
+std::vector<ProductFactor> factors_of(const Evidence& evidence) {
   const Machine& machine = evidence.machine();
   const States& s = evidence.measurement().states;
-  std::vector<Factor> list;
+  std::vector<ProductFactor> list;
   const auto take = [&](const std::string& text, const Column& column) {
     if (varies(column, evidence.rows())) list.push_back({text, {}, {}});
   };
@@ -86,7 +86,7 @@ ScannedCandidate as_candidate(const Machine& machine, const AxisPlaces& axes, co
   return item;
 }
 
-Product with_factor(Product product, const Factor& factor) {
+Product with_factor(Product product, const ProductFactor& factor) {
   product.term += "*" + factor.text;
   if (!factor.input.empty() &&
       std::find(product.inputs.begin(), product.inputs.end(), factor.input) == product.inputs.end()) {
@@ -100,12 +100,12 @@ Product with_factor(Product product, const Factor& factor) {
 
 std::vector<ScannedCandidate> enumerate_products(const Evidence& evidence,
                                                  const std::vector<Product>& extend) {
-  const std::vector<Factor> factors = factors_of(evidence);
+  const std::vector<ProductFactor> factors = factors_of(evidence);
   const AxisPlaces axes(evidence.machine());
   std::vector<ScannedCandidate> list;
   if (!extend.empty()) {
     for (const Product& product : extend)
-      for (const Factor& factor : factors)
+      for (const ProductFactor& factor : factors)
         if (std::count(product.term.begin(), product.term.end(), '*') < 3)
           list.push_back(as_candidate(evidence.machine(), axes, with_factor(product, factor)));
     return list;

@@ -7,7 +7,7 @@
 #include <thread>
 #include <utility>
 
-#include "tools/diagnose/golden.h"
+#include "tools/maths/golden.h"
 
 namespace vernier {
 namespace {

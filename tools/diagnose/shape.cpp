@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "tools/diagnose/chance.h"
+#include "tools/maths/chance.h"
 
 namespace vernier {
 namespace {

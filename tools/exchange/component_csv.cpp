@@ -4,19 +4,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 #include <sstream>
 
 #include "tools/exchange/table_text.h"
-#include "tools/model/csv.h"
-#include "tools/model/numbers.h"
-#include "tools/model/units.h"
+#include "tools/maths/factors.h"
+#include "tools/text/csv.h"
+#include "tools/text/numbers.h"
+#include "tools/text/units.h"
 
 namespace vernier {
 namespace {
 
-constexpr double kDeg = 180 / std::numbers::pi;
 constexpr std::array<const char*, 6> kDirections = {"X", "Y", "Z", "A", "B", "C"};
 
 /// ISO 230 name of a component error: EXX, EYX … ECX.
@@ -121,7 +120,7 @@ Table table_of_block(const Block& block, const std::string& file, const Machine&
     if (!column) throw InputError(place, block.header[c], "no component error of axis " + *found);
     for (std::size_t i = 0; i < block.rows.size(); ++i) {
       const double value = number_of(block.rows[i][c], {file, block.line[i]});
-      table.stations[i].value[*column] = *column < 3 ? value : twelve_digits(value * kDeg);
+      table.stations[i].value[*column] = *column < 3 ? value : twelve_digits(value * kDegPerRad);
     }
   }
   check_increasing(table, file, block.line);
@@ -198,8 +197,8 @@ std::string isg_csv(const Machine& machine) {
     for (const Station& station : table.stations) {
       text += number_text(station.loc);
       for (std::size_t k = 0; k < 6; ++k)
-        text +=
-            "\t" + (k < 3 ? number_text(station.value[k]) : fmt::format("{:.12g}", station.value[k] / kDeg));
+        text += "\t" + (k < 3 ? number_text(station.value[k])
+                              : fmt::format("{:.12g}", station.value[k] / kDegPerRad));
       text += "\n";
     }
     first = false;

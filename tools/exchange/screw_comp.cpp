@@ -8,7 +8,7 @@
 
 #include "tools/exchange/table_text.h"
 #include "tools/kinematics/correction.h"
-#include "tools/model/numbers.h"
+#include "tools/text/numbers.h"
 
 namespace vernier {
 namespace {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <set>
 
-#include "tools/model/numbers.h"
-#include "tools/model/xml_text.h"
+#include "tools/text/numbers.h"
+#include "tools/text/xml_text.h"
 
 namespace vernier {
 namespace {

@@ -5,21 +5,20 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numbers>
 #include <set>
 
 #include "tools/fit/fit.h"
 #include "tools/fit/levenberg.h"
 #include "tools/fit/problem.h"
 #include "tools/fit/solve.h"
+#include "tools/maths/factors.h"
 #include "tools/model/chain_rows.h"
 #include "tools/model/evaluate.h"
-#include "tools/model/units.h"
+#include "tools/text/units.h"
 
 namespace vernier {
 namespace {
 
-constexpr double kDegPerRad = 180 / std::numbers::pi;
 /// A single error three times what all of them together left is implausible already.
 constexpr double kTimesMisfit = 3;
 /// The least misfit that scales are made from, mm: a tenth of the finest resolution of any instrument here.

@@ -4,12 +4,11 @@
 
 #include <algorithm>
 #include <map>
-#include <numbers>
+
+#include "tools/maths/factors.h"
 
 namespace vernier {
 namespace {
-
-constexpr double kUmPerMm = 1000, kRadPerDeg = std::numbers::pi / 180;
 
 /// The parameter, or the column of a table that it belongs to.
 std::string column_of(const FitResult& result, std::size_t i) {
@@ -29,21 +28,21 @@ double reach_um(const FitResult& result, std::size_t i) {
   return e.scale > 0 ? kUmPerMm * 3 * result.misfit_mm * e.std / e.scale : 0;
 }
 
-struct Group {
+struct DecisionGroup {
   std::vector<std::string> names;
   double reach_um = 0;
   std::size_t open = 0, unseen = 0;  // parameters settled by convention, and of which nothing was read
 };
 
-std::string joined(const std::vector<std::string>& names) {
+std::string first_names(const std::vector<std::string>& names) {
   constexpr std::size_t kMost = 6;
   std::string text;
   for (std::size_t i = 0; i < names.size() && i < kMost; ++i) text += (i > 0 ? ", " : "") + names[i];
   return names.size() > kMost ? text + fmt::format(" and {} more", names.size() - kMost) : text;
 }
 
-Decision decision_of(const Group& group) {
-  const std::string names = joined(group.names);
+Decision decision_of(const DecisionGroup& group) {
+  const std::string names = first_names(group.names);
   const char* said = group.unseen == group.open ? "not measured: only the prior"
                      : group.names.size() > 1
                          ? "not told apart by these readings: as near to nominal as can be"
@@ -75,12 +74,12 @@ std::vector<Decision> decisions_of(const FitResult& result, std::size_t most) {
         head[name] = first;
     }
   }
-  std::map<std::string, Group> groups;
+  std::map<std::string, DecisionGroup> groups;
   for (std::size_t i = 0; i < result.estimates.size(); ++i) {
     const Origin from = result.estimates[i].from;
     if (is_set_up(i) || from == Origin::kData) continue;
     const std::string column = column_of(result, i);
-    Group& group = groups[root(column)];
+    DecisionGroup& group = groups[root(column)];
     if (std::find(group.names.begin(), group.names.end(), column) == group.names.end())
       group.names.push_back(column);
     group.reach_um = std::max(group.reach_um, reach_um(result, i));

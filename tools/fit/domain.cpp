@@ -7,8 +7,8 @@
 #include <pugixml.hpp>
 
 #include "tools/model/chain.h"
-#include "tools/model/numbers.h"
-#include "tools/model/xml_text.h"
+#include "tools/text/numbers.h"
+#include "tools/text/xml_text.h"
 
 namespace vernier {
 namespace {

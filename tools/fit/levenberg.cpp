@@ -5,7 +5,7 @@
 #include <cmath>
 #include <optional>
 
-#include "tools/fit/pivoted_cholesky.h"
+#include "tools/maths/pivoted_cholesky.h"
 
 namespace vernier {
 namespace {

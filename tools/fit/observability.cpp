@@ -6,7 +6,7 @@
 #include <cmath>
 #include <optional>
 
-#include "tools/fit/pivoted_cholesky.h"
+#include "tools/maths/pivoted_cholesky.h"
 
 namespace vernier {
 namespace {

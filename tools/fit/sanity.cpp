@@ -5,15 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <numbers>
 
 #include "tools/fit/convention.h"
 #include "tools/fit/statistics.h"
+#include "tools/maths/factors.h"
 
 namespace vernier {
 namespace {
-
-constexpr double kDegPerRad = 180 / std::numbers::pi;
 
 std::string reading_name(const Measurement& m, const Observation& o) {
   return fmt::format("{}:{} {}", m.files[m.file[o.row]], m.line[o.row],

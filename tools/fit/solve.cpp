@@ -9,6 +9,7 @@
 #include "tools/fit/ceres_solver.h"
 #include "tools/fit/levenberg.h"
 #include "tools/fit/statistics.h"
+#include "tools/text/words.h"
 
 namespace vernier {
 namespace {
@@ -113,12 +114,6 @@ Eigen::VectorXd with_shapes_of(const Eigen::VectorXd& given, const Convention& c
   return point;
 }
 
-std::string joined(const std::vector<std::string>& patterns) {
-  std::string text;
-  for (const std::string& pattern : patterns) text += (text.empty() ? "" : ",") + pattern;
-  return text;
-}
-
 }  // namespace
 
 std::vector<std::string> runs_of_fit_rows(const Measurement& m) {
@@ -157,7 +152,7 @@ Eigen::VectorXd solve(FitProblem& problem, const Machine& machine, const Convent
     const LevenbergResult stage = solve_stage(problem, point, freed, options, result.before.count);
     point = stage.point;
     result.iterations += stage.iterations;
-    figures(joined(patterns), freed.size(), stage.iterations);
+    figures(joined(patterns, ","), freed.size(), stage.iterations);
   }
   int iterations = 0;
   if (options.solver == Solver::kCeres || options.loss != Loss::kSquared) {

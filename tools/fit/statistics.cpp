@@ -2,7 +2,8 @@
 
 #include <cmath>
 #include <map>
-#include <numbers>
+
+#include "tools/maths/factors.h"
 
 namespace vernier {
 
@@ -27,8 +28,6 @@ std::vector<double> row_conditions(const Measurement& m, std::size_t row) {
 
 namespace {
 
-constexpr double kUmPerMm = 1e3;
-constexpr double kUradPerDeg = std::numbers::pi / 180 * 1e6;
 /// Fewer pooled degrees of freedom than this say too little about the noise (its own uncertainty would exceed
 /// 30 %).
 constexpr std::size_t kLeastRepeatFreedom = 5;
@@ -37,7 +36,7 @@ constexpr std::size_t kLeastRepeatFreedom = 5;
 /// any instrument here resolves.
 constexpr double kCorrectionStep = 1e-4;
 
-struct Pool {
+struct RepeatPool {
   double sum = 0, largest = 0;
   std::size_t count = 0;
   void add(double value) {
@@ -52,17 +51,17 @@ struct Pool {
 };
 
 std::optional<double> repeat_noise_um(const Measurement& m) {
-  struct Group {
+  struct PoseReadings {
     double sum = 0, squares = 0;
     std::size_t count = 0;
   };
-  std::map<std::pair<std::vector<double>, int>, Group> groups;
+  std::map<std::pair<std::vector<double>, int>, PoseReadings> groups;
   for (const Observation& o : m.observations) {
     if (m.check[o.row] != 0 || is_rotation(o.kind)) continue;
     std::vector<double> key = row_conditions(m, o.row);
     for (const Column& correction : m.correction)
       key.push_back(std::round(correction[static_cast<Eigen::Index>(o.row)] / kCorrectionStep));
-    Group& group = groups[{std::move(key), static_cast<int>(o.kind)}];
+    PoseReadings& group = groups[{std::move(key), static_cast<int>(o.kind)}];
     const double value = o.value * kUmPerMm;
     // Deviations from the group's first value would do; a running mean keeps the digits.
     ++group.count;
@@ -83,7 +82,7 @@ std::optional<double> repeat_noise_um(const Measurement& m) {
 }  // namespace
 
 RoleStatistics role_statistics(const Measurement& m, const Eigen::VectorXd& residual, bool check) {
-  Pool lengths, rotations;
+  RepeatPool lengths, rotations;
   for (std::size_t i = 0; i < m.observations.size(); ++i) {
     const Observation& o = m.observations[i];
     if ((m.check[o.row] != 0) != check) continue;
@@ -114,7 +113,7 @@ bool has_uncertainty(const Measurement& m) {
 
 std::optional<double> noise_um(const Measurement& m) {
   if (!has_uncertainty(m)) return repeat_noise_um(m);
-  Pool pool;
+  RepeatPool pool;
   for (const Observation& o : m.observations)
     if (m.check[o.row] == 0 && !is_rotation(o.kind))
       pool.add(m.uncertainty[static_cast<Eigen::Index>(o.row)] * kUmPerMm);

@@ -6,10 +6,11 @@
 #include <string_view>
 
 #include "tools/import/ballbar_file.h"
-#include "tools/model/error.h"
-#include "tools/model/files.h"
-#include "tools/model/numbers.h"
-#include "tools/model/xml_text.h"
+#include "tools/text/error.h"
+#include "tools/text/files.h"
+#include "tools/text/numbers.h"
+#include "tools/text/words.h"
+#include "tools/text/xml_text.h"
 
 namespace vernier {
 namespace {
@@ -17,9 +18,9 @@ namespace {
 // Line ends stay as they are, so that offsets count in the text as it is on disk.
 constexpr unsigned kParseFlags = pugi::parse_default & ~static_cast<unsigned>(pugi::parse_eol);
 
-class Reader {
+class B5rReader {
  public:
-  Reader(const std::string& path, std::string text) : path_(path), text_(std::move(text)) {
+  B5rReader(const std::string& path, std::string text) : path_(path), text_(std::move(text)) {
     const auto result = document_.load_buffer(text_.data(), text_.size(), kParseFlags, pugi::encoding_utf8);
     if (!result) {
       const auto at = static_cast<std::size_t>(std::max<std::ptrdiff_t>(result.offset, 0));
@@ -63,14 +64,8 @@ class Reader {
     return found;
   }
 
-  static std::string trimmed(const pugi::xml_node& node) {
-    const std::string text = node.text().get();
-    const auto begin = text.find_first_not_of(" \t\r\n");
-    return begin == std::string::npos ? "" : text.substr(begin, text.find_last_not_of(" \t\r\n") - begin + 1);
-  }
-
   double number(const pugi::xml_node& node) const {
-    const std::string text = trimmed(node);
+    const std::string text = trimmed(node.text().get());
     const auto value = parse_number(text);
     if (!value) fail(node, text, std::string(node.name()) + " must be a number");
     return *value;
@@ -78,14 +73,15 @@ class Reader {
 
   double positive(const pugi::xml_node& node) const {
     const double value = number(node);
-    if (!(value > 0)) fail(node, trimmed(node), std::string(node.name()) + " must be above zero");
+    if (!(value > 0))
+      fail(node, trimmed(node.text().get()), std::string(node.name()) + " must be above zero");
     return value;
   }
 
   std::size_t index(const pugi::xml_node& node, std::size_t count) const {
     const double value = number(node);
     if (value < 0 || value != std::floor(value) || value >= static_cast<double>(count)) {
-      fail(node, trimmed(node),
+      fail(node, trimmed(node.text().get()),
            std::string(node.name()) + " is no index of the " + std::to_string(count) + " readings");
     }
     return static_cast<std::size_t>(value);
@@ -112,7 +108,7 @@ class Reader {
   }
 
   int direction(const pugi::xml_node& node) const {
-    const std::string word = trimmed(node);
+    const std::string word = trimmed(node.text().get());
     if (word == "CCW") return +1;
     if (word == "CW") return -1;
     fail(node, word, "a direction is CCW or CW");
@@ -123,8 +119,8 @@ class Reader {
     const std::string view = plane.attribute("VIEW").value();
     // Seen from another side, counter-clockwise would not be from +A towards +B; no such file is decoded.
     if (view != "+A+B") fail(plane, view, "only the view +A+B is known");
-    file.axis_a = trimmed(need(plane, "A_AXIS_NAME"));
-    file.axis_b = trimmed(need(plane, "B_AXIS_NAME"));
+    file.axis_a = trimmed(need(plane, "A_AXIS_NAME").text().get());
+    file.axis_b = trimmed(need(plane, "B_AXIS_NAME").text().get());
     const auto is_linear = [](const std::string& axis) { return axis == "X" || axis == "Y" || axis == "Z"; };
     if (!is_linear(file.axis_a))
       fail(plane.child("A_AXIS_NAME"), file.axis_a, "an axis of a plane is X, Y or Z");
@@ -136,7 +132,7 @@ class Reader {
     file.programmed_feed_mm_min = positive(need(bar, "PROGRAMMED_FEEDRATE"));
     const double arc_deg = number(need(bar, "END_ANGLE")) - number(need(bar, "START_ANGLE"));
     if (!(arc_deg > 0) || arc_deg > 360)
-      fail(bar.child("END_ANGLE"), trimmed(bar.child("END_ANGLE")),
+      fail(bar.child("END_ANGLE"), trimmed(bar.child("END_ANGLE").text().get()),
            "must be 0 to 360 deg beyond START_ANGLE");
     if (arc_deg < 360)
       file.notes.push_back("partial arc: START..END is taken to span START_ANGLE..END_ANGLE");
@@ -144,7 +140,7 @@ class Reader {
 
   BallbarRun read_run(const pugi::xml_node& bar, const pugi::xml_node& node) const {
     BallbarRun run;
-    run.label = trimmed(need(node, "RUN_DIRECTION"));
+    run.label = trimmed(need(node, "RUN_DIRECTION").text().get());
     run.direction = direction(need(node, "RUN_DIRECTION"));
     run.sample_rate_hz = positive(need(node, "SAMPLE_RATE"));
     run.first_deg = number(need(bar, "START_ANGLE"));
@@ -153,7 +149,7 @@ class Reader {
     run.start = index(need(node, "START_INDEX"), run.reading_mm.size());
     run.end = index(need(node, "END_INDEX"), run.reading_mm.size());
     if (run.end < run.start + 2)
-      fail(node.child("END_INDEX"), trimmed(node.child("END_INDEX")),
+      fail(node.child("END_INDEX"), trimmed(node.child("END_INDEX").text().get()),
            "END_INDEX must be above START_INDEX by two or more");
     run.features = read_features(node);
     return run;
@@ -162,7 +158,7 @@ class Reader {
   std::vector<BallbarFeature> read_features(const pugi::xml_node& parent) const {
     std::vector<BallbarFeature> features;
     for (const auto node : parent.children("FEATURE")) {
-      if (trimmed(node).empty()) continue;  // printed only where it was computed
+      if (trimmed(node.text().get()).empty()) continue;  // printed only where it was computed
       features.push_back({node.attribute("NAME").value(), node.attribute("DT").value(), number(node)});
     }
     return features;
@@ -184,7 +180,7 @@ class Reader {
 
 }  // namespace
 
-BallbarFile read_b5r(const std::string& path) { return Reader(path, read_file(path)).read(); }
+BallbarFile read_b5r(const std::string& path) { return B5rReader(path, read_file(path)).read(); }
 
 std::optional<double> printed_result(const BallbarFile& file, const std::string& analysis,
                                      const std::string& version, const std::string& feature) {

@@ -3,10 +3,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "tools/maths/factors.h"
+
 namespace vernier {
 namespace {
-
-constexpr double kRadPerDeg = std::numbers::pi / 180;
 
 double samples_in_arc(const BallbarRun& run) { return static_cast<double>(run.end - run.start + 1); }
 double arc_deg(const BallbarRun& run) { return run.last_deg - run.first_deg; }

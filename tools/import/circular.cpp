@@ -3,22 +3,20 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 #include <stdexcept>
+
+#include "tools/maths/factors.h"
 
 namespace vernier {
 namespace {
 
-constexpr double kUmPerMm = 1e3;
-constexpr double kRadPerDeg = std::numbers::pi / 180;
-
 // Offset of the radius and centre: deviation = offset + a cos + b sin, mm.
-struct Circle {
+struct FittedCircle {
   double offset = 0, a = 0, b = 0;
 };
 
-Circle fit_circle(const CircularPass& pass) {
+FittedCircle fit_circle(const CircularPass& pass) {
   const auto count = static_cast<Eigen::Index>(pass.angle_deg.size());
   if (pass.deviation_mm.size() != pass.angle_deg.size())
     throw std::invalid_argument("circle: angles and deviations differ in number");
@@ -34,12 +32,13 @@ Circle fit_circle(const CircularPass& pass) {
 }
 
 // Deviation with the centre taken out, mm, of sample i.
-double centred(const CircularPass& pass, const Circle& circle, std::size_t i) {
+double centred(const CircularPass& pass, const FittedCircle& circle, std::size_t i) {
   const double angle = pass.angle_deg[i] * kRadPerDeg;
   return pass.deviation_mm[i] - circle.a * std::cos(angle) - circle.b * std::sin(angle);
 }
 
-CircularPassResult analyse_pass(double nominal_radius_mm, const CircularPass& pass, const Circle& circle) {
+CircularPassResult analyse_pass(double nominal_radius_mm, const CircularPass& pass,
+                                const FittedCircle& circle) {
   CircularPassResult result;
   result.label = pass.label;
   result.direction = pass.direction;
@@ -61,7 +60,7 @@ CircularPassResult analyse_pass(double nominal_radius_mm, const CircularPass& pa
   return result;
 }
 
-Hysteresis hysteresis_by_index(const CircularPass& ccw, const CircularPass& cw, const Circle& mean) {
+Hysteresis hysteresis_by_index(const CircularPass& ccw, const CircularPass& cw, const FittedCircle& mean) {
   Hysteresis worst{-1, 0};
   const std::size_t count = std::min(ccw.angle_deg.size(), cw.angle_deg.size());
   for (std::size_t i = 0; i < count; ++i) {
@@ -75,7 +74,7 @@ Hysteresis hysteresis_by_index(const CircularPass& ccw, const CircularPass& cw, 
 // Samples of one sense sorted by angle, to be read between them.
 class RadiusAtAngle {
  public:
-  RadiusAtAngle(const CircularPass& pass, const Circle& mean) {
+  RadiusAtAngle(const CircularPass& pass, const FittedCircle& mean) {
     std::vector<std::size_t> order(pass.angle_deg.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::stable_sort(order.begin(), order.end(),
@@ -110,7 +109,7 @@ class RadiusAtAngle {
 };
 
 std::optional<Hysteresis> hysteresis_by_angle(const CircularPass& ccw, const CircularPass& cw,
-                                              const Circle& mean) {
+                                              const FittedCircle& mean) {
   const RadiusAtAngle radius(ccw, mean);
   std::optional<Hysteresis> worst;
   for (std::size_t j = 0; j < cw.angle_deg.size(); ++j) {
@@ -122,7 +121,7 @@ std::optional<Hysteresis> hysteresis_by_angle(const CircularPass& ccw, const Cir
   return worst;
 }
 
-double non_roundness_um(const CircularPass& ccw, const CircularPass& cw, const Circle& mean) {
+double non_roundness_um(const CircularPass& ccw, const CircularPass& cw, const FittedCircle& mean) {
   double low = centred(ccw, mean, 0), high = low;
   for (const CircularPass* pass : {&ccw, &cw}) {
     for (std::size_t i = 0; i < pass->angle_deg.size(); ++i) {
@@ -138,7 +137,7 @@ double non_roundness_um(const CircularPass& ccw, const CircularPass& cw, const C
 CircularResult analyse_circle(double nominal_radius_mm, const std::vector<CircularPass>& passes) {
   CircularResult result;
   result.nominal_radius_mm = nominal_radius_mm;
-  std::vector<Circle> circles;
+  std::vector<FittedCircle> circles;
   std::optional<std::size_t> first_ccw, first_cw;
   for (std::size_t i = 0; i < passes.size(); ++i) {
     circles.push_back(fit_circle(passes[i]));
@@ -150,8 +149,8 @@ CircularResult analyse_circle(double nominal_radius_mm, const std::vector<Circul
   const CircularPassResult &a = result.passes[*first_ccw], &b = result.passes[*first_cw];
   result.bidirectional_um =
       std::max(a.max_circular_um, b.max_circular_um) - std::min(a.min_circular_um, b.min_circular_um);
-  const Circle &ca = circles[*first_ccw], &cb = circles[*first_cw];
-  const Circle mean{(ca.offset + cb.offset) / 2, (ca.a + cb.a) / 2, (ca.b + cb.b) / 2};
+  const FittedCircle &ca = circles[*first_ccw], &cb = circles[*first_cw];
+  const FittedCircle mean{(ca.offset + cb.offset) / 2, (ca.a + cb.a) / 2, (ca.b + cb.b) / 2};
   result.mean_centre_a_mm = mean.a;
   result.mean_centre_b_mm = mean.b;
   result.mean_radius_mm = nominal_radius_mm + mean.offset;

@@ -4,18 +4,13 @@
 #include <charconv>
 #include <optional>
 
-#include "tools/model/csv.h"
-#include "tools/model/numbers.h"
-#include "tools/model/units.h"
+#include "tools/text/csv.h"
+#include "tools/text/numbers.h"
+#include "tools/text/units.h"
+#include "tools/text/words.h"
 
 namespace vernier {
 namespace {
-
-std::string trimmed(const std::string& text) {
-  const auto first = text.find_first_not_of(" \t\r");
-  if (first == std::string::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
-}
 
 bool is_word(const std::string& name) { return name == "run" || name == "role"; }
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "tools/import/delimited.h"
-#include "tools/model/error.h"
+#include "tools/text/error.h"
 
 namespace vernier {
 

@@ -2,16 +2,11 @@
 
 #include <algorithm>
 
-#include "tools/model/error.h"
+#include "tools/text/error.h"
+#include "tools/text/words.h"
 
 namespace vernier {
 namespace {
-
-std::string trimmed(const std::string& text) {
-  const auto first = text.find_first_not_of(" \t");
-  if (first == std::string::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
-}
 
 /// Fields of one line; blanks separate as one where they are the separator.
 std::vector<std::string> split(const std::string& line, char separator, const Place& place) {

@@ -5,10 +5,10 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "tools/maths/factors.h"
+
 namespace vernier {
 namespace {
-
-constexpr double kRadPerDeg = std::numbers::pi / 180;
 
 double sign(double x) { return x > 0 ? 1.0 : (x < 0 ? -1.0 : 0.0); }
 

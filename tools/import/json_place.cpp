@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <vector>
 
-#include "tools/model/error.h"
-#include "tools/model/xml_text.h"
+#include "tools/text/error.h"
+#include "tools/text/xml_text.h"
 
 namespace vernier {
 namespace {

@@ -3,12 +3,12 @@
 #include <cmath>
 #include <map>
 
+#include "tools/maths/factors.h"
+
 namespace vernier {
 namespace {
 
 using Values = std::map<std::string, double>;
-
-constexpr double kUmPerMm = 1e3;
 
 // Digits behind the point that the instrument's software prints.
 double last_digit(const std::string& unit) {

@@ -1,5 +1,5 @@
 #include "tools/import/repair_report.h"
-#include "tools/model/optional_json.h"
+#include "tools/text/optional_json.h"
 
 #include <fmt/format.h>
 

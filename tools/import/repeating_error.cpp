@@ -15,15 +15,15 @@ namespace {
 using Index = Eigen::Index;
 using Sparse = Eigen::SparseMatrix<double, Eigen::ColMajor, Index>;
 
-struct Samples {
+struct ErrorSamples {
   Eigen::VectorXd angle_deg, reading_um;
   Index count() const { return angle_deg.size(); }
 };
 
 using Wanted = std::function<bool(std::size_t)>;
 
-Samples collect(const BallbarFile& file, const BallbarRun& run, const std::vector<char>& on_circle,
-                const Wanted& wanted) {
+ErrorSamples collect(const BallbarFile& file, const BallbarRun& run, const std::vector<char>& on_circle,
+                     const Wanted& wanted) {
   std::vector<double> angle, reading;
   for (std::size_t i = 0; i < run.reading_mm.size(); ++i) {
     if (!wanted(i) || (!on_circle.empty() && !on_circle[i])) continue;
@@ -35,7 +35,7 @@ Samples collect(const BallbarFile& file, const BallbarRun& run, const std::vecto
 }
 
 // Every fifth group of three samples, or all the others: what a table between them predicts.
-Samples part(const Samples& all, Index fold, bool held) {
+ErrorSamples part(const ErrorSamples& all, Index fold, bool held) {
   std::vector<Index> keep;
   for (Index i = 0; i < all.count(); ++i) {
     if ((((i / 3) % 5) == fold) == held) keep.push_back(i);
@@ -46,13 +46,13 @@ Samples part(const Samples& all, Index fold, bool held) {
 // Centre and radius, and a table of what they leave.
 class Model {
  public:
-  Model(const Samples& samples, std::size_t stations) : table_(static_cast<Index>(stations)) {
+  Model(const ErrorSamples& samples, std::size_t stations) : table_(static_cast<Index>(stations)) {
     const Eigen::MatrixXd basis = circle(samples);
     circle_ = (basis.transpose() * basis).ldlt().solve(basis.transpose() * samples.reading_um);
     if (stations > 0) fit_table(samples, samples.reading_um - basis * circle_);
   }
 
-  Eigen::VectorXd residual(const Samples& samples) const {
+  Eigen::VectorXd residual(const ErrorSamples& samples) const {
     Eigen::VectorXd left = samples.reading_um - circle(samples) * circle_;
     for (Index i = 0; i < samples.count() && table_.size() > 0; ++i) {
       const Place place = find(samples.angle_deg[i]);
@@ -61,7 +61,7 @@ class Model {
     return left;
   }
 
-  double rms(const Samples& samples) const {
+  double rms(const ErrorSamples& samples) const {
     return std::sqrt(residual(samples).squaredNorm() / static_cast<double>(samples.count()));
   }
 
@@ -71,7 +71,7 @@ class Model {
     double part;
   };
 
-  static Eigen::MatrixXd circle(const Samples& samples) {
+  static Eigen::MatrixXd circle(const ErrorSamples& samples) {
     Eigen::MatrixXd basis(samples.count(), 3);
     const Eigen::ArrayXd angle = samples.angle_deg.array() * (std::numbers::pi / 180);
     basis.col(0).setOnes();
@@ -87,7 +87,7 @@ class Model {
   }
 
   // A weak pull towards its neighbours' mean keeps a station that no sample touches from being undefined.
-  void fit_table(const Samples& samples, const Eigen::VectorXd& reading_um) {
+  void fit_table(const ErrorSamples& samples, const Eigen::VectorXd& reading_um) {
     constexpr double kPull = 1e-3;
     std::vector<Eigen::Triplet<double, Index>> entries;
     Eigen::VectorXd right = Eigen::VectorXd::Zero(table_.size());
@@ -115,30 +115,30 @@ class Model {
   Eigen::VectorXd table_;
 };
 
-double left_out_rms(const Samples& samples, std::size_t stations) {
+double left_out_rms(const ErrorSamples& samples, std::size_t stations) {
   double squares = 0;
   for (Index fold = 0; fold < 5; ++fold) {
-    const Samples held = part(samples, fold, true);
+    const ErrorSamples held = part(samples, fold, true);
     squares += std::pow(Model(part(samples, fold, false), stations).rms(held), 2) *
                static_cast<double>(held.count());
   }
   return std::sqrt(squares / static_cast<double>(samples.count()));
 }
 
-std::optional<double> judged(const Model& model, const Samples& samples) {
+std::optional<double> judged(const Model& model, const ErrorSamples& samples) {
   return samples.count() > 0 ? std::optional(model.rms(samples)) : std::nullopt;
 }
 
 // Standard deviation of a normal law with this median size.
-std::optional<double> usual(const Model& model, const Samples& samples) {
+std::optional<double> usual(const Model& model, const ErrorSamples& samples) {
   if (samples.count() == 0) return std::nullopt;
   Eigen::VectorXd sizes = model.residual(samples).cwiseAbs();
   std::nth_element(sizes.begin(), sizes.begin() + sizes.size() / 2, sizes.end());
   return 1.4826 * sizes[sizes.size() / 2];
 }
 
-Samples other_direction(const BallbarFile& file, const BallbarRun& run,
-                        const std::vector<std::vector<char>>& on_circle) {
+ErrorSamples other_direction(const BallbarFile& file, const BallbarRun& run,
+                             const std::vector<std::vector<char>>& on_circle) {
   const auto all = [](std::size_t) { return true; };
   for (std::size_t k = 0; k < file.runs.size(); ++k) {
     if (file.runs[k].direction != run.direction)
@@ -154,9 +154,9 @@ RepeatingError repeating_error(const BallbarFile& file, std::size_t run,
   const BallbarRun& mine = file.runs[run];
   const std::vector<char> mask = on_circle.empty() ? std::vector<char>{} : on_circle[run];
   const auto analysed = [&](std::size_t i) { return i >= mine.start && i <= mine.end; };
-  const Samples fit = collect(file, mine, mask, analysed);
-  const Samples turn = collect(file, mine, mask, [&](std::size_t i) { return !analysed(i); });
-  const Samples direction = other_direction(file, mine, on_circle);
+  const ErrorSamples fit = collect(file, mine, mask, analysed);
+  const ErrorSamples turn = collect(file, mine, mask, [&](std::size_t i) { return !analysed(i); });
+  const ErrorSamples direction = other_direction(file, mine, on_circle);
   RepeatingError result;
   result.run = mine.label;
   result.fit_samples = static_cast<std::size_t>(fit.count());

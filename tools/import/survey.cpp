@@ -2,14 +2,13 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
-#include <numbers>
 
-#include "tools/model/units.h"
+#include "tools/maths/factors.h"
+#include "tools/text/units.h"
 
 namespace vernier {
 namespace {
 
-constexpr double kDeg = 180 / std::numbers::pi;
 /// How far a direction or quaternion may be from length 1: rounding of four printed digits.
 constexpr double kLengthOff = 1e-3;
 
@@ -91,7 +90,7 @@ Eigen::Vector3d vector_of(Eigen::Quaterniond q) {
   if (q.w() < 0) q.coeffs() = -q.coeffs();
   const double sine = q.vec().norm();
   if (sine < 1e-300) return Eigen::Vector3d::Zero();
-  return q.vec() * (kDeg * 2 * std::atan2(sine, q.w()) / sine);
+  return q.vec() * (kDegPerRad * 2 * std::atan2(sine, q.w()) / sine);
 }
 
 }  // namespace
@@ -99,9 +98,9 @@ Eigen::Vector3d vector_of(Eigen::Quaterniond q) {
 Eigen::Vector3d rotation_vector_of_angles(const std::array<double, 3>& angles_deg) {
   using Eigen::AngleAxisd;
   using Eigen::Vector3d;
-  return vector_of(AngleAxisd(angles_deg[0] / kDeg, Vector3d::UnitX()) *
-                   AngleAxisd(angles_deg[1] / kDeg, Vector3d::UnitY()) *
-                   AngleAxisd(angles_deg[2] / kDeg, Vector3d::UnitZ()));
+  return vector_of(AngleAxisd(angles_deg[0] / kDegPerRad, Vector3d::UnitX()) *
+                   AngleAxisd(angles_deg[1] / kDegPerRad, Vector3d::UnitY()) *
+                   AngleAxisd(angles_deg[2] / kDegPerRad, Vector3d::UnitZ()));
 }
 
 Eigen::Vector3d rotation_vector_of_quaternion(const std::array<double, 4>& wxyz) {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "tools/import/profile.h"
-#include "tools/import/stretch.h"
+#include "tools/timebase/stretch.h"
 
 namespace vernier {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "tools/import/ballbar_file.h"
-#include "tools/import/repeats.h"
+#include "tools/timebase/repeats.h"
 
 namespace vernier {
 

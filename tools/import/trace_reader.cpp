@@ -3,15 +3,15 @@
 
 #include "tools/import/ballbar_file.h"
 #include "tools/import/json_place.h"
-#include "tools/model/error.h"
-#include "tools/model/files.h"
+#include "tools/text/error.h"
+#include "tools/text/files.h"
 
 namespace vernier {
 namespace {
 
-class Reader {
+class TraceReader {
  public:
-  Reader(const std::string& path, const TraceSetup& setup)
+  TraceReader(const std::string& path, const TraceSetup& setup)
       : path_(path), text_(read_file(path)), setup_(setup) {}
 
   BallbarFile read() const {
@@ -100,7 +100,7 @@ class Reader {
 }  // namespace
 
 BallbarFile read_ballbar_trace(const std::string& path, const TraceSetup& setup) {
-  return Reader(path, setup).read();
+  return TraceReader(path, setup).read();
 }
 
 }  // namespace vernier

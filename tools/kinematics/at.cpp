@@ -3,16 +3,11 @@
 #include <algorithm>
 #include <optional>
 
-#include "tools/model/numbers.h"
+#include "tools/text/numbers.h"
+#include "tools/text/words.h"
 
 namespace vernier {
 namespace {
-
-std::string trimmed(const std::string& text) {
-  const auto first = text.find_first_not_of(" \t");
-  if (first == std::string::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
-}
 
 std::vector<std::string> split(const std::string& text) {
   std::vector<std::string> parts(1);

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "tools/kinematics/jacobian.h"
+#include "tools/maths/factors.h"
 #include "tools/model/evaluate.h"
 
 namespace vernier {
@@ -16,7 +16,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-constexpr double kDeg = 180 / std::numbers::pi;
 
 /// Damping: where it begins, how it grows and shrinks, and where no step is left to try.
 constexpr double kFirstDamping = 1e-6, kGrow = 10, kShrink = 0.1, kMostDamping = 1e12, kLeastDamping = 1e-14;
@@ -35,9 +34,10 @@ struct Walker {
   bool done = false;
 };
 
-class Solver {
+class InverseSolver {
  public:
-  Solver(const Machine& machine, const Poses& target, const States& start, const InverseOptions& options)
+  InverseSolver(const Machine& machine, const Poses& target, const States& start,
+                const InverseOptions& options)
       : machine_(machine),
         target_(target),
         options_(options),
@@ -61,7 +61,8 @@ class Solver {
 
   bool small(const VectorXd& residual) const {
     return residual.head<3>().norm() <= options_.tolerance_mm &&
-           residual.tail(residual.size() - 3).norm() / options_.lever_mm * kDeg <= options_.tolerance_deg;
+           residual.tail(residual.size() - 3).norm() / options_.lever_mm * kDegPerRad <=
+               options_.tolerance_deg;
   }
 
   void measure(const Poses& poses, bool first) {
@@ -125,7 +126,7 @@ class Solver {
       Inverse& proof = proofs_[i];
       const VectorXd residual = residual_at(poses, i);
       proof.residual_mm = residual.head<3>().norm();
-      proof.residual_deg = residual.tail(residual.size() - 3).norm() / options_.lever_mm * kDeg;
+      proof.residual_deg = residual.tail(residual.size() - 3).norm() / options_.lever_mm * kDegPerRad;
       proof.reducible_mm = reducible(jacobian[i], machine_, axes_, residual, options_);
       proof.condition = condition_of(jacobian[i], machine_, axes_, options_);
       const bool met =
@@ -214,7 +215,7 @@ const char* name_of(InverseFault fault) {
 
 InverseResult solve(const Machine& machine, const Poses& target, const States& start,
                     const InverseOptions& options) {
-  return Solver(machine, target, start, options).run();
+  return InverseSolver(machine, target, start, options).run();
 }
 
 InverseResult solve_anywhere(const Machine& machine, const Poses& target, const States& start,
@@ -254,7 +255,7 @@ Eigen::Vector3d rotation_vector(const Eigen::Matrix3d& rotation) {
 Eigen::Matrix3d rotation_of(const Eigen::Vector3d& vector_deg) {
   const double angle = vector_deg.norm();
   if (angle == 0) return Eigen::Matrix3d::Identity();
-  return Eigen::AngleAxisd(angle / kDeg, vector_deg / angle).toRotationMatrix();
+  return Eigen::AngleAxisd(angle / kDegPerRad, vector_deg / angle).toRotationMatrix();
 }
 
 }  // namespace vernier

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "tools/maths/factors.h"
+
 namespace vernier {
 namespace {
 
@@ -14,7 +16,6 @@ using Eigen::Matrix3d;
 using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
-constexpr double kDeg = 180 / std::numbers::pi;
 /// Half the distance of the central differences, mm or deg: third derivatives of a chain (about lever *
 /// rad^3) then cost 1e-12 of the slope, rounding 1e-9.
 constexpr double kHalfStep = 2e-4;
@@ -91,7 +92,7 @@ std::vector<MatrixXd> axis_jacobian(const Machine& machine, const States& states
 VectorXd axis_scales(const Machine& machine, const std::vector<std::size_t>& axes, double lever_mm) {
   VectorXd result(static_cast<Index>(axes.size()));
   for (std::size_t k = 0; k < axes.size(); ++k)
-    result[static_cast<Index>(k)] = machine.axes[axes[k]].rotary ? kDeg / lever_mm : 1;
+    result[static_cast<Index>(k)] = machine.axes[axes[k]].rotary ? kDegPerRad / lever_mm : 1;
   return result;
 }
 

@@ -9,10 +9,11 @@
 #include <optional>
 
 #include "tools/import/circular.h"
-#include "tools/model/csv.h"
-#include "tools/model/files.h"
-#include "tools/model/numbers.h"
-#include "tools/model/units.h"
+#include "tools/maths/factors.h"
+#include "tools/text/csv.h"
+#include "tools/text/files.h"
+#include "tools/text/numbers.h"
+#include "tools/text/units.h"
 
 namespace vernier {
 namespace {
@@ -22,7 +23,6 @@ using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
 using Json = nlohmann::ordered_json;
 
-constexpr double kUm = 1000;
 constexpr int kCirclePoints = 360;
 const char* const kPlaneNames[] = {"XY", "YZ", "ZX"};
 
@@ -130,8 +130,8 @@ LineResult measure_line(const Bench& bench, const std::string& name, const Vecto
   const double start = along.dot(off.col(0));
   double mean_low = INFINITY, mean_high = -INFINITY, low = INFINITY, high = -INFINITY;
   for (int i = 0; i < positions; ++i) {
-    const double f = kUm * (along.dot(off.col(i)) - start);
-    const double r = kUm * (along.dot(off.col(2 * positions - 1 - i)) - start);
+    const double f = kUmPerMm * (along.dot(off.col(i)) - start);
+    const double r = kUmPerMm * (along.dot(off.col(2 * positions - 1 - i)) - start);
     line.distance_mm.push_back((there.col(i) - from).norm());
     line.forward_um.push_back(f);
     line.reverse_um.push_back(r);
@@ -144,7 +144,7 @@ LineResult measure_line(const Bench& bench, const std::string& name, const Vecto
   }
   line.error_um = high - low;
   line.mean_um = mean_high - mean_low;
-  line.straightness_um = kUm * straightness(there, off.leftCols(positions), along);
+  line.straightness_um = kUmPerMm * straightness(there, off.leftCols(positions), along);
   return line;
 }
 
@@ -220,7 +220,7 @@ Json squares_json(const Bench& bench) {
       const Eigen::VectorXd t = (nominal.colwise() - from).transpose() * along;
       slope[s] = line_fit(t, off.transpose() * left)[0];  // rad, anticlockwise
       straight = std::max(straight, straightness(nominal, off, along));
-      sides.push_back(kUm * ((actual.col(kSide - 1) - actual.col(0)).norm() - 2 * half));
+      sides.push_back(kUmPerMm * ((actual.col(kSide - 1) - actual.col(0)).norm() - 2 * half));
     }
     // Side 0 along the first axis, side 1 along the second; the opposite sides have the opposite sense.
     const double square = (slope[1] + slope[3]) / 2 - (slope[0] + slope[2]) / 2;
@@ -228,7 +228,7 @@ Json squares_json(const Bench& bench) {
                     {"side_mm", 2 * half},
                     {"angle_um_per_m", 1e6 * square},
                     {"side_length_deviation_um", sides},
-                    {"straightness_um", kUm * straight}});
+                    {"straightness_um", kUmPerMm * straight}});
   }
   return list;
 }
@@ -262,8 +262,8 @@ Json cylinder_json(const Bench& bench) {
   const Eigen::VectorXd fit = a.colPivHouseholderQr().solve(r);
   return {{"radius_mm", *radius},
           {"height_mm", 2 * half},
-          {"cylindricity_um", kUm * range(r - a * fit)},
-          {"radius_deviation_um", kUm * (fit[0] - *radius)},
+          {"cylindricity_um", kUmPerMm * range(r - a * fit)},
+          {"radius_deviation_um", kUmPerMm * (fit[0] - *radius)},
           {"axis_tilt_um_per_m", {1e6 * fit[3], 1e6 * fit[4]}}};
 }
 
@@ -297,12 +297,13 @@ Json free_lines_json(const Bench& bench, const std::string& path) {
     const Index last = nominal.cols() - 1;
     const Vector3d along = nominal.col(last) - nominal.col(0);
     if (along.norm() == 0) throw InputError({path, 0}, name, "a line needs two different ends");
-    list.push_back({{"run", name},
-                    {"points", points.size()},
-                    {"length_mm", along.norm()},
-                    {"length_deviation_um", kUm * ((actual.col(last) - actual.col(0)).norm() - along.norm())},
-                    {"straightness_um", kUm * straightness(nominal, actual - nominal, along.normalized())},
-                    {"max_deviation_um", kUm * (actual - nominal).colwise().norm().maxCoeff()}});
+    list.push_back(
+        {{"run", name},
+         {"points", points.size()},
+         {"length_mm", along.norm()},
+         {"length_deviation_um", kUmPerMm * ((actual.col(last) - actual.col(0)).norm() - along.norm())},
+         {"straightness_um", kUmPerMm * straightness(nominal, actual - nominal, along.normalized())},
+         {"max_deviation_um", kUmPerMm * (actual - nominal).colwise().norm().maxCoeff()}});
   }
   return list;
 }

@@ -3,18 +3,18 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "tools/maths/factors.h"
 
 namespace vernier {
 namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-constexpr double kRad = std::numbers::pi / 180;
 
 Matrix3d turn(double angle_deg, const Vector3d& axis) {
   if (angle_deg == 0) return Matrix3d::Identity();
-  return Eigen::AngleAxisd(angle_deg * kRad, axis).toRotationMatrix();
+  return Eigen::AngleAxisd(angle_deg * kRadPerDeg, axis).toRotationMatrix();
 }
 
 Frame dh_frame(double theta_deg, double d, double a, double alpha_deg) {
@@ -31,23 +31,23 @@ Frame compose(const Frame& below, const Frame& above) {
 
 Twist shift_along(const Vector3d& direction) { return {direction, Vector3d::Zero()}; }
 Twist turn_about(const Vector3d& axis, const Vector3d& through, const Vector3d& point) {
-  return {kRad * axis.cross(point - through), kRad * axis};
+  return {kRadPerDeg * axis.cross(point - through), kRadPerDeg * axis};
 }
 
 }  // namespace
 
 /// Sine and cosine of an angle in degrees; most angles of most machines are a plain zero.
-struct SineCosine {
-  explicit SineCosine(double angle_deg) {
+struct TurnValues {
+  explicit TurnValues(double angle_deg) {
     if (angle_deg == 0) return;
-    s = std::sin(angle_deg * kRad);
-    c = std::cos(angle_deg * kRad);
+    s = std::sin(angle_deg * kRadPerDeg);
+    c = std::cos(angle_deg * kRadPerDeg);
   }
   double s = 0, c = 1;
 };
 
 Frame sixdof_frame(const std::array<double, 6>& v) {
-  const SineCosine x(v[3]), y(v[4]), z(v[5]);
+  const TurnValues x(v[3]), y(v[4]), z(v[5]);
   Frame frame;
   frame.rotation << y.c * z.c, -y.c * z.s, y.s,  //
       x.c * z.s + x.s * y.s * z.c, x.c * z.c - x.s * y.s * z.s, -x.s * y.c, x.s * z.s - x.c * y.s * z.c,
@@ -57,7 +57,7 @@ Frame sixdof_frame(const std::array<double, 6>& v) {
 }
 
 std::array<Twist, 6> sixdof_twists(const std::array<double, 6>& v, const Vector3d& point) {
-  const SineCosine x(v[3]), y(v[4]);
+  const TurnValues x(v[3]), y(v[4]);
   const Vector3d origin(v[0], v[1], v[2]);
   return {shift_along(Vector3d::UnitX()),
           shift_along(Vector3d::UnitY()),
@@ -78,7 +78,7 @@ ChainRows::ChainRows(const Machine& machine, const States& states, std::vector<c
 ChainRows::Link ChainRows::link(const Transform& transform, const char* branch, Evaluator& evaluate) {
   Link result{transform.kind, {}};
   for (std::size_t i = 0; i < transform.dof_count(); ++i) {
-    Dual dual = evaluate(*transform.dof[i]);
+    ValueAndSlopes dual = evaluate(*transform.dof[i]);
     if (!dual.value.all_finite()) {
       std::size_t row = 0;
       while (row + 1 < count_ && std::isfinite(dual.value[row])) ++row;

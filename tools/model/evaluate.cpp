@@ -1,14 +1,12 @@
 #include "tools/model/evaluate.h"
 
 #include <cmath>
-#include <numbers>
 
+#include "tools/maths/factors.h"
 #include "tools/model/chain.h"
 
 namespace vernier {
 namespace {
-
-constexpr double kRad = std::numbers::pi / 180;
 
 template <class F>
 Value map(const Value& a, std::size_t count, const F& f) {
@@ -41,13 +39,13 @@ double by_first(Op op, double a, double b) {
     case Op::kPower:
       return b == 0 ? 0 : b * std::pow(a, b - 1);
     case Op::kSin:
-      return kRad * std::cos(a * kRad);
+      return kRadPerDeg * std::cos(a * kRadPerDeg);
     case Op::kCos:
-      return -kRad * std::sin(a * kRad);
+      return -kRadPerDeg * std::sin(a * kRadPerDeg);
     case Op::kTan:
-      return kRad / (std::cos(a * kRad) * std::cos(a * kRad));
+      return kRadPerDeg / (std::cos(a * kRadPerDeg) * std::cos(a * kRadPerDeg));
     case Op::kAtan2:
-      return b / (a * a + b * b) / kRad;
+      return b / (a * a + b * b) / kRadPerDeg;
     case Op::kSqrt:
       return 0.5 / std::sqrt(a);
     case Op::kAbs:
@@ -78,7 +76,7 @@ double by_second(Op op, double a, double b) {
     case Op::kPower:
       return a > 0 ? std::pow(a, b) * std::log(a) : 0;
     case Op::kAtan2:
-      return -a / (a * a + b * b) / kRad;
+      return -a / (a * a + b * b) / kRadPerDeg;
     case Op::kMin:
       return a <= b ? 0 : 1;
     case Op::kMax:
@@ -89,7 +87,8 @@ double by_second(Op op, double a, double b) {
 }
 
 /// target += factor * source, derivative by derivative.
-void accumulate(Dual& target, const Dual& source, const Value& factor, std::size_t count) {
+void accumulate(ValueAndSlopes& target, const ValueAndSlopes& source, const Value& factor,
+                std::size_t count) {
   for (const auto& [key, derivative] : source.by) {
     Value term = map(derivative, factor, count, [](double x, double y) { return x * y; });
     bool found = false;
@@ -131,16 +130,16 @@ Column Value::column(std::size_t count) const {
 Evaluator::Evaluator(const Machine& machine, const States& states, std::vector<char> active)
     : machine_(machine), states_(states), active_(std::move(active)) {}
 
-Dual Evaluator::operator()(const Expr& expr) {
+ValueAndSlopes Evaluator::operator()(const Expr& expr) {
   const std::size_t count = states_.count;
   if (expr.op == Op::kNumber) return {Value(expr.number), {}};
   if (expr.op == Op::kSymbol) return symbol(expr.symbol);
   if (expr.op == Op::kRunIs) return {run_is(expr.name), {}};
-  const Dual a = (*this)(*expr.args[0]);
-  const Dual b = expr.args.size() > 1 ? (*this)(*expr.args[1]) : Dual{};
+  const ValueAndSlopes a = (*this)(*expr.args[0]);
+  const ValueAndSlopes b = expr.args.size() > 1 ? (*this)(*expr.args[1]) : ValueAndSlopes{};
   if (expr.op == Op::kLag) return lag(a, b);
   const Op op = expr.op;
-  Dual result;
+  ValueAndSlopes result;
   result.value = map(a.value, b.value, count, [op](double x, double y) { return apply(op, x, y); });
   if (!a.by.empty())
     accumulate(result, a,
@@ -151,16 +150,16 @@ Dual Evaluator::operator()(const Expr& expr) {
   return result;
 }
 
-Dual Evaluator::symbol(const Symbol& symbol) {
+ValueAndSlopes Evaluator::symbol(const Symbol& symbol) {
   switch (symbol.kind) {
     case SymbolKind::kStatic: {
-      Dual result{Value(machine_.statics[symbol.index].value), {}};
+      ValueAndSlopes result{Value(machine_.statics[symbol.index].value), {}};
       if (active(symbol.index)) result.by.emplace_back(symbol.index, Value(1.0));
       return result;
     }
     case SymbolKind::kAxis: {
       const double scale = 1 + machine_.axes[symbol.index].scale_factor;
-      Dual result{Value(Column(states_.axis[symbol.index] * scale)), {}};
+      ValueAndSlopes result{Value(Column(states_.axis[symbol.index] * scale)), {}};
       if (active(scale_key(symbol.index)))
         result.by.emplace_back(scale_key(symbol.index), Value(states_.axis[symbol.index]));
       return result;
@@ -169,7 +168,7 @@ Dual Evaluator::symbol(const Symbol& symbol) {
       return {Value(states_.input[symbol.index]), {}};
     case SymbolKind::kTableValue: {
       if (machine_.table_of(symbol.index / 6) == nullptr) return {};
-      Dual result{table_value(symbol.index), {}};
+      ValueAndSlopes result{table_value(symbol.index), {}};
       if (active(table_key(symbol.index))) result.by.emplace_back(table_key(symbol.index), Value(1.0));
       return result;
     }
@@ -218,7 +217,7 @@ Value Evaluator::run_is(const std::string& label) const {
   return Value(std::move(result));
 }
 
-Dual Evaluator::lag(const Dual& input, const Dual& tau) const {
+ValueAndSlopes Evaluator::lag(const ValueAndSlopes& input, const ValueAndSlopes& tau) const {
   const auto n = static_cast<Eigen::Index>(states_.count);
   Column y(n), by_tau(n);
   std::vector<Column> by_input(input.by.size(), Column(n));
@@ -250,7 +249,7 @@ Dual Evaluator::lag(const Dual& input, const Dual& tau) const {
     }
     before = i;
   }
-  Dual result{Value(std::move(y)), {}};
+  ValueAndSlopes result{Value(std::move(y)), {}};
   for (std::size_t k = 0; k < by_input.size(); ++k)
     result.by.emplace_back(input.by[k].first, Value(by_input[k]));
   accumulate(result, tau, Value(std::move(by_tau)), states_.count);

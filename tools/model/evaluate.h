@@ -31,7 +31,7 @@ class Value {
 /// A value and its derivatives by the quantities that a fit may change. Keys: the index of a static, or
 /// statics.size() + axis * 6 + column of a table value (the station weights come later, they are the same for
 /// all), or statics.size() + 6 * axes.size() + axis of a scale factor.
-struct Dual {
+struct ValueAndSlopes {
   Value value;
   std::vector<std::pair<std::size_t, Value>> by;
 };
@@ -43,7 +43,7 @@ class Evaluator {
   /// `active`: for each key whether its derivative is wanted; empty: none.
   Evaluator(const Machine& machine, const States& states, std::vector<char> active = {});
 
-  Dual operator()(const Expr& expr);
+  ValueAndSlopes operator()(const Expr& expr);
 
   std::size_t table_key(std::size_t table_value) const { return machine_.statics.size() + table_value; }
   std::size_t scale_key(std::size_t axis) const {
@@ -51,10 +51,10 @@ class Evaluator {
   }
 
  private:
-  Dual symbol(const Symbol& symbol);
+  ValueAndSlopes symbol(const Symbol& symbol);
   Value table_value(std::size_t index);
   Value run_is(const std::string& label) const;
-  Dual lag(const Dual& input, const Dual& tau) const;
+  ValueAndSlopes lag(const ValueAndSlopes& input, const ValueAndSlopes& tau) const;
   bool active(std::size_t key) const { return key < active_.size() && active_[key] != 0; }
 
   const Machine& machine_;

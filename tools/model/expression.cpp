@@ -2,10 +2,10 @@
 
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
-#include "tools/model/numbers.h"
+#include "tools/maths/factors.h"
+#include "tools/text/numbers.h"
 
 namespace vernier {
 namespace {
@@ -13,23 +13,23 @@ namespace {
 /// Nesting deeper than this is refused, so that no input can exhaust the stack.
 constexpr int kMaxDepth = 200;
 
-struct Function {
+struct NamedFunction {
   const char* name;
   Op op;
   std::size_t arity;
 };
-constexpr std::array<Function, 12> kFunctions = {{{"sin", Op::kSin, 1},
-                                                  {"cos", Op::kCos, 1},
-                                                  {"tan", Op::kTan, 1},
-                                                  {"atan2", Op::kAtan2, 2},
-                                                  {"sqrt", Op::kSqrt, 1},
-                                                  {"abs", Op::kAbs, 1},
-                                                  {"exp", Op::kExp, 1},
-                                                  {"log", Op::kLog, 1},
-                                                  {"sign", Op::kSign, 1},
-                                                  {"min", Op::kMin, 2},
-                                                  {"max", Op::kMax, 2},
-                                                  {"lag", Op::kLag, 2}}};
+constexpr std::array<NamedFunction, 12> kFunctions = {{{"sin", Op::kSin, 1},
+                                                       {"cos", Op::kCos, 1},
+                                                       {"tan", Op::kTan, 1},
+                                                       {"atan2", Op::kAtan2, 2},
+                                                       {"sqrt", Op::kSqrt, 1},
+                                                       {"abs", Op::kAbs, 1},
+                                                       {"exp", Op::kExp, 1},
+                                                       {"log", Op::kLog, 1},
+                                                       {"sign", Op::kSign, 1},
+                                                       {"min", Op::kMin, 2},
+                                                       {"max", Op::kMax, 2},
+                                                       {"lag", Op::kLag, 2}}};
 
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
@@ -137,7 +137,7 @@ class Parser {
     const std::string name(text_.substr(start, at_ - start));
     if (!peek('(')) return symbol(name, start);
     if (name == "run") return run_label();
-    for (const Function& function : kFunctions)
+    for (const NamedFunction& function : kFunctions)
       if (name == function.name) return call(function);
     fail_at(start, name, "unknown function");
   }
@@ -151,7 +151,7 @@ class Parser {
     return node;
   }
 
-  ExprPtr call(const Function& function) {
+  ExprPtr call(const NamedFunction& function) {
     expect('(');
     std::vector<ExprPtr> args{comparison()};
     while (args.size() < function.arity) {
@@ -178,7 +178,7 @@ class Parser {
   }
 
   static bool is_function(std::string_view name) {
-    for (const Function& function : kFunctions)
+    for (const NamedFunction& function : kFunctions)
       if (name == function.name) return true;
     return false;
   }
@@ -288,7 +288,7 @@ ExprPtr make_node(Op op, std::vector<ExprPtr> args) {
 }
 
 const char* function_name(Op op) {
-  for (const Function& function : kFunctions)
+  for (const NamedFunction& function : kFunctions)
     if (op == function.op) return function.name;
   return nullptr;
 }
@@ -296,7 +296,7 @@ const char* function_name(Op op) {
 bool is_reserved_word(std::string_view name) {
   for (const char* word : {"t", "feed", "curv", "visit", "nx", "ny", "nz", "run"})
     if (name == word) return true;
-  for (const Function& function : kFunctions)
+  for (const NamedFunction& function : kFunctions)
     if (name == function.name) return true;
   return false;
 }
@@ -338,7 +338,6 @@ std::string to_text(const Expr& expr) {
 }
 
 double apply(Op op, double a, double b) {
-  constexpr double kRad = std::numbers::pi / 180;
   switch (op) {
     case Op::kNegate:
       return -a;
@@ -359,13 +358,13 @@ double apply(Op op, double a, double b) {
     case Op::kGreater:
       return a > b ? 1 : 0;
     case Op::kSin:
-      return std::sin(a * kRad);
+      return std::sin(a * kRadPerDeg);
     case Op::kCos:
-      return std::cos(a * kRad);
+      return std::cos(a * kRadPerDeg);
     case Op::kTan:
-      return std::tan(a * kRad);
+      return std::tan(a * kRadPerDeg);
     case Op::kAtan2:
-      return std::atan2(a, b) / kRad;
+      return std::atan2(a, b) / kRadPerDeg;
     case Op::kSqrt:
       return std::sqrt(a);
     case Op::kAbs:

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "tools/model/numbers.h"
+#include "tools/text/numbers.h"
 
 namespace vernier {
 namespace {

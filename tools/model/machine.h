@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "tools/model/error.h"
 #include "tools/model/expression.h"
+#include "tools/text/error.h"
 
 namespace vernier {
 

@@ -4,11 +4,11 @@
 #include <set>
 #include <sstream>
 
-#include "tools/model/files.h"
 #include "tools/model/fit_record.h"
 #include "tools/model/machine.h"
-#include "tools/model/numbers.h"
-#include "tools/model/xml_text.h"
+#include "tools/text/files.h"
+#include "tools/text/numbers.h"
+#include "tools/text/xml_text.h"
 
 namespace vernier {
 namespace {

@@ -2,8 +2,8 @@
 
 #include "tools/model/fit_record.h"
 #include "tools/model/machine.h"
-#include "tools/model/numbers.h"
-#include "tools/model/xml_text.h"
+#include "tools/text/numbers.h"
+#include "tools/text/xml_text.h"
 
 namespace vernier {
 namespace {

@@ -9,10 +9,10 @@
 #include <map>
 #include <set>
 
-#include "tools/model/csv.h"
-#include "tools/model/files.h"
-#include "tools/model/numbers.h"
-#include "tools/model/units.h"
+#include "tools/text/csv.h"
+#include "tools/text/files.h"
+#include "tools/text/numbers.h"
+#include "tools/text/units.h"
 
 namespace vernier {
 namespace {

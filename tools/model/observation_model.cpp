@@ -5,12 +5,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "tools/maths/factors.h"
+
 namespace vernier {
 namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-constexpr double kDeg = 180 / std::numbers::pi;
 
 Matrix3d cross_matrix(const Vector3d& v) {
   Matrix3d m;
@@ -65,7 +66,7 @@ const Vector3d& ObservationModel::rotation_vector(std::size_t row) {
   auto o = std::lower_bound(m_.observations.begin(), m_.observations.end(), row,
                             [](const Observation& a, std::size_t r) { return a.row < r; });
   for (; o != m_.observations.end() && o->row == row; ++o)
-    if (is_rotation(o->kind)) measured[component(o->kind)] = o->value / kDeg;
+    if (is_rotation(o->kind)) measured[component(o->kind)] = o->value / kDegPerRad;
   phi_ = nearest_rotation_vector(base_.rotation * pose_.rotation, measured);
   has_phi_ = true;
   return phi_;
@@ -85,7 +86,7 @@ double ObservationModel::predicted(const Observation& o) {
     case ObservationKind::kD:
       return normal(at).dot(pose_.origin - m_.nominal_point.col(at));
     default:
-      return kDeg * rotation_vector(o.row)[component(o.kind)];
+      return kDegPerRad * rotation_vector(o.row)[component(o.kind)];
   }
 }
 
@@ -99,7 +100,7 @@ Twist ObservationModel::gradient(const Observation& o) const {
   } else if (o.kind == ObservationKind::kD) {
     g.point = base_.rotation * normal(at);
   } else if (is_rotation(o.kind)) {
-    g.rotation = kDeg * inverse_left_jacobian(phi_).row(component(o.kind)).transpose();
+    g.rotation = kDegPerRad * inverse_left_jacobian(phi_).row(component(o.kind)).transpose();
   } else {
     g.point = Vector3d::Unit(static_cast<int>(o.kind));
   }

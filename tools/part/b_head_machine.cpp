@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "tools/model/chain.h"
-#include "tools/model/numbers.h"
-#include "tools/model/units.h"
+#include "tools/text/numbers.h"
+#include "tools/text/units.h"
 
 namespace vernier {
 namespace {

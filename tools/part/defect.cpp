@@ -66,13 +66,13 @@ std::vector<std::size_t> free_statics(const Machine& machine) {
   return indices;
 }
 
-std::vector<Displacement> displacements(const BHeadMachine& machine, const std::vector<JointPose>& joints,
-                                        const std::vector<double>& height_mm) {
+std::vector<ToolDisplacement> displacements(const BHeadMachine& machine, const std::vector<JointPose>& joints,
+                                            const std::vector<double>& height_mm) {
   const States states = machine.states(joints);
   const Machine nominal = nominal_machine(machine.machine);
   const ChainRows actual(machine.machine, states, active_keys(machine.machine)), ideal(nominal, states);
   const std::vector<std::size_t> wanted = free_statics(machine.machine);
-  std::vector<Displacement> result(joints.size());
+  std::vector<ToolDisplacement> result(joints.size());
   std::vector<Twist> twists;
   for (std::size_t i = 0; i < joints.size(); ++i) {
     const Frame here = actual.pose(i, twists), there = ideal.pose(i);
@@ -101,8 +101,8 @@ PartDefect part_defect(const BHeadMachine& machine, const std::vector<PartPoint>
   std::vector<JointPose> with_origin = result.joints;
   with_origin.push_back(machine.origin());
   heights_mm.push_back(0);
-  const std::vector<Displacement> moved = displacements(machine, with_origin, heights_mm);
-  const Displacement& datum = moved.back();
+  const std::vector<ToolDisplacement> moved = displacements(machine, with_origin, heights_mm);
+  const ToolDisplacement& datum = moved.back();
   const auto count = static_cast<Eigen::Index>(points.size());
   result.position.resize(3, count);
   result.normal.resize(3, count);
@@ -110,7 +110,7 @@ PartDefect part_defect(const BHeadMachine& machine, const std::vector<PartPoint>
   result.jacobian.resize(count, datum.by.cols());
   for (Eigen::Index i = 0; i < count; ++i) {
     const Probe& probe = probes[static_cast<std::size_t>(i)];
-    const Displacement& here = moved[static_cast<std::size_t>(i)];
+    const ToolDisplacement& here = moved[static_cast<std::size_t>(i)];
     result.position.col(i) = probe.position;
     result.normal.col(i) = probe.along;
     result.defect_mm[i] = probe.along.dot(here.shift - datum.shift);

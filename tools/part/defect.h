@@ -27,14 +27,14 @@ struct DefectOptions {
 };
 
 /// Where the errors of a machine put the tool: actual - nominal chain, in workpiece coordinates.
-struct Displacement {
+struct ToolDisplacement {
   Eigen::Vector3d shift;  // mm, exact, at the height asked for
   Eigen::Matrix3Xd by;    // its derivatives, 3 x free statics of the machine, mm per unit of the static
 };
 
 /// At joint poses, for the point of the tool axis `height_mm` above the tip (as many as joints). tool.
-std::vector<Displacement> displacements(const BHeadMachine& machine, const std::vector<JointPose>& joints,
-                                        const std::vector<double>& height_mm);
+std::vector<ToolDisplacement> displacements(const BHeadMachine& machine, const std::vector<JointPose>& joints,
+                                            const std::vector<double>& height_mm);
 
 /// Indices of the statics that `by` and the Jacobian of a part stand for, in the order of the machine file.
 std::vector<std::size_t> free_statics(const Machine& machine);

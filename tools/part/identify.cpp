@@ -3,12 +3,12 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "tools/maths/factors.h"
 
 namespace vernier {
 namespace {
 
-constexpr double kDeg = std::numbers::pi / 180;
 constexpr std::array<const char*, 6> kAlignment = {"part.X",  "part.Y",  "part.Z",
                                                    "part.rX", "part.rY", "part.rZ"};
 
@@ -19,7 +19,7 @@ Eigen::MatrixXd alignment_columns(const PartDefect& defect) {
   for (Eigen::Index i = 0; i < columns.rows(); ++i) {
     const Eigen::Vector3d normal = defect.normal.col(i), position = defect.position.col(i);
     columns.row(i).head<3>() = normal;
-    columns.row(i).tail<3>() = kDeg * position.cross(normal);
+    columns.row(i).tail<3>() = kRadPerDeg * position.cross(normal);
   }
   return columns;
 }

@@ -4,10 +4,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "tools/maths/factors.h"
+
 namespace vernier {
 namespace {
 
-constexpr double kPi = std::numbers::pi, kDeg = kPi / 180;
+constexpr double kPi = std::numbers::pi;
 /// Horizontal part of the tool axis below which C cannot be told: rounding is 1e-16, so that C is still good
 /// to 1e-7 rad at this limit.
 constexpr double kVertical = 1e-9;
@@ -64,17 +66,17 @@ void choose_smaller(std::vector<Rotary>& path) {
 }  // namespace
 
 ToolPose tool_pose(const JointPose& q, double pivot_mm) {
-  const double sin_b = std::sin(q.b_deg * kDeg), cos_b = std::cos(q.b_deg * kDeg);
-  const double sin_c = std::sin(q.c_deg * kDeg), cos_c = std::cos(q.c_deg * kDeg);
+  const double sin_b = std::sin(q.b_deg * kRadPerDeg), cos_b = std::cos(q.b_deg * kRadPerDeg);
+  const double sin_c = std::sin(q.c_deg * kRadPerDeg), cos_c = std::cos(q.c_deg * kRadPerDeg);
   const double arm_mm = q.x_mm - pivot_mm * sin_b;
   return {{arm_mm * cos_c + q.y_mm * sin_c, -arm_mm * sin_c + q.y_mm * cos_c, q.z_mm - pivot_mm * cos_b},
           {sin_b * cos_c, -sin_b * sin_c, cos_b}};
 }
 
 JointPose joints_for(const ToolPose& pose, double pivot_mm, double b_deg, double c_deg) {
-  const double sin_c = std::sin(c_deg * kDeg), cos_c = std::cos(c_deg * kDeg);
-  return {pose.tip.x() * cos_c - pose.tip.y() * sin_c + pivot_mm * std::sin(b_deg * kDeg),
-          pose.tip.x() * sin_c + pose.tip.y() * cos_c, pose.tip.z() + pivot_mm * std::cos(b_deg * kDeg),
+  const double sin_c = std::sin(c_deg * kRadPerDeg), cos_c = std::cos(c_deg * kRadPerDeg);
+  return {pose.tip.x() * cos_c - pose.tip.y() * sin_c + pivot_mm * std::sin(b_deg * kRadPerDeg),
+          pose.tip.x() * sin_c + pose.tip.y() * cos_c, pose.tip.z() + pivot_mm * std::cos(b_deg * kRadPerDeg),
           b_deg, c_deg};
 }
 
@@ -93,7 +95,7 @@ std::vector<JointPose> back_solution(const std::vector<ToolPose>& poses, double 
   if (!positive) choose_smaller(path);
   std::vector<JointPose> joints;
   for (std::size_t i = 0; i < path.size(); ++i)
-    joints.push_back(joints_for(poses[i], pivot_mm, path[i].b_rad / kDeg, path[i].c_rad / kDeg));
+    joints.push_back(joints_for(poses[i], pivot_mm, path[i].b_rad / kRadPerDeg, path[i].c_rad / kRadPerDeg));
   return joints;
 }
 

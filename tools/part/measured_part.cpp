@@ -2,10 +2,10 @@
 
 #include <cmath>
 
-#include "tools/model/csv.h"
-#include "tools/model/numbers.h"
-#include "tools/model/units.h"
 #include "tools/part/identify.h"
+#include "tools/text/csv.h"
+#include "tools/text/numbers.h"
+#include "tools/text/units.h"
 
 namespace vernier {
 namespace {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tools/maths/factors.h"
 #include "tools/part/envelope.h"
 #include "tools/part/part_report.h"
 
@@ -11,7 +12,6 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr double kUmPerMm = 1000;
 constexpr std::array<double, 3> kOvercutHeightsMm = {0, kMeasuredHeightsMm[0], kMeasuredHeightsMm[1]};
 constexpr std::size_t kAlongFlank = 521;  // every knot and 39 points between
 

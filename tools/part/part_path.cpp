@@ -5,11 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tools/maths/factors.h"
+
 namespace vernier {
 namespace {
 
 constexpr int kSamples = 2000;
-constexpr double kSecondsPerMinute = 60;
 constexpr std::array<const char*, 5> kAxisNames = {"X", "Y", "Z", "B", "C"};
 
 std::array<double, 5> values(const JointPose& q) { return {q.x_mm, q.y_mm, q.z_mm, q.b_deg, q.c_deg}; }

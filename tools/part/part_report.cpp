@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 
+#include "tools/maths/factors.h"
 #include "tools/part/envelope.h"
 
 namespace vernier {
@@ -13,7 +14,6 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr std::size_t kDrawn = 521;
-constexpr double kUmPerMm = 1000;
 
 std::vector<double> along() {
   std::vector<double> u;

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "tools/diagnose/enumerate.h"
+#include "tools/effects/input_class.h"
 
 namespace vernier {
 namespace {

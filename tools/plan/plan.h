@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/diagnose/effect.h"
+#include "tools/effects/catalogue.h"
 #include "tools/model/machine.h"
 #include "tools/model/measurement.h"
 #include "tools/plan/rival.h"

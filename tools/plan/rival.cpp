@@ -7,7 +7,7 @@
 #include "tools/diagnose/diagnosis.h"
 #include "tools/diagnose/pool.h"
 #include "tools/fit/fit.h"
-#include "tools/model/error.h"
+#include "tools/text/error.h"
 
 namespace vernier {
 namespace {

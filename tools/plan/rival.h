@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "tools/diagnose/candidate.h"
 #include "tools/diagnose/evidence.h"
 #include "tools/diagnose/scan.h"
+#include "tools/effects/candidate.h"
 #include "tools/model/machine.h"
 #include "tools/model/measurement.h"
 

@@ -8,8 +8,8 @@
 #include <set>
 #include <vector>
 
-#include "tools/model/numbers.h"
 #include "tools/plan/offers.h"
+#include "tools/text/numbers.h"
 
 namespace vernier {
 namespace {

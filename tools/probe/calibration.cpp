@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
-#include "tools/diagnose/chance.h"
-#include "tools/model/error.h"
+#include "tools/maths/chance.h"
+#include "tools/maths/factors.h"
+#include "tools/text/error.h"
 
 namespace vernier {
 namespace {
@@ -15,8 +15,6 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-constexpr double kUmPerMm = 1e3, kDegPerRad = 180 / std::numbers::pi;
-constexpr double kSecondsPerMinute = 60;
 /// Feeds that lie closer together than this say nothing about the delay.
 constexpr double kLeastFeedSpread = 0.05;
 /// A gap in the azimuths, or a span of the threefold angle, from which lobes cannot be told from an eccentric
@@ -30,7 +28,7 @@ bool varies(const VectorXd& values) {
 }
 
 /// Columns of the design that the touches can bear.
-struct Reach {
+struct LeverReach {
   bool delay = false, lobes = false;
 };
 
@@ -110,7 +108,7 @@ struct RoundTouches {
 
   Index first_extra() const { return sphere ? 4 : 3; }
   // Distance of a touch from the surface that the parameters describe: centre, radius, [delay], [lobes].
-  VectorXd residual(const VectorXd& p, const Reach& reach) const {
+  VectorXd residual(const VectorXd& p, const LeverReach& reach) const {
     VectorXd r(x.size());
     for (Index i = 0; i < x.size(); ++i) {
       const double dx = x(i) - p(0), dy = y(i) - p(1), dz = sphere ? z(i) - p(2) : 0;
@@ -166,7 +164,7 @@ RoundTouches round_touches(TouchTable& table, const CalibrationSetup& setup) {
   return touches;
 }
 
-void say_round(const RoundTouches& touches, const Reach& reach, double gap,
+void say_round(const RoundTouches& touches, const LeverReach& reach, double gap,
                std::vector<std::string>& findings) {
   say_feeds(touches.speed * kSecondsPerMinute, reach.delay, findings);
   if (!reach.lobes && gap > kLargestGapDeg)
@@ -193,7 +191,7 @@ ProbeCalibration calibrate_round(TouchTable& table, const CalibrationSetup& setu
                                                 "delay",    "lobe cosine", "lobe sine"};
   const VectorXd start = touches.start();
   const double gap = touches.largest_gap(start);
-  const auto fit_with = [&](const Reach& reach, const TouchFitOptions& how) {
+  const auto fit_with = [&](const LeverReach& reach, const TouchFitOptions& how) {
     VectorXd from = VectorXd::Zero(start.size() + (reach.delay ? 1 : 0) + (reach.lobes ? 2 : 0));
     from.head(start.size()) = start;
     std::vector<std::string> used(names.begin(), names.begin() + start.size());
@@ -201,7 +199,7 @@ ProbeCalibration calibrate_round(TouchTable& table, const CalibrationSetup& setu
     if (reach.lobes) used.insert(used.end(), {"lobe cosine", "lobe sine"});
     return fit_touches([&, reach](const VectorXd& p) { return touches.residual(p, reach); }, from, how, used);
   };
-  Reach reach{varies(touches.speed), false};
+  LeverReach reach{varies(touches.speed), false};
   ProbeCalibration result;
   const bool may_have_lobes = gap <= kLargestGapDeg && touches.x.size() >= start.size() + 6;
   reach.lobes = may_have_lobes;

@@ -7,10 +7,10 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <numbers>
 #include <set>
 
-#include "tools/model/error.h"
+#include "tools/maths/factors.h"
+#include "tools/text/error.h"
 
 namespace vernier {
 namespace {
@@ -20,8 +20,6 @@ using Eigen::Matrix3d;
 using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
-
-constexpr double kDegPerRad = 180 / std::numbers::pi, kReferenceDegC = 20;
 
 /// Touches in a frame of their own: origin at their centroid, third axis along the normal or axis.
 struct Touches {
@@ -96,7 +94,7 @@ TouchFitOptions options_of(const Touches& touches, const FeatureSetup& setup, st
 
 /// A feature in the making: parameters as functions of those of the fit, with their uncertainty carried over.
 struct Maker {
-  Feature& feature;
+  MeasuredFeature& feature;
   void add(const std::string& name, const std::string& unit,
            const std::function<double(const VectorXd&)>& of) const {
     const TouchFit& fit = feature.fit;
@@ -128,8 +126,8 @@ double side_of(const Touches& touches, const FeatureSetup& setup,
 
 // ---- plane and line
 
-Feature fit_plane(const Touches& touches, const FeatureSetup& setup) {
-  Feature feature;
+MeasuredFeature fit_plane(const Touches& touches, const FeatureSetup& setup) {
+  MeasuredFeature feature;
   const Vector3d c = touches.centroid();
   Matrix3d v = touches.principal();
   if (touches.n ? touches.n->colwise().sum().dot(v.col(2)) < 0 : v(2, 2) < 0) v.col(2) *= -1, v.col(0) *= -1;
@@ -162,8 +160,8 @@ Feature fit_plane(const Touches& touches, const FeatureSetup& setup) {
   return feature;
 }
 
-Feature fit_line(const Touches& touches, const FeatureSetup& setup) {
-  Feature feature;
+MeasuredFeature fit_line(const Touches& touches, const FeatureSetup& setup) {
+  MeasuredFeature feature;
   const Vector3d c = touches.centroid();
   Matrix3d v = touches.principal();
   const bool flat = (touches.p.col(2).array() - c(2)).abs().maxCoeff() < 1e-9;
@@ -227,8 +225,8 @@ void add_radius(const Maker& make, const FeatureSetup& setup, double side, Index
   make.add("radius", "mm", [=](const VectorXd& p) { return p(at) - side * setup.ball_radius_mm; });
 }
 
-Feature fit_circle(const Touches& touches, const FeatureSetup& setup) {
-  Feature feature;
+MeasuredFeature fit_circle(const Touches& touches, const FeatureSetup& setup) {
+  MeasuredFeature feature;
   const Vector3d c = touches.centroid();
   Matrix3d v = touches.principal();
   const bool flat = (touches.p.col(2).array() - c(2)).abs().maxCoeff() < 1e-9;
@@ -260,8 +258,8 @@ Feature fit_circle(const Touches& touches, const FeatureSetup& setup) {
   return feature;
 }
 
-Feature fit_sphere(const Touches& touches, const FeatureSetup& setup) {
-  Feature feature;
+MeasuredFeature fit_sphere(const Touches& touches, const FeatureSetup& setup) {
+  MeasuredFeature feature;
   const Vector3d c = touches.centroid();
   const MatrixXd local = touches.p.rowwise() - c.transpose();
   const TouchModel model = [&](const VectorXd& p) -> VectorXd {
@@ -305,7 +303,7 @@ struct CylinderModel {
   }
 };
 
-Feature fit_cylinder(const Touches& touches, const FeatureSetup& setup) {
+MeasuredFeature fit_cylinder(const Touches& touches, const FeatureSetup& setup) {
   const Vector3d c = touches.centroid();
   const MatrixXd off = touches.p.rowwise() - c.transpose();
   // Normals know the axis; else the principal directions and those of the machine are tried.
@@ -317,7 +315,7 @@ Feature fit_cylinder(const Touches& touches, const FeatureSetup& setup) {
     const Matrix3d v = touches.principal();
     for (int k = 0; k < 3; ++k) tries.push_back(v.col(k)), tries.push_back(Vector3d::Unit(k));
   }
-  std::optional<Feature> best;
+  std::optional<MeasuredFeature> best;
   Matrix3d frame;
   std::string why;
   for (const Vector3d& axis : tries) {
@@ -327,7 +325,7 @@ Feature fit_cylinder(const Touches& touches, const FeatureSetup& setup) {
     const VectorXd circle = algebraic_centre(model.local.leftCols(2));
     start(0) = circle(0), start(1) = circle(1), start(4) = circle(2);
     try {
-      Feature feature;
+      MeasuredFeature feature;
       feature.fit = fit_touches(model, start, options_of(touches, setup),
                                 {"axis x", "axis y", "tilt x", "tilt y", "radius"});
       if (!best || feature.fit.outliers.size() < best->fit.outliers.size() ||
@@ -338,7 +336,7 @@ Feature fit_cylinder(const Touches& touches, const FeatureSetup& setup) {
     }
   }
   if (!best) throw InputError(why);
-  Feature& feature = *best;
+  MeasuredFeature& feature = *best;
   const auto axis = [&](const VectorXd& p) -> Vector3d {
     const Vector3d a = (frame * Vector3d(p(2), p(3), 1)).normalized();
     Index main = 0;
@@ -387,7 +385,7 @@ struct BlockModel {
   }
 };
 
-Feature fit_block(const Touches& touches, const FeatureSetup& setup) {
+MeasuredFeature fit_block(const Touches& touches, const FeatureSetup& setup) {
   if (!touches.n) throw InputError("a block needs the normal of the touched face in each row (nx, ny)");
   if (!(setup.block_size_mm[0] > 0 && setup.block_size_mm[1] > 0))
     throw InputError("a block needs its size (--size X,Y)");
@@ -404,7 +402,7 @@ Feature fit_block(const Touches& touches, const FeatureSetup& setup) {
     faces.insert(model.axis.back());
   }
   if (faces.size() < 2) throw InputError("both a face across X and a face across Y must be touched");
-  Feature feature;
+  MeasuredFeature feature;
   Vector3d start(0, touches.p.col(0).mean(), touches.p.col(1).mean());
   feature.fit = fit_touches(model, start, options_of(touches, setup), {"angle", "centre x", "centre y"});
   const Maker make{feature};
@@ -427,7 +425,7 @@ Feature fit_block(const Touches& touches, const FeatureSetup& setup) {
   return feature;
 }
 
-Feature fit_kind(const Touches& touches, const FeatureSetup& setup) {
+MeasuredFeature fit_kind(const Touches& touches, const FeatureSetup& setup) {
   switch (setup.kind) {
     case FeatureKind::kPlane:
       return fit_plane(touches, setup);
@@ -446,7 +444,7 @@ Feature fit_kind(const Touches& touches, const FeatureSetup& setup) {
 }
 
 // Expansion and temperature are the same for all touches: they widen what has a size or a place.
-void widen(Feature& feature, const FeatureSetup& setup, double off_reference_K) {
+void widen(MeasuredFeature& feature, const FeatureSetup& setup, double off_reference_K) {
   const double relative = std::hypot(setup.expansion_std_per_K * off_reference_K,
                                      *setup.expansion_per_K * setup.temperature_std_K);
   for (Calibrated& p : feature.parameters)
@@ -455,10 +453,10 @@ void widen(Feature& feature, const FeatureSetup& setup, double off_reference_K) 
 
 }  // namespace
 
-Feature fit_feature(TouchTable& table, const FeatureSetup& setup) {
+MeasuredFeature fit_feature(TouchTable& table, const FeatureSetup& setup) {
   std::vector<std::string> findings;
   const Touches touches = read_touches(table, setup, findings);
-  Feature feature = fit_kind(touches, setup);
+  MeasuredFeature feature = fit_kind(touches, setup);
   feature.points = touches.p;
   if (setup.expansion_per_K) {
     const auto t = table.find({"T"});
@@ -478,7 +476,7 @@ Feature fit_feature(TouchTable& table, const FeatureSetup& setup) {
   return feature;
 }
 
-std::string feature_csv(const TouchTable& table, const Feature& feature) {
+std::string feature_csv(const TouchTable& table, const MeasuredFeature& feature) {
   static const std::set<std::string> kReplaced = {"x", "y", "z", "nx", "ny", "nz", "d", "px", "py", "pz"};
   std::string text;
   auto out = std::back_inserter(text);

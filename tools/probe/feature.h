@@ -26,7 +26,7 @@ struct FeatureSetup {
 };
 
 /// A feature fitted to touches: orthogonal least squares.
-struct Feature {
+struct MeasuredFeature {
   TouchFit fit;
   std::vector<Calibrated> parameters;  // in the order of its kind, mm and deg; size and form last
   double form_mm = 0;                  // range of the kept residuals
@@ -47,10 +47,10 @@ struct Feature {
 /// and axis), radius; block: centre, angle. A block is touched at two points or more of a face across X and
 /// of a face across Y; its centre lies half its size inside of both faces, along their common angle. Throws
 /// InputError. tool.
-Feature fit_feature(TouchTable& table, const FeatureSetup& setup);
+MeasuredFeature fit_feature(TouchTable& table, const FeatureSetup& setup);
 
 /// The touches as a measurement file: `d` along `nx ny nz` from the fitted feature at `px py pz` (FORMATS
 /// section 2), the other columns as they were, without the recorded point. tool.
-std::string feature_csv(const TouchTable& table, const Feature& feature);
+std::string feature_csv(const TouchTable& table, const MeasuredFeature& feature);
 
 }  // namespace vernier

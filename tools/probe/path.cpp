@@ -5,14 +5,12 @@
 #include <cmath>
 #include <cstdlib>
 #include <iterator>
-#include <numbers>
 
-#include "tools/model/error.h"
+#include "tools/maths/factors.h"
+#include "tools/text/error.h"
 
 namespace vernier {
 namespace {
-
-constexpr double kRadPerDeg = std::numbers::pi / 180, kMmPerInch = 25.4;
 
 /// A touch: where the approach begins and where it would end, program units, machine X Y Z (turning: X is Z).
 struct Approach {

@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tools/diagnose/chance.h"
-#include "tools/model/error.h"
+#include "tools/maths/chance.h"
+#include "tools/text/error.h"
 
 namespace vernier {
 namespace {
@@ -41,9 +41,9 @@ struct Pass {
   VectorXd scale;
 };
 
-class Solver {
+class TouchSolver {
  public:
-  Solver(const TouchModel& model, const TouchFitOptions& options, const std::vector<std::string>& names)
+  TouchSolver(const TouchModel& model, const TouchFitOptions& options, const std::vector<std::string>& names)
       : model_(model), options_(options), names_(names) {}
 
   Pass solve(VectorXd at, const std::vector<bool>& kept) const {
@@ -140,7 +140,7 @@ TouchFit fit_touches(const TouchModel& model, const VectorXd& start, const Touch
   const std::size_t touches = static_cast<std::size_t>(observations) / options.per_touch;
   TouchFit fit;
   fit.kept.assign(touches, true);
-  const Solver solver(model, options, names);
+  const TouchSolver solver(model, options, names);
   Pass pass;
   VectorXd weight;
   VectorXd at = start;

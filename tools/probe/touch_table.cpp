@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "tools/model/error.h"
-#include "tools/model/numbers.h"
-#include "tools/model/units.h"
+#include "tools/text/error.h"
+#include "tools/text/numbers.h"
+#include "tools/text/units.h"
 
 namespace vernier {
 namespace {

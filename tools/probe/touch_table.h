@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/model/csv.h"
+#include "tools/text/csv.h"
 
 namespace vernier {
 

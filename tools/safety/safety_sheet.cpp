@@ -11,6 +11,7 @@
 #include "tools/fit/reach.h"
 #include "tools/kinematics/correction.h"
 #include "tools/kinematics/jacobian.h"
+#include "tools/maths/factors.h"
 #include "tools/model/chain.h"
 #include "tools/model/fit_record.h"
 #include "tools/model/work_poses.h"
@@ -18,8 +19,6 @@
 
 namespace vernier {
 namespace {
-
-constexpr double kUmPerMm = 1000;
 
 struct RuleText {
   const char *name, *unit, *reason;

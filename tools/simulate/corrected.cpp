@@ -10,8 +10,8 @@
 
 #include "comp/compensator.h"
 #include "tools/compile/compile.h"
-#include "tools/model/files.h"
 #include "tools/simulate/counts.h"
+#include "tools/text/files.h"
 
 namespace vernier {
 namespace {

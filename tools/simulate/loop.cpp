@@ -8,8 +8,8 @@
 #include "hal/sim/analogue_chain.h"
 #include "hal/sim/plant.h"
 #include "hal/sim/sim_clock.h"
-#include "tools/model/error.h"
 #include "tools/simulate/counts.h"
+#include "tools/text/error.h"
 
 namespace vernier {
 namespace {

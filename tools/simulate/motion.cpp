@@ -2,8 +2,8 @@
 #include <cmath>
 #include <map>
 
-#include "tools/model/error.h"
 #include "tools/simulate/path.h"
+#include "tools/text/error.h"
 
 namespace vernier {
 namespace {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tools/model/error.h"
-#include "tools/model/files.h"
-#include "tools/model/numbers.h"
+#include "tools/text/error.h"
+#include "tools/text/files.h"
+#include "tools/text/numbers.h"
 
 namespace vernier {
 

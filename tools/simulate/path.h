@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "tools/model/csv.h"
 #include "tools/model/machine.h"
 #include "tools/model/states.h"
-#include "tools/model/units.h"
+#include "tools/text/csv.h"
+#include "tools/text/units.h"
 
 namespace vernier {
 

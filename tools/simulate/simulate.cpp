@@ -8,7 +8,7 @@
 #include "hal/sim/analogue_chain.h"
 #include "tools/kinematics/correction.h"
 #include "tools/model/chain.h"
-#include "tools/model/error.h"
+#include "tools/text/error.h"
 
 namespace vernier {
 namespace {

@@ -10,7 +10,8 @@
 #include "comp/latch.h"
 #include "comp/touch_filter.h"
 #include "firmware/uploader.h"
-#include "tools/model/error.h"
+#include "tools/maths/factors.h"
+#include "tools/text/error.h"
 
 namespace vernier {
 namespace {
@@ -291,7 +292,7 @@ BoardTouches Client::touches(std::uint64_t first) {
 }
 
 void Client::workpiece(const std::array<double, 3>& origin_mm, double angle_deg) {
-  constexpr double kMostMm = 1e8, kRadPerDeg = 3.14159265358979323846 / 180;
+  constexpr double kMostMm = 1e8;
   WorkpieceFrame frame;
   for (std::size_t i = 0; i < 3; ++i) {
     if (!(std::abs(origin_mm[i]) < kMostMm)) throw InputError("the workpiece lies beyond 100 km");

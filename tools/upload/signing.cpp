@@ -7,8 +7,8 @@
 #include <sstream>
 
 #include "tables/image_format.h"
-#include "tools/model/error.h"
-#include "tools/model/files.h"
+#include "tools/text/error.h"
+#include "tools/text/files.h"
 
 namespace vernier {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "firmware/link_format.h"
 #include "hal/linux/isotp_link.h"
-#include "tools/model/error.h"
+#include "tools/text/error.h"
 
 namespace vernier {
 namespace {

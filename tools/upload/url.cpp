@@ -2,7 +2,7 @@
 
 #include <charconv>
 
-#include "tools/model/error.h"
+#include "tools/text/error.h"
 
 namespace vernier {
 namespace {

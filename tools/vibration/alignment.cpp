@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "tools/model/error.h"
+#include "tools/text/error.h"
 #include "tools/vibration/fourier.h"
 
 namespace vernier {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/model/csv.h"
+#include "tools/text/csv.h"
 #include "tools/vibration/alignment.h"
 #include "tools/vibration/signal_features.h"
 

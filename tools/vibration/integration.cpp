@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "tools/model/error.h"
+#include "tools/text/error.h"
 #include "tools/vibration/fourier.h"
 
 namespace vernier {
@@ -31,7 +31,7 @@ void centre(std::vector<double>& x) {
   for (double& value : x) value -= mean;
 }
 
-void check(const CircularPass& pass) {
+void check(const AcceleratedPass& pass) {
   if (pass.ax.size() < 4 || pass.ay.size() != pass.ax.size() || pass.angle_rad.size() != pass.ax.size())
     throw InputError("a circular pass needs accelerations of two axes and an angle for each of its samples");
 }
@@ -71,7 +71,7 @@ double noise_floor_cutoff(std::span<const double> x, double records) {
   return *middle / std::log(2.0) * std::log(static_cast<double>(powers.size()) * records);
 }
 
-double mean_radial_um(const CircularPass& pass, double cutoff, Constants constants) {
+double mean_radial_um(const AcceleratedPass& pass, double cutoff, Constants constants) {
   check(pass);
   const std::vector<double> x = integrate_twice(kept_lines(pass.ax, cutoff), pass.rate_Hz, constants);
   const std::vector<double> y = integrate_twice(kept_lines(pass.ay, cutoff), pass.rate_Hz, constants);
@@ -81,10 +81,10 @@ double mean_radial_um(const CircularPass& pass, double cutoff, Constants constan
   return sum / static_cast<double>(x.size()) * 1e3;
 }
 
-FittedCut fitted_cutoff(const std::vector<CircularPass>& passes, Constants constants, std::size_t steps) {
+FittedCut fitted_cutoff(const std::vector<AcceleratedPass>& passes, Constants constants, std::size_t steps) {
   if (passes.empty()) throw InputError("no circular pass to find a cut-off with");
   std::vector<double> powers;
-  for (const CircularPass& pass : passes) {
+  for (const AcceleratedPass& pass : passes) {
     check(pass);
     for (const auto* axis : {&pass.ax, &pass.ay}) {
       const std::vector<double> more = line_powers(*axis);
@@ -102,7 +102,7 @@ FittedCut fitted_cutoff(const std::vector<CircularPass>& passes, Constants const
     last = kept;
     const double cutoff = (powers[kept - 1] + powers[kept]) / 2;
     double objective = 0;
-    for (const CircularPass& pass : passes)
+    for (const AcceleratedPass& pass : passes)
       objective += std::fabs(pass.mean_ballbar_um - mean_radial_um(pass, cutoff, constants));
     if (objective < best.objective_um) best = {cutoff, objective};
   }

@@ -31,14 +31,14 @@ double noise_floor_cutoff(std::span<const double> x, double records = 20);
 
 /// One pass of a ball bar with an accelerometer at the tool: accelerations in mm/s^2, angle of the commanded
 /// position of each sample in rad, and the mean of the ball bar's deviations, um.
-struct CircularPass {
+struct AcceleratedPass {
   std::vector<double> ax, ay, angle_rad;
   double rate_Hz = 0;
   double mean_ballbar_um = 0;
 };
 
 /// Radial displacement of a pass, um, mean over the record, with lines of both axes kept above the cut-off.
-double mean_radial_um(const CircularPass& pass, double cutoff, Constants constants);
+double mean_radial_um(const AcceleratedPass& pass, double cutoff, Constants constants);
 
 /// The cut-off that makes the objective of equation 4-1 least: the sum over passes (clockwise,
 /// counter-clockwise) of |mean(ball bar) - mean(accelerometer)|. The objective changes only where a line is
@@ -47,7 +47,7 @@ double mean_radial_um(const CircularPass& pass, double cutoff, Constants constan
 struct FittedCut {
   double cutoff = 0, objective_um = 0;
 };
-FittedCut fitted_cutoff(const std::vector<CircularPass>& passes, Constants constants,
+FittedCut fitted_cutoff(const std::vector<AcceleratedPass>& passes, Constants constants,
                         std::size_t steps = 200);
 
 }  // namespace vernier

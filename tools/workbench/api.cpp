@@ -4,10 +4,10 @@
 #include <charconv>
 #include <cmath>
 
-#include "tools/model/csv.h"
-#include "tools/model/error.h"
-#include "tools/model/files.h"
 #include "tools/model/machine.h"
+#include "tools/text/csv.h"
+#include "tools/text/error.h"
+#include "tools/text/files.h"
 #include "tools/workbench/excluded.h"
 #include "tools/workbench/terms.h"
 

@@ -4,12 +4,11 @@
 
 #include <algorithm>
 
-#include "tools/model/error.h"
+#include "tools/text/error.h"
 
 namespace vernier {
 namespace {
 
-using nlohmann::json;
 
 enum class FieldKind : std::uint8_t { kIn, kInList, kOut, kText, kTextList, kNumber, kFlag };
 constexpr const char* kFieldKinds[] = {"file", "files", "output", "text", "texts", "number", "flag"};
@@ -101,7 +100,7 @@ const std::vector<Allowed>& allowed() {
   throw InputError(fmt::format("\"{}\": {}", field.key, what));
 }
 
-std::string text_of(const Field& field, const json& value) {
+std::string text_of(const Field& field, const nlohmann::json& value) {
   constexpr std::size_t kMost = 4000;
   if (!value.is_string()) refuse(field, "must be a text");
   const auto text = value.get<std::string>();
@@ -112,7 +111,7 @@ std::string text_of(const Field& field, const json& value) {
   return text;
 }
 
-std::string word_of(const Field& field, const json& value, const Project& project) {
+std::string word_of(const Field& field, const nlohmann::json& value, const Project& project) {
   switch (field.kind) {
     case FieldKind::kIn:
     case FieldKind::kInList: {
@@ -133,7 +132,7 @@ std::string word_of(const Field& field, const json& value, const Project& projec
   }
 }
 
-void add_field(const Field& field, const json& value, const Project& project, PlannedCommand& command) {
+void add_field(const Field& field, const nlohmann::json& value, const Project& project, PlannedCommand& command) {
   constexpr std::size_t kMostWords = 200;
   if (field.kind == FieldKind::kFlag) {
     if (!value.is_boolean()) refuse(field, "must be true or false");
@@ -143,7 +142,7 @@ void add_field(const Field& field, const json& value, const Project& project, Pl
   const bool list = field.kind == FieldKind::kInList || field.kind == FieldKind::kTextList;
   if (list && (!value.is_array() || value.empty() || value.size() > kMostWords))
     refuse(field, "must be a list with at least one entry");
-  for (const json& one : list ? value : json::array({value})) {
+  for (const nlohmann::json& one : list ? value : nlohmann::json::array({value})) {
     if (*field.option != '\0') command.arguments.emplace_back(field.option);
     command.arguments.push_back(word_of(field, one, project));
     if (field.kind == FieldKind::kOut) command.outputs.push_back(command.arguments.back());
@@ -152,7 +151,7 @@ void add_field(const Field& field, const json& value, const Project& project, Pl
 
 }  // namespace
 
-PlannedCommand plan_command(const json& request, const Project& project) {
+PlannedCommand plan_command(const nlohmann::json& request, const Project& project) {
   if (!request.is_object() || !request.contains("command") || !request["command"].is_string())
     throw InputError("a request for a command names it: {\"command\": ...}");
   const auto name = request["command"].get<std::string>();

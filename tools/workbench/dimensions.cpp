@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "tools/model/units.h"
+#include "tools/text/units.h"
 
 namespace vernier {
 namespace {

@@ -6,8 +6,8 @@
 #include <optional>
 #include <string_view>
 
-#include "tools/model/csv.h"
-#include "tools/model/error.h"
+#include "tools/text/csv.h"
+#include "tools/text/error.h"
 
 namespace vernier {
 namespace {

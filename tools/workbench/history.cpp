@@ -2,8 +2,9 @@
 
 #include <chrono>
 
-#include "tools/model/error.h"
-#include "tools/model/files.h"
+#include "tools/text/error.h"
+#include "tools/text/files.h"
+#include "tools/workbench/now.h"
 
 namespace vernier {
 namespace {
@@ -21,11 +22,6 @@ fs::path list_of_entries(const Project& project) {
   const fs::path path = folder(project) / "history.json";
   refuse_special(path, ".vernier/history.json");
   return path;
-}
-
-std::int64_t now_s() {
-  return std::chrono::duration_cast<std::chrono::seconds>(std::chrono::system_clock::now().time_since_epoch())
-      .count();
 }
 
 nlohmann::ordered_json number_of(const nlohmann::ordered_json& result, const char* key) {
@@ -64,7 +60,7 @@ void CommandHistory::add(const std::string& typed, const PlannedCommand& command
   while (!entries_.empty() && entries_.back()["undone"].get<bool>()) entries_.erase(entries_.size() - 1);
   entries_.push_back({{"command", typed},
                       {"name", command.name},
-                      {"at", now_s()},
+                      {"at", unix_s()},
                       {"undone", false},
                       {"on_board", command.on_board},
                       {"outputs", command.outputs},

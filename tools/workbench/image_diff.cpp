@@ -11,7 +11,7 @@
 
 #include "comp/compensator.h"
 #include "tables/image_view.h"
-#include "tools/model/error.h"
+#include "tools/text/error.h"
 
 namespace vernier {
 namespace {

@@ -4,17 +4,14 @@
 #include <charconv>
 #include <chrono>
 
-#include "tools/model/error.h"
+#include "tools/text/error.h"
+#include "tools/workbench/now.h"
 #include "tools/workbench/process.h"
 
 namespace vernier {
 namespace {
 
 constexpr std::size_t kMostRunning = 4, kMostKept = 60, kMostOutput = std::size_t{256} << 20;
-
-double now_s() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 /// "fit:  42 % iteration 3" as Progress writes it; false for any other line.
 bool read_progress(std::string_view line, const std::string& name, double& fraction, std::string& step) {
@@ -51,7 +48,7 @@ std::uint64_t Jobs::start(const PlannedCommand& command) {
   auto job = std::make_shared<Job>();
   job->command = command;
   job->typed = shell_text("vernier", command.arguments);
-  job->started_s = now_s();
+  job->started_s = steady_s();
   const std::uint64_t id = next_++;
   jobs_[id] = job;
   job->thread = std::thread([this, raw = job.get()] { run(*raw); });
@@ -97,7 +94,7 @@ void Jobs::finish(Job& job, int exit, const std::string& out, const std::string&
   const std::scoped_lock lock(guard_);
   job.exit = exit;
   job.result = std::move(result);
-  job.seconds = now_s() - job.started_s;
+  job.seconds = steady_s() - job.started_s;
   job.state = job.process.cancelled ? "cancelled" : exit == 0 ? "done" : "failed";
   if (job.state == "failed" && job.message.empty()) job.message = err.substr(0, 2000);
   if (job.state == "done" && job.command.for_history) {
@@ -124,7 +121,7 @@ nlohmann::ordered_json Jobs::state(std::uint64_t id) {
           {"state", job.state},
           {"fraction", job.fraction},
           {"step", job.step},
-          {"seconds", job.over ? job.seconds : now_s() - job.started_s},
+          {"seconds", job.over ? job.seconds : steady_s() - job.started_s},
           {"exit", job.exit},
           {"message", job.message},
           {"text", job.text},

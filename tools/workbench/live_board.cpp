@@ -2,18 +2,15 @@
 
 #include <chrono>
 
-#include "tools/model/error.h"
+#include "tools/text/error.h"
 #include "tools/upload/live.h"
+#include "tools/workbench/now.h"
 
 namespace vernier {
 namespace {
 
 using namespace std::chrono_literals;
 constexpr std::size_t kKept = 200;
-
-double now_s() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 }  // namespace
 
@@ -39,13 +36,13 @@ void LiveBoard::look(const std::string& url) {
         live_json(client.info(), client.newest(), client.health(), client.slots(), client.shares());
     std::unique_lock lock(guard_);
     picture["seq"] = next_++;
-    picture["at_s"] = now_s();
+    picture["at_s"] = steady_s();
     kept_.push_back(std::move(picture));
     if (kept_.size() > kKept) kept_.pop_front();
     changed_.notify_all();
     due = std::max(due + std::chrono::duration_cast<std::chrono::steady_clock::duration>(period),
                    std::chrono::steady_clock::now());
-    if (changed_.wait_until(lock, due, [&] { return stop_; }) || now_s() - asked_s_ > kLetGoS) return;
+    if (changed_.wait_until(lock, due, [&] { return stop_; }) || steady_s() - asked_s_ > kLetGoS) return;
   }
 }
 
@@ -67,7 +64,7 @@ nlohmann::ordered_json LiveBoard::pictures(const std::string& url, std::uint64_t
   {
     const std::scoped_lock exchange(ending_);
     std::unique_lock lock(guard_);
-    asked_s_ = now_s();
+    asked_s_ = steady_s();
     if (url != url_ || !running_) {
       lock.unlock();
       end();

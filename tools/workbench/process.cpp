@@ -11,7 +11,7 @@
 #include <csignal>
 #include <cstring>
 
-#include "tools/model/error.h"
+#include "tools/text/error.h"
 
 namespace vernier {
 namespace {

@@ -4,8 +4,8 @@
 #include <array>
 #include <chrono>
 
-#include "tools/model/error.h"
-#include "tools/model/files.h"
+#include "tools/text/error.h"
+#include "tools/text/files.h"
 
 namespace vernier {
 namespace {

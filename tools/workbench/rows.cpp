@@ -1,15 +1,15 @@
 #include "tools/workbench/rows.h"
 
 #include <cmath>
-#include <numbers>
 
-#include "tools/cli/results.h"
-#include "tools/diagnose/candidate.h"
 #include "tools/diagnose/diagnosis.h"
+#include "tools/effects/candidate.h"
 #include "tools/fit/fit.h"
+#include "tools/maths/factors.h"
 #include "tools/model/chain.h"
-#include "tools/model/files.h"
-#include "tools/model/optional_json.h"
+#include "tools/results/results.h"
+#include "tools/text/files.h"
+#include "tools/text/optional_json.h"
 #include "tools/workbench/blob.h"
 #include "tools/workbench/values.h"
 
@@ -19,8 +19,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
-constexpr std::size_t kKept = 6;
-constexpr double kUmPerMm = 1e3, kUradPerDeg = std::numbers::pi / 180 * 1e6;
+constexpr std::size_t kKeptRows = 6;
 
 std::vector<float> in_report_units(const Measurement& m, const Eigen::VectorXd& residual) {
   std::vector<float> values(m.observations.size());
@@ -109,7 +108,7 @@ std::shared_ptr<const LoadedRows> RowCache::get(const std::string& machine,
   rows->measurement = read_measurement(paths, rows->machine);
   rows->measurement.files = measurements;
   const std::scoped_lock lock(guard_);
-  if (kept_.size() >= kKept) kept_.erase(kept_.begin());
+  if (kept_.size() >= kKeptRows) kept_.erase(kept_.begin());
   kept_.push_back({key, rows});
   return rows;
 }

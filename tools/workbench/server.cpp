@@ -8,7 +8,7 @@
 #include <mutex>
 #include <thread>
 
-#include "tools/model/error.h"
+#include "tools/text/error.h"
 #include "tools/workbench/assets.h"
 
 namespace vernier {

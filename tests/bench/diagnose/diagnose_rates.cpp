@@ -12,7 +12,7 @@
 #include "tests/bench/diagnose/held_out.h"
 #include "tests/bench/diagnose/process.h"
 #include "tests/bench/diagnose/rates.h"
-#include "tools/model/files.h"
+#include "tools/text/files.h"
 
 namespace {
 

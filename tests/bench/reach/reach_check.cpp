@@ -17,8 +17,8 @@
 #include "tools/fit/fit.h"
 #include "tools/fit/reach.h"
 #include "tools/model/chain.h"
-#include "tools/model/files.h"
 #include "tools/model/prediction.h"
+#include "tools/text/files.h"
 
 namespace {
 

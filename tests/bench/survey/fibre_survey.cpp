@@ -13,8 +13,8 @@
 #include <string>
 
 #include "tools/fit/fit.h"
-#include "tools/model/files.h"
 #include "tools/model/prediction.h"
+#include "tools/text/files.h"
 
 namespace {
 

@@ -4,7 +4,7 @@
 
 #include "comp/verify.h"
 
-namespace vernier {
+namespace vernier::compensator_test {
 namespace {
 
 /// One axis whose deviation is a quarter of its position: channel -> kLinear -> output, all in nm.
@@ -98,4 +98,4 @@ TEST(CorrectionFor, ChangesTheSignAndNothingElse) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::compensator_test

@@ -7,7 +7,7 @@
 #include <complex>
 #include <random>
 
-namespace vernier {
+namespace vernier::displacement_test {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
@@ -198,4 +198,4 @@ TEST(Displacement, ConstantBiasDecaysToNothing) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::displacement_test

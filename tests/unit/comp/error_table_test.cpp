@@ -8,7 +8,7 @@
 
 #include "comp/verify.h"
 
-namespace vernier {
+namespace vernier::error_table_test {
 namespace {
 
 /// The reciprocal by definition; the compiler has its own way to it.
@@ -194,4 +194,4 @@ TEST(Wrap, AgreesWithTheModuloForAllPeriods) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::error_table_test

@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-namespace vernier {
+namespace vernier::feature_window_test {
 namespace {
 
 using Real = long double;
@@ -227,4 +227,4 @@ TEST(FeatureWindow, SaysWhatIsUndefinedAndWhatWasHeld) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::feature_window_test

@@ -7,7 +7,7 @@
 
 #include "comp/quantity.h"
 
-namespace vernier {
+namespace vernier::fixed_test {
 namespace {
 
 constexpr unsigned kSeed = 4711;
@@ -90,4 +90,4 @@ TEST(Quantity, ConvertsATemperatureToItsInput) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::fixed_test

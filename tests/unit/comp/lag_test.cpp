@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-namespace vernier {
+namespace vernier::lag_test {
 namespace {
 
 TEST(Lag, StartsOnItsFirstInput) {
@@ -55,4 +55,4 @@ TEST(Lag, StaysWithinItsInputsUnderHostileSignals) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::lag_test

@@ -6,7 +6,7 @@
 #include <functional>
 #include <random>
 
-namespace vernier {
+namespace vernier::latch_test {
 namespace {
 
 using Motion = std::function<double(double)>;  // nm of s
@@ -136,4 +136,4 @@ TEST(Latch, TakesAnySamplesWithoutOverflow) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::latch_test

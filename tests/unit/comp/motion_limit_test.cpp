@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <random>
 
-namespace vernier {
+namespace vernier::motion_limit_test {
 namespace {
 
 TEST(MotionLimit, ArrivesExactlyAndDoesNotOvershootAStandingTarget) {
@@ -72,4 +72,4 @@ TEST(MotionLimit, SlowsDownWithinItsAccelerationWhenItsSpeedIsLowered) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::motion_limit_test

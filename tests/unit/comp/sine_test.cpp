@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-namespace vernier {
+namespace vernier::sine_test {
 namespace {
 
 constexpr long double kTurn = 2 * 3.14159265358979323846264338327950288L;
@@ -63,4 +63,4 @@ TEST(SineCosine, ComesBackAfterAWholeTurn) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::sine_test

@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <random>
 
-namespace vernier {
+namespace vernier::slew_limit_test {
 namespace {
 
 TEST(SlewLimit, NeverMovesFasterUnderHostileTargets) {
@@ -39,4 +39,4 @@ TEST(SlewLimit, ReachesATargetInTheFewestTicks) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::slew_limit_test

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-namespace vernier {
+namespace vernier::touch_filter_test {
 namespace {
 
 struct Edge {
@@ -84,4 +84,4 @@ TEST(TouchFilter, TakesEveryEdgeAtOnceWithoutASettlingTime) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::touch_filter_test

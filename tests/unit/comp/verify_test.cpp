@@ -4,7 +4,7 @@
 
 #include "comp/sine.h"
 
-namespace vernier {
+namespace vernier::verify_test {
 namespace {
 
 constexpr std::int32_t kHalf = INT32_MIN;  // the word of a reciprocal of 2^31
@@ -118,4 +118,4 @@ TEST(VerifyProgram, NamesEveryCause) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::verify_test

@@ -1,9 +1,9 @@
 #include <gtest/gtest.h>
 
 #include "tests/unit/compile/agreement.h"
-#include "tests/unit/diagnose/candidates.h"
+#include "tests/unit/effects/candidates.h"
 
-namespace vernier {
+namespace vernier::bound_test {
 namespace {
 
 class ErrorBound : public testing::TestWithParam<const char*> {};
@@ -52,4 +52,4 @@ INSTANTIATE_TEST_SUITE_P(Machines, ReferenceMachine, testing::ValuesIn(diagnose_
 INSTANTIATE_TEST_SUITE_P(Machines, ErrorBound, testing::Values("bridge", "five_axis", "planar"));
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::bound_test

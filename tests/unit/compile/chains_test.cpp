@@ -3,7 +3,7 @@
 
 #include "tests/unit/compile/agreement.h"
 
-namespace vernier {
+namespace vernier::chains_test {
 namespace {
 
 constexpr unsigned kSeed = 77;
@@ -149,4 +149,4 @@ TEST(Chain, LagWithATimeConstantFromStatics) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::chains_test

@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "tests/unit/compile/agreement.h"
-#include "tests/unit/diagnose/candidates.h"
+#include "tests/unit/effects/candidates.h"
 
-namespace vernier {
+namespace vernier::effects_test {
 namespace {
 
 constexpr unsigned kSeed = 20260701;
@@ -66,4 +66,4 @@ INSTANTIATE_TEST_SUITE_P(Machines, EffectsCompile,
                          [](const auto& test) { return test.param; });
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::effects_test

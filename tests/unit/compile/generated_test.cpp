@@ -9,7 +9,7 @@
 #include "tests/unit/compile/poses.h"
 #include "tools/compile/sine_table.h"
 
-namespace vernier {
+namespace vernier::generated_test {
 namespace {
 
 using Equation_ = void (*)(const std::int32_t*, LagState*, bool, std::int32_t*) noexcept;
@@ -107,4 +107,4 @@ TEST(SineTable, IsWhatItsGeneratorPrints) {
 INSTANTIATE_TEST_SUITE_P(Machines, Generated, testing::Values("bridge", "five_axis", "planar"));
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::generated_test

@@ -6,7 +6,7 @@
 #include "tests/unit/compile/agreement.h"
 #include "tools/model/measurement.h"
 
-namespace vernier {
+namespace vernier::learned_test {
 namespace {
 
 constexpr unsigned kSeed = 20260;
@@ -62,4 +62,4 @@ TEST(LearnedEquation, ABellFarOutIsNoGiant) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::learned_test

@@ -6,9 +6,9 @@
 
 #include "tests/unit/compile/agreement.h"
 #include "tests/unit/compile/left_over.h"
-#include "tests/unit/diagnose/candidates.h"
+#include "tests/unit/effects/candidates.h"
 
-namespace vernier {
+namespace vernier::orientation_test {
 namespace {
 
 constexpr unsigned kSeed = 17;
@@ -205,4 +205,4 @@ TEST(Orientation, ThreeAxisMachineIsCompiledAsItIs) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::orientation_test

@@ -8,7 +8,7 @@
 
 #include "tools/compile/compile.h"
 #include "tools/model/chain.h"
-#include "tools/model/files.h"
+#include "tools/text/files.h"
 
 namespace vernier {
 

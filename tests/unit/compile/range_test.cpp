@@ -2,9 +2,9 @@
 #include <gtest/gtest.h>
 
 #include "tests/unit/compile/agreement.h"
-#include "tests/unit/diagnose/candidates.h"
+#include "tests/unit/effects/candidates.h"
 
-namespace vernier {
+namespace vernier::range_test {
 namespace {
 
 class DeclaredRange : public testing::TestWithParam<std::string> {
@@ -67,4 +67,4 @@ INSTANTIATE_TEST_SUITE_P(Machines, DeclaredRange, testing::ValuesIn(diagnose_tes
                          [](const auto& test) { return test.param; });
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::range_test

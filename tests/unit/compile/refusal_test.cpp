@@ -4,7 +4,7 @@
 
 #include "tests/unit/compile/poses.h"
 
-namespace vernier {
+namespace vernier::refusal_test {
 namespace {
 
 std::string replaced(std::string text, const std::string& what, const std::string& by) {
@@ -108,4 +108,4 @@ TEST(LoadImageDir, RefusesAnImageOfAnotherMachineFile) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::refusal_test

@@ -3,9 +3,9 @@
 
 #include "tests/unit/compile/agreement.h"
 #include "tests/unit/compile/left_over.h"
-#include "tests/unit/diagnose/candidates.h"
+#include "tests/unit/effects/candidates.h"
 
-namespace vernier {
+namespace vernier::second_order_test {
 namespace {
 
 constexpr unsigned kSeed = 91;
@@ -102,4 +102,4 @@ TEST(SecondOrder, RobotIsEvaluatedTwice) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::second_order_test

@@ -4,9 +4,9 @@
 #include <map>
 
 #include "tests/unit/compile/agreement.h"
-#include "tests/unit/diagnose/candidates.h"
+#include "tests/unit/effects/candidates.h"
 
-namespace vernier {
+namespace vernier::shares_test {
 namespace {
 
 constexpr unsigned kSeed = 5;
@@ -91,4 +91,4 @@ TEST(Share, IsThatOfItsEffectAlone) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::shares_test

@@ -10,9 +10,9 @@
 #include "tools/derive/numeric.h"
 #include "tools/derive/second_order.h"
 #include "tools/model/chain.h"
-#include "tools/model/files.h"
+#include "tools/text/files.h"
 
-namespace vernier {
+namespace vernier::chains_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -218,4 +218,4 @@ TEST(Derive, AnErrorWhoseFactorIsZeroNominallyIsOfSecondOrder) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::chains_test

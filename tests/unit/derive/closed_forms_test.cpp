@@ -12,9 +12,9 @@
 #include "tools/derive/second_order.h"
 #include "tools/derive/tidy.h"
 #include "tools/model/chain.h"
-#include "tools/model/files.h"
+#include "tools/text/files.h"
 
-namespace vernier {
+namespace vernier::closed_forms_test {
 namespace {
 
 using GiNaC::ex;
@@ -219,4 +219,4 @@ TEST(ClosedForms, FiveAxisJacobianEqualsThePublishedOne) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::closed_forms_test

@@ -3,9 +3,9 @@
 #include <cstdlib>
 
 #include "tools/derive/print_equation.h"
-#include "tools/model/files.h"
+#include "tools/text/files.h"
 
-namespace vernier {
+namespace vernier::printing_test {
 namespace {
 
 const std::string kRoot = VERNIER_SOURCE_DIR;
@@ -67,4 +67,4 @@ TEST(PrintedEquation, PutsSignsAndFractionsWhereTheyBelong) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::printing_test

@@ -5,10 +5,10 @@
 #include <random>
 
 #include "tools/diagnose/acceptance.h"
-#include "tools/diagnose/chance.h"
 #include "tools/diagnose/evidence.h"
+#include "tools/maths/chance.h"
 
-namespace vernier {
+namespace vernier::acceptance_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 11;
@@ -195,4 +195,4 @@ TEST(SharedPoseError, WeighingLeavesWhiteNoise) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::acceptance_test

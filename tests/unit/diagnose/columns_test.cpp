@@ -4,12 +4,12 @@
 
 #include <cmath>
 
-#include "tests/unit/diagnose/candidates.h"
+#include "tests/unit/effects/candidates.h"
 #include "tools/diagnose/diagnosis.h"
 #include "tools/diagnose/evidence.h"
 #include "tools/model/prediction.h"
 
-namespace vernier {
+namespace vernier::columns_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 7;
@@ -95,4 +95,4 @@ INSTANTIATE_TEST_SUITE_P(Machines, Columns,
                          [](const auto& one) { return one.param; });
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::columns_test

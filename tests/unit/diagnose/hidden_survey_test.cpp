@@ -8,9 +8,9 @@
 
 #include "tests/bench/diagnose/answer.h"
 #include "tests/bench/diagnose/process.h"
-#include "tools/model/files.h"
+#include "tools/text/files.h"
 
-namespace vernier {
+namespace vernier::hidden_survey_test {
 namespace {
 
 using bench::Outcome;
@@ -158,4 +158,4 @@ TEST(TwoEffects, WhatOneReadingCarriesIsGivenNoName) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::hidden_survey_test

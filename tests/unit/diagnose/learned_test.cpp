@@ -9,7 +9,7 @@
 #include "tools/fit/domain.h"
 #include "tools/model/chain.h"
 
-namespace vernier {
+namespace vernier::learned_test {
 namespace {
 
 constexpr unsigned kSeed = 31;
@@ -79,4 +79,4 @@ TEST(LearnedTerm, ThatHoldsAtOneFeedAloneIsRefused) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::learned_test

@@ -12,7 +12,7 @@
 #include "tools/diagnose/diagnosis.h"
 #include "tools/diagnose/enumerate.h"
 
-namespace vernier {
+namespace vernier::periods_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 11;
@@ -200,4 +200,4 @@ TEST(FinePeriods, AreDrivenOutByAWholeWave) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::periods_test

@@ -9,9 +9,9 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/bench/diagnose/process.h"
-#include "tools/model/files.h"
+#include "tools/text/files.h"
 
-namespace vernier {
+namespace vernier::real_test {
 namespace {
 
 using nlohmann::json;
@@ -154,4 +154,4 @@ TEST_F(ElsewhereData, APrinterGrowsWithItsFrame) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::real_test

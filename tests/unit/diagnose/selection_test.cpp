@@ -9,7 +9,7 @@
 
 #include "tools/diagnose/selection.h"
 
-namespace vernier {
+namespace vernier::selection_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 31;
@@ -189,4 +189,4 @@ TEST(Selection, IsAsGoodAsTryingEverything) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::selection_test

@@ -9,7 +9,7 @@
 
 #include "tools/diagnose/diagnosis.h"
 
-namespace vernier {
+namespace vernier::verdict_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 5;
@@ -267,4 +267,4 @@ TEST(Verdict, RowsOutOfTheOrderOfTimeAreToldWithTheirLine) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::verdict_test

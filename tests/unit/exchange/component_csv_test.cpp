@@ -5,9 +5,9 @@
 #include "tests/support/machines.h"
 #include "tools/exchange/left_out.h"
 #include "tools/exchange/table_text.h"
-#include "tools/model/numbers.h"
+#include "tools/text/numbers.h"
 
-namespace vernier {
+namespace vernier::component_csv_test {
 namespace {
 
 constexpr double kDeg = 180 / 3.14159265358979323846;
@@ -122,4 +122,4 @@ TEST(LeftOut, ErrorsOutsideTheTablesAreTold) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::component_csv_test

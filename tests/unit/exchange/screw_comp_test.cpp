@@ -4,7 +4,7 @@
 
 #include "tools/exchange/left_out.h"
 
-namespace vernier {
+namespace vernier::screw_comp_test {
 namespace {
 
 /// X with a table and a reversal; Y is a table under the workpiece.
@@ -166,4 +166,4 @@ TEST(ScrewComp, ImportRefusesWhatTheMachineWouldNotReproduce) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::screw_comp_test

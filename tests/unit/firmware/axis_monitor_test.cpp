@@ -5,7 +5,7 @@
 #include <cmath>
 #include <memory>
 
-namespace vernier {
+namespace vernier::axis_monitor_test {
 namespace {
 
 struct Bench {
@@ -103,4 +103,4 @@ TEST(AxisMonitor, HostileCountsNeitherOverflowNorPass) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::axis_monitor_test

@@ -14,7 +14,7 @@
 #include "firmware/calibrate_output.h"
 #include "hal/sim/sim_clock.h"
 
-namespace vernier {
+namespace vernier::calibration_test {
 namespace {
 
 // 255 codes are 250 um about code 127: 0..10 V, 25 um/V.
@@ -191,4 +191,4 @@ TEST(CalibrateOutput, RefusedWriteIsTold) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::calibration_test

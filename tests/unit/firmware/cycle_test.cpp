@@ -6,7 +6,7 @@
 
 #include "tests/unit/firmware/rig.h"
 
-namespace vernier {
+namespace vernier::cycle_test {
 namespace {
 
 TEST(Cycle, CorrectionIsZeroUntilActivated) {
@@ -160,4 +160,4 @@ TEST(Cycle, RefusedWriteIsRepeatedWithTheSameValue) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::cycle_test

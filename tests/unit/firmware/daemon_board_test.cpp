@@ -14,12 +14,12 @@
 #include <thread>
 
 #include "tests/unit/firmware/upload_rig.h"
-#include "tools/model/files.h"
+#include "tools/text/files.h"
 #include "tools/upload/client.h"
 
 extern char** environ;
 
-namespace vernier {
+namespace vernier::daemon_board_test {
 namespace {
 
 bool wait_for(const std::function<bool()>& done, int seconds = 20) {
@@ -249,4 +249,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& parameter) { return parameter.param.name; });
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::daemon_board_test

@@ -4,7 +4,7 @@
 
 #include "tests/unit/firmware/upload_rig.h"
 
-namespace vernier {
+namespace vernier::digital_test {
 namespace {
 
 struct Switch : DigitalInput, DigitalOutput {
@@ -96,4 +96,4 @@ TEST_F(Digital, HealthyLineThatRefusesIsTriedAgain) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::digital_test

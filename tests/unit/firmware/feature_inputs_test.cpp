@@ -14,7 +14,7 @@
 #include "tests/unit/firmware/small_machine.h"
 #include "tools/vibration/signal_features.h"
 
-namespace vernier {
+namespace vernier::feature_inputs_test {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
@@ -293,4 +293,4 @@ TEST(FeatureInputs, ALearnedTermFadesBeyondItsDomainAtTheBoard) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::feature_inputs_test

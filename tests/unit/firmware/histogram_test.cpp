@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-namespace vernier {
+namespace vernier::histogram_test {
 namespace {
 
 TEST(Histogram, EveryValueLiesWithinItsBin) {
@@ -55,4 +55,4 @@ TEST(Histogram, ExtremesAreCountedAndNothingOverflows) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::histogram_test

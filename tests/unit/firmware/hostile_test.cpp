@@ -11,7 +11,7 @@
 #include "hal/sim/sim_clock.h"
 #include "tests/unit/firmware/small_machine.h"
 
-namespace vernier {
+namespace vernier::hostile_test {
 namespace {
 
 /// Devices that answer anything, or nothing.
@@ -125,4 +125,4 @@ TEST(CycleInvariant, DriveNeverMovesFasterThanItsSlewLimit) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::hostile_test

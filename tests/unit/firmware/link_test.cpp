@@ -11,7 +11,7 @@
 #include "tests/unit/firmware/upload_rig.h"
 #include "tools/upload/client.h"
 
-namespace vernier {
+namespace vernier::link_test {
 namespace {
 
 /// A client whose requests go straight into the board's link; between two of them the board ticks.
@@ -219,4 +219,4 @@ TEST_F(LinkTest, AnyRequestIsAnsweredAndNoneGetsAnImageIn) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::link_test

@@ -4,7 +4,7 @@
 
 #include <memory>
 
-namespace vernier {
+namespace vernier::mode_test {
 namespace {
 
 /// A mode control whose corrections follow the weight at once.
@@ -115,4 +115,4 @@ TEST(ModeControl, NamesAreDistinct) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::mode_test

@@ -50,7 +50,7 @@ void free(void* block) {
 }
 #endif
 
-namespace vernier {
+namespace vernier::no_allocation_test {
 namespace {
 
 TEST(Tick, TouchesNoHeapWhileImagesComeInAndFaultsHappen) {
@@ -104,4 +104,4 @@ TEST(Tick, TouchesNoHeapWhileImagesComeInAndFaultsHappen) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::no_allocation_test

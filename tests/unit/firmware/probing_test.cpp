@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/approach.h"
-#include "tools/model/error.h"
+#include "tools/text/error.h"
 #include "tools/upload/client.h"
 
-namespace vernier {
+namespace vernier::probing_test {
 namespace {
 
 constexpr double kDelay = 6.16e-3;
@@ -147,4 +147,4 @@ TEST(Probing, GivesAReaderEveryTouchOrTheNumberOfThoseThatAreGone) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::probing_test

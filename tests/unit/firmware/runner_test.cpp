@@ -6,7 +6,7 @@
 
 #include "tests/unit/firmware/rig.h"
 
-namespace vernier {
+namespace vernier::runner_test {
 namespace {
 
 /// A clock on which every sleep ends late by what the test says next.
@@ -111,4 +111,4 @@ TEST(Runner, TimeThatJumpsOrRunsBackwardsIsAClockFault) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::runner_test

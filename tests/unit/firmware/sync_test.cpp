@@ -7,7 +7,7 @@
 #include "hal/sim/sim_clock.h"
 #include "tests/unit/firmware/rig.h"
 
-namespace vernier {
+namespace vernier::sync_test {
 namespace {
 
 /// Signs at moments that the test gives.
@@ -117,4 +117,4 @@ TEST(Sync, StandingStillIsAFaultOfTheClock) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::sync_test

@@ -7,7 +7,7 @@
 
 #include "tests/unit/firmware/upload_rig.h"
 
-namespace vernier {
+namespace vernier::upload_test {
 namespace {
 
 constexpr std::uint64_t kIssued = 1'000'000;
@@ -298,4 +298,4 @@ TEST_F(Upload, WeightOfAnAxisScalesItsCorrectionAloneAndWithoutAStep) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::upload_test

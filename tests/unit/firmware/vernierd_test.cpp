@@ -9,9 +9,9 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/unit/firmware/small_machine.h"
-#include "tools/model/files.h"
+#include "tools/text/files.h"
 
-namespace vernier {
+namespace vernier::vernierd_test {
 namespace {
 
 struct Outcome {
@@ -68,4 +68,4 @@ TEST_F(Vernierd, RefusesWithoutABackendAndWithABrokenImage) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::vernierd_test

@@ -15,7 +15,7 @@
 #include "tools/model/fit_record.h"
 #include "tools/model/prediction.h"
 
-namespace vernier {
+namespace vernier::convention_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 7;
@@ -264,4 +264,4 @@ TEST(Sanity, NamesTheMistakeInTheReadings) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::convention_test

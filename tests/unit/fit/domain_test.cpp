@@ -5,7 +5,7 @@
 #include "tools/fit/fit.h"
 #include "tools/model/chain.h"
 
-namespace vernier {
+namespace vernier::domain_test {
 namespace {
 
 /// A learned term k*RMS in its domain over RMS and T, with the statics that `add` writes.
@@ -75,4 +75,4 @@ TEST(Domain, FadesTheTermToNothingAndSaysWhere) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::domain_test

@@ -10,7 +10,7 @@
 #include "tests/support/machines.h"
 #include "tools/model/prediction.h"
 
-namespace vernier {
+namespace vernier::fit_test {
 namespace {
 
 constexpr unsigned kSeed = 7;
@@ -277,4 +277,4 @@ TEST(Fit, DoesNotImitateAMissingEffectByTurnsOfManyDegrees) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::fit_test

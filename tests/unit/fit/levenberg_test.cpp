@@ -6,7 +6,7 @@
 #include <cmath>
 #include <functional>
 
-namespace vernier {
+namespace vernier::levenberg_test {
 namespace {
 
 using Eigen::MatrixXd;
@@ -82,4 +82,4 @@ TEST(Levenberg, LeavesAnUnseenDirectionAtItsStart) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::levenberg_test

@@ -8,7 +8,7 @@
 #include "tools/fit/fit.h"
 #include "tools/model/prediction.h"
 
-namespace vernier {
+namespace vernier::measured_on_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 11;
@@ -116,4 +116,4 @@ TEST(MeasuredOn, ReadingsOfOnePoseRepeatWhereTheCorrectionsAgree) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::measured_on_test

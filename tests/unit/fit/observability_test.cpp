@@ -5,7 +5,7 @@
 #include <Eigen/Eigenvalues>
 #include <set>
 
-namespace vernier {
+namespace vernier::observability_test {
 namespace {
 
 TEST(Observability, NamesTheCombinationThatTheDataCannotSee) {
@@ -87,4 +87,4 @@ TEST(Observability, NamesTheWeakestDirectionThatIsStillSeen) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::observability_test

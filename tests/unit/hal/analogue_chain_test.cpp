@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace vernier {
+namespace vernier::analogue_chain_test {
 namespace {
 
 TEST(AnalogueChain, EightBitsAreThePublishedConverter) {
@@ -51,4 +51,4 @@ TEST(AnalogueChain, BeyondTheCodesIsHeldAndSaid) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::analogue_chain_test

@@ -7,7 +7,7 @@
 
 #include "hal/sim/sim_probe_line.h"
 
-namespace vernier {
+namespace vernier::edge_queue_test {
 namespace {
 
 std::string taken(EdgeQueue& queue) {
@@ -108,4 +108,4 @@ TEST(SimProbeLine, DeliversWhatWasPutIn) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::edge_queue_test

@@ -21,7 +21,7 @@
 #include <set>
 #include <thread>
 
-namespace vernier {
+namespace vernier::output_file_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -296,4 +296,4 @@ TEST_F(Output, FolderIsMadeThroughALink) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::output_file_test

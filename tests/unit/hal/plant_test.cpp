@@ -6,7 +6,7 @@
 
 #include "hal/sim/roaming.h"
 
-namespace vernier {
+namespace vernier::plant_test {
 namespace {
 
 /// Axis 0 runs at 1 um a tick from zero.
@@ -121,4 +121,4 @@ TEST(Roaming, MotionStateIsTheDerivativeOfThePosition) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::plant_test

@@ -4,6 +4,7 @@
 #include <array>
 #include <map>
 #include <set>
+#include <vector>
 
 namespace vernier::house {
 namespace {
@@ -24,14 +25,41 @@ bool is_freestanding(std::string_view header) {
   return kHeaders.contains(header);
 }
 
-// Order in which the folders of tools build on one another; a folder may use those before it.
-int rank_of_tool(std::string_view folder) {
-  static constexpr std::array<std::string_view, 19> kOrder = {
-      "model",    "import", "vibration", "fit",     "kinematics", "safety",   "exchange",
-      "diagnose", "probe",  "plan",      "compile", "derive",     "simulate", "upload",
-      "report",   "part",   "map",       "cli",     "workbench"};
-  const auto found = std::find(kOrder.begin(), kOrder.end(), folder);
-  return found == kOrder.end() ? -1 : static_cast<int>(found - kOrder.begin());
+// Which rooms of tools a room may use, floor by floor: no arrow runs up, none is missing.
+struct Room {
+  std::string_view name;
+  std::set<std::string_view> uses;
+};
+const std::vector<Room>& rooms_of_tools() {
+  static const std::vector<Room> kRooms = {
+      {"maths", {}},
+      {"text", {"maths"}},
+      {"report", {}},
+      {"model", {"maths", "text"}},
+      {"fit", {"maths", "model", "text"}},
+      {"kinematics", {"maths", "model", "text"}},
+      {"vibration", {"maths", "model", "text"}},
+      {"probe", {"maths", "model", "text"}},
+      {"timebase", {"maths", "model", "text"}},
+      {"import", {"maths", "model", "text", "timebase"}},
+      {"exchange", {"kinematics", "maths", "model", "text"}},
+      {"part", {"fit", "maths", "model", "text"}},
+      {"safety", {"fit", "kinematics", "maths", "model", "text"}},
+      {"compile", {"maths", "model", "text"}},
+      {"effects", {"fit", "maths", "model", "text", "vibration"}},
+      {"residual", {"fit", "maths", "model", "text"}},
+      {"derive", {"compile", "maths", "model", "text"}},
+      {"diagnose", {"effects", "fit", "maths", "model", "residual", "text", "timebase", "vibration"}},
+      {"simulate", {"compile", "fit", "kinematics", "maths", "model", "text"}},
+      {"upload", {"maths", "text"}},
+      {"map", {"import", "kinematics", "maths", "model", "text"}},
+      {"plan", {"diagnose", "effects", "fit", "maths", "model", "text"}},
+      {"results",
+       {"diagnose", "effects", "fit", "import", "kinematics", "map", "maths", "model", "residual", "safety",
+        "simulate", "text"}},
+      {"workbench", {"diagnose", "effects", "fit", "maths", "model", "results", "text", "upload"}},
+  };
+  return kRooms;
 }
 
 bool is_hal_port(std::string_view path) {
@@ -51,13 +79,18 @@ std::string tool_may_include(std::string_view path, std::string_view target) {
   const std::string_view top = head(target);
   if (top == "comp" || top == "tables" || is_hal_support(target)) return {};
   if (top == "firmware" || top == "hal") {
-    const bool runs_firmware = folder == "simulate" || folder == "upload" || folder == "cli";
-    return runs_firmware ? "" : "only simulate, upload and watch may use firmware and hal";
+    const bool runs_firmware = folder == "simulate" || folder == "upload" || folder == "commands";
+    return runs_firmware ? "" : "only simulate, upload and their commands may use firmware and hal";
   }
-  if (target == "tools/cli/command.h") return {};
-  const int mine = rank_of_tool(folder), other = rank_of_tool(second_folder(target));
-  if (mine < 0 || other < 0) return "a folder of tools that has no place in the order";
-  return other <= mine ? "" : "against the order of the folders of tools";
+  const std::string_view other = second_folder(target);
+  if (other == folder) return {};
+  if (other == "commands") return "nobody below knows a command line";
+  if (folder == "commands") return {};
+  for (const Room& room : rooms_of_tools()) {
+    if (room.name != folder) continue;
+    return room.uses.contains(other) ? "" : "a room of tools that this one may not use";
+  }
+  return "a folder of tools that has no floor";
 }
 
 std::string hal_may_include(std::string_view path, std::string_view target) {
@@ -139,6 +172,40 @@ std::vector<std::string> wrong_includes(const std::string& path, std::string_vie
       wrong.push_back(path + ":" + std::to_string(line) + ": \"" + include.target + "\": " + why);
   }
   return wrong;
+}
+
+std::vector<std::string> rooms_that_run_up() {
+  std::set<std::string_view> below;
+  std::vector<std::string> wrong;
+  for (const Room& room : rooms_of_tools()) {
+    for (const std::string_view used : room.uses)
+      if (!below.contains(used))
+        wrong.push_back(std::string(room.name) + " uses " + std::string(used) + ", which stands above it");
+    below.insert(room.name);
+  }
+  return wrong;
+}
+
+std::vector<std::string> declared_types(std::string_view text) {
+  std::vector<std::string> names;
+  for (; !text.empty();) {
+    const auto end = std::min(text.find('\n'), text.size());
+    std::string_view line = text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
+    const bool is_enum = starts_with(line, "enum class ");
+    if (is_enum)
+      line.remove_prefix(11);
+    else if (starts_with(line, "struct "))
+      line.remove_prefix(7);
+    else if (starts_with(line, "class "))
+      line.remove_prefix(6);
+    else
+      continue;
+    const auto word = line.substr(0, line.find_first_of(" :{;"));
+    const bool defined = line.find(';') == std::string_view::npos || line.find('{') != std::string_view::npos;
+    if (defined && !word.empty()) names.emplace_back(word);
+  }
+  return names;
 }
 
 }  // namespace vernier::house

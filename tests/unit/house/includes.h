@@ -11,4 +11,10 @@ namespace vernier::house {
 /// includes tools or tests.
 std::vector<std::string> wrong_includes(const std::string& path, std::string_view text);
 
+/// Rooms of the table of tools that use one which stands on a floor above them; empty when all is well.
+std::vector<std::string> rooms_that_run_up();
+
+/// Names of the types that a header defines outside of functions and other types.
+std::vector<std::string> declared_types(std::string_view text);
+
 }  // namespace vernier::house

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <sstream>
 
 #include "tests/unit/house/includes.h"
@@ -32,6 +33,9 @@ TEST(Includes, EveryWrongDirectionIsDetected) {
   EXPECT_EQ(wrong("tools/fit/a.cpp", "#include \"hal/clock.h\"\n"), 1u);
   EXPECT_EQ(wrong("tools/model/a.cpp", "#include \"tools/fit/fit.h\"\n"), 1u);
   EXPECT_EQ(wrong("tools/fit/a.cpp", "#include \"tests/support/a.h\"\n"), 1u);
+  EXPECT_EQ(wrong("tools/fit/a.cpp", "#include \"tools/commands/command.h\"\n"), 1u);
+  EXPECT_EQ(wrong("tools/model/a.cpp", "#include \"tools/attic/a.h\"\n"), 1u);
+  EXPECT_EQ(wrong("tools/attic/a.cpp", "#include \"tools/model/chain.h\"\n"), 1u);
   EXPECT_EQ(wrong("tools/fit/a.cpp", "  #  include \"fit.h\"\n"), 1u);
 }
 
@@ -55,6 +59,35 @@ TEST(Includes, MessageNamesFileLineAndWord) {
   const auto messages = wrong_includes("comp/a.h", "#include <cstdint>\n#include <vector>\n");
   ASSERT_EQ(messages.size(), 1u);
   EXPECT_EQ(messages[0], "comp/a.h:2: \"vector\": comp and tables take freestanding headers only");
+}
+
+TEST(Includes, NoRoomOfToolsUsesOneAbove) { EXPECT_EQ(rooms_that_run_up(), std::vector<std::string>{}); }
+
+TEST(Names, TypesOfAHeaderAreFound) {
+  EXPECT_EQ(
+      declared_types("struct A {\nclass B : public C {\nenum class D : int {\nstruct E;\nstruct F {};\n"),
+      (std::vector<std::string>{"A", "B", "D", "F"}));
+}
+
+TEST(Names, NoTypeNameStandsTwice) {
+  namespace fs = std::filesystem;
+  const fs::path root = VERNIER_SOURCE_DIR;
+  std::map<std::string, std::string> seen;
+  for (const char* folder : {"comp", "tables", "hal", "firmware", "tools"}) {
+    for (auto it = fs::recursive_directory_iterator(root / folder); it != fs::recursive_directory_iterator();
+         ++it) {
+      if (it->path().filename() == "node_modules") it.disable_recursion_pending();
+      if (!it->is_regular_file() || it->path().extension() != ".h") continue;
+      std::ostringstream text;
+      text << std::ifstream(it->path()).rdbuf();
+      const std::string path = fs::relative(it->path(), root).string();
+      for (const std::string& name : declared_types(text.str())) {
+        const auto [first, is_new] = seen.emplace(name, path);
+        EXPECT_TRUE(is_new) << name << " is defined in " << first->second << " and in " << path;
+      }
+    }
+  }
+  EXPECT_GT(seen.size(), 100u) << "the walk over the headers found next to nothing";
 }
 
 TEST(Includes, HouseFollowsItsDirections) {

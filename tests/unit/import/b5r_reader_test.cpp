@@ -4,9 +4,9 @@
 #include "tests/unit/import/ballbar_data.h"
 #include "tools/import/ballbar_file.h"
 #include "tools/import/ballbar_motion.h"
-#include "tools/model/error.h"
+#include "tools/text/error.h"
 
-namespace vernier {
+namespace vernier::b5r_reader_test {
 namespace {
 
 const BallbarFile& the_file() {
@@ -129,4 +129,4 @@ TEST(B5rReader, TextCutAnywhereIsAnError) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::b5r_reader_test

@@ -6,7 +6,7 @@
 #include "tests/unit/import/ballbar_data.h"
 #include "tools/import/ballbar_motion.h"
 
-namespace vernier {
+namespace vernier::ballbar_csv_test {
 namespace {
 
 const BallbarFile& the_file() {
@@ -145,4 +145,4 @@ TEST(CirclePoint, SampleOnTheReversalKeepsTheSenseThatLedThere) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::ballbar_csv_test

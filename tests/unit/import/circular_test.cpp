@@ -7,7 +7,7 @@
 #include "tools/import/ballbar_motion.h"
 #include "tools/import/printed_results.h"
 
-namespace vernier {
+namespace vernier::circular_test {
 namespace {
 
 const BallbarFile& the_file() {
@@ -120,4 +120,4 @@ TEST(Circular, OpenArcIsNotClosedAcrossItsGap) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::circular_test

@@ -7,7 +7,7 @@
 #include "tools/import/ballbar_file.h"
 #include "tools/import/diagnostics.h"
 
-namespace vernier {
+namespace vernier::diagnostics_test {
 namespace {
 
 constexpr const char* kAnalysis = "RENISHAW_DIAGNOSTICS";
@@ -106,4 +106,4 @@ TEST(Diagnostics, TooFewSamplesAreRefused) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::diagnostics_test

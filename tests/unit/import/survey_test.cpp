@@ -11,7 +11,7 @@
 #include "tools/model/chain_rows.h"
 #include "tools/model/measurement.h"
 
-namespace vernier {
+namespace vernier::survey_test {
 namespace {
 
 constexpr double kDeg = 180 / std::numbers::pi;
@@ -187,4 +187,4 @@ TEST(Probe, RefusesAnIncompleteTouch) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::survey_test

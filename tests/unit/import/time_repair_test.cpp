@@ -10,9 +10,9 @@
 #include "tools/import/ballbar_motion.h"
 #include "tools/import/profile.h"
 #include "tools/import/repair_report.h"
-#include "tools/import/stretch.h"
+#include "tools/timebase/stretch.h"
 
-namespace vernier {
+namespace vernier::time_repair_test {
 namespace {
 
 const BallbarFile& real_file() {
@@ -226,4 +226,4 @@ TEST(Stretch, QuantileIsTheInverseOfTheTail) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::time_repair_test

@@ -5,9 +5,9 @@
 #include "tools/import/ballbar_file.h"
 #include "tools/import/ballbar_motion.h"
 #include "tools/import/json_place.h"
-#include "tools/model/error.h"
+#include "tools/text/error.h"
 
-namespace vernier {
+namespace vernier::trace_reader_test {
 namespace {
 
 TraceSetup setup_6000() {
@@ -84,4 +84,4 @@ TEST(JsonPlace, FindsTheLineOfAnyValue) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::trace_reader_test

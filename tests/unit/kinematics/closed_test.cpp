@@ -6,7 +6,7 @@
 #include "tests/unit/kinematics/machines.h"
 #include "tools/kinematics/at.h"
 
-namespace vernier {
+namespace vernier::closed_test {
 namespace {
 
 TEST(ClosedSolution, IsThatOfTheNewtonIteration) {
@@ -72,4 +72,4 @@ TEST(StateAt, ReadsWordsAndRefusesOthers) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::closed_test

@@ -8,7 +8,7 @@
 #include "tests/support/machines.h"
 #include "tests/unit/kinematics/machines.h"
 
-namespace vernier {
+namespace vernier::correction_test {
 namespace {
 
 constexpr unsigned long kSeed = 21;
@@ -117,4 +117,4 @@ TEST(Correction, MotionStaysAsItIs) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::correction_test

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "tools/model/machine.h"
-#include "tools/model/numbers.h"
 #include "tools/model/states.h"
+#include "tools/text/numbers.h"
 
 namespace vernier {
 

@@ -7,7 +7,7 @@
 #include "tests/unit/kinematics/machines.h"
 #include "tools/kinematics/inverse.h"
 
-namespace vernier {
+namespace vernier::solve_test {
 namespace {
 
 constexpr unsigned long kSeed = 20;
@@ -175,4 +175,4 @@ TEST(RotationVector, IsTheInverseOfTheRotation) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::solve_test

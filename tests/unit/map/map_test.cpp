@@ -2,11 +2,11 @@
 
 #include <cmath>
 
-#include "tools/map/field_json.h"
 #include "tools/map/simulated.h"
-#include "tools/model/files.h"
+#include "tools/results/field_json.h"
+#include "tools/text/files.h"
 
-namespace vernier {
+namespace vernier::map_test {
 namespace {
 
 constexpr double kX = 600, kY = 400, kZ = 300;  // travel, mm
@@ -149,4 +149,4 @@ TEST(Measured, ChainsWithoutAClosedSolutionAreRefused) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::map_test

@@ -9,11 +9,11 @@
 #include <sstream>
 
 #include "tests/support/machines.h"
-#include "tools/model/files.h"
 #include "tools/model/prediction.h"
 #include "tools/model/station_table.h"
+#include "tools/text/files.h"
 
-namespace vernier {
+namespace vernier::chain_test {
 namespace {
 
 const std::string kData = VERNIER_SOURCE_DIR "/tests/data/electroimpact/";
@@ -172,4 +172,4 @@ TEST(StationTable, WeightsGiveTheValues) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::chain_test

@@ -9,7 +9,7 @@
 #include "tools/model/evaluate.h"
 #include "tools/model/machine.h"
 
-namespace vernier {
+namespace vernier::expression_test {
 namespace {
 
 const char* const kMachine = R"XML(<machine name="m"><variables>
@@ -131,7 +131,7 @@ TEST(Expression, DerivativesAgreeWithDifferences) {
   for (const char* text : {"k*X+k^2", "sin(k*X*10)", "exp(-X/k)", "lag(k*T,tau)", "X/(k+tau)",
                            "sqrt(k)*atan2(k,X)", "max(k,1)*abs(-k)", "k^tau/1000", "tan(k)+log(k)"}) {
     const ExprPtr tree = parse_expression_for(machine, text);
-    const Dual dual = Evaluator(machine, states, std::vector<char>(14, 1))(*tree);
+    const ValueAndSlopes dual = Evaluator(machine, states, std::vector<char>(14, 1))(*tree);
     for (std::size_t s = 0; s < 2; ++s) {
       const double start = machine.statics[s].value, step = 1e-6 * start;
       machine.statics[s].value = start + step;
@@ -152,4 +152,4 @@ TEST(Expression, DerivativesAgreeWithDifferences) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::expression_test

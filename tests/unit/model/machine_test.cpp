@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace vernier {
+namespace vernier::machine_test {
 namespace {
 
 const std::string kHead = "<machine name=\"m\">\n<variables>\n<static>\n";
@@ -167,4 +167,4 @@ TEST(MachineFile, WritesValuesBackAndKeepsEverythingElse) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::machine_test

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <filesystem>
 
-#include "tools/model/files.h"
+#include "tools/text/files.h"
 
-namespace vernier {
+namespace vernier::measurement_test {
 namespace {
 
 Machine machine() {
@@ -155,4 +155,4 @@ TEST(MeasurementFile, RefusesACorrectionThatItCannotTakeAway) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::measurement_test

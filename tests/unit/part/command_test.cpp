@@ -10,7 +10,7 @@
 #include "tests/unit/part/part_data.h"
 #include "tools/simulate/path.h"
 
-namespace vernier {
+namespace vernier::command_test {
 namespace {
 
 class PartCommand : public testing::Test {
@@ -123,4 +123,4 @@ TEST_F(PartCommand, BadInputIsStatusOneAndWritesNothing) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::command_test

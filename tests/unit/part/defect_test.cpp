@@ -10,7 +10,7 @@
 #include "tests/unit/part/part_data.h"
 #include "tools/model/chain.h"
 
-namespace vernier {
+namespace vernier::defect_test {
 namespace {
 
 constexpr double kDegPerRad = 180 / std::numbers::pi;
@@ -116,7 +116,7 @@ TEST(Displacements, NominalMachineIsTheDirectSolution) {
     const Eigen::Vector3d tip = tool_pose(joints[i], published.machine().pivot_mm).tip;
     EXPECT_LT((tip - Eigen::Vector3d(x[row], y[row], z[row])).norm(), 1e-11);
   }
-  for (const Displacement& d : displacements(published.machine(), joints, std::vector<double>(100, 10.0)))
+  for (const ToolDisplacement& d : displacements(published.machine(), joints, std::vector<double>(100, 10.0)))
     EXPECT_EQ(d.shift.norm(), 0);
 }
 
@@ -212,4 +212,4 @@ TEST(StandardPoints, AreTwentyFivePerLineOnBothFlanks) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::defect_test

@@ -8,7 +8,7 @@
 
 #include "tests/unit/part/part_data.h"
 
-namespace vernier {
+namespace vernier::envelope_test {
 namespace {
 
 constexpr NormalReading kPrinted{false, true}, kUnit{true, true}, kInward{false, false};
@@ -110,4 +110,4 @@ TEST(FlankPose, PrintedNormalIsNoUnitVector) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::envelope_test

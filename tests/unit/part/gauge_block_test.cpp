@@ -9,7 +9,7 @@
 #include "tests/unit/part/part_data.h"
 #include "tools/part/defect.h"
 
-namespace vernier {
+namespace vernier::gauge_block_test {
 namespace {
 
 constexpr double kPivotMm = 533.889;
@@ -55,4 +55,4 @@ TEST(GaugeBlock, PivotLengthMustBePositive) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::gauge_block_test

@@ -10,7 +10,7 @@
 
 #include "tests/unit/part/part_data.h"
 
-namespace vernier {
+namespace vernier::identify_test {
 namespace {
 
 using Pairs = std::set<std::set<std::string>>;
@@ -172,4 +172,4 @@ TEST(Identify, RefusesTooFewPointsAndNothingFree) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::identify_test

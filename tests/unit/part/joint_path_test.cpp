@@ -9,7 +9,7 @@
 
 #include "tools/part/flank_path.h"
 
-namespace vernier {
+namespace vernier::joint_path_test {
 namespace {
 
 constexpr double kPivotMm = 499.889;
@@ -119,4 +119,4 @@ TEST(JointPath, TableRunsEvenlyWhereTheToolIsVertical) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::joint_path_test

@@ -2,7 +2,7 @@
 
 #include "tests/unit/part/part_data.h"
 
-namespace vernier {
+namespace vernier::machine_test {
 namespace {
 
 std::string message_of(const std::function<void()>& job) {
@@ -70,4 +70,4 @@ TEST(SetErrors, RefusesWhatItCannotUnderstand) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::machine_test

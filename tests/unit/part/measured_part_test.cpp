@@ -6,7 +6,7 @@
 #include "tools/part/identify.h"
 #include "tools/part/part_path.h"
 
-namespace vernier {
+namespace vernier::measured_part_test {
 namespace {
 
 std::string message_of(const std::string& csv) {
@@ -68,4 +68,4 @@ TEST(MeasuredPart, NamesFileLineAndWordOfWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::measured_part_test

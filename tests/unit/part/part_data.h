@@ -3,10 +3,10 @@
 #include <string>
 #include <vector>
 
-#include "tools/model/csv.h"
-#include "tools/model/files.h"
-#include "tools/model/numbers.h"
 #include "tools/part/b_head_machine.h"
+#include "tools/text/csv.h"
+#include "tools/text/files.h"
+#include "tools/text/numbers.h"
 
 namespace vernier::part_data {
 

@@ -6,7 +6,7 @@
 #include <random>
 #include <stdexcept>
 
-namespace vernier {
+namespace vernier::spline_test {
 namespace {
 
 using Points = std::vector<Eigen::Vector3d>;
@@ -108,4 +108,4 @@ TEST(Spline, StraightEvenPolygonHasItsLength) {
 TEST(Spline, ThreePointsAreTooFew) { EXPECT_THROW(Spline(random_points(3, 1)), std::invalid_argument); }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::spline_test

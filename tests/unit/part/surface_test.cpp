@@ -7,7 +7,7 @@
 #include "tests/unit/part/part_data.h"
 #include "tools/part/ruled_surface.h"
 
-namespace vernier {
+namespace vernier::surface_test {
 namespace {
 
 TEST(SPart, CurvesAreThoseOfThePublishedControlPoints) {
@@ -97,4 +97,4 @@ TEST(RuledSurface, TangentsEqualDifferences) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::surface_test

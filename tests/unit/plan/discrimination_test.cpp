@@ -8,7 +8,7 @@
 #include "tools/plan/choice.h"
 #include "tools/plan/discrimination.h"
 
-namespace vernier {
+namespace vernier::discrimination_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 20240611;
@@ -111,4 +111,4 @@ TEST(ChooseRows, ReachesTheGoalWithNoMoreRowsThanRandomOnes) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::discrimination_test

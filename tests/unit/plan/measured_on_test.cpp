@@ -5,7 +5,7 @@
 
 #include "tools/plan/offers.h"
 
-namespace vernier {
+namespace vernier::measured_on_test {
 namespace {
 
 Machine machine() {
@@ -54,4 +54,4 @@ TEST(PlanFromCorrectedRows, AppendedRowsKeepWhatEachHas) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::measured_on_test

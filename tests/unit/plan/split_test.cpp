@@ -1,10 +1,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tools/model/error.h"
 #include "tools/plan/rival.h"
+#include "tools/text/error.h"
 
-namespace vernier {
+namespace vernier::split_test {
 namespace {
 
 using testing::ElementsAre;
@@ -26,4 +26,4 @@ TEST(SplitRivals, WantsTwo) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::split_test

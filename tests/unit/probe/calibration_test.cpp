@@ -7,10 +7,10 @@
 #include <random>
 #include <sstream>
 
-#include "tools/model/error.h"
-#include "tools/model/files.h"
+#include "tools/text/error.h"
+#include "tools/text/files.h"
 
-namespace vernier {
+namespace vernier::calibration_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -142,4 +142,4 @@ TEST(ProbeCal, NamesFileLineAndWord) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::calibration_test

@@ -8,9 +8,9 @@
 #include <random>
 #include <sstream>
 
-#include "tools/model/error.h"
+#include "tools/text/error.h"
 
-namespace vernier {
+namespace vernier::feature_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -26,7 +26,7 @@ class Touched {
     const Vector3d p = surface + (ball_ + noise_(random_)) * n;
     text_ << p(0) << ',' << p(1) << ',' << p(2) << ',' << n(0) << ',' << n(1) << ',' << n(2) << '\n';
   }
-  Feature fit(FeatureSetup setup) const {
+  MeasuredFeature fit(FeatureSetup setup) const {
     setup.ball_radius_mm = ball_;
     TouchTable table(text_.str(), "touches.csv", {}, {});
     return fit_feature(table, setup);
@@ -40,7 +40,7 @@ class Touched {
   std::ostringstream text_;
 };
 
-void expect_near(const Feature& feature, const std::string& name, double truth) {
+void expect_near(const MeasuredFeature& feature, const std::string& name, double truth) {
   const Calibrated* const found = feature.find(name);
   ASSERT_NE(found, nullptr) << name;
   EXPECT_NEAR(found->value, truth, 4.5 * found->std + 1e-9) << name;
@@ -51,7 +51,7 @@ const Eigen::Matrix3d kTurn =
         .toRotationMatrix();
 const Vector3d kAt(120, -40, 15);
 
-TEST(Feature, PlaneLineSphereAndCylinderAnywhereInSpace) {
+TEST(MeasuredFeature, PlaneLineSphereAndCylinderAnywhereInSpace) {
   Touched plane(2.5, 1e-3, 1), sphere(2.5, 1e-3, 2), cylinder(2.5, 1e-3, 3), bore(2.5, 1e-3, 4);
   for (int i = 0; i < 60; ++i) {
     const double a = 0.61 * i, b = std::sin(1.7 * i);
@@ -62,16 +62,16 @@ TEST(Feature, PlaneLineSphereAndCylinderAnywhereInSpace) {
     cylinder.at(kAt + 9 * radial + 25 * b * kTurn.col(2), radial);
     bore.at(kAt + 9 * radial + 25 * b * kTurn.col(2), -radial);
   }
-  const Feature p = plane.fit({.kind = FeatureKind::kPlane});
+  const MeasuredFeature p = plane.fit({.kind = FeatureKind::kPlane});
   expect_near(p, "normal_x", kTurn(0, 2));
   expect_near(p, "normal_y", kTurn(1, 2));
   const Vector3d on(p.find("point_x")->value, p.find("point_y")->value, p.find("point_z")->value);
   EXPECT_NEAR((on - kAt).dot(kTurn.col(2)), 0, 1e-3);
-  const Feature s = sphere.fit({.kind = FeatureKind::kSphere});
+  const MeasuredFeature s = sphere.fit({.kind = FeatureKind::kSphere});
   expect_near(s, "centre_x", 120);
   expect_near(s, "radius", 12.7);
   for (const Touched* round : {&cylinder, &bore}) {
-    const Feature c = round->fit({.kind = FeatureKind::kCylinder});
+    const MeasuredFeature c = round->fit({.kind = FeatureKind::kCylinder});
     expect_near(c, "radius", 9);
     expect_near(c, "axis_x", kTurn(0, 2));
     EXPECT_NEAR(c.form_mm, 4.5e-3, 2e-3);
@@ -79,7 +79,7 @@ TEST(Feature, PlaneLineSphereAndCylinderAnywhereInSpace) {
   }
 }
 
-TEST(Feature, CircleAndLineInThePlane) {
+TEST(MeasuredFeature, CircleAndLineInThePlane) {
   std::ostringstream circle, line;
   circle << "x,y\n", line << "x,y\n";
   for (int i = 0; i < 12; ++i) {
@@ -88,10 +88,11 @@ TEST(Feature, CircleAndLineInThePlane) {
     line << i << ',' << 2 + 0.1 * i << '\n';
   }
   TouchTable round(circle.str(), "c.csv", {}, {}), straight(line.str(), "l.csv", {}, {});
-  const Feature c = fit_feature(round, {.kind = FeatureKind::kCircle, .ball_radius_mm = 2.5, .inside = true});
+  const MeasuredFeature c =
+      fit_feature(round, {.kind = FeatureKind::kCircle, .ball_radius_mm = 2.5, .inside = true});
   EXPECT_NEAR(c.find("radius")->value, 20, 1e-4);
   EXPECT_NEAR(c.find("centre_x")->value, 5, 1e-4);
-  const Feature l = fit_feature(straight, {.kind = FeatureKind::kLine});
+  const MeasuredFeature l = fit_feature(straight, {.kind = FeatureKind::kLine});
   EXPECT_NEAR(l.find("angle")->value, std::atan(0.1) * 180 / std::numbers::pi, 1e-6);
 }
 
@@ -107,11 +108,11 @@ std::string block_touches(double angle, const Vector3d& centre, double x, double
   return text.str();
 }
 
-TEST(Feature, BlockFromTwoPlusTwoPointsIsWhereItIs) {
+TEST(MeasuredFeature, BlockFromTwoPlusTwoPointsIsWhereItIs) {
   for (const double deg : {-10.0, 0.0, 3.0, 20.0}) {
     const double angle = deg * std::numbers::pi / 180;
     TouchTable table(block_touches(angle, {114.98, 4.1, 0}, 35, 20, 1.987 / 2), "b.csv", {}, {});
-    const Feature block = fit_feature(
+    const MeasuredFeature block = fit_feature(
         table, {.kind = FeatureKind::kBlock, .ball_radius_mm = 1.987 / 2, .block_size_mm = {35, 20}});
     EXPECT_NEAR(block.find("centre_x")->value, 114.98, 1e-6);
     EXPECT_NEAR(block.find("centre_y")->value, 4.1, 1e-6);
@@ -119,7 +120,7 @@ TEST(Feature, BlockFromTwoPlusTwoPointsIsWhereItIs) {
   }
 }
 
-TEST(Feature, SizeIsThatAtTwentyDegrees) {
+TEST(MeasuredFeature, SizeIsThatAtTwentyDegrees) {
   Touched sphere(2.5, 0.1e-3, 7);
   constexpr double kExpansion = 11.5e-6, kT = 26;
   std::ostringstream text;
@@ -131,18 +132,18 @@ TEST(Feature, SizeIsThatAtTwentyDegrees) {
     text << p(0) << ',' << p(1) << ',' << p(2) << ',' << kT << '\n';
   }
   TouchTable table(text.str(), "s.csv", {}, {});
-  const Feature s = fit_feature(table, {.kind = FeatureKind::kSphere, .expansion_per_K = kExpansion});
+  const MeasuredFeature s = fit_feature(table, {.kind = FeatureKind::kSphere, .expansion_per_K = kExpansion});
   EXPECT_NEAR(s.find("radius")->value, 25, 1e-6);
   EXPECT_NEAR(s.find("centre_x")->value, 100, 1e-6);
   EXPECT_NEAR(s.find("radius")->std, 25 * std::hypot(1e-6 * 6, 11.5e-6 * 0.1), 1e-6);
 }
 
-TEST(Feature, RowsForAFitAreDeviationsFromTheFeature) {
+TEST(MeasuredFeature, RowsForAFitAreDeviationsFromTheFeature) {
   Touched plane(2.5, 2e-3, 9);
   for (int i = 0; i < 20; ++i) plane.at(Vector3d(3.0 * i, std::cos(1.0 * i), 4), Vector3d::UnitZ());
   TouchTable table(plane.text(), "touches.csv", {}, {});
   const FeatureSetup setup{.kind = FeatureKind::kPlane, .ball_radius_mm = 2.5};
-  const Feature feature = fit_feature(table, setup);
+  const MeasuredFeature feature = fit_feature(table, setup);
   const CsvFile rows = parse_csv(feature_csv(table, feature), "rows.csv");
   ASSERT_EQ(rows.rows.size(), 20u);
   ASSERT_EQ(rows.columns.size(), 7u);
@@ -155,17 +156,17 @@ TEST(Feature, RowsForAFitAreDeviationsFromTheFeature) {
   }
 }
 
-TEST(Feature, LeavesOutATouchThatIsNone) {
+TEST(MeasuredFeature, LeavesOutATouchThatIsNone) {
   Touched sphere(2.5, 1e-3, 11);
   for (int i = 0; i < 30; ++i) {
     const Vector3d n = Vector3d(std::cos(0.7 * i), std::sin(0.7 * i), std::sin(1.3 * i)).normalized();
     sphere.at((i == 13 ? 10.05 : 10) * n, n);
   }
-  const Feature s = sphere.fit({.kind = FeatureKind::kSphere});
+  const MeasuredFeature s = sphere.fit({.kind = FeatureKind::kSphere});
   ASSERT_EQ(s.fit.outliers.size(), 1u);
   EXPECT_EQ(s.fit.outliers[0].touch, 13u);
   expect_near(s, "radius", 10);
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::feature_test

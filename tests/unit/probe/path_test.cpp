@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
-#include "tools/model/error.h"
-#include "tools/model/files.h"
+#include "tools/text/error.h"
+#include "tools/text/files.h"
 
-namespace vernier {
+namespace vernier::path_test {
 namespace {
 
 ProbePath published() {
@@ -64,4 +64,4 @@ TEST(ProbePath, RefusesAPathWithoutSense) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::path_test

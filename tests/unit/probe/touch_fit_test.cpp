@@ -4,9 +4,9 @@
 
 #include <random>
 
-#include "tools/model/error.h"
+#include "tools/text/error.h"
 
-namespace vernier {
+namespace vernier::touch_fit_test {
 namespace {
 
 using Eigen::VectorXd;
@@ -59,4 +59,4 @@ TEST(TouchFit, NamesWhatTheTouchesDoNotTellApart) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::touch_fit_test

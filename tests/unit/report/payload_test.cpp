@@ -8,7 +8,7 @@
 #include <limits>
 #include <random>
 
-namespace vernier {
+namespace vernier::payload_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -210,4 +210,4 @@ TEST(Thinning, ContradictionsAreRefused) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::payload_test

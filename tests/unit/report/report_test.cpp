@@ -4,7 +4,7 @@
 
 #include "tools/report/assets.h"
 
-namespace vernier {
+namespace vernier::report_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -141,4 +141,4 @@ TEST(Report, SixThousandRowsStayBelowTwoMegabytes) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::report_test

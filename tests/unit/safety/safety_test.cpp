@@ -9,7 +9,7 @@
 #include "tools/safety/safety_sheet.h"
 #include "tools/safety/sources.h"
 
-namespace vernier {
+namespace vernier::safety_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 11;
@@ -171,4 +171,4 @@ TEST(ErrorSources, SayWhatEachDoesAlone) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::safety_test

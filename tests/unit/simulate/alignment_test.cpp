@@ -5,7 +5,7 @@
 #include <Eigen/Geometry>
 #include <random>
 
-namespace vernier {
+namespace vernier::alignment_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 5;
@@ -103,4 +103,4 @@ TEST(Align, ScaleIsNotRemoved) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::alignment_test

@@ -10,12 +10,12 @@
 #include <random>
 
 #include "tools/compile/compile.h"
-#include "tools/model/error.h"
-#include "tools/model/files.h"
 #include "tools/model/prediction.h"
 #include "tools/simulate/loop.h"
+#include "tools/text/error.h"
+#include "tools/text/files.h"
 
-namespace vernier {
+namespace vernier::corrected_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -174,4 +174,4 @@ TEST_F(CorrectedRows, NameFileLineAndWordWhereTheyCannotBeUnderstood) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::corrected_test

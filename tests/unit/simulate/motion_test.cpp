@@ -4,10 +4,10 @@
 #include <fmt/format.h>
 #include <cmath>
 
-#include "tools/model/error.h"
 #include "tools/simulate/path.h"
+#include "tools/text/error.h"
 
-namespace vernier {
+namespace vernier::motion_test {
 namespace {
 
 Machine machine() {
@@ -116,4 +116,4 @@ TEST(PathStates, StandingMachineHasNoMotion) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::motion_test

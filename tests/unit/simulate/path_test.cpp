@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include "tools/model/error.h"
+#include "tools/text/error.h"
 
-namespace vernier {
+namespace vernier::path_test {
 namespace {
 
 std::string message_of(const std::string& text) {
@@ -54,4 +54,4 @@ TEST(Ticks, SingleRowIsOneTick) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::path_test

@@ -7,7 +7,7 @@
 
 #include "tools/simulate/simulate.h"
 
-namespace vernier {
+namespace vernier::tilt_test {
 namespace {
 
 std::string machine_text(const std::string& correct, const std::string& limits) {
@@ -72,4 +72,4 @@ TEST(Tilt, LimitedTravelOfARotaryAxisCostsNoPosition) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::tilt_test

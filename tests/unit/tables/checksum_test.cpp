@@ -5,7 +5,7 @@
 #include <cstring>
 #include <vector>
 
-namespace vernier {
+namespace vernier::checksum_test {
 namespace {
 
 TEST(Crc32c, GivesThePublishedCheckValues) {
@@ -27,4 +27,4 @@ TEST(Fnv1a, ChainsStretches) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::checksum_test

@@ -8,7 +8,7 @@
 #include "tables/checksum.h"
 #include "tests/unit/compile/poses.h"
 
-namespace vernier {
+namespace vernier::image_test {
 namespace {
 
 constexpr unsigned kSeed = 60610;
@@ -186,4 +186,4 @@ TEST(ImageFaultNames, AreAllDifferent) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::image_test

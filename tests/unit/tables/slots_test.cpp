@@ -4,7 +4,7 @@
 
 #include <cstring>
 
-namespace vernier {
+namespace vernier::slots_test {
 namespace {
 
 /// The two places of a store.
@@ -77,4 +77,4 @@ TEST(Slots, SenselessRecordIsNotFollowed) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::slots_test

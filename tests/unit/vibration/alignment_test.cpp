@@ -5,9 +5,9 @@
 #include <cmath>
 #include <random>
 
-#include "tools/model/error.h"
+#include "tools/text/error.h"
 
-namespace vernier {
+namespace vernier::alignment_test {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
@@ -90,4 +90,4 @@ TEST(NearestPlaces, TellTheSecondPassFromTheFirst) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::alignment_test

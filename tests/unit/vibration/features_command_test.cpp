@@ -7,10 +7,10 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "tools/model/files.h"
+#include "tools/text/files.h"
 #include "tools/vibration/feature_rows.h"
 
-namespace vernier {
+namespace vernier::features_command_test {
 namespace {
 
 const std::string kFolder = testing::TempDir() + "features_command_" + std::to_string(getpid()) + "/";
@@ -97,4 +97,4 @@ TEST(FeaturesCommand, FollowsPositionsWhereThereIsNoCommonClock) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::features_command_test

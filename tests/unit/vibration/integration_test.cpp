@@ -5,9 +5,9 @@
 #include <cmath>
 #include <random>
 
-#include "tools/model/error.h"
+#include "tools/text/error.h"
 
-namespace vernier {
+namespace vernier::integration_test {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
@@ -78,9 +78,9 @@ TEST(IntegrateTwice, PublishedConstantsLeaveTheDriftThatCentredOnesDoNot) {
 TEST(FittedCut, FindsTheCutoffThatTheBallBarAgreesWith) {
   std::mt19937 random(3);
   std::normal_distribution<double> noise(0, 20);
-  std::vector<CircularPass> passes(2);
+  std::vector<AcceleratedPass> passes(2);
   for (std::size_t p = 0; p < 2; ++p) {
-    CircularPass& pass = passes[p];
+    AcceleratedPass& pass = passes[p];
     pass.rate_Hz = kRate_Hz;
     const double sense = p == 0 ? -1 : 1, turn = 2 * kPi / 8;  // 8 s a turn
     for (int i = 0; i < 8000; ++i) {
@@ -94,11 +94,11 @@ TEST(FittedCut, FindsTheCutoffThatTheBallBarAgreesWith) {
   const FittedCut fitted = fitted_cutoff(passes, Constants::kCentred);
   EXPECT_LT(fitted.objective_um, 4);  // 10 % of both, by the noise of the line that carries the circle
   double without = 0;
-  for (const CircularPass& pass : passes)
+  for (const AcceleratedPass& pass : passes)
     without += std::fabs(20 - mean_radial_um(pass, 1e9, Constants::kCentred));
   EXPECT_NEAR(without, 40, 1e-9);  // everything cut: no displacement at all
   EXPECT_THROW(fitted_cutoff({}, Constants::kCentred), InputError);
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::integration_test

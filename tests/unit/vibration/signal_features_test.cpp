@@ -7,7 +7,7 @@
 
 #include "comp/feature_window.h"
 
-namespace vernier {
+namespace vernier::signal_features_test {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
@@ -69,4 +69,4 @@ TEST(SignalFeatures, AgreeWithTheBoardsWithinItsBound) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::signal_features_test

@@ -1,10 +1,10 @@
 #include "tools/workbench/commands.h"
 
 #include "tests/unit/workbench/rig.h"
-#include "tools/model/error.h"
+#include "tools/text/error.h"
 #include "tools/workbench/process.h"
 
-namespace vernier {
+namespace vernier::commands_test {
 namespace {
 
 using nlohmann::json;
@@ -122,4 +122,4 @@ TEST(Process, WhatCannotBeStartedSaysSo) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::commands_test

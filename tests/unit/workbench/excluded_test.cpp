@@ -1,11 +1,11 @@
 #include "tools/workbench/excluded.h"
 
 #include "tests/unit/workbench/rig.h"
-#include "tools/model/error.h"
 #include "tools/model/measurement.h"
+#include "tools/text/error.h"
 #include "tools/workbench/values.h"
 
-namespace vernier {
+namespace vernier::excluded_test {
 namespace {
 
 TEST(ExcludedRows, StayInTheirPlaceAndComeBackByteForByte) {
@@ -64,4 +64,4 @@ TEST(SetValues, ReachesStaticsStationsAndBaseShifts) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::excluded_test

@@ -2,9 +2,9 @@
 
 #include "tests/unit/workbench/rig.h"
 #include "tools/compile/compile.h"
-#include "tools/model/error.h"
+#include "tools/text/error.h"
 
-namespace vernier {
+namespace vernier::image_diff_test {
 namespace {
 
 std::vector<std::uint8_t> image(const std::string& value, const std::string& axis = "Y") {
@@ -49,4 +49,4 @@ TEST(ImageDiff, WhatIsNoImageIsRefused) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::image_diff_test

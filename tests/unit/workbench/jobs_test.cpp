@@ -6,7 +6,7 @@
 #include "tools/workbench/api.h"
 #include "tools/workbench/rows.h"
 
-namespace vernier {
+namespace vernier::jobs_test {
 namespace {
 
 using nlohmann::json;
@@ -143,4 +143,4 @@ TEST(Rows, PredictionIsTheResidualOfTheMachineWithThatValue) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::jobs_test

@@ -3,10 +3,10 @@
 #include <sys/stat.h>
 
 #include "tests/unit/workbench/rig.h"
-#include "tools/model/error.h"
+#include "tools/text/error.h"
 #include "tools/workbench/history.h"
 
-namespace vernier {
+namespace vernier::project_test {
 namespace {
 
 TEST(ProjectName, TakesPlainNamesOnly) {
@@ -80,4 +80,4 @@ TEST(Project, ListsFilesByKindAndOneLevelDown) {
 TEST(Project, NoFolderIsAnError) { EXPECT_THROW(Project("/no/such/folder"), InputError); }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::project_test

@@ -6,7 +6,7 @@
 #include <string>
 #include <thread>
 
-#include "tools/model/files.h"
+#include "tools/text/files.h"
 #include "tools/workbench/server.h"
 
 namespace vernier::test {

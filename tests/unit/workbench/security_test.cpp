@@ -7,7 +7,7 @@
 
 #include "tests/unit/workbench/rig.h"
 
-namespace vernier {
+namespace vernier::security_test {
 namespace {
 
 /// Sends bytes to an address of this computer and reads until the other side is silent or gone; empty where
@@ -188,4 +188,4 @@ TEST_F(Attack, EveryAnswerForbidsForeignScriptsAndReportsAreShutIn) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::security_test

@@ -3,7 +3,7 @@
 #include "tests/unit/workbench/rig.h"
 #include "tools/workbench/dimensions.h"
 
-namespace vernier {
+namespace vernier::terms_test {
 namespace {
 
 nlohmann::ordered_json check(const std::string& text, const std::string& unit = "mm") {
@@ -58,4 +58,4 @@ TEST(Units, PowersAreWrittenAsAUnit) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::terms_test

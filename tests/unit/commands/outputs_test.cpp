@@ -1,0 +1,159 @@
+// What the programs do to what stands where their outputs go: each writer, as a user calls it.
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+
+#include "tools/text/files.h"
+
+namespace vernier::outputs_test {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kMachine = R"xml(<machine name="m"><variables>
+  <static><k value="0.0001" nominal="0"/></static>
+  <machineaxes><X rotary="false" min="0" max="600" maxcorrection="0.2" maxslew="5"/></machineaxes></variables>
+  <transforms><sixdof n="1" X="X+k*X" Y="0" Z="0" rX="0" rY="0" rZ="0"/></transforms></machine>)xml";
+
+/// A command that leaves one output where OUT stands, and what that holds.
+struct Writer {
+  const char* name;
+  const char* command;
+  const char* holds;
+};
+
+void PrintTo(const Writer& writer, std::ostream* out) { *out << writer.name; }
+
+const Writer kWriters[] = {
+    {"Machine", "vernier set m.xml k=0.5 -o OUT", "<machine"},
+    {"ResultForPrograms", "vernier set m.xml k=0.5 -o x.xml --json OUT", "\"k\": 0.5"},
+    {"Report", "vernier compare m.xml rows.csv -o OUT", "<html"},
+    {"ResultOfTheDaemon",
+     "vernier compile m.xml -o image && vernierd --image image --simulate --seconds 0.2 --no-realtime --json "
+     "OUT",
+     "\"ticks\": 200"},
+};
+
+/// A folder with a machine and rows, where commands are run.
+class OutputFolder : public testing::Test {
+ protected:
+  OutputFolder() {
+    fs::remove_all(folder_);
+    fs::create_directories(folder_ + "/far");
+    write_file(in("m.xml"), kMachine);
+    write_file(in("rows.csv"), "X[mm],x[mm],run\n0,0.001,a\n100,100.012,a\n300,300.031,b\n500,500.052,b\n");
+  }
+  ~OutputFolder() override { fs::remove_all(folder_); }
+
+  std::string in(const std::string& name) const { return folder_ + "/" + name; }
+  /// Exit status of a shell's line.
+  int run(const std::string& line) const {
+    const std::string command =
+        "cd '" + folder_ + "' && PATH=" VERNIER_BIN_DIR ":$PATH && { " + line + "; } >out.txt 2>&1";
+    const int status = std::system(command.c_str());
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+  std::string said() const { return read_file(in("out.txt")); }
+
+  const std::string folder_ = [] {
+    std::string test = testing::UnitTest::GetInstance()->current_test_info()->name();
+    std::replace(test.begin(), test.end(), '/', '_');
+    return testing::TempDir() + "outputs_" + std::to_string(getpid()) + "_" + test;
+  }();
+};
+
+class Outputs : public OutputFolder, public testing::WithParamInterface<Writer> {
+ protected:
+  int write_to(const std::string& name, const std::string& before = "", const std::string& after = "") const {
+    std::string command = GetParam().command;
+    command.replace(command.find("OUT"), 3, name);
+    return run(before + command + after);
+  }
+  void expect_output_in(const std::string& name) const {
+    EXPECT_NE(read_file(in(name)).find(GetParam().holds), std::string::npos) << said();
+  }
+};
+
+TEST_P(Outputs, PipeIsWrittenTo) {
+  ASSERT_EQ(::mkfifo(in("pipe").c_str(), 0600), 0);
+  // Were the pipe replaced, its reader would wait for ever.
+  EXPECT_EQ(write_to("pipe", "timeout 60 cat pipe >got & ", "; status=$?; wait $!; exit $status"), 0);
+  struct stat status {};
+  ASSERT_EQ(::stat(in("pipe").c_str(), &status), 0);
+  EXPECT_TRUE(S_ISFIFO(status.st_mode));
+  expect_output_in("got");
+}
+
+TEST_P(Outputs, LinkStays) {
+  write_file(in("far/real"), "old");
+  fs::create_symlink("far/real", in("link"));
+  EXPECT_EQ(write_to("link"), 0);
+  EXPECT_TRUE(fs::is_symlink(in("link")));
+  EXPECT_TRUE(fs::is_regular_file(fs::symlink_status(in("far/real"))));
+  expect_output_in("far/real");
+}
+
+TEST_P(Outputs, LinkThatLeadsNowhereYetGetsItsTarget) {
+  fs::create_symlink("far/new", in("link"));
+  EXPECT_EQ(write_to("link"), 0);
+  EXPECT_TRUE(fs::is_symlink(in("link")));
+  expect_output_in("far/new");
+}
+
+TEST_P(Outputs, StandardOutputByItsNameGoesOnWhereItWas) {
+  // A link of our own, as /dev/stdout is one: were it replaced, this machine would keep its own.
+  if (!fs::exists("/proc/self/fd/1")) GTEST_SKIP() << "no /proc on this machine";
+  fs::create_symlink("/proc/self/fd/1", in("stdout"));
+  EXPECT_EQ(write_to("stdout", "{ echo before; ", "; echo after; } >got"), 0);
+  expect_output_in("got");
+  const std::string got = read_file(in("got"));
+  EXPECT_EQ(got.substr(0, 7), "before\n");
+  EXPECT_EQ(got.substr(got.size() - 6), "after\n");
+  EXPECT_TRUE(fs::is_symlink(in("stdout")));
+}
+
+TEST_P(Outputs, FullDeviceIsAnErrorAndStays) {
+  // A link of our own: were it replaced, no device of this machine would suffer.
+  if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full on this machine";
+  fs::create_symlink("/dev/full", in("link"));
+  EXPECT_EQ(write_to("link"), 1);
+  EXPECT_TRUE(fs::is_symlink(in("link")));
+  EXPECT_TRUE(fs::is_character_file("/dev/full"));
+  EXPECT_NE(said().find("No space left on device"), std::string::npos);
+}
+
+INSTANTIATE_TEST_SUITE_P(Every, Outputs, testing::ValuesIn(kWriters),
+                         [](const auto& writer) { return std::string(writer.param.name); });
+
+TEST_F(OutputFolder, MayBeALinkAndHoldLinks) {
+  fs::create_symlink("far/image", in("link"));
+  EXPECT_EQ(run("vernier compile m.xml -o link"), 0);
+  EXPECT_TRUE(fs::is_symlink(in("link")));
+  EXPECT_TRUE(fs::is_regular_file(in("far/image/machine.vimg")));
+  fs::rename(in("far/image/machine.vimg"), in("far/real"));
+  fs::create_symlink("../real", in("far/image/machine.vimg"));
+  const std::string before = read_file(in("far/real"));
+  write_file(in("far/real"), "old");
+  EXPECT_EQ(run("vernier compile m.xml -o link"), 0);
+  EXPECT_TRUE(fs::is_symlink(in("far/image/machine.vimg")));
+  EXPECT_EQ(read_file(in("far/real")), before);
+}
+
+TEST_F(OutputFolder, FileInItsPlaceIsAnError) {
+  write_file(in("file"), "old");
+  for (const char* command :
+       {"vernier compile m.xml -o file", "vernier keys -o file",
+        "vernier improve m.xml rows.csv -o file --yes", "vernier part s-shape -o file"}) {
+    EXPECT_EQ(run(command), 1) << command << "\n" << said();
+    EXPECT_NE(said().find("vernier: file: "), std::string::npos) << said();
+  }
+  EXPECT_EQ(read_file(in("file")), "old");
+}
+
+}  // namespace
+}  // namespace vernier::outputs_test

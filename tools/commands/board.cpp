@@ -1,0 +1,80 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <thread>
+
+#include "tools/commands/command.h"
+#include "tools/text/error.h"
+#include "tools/upload/client.h"
+
+namespace vernier::board_cli {
+namespace {
+
+struct Arguments {
+  std::string url, what, axis, json;
+  double weight = 1;
+};
+
+struct Named {
+  const char* name;
+  Command command;
+};
+constexpr Named kCommands[] = {{"activate", Command::kActivate},
+                               {"deactivate", Command::kDeactivate},
+                               {"clear", Command::kClearFault},
+                               {"hold", Command::kHold},
+                               {"release", Command::kRelease}};
+// A command is taken by the next tick; a board that has not moved on by then does not tick.
+constexpr auto kTakenAfter = std::chrono::milliseconds(50);
+
+void set_weight(const Arguments& arguments, Client& client) {
+  const auto& axes = client.info().axes;
+  const auto found = std::find_if(axes.begin(), axes.end(),
+                                  [&](const BoardSignal& axis) { return axis.name == arguments.axis; });
+  if (found == axes.end()) throw InputError("--axis \"" + arguments.axis + "\": the board has no such axis");
+  client.weight(static_cast<std::uint8_t>(found - axes.begin()), arguments.weight);
+}
+
+void run(const Arguments& arguments) {
+  Client client(open_transport(parse_url(arguments.url)));
+  if (arguments.what == "weight") {
+    set_weight(arguments, client);
+  } else {
+    const std::uint64_t refused = client.health().refused_commands;
+    for (const Named& named : kCommands)
+      if (arguments.what == named.name) client.command(named.command);
+    std::this_thread::sleep_for(kTakenAfter);
+    if (client.health().refused_commands != refused)
+      throw LimitNotMet(
+          fmt::format("the board refuses to {} in mode {}", arguments.what, name_of(client.newest().mode)));
+  }
+  const BoardTick tick = client.newest();
+  fmt::print(human_stream(arguments.json), "mode {}{}, fault {}\n", name_of(tick.mode),
+             tick.holding ? " (held)" : "", name_of(tick.fault));
+  write_json(arguments.json,
+             {{"mode", name_of(tick.mode)}, {"fault", name_of(tick.fault)}, {"holding", tick.holding}});
+}
+
+}  // namespace
+
+void register_board(CLI::App& vernier) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* const command =
+      vernier.add_subcommand("board", "tell a board: activate, deactivate, clear, hold, release, weight");
+  command
+      ->add_option("WHAT", arguments->what,
+                   "activate | deactivate | clear (a latched fault) | hold | release | weight")
+      ->required()
+      ->check(CLI::IsMember({"activate", "deactivate", "clear", "hold", "release", "weight"}));
+  command->add_option("--to", arguments->url, "board: tcp://HOST[:1502], rtu://DEVICE, can://INTERFACE")
+      ->required();
+  command->add_option("--axis", arguments->axis, "axis of a weight");
+  command->add_option("--weight", arguments->weight, "share of its correction that is applied")
+      ->check(CLI::Range(0.0, 1.0));
+  command->add_option("--json", arguments->json, "result for programs; - is standard output");
+  command->footer("Exit status: 0 done, 1 bad input or no board, 2 the board refuses.");
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace vernier::board_cli

@@ -1,0 +1,64 @@
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <string_view>
+
+#include "tools/commands/command.h"
+#include "tools/text/error.h"
+
+namespace vernier {
+namespace {
+
+/// Progress is shown from this moment on, and at most so often.
+constexpr double kShowAfterS = 1.0, kShowEveryS = 0.2;
+
+/// Does a program read the progress (VERNIER_PROGRESS=lines)? Then every step is a line, at once.
+bool wants_lines() {
+  const char* const how = std::getenv("VERNIER_PROGRESS");
+  return how != nullptr && std::string_view(how) == "lines";
+}
+
+double now_s() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+}  // namespace
+
+void write_json(const std::string& path, const nlohmann::ordered_json& result) {
+  if (path.empty()) return;
+  // The library writes numbers that are not finite as null.
+  const std::string text =
+      result.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  if (path != "-") return write_file(path, text);
+  if (std::fputs(text.c_str(), stdout) == EOF || std::fflush(stdout) != 0)
+    throw InputError({"standard output", 0}, "", std::string("cannot be written: ") + std::strerror(errno));
+}
+
+std::FILE* human_stream(const std::string& json_path) { return json_path == "-" ? stderr : stdout; }
+
+Progress::Progress(std::string what) : what_(std::move(what)), started_s_(now_s()) {}
+
+Progress::~Progress() {
+  if (shown_ && isatty(STDERR_FILENO) != 0) std::fputs("\r\033[K", stderr);
+}
+
+void Progress::update(double fraction, const std::string& step) {
+  const double now = now_s();
+  const bool lines = wants_lines();
+  if ((!lines && now - started_s_ < kShowAfterS) || now - last_s_ < kShowEveryS) return;
+  const bool terminal = isatty(STDERR_FILENO) != 0;
+  if (!terminal && !lines && shown_ && now - last_s_ < 10)
+    return;  // a log wants a line now and then, not a film
+  last_s_ = now;
+  shown_ = true;
+  std::fprintf(stderr, terminal ? "\r\033[K%s: %3.0f %% %s" : "%s: %3.0f %% %s\n", what_.c_str(),
+               100 * fraction, step.c_str());
+  std::fflush(stderr);
+}
+
+}  // namespace vernier

@@ -1,0 +1,126 @@
+#pragma once
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tools/text/files.h"
+
+namespace vernier {
+
+/// Adds one subcommand to `vernier`. Its callback does the job; it throws InputError (exit 1) or LimitNotMet
+/// (exit 2) and returns normally otherwise (exit 0). Anything else that escapes is our bug (exit 70). One
+/// function a command, listed in the order of the journey in tools/commands/vernier.cpp.
+using RegisterCommand = void (*)(CLI::App& vernier);
+
+namespace board_cli {
+void register_board(CLI::App& vernier);
+}  // namespace board_cli
+namespace compare_cli {
+void register_compare(CLI::App& vernier);
+}  // namespace compare_cli
+namespace compile_cli {
+void register_compile(CLI::App& vernier);
+}  // namespace compile_cli
+namespace derive_cli {
+void register_derive(CLI::App& vernier);
+}  // namespace derive_cli
+namespace diagnose_cli {
+void register_diagnose(CLI::App& vernier);
+}  // namespace diagnose_cli
+namespace edit_cli {
+void register_exclude(CLI::App& vernier);
+void register_set(CLI::App& vernier);
+}  // namespace edit_cli
+namespace effects_cli {
+void register_effects(CLI::App& vernier);
+void register_add(CLI::App& vernier);
+}  // namespace effects_cli
+namespace exchange_cli {
+void register_export(CLI::App& vernier);
+void register_import_tables(CLI::App& vernier);
+}  // namespace exchange_cli
+namespace features_cli {
+void register_features(CLI::App& vernier);
+}  // namespace features_cli
+namespace fit_cli {
+void register_fit(CLI::App& vernier);
+}  // namespace fit_cli
+namespace import_cli {
+void register_import(CLI::App& vernier);
+}  // namespace import_cli
+namespace improve_cli {
+void register_improve(CLI::App& vernier);
+}  // namespace improve_cli
+namespace keys_cli {
+void register_keys(CLI::App& vernier);
+}  // namespace keys_cli
+namespace map_cli {
+void register_map(CLI::App& vernier);
+}  // namespace map_cli
+namespace part_cli {
+void register_part(CLI::App& vernier);
+}  // namespace part_cli
+namespace plan_cli {
+void register_plan(CLI::App& vernier);
+}  // namespace plan_cli
+namespace pose_cli {
+void register_pose(CLI::App& vernier);
+}  // namespace pose_cli
+namespace probe_cli {
+void register_probe_cal(CLI::App& vernier);
+void register_probe_path(CLI::App& vernier);
+void register_feature(CLI::App& vernier);
+}  // namespace probe_cli
+namespace record_cli {
+void register_record(CLI::App& vernier);
+}  // namespace record_cli
+namespace replay_cli {
+void register_replay(CLI::App& vernier);
+}  // namespace replay_cli
+namespace simulate_cli {
+void register_simulate(CLI::App& vernier);
+}  // namespace simulate_cli
+namespace solve_cli {
+void register_solve(CLI::App& vernier);
+}  // namespace solve_cli
+namespace touches_cli {
+void register_touches(CLI::App& vernier);
+}  // namespace touches_cli
+namespace upload_cli {
+void register_upload(CLI::App& vernier);
+}  // namespace upload_cli
+namespace watch_cli {
+void register_status(CLI::App& vernier);
+void register_watch(CLI::App& vernier);
+}  // namespace watch_cli
+namespace workbench_cli {
+void register_workbench(CLI::App& vernier);
+void register_image_diff(CLI::App& vernier);
+}  // namespace workbench_cli
+
+/// Writes the result for programs: to a file, or to standard output for "-"; nothing for an empty path.
+/// Numbers that are not finite become null.
+void write_json(const std::string& path, const nlohmann::ordered_json& result);
+
+/// Where the human-readable lines go: standard output, or standard error where `--json -` has taken standard
+/// output.
+std::FILE* human_stream(const std::string& json_path);
+
+/// Progress of a job that may take more than two seconds, on standard error if it is a terminal; else one
+/// line a step (all of them, and at once, where VERNIER_PROGRESS=lines says that a program reads them).
+class Progress {
+ public:
+  explicit Progress(std::string what);
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+  /// fraction 0..1, and what is being done now.
+  void update(double fraction, const std::string& step = {});
+
+ private:
+  std::string what_;
+  double started_s_ = 0, last_s_ = 0;
+  bool shown_ = false;
+};
+
+}  // namespace vernier

@@ -1,0 +1,197 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "tools/commands/command.h"
+#include "tools/fit/fit.h"
+#include "tools/model/machine.h"
+#include "tools/model/measurement.h"
+#include "tools/report/report.h"
+#include "tools/results/before_after_result.h"
+#include "tools/results/field_json.h"
+#include "tools/results/results.h"
+#include "tools/results/structure_json.h"
+#include "tools/simulate/corrected.h"
+
+namespace vernier::compare_cli {
+namespace {
+
+struct CompareArguments {
+  std::string machine, output, json, images;
+  std::vector<std::string> measurements, before, after;
+};
+
+std::optional<double> value_of(const nlohmann::ordered_json& json, const char* key) {
+  if (json[key].is_null()) return std::nullopt;
+  return json[key].get<double>();
+}
+
+void print_circle(std::FILE* out, const nlohmann::ordered_json& circle) {
+  fmt::print(out, "circle {}{}, nominal radius {:g} mm (ISO 230-4)\n", circle["plane"][0].get<std::string>(),
+             circle["plane"][1].get<std::string>(), circle["nominal_radius_mm"].get<double>());
+  for (const auto& run : circle["runs"]) {
+    fmt::print(
+        out,
+        "  {:<5} circular deviation {:.1f} um, radial {:.1f} um at {:.3f} deg to {:.1f} um at {:.3f} deg\n",
+        run["label"].get<std::string>(), run["circular_deviation_um"].get<double>(),
+        run["max_radial_um"].get<double>(), run["max_radial_deg"].get<double>(),
+        run["min_radial_um"].get<double>(), run["min_radial_deg"].get<double>());
+    fmt::print(
+        out, "        centre {:.4f} / {:.4f} mm, radius {:.4f} mm{}\n", run["centre_mm"][0].get<double>(),
+        run["centre_mm"][1].get<double>(), run["radius_mm"].get<double>(),
+        run["feed_mm_min"].is_null() ? ""
+                                     : fmt::format(", feed {:.1f} mm/min", run["feed_mm_min"].get<double>()));
+  }
+  if (!circle["bidirectional_um"].is_null())
+    fmt::print(out, "  bidirectional circular deviation {:.1f} um\n",
+               circle["bidirectional_um"].get<double>());
+  if (!circle["hysteresis_um"].is_null())
+    fmt::print(out,
+               "  hysteresis {:.1f} um at {:.3f} deg (samples paired by index), {:.1f} um at {:.3f} deg (by "
+               "angle)\n",
+               circle["hysteresis_um"].get<double>(), circle["hysteresis_deg"].get<double>(),
+               circle["hysteresis_by_angle_um"].get<double>(),
+               circle["hysteresis_by_angle_deg"].get<double>());
+}
+
+/// Worth a look where the rows of a run change roles, and few enough to read.
+void print_stretches(std::FILE* out, const nlohmann::ordered_json& stretches) {
+  constexpr std::size_t kMost = 12;
+  if (stretches.size() < 2 || stretches.size() > kMost) return;
+  for (const auto& s : stretches)
+    fmt::print(out, "  run {:<6} {:<5} lines {} to {}: rms {:.4g} um\n", s["run"].get<std::string>(),
+               s["role"].get<std::string>(), s["first_line"].get<std::size_t>(),
+               s["last_line"].get<std::size_t>(), s["rms_um"].get<double>());
+}
+
+std::string percent(double share) { return fmt::format("{:.3g} %", 100 * share); }
+
+/// Where the model fails, strongest first: sentences of the same JSON that the report draws.
+void print_failure(std::FILE* out, const nlohmann::ordered_json& json) {
+  constexpr std::size_t kMost = 8;
+  const auto& findings = json["findings"];
+  const auto& structure = json["structure"];
+  const double chance = structure["omnibus_p"].get<double>();
+  if (findings.empty()) {
+    fmt::print(out, "where it fails: {} ({} things tried, chance of the strongest {:.2g})\n",
+               chance < 1e-3 ? "there is structure, but no column stands out" : "nothing beyond chance",
+               structure["tried"].get<std::size_t>(), chance);
+  } else {
+    fmt::print(out, "where it fails (share of that residual's variance: alone, beyond the other findings)\n");
+  }
+  for (std::size_t i = 0; i < std::min(kMost, findings.size()); ++i)
+    fmt::print(out, "  {:>7} {:>7}  {}\n", percent(findings[i]["share_alone"].get<double>()),
+               percent(findings[i]["share_after"].get<double>()), findings[i]["sentence"].get<std::string>());
+  if (findings.size() > kMost) fmt::print(out, "  and {} more in the report\n", findings.size() - kMost);
+  if (!structure["pure_error_um"].is_null())
+    fmt::print(out, "  repeats scatter by {:.4g} um; lack of fit beyond that {:.4g} um\n",
+               structure["pure_error_um"].get<double>(), structure["lack_of_fit_um"].get<double>());
+  if (structure["outliers"].get<std::size_t>() > 0)
+    fmt::print(out, "  {} readings lie beyond 5 robust spreads\n", structure["outliers"].get<std::size_t>());
+}
+
+void print_result(std::FILE* out, const nlohmann::ordered_json& json) {
+  fmt::print(out, "rms fit rows    {}   max {}\n", number_or_dash(value_of(json, "rms_um"), "um"),
+             number_or_dash(value_of(json, "max_um"), "um"));
+  fmt::print(out, "rms check rows  {}   max {}\n", number_or_dash(value_of(json, "check_rms_um"), "um"),
+             number_or_dash(value_of(json, "check_max_um"), "um"));
+  if (const auto rotations = value_of(json, "rms_urad"))
+    fmt::print(out, "rms rotations   {}\n", number_or_dash(rotations, "urad"));
+  fmt::print(out, "noise           {}\n", number_or_dash(value_of(json, "noise_um"), "um"));
+  if (const auto& known = json["prediction_std_um"]; !known.is_null())
+    fmt::print(out, "model known to  {:.4g} um on average over these rows, {:.4g} um at worst\n",
+               known["rms"].get<double>(), known["max"].get<double>());
+  fmt::print(out, "{} observations, {} of them check, {} rows excluded\n",
+             json["n_obs"].get<std::size_t>() + json["n_check"].get<std::size_t>(),
+             json["n_check"].get<std::size_t>(), json["n_excluded"].get<std::size_t>());
+  print_stretches(out, json["stretches"]);
+  for (const auto& circle : json["circular"]) print_circle(out, circle);
+  print_failure(out, json);
+}
+
+/// The model's own deviations over the working volume, for the report.
+void add_field(nlohmann::ordered_json& json, const Machine& machine) {
+  constexpr std::size_t kNodes = 7;  // along each axis
+  std::string why_not;
+  if (auto field = volume_json(machine, kNodes, why_not))
+    json["field"] = std::move(*field);
+  else
+    json["field_note"] = "No error field over the volume is drawn: " + why_not;
+}
+
+/// Did it help?
+void run_before_after(const CompareArguments& arguments) {
+  if (arguments.before.empty() || arguments.after.empty())
+    throw InputError("--before and --after belong together");
+  if (!arguments.measurements.empty())
+    throw InputError("\"" + arguments.measurements.front() +
+                     "\": with --before and --after there are no other measurement files");
+  const Machine machine = read_machine(arguments.machine);
+  const ImageCorrection images = corrections_of_images(arguments.images);
+  const BeforeAfter result =
+      compare_before_after(machine, read_measurement(arguments.before, machine, images),
+                           read_measurement(arguments.after, machine, images));
+  if (!arguments.output.empty()) {
+    std::vector<std::string> files = arguments.before;
+    files.insert(files.end(), arguments.after.begin(), arguments.after.end());
+    write_file(arguments.output, improvement_report_html(before_after_page(result, machine.name, files)));
+  }
+  write_json(arguments.json, before_after_json(result));
+  for (const std::string& note : machine.notes) fmt::print(stderr, "note: {}\n", note);
+  print_before_after(human_stream(arguments.json), result);
+}
+
+void run_compare(const CompareArguments& arguments) {
+  if (!arguments.before.empty() || !arguments.after.empty()) return run_before_after(arguments);
+  if (arguments.measurements.empty())
+    throw InputError("compare needs measurement files: MEAS, or --before and --after");
+  const Machine machine = read_machine(arguments.machine);
+  const Measurement m =
+      read_measurement(arguments.measurements, machine, corrections_of_images(arguments.images));
+  const Eigen::VectorXd residual = residuals(machine, m);
+  nlohmann::ordered_json json = compare_json(machine, m, residual);
+  add_failure(json, failure_picture(machine, m, residual));
+  if (!arguments.output.empty()) {
+    nlohmann::ordered_json with_detail = json;
+    add_detail(with_detail, machine, m, residual);
+    add_field(with_detail, machine);
+    write_file(arguments.output, compare_report_html(with_detail));
+  }
+  write_json(arguments.json, json);
+  for (const std::string& note : machine.notes) fmt::print(stderr, "note: {}\n", note);
+  print_result(human_stream(arguments.json), json);
+  print_domains(human_stream(arguments.json), json["domains"]);
+}
+
+}  // namespace
+
+void register_compare(CLI::App& vernier) {
+  auto arguments = std::make_shared<CompareArguments>();
+  CLI::App* command = vernier.add_subcommand(
+      "compare", "Compare a model as it is with measurements: how well, and where it fails");
+  command->add_option("MACHINE", arguments->machine, "machine file (XML)")->required();
+  command->add_option("MEAS", arguments->measurements, "measurement files (CSV)");
+  // One value each time: what follows it may be the machine file.
+  const auto files = [command](const char* option, std::vector<std::string>& list, const char* what) {
+    command->add_option(option, list, what)->expected(1)->allow_extra_args(false)->take_all();
+  };
+  files("--before", arguments->before, "did it help? measured without the correction (CSV); may be repeated");
+  files("--after", arguments->after, "the same with it; may be repeated; MEAS is not given then");
+  command->add_option("--images", arguments->images, kImagesHelp);
+  command->add_option("-o,--output", arguments->output, "the report, one HTML file that opens offline");
+  command->add_option("--json", arguments->json, "result for programs; - for standard output");
+  command->footer(
+      "Changes no parameter. For ball-bar data the ISO 230-4 numbers and the polar plot; for all data the\n"
+      "residual against everything that was recorded, where the model fails in plain sentences, and the\n"
+      "model's error field over the volume. Nothing is fitted, so a wrong offset, squareness or scale "
+      "counts\n"
+      "as a failure here that a fit would remove: run `fit` first to see what no parameter can explain.\n"
+      "With --before and --after: the error against the nominal machine in the best set-up of each, how "
+      "much\n"
+      "smaller it became, in all, by reading and feed, and between which limits (tools/docs/compare.md).\n"
+      "Exit status 0 done, 1 bad input.");
+  command->callback([arguments] { run_compare(*arguments); });
+}
+
+}  // namespace vernier::compare_cli

@@ -1,0 +1,133 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "tools/commands/command.h"
+#include "tools/diagnose/diagnosis.h"
+#include "tools/plan/plan.h"
+#include "tools/report/report.h"
+#include "tools/results/diagnosis_json.h"
+#include "tools/results/results.h"
+#include "tools/simulate/corrected.h"
+#include "tools/text/files.h"
+
+namespace vernier::diagnose_cli {
+namespace {
+
+struct DiagnoseArguments {
+  std::string machine, output, json, write, images;
+  std::vector<std::string> measurements, effects;
+  std::size_t most = 5;
+};
+
+void print_ladder(std::FILE* out, const Diagnosis& d) {
+  fmt::print(out, "{:<58} {:>12} {:>12}\n", "ladder", "fit rows", "check rows");
+  const LadderStep* before = nullptr;
+  for (const LadderStep& step : d.ladder) {
+    const bool rises = before != nullptr && step.check_rms_um && *step.check_rms_um > *before->check_rms_um;
+    fmt::print(out, "  {:<56} {:>12} {:>12}{}\n",
+               step.effect.empty() ? "the model as given" : "+ " + step.label,
+               number_or_dash(step.rms_um, "um"), number_or_dash(step.check_rms_um, "um"),
+               rises ? "  the check rows do not confirm this step" : "");
+    before = &step;
+  }
+  fmt::print(out, "  {:<56} {:>12}\n", "noise", number_or_dash(d.base.noise_um, "um"));
+}
+
+void print_candidates(std::FILE* out, const Diagnosis& d) {
+  if (d.candidates.empty()) return;
+  fmt::print(out, "{:<58} {:>8} {:>12} {:>12} {:>9}\n", "candidates, each alone", "score", "fit rows",
+             "check rows", "p");
+  for (const CandidateFinding& c : d.candidates) {
+    fmt::print(out, "{} {:<56} {:>8.1f} {:>12} {:>12} {:>9.2g}\n", c.accepted ? "*" : " ", c.candidate.label,
+               c.score, number_or_dash(c.rms_after_um, "um"), number_or_dash(c.check_rms_after_um, "um"),
+               c.p_value);
+    if (!c.why_not.empty()) fmt::print(out, "    not accepted: {}\n", c.why_not);
+    if (!c.confounded_with.empty())
+      fmt::print(out, "    alike in these data: {}\n", fmt::join(c.confounded_with, ", "));
+    if (!c.accepted) continue;
+    for (const ParameterEstimate& p : c.parameters)
+      fmt::print(out, "    {} = {:.6g} +- {} {}\n", p.name, p.value, fmt::format("{:.2g}", p.std), p.unit);
+    fmt::print(out, "    vernier add '{}' MACHINE -o NEW\n", c.add);
+  }
+}
+
+/// What to measure next where the first candidate and one that it is confounded with explain the rows alike.
+std::vector<std::string> plan_for(const std::string& text, const Machine& machine, const Measurement& m,
+                                  const Diagnosis& d, const std::vector<Effect>& effects) {
+  if (d.verdict != Verdict::kAmbiguous || d.candidates.empty()) return {};
+  const CandidateFinding& first = d.candidates.front();
+  const std::string& id = first.candidate.choice.effect->id;
+  // A finding is not lost because no advice can be made of it.
+  const auto advice = [&](const std::string& a, const std::string& b) -> std::vector<std::string> {
+    try {
+      return next_measurement(text, machine, m, a, b, effects);
+    } catch (const InputError& error) {
+      return {fmt::format("no advice on {} against {}: {}", a, b, error.what())};
+    }
+  };
+  for (const CandidateFinding& other : d.candidates) {
+    const auto& names = other.confounded_with;
+    if (&other == &first || std::find(names.begin(), names.end(), id) == names.end()) continue;
+    return advice(first.add, other.add);
+  }
+  if (first.confounded_with.empty()) return {};
+  return advice(first.add, first.confounded_with.front());
+}
+
+void run_diagnose(const DiagnoseArguments& arguments) {
+  const std::string text = read_file(arguments.machine);
+  const Machine machine = parse_machine(text, arguments.machine);
+  const Measurement m =
+      read_measurement(arguments.measurements, machine, corrections_of_images(arguments.images));
+  DiagnoseOptions options;
+  options.effects = effect_catalogue(arguments.effects);
+  options.most_effects = arguments.most;
+  Progress progress("diagnose");
+  options.progress = [&](double fraction, const std::string& step) { progress.update(fraction, step); };
+  Diagnosis diagnosis = diagnose(text, machine, m, options);
+  diagnosis.next_measurement = plan_for(text, machine, m, diagnosis, options.effects);
+  const nlohmann::ordered_json json = diagnosis_json(diagnosis, m);
+  if (!arguments.output.empty()) {
+    nlohmann::ordered_json page = json;
+    page["machine"] = machine.name;
+    page["files"] = arguments.measurements;
+    write_file(arguments.output, diagnose_report_html(page));
+  }
+  if (!arguments.write.empty()) write_file(arguments.write, diagnosis.machine_text);
+  write_json(arguments.json, json);
+  std::FILE* out = human_stream(arguments.json);
+  fmt::print(out, "verdict: {}\n{}\n\n", verdict_name(diagnosis.verdict), diagnosis.explanation);
+  print_ladder(out, diagnosis);
+  fmt::print(out, "\n");
+  print_candidates(out, diagnosis);
+  for (const std::string& next : diagnosis.next_measurement) fmt::print(out, "measure next: {}\n", next);
+}
+
+}  // namespace
+
+void register_diagnose(CLI::App& vernier) {
+  auto arguments = std::make_shared<DiagnoseArguments>();
+  CLI::App* command =
+      vernier.add_subcommand("diagnose", "Find which physical effect is missing from a model");
+  command->add_option("MACHINE", arguments->machine, "machine file (XML)")->required();
+  command->add_option("MEAS", arguments->measurements, "measurement files (CSV)")->required();
+  command->add_option("-o,--output", arguments->output, "report (HTML)");
+  command->add_option("--json", arguments->json, "result for programs; - for standard output");
+  command->add_option("--machine-out", arguments->write,
+                      "the machine file with the effects of the ladder, fitted");
+  command->add_option("--effects", arguments->effects, "files with effects of your own; may be repeated");
+  command->add_option("--images", arguments->images, kImagesHelp);
+  command->add_option("--most", arguments->most, "most effects in the ladder")
+      ->check(CLI::Range(1, 10))
+      ->capture_default_str();
+  command->footer(
+      "Fits the model first, then looks for what explains the residual beyond what its free parameters can\n"
+      "absorb. Verdict: missing-effect, ambiguous, unexplained, instrument or consistent. Check rows judge, "
+      "they\n"
+      "enter nothing. Exit status 0 whatever the finding, 1 bad input.");
+  command->callback([arguments] { run_diagnose(*arguments); });
+}
+
+}  // namespace vernier::diagnose_cli

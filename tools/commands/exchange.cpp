@@ -1,0 +1,203 @@
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "tools/commands/command.h"
+#include "tools/exchange/component_csv.h"
+#include "tools/exchange/left_out.h"
+#include "tools/exchange/screw_comp.h"
+#include "tools/exchange/table_text.h"
+#include "tools/kinematics/at.h"
+#include "tools/safety/safety_sheet.h"
+
+namespace vernier::exchange_cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct ExchangeArguments {
+  std::string machine, file, output, json, axis, at, reversal;
+  std::vector<std::string> accept;
+  int type = 1;
+  double tolerance_um = 0.1;
+  bool leave_out = false;
+};
+
+std::size_t axis_named(const Machine& machine, const std::string& name) {
+  const auto axis = machine.find_axis(name);
+  if (!axis) throw InputError({machine.file, 0}, name, "no axis of that name");
+  return *axis;
+}
+
+/// What is written runs on a machine as an image does.
+void require_safe(const Machine& machine, const ExchangeArguments& arguments) {
+  const SafetySheet sheet = safety_sheet(machine, rules_named(arguments.accept));
+  if (!sheet.ok()) throw LimitNotMet(sheet.refusal());
+}
+
+void finish(const ExchangeArguments& arguments, const char* format, const std::vector<LeftOut>& left_out,
+            const Json& files) {
+  Json left = Json::array();
+  for (const LeftOut& one : left_out) left.push_back({{"what", one.what}, {"um", one.um}});
+  write_json(arguments.json, {{"format", format}, {"files", files}, {"left_out", left}});
+  std::FILE* out = human_stream(arguments.json);
+  for (const LeftOut& one : left_out) fmt::print(out, "left out: {}: up to {:.4g} um\n", one.what, one.um);
+  for (const Json& file : files) fmt::print(out, "{}\n", file.get<std::string>());
+}
+
+/// The state that stays: middle of the ranges, then what the user says.
+States state_of(const Machine& machine, const ExchangeArguments& arguments) {
+  std::string words;
+  for (const Axis& axis : machine.axes)
+    if (axis.min && axis.max) words += fmt::format("{}={},", axis.name, (*axis.min + *axis.max) / 2);
+  words += arguments.at;
+  if (!words.empty() && words.back() == ',') words.pop_back();
+  return state_at(machine, words);
+}
+
+void export_screw(const ExchangeArguments& arguments) {
+  const Machine machine = read_machine(arguments.machine);
+  const States at = state_of(machine, arguments);
+  const auto type = static_cast<ScrewType>(arguments.type);
+  std::vector<std::size_t> axes = linear_axes(machine);
+  if (!arguments.axis.empty()) axes = {axis_named(machine, arguments.axis)};
+  if (machine.axes[axes.at(0)].rotary)
+    throw InputError({machine.file, 0}, arguments.axis, "a rotary axis: only linear axes are exported");
+  std::vector<LeftOut> left_out;
+  for (const std::size_t axis : axes)
+    for (LeftOut& one : beyond_own_axis(machine, axis, at)) left_out.push_back(std::move(one));
+  refuse(machine, "a screw-compensation file", left_out, arguments.leave_out);
+  require_safe(machine, arguments);
+  std::vector<std::string> texts;
+  for (const std::size_t axis : axes)
+    texts.push_back(screw_text(screw_points(machine, axis, at, arguments.tolerance_um), type));
+  Json files = Json::array();
+  if (!arguments.axis.empty()) {
+    files = {arguments.output};
+  } else {
+    make_folder(arguments.output);
+    for (const std::size_t axis : axes)
+      files.push_back(arguments.output + "/" + machine.axes[axis].name + ".comp");
+  }
+  for (std::size_t i = 0; i < axes.size(); ++i) write_file(files[i].get<std::string>(), texts[i]);
+  finish(arguments, "linuxcnc", left_out, files);
+}
+
+void export_tables(const ExchangeArguments& arguments, bool isg) {
+  const Machine machine = read_machine(arguments.machine);
+  if (machine.tables.empty()) throw InputError({machine.file, 0}, "", "this machine has no table to export");
+  const std::vector<LeftOut> left_out = beyond_tables(machine, state_of(machine, arguments));
+  refuse(machine, isg ? "a list of component errors" : "a CSV file per axis", left_out, arguments.leave_out);
+  require_safe(machine, arguments);
+  Json files = Json::array();
+  if (isg) {
+    files.push_back(arguments.output);
+    write_file(arguments.output, isg_csv(machine));
+  } else {
+    make_folder(arguments.output);
+    for (const Table& table : machine.tables) {
+      files.push_back(arguments.output + "/" + machine.axes[table.axis].name + ".csv");
+      write_file(files.back().get<std::string>(), axis_csv(machine, table));
+    }
+  }
+  finish(arguments, isg ? "isg-csv" : "axis-csv", left_out, files);
+}
+
+void import_tables(const ExchangeArguments& arguments, const std::string& kind) {
+  const std::string text = read_file(arguments.machine), source = read_file(arguments.file);
+  const Machine machine = parse_machine(text, arguments.machine);
+  std::string result = text;
+  if (kind == "linuxcnc") {
+    const std::size_t axis = axis_named(machine, arguments.axis);
+    result = screw_into_machine(text, machine, axis,
+                                parse_screw(source, arguments.file, static_cast<ScrewType>(arguments.type)),
+                                arguments.reversal);
+  } else {
+    const std::vector<Table> tables =
+        kind == "isg-csv" ? parse_isg_csv(source, arguments.file, machine)
+                          : std::vector<Table>{parse_axis_csv(source, arguments.file, machine)};
+    for (const Table& table : tables) {
+      check_used(machine, table);
+      result = set_table(result, parse_machine(result, arguments.machine), table);
+    }
+  }
+  write_file(arguments.output, result);
+  finish(arguments, kind.c_str(), {}, Json::array({arguments.output}));
+}
+
+void add_type(CLI::App* command, ExchangeArguments& arguments) {
+  command
+      ->add_option("--type", arguments.type,
+                   "COMP_FILE_TYPE: 0 holds where the axis really is, 1 what is added to the command (trim)")
+      ->check(CLI::IsMember({0, 1}))
+      ->capture_default_str();
+}
+
+CLI::App* add_export(CLI::App* parent, const char* kind, const char* what, const char* output,
+                     const std::shared_ptr<ExchangeArguments>& arguments) {
+  CLI::App* command = parent->add_subcommand(kind, what);
+  command->add_option("MACHINE", arguments->machine, "machine file (XML)")->required();
+  command->add_option("-o,--output", arguments->output, output)->required();
+  command->add_flag("--leave-out", arguments->leave_out,
+                    "write what the format can hold, and tell what it cannot");
+  command->add_option("--at", arguments->at,
+                      "what the other axes and inputs stand at: \"Y=0,T=25\"; default: middle of the ranges");
+  command->add_option(
+      "--accept", arguments->accept,
+      "a rule of the sheet \"safe to run?\" to override (tools/docs/safety.md); may be repeated");
+  command->add_option("--json", arguments->json, "result for programs; - for standard output");
+  return command;
+}
+
+CLI::App* add_import(CLI::App* parent, const char* kind, const char* what,
+                     const std::shared_ptr<ExchangeArguments>& arguments) {
+  CLI::App* command = parent->add_subcommand(kind, what);
+  command->add_option("FILE", arguments->file, "file to read")->required();
+  command->add_option("--machine", arguments->machine, "machine file that receives the tables")->required();
+  command->add_option("-o,--output", arguments->output, "machine file to write")->required();
+  command->add_option("--json", arguments->json, "result for programs; - for standard output");
+  command->callback([arguments, name = std::string(kind)] { import_tables(*arguments, name); });
+  return command;
+}
+
+}  // namespace
+
+void register_export(CLI::App& vernier) {
+  CLI::App* parent = vernier.add_subcommand("export", "Write tables that a controller reads");
+  parent->require_subcommand(1);
+  parent->footer("What a format cannot express is refused with the reason; --leave-out writes the rest.");
+  auto screw = std::make_shared<ExchangeArguments>();
+  CLI::App* linuxcnc = add_export(parent, "linuxcnc", "LinuxCNC screw compensation (COMP_FILE)",
+                                  "directory for one file an axis; with --axis the file", screw);
+  linuxcnc->add_option("--axis", screw->axis, "this axis only");
+  linuxcnc->add_option("--tolerance", screw->tolerance_um, "what may be lost between lines, um")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  add_type(linuxcnc, *screw);
+  linuxcnc->callback([screw] { export_screw(*screw); });
+  auto plain = std::make_shared<ExchangeArguments>();
+  add_export(parent, "axis-csv", "One CSV file an axis, with units", "directory", plain)->callback([plain] {
+    export_tables(*plain, false);
+  });
+  auto isg = std::make_shared<ExchangeArguments>();
+  add_export(parent, "isg-csv", "Component errors for ISG and Beckhoff volumetric compensation (ISG_CSV)",
+             "file", isg)
+      ->callback([isg] { export_tables(*isg, true); });
+}
+
+void register_import_tables(CLI::App& vernier) {
+  CLI::App* parent =
+      vernier.add_subcommand("import-tables", "Read a controller's tables into a machine file");
+  parent->require_subcommand(1);
+  auto screw = std::make_shared<ExchangeArguments>();
+  CLI::App* linuxcnc = add_import(parent, "linuxcnc", "LinuxCNC screw compensation (COMP_FILE)", screw);
+  linuxcnc->add_option("--axis", screw->axis, "whose file it is")->required();
+  linuxcnc->add_option("--reversal", screw->reversal,
+                       "static that receives half the reversal (of a term k*dir)");
+  add_type(linuxcnc, *screw);
+  add_import(parent, "axis-csv", "CSV of one axis, with units", std::make_shared<ExchangeArguments>());
+  add_import(parent, "isg-csv", "Component errors of ISG and Beckhoff volumetric compensation (ISG_CSV)",
+             std::make_shared<ExchangeArguments>());
+}
+
+}  // namespace vernier::exchange_cli

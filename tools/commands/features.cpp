@@ -1,0 +1,205 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+
+#include "tools/commands/command.h"
+#include "tools/text/error.h"
+#include "tools/text/numbers.h"
+#include "tools/vibration/feature_rows.h"
+
+namespace vernier::features_cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct FeaturesArguments {
+  std::string record, output, json, rows, align;
+  std::vector<std::string> features, differences, positions;
+  std::size_t window = 1500, every = 0;
+  std::optional<double> rate_Hz;
+  double offset_s = 0, clock_rate = 1, reach_mm = 20;
+  bool centred = false;
+};
+
+using Ends = std::vector<std::optional<std::size_t>>;
+
+FeatureChoice choice_of(const FeaturesArguments& arguments) {
+  FeatureChoice choice;
+  choice.window = arguments.window;
+  choice.centred = arguments.centred;
+  if (choice.window < 2) throw InputError("--window: two samples at least");
+  for (std::size_t i = 0; i < kFeatureNames.size(); ++i) {
+    const bool named =
+        std::count(arguments.features.begin(), arguments.features.end(), kFeatureNames[i]) != 0;
+    if (arguments.features.empty() ? i < 11 : named) choice.features.push_back(i);
+  }
+  if (!arguments.features.empty() && choice.features.size() != arguments.features.size())
+    throw InputError(fmt::format("--features: one of {}", fmt::join(kFeatureNames, " ")));
+  return choice;
+}
+
+/// The clock of the record against the rows' t: given, or found from the motion of an axis.
+ClockFit clock_of(const FeaturesArguments& arguments, const VibrationRecord& record, const CsvFile& rows) {
+  ClockFit clock;
+  clock.offset_s = arguments.offset_s;
+  clock.rate = arguments.clock_rate;
+  if (arguments.align.empty()) return clock;
+  const auto equals = arguments.align.find('=');
+  if (equals == std::string::npos) throw InputError("--align: not of the form SIGNAL=AXIS");
+  const std::string signal = arguments.align.substr(0, equals), axis = arguments.align.substr(equals + 1);
+  Series accelerometer;
+  for (const Signal& one : record.signals)
+    if (one.name == signal) accelerometer.value = one.value;
+  if (accelerometer.value.empty()) throw InputError(fmt::format("--align: no signal \"{}\"", signal));
+  for (std::size_t i = 0; i < record.samples; ++i)
+    accelerometer.t_s.push_back(record.start_s + static_cast<double>(i) / record.rate_Hz);
+  return align_clocks(acceleration_of(numeric_column(rows, "t"), numeric_column(rows, axis)), accelerometer);
+}
+
+Ends ends_by_time(const VibrationRecord& record, const CsvFile& rows, const ClockFit& clock) {
+  Ends ends;
+  for (const double t : numeric_column(rows, "t")) {
+    const double sample = ((t - clock.offset_s) / clock.rate - record.start_s) * record.rate_Hz;
+    const bool inside = sample >= 0 && sample < static_cast<double>(record.samples);
+    ends.push_back(inside ? std::optional(static_cast<std::size_t>(sample)) : std::nullopt);
+  }
+  return ends;
+}
+
+Eigen::MatrixXd matrix_of(const std::vector<std::vector<double>>& lines) {
+  Eigen::MatrixXd matrix(static_cast<Eigen::Index>(lines.size()),
+                         static_cast<Eigen::Index>(lines.front().size()));
+  for (std::size_t i = 0; i < lines.size(); ++i)
+    for (std::size_t j = 0; j < lines[i].size(); ++j)
+      matrix(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = lines[i][j];
+  return matrix;
+}
+
+Ends ends_by_position(const FeaturesArguments& arguments, const VibrationRecord& record, const CsvFile& rows,
+                      Json& json) {
+  std::vector<std::vector<double>> path, points;
+  for (const Signal& position : record.positions) {
+    path.push_back(position.value);
+    points.push_back(numeric_column(rows, position.name));
+  }
+  Ends ends;
+  double worst = 0;
+  for (const PathPlace& place : nearest_places(matrix_of(path), matrix_of(points), arguments.reach_mm)) {
+    ends.push_back(place.sample + (place.fraction > 0.5 ? 1 : 0));
+    worst = std::max(worst, place.distance);
+  }
+  json["most_distance_mm"] = worst;
+  return ends;
+}
+
+/// Windows one after the other, without rows to belong to.
+CsvFile rows_of_windows(const FeaturesArguments& arguments, const VibrationRecord& record, Ends& ends) {
+  CsvFile rows;
+  rows.columns = {{"t", "s"}};
+  const std::size_t every = arguments.every == 0 ? arguments.window : arguments.every;
+  for (std::size_t end = arguments.window - 1; end < record.samples; end += every) {
+    ends.push_back(end);
+    rows.rows.push_back({number_text(record.start_s + static_cast<double>(end) / record.rate_Hz)});
+  }
+  return rows;
+}
+
+std::string text_of(const CsvFile& rows, const FeatureColumns& columns) {
+  std::vector<std::string> header;
+  for (const CsvColumn& column : rows.columns)
+    header.push_back(column.unit.empty() ? column.name : column.name + "[" + column.unit + "]");
+  header.insert(header.end(), columns.header.begin(), columns.header.end());
+  std::string text = fmt::format("{}\n", fmt::join(header, ","));
+  for (std::size_t row = 0; row < rows.rows.size(); ++row) {
+    std::vector<std::string> cells = rows.rows[row];
+    for (std::string& cell : cells)
+      if (cell.find_first_of(",\"") != std::string::npos) cell = '"' + cell + '"';
+    cells.insert(cells.end(), columns.cells[row].begin(), columns.cells[row].end());
+    text += fmt::format("{}\n", fmt::join(cells, ","));
+  }
+  return text;
+}
+
+void run_features(const FeaturesArguments& arguments) {
+  const FeatureChoice choice = choice_of(arguments);
+  VibrationRecord record = read_vibration(parse_csv(read_file(arguments.record), arguments.record),
+                                          arguments.rate_Hz, arguments.positions);
+  for (const std::string& difference : arguments.differences) add_difference(record, difference);
+  Json json = {{"window", choice.window}, {"rate_Hz", record.rate_Hz}, {"samples", record.samples}};
+  Ends ends;
+  CsvFile rows;
+  if (arguments.rows.empty()) {
+    rows = rows_of_windows(arguments, record, ends);
+  } else {
+    rows = parse_csv(read_file(arguments.rows), arguments.rows);
+    if (arguments.positions.empty()) {
+      const ClockFit clock = clock_of(arguments, record, rows);
+      ends = ends_by_time(record, rows, clock);
+      json["clock"] = {{"offset_s", clock.offset_s},         {"rate", clock.rate},
+                       {"offset_std_s", clock.offset_std_s}, {"rate_std", clock.rate_std},
+                       {"correlation", clock.correlation},   {"rival", clock.rival}};
+    } else {
+      ends = ends_by_position(arguments, record, rows, json);
+    }
+  }
+  const FeatureColumns columns = feature_columns(record, choice, ends);
+  json["rows"] = rows.rows.size();
+  json["rows_without_window"] = columns.empty_rows;
+  json["columns"] = columns.header;
+  write_file(arguments.output, text_of(rows, columns));
+  write_json(arguments.json, json);
+  std::FILE* out = human_stream(arguments.json);
+  fmt::print(out, "{} rows, {} of them without a full window of {} samples at {:.6g} Hz\n", rows.rows.size(),
+             columns.empty_rows, choice.window, record.rate_Hz);
+  if (!arguments.align.empty())
+    fmt::print(out, "clock: t = {:.6g} s + {:.8f} t_record, correlation {:.3f} (next best lag {:.3f})\n",
+               json["clock"]["offset_s"].get<double>(), json["clock"]["rate"].get<double>(),
+               json["clock"]["correlation"].get<double>(), json["clock"]["rival"].get<double>());
+  fmt::print(out, "{}\n", arguments.output);
+}
+
+}  // namespace
+
+void register_features(CLI::App& vernier) {
+  auto arguments = std::make_shared<FeaturesArguments>();
+  CLI::App* command =
+      vernier.add_subcommand("features", "Features of an accelerometer record as inputs of measured rows");
+  command->add_option("RECORD", arguments->record, "CSV: t[s] and signals, evenly sampled (table_x[g], ...)")
+      ->required();
+  command
+      ->add_option("-o,--output", arguments->output,
+                   "CSV to write: the rows with a column SIGNAL_FEATURE each")
+      ->required();
+  command->add_option("--rows", arguments->rows,
+                      "measurement file that gets the columns; without it one row a window");
+  command->add_option("--window", arguments->window,
+                      "samples of a window, the last one at the row's instant (1500)");
+  command->add_option("--every", arguments->every, "samples from window to window without --rows (a window)");
+  command->add_option("--rate", arguments->rate_Hz, "samples per second of a record without t")
+      ->check(CLI::PositiveNumber);
+  command
+      ->add_option("--features", arguments->features,
+                   "which (all, as in the literature: MAV .. BANDPOWER, PEAK)")
+      ->delimiter(',');
+  command->add_option("--difference", arguments->differences, "one more signal, NAME=A-B (table minus base)");
+  command->add_flag("--centre", arguments->centred, "take the record's mean off each signal");
+  command->add_option("--align", arguments->align,
+                      "SIGNAL=AXIS: find the record's clock from the axis' acceleration in the rows");
+  command->add_option("--offset", arguments->offset_s, "t of the rows at t 0 of the record, s (0)");
+  command->add_option("--clock", arguments->clock_rate, "seconds of the rows in a second of the record (1)")
+      ->check(CLI::PositiveNumber);
+  command
+      ->add_option(
+          "--by-position", arguments->positions,
+          "axes whose positions the record has too (X,Y): rows take the window at the nearest position")
+      ->delimiter(',');
+  command
+      ->add_option("--reach", arguments->reach_mm,
+                   "with --by-position: how far from row to row at most, mm (20)")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--json", arguments->json, "result for programs, - for standard output");
+  command->callback([arguments] { run_features(*arguments); });
+}
+
+}  // namespace vernier::features_cli

@@ -1,0 +1,192 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+
+#include "tools/commands/command.h"
+#include "tools/fit/decisions.h"
+#include "tools/fit/domain.h"
+#include "tools/fit/fit.h"
+#include "tools/fit/freedom.h"
+#include "tools/model/machine.h"
+#include "tools/model/measurement.h"
+#include "tools/results/results.h"
+#include "tools/simulate/corrected.h"
+#include "tools/text/numbers.h"
+
+namespace vernier::fit_cli {
+namespace {
+
+struct FitArguments {
+  std::string machine, output, json, images;
+  std::vector<std::string> measurements;
+  std::vector<std::string> stages, priors, free, hold;
+  std::string loss = "squared", solver = "normal-equations";
+  double loss_scale = 3;
+};
+
+/// What the readings left open, largest reach first.
+void print_decisions(std::FILE* out, const FitResult& result) {
+  const std::vector<Decision> decisions = decisions_of(result);
+  if (decisions.empty()) return;
+  fmt::print(out, "decided by convention (nearest to nominal in units of each scale):\n");
+  for (const Decision& decision : decisions) fmt::print(out, "  {}\n", decision.sentence);
+}
+
+void print_stages(std::FILE* out, const FitResult& result) {
+  for (std::size_t i = 0; i < result.stages.size(); ++i) {
+    const StageFigures& stage = result.stages[i];
+    fmt::print(out, "stage {}: {} parameters ({}), {} iterations: fit rows {}, check rows {}\n", i + 1,
+               stage.parameters, stage.patterns, stage.iterations, number_or_dash(stage.fit.rms_um, "um"),
+               number_or_dash(stage.check.rms_um, "um"));
+  }
+}
+
+/// The combination that the data see least, where it is weak enough to matter.
+void print_weakest(std::FILE* out, const FitResult& result) {
+  constexpr double kWeak = 1e-2;
+  for (const Observability::Weak& weak : result.observability.weakest) {
+    if (weak.ratio > kWeak) continue;
+    std::string names;
+    for (std::size_t i = 0; i < weak.parts.size() && i < 6; ++i)
+      names += (i ? ", " : "") + result.parameters[weak.parts[i]].name;
+    fmt::print(out, "weakly determined ({:.1e} of the best): {}{}\n", weak.ratio, names,
+               weak.parts.size() > 6 ? ", ..." : "");
+  }
+}
+
+/// Is what is left noise? Said only where the noise is known.
+void print_verdict(std::FILE* out, const FitResult& result) {
+  if (result.normalised_check)
+    fmt::print(out, "check rows over the uncertainty of reading and model: rms {:.3f}, {:.1f} % within 3\n",
+               result.normalised_check->rms, 100 * result.normalised_check->within_3);
+  if (!result.noise_um || !result.after.rms_um || result.freedom < 0.5) return;
+  // chi^2 / dof has a standard deviation of sqrt(2 / dof) where the residual is noise.
+  const double reduced = std::pow(*result.after.rms_um / *result.noise_um, 2) *
+                         static_cast<double>(result.before.count) / result.freedom;
+  if (reduced > 1 + 5 * std::sqrt(2.0 / result.freedom))
+    fmt::print(out, "the residual is {:.2g} times the noise: something is missing from this model\n",
+               std::sqrt(reduced));
+}
+
+void print_result(std::FILE* out, const FitResult& result, const Measurement& m) {
+  print_stages(out, result);
+  fmt::print(out, "{:<24} {:>15} {:>12}  {:<6} {}\n", "parameter", "value", "std", "unit", "from");
+  for (const ParameterEstimate& item : result.estimates)
+    fmt::print(out, "{:<24} {:>15.6g} {:>12.2g}  {:<6} {}\n", item.name, item.value, item.std, item.unit,
+               item.from == Origin::kPrior ? "not measured: only the prior" : origin_name(item.from));
+  print_decisions(out, result);
+  for (const auto& [name, std] : result.priors)
+    fmt::print(out, "held near nominal as if measured there: {} with std {:g}\n", name, std);
+  print_weakest(out, result);
+  fmt::print(out, "rms before      {}\n", number_or_dash(result.before.rms_um, "um"));
+  fmt::print(out, "rms fit rows    {}   max {}\n", number_or_dash(result.after.rms_um, "um"),
+             number_or_dash(result.after.max_um, "um"));
+  fmt::print(out, "rms check rows  {}   max {}\n", number_or_dash(result.check.rms_um, "um"),
+             number_or_dash(result.check.max_um, "um"));
+  if (result.after.rms_urad)
+    fmt::print(out, "rms rotations   {} before {}\n", number_or_dash(result.after.rms_urad, "urad"),
+               number_or_dash(result.before.rms_urad, "urad"));
+  fmt::print(out, "noise           {}\n", number_or_dash(result.noise_um, "um"));
+  fmt::print(out, "{} observations, {} parameters, rank {}, {} rows excluded, {} iterations{}\n",
+             result.before.count, result.parameters.size(), result.observability.rank, m.excluded,
+             result.iterations, result.converged ? "" : ", NOT CONVERGED");
+  print_verdict(out, result);
+}
+
+std::vector<std::string> split_list(const std::string& text) {
+  std::vector<std::string> list(1);
+  for (const char c : text) {
+    if (c == ',')
+      list.emplace_back();
+    else
+      list.back() += c;
+  }
+  return list;
+}
+
+std::vector<std::string> split_all(const std::vector<std::string>& texts) {
+  std::vector<std::string> all;
+  for (const std::string& text : texts)
+    for (std::string& one : split_list(text)) all.push_back(std::move(one));
+  return all;
+}
+
+Prior prior_of(const std::string& text) {
+  const auto at = text.rfind('=');
+  const auto std = at == std::string::npos ? std::nullopt : parse_number(text.substr(at + 1));
+  if (!std || *std <= 0) throw InputError("\"" + text + "\": a prior is NAME=STD");
+  return {text.substr(0, at), *std};
+}
+
+void run_fit(const FitArguments& arguments) {
+  const std::string text = read_file(arguments.machine);
+  const Machine machine = with_freedom(parse_machine(text, arguments.machine), split_all(arguments.free),
+                                       split_all(arguments.hold));
+  const Measurement m =
+      read_measurement(arguments.measurements, machine, corrections_of_images(arguments.images));
+  FitOptions options;
+  options.loss = arguments.loss == "huber"    ? Loss::kHuber
+                 : arguments.loss == "cauchy" ? Loss::kCauchy
+                                              : Loss::kSquared;
+  options.loss_scale = arguments.loss_scale;
+  options.solver = arguments.solver == "ceres" ? Solver::kCeres : Solver::kNormalEquations;
+  for (const std::string& stage : arguments.stages) options.stages.push_back(split_list(stage));
+  for (const std::string& prior : arguments.priors) options.priors.push_back(prior_of(prior));
+  Progress progress("fit");
+  options.progress = [&](int iteration, double cost) {
+    progress.update(iteration / 100.0,
+                    fmt::format("iteration {}, weighted sum of squares {:.6g}", iteration, cost));
+  };
+  const FitResult result = fit(machine, m, options);
+  if (!result.absurd.empty()) throw LimitNotMet(result.absurd + "; nothing is written");
+  const nlohmann::ordered_json json = fit_json(result, m);
+  if (!arguments.output.empty())
+    write_file(arguments.output,
+               close_domains(update_machine_text(text, result.machine, true), result.machine, m));
+  write_json(arguments.json, json);
+  for (const std::string& note : machine.notes) fmt::print(stderr, "note: {}\n", note);
+  print_result(human_stream(arguments.json), result, m);
+  print_domains(human_stream(arguments.json), json["domains"]);
+}
+
+}  // namespace
+
+void register_fit(CLI::App& vernier) {
+  auto arguments = std::make_shared<FitArguments>();
+  CLI::App* command =
+      vernier.add_subcommand("fit", "Estimate the free parameters of a machine from measurements");
+  command->add_option("MACHINE", arguments->machine, "machine file (XML)")->required();
+  command->add_option("MEAS", arguments->measurements, "measurement files (CSV)")->required();
+  command->add_option("-o,--output", arguments->output, "the fitted machine file");
+  command->add_option("--images", arguments->images, kImagesHelp);
+  command->add_option("--json", arguments->json, "result for programs; - for standard output");
+  command->add_option("--loss", arguments->loss, "squared, huber or cauchy")
+      ->check(CLI::IsMember({"squared", "huber", "cauchy"}))
+      ->capture_default_str();
+  command
+      ->add_option("--loss-scale", arguments->loss_scale,
+                   "where a robust loss bends, in u (in robust spreads of the residual where u is absent)")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command->add_option(
+      "--stage", arguments->stages,
+      "patterns (comma between them) of the parameters freed in a stage before all are; may be repeated");
+  command->add_option("--free", arguments->free,
+                      "patterns of what is free besides what the file says: statics, table.X.rY, BaseShift, "
+                      "scalefactor.X; may be repeated");
+  command->add_option("--hold", arguments->hold, "patterns of what is held, after --free; may be repeated");
+  command->add_option("--prior", arguments->priors,
+                      "NAME=STD: hold parameters near nominal as if measured there; may be repeated");
+  command->add_option("--solver", arguments->solver, "normal-equations, or ceres as a cross-check")
+      ->check(CLI::IsMember({"normal-equations", "ceres"}))
+      ->capture_default_str();
+  command->footer(
+      "Weighted least squares (1/u^2) on rows with role fit. What the readings leave open is as near\n"
+      "to nominal as it can be, in units of each parameter's scale, and said (tools/docs/fit.md). Exit "
+      "status 0 done,\n"
+      "1 bad input, 2 the fit did not converge or the readings are not of this machine: nothing written.");
+  command->callback([arguments] { run_fit(*arguments); });
+}
+
+}  // namespace vernier::fit_cli

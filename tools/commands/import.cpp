@@ -1,0 +1,26 @@
+#include "tools/commands/command.h"
+#include "tools/commands/import_kinds.h"
+
+namespace vernier::import_cli {
+namespace {
+
+using AddKind = void (*)(CLI::App& import);
+constexpr AddKind kKinds[] = {add_ballbar_kind, add_ballbar_trace_kind, add_tracker_kind, add_probe_kind};
+
+}  // namespace
+
+void add_import_output(CLI::App& kind, ImportOutput& output) {
+  kind.add_option("-o,--output", output.csv_path, "Measurement file to write (CSV)")
+      ->required()
+      ->type_name("FILE");
+  kind.add_option("--json", output.json_path, "Result for programs; - is standard output")->type_name("FILE");
+}
+
+void register_import(CLI::App& vernier) {
+  CLI::App* import =
+      vernier.add_subcommand("import", "Turn an instrument's file into a measurement file (CSV)");
+  import->require_subcommand(1);
+  for (const AddKind add : kKinds) add(*import);
+}
+
+}  // namespace vernier::import_cli

@@ -1,0 +1,59 @@
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+
+#include "tools/commands/command.h"
+#include "tools/text/error.h"
+#include "tools/upload/signing.h"
+
+namespace vernier::keys_cli {
+namespace {
+
+struct Arguments {
+  std::string directory = ".", json;
+};
+
+// Created unreadable for others from its first byte on, and never over an existing key.
+void write_secret(const std::string& path, const std::string& text) {
+  const int fd = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+  if (fd < 0) throw InputError(path + ": " + std::strerror(errno));
+  const bool written =
+      ::write(fd, text.data(), text.size()) == static_cast<ssize_t>(text.size()) && ::fsync(fd) == 0;
+  const bool closed = ::close(fd) == 0;
+  if (written && closed) return;
+  ::unlink(path.c_str());
+  throw InputError(path + ": cannot be written");
+}
+
+void run(const Arguments& arguments) {
+  make_folder(arguments.directory);
+  const std::string secret = arguments.directory + "/vernier.key",
+                    open = arguments.directory + "/vernier.pub";
+  if (std::filesystem::exists(open)) throw InputError(open + ": exists; a key is never overwritten");
+  const SigningKey key = new_key();
+  write_secret(secret, secret_key_text(key));
+  write_file(open, public_key_text(key));
+  fmt::print(human_stream(arguments.json),
+             "{}  signs uploads: keep it where images are made, with `vernier upload --key`\n"
+             "{}  goes to the board: public_key in its board file\n",
+             secret, open);
+  write_json(arguments.json, {{"secret_key", secret}, {"public_key", open}});
+}
+
+}  // namespace
+
+void register_keys(CLI::App& vernier) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* const command = vernier.add_subcommand(
+      "keys", "make the pair of keys with which a board knows whose images it may run");
+  command->add_option("-o", arguments->directory, "directory for vernier.key (secret) and vernier.pub")
+      ->capture_default_str();
+  command->add_option("--json", arguments->json, "result for programs; - is standard output");
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace vernier::keys_cli

@@ -1,0 +1,231 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+#include <set>
+
+#include "tools/commands/command.h"
+#include "tools/part/gauge_block.h"
+#include "tools/part/part_report.h"
+#include "tools/report/report.h"
+#include "tools/text/csv.h"
+#include "tools/text/numbers.h"
+
+namespace vernier::part_cli {
+namespace {
+
+struct Arguments {
+  std::string machine, errors, identify, free, output, json;
+  double tool_diameter_mm = 20, tool_length_mm = 35, feed_mm_min = 1000, step_mm = 0.5;
+  DefectReading reading = DefectReading::kContact;
+  RotarySolution solution = RotarySolution::kContinuous;
+  bool aligned = false;
+};
+
+struct GaugeArguments {
+  std::string file, json;
+  double pivot_mm = 0;
+};
+
+/// Leaves only the named statics free.
+void free_only(Machine& machine, const std::string& names) {
+  std::set<std::size_t> wanted;
+  for (std::size_t at = 0; (at = names.find_first_not_of(", ", at)) != std::string::npos;) {
+    const std::size_t end = std::min(names.find_first_of(", ", at), names.size());
+    const std::string name = names.substr(at, end - at);
+    const auto index = machine.find_static(name);
+    if (!index) throw InputError({"--free", 0}, name, "no static of this name in " + machine.name);
+    wanted.insert(*index);
+    at = end;
+  }
+  for (std::size_t i = 0; i < machine.statics.size(); ++i) {
+    Static& item = machine.statics[i];
+    if (!item.hidden && !item.nominal) item.nominal = item.value;
+    item.hidden = !wanted.contains(i);
+  }
+}
+
+PartJob make_job(const Arguments& arguments, const std::string& machine_text) {
+  PartJob job;
+  Machine machine =
+      parse_machine(machine_text, arguments.machine.empty() ? "built-in machine" : arguments.machine);
+  set_errors(machine, arguments.errors);
+  if (!arguments.free.empty()) free_only(machine, arguments.free);
+  job.machine = b_head_machine(std::move(machine));
+  job.options = {
+      {arguments.tool_diameter_mm / 2, arguments.tool_length_mm}, arguments.reading, arguments.solution};
+  for (const RuledSurface& flank : s_part()) check_cutter(flank, job.options.cutter);
+  const PathOptions path{job.options.cutter, arguments.step_mm, arguments.feed_mm_min, arguments.solution};
+  for (std::size_t flank = 0; flank < s_part().size(); ++flank)
+    job.paths.push_back(part_path(job.machine, flank, path));
+  job.points = standard_points();
+  if (!arguments.identify.empty()) {
+    job.measured = read_measured_part(read_file(arguments.identify), arguments.identify);
+    job.points.clear();
+    for (const MeasuredPoint& point : job.measured->points) job.points.push_back(point.at);
+    job.identified = identify(job.machine, *job.measured, {job.options, arguments.aligned});
+    job.machine.machine = job.identified->machine;
+  }
+  job.defect = part_defect(job.machine, job.points, job.options);
+  return job;
+}
+
+void print_summary(std::FILE* out, const nlohmann::ordered_json& result) {
+  const auto& d = result["defect"];
+  fmt::print(out, "defect at {} points ({}): {:.4f} to {:.4f} mm\n", d["points"].get<int>(),
+             d["reading"].get<std::string>(), d["min_mm"].get<double>(), d["max_mm"].get<double>());
+  for (const auto& one : result["overcut"])
+    fmt::print(out,
+               "overcut of flank {} at its foot: formula {:.4f} mm as printed, {:.4f} mm with unit normal; "
+               "distance {:.4f} mm\n",
+               one["flank"].get<std::string>(), one["formula_as_printed"]["mm"].get<double>(),
+               one["formula_unit_normal"]["mm"].get<double>(), one["distance"][0]["mm"].get<double>());
+  for (const auto& path : result["paths"])
+    for (const auto& beyond : path["beyond_limits"])
+      fmt::print(out, "flank {}: {}\n", path["flank"].get<std::string>(), beyond.get<std::string>());
+  for (const auto& one : result["observability"])
+    fmt::print(out, "{}: rank {} of {}, inseparable {}\n", one["reading"].get<std::string>(),
+               one["rank"].get<int>(), one["parameters"].get<int>(), joined_groups(one["unidentifiable"]));
+  if (!result.contains("parameters")) return;
+  fmt::print(out, "rms {:.4g} -> {:.4g} um\n", result["rms_before_um"].get<double>(),
+             result["rms_um"].get<double>());
+  for (const auto& p : result["parameters"])
+    fmt::print(out, "  {:6} {:12.5g} +- {:9} {}\n", p["name"].get<std::string>(), p["value"].get<double>(),
+               p["std"].is_null() ? "-" : fmt::format("{:.2g}", p["std"].get<double>()),
+               p["unit"].get<std::string>());
+}
+
+void run_s_shape(const Arguments& arguments) {
+  const std::string machine_text =
+      arguments.machine.empty() ? default_b_head_text() : read_file(arguments.machine);
+  const PartJob job = make_job(arguments, machine_text);
+  const nlohmann::ordered_json result = part_json(job);
+  const PathOptions path{job.options.cutter, arguments.step_mm, arguments.feed_mm_min, arguments.solution};
+  // What is not free in this run is free in the file all the same.
+  Machine written = parse_machine(machine_text, arguments.machine);
+  for (std::size_t i = 0; i < written.statics.size(); ++i)
+    written.statics[i].value = job.machine.machine.statics[i].value;
+  // All texts first: a failure leaves nothing behind.
+  std::vector<std::pair<std::string, std::string>> files = {
+      {"defect.csv", defect_csv(job.points, job.defect)},
+      {"machine.xml", update_machine_text(machine_text, written, true)},
+      {"report.html", improvement_report_html(part_report(job, result))}};
+  for (const PartPath& one : job.paths) {
+    const char flank = s_part()[one.flank].name;
+    files.emplace_back(fmt::format("path_{}.csv", flank), path_csv(job.machine, one));
+    files.emplace_back(fmt::format("path_{}.nc", flank), path_gcode(one, path));
+  }
+  make_folder(arguments.output);
+  for (const auto& [name, text] : files)
+    write_file((std::filesystem::path(arguments.output) / name).string(), text);
+  write_json(arguments.json, result);
+  print_summary(human_stream(arguments.json), result);
+}
+
+/// Columns C[deg] and y[mm]; one row each for 0, 90, 180 and 270 deg.
+std::array<double, 4> read_gauge_block(const std::string& file) {
+  const CsvFile csv = parse_csv(read_file(file), file);
+  const auto column = [&](const char* name, const char* unit) {
+    for (std::size_t i = 0; i < csv.columns.size(); ++i)
+      if (csv.columns[i].name == name && csv.columns[i].unit == unit) return i;
+    throw InputError({file, csv.header_line}, name,
+                     fmt::format("a gauge block needs the column {}[{}]", name, unit));
+  };
+  const std::size_t c = column("C", "deg"), y = column("y", "mm");
+  std::array<std::optional<double>, 4> found;
+  for (std::size_t row = 0; row < csv.rows.size(); ++row) {
+    const Place place{file, csv.line[row]};
+    const auto angle = parse_number(csv.rows[row][c]), reading = parse_number(csv.rows[row][y]);
+    if (!angle || !reading)
+      throw InputError(place, angle ? csv.rows[row][y] : csv.rows[row][c], "not a number");
+    const double quarter = *angle / 90;
+    if (!(quarter >= 0 && quarter <= 3) || quarter != std::floor(quarter))
+      throw InputError(place, csv.rows[row][c], "C must be 0, 90, 180 or 270");
+    auto& slot = found[static_cast<std::size_t>(quarter)];
+    if (slot) throw InputError(place, csv.rows[row][c], "this position stands twice");
+    slot = *reading;
+  }
+  std::array<double, 4> y_mm{};
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (!found[i]) throw InputError({file, 0}, std::to_string(90 * i), "no reading at this C");
+    y_mm[i] = *found[i];
+  }
+  return y_mm;
+}
+
+void run_gauge_block(const GaugeArguments& arguments) {
+  const GaugeBlockEstimate found = estimate_gauge_block(read_gauge_block(arguments.file), arguments.pivot_mm);
+  write_json(arguments.json, {{"EA0B_rad", found.ea0b_rad},
+                              {"EX0B_mm", found.ex0b_mm},
+                              {"EA0B_rad_per_um", found.ea0b_per_mm / 1000},
+                              {"EX0B_mm_per_um", found.ex0b_per_mm / 1000}});
+  std::FILE* out = human_stream(arguments.json);
+  fmt::print(out, "EA0B {:.4g} rad ({:.2g} rad per um of a reading)\n", found.ea0b_rad,
+             found.ea0b_per_mm / 1000);
+  fmt::print(out, "EX0B {:.4g} mm\n", found.ex0b_mm);
+}
+
+void add_s_shape(CLI::App& part) {
+  auto a = std::make_shared<Arguments>();
+  CLI::App* command = part.add_subcommand(
+      "s-shape",
+      "The S-shaped test part of ISO 10791-7: path, predicted defect, and the machine's errors from it");
+  command->add_option("--machine", a->machine, "machine file with B head and C table (default: built in)")
+      ->check(CLI::ExistingFile);
+  command->add_option("--errors", a->errors, "statics to set, e.g. \"EA0B=3.2e-4rad,EX0B=0.03\"");
+  command->add_option("--tool-diameter", a->tool_diameter_mm, "mm")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  command->add_option("--tool-length", a->tool_length_mm, "tip below the top of the part, mm")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  command->add_option("--feed", a->feed_mm_min, "mm/min on the top curve")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  command->add_option("--step", a->step_mm, "longest step on the top curve, mm")
+      ->capture_default_str()
+      ->check(CLI::Range(0.005, 20.0));
+  command
+      ->add_option("--reading", a->reading,
+                   "contact, tip (the paper's) or in-plane: where the defect is taken")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, DefectReading>{{"contact", DefectReading::kContact},
+                                               {"tip", DefectReading::kTip},
+                                               {"in-plane", DefectReading::kInPlane}}));
+  command->add_option("--rotary", a->solution, "continuous or positive-b: which solution of the rotary axes")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, RotarySolution>{
+          {"continuous", RotarySolution::kContinuous}, {"positive-b", RotarySolution::kPositiveB}}));
+  CLI::Option* identify_option = command->add_option(
+      "--identify", a->identify, "measured part (CSV: sx sy sz defect, u): fit the errors to it");
+  command->add_option("--free", a->free, "only these statics are fitted, e.g. EA0B,EX0B");
+  command->add_flag("--aligned", a->aligned, "the measured part was best-fitted: fit a rigid motion too")
+      ->needs(identify_option);
+  command->add_option("-o,--output", a->output, "directory for paths (CSV, G-code), defect, machine, report")
+      ->required();
+  command->add_option("--json", a->json, "result for programs; - for standard output");
+  command->callback([a] { run_s_shape(*a); });
+}
+
+void add_gauge_block(CLI::App& part) {
+  auto a = std::make_shared<GaugeArguments>();
+  CLI::App* command = part.add_subcommand(
+      "gauge-block", "EA0B and EX0B from a gauge block read in Y at C = 0, 90, 180, 270 deg");
+  command->add_option("FILE", a->file, "CSV with C[deg] and y[mm]")->required();
+  command->add_option("--pivot-length", a->pivot_mm, "B axis to tool tip, mm")
+      ->required()
+      ->check(CLI::PositiveNumber);
+  command->add_option("--json", a->json, "result for programs; - for standard output");
+  command->callback([a] { run_gauge_block(*a); });
+}
+
+}  // namespace
+
+void register_part(CLI::App& vernier) {
+  CLI::App* part = vernier.add_subcommand(
+      "part", "Test parts: what a machine's errors cut, and the errors from the cut part");
+  part->require_subcommand(1);
+  add_s_shape(*part);
+  add_gauge_block(*part);
+}
+
+}  // namespace vernier::part_cli

@@ -1,0 +1,135 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+
+#include "tools/commands/command.h"
+#include "tools/effects/catalogue.h"
+#include "tools/model/measurement.h"
+#include "tools/plan/plan.h"
+#include "tools/plan/sheets.h"
+#include "tools/simulate/corrected.h"
+#include "tools/text/files.h"
+
+namespace vernier::plan_cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct PlanArguments {
+  std::string machine, output, gcode, json, images;
+  std::vector<std::string> measurements, separate, effects;
+  std::size_t points = 0;
+  double confidence = 0.95;
+};
+
+Json row_json(const Plan& plan, std::size_t row) {
+  const auto at = static_cast<Eigen::Index>(row);
+  const States& s = plan.rows.states;
+  Json json;
+  for (std::size_t a = 0; a < plan.machine.axes.size(); ++a) {
+    const std::string& name = plan.machine.axes[a].name;
+    json["axes"][name] = s.axis[a][at];
+    json["dir"][name] = s.direction[a][at];
+    json["v"][name] = s.velocity[a][at];
+    if (s.since[a][at] < kLongWay) json["since"][name] = s.since[a][at];
+  }
+  json["feed"] = s.feed[at];
+  json["t"] = s.time[at];
+  json["inputs"] = Json::object();
+  for (std::size_t i = 0; i < plan.machine.inputs.size(); ++i)
+    json["inputs"][plan.machine.inputs[i].name] = s.input[i][at];
+  const Drivers drivers = drivers_of(std::vector<const FittedRival*>{&plan.a, &plan.b});
+  for (const CandidateInput& candidate : plan.rows.candidates)
+    if (drivers.inputs.contains(candidate.name)) json["inputs"][candidate.name] = candidate.value[at];
+  return json;
+}
+
+Json plan_json(const Plan& plan, double confidence) {
+  const auto side = [](const Separation& s) -> Json {
+    return {{"now", s.now}, {"planned", s.planned}, {"needed", s.needed}};
+  };
+  const Separation& worse = plan.worse();
+  Json json;
+  json["separate"] = {{{"effect", plan.a.candidate.choice.effect->id}, {"add", plan.a.add}},
+                      {{"effect", plan.b.candidate.choice.effect->id}, {"add", plan.b.add}}};
+  json["non_centrality_now"] = worse.now;
+  json["non_centrality_planned"] = plan.rows.rows() == 0 ? worse.now : worse.planned;
+  json["non_centrality_needed"] = worse.needed;
+  json["first_true"] = side(plan.a_true);
+  json["second_true"] = side(plan.b_true);
+  json["confidence"] = confidence;
+  json["separable"] = plan.separable || plan.told_already;
+  json["lead_of_first"] = plan.lead_of_a;
+  json["told_already"] = plan.told_already;
+  json["points"] = plan.rows.rows();
+  json["rows"] = Json::array();
+  for (std::size_t row = 0; row < plan.rows.rows(); ++row) json["rows"].push_back(row_json(plan, row));
+  json["not_settable"] = plan.not_settable;
+  json["ruled_out"] = plan.ruled_out;
+  json["not_ruled_out"] = plan.not_ruled_out;
+  json["sentence"] = plan.sentence;
+  return json;
+}
+
+void run_plan(const PlanArguments& arguments) {
+  const std::string text = read_file(arguments.machine);
+  const Machine machine = parse_machine(text, arguments.machine);
+  const Measurement m =
+      read_measurement(arguments.measurements, machine, corrections_of_images(arguments.images));
+  const std::vector<Effect> effects = effect_catalogue(arguments.effects);
+  const std::vector<std::string> rivals = split_rivals(arguments.separate, effects);
+  PlanOptions options;
+  options.confidence = arguments.confidence;
+  if (arguments.points > 0) options.points = arguments.points;
+  const Plan plan = plan_next(text, machine, m, rivals[0], rivals[1], effects, options);
+  if (!arguments.output.empty()) write_file(arguments.output, plan_csv(plan));
+  if (!arguments.gcode.empty()) write_file(arguments.gcode, plan_gcode(plan));
+  write_json(arguments.json, plan_json(plan, arguments.confidence));
+  std::FILE* out = human_stream(arguments.json);
+  fmt::print(out, "{}\n\n", plan.sentence);
+  for (const auto& [rival, side] : {std::pair(&plan.a, &plan.a_true), std::pair(&plan.b, &plan.b_true)})
+    fmt::print(out, "if {} is true: non-centrality now {:.3g}, planned {:.3g}, needed {:.3g}\n",
+               rival->candidate.label, side->now, plan.rows.rows() > 0 ? side->planned : side->now,
+               side->needed);
+  for (const std::string& other : plan.ruled_out) fmt::print(out, "rules out as well: {}\n", other);
+  for (const std::string& other : plan.not_ruled_out) fmt::print(out, "does not rule out: {}\n", other);
+  if (plan.rows.rows() > 0) fmt::print(out, "\n{}", plan_table(plan));
+}
+
+}  // namespace
+
+void register_plan(CLI::App& vernier) {
+  auto arguments = std::make_shared<PlanArguments>();
+  CLI::App* command =
+      vernier.add_subcommand("plan", "Propose the next measurement that tells two effects apart");
+  command->add_option("MACHINE", arguments->machine, "machine file (XML)")->required();
+  command->add_option("MEAS", arguments->measurements, "measurement files (CSV)")->required();
+  // One value each time: what follows it may be a measurement file.
+  command
+      ->add_option("--separate", arguments->separate,
+                   "A,B: effect ids or `add` strings; or twice, once for each")
+      ->required()
+      ->expected(1)
+      ->allow_extra_args(false)
+      ->take_all();
+  command->add_option("-o,--output", arguments->output, "the rows, readings to be filled in (CSV)");
+  command->add_option("--gcode", arguments->gcode, "the rows as G-code");
+  command->add_option("--points", arguments->points, "exactly so many points (default: as few as needed)")
+      ->check(CLI::Range(1, 500));
+  command->add_option("--confidence", arguments->confidence, "that the measurement will name the right one")
+      ->check(CLI::Range(0.5001, 0.9999))
+      ->capture_default_str();
+  command->add_option("--effects", arguments->effects, "files with effects of your own; may be repeated");
+  command->add_option("--images", arguments->images, kImagesHelp);
+  command->add_option("--json", arguments->json, "result for programs; - for standard output");
+  command->footer(
+      "Fits the model with either effect, then chooses the rows whose readings differ most after the wrong\n"
+      "one and all free parameters were fitted again (T-optimal, the worse of both directions). Points: as\n"
+      "many as bring the non-centrality to (z + sqrt(z^2 + 6))^2, z the normal quantile of the confidence.\n"
+      "Exit status 0 done (also where nothing separates them: the sentence says so), 1 bad input or usage\n"
+      "(nothing written), 70 internal error. See tools/docs/plan.md.");
+  command->callback([arguments] { run_plan(*arguments); });
+}
+
+}  // namespace vernier::plan_cli

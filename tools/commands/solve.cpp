@@ -1,0 +1,123 @@
+#include <fmt/format.h>
+
+#include <map>
+#include <memory>
+
+#include "tools/commands/command.h"
+#include "tools/kinematics/at.h"
+#include "tools/kinematics/closed.h"
+#include "tools/results/result_json.h"
+
+namespace vernier::solve_cli {
+namespace {
+
+struct SolveArguments {
+  std::string machine, target, start, match = "auto", json;
+  std::vector<std::string> axes;
+  bool nominal = false;
+  int restarts = 48;
+};
+
+InverseOptions options_of(const SolveArguments& arguments, const Machine& machine, bool with_rotation) {
+  InverseOptions options;
+  const std::map<std::string, Match> names = {
+      {"position", Match::kPosition}, {"direction", Match::kDirection}, {"pose", Match::kPose}};
+  if (arguments.match == "auto")
+    options.match = with_rotation ? Match::kPose : Match::kPosition;
+  else
+    options.match = names.at(arguments.match);
+  if (options.match != Match::kPosition && !with_rotation)
+    throw InputError({}, arguments.target, "a direction or a pose needs the rotation too: x,y,z,rx,ry,rz");
+  for (const std::string& name : arguments.axes) {
+    const auto axis = machine.find_axis(name);
+    if (!axis) throw InputError({machine.file, 0}, name, "no axis of that name");
+    options.axes.push_back(*axis);
+  }
+  return options;
+}
+
+/// What a Newton iteration found, and whether the closed form says the same.
+nlohmann::ordered_json solution_json(const Machine& machine, const InverseResult& result, const States& start,
+                                     const Poses& target, bool position_only) {
+  nlohmann::ordered_json json = {{"machine", machine.name},
+                                 {"axes", axes_json(machine, result.states)},
+                                 {"reached", pose_json(forward(machine, result.states))},
+                                 {"proof", inverse_json(machine, result.each[0])},
+                                 {"closed_form", nullptr}};
+  const auto closed = position_only ? closed_solution(machine, start) : std::nullopt;
+  if (!closed) return json;
+  const Eigen::MatrixXd q = solve_closed(*closed, target.position);
+  for (std::size_t k = 0; k < closed->axes.size(); ++k)
+    json["closed_form"][machine.axes[closed->axes[k]].name] = q(static_cast<Eigen::Index>(k), 0);
+  return json;
+}
+
+std::string failure_text(const Machine& machine, const Inverse& proof) {
+  const std::string residual =
+      fmt::format("residual {:.3g} mm, {:.3g} deg after {} iterations, condition {:.3g}", proof.residual_mm,
+                  proof.residual_deg, proof.iterations, proof.condition);
+  if (proof.fault == InverseFault::kSingular)
+    return "no solution: the axes have lost a degree of freedom there (" + residual + ")";
+  if (proof.fault == InverseFault::kBeyondRange)
+    return "no solution: axis " + machine.axes[proof.axis].name + " would have to leave its range (" +
+           residual + ")";
+  return "no solution: the target is out of reach of these axes (" + residual + ")";
+}
+
+void run_solve(const SolveArguments& arguments) {
+  const Machine read = read_machine(arguments.machine);
+  const Machine machine = arguments.nominal ? nominal_machine(read) : read;
+  const std::vector<double> numbers =
+      number_list(arguments.target, {3, 6}, "a target x,y,z or x,y,z,rx,ry,rz");
+  Poses target;
+  target.position = Eigen::Vector3d(numbers[0], numbers[1], numbers[2]);
+  target.rotation = {Eigen::Matrix3d::Identity()};
+  if (numbers.size() == 6) target.rotation = {rotation_of({numbers[3], numbers[4], numbers[5]})};
+  const InverseOptions options = options_of(arguments, machine, numbers.size() == 6);
+  const States start = state_at(machine, arguments.start);
+  const InverseResult result = solve_anywhere(machine, target, start, options, arguments.restarts);
+  const Inverse& proof = result.each[0];
+  write_json(arguments.json,
+             solution_json(machine, result, start, target, options.match == Match::kPosition));
+  if (!proof.converged) throw LimitNotMet(failure_text(machine, proof));
+  std::FILE* out = human_stream(arguments.json);
+  for (std::size_t i = 0; i < machine.axes.size(); ++i)
+    fmt::print(out, "{:<10} {:.9f} {}\n", machine.axes[i].name, result.states.axis[i][0],
+               machine.axes[i].rotary ? "deg" : "mm");
+  fmt::print(out, "residual   {:.3g} mm, {:.3g} deg after {} iterations; condition {:.3g}\n",
+             proof.residual_mm, proof.residual_deg, proof.iterations, proof.condition);
+}
+
+}  // namespace
+
+void register_solve(CLI::App& vernier) {
+  auto arguments = std::make_shared<SolveArguments>();
+  CLI::App* command =
+      vernier.add_subcommand("solve", "Axis positions that bring the tool to a pose (back solution)");
+  command->add_option("MACHINE", arguments->machine, "machine file (XML)")->required();
+  command
+      ->add_option(
+          "--target", arguments->target,
+          "tool point x,y,z (mm), and for a pose its rotation vector rx,ry,rz (deg), workpiece coordinates")
+      ->required();
+  command->add_option("--start", arguments->start, "first guess, motion and inputs: \"X=100,B=20,T=25\"");
+  command->add_option("--axes", arguments->axes, "axes that may move; default: all")->delimiter(',');
+  command
+      ->add_option("--match", arguments->match,
+                   "what has to be met; auto: position without rotation, else pose")
+      ->check(CLI::IsMember({"auto", "position", "direction", "pose"}))
+      ->capture_default_str();
+  command->add_flag("--nominal", arguments->nominal,
+                    "of the nominal chain; default: of the machine as it is");
+  command->add_option("--restarts", arguments->restarts, "further starts, spread over the axis ranges")
+      ->check(CLI::Range(0, 100000))
+      ->capture_default_str();
+  command->add_option("--json", arguments->json, "result for programs; - for standard output");
+  command->footer(
+      "Every answer carries its proof: the forward solution of the axes found, against the target. Exit "
+      "status\n"
+      "0 done, 1 bad input, 2 no solution: the pose is singular, out of reach, or beyond an axis range.");
+  command->callback([arguments] { run_solve(*arguments); });
+}
+
+}  // namespace vernier::solve_cli

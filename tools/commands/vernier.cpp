@@ -1,0 +1,91 @@
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+
+#include "tools/commands/command.h"
+#include "tools/text/error.h"
+
+namespace {
+
+constexpr int kDone = 0, kBadInput = 1, kAnswerIsNo = 2, kOurBug = 70;
+
+/// In the order of the journey; `vernier` alone prints them so.
+constexpr vernier::RegisterCommand kCommands[] = {
+    vernier::import_cli::register_import,
+    vernier::features_cli::register_features,
+    vernier::fit_cli::register_fit,
+    vernier::compare_cli::register_compare,
+    vernier::diagnose_cli::register_diagnose,
+    vernier::effects_cli::register_add,
+    vernier::effects_cli::register_effects,
+    vernier::plan_cli::register_plan,
+    vernier::improve_cli::register_improve,
+    vernier::derive_cli::register_derive,
+    vernier::compile_cli::register_compile,
+    vernier::simulate_cli::register_simulate,
+    vernier::replay_cli::register_replay,
+    vernier::keys_cli::register_keys,
+    vernier::upload_cli::register_upload,
+    vernier::board_cli::register_board,
+    vernier::watch_cli::register_status,
+    vernier::watch_cli::register_watch,
+    vernier::record_cli::register_record,
+    vernier::touches_cli::register_touches,
+    vernier::probe_cli::register_probe_path,
+    vernier::probe_cli::register_probe_cal,
+    vernier::probe_cli::register_feature,
+    vernier::pose_cli::register_pose,
+    vernier::solve_cli::register_solve,
+    vernier::exchange_cli::register_export,
+    vernier::exchange_cli::register_import_tables,
+    vernier::map_cli::register_map,
+    vernier::part_cli::register_part,
+    vernier::edit_cli::register_set,
+    vernier::edit_cli::register_exclude,
+    vernier::workbench_cli::register_image_diff,
+    vernier::workbench_cli::register_workbench,
+};
+
+int run(int argc, char** argv) {
+  CLI::App app{
+      "Vernier makes real machines accurate: from measurements to a model of the errors to a running "
+      "correction."};
+  app.set_version_flag("--version", "vernier " VERNIER_VERSION " (" VERNIER_COMMIT ")");
+  app.footer(
+      "Exit status: 0 done, 1 bad input or usage (nothing written), 2 the answer is no, 70 internal error.\n"
+      "`vernier COMMAND --help` documents each command.");
+  for (const auto command : kCommands) command(app);
+  if (argc <= 1) {
+    std::fputs(app.help().c_str(), stdout);
+    return kDone;
+  }
+  app.require_subcommand(1);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::CallForHelp& call) {
+    return app.exit(call);
+  } catch (const CLI::CallForVersion& call) {
+    return app.exit(call);
+  } catch (const CLI::ParseError& error) {
+    app.exit(error);
+    return kBadInput;
+  }
+  return kDone;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const vernier::InputError& error) {
+    std::fprintf(stderr, "vernier: %s\n", error.what());
+    return kBadInput;
+  } catch (const vernier::LimitNotMet& error) {
+    std::fprintf(stderr, "vernier: %s\n", error.what());
+    return kAnswerIsNo;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "vernier: internal error: %s\n", error.what());
+    return kOurBug;
+  }
+}

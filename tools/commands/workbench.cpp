@@ -1,0 +1,140 @@
+#include <fmt/format.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+#include <thread>
+
+#include "tables/upload_format.h"
+#include "tools/commands/command.h"
+#include "tools/upload/client.h"
+#include "tools/workbench/image_diff.h"
+#include "tools/workbench/process.h"
+#include "tools/workbench/server.h"
+
+namespace vernier::workbench_cli {
+namespace {
+
+struct WorkbenchArguments {
+  std::string directory = ".", json;
+  std::uint16_t port = 0;
+  bool no_browser = false;
+};
+
+/// The signals that end the command are waited for by a thread, so that they are blocked in all others.
+sigset_t ending_signals() {
+  sigset_t set;
+  sigemptyset(&set);
+  for (const int one : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&set, one);
+  return set;
+}
+
+void open_browser(const std::string& url) {
+  if (std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr) return;
+  std::thread([url] {
+    RunningProcess running;
+    try {
+      run_process(
+          "/usr/bin/xdg-open", {url}, "/", 1 << 20, [](std::string_view) {}, running);
+    } catch (const InputError&) {
+      // The address is printed too.
+    }
+  }).detach();
+}
+
+void run_workbench(const WorkbenchArguments& arguments) {
+  Api api(arguments.directory, std::filesystem::read_symlink("/proc/self/exe").string(),
+          VERNIER_VERSION " (" VERNIER_COMMIT ")");
+  WorkbenchServer server(api, arguments.port);
+  const sigset_t ending = ending_signals();
+  pthread_sigmask(SIG_BLOCK, &ending, nullptr);
+  std::thread wait([&] {
+    int signal = 0;
+    sigwait(&ending, &signal);
+    server.stop();
+  });
+  write_json(arguments.json,
+             {{"url", server.url()}, {"port", server.port()}, {"folder", arguments.directory}});
+  std::FILE* const out = human_stream(arguments.json);
+  fmt::print(out, "{}\nfor this computer and this session only; end with Ctrl-C\n", server.url());
+  std::fflush(nullptr);
+  if (!arguments.no_browser) open_browser(server.url());
+  server.serve();
+  pthread_kill(wait.native_handle(), SIGTERM);  // where something else than a signal ended it
+  wait.join();
+}
+
+struct DiffArguments {
+  std::string directory, with, url, json;
+};
+
+std::vector<std::uint8_t> image_bytes(const std::string& directory) {
+  const std::string text = read_file(directory + "/machine.vimg");
+  return {text.begin(), text.end()};
+}
+
+std::vector<std::uint8_t> board_image(const std::string& url) {
+  Client client(open_transport(parse_url(url)));
+  Progress progress("image-diff");
+  auto upload =
+      client.confirmed([&](double share) { progress.update(share, "reading what the board runs"); });
+  if (!upload) throw LimitNotMet("the board has no confirmed image");
+  if (upload->size() < sizeof(UploadHeader)) throw InputError(url + ": the board's upload is too short");
+  upload->erase(upload->begin(), upload->begin() + sizeof(UploadHeader));
+  return *upload;
+}
+
+void run_diff(const DiffArguments& arguments) {
+  if (arguments.with.empty() == arguments.url.empty()) throw InputError("either --with DIR or --to URL");
+  const auto mine = image_bytes(arguments.directory);
+  const auto other = arguments.url.empty() ? image_bytes(arguments.with) : board_image(arguments.url);
+  const nlohmann::ordered_json json = image_diff(mine, other);
+  write_json(arguments.json, json);
+  std::FILE* const out = human_stream(arguments.json);
+  fmt::print(out, "{} {} {}\n", json["a"]["fingerprint"].get<std::string>(),
+             json["same"].get<bool>() ? "is the same equation as" : "differs from",
+             json["b"]["fingerprint"].get<std::string>());
+  for (const auto& name : json["only_a"]) fmt::print(out, "  + {}\n", name.get<std::string>());
+  for (const auto& name : json["only_b"]) fmt::print(out, "  - {}\n", name.get<std::string>());
+  if (json.contains("why_not"))
+    fmt::print(out, "  corrections are not compared: {}\n", json["why_not"].get<std::string>());
+  else
+    for (const auto& one : json["corrections"])
+      fmt::print(out, "  {}: corrections differ by {:.4g} {} rms, {:.4g} at most\n",
+                 one["axis"].get<std::string>(), one["rms"].get<double>(), one["unit"].get<std::string>(),
+                 one["max"].get<double>());
+}
+
+}  // namespace
+
+void register_workbench(CLI::App& vernier) {
+  auto arguments = std::make_shared<WorkbenchArguments>();
+  CLI::App* command =
+      vernier.add_subcommand("workbench", "The whole journey in a browser: a page for this computer only");
+  command->add_option("DIR", arguments->directory, "folder with machines, measurements, images")
+      ->capture_default_str();
+  command->add_option("--port", arguments->port, "of 127.0.0.1 (0: any free one)")->capture_default_str();
+  command->add_flag("--no-browser", arguments->no_browser, "only print the address");
+  command->add_option("--json", arguments->json, "{url, port} once it serves; - for standard output");
+  command->footer(
+      "Serves until interrupted. The address holds the token of the session; the page reads and writes\n"
+      "nothing outside of DIR, and shows the command behind everything that it does "
+      "(tools/docs/workbench.md).");
+  command->callback([arguments] { run_workbench(*arguments); });
+}
+
+void register_image_diff(CLI::App& vernier) {
+  auto arguments = std::make_shared<DiffArguments>();
+  CLI::App* command =
+      vernier.add_subcommand("image-diff", "What a compiled image changes against another one or a board's");
+  command->add_option("DIR", arguments->directory, "directory that `vernier compile` wrote")->required();
+  command->add_option("--with", arguments->with, "another such directory");
+  command->add_option("--to", arguments->url, "the board whose confirmed image it is compared with");
+  command->add_option("--json", arguments->json, "result for programs; - is standard output");
+  command->footer("Exit status 0 done, 1 bad input or no board, 2 the board has no confirmed image.");
+  command->callback([arguments] { run_diff(*arguments); });
+}
+
+}  // namespace vernier::workbench_cli

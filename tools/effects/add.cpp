@@ -1,0 +1,251 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <pugixml.hpp>
+
+#include "tools/effects/candidate.h"
+#include "tools/effects/input_class.h"
+#include "tools/fit/domain.h"
+#include "tools/text/error.h"
+#include "tools/text/numbers.h"
+#include "tools/text/xml_text.h"
+
+namespace vernier {
+namespace {
+
+/// Collects the insertions that put a candidate into a machine file.
+class Adder {
+ public:
+  Adder(const std::string& text, const Machine& machine, const Candidate& candidate)
+      : text_(text), machine_(machine), candidate_(candidate) {
+    find_domain();
+  }
+
+  std::string add() {
+    document_.load_buffer(text_.data(), text_.size(), pugi::parse_default, pugi::encoding_utf8);
+    find(document_);
+    if (variables_.empty()) throw InputError(machine_.file + ": no <variables> to add to");
+    insert_variables();
+    for (const CandidateTerm& term : candidate_.terms)
+      if (is_stand_in(machine_, term.place))
+        base_row_ += " " + std::string(dof_name(machine_, term.place)) + "=\"" + value_of(term) + "\"";
+      else
+        edit_term(term);
+    if (!base_row_.empty()) insert_base_row();
+    return apply_edits(text_, std::move(edits_));
+  }
+
+ private:
+  void find(const pugi::xml_node& parent) {
+    for (const pugi::xml_node node : parent.children()) {
+      if (equal_no_case(node.name(), "variables") && variables_.empty()) variables_ = node;
+      if (equal_no_case(node.name(), "static") && static_.empty()) static_ = node;
+      if (equal_no_case(node.name(), "inputs") && inputs_.empty()) inputs_ = node;
+      if (equal_no_case(node.name(), "transforms")) chains_.push_back(node);
+      if (equal_no_case(node.name(), "variables") || node.parent() == document_) find(node);
+    }
+  }
+
+  /// A term learned on accelerometer features gets a domain of validity: over its inputs and the feed, where
+  /// they stand in it, and over every thermometer of the machine, since warmth spoils such terms unseen.
+  void find_domain() {
+    const Choice& choice = candidate_.choice;
+    bool learned = false;
+    for (std::size_t i = 0; i < choice.inputs.size(); ++i) {
+      Input input;
+      input.name = choice.inputs[i];
+      input.unit = i < choice.units.size() ? choice.units[i] : "";
+      if (const auto known = machine_.find_input(input.name)) input = machine_.inputs[*known];
+      learned = learned || class_of_input(input) == InputClass::kFeature;
+      domain_.emplace_back(input.name, input.unit);
+    }
+    if (!learned) return domain_.clear();
+    bool feed = false;
+    for (const CandidateTerm& term : candidate_.terms)
+      walk(*parse_expression(term.text),
+           [&feed](const Expr& e) { feed = feed || (e.op == Op::kSymbol && e.name == "feed"); });
+    if (feed) domain_.emplace_back("feed", "mm/min");
+    for (const Input& input : machine_.inputs) {
+      const bool listed =
+          std::any_of(domain_.begin(), domain_.end(), [&](const auto& q) { return q.first == input.name; });
+      if (!listed && class_of_input(input) == InputClass::kTemperature)
+        domain_.emplace_back(input.name, input.unit);
+    }
+    for (int n = 1;
+         domain_name_.empty() || machine_.find_static(domain_name_ + "_" + domain_[0].first + "_low"); ++n)
+      domain_name_ = fmt::format("domain{}", n);
+  }
+
+  std::string in_domain(const std::string& term) const {
+    if (domain_.empty()) return term;
+    std::vector<std::string> quantities;
+    for (const auto& [quantity, unit] : domain_) quantities.push_back(quantity);
+    return domain_weight(domain_name_, quantities) + "*(" + term + ")";
+  }
+
+  static std::size_t offset(const pugi::xml_node& node) {
+    return static_cast<std::size_t>(node.offset_debug());
+  }
+
+  /// Where `tag` ("</static") ends an element, from `at` on: not in a remark, nor of a longer name.
+  std::size_t closing_tag(std::size_t at, const std::string& tag) const {
+    for (at = text_.find('<', at); at != std::string::npos; at = text_.find('<', at + 1)) {
+      if (text_.compare(at, 4, "<!--") == 0)
+        at = text_.find("-->", at);
+      else if (text_.compare(at, tag.size(), tag) == 0 && !is_name(text_.substr(at + tag.size(), 1)))
+        break;
+    }
+    return at;
+  }
+
+  /// Puts `lines` at the end of an element's content; `name` for one that is closed at once.
+  void append(const pugi::xml_node& node, const std::string& lines) {
+    const std::size_t end_of_start = text_.find('>', end_of_attributes(text_, offset(node)));
+    if (text_[end_of_start - 1] == '/') {
+      edits_.push_back({end_of_start - 1, 2, ">\n" + lines + "</" + std::string(node.name()) + ">"});
+      return;
+    }
+    std::size_t from = end_of_start;
+    for (const pugi::xml_node child : node.children())
+      if (child.offset_debug() >= 0) from = std::max(from, offset(child));
+    std::size_t close = closing_tag(from, "</" + std::string(node.name()));
+    const std::size_t line = text_.rfind('\n', close);
+    // In front of the line of the closing tag, where that stands alone.
+    if (line != std::string::npos && text_.find_first_not_of(" \t\r", line + 1) == close) close = line + 1;
+    edits_.push_back({close, 0, lines});
+  }
+
+  std::string lines_of_statics() const {
+    std::string lines;
+    for (const CandidateUnknown& unknown : candidate_.unknowns)
+      // A time constant or a period has no meaning at 0: its nominal is the start (the term is 0 all the
+      // same, for its coefficient is).
+      lines += fmt::format("      <{} value=\"{}\" nominal=\"{}\" unit=\"{}\" note=\"{}\"/>\n", unknown.name,
+                           number_text(unknown.start),
+                           unknown.kind == UnknownKind::kLinear ? "0" : number_text(unknown.start),
+                           escape_attribute(unknown.unit), escape_attribute(candidate_.label));
+    for (const DomainStatic& item : open_domain(domain_name_, domain_))
+      lines += fmt::format(
+          "      <{} value=\"{}\" Hide=\"true\" unit=\"{}\" note=\"where it is valid: {}\"/>\n", item.name,
+          number_text(item.value), escape_attribute(item.unit), escape_attribute(candidate_.label));
+    return lines;
+  }
+
+  std::string lines_of_inputs() const {
+    std::string lines;
+    for (const auto& [name, unit] : names_of_new_inputs()) {
+      const double reference = candidate_.choice.reference.value_or(unit == "degC" ? 20 : 0);
+      lines += fmt::format("      <{} unit=\"{}\" reference=\"{}\"/>\n", name, escape_attribute(unit),
+                           number_text(reference));
+    }
+    return lines;
+  }
+
+  /// Into the sections that are there; those that are not are made, together.
+  void insert_variables() {
+    const std::string statics = lines_of_statics(), inputs = lines_of_inputs();
+    std::string sections;
+    if (static_.empty())
+      sections += "    <static>\n" + statics + "    </static>\n";
+    else
+      append(static_, statics);
+    if (inputs_.empty() && !inputs.empty())
+      sections += "    <inputs>\n" + inputs + "    </inputs>\n";
+    else if (!inputs.empty())
+      append(inputs_, inputs);
+    if (!sections.empty()) append(variables_, sections);
+  }
+
+  std::vector<std::pair<std::string, std::string>> names_of_new_inputs() const {
+    std::vector<std::pair<std::string, std::string>> list;
+    for (std::size_t i = 0; i < candidate_.choice.inputs.size(); ++i) {
+      const std::string& name = candidate_.choice.inputs[i];
+      if (machine_.find_input(name)) continue;
+      list.emplace_back(name, i < candidate_.choice.units.size() ? candidate_.choice.units[i] : "");
+    }
+    return list;
+  }
+
+  pugi::xml_node chain_of(bool of_workpiece) const {
+    for (const pugi::xml_node chain : chains_) {
+      bool workpiece = false;
+      for (const pugi::xml_attribute item : chain.attributes())
+        if (equal_no_case(item.name(), "branch")) workpiece = item.value() == std::string("workpiece");
+      if (workpiece == of_workpiece) return chain;
+    }
+    return {};
+  }
+
+  /// The row of the file at a place that is no stand-in.
+  pugi::xml_node node_of(const DofPlace& place) const {
+    // By position: `n` may be left out.
+    std::size_t index = !place.workpiece && is_stand_in(machine_, {false, 0, 0}) ? 1 : 0;
+    for (const pugi::xml_node node : chain_of(place.workpiece).children())
+      if (node.type() == pugi::node_element && index++ == place.transform) return node;
+    throw InputError(
+        fmt::format("{}: transform {} was not found again", machine_.file, transform_at(machine_, place).n));
+  }
+
+  /// Writes the row that stands in at the base: first of the tool branch, last of the workpiece branch.
+  void insert_base_row() {
+    const DofPlace place = candidate_.terms[0].place;
+    const std::string row = fmt::format("<sixdof n=\"{}\"{}/>", transform_at(machine_, place).n, base_row_);
+    if (place.workpiece) return append(chain_of(true), "    " + row + "\n");
+    const std::size_t first = offset(node_of({false, 1, 0})) - 1;
+    const std::size_t line = text_.rfind('\n', first) + 1;  // 0 on the first line
+    const bool alone = text_.find_first_not_of(" \t", line) == first;
+    edits_.push_back({first, 0, row + (alone ? "\n" + text_.substr(line, first - line) : "")});
+  }
+
+  /// Comparisons bind loosest: beside something else they need parentheses.
+  static bool is_comparison(const Expr& expr) {
+    return expr.op == Op::kEqual || expr.op == Op::kLess || expr.op == Op::kGreater;
+  }
+
+  /// The term as it stands in an attribute, beside others or alone.
+  std::string value_of(const CandidateTerm& term) const {
+    const std::string text = in_domain(term.text);
+    const bool open = is_comparison(*parse_expression(text));
+    return escape_attribute(open ? "(" + text + ")" : text);
+  }
+
+  void edit_term(const CandidateTerm& term) {
+    const pugi::xml_node node = node_of(term.place);
+    const std::string name = dof_name(machine_, term.place);
+    const std::string value = value_of(term);
+    const bool closed = !is_comparison(*transform_at(machine_, term.place).dof[term.place.dof]);
+    for (const AttributeSpan& span : attribute_spans(text_, offset(node))) {
+      if (!equal_no_case(span.name, name)) continue;
+      const std::string before = text_.substr(span.value_at, span.value_size);
+      const auto number = parse_number(before);
+      if (before.empty() || (number && *number == 0))
+        edits_.push_back({span.value_at, span.value_size, value});
+      else {
+        if (!closed) edits_.push_back({span.value_at, 0, "("});
+        edits_.push_back({span.value_at + span.value_size, 0,
+                          (closed ? "" : ")") + std::string(value[0] == '-' ? "" : "+") + value});
+      }
+      return;
+    }
+    edits_.push_back({end_of_attributes(text_, offset(node)), 0, " " + name + "=\"" + value + "\""});
+  }
+
+  const std::string& text_;
+  const Machine& machine_;
+  const Candidate& candidate_;
+  std::string domain_name_;
+  std::vector<std::pair<std::string, std::string>> domain_;  // quantity and unit; empty: not learned
+  pugi::xml_document document_;
+  pugi::xml_node variables_, static_, inputs_;
+  std::vector<pugi::xml_node> chains_;
+  std::string base_row_;  // attributes of the row to write
+  std::vector<TextEdit> edits_;
+};
+
+}  // namespace
+
+std::string add_to_machine_text(const std::string& text, const Machine& machine, const Candidate& candidate) {
+  return Adder(text, machine, candidate).add();
+}
+
+}  // namespace vernier

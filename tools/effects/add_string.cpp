@@ -1,0 +1,349 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+
+#include "tools/effects/candidate.h"
+#include "tools/text/error.h"
+#include "tools/text/numbers.h"
+#include "tools/text/xml_text.h"
+
+namespace vernier {
+namespace {
+
+/// A value as it stands in an add string: the characters that the string itself uses are written %XX.
+std::string quote(const std::string& value) {
+  std::string text;
+  for (const char c : value) {
+    if (c == ',' || c == '%' || c == '=' || c == '|' || c == ':' || c == '"' || c == ' ' || c == '\'')
+      text += fmt::format("%{:02X}", static_cast<unsigned char>(c));
+    else
+      text += c;
+  }
+  return text;
+}
+
+std::string unquote(const std::string& text) {
+  std::string value;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto is_hex = [&](std::size_t at) {
+      return at < text.size() && std::isxdigit(static_cast<unsigned char>(text[at])) != 0;
+    };
+    if (text[i] != '%' || !is_hex(i + 1) || !is_hex(i + 2)) {
+      value += text[i];
+      continue;
+    }
+    const auto digit = [](char c) { return c <= '9' ? c - '0' : (c | 0x20) - 'a' + 10; };
+    value += static_cast<char>(digit(text[i + 1]) * 16 + digit(text[i + 2]));
+    i += 2;
+  }
+  return value;
+}
+
+bool asks_for(const EffectForm& form, const char* mark) { return form.term.find(mark) != std::string::npos; }
+
+bool has_range(const EffectForm& form) {
+  return asks_for(form, "{hats") || asks_for(form, "{mid}") || asks_for(form, "{from}") ||
+         asks_for(form, "{to}") || asks_for(form, "{span}");
+}
+
+/// input, input2, input3 ...
+std::string numbered(const std::string& key, std::size_t i) {
+  return i == 0 ? key : key + std::to_string(i + 1);
+}
+
+std::string quoted_list(const std::vector<std::string>& list) {
+  std::string text;
+  for (const std::string& item : list) text += (text.empty() ? "" : "|") + quote(item);
+  return text;
+}
+
+/// Reads one add string against a machine.
+class AddReader {
+ public:
+  AddReader(const std::string& text, const Machine& machine, const std::vector<Effect>& effects)
+      : text_(text), machine_(machine), axes_(machine), effects_(effects) {}
+
+  Choice read() {
+    split();
+    find_effect();
+    read_axes();
+    read_inputs();
+    read_place();
+    choose_form();
+    fill_place();
+    read_numbers();
+    if (!used_all()) fail(unused(), "not a key of an effect to add");
+    return choice_;
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& word, const std::string& what) const {
+    throw InputError("\"" + text_ + "\": \"" + word + "\": " + what);
+  }
+
+  void split() {
+    const auto colon = text_.find(':');
+    id_ = text_.substr(0, colon);
+    std::string rest = colon == std::string::npos ? std::string() : text_.substr(colon + 1);
+    while (!rest.empty()) {
+      if (rest.rfind("term=", 0) == 0) {  // an expression may hold commas: it is the last one
+        values_["term"] = rest.substr(5);
+        break;
+      }
+      const auto comma = rest.find(',');
+      const std::string item = rest.substr(0, comma);
+      const auto equals = item.find('=');
+      if (equals == std::string::npos || equals == 0) fail(item, "expected KEY=VALUE");
+      const std::string key = item.substr(0, equals), value = item.substr(equals + 1);
+      // Labels of runs are quoted one by one, for what stands between them is a character that they may hold.
+      if (!values_.emplace(key, key == "runs" ? value : unquote(value)).second)
+        fail(item.substr(0, equals), "this key stands twice");
+      rest = comma == std::string::npos ? std::string() : rest.substr(comma + 1);
+    }
+  }
+
+  std::optional<std::string> take(const std::string& key) {
+    const auto found = values_.find(key);
+    if (found == values_.end()) return std::nullopt;
+    taken_.push_back(key);
+    return found->second;
+  }
+  bool used_all() const { return taken_.size() == values_.size(); }
+  std::string unused() const {
+    for (const auto& [key, value] : values_)
+      if (std::find(taken_.begin(), taken_.end(), key) == taken_.end()) return key;
+    return {};
+  }
+
+  void find_effect() {
+    if (id_ == custom_effect().id) {
+      choice_.effect = &custom_effect();
+      const auto term = take("term");
+      if (!term) fail(id_, "needs term=EXPRESSION with the unknown k");
+      choice_.term = *term;
+      return;
+    }
+    for (const Effect& effect : effects_)
+      if (effect.id == id_) choice_.effect = &effect;
+    if (choice_.effect == nullptr) fail(id_, "unknown effect (`vernier effects` lists them)");
+  }
+
+  void read_axes() {
+    for (auto [key, target] : {std::pair{"axis", &choice_.axis}, std::pair{"axis2", &choice_.axis2}})
+      if (const auto name = take(key)) {
+        *target = machine_.find_axis(*name);
+        if (!*target) fail(*name, "the machine has no such axis");
+      }
+  }
+
+  void read_inputs() {
+    for (const char* key : {"input", "input2", "input3"})
+      if (const auto name = take(key)) {
+        if (!is_name(*name)) fail(*name, "not a name");
+        if (is_reserved_word(*name)) fail(*name, "this name is reserved");
+        choice_.inputs.push_back(*name);
+        const auto known = machine_.find_input(*name);
+        if (!known && resolve_name(machine_, *name).kind != SymbolKind::kUnresolved)
+          fail(*name, "this name is taken by something that is no input");
+        choice_.units.push_back(known ? machine_.inputs[*known].unit : "");
+      }
+    const auto unit = take("unit");
+    for (std::size_t i = 0; i < choice_.units.size(); ++i) {
+      const auto own = i == 0 ? unit : take("unit" + std::to_string(i + 1));
+      if (choice_.units[i].empty()) choice_.units[i] = own.value_or(unit.value_or(""));
+    }
+  }
+
+  /// The transform that branch and transform name; nothing where the string says nothing of it.
+  std::optional<DofPlace> named_transform() {
+    const auto branch = take("branch"), number = take("transform");
+    if (branch && *branch != "tool" && *branch != "workpiece") fail(*branch, "expected tool or workpiece");
+    branch_ = branch;
+    if (!number) return std::nullopt;
+    for (const bool workpiece : {false, true}) {
+      if (branch && (*branch == "workpiece") != workpiece) continue;
+      const auto& list = workpiece ? machine_.workpiece : machine_.tool;
+      for (std::size_t i = 0; i < list.size(); ++i)
+        if (std::to_string(list[i].n) == *number) return DofPlace{workpiece, i, 0};
+    }
+    fail(*number, "the machine has no such transform");
+  }
+
+  void read_place() {
+    transform_ = named_transform();
+    dof_ = take("dof");
+    if (!transform_ && dof_ && choice_.axis) transform_ = axes_.own(*choice_.axis);
+    if (!transform_ && dof_) {
+      const std::vector<DofPlace> base = base_places(machine_);
+      if (!base.empty()) transform_ = base[0];
+    }
+    if (!transform_) return;
+    if (branch_ && (*branch_ == "workpiece") != transform_->workpiece)
+      fail(*branch_, "which transform of this branch? transform=N");
+    if (dof_) {
+      const Transform& at = transform_at(machine_, *transform_);
+      for (std::size_t d = 0; d < at.dof_count(); ++d)
+        if (equal_no_case(at.dof_name(d), *dof_))
+          choice_.place = DofPlace{transform_->workpiece, transform_->transform, d};
+      if (!choice_.place) fail(*dof_, "not a degree of freedom of this transform");
+    }
+    const auto driver = choice_.axis ? std::nullopt : axes_.axis_of(*transform_);
+    default_axis_ = driver;
+  }
+
+  /// Does a form go with what has been said?
+  bool fits(const EffectForm& form) const {
+    const std::size_t inputs = asks_for(form, "{S}")                                                     ? 2
+                               : asks_for(form, "{T}") || asks_for(form, "{L}") || asks_for(form, "{F}") ? 1
+                                                                                                         : 0;
+    if (inputs != choice_.inputs.size()) return false;
+    const std::optional<std::size_t> axis = choice_.axis ? choice_.axis : default_axis_;
+    if ((form.place == PlaceRule::kPair) != choice_.axis2.has_value()) return false;
+    if (!choice_.place) return true;
+    if (!acts_at_one(form)) return false;
+    const bool angle = is_angle(machine_, *choice_.place);
+    const bool at_own = axis && axes_.is_own(*axis, *choice_.place);
+    switch (form.place) {
+      case PlaceRule::kOwn:
+      case PlaceRule::kJoint:
+        return at_own;
+      case PlaceRule::kCross:
+        return !angle && !at_own;
+      case PlaceRule::kTurn:
+      case PlaceRule::kAngle:
+      case PlaceRule::kBaseTurn:
+        return angle;
+      case PlaceRule::kLength:
+      case PlaceRule::kBase:
+        return !angle;
+      default:
+        return true;
+    }
+  }
+
+  void choose_form() {
+    const auto label = take("form");
+    if (choice_.effect == &custom_effect()) {
+      choice_.form = &custom_effect().forms[0];
+      return;
+    }
+    for (const EffectForm& form : choice_.effect->forms) {
+      if (label ? form.label != *label : !fits(form)) continue;
+      choice_.form = &form;
+      return;
+    }
+    if (label) fail(*label, "this effect has no such form");
+    fail(id_, "no form of this effect goes with these inputs and this degree of freedom");
+  }
+
+  static bool acts_at_one(const EffectForm& form) {
+    return form.place != PlaceRule::kEachAxis && form.place != PlaceRule::kPair &&
+           form.place != PlaceRule::kNormal;
+  }
+
+  void fill_place() {
+    const bool needs_axis = asks_for(*choice_.form, "{q}") || asks_for(*choice_.form, "{hats");
+    if (needs_axis && !choice_.axis) choice_.axis = default_axis_;
+    if (!acts_at_one(*choice_.form)) {
+      if (transform_ || dof_)
+        fail(dof_.value_or("transform"), "this form acts at several degrees of freedom, say none");
+      return;
+    }
+    if (choice_.place) return;
+    const bool own = choice_.form->place == PlaceRule::kOwn || choice_.form->place == PlaceRule::kJoint;
+    if (own && choice_.axis) choice_.place = axes_.own(*choice_.axis);
+    if (!choice_.place) fail(id_, "needs branch, transform and dof: where does it act?");
+  }
+
+  double number(const std::string& key, const std::string& text) const {
+    const auto value = parse_number(text);
+    if (!value) fail(key + "=" + text, "expected a number");
+    return *value;
+  }
+
+  void read_numbers() {
+    if (const auto text = take("reference")) choice_.reference = number("reference", *text);
+    if (const auto text = take("sum")) choice_.sum = *text;
+    if (choice_.sum.empty() && choice_.axis) choice_.sum = machine_.axes[*choice_.axis].name;
+    if (choice_.axis) {
+      const Axis& axis = machine_.axes[*choice_.axis];
+      choice_.from = axis.min.value_or(0);
+      choice_.to = axis.max.value_or(0);
+    }
+    if (const auto text = take("from")) choice_.from = number("from", *text);
+    if (const auto text = take("to")) choice_.to = number("to", *text);
+    if (choice_.effect != &custom_effect() && has_range(*choice_.form) && !(choice_.to > choice_.from))
+      fail(id_, "needs from and to: the axis has no range of its own");
+    if (const auto runs = take("runs")) {
+      std::string label;
+      for (const char c : *runs + "|") {
+        if (c == '|') {
+          choice_.runs.push_back(unquote(label));
+          label.clear();
+        } else {
+          label += c;
+        }
+      }
+    }
+    for (const auto& [key, value] : values_) {
+      if (key.rfind("start.", 0) != 0) continue;
+      const std::string name = key.substr(6);
+      if (choice_.effect->find_unknown(name) == nullptr) fail(name, "this effect has no such unknown");
+      choice_.start[name] = number(key, value);
+      taken_.push_back(key);
+    }
+  }
+
+  const std::string& text_;
+  const Machine& machine_;
+  AxisPlaces axes_;
+  const std::vector<Effect>& effects_;
+  std::string id_;
+  std::map<std::string, std::string> values_;
+  std::vector<std::string> taken_;
+  std::optional<DofPlace> transform_;
+  std::optional<std::string> dof_, branch_;
+  std::optional<std::size_t> default_axis_;
+  Choice choice_;
+};
+
+}  // namespace
+
+std::string add_string(const Machine& machine, const Candidate& candidate) {
+  const Choice& c = candidate.choice;
+  std::string text = c.effect->id;
+  char separator = ':';
+  const auto put = [&](const std::string& key, const std::string& value) {
+    text += separator + key + "=" + value;
+    separator = ',';
+  };
+  const bool custom = c.effect == &custom_effect();
+  if (c.axis) put("axis", machine.axes[*c.axis].name);
+  if (c.axis2) put("axis2", machine.axes[*c.axis2].name);
+  for (std::size_t i = 0; i < c.inputs.size(); ++i) put(numbered("input", i), c.inputs[i]);
+  if (c.place) {
+    put("branch", c.place->workpiece ? "workpiece" : "tool");
+    put("transform", std::to_string(transform_at(machine, *c.place).n));
+    put("dof", dof_name(machine, *c.place));
+  }
+  if (c.reference) put("reference", number_text(*c.reference));
+  for (std::size_t i = 0; i < c.units.size(); ++i)
+    if (!c.units[i].empty()) put(numbered("unit", i), quote(c.units[i]));
+  if (!custom) put("form", c.form->label);
+  if (!custom && asks_for(*c.form, "{sum}")) put("sum", c.sum);
+  if (!custom && has_range(*c.form)) {
+    put("from", number_text(c.from));
+    put("to", number_text(c.to));
+  }
+  if (!c.runs.empty()) put("runs", quoted_list(c.runs));
+  for (const auto& [name, value] : c.start) put("start." + name, number_text(value));
+  if (custom) put("term", c.term);
+  return text;
+}
+
+Choice parse_add_string(const std::string& text, const Machine& machine, const std::vector<Effect>& effects) {
+  return AddReader(text, machine, effects).read();
+}
+
+}  // namespace vernier

@@ -1,0 +1,273 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+#include <sstream>
+
+#include "tools/effects/catalogue.h"
+#include "tools/model/expression.h"
+#include "tools/text/error.h"
+#include "tools/text/files.h"
+#include "tools/text/numbers.h"
+
+namespace vernier {
+
+extern const char* const kBuiltInCatalogue;  // the text of catalogue.txt
+
+namespace {
+
+constexpr std::array<const char*, 12> kPlaceNames = {
+    "own", "cross", "turn", "length", "angle", "base", "baseturn", "sag", "joint", "each", "pair", "normal"};
+
+/// Reads one catalogue, line by line.
+class CatalogueReader {
+ public:
+  explicit CatalogueReader(const std::string& file) : file_(file) {}
+
+  std::vector<Effect> read(const std::string& text) {
+    std::istringstream lines(text);
+    std::string line;
+    while (std::getline(lines, line)) {
+      ++line_;
+      if (!line.empty() && line.back() == '\r') line.pop_back();
+      const auto first = line.find_first_not_of(" \t");
+      if (first != std::string::npos && line[first] != '#') take(line.substr(first));
+    }
+    if (!effects_.empty()) check(effects_.back());
+    return std::move(effects_);
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& word, const std::string& what) const {
+    fail_at(line_, word, what);
+  }
+  [[noreturn]] void fail_at(std::size_t line, const std::string& word, const std::string& what) const {
+    throw InputError(Place{file_, line}, word, what);
+  }
+
+  static std::string next_word(std::string& rest) {
+    const auto end = rest.find_first_of(" \t");
+    std::string word = rest.substr(0, end);
+    const auto begin = end == std::string::npos ? end : rest.find_first_not_of(" \t", end);
+    rest = begin == std::string::npos ? std::string() : rest.substr(begin);
+    return word;
+  }
+
+  void take(std::string rest) {
+    const std::string key = next_word(rest);
+    if (key == "effect") return begin(rest);
+    if (effects_.empty()) fail(key, "an entry begins with a line \"effect ID\"");
+    Effect& now = effects_.back();
+    if (rest.empty()) fail(key, "nothing behind this word");
+    if (key == "title")
+      now.title = rest;
+    else if (key == "formula")
+      now.formula = rest;
+    else if (key == "signature")
+      now.signature = rest;
+    else if (key == "exposed")
+      now.exposed_by = rest;
+    else if (key == "impostors")
+      while (!rest.empty()) now.impostors.push_back(next_word(rest));
+    else if (key == "rare")
+      now.rare = true;
+    else if (key == "cause")
+      now.cause = next_word(rest);
+    else if (key == "seldom")
+      take_seldom(now, rest);
+    else if (key == "form")
+      take_form(now, rest);
+    else if (key == "unknown")
+      take_unknown(now, rest);
+    else
+      fail(key,
+           "expected effect, title, formula, signature, exposed, impostors, rare, cause, seldom, form or "
+           "unknown");
+  }
+
+  void begin(const std::string& id) {
+    if (!effects_.empty()) check(effects_.back());
+    if (id.empty() || id.find_first_of(" \t:,=") != std::string::npos) fail(id, "not an effect id");
+    for (const Effect& other : effects_)
+      if (other.id == id) fail(id, "this effect stands twice");
+    effects_.push_back({});
+    effects_.back().id = id;
+    first_line_ = line_;
+    form_line_.clear();
+  }
+
+  void take_form(Effect& effect, std::string rest) {
+    EffectForm form;
+    form.label = next_word(rest);
+    const std::string place = next_word(rest);
+    const auto found = std::find(kPlaceNames.begin(), kPlaceNames.end(), place);
+    if (found == kPlaceNames.end()) fail(place, "not a place (own, cross, turn, length, angle, base, ...)");
+    if (rest.empty()) fail(form.label, "a form is \"form LABEL PLACE TERM\"");
+    form.place = static_cast<PlaceRule>(found - kPlaceNames.begin());
+    form.term = rest;
+    for (const EffectForm& other : effect.forms)
+      if (other.label == form.label) fail(form.label, "this form stands twice");
+    effect.forms.push_back(form);
+    form_line_.push_back(line_);
+  }
+
+  void take_seldom(Effect& effect, std::string rest) const {
+    while (!rest.empty()) {
+      const std::string label = next_word(rest);
+      const auto form = std::find_if(effect.forms.begin(), effect.forms.end(),
+                                     [&](const EffectForm& f) { return f.label == label; });
+      if (form == effect.forms.end()) fail(label, "no form of this label stands above");
+      form->rare = true;
+    }
+  }
+
+  void take_unknown(Effect& effect, std::string rest) {
+    UnknownRule rule;
+    rule.name = next_word(rest);
+    if (!is_name(rule.name) || is_reserved_word(rule.name)) fail(rule.name, "not a name for an unknown");
+    if (effect.find_unknown(rule.name) != nullptr) fail(rule.name, "this unknown stands twice");
+    rule.unit = next_word(rest);
+    const std::string kind = next_word(rest);
+    const auto number = [&] {
+      const std::string word = next_word(rest);
+      const auto value = parse_number(word);
+      if (!value) fail(word, "expected a number");
+      return *value;
+    };
+    if (kind == "linear") {
+      rule.kind = UnknownKind::kLinear;
+      if (!rest.empty()) rule.limit = number();
+    } else if (kind == "time") {
+      rule.kind = UnknownKind::kTime;
+    } else if (kind == "travel") {
+      rule.kind = UnknownKind::kTravel;
+    } else if (kind == "period") {
+      rule.kind = UnknownKind::kPeriod;
+    } else if (kind == "grid") {
+      rule.kind = UnknownKind::kGrid;
+      rule.low = number();
+      rule.high = number();
+      const double count = number();
+      if (!(rule.low > 0 && rule.high > rule.low && count >= 2 && count <= 1000))
+        fail(rule.name, "a grid is \"grid LOW HIGH COUNT\" with 0 < LOW < HIGH and COUNT 2 to 1000");
+      rule.count = static_cast<std::size_t>(count);
+    } else {
+      fail(kind, "expected linear, time, travel, period or grid");
+    }
+    if (!rest.empty()) fail(rest, "nothing more is expected in this line");
+    effect.unknowns.push_back(rule);
+  }
+
+  void check(const Effect& effect) const {
+    if (effect.forms.empty()) fail_at(first_line_, effect.id, "an effect needs a form");
+    if (effect.title.empty() || effect.signature.empty())
+      fail_at(first_line_, effect.id, "title or signature is missing");
+    if (effect.unknowns.empty()) fail_at(first_line_, effect.id, "an effect needs an unknown");
+    std::set<std::string> used;
+    for (std::size_t i = 0; i < effect.forms.size(); ++i) {
+      const std::set<std::string> here = unknowns_of(effect, effect.forms[i], form_line_[i]);
+      if (here.empty())
+        fail_at(form_line_[i], effect.forms[i].term, "the term has no unknown of this effect");
+      used.insert(here.begin(), here.end());
+    }
+    for (const UnknownRule& rule : effect.unknowns)
+      if (!used.contains(rule.name)) fail_at(first_line_, rule.name, "no form uses this unknown");
+  }
+
+  /// The unknowns that a form uses; errors where its term cannot be read.
+  std::set<std::string> unknowns_of(const Effect& effect, const EffectForm& form, std::size_t line) const {
+    std::set<std::string> used;
+    std::string term = filled(form, line, used);
+    const auto bar = term.find('|');
+    if ((bar != std::string::npos) != (form.place == PlaceRule::kPair))
+      fail_at(line, form.term, "a pair has two terms with | between them, other places have one");
+    if (bar != std::string::npos) term = "(" + term.substr(0, bar) + ")+(" + term.substr(bar + 1) + ")";
+    if (used.contains("h") && effect.find_unknown("h") == nullptr)
+      fail_at(line, form.term, "hats and runs need the unknown h");
+    try {
+      walk(*parse_expression(term), [&](const Expr& node) {
+        if (node.op == Op::kSymbol && effect.find_unknown(node.name) != nullptr) used.insert(node.name);
+      });
+    } catch (const ExpressionError& error) {
+      fail_at(line, form.term, error.what());
+    }
+    return used;
+  }
+
+  /// The term with something that an expression may hold in the place of each placeholder.
+  std::string filled(const EffectForm& form, std::size_t line, std::set<std::string>& used) const {
+    static constexpr std::array kNumbers = {"ref", "mid", "from", "to", "span", "sum", "n"};
+    static constexpr std::array kNames = {"q", "T", "S", "L", "F"};
+    std::string text;
+    for (std::size_t at = 0; at < form.term.size(); ++at) {
+      if (form.term[at] == '}') fail_at(line, form.term.substr(at), "} without {");
+      if (form.term[at] != '{') {
+        text += form.term[at];
+        continue;
+      }
+      const auto end = form.term.find('}', at);
+      if (end == std::string::npos) fail_at(line, form.term.substr(at), "{ without }");
+      const std::string mark = form.term.substr(at + 1, end - at - 1);
+      const auto is_mark = [&](const char* known) { return mark == known; };
+      if (std::any_of(kNames.begin(), kNames.end(), is_mark)) {
+        text += "placeholder_" + mark;
+      } else if (mark == "runs" || is_hats(mark)) {
+        used.insert("h");
+        text += "1";
+      } else if (std::any_of(kNumbers.begin(), kNumbers.end(), is_mark)) {
+        text += "1";
+      } else {
+        fail_at(line, "{" + mark + "}", "not a placeholder");
+      }
+      at = end;
+    }
+    return text;
+  }
+
+  static bool is_hats(const std::string& mark) {
+    if (mark.rfind("hats ", 0) != 0) return false;
+    const auto count = parse_number(mark.substr(5));
+    constexpr double kMostHats = 100;
+    return count && *count >= 2 && *count <= kMostHats && *count == std::floor(*count);
+  }
+
+  std::string file_;
+  std::size_t line_ = 0, first_line_ = 0;  // now, and where the entry begins
+  std::vector<std::size_t> form_line_;     // of the entry's forms
+  std::vector<Effect> effects_;
+};
+
+}  // namespace
+
+const UnknownRule* Effect::find_unknown(std::string_view name) const {
+  for (const UnknownRule& rule : unknowns)
+    if (rule.name == name) return &rule;
+  return nullptr;
+}
+
+const char* place_name(PlaceRule rule) { return kPlaceNames[static_cast<std::size_t>(rule)]; }
+
+std::vector<Effect> parse_effects(const std::string& text, const std::string& file) {
+  return CatalogueReader(file).read(text);
+}
+
+const std::vector<Effect>& built_in_effects() {
+  static const std::vector<Effect> effects = parse_effects(kBuiltInCatalogue, "catalogue.txt");
+  return effects;
+}
+
+std::vector<Effect> effect_catalogue(const std::vector<std::string>& files) {
+  std::vector<Effect> all = built_in_effects();
+  for (const std::string& file : files)
+    for (Effect& effect : parse_effects(read_file(file), file)) {
+      const auto same =
+          std::find_if(all.begin(), all.end(), [&](const Effect& e) { return e.id == effect.id; });
+      if (same == all.end())
+        all.push_back(std::move(effect));
+      else
+        *same = std::move(effect);
+    }
+  return all;
+}
+
+}  // namespace vernier

@@ -1,0 +1,17 @@
+#pragma once
+#include <cstdint>
+#include <string_view>
+
+#include "tools/model/machine.h"
+
+namespace vernier {
+
+/// What a logged column is, by its unit (by its name where it has none).
+enum class InputClass : std::uint8_t { kTemperature, kLoad, kFeature, kOther };
+InputClass class_of_input(const Input& input);
+
+/// The temperature at which dimensions are specified (ISO 1), in a unit of temperature: 20 degC or 293.15 K.
+/// tool.
+double standard_reference(std::string_view unit);
+
+}  // namespace vernier

@@ -1,0 +1,17 @@
+#pragma once
+#include <numbers>
+
+/// Factors between the units that tools write: the only place where they stand. Files keep mm, deg, degC and
+/// s; a radian appears only inside a function that needs one.
+namespace vernier {
+
+inline constexpr double kRadPerDeg = std::numbers::pi / 180;
+inline constexpr double kDegPerRad = 180 / std::numbers::pi;
+inline constexpr double kUmPerMm = 1e3;
+inline constexpr double kUradPerDeg = kRadPerDeg * 1e6;
+inline constexpr double kSecondsPerMinute = 60;
+inline constexpr double kMmPerInch = 25.4;  // exact by definition
+/// ISO 1: the temperature at which dimensions are specified.
+inline constexpr double kReferenceDegC = 20;
+
+}  // namespace vernier

@@ -1,0 +1,101 @@
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "tools/maths/factors.h"
+#include "tools/model/prediction.h"
+#include "tools/residual/repeats.h"
+
+namespace vernier {
+namespace {
+
+constexpr int kMostPerSide = 5;
+constexpr double kRowsPerCell = 6;  // wanted, so that a mean says more than a reading
+
+/// Nominal tool points of all rows in the measuring frame, mm.
+Eigen::Matrix3Xd tool_points(const Machine& machine, const Measurement& m) {
+  Measurement probe = m;
+  probe.observations.clear();
+  for (std::size_t row = 0; row < m.rows(); ++row)
+    for (const ObservationKind kind : {ObservationKind::kX, ObservationKind::kY, ObservationKind::kZ})
+      probe.observations.push_back({kind, row, 0});
+  const Eigen::VectorXd points = predict(machine, probe);
+  return Eigen::Map<const Eigen::Matrix3Xd>(points.data(), 3, static_cast<Eigen::Index>(m.rows()));
+}
+
+/// Residual of each row as a vector, mm; `seen` counts the directions that were measured.
+struct RowVectors {
+  Eigen::Matrix3Xd value;
+  std::vector<int> seen;
+};
+
+RowVectors row_vectors(const Measurement& m, const Eigen::VectorXd& residual, const Eigen::Matrix3Xd& point) {
+  RowVectors vectors{Eigen::Matrix3Xd::Zero(3, point.cols()), std::vector<int>(m.rows(), 0)};
+  for (std::size_t i = 0; i < m.observations.size(); ++i) {
+    const Observation& o = m.observations[i];
+    const auto row = static_cast<Eigen::Index>(o.row);
+    if (is_rotation(o.kind) || m.check[o.row] != 0) continue;
+    Eigen::Vector3d direction = Eigen::Vector3d::Zero();
+    if (o.kind == ObservationKind::kLength)
+      direction = (point.col(row) - m.centre.col(row)).normalized();
+    else if (o.kind == ObservationKind::kD)
+      for (Eigen::Index k = 0; k < 3; ++k) direction[k] = m.states.normal[static_cast<std::size_t>(k)][row];
+    else
+      direction[static_cast<Eigen::Index>(o.kind)] = 1;
+    vectors.value.col(row) += residual[static_cast<Eigen::Index>(i)] * direction;
+    ++vectors.seen[o.row];
+  }
+  return vectors;
+}
+
+}  // namespace
+
+std::vector<FailureCell> failure_cells(const Machine& machine, const Measurement& m,
+                                       const Eigen::VectorXd& residual) {
+  const Eigen::Matrix3Xd point = tool_points(machine, m);
+  const RowVectors vectors = row_vectors(m, residual, point);
+  std::vector<Eigen::Index> used;
+  for (std::size_t row = 0; row < m.rows(); ++row)
+    if (vectors.seen[row] > 0) used.push_back(static_cast<Eigen::Index>(row));
+  if (used.size() < 4) return {};
+  Eigen::Vector3d low = point.col(used.front()), high = low;
+  for (const Eigen::Index row : used) {
+    low = low.cwiseMin(point.col(row));
+    high = high.cwiseMax(point.col(row));
+  }
+  const double longest = (high - low).maxCoeff();
+  int sides = 0;
+  for (int k = 0; k < 3; ++k) sides += high[k] - low[k] > 0.02 * longest ? 1 : 0;
+  const int per_side = std::clamp(
+      static_cast<int>(std::pow(static_cast<double>(used.size()) / kRowsPerCell, 1.0 / std::max(1, sides))),
+      1, sides == 1 ? 4 * kMostPerSide : kMostPerSide);
+  struct Sum {
+    Eigen::Vector3d point = Eigen::Vector3d::Zero(), mean = Eigen::Vector3d::Zero();
+    double squares = 0;
+    std::size_t count = 0;
+  };
+  std::map<std::array<int, 3>, Sum> sums;
+  for (const Eigen::Index row : used) {
+    std::array<int, 3> cell{};
+    for (Eigen::Index k = 0; k < 3; ++k)
+      if (high[k] - low[k] > 0.02 * longest)
+        cell[static_cast<std::size_t>(k)] = std::min(
+            per_side - 1, static_cast<int>(per_side * (point(k, row) - low[k]) / (high[k] - low[k])));
+    Sum& sum = sums[cell];
+    sum.point += point.col(row);
+    sum.mean += vectors.value.col(row);
+    sum.squares += vectors.value.col(row).squaredNorm();
+    ++sum.count;
+  }
+  std::vector<FailureCell> cells;
+  for (const auto& [cell, sum] : sums) {
+    const auto n = static_cast<double>(sum.count);
+    FailureCell item{sum.point / n, kUmPerMm * sum.mean / n, 0, sum.count};
+    const double spread = std::max(0.0, sum.squares / n - (sum.mean / n).squaredNorm());
+    item.noise_um = sum.count > 1 ? kUmPerMm * std::sqrt(spread / (n - 1)) : 0;
+    cells.push_back(item);
+  }
+  return cells;
+}
+
+}  // namespace vernier

@@ -1,0 +1,591 @@
+#include "tools/residual/findings.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "tools/maths/chance.h"
+#include "tools/maths/factors.h"
+
+namespace vernier {
+namespace {
+
+constexpr std::size_t kMostFindings = 6;  // of a kind
+/// Another column that explains this part of what the chosen one does is its double.
+constexpr double kAlike = 0.97;
+/// Functions that differ in less than this part of their squared length are one to the eye.
+constexpr double kTellable = 1e-3;
+/// Of the variance: less is not worth a sentence, however certain.
+constexpr double kWorthSaying = 0.002;
+
+/// A term that was taken, with the functions of its own that it brought (a period is no function of the
+/// basis).
+struct Taken {
+  BasisTerm term;
+  std::optional<Period> period;
+  double log_p = 0;
+};
+
+class Search {
+ public:
+  Search(const KindSample& sample, const FindingContext& context)
+      : sample_(sample),
+        context_(context),
+        base_(sample.moments),
+        matrix_(sample.basis->matrix),
+        plain_(sample.weight.cwiseProduct(sample.residual)),
+        held_(sample.held) {
+    base_.least_remainder = kTellable;
+    now_ = base_;
+  }
+
+  std::vector<Taken> run() {
+    quick_ = quick_functions();
+    take_constant();
+    while (taken_.size() < kMostFindings && take_best()) {
+    }
+    prune();
+    if (!constant_needed())
+      std::erase_if(taken_, [](const Taken& one) { return one.term.shape == Shape::kConstant; });
+    return taken_;
+  }
+
+  /// Functions of everything taken but `except`, the constant first; last, what the products need beside them
+  /// so that they stand for nothing but the interaction.
+  FunctionSet others(std::size_t except) const {
+    FunctionSet set{0}, own{0};
+    for (std::size_t i = 0; i < taken_.size(); ++i) {
+      const BasisTerm& term = taken_[i].term;
+      if (term.shape == Shape::kConstant) continue;
+      if (i != except) set.insert(set.end(), term.subject.begin(), term.subject.end());
+      own.insert(own.end(), term.subject.begin(), term.subject.end());
+    }
+    for (const Taken& one : taken_)
+      for (const Eigen::Index f : one.term.adjust)
+        if (std::find(own.begin(), own.end(), f) == own.end()) set.push_back(f);
+    return set;
+  }
+  const Moments& moments() const { return base_; }
+  /// Beyond the constant.
+  Moments centred() const {
+    Moments moments = base_;
+    condition_on(moments, {0});
+    return moments;
+  }
+  const Eigen::VectorXd& held() const { return held_; }
+  const Eigen::MatrixXd& matrix() const { return matrix_; }
+
+ private:
+  std::size_t run_of(std::size_t i) const { return context_.measurement.states.run[sample_.rows[i]]; }
+
+  /// Sum over the pairs of rows `lag` apart within a run, over the sum of squares.
+  double at_lag(const Eigen::VectorXd& f, std::size_t lag) const {
+    double sum = 0;
+    for (std::size_t i = 0; i + lag < sample_.rows.size(); ++i)
+      if (run_of(i) == run_of(i + lag))
+        sum += f[static_cast<Eigen::Index>(i)] * f[static_cast<Eigen::Index>(i + lag)];
+    return sum / f.squaredNorm();
+  }
+
+  /// Functions of the columns that change from row to row: taking them out leaves serial correlation as it
+  /// is.
+  FunctionSet quick_functions() const {
+    constexpr double kQuick = 0.3;
+    FunctionSet set;
+    const std::size_t most = sample_.rows.size() / 4;
+    for (const int order : {1, 2, 4})
+      for (const BasisTerm& term : sample_.basis->terms) {
+        if (term.shape == Shape::kConstant || term.shape == Shape::kProduct || term.order != order) continue;
+        if (set.size() + term.subject.size() > most) continue;
+        const Eigen::VectorXd first = matrix_.col(term.subject.front());
+        if (at_lag((first.array() - first.mean()).matrix(), 1) > kQuick) continue;
+        for (const Eigen::Index f : term.subject)
+          if (std::find(set.begin(), set.end(), f) == set.end()) set.push_back(f);
+      }
+    return set;
+  }
+
+  /// Factor by which serial correlation widens the variance of this curve's coefficient (Bartlett):
+  /// correlation of what is left beside the curve, up to the first lag where it is within chance.
+  double inflation(const Eigen::VectorXd& curve, const FunctionSet& with) const {
+    if (!(curve.squaredNorm() > 0)) return 1;
+    FunctionSet set = with;
+    set.insert(set.end(), quick_.begin(), quick_.end());
+    const Eigen::VectorXd rest = left(set);
+    if (!(rest.squaredNorm() > 0)) return 1;
+    const auto n = static_cast<double>(rest.size());
+    const std::size_t most_lag = std::min<std::size_t>(200, sample_.rows.size() / 4);
+    double factor = 1;
+    for (std::size_t lag = 1; lag <= most_lag; ++lag) {
+      const double correlation = at_lag(rest, lag);
+      if (correlation < 2 / std::sqrt(n)) break;
+      factor += 2 * correlation * at_lag(curve, lag);
+    }
+    return std::max(1.0, factor);
+  }
+
+  Eigen::VectorXd left(const FunctionSet& set) const {
+    const Eigen::VectorXd beta = coefficients(moments(), set);
+    Eigen::VectorXd rest = held_;
+    for (std::size_t i = 0; i < set.size(); ++i)
+      rest -= matrix_.col(set[i]) * beta[static_cast<Eigen::Index>(i)];
+    return rest;
+  }
+
+  /// Judges outliers anew by what was taken, so that a strong effect on few rows is not mistaken for them.
+  void refresh() {
+    for (int pass = 0; pass < 2; ++pass) {
+      const Eigen::VectorXd explained_part = held_ - left(with({}));
+      Eigen::VectorXd rest = plain_ - explained_part;
+      hold_outliers(rest);
+      held_ = explained_part + rest;
+      base_.score = matrix_.transpose() * held_;
+      base_.sum = held_.squaredNorm();
+    }
+    now_ = base_;
+    condition_on(now_, {0});
+    for (const Taken& one : taken_)
+      if (one.term.shape != Shape::kConstant) condition_on(now_, one.term.subject);
+  }
+
+  FunctionSet with(const FunctionSet& functions) const {
+    FunctionSet set = others(taken_.size());
+    set.insert(set.end(), functions.begin(), functions.end());
+    return set;
+  }
+
+  Eigen::VectorXd curve(const BasisTerm& term, const Moments& in) const {
+    FunctionSet set = term.adjust;
+    set.insert(set.end(), term.subject.begin(), term.subject.end());
+    const Eigen::VectorXd beta = coefficients(in, set);
+    Eigen::VectorXd f = Eigen::VectorXd::Zero(sample_.held.size());
+    for (std::size_t i = 0; i < set.size(); ++i)
+      f += matrix_.col(set[i]) * beta[static_cast<Eigen::Index>(i)];
+    return f;
+  }
+
+  double corrected(double log_p) const {
+    return std::min(0.0, log_p + std::log(static_cast<double>(context_.tried)));
+  }
+
+  void take_constant() {
+    const Explained part = explained(now_, {}, {0});
+    const double stretch = inflation(matrix_.col(0), {0});
+    const double p = corrected(log_p(now_, part, stretch));
+    if (p < std::log(context_.least_p))
+      taken_.push_back({{Shape::kConstant, kNoColumn, {}, 0, {0}, {}}, {}, p});
+    condition_on(now_, {0});
+  }
+
+  bool take_best() {
+    struct Option {
+      double log_p;
+      const BasisTerm* term;
+    };
+    std::vector<Option> options;
+    for (const BasisTerm& term : sample_.basis->terms) {
+      if (term.shape == Shape::kConstant) continue;
+      const Explained part = explained(now_, term.adjust, term.subject);
+      if (part.rank > 0) options.push_back({log_p(now_, part), &term});
+    }
+    std::sort(options.begin(), options.end(),
+              [](const Option& a, const Option& b) { return a.log_p < b.log_p; });
+    constexpr std::size_t kMostTries = 8;  // beyond, serial correlation has made chance of all that stand out
+    for (std::size_t i = 0; i < std::min(kMostTries, options.size()); ++i) {
+      const BasisTerm& term = *options[i].term;
+      if (corrected(options[i].log_p) >= std::log(context_.least_p)) break;
+      const double stretch = inflation(curve(term, now_), with(term.subject));
+      const double p = corrected(log_p(now_, explained(now_, term.adjust, term.subject), stretch));
+      if (p >= std::log(context_.least_p)) continue;
+      if (const auto period = better_period(p)) return take_period(*period);
+      taken_.push_back({term, {}, p});
+      refresh();
+      return true;
+    }
+    if (const auto period = better_period(std::log(context_.least_p))) return take_period(*period);
+    return false;
+  }
+
+  struct Found {
+    Period period;
+    std::size_t column;
+    double log_p;
+  };
+
+  /// The strongest sine over an axis, where it is less likely chance than `than`.
+  std::optional<Found> better_period(double than) const {
+    std::optional<Found> best;
+    const Eigen::VectorXd rest = left(with({}));
+    for (std::size_t i = 0; i < context_.columns.size(); ++i) {
+      if (context_.columns[i].kind != ColumnKind::kAxis) continue;
+      const auto period = strongest_period(sample_, context_.columns[i], rest);
+      if (!period) continue;
+      const auto f = sine_functions(i, period->length);
+      const double stretch = inflation(f.first * period->factor[0] + f.second * period->factor[1], with({}));
+      const double p = corrected(log_p(now_, period->part, stretch));
+      if (p < than && (!best || p < best->log_p)) best = Found{*period, i, p};
+    }
+    return best;
+  }
+
+  std::pair<Eigen::VectorXd, Eigen::VectorXd> sine_functions(std::size_t column, double length) const {
+    const auto n = sample_.held.size();
+    Eigen::VectorXd s(n), c(n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const double x = context_.columns[column]
+                           .value[static_cast<Eigen::Index>(sample_.rows[static_cast<std::size_t>(i)])];
+      const double angle = 2 * std::numbers::pi * x / length;
+      s[i] = sample_.weight[i] * std::sin(angle);
+      c[i] = sample_.weight[i] * std::cos(angle);
+    }
+    return {s.normalized(), c.normalized()};
+  }
+
+  /// Is there a mean that lines and parabolas through the columns' own zeros leave over? An error in
+  /// proportion to X has a mean, and is no offset.
+  bool constant_needed() const {
+    const auto n = sample_.held.size();
+    std::vector<Eigen::VectorXd> functions;
+    for (const Taken& one : taken_) {
+      if (one.term.shape == Shape::kConstant) continue;
+      if (one.term.shape != Shape::kLinear) {
+        for (const Eigen::Index f : one.term.subject) functions.emplace_back(matrix_.col(f));
+        continue;
+      }
+      Eigen::VectorXd raw(n);
+      for (Eigen::Index i = 0; i < n; ++i) {
+        const double x = context_.columns[one.term.column]
+                             .value[static_cast<Eigen::Index>(sample_.rows[static_cast<std::size_t>(i)])];
+        raw[i] = std::isnan(x) ? 0 : sample_.weight[i] * x;
+      }
+      functions.push_back(raw.normalized());
+    }
+    Moments small;
+    Eigen::MatrixXd matrix(n, static_cast<Eigen::Index>(functions.size()) + 1);
+    FunctionSet all;
+    for (std::size_t i = 0; i < functions.size(); ++i) {
+      matrix.col(static_cast<Eigen::Index>(i)) = functions[i];
+      all.push_back(static_cast<Eigen::Index>(i));
+    }
+    matrix.rightCols(1) = matrix_.col(0);
+    small.gram = matrix.transpose() * matrix;
+    small.score = matrix.transpose() * held_;
+    small.sum = held_.squaredNorm();
+    small.freedom = sample_.moments.freedom;
+    const Explained part = explained(small, all, {matrix.cols() - 1});
+    return corrected(log_p(small, part)) < std::log(context_.least_p);
+  }
+
+  /// A period becomes two functions of the basis from here on.
+  bool take_period(const Found& found) {
+    const auto [s, c] = sine_functions(found.column, found.period.length);
+    const Eigen::Index first = matrix_.cols();
+    Eigen::MatrixXd both(matrix_.rows(), 2);
+    both << s, c;
+    const Eigen::MatrixXd cross = matrix_.transpose() * both;
+    base_.gram.conservativeResize(first + 2, first + 2);
+    base_.gram.block(0, first, first, 2) = cross;
+    base_.gram.block(first, 0, 2, first) = cross.transpose();
+    base_.gram.block(first, first, 2, 2) = both.transpose() * both;
+    base_.score.conservativeResize(first + 2);
+    base_.score.tail(2) = both.transpose() * held_;
+    matrix_.conservativeResize(Eigen::NoChange, first + 2);
+    matrix_.rightCols(2) = both;
+    BasisTerm term{Shape::kPeriodic, found.column, {}, 0, {first, first + 1}, {}};
+    taken_.push_back({term, found.period, found.log_p});
+    refresh();
+    return true;
+  }
+
+  /// Drops, weakest first, what the others have made superfluous.
+  void prune() {
+    for (bool again = true; again;) {
+      again = false;
+      std::size_t weakest = taken_.size();
+      double most = std::log(context_.least_p);
+      for (std::size_t i = 0; i < taken_.size(); ++i) {
+        if (taken_[i].term.shape == Shape::kConstant) continue;
+        const Explained part = explained(moments(), others(i), taken_[i].term.subject);
+        double p = corrected(log_p(moments(), part));
+        // Too little to be worth a sentence goes before what may be chance.
+        if (part.sum < kWorthSaying * base_.sum) p = 1 - part.sum / base_.sum;
+        if (p <= most) continue;
+        most = p;
+        weakest = i;
+      }
+      if (weakest == taken_.size()) break;
+      taken_.erase(taken_.begin() + static_cast<std::ptrdiff_t>(weakest));
+      again = true;
+    }
+  }
+
+  const KindSample& sample_;
+  const FindingContext& context_;
+  Moments base_;            // with the periods that were taken
+  Moments now_;             // beyond what has been taken
+  Eigen::MatrixXd matrix_;  // as base_
+  Eigen::VectorXd plain_;   // weighted residual
+  Eigen::VectorXd held_;    // with outliers held
+  FunctionSet quick_;
+  std::vector<Taken> taken_;
+};
+
+double adjusted_share(double sum, double rank, double whole, double freedom) {
+  if (!(whole > 0) || freedom - rank <= 0) return 0;
+  return std::clamp(1 - (1 - sum / whole) * freedom / (freedom - rank), 0.0, 1.0);
+}
+
+/// Fills a finding from what was taken: curve, range, runs, sentence.
+class Describer {
+ public:
+  Describer(const KindSample& sample, const FindingContext& context, const Search& search,
+            const std::vector<Taken>& taken)
+      : sample_(sample), context_(context), search_(search), taken_(taken) {
+    FunctionSet all = search.others(taken.size());
+    const Eigen::VectorXd beta = coefficients(search.moments(), all);
+    rest_ = search.held();
+    for (std::size_t i = 0; i < all.size(); ++i)
+      rest_ -= search.matrix().col(all[i]) * beta[static_cast<Eigen::Index>(i)];
+    scale_ = is_rotation(sample.kind) ? kUradPerDeg : kUmPerMm;
+    std::size_t from = 1;
+    for (const Taken& one : taken) {
+      Eigen::VectorXd curve = Eigen::VectorXd::Zero(sample.held.size());
+      const bool constant = one.term.shape == Shape::kConstant;
+      for (std::size_t k = 0; k < one.term.subject.size(); ++k)
+        curve += search.matrix().col(one.term.subject[k]) *
+                 beta[static_cast<Eigen::Index>(constant ? 0 : from + k)];
+      if (!constant) from += one.term.subject.size();
+      curves_.push_back(curve);
+    }
+  }
+
+  Finding finding(std::size_t at) const {
+    const Taken& one = taken_[at];
+    Finding f;
+    SentenceFacts facts;
+    f.observation = sample_.name();
+    f.shape = one.term.shape;
+    f.p_value = std::exp(one.log_p);
+    shares(at, f);
+    const Eigen::VectorXd curve = scale_ * curves_[at].cwiseQuotient(sample_.weight);
+    const double mean = one.term.shape == Shape::kConstant ? 0 : curve.mean();
+    f.rms_um = std::sqrt((curve.array() - mean).square().mean());
+    f.low_um = curve.minCoeff() - mean;
+    f.high_um = curve.maxCoeff() - mean;
+    if (one.period) f.period = one.period->length;
+    if (one.term.shape == Shape::kPeriodic && !one.period) f.period = 360.0 / one.term.order;
+    if (one.term.shape != Shape::kConstant) {
+      f.column = context_.columns[one.term.column].name;
+      facts.unit = context_.columns[one.term.column].unit;
+      if (one.term.second) {
+        f.second_column = context_.columns[*one.term.second].name;
+        facts.second_unit = context_.columns[*one.term.second].unit;
+      }
+      along(one.term, (curve.array() - mean).matrix(), facts);
+      alike(at, f);
+    }
+    by_run(at, f, facts);
+    f.sentence = sentence_of(f, facts);
+    return f;
+  }
+
+ private:
+  void shares(std::size_t at, Finding& f) const {
+    const Taken& one = taken_[at];
+    if (one.term.shape == Shape::kConstant) {
+      const Moments& m = search_.moments();
+      f.share_alone = f.share_after = adjusted_share(explained(m, {}, {0}).sum, 1, m.sum, m.freedom);
+      return;
+    }
+    const Moments m = search_.centred();
+    const Explained alone = explained(m, {}, one.term.subject);
+    f.share_alone = adjusted_share(alone.sum, alone.rank, m.sum, m.freedom);
+    const Explained after = explained(search_.moments(), search_.others(at), one.term.subject);
+    f.share_after = m.sum > 0 ? std::clamp(after.sum / m.sum, 0.0, 1.0) : 0;
+  }
+
+  double value(const BasisTerm& term, std::size_t i) const {
+    return context_.columns[term.column].value[static_cast<Eigen::Index>(sample_.rows[i])];
+  }
+
+  /// How the curve runs over its column.
+  void along(const BasisTerm& term, const Eigen::VectorXd& curve, SentenceFacts& facts) const {
+    std::vector<std::pair<double, double>> points;
+    for (std::size_t i = 0; i < sample_.rows.size(); ++i)
+      if (const double x = value(term, i); !std::isnan(x))
+        points.emplace_back(x, curve[static_cast<Eigen::Index>(i)]);
+    std::sort(points.begin(), points.end());
+    facts.low = points.front().first;
+    facts.high = points.back().first;
+    facts.at_low_um = points.front().second;
+    facts.at_high_um = points.back().second;
+    const auto by_height = [](const auto& a, const auto& b) { return a.second < b.second; };
+    facts.highest_at = std::max_element(points.begin(), points.end(), by_height)->first;
+    facts.lowest_at = std::min_element(points.begin(), points.end(), by_height)->first;
+    const double reach = curve.maxCoeff() - curve.minCoeff();
+    facts.monotone = std::abs(facts.at_high_um - facts.at_low_um) > 0.9 * reach;
+    const ColumnKind kind = context_.columns[term.column].kind;
+    facts.time = kind == ColumnKind::kTime || kind == ColumnKind::kVisit;
+    if (kind != ColumnKind::kRun) return;
+    const auto& names = context_.measurement.states.run_names;
+    facts.highest_run = names[static_cast<std::size_t>(facts.highest_at)];
+    facts.lowest_run = names[static_cast<std::size_t>(facts.lowest_at)];
+  }
+
+  static bool shares_column(const BasisTerm& product, const BasisTerm& term) {
+    return !term.second && (product.column == term.column || product.second == term.column);
+  }
+
+  /// Does the curve, as fitted over all runs, hold within each? A run has a say where its own rows would show
+  /// it.
+  void by_run(std::size_t at, Finding& f, SentenceFacts& facts) const {
+    if (f.shape == Shape::kJumps || f.shape == Shape::kConstant || f.column == "run" ||
+        f.second_column == "run")
+      return;
+    const auto& states = context_.measurement.states;
+    struct RunSums {
+      double n = 0, w = 0, c = 0, y = 0, cc = 0, cy = 0, rr = 0;
+    };
+    std::vector<RunSums> sums(states.run_names.size());
+    for (std::size_t i = 0; i < sample_.rows.size(); ++i) {
+      const auto k = static_cast<Eigen::Index>(i);
+      RunSums& s = sums[states.run[sample_.rows[i]]];
+      const double w = sample_.weight[k], c = curves_[at][k] / w;
+      double y = c + rest_[k] / w;
+      for (std::size_t other = 0; other < taken_.size(); ++other)
+        if (other != at && taken_[other].term.second && shares_column(taken_[other].term, taken_[at].term))
+          y += curves_[other][k] / w;
+      s.n += 1, s.w += w * w, s.c += w * w * c, s.y += w * w * y, s.cc += w * w * c * c,
+          s.cy += w * w * c * y;
+      s.rr += rest_[k] * rest_[k];
+    }
+    const double variance = rest_.squaredNorm() / std::max(1.0, sample_.moments.freedom);
+    for (std::size_t run = 0; run < sums.size(); ++run) {
+      const RunSums& s = sums[run];
+      if (s.n < 5) continue;
+      const double cc = s.cc - s.c * s.c / s.w, cy = s.cy - s.c * s.y / s.w;
+      const double spread = std::sqrt(std::max(variance, s.rr / s.n) / std::max(cc, 1e-300));
+      constexpr double kShown = 0.3;  // of the whole effect: beyond, the run's rows cannot show it
+      if (cc <= 0 || spread > kShown) continue;
+      ++f.runs;
+      const double slope = cy / cc;
+      if (slope > 0.4 && slope < 2.5 && slope > 2 * spread)
+        ++f.runs_agreeing;
+      else
+        facts.disagreeing.push_back(states.run_names[run]);
+    }
+    f.in_all_runs = f.runs > 1 && f.runs == f.runs_agreeing;
+  }
+
+  /// Columns of which one term would have done as well.
+  void alike(std::size_t at, Finding& f) const {
+    const Taken& one = taken_[at];
+    const FunctionSet others = search_.others(at);
+    const double own = explained(search_.moments(), others, one.term.subject).sum;
+    for (const BasisTerm& term : sample_.basis->terms) {
+      if (term.shape == Shape::kConstant || term.second || term.column == one.term.column ||
+          term.subject.size() > std::max<std::size_t>(2, one.term.subject.size()))
+        continue;
+      const std::string& name = context_.columns[term.column].name;
+      if (std::find(f.alike.begin(), f.alike.end(), name) != f.alike.end() || name == f.second_column)
+        continue;
+      if (explained(search_.moments(), others, term.subject).sum > kAlike * own) f.alike.push_back(name);
+    }
+  }
+
+  const KindSample& sample_;
+  const FindingContext& context_;
+  const Search& search_;
+  const std::vector<Taken>& taken_;
+  std::vector<Eigen::VectorXd> curves_;  // weighted
+  Eigen::VectorXd rest_;                 // weighted
+  double scale_ = 1;
+};
+
+/// Neighbours in time that agree although every finding is taken out.
+void add_wandering(const KindSample& sample, const FindingContext& context, const Search& search,
+                   const std::vector<Taken>& taken, std::vector<Finding>& findings) {
+  const FunctionSet all = search.others(taken.size());
+  const Eigen::VectorXd beta = coefficients(search.moments(), all);
+  Eigen::VectorXd rest = search.held();
+  for (std::size_t i = 0; i < all.size(); ++i)
+    rest -= search.matrix().col(all[i]) * beta[static_cast<Eigen::Index>(i)];
+  PairTest best;
+  for (const std::size_t phase : {0u, 1u}) {
+    const PairTest test = serial_pairs(sample, context.measurement, rest, phase);
+    if (test.log_p < best.log_p) best = test;
+  }
+  const double p = std::exp(std::min(0.0, best.log_p + std::log(static_cast<double>(context.tried))));
+  if (p >= context.least_p || best.correlation < 0.15) return;
+  Finding f;
+  f.observation = sample.name();
+  f.column = "visit";
+  f.shape = Shape::kWanders;
+  f.p_value = p;
+  const double scale = is_rotation(sample.kind) ? kUradPerDeg : kUmPerMm;
+  // The part that a row shares with the next one.
+  f.share_alone = f.share_after =
+      std::clamp(best.correlation * rest.squaredNorm() / search.centred().sum, 0.0, 1.0);
+  f.rms_um = scale * std::sqrt(best.correlation * rest.cwiseQuotient(sample.weight).squaredNorm() /
+                               static_cast<double>(rest.size()));
+  SentenceFacts facts;
+  facts.at_low_um = best.correlation;
+  f.sentence = sentence_of(f, facts);
+  findings.push_back(f);
+}
+
+void add_shares(const KindSample& sample, const FindingContext& context, const Search& search,
+                const std::vector<Taken>& taken, std::vector<ColumnShare>& shares) {
+  const Moments centred = search.centred();
+  for (std::size_t column = 0; column < context.columns.size(); ++column) {
+    FunctionSet others{0};
+    for (const Taken& one : taken)
+      if (one.term.column != column && one.term.second.value_or(kNoColumn) != column)
+        others.insert(others.end(), one.term.subject.begin(), one.term.subject.end());
+    ColumnShare share{sample.name(), context.columns[column].name, 0, 0, 1};
+    double least = 0;
+    bool any = false;
+    for (const BasisTerm& term : sample.basis->terms) {
+      if (term.column != column || term.second || term.shape == Shape::kConstant) continue;
+      any = true;
+      const Moments& m = centred;
+      const Explained alone = explained(m, {}, term.subject);
+      share.share_alone =
+          std::max(share.share_alone, adjusted_share(alone.sum, alone.rank, m.sum, m.freedom));
+      least = std::min(least, log_p(m, alone));
+      const Explained after = explained(search.moments(), others, term.subject);
+      const double left = search.moments().sum - after.sum_before;
+      share.share_after =
+          std::max(share.share_after, adjusted_share(after.sum, after.rank, left, m.freedom) * left / m.sum);
+    }
+    if (!any) continue;
+    share.p_value = std::exp(std::min(0.0, least + std::log(static_cast<double>(context.tried))));
+    shares.push_back(share);
+  }
+}
+
+}  // namespace
+
+std::size_t count_tried(const KindSample& sample, const std::vector<RecordedColumn>& columns) {
+  std::size_t count = sample.basis->terms.size();
+  for (const RecordedColumn& column : columns) {
+    if (column.kind != ColumnKind::kAxis) continue;
+    if (const auto period = strongest_period(sample, column, sample.held)) count += period->tried;
+  }
+  return count;
+}
+
+std::vector<Finding> find_structure(const KindSample& sample, const FindingContext& context,
+                                    std::vector<ColumnShare>& shares) {
+  Search search(sample, context);
+  const std::vector<Taken> taken = search.run();
+  const Describer describer(sample, context, search, taken);
+  std::vector<Finding> findings;
+  for (std::size_t i = 0; i < taken.size(); ++i) findings.push_back(describer.finding(i));
+  add_wandering(sample, context, search, taken, findings);
+  add_shares(sample, context, search, taken, shares);
+  return findings;
+}
+
+}  // namespace vernier

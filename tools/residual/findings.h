@@ -1,0 +1,38 @@
+#pragma once
+#include <vector>
+
+#include "tools/residual/sample.h"
+
+namespace vernier {
+
+/// What is fixed for all kinds of a search for findings.
+struct FindingContext {
+  const Measurement& measurement;
+  const std::vector<RecordedColumn>& columns;
+  std::size_t tried = 1;  // terms and frequencies, all kinds: the factor of every p-value
+  double least_p = 0.01;  // corrected; a finding must stay below
+};
+
+/// Terms and frequencies that a search over this sample tries. tool.
+std::size_t count_tried(const KindSample& sample, const std::vector<RecordedColumn>& columns);
+
+/// Takes the most significant term, then the most significant one beside it, and so on; drops those that the
+/// others make superfluous. Sentences are filled in. Shares of every column go to `shares`. tool.
+std::vector<Finding> find_structure(const KindSample& sample, const FindingContext& context,
+                                    std::vector<ColumnShare>& shares);
+
+/// What the sentence of a finding needs beside the finding itself.
+struct SentenceFacts {
+  std::string unit, second_unit;         // of the columns
+  double low = 0, high = 0;              // range of the column
+  double at_low_um = 0, at_high_um = 0;  // the explained curve there
+  double highest_at = 0, lowest_at = 0;  // where the curve is highest and lowest
+  bool monotone = false, time = false;
+  std::string highest_run, lowest_run;
+  std::vector<std::string> disagreeing;  // runs that could show it and do not
+};
+
+/// One sentence in plain English. tool.
+std::string sentence_of(const Finding& finding, const SentenceFacts& facts);
+
+}  // namespace vernier

@@ -1,0 +1,302 @@
+#include "tools/residual/recorded.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "tools/maths/factors.h"
+
+namespace vernier {
+namespace {
+
+constexpr int kMostDegree = 8;
+constexpr std::size_t kMostRuns = 40;  // more are seen through `visit` and `t` only
+constexpr std::size_t kMostRunsOfProducts = 8;
+constexpr double kHalfTurn = 180;
+
+class Recorder {
+ public:
+  Recorder(const std::vector<std::size_t>& rows, std::vector<RecordedColumn>& list)
+      : rows_(rows), list_(list) {}
+
+  void add(const std::string& name, const std::string& unit, ColumnKind kind, const Column& value,
+           bool rotary = false) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const std::size_t row : rows_) {
+      const double v = value[static_cast<Eigen::Index>(row)];
+      if (std::isnan(v)) continue;
+      low = std::min(low, v);
+      high = std::max(high, v);
+    }
+    if (high > low) list_.push_back({name, unit, kind, rotary && high - low >= kHalfTurn, value});
+  }
+
+ private:
+  const std::vector<std::size_t>& rows_;
+  std::vector<RecordedColumn>& list_;
+};
+
+void add_motion(Recorder& recorder, const Machine& machine, const Measurement& m) {
+  const States& s = m.states;
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    const std::string& axis = machine.axes[i].name;
+    const std::string unit = machine.axes[i].rotary ? "deg" : "mm";
+    const auto motion = [&](const std::string& name, const std::string& u, ColumnKind kind, const Column& v) {
+      if (m.has_recorded(name)) recorder.add(name, u, kind, v);
+    };
+    motion("dir" + axis, "", ColumnKind::kDirection, s.direction[i]);
+    motion("v" + axis, unit + "/s", ColumnKind::kMotion, s.velocity[i]);
+    motion("a" + axis, unit + "/s^2", ColumnKind::kMotion, s.acceleration[i]);
+    motion("since" + axis, unit, ColumnKind::kMotion, s.since[i]);
+  }
+  if (m.has_recorded("feed")) recorder.add("feed", "mm/min", ColumnKind::kMotion, s.feed);
+  if (m.has_recorded("curv")) recorder.add("curv", "1/mm", ColumnKind::kMotion, s.curvature);
+}
+
+/// Values of a column on some rows, scaled to -1..1; 0 where not recorded. By rank where they crowd at one
+/// end.
+Eigen::VectorXd scaled(const RecordedColumn& column, const std::vector<std::size_t>& rows, bool may_rank) {
+  std::vector<double> known;
+  for (const std::size_t row : rows) {
+    const double v = column.value[static_cast<Eigen::Index>(row)];
+    if (!std::isnan(v)) known.push_back(v);
+  }
+  std::sort(known.begin(), known.end());
+  const double low = known.front(), high = known.back();
+  const auto to_unit = [&](double v) { return high > low ? 2 * (v - low) / (high - low) - 1 : 0.0; };
+  const bool crowded = std::abs(to_unit(known[known.size() / 2])) > 0.75;
+  Eigen::VectorXd u = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(rows.size()));
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const double v = column.value[static_cast<Eigen::Index>(rows[i])];
+    if (std::isnan(v)) continue;
+    double at = to_unit(v);
+    if (crowded && may_rank) {
+      const auto range = std::equal_range(known.begin(), known.end(), v);
+      at = static_cast<double>((range.first - known.begin()) + (range.second - known.begin())) /
+               static_cast<double>(known.size()) -
+           1;
+    }
+    u[static_cast<Eigen::Index>(i)] = at;
+  }
+  return u;
+}
+
+std::size_t level_count(const RecordedColumn& column, const std::vector<std::size_t>& rows) {
+  std::set<double> levels;
+  for (const std::size_t row : rows) {
+    const double v = column.value[static_cast<Eigen::Index>(row)];
+    if (!std::isnan(v)) levels.insert(v);
+    if (levels.size() > 64) break;
+  }
+  return levels.size();
+}
+
+class Builder {
+ public:
+  Builder(const std::vector<RecordedColumn>& columns, const std::vector<std::size_t>& rows)
+      : columns_(columns), rows_(rows), main_(columns.size()), simple_(columns.size()) {
+    add(Eigen::VectorXd::Ones(static_cast<Eigen::Index>(rows.size())));
+    terms_.push_back({Shape::kConstant, kNoColumn, {}, 0, {0}, {}});
+  }
+
+  void add_column(std::size_t at) {
+    const RecordedColumn& column = columns_[at];
+    if (column.kind == ColumnKind::kRun) return add_runs(at);
+    if (column.kind == ColumnKind::kDirection) return add_direction(at);
+    add_curves(at, scaled(column, rows_, false), scaled(column, rows_, true));
+    if (column.turns) add_harmonics(at);
+    if (column.kind != ColumnKind::kVisit && column.kind != ColumnKind::kTime) add_square(at);
+  }
+
+  void add_pair(std::size_t a, std::size_t b) {
+    if (simple_[a].empty() || simple_[b].empty()) return;
+    BasisTerm term{Shape::kProduct, a, b, 1, {}, main_[a]};
+    term.adjust.insert(term.adjust.end(), main_[b].begin(), main_[b].end());
+    for (const Eigen::Index i : simple_[a])
+      for (const Eigen::Index k : simple_[b]) {
+        const Eigen::VectorXd product = centred(functions_[static_cast<std::size_t>(i)])
+                                            .cwiseProduct(centred(functions_[static_cast<std::size_t>(k)]));
+        if (product.squaredNorm() > 1e-24) term.subject.push_back(add(product));
+      }
+    if (!term.subject.empty()) terms_.push_back(term);
+  }
+
+  Basis finish() {
+    Basis basis;
+    basis.matrix.resize(static_cast<Eigen::Index>(rows_.size()),
+                        static_cast<Eigen::Index>(functions_.size()));
+    for (std::size_t i = 0; i < functions_.size(); ++i)
+      basis.matrix.col(static_cast<Eigen::Index>(i)) = functions_[i];
+    basis.terms = std::move(terms_);
+    return basis;
+  }
+
+ private:
+  static Eigen::VectorXd centred(const Eigen::VectorXd& f) { return (f.array() - f.mean()).matrix(); }
+
+  Eigen::Index add(Eigen::VectorXd f) {
+    const double norm = f.norm();
+    if (norm > 0) f /= norm;
+    functions_.push_back(std::move(f));
+    return static_cast<Eigen::Index>(functions_.size()) - 1;
+  }
+
+  /// line: the values themselves; u: what the curves run over.
+  void add_curves(std::size_t at, const Eigen::VectorXd& line, const Eigen::VectorXd& u) {
+    const auto levels = static_cast<int>(std::min<std::size_t>(level_count(columns_[at], rows_), 64));
+    const int degree = std::min(kMostDegree, levels - 1);
+    std::vector<Eigen::Index> sofar{add(line)};
+    terms_.push_back({Shape::kLinear, at, {}, 1, sofar, {}});
+    if (!columns_[at].turns) simple_[at] = sofar;
+    if ((line - u).squaredNorm() > 0 && degree > 1) sofar.push_back(add(u));
+    main_[at] = sofar;
+    Eigen::VectorXd before = Eigen::VectorXd::Ones(u.size()), now = u;
+    for (int n = 2; n <= degree; ++n) {
+      const Eigen::VectorXd next = ((2 * n - 1) * u.cwiseProduct(now) - (n - 1) * before) / n;
+      before = now;
+      now = next;
+      sofar.push_back(add(now));
+      if (n == 2) main_[at].push_back(sofar.back());
+      if (n == 2 || n == 4 || n == degree) terms_.push_back({Shape::kCurve, at, {}, n, sofar, {}});
+    }
+  }
+
+  void add_harmonics(std::size_t at) {
+    for (int n = 1; n <= 2; ++n) {
+      BasisTerm term{Shape::kPeriodic, at, {}, n, {}, {}};
+      for (const bool sine : {true, false}) {
+        Eigen::VectorXd f(static_cast<Eigen::Index>(rows_.size()));
+        for (std::size_t i = 0; i < rows_.size(); ++i) {
+          const double angle = n * columns_[at].value[static_cast<Eigen::Index>(rows_[i])] * kRadPerDeg;
+          f[static_cast<Eigen::Index>(i)] = sine ? std::sin(angle) : std::cos(angle);
+        }
+        term.subject.push_back(add(f));
+        if (n == 1) {
+          simple_[at].push_back(term.subject.back());
+          main_[at].push_back(term.subject.back());
+        }
+      }
+      terms_.push_back(term);
+    }
+  }
+
+  void add_square(std::size_t at) {
+    if (level_count(columns_[at], rows_) < 3) return;
+    Eigen::VectorXd f(static_cast<Eigen::Index>(rows_.size()));
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      const double v = columns_[at].value[static_cast<Eigen::Index>(rows_[i])];
+      f[static_cast<Eigen::Index>(i)] = std::isnan(v) ? 0 : v * v;
+    }
+    if (f.squaredNorm() > 0) terms_.push_back({Shape::kSquare, at, {}, 2, {add(f)}, {}});
+  }
+
+  void add_direction(std::size_t at) {
+    Eigen::VectorXd odd(static_cast<Eigen::Index>(rows_.size()));
+    for (std::size_t i = 0; i < rows_.size(); ++i)
+      odd[static_cast<Eigen::Index>(i)] = columns_[at].value[static_cast<Eigen::Index>(rows_[i])];
+    const Eigen::VectorXd even = odd.cwiseAbs();
+    const bool senses = odd.minCoeff() < 0 && odd.maxCoeff() > 0;
+    const Eigen::Index first = add(odd);
+    main_[at] = {first};
+    simple_[at] = {first};
+    terms_.push_back({senses ? Shape::kReverses : Shape::kLinear, at, {}, 1, {first}, {}});
+    if (!senses || even.minCoeff() == even.maxCoeff()) return;
+    main_[at].push_back(add(even));
+    terms_.push_back({Shape::kCurve, at, {}, 2, main_[at], {}});
+  }
+
+  void add_runs(std::size_t at) {
+    std::set<double> labels;
+    for (const std::size_t row : rows_) labels.insert(columns_[at].value[static_cast<Eigen::Index>(row)]);
+    if (labels.size() > std::min(kMostRuns, rows_.size() / 4)) return;
+    BasisTerm term{Shape::kJumps, at, {}, 1, {}, {}};
+    for (auto label = std::next(labels.begin()); label != labels.end(); ++label) {
+      Eigen::VectorXd f(static_cast<Eigen::Index>(rows_.size()));
+      for (std::size_t i = 0; i < rows_.size(); ++i)
+        f[static_cast<Eigen::Index>(i)] =
+            columns_[at].value[static_cast<Eigen::Index>(rows_[i])] == *label ? 1 : 0;
+      term.subject.push_back(add(f));
+    }
+    main_[at] = term.subject;
+    if (labels.size() <= kMostRunsOfProducts) simple_[at] = term.subject;
+    terms_.push_back(term);
+  }
+
+  const std::vector<RecordedColumn>& columns_;
+  const std::vector<std::size_t>& rows_;
+  std::vector<Eigen::VectorXd> functions_;
+  std::vector<std::vector<Eigen::Index>> main_, simple_;  // per column: first and second order; for products
+  std::vector<BasisTerm> terms_;
+};
+
+/// Which pairs are worth trying first: positions with one another, then with direction and inputs.
+int pair_rank(const RecordedColumn& a, const RecordedColumn& b) {
+  const auto rank = [](const RecordedColumn& c) {
+    switch (c.kind) {
+      case ColumnKind::kAxis:
+        return 0;
+      case ColumnKind::kDirection:
+        return 1;
+      case ColumnKind::kInput:
+        return 1;
+      case ColumnKind::kTime:
+        return 3;
+      case ColumnKind::kNormal:
+        return 2;
+      case ColumnKind::kMotion:
+        return c.name.starts_with("a") || c.name.starts_with("since") ? 5 : 2;
+      case ColumnKind::kVisit:
+        return 5;
+      case ColumnKind::kRun:
+        break;
+    }
+    return 100;
+  };
+  return rank(a) + rank(b);
+}
+
+}  // namespace
+
+std::vector<RecordedColumn> recorded_columns(const Machine& machine, const Measurement& m,
+                                             const std::vector<std::size_t>& rows) {
+  std::vector<RecordedColumn> list;
+  Recorder recorder(rows, list);
+  const States& s = m.states;
+  for (std::size_t i = 0; i < machine.axes.size(); ++i)
+    recorder.add(machine.axes[i].name, machine.axes[i].rotary ? "deg" : "mm", ColumnKind::kAxis,
+                 commanded(m, i), machine.axes[i].rotary);
+  add_motion(recorder, machine, m);
+  if (m.has_recorded("t")) recorder.add("t", "s", ColumnKind::kTime, s.time);
+  recorder.add("visit", "", ColumnKind::kVisit, s.visit);
+  Column run(static_cast<Eigen::Index>(m.rows()));
+  for (std::size_t row = 0; row < m.rows(); ++row)
+    run[static_cast<Eigen::Index>(row)] = static_cast<double>(s.run[row]);
+  recorder.add("run", "", ColumnKind::kRun, run);
+  for (std::size_t i = 0; i < machine.inputs.size(); ++i)
+    recorder.add(machine.inputs[i].name, machine.inputs[i].unit, ColumnKind::kInput, s.input[i]);
+  for (const CandidateInput& candidate : m.candidates)
+    recorder.add(candidate.name, candidate.unit, ColumnKind::kInput, candidate.value);
+  for (std::size_t k = 0; k < 3; ++k)
+    recorder.add(std::string("n") + "xyz"[k], "", ColumnKind::kNormal, s.normal[k]);
+  return list;
+}
+
+Basis make_basis(const std::vector<RecordedColumn>& columns, const std::vector<std::size_t>& rows) {
+  Builder builder(columns, rows);
+  for (std::size_t i = 0; i < columns.size(); ++i) builder.add_column(i);
+  struct Pair {
+    int rank;
+    std::size_t a, b;
+  };
+  std::vector<Pair> pairs;
+  for (std::size_t a = 0; a < columns.size(); ++a)
+    for (std::size_t b = a + 1; b < columns.size(); ++b)
+      pairs.push_back({pair_rank(columns[a], columns[b]), a, b});
+  std::stable_sort(pairs.begin(), pairs.end(), [](const Pair& p, const Pair& q) { return p.rank < q.rank; });
+  if (pairs.size() > kMostPairs) pairs.resize(kMostPairs);
+  for (const Pair& pair : pairs) builder.add_pair(pair.a, pair.b);
+  return builder.finish();
+}
+
+}  // namespace vernier

@@ -1,0 +1,59 @@
+#pragma once
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "tools/model/machine.h"
+#include "tools/model/measurement.h"
+#include "tools/residual/structure.h"
+
+namespace vernier {
+
+enum class ColumnKind : std::uint8_t {
+  kAxis,
+  kDirection,
+  kMotion,  // v, a, since, feed, curv
+  kTime,
+  kVisit,
+  kRun,  // label; `value` is its index
+  kInput,
+  kNormal,
+};
+
+/// A quantity that was recorded with every row, as the tests see it.
+struct RecordedColumn {
+  std::string name, unit;
+  ColumnKind kind = ColumnKind::kAxis;
+  bool turns = false;  // a rotary axis over at least half a turn
+  Column value;        // of every row; NaN where not recorded
+};
+
+/// The columns that vary over the rows `rows`: axes, recorded motion, t, visit, run, inputs, candidate
+/// inputs, normal. tool.
+std::vector<RecordedColumn> recorded_columns(const Machine& machine, const Measurement& measurement,
+                                             const std::vector<std::size_t>& rows);
+
+/// Columns of a Basis that belong together: what one statement about the residual has as coefficients.
+struct BasisTerm {
+  Shape shape = Shape::kLinear;
+  std::size_t column = 0;             // index into the recorded columns; kNone for the constant
+  std::optional<std::size_t> second;  // of a product
+  int order = 1;                      // of a curve: its degree
+  std::vector<Eigen::Index> subject;  // columns of the matrix
+  std::vector<Eigen::Index> adjust;   // that have their chance first: a product's own two columns
+};
+inline constexpr std::size_t kNoColumn = static_cast<std::size_t>(-1);
+
+/// Smooth functions of the recorded columns on some rows: the constant first, then for each column Legendre
+/// polynomials (directions: odd and even part; runs: one indicator less than there are runs; turning axes:
+/// the first two harmonics too), then products of pairs. Every column has length 1.
+struct Basis {
+  Eigen::MatrixXd matrix;        // rows x functions
+  std::vector<BasisTerm> terms;  // what is tried, in a fixed order
+};
+
+/// At most kMostPairs pairs of columns get products. tool.
+Basis make_basis(const std::vector<RecordedColumn>& columns, const std::vector<std::size_t>& rows);
+inline constexpr std::size_t kMostPairs = 250;
+
+}  // namespace vernier

@@ -1,0 +1,114 @@
+#include "tools/residual/repeats.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "tools/fit/statistics.h"
+#include "tools/maths/chance.h"
+#include "tools/maths/factors.h"
+
+namespace vernier {
+namespace {
+
+constexpr std::size_t kLeastFreedom = 5;  // as noise_um
+
+struct PoseGroup {
+  double weight = 0, mean = 0, squares = 0, plain_mean = 0, plain_squares = 0;
+  std::size_t count = 0;
+
+  /// Running means keep the digits. value: weighted residual; w: 1/u.
+  void add(double value, double w, double plain) {
+    ++count;
+    const double before = value / w - mean, share = w * w / (weight + w * w);
+    weight += w * w;
+    mean += share * before;
+    squares += w * w * before * (value / w - mean);
+    const double step = plain - plain_mean;
+    plain_mean += step / static_cast<double>(count);
+    plain_squares += step * (plain - plain_mean);
+  }
+};
+
+}  // namespace
+
+Repeats compare_repeats(const std::vector<KindSample>& samples, const Measurement& m) {
+  Repeats result;
+  double within = 0, between = 0, within_freedom = 0, between_freedom = 0, plain = 0, plain_total = 0,
+         readings = 0;
+  std::size_t conditions = 0;
+  std::vector<std::vector<double>> of_row(m.rows());
+  for (const KindSample& sample : samples) {
+    std::map<std::vector<double>, PoseGroup> groups;
+    for (std::size_t i = 0; i < sample.rows.size(); ++i) {
+      const auto at = static_cast<Eigen::Index>(i);
+      std::vector<double>& key = of_row[sample.rows[i]];
+      if (key.empty()) key = row_conditions(m, sample.rows[i]);
+      groups[key].add(sample.held[at], sample.weight[at], sample.residual[at]);
+    }
+    double own = 0, own_between = 0;
+    std::size_t freedom = 0;
+    for (const auto& [key, group] : groups) {
+      own += group.squares;
+      own_between += group.weight * group.mean * group.mean;
+      freedom += group.count - 1;
+      if (!is_rotation(sample.kind)) plain += group.plain_squares;
+    }
+    if (is_rotation(sample.kind)) plain += 0;
+    if (freedom == 0) continue;
+    if (!is_rotation(sample.kind)) {
+      result.freedom += freedom;
+      plain_total += sample.residual.squaredNorm();
+      readings += static_cast<double>(sample.rows.size());
+      conditions += groups.size();
+    }
+    // Each kind in units of its own pure error.
+    const double variance = own / static_cast<double>(freedom);
+    if (freedom < kLeastFreedom || variance <= 0) continue;
+    within += own / variance;
+    between += own_between / variance;
+    within_freedom = within_freedom == 0 ? static_cast<double>(freedom)
+                                         : std::min(within_freedom, static_cast<double>(freedom));
+    between_freedom += static_cast<double>(groups.size());
+  }
+  if (within > 0 && between_freedom > 0)
+    result.log_p = log_f_tail(between / between_freedom, between_freedom, within_freedom);
+  if (result.freedom >= kLeastFreedom) {
+    const double pure = plain / static_cast<double>(result.freedom);
+    const double rest = plain_total - plain - static_cast<double>(conditions) * pure;
+    result.pure_error_um = kUmPerMm * std::sqrt(pure);
+    result.lack_of_fit_um = kUmPerMm * std::sqrt(std::max(0.0, rest / readings));
+  }
+  return result;
+}
+
+std::optional<double> neighbour_error_um(const std::vector<KindSample>& samples,
+                                         const std::vector<RecordedColumn>& columns) {
+  std::vector<const RecordedColumn*> place;
+  for (const RecordedColumn& column : columns)
+    if (column.kind != ColumnKind::kTime && column.kind != ColumnKind::kVisit &&
+        column.kind != ColumnKind::kRun)
+      place.push_back(&column);
+  if (place.empty()) return std::nullopt;
+  double squares = 0, count = 0;
+  std::map<std::vector<std::size_t>, std::vector<std::pair<std::size_t, std::size_t>>> pairs_of;
+  for (const KindSample& sample : samples) {
+    if (is_rotation(sample.kind)) continue;
+    auto found = pairs_of.find(sample.rows);
+    if (found == pairs_of.end()) found = pairs_of.emplace(sample.rows, neighbour_pairs(sample, place)).first;
+    // The closer half: the rest of a greedy pairing is far apart.
+    const std::size_t half = found->second.size() / 2;
+    for (std::size_t i = 0; i < half; ++i) {
+      const auto& [a, b] = found->second[i];
+      squares += std::pow(sample.residual[static_cast<Eigen::Index>(a)] -
+                              sample.residual[static_cast<Eigen::Index>(b)],
+                          2) /
+                 2;
+      count += 1;
+    }
+  }
+  if (count < 10) return std::nullopt;
+  return kUmPerMm * std::sqrt(squares / count);
+}
+
+}  // namespace vernier

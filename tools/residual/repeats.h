@@ -1,0 +1,30 @@
+#pragma once
+#include <Eigen/Core>
+#include <optional>
+
+#include "tools/residual/sample.h"
+
+namespace vernier {
+
+/// Spread of rows at equal conditions against what is left between conditions (lack of fit; Draper and Smith,
+/// Applied Regression Analysis, 3rd ed., section 2.1).
+struct Repeats {
+  std::size_t freedom = 0;                              // of the pure error, all lengths
+  std::optional<double> pure_error_um, lack_of_fit_um;  // at least 5 degrees of freedom
+  std::optional<double> log_p;                          // all kinds together
+};
+
+/// tool.
+Repeats compare_repeats(const std::vector<KindSample>& samples, const Measurement& measurement);
+
+/// Spread of the residual from the nearest pairs of rows in all columns but time and order, um: an upper
+/// bound of the noise. Lengths only; nothing with fewer than 10 pairs. tool.
+std::optional<double> neighbour_error_um(const std::vector<KindSample>& samples,
+                                         const std::vector<RecordedColumn>& columns);
+
+/// Mean residual vectors over at most 5 x 5 x 5 parts of the volume (lengths: x y z as such, `length` along
+/// the bar, `d` along its normal). residual: mm or deg, one per observation. tool.
+std::vector<FailureCell> failure_cells(const Machine& machine, const Measurement& measurement,
+                                       const Eigen::VectorXd& residual);
+
+}  // namespace vernier

@@ -1,0 +1,120 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "tools/residual/findings.h"
+
+namespace vernier {
+namespace {
+
+bool is_angle(const Finding& f) { return f.observation.starts_with("r"); }
+std::string unit_of(const Finding& f) { return is_angle(f) ? "urad" : "um"; }
+
+/// "Y error", "rotation about X", "length error", "deviation d".
+std::string subject(const Finding& f) {
+  if (f.observation == "length") return "length error";
+  if (f.observation == "d") return "deviation d";
+  const std::string axis(1, static_cast<char>(std::toupper(f.observation.back())));
+  return is_angle(f) ? "rotation error about " + axis : axis + " error";
+}
+
+std::string with_unit(double value, const std::string& unit) {
+  return fmt::format("{:.4g}{}{}", value, unit.empty() ? "" : " ", unit);
+}
+
+/// "3.1 um per 100 mm": over a round part of the range, so that the number can be read.
+std::string slope(const Finding& f, const SentenceFacts& facts) {
+  const double range = facts.high - facts.low;
+  const double per = std::pow(10, std::floor(std::log10(range)));
+  return fmt::format("{:.3g} {} per {}", std::abs(facts.at_high_um - facts.at_low_um) * per / range,
+                     unit_of(f), with_unit(per, facts.unit.empty() ? f.column : facts.unit));
+}
+
+std::string spanning(const Finding& f, const SentenceFacts& facts) {
+  return fmt::format("{:.3g} {} in all over {} to {}", f.high_um - f.low_um, unit_of(f),
+                     fmt::format("{:.4g}", facts.low), with_unit(facts.high, facts.unit));
+}
+
+std::string grows(const SentenceFacts& facts) {
+  return facts.at_high_um > facts.at_low_um ? "grows" : "falls";
+}
+
+std::string along_column(const Finding& f, const SentenceFacts& facts) {
+  const std::string change = facts.time ? (facts.monotone ? "drifts" : "drifts and returns") : grows(facts);
+  switch (f.shape) {
+    case Shape::kLinear:
+      return fmt::format("{} {} with {}, in proportion ({})", subject(f), change, f.column, slope(f, facts));
+    case Shape::kSquare:
+      return fmt::format("{} {} with {}, in proportion to its square ({})", subject(f),
+                         std::abs(facts.high) >= std::abs(facts.low) ? grows(facts)
+                         : facts.at_low_um > facts.at_high_um        ? "grows"
+                                                                     : "falls",
+                         f.column, spanning(f, facts));
+    default:
+      break;
+  }
+  if (facts.monotone)
+    return fmt::format("{} {} with {}, on a curve ({})", subject(f), change, f.column, spanning(f, facts));
+  return fmt::format("{} bends with {}: highest near {}, lowest near {} ({})", subject(f), f.column,
+                     with_unit(facts.highest_at, facts.unit), with_unit(facts.lowest_at, facts.unit),
+                     spanning(f, facts));
+}
+
+std::string statement(const Finding& f, const SentenceFacts& facts) {
+  const double half = (f.high_um - f.low_um) / 2;
+  switch (f.shape) {
+    case Shape::kConstant:
+      return fmt::format("{} is {:.3g} {} on average", subject(f), (f.high_um + f.low_um) / 2, unit_of(f));
+    case Shape::kReverses:
+      return fmt::format("{} reverses with {}: {:.3g} {} between the two senses", subject(f), f.column,
+                         f.high_um - f.low_um, unit_of(f));
+    case Shape::kJumps:
+      return fmt::format("{} jumps between runs: {:.3g} {} from run {} to run {}", subject(f),
+                         f.high_um - f.low_um, unit_of(f), facts.lowest_run, facts.highest_run);
+    case Shape::kPeriodic:
+      return fmt::format("{} repeats every {} of {} with an amplitude of {:.3g} {}", subject(f),
+                         with_unit(f.period.value_or(0), facts.unit), f.column, half, unit_of(f));
+    case Shape::kProduct:
+      if (f.column == "run" || f.second_column == "run")
+        return fmt::format("{} depends on {} differently from run to run ({:.3g} {} in all)", subject(f),
+                           f.column == "run" ? f.second_column : f.column, f.high_um - f.low_um, unit_of(f));
+      return fmt::format(
+          "{} goes with {} times {}: how it depends on one changes with the other ({:.3g} {} in all)",
+          subject(f), f.column, f.second_column, f.high_um - f.low_um, unit_of(f));
+    case Shape::kWanders:
+      return fmt::format(
+          "{} wanders: a row and the next one agree (correlation {:.2f}) and no recorded column says why",
+          subject(f), facts.at_low_um);
+    default:
+      return along_column(f, facts);
+  }
+}
+
+std::string runs_clause(const Finding& f, const SentenceFacts& facts) {
+  if (f.in_all_runs) return ", in all runs";
+  if (f.runs < 2) return "";
+  std::string names;
+  constexpr std::size_t kMostNamed = 3;
+  for (std::size_t i = 0; i < facts.disagreeing.size() && i < kMostNamed; ++i)
+    names += (i > 0 ? ", " : "") + facts.disagreeing[i];
+  if (facts.disagreeing.size() > kMostNamed) names += " ...";
+  return fmt::format(", in {} of {} runs (not in {})", f.runs_agreeing, f.runs, names);
+}
+
+}  // namespace
+
+std::string sentence_of(const Finding& f, const SentenceFacts& facts) {
+  std::string text = statement(f, facts) + runs_clause(f, facts);
+  if (f.alike.empty()) return text;
+  std::string names;
+  constexpr std::size_t kMostNamed = 4;
+  for (std::size_t i = 0; i < f.alike.size() && i < kMostNamed; ++i)
+    names += (i > 0 ? ", " : "") + f.alike[i];
+  return text + "; " + names +
+         (f.alike.size() > kMostNamed ? " and others move"
+          : f.alike.size() > 1        ? " move"
+                                      : " moves") +
+         " along with it and would explain as much";
+}
+
+}  // namespace vernier

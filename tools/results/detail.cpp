@@ -1,0 +1,220 @@
+#include <algorithm>
+#include <cmath>
+
+#include "tools/maths/factors.h"
+#include "tools/results/circles.h"
+#include "tools/results/results.h"
+#include "tools/text/optional_json.h"
+
+namespace vernier {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr std::size_t kWorstRows = 25;
+
+double in_report_unit(ObservationKind kind, double value) {
+  return value * (is_rotation(kind) ? kUradPerDeg : kUmPerMm);
+}
+
+/// Six significant digits are more than a plot shows and a third of the size.
+ordered_json compact(const Column& column) {
+  ordered_json list = ordered_json::array();
+  for (const double value : column) {
+    if (!std::isfinite(value)) {
+      list.push_back(nullptr);
+      continue;
+    }
+    const double size = value == 0 ? 1 : std::pow(10, 6 - std::ceil(std::log10(std::abs(value))));
+    list.push_back(std::round(value * size) / size);
+  }
+  return list;
+}
+
+void add_columns(ordered_json& detail, const Machine& machine, const Measurement& m) {
+  detail["columns"] = ordered_json::array();
+  detail["column_data"] = ordered_json::array();
+  each_column(machine, m,
+              [&](const std::string& name, const std::string& unit, const char* kind, const Column& data) {
+                detail["columns"].push_back({{"name", name}, {"unit", unit}, {"kind", kind}});
+                detail["column_data"].push_back(compact(data));
+              });
+}
+
+void add_observations(ordered_json& detail, const Measurement& m, const Eigen::VectorXd& residual) {
+  ordered_json kinds = ordered_json::array(), row = kinds, kind = kinds, scaled = kinds, measured = kinds,
+               model = kinds;
+  std::array<int, 8> slot;
+  slot.fill(-1);
+  for (std::size_t i = 0; i < m.observations.size(); ++i) {
+    const Observation& o = m.observations[i];
+    int& at = slot[static_cast<std::size_t>(o.kind)];
+    if (at < 0) {
+      at = static_cast<int>(kinds.size());
+      kinds.push_back(kObservationNames[static_cast<std::size_t>(o.kind)]);
+    }
+    const double r = residual[static_cast<Eigen::Index>(i)];
+    row.push_back(o.row);
+    kind.push_back(at);
+    scaled.push_back(std::round(in_report_unit(o.kind, r) * 1e3) / 1e3);
+    measured.push_back(std::round(o.value * 1e6) / 1e6);
+    model.push_back(std::round((o.value - r) * 1e6) / 1e6);
+  }
+  detail["observations"] = {{"kind", kinds},      {"row", row},           {"kind_index", kind},
+                            {"residual", scaled}, {"measured", measured}, {"model", model}};
+}
+
+void add_worst(ordered_json& detail, const Measurement& m, const Eigen::VectorXd& residual) {
+  std::vector<std::size_t> order(m.observations.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  const auto size = [&](std::size_t i) {
+    return std::abs(in_report_unit(m.observations[i].kind, residual[static_cast<Eigen::Index>(i)]));
+  };
+  const std::size_t count = std::min(kWorstRows, order.size());
+  std::partial_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count), order.end(),
+                    [&](std::size_t a, std::size_t b) { return size(a) > size(b); });
+  detail["worst"] = ordered_json::array();
+  for (std::size_t k = 0; k < count; ++k) {
+    const Observation& o = m.observations[order[k]];
+    detail["worst"].push_back(
+        {{"row", o.row},
+         {"file", m.files[m.file[o.row]]},
+         {"line", m.line[o.row]},
+         {"run", m.states.run_names[m.states.run[o.row]]},
+         {"role", m.check[o.row] != 0 ? "check" : "fit"},
+         {"kind", kObservationNames[static_cast<std::size_t>(o.kind)]},
+         {"unit", is_rotation(o.kind) ? "urad" : "um"},
+         {"residual", in_report_unit(o.kind, residual[static_cast<Eigen::Index>(order[k])])}});
+  }
+}
+
+ordered_json hysteresis(const std::optional<Hysteresis>& value, bool angle) {
+  return value ? ordered_json(angle ? value->deg : value->um) : ordered_json(nullptr);
+}
+
+/// The ISO 230-4 numbers of a circle, without the curves.
+ordered_json circle_summary(const Circle& circle, const Measurement& m) {
+  const CircularResult result = analyse(circle, m);
+  ordered_json json = {
+      {"plane", {std::string(1, "XYZ"[circle.plane[0]]), std::string(1, "XYZ"[circle.plane[1]])}},
+      {"centre", circle.centre_mm},
+      {"nominal_radius_mm", circle.nominal_radius_mm},
+      {"runs", ordered_json::array()}};
+  for (const CircularPassResult& pass : result.passes)
+    json["runs"].push_back({{"label", pass.label},
+                            {"direction", pass.direction},
+                            {"centre_mm", {pass.centre_a_mm, pass.centre_b_mm}},
+                            {"radius_mm", pass.radius_mm},
+                            {"feed_mm_min", or_null(pass.feed_mm_min)},
+                            {"circular_deviation_um", pass.circular_deviation_um},
+                            {"max_radial_um", pass.max_radial_um},
+                            {"max_radial_deg", pass.max_deg},
+                            {"min_radial_um", pass.min_radial_um},
+                            {"min_radial_deg", pass.min_deg}});
+  json["bidirectional_um"] = or_null(result.bidirectional_um);
+  json["hysteresis_um"] = hysteresis(result.hysteresis, false);
+  json["hysteresis_deg"] = hysteresis(result.hysteresis, true);
+  json["hysteresis_by_angle_um"] = hysteresis(result.hysteresis_by_angle, false);
+  json["hysteresis_by_angle_deg"] = hysteresis(result.hysteresis_by_angle, true);
+  return json;
+}
+
+void add_curves(ordered_json& json, const Circle& circle, const Measurement& m,
+                const Eigen::VectorXd& residual) {
+  for (std::size_t k = 0; k < circle.runs.size(); ++k) {
+    const CircleRun& run = circle.runs[k];
+    ordered_json angle = ordered_json::array(), measured = angle, model = angle, check = angle;
+    for (std::size_t i = 0; i < run.observation.size(); ++i) {
+      const Observation& o = m.observations[run.observation[i]];
+      const double deviation = kUmPerMm * (o.value - circle.nominal_radius_mm);
+      const double r = kUmPerMm * residual[static_cast<Eigen::Index>(run.observation[i])];
+      angle.push_back(std::round(run.angle_deg[i] * 1e3) / 1e3);
+      measured.push_back(std::round(deviation * 100) / 100);
+      model.push_back(std::round((deviation - r) * 100) / 100);
+      check.push_back(m.check[o.row] != 0 ? 1 : 0);
+    }
+    json["runs"][k]["angle_deg"] = angle;
+    json["runs"][k]["measured_um"] = measured;
+    json["runs"][k]["model_um"] = model;
+    json["runs"][k]["check"] = check;
+  }
+}
+
+/// Circles with at least three fit rows in every run; the others have no numbers of the standard.
+std::vector<Circle> circles_with_numbers(const Machine& machine, const Measurement& m) {
+  std::vector<Circle> circles = find_circles(machine, m);
+  std::erase_if(circles, [&](const Circle& circle) {
+    return std::any_of(circle.runs.begin(), circle.runs.end(), [&](const CircleRun& run) {
+      const auto fit_rows = std::count_if(run.observation.begin(), run.observation.end(),
+                                          [&](std::size_t i) { return m.check[m.observations[i].row] == 0; });
+      return fit_rows < 8;
+    });
+  });
+  return circles;
+}
+
+}  // namespace
+
+void each_column(const Machine& machine, const Measurement& m, const VisitColumn& visit) {
+  const States& s = m.states;
+  for (std::size_t i = 0; i < machine.axes.size(); ++i)
+    visit(machine.axes[i].name, machine.axes[i].rotary ? "deg" : "mm", "axis", commanded(m, i));
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    const std::string& axis = machine.axes[i].name;
+    const std::string unit = machine.axes[i].rotary ? "deg" : "mm";
+    const auto motion = [&](const std::string& name, const std::string& u, const char* kind,
+                            const Column& data) {
+      if (m.has_recorded(name)) visit(name, u, kind, data);
+    };
+    motion("dir" + axis, "", "direction", s.direction[i]);
+    motion("v" + axis, unit + "/s", "motion", s.velocity[i]);
+    motion("a" + axis, unit + "/s^2", "motion", s.acceleration[i]);
+    motion("since" + axis, unit, "motion", s.since[i]);
+  }
+  if (m.has_recorded("feed")) visit("feed", "mm/min", "motion", s.feed);
+  if (m.has_recorded("curv")) visit("curv", "1/mm", "motion", s.curvature);
+  if (m.has_recorded("t")) visit("t", "s", "time", s.time);
+  visit("visit", "", "visit", s.visit);
+  for (std::size_t i = 0; i < machine.inputs.size(); ++i)
+    visit(machine.inputs[i].name, machine.inputs[i].unit, "input", s.input[i]);
+  for (const CandidateInput& candidate : m.candidates)
+    visit(candidate.name, candidate.unit, "candidate", candidate.value);
+}
+
+ordered_json circular_detail(const Machine& machine, const Measurement& m, const Eigen::VectorXd& residual,
+                             bool with_rows) {
+  ordered_json list = ordered_json::array();
+  for (const Circle& circle : circles_with_numbers(machine, m)) {
+    list.push_back(circle_summary(circle, m));
+    add_curves(list.back(), circle, m, residual);
+    for (std::size_t k = 0; with_rows && k < circle.runs.size(); ++k) {
+      list.back()["runs"][k]["row"] = ordered_json::array();
+      for (const std::size_t i : circle.runs[k].observation)
+        list.back()["runs"][k]["row"].push_back(m.observations[i].row);
+    }
+  }
+  return list;
+}
+
+ordered_json circular_json(const Machine& machine, const Measurement& m) {
+  ordered_json list = ordered_json::array();
+  for (const Circle& circle : circles_with_numbers(machine, m)) list.push_back(circle_summary(circle, m));
+  return list;
+}
+
+void add_detail(ordered_json& result, const Machine& machine, const Measurement& m,
+                const Eigen::VectorXd& residual) {
+  ordered_json detail;
+  add_columns(detail, machine, m);
+  detail["runs"] = m.states.run_names;
+  detail["row_run"] = m.states.run;
+  detail["row_check"] = ordered_json::array();
+  for (const char check : m.check) detail["row_check"].push_back(check != 0 ? 1 : 0);
+  detail["row_line"] = m.line;
+  add_observations(detail, m, residual);
+  detail["circular"] = circular_detail(machine, m, residual);
+  add_worst(detail, m, residual);
+  result["detail"] = std::move(detail);
+}
+
+}  // namespace vernier

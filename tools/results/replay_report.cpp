@@ -1,0 +1,97 @@
+#include "tools/results/replay_report.h"
+
+#include <fmt/format.h>
+
+#include "tools/fit/fit.h"
+#include "tools/results/results.h"
+#include "tools/text/optional_json.h"
+
+namespace vernier {
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json rung(const std::string& label, const Measurement& m, const Eigen::VectorXd& residual) {
+  return {{"label", label},
+          {"rms_um", or_null(role_statistics(m, residual, false).rms_um)},
+          {"check_rms_um", or_null(role_statistics(m, residual, true).rms_um)}};
+}
+
+ordered_json number(const char* label, const ordered_json& value, const char* unit) {
+  return {{"label", label}, {"value", value}, {"unit", unit}};
+}
+
+ordered_json model_section(const std::string& title, const Machine& machine, const Measurement& m) {
+  const Eigen::VectorXd residual = residuals(machine, m);
+  ordered_json with_detail = ordered_json::object();
+  add_detail(with_detail, machine, m, residual);
+  ordered_json rows = ordered_json::array();
+  for (const ordered_json& s : stretches_json(m, residual))
+    rows.push_back({s["run"], s["role"], s["first_line"], s["last_line"], s["n_obs"],
+                    fmt::format("{:.1f}", s["rms_um"].get<double>())});
+  ordered_json section = {
+      {"title", title}, {"prose", ordered_json::array()}, {"detail", with_detail["detail"]}};
+  if (rows.size() > 1 && rows.size() <= 24)
+    section["tables"] = {{{"caption", "Residual by run and role, in the order of the rows"},
+                          {"columns", {"run", "role", "from line", "to line", "readings", "rms [µm]"}},
+                          {"rows", rows}}};
+  return section;
+}
+
+ordered_json parameter_list(const Machine& machine) {
+  ordered_json list = ordered_json::array();
+  for (const Static& item : machine.statics)
+    if (!item.hidden)
+      list.push_back({{"name", item.name}, {"value", item.value}, {"std", nullptr}, {"unit", item.unit}});
+  return list;
+}
+
+ordered_json loop_section(const LoadedImage& image, const std::vector<ReplayStep>& steps) {
+  ordered_json rows = ordered_json::array();
+  for (const ReplayStep& step : steps)
+    rows.push_back(
+        {step.label, step.result.ticks, step.result.saturated, step.result.slewing, step.result.not_active});
+  return {
+      {"title", "The loop"},
+      {"prose",
+       {"The firmware ran tick by tick along the measured motion, with the fixed-point equation, the limits "
+        "of the "
+        "machine file and the converter named; every reading was moved by what the correction does to the "
+        "nominal "
+        "machine at that moment. No reading was taken again: this is what the same errors would have left."}},
+      {"numbers", {number("cycle", image.view.header().tick_us, "µs")}},
+      {"tables",
+       {{{"caption", "Ticks"},
+         {"columns", {"converter", "ticks", "at a limit", "slewing", "not active"}},
+         {"rows", rows}}}}};
+}
+
+}  // namespace
+
+ordered_json replay_report(const std::optional<Machine>& before, const LoadedImage& image,
+                           const Measurement& m, const std::vector<ReplayStep>& steps) {
+  ordered_json ladder = ordered_json::array();
+  ladder.push_back(rung("nominal machine", m, steps.front().result.before));
+  if (before) ladder.push_back(rung("model " + before->name, m, residuals(*before, m)));
+  ladder.push_back(rung("model " + image.machine.name, m, residuals(image.machine, m)));
+  for (const ReplayStep& step : steps)
+    ladder.push_back(rung("corrected, " + step.label, m, step.result.after));
+  ordered_json sections = ordered_json::array();
+  sections.push_back(
+      {{"title", "The error, step by step"},
+       {"prose",
+        {"Rms of measured minus model on the rows that the fit saw and on the check rows that it did not. "
+         "A step that lowers the first and not the second explains nothing that holds beyond those rows."}},
+       {"ladder", ladder}});
+  if (before) sections.push_back(model_section("Against " + before->name, *before, m));
+  ordered_json fitted = model_section("Against " + image.machine.name, image.machine, m);
+  fitted["parameters"] = parameter_list(image.machine);
+  sections.push_back(fitted);
+  sections.push_back(loop_section(image, steps));
+  return {{"title", "From a measurement to a running correction"},
+          {"machine", image.machine.name},
+          {"files", m.files},
+          {"sections", sections}};
+}
+
+}  // namespace vernier

@@ -1,0 +1,193 @@
+#include "tools/results/results.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdint>
+
+#include "tools/fit/decisions.h"
+#include "tools/fit/domain.h"
+#include "tools/fit/reach.h"
+#include "tools/text/optional_json.h"
+
+namespace vernier {
+namespace {
+
+using nlohmann::ordered_json;
+
+std::size_t observations_of_fit_rows(const Measurement& m) {
+  std::size_t count = 0;
+  for (const Observation& o : m.observations) count += m.check[o.row] == 0 ? 1U : 0U;
+  return count;
+}
+
+ordered_json shared(const Machine& machine, const Measurement& m, const RoleStatistics& before,
+                    const RoleStatistics& fit, const RoleStatistics& check, std::size_t parameters) {
+  return {{"machine", machine.name},
+          {"machine_file", machine.file},
+          {"files", m.files},
+          {"rms_before_um", or_null(before.rms_um)},
+          {"rms_um", or_null(fit.rms_um)},
+          {"check_rms_um", or_null(check.rms_um)},
+          {"max_um", or_null(fit.max_um)},
+          {"check_max_um", or_null(check.max_um)},
+          {"rms_before_urad", or_null(before.rms_urad)},
+          {"rms_urad", or_null(fit.rms_urad)},
+          {"check_rms_urad", or_null(check.rms_urad)},
+          {"max_urad", or_null(fit.max_urad)},
+          {"noise_um", or_null(noise_um(m))},
+          {"n_obs", observations_of_fit_rows(m)},
+          {"n_check", check.count},
+          {"n_params", parameters},
+          {"n_excluded", m.excluded}};
+}
+
+/// How well the model itself is known where it was compared: rms and largest over the rows, um. Null for a
+/// machine that was never fitted.
+ordered_json prediction_std_json(const Machine& machine, const Measurement& m) {
+  const Reach reach(machine);
+  if (!reach.known() || m.rows() == 0) return nullptr;
+  const Eigen::VectorXd std_um = reach.std_um(m.states);
+  return {{"rms", std::sqrt(std_um.squaredNorm() / static_cast<double>(std_um.size()))},
+          {"max", std_um.maxCoeff()}};
+}
+
+}  // namespace
+
+ordered_json fit_json(const FitResult& result, const Measurement& m) {
+  ordered_json json =
+      shared(result.machine, m, result.before, result.after, result.check, result.parameters.size());
+  json["parameters"] = ordered_json::array();
+  for (const ParameterEstimate& item : result.estimates)
+    json["parameters"].push_back({{"name", item.name},
+                                  {"value", item.value},
+                                  {"std", item.std},
+                                  {"unit", item.unit},
+                                  {"from", origin_name(item.from)},
+                                  {"scale", item.scale}});
+  json["unidentifiable"] = ordered_json::array();
+  for (const auto& group : result.observability.unidentifiable) {
+    ordered_json names = ordered_json::array();
+    for (const std::size_t i : group) names.push_back(result.parameters[i].name);
+    json["unidentifiable"].push_back(names);
+  }
+  json["convention"] = ordered_json::array();
+  for (const Decision& decision : decisions_of(result))
+    json["convention"].push_back({{"parameters", decision.parameters},
+                                  {"reach_um", decision.reach_um},
+                                  {"sentence", decision.sentence}});
+  json["stages"] = ordered_json::array();
+  for (const StageFigures& stage : result.stages)
+    json["stages"].push_back({{"patterns", stage.patterns},
+                              {"n_params", stage.parameters},
+                              {"iterations", stage.iterations},
+                              {"rms_um", or_null(stage.fit.rms_um)},
+                              {"check_rms_um", or_null(stage.check.rms_um)}});
+  json["noise_model"] = {{"kind", has_uncertainty(m) ? "white, u given" : "white, from the residual"},
+                         {"scale_of_u", has_uncertainty(m) ? ordered_json(std::sqrt(result.variance_factor))
+                                                           : ordered_json(nullptr)}};
+  json["misfit_um"] = 1000 * result.misfit_mm;
+  json["reach_mm"] = result.reach_mm;
+  json["weakest"] = ordered_json::array();
+  for (const Observability::Weak& weak : result.observability.weakest) {
+    ordered_json names = ordered_json::array();
+    for (const std::size_t i : weak.parts) names.push_back(result.parameters[i].name);
+    json["weakest"].push_back({{"ratio", weak.ratio}, {"parameters", names}});
+  }
+  json["correlations"] = ordered_json::array();
+  for (const Correlation& c : result.correlations)
+    json["correlations"].push_back(
+        {result.parameters[c.first].name, result.parameters[c.second].name, c.value});
+  json["priors"] = ordered_json::array();
+  for (const auto& [name, std] : result.priors) json["priors"].push_back({{"name", name}, {"std", std}});
+  json["normalised_check_rms"] =
+      result.normalised_check ? ordered_json(result.normalised_check->rms) : ordered_json(nullptr);
+  json["normalised_check_within_3"] =
+      result.normalised_check ? ordered_json(result.normalised_check->within_3) : ordered_json(nullptr);
+  json["rank"] = result.observability.rank;
+  json["condition"] = result.observability.condition;
+  json["chi_square"] = result.chi_square;
+  json["degrees_of_freedom"] = result.freedom;
+  json["iterations"] = result.iterations;
+  json["converged"] = result.converged;
+  json["domains"] = domains_json(result.machine, m);
+  json["notes"] = result.machine.notes;
+  return json;
+}
+
+ordered_json compare_json(const Machine& machine, const Measurement& m, const Eigen::VectorXd& residual) {
+  const RoleStatistics fit = role_statistics(m, residual, false), check = role_statistics(m, residual, true);
+  ordered_json json = shared(machine, m, fit, fit, check, 0);
+  json["parameters"] = ordered_json::array();
+  json["unidentifiable"] = ordered_json::array();
+  json["prediction_std_um"] = prediction_std_json(machine, m);
+  json["stretches"] = stretches_json(m, residual);
+  json["circular"] = circular_json(machine, m);
+  json["domains"] = domains_json(machine, m);
+  json["notes"] = machine.notes;
+  return json;
+}
+
+ordered_json domains_json(const Machine& machine, const Measurement& m) {
+  ordered_json json = ordered_json::array();
+  for (const DomainUse& use : domain_use(machine, m))
+    json.push_back({{"domain", use.range.domain},
+                    {"quantity", use.range.quantity},
+                    {"low", use.range.open ? ordered_json(nullptr) : ordered_json(use.range.low)},
+                    {"high", use.range.open ? ordered_json(nullptr) : ordered_json(use.range.high)},
+                    {"least", use.least},
+                    {"most", use.most},
+                    {"rows_outside", use.faded},
+                    {"rows_without_effect", use.gone}});
+  return json;
+}
+
+void print_domains(std::FILE* out, const ordered_json& domains) {
+  for (const ordered_json& use : domains)
+    if (use["rows_outside"].get<std::size_t>() > 0)
+      fmt::print(out,
+                 "{}: {} goes from {:.4g} to {:.4g}, trained is {:.4g} to {:.4g}: the term fades on {} rows, "
+                 "on {} to nothing\n",
+                 use["domain"].get<std::string>(), use["quantity"].get<std::string>(),
+                 use["least"].get<double>(), use["most"].get<double>(), use["low"].get<double>(),
+                 use["high"].get<double>(), use["rows_outside"].get<std::size_t>(),
+                 use["rows_without_effect"].get<std::size_t>());
+}
+
+ordered_json stretches_json(const Measurement& m, const Eigen::VectorXd& residual) {
+  struct Stretch {
+    std::size_t run = 0, first_line = 0, last_line = 0, count = 0;
+    char check = 0;
+    double squares = 0;
+  };
+  std::vector<Stretch> list;
+  std::vector<std::size_t> open(m.states.run_names.size(), SIZE_MAX);  // the stretch that a run is in
+  for (std::size_t i = 0; i < m.observations.size(); ++i) {
+    const Observation& o = m.observations[i];
+    if (is_rotation(o.kind)) continue;
+    std::size_t& at = open[m.states.run[o.row]];
+    if (at == SIZE_MAX || list[at].check != m.check[o.row]) {
+      at = list.size();
+      list.push_back({m.states.run[o.row], m.line[o.row], m.line[o.row], 0, m.check[o.row], 0});
+    }
+    Stretch& stretch = list[at];
+    stretch.last_line = m.line[o.row];
+    ++stretch.count;
+    stretch.squares += residual[static_cast<Eigen::Index>(i)] * residual[static_cast<Eigen::Index>(i)];
+  }
+  ordered_json json = ordered_json::array();
+  for (const Stretch& s : list)
+    json.push_back({{"run", m.states.run_names[s.run]},
+                    {"role", s.check != 0 ? "check" : "fit"},
+                    {"first_line", s.first_line},
+                    {"last_line", s.last_line},
+                    {"n_obs", s.count},
+                    {"rms_um", 1e3 * std::sqrt(s.squares / static_cast<double>(s.count))}});
+  return json;
+}
+
+std::string number_or_dash(const std::optional<double>& value, const char* unit) {
+  return value ? fmt::format("{:.4g} {}", *value, unit) : std::string("-");
+}
+
+}  // namespace vernier

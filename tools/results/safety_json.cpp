@@ -1,0 +1,37 @@
+#include "tools/results/safety_json.h"
+
+#include <fmt/format.h>
+
+namespace vernier {
+
+nlohmann::ordered_json safety_json(const SafetySheet& sheet) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const SafetyFinding& f : sheet.findings)
+    list.push_back({{"rule", rule_name(f.rule)},
+                    {"value", f.value ? nlohmann::ordered_json(*f.value) : nlohmann::ordered_json(nullptr)},
+                    {"limit", f.limit},
+                    {"unit", f.unit},
+                    {"ok", f.ok},
+                    {"accepted", f.accepted},
+                    {"culprit", f.culprit},
+                    {"reason", f.reason}});
+  return list;
+}
+
+void print_safety(std::FILE* out, const SafetySheet& sheet) {
+  fmt::print(out, "safe to run?\n");
+  for (const SafetyFinding& f : sheet.findings)
+    fmt::print(out, "  {:<15} {:>9}  limit {:<6g} {:<28} {}{}\n", rule_name(f.rule),
+               f.value ? fmt::format("{:.3g}", *f.value) : "-", f.limit, f.unit,
+               !f.value     ? "not known"
+               : f.ok       ? "ok"
+               : f.accepted ? "ACCEPTED"
+                            : "NO",
+               f.ok || f.culprit.empty() ? "" : ": " + f.culprit);
+  for (const std::string& name : sheet.stale)
+    fmt::print(out,
+               "  note: {} was added or set by hand since the fit: uncertain by as much as it was moved\n",
+               name);
+}
+
+}  // namespace vernier

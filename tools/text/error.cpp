@@ -1,0 +1,19 @@
+#include "tools/text/error.h"
+
+namespace vernier {
+namespace {
+
+std::string message(const Place& place, const std::string& word, const std::string& what) {
+  std::string text = place.file;
+  if (place.line > 0) text += ":" + std::to_string(place.line);
+  if (!text.empty()) text += ": ";
+  if (!word.empty()) text += "\"" + word + "\": ";
+  return text + what;
+}
+
+}  // namespace
+
+InputError::InputError(const Place& place, const std::string& word, const std::string& what)
+    : std::runtime_error(message(place, word, what)) {}
+
+}  // namespace vernier

@@ -1,0 +1,68 @@
+#include "tools/timebase/stretch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace vernier {
+namespace {
+
+using Block = Eigen::MatrixXd;
+using Index = Eigen::Index;
+
+double autocorrelation(const Block& a, Index lag) {
+  const double all = a.squaredNorm();
+  return all > 0 ? a.topRows(a.rows() - lag).cwiseProduct(a.bottomRows(a.rows() - lag)).sum() / all : 0;
+}
+
+}  // namespace
+
+std::optional<Block> stretch(const Eigen::MatrixXd& series, Index first, Index rows) {
+  if (first < 0 || first + rows > series.rows()) return std::nullopt;
+  Block block = series.middleRows(first, rows);
+  if (!block.allFinite()) return std::nullopt;
+  const Eigen::ArrayXd place = Eigen::ArrayXd::LinSpaced(rows, -1, 1);
+  const double norm = place.square().sum();
+  for (Index c = 0; c < block.cols(); ++c) {
+    const double mean = block.col(c).mean();
+    const double slope = (block.col(c).array() * place).sum() / norm;
+    block.col(c).array() -= mean + slope * place;
+  }
+  return block;
+}
+
+double concordance(const Block& a, const Block& b) {
+  const double sum = a.squaredNorm() + b.squaredNorm();
+  return sum > 0 ? 2 * a.cwiseProduct(b).sum() / sum : 0;
+}
+
+double effective_rows(const Block& a, const Block& b) {
+  double sum = 1;
+  for (Index k = 1; k < a.rows() / 2; ++k) sum += 2 * std::abs(autocorrelation(a, k) * autocorrelation(b, k));
+  return static_cast<double>(a.size()) / sum;
+}
+
+double upper_tail(double z) { return 0.5 * std::erfc(z / std::numbers::sqrt2); }
+
+double chance_of_agreement(double correlation, double rows) {
+  if (rows <= 4) return 1;
+  return upper_tail(std::atanh(std::min(correlation, 1 - 1e-12)) * std::sqrt(rows - 3));
+}
+
+double chance_of_ratio(double larger, double smaller, double rows) {
+  if (rows <= 4 || smaller <= 0) return larger > 0 && smaller <= 0 ? 0 : 1;
+  return upper_tail(std::log(larger / smaller) * std::sqrt(rows - 2));
+}
+
+double upper_quantile(double p) {
+  // Newton's method on the logarithm of the tail.
+  double z = std::sqrt(std::max(0.0, -2 * std::log(2 * p)));
+  for (int i = 0; i < 20; ++i) {
+    const double tail = upper_tail(z);
+    const double density = std::exp(-0.5 * z * z) / std::sqrt(2 * std::numbers::pi);
+    z += (std::log(tail) - std::log(p)) * tail / density;
+  }
+  return z;
+}
+
+}  // namespace vernier
