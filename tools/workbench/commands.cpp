@@ -9,7 +9,6 @@
 namespace vernier {
 namespace {
 
-
 enum class FieldKind : std::uint8_t { kIn, kInList, kOut, kText, kTextList, kNumber, kFlag };
 constexpr const char* kFieldKinds[] = {"file", "files", "output", "text", "texts", "number", "flag"};
 
@@ -132,7 +131,8 @@ std::string word_of(const Field& field, const nlohmann::json& value, const Proje
   }
 }
 
-void add_field(const Field& field, const nlohmann::json& value, const Project& project, PlannedCommand& command) {
+void add_field(const Field& field, const nlohmann::json& value, const Project& project,
+               PlannedCommand& command) {
   constexpr std::size_t kMostWords = 200;
   if (field.kind == FieldKind::kFlag) {
     if (!value.is_boolean()) refuse(field, "must be true or false");
