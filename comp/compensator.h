@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstddef>
 #include <cstdint>
 
 #include "comp/equation.h"
@@ -29,16 +30,16 @@ struct CycleInput {
 
 /// What a channel reads from the CycleInput.
 enum class ChannelKind : std::uint8_t {
-  kPosition,
-  kVelocity,
-  kAcceleration,
-  kSense,
-  kSince,
-  kInput,
-  kFeed,
-  kCurvature,
-  kTime,
-  kVisit
+  kPosition = 0,
+  kVelocity = 1,
+  kAcceleration = 2,
+  kSense = 3,
+  kSince = 4,
+  kInput = 5,
+  kFeed = 6,
+  kCurvature = 7,
+  kTime = 8,
+  kVisit = 9,
 };
 constexpr std::uint8_t kChannelKindCount = static_cast<std::uint8_t>(ChannelKind::kVisit) + 1;
 
@@ -55,6 +56,10 @@ struct Channel {
       wrap;  // 0, or one period: a value beyond the limits comes back by whole turns (a power of two)
 };
 static_assert(sizeof(Channel) == 32);
+static_assert(offsetof(Channel, kind) == 0 && offsetof(Channel, index) == 1 &&
+              offsetof(Channel, pre_shift) == 2 && offsetof(Channel, shift) == 3 &&
+              offsetof(Channel, multiplier) == 4 && offsetof(Channel, low) == 8 &&
+              offsetof(Channel, high) == 16 && offsetof(Channel, wrap) == 24);
 
 /// Takes one result of the equation to an axis: deviation = round(register * multiplier / 2^shift) in axis
 /// counts.
@@ -67,6 +72,9 @@ struct Output {
   std::int32_t slew;   // largest change a tick, axis counts
 };
 static_assert(sizeof(Output) == 20);
+static_assert(offsetof(Output, axis) == 0 && offsetof(Output, source) == 2 && offsetof(Output, shift) == 4 &&
+              offsetof(Output, multiplier) == 8 && offsetof(Output, limit) == 12 &&
+              offsetof(Output, slew) == 16);
 
 /// The whole program of a machine, non-owning.
 struct Program {

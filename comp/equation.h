@@ -22,19 +22,19 @@ constexpr unsigned kMaxShift = 61;
 /// What an instruction does with its operands a, b, c (registers, or an index where said) and immediates k,
 /// l. All registers are int32 in a binary format that the compiler chose and that this machine need not know.
 enum class OpCode : std::uint8_t {
-  kLinear,      // (a*k + b*l) >> shift, rounded
-  kMultiply,    // (a*b) >> shift, rounded
-  kDot,         // (k << c, + the first a terms from term l on, - the b terms after them) >> shift, rounded
-  kAbs,         // |a|
-  kMin,         // lower of a, b
-  kMax,         // higher of a, b
-  kSign,        // -1, 0, +1
-  kEqual,       // a == b ? 1 : 0
-  kLess,        // a < b ? 1 : 0
-  kWrap,        // a brought into the period of wrap b
-  kLookUp,      // all columns of table b at position a: one result a column
-  kSineCosine,  // of the angle (a*k) >> shift, 2^-32 turn: two results, 30 fraction bits
-  kLag,         // state b += k/2^shift * (a - state b); the state
+  kLinear = 0,    // (a*k + b*l) >> shift, rounded
+  kMultiply = 1,  // (a*b) >> shift, rounded
+  kDot = 2,       // (k << c, + the first a terms from term l on, - the b terms after them) >> shift, rounded
+  kAbs = 3,       // |a|
+  kMin = 4,       // lower of a, b
+  kMax = 5,       // higher of a, b
+  kSign = 6,      // -1, 0, +1
+  kEqual = 7,     // a == b ? 1 : 0
+  kLess = 8,      // a < b ? 1 : 0
+  kWrap = 9,      // a brought into the period of wrap b
+  kLookUp = 10,   // all columns of table b at position a: one result a column
+  kSineCosine = 11,  // of the angle (a*k) >> shift, 2^-32 turn: two results, 30 fraction bits
+  kLag = 12,         // state b += k/2^shift * (a - state b); the state
 };
 constexpr std::uint8_t kOpCodeCount = static_cast<std::uint8_t>(OpCode::kLag) + 1;
 
@@ -45,6 +45,8 @@ struct ProductTerm {
   std::uint16_t shift;  // 0..62
 };
 static_assert(sizeof(ProductTerm) == 6);
+static_assert(offsetof(ProductTerm, a) == 0 && offsetof(ProductTerm, b) == 2 &&
+              offsetof(ProductTerm, shift) == 4);
 constexpr std::uint32_t kMaxTerms = 4096;
 
 /// One step of the straight-line program; its results go to the next registers. 16 bytes, as in the image.
@@ -55,6 +57,10 @@ struct Instruction {
   std::int32_t k, l;
 };
 static_assert(sizeof(Instruction) == 16);
+static_assert(offsetof(Instruction, op) == 0 && offsetof(Instruction, shift) == 1 &&
+              offsetof(Instruction, a) == 2 && offsetof(Instruction, b) == 4 &&
+              offsetof(Instruction, c) == 6 && offsetof(Instruction, k) == 8 &&
+              offsetof(Instruction, l) == 12);
 
 /// The error equation of a machine: registers are first the constants, then the channels, then the
 /// results in order (static single assignment: an instruction reads only registers before its own).

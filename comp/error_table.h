@@ -22,6 +22,8 @@ struct Segment {
 };
 
 static_assert(sizeof(Segment) == 16);
+static_assert(offsetof(Segment, start) == 0 && offsetof(Segment, length) == 4 &&
+              offsetof(Segment, reciprocal) == 8 && offsetof(Segment, shift) == 12);
 constexpr std::uint32_t kSegmentWords = 4;
 
 /// A periodic axis: positions are brought into [first, first + period) before the look-up.
@@ -31,6 +33,9 @@ struct Wrap {
   std::int32_t reciprocal;  // about 2^shift / period
   std::uint32_t shift;      // 0..61
 };
+static_assert(sizeof(Wrap) == 16);
+static_assert(offsetof(Wrap, first) == 0 && offsetof(Wrap, period) == 4 && offsetof(Wrap, reciprocal) == 8 &&
+              offsetof(Wrap, shift) == 12);
 
 /// Errors of one axis as functions of its position: polynomial pieces between stations, all columns of a
 /// piece beside each other, so that a look-up finds everything in one or two cache lines. Non-owning.

@@ -16,11 +16,11 @@ struct LatchSample {
 
 /// Why there is no position at an instant.
 enum class LatchFault : std::uint8_t {
-  kNone,
-  kNotYet,   // the samples behind the instant have not come: ask again after the next one
-  kTooOld,   // the ring has forgotten it
-  kUneven,   // samples are missing around it: their distances differ by more than kMostUneven
-  kTooFast,  // an axis moved more than 2^35 counts between two samples
+  kNone = 0,
+  kNotYet = 1,   // the samples behind the instant have not come: ask again after the next one
+  kTooOld = 2,   // the ring has forgotten it
+  kUneven = 3,   // samples are missing around it: their distances differ by more than kMostUneven
+  kTooFast = 4,  // an axis moved more than 2^35 counts between two samples
 };
 
 /// The position of an axis at a past instant.

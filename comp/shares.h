@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstddef>
 #include <cstdint>
 
 #include "comp/compensator.h"
@@ -18,6 +19,8 @@ struct Share {
   std::int32_t multiplier;
 };
 static_assert(sizeof(Share) == 12);
+static_assert(offsetof(Share, axis) == 0 && offsetof(Share, source) == 2 && offsetof(Share, shift) == 4 &&
+              offsetof(Share, multiplier) == 8);
 
 /// A second equation beside a program's own: its channels are registers of the tick, its results the shares
 /// of the effects. It has no tables, periods and lags (the tick has looked them up) and is run outside the

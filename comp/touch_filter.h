@@ -8,9 +8,9 @@ namespace vernier {
 
 /// What a probe's line has shown.
 enum class TouchKind : std::uint8_t {
-  kTouch,           // closed, and stayed closed through the settling time
-  kReleaseMissing,  // a touch, but the line had not opened since the one before: an edge was lost
-  kMissed,          // the line opened without having closed: the touch was lost, its instant is unknown
+  kTouch = 0,           // closed, and stayed closed through the settling time
+  kReleaseMissing = 1,  // a touch, but the line had not opened since the one before: an edge was lost
+  kMissed = 2,          // the line opened without having closed: the touch was lost, its instant is unknown
 };
 
 /// One touch.

@@ -8,17 +8,17 @@ namespace vernier {
 
 /// Why a program is not safe to run.
 enum class ProgramFault : std::uint8_t {
-  kNone,
-  kTooLong,   // more registers, lags, axes or inputs than the cycle has memory for
-  kChannel,   // channel index, limits, shift or multiplier out of range
-  kTable,     // stations not increasing, lengths, reciprocals or grid inconsistent
-  kWrap,      // period, reciprocal or shift inconsistent
-  kOpCode,    // unknown operation
-  kOperand,   // a register that is not written yet, or an index outside
-  kShift,     // shift or factor outside the limits of fixed.h
-  kOverflow,  // a result that could leave int32
-  kLag,       // a state used twice or not at all
-  kOutput,    // output axis, source, shift or limits out of range
+  kNone = 0,
+  kTooLong = 1,   // more registers, lags, axes or inputs than the cycle has memory for
+  kChannel = 2,   // channel index, limits, shift or multiplier out of range
+  kTable = 3,     // stations not increasing, lengths, reciprocals or grid inconsistent
+  kWrap = 4,      // period, reciprocal or shift inconsistent
+  kOpCode = 5,    // unknown operation
+  kOperand = 6,   // a register that is not written yet, or an index outside
+  kShift = 7,     // shift or factor outside the limits of fixed.h
+  kOverflow = 8,  // a result that could leave int32
+  kLag = 9,       // a state used twice or not at all
+  kOutput = 10,   // output axis, source, shift or limits out of range
 };
 
 /// All values that a register can take, whatever the inputs.

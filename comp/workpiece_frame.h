@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstddef>
 #include <cstdint>
 
 #include "comp/fixed.h"
@@ -41,5 +42,9 @@ struct WorkpieceFrame {
     return round_shift(high + (low >> 20), 10);
   }
 };
+// It travels as it is (LinkOp::kWorkpiece).
+static_assert(sizeof(WorkpieceFrame) == 32);
+static_assert(offsetof(WorkpieceFrame, origin) == 0 && offsetof(WorkpieceFrame, cosine) == 24 &&
+              offsetof(WorkpieceFrame, sine) == 28);
 
 }  // namespace vernier

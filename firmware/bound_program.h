@@ -25,11 +25,11 @@ Wiring wiring_of(const ImageView& view);
 
 /// Why an image does not fit a board.
 enum class BindFault : std::uint8_t {
-  kNone,
-  kTick,         // compiled for another cycle time
-  kUnknownAxis,  // the board has no axis of that name
-  kAxisKind,     // rotary on one side and linear on the other, or only one of them rolls over
-  kUnknownInput  // the board has no sensor of that name
+  kNone = 0,
+  kTick = 1,          // compiled for another cycle time
+  kUnknownAxis = 2,   // the board has no axis of that name
+  kAxisKind = 3,      // rotary on one side and linear on the other, or only one of them rolls over
+  kUnknownInput = 4,  // the board has no sensor of that name
 };
 const char* describe(BindFault fault) noexcept;
 

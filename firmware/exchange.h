@@ -126,7 +126,18 @@ struct HealthRecord {
   // p50, p99, p99.9, maximum of the wake-up latency and of a tick's execution, ns
   std::int64_t latency_ns[4] = {}, execution_ns[4] = {};
 };
-static_assert(sizeof(HealthRecord) % 8 == 0);
+// Counter n of LinkOp::kHealth is word n.
+static_assert(sizeof(HealthRecord) == 200);
+static_assert(offsetof(HealthRecord, ticks) == 0 && offsetof(HealthRecord, active_ticks) == 8 &&
+              offsetof(HealthRecord, overruns) == 16 && offsetof(HealthRecord, skipped) == 24 &&
+              offsetof(HealthRecord, missing_readings) == 32 &&
+              offsetof(HealthRecord, missing_inputs) == 40 && offsetof(HealthRecord, frozen_readings) == 48 &&
+              offsetof(HealthRecord, jumps) == 56 && offsetof(HealthRecord, unreferenced) == 64 &&
+              offsetof(HealthRecord, implausible) == 72 && offsetof(HealthRecord, failed_writes) == 80 &&
+              offsetof(HealthRecord, saturated) == 88 && offsetof(HealthRecord, slewing) == 96 &&
+              offsetof(HealthRecord, beyond_range) == 104 && offsetof(HealthRecord, faults) == 112 &&
+              offsetof(HealthRecord, refused_commands) == 120 && offsetof(HealthRecord, programs) == 128 &&
+              offsetof(HealthRecord, latency_ns) == 136 && offsetof(HealthRecord, execution_ns) == 168);
 
 /// What each effect adds to the corrections, as others see it.
 struct ShareRecord {

@@ -8,16 +8,16 @@ namespace vernier {
 
 /// Why the correction was taken out. One enumerator per cause; the first one latches.
 enum class Fault : std::uint8_t {
-  kNone,
-  kPositionMissing,   // an axis was silent for longer than tolerated
-  kPositionFrozen,    // an axis claims speed and does not move
-  kPositionJump,      // an axis moved further in a tick than it can
-  kInputMissing,      // a sensor was silent for longer than tolerated
-  kWriteFailed,       // the controller refused a correction
-  kOverrun,           // too many ticks in a row ended after the next was due
-  kClock,             // the timer failed, or time jumped
-  kReferenceLost,     // an axis does not know its zero any more
-  kInputImplausible,  // a sensor reads beyond its plausible range or jumps
+  kNone = 0,
+  kPositionMissing = 1,   // an axis was silent for longer than tolerated
+  kPositionFrozen = 2,    // an axis claims speed and does not move
+  kPositionJump = 3,      // an axis moved further in a tick than it can
+  kInputMissing = 4,      // a sensor was silent for longer than tolerated
+  kWriteFailed = 5,       // the controller refused a correction
+  kOverrun = 6,           // too many ticks in a row ended after the next was due
+  kClock = 7,             // the timer failed, or time jumped
+  kReferenceLost = 8,     // an axis does not know its zero any more
+  kInputImplausible = 9,  // a sensor reads beyond its plausible range or jumps
 };
 
 /// One line for people: "position-missing".

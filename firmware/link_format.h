@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstddef>
 #include <cstdint>
 
 #include "tables/image_format.h"
@@ -16,35 +17,35 @@ constexpr std::uint32_t kMaxReplyBytes = 244;
 constexpr std::uint32_t kRequestHeaderBytes = 2, kReplyHeaderBytes = 3;
 
 enum class LinkOp : std::uint8_t {
-  kHello = 1,  // -> HelloReply
-  kName,       // u8 kind (0 axis, 1 input), u8 index -> char[24], u8 flags (AxisFlag)
-  kTick,       // newest tick -> LinkTick, LinkAxis each, LinkInput each
-  kHistory,    // u64 first, u16 every -> u64 next, u16 lost, then whole ticks as in kTick, as many as fit
-  kHealth,     // u8 first counter -> u8 count of counters in all, u64 each, as many as fit
-  kSlots,      // -> SlotsReply
-  kBegin,      // u32 bytes -> nothing
-  kData,       // u32 offset, bytes -> nothing
-  kFinish,     // -> nothing
-  kConfirm,    // -> nothing
-  kRevert,     // -> nothing
-  kRead,       // u32 offset, u8 bytes -> bytes of the confirmed upload
-  kCommand,    // u8 Command -> nothing: it is taken by the next tick, and counted where it does not fit
-  kWeight,     // u8 axis, u32 weight 0..65536 -> nothing
-  kShares,     // u16 first -> u16 shares in all, u32 programs taken so far, LinkShare each, as many as fit
-  kShareName,  // u16 share, u32 programs -> char[64]; kBadValue where another program runs by now
-  kTouches,    // u64 first -> u64 next, u16 lost, then LinkTouch and LinkTouchAxis each, as many as fit
-  kWorkpiece,  // WorkpieceFrame -> nothing; kBadValue where it is no turn
+  kHello = 1,     // -> HelloReply
+  kName = 2,      // u8 kind (0 axis, 1 input), u8 index -> char[24], u8 flags (AxisFlag)
+  kTick = 3,      // newest tick -> LinkTick, LinkAxis each, LinkInput each
+  kHistory = 4,   // u64 first, u16 every -> u64 next, u16 lost, then whole ticks as in kTick, as many as fit
+  kHealth = 5,    // u8 first counter -> u8 count of counters in all, u64 each, as many as fit
+  kSlots = 6,     // -> SlotsReply
+  kBegin = 7,     // u32 bytes -> nothing
+  kData = 8,      // u32 offset, bytes -> nothing
+  kFinish = 9,    // -> nothing
+  kConfirm = 10,  // -> nothing
+  kRevert = 11,   // -> nothing
+  kRead = 12,     // u32 offset, u8 bytes -> bytes of the confirmed upload
+  kCommand = 13,  // u8 Command -> nothing: it is taken by the next tick, and counted where it does not fit
+  kWeight = 14,   // u8 axis, u32 weight 0..65536 -> nothing
+  kShares = 15,   // u16 first -> u16 shares in all, u32 programs taken so far, LinkShare each, as many as fit
+  kShareName = 16,  // u16 share, u32 programs -> char[64]; kBadValue where another program runs by now
+  kTouches = 17,    // u64 first -> u64 next, u16 lost, then LinkTouch and LinkTouchAxis each, as many as fit
+  kWorkpiece = 18,  // WorkpieceFrame -> nothing; kBadValue where it is no turn
 };
 constexpr std::uint8_t kLinkOpCount = static_cast<std::uint8_t>(LinkOp::kWorkpiece) + 1;
 
 enum class LinkStatus : std::uint8_t {
-  kDone,
-  kUnknownOp,
-  kBadLength,  // shorter or longer than the op's request
-  kBadValue,   // no such axis, command, counter ...
-  kNotReady,   // nothing published yet, or the command before has not been taken
-  kRefused,    // an upload step: payload is u8 UploadFault, u8 ImageFault, u8 BindFault, char[] the offending
-               // name
+  kDone = 0,
+  kUnknownOp = 1,
+  kBadLength = 2,  // shorter or longer than the op's request
+  kBadValue = 3,   // no such axis, command, counter ...
+  kNotReady = 4,   // nothing published yet, or the command before has not been taken
+  kRefused = 5,    // an upload step: payload is u8 UploadFault, u8 ImageFault, u8 BindFault, char[] the
+                   // offending name
 };
 constexpr std::uint8_t kLinkStatusCount = static_cast<std::uint8_t>(LinkStatus::kRefused) + 1;
 
@@ -56,6 +57,10 @@ struct SlotsReply {
   std::uint8_t reserved[2];
 };
 static_assert(sizeof(SlotsReply) == 32);
+static_assert(offsetof(SlotsReply, confirmed_fingerprint) == 0 &&
+              offsetof(SlotsReply, trial_fingerprint) == 8 && offsetof(SlotsReply, issued) == 16 &&
+              offsetof(SlotsReply, trial_left_ms) == 24 && offsetof(SlotsReply, confirmed) == 28 &&
+              offsetof(SlotsReply, trial) == 29 && offsetof(SlotsReply, reserved) == 30);
 #pragma pack(push, 1)
 struct HelloReply {
   std::uint16_t link_version;
@@ -96,6 +101,33 @@ struct LinkTouchAxis {
   std::uint32_t uncertainty;           // standard, counts; the largest value: at least that
 };
 #pragma pack(pop)
+static_assert(sizeof(HelloReply) == 39);
+static_assert(offsetof(HelloReply, link_version) == 0 && offsetof(HelloReply, image_version) == 2 &&
+              offsetof(HelloReply, tick_us) == 4 && offsetof(HelloReply, capacity) == 8 &&
+              offsetof(HelloReply, axes) == 12 && offsetof(HelloReply, inputs) == 13 &&
+              offsetof(HelloReply, has_key) == 14 && offsetof(HelloReply, key) == 15);
+static_assert(sizeof(LinkTick) == 28);
+static_assert(offsetof(LinkTick, number) == 0 && offsetof(LinkTick, time_us) == 8 &&
+              offsetof(LinkTick, feed_nm_per_min) == 16 && offsetof(LinkTick, mode) == 24 &&
+              offsetof(LinkTick, fault) == 25 && offsetof(LinkTick, holding) == 26 &&
+              offsetof(LinkTick, reserved) == 27);
+static_assert(sizeof(LinkAxis) == 13);
+static_assert(offsetof(LinkAxis, position) == 0 && offsetof(LinkAxis, correction) == 8 &&
+              offsetof(LinkAxis, sense) == 12);
+static_assert(sizeof(LinkInput) == 4);
+static_assert(offsetof(LinkInput, value) == 0);
+static_assert(sizeof(LinkShare) == 5);
+static_assert(offsetof(LinkShare, axis) == 0 && offsetof(LinkShare, correction) == 1);
+static_assert(sizeof(LinkTouch) == 60);
+static_assert(offsetof(LinkTouch, number) == 0 && offsetof(LinkTouch, time_ns) == 8 &&
+              offsetof(LinkTouch, workpiece_nm) == 16 && offsetof(LinkTouch, lost_edges) == 40 &&
+              offsetof(LinkTouch, lost_touches) == 44 && offsetof(LinkTouch, spikes) == 48 &&
+              offsetof(LinkTouch, missing) == 52 && offsetof(LinkTouch, kind) == 56 &&
+              offsetof(LinkTouch, fault) == 57 && offsetof(LinkTouch, flags) == 58 &&
+              offsetof(LinkTouch, bounces) == 59);
+static_assert(sizeof(LinkTouchAxis) == 20);
+static_assert(offsetof(LinkTouchAxis, position) == 0 && offsetof(LinkTouchAxis, compensated) == 8 &&
+              offsetof(LinkTouchAxis, uncertainty) == 16);
 static_assert(kReplyHeaderBytes + 10 + sizeof(LinkTouch) + kMaxAxes * sizeof(LinkTouchAxis) <=
               kMaxReplyBytes);
 static_assert(kReplyHeaderBytes + 10 + sizeof(LinkTick) + kMaxAxes * sizeof(LinkAxis) +
@@ -112,18 +144,20 @@ static_assert(kReplyHeaderBytes + 10 + sizeof(LinkTick) + kMaxAxes * sizeof(Link
 constexpr int kMailboxRegister = 256;
 constexpr int kMailboxRegisters = 123;  // what one write may carry
 enum LiveRegister : int {
-  kLiveLayout,   // kLinkVersion
-  kLiveMode,     // Mode
-  kLiveFault,    // Fault
-  kLiveHolding,  // 0, 1
-  kLiveTicks,    // 2 registers, high word first: ticks since power-on, low 32 bits
-  kLiveOverruns = kLiveTicks + 2,
-  kLiveLatency = kLiveOverruns + 2,  // p99 of the wake-up latency, us
+  kLiveLayout = 0,    // kLinkVersion
+  kLiveMode = 1,      // Mode
+  kLiveFault = 2,     // Fault
+  kLiveHolding = 3,   // 0, 1
+  kLiveTicks = 4,     // 2 registers, high word first: ticks since power-on, low 32 bits
+  kLiveOverruns = 6,  // 2 registers
+  kLiveLatency = 8,   // p99 of the wake-up latency, us
   kLiveAxes = 16,  // per axis 4 registers: position in um (linear) or 1e-3 deg (rotary), 2 registers, signed;
                    // correction in 0.01 um or 1e-6 deg, 2 registers, signed
-  kLiveRegistersPerAxis = 4,
-  kLiveInputs = kLiveAxes + 4 * kMaxAxes,  // per input 2 registers: 0.001 of its unit, signed
-  kLiveRegisters = kLiveInputs + 2 * kMaxInputs
+  kLiveInputs = 48,    // per input 2 registers: 0.001 of its unit, signed
+  kLiveRegisters = 96  // all of them
 };
+constexpr int kLiveRegistersPerAxis = 4;
+static_assert(kLiveInputs == kLiveAxes + kLiveRegistersPerAxis * static_cast<int>(kMaxAxes));
+static_assert(kLiveRegisters == kLiveInputs + 2 * static_cast<int>(kMaxInputs));
 
 }  // namespace vernier

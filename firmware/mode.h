@@ -15,12 +15,12 @@ namespace vernier {
 ///                |        +--fault--+--------> RampOut -> Faulted
 ///                +---------------- clear ------------------+
 enum class Mode : std::uint8_t {
-  kBoot,      // nothing has been read
-  kChecking,  // waits until all devices have answered without fault for a while
-  kReady,     // may be activated; while it brings the correction in it is still Ready
-  kActive,    // the whole correction is in
-  kRampOut,   // takes the correction out
-  kFaulted,   // correction is out, the fault is latched
+  kBoot = 0,      // nothing has been read
+  kChecking = 1,  // waits until all devices have answered without fault for a while
+  kReady = 2,     // may be activated; while it brings the correction in it is still Ready
+  kActive = 3,    // the whole correction is in
+  kRampOut = 4,   // takes the correction out
+  kFaulted = 5,   // correction is out, the fault is latched
 };
 
 /// One line for people: "ramp-out".
@@ -28,12 +28,12 @@ const char* name_of(Mode mode) noexcept;
 
 /// What an operator may ask for. A command that does not fit the mode is refused and counted.
 enum class Command : std::uint8_t {
-  kNone,
-  kActivate,
-  kDeactivate,
-  kClearFault,
-  kHold,    // Active only: every correction stays as it is
-  kRelease  // ends a hold
+  kNone = 0,
+  kActivate = 1,
+  kDeactivate = 2,
+  kClearFault = 3,
+  kHold = 4,     // Active only: every correction stays as it is
+  kRelease = 5,  // ends a hold
 };
 constexpr std::uint8_t kCommandCount = static_cast<std::uint8_t>(Command::kRelease) + 1;
 

@@ -16,22 +16,22 @@ namespace vernier {
 
 /// Why an upload, or a step of one, is refused.
 enum class UploadFault : std::uint8_t {
-  kNone,
-  kNoUpload,        // data or an end without a beginning
-  kTrialRuns,       // the image on trial must be confirmed or reverted first
-  kTooLarge,        // larger than a slot
-  kOutOfOrder,      // a piece that does not follow the last one
-  kIncomplete,      // fewer bytes than announced
-  kStore,           // the medium is full or broken
-  kNotAnUpload,     // no upload header, or its sizes do not fit
-  kNoKey,           // the board has no public key: nothing can be trusted
-  kForeignKey,      // signed with another key
-  kSignature,       // the signature does not fit the bytes
-  kImage,           // the image is refused
-  kFingerprint,     // the header names another equation
-  kForeignMachine,  // the image does not fit the board's wiring
-  kOlder,           // not newer than the confirmed one, and not forced over it
-  kNoTrial,         // nothing is on trial
+  kNone = 0,
+  kNoUpload = 1,         // data or an end without a beginning
+  kTrialRuns = 2,        // the image on trial must be confirmed or reverted first
+  kTooLarge = 3,         // larger than a slot
+  kOutOfOrder = 4,       // a piece that does not follow the last one
+  kIncomplete = 5,       // fewer bytes than announced
+  kStore = 6,            // the medium is full or broken
+  kNotAnUpload = 7,      // no upload header, or its sizes do not fit
+  kNoKey = 8,            // the board has no public key: nothing can be trusted
+  kForeignKey = 9,       // signed with another key
+  kSignature = 10,       // the signature does not fit the bytes
+  kImage = 11,           // the image is refused
+  kFingerprint = 12,     // the header names another equation
+  kForeignMachine = 13,  // the image does not fit the board's wiring
+  kOlder = 14,           // not newer than the confirmed one, and not forced over it
+  kNoTrial = 15,         // nothing is on trial
 };
 constexpr std::uint8_t kUploadFaultCount = static_cast<std::uint8_t>(UploadFault::kNoTrial) + 1;
 const char* describe(UploadFault fault) noexcept;

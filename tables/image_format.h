@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <bit>
+#include <cstddef>
 #include <cstdint>
 
 #include "comp/shares.h"
@@ -36,27 +37,33 @@ struct ImageHeader {
   std::uint32_t reserved[2];     // 0
 };
 static_assert(sizeof(ImageHeader) == 64);
+static_assert(offsetof(ImageHeader, magic) == 0 && offsetof(ImageHeader, header_bytes) == 8 &&
+              offsetof(ImageHeader, checksum) == 12 && offsetof(ImageHeader, format_version) == 16 &&
+              offsetof(ImageHeader, image_bytes) == 20 && offsetof(ImageHeader, section_count) == 24 &&
+              offsetof(ImageHeader, tick_us) == 28 && offsetof(ImageHeader, fingerprint) == 32 &&
+              offsetof(ImageHeader, source_hash) == 40 && offsetof(ImageHeader, lag_count) == 48 &&
+              offsetof(ImageHeader, accepted_rules) == 52 && offsetof(ImageHeader, reserved) == 56);
 constexpr std::uint32_t kChecksumStart = 16;  // first byte under the checksum
 
 enum class SectionType : std::uint32_t {
-  kName,          // char: name of the machine
-  kAxes,          // AxisRecord
-  kInputs,        // InputRecord
-  kConstants,     // int32
-  kChannels,      // Channel (comp/compensator.h)
-  kInstructions,  // Instruction (comp/equation.h)
-  kTerms,         // ProductTerm, for the instructions that sum products
-  kTables,        // TableRecord
-  kRecords,       // int32: the records of all tables one after the other (comp/error_table.h), no gaps
-  kWraps,         // Wrap
-  kOutputs,       // Output
+  kName = 0,          // char: name of the machine
+  kAxes = 1,          // AxisRecord
+  kInputs = 2,        // InputRecord
+  kConstants = 3,     // int32
+  kChannels = 4,      // Channel (comp/compensator.h)
+  kInstructions = 5,  // Instruction (comp/equation.h)
+  kTerms = 6,         // ProductTerm, for the instructions that sum products
+  kTables = 7,        // TableRecord
+  kRecords = 8,       // int32: the records of all tables one after the other (comp/error_table.h), no gaps
+  kWraps = 9,         // Wrap
+  kOutputs = 10,      // Output
   // The shares of the effects (comp/shares.h): an equation of its own.
-  kShareConstants,     // int32
-  kShareSources,       // uint16: registers of the tick
-  kShareInstructions,  // Instruction
-  kShareTerms,         // ProductTerm
-  kShares,             // Share
-  kShareNames,         // ShareName, one per share
+  kShareConstants = 11,     // int32
+  kShareSources = 12,       // uint16: registers of the tick
+  kShareInstructions = 13,  // Instruction
+  kShareTerms = 14,         // ProductTerm
+  kShares = 15,             // Share
+  kShareNames = 16,         // ShareName, one per share
 };
 constexpr std::uint32_t kSectionCount = static_cast<std::uint32_t>(SectionType::kShareNames) + 1;
 
@@ -67,6 +74,8 @@ struct SectionEntry {
   std::uint32_t record_bytes;
 };
 static_assert(sizeof(SectionEntry) == 16);
+static_assert(offsetof(SectionEntry, type) == 0 && offsetof(SectionEntry, offset) == 4 &&
+              offsetof(SectionEntry, count) == 8 && offsetof(SectionEntry, record_bytes) == 12);
 
 /// Shape of a table; its records are pieces * (4 + columns * (degree + 1)) words of kRecords: of each piece
 /// its Segment (start, length, reciprocal, shift), then the coefficients of column after column. Six linear
@@ -79,6 +88,9 @@ struct TableRecord {
   std::uint32_t grid_shift;
 };
 static_assert(sizeof(TableRecord) == 16);
+static_assert(offsetof(TableRecord, pieces) == 0 && offsetof(TableRecord, columns) == 4 &&
+              offsetof(TableRecord, degree) == 6 && offsetof(TableRecord, grid_multiplier) == 8 &&
+              offsetof(TableRecord, grid_shift) == 12);
 
 enum AxisFlag : std::uint32_t { kRotary = 1u << 0, kRollover = 1u << 1 };
 
@@ -90,6 +102,9 @@ struct AxisRecord {
   std::int64_t low, high;  // axis counts: declared range
 };
 static_assert(sizeof(AxisRecord) == 48);
+static_assert(offsetof(AxisRecord, name) == 0 && offsetof(AxisRecord, flags) == 24 &&
+              offsetof(AxisRecord, reserved) == 28 && offsetof(AxisRecord, low) == 32 &&
+              offsetof(AxisRecord, high) == 40);
 
 struct InputRecord {
   char name[kImageNameBytes];
@@ -98,6 +113,9 @@ struct InputRecord {
   std::int64_t low, high;  // 1e-6 of the unit: range that the error bound covers
 };
 static_assert(sizeof(InputRecord) == 64);
+static_assert(offsetof(InputRecord, name) == 0 && offsetof(InputRecord, unit) == 24 &&
+              offsetof(InputRecord, reference) == 40 && offsetof(InputRecord, low) == 48 &&
+              offsetof(InputRecord, high) == 56);
 
 /// What a live display calls a share: "X of transform 2 (tool): BX*dirX", cut where it is longer.
 struct ShareName {

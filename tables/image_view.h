@@ -9,29 +9,29 @@ namespace vernier {
 
 /// Why an image is refused; one enumerator per cause.
 enum class ImageFault : std::uint8_t {
-  kNone,
-  kMisaligned,      // the buffer does not start on a multiple of 8
-  kTruncated,       // shorter than a header, or than the header says
-  kMagic,           // no Vernier image
-  kFormatVersion,   // another format version
-  kHeader,          // header size, image size, section count, tick or reserved words wrong
-  kChecksum,        // bytes changed on the way
-  kSection,         // a section out of order, misaligned, overlapping or outside
-  kFingerprint,     // the equation is not the one that the header names
-  kAxis,            // axis record: name, flags or range
-  kInput,           // input record: name, unit or range
-  kRange,           // a table whose records leave their section
-  kTooMany,         // more tables than the views have room for
-  kProgramTooLong,  // the causes of comp/verify.h, in its order
-  kProgramChannel,
-  kProgramTable,
-  kProgramWrap,
-  kProgramOpCode,
-  kProgramOperand,
-  kProgramShift,
-  kProgramOverflow,
-  kProgramLag,
-  kProgramOutput,
+  kNone = 0,
+  kMisaligned = 1,       // the buffer does not start on a multiple of 8
+  kTruncated = 2,        // shorter than a header, or than the header says
+  kMagic = 3,            // no Vernier image
+  kFormatVersion = 4,    // another format version
+  kHeader = 5,           // header size, image size, section count, tick or reserved words wrong
+  kChecksum = 6,         // bytes changed on the way
+  kSection = 7,          // a section out of order, misaligned, overlapping or outside
+  kFingerprint = 8,      // the equation is not the one that the header names
+  kAxis = 9,             // axis record: name, flags or range
+  kInput = 10,           // input record: name, unit or range
+  kRange = 11,           // a table whose records leave their section
+  kTooMany = 12,         // more tables than the views have room for
+  kProgramTooLong = 13,  // the causes of comp/verify.h, in its order
+  kProgramChannel = 14,
+  kProgramTable = 15,
+  kProgramWrap = 16,
+  kProgramOpCode = 17,
+  kProgramOperand = 18,
+  kProgramShift = 19,
+  kProgramOverflow = 20,
+  kProgramLag = 21,
+  kProgramOutput = 22,
 };
 
 /// One line for people: "checksum: bytes changed on the way".

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstddef>
 #include <cstdint>
 
 namespace vernier {
@@ -22,6 +23,12 @@ struct SlotRecord {
   std::uint32_t checksum;  // CRC-32C of the bytes before it
 };
 static_assert(sizeof(SlotRecord) == 32);
+static_assert(offsetof(SlotRecord, magic) == 0 && offsetof(SlotRecord, sequence) == 4 &&
+              offsetof(SlotRecord, issued) == 8 && offsetof(SlotRecord, trial_issued) == 16 &&
+              offsetof(SlotRecord, confirmed) == 24 && offsetof(SlotRecord, trial) == 25 &&
+              offsetof(SlotRecord, reserved) == 26 && offsetof(SlotRecord, checksum) == 28);
+/// Not stored: another layout takes another kSlotMagic and another number here.
+constexpr std::uint32_t kSlotRecordVersion = 1;
 constexpr std::uint32_t kSlotMagic = 0x544f4c53;  // "SLOT"
 
 /// A record and the place, 0 or 1, where it is to be stored.

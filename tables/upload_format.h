@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstddef>
 #include <cstdint>
 
 namespace vernier {
@@ -18,6 +19,12 @@ struct UploadHeader {
   std::uint8_t signature[64];
 };
 static_assert(sizeof(UploadHeader) == 128);
+static_assert(offsetof(UploadHeader, magic) == 0 && offsetof(UploadHeader, header_bytes) == 8 &&
+              offsetof(UploadHeader, image_bytes) == 12 && offsetof(UploadHeader, issued) == 16 &&
+              offsetof(UploadHeader, replaces) == 24 && offsetof(UploadHeader, fingerprint) == 32 &&
+              offsetof(UploadHeader, key) == 40 && offsetof(UploadHeader, signature) == 64);
+/// Not sent: another layout takes another kUploadMagic and another number here.
+constexpr std::uint32_t kUploadFormatVersion = 1;
 constexpr std::uint8_t kUploadMagic[8] = {'V', 'E', 'R', 'N', 'U', 'P', 'L', '\n'};
 constexpr std::uint32_t kSignedHeaderBytes = 64;  // of the header, those under the signature
 
