@@ -3,9 +3,9 @@
 #include <memory>
 #include <string>
 
-#include "hal/analogue_scale.h"
 #include "hal/correction_writer.h"
 #include "hal/linux/sysfs_attribute.h"
+#include "hal/support/analogue_scale.h"
 
 namespace vernier {
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "hal/digital_line.h"
-#include "hal/edge_queue.h"
+#include "hal/support/edge_queue.h"
 
 namespace vernier {
 

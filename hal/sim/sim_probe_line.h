@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include "hal/edge_queue.h"
+#include "hal/support/edge_queue.h"
 
 namespace vernier {
 

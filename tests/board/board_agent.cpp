@@ -16,10 +16,10 @@
 #include <cstring>
 #include <string>
 
-#include "firmware/link_format.h"
 #include "hal/linux/gpio_lines.h"
 #include "hal/linux/isotp_link.h"
 #include "hal/linux/monotonic_clock.h"
+#include "tables/link_format.h"
 
 namespace {
 

@@ -7,7 +7,7 @@
 #include <functional>
 #include <memory>
 
-#include "firmware/routing.h"
+#include "firmware/daemon/routing.h"
 #include "hal/linux/analogue_output.h"
 #include "hal/linux/can_axes.h"
 #include "hal/linux/iio_input.h"

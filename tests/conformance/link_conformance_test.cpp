@@ -16,8 +16,8 @@
 #include <random>
 #include <thread>
 
-#include "firmware/link_format.h"
 #include "hal/linux/modbus_server.h"
+#include "tables/link_format.h"
 #include "tools/upload/transport.h"
 
 namespace vernier::link_conformance_test {

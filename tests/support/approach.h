@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "firmware/service.h"
+#include "firmware/core/service.h"
 #include "hal/sim/plant.h"
 #include "hal/sim/sim_clock.h"
 #include "hal/sim/sim_probe_line.h"

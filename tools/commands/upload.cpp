@@ -3,7 +3,7 @@
 #include <chrono>
 #include <cstdlib>
 
-#include "firmware/image_file.h"
+#include "firmware/core/image_file.h"
 #include "tools/commands/command.h"
 #include "tools/compile/compile.h"
 #include "tools/safety/safety_sheet.h"

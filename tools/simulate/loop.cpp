@@ -4,7 +4,7 @@
 #include <chrono>
 #include <memory>
 
-#include "firmware/runner.h"
+#include "firmware/core/runner.h"
 #include "hal/sim/analogue_chain.h"
 #include "hal/sim/plant.h"
 #include "hal/sim/sim_clock.h"

@@ -3,8 +3,8 @@
 #include <optional>
 #include <vector>
 
-#include "firmware/health.h"
-#include "firmware/mode.h"
+#include "firmware/core/health.h"
+#include "firmware/core/mode.h"
 #include "tables/image_view.h"
 #include "tools/model/machine.h"
 #include "tools/model/states.h"

@@ -7,9 +7,9 @@
 #include <cstring>
 #include <thread>
 
-#include "comp/latch.h"
-#include "comp/touch_filter.h"
-#include "firmware/uploader.h"
+#include "comp/probing/latch.h"
+#include "comp/probing/touch_filter.h"
+#include "firmware/core/uploader.h"
 #include "tools/maths/factors.h"
 #include "tools/text/error.h"
 

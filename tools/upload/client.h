@@ -7,9 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "firmware/exchange.h"
-#include "firmware/link_format.h"
-#include "firmware/mode.h"
+#include "comp/probing/workpiece_frame.h"
+#include "tables/codes.h"
+#include "tables/link_format.h"
+#include "tables/records.h"
 #include "tables/slots.h"
 #include "tools/upload/transport.h"
 

@@ -8,8 +8,8 @@
 #include <cerrno>
 #include <cstring>
 
-#include "firmware/link_format.h"
 #include "hal/linux/isotp_link.h"
+#include "tables/link_format.h"
 #include "tools/text/error.h"
 
 namespace vernier {

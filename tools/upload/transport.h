@@ -8,7 +8,7 @@
 
 namespace vernier {
 
-/// Carries one request to a board and its reply back (firmware/link_format.h).
+/// Carries one request to a board and its reply back (tables/link_format.h).
 class Transport {
  public:
   virtual ~Transport() = default;

@@ -8,8 +8,8 @@
 
 namespace vernier {
 
-/// The features of comp/feature_window.h in double, by their definitions: the reference that the fixed point
-/// is held against, and what `vernier features` writes. Same order.
+/// The features of comp/vibration/feature_window.h in double, by their definitions: the reference that the
+/// fixed point is held against, and what `vernier features` writes. Same order.
 inline constexpr std::array<const char*, 13> kFeatureNames = {
     "MAV",      "VAR",       "RMS",       "SHAPE", "IMPACT",     "CREST",    "KURTOSIS",
     "SKEWNESS", "FREQUENCY", "BANDPOWER", "PEAK",  "PEAKIMPACT", "PEAKCREST"};

@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "comp/feature_window.h"
+#include "comp/vibration/feature_window.h"
 #include "tools/vibration/signal_features.h"
 
 namespace {

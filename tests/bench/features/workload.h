@@ -1,8 +1,8 @@
 #pragma once
 #include <cstdint>
 
-#include "comp/displacement.h"
-#include "comp/feature_window.h"
+#include "comp/vibration/displacement.h"
+#include "comp/vibration/feature_window.h"
 
 namespace vernier::bench {
 

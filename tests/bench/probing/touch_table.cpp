@@ -1,6 +1,6 @@
 // Error of the position at contact on simulated touches in acceleration, at constant feed and in
-// deceleration: latched (comp/latch.h), position at the edge less feed times delay, position at the edge.
-// Delay 6.16 ms, stamps of 1 us.
+// deceleration: latched (comp/probing/latch.h), position at the edge less feed times delay, position at the
+// edge. Delay 6.16 ms, stamps of 1 us.
 #include <cstdio>
 #include <random>
 

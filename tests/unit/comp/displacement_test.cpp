@@ -1,4 +1,4 @@
-#include "comp/displacement.h"
+#include "comp/vibration/displacement.h"
 
 #include <gtest/gtest.h>
 

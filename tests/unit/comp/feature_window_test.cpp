@@ -1,4 +1,4 @@
-#include "comp/feature_window.h"
+#include "comp/vibration/feature_window.h"
 
 #include <gtest/gtest.h>
 

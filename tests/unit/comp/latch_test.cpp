@@ -1,4 +1,4 @@
-#include "comp/latch.h"
+#include "comp/probing/latch.h"
 
 #include <gtest/gtest.h>
 

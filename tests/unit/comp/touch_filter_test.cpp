@@ -1,4 +1,4 @@
-#include "comp/touch_filter.h"
+#include "comp/probing/touch_filter.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "firmware/axis_monitor.h"
+#include "firmware/core/axis_monitor.h"
 
 #include <gtest/gtest.h>
 

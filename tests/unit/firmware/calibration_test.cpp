@@ -1,6 +1,6 @@
 // Gain and zero of an output from measured points: the published chain of 8 bits to the digit, uncertainties
 // that cover, refusals, and the stepping itself.
-#include "firmware/calibration.h"
+#include "firmware/daemon/calibration.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -10,8 +10,8 @@
 #include <random>
 #include <sstream>
 
-#include "firmware/board_file.h"
-#include "firmware/calibrate_output.h"
+#include "firmware/daemon/board_file.h"
+#include "firmware/daemon/calibrate_output.h"
 #include "hal/sim/sim_clock.h"
 
 namespace vernier::calibration_test {

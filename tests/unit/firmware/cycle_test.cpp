@@ -1,4 +1,4 @@
-#include "firmware/cycle.h"
+#include "firmware/core/cycle.h"
 
 #include <gtest/gtest.h>
 

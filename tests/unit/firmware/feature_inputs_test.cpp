@@ -1,5 +1,5 @@
 // Features of an accelerometer at the board: against the definitions in double, and in the tick.
-#include "firmware/feature_inputs.h"
+#include "firmware/core/feature_inputs.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-#include "firmware/service.h"
+#include "firmware/core/service.h"
 #include "hal/sim/plant.h"
 #include "hal/sim/roaming.h"
 #include "hal/sim/sim_clock.h"

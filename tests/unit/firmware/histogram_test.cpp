@@ -1,4 +1,4 @@
-#include "firmware/histogram.h"
+#include "firmware/core/histogram.h"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include <memory>
 #include <random>
 
-#include "firmware/cycle.h"
+#include "firmware/core/cycle.h"
 #include "hal/sim/sim_clock.h"
 #include "tests/unit/firmware/small_machine.h"
 

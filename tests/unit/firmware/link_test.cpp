@@ -1,4 +1,4 @@
-#include "firmware/link.h"
+#include "firmware/core/link.h"
 
 #include <gtest/gtest.h>
 

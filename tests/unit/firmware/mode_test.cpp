@@ -1,4 +1,4 @@
-#include "firmware/mode.h"
+#include "firmware/core/mode.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <thread>
 
-#include "firmware/feature_inputs.h"
+#include "firmware/core/feature_inputs.h"
 #include "tests/unit/firmware/upload_rig.h"
 
 namespace {

@@ -1,4 +1,4 @@
-#include "firmware/probing.h"
+#include "firmware/core/probing.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "firmware/runner.h"
+#include "firmware/core/runner.h"
 
 #include <gtest/gtest.h>
 

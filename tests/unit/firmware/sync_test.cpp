@@ -3,7 +3,7 @@
 
 #include <deque>
 
-#include "firmware/runner.h"
+#include "firmware/core/runner.h"
 #include "hal/sim/sim_clock.h"
 #include "tests/unit/firmware/rig.h"
 

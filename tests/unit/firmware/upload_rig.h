@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "firmware/service.h"
+#include "firmware/core/service.h"
 #include "hal/sim/plant.h"
 #include "hal/sim/roaming.h"
 #include "hal/sim/sim_clock.h"

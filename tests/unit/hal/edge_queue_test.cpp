@@ -1,5 +1,5 @@
 // The edges of a probe's line: their order, and that none goes missing without a word.
-#include "hal/edge_queue.h"
+#include "hal/support/edge_queue.h"
 
 #include <gtest/gtest.h>
 

@@ -78,6 +78,7 @@ std::string tool_may_include(std::string_view path, std::string_view target) {
   const std::string_view folder = second_folder(path);
   const std::string_view top = head(target);
   if (top == "comp" || top == "tables" || is_hal_support(target)) return {};
+  if (starts_with(target, "firmware/daemon/")) return "the daemon is no library";
   if (top == "firmware" || top == "hal") {
     const bool runs_firmware = folder == "simulate" || folder == "upload" || folder == "commands";
     return runs_firmware ? "" : "only simulate, upload and their commands may use firmware and hal";
@@ -93,27 +94,41 @@ std::string tool_may_include(std::string_view path, std::string_view target) {
   return "a folder of tools that has no floor";
 }
 
+std::string comp_may_include(std::string_view path, std::string_view target) {
+  if (head(target) != "comp") return "comp stands alone";
+  const auto room = [](std::string_view file) { return file.substr(0, file.rfind('/')); };
+  const std::string_view from = room(path), to = room(target);
+  return to == "comp" || to == from || to == "comp/generated"
+             ? ""
+             : "comp knows neither comp/probing nor comp/vibration";
+}
+
 std::string hal_may_include(std::string_view path, std::string_view target) {
   if (target == "comp/quantity.h" || is_hal_port(target)) return {};
   if (is_hal_port(path)) return "a hal port may include only ports and comp/quantity.h";
+  if (is_hal_support(target)) return {};
   if (is_hal_support(path))
-    return is_hal_support(target) ? "" : "hal/support may include ports and system libraries";
+    return head(target) == "comp" ? "" : "hal/support may include ports, comp and system libraries";
   const bool sim = starts_with(path, "hal/sim/");
   if (sim && (head(target) == "comp" || starts_with(target, "hal/sim/"))) return {};
   if (!sim && starts_with(target, "hal/linux/")) return {};
-  return sim ? "hal/sim may include ports and comp" : "hal/linux may include ports and system libraries";
+  return sim ? "hal/sim may include ports, support and comp"
+             : "hal/linux may include ports, support and system libraries";
 }
 
 std::string firmware_may_include(std::string_view path, std::string_view target) {
   const std::string_view top = head(target);
-  if (top == "firmware" || top == "comp" || top == "tables" || is_hal_port(target) || is_hal_support(target))
+  if (top == "comp" || top == "tables" || is_hal_port(target) || starts_with(target, "firmware/core/"))
     return {};
-  const bool root =
-      path == "firmware/main.cpp" || path == "firmware/devices.cpp" || path == "firmware/open_devices.cpp";
-  if (root && top == "hal") return {};
-  return "firmware may include comp, tables, hal ports and hal/support; only the composition root (main, "
-         "devices, "
-         "open_devices) names a backend";
+  if (starts_with(path, "firmware/core/")) return "firmware/core may include comp, tables and hal ports";
+  if (!starts_with(path, "firmware/daemon/")) return "a folder of firmware that has no place";
+  if (starts_with(target, "firmware/daemon/") || is_hal_support(target)) return {};
+  static const std::set<std::string_view> kRoot = {"firmware/daemon/main.cpp", "firmware/daemon/devices.cpp",
+                                                   "firmware/daemon/open_devices.cpp"};
+  if (kRoot.contains(path) && top == "hal") return {};
+  return "firmware/daemon may include firmware, comp, tables, hal ports and hal/support; only the "
+         "composition "
+         "root (main, devices, open_devices) names a backend";
 }
 
 // Empty: allowed; else the reason.
@@ -125,7 +140,7 @@ std::string may_include(std::string_view path, std::string_view target) {
   if (to == "tests") return "nobody includes tests";
   if (from == "tools") return tool_may_include(path, target);
   if (to == "tools") return "nobody includes tools";
-  if (from == "comp") return to == "comp" ? "" : "comp stands alone";
+  if (from == "comp") return comp_may_include(path, target);
   if (from == "tables") return to == "tables" || to == "comp" ? "" : "tables may include comp only";
   if (from == "hal") return hal_may_include(path, target);
   return firmware_may_include(path, target);

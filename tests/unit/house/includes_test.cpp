@@ -27,9 +27,9 @@ TEST(Includes, EveryWrongDirectionIsDetected) {
   EXPECT_EQ(wrong("hal/clock.h", "#include \"hal/support/output_file.h\"\n"), 1u);
   EXPECT_EQ(wrong("hal/support/a.cpp", "#include \"hal/linux/timer.h\"\n"), 1u);
   EXPECT_EQ(wrong("comp/a.h", "#include \"hal/support/output_file.h\"\n"), 1u);
-  EXPECT_EQ(wrong("firmware/cycle.cpp", "#include \"hal/sim/plant.h\"\n"), 1u);
-  EXPECT_EQ(wrong("firmware/cycle.cpp", "#include \"tools/model/chain.h\"\n"), 1u);
-  EXPECT_EQ(wrong("firmware/cycle.cpp", "#include \"tests/support/a.h\"\n"), 1u);
+  EXPECT_EQ(wrong("firmware/core/cycle.cpp", "#include \"hal/sim/plant.h\"\n"), 1u);
+  EXPECT_EQ(wrong("firmware/core/cycle.cpp", "#include \"tools/model/chain.h\"\n"), 1u);
+  EXPECT_EQ(wrong("firmware/core/cycle.cpp", "#include \"tests/support/a.h\"\n"), 1u);
   EXPECT_EQ(wrong("tools/fit/a.cpp", "#include \"hal/clock.h\"\n"), 1u);
   EXPECT_EQ(wrong("tools/model/a.cpp", "#include \"tools/fit/fit.h\"\n"), 1u);
   EXPECT_EQ(wrong("tools/fit/a.cpp", "#include \"tests/support/a.h\"\n"), 1u);
@@ -45,12 +45,17 @@ TEST(Includes, EveryAllowedDirectionPasses) {
   EXPECT_EQ(wrong("hal/board.h", "#include \"hal/clock.h\"\n#include \"comp/quantity.h\"\n"), 0u);
   EXPECT_EQ(wrong("hal/linux/a.cpp", "#include <modbus.h>\n#include \"hal/clock.h\"\n"), 0u);
   EXPECT_EQ(wrong("hal/sim/a.cpp", "#include \"comp/compensator.h\"\n"), 0u);
+  EXPECT_EQ(wrong("hal/support/a.h", "#include \"comp/wide.h\"\n#include \"hal/probe_line.h\"\n"), 0u);
+  EXPECT_EQ(wrong("hal/linux/a.h", "#include \"hal/support/edge_queue.h\"\n"), 0u);
+  EXPECT_EQ(wrong("comp/probing/a.h", "#include \"comp/compensator.h\"\n"), 0u);
+  EXPECT_EQ(wrong("firmware/core/a.h", "#include \"tables/records.h\"\n#include \"hal/board.h\"\n"), 0u);
   EXPECT_EQ(wrong("hal/support/a.cpp", "#include <string>\n#include \"hal/support/a.h\"\n"), 0u);
-  EXPECT_EQ(wrong("firmware/report.cpp", "#include \"hal/support/output_file.h\"\n"), 0u);
+  EXPECT_EQ(wrong("firmware/daemon/report.cpp", "#include \"hal/support/output_file.h\"\n"), 0u);
   EXPECT_EQ(wrong("tools/model/a.cpp", "#include \"hal/support/output_file.h\"\n"), 0u);
-  EXPECT_EQ(wrong("firmware/main.cpp", "#include \"hal/linux/board.h\"\n"), 0u);
-  EXPECT_EQ(wrong("tools/simulate/a.cpp", "#include \"firmware/cycle.h\"\n#include \"hal/sim/plant.h\"\n"),
-            0u);
+  EXPECT_EQ(wrong("firmware/daemon/main.cpp", "#include \"hal/linux/board.h\"\n"), 0u);
+  EXPECT_EQ(
+      wrong("tools/simulate/a.cpp", "#include \"firmware/core/cycle.h\"\n#include \"hal/sim/plant.h\"\n"),
+      0u);
   EXPECT_EQ(wrong("tools/fit/a.cpp", "#include \"tools/model/chain.h\"\n#include \"comp/fixed.h\"\n"), 0u);
   EXPECT_EQ(wrong("tests/unit/comp/a.cpp", "#include \"tools/model/chain.h\"\n"), 0u);
 }

@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "comp/shares.h"
-#include "firmware/signature.h"
+#include "firmware/core/signature.h"
 #include "tables/checksum.h"
 #include "tables/slots.h"
 #include "tables/upload_format.h"

@@ -4,12 +4,12 @@
 
 #include <map>
 
-#include "comp/latch.h"
+#include "comp/probing/latch.h"
+#include "comp/probing/touch_filter.h"
 #include "comp/shares.h"
-#include "comp/touch_filter.h"
-#include "firmware/exchange.h"
-#include "firmware/link_format.h"
-#include "firmware/uploader.h"
+#include "firmware/core/exchange.h"
+#include "firmware/core/uploader.h"
+#include "tables/link_format.h"
 #include "tests/unit/tables/golden_listing.h"
 
 namespace vernier::golden {

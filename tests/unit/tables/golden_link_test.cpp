@@ -3,9 +3,9 @@
 
 #include <cstring>
 
-#include "comp/latch.h"
-#include "comp/touch_filter.h"
-#include "firmware/link.h"
+#include "comp/probing/latch.h"
+#include "comp/probing/touch_filter.h"
+#include "firmware/core/link.h"
 #include "hal/sim/sim_slot_store.h"
 #include "tests/unit/tables/golden_listing.h"
 #include "tests/unit/tables/golden_machine.h"

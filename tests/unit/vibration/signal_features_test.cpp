@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "comp/feature_window.h"
+#include "comp/vibration/feature_window.h"
 
 namespace vernier::signal_features_test {
 namespace {

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+
+#include "comp/quantity.h"
+#include "comp/vibration/scaled.h"
+#include "comp/vibration/spectral_weights.h"
+
+namespace vernier {
+
+/// What one axis of an accelerometer tells over a window of samples x, m their mean (C. Walker, PhD thesis,
+/// University of Strathclyde 2026, section 6.2.1; the last three as the code of its appendix 16.8 has them).
+enum class Feature : std::uint8_t {
+  kMav,        // sum |x| / n
+  kVar,        // sum (x - m)^2 / (n - 1)
+  kRms,        // sqrt(sum x^2 / n)
+  kShape,      // RMS / MAV
+  kImpact,     // max |x| / MAV
+  kCrest,      // max |x| / RMS
+  kKurtosis,   // fourth central moment / second^2: 3 for a normal signal
+  kSkewness,   // third central moment / second^1.5
+  kFrequency,  // sum f P / sum P over the one-sided periodogram (rectangular window, mean value included), Hz
+  kBandpower,  // sum x^2 / n
+  kPeak,       // max x
+  kPeakImpact,  // max x / MAV
+  kPeakCrest,   // max x / RMS
+};
+constexpr unsigned kFeatures = 13;
+
+/// How samples count. lsb: one LSB in 1e-6 of the signal's unit (10 for 10 ug and a signal in g), 1..2^30;
+/// rate: samples per second in 1e-6 Hz, 1..2^42.
+struct FeatureScale {
+  InputMicro lsb{10};
+  InputMicro rate{1'000'000'000};
+};
+
+/// Features of a window as inputs of an equation: 1e-6 of the signal's unit (squared for VAR and BANDPOWER),
+/// of 1, or of Hz. Bit i of `undefined`: feature i is 0/0 (a signal of nothing, or of one value) and its
+/// value 0.
+struct FeatureValues {
+  InputMicro value[kFeatures];
+  std::uint32_t undefined = 0;
+};
+
+/// The last n samples of one axis. Each sample costs the same: four power sums and sum |x| take the new one
+/// in and the old one out, exactly; a tree of groups keeps the extremes; n/4 products keep the first moment
+/// of the spectrum (spectral_weights.h). Integers throughout, so nothing drifts, however long it runs. Ranges
+/// for n <= 2^11, |x| < 2^19: sum x^2 < 2^49, sum x^3 < 2^68, sum x^4 < 2^87, moments times powers of n below
+/// 2^121, spectral sum below 2^82: 128-bit sums are exact. Bound of features(): 0.501 of 1e-6 plus 2^-54 of
+/// the value against exact arithmetic; FREQUENCY adds rate n 2^-36 for its rounded weights (36 uHz at 1651 Hz
+/// and n = 1500); beyond int64 it saturates.
+class FeatureWindow {
+ public:
+  static constexpr std::int32_t kLimit = (std::int32_t{1} << 19) - 1;
+
+  /// Starts an empty window; `weights` stays where it is as long as the window is used (axes share it). False
+  /// where scale or weights are out of range. setup.
+  bool start(const FeatureScale& scale, const SpectralWeights& weights) noexcept;
+
+  /// Takes one sample in, LSB. Beyond +-kLimit it is held there and counted. realtime.
+  void push(std::int32_t sample) noexcept;
+
+  /// n samples have come since start. realtime.
+  bool filled() const noexcept { return seen_ >= window_; }
+  std::uint32_t held() const noexcept { return held_; }
+
+  /// The features of the last n samples (zeros before the first). realtime.
+  FeatureValues features() const noexcept;
+
+ private:
+  static constexpr std::uint32_t kMaxHalf = kMaxWindow / 2;
+  static constexpr std::uint32_t kGroup = 16;
+  static constexpr std::uint32_t kLeaves = kMaxWindow / kGroup;
+
+  std::int64_t neighbours(std::uint32_t parity, std::uint32_t place) const noexcept;
+  void store(std::uint32_t parity, std::uint32_t place, std::int32_t sample) noexcept;
+  void amplitudes(FeatureValues& out, Scaled mean_square, Scaled inverse_rms,
+                  Scaled inverse_mav) const noexcept;
+  void shapes(FeatureValues& out) const noexcept;
+
+  const SpectralWeights* weights_ = nullptr;
+  std::uint32_t window_ = 0, next_ = 0, seen_ = 0, held_ = 0;
+  Scaled lsb_, inverse_n_, root_n_, variance_scale_, power_scale_, rate_;
+  struct Sums {
+    std::uint64_t absolute = 0, square = 0;
+    std::int64_t first = 0;
+    Wide cube, fourth, spectral;
+  };
+  Sums sums_;
+  // Even and odd places apart, each twice in a row: the places at odd distances from one are then neighbours.
+  std::int32_t samples_[2][2 * kMaxHalf];
+  std::int32_t highest_[2 * kLeaves], lowest_[2 * kLeaves];  // node i over nodes 2i and 2i + 1
+};
+
+}  // namespace vernier

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "comp/equation.h"
+#include "comp/vibration/feature_window.h"
+#include "hal/clock.h"
+#include "hal/input_reader.h"
+
+namespace vernier {
+
+constexpr std::uint32_t kNoInput = UINT32_MAX;
+
+/// An input of the board that is a feature of another one's signal.
+struct FeatureRequest {
+  std::uint32_t input = 0;         // the board's input that it becomes
+  std::uint32_t of = 0;            // the board's input whose samples are taken
+  std::uint32_t minus = kNoInput;  // another one that is taken off sample by sample
+  Feature feature = Feature::kRms;
+  std::uint32_t window = 1500;  // samples; even, 6..2048
+  std::uint32_t every = 1;      // ticks from sample to sample
+  InputMicro lsb{10};           // resolution of a sample, 1e-6 of the unit of `of`; 1..2^30
+  std::uint32_t bridged = 3;    // missing samples in a row that the last one stands for
+};
+
+/// The feature of a name as `vernier features` writes it ("RMS"); false where there is none. setup.
+bool feature_of(const std::string& name, Feature& feature) noexcept;
+
+/// The board's inputs with features of some of them among them. In each tick the other inputs are read once;
+/// on a sampling tick each window takes its sample and works its features out. Features of the same signal,
+/// window and resolution share one window. A tick costs, for each window, one FeatureWindow::push and one
+/// features(): 5500 instructions of x86-64 at 800 samples, 8900 at 2048 (tools/docs/vibration.md).
+///
+/// Samples: round(signal / lsb), ties away from zero, exact; held at +-524287 lsb and counted. A feature is
+/// silent (kNoReading) until its window is full, where it is 0/0 (FeatureValues::undefined), and, after
+/// more missing samples than are bridged, until that many have come again: no window has a gap in it.
+class FeatureInputs : public InputReader {
+ public:
+  /// source: of all inputs that are no feature, outlives this. inputs: of the board, at most kMaxInputs.
+  /// tick: of the firmware. What a window cannot be made for (length, resolution, an `of` that is a feature)
+  /// is refused: `refused()` then names the request. setup.
+  FeatureInputs(InputReader& source, std::uint32_t inputs, const std::vector<FeatureRequest>& requests,
+                TimeUs tick);
+
+  /// Index of the first request that cannot be served, or kNoInput. setup.
+  std::uint32_t refused() const noexcept { return refused_; }
+  std::size_t windows() const noexcept { return windows_.size(); }
+  /// Samples so far that were beyond the range of a window. realtime.
+  std::uint64_t held() const noexcept;
+
+  void begin_tick() noexcept override;
+  HalFault read_input(std::uint32_t input, InputMicro& value) noexcept override;
+
+ private:
+  /// A signal's window with what its samples are made of.
+  struct Signal {
+    FeatureRequest from;
+    std::uint64_t inverse = 0;  // 2^63 / lsb, cut
+    FeatureWindow window;
+    FeatureValues values;
+    std::uint32_t until_sample = 1, in_a_row = 0, missing = 0;
+    std::int32_t last = 0;
+    bool ready = false;
+  };
+  struct Reading {
+    InputMicro value;
+    HalFault fault = HalFault::kNoReading;
+  };
+
+  Signal* signal_of(const FeatureRequest& request, TimeUs tick);
+  const SpectralWeights* weights_of(std::uint32_t window);
+  void take(Signal& signal) noexcept;
+  bool sample_of(const Signal& signal, std::int32_t& sample) const noexcept;
+
+  InputReader& source_;
+  std::uint32_t inputs_, refused_ = kNoInput;
+  std::vector<std::unique_ptr<SpectralWeights>> weights_;
+  std::vector<std::unique_ptr<Signal>> windows_;
+  const Signal* feature_[kMaxInputs] = {};  // null: the source's own input
+  Feature which_[kMaxInputs] = {};
+  Reading reading_[kMaxInputs];
+};
+
+}  // namespace vernier

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "firmware/core/exchange.h"
+#include "firmware/core/uploader.h"
+#include "tables/link_format.h"
+
+namespace vernier {
+
+/// Answers the requests of tables/link_format.h, whatever carries them. Runs outside the tick; every byte
+/// of a request is hostile until it is checked.
+class Link {
+ public:
+  /// All outlive the link. key: what HelloReply names. setup.
+  Link(Exchange& exchange, Uploader& uploader, const Wiring& wiring, TimeUs tick,
+       const std::optional<PublicKey>& key);
+
+  /// Answers one request. request: any bytes; reply: room for kMaxReplyBytes. Returns the bytes of the reply,
+  /// 0 where the request is too short to be answered. now: as the uploader's. setup.
+  std::uint32_t answer(const std::uint8_t* request, std::uint32_t size, std::uint8_t* reply, TimeUs now);
+
+  /// The program that the tick has taken over, and how many it has taken: for the names of its shares. It
+  /// lives until the next call. setup.
+  void set_program(const BoundProgram& program, std::uint64_t programs) noexcept {
+    program_ = &program;
+    programs_ = programs;
+  }
+
+  /// The live registers for plain Modbus masters; values: kLiveRegisters. setup.
+  void fill_registers(std::uint16_t* values) const;
+  /// A command from a plain master: refused where it is none or the one before has not been taken. setup.
+  LinkStatus give(std::uint8_t command);
+
+ private:
+  class Reader;
+  class Writer;
+  LinkStatus run(LinkOp op, Reader& in, Writer& out, TimeUs now);
+  LinkStatus hello(Writer& out) const;
+  LinkStatus name(Reader& in, Writer& out) const;
+  LinkStatus newest(Writer& out) const;
+  LinkStatus history(Reader& in, Writer& out) const;
+  LinkStatus health(Reader& in, Writer& out) const;
+  LinkStatus slots(Writer& out, TimeUs now) const;
+  LinkStatus read(Reader& in, Writer& out);
+  LinkStatus weight(Reader& in);
+  LinkStatus shares(Reader& in, Writer& out) const;
+  LinkStatus share_name(Reader& in, Writer& out) const;
+  LinkStatus touches(Reader& in, Writer& out) const;
+  LinkStatus workpiece(Reader& in);
+  LinkStatus upload(LinkOp op, Reader& in, Writer& out, TimeUs now);
+  bool put_touch(Writer& out, std::uint64_t number, const TouchRecord& touch) const;
+  bool put_tick(Writer& out, std::uint64_t number, const TickRecord& tick) const;
+
+  Exchange& exchange_;
+  Uploader& uploader_;
+  const Wiring& wiring_;
+  TimeUs tick_;
+  std::optional<PublicKey> key_;
+  const BoundProgram* program_ = nullptr;
+  std::uint64_t programs_ = 0;
+};
+
+}  // namespace vernier

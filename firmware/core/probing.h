@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+
+#include "comp/probing/latch.h"
+#include "comp/probing/touch_filter.h"
+#include "comp/probing/workpiece_frame.h"
+#include "firmware/core/cycle.h"
+#include "firmware/core/exchange.h"
+#include "hal/probe_line.h"
+
+namespace vernier {
+
+/// How a probe is wired and how late it is.
+struct ProbeSettings {
+  InstantNs delay;         // from contact to edge: trigger, filter, radio; 0 .. 50 ms
+  InstantNs delay_spread;  // its standard deviation from touch to touch
+  InstantNs position_age;  // how old a reading of the axes is when a tick gets it; 0 .. 50 ms
+  InstantNs age_spread;    // its standard deviation
+  InstantNs settle{1'000'000};
+  std::uint32_t axes = 0;                                // of the board
+  bool rollover[kMaxAxes] = {};                          // whole turns of the axis do not count
+  std::uint8_t xyz[3] = {kMaxAxes, kMaxAxes, kMaxAxes};  // board's axes X, Y, Z; kMaxAxes: it has none
+
+  /// Standard uncertainty of the instant of a touch. resolution: of the edge's stamp. setup.
+  InstantNs time_uncertainty(InstantNs resolution) const noexcept;
+};
+
+/// From edges to positions: after each tick the new edges become touches, and each touch becomes the position
+/// of the axes at the moment of contact, twice: as the controller counts, and compensated. A touch is
+/// published after its settling time and at most two ticks after it.
+class Probing {
+ public:
+  static constexpr std::uint32_t kMostEdges = 16;  // taken in one tick
+  static constexpr std::uint32_t kMostWaiting = 8;
+
+  /// line: outlives this. setup.
+  Probing(ProbeLine& line, const ProbeSettings& settings) noexcept;
+
+  /// A tick has read its axes at `woke` and written its corrections. time: the tick's t of the machine file.
+  /// realtime.
+  void after_tick(const Cycle& cycle, const TickReport& report, InstantNs woke, TimeUs time,
+                  Exchange& exchange) noexcept;
+
+ private:
+  void sample(const Cycle& cycle, const TickReport& report, InstantNs woke) noexcept;
+  void take_edges(InstantNs woke) noexcept;
+  void wait_for(const Touch& touch) noexcept;
+  bool publish(const Touch& touch, InstantNs zero, const WorkpieceFrame& frame, Exchange& exchange) noexcept;
+
+  ProbeLine& line_;
+  ProbeSettings settings_;
+  InstantNs time_uncertainty_;
+  LatchRing ring_;
+  TouchFilter filter_;
+  Touch waiting_[kMostWaiting];
+  std::uint32_t first_ = 0, waiting_count_ = 0;
+  std::uint32_t lost_edges_ = 0, lost_touches_ = 0;
+  std::uint8_t state_ = 0;  // TouchFlag bits that hold for the sample ring
+};
+
+}  // namespace vernier

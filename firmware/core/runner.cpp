@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware/core/runner.h"
+
+namespace vernier {
+namespace {
+
+// Ticks that are left out one by one; a longer stop starts a new count.
+constexpr int kMostSkipped = 1000;
+// Signs in one period that are too early to be the next cycle; more is no sync.
+constexpr int kMostEarlySyncs = 64;
+// A wake-up so much later than asked is no late wake-up: time was set, or the machine stood still.
+constexpr InstantNs kClockStep(1'000'000'000);
+
+}  // namespace
+
+Runner::Runner(Cycle& cycle, Clock& clock, TimeUs period) noexcept
+    : cycle_(cycle), clock_(clock), period_(period), last_(clock.now()), due_(last_ + instant_ns(period)) {}
+
+Runner::Runner(Cycle& cycle, Clock& clock, TimeUs period, TickSync* sync, TimeUs patience) noexcept
+    : Runner(cycle, clock, period) {
+  sync_ = sync;
+  patience_ = patience;
+}
+
+/// True: a sign has come that may start the tick.
+bool Runner::wait_for_sync() noexcept {
+  const InstantNs period = instant_ns(period_);
+  for (int i = 0; i < kMostEarlySyncs; ++i) {
+    const InstantNs latest = in_step_ ? due_ + instant_ns(patience_) : due_;
+    if (sync_->wait_for_sync(latest) != HalFault::kNone) return false;
+    const InstantNs now = clock_.now();
+    if ((due_ - now).count <= period.count / 2) return true;
+    // The first sign after ticks by the own clock may come right after one: it says when the next is due.
+    if (!in_step_) due_ = now + period;
+    in_step_ = true;
+  }
+  return false;
+}
+
+HalFault Runner::wait() noexcept {
+  if (sync_ == nullptr) return clock_.sleep_until(due_);
+  if (!wait_for_sync()) {
+    lost_syncs_ += in_step_ ? 1 : 0;
+    in_step_ = false;
+    return clock_.sleep_until(due_);
+  }
+  in_step_ = true;
+  // The controller's cycles that brought no sign are ticks that were left out.
+  const InstantNs now = clock_.now();
+  if (now - due_ > kClockStep) return HalFault::kRefused;
+  for (int i = 0; i < kMostSkipped && (now - due_).count > instant_ns(period_).count / 2; ++i) {
+    due_ = due_ + instant_ns(period_);
+    time_ = time_ + period_;
+    ++cycle_.health().skipped;
+  }
+  due_ = now;
+  return HalFault::kNone;
+}
+
+void Runner::schedule(InstantNs ended) noexcept {
+  due_ = due_ + instant_ns(period_);
+  time_ = time_ + period_;
+  if (ended <= due_) {
+    overruns_ = 0;
+    return;
+  }
+  ++cycle_.health().overruns;
+  ++overruns_;
+  for (int i = 0; i < kMostSkipped && due_ < ended; ++i) {
+    due_ = due_ + instant_ns(period_);
+    time_ = time_ + period_;
+    ++cycle_.health().skipped;
+  }
+  if (due_ < ended) due_ = ended + instant_ns(period_);
+}
+
+TickReport Runner::step(Command command) noexcept {
+  Fault outer = overruns_ >= kMostOverruns ? Fault::kOverrun : Fault::kNone;
+  if (wait() != HalFault::kNone) outer = Fault::kClock;
+  const InstantNs woke = clock_.now();
+  // A monotonic clock that runs backwards is broken, whatever the reason.
+  if (woke < last_ || woke - due_ > kClockStep) outer = Fault::kClock;
+  last_ = woke;
+  const TickReport report = cycle_.tick(time_, command, outer);
+  const InstantNs ended = clock_.now();
+  cycle_.health().latency.add((woke - due_).count);
+  cycle_.health().execution.add((ended - woke).count);
+  schedule(ended);
+  return report;
+}
+
+}  // namespace vernier

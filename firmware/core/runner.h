@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+
+#include "firmware/core/cycle.h"
+#include "hal/clock.h"
+#include "hal/tick_sync.h"
+
+namespace vernier {
+
+/// Overruns in a row that are a fault.
+constexpr std::uint32_t kMostOverruns = 10;
+
+/// Runs a cycle tick by tick on a clock: sleeps until the tick is due, measures how late it woke and how long
+/// it computed. A tick that ends after the next was due is an overrun; the ticks that it covered are left
+/// out.
+class Runner {
+ public:
+  /// The first tick is due one period from now. setup.
+  Runner(Cycle& cycle, Clock& clock, TimeUs period) noexcept;
+  /// Each tick starts with a sign of `sync`. One that is earlier than half a period is none; where none comes
+  /// for `patience` after the tick was due, the clock starts the ticks until the next sign. setup.
+  Runner(Cycle& cycle, Clock& clock, TimeUs period, TickSync* sync, TimeUs patience) noexcept;
+
+  /// Sleeps, then one tick; its time is counted from the construction or set_time(). realtime.
+  TickReport step(Command command) noexcept;
+  /// The machine file's t of the next tick; for a run that starts in the middle of a machine's day. setup.
+  void set_time(TimeUs time) noexcept { time_ = time; }
+  /// The machine file's t of the next tick.
+  TimeUs time() const noexcept { return time_; }
+  /// The moment at which the last tick read its axes.
+  InstantNs woke() const noexcept { return last_; }
+  /// Do the ticks follow the controller's sync?
+  bool in_step() const noexcept { return in_step_; }
+  /// Times that the sync was lost; only goes up.
+  std::uint64_t lost_syncs() const noexcept { return lost_syncs_; }
+  /// The moment at which the next tick is due.
+  InstantNs due() const noexcept { return due_; }
+
+ private:
+  void schedule(InstantNs ended) noexcept;
+  HalFault wait() noexcept;
+  bool wait_for_sync() noexcept;
+
+  Cycle& cycle_;
+  Clock& clock_;
+  TimeUs period_;
+  TickSync* sync_ = nullptr;
+  TimeUs patience_;
+  bool in_step_ = false;
+  std::uint64_t lost_syncs_ = 0;
+  InstantNs last_;  // wake-up before
+  InstantNs due_;
+  TimeUs time_;
+  std::uint32_t overruns_ = 0;  // in a row
+};
+
+}  // namespace vernier

@@ -1,0 +1,343 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware/daemon/board_file.h"
+
+#include <sodium.h>
+
+#include <toml++/toml.h>
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <set>
+
+namespace vernier {
+namespace {
+
+constexpr double kNmPerMm = 1e6, kCountsPerDeg = static_cast<double>(kTurnCounts) / 360, kMicro = 1e6;
+constexpr double kMostCounts = 1e15;
+constexpr double kMostDelayUs = 40'000;  // of a probe: what the latch remembers at 1 kHz, less its settling
+
+const std::set<std::string_view> kSections = {"board", "axis", "input", "probe", "digital", "link"};
+
+/// Reads the settings of one table and knows which of them nobody asked for.
+class Table {
+ public:
+  Table(const toml::table& table, std::string file, std::string where)
+      : table_(table), file_(std::move(file)), where_(std::move(where)) {}
+
+  [[noreturn]] void fail(const std::string& what, const toml::node* at = nullptr) const {
+    const auto line = (at != nullptr ? at->source() : table_.source()).begin.line;
+    throw BoardError{file_ + ":" + std::to_string(line) + ": " + where_ + ": " + what};
+  }
+  template <class T>
+  T get(const std::string& name, const T& otherwise, const char* kind) {
+    asked_.insert(name);
+    const toml::node* const node = table_.get(name);
+    if (node == nullptr) return otherwise;
+    const auto value = node->value<T>();
+    if (!value) fail(name + " must be " + kind, node);
+    return *value;
+  }
+  std::string text(const std::string& name, const std::string& otherwise) {
+    return get<std::string>(name, otherwise, "a text");
+  }
+  bool flag(const std::string& name, bool otherwise) { return get<bool>(name, otherwise, "true or false"); }
+  double number(const std::string& name, double otherwise, double low, double high) {
+    const double value = get<double>(name, otherwise, "a number");
+    // A default need not lie in the range: it stands for "not given".
+    if (table_.get(name) != nullptr && !(value >= low && value <= high))
+      fail(name + " must be between " + number_text(low) + " and " + number_text(high), table_.get(name));
+    return value;
+  }
+  bool has(const std::string& name) const { return table_.get(name) != nullptr; }
+  const toml::table* table(const std::string& name) {
+    asked_.insert(name);
+    const toml::node* const node = table_.get(name);
+    if (node == nullptr) return nullptr;
+    if (!node->is_table()) fail(name + " must be a table", node);
+    return node->as_table();
+  }
+  void nothing_else() const {
+    for (const auto& [key, node] : table_)
+      if (!asked_.contains(std::string(key.str()))) fail("unknown setting " + std::string(key.str()), &node);
+  }
+  static std::string number_text(double value) {
+    std::string text = std::to_string(value);
+    text.erase(text.find_last_not_of('0') + 1);
+    if (text.back() == '.') text.pop_back();
+    return text;
+  }
+
+ private:
+  const toml::table& table_;
+  std::string file_, where_;
+  std::set<std::string> asked_;
+};
+
+SignalSource source_of(const toml::table* table, const std::string& file, const std::string& where) {
+  SignalSource source;
+  if (table == nullptr) return source;
+  Table settings(*table, file, where);
+  source.where = file + ":" + std::to_string(table->source().begin.line) + ": " + where;
+  for (const auto& [key, node] : *table) {
+    if (const auto text = node.value_exact<std::string>())
+      source.texts[std::string(key.str())] = *text;
+    else if (node.is_number())
+      source.numbers[std::string(key.str())] = *node.value<double>();
+    else
+      settings.fail(std::string(key.str()) + " must be a text or a number", &node);
+  }
+  source.kind = settings.text("kind", "");
+  if (source.kind.empty()) settings.fail("kind is missing");
+  return source;
+}
+
+std::int64_t counts(double value) { return std::llround(std::clamp(value, -kMostCounts, kMostCounts)); }
+
+AxisSetting setting_of(Table& settings, bool rotary, TimeUs tick) {
+  const double scale = rotary ? kCountsPerDeg : kNmPerMm;
+  const double tick_s = static_cast<double>(tick.count) * 1e-6;
+  AxisSetting setting;
+  setting.own = true;
+  setting.limits = rotary ? CycleLimits{}.rotary : CycleLimits{}.linear;
+  const double speed = settings.number("max_speed", 0, 1e-6, 1e6);
+  const double acceleration = settings.number("max_acceleration", 0, 1e-6, 1e9);
+  const double share = settings.number("correction_share", 0.1, 1e-6, 1);
+  if (speed > 0) {
+    setting.limits.step = std::max<std::int64_t>(counts(speed * tick_s * scale), 1);
+    setting.motion.slew = std::clamp<std::int64_t>(counts(share * speed * tick_s * scale), 1, INT32_MAX);
+  }
+  if (acceleration > 0)
+    setting.motion.acceleration =
+        std::clamp<std::int64_t>(counts(share * acceleration * tick_s * tick_s * scale), 1, INT32_MAX);
+  setting.limits.missing_ticks =
+      static_cast<std::uint32_t>(settings.number("missing_ticks", setting.limits.missing_ticks, 0, 10000));
+  return setting;
+}
+
+std::string beside(const std::string& board_path, const std::string& path) {
+  const std::filesystem::path given(path);
+  if (given.is_absolute()) return path;
+  return (std::filesystem::path(board_path).parent_path() / given).string();
+}
+
+/// What a calibration has found counts instead of the board file's own settings. A file that is not there yet
+/// is missed only where the output is opened.
+void apply_calibration(const std::string& board_path, SignalSource& output) {
+  const std::string path = output.text("calibration", "");
+  if (path.empty()) return;
+  output.texts["calibration"] = beside(board_path, path);
+  toml::table table;
+  try {
+    if (!std::filesystem::exists(output.texts["calibration"])) return;
+    table = toml::parse_file(output.texts["calibration"]);
+  } catch (const toml::parse_error& error) {
+    throw BoardError{output.texts["calibration"] + ":" + std::to_string(error.source().begin.line) + ": " +
+                     std::string(error.description())};
+  }
+  Table settings(table, output.texts["calibration"], "calibration");
+  output.numbers["span"] = settings.number("span", 0, 1e-9, 1e4);
+  output.numbers[output.kind == "pwm" ? "zero_ns" : "zero"] = settings.number("zero", 0, 0, 1e9);
+  output.texts["polarity"] = settings.text("polarity", "");
+  settings.nothing_else();
+}
+
+void read_axis(BoardFile& board, const std::string& name, const toml::table& table) {
+  Table settings(table, board.path, "axis." + name);
+  if (board.axes.size() == kMaxAxes) settings.fail("more axes than the firmware has room for");
+  if (name.size() >= kImageNameBytes) settings.fail("the name is too long");
+  AxisEntry axis;
+  axis.wiring.name = name;
+  const std::string kind = settings.text("kind", "linear");
+  if (kind != "linear" && kind != "rotary")
+    settings.fail("kind: '" + kind + "' is neither linear nor rotary");
+  axis.wiring.rotary = kind == "rotary";
+  axis.wiring.rollover = settings.flag("rollover", false);
+  axis.low = settings.number("low", 0, -1e6, 1e6);
+  axis.high = settings.number("high", 0, -1e6, 1e6);
+  if (axis.low > axis.high) settings.fail("low is above high");
+  board.service.limits.axis[board.axes.size()] =
+      setting_of(settings, axis.wiring.rotary, board.service.upload.tick);
+  axis.position = source_of(settings.table("position"), board.path, "axis." + name + ".position");
+  axis.output = source_of(settings.table("output"), board.path, "axis." + name + ".output");
+  if (axis.position.kind.empty()) settings.fail("position is missing");
+  apply_calibration(board.path, axis.output);
+  settings.nothing_else();
+  board.service.wiring.axes.push_back(axis.wiring);
+  board.axes.push_back(axis);
+}
+
+void read_input(BoardFile& board, const std::string& name, const toml::table& table) {
+  Table settings(table, board.path, "input." + name);
+  if (board.inputs.size() == kMaxInputs) settings.fail("more inputs than the firmware has room for");
+  if (name.size() >= kImageNameBytes) settings.fail("the name is too long");
+  InputEntry input;
+  input.name = name;
+  input.unit = settings.text("unit", "");
+  InputLimits& limits = board.service.limits.input[board.inputs.size()];
+  if (settings.has("low")) limits.low = counts(kMicro * settings.number("low", 0, -1e9, 1e9));
+  if (settings.has("high")) limits.high = counts(kMicro * settings.number("high", 0, -1e9, 1e9));
+  if (settings.has("max_step")) limits.step = counts(kMicro * settings.number("max_step", 0, 0, 1e9));
+  if (limits.low > limits.high) settings.fail("low is above high");
+  input.reference = settings.number("reference", 0, -1e9, 1e9);
+  input.source = source_of(settings.table("source"), board.path, "input." + name + ".source");
+  if (input.source.kind.empty()) settings.fail("source is missing");
+  settings.number("low", 0, -1e9, 1e9), settings.number("high", 0, -1e9, 1e9);
+  settings.number("max_step", 0, 0, 1e9);
+  settings.nothing_else();
+  board.service.wiring.inputs.push_back(name);
+  board.inputs.push_back(input);
+}
+
+void read_probe(BoardFile& board, const toml::table& table) {
+  Table settings(table, board.path, "probe");
+  board.probe = source_of(settings.table("line"), board.path, "probe.line");
+  if (board.probe.kind.empty()) settings.fail("line is missing");
+  const auto instant = [&](const char* name, double otherwise) {
+    return InstantNs(std::llround(1000 * settings.number(name, otherwise, 0, kMostDelayUs)));
+  };
+  ProbeSettings& probe = board.service.probe;
+  probe.delay = instant("delay_us", 0);
+  probe.delay_spread = instant("delay_spread_us", 0);
+  probe.position_age = instant("position_age_us", 0);
+  probe.age_spread = instant("position_age_spread_us", 0);
+  probe.settle = instant("settle_us", 1000);
+  settings.nothing_else();
+}
+
+void read_digital(BoardFile& board, const toml::table& table) {
+  Table settings(table, board.path, "digital");
+  board.enable = source_of(settings.table("enable"), board.path, "digital.enable");
+  board.healthy = source_of(settings.table("healthy"), board.path, "digital.healthy");
+  settings.nothing_else();
+}
+
+void read_board(BoardFile& board, const toml::table& table) {
+  Table settings(table, board.path, "board");
+  board.service.upload.tick =
+      TimeUs(static_cast<std::int64_t>(settings.number("tick_us", 1000, 100, 100000)));
+  board.store = beside(board.path, settings.text("store", "store"));
+  board.slot_bytes = static_cast<std::uint32_t>(settings.number("slot_bytes", 1 << 20, 4096, kMaxImageBytes));
+  board.service.upload.trial_time = TimeUs(counts(1e6 * settings.number("trial_s", 60, 0.1, 86400)));
+  board.service.activate = settings.flag("activate", false);
+  board.priority = static_cast<int>(settings.number("priority", 80, 1, 99));
+  const toml::table* const sync = settings.table("sync");
+  board.sync = source_of(sync, board.path, "board.sync");
+  if (sync != nullptr)
+    board.service.sync_patience = TimeUs(1000 * board.sync.whole("timeout_ms", 20, 1, 1000));
+  const std::string key = settings.text("public_key", "");
+  if (!key.empty()) board.service.upload.key = read_public_key(beside(board.path, key));
+  settings.nothing_else();
+}
+
+// The library sorts tables by name; the board's order is that of the file.
+template <class Use>
+void in_order_of_file(const toml::table& table, const std::string& file, const std::string& where, Use use) {
+  std::vector<std::pair<std::string, const toml::table*>> entries;
+  for (const auto& [key, node] : table) {
+    if (!node.is_table()) Table(table, file, where).fail(std::string(key.str()) + " must be a table", &node);
+    entries.emplace_back(std::string(key.str()), node.as_table());
+  }
+  std::sort(entries.begin(), entries.end(), [](const auto& a, const auto& b) {
+    return a.second->source().begin.line < b.second->source().begin.line;
+  });
+  for (const auto& [name, entry] : entries) use(name, *entry);
+}
+
+void read_links(BoardFile& board, const toml::node& node) {
+  const toml::array* const links = node.as_array();
+  if (links == nullptr)
+    throw BoardError{board.path + ":" + std::to_string(node.source().begin.line) +
+                     ": link must be [[link]] tables"};
+  for (const toml::node& link : *links) {
+    if (!link.is_table())
+      throw BoardError{board.path + ":" + std::to_string(link.source().begin.line) +
+                       ": link must be a table"};
+    board.links.push_back(source_of(link.as_table(), board.path, "link"));
+  }
+}
+
+}  // namespace
+
+void SignalSource::fail(const std::string& what) const { throw BoardError{where + ": " + what}; }
+void SignalSource::only(std::initializer_list<const char*> names) const {
+  const auto check = [&](const std::string& name) {
+    if (name != "kind" && std::find(names.begin(), names.end(), name) == names.end())
+      fail("unknown setting " + name + " of kind " + kind);
+  };
+  for (const auto& entry : texts) check(entry.first);
+  for (const auto& entry : numbers) check(entry.first);
+}
+const std::string& SignalSource::text(const std::string& name) const {
+  const auto found = texts.find(name);
+  if (found == texts.end()) fail(name + (numbers.contains(name) ? " must be a text" : " is missing"));
+  return found->second;
+}
+double SignalSource::number(const std::string& name) const {
+  const auto found = numbers.find(name);
+  if (found == numbers.end()) fail(name + (texts.contains(name) ? " must be a number" : " is missing"));
+  return found->second;
+}
+std::int64_t SignalSource::whole(const std::string& name, std::int64_t low, std::int64_t high) const {
+  const double value = number(name);
+  if (!(value >= static_cast<double>(low) && value <= static_cast<double>(high)) ||
+      value != std::floor(value))
+    fail(name + " must be a whole number from " + std::to_string(low) + " to " + std::to_string(high));
+  return static_cast<std::int64_t>(value);
+}
+std::int64_t SignalSource::whole(const std::string& name, std::int64_t otherwise, std::int64_t low,
+                                 std::int64_t high) const {
+  return texts.contains(name) || numbers.contains(name) ? whole(name, low, high) : otherwise;
+}
+double SignalSource::number(const std::string& name, double otherwise) const {
+  return texts.contains(name) || numbers.contains(name) ? number(name) : otherwise;
+}
+std::string SignalSource::text(const std::string& name, const std::string& otherwise) const {
+  return texts.contains(name) || numbers.contains(name) ? text(name) : otherwise;
+}
+
+BoardFile read_board_file(const std::string& path) {
+  BoardFile board;
+  board.path = path;
+  toml::table file;
+  try {
+    file = toml::parse_file(path);
+  } catch (const toml::parse_error& error) {
+    throw BoardError{path + ":" + std::to_string(error.source().begin.line) + ": " +
+                     std::string(error.description())};
+  }
+  Table settings(file, path, "board file");
+  const toml::table* const general = settings.table("board");
+  if (general == nullptr) settings.fail("[board] is missing");
+  read_board(board, *general);
+  if (const toml::table* const axes = settings.table("axis"))
+    in_order_of_file(*axes, path, "axis",
+                     [&](const auto& name, const auto& t) { read_axis(board, name, t); });
+  if (const toml::table* const inputs = settings.table("input"))
+    in_order_of_file(*inputs, path, "input",
+                     [&](const auto& name, const auto& t) { read_input(board, name, t); });
+  if (board.axes.empty()) settings.fail("no [axis.NAME]");
+  if (const toml::table* const probe = settings.table("probe")) read_probe(board, *probe);
+  if (const toml::table* const digital = settings.table("digital")) read_digital(board, *digital);
+  if (settings.has("link")) read_links(board, *file.get("link"));
+  for (const auto& [key, node] : file)
+    if (!kSections.contains(key.str())) settings.fail("unknown section " + std::string(key.str()), &node);
+  return board;
+}
+
+PublicKey read_public_key(const std::string& path) {
+  std::ifstream file(path);
+  std::string title, text;
+  if (!std::getline(file, title) || !std::getline(file, text))
+    throw BoardError{path + ": cannot be read as a public key"};
+  PublicKey key{};
+  std::size_t size = 0;
+  if (title != "vernier board public key" ||
+      sodium_base642bin(key.data(), key.size(), text.c_str(), text.size(), nullptr, &size, nullptr,
+                        sodium_base64_VARIANT_ORIGINAL) != 0 ||
+      size != key.size())
+    throw BoardError{path + ": not a public key of vernier keys"};
+  return key;
+}
+
+}  // namespace vernier

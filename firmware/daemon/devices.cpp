@@ -1,0 +1,373 @@
+// SPDX-License-Identifier: Apache-2.0
+// Part of the composition root: puts the devices of a board file together.
+#include "firmware/daemon/devices.h"
+
+#include <poll.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <map>
+
+#include "firmware/daemon/feature_settings.h"
+#include "firmware/daemon/open_devices.h"
+#include "firmware/daemon/routing.h"
+#include "hal/linux/analogue_output.h"
+#include "hal/linux/can_axes.h"
+#include "hal/linux/monotonic_clock.h"
+#include "hal/linux/sampled_input.h"
+#include "hal/sim/plant.h"
+#include "hal/sim/roaming.h"
+
+namespace vernier {
+namespace {
+
+constexpr double kShareOfRangePerS = 0.1;    // speed of a simulated axis
+constexpr std::int64_t kTicksToZero = 1000;  // at least, for what a drive holds at the start
+constexpr std::uint32_t kMostHandles = 64;   // of all links together
+constexpr TimeUs kPatience(1'000'000), kTrialWait(5'000);
+
+struct AnalogueAxis {
+  std::size_t axis;
+  std::unique_ptr<AnalogueOutput> device;
+};
+
+/// Waits for one frame of an axis.
+std::string hear_axis(Clock& clock, CanAxes& bus, std::uint32_t axis) {
+  const InstantNs end = clock.now() + instant_ns(kPatience);
+  for (AxisReading reading; clock.now() < end; clock.sleep_until(clock.now() + instant_ns(kTrialWait))) {
+    bus.begin_tick();
+    if (bus.read_axis(axis, reading) == HalFault::kNone) return {};
+  }
+  return bus.counts().frames + bus.counts().invalid + bus.counts().stalled == 0
+             ? "no frame has come within 1 s"
+             : "no valid frame within 1 s";
+}
+
+std::string try_output(AnalogueOutput& output) {
+  const HalFault fault = output.rewrite();
+  if (fault == HalFault::kRefused) return "refuses the value that it has";
+  return fault == HalFault::kNone ? "" : "the value that it has cannot be read";
+}
+
+}  // namespace
+
+struct Devices::Parts {
+  const BoardFile& file;
+  MonotonicClock clock;
+  std::unique_ptr<Roaming> motion;
+  std::unique_ptr<SimPlant> plant;
+  std::map<std::string, std::unique_ptr<CanAxes>> buses;  // by interface
+  std::vector<AnalogueAxis> analogue;
+  ModbusLines lines;
+  std::vector<std::unique_ptr<SampledInput>> sensors;
+  std::unique_ptr<RoutedAxes> axes;
+  std::unique_ptr<RoutedInputs> inputs;
+  std::unique_ptr<FeatureInputs> features;  // in front of the inputs
+  std::unique_ptr<RoutedOutputs> outputs;
+  std::unique_ptr<ProbeLine> probe;
+  std::unique_ptr<TickSync> sync;
+  std::unique_ptr<DigitalInput> enable;
+  std::unique_ptr<DigitalOutput> healthy;
+  std::vector<std::unique_ptr<CommandLink>> links;
+  std::vector<DeviceFinding> findings;
+
+  explicit Parts(const BoardFile& board_file) : file(board_file) {}
+  void note(const std::string& device, const std::string& missing,
+            std::function<std::string()> attempt = {}) {
+    findings.push_back({device, missing, std::move(attempt)});
+  }
+  void make_plant(unsigned long seed);
+  void make_bus(const std::string& interface, std::vector<Route<AxisReader>>& routes);
+  std::vector<Route<AxisReader>> make_positions();
+  std::vector<Route<CorrectionWriter>> make_outputs();
+  std::vector<Route<InputReader>> make_inputs();
+  void vibrate(std::uint32_t input, const SignalSource& source);
+  void make_features();
+  void make_sync();
+  void make_lines();
+  void make_links();
+  void make_store();
+};
+
+void Devices::Parts::make_plant(unsigned long seed) {
+  std::vector<RoamingAxis> ranges;
+  std::vector<InputMicro> references;
+  for (const AxisEntry& axis : file.axes) {
+    const double scale = axis.wiring.rotary ? static_cast<double>(kTurnCounts) / 360 : 1e6;
+    ranges.push_back(
+        {static_cast<std::int64_t>(axis.low * scale), static_cast<std::int64_t>(axis.high * scale)});
+  }
+  for (const InputEntry& input : file.inputs)
+    references.emplace_back(static_cast<std::int64_t>(input.reference * 1e6));
+  motion = std::make_unique<Roaming>(ranges, references, file.service.upload.tick, kShareOfRangePerS, seed);
+  plant = std::make_unique<SimPlant>(*motion, static_cast<std::uint32_t>(file.axes.size()),
+                                     static_cast<std::uint32_t>(file.inputs.size()),
+                                     PlantOptions{.seed = seed, .faults = {}});
+}
+
+/// One bus for all axes that name its interface; routes of the axes are filled in.
+void Devices::Parts::make_bus(const std::string& interface, std::vector<Route<AxisReader>>& routes) {
+  std::vector<std::uint32_t> ids;
+  std::vector<std::size_t> served;
+  for (std::size_t i = 0; i < file.axes.size(); ++i) {
+    const SignalSource& source = file.axes[i].position;
+    if (source.kind != "can" || source.text("interface") != interface) continue;
+    source.only({"interface", "id"});
+    const auto id = static_cast<std::uint32_t>(source.whole("id", 0, (1 << 29) - 1));
+    if (std::find(ids.begin(), ids.end(), id) != ids.end()) source.fail("another axis has this id");
+    served.push_back(i), ids.push_back(id);
+  }
+  std::string error;
+  auto bus = CanAxes::open(interface, ids, error);
+  for (std::uint32_t k = 0; k < served.size(); ++k) {
+    routes[served[k]] = {bus.get(), k};
+    char device[96];
+    std::snprintf(device, sizeof(device), "can %s id 0x%x", interface.c_str(), ids[k]);
+    note("axis." + file.axes[served[k]].wiring.name + ".position  " + device, error,
+         [this, bus = bus.get(), k] { return hear_axis(clock, *bus, k); });
+  }
+  buses[interface] = std::move(bus);
+}
+
+std::vector<Route<AxisReader>> Devices::Parts::make_positions() {
+  std::vector<Route<AxisReader>> routes(file.axes.size());
+  for (std::uint32_t i = 0; i < file.axes.size(); ++i) {
+    const SignalSource& source = file.axes[i].position;
+    if (source.kind == "sim") {
+      source.only({});
+      routes[i] = {plant.get(), i};
+      note("axis." + file.axes[i].wiring.name + ".position  sim", "");
+    } else if (source.kind == "can") {
+      const std::string interface = source.text("interface");
+      if (!buses.contains(interface)) make_bus(interface, routes);
+    } else {
+      source.fail("no position of kind " + source.kind);
+    }
+  }
+  return routes;
+}
+
+std::vector<Route<CorrectionWriter>> Devices::Parts::make_outputs() {
+  std::vector<Route<CorrectionWriter>> routes(file.axes.size());
+  for (std::uint32_t i = 0; i < file.axes.size(); ++i) {
+    const AxisEntry& axis = file.axes[i];
+    if (axis.output.kind.empty()) continue;
+    const std::string name = "axis." + axis.wiring.name + ".output  " + axis.output.kind;
+    if (axis.output.kind == "sim") {
+      axis.output.only({});
+      routes[i] = {plant.get(), i};
+      note(name, "");
+      continue;
+    }
+    std::string error;
+    auto output = open_analogue(axis.output, axis.wiring.rotary, error);
+    routes[i] = {output.get(), 0};
+    note(name, error, [output = output.get()] { return try_output(*output); });
+    if (output) analogue.push_back({i, std::move(output)});
+  }
+  return routes;
+}
+
+std::vector<Route<InputReader>> Devices::Parts::make_inputs() {
+  std::vector<Route<InputReader>> routes(file.inputs.size());
+  for (std::uint32_t i = 0; i < file.inputs.size(); ++i) {
+    const SignalSource& source = file.inputs[i].source;
+    const std::string name = "input." + file.inputs[i].name + "  " + source.kind;
+    if (source.kind == "sim") {
+      vibrate(i, source);
+      routes[i] = {plant.get(), i};
+      note(name, "");
+      continue;
+    }
+    if (source.kind == "feature") continue;  // served in front of the routes
+    std::string error;
+    auto input = open_sensor(source, lines, error);
+    routes[i] = {input.get(), 0};
+    note(name, error,
+         [input = input.get()] { return input->sample() == HalFault::kNone ? "" : "gives no number"; });
+    if (input) sensors.push_back(std::move(input));
+  }
+  return routes;
+}
+
+/// A simulated input that swings, as an accelerometer does.
+void Devices::Parts::vibrate(std::uint32_t input, const SignalSource& source) {
+  source.only({"amplitude", "frequency_Hz"});
+  const double amplitude = source.number("amplitude", 0), frequency_Hz = source.number("frequency_Hz", 0);
+  if (!(std::abs(amplitude) <= 1e9)) source.fail("amplitude must be at most 1e9");
+  if (!(frequency_Hz >= 0 && frequency_Hz <= 1e6)) source.fail("frequency_Hz must be between 0 and 1e6");
+  motion->vibrate(input, amplitude * 1e6, frequency_Hz);
+}
+
+void Devices::Parts::make_features() {
+  const std::vector<FeatureRequest> requests = feature_requests(file);
+  features = std::make_unique<FeatureInputs>(*inputs, static_cast<std::uint32_t>(file.inputs.size()),
+                                             requests, file.service.upload.tick);
+  if (features->refused() != kNoInput)
+    file.inputs[requests[features->refused()].input].source.fail("no window can be made of it");
+  for (const FeatureRequest& request : requests) {
+    const InputEntry& input = file.inputs[request.input];
+    note("input." + input.name + "  " + input.source.text("feature") + " of " + input.source.text("of"), "");
+  }
+}
+
+void Devices::Parts::make_sync() {
+  if (file.sync.kind.empty()) return;
+  std::string error;
+  sync = open_sync(file.sync, error);
+  note("board.sync  " + file.sync.kind, error, [this] {
+    const InstantNs end = clock.now() + instant_ns(kPatience);
+    return sync->wait_for_sync(end) == HalFault::kNone ? "" : "no sync has come within 1 s";
+  });
+}
+
+void Devices::Parts::make_lines() {
+  std::string error;
+  if (!file.probe.kind.empty()) {
+    probe = open_probe(file.probe, error);
+    note("probe.line  " + file.probe.kind, error);
+  }
+  if (!file.enable.kind.empty()) {
+    error.clear();
+    enable = open_digital_input(file.enable, error);
+    note("digital.enable  " + file.enable.kind, error, [this] {
+      bool on = false;
+      return enable->read_line(on) == HalFault::kNone ? "" : "cannot be read";
+    });
+  }
+  if (!file.healthy.kind.empty()) {
+    error.clear();
+    healthy = open_digital_output(file.healthy, error);
+    note("digital.healthy  " + file.healthy.kind, error,
+         [this] { return healthy->write_line(false) == HalFault::kNone ? "" : "cannot be written"; });
+  }
+}
+
+void Devices::Parts::make_links() {
+  for (const SignalSource& source : file.links) {
+    std::string error;
+    auto link = open_link(source, error);
+    note("link  " + source.kind, error);
+    if (link) links.push_back(std::move(link));
+  }
+}
+
+void Devices::Parts::make_store() {
+  std::error_code failed;
+  std::filesystem::create_directories(file.store, failed);
+  std::string missing = failed ? failed.message() : "";
+  if (missing.empty() && ::access(file.store.c_str(), R_OK | W_OK | X_OK) != 0)
+    missing = std::strerror(errno);
+  note("store  " + file.store, missing);
+}
+
+Devices::Devices(const BoardFile& file, unsigned long seed) : parts_(std::make_unique<Parts>(file)) {
+  parts_->make_store();
+  parts_->make_plant(seed);
+  parts_->axes = std::make_unique<RoutedAxes>(parts_->make_positions());
+  parts_->outputs = std::make_unique<RoutedOutputs>(parts_->make_outputs());
+  parts_->inputs = std::make_unique<RoutedInputs>(parts_->make_inputs());
+  parts_->make_features();
+  parts_->make_sync();
+  parts_->make_lines();
+  parts_->make_links();
+}
+
+Devices::~Devices() = default;
+
+Board Devices::board() noexcept {
+  return {.clock = parts_->clock,
+          .axes = *parts_->axes,
+          .inputs = *parts_->features,
+          .corrections = *parts_->outputs,
+          .probe = parts_->probe.get(),
+          .sync = parts_->sync.get(),
+          .enable = parts_->enable.get(),
+          .healthy = parts_->healthy.get()};
+}
+
+Clock& Devices::clock() noexcept { return parts_->clock; }
+std::vector<std::unique_ptr<CommandLink>>& Devices::links() noexcept { return parts_->links; }
+std::vector<DeviceFinding>& Devices::findings() noexcept { return parts_->findings; }
+void Devices::release() noexcept { parts_->plant->release(); }
+void Devices::advance() noexcept { parts_->plant->advance(); }
+bool Devices::has_sensors() const noexcept { return !parts_->sensors.empty(); }
+
+// All links are waited for at once: one that is quiet does not keep a request of another waiting.
+void Devices::wait_for_request(TimeUs wait) noexcept {
+  pollfd waiting[kMostHandles];
+  std::uint32_t count = 0;
+  for (const auto& link : parts_->links) {
+    int handles[kMostHandles];
+    const std::uint32_t added = link->handles(handles, kMostHandles - count);
+    for (std::uint32_t i = 0; i < added; ++i) waiting[count++] = {handles[i], POLLIN, 0};
+  }
+  ::poll(waiting, count, static_cast<int>(wait.count / 1000));
+}
+
+void Devices::sample() noexcept {
+  for (auto& sensor : parts_->sensors) sensor->sample();
+}
+
+void Devices::take_left_overs_out(const std::atomic<bool>& stop) noexcept {
+  for (const AnalogueAxis& output : parts_->analogue) {
+    AxisTravel held;
+    MotionLimit motion;
+    MotionBounds bounds = parts_->file.service.limits.axis[output.axis].motion;
+    if (output.device->read_back(held) == HalFault::kNone) motion.stop_at(held.count);
+    bounds.slew = std::min(bounds.slew, std::abs(held.count) / kTicksToZero + 1);
+    // The zero is written too, as some drivers do not say what they hold; a refusal shows in the first ticks.
+    for (bool zero = false; !zero && !stop;) {
+      const AxisTravel next(motion.approach(0, bounds));
+      zero = next == AxisTravel{} || output.device->write_correction(0, next) != HalFault::kNone;
+      if (zero) output.device->write_correction(0, AxisTravel{});
+      parts_->clock.sleep_until(parts_->clock.now() + instant_ns(parts_->file.service.upload.tick));
+    }
+  }
+}
+
+std::vector<std::string> Devices::output_budget() const {
+  std::vector<std::string> lines;
+  for (const AnalogueAxis& output : parts_->analogue) {
+    const AxisEntry& axis = parts_->file.axes[output.axis];
+    const AnalogueScale& scale = output.device->scale();
+    // um or 0.001 deg
+    const double unit = axis.wiring.rotary ? static_cast<double>(kTurnCounts) / 360e3 : 1e3;
+    const auto of = [&](std::int64_t code) {
+      return static_cast<double>(scale.correction_of(code).count) / unit;
+    };
+    const double step = static_cast<double>(scale.span) / static_cast<double>(scale.codes) / unit;
+    const char* const name = axis.wiring.rotary ? "mdeg" : "um";
+    char text[240];
+    int used = std::snprintf(
+        text, sizeof text, "axis.%s.output: %.6g to %.6g %s, step %.4g, off by at most %.4g (rms %.4g)",
+        axis.wiring.name.c_str(), std::min(of(scale.low), of(scale.high)),
+        std::max(of(scale.low), of(scale.high)), name, step, step / 2, step / std::sqrt(12.0));
+    if (const double delay_ms = axis.output.number("delay_ms", 0); delay_ms > 0) {
+      const double tick_ms = static_cast<double>(parts_->file.service.upload.tick.count) * 1e-3;
+      const auto slew =
+          static_cast<double>(parts_->file.service.limits.axis[output.axis].motion.slew) / unit / tick_ms;
+      std::snprintf(text + used, sizeof text - static_cast<std::size_t>(used),
+                    "; %.4g ms late: at most %.4g more at the correction's fastest", delay_ms,
+                    slew * delay_ms);
+    }
+    lines.emplace_back(text);
+  }
+  return lines;
+}
+
+void Devices::say_held() const {
+  for (const AnalogueAxis& output : parts_->analogue)
+    if (output.device->held_at_end() > 0)
+      std::fprintf(stderr, "vernierd: axis.%s.output was held at the end of its range in %llu ticks\n",
+                   parts_->file.axes[output.axis].wiring.name.c_str(),
+                   static_cast<unsigned long long>(output.device->held_at_end()));
+}
+
+}  // namespace vernier

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "firmware/daemon/board_file.h"
+#include "hal/board.h"
+#include "hal/command_link.h"
+
+namespace vernier {
+
+/// What `--check` says of a device.
+struct DeviceFinding {
+  std::string device;                    // "axis.X.output  pwm"
+  std::string missing;                   // empty: it is there
+  std::function<std::string()> attempt;  // tries it once more; what is missing, or empty
+};
+
+/// The devices that a board file names, alive as long as the board runs.
+class Devices {
+ public:
+  /// Opens all of them; what is missing is found in findings(). file: outlives the devices. seed: of the
+  /// motion of simulated axes. Throws BoardError where a setting is wrong. setup.
+  Devices(const BoardFile& file, unsigned long seed);
+  ~Devices();
+  Devices(const Devices&) = delete;
+  Devices& operator=(const Devices&) = delete;
+
+  /// Only where nothing is missing. setup.
+  Board board() noexcept;
+  Clock& clock() noexcept;
+  std::vector<std::unique_ptr<CommandLink>>& links() noexcept;
+  /// Waits until a request comes over one of the links, at most `wait`. setup.
+  void wait_for_request(TimeUs wait) noexcept;
+  /// One of each device, in the order of the board file. setup.
+  std::vector<DeviceFinding>& findings() noexcept;
+
+  /// A correction that a killed daemon left in a drive, or the value that a converter wakes up with, is taken
+  /// out before the first tick: within the limits of the axis, and over a second at least. stop: ends it
+  /// early. setup.
+  void take_left_overs_out(const std::atomic<bool>& stop) noexcept;
+  /// Simulated axes begin to move. setup.
+  void release() noexcept;
+  /// The next tick of simulated axes begins. realtime.
+  void advance() noexcept;
+  /// Takes a sample of each sensor, which waits for its driver. Not in the tick. setup.
+  void sample() noexcept;
+  bool has_sensors() const noexcept;
+  /// What each output adds to the error: its step and range, and its delay where the file gives one. setup.
+  std::vector<std::string> output_budget() const;
+  /// Says on standard error which outputs were held at the end of their range.
+  void say_held() const;
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace vernier

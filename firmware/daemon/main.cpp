@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: Apache-2.0
+// vernierd: with devices.cpp and open_devices.cpp the composition root, which alone names backends.
+#include <algorithm>
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include "firmware/core/image_file.h"
+#include "firmware/core/runner.h"
+#include "firmware/core/service.h"
+#include "firmware/daemon/arguments.h"
+#include "firmware/daemon/board_file.h"
+#include "firmware/daemon/calibrate_output.h"
+#include "firmware/daemon/device_settings.h"
+#include "firmware/daemon/devices.h"
+#include "firmware/daemon/open_devices.h"
+#include "firmware/daemon/report.h"
+#include "hal/linux/analogue_output.h"
+#include "hal/linux/file_slot_store.h"
+#include "hal/linux/monotonic_clock.h"
+#include "hal/linux/realtime.h"
+#include "hal/linux/service_manager.h"
+#include "hal/sim/plant.h"
+#include "hal/sim/roaming.h"
+
+namespace {
+
+using namespace vernier;
+
+constexpr int kDone = 0, kBadInput = 1, kAnswerIsNo = 2;
+constexpr int kPriority = 80;  // as cyclictest is usually run, above the kernel's threaded interrupts (50)
+constexpr double kShareOfRangePerS = 0.1;
+constexpr TimeUs kServeWait(20'000);
+constexpr int kMostTicksToEnd = 30'000;
+constexpr std::uint64_t kTicksBetweenSigns = 100;  // of life, to the service manager
+constexpr TimeUs kSampleWait(10'000);              // between two samples of the sensors
+
+std::atomic<bool> stop_asked{false};
+static_assert(std::atomic<bool>::is_always_lock_free);
+
+GrantReport ask_for_realtime(bool wanted, int priority) {
+  if (!wanted) return {};
+  const RealtimeGrant grant = become_realtime(priority);
+  const auto say = [](int error, const char* what) {
+    if (error != 0) std::fprintf(stderr, "vernierd: note: no %s: %s\n", what, std::strerror(error));
+  };
+  say(grant.memory_error, "locked memory");
+  say(grant.schedule_error, "SCHED_FIFO: wake-ups will be late");
+  say(grant.idle_error, "shallow idle states");
+  return {grant.schedule_error == 0, grant.memory_error == 0, grant.idle_error == 0};
+}
+
+int finish(const Arguments& arguments, const Cycle& cycle, const GrantReport& grant) {
+  if (!report_run(cycle, grant, arguments.json)) return kBadInput;
+  return cycle.latched() == Fault::kNone ? kDone : kAnswerIsNo;
+}
+
+// ---- without a board: an image on the simulated machine
+
+Roaming motion_in(const ImageView& image, unsigned long seed) {
+  std::vector<RoamingAxis> axes;
+  std::vector<InputMicro> inputs;
+  for (const AxisRecord& axis : image.axes()) axes.push_back({axis.low, axis.high});
+  for (const InputRecord& input : image.inputs()) inputs.emplace_back(input.reference);
+  return Roaming(axes, inputs, TimeUs(image.header().tick_us), kShareOfRangePerS, seed);
+}
+
+int run_image(const Arguments& arguments, const ImageView& image) {
+  MonotonicClock clock;
+  Roaming motion = motion_in(image, arguments.seed);
+  const auto plant = std::make_unique<SimPlant>(motion, image.axes().size, image.inputs().size,
+                                                PlantOptions{.seed = arguments.seed, .faults = {}});
+  const Board board{clock, *plant, *plant, *plant};
+  const auto cycle = std::make_unique<Cycle>(image, board);
+  const GrantReport grant = ask_for_realtime(arguments.realtime, kPriority);
+  plant->release();
+  const TimeUs period(image.header().tick_us);
+  const double seconds = arguments.seconds > 0 ? arguments.seconds : 10;
+  const auto ticks = static_cast<std::int64_t>(seconds * 1e6) / period.count;
+  Runner runner(*cycle, clock, period);
+  for (std::int64_t tick = 0; tick < ticks && !stop_asked; ++tick) {
+    plant->advance();
+    const bool ready = cycle->mode() == Mode::kReady && cycle->weight() == WeightQ16{};
+    runner.step(ready ? Command::kActivate : Command::kNone);
+  }
+  return finish(arguments, *cycle, grant);
+}
+
+int run_image(const Arguments& arguments) {
+  if (!arguments.simulate) {
+    std::fputs("vernierd: --image needs --simulate; a real machine is described by a board file (--board)\n",
+               stderr);
+    return kBadInput;
+  }
+  const std::string path = arguments.image + "/machine.vimg";
+  std::vector<std::uint8_t> bytes;
+  if (!read_bytes(path, bytes)) {
+    std::fprintf(stderr, "vernierd: %s: cannot be read\n", path.c_str());
+    return kBadInput;
+  }
+  const auto image = std::make_unique<ImageFile>();
+  if (const ImageFault fault = image->open(bytes); fault != ImageFault::kNone) {
+    std::fprintf(stderr, "vernierd: %s: %s\n", path.c_str(), describe(fault));
+    return kBadInput;
+  }
+  return run_image(arguments, image->view());
+}
+
+// ---- a board
+
+int check_devices(Devices& devices) {
+  int missing = 0;
+  for (DeviceFinding& finding : devices.findings()) {
+    if (finding.missing.empty() && finding.attempt) finding.missing = finding.attempt();
+    const bool there = finding.missing.empty();
+    std::printf("%s  %s%s%s\n", there ? "ok     " : "missing", finding.device.c_str(), there ? "" : ": ",
+                finding.missing.c_str());
+    missing += there ? 0 : 1;
+  }
+  for (const std::string& line : devices.output_budget()) std::printf("budget   %s\n", line.c_str());
+  std::printf(missing == 0 ? "%zu devices: all there\n" : "%zu devices: %d missing\n",
+              devices.findings().size(), missing);
+  return missing == 0 ? kDone : kAnswerIsNo;
+}
+
+bool all_there(Devices& devices) {
+  bool all = true;
+  for (const DeviceFinding& finding : devices.findings()) {
+    if (finding.missing.empty()) continue;
+    std::fprintf(stderr, "vernierd: missing: %s: %s\n", finding.device.c_str(), finding.missing.c_str());
+    all = false;
+  }
+  return all;
+}
+
+void say_image(const UploadResult& result, const Service& service) {
+  if (result.fault != UploadFault::kNone)
+    std::fprintf(stderr, "vernierd: the confirmed image is not used: %s\n", describe(result).c_str());
+  else if (service.uploader().slots().confirmed() == kNoSlot)
+    std::fputs("vernierd: no image has been confirmed yet: nothing is corrected\n", stderr);
+  else
+    std::fprintf(stderr, "vernierd: image %016llx\n",
+                 static_cast<unsigned long long>(service.uploader().confirmed_fingerprint()));
+}
+
+/// Serves links and looks after programs until told to stop. The service manager hears of it only while the
+/// tick moves on: a tick that hangs is a daemon that hangs.
+void serve_until(const std::atomic<bool>& stop, Service& service, Devices& devices) {
+  std::uint64_t ticks_told = 0;
+  while (!stop) {
+    if (const std::uint64_t ticks = service.exchange().ticks.count();
+        ticks > ticks_told + kTicksBetweenSigns) {
+      notify_service_manager("WATCHDOG=1");
+      ticks_told = ticks;
+    }
+    devices.wait_for_request(kServeWait);
+    for (auto& link : devices.links()) service.serve(*link, TimeUs(0));
+    service.look_after_programs();
+  }
+}
+
+/// A daemon that ends leaves no correction in the drives: it is ramped out first, within the limits of the
+/// axes.
+void take_correction_out(Service& service, Devices& devices) {
+  const auto out = [&] {
+    for (std::uint32_t axis = 0; axis < kMaxAxes; ++axis)
+      if (service.cycle().written(axis) != AxisTravel{}) return false;
+    return true;
+  };
+  service.end();
+  for (int tick = 0; tick < kMostTicksToEnd && !out(); ++tick) {
+    devices.advance();
+    service.tick();
+  }
+}
+
+/// Sensors wait for their drivers, and are sampled beside the tick.
+void sample_until(const std::atomic<bool>& stop, Devices& devices) {
+  while (!stop && devices.has_sensors()) {
+    devices.sample();
+    devices.clock().sleep_until(devices.clock().now() + instant_ns(kSampleWait));
+  }
+}
+
+std::vector<CalibrationPoint> measured_points(const Arguments& arguments, const AxisEntry& axis,
+                                              std::int64_t codes) {
+  if (!arguments.measured.empty()) return read_calibration_points(arguments.measured, axis.wiring.rotary);
+  std::string error;
+  // One count of the axis is less than a code, so that every code can be had.
+  SignalSource source = axis.output;
+  source.numbers["span"] = static_cast<double>(codes) * (axis.wiring.rotary ? 1e-6 : 4e-6);
+  const AnalogueScale scale =
+      analogue_scale(source, axis.wiring.rotary, codes, source.kind == "pwm" ? "_ns" : "");
+  const auto output = open_analogue(source, axis.wiring.rotary, error);
+  if (!output) throw BoardError{"axis." + axis.wiring.name + ".output: " + error};
+  AxisTravel held;
+  const bool known = output->read_back(held) == HalFault::kNone;
+  MonotonicClock clock;
+  return calibrate_output(*output, scale, known ? scale.code_for(held) : scale.zero, arguments.steps, clock,
+                          std::cin, std::cerr, stop_asked);
+}
+
+int calibrate(const Arguments& arguments, const BoardFile& file) {
+  const auto axis = std::find_if(file.axes.begin(), file.axes.end(), [&](const AxisEntry& entry) {
+    return entry.wiring.name == arguments.calibrate;
+  });
+  if (axis == file.axes.end()) throw BoardError{file.path + ": no axis " + arguments.calibrate};
+  const SignalSource& source = axis->output;
+  const bool pwm = source.kind == "pwm";
+  if (!pwm && source.kind != "iio-dac")
+    throw BoardError{file.path + ": axis." + arguments.calibrate + " has no output that can be calibrated"};
+  const std::string path = source.text("calibration");
+  const std::int64_t codes =
+      pwm ? source.whole("period_ns", 2, 1'000'000'000) : source.whole("codes", 1, (1 << 24) - 1);
+  const std::vector<CalibrationPoint> points = measured_points(arguments, *axis, codes);
+  if (arguments.measured.empty() && points.size() != static_cast<std::size_t>(2 * arguments.steps - 1)) {
+    std::fputs("vernierd: ended; nothing is stored\n", stderr);
+    return kAnswerIsNo;
+  }
+  const Calibration found = fit_calibration(points, codes, axis->wiring.rotary);
+  write_calibration(path, found, axis->wiring.name);
+  std::fprintf(arguments.json == "-" ? stderr : stdout,
+               "%s: span %.6f +- %.6f %s, zero %.2f +- %.2f, residual %.3f rms\n", path.c_str(), found.span,
+               found.span_std, axis->wiring.rotary ? "deg" : "mm", found.zero, found.zero_std,
+               found.residual);
+  return write_result(arguments.json, calibration_json(found, axis->wiring.name)) ? kDone : kBadInput;
+}
+
+int run_board(const Arguments& arguments) {
+  const BoardFile file = read_board_file(arguments.board);
+  if (!arguments.calibrate.empty()) return calibrate(arguments, file);
+  Devices devices(file, arguments.seed);
+  if (arguments.check) return check_devices(devices);
+  if (!all_there(devices)) return kAnswerIsNo;
+  devices.sample();
+  devices.take_left_overs_out(stop_asked);
+  FileSlotStore store(file.store, file.slot_bytes);
+  const auto service = std::make_unique<Service>(file.service, devices.board(), store);
+  say_image(service->boot(), *service);
+  std::atomic<bool> stop_beside{false};
+  std::thread server([&] { serve_until(stop_beside, *service, devices); });
+  std::thread sampler([&] { sample_until(stop_beside, devices); });
+  const GrantReport grant = ask_for_realtime(arguments.realtime, file.priority);
+  devices.release();
+  if (!notify_service_manager("READY=1"))
+    std::fputs("vernierd: note: the service manager cannot be told\n", stderr);
+  const auto ticks = static_cast<std::int64_t>(arguments.seconds * 1e6) / file.service.upload.tick.count;
+  for (std::int64_t tick = 0; (ticks == 0 || tick < ticks) && !stop_asked; ++tick) {
+    devices.advance();
+    service->tick();
+  }
+  notify_service_manager("STOPPING=1");
+  take_correction_out(*service, devices);
+  stop_beside = true;
+  server.join(), sampler.join();
+  devices.say_held();
+  if (service->runner().lost_syncs() > 0)
+    std::fprintf(stderr, "vernierd: the sync was lost %llu times\n",
+                 static_cast<unsigned long long>(service->runner().lost_syncs()));
+  return finish(arguments, service->cycle(), grant);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Arguments arguments;
+  if (!parse_arguments(argc, argv, arguments)) {
+    std::fputs(kUsage, stderr);
+    return kBadInput;
+  }
+  if (arguments.help) {
+    std::fputs(kUsage, stdout);
+    return kDone;
+  }
+  std::signal(SIGTERM, [](int) { stop_asked = true; });
+  std::signal(SIGINT, [](int) { stop_asked = true; });
+  try {
+    return arguments.board.empty() ? run_image(arguments) : run_board(arguments);
+  } catch (const BoardError& error) {
+    std::fprintf(stderr, "vernierd: %s\n", error.what.c_str());
+    return kBadInput;
+  }
+}

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <map>
+#include <memory>
+#include <string>
+
+#include "firmware/daemon/board_file.h"
+#include "hal/command_link.h"
+#include "hal/digital_line.h"
+#include "hal/probe_line.h"
+#include "hal/tick_sync.h"
+
+namespace vernier {
+
+class AnalogueOutput;
+class ModbusLine;
+class SampledInput;
+
+/// Lines that several sensors share, by device or address.
+using ModbusLines = std::map<std::string, std::shared_ptr<ModbusLine>>;
+
+// Each opens one device of the board file. Null with `error` set where it is missing; a kind or a setting
+// that is wrong throws BoardError. setup.
+
+/// A PWM channel or a converter. rotary: spans are in degrees, else in mm.
+std::unique_ptr<AnalogueOutput> open_analogue(const SignalSource& source, bool rotary, std::string& error);
+/// A sensor. lines: those that are open, and one more where it needs it.
+std::unique_ptr<SampledInput> open_sensor(const SignalSource& source, ModbusLines& lines, std::string& error);
+/// A way in from outside.
+std::unique_ptr<CommandLink> open_link(const SignalSource& source, std::string& error);
+/// The sync of kind "can".
+std::unique_ptr<TickSync> open_sync(const SignalSource& source, std::string& error);
+/// Lines of kind "gpio".
+std::unique_ptr<ProbeLine> open_probe(const SignalSource& source, std::string& error);
+std::unique_ptr<DigitalInput> open_digital_input(const SignalSource& source, std::string& error);
+std::unique_ptr<DigitalOutput> open_digital_output(const SignalSource& source, std::string& error);
+
+}  // namespace vernier

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+
+#include "firmware/core/cycle.h"
+
+namespace vernier {
+
+/// What the operating system granted a realtime run, for the report.
+struct GrantReport {
+  bool fifo = false, locked = false, awake = false;
+};
+
+/// Tells people (standard output, standard error where json is "-") and programs (json: a file, "-" or empty)
+/// what a run did. False where the file cannot be written. tool.
+bool report_run(const Cycle& cycle, const GrantReport& grant, const std::string& json);
+
+/// Writes a result for programs: json is a file, "-" for standard output, or empty for none. False, and said
+/// on standard error, where it cannot be written. tool.
+bool write_result(const std::string& json, const std::string& text);
+
+}  // namespace vernier

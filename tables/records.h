@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstddef>
+#include <cstdint>
+
+#include "comp/shares.h"
+
+/// What the tick tells the rest of the board, and the board its tools (tables/link_format.h).
+namespace vernier {
+
+/// A tick as others see it. Axes and inputs in the board's order, in their counts.
+struct TickRecord {
+  std::int64_t time_us = 0;
+  std::int64_t position[kMaxAxes] = {};
+  std::int32_t correction[kMaxAxes] = {};
+  std::int64_t input[kMaxInputs] = {};
+  std::int64_t feed_nm_per_min = 0;
+  std::int8_t sense[kMaxAxes] = {};
+  std::uint8_t mode = 0, fault = 0, holding = 0, reserved[5] = {};
+};
+static_assert(sizeof(TickRecord) % 8 == 0);
+
+/// What is counted and measured, as others see it.
+struct HealthRecord {
+  std::uint64_t ticks = 0, active_ticks = 0, overruns = 0, skipped = 0;
+  std::uint64_t missing_readings = 0, missing_inputs = 0, frozen_readings = 0, jumps = 0;
+  std::uint64_t unreferenced = 0, implausible = 0, failed_writes = 0;
+  std::uint64_t saturated = 0, slewing = 0, beyond_range = 0;
+  std::uint64_t faults = 0, refused_commands = 0, programs = 0;
+  // p50, p99, p99.9, maximum of the wake-up latency and of a tick's execution, ns
+  std::int64_t latency_ns[4] = {}, execution_ns[4] = {};
+};
+// Counter n of LinkOp::kHealth is word n.
+static_assert(sizeof(HealthRecord) == 200);
+static_assert(offsetof(HealthRecord, ticks) == 0 && offsetof(HealthRecord, active_ticks) == 8 &&
+              offsetof(HealthRecord, overruns) == 16 && offsetof(HealthRecord, skipped) == 24 &&
+              offsetof(HealthRecord, missing_readings) == 32 &&
+              offsetof(HealthRecord, missing_inputs) == 40 && offsetof(HealthRecord, frozen_readings) == 48 &&
+              offsetof(HealthRecord, jumps) == 56 && offsetof(HealthRecord, unreferenced) == 64 &&
+              offsetof(HealthRecord, implausible) == 72 && offsetof(HealthRecord, failed_writes) == 80 &&
+              offsetof(HealthRecord, saturated) == 88 && offsetof(HealthRecord, slewing) == 96 &&
+              offsetof(HealthRecord, beyond_range) == 104 && offsetof(HealthRecord, faults) == 112 &&
+              offsetof(HealthRecord, refused_commands) == 120 && offsetof(HealthRecord, programs) == 128 &&
+              offsetof(HealthRecord, latency_ns) == 136 && offsetof(HealthRecord, execution_ns) == 168);
+
+/// What each effect adds to the corrections, as others see it.
+struct ShareRecord {
+  std::uint64_t programs = 0;  // HealthRecord::programs when it was taken: which program's shares these are
+  std::uint32_t count = 0, reserved = 0;
+  std::int32_t correction[kMaxShares] = {};  // counts of the share's axis
+};
+static_assert(sizeof(ShareRecord) % 8 == 0);
+
+/// What is to be known about a touch.
+enum TouchFlag : std::uint8_t {
+  kTouchUncompensated = 1u << 0,  // no program ran: `compensated` is `position`
+  kTouchWhileFaulted = 1u << 1,   // a fault was latched
+  kTouchInWorkpiece = 1u << 2,    // the board has axes X, Y, Z: `workpiece_nm` is there
+};
+
+/// A touch of the probe as others see it. Axes in the board's order, in their counts. The counters say what
+/// was lost until then, so that a reader knows whether touches are missing that never got a number.
+struct TouchRecord {
+  std::int64_t time_ns = 0;              // of the contact, the machine file's t
+  std::int64_t position[kMaxAxes] = {};  // as the controller counts
+  std::int64_t compensated[kMaxAxes] =
+      {};  // where the axis would stand if its correction were all in: the tool
+  std::int64_t uncertainty[kMaxAxes] =
+      {};                             // standard uncertainty from the instant and from the interpolation
+  std::int64_t workpiece_nm[3] = {};  // X, Y, Z
+  std::uint32_t lost_edges = 0, lost_touches = 0, spikes = 0, missing = 0;
+  std::uint8_t kind = 0, fault = 0, flags = 0, bounces = 0;  // TouchKind, LatchFault, TouchFlag
+  std::uint8_t reserved[4] = {};
+};
+static_assert(sizeof(TouchRecord) % 8 == 0);
+
+}  // namespace vernier
