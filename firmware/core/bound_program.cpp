@@ -11,7 +11,7 @@ Wiring wiring_of(const ImageView& view) {
   Wiring wiring;
   for (const AxisRecord& axis : view.axes())
     wiring.axes.push_back({axis.name, (axis.flags & kRotary) != 0, (axis.flags & kRollover) != 0});
-  for (const InputRecord& input : view.inputs()) wiring.inputs.emplace_back(input.name);
+  for (const InputRecord& input : view.inputs()) wiring.inputs.push_back(input.name);
   return wiring;
 }
 
@@ -29,12 +29,26 @@ BoundProgram::BoundProgram(const ImageView& view) noexcept
     compensator.use_printed(printed.equation);
 }
 
+namespace {
+
+// "1000 us".
+Name in_us(std::uint32_t time) noexcept {
+  Name text;
+  std::uint32_t unit = 1;
+  while (unit <= time / 10) unit *= 10;
+  for (; unit > 0; unit /= 10) text.add(static_cast<char>('0' + time / unit % 10));
+  for (const char letter : {' ', 'u', 's'}) text.add(letter);
+  return text;
+}
+
+}  // namespace
+
 BindFault bind(const ImageView& view, const Wiring& wiring, TimeUs tick, BoundProgram& bound,
-               std::string& offender) {
-  offender = std::to_string(view.header().tick_us) + " us";
+               Name& offender) {
+  offender = in_us(view.header().tick_us);
   if (view.header().tick_us != tick.count) return BindFault::kTick;
   const Wiring wanted = wiring_of(view);
-  for (std::size_t i = 0; i < wanted.axes.size(); ++i) {
+  for (std::uint32_t i = 0; i < wanted.axes.size(); ++i) {
     const Wiring::Axis& axis = wanted.axes[i];
     offender = axis.name;
     const auto found = std::find_if(wiring.axes.begin(), wiring.axes.end(),
@@ -43,13 +57,13 @@ BindFault bind(const ImageView& view, const Wiring& wiring, TimeUs tick, BoundPr
     if (found->rotary != axis.rotary || found->rollover != axis.rollover) return BindFault::kAxisKind;
     bound.axis[i] = static_cast<std::uint32_t>(found - wiring.axes.begin());
   }
-  for (std::size_t i = 0; i < wanted.inputs.size(); ++i) {
+  for (std::uint32_t i = 0; i < wanted.inputs.size(); ++i) {
     offender = wanted.inputs[i];
     const auto found = std::find(wiring.inputs.begin(), wiring.inputs.end(), wanted.inputs[i]);
     if (found == wiring.inputs.end()) return BindFault::kUnknownInput;
     bound.input[i] = static_cast<std::uint32_t>(found - wiring.inputs.begin());
   }
-  offender.clear();
+  offender = {};
   return BindFault::kNone;
 }
 

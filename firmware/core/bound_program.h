@@ -1,25 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
-#include <string>
-#include <vector>
 
 #include "comp/compensator.h"
+#include "firmware/core/wiring.h"
 #include "hal/clock.h"
 #include "tables/codes.h"
 #include "tables/image_view.h"
 
 namespace vernier {
-
-/// What a board is wired to, in the order of its devices. Images name axes and inputs; the wiring finds them.
-struct Wiring {
-  struct Axis {
-    std::string name;
-    bool rotary = false, rollover = false;
-  };
-  std::vector<Axis> axes;           // at most kMaxAxes
-  std::vector<std::string> inputs;  // at most kMaxInputs
-};
 
 /// The axes and inputs of an image, in its order: the wiring of a board made for it.
 Wiring wiring_of(const ImageView& view);
@@ -45,7 +34,6 @@ struct BoundProgram {
 
 /// Finds the image's axes and inputs among the board's by name. bound: made from the same view. offender: the
 /// name that does not fit. setup.
-BindFault bind(const ImageView& view, const Wiring& wiring, TimeUs tick, BoundProgram& bound,
-               std::string& offender);
+BindFault bind(const ImageView& view, const Wiring& wiring, TimeUs tick, BoundProgram& bound, Name& offender);
 
 }  // namespace vernier

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <type_traits>
 
 #include "comp/probing/workpiece_frame.h"
@@ -17,9 +18,9 @@ namespace vernier {
 /// A value that one thread writes and others copy, word by word, without a lock. realtime.
 template <class T>
 class AtomicWords {
-  static_assert(std::is_trivially_copyable_v<T> && sizeof(T) % sizeof(std::uint64_t) == 0);
-  static constexpr std::size_t kWords = sizeof(T) / sizeof(std::uint64_t);
-  using Words = std::array<std::uint64_t, kWords>;
+  static_assert(std::is_trivially_copyable_v<T> && sizeof(T) % sizeof(std::uint32_t) == 0);
+  static constexpr std::size_t kWords = sizeof(T) / sizeof(std::uint32_t);
+  using Words = std::array<std::uint32_t, kWords>;
 
  public:
   void put(const T& value) noexcept {
@@ -33,7 +34,31 @@ class AtomicWords {
   }
 
  private:
-  std::array<std::atomic<std::uint64_t>, kWords> words_{};
+  std::array<std::atomic<std::uint32_t>, kWords> words_{};
+};
+
+/// A number that one thread counts up and others read, without an atomic of 64 bits, which small targets do
+/// not have: its high half stands before and after the low one, and a reader that sees two of them reads
+/// again, which it has to at most once in 2^32 counts.
+class SharedCount {
+ public:
+  /// One writer; what it wrote before is seen by who sees the count. realtime.
+  void store(std::uint64_t count) noexcept {
+    const auto high = static_cast<std::uint32_t>(count >> 32);
+    after_.store(high, std::memory_order_release);
+    low_.store(static_cast<std::uint32_t>(count), std::memory_order_release);
+    before_.store(high, std::memory_order_release);
+  }
+  std::uint64_t load() const noexcept {
+    for (;;) {
+      const std::uint32_t high = before_.load(std::memory_order_acquire);
+      const std::uint32_t low = low_.load(std::memory_order_acquire);
+      if (after_.load(std::memory_order_acquire) == high) return std::uint64_t{high} << 32 | low;
+    }
+  }
+
+ private:
+  std::atomic<std::uint32_t> before_{0}, low_{0}, after_{0};
 };
 
 /// The newest value of one writer, whole: a reader that was overtaken reads again. The writer never waits.
@@ -70,57 +95,62 @@ class Published {
 /// The last values of one writer; a reader names the value that it wants and learns whether it is still
 /// there. The writer never waits and never fails: what nobody read in time is overwritten, and readers know
 /// it.
-template <class T, std::size_t kSize>
+template <class T>
 class History {
-  static_assert(std::has_single_bit(kSize));
-
  public:
+  /// size: values that are kept, a power of two. setup.
+  explicit History(std::uint32_t size) : size_(size), values_(new AtomicWords<T>[size]) {}
+
   /// One writer. realtime.
   void add(const T& value) noexcept {
-    const std::uint64_t next = count_.load(std::memory_order_relaxed);
-    begun_.store(next + 1, std::memory_order_relaxed);
+    const std::uint64_t next = count_.load();
+    begun_.store(next + 1);
     std::atomic_thread_fence(std::memory_order_release);
-    values_[next % kSize].put(value);
-    count_.store(next + 1, std::memory_order_release);
+    values_[static_cast<std::uint32_t>(next) & (size_ - 1)].put(value);
+    count_.store(next + 1);
   }
-  /// Values added so far; value i can be read while i < count() <= i + kSize.
-  std::uint64_t count() const noexcept { return count_.load(std::memory_order_acquire); }
+  /// Values added so far; value i can be read while i < count() <= i + size().
+  std::uint64_t count() const noexcept { return count_.load(); }
+  std::uint32_t size() const noexcept { return size_; }
   /// Oldest value that is still there.
   std::uint64_t oldest() const noexcept {
-    const std::uint64_t count = begun_.load(std::memory_order_acquire);
-    return count > kSize ? count - kSize : 0;
+    const std::uint64_t count = begun_.load();
+    return count > size_ ? count - size_ : 0;
   }
   /// False where value `index` is not there yet, or not any more. setup.
   bool read(std::uint64_t index, T& value) const noexcept {
     if (index >= count()) return false;
-    const T copy = values_[index % kSize].get();
+    const T copy = values_[static_cast<std::uint32_t>(index) & (size_ - 1)].get();
     std::atomic_thread_fence(std::memory_order_acquire);
-    if (begun_.load(std::memory_order_relaxed) > index + kSize) return false;
+    if (begun_.load() > index + size_) return false;
     value = copy;
     return true;
   }
 
  private:
-  std::atomic<std::uint64_t> begun_{0}, count_{0};
-  std::array<AtomicWords<T>, kSize> values_;
+  SharedCount begun_, count_;
+  std::uint32_t size_;
+  std::unique_ptr<AtomicWords<T>[]> values_;
 };
 
 /// All that passes between the tick and the rest of the daemon. No locks: the tick never waits for anybody.
 struct Exchange {
-  static constexpr std::size_t kHistory = 4096;  // ticks, about four seconds
-  static constexpr std::size_t kTouches = 256;
+  static constexpr std::uint32_t kHistory = 4096;  // ticks, about four seconds
+  static constexpr std::uint32_t kTouches = 256;
 
   Published<HealthRecord> health;
   Published<ShareRecord> shares;
-  History<TickRecord, kHistory> ticks;
-  History<TouchRecord, kTouches> touches;
+  History<TickRecord> ticks;
+  History<TouchRecord> touches;
   Published<WorkpieceFrame> workpiece;           // written by the links
   std::atomic<Command> command{Command::kNone};  // taken by the tick
   std::atomic<std::int32_t> axis_weight[kMaxAxes];
   std::atomic<BoundProgram*> offered{nullptr};  // to be taken over by the next tick
   std::atomic<BoundProgram*> retired{nullptr};  // was taken out; the owner may free it
 
-  Exchange() {
+  /// How many ticks and touches it remembers, powers of two; memory is taken here and never again. setup.
+  explicit Exchange(std::uint32_t ticks_kept = kHistory, std::uint32_t touches_kept = kTouches)
+      : ticks(ticks_kept), touches(touches_kept) {
     for (auto& weight : axis_weight) weight.store(kFullWeight.count);
     workpiece.publish({});
   }

@@ -36,7 +36,7 @@ std::int32_t rounded(std::int64_t value, std::int64_t lsb, std::uint64_t inverse
 
 }  // namespace
 
-bool feature_of(const std::string& name, Feature& feature) noexcept {
+bool feature_of(std::string_view name, Feature& feature) noexcept {
   const auto found = std::find(kNames.begin(), kNames.end(), name);
   if (found == kNames.end()) return false;
   feature = static_cast<Feature>(found - kNames.begin());
@@ -44,9 +44,9 @@ bool feature_of(const std::string& name, Feature& feature) noexcept {
 }
 
 FeatureInputs::FeatureInputs(InputReader& source, std::uint32_t inputs,
-                             const std::vector<FeatureRequest>& requests, TimeUs tick)
+                             std::span<const FeatureRequest> requests, TimeUs tick)
     : source_(source), inputs_(lower(inputs, kMaxInputs)) {
-  std::vector<bool> is_feature(inputs_, false);
+  bool is_feature[kMaxInputs] = {};
   for (const FeatureRequest& request : requests)
     if (request.input < inputs_) is_feature[request.input] = true;
   const auto has_samples = [&](std::uint32_t input) { return input < inputs_ && !is_feature[input]; };
@@ -65,33 +65,33 @@ FeatureInputs::FeatureInputs(InputReader& source, std::uint32_t inputs,
 }
 
 const SpectralWeights* FeatureInputs::weights_of(std::uint32_t window) {
-  for (const auto& weights : weights_)
-    if (weights->window == window) return weights.get();
+  for (std::uint32_t i = 0; i < weight_count_; ++i)
+    if (weights_[i]->window == window) return weights_[i].get();
   auto weights = std::make_unique<SpectralWeights>();
-  if (!prepare_weights(window, *weights)) return nullptr;
-  weights_.push_back(std::move(weights));
-  return weights_.back().get();
+  if (weight_count_ == kMaxInputs || !prepare_weights(window, *weights)) return nullptr;
+  weights_[weight_count_] = std::move(weights);
+  return weights_[weight_count_++].get();
 }
 
 FeatureInputs::Signal* FeatureInputs::signal_of(const FeatureRequest& request, TimeUs tick) {
-  for (const auto& signal : windows_)
+  for (const auto& signal : windows_in_use())
     if (same_signal(signal->from, request)) return signal.get();
   const SpectralWeights* const weights = weights_of(request.window);
   if (weights == nullptr || request.every == 0 || tick.count < 1 || request.lsb.count < 1 ||
-      request.lsb.count > kMostLsb)
+      request.lsb.count > kMostLsb || window_count_ == kMaxInputs)
     return nullptr;
   auto signal = std::make_unique<Signal>();
   signal->from = request;
   signal->inverse = (std::uint64_t{1} << 63) / static_cast<std::uint64_t>(request.lsb.count);
   const InputMicro rate(kMicroHzTimesUs / (tick.count * std::int64_t{request.every}));
   if (!signal->window.start({request.lsb, rate}, *weights)) return nullptr;
-  windows_.push_back(std::move(signal));
-  return windows_.back().get();
+  windows_[window_count_] = std::move(signal);
+  return windows_[window_count_++].get();
 }
 
 std::uint64_t FeatureInputs::held() const noexcept {
   std::uint64_t held = 0;
-  for (const auto& signal : windows_) held += signal->window.held();
+  for (const auto& signal : windows_in_use()) held += signal->window.held();
   return held;
 }
 
@@ -129,7 +129,7 @@ void FeatureInputs::begin_tick() noexcept {
   source_.begin_tick();
   for (std::uint32_t input = 0; input < inputs_; ++input)
     if (feature_[input] == nullptr) reading_[input].fault = source_.read_input(input, reading_[input].value);
-  for (auto& signal : windows_) take(*signal);
+  for (const auto& signal : windows_in_use()) take(*signal);
 }
 
 HalFault FeatureInputs::read_input(std::uint32_t input, InputMicro& value) noexcept {

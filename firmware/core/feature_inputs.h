@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <initializer_list>
 #include <memory>
-#include <string>
-#include <vector>
+#include <span>
+#include <string_view>
 
 #include "comp/equation.h"
 #include "comp/vibration/feature_window.h"
@@ -27,7 +28,7 @@ struct FeatureRequest {
 };
 
 /// The feature of a name as `vernier features` writes it ("RMS"); false where there is none. setup.
-bool feature_of(const std::string& name, Feature& feature) noexcept;
+bool feature_of(std::string_view name, Feature& feature) noexcept;
 
 /// The board's inputs with features of some of them among them. In each tick the other inputs are read once;
 /// on a sampling tick each window takes its sample and works its features out. Features of the same signal,
@@ -42,12 +43,15 @@ class FeatureInputs : public InputReader {
   /// source: of all inputs that are no feature, outlives this. inputs: of the board, at most kMaxInputs.
   /// tick: of the firmware. What a window cannot be made for (length, resolution, an `of` that is a feature)
   /// is refused: `refused()` then names the request. setup.
-  FeatureInputs(InputReader& source, std::uint32_t inputs, const std::vector<FeatureRequest>& requests,
+  FeatureInputs(InputReader& source, std::uint32_t inputs, std::span<const FeatureRequest> requests,
                 TimeUs tick);
+  FeatureInputs(InputReader& source, std::uint32_t inputs, std::initializer_list<FeatureRequest> requests,
+                TimeUs tick)
+      : FeatureInputs(source, inputs, std::span(requests.begin(), requests.size()), tick) {}
 
   /// Index of the first request that cannot be served, or kNoInput. setup.
   std::uint32_t refused() const noexcept { return refused_; }
-  std::size_t windows() const noexcept { return windows_.size(); }
+  std::size_t windows() const noexcept { return window_count_; }
   /// Samples so far that were beyond the range of a window. realtime.
   std::uint64_t held() const noexcept;
 
@@ -70,6 +74,9 @@ class FeatureInputs : public InputReader {
     HalFault fault = HalFault::kNoReading;
   };
 
+  std::span<const std::unique_ptr<Signal>> windows_in_use() const noexcept {
+    return {windows_, window_count_};
+  }
   Signal* signal_of(const FeatureRequest& request, TimeUs tick);
   const SpectralWeights* weights_of(std::uint32_t window);
   void take(Signal& signal) noexcept;
@@ -77,8 +84,10 @@ class FeatureInputs : public InputReader {
 
   InputReader& source_;
   std::uint32_t inputs_, refused_ = kNoInput;
-  std::vector<std::unique_ptr<SpectralWeights>> weights_;
-  std::vector<std::unique_ptr<Signal>> windows_;
+  // No more than there are features; memory is taken at construction.
+  std::unique_ptr<SpectralWeights> weights_[kMaxInputs];
+  std::unique_ptr<Signal> windows_[kMaxInputs];
+  std::uint32_t weight_count_ = 0, window_count_ = 0;
   const Signal* feature_[kMaxInputs] = {};  // null: the source's own input
   Feature which_[kMaxInputs] = {};
   Reading reading_[kMaxInputs];

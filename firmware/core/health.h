@@ -2,8 +2,6 @@
 #pragma once
 #include <cstdint>
 
-#include "firmware/core/histogram.h"
-
 namespace vernier {
 
 /// What the firmware counts. Counters only go up and survive the clearing of a fault.
@@ -25,8 +23,6 @@ struct Health {
   std::uint64_t faults = 0;        // latched so far
   std::uint64_t refused_commands = 0;
   std::uint64_t programs = 0;  // taken over while running
-  Histogram latency;           // of wake-ups, behind the moment that was asked for
-  Histogram execution;         // of a tick: read, step, write
 };
 
 }  // namespace vernier

@@ -46,10 +46,10 @@ class Link::Writer {
     used_ += static_cast<std::uint32_t>(size);
     return true;
   }
-  void put_text(const std::string& text, std::uint32_t field) {
+  void put_name(const Name& name) {
     char padded[kImageNameBytes] = {};
-    std::memcpy(padded, text.data(), std::min<std::size_t>(text.size(), field - 1));
-    put_bytes(padded, field);
+    std::memcpy(padded, name.c_str(), name.size());
+    put_bytes(padded, sizeof(padded));
   }
   std::uint32_t used() const { return used_; }
   std::uint32_t room() const { return room_ - used_; }
@@ -142,11 +142,11 @@ LinkStatus Link::name(Reader& in, Writer& out) const {
   if (!in.complete()) return LinkStatus::kBadLength;
   const bool known = kind == 0 ? index < wiring_.axes.size() : kind == 1 && index < wiring_.inputs.size();
   if (!known) return LinkStatus::kBadValue;
-  out.put_text(kind == 0 ? wiring_.axes[index].name : wiring_.inputs[index], kImageNameBytes);
+  out.put_name(kind == 0 ? wiring_.axes[index].name : wiring_.inputs[index]);
   std::uint8_t flags = 0;
   if (kind == 0)
-    flags = static_cast<std::uint8_t>((wiring_.axes[index].rotary ? kRotary : 0u) |
-                                      (wiring_.axes[index].rollover ? kRollover : 0u));
+    flags = static_cast<std::uint8_t>((wiring_.axes[index].rotary ? std::uint32_t{kRotary} : 0u) |
+                                      (wiring_.axes[index].rollover ? std::uint32_t{kRollover} : 0u));
   out.put(flags);
   return LinkStatus::kDone;
 }
@@ -329,7 +329,7 @@ LinkStatus Link::upload(LinkOp op, Reader& in, Writer& out, TimeUs now) {
   out.put(static_cast<std::uint8_t>(result.fault));
   out.put(static_cast<std::uint8_t>(result.image));
   out.put(static_cast<std::uint8_t>(result.bind));
-  out.put_bytes(result.offender.data(), std::min<std::size_t>(result.offender.size(), kImageNameBytes));
+  out.put_bytes(result.offender.c_str(), result.offender.size());
   return LinkStatus::kRefused;
 }
 

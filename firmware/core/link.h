@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
-#include <vector>
+#include <optional>
 
 #include "firmware/core/exchange.h"
 #include "firmware/core/uploader.h"

@@ -1,16 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware/core/probing.h"
 
-#include <cmath>
+#include "comp/fixed.h"
 
 namespace vernier {
 
 InstantNs ProbeSettings::time_uncertainty(InstantNs resolution) const noexcept {
-  // A stamp is anywhere in its resolution with the same probability.
-  const double stamp = static_cast<double>(resolution.count) / std::sqrt(12.0);
-  const double all =
-      std::hypot(stamp, static_cast<double>(delay_spread.count), static_cast<double>(age_spread.count));
-  return InstantNs(static_cast<std::int64_t>(std::ceil(all)));
+  constexpr std::int64_t kMost = 500'000'000;  // beyond every setting; twelve squares of it fit
+  const auto square = [](InstantNs time) {
+    const auto size = static_cast<std::uint64_t>(clamp<std::int64_t>(time.count, 0, kMost));
+    return size * size;
+  };
+  // A stamp is anywhere in its resolution with the same probability: variance of a twelfth. Rounded up.
+  const std::uint64_t twelve_times = square(resolution) + 12 * (square(delay_spread) + square(age_spread));
+  std::uint64_t root = 0;
+  for (std::uint64_t bit = std::uint64_t{1} << 30; bit != 0; bit >>= 1)
+    if (12 * (root + bit) * (root + bit) <= twelve_times) root += bit;
+  if (12 * root * root < twelve_times) ++root;
+  return InstantNs(static_cast<std::int64_t>(root));
 }
 
 Probing::Probing(ProbeLine& line, const ProbeSettings& settings) noexcept

@@ -83,8 +83,8 @@ TickReport Runner::step(Command command) noexcept {
   last_ = woke;
   const TickReport report = cycle_.tick(time_, command, outer);
   const InstantNs ended = clock_.now();
-  cycle_.health().latency.add((woke - due_).count);
-  cycle_.health().execution.add((ended - woke).count);
+  times_.latency.add((woke - due_).count);
+  times_.execution.add((ended - woke).count);
   schedule(ended);
   return report;
 }

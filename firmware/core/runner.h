@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "firmware/core/cycle.h"
+#include "firmware/core/histogram.h"
 #include "hal/clock.h"
 #include "hal/tick_sync.h"
 
@@ -10,6 +11,12 @@ namespace vernier {
 
 /// Overruns in a row that are a fault.
 constexpr std::uint32_t kMostOverruns = 10;
+
+/// How the ticks of a runner went, ns.
+struct TickTimes {
+  Histogram latency;    // of wake-ups, behind the moment that was asked for
+  Histogram execution;  // of a tick: read, step, write
+};
 
 /// Runs a cycle tick by tick on a clock: sleeps until the tick is due, measures how late it woke and how long
 /// it computed. A tick that ends after the next was due is an overrun; the ticks that it covered are left
@@ -34,6 +41,7 @@ class Runner {
   bool in_step() const noexcept { return in_step_; }
   /// Times that the sync was lost; only goes up.
   std::uint64_t lost_syncs() const noexcept { return lost_syncs_; }
+  const TickTimes& times() const noexcept { return times_; }
   /// The moment at which the next tick is due.
   InstantNs due() const noexcept { return due_; }
 
@@ -53,6 +61,7 @@ class Runner {
   InstantNs due_;
   TimeUs time_;
   std::uint32_t overruns_ = 0;  // in a row
+  TickTimes times_;
 };
 
 }  // namespace vernier

@@ -6,16 +6,12 @@
 namespace vernier {
 namespace {
 
-// A percentile walks a whole histogram; one of the eight is brought up to date every so many ticks.
-constexpr std::uint64_t kTicksPerPercentile = 64;
-// Ten pictures a second of what each effect adds.
-constexpr std::uint64_t kTicksPerShares = 100;
 constexpr std::uint64_t kPerMillion[3] = {500'000, 990'000, 999'000};
 
 ProbeSettings probe_settings(const ServiceOptions& options) {
   ProbeSettings settings = options.probe;
   settings.axes = static_cast<std::uint32_t>(options.wiring.axes.size());
-  constexpr const char* kNames[3] = {"X", "Y", "Z"};
+  constexpr std::string_view kNames[3] = {"X", "Y", "Z"};
   for (std::uint32_t i = 0; i < settings.axes; ++i) {
     const Wiring::Axis& axis = options.wiring.axes[i];
     settings.rollover[i] = axis.rollover;
@@ -31,18 +27,18 @@ Service::Service(ServiceOptions options, const Board& board, SlotStore& store)
     : options_(std::move(options)),
       board_(board),
       uploader_(store, options_.wiring, options_.upload),
-      exchange_(std::make_unique<Exchange>()),
-      cycle_(std::make_unique<Cycle>(options_.wiring, options_.upload.tick, board_, options_.limits)),
-      runner_(*cycle_, board_.clock, options_.upload.tick, board_.sync, options_.sync_patience),
-      link_(*exchange_, uploader_, options_.wiring, options_.upload.tick, options_.upload.key) {
+      exchange_(options_.ticks_kept, options_.touches_kept),
+      cycle_(options_.wiring, options_.upload.tick, board_, options_.limits),
+      runner_(cycle_, board_.clock, options_.upload.tick, board_.sync, options_.sync_patience),
+      link_(exchange_, uploader_, options_.wiring, options_.upload.tick, options_.upload.key) {
   if (board_.probe != nullptr) probing_.emplace(*board_.probe, probe_settings(options_));
 }
 
 void Service::take_over() noexcept {
   // What was taken out before must have been collected, or there is nowhere to put the next.
-  if (exchange_->retired.load(std::memory_order_relaxed) != nullptr) return;
-  BoundProgram* const next = exchange_->offered.exchange(nullptr, std::memory_order_acquire);
-  if (next != nullptr) exchange_->retired.store(cycle_->use(*next), std::memory_order_release);
+  if (exchange_.retired.load(std::memory_order_relaxed) != nullptr) return;
+  BoundProgram* const next = exchange_.offered.exchange(nullptr, std::memory_order_acquire);
+  if (next != nullptr) exchange_.retired.store(cycle_.use(*next), std::memory_order_release);
 }
 
 // A line that cannot be read is one that is off: a wire that is cut lets no correction in.
@@ -64,15 +60,15 @@ void Service::tell_health(const TickReport& report) noexcept {
 }
 
 Command Service::next_command() noexcept {
-  const Command asked = exchange_->command.exchange(Command::kNone, std::memory_order_acq_rel);
+  const Command asked = exchange_.command.exchange(Command::kNone, std::memory_order_acq_rel);
   if (ending_ || !enabled_) {
-    const bool in = cycle_->mode() == Mode::kActive ||
-                    (cycle_->mode() == Mode::kReady && cycle_->weight() != WeightQ16{});
+    const bool in =
+        cycle_.mode() == Mode::kActive || (cycle_.mode() == Mode::kReady && cycle_.weight() != WeightQ16{});
     if (in) return Command::kDeactivate;
     return asked == Command::kClearFault && !ending_ ? asked : Command::kNone;
   }
   if (asked != Command::kNone || !options_.activate || activated_) return asked;
-  if (cycle_->mode() != Mode::kReady) return Command::kNone;
+  if (cycle_.mode() != Mode::kReady) return Command::kNone;
   activated_ = true;
   return Command::kActivate;
 }
@@ -81,10 +77,10 @@ TickReport Service::tick() noexcept {
   take_over();
   read_enable();
   for (std::uint32_t i = 0; i < kMaxAxes; ++i)
-    cycle_->set_axis_weight(i, WeightQ16(exchange_->axis_weight[i].load(std::memory_order_relaxed)));
+    cycle_.set_axis_weight(i, WeightQ16(exchange_.axis_weight[i].load(std::memory_order_relaxed)));
   const TimeUs time = runner_.time();
   const TickReport report = runner_.step(next_command());
-  if (probing_) probing_->after_tick(*cycle_, report, runner_.woke(), time, *exchange_);
+  if (probing_) probing_->after_tick(cycle_, report, runner_.woke(), time, exchange_);
   tell_health(report);
   publish(report);
   return report;
@@ -94,32 +90,35 @@ void Service::publish(const TickReport& report) noexcept {
   record_.time_us = runner_.time().count;
   for (std::size_t i = 0; i < options_.wiring.axes.size(); ++i) {
     const auto axis = static_cast<std::uint32_t>(i);
-    const AxisInput& state = cycle_->axis_state(axis);
+    const AxisInput& state = cycle_.axis_state(axis);
     record_.position[i] = state.position.count;
     record_.sense[i] = state.sense;
-    record_.correction[i] = narrow(clamp<std::int64_t>(cycle_->written(axis).count, INT32_MIN, INT32_MAX));
+    record_.correction[i] = narrow(clamp<std::int64_t>(cycle_.written(axis).count, INT32_MIN, INT32_MAX));
   }
   for (std::size_t i = 0; i < options_.wiring.inputs.size(); ++i)
-    record_.input[i] = cycle_->input_value(static_cast<std::uint32_t>(i)).count;
-  record_.feed_nm_per_min = cycle_->path().feed.count;
+    record_.input[i] = cycle_.input_value(static_cast<std::uint32_t>(i)).count;
+  record_.feed_nm_per_min = cycle_.path().feed.count;
   record_.mode = static_cast<std::uint8_t>(report.mode);
   record_.fault = static_cast<std::uint8_t>(report.latched);
-  record_.holding = cycle_->holding() ? 1 : 0;
-  exchange_->ticks.add(record_);
+  record_.holding = cycle_.holding() ? 1 : 0;
+  exchange_.ticks.add(record_);
   publish_health();
-  if (cycle_->health().ticks % kTicksPerShares == 0) publish_shares();
+  if (--until_shares_ == 0) {
+    until_shares_ = kTicksPerShares;
+    publish_shares();
+  }
 }
 
 void Service::publish_shares() noexcept {
-  cycle_->shares(share_corrections_);
-  shares_.programs = cycle_->health().programs;
-  shares_.count = cycle_->program().shares.shares.size;
+  cycle_.shares(share_corrections_);
+  shares_.programs = cycle_.health().programs;
+  shares_.count = cycle_.program().shares.shares.size;
   for (std::uint32_t i = 0; i < shares_.count; ++i) shares_.correction[i] = share_corrections_[i].counts;
-  exchange_->shares.publish(shares_);
+  exchange_.shares.publish(shares_);
 }
 
 void Service::publish_health() noexcept {
-  const Health& h = cycle_->health();
+  const Health& h = cycle_.health();
   HealthRecord& r = health_;
   r.ticks = h.ticks, r.active_ticks = h.active_ticks, r.overruns = h.overruns, r.skipped = h.skipped;
   r.missing_readings = h.missing_readings, r.missing_inputs = h.missing_inputs;
@@ -127,28 +126,31 @@ void Service::publish_health() noexcept {
   r.implausible = h.implausible, r.failed_writes = h.failed_writes, r.saturated = h.saturated;
   r.slewing = h.slewing, r.beyond_range = h.beyond_range, r.faults = h.faults;
   r.refused_commands = h.refused_commands, r.programs = h.programs;
-  r.latency_ns[3] = h.latency.max_ns(), r.execution_ns[3] = h.execution.max_ns();
-  if (h.ticks % kTicksPerPercentile == 0) {
-    const std::uint64_t turn = h.ticks / kTicksPerPercentile % 6;
-    const Histogram& histogram = turn < 3 ? h.latency : h.execution;
-    std::int64_t* const values = turn < 3 ? r.latency_ns : r.execution_ns;
-    values[turn % 3] = histogram.percentile_ns(kPerMillion[turn % 3]);
+  const TickTimes& times = runner_.times();
+  r.latency_ns[3] = times.latency.max_ns(), r.execution_ns[3] = times.execution.max_ns();
+  if (--until_percentile_ == 0) {
+    until_percentile_ = kTicksPerPercentile;
+    const bool of_latency = percentile_ < 3;
+    const std::uint32_t which = of_latency ? percentile_ : percentile_ - 3;
+    const Histogram& histogram = of_latency ? times.latency : times.execution;
+    (of_latency ? r.latency_ns : r.execution_ns)[which] = histogram.percentile_ns(kPerMillion[which]);
+    percentile_ = percentile_ < 5 ? percentile_ + 1 : 0;
   }
-  exchange_->health.publish(r);
+  exchange_.health.publish(r);
 }
 
 void Service::look_after_programs() noexcept {
   uploader_.poll(now());
-  if (exchange_->retired.load(std::memory_order_acquire) != nullptr) {
+  if (exchange_.retired.load(std::memory_order_acquire) != nullptr) {
     // The tick runs what was offered; what it ran before is nobody's any more.
     running_ = std::move(offered_);
-    link_.set_program(*running_->bound, ++programs_);
-    exchange_->retired.store(nullptr, std::memory_order_release);
+    link_.set_program(running_->bound, ++programs_);
+    exchange_.retired.store(nullptr, std::memory_order_release);
   }
-  if (auto next = uploader_.take_next()) waiting_ = std::move(next);
+  if (ProgramRef next = uploader_.take_next()) waiting_ = std::move(next);
   if (waiting_ == nullptr || offered_ != nullptr) return;
   offered_ = std::move(waiting_);
-  exchange_->offered.store(offered_->bound.get(), std::memory_order_release);
+  exchange_.offered.store(&offered_->bound, std::memory_order_release);
 }
 
 HalFault Service::serve(CommandLink& link, TimeUs wait) noexcept {

@@ -24,10 +24,12 @@ struct ServiceOptions {
   TimeUs sync_patience;   // beyond a tick's time, until the clock takes the place of the sync
   ProbeSettings probe;    // where the board has one; axes are filled in from the wiring
   bool activate = false;  // bring the correction in when the board becomes ready, once for each enable
+  std::uint32_t ticks_kept = Exchange::kHistory;  // for readers of the history; powers of two
+  std::uint32_t touches_kept = Exchange::kTouches;
 };
 
 /// The board's program: on one side the tick, which never waits; on the other, in a thread of their own,
-/// uploads and links. Between them stands Exchange.
+/// uploads and links. Between them stands Exchange. All memory is taken at construction.
 class Service : private CommandHandler {
  public:
   /// board, store: outlive the service. setup.
@@ -47,13 +49,18 @@ class Service : private CommandHandler {
   /// The same without a link: hands programs over, ends trials. setup.
   void look_after_programs() noexcept;
 
-  const Cycle& cycle() const noexcept { return *cycle_; }
+  const Cycle& cycle() const noexcept { return cycle_; }
   const Runner& runner() const noexcept { return runner_; }
-  Cycle& cycle() noexcept { return *cycle_; }
+  Cycle& cycle() noexcept { return cycle_; }
   const Uploader& uploader() const noexcept { return uploader_; }
-  const Exchange& exchange() const noexcept { return *exchange_; }
+  const Exchange& exchange() const noexcept { return exchange_; }
 
  private:
+  // A percentile walks a whole histogram; one of the six is brought up to date every so many ticks.
+  static constexpr std::uint32_t kTicksPerPercentile = 64;
+  // Ten pictures a second of what each effect adds.
+  static constexpr std::uint32_t kTicksPerShares = 100;
+
   std::uint32_t answer(const std::uint8_t* request, std::uint32_t size, std::uint8_t* reply) override;
   void fill_registers(std::uint16_t* values) override { link_.fill_registers(values); }
   bool give(std::uint16_t command) override;
@@ -69,15 +76,16 @@ class Service : private CommandHandler {
   ServiceOptions options_;
   Board board_;
   Uploader uploader_;
-  std::unique_ptr<Exchange> exchange_;
-  std::unique_ptr<Cycle> cycle_;
+  Exchange exchange_;
+  Cycle cycle_;
   Runner runner_;
   Link link_;
   std::optional<Probing> probing_;
   // Owned outside the tick: what runs, and what has been offered to it.
-  std::unique_ptr<LoadedProgram> running_, offered_, waiting_;
+  ProgramRef running_, offered_, waiting_;
   std::uint64_t programs_ = 0;  // taken over by the tick so far
   // Owned by the tick.
+  std::uint32_t until_percentile_ = kTicksPerPercentile, percentile_ = 0, until_shares_ = kTicksPerShares;
   HealthRecord health_;
   TickRecord record_;
   ShareRecord shares_;

@@ -2,7 +2,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
-#include <vector>
+#include <span>
 
 #include "tables/upload_format.h"
 
@@ -10,8 +10,9 @@ namespace vernier {
 
 using PublicKey = std::array<std::uint8_t, kPublicKeyBytes>;
 
-/// Does the signature of an upload (tables/upload_format.h) fit its bytes and this key? upload: header and
-/// image. Ed25519ph, RFC 8032. setup.
-bool signature_fits(const std::vector<std::uint8_t>& upload, const PublicKey& key);
+/// Does the signature of an upload (tables/upload_format.h) fit its header, its image and this key?
+/// Ed25519ph, RFC 8032. A port defines it, with the library that it has; where it has none,
+/// firmware/core/own_signature.cpp does. setup.
+bool signature_fits(const UploadHeader& header, std::span<const std::uint8_t> image, const PublicKey& key);
 
 }  // namespace vernier

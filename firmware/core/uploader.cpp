@@ -4,10 +4,16 @@
 #include <algorithm>
 #include <cstring>
 
+#include "comp/fixed.h"
+
 namespace vernier {
 namespace {
 
-UploadResult refused(UploadFault fault) { return UploadResult{.fault = fault, .offender = {}}; }
+UploadResult refused(UploadFault fault) {
+  UploadResult result;
+  result.fault = fault;
+  return result;
+}
 
 SlotRecord read_record(SlotStore& store, std::uint32_t place) {
   SlotRecord record{};
@@ -17,31 +23,49 @@ SlotRecord read_record(SlotStore& store, std::uint32_t place) {
   return record;
 }
 
-// Header and image of a slot; empty where they are not there or their sizes make no sense.
-std::vector<std::uint8_t> read_upload(SlotStore& store, std::uint32_t slot) {
-  std::vector<std::uint8_t> bytes(sizeof(UploadHeader));
-  if (store.read_image(slot, 0, bytes.data(), sizeof(UploadHeader)) != HalFault::kNone) return {};
-  UploadHeader header;
-  std::memcpy(&header, bytes.data(), sizeof(header));
-  if (header.image_bytes > store.capacity() - sizeof(UploadHeader)) return {};
-  bytes.resize(sizeof(UploadHeader) + header.image_bytes);
-  const HalFault fault =
-      store.read_image(slot, sizeof(UploadHeader), bytes.data() + sizeof(UploadHeader), header.image_bytes);
-  return fault == HalFault::kNone ? bytes : std::vector<std::uint8_t>{};
+void append(Line& line, const char* text) noexcept {
+  std::size_t at = 0;
+  while (line.text[at] != 0) ++at;
+  while (*text != 0 && at + 1 < sizeof(line.text)) line.text[at++] = *text++;
 }
 
 }  // namespace
 
-std::string describe(const UploadResult& result) {
-  std::string text = describe(result.fault);
-  if (result.fault == UploadFault::kImage) text += std::string(": ") + describe(result.image);
-  if (result.fault == UploadFault::kForeignMachine) text += std::string(": ") + describe(result.bind);
-  if (!result.offender.empty()) text += ": " + result.offender;
-  return text;
+Line describe(const UploadResult& result) noexcept {
+  Line line;
+  const auto add = [&line](const char* text) {
+    if (line.text[0] != 0) append(line, ": ");
+    append(line, text);
+  };
+  add(describe(result.fault));
+  if (result.fault == UploadFault::kImage) add(describe(result.image));
+  if (result.fault == UploadFault::kForeignMachine) add(describe(result.bind));
+  if (!result.offender.empty()) add(result.offender.c_str());
+  return line;
+}
+
+ProgramPool::ProgramPool(std::uint32_t places, std::uint32_t image_bytes)
+    : places_(places), image_bytes_(image_bytes), programs_(new LoadedProgram[places]) {
+  for (std::uint32_t i = 0; i < places_; ++i)
+    programs_[i].words.reset(new std::uint64_t[(image_bytes + 7) / 8]);
+}
+
+ProgramRef ProgramPool::take() noexcept {
+  for (std::uint32_t i = 0; i < places_; ++i) {
+    LoadedProgram& program = programs_[i];
+    if (program.taken) continue;
+    program.taken = true;
+    return ProgramRef(&program);
+  }
+  return nullptr;
 }
 
 Uploader::Uploader(SlotStore& store, const Wiring& wiring, const Options& options)
-    : store_(store), wiring_(wiring), options_(options) {}
+    : store_(store),
+      wiring_(wiring),
+      options_(options),
+      pool_(options.places, store.capacity() - lower(store.capacity(), std::uint32_t{sizeof(UploadHeader)})),
+      workspace_(new ImageWorkspace) {}
 
 bool Uploader::store(const SlotChange& change) {
   std::uint8_t bytes[sizeof(SlotRecord)];
@@ -51,36 +75,41 @@ bool Uploader::store(const SlotChange& change) {
   return true;
 }
 
-UploadResult Uploader::check(const std::vector<std::uint8_t>& upload, LoadedProgram& loaded) const {
-  if (upload.size() < sizeof(UploadHeader)) return refused(UploadFault::kNotAnUpload);
-  UploadHeader header;
-  std::memcpy(&header, upload.data(), sizeof(header));
-  if (std::memcmp(header.magic, kUploadMagic, sizeof(kUploadMagic)) != 0 ||
-      header.header_bytes != sizeof(UploadHeader) ||
-      header.image_bytes != upload.size() - sizeof(UploadHeader))
-    return refused(UploadFault::kNotAnUpload);
+UploadResult Uploader::check(const UploadHeader& header, LoadedProgram& loaded) {
   if (!options_.key) return refused(UploadFault::kNoKey);
   if (std::memcmp(header.key, options_.key->data(), sizeof(header.key)) != 0)
     return refused(UploadFault::kForeignKey);
-  if (!signature_fits(upload, *options_.key)) return refused(UploadFault::kSignature);
+  const auto* const bytes = reinterpret_cast<const std::uint8_t*>(loaded.words.get());
+  if (!signature_fits(header, {bytes, header.image_bytes}, *options_.key))
+    return refused(UploadFault::kSignature);
   UploadResult result;
-  result.image = loaded.image.open({upload.begin() + sizeof(UploadHeader), upload.end()});
+  result.image = loaded.view.open(bytes, header.image_bytes, *workspace_);
   if (result.image != ImageFault::kNone) {
     result.fault = UploadFault::kImage;
     return result;
   }
-  const ImageView& view = loaded.image.view();
-  if (view.header().fingerprint != header.fingerprint) return refused(UploadFault::kFingerprint);
-  loaded.bound = std::make_unique<BoundProgram>(view);
-  result.bind = bind(view, wiring_, options_.tick, *loaded.bound, result.offender);
+  if (loaded.view.header().fingerprint != header.fingerprint) return refused(UploadFault::kFingerprint);
+  std::destroy_at(&loaded.bound);
+  std::construct_at(&loaded.bound, loaded.view);
+  result.bind = bind(loaded.view, wiring_, options_.tick, loaded.bound, result.offender);
   if (result.bind != BindFault::kNone) result.fault = UploadFault::kForeignMachine;
   loaded.issued = header.issued;
   loaded.fingerprint = header.fingerprint;
   return result;
 }
 
-UploadResult Uploader::load(std::uint8_t slot, LoadedProgram& loaded) {
-  return check(read_upload(store_, slot), loaded);
+// Header and image of a slot, from the medium, checked.
+UploadResult Uploader::load(std::uint8_t slot, LoadedProgram& loaded, UploadHeader& header) {
+  std::uint8_t bytes[sizeof(UploadHeader)];
+  if (store_.read_image(slot, 0, bytes, sizeof(bytes)) != HalFault::kNone)
+    return refused(UploadFault::kNotAnUpload);
+  std::memcpy(&header, bytes, sizeof(header));
+  if (std::memcmp(header.magic, kUploadMagic, sizeof(kUploadMagic)) != 0 ||
+      header.header_bytes != sizeof(UploadHeader) || header.image_bytes > pool_.image_bytes() ||
+      store_.read_image(slot, sizeof(UploadHeader), reinterpret_cast<std::uint8_t*>(loaded.words.get()),
+                        header.image_bytes) != HalFault::kNone)
+    return refused(UploadFault::kNotAnUpload);
+  return check(header, loaded);
 }
 
 UploadResult Uploader::boot() {
@@ -88,8 +117,10 @@ UploadResult Uploader::boot() {
   // A reset ends a trial. Where even that cannot be stored, the state on the medium says the same next time.
   if (slots_.trial() != kNoSlot) store(slots_.revert());
   if (slots_.confirmed() == kNoSlot) return {};
-  auto loaded = std::make_unique<LoadedProgram>();
-  const UploadResult result = load(slots_.confirmed(), *loaded);
+  ProgramRef loaded = pool_.take();
+  if (loaded == nullptr) return refused(UploadFault::kStore);
+  UploadHeader header;
+  const UploadResult result = load(slots_.confirmed(), *loaded, header);
   if (result.fault != UploadFault::kNone) return result;
   confirmed_fingerprint_ = loaded->fingerprint;
   next_ = std::move(loaded);
@@ -135,17 +166,16 @@ UploadResult Uploader::finish(TimeUs now) {
   const std::uint8_t slot = slots_.free_slot();
   if (store_.finish_image(slot, expected_) != HalFault::kNone) return refused(UploadFault::kStore);
   // What counts is what the medium gives back, not what came over the wire.
-  auto loaded = std::make_unique<LoadedProgram>();
-  const std::vector<std::uint8_t> upload = read_upload(store_, slot);
-  const UploadResult result = check(upload, *loaded);
-  if (result.fault != UploadFault::kNone) return result;
+  ProgramRef loaded = pool_.take();
+  if (loaded == nullptr) return refused(UploadFault::kStore);
   UploadHeader header;
-  std::memcpy(&header, upload.data(), sizeof(header));
-  if (upload.size() != expected_) return refused(UploadFault::kNotAnUpload);
+  const UploadResult result = load(slot, *loaded, header);
+  if (result.fault != UploadFault::kNone) return result;
+  if (sizeof(header) + header.image_bytes != expected_) return refused(UploadFault::kNotAnUpload);
   if (!may_replace(header)) return refused(UploadFault::kOlder);
   if (!store(slots_.start_trial(header.issued))) return refused(UploadFault::kStore);
   trial_began_ = now;
-  given_up_ = false;
+  given_up_ = owed_ = false;
   trial_fingerprint_ = loaded->fingerprint;
   next_ = std::move(loaded);
   return result;
@@ -160,10 +190,17 @@ UploadResult Uploader::confirm() {
 }
 
 void Uploader::offer_confirmed() {
-  auto loaded = std::make_unique<LoadedProgram>();
-  if (slots_.confirmed() == kNoSlot || load(slots_.confirmed(), *loaded).fault != UploadFault::kNone) {
-    loaded = std::make_unique<LoadedProgram>();
-    loaded->bound = std::make_unique<BoundProgram>();
+  // What was not taken over yet is not wanted any more: its place is the one that is needed.
+  next_ = nullptr;
+  ProgramRef loaded = pool_.take();
+  owed_ = loaded == nullptr;
+  if (owed_) return;
+  UploadHeader header;
+  if (slots_.confirmed() == kNoSlot ||
+      load(slots_.confirmed(), *loaded, header).fault != UploadFault::kNone) {
+    std::destroy_at(&loaded->bound);
+    std::construct_at(&loaded->bound);
+    loaded->fingerprint = loaded->issued = 0;
   }
   next_ = std::move(loaded);
 }
@@ -184,6 +221,7 @@ TimeUs Uploader::trial_left(TimeUs now) const noexcept {
 }
 
 bool Uploader::poll(TimeUs now) {
+  if (owed_) offer_confirmed();
   if (slots_.trial() == kNoSlot || given_up_ || trial_left(now) > TimeUs{}) return false;
   return revert().fault == UploadFault::kNone;
 }

@@ -3,14 +3,12 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <string>
-#include <vector>
 
 #include "firmware/core/bound_program.h"
-#include "firmware/core/image_file.h"
 #include "firmware/core/signature.h"
 #include "hal/slot_store.h"
 #include "tables/codes.h"
+#include "tables/image_view.h"
 #include "tables/slots.h"
 
 namespace vernier {
@@ -20,16 +18,48 @@ struct UploadResult {
   UploadFault fault = UploadFault::kNone;
   ImageFault image = ImageFault::kNone;
   BindFault bind = BindFault::kNone;
-  std::string offender;  // the name that does not fit
+  Name offender;  // the name that does not fit
 };
-/// One line for people: "foreign machine: the board has no such axis: W".
-std::string describe(const UploadResult& result);
+/// A line of text in place; what is longer is cut.
+struct Line {
+  char text[160] = {};
+  const char* c_str() const noexcept { return text; }
+  operator const char*() const noexcept { return text; }
+};
+/// One line for people: "of another machine: the board has no such axis: W".
+Line describe(const UploadResult& result) noexcept;
 
-/// An image, what it is bound to, and what its header says.
+/// A place for one image, with what it is bound to and what its header says. The bytes are in memory that was
+/// taken when the board was made.
 struct LoadedProgram {
-  ImageFile image;
-  std::unique_ptr<BoundProgram> bound;
+  std::unique_ptr<std::uint64_t[]> words;
+  ImageView view;
+  BoundProgram bound;
   std::uint64_t issued = 0, fingerprint = 0;
+  bool taken = false;
+};
+struct GiveBack {
+  void operator()(LoadedProgram* program) const noexcept { program->taken = false; }
+};
+/// A program in use; its place is free again when this ends.
+using ProgramRef = std::unique_ptr<LoadedProgram, GiveBack>;
+
+/// The places for images that a board has. Memory is taken here and never again.
+class ProgramPool {
+ public:
+  /// One runs, one waits to be taken over by the tick, one is being checked; where uploads come quicker than
+  /// ticks, two more wait. An upload that finds no place is refused.
+  static constexpr std::uint32_t kFewest = 3, kUsual = 5;
+
+  /// image_bytes: the largest image. setup.
+  ProgramPool(std::uint32_t places, std::uint32_t image_bytes);
+  /// Null where every place is in use. setup.
+  ProgramRef take() noexcept;
+  std::uint32_t image_bytes() const noexcept { return image_bytes_; }
+
+ private:
+  std::uint32_t places_, image_bytes_;
+  std::unique_ptr<LoadedProgram[]> programs_;
 };
 
 /// Takes images in, checks, tries, keeps or gives them up. Runs outside the tick; what the tick is to run
@@ -41,6 +71,7 @@ class Uploader {
     TimeUs tick{1000};
     std::optional<PublicKey> key;
     TimeUs trial_time{60'000'000};  // an image on trial is given up after that
+    std::uint32_t places = ProgramPool::kUsual;
   };
   /// store, wiring: outlive the uploader. setup.
   Uploader(SlotStore& store, const Wiring& wiring, const Options& options);
@@ -63,7 +94,7 @@ class Uploader {
   bool poll(TimeUs now);
 
   /// The program to be run next, if there is one; an empty one takes all corrections out. setup.
-  std::unique_ptr<LoadedProgram> take_next() { return std::move(next_); }
+  ProgramRef take_next() noexcept { return std::move(next_); }
 
   const Slots& slots() const noexcept { return slots_; }
   /// Left of the trial; 0 where none runs.
@@ -76,8 +107,8 @@ class Uploader {
   HalFault read_confirmed(std::uint32_t offset, std::uint8_t* bytes, std::uint32_t size) noexcept;
 
  private:
-  UploadResult load(std::uint8_t slot, LoadedProgram& loaded);
-  UploadResult check(const std::vector<std::uint8_t>& upload, LoadedProgram& loaded) const;
+  UploadResult load(std::uint8_t slot, LoadedProgram& loaded, UploadHeader& header);
+  UploadResult check(const UploadHeader& header, LoadedProgram& loaded);
   bool may_replace(const UploadHeader& header) const noexcept;
   bool store(const SlotChange& change);
   void offer_confirmed();
@@ -86,8 +117,11 @@ class Uploader {
   const Wiring& wiring_;
   Options options_;
   Slots slots_;
-  std::unique_ptr<LoadedProgram> next_;
+  ProgramPool pool_;
+  std::unique_ptr<ImageWorkspace> workspace_;
+  ProgramRef next_;
   bool receiving_ = false, given_up_ = false;
+  bool owed_ = false;  // the confirmed image is to be offered as soon as there is a place for it
   std::uint32_t expected_ = 0, received_ = 0, last_offset_ = 0;
   TimeUs trial_began_;
   std::uint64_t confirmed_fingerprint_ = 0, trial_fingerprint_ = 0;

@@ -147,7 +147,7 @@ void read_axis(BoardFile& board, const std::string& name, const toml::table& tab
   if (board.axes.size() == kMaxAxes) settings.fail("more axes than the firmware has room for");
   if (name.size() >= kImageNameBytes) settings.fail("the name is too long");
   AxisEntry axis;
-  axis.wiring.name = name;
+  axis.wiring.name = Name(std::string_view(name));
   const std::string kind = settings.text("kind", "linear");
   if (kind != "linear" && kind != "rotary")
     settings.fail("kind: '" + kind + "' is neither linear nor rotary");
@@ -185,7 +185,7 @@ void read_input(BoardFile& board, const std::string& name, const toml::table& ta
   settings.number("low", 0, -1e9, 1e9), settings.number("high", 0, -1e9, 1e9);
   settings.number("max_step", 0, 0, 1e9);
   settings.nothing_else();
-  board.service.wiring.inputs.push_back(name);
+  board.service.wiring.inputs.push_back(std::string_view(name));
   board.inputs.push_back(input);
 }
 

@@ -129,7 +129,7 @@ void Devices::Parts::make_bus(const std::string& interface, std::vector<Route<Ax
     routes[served[k]] = {bus.get(), k};
     char device[96];
     std::snprintf(device, sizeof(device), "can %s id 0x%x", interface.c_str(), ids[k]);
-    note("axis." + file.axes[served[k]].wiring.name + ".position  " + device, error,
+    note(std::string("axis.") + file.axes[served[k]].wiring.name.c_str() + ".position  " + device, error,
          [this, bus = bus.get(), k] { return hear_axis(clock, *bus, k); });
   }
   buses[interface] = std::move(bus);
@@ -142,7 +142,7 @@ std::vector<Route<AxisReader>> Devices::Parts::make_positions() {
     if (source.kind == "sim") {
       source.only({});
       routes[i] = {plant.get(), i};
-      note("axis." + file.axes[i].wiring.name + ".position  sim", "");
+      note(std::string("axis.") + file.axes[i].wiring.name.c_str() + ".position  sim", "");
     } else if (source.kind == "can") {
       const std::string interface = source.text("interface");
       if (!buses.contains(interface)) make_bus(interface, routes);
@@ -158,7 +158,7 @@ std::vector<Route<CorrectionWriter>> Devices::Parts::make_outputs() {
   for (std::uint32_t i = 0; i < file.axes.size(); ++i) {
     const AxisEntry& axis = file.axes[i];
     if (axis.output.kind.empty()) continue;
-    const std::string name = "axis." + axis.wiring.name + ".output  " + axis.output.kind;
+    const std::string name = std::string("axis.") + axis.wiring.name.c_str() + ".output  " + axis.output.kind;
     if (axis.output.kind == "sim") {
       axis.output.only({});
       routes[i] = {plant.get(), i};

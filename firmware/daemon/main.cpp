@@ -11,7 +11,6 @@
 #include <string>
 #include <thread>
 
-#include "firmware/core/image_file.h"
 #include "firmware/core/runner.h"
 #include "firmware/core/service.h"
 #include "firmware/daemon/arguments.h"
@@ -19,6 +18,7 @@
 #include "firmware/daemon/calibrate_output.h"
 #include "firmware/daemon/device_settings.h"
 #include "firmware/daemon/devices.h"
+#include "firmware/daemon/image_file.h"
 #include "firmware/daemon/open_devices.h"
 #include "firmware/daemon/report.h"
 #include "hal/linux/analogue_output.h"
@@ -56,8 +56,8 @@ GrantReport ask_for_realtime(bool wanted, int priority) {
   return {grant.schedule_error == 0, grant.memory_error == 0, grant.idle_error == 0};
 }
 
-int finish(const Arguments& arguments, const Cycle& cycle, const GrantReport& grant) {
-  if (!report_run(cycle, grant, arguments.json)) return kBadInput;
+int finish(const Arguments& arguments, const Runner& runner, const Cycle& cycle, const GrantReport& grant) {
+  if (!report_run(runner, cycle, grant, arguments.json)) return kBadInput;
   return cycle.latched() == Fault::kNone ? kDone : kAnswerIsNo;
 }
 
@@ -89,7 +89,7 @@ int run_image(const Arguments& arguments, const ImageView& image) {
     const bool ready = cycle->mode() == Mode::kReady && cycle->weight() == WeightQ16{};
     runner.step(ready ? Command::kActivate : Command::kNone);
   }
-  return finish(arguments, *cycle, grant);
+  return finish(arguments, runner, *cycle, grant);
 }
 
 int run_image(const Arguments& arguments) {
@@ -198,7 +198,7 @@ std::vector<CalibrationPoint> measured_points(const Arguments& arguments, const 
   const AnalogueScale scale =
       analogue_scale(source, axis.wiring.rotary, codes, source.kind == "pwm" ? "_ns" : "");
   const auto output = open_analogue(source, axis.wiring.rotary, error);
-  if (!output) throw BoardError{"axis." + axis.wiring.name + ".output: " + error};
+  if (!output) throw BoardError{std::string("axis.") + axis.wiring.name.c_str() + ".output: " + error};
   AxisTravel held;
   const bool known = output->read_back(held) == HalFault::kNone;
   MonotonicClock clock;
@@ -224,12 +224,12 @@ int calibrate(const Arguments& arguments, const BoardFile& file) {
     return kAnswerIsNo;
   }
   const Calibration found = fit_calibration(points, codes, axis->wiring.rotary);
-  write_calibration(path, found, axis->wiring.name);
+  write_calibration(path, found, axis->wiring.name.c_str());
   std::fprintf(arguments.json == "-" ? stderr : stdout,
                "%s: span %.6f +- %.6f %s, zero %.2f +- %.2f, residual %.3f rms\n", path.c_str(), found.span,
                found.span_std, axis->wiring.rotary ? "deg" : "mm", found.zero, found.zero_std,
                found.residual);
-  return write_result(arguments.json, calibration_json(found, axis->wiring.name)) ? kDone : kBadInput;
+  return write_result(arguments.json, calibration_json(found, axis->wiring.name.c_str())) ? kDone : kBadInput;
 }
 
 int run_board(const Arguments& arguments) {
@@ -263,7 +263,7 @@ int run_board(const Arguments& arguments) {
   if (service->runner().lost_syncs() > 0)
     std::fprintf(stderr, "vernierd: the sync was lost %llu times\n",
                  static_cast<unsigned long long>(service->runner().lost_syncs()));
-  return finish(arguments, service->cycle(), grant);
+  return finish(arguments, service->runner(), service->cycle(), grant);
 }
 
 }  // namespace

@@ -31,7 +31,7 @@ struct Counter {
   std::uint64_t value;
 };
 
-void print_result(std::FILE* out, const Cycle& cycle, const GrantReport& grant) {
+void print_result(std::FILE* out, const TickTimes& times, const Cycle& cycle, const GrantReport& grant) {
   const Health& h = cycle.health();
   std::fprintf(out, "{\n \"equation\": \"%s\",\n",
                cycle.program().compensator.printed() ? "printed" : "executed");
@@ -57,18 +57,18 @@ void print_result(std::FILE* out, const Cycle& cycle, const GrantReport& grant) 
   std::fprintf(out, " \"realtime\": {\"fifo\": %s, \"locked\": %s, \"awake\": %s},\n", word(grant.fifo),
                word(grant.locked), word(grant.awake));
   std::fputs(" \"latency_us\": ", out);
-  print_json(out, h.latency);
+  print_json(out, times.latency);
   std::fputs(",\n \"execution_us\": ", out);
-  print_json(out, h.execution);
+  print_json(out, times.execution);
   std::fputs("\n}\n", out);
 }
 
-std::string result_text(const Cycle& cycle, const GrantReport& grant) {
+std::string result_text(const TickTimes& times, const Cycle& cycle, const GrantReport& grant) {
   char* text = nullptr;
   std::size_t size = 0;
   std::FILE* const out = ::open_memstream(&text, &size);
   if (out == nullptr) throw std::bad_alloc();
-  print_result(out, cycle, grant);
+  print_result(out, times, cycle, grant);
   std::fclose(out);
   const std::unique_ptr<char, decltype(&std::free)> owned(text, &std::free);
   return {text, size};
@@ -76,15 +76,15 @@ std::string result_text(const Cycle& cycle, const GrantReport& grant) {
 
 }  // namespace
 
-bool report_run(const Cycle& cycle, const GrantReport& grant, const std::string& json) {
+bool report_run(const Runner& runner, const Cycle& cycle, const GrantReport& grant, const std::string& json) {
   const Health& health = cycle.health();
   std::FILE* const people = json == "-" ? stderr : stdout;
   std::fprintf(
       people, "%llu ticks, %llu overruns, mode %s, fault %s\n", static_cast<unsigned long long>(health.ticks),
       static_cast<unsigned long long>(health.overruns), name_of(cycle.mode()), name_of(cycle.latched()));
-  print_histogram(people, "wake-up latency", health.latency);
-  print_histogram(people, "execution of a tick", health.execution);
-  return write_result(json, result_text(cycle, grant));
+  print_histogram(people, "wake-up latency", runner.times().latency);
+  print_histogram(people, "execution of a tick", runner.times().execution);
+  return write_result(json, result_text(runner.times(), cycle, grant));
 }
 
 bool write_result(const std::string& json, const std::string& text) {

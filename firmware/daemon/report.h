@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 
-#include "firmware/core/cycle.h"
+#include "firmware/core/runner.h"
 
 namespace vernier {
 
@@ -13,7 +13,7 @@ struct GrantReport {
 
 /// Tells people (standard output, standard error where json is "-") and programs (json: a file, "-" or empty)
 /// what a run did. False where the file cannot be written. tool.
-bool report_run(const Cycle& cycle, const GrantReport& grant, const std::string& json);
+bool report_run(const Runner& runner, const Cycle& cycle, const GrantReport& grant, const std::string& json);
 
 /// Writes a result for programs: json is a file, "-" for standard output, or empty for none. False, and said
 /// on standard error, where it cannot be written. tool.

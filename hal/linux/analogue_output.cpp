@@ -67,7 +67,7 @@ std::unique_ptr<AnalogueOutput> AnalogueOutput::iio_dac(const std::string& devic
 
 HalFault AnalogueOutput::write_correction(std::uint32_t axis, AxisTravel correction) noexcept {
   if (axis != 0) return HalFault::kNoDevice;
-  const std::int64_t wanted = scale_.wanted_code(correction), code = scale_.code_for(correction);
+  const std::int64_t wanted = converter_.wanted_code(correction), code = converter_.code_for(correction);
   held_at_end_ += wanted != code ? 1 : 0;
   return attribute_.write(code);
 }
@@ -75,7 +75,7 @@ HalFault AnalogueOutput::write_correction(std::uint32_t axis, AxisTravel correct
 HalFault AnalogueOutput::read_back(AxisTravel& correction) noexcept {
   std::int64_t code = 0;
   if (attribute_.read(code) != HalFault::kNone || code < 0 || code > INT32_MAX) return HalFault::kNoReading;
-  correction = scale_.correction_of(code);
+  correction = scale().correction_of(code);
   return HalFault::kNone;
 }
 

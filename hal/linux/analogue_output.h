@@ -35,14 +35,14 @@ class AnalogueOutput : public CorrectionWriter {
   /// Writes that asked for more than the range has.
   std::uint64_t held_at_end() const noexcept { return held_at_end_; }
 
-  const AnalogueScale& scale() const noexcept { return scale_; }
+  const AnalogueScale& scale() const noexcept { return converter_.scale(); }
 
  private:
   AnalogueOutput(SysfsAttribute attribute, const AnalogueScale& scale)
-      : attribute_(std::move(attribute)), scale_(scale) {}
+      : attribute_(std::move(attribute)), converter_(scale) {}
 
   SysfsAttribute attribute_;
-  AnalogueScale scale_;
+  AnalogueConverter converter_;
   std::uint64_t held_at_end_ = 0;
 };
 

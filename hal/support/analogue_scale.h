@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <algorithm>
-#include <cmath>
 #include <cstdint>
 
+#include "comp/fixed.h"
 #include "comp/quantity.h"
+#include "hal/support/rounded_ratio.h"
 
 namespace vernier {
 
@@ -13,9 +13,9 @@ namespace vernier {
 ///
 ///   code = zero + round(±correction * codes / span), halves away from zero
 ///
-/// The quotient is the only rounding: |correction| and codes below 2^26 give the mathematically nearest code.
+/// The quotient is the only rounding, and exact.
 struct AnalogueScale {
-  static constexpr std::int64_t kMostCounts = std::int64_t{1} << 50;  // of a correction; beyond is held
+  static constexpr std::int64_t kMostCounts = RoundedRatio::kMost;  // of a correction; beyond is held
 
   std::int64_t span = 1;           // counts of the axis (1 nm, or 2^-32 turn) that `codes` codes are; > 0
   std::int64_t codes = 1;          // > 0
@@ -28,24 +28,45 @@ struct AnalogueScale {
     return span > 0 && span <= kMostCounts && codes > 0 && codes <= INT32_MAX && low >= 0 && low < high &&
            high <= INT32_MAX && zero >= low && zero <= high;
   }
+  /// Code of a correction, beyond the ends too, and the code that is written; in the tick AnalogueConverter
+  /// finds them. setup.
+  std::int64_t wanted_code(AxisTravel correction) const noexcept;
+  std::int64_t code_for(AxisTravel correction) const noexcept;
+  /// Correction that a code stands for, to the nearest count. code: 0 .. 2^31. setup.
+  AxisTravel correction_of(std::int64_t code) const noexcept {
+    const std::int64_t off = RoundedRatio(span, codes).of(code - zero);
+    return AxisTravel(inverted ? -off : off);
+  }
+};
+
+/// A scale at work. realtime.
+class AnalogueConverter {
+ public:
+  /// scale: a valid one. setup.
+  explicit AnalogueConverter(const AnalogueScale& scale) noexcept
+      : scale_(scale), ratio_(scale.codes, scale.span) {}
+
   /// Code of a correction, beyond the ends too. correction: any. realtime.
   std::int64_t wanted_code(AxisTravel correction) const noexcept {
-    constexpr double kMost = static_cast<double>(kMostCounts);
-    const auto counts = static_cast<double>(std::clamp(correction.count, -kMostCounts, kMostCounts));
-    const double off = std::round(counts * static_cast<double>(codes) / static_cast<double>(span));
-    const auto held = static_cast<std::int64_t>(std::clamp(off, -kMost, kMost));
-    return zero + (inverted ? -held : held);
+    const std::int64_t off = ratio_.of(correction.count);
+    return scale_.zero + (scale_.inverted ? -off : off);
   }
   /// Code that is written. realtime.
   std::int64_t code_for(AxisTravel correction) const noexcept {
-    return std::clamp(wanted_code(correction), low, high);
+    return clamp(wanted_code(correction), scale_.low, scale_.high);
   }
-  /// Correction that a code stands for, to the nearest count. code: 0 .. 2^31. setup.
-  AxisTravel correction_of(std::int64_t code) const noexcept {
-    const double off =
-        static_cast<double>(code - zero) * static_cast<double>(span) / static_cast<double>(codes);
-    return AxisTravel(static_cast<std::int64_t>(std::llround(inverted ? -off : off)));
-  }
+  const AnalogueScale& scale() const noexcept { return scale_; }
+
+ private:
+  AnalogueScale scale_;
+  RoundedRatio ratio_;
 };
+
+inline std::int64_t AnalogueScale::wanted_code(AxisTravel correction) const noexcept {
+  return AnalogueConverter(*this).wanted_code(correction);
+}
+inline std::int64_t AnalogueScale::code_for(AxisTravel correction) const noexcept {
+  return AnalogueConverter(*this).code_for(correction);
+}
 
 }  // namespace vernier

@@ -2,8 +2,9 @@
 
 #include <chrono>
 #include <cstdlib>
+#include <cstring>
+#include <memory>
 
-#include "firmware/core/image_file.h"
 #include "tools/commands/command.h"
 #include "tools/compile/compile.h"
 #include "tools/safety/safety_sheet.h"
@@ -23,9 +24,13 @@ std::vector<std::uint8_t> read_image(const std::string& directory) {
   const std::string path = directory + "/machine.vimg";
   const std::string text = read_file(path);
   std::vector<std::uint8_t> bytes(text.begin(), text.end());
-  ImageFile image;
-  if (const ImageFault fault = image.open(bytes); fault != ImageFault::kNone)
-    throw InputError(path + ": " + describe(fault));
+  std::vector<std::uint64_t> words((bytes.size() + 7) / 8);  // aligned
+  std::memcpy(words.data(), bytes.data(), bytes.size());
+  ImageView view;
+  const auto workspace = std::make_unique<ImageWorkspace>();
+  const ImageFault fault = view.open(reinterpret_cast<const std::uint8_t*>(words.data()),
+                                     static_cast<std::uint32_t>(bytes.size()), *workspace);
+  if (fault != ImageFault::kNone) throw InputError(path + ": " + describe(fault));
   return bytes;
 }
 

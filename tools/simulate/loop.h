@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "firmware/core/health.h"
+#include "firmware/core/histogram.h"
 #include "firmware/core/mode.h"
 #include "tables/image_view.h"
 #include "tools/model/machine.h"

@@ -49,8 +49,8 @@ T get(const std::vector<std::uint8_t>& bytes, std::size_t offset) {
   result.fault = static_cast<UploadFault>(fault);
   result.image = static_cast<ImageFault>(image);
   result.bind = static_cast<BindFault>(binding);
-  result.offender.assign(payload.begin() + 3, payload.end());
-  throw LimitNotMet("the board refuses: " + describe(result));
+  for (std::size_t i = 3; i < payload.size(); ++i) result.offender.add(static_cast<char>(payload[i]));
+  throw LimitNotMet(std::string("the board refuses: ") + describe(result).c_str());
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "hal/linux/isotp_link.h"
 #include "tables/link_format.h"
 #include "tools/text/error.h"
+#include "tools/upload/serial_transport.h"
 
 namespace vernier {
 namespace {
@@ -102,6 +103,7 @@ std::string numeric(const std::string& host) {
 }  // namespace
 
 std::unique_ptr<Transport> open_transport(const BoardUrl& url) {
+  if (url.scheme == "serial") return open_serial_transport(url);
   if (url.scheme == "can") return std::make_unique<IsotpTransport>(url);
   if (url.scheme == "tcp")
     return std::make_unique<ModbusTransport>(modbus_new_tcp(numeric(url.place).c_str(), url.port),

@@ -43,8 +43,8 @@ BoardUrl parse_url(const std::string& text) {
   url.scheme = colon == std::string::npos ? "tcp" : text.substr(0, colon);
   std::string rest = colon == std::string::npos ? text : text.substr(colon + 3);
   if (url.scheme == "modbus" || url.scheme == "modbus-tcp") url.scheme = "tcp";
-  if (url.scheme != "tcp" && url.scheme != "rtu" && url.scheme != "can")
-    throw InputError("board address: '" + url.scheme + "' is none of tcp, rtu and can");
+  if (url.scheme != "tcp" && url.scheme != "rtu" && url.scheme != "can" && url.scheme != "serial")
+    throw InputError("board address: '" + url.scheme + "' is none of tcp, rtu, serial and can");
   if (const std::size_t question = rest.find('?'); question != std::string::npos) {
     parse_options(rest.substr(question + 1), url);
     rest.resize(question);

@@ -6,9 +6,9 @@
 namespace vernier {
 
 /// Where a board is: `tcp://HOST[:PORT]`, `rtu://DEVICE[?baud=..&parity=..&unit=..]`,
-/// `can://INTERFACE?send=ID&receive=ID`.
+/// `can://INTERFACE?send=ID&receive=ID`, `serial://DEVICE[?baud=..]`.
 struct BoardUrl {
-  std::string scheme;  // "tcp", "rtu", "can"
+  std::string scheme;  // "tcp", "rtu", "can", "serial"
   std::string place;   // host, device or interface
   int port = 1502;
   std::map<std::string, std::string> options;

@@ -239,7 +239,7 @@ class LearnedBoard {
         cycle_({{{"X"}}, {"acc_x", "own_RMS"}}, TimeUs(1000), Board{clock_, plant_, features_, plant_}),
         bound_(image_->view) {
     motion_.vibrate(0, amplitude_g * 1e6, 50);
-    std::string offender;
+    Name offender;
     EXPECT_EQ(bind(image_->view, {{{"X"}}, {"acc_x", "own_RMS"}}, TimeUs(1000), bound_, offender),
               BindFault::kNone);
     EXPECT_EQ(bound_.input[0], 1u) << "found by its name";

@@ -197,6 +197,35 @@ TEST_F(Upload, BoardWithoutAKeyTrustsNobody) {
   EXPECT_EQ(uploader.begin(1000).fault, UploadFault::kNoKey);
 }
 
+TEST_F(Upload, WithoutAPlaceItIsRefusedAndTheConfirmedOneComesAsSoonAsThereIsOne) {
+  // GIVEN a board with places for two images, of which one runs
+  const Wiring wiring{{{"X"}, {"Y"}}, {"T"}};
+  Uploader uploader(store_, wiring, {TimeUs(1000), key_.public_part(), TimeUs(60'000'000), 2});
+  const auto send = [&](const std::vector<std::uint8_t>& bytes) {
+    const auto size = static_cast<std::uint32_t>(bytes.size());
+    EXPECT_EQ(uploader.begin(size).fault, UploadFault::kNone);
+    EXPECT_EQ(uploader.add(0, bytes.data(), size).fault, UploadFault::kNone);
+    return uploader.finish(TimeUs{}).fault;
+  };
+  ASSERT_EQ(send(upload(2e-5)), UploadFault::kNone);
+  ASSERT_EQ(uploader.confirm().fault, UploadFault::kNone);
+  ProgramRef running = uploader.take_next();
+  // WHEN one is tried, taken, and given up before the tick has let go of the first
+  ASSERT_EQ(send(upload(4e-5, kIssued + 1)), UploadFault::kNone);
+  ProgramRef tried = uploader.take_next();
+  ASSERT_EQ(uploader.revert().fault, UploadFault::kNone);
+  // THEN there is no place for the confirmed one, nor for a third
+  EXPECT_EQ(uploader.take_next(), nullptr);
+  EXPECT_EQ(send(upload(5e-5, kIssued + 2)), UploadFault::kStore);
+  EXPECT_EQ(uploader.slots().trial(), kNoSlot);
+  // AND with the first place that is free it is offered
+  running = nullptr;
+  uploader.poll(TimeUs{});
+  const ProgramRef next = uploader.take_next();
+  ASSERT_NE(next, nullptr);
+  EXPECT_EQ(next->issued, kIssued);
+}
+
 TEST_F(Upload, FullStoreIsSaidAndTheOldImageRuns) {
   UploadRig rig(store_, key_);
   ASSERT_EQ(rig.send(upload(2e-5)).fault, UploadFault::kNone);

@@ -99,7 +99,8 @@ class Board {
   AlignedImage image_{bytes_in(golden_text("image_v" + std::to_string(kImageFormatVersion) + ".txt"))};
   SimSlotStore store_{1 << 16};
   Wiring wiring_{{{"X"}, {"Y"}, {"C", true, true}}, {"T"}};
-  Uploader uploader_{store_, wiring_, {TimeUs(1000), golden_key().public_part(), TimeUs(60'000'000)}};
+  Uploader uploader_{
+      store_, wiring_, {TimeUs(1000), golden_key().public_part(), TimeUs(60'000'000), ProgramPool::kUsual}};
   std::unique_ptr<Exchange> exchange_ = std::make_unique<Exchange>();
   std::unique_ptr<BoundProgram> program_;
   Link link_{*exchange_, uploader_, wiring_, TimeUs(1000), golden_key().public_part()};

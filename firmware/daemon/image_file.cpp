@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "firmware/core/image_file.h"
+#include "firmware/daemon/image_file.h"
 
 #include <cstring>
 #include <fstream>

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <initializer_list>
+#include <string_view>
+
+#include "comp/equation.h"
+#include "tables/image_format.h"
+
+namespace vernier {
+
+/// A name as images know it: at most kImageNameBytes - 1 characters, what is longer is cut.
+class Name {
+ public:
+  constexpr Name() = default;
+  constexpr Name(const char* text) noexcept : Name(std::string_view(text)) {}
+  constexpr Name(std::string_view text) noexcept {
+    for (const char letter : text) add(letter);
+  }
+  constexpr const char* c_str() const noexcept { return text_; }
+  constexpr bool empty() const noexcept { return size_ == 0; }
+  constexpr std::uint32_t size() const noexcept { return size_; }
+  constexpr operator std::string_view() const noexcept { return {text_, size_}; }
+  /// A digit, a letter; dropped where there is no room. setup.
+  constexpr void add(char letter) noexcept {
+    if (size_ + 1 < sizeof(text_)) text_[size_++] = letter;
+  }
+  friend constexpr bool operator==(const Name& a, std::string_view b) noexcept {
+    return std::string_view(a) == b;
+  }
+  friend constexpr bool operator==(const Name& a, const char* b) noexcept {
+    return std::string_view(a) == std::string_view(b);
+  }
+  friend constexpr bool operator==(const Name& a, const Name& b) noexcept {
+    return std::string_view(a) == std::string_view(b);
+  }
+
+ private:
+  char text_[kImageNameBytes] = {};
+  std::uint32_t size_ = 0;
+};
+
+/// At most kMost values in a row, in place. What finds no room is left out: who fills one checks before.
+template <class T, std::uint32_t kMost>
+class FixedList {
+ public:
+  constexpr FixedList() = default;
+  constexpr FixedList(std::initializer_list<T> values) {
+    for (const T& value : values) push_back(value);
+  }
+  constexpr void push_back(const T& value) noexcept {
+    if (size_ < kMost) values_[size_++] = value;
+  }
+  constexpr std::uint32_t size() const noexcept { return size_; }
+  constexpr bool empty() const noexcept { return size_ == 0; }
+  constexpr const T& operator[](std::size_t i) const noexcept { return values_[i]; }
+  constexpr const T* begin() const noexcept { return values_; }
+  constexpr const T* end() const noexcept { return values_ + size_; }
+
+ private:
+  T values_[kMost] = {};
+  std::uint32_t size_ = 0;
+};
+
+/// What a board is wired to, in the order of its devices. Images name axes and inputs; the wiring finds them.
+struct Wiring {
+  struct Axis {
+    Name name;
+    bool rotary = false, rollover = false;
+  };
+  FixedList<Axis, kMaxAxes> axes;
+  FixedList<Name, kMaxInputs> inputs;
+};
+
+}  // namespace vernier

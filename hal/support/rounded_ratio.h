@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+
+#include "comp/fixed.h"
+#include "comp/wide.h"
+
+namespace vernier {
+
+/// round(value * numerator / denominator), halves away from zero, to the last bit and without a division: the
+/// ratio is made once, a product with it is the quotient or one less, and the remainder tells which.
+class RoundedRatio {
+ public:
+  static constexpr std::int64_t kMost = std::int64_t{1} << 50;
+
+  /// numerator, denominator: 1 .. kMost. setup.
+  constexpr RoundedRatio(std::int64_t numerator, std::int64_t denominator) noexcept
+      : numerator_(static_cast<std::uint64_t>(numerator)),
+        denominator_(static_cast<std::uint64_t>(denominator)),
+        ratio_(numerator_ / denominator_) {
+    // ratio_ = numerator * 2^shift_ / denominator, cut, from 2^62 on: off by less than 2^-62 of itself.
+    for (std::uint64_t rest = numerator_ % denominator_; ratio_ < std::uint64_t{1} << 62; ++shift_) {
+      rest *= 2;
+      ratio_ *= 2;
+      if (rest < denominator_) continue;
+      rest -= denominator_;
+      ++ratio_;
+    }
+  }
+
+  /// value: held at +-kMost, and so is the result. realtime.
+  constexpr std::int64_t of(std::int64_t value) const noexcept {
+    const std::uint64_t size = value >= kMost || value <= -kMost ? kMost : magnitude_of(value);
+    const auto product = long_product(size, ratio_);
+    std::uint64_t quotient = kMost;
+    if (shift_ >= 64)
+      quotient = product.high >> (shift_ - 64);
+    else if (product.high >> shift_ == 0)
+      quotient = shift_ == 0 ? product.low : product.high << (64 - shift_) | product.low >> shift_;
+    if (quotient < kMost) {
+      // Less than twice the denominator, so what 64 bits lose does not count.
+      std::uint64_t rest = size * numerator_ - quotient * denominator_;
+      if (rest >= denominator_) {
+        ++quotient;
+        rest -= denominator_;
+      }
+      if (2 * rest >= denominator_) ++quotient;
+    } else {
+      quotient = kMost;
+    }
+    const auto result = static_cast<std::int64_t>(quotient);
+    return value < 0 ? -result : result;
+  }
+
+ private:
+  std::uint64_t numerator_, denominator_, ratio_;
+  unsigned shift_ = 0;  // 12 .. 113
+};
+
+}  // namespace vernier

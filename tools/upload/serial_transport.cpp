@@ -1,0 +1,109 @@
+#include "tools/upload/serial_transport.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+#include "tables/serial_frame.h"
+#include "tools/model/error.h"
+
+namespace vernier {
+namespace {
+
+constexpr int kReplyTimeoutMs = 15'000;  // as over Modbus: checking an image takes a small board seconds
+
+speed_t speed_of(std::uint32_t baud) {
+  switch (baud) {
+    case 9600:
+      return B9600;
+    case 19200:
+      return B19200;
+    case 38400:
+      return B38400;
+    case 57600:
+      return B57600;
+    case 115200:
+      return B115200;
+    case 230400:
+      return B230400;
+    case 460800:
+      return B460800;
+    case 921600:
+      return B921600;
+    default:
+      throw InputError("board address: no serial line has " + std::to_string(baud) + " baud");
+  }
+}
+
+class SerialTransport : public Transport {
+ public:
+  explicit SerialTransport(const BoardUrl& url) : name_("serial://" + url.place) {
+    const speed_t speed = speed_of(url.number("baud", 115200));
+    line_ = ::open(url.place.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC);
+    termios settings{};
+    if (line_ < 0 || ::tcgetattr(line_, &settings) != 0) fail();
+    ::cfmakeraw(&settings);
+    settings.c_cflag |= CLOCAL | CREAD;
+    if (::cfsetspeed(&settings, speed) != 0 || ::tcsetattr(line_, TCSANOW, &settings) != 0 ||
+        ::tcflush(line_, TCIOFLUSH) != 0)
+      fail();
+  }
+  ~SerialTransport() override {
+    if (line_ >= 0) ::close(line_);
+  }
+  SerialTransport(const SerialTransport&) = delete;
+  SerialTransport& operator=(const SerialTransport&) = delete;
+
+  std::vector<std::uint8_t> ask(const std::vector<std::uint8_t>& request) override {
+    std::uint8_t frame[kMaxFrameBytes];
+    const std::uint32_t size = write_frame(request.data(), static_cast<std::uint32_t>(request.size()), frame);
+    for (std::uint32_t sent = 0; sent < size;) {
+      const ssize_t now = ::write(line_, frame + sent, size - sent);
+      if (now < 0 && errno != EINTR) fail();
+      if (now > 0) sent += static_cast<std::uint32_t>(now);
+    }
+    for (;;) {
+      const std::vector<std::uint8_t> reply = next_message();
+      // What answers an earlier request, whose time had run out, is not ours.
+      if (reply.size() >= 2 && reply[0] == request[0] && reply[1] == request[1]) return reply;
+    }
+  }
+
+ private:
+  [[noreturn]] void fail() {
+    const std::string why = std::strerror(errno);
+    if (line_ >= 0) ::close(line_);
+    line_ = -1;
+    throw InputError(name_ + ": " + why);
+  }
+  std::vector<std::uint8_t> next_message() {
+    for (;;) {
+      pollfd waiting{line_, POLLIN, 0};
+      const int ready = ::poll(&waiting, 1, kReplyTimeoutMs);
+      if (ready < 0 && errno == EINTR) continue;
+      if (ready == 0) throw InputError(name_ + ": no reply");
+      std::uint8_t byte = 0;
+      const ssize_t got = ready < 0 ? -1 : ::read(line_, &byte, 1);
+      if (got < 0 && errno == EINTR) continue;
+      if (got < 0) fail();
+      if (got == 0) throw InputError(name_ + ": the line was closed");
+      if (reader_.take(byte)) return {reader_.message(), reader_.message() + reader_.size()};
+    }
+  }
+
+  int line_ = -1;
+  std::string name_;
+  FrameReader reader_;
+};
+
+}  // namespace
+
+std::unique_ptr<Transport> open_serial_transport(const BoardUrl& url) {
+  return std::make_unique<SerialTransport>(url);
+}
+
+}  // namespace vernier

@@ -1,0 +1,12 @@
+#pragma once
+#include <memory>
+
+#include "tools/upload/transport.h"
+
+namespace vernier {
+
+/// A board at a serial line of bytes (tables/serial_frame.h): serial://DEVICE[?baud=115200], 8N1, raw. Throws
+/// InputError naming the device. tool.
+std::unique_ptr<Transport> open_serial_transport(const BoardUrl& url);
+
+}  // namespace vernier
