@@ -44,17 +44,13 @@ class SerialTransport : public Transport {
   explicit SerialTransport(const BoardUrl& url) : name_("serial://" + url.place) {
     const speed_t speed = speed_of(url.number("baud", 115200));
     line_ = ::open(url.place.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC);
-    termios settings{};
-    if (line_ < 0 || ::tcgetattr(line_, &settings) != 0) fail();
-    ::cfmakeraw(&settings);
-    settings.c_cflag |= CLOCAL | CREAD;
-    if (::cfsetspeed(&settings, speed) != 0 || ::tcsetattr(line_, TCSANOW, &settings) != 0 ||
-        ::tcflush(line_, TCIOFLUSH) != 0)
-      fail();
+    if (line_ < 0) fail(errno);
+    if (set_up(speed)) return;
+    const int error = errno;
+    ::close(line_);
+    fail(error);
   }
-  ~SerialTransport() override {
-    if (line_ >= 0) ::close(line_);
-  }
+  ~SerialTransport() override { ::close(line_); }
   SerialTransport(const SerialTransport&) = delete;
   SerialTransport& operator=(const SerialTransport&) = delete;
 
@@ -63,7 +59,7 @@ class SerialTransport : public Transport {
     const std::uint32_t size = write_frame(request.data(), static_cast<std::uint32_t>(request.size()), frame);
     for (std::uint32_t sent = 0; sent < size;) {
       const ssize_t now = ::write(line_, frame + sent, size - sent);
-      if (now < 0 && errno != EINTR) fail();
+      if (now < 0 && errno != EINTR) fail(errno);
       if (now > 0) sent += static_cast<std::uint32_t>(now);
     }
     for (;;) {
@@ -74,12 +70,15 @@ class SerialTransport : public Transport {
   }
 
  private:
-  [[noreturn]] void fail() {
-    const std::string why = std::strerror(errno);
-    if (line_ >= 0) ::close(line_);
-    line_ = -1;
-    throw InputError(name_ + ": " + why);
+  bool set_up(speed_t speed) const {
+    termios settings{};
+    if (::tcgetattr(line_, &settings) != 0) return false;
+    ::cfmakeraw(&settings);
+    settings.c_cflag |= CLOCAL | CREAD;
+    return ::cfsetspeed(&settings, speed) == 0 && ::tcsetattr(line_, TCSANOW, &settings) == 0 &&
+           ::tcflush(line_, TCIOFLUSH) == 0;
   }
+  [[noreturn]] void fail(int error) const { throw InputError(name_ + ": " + std::strerror(error)); }
   std::vector<std::uint8_t> next_message() {
     for (;;) {
       pollfd waiting{line_, POLLIN, 0};
@@ -89,7 +88,7 @@ class SerialTransport : public Transport {
       std::uint8_t byte = 0;
       const ssize_t got = ready < 0 ? -1 : ::read(line_, &byte, 1);
       if (got < 0 && errno == EINTR) continue;
-      if (got < 0) fail();
+      if (got < 0) fail(errno);
       if (got == 0) throw InputError(name_ + ": the line was closed");
       if (reader_.take(byte)) return {reader_.message(), reader_.message() + reader_.size()};
     }
