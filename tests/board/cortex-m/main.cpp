@@ -6,16 +6,15 @@
 #include <new>
 
 #include "firmware/core/service.h"
-#include "tables/checksum.h"
 #include "tables/serial_frame.h"
 #include "tests/bench/cortex-m/semihost.h"
+#include "tests/board/cortex-m/machine.h"
 
 namespace {
 
 using namespace vernier;
 using bench::at;
 
-constexpr std::uint32_t kTicks = 100'000;
 constexpr std::uint32_t kSlotBytes = 16 * 1024;
 constexpr std::uint32_t kArenaBytes = 192 * 1024;
 constexpr std::uint32_t kFactoryKey = 0x20200000;  // where the emulator puts the board's public key
@@ -39,61 +38,6 @@ void* take_memory(std::size_t bytes) {
 }
 
 // ---- devices
-
-/// Time that passes where the runner waits for it: ticks follow one another without a pause.
-class TickClock : public Clock {
- public:
-  InstantNs now() noexcept override { return now_; }
-  HalFault sleep_until(InstantNs due) noexcept override {
-    if (now_ < due) now_ = due;
-    return HalFault::kNone;
-  }
-
- private:
-  InstantNs now_{1'000'000};
-};
-
-/// Two axes that go to and fro at 20 and 7 mm/s between 0 and 180 mm, a sensor at 21 degrees, drives that
-/// take what they are given.
-class Machine : public AxisReader, public InputReader, public CorrectionWriter {
- public:
-  void begin_tick() noexcept override {
-    for (int i = 0; i < 2; ++i) {
-      position_[i] += sense_[i] * kStep[i];
-      since_[i] += kStep[i];
-      if (position_[i] >= 0 && position_[i] <= 180'000'000) continue;
-      sense_[i] = static_cast<std::int8_t>(-sense_[i]);
-      position_[i] += 2 * sense_[i] * kStep[i];
-      since_[i] = 0;
-    }
-  }
-  HalFault read_axis(std::uint32_t axis, AxisReading& reading) noexcept override {
-    if (axis >= 2) return HalFault::kNoDevice;
-    reading.position = AxisPosition(position_[axis]);
-    reading.velocity = AxisSpeed(std::int64_t{sense_[axis]} * kStep[axis] * 1000);
-    reading.since = AxisTravel(since_[axis]);
-    reading.sense = sense_[axis];
-    return HalFault::kNone;
-  }
-  HalFault read_path(PathReading&) noexcept override { return HalFault::kNone; }
-  bool gives_motion() const noexcept override { return true; }
-  HalFault read_input(std::uint32_t, InputMicro& value) noexcept override {
-    value = InputMicro(21'000'000);
-    return HalFault::kNone;
-  }
-  HalFault write_correction(std::uint32_t axis, AxisTravel correction) noexcept override {
-    if (axis >= 2) return HalFault::kNoDevice;
-    written_[axis] = correction.count;
-    return HalFault::kNone;
-  }
-  std::int64_t position(std::uint32_t axis) const { return position_[axis]; }
-  std::int64_t written(std::uint32_t axis) const { return written_[axis]; }
-
- private:
-  static constexpr std::int64_t kStep[2] = {20'000, 7'000};
-  std::int64_t position_[2] = {}, since_[2] = {}, written_[2] = {};
-  std::int8_t sense_[2] = {1, 1};
-};
 
 void copy(std::uint8_t* to, const std::uint8_t* from, std::uint32_t size) {
   for (std::uint32_t i = 0; i < size; ++i) to[i] = from[i];
@@ -253,17 +197,19 @@ int main() {
 
   bench::start_systick();
   Spent idle;
+  std::uint32_t taken_at = 0, begun_at = 0;  // ticks before the program was taken over, before it is measured
   while (service.cycle().mode() != Mode::kActive || service.uploader().slots().confirmed() == kNoSlot) {
     service.serve(link, TimeUs(0));
     measured_tick(service, idle);
+    if (service.cycle().health().programs == 0) ++taken_at;
+    ++begun_at;
   }
   Spent active;
   std::uint64_t hash = kFnvSeed;
   for (std::uint32_t i = 0; i < kTicks; ++i) {
     service.serve(link, TimeUs(0));
     measured_tick(service, active);
-    for (std::uint32_t axis = 0; axis < 2; ++axis)
-      hash = (hash ^ static_cast<std::uint64_t>(machine.written(axis))) * 0x100000001b3u;
+    hash = machine.mixed(hash);
   }
   const Health& health = service.cycle().health();
   say("ticks", kTicks);
@@ -278,6 +224,8 @@ int main() {
   say("correction_y", static_cast<std::uint32_t>(machine.written(1)));
   say("hash_high", static_cast<std::uint32_t>(hash >> 32));
   say("hash_low", static_cast<std::uint32_t>(hash));
+  say("taken_at", taken_at);
+  say("begun_at", begun_at);
   say("arena", static_cast<std::uint32_t>(arena_used));
   say("late_requests", late_requests);
   say("stack", deepest_stack());
