@@ -176,7 +176,8 @@ LinkStatus Link::history(Reader& in, Writer& out) const {
   if (!in.complete()) return LinkStatus::kBadLength;
   if (every == 0) return LinkStatus::kBadValue;
   // Some distance to the end that is being overwritten, so that what is named here is still there.
-  const std::uint64_t oldest = exchange_.ticks.oldest() + (exchange_.ticks.oldest() > 0 ? 64 : 0);
+  const std::uint32_t distance = exchange_.ticks.size() / 64;
+  const std::uint64_t oldest = exchange_.ticks.oldest() + (exchange_.ticks.oldest() > 0 ? distance : 0);
   std::uint64_t next = std::max(first, oldest);
   const std::uint64_t lost = next - first;
   out.put(next);

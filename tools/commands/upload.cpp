@@ -111,7 +111,8 @@ void register_upload(CLI::App& vernier) {
   command
       ->add_option("--to", arguments->url,
                    "board: tcp://HOST[:1502], rtu://DEVICE?baud=115200&parity=E&unit=1, "
-                   "can://INTERFACE?send=0x600&receive=0x601")
+                   "can://INTERFACE?send=0x600&receive=0x601, "
+                   "serial://DEVICE?baud=115200")
       ->required();
   command->add_option("--key", arguments->key, "secret key of `vernier keys` (or VERNIER_KEY)");
   command->add_flag("--confirm", arguments->confirm, "keep the image on trial; with DIR: at once");

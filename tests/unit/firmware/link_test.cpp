@@ -145,6 +145,21 @@ TEST_F(LinkTest, HistoryIsCompleteOrSaysWhatIsLost) {
   EXPECT_EQ(late.ticks.front().number, first + late.lost);
 }
 
+// A small board keeps few ticks; its history must not be all distance to the end that is overwritten.
+TEST_F(LinkTest, ShortHistoryIsGivenToo) {
+  Exchange small(64, 8);
+  Link link(small, rig_.uploader(), wiring_, TimeUs(1000), std::nullopt);
+  for (int i = 0; i < 200; ++i) small.ticks.add(TickRecord{});
+  std::uint8_t request[12] = {static_cast<std::uint8_t>(LinkOp::kHistory), 1}, reply[kMaxReplyBytes];
+  request[10] = 1;  // every tick from number 0 on
+  const std::uint32_t size = link.answer(request, sizeof(request), reply, TimeUs(1));
+  const std::size_t tick = sizeof(LinkTick) + 2 * sizeof(LinkAxis) + sizeof(LinkInput);
+  EXPECT_EQ((size - kReplyHeaderBytes - 10) / tick, (kMaxReplyBytes - kReplyHeaderBytes - 10) / tick);
+  std::uint64_t number = 0;
+  std::memcpy(&number, reply + kReplyHeaderBytes + 10, sizeof(number));
+  EXPECT_EQ(number, 200u - 64u + 1u);
+}
+
 TEST_F(LinkTest, LiveRegistersSayWhatTheTickSays) {
   rig_.run(10);
   Client board = client();
