@@ -12,7 +12,7 @@
 #include <thread>
 
 #include "tables/serial_frame.h"
-#include "tools/model/error.h"
+#include "tools/text/error.h"
 
 namespace vernier {
 namespace {

@@ -9,7 +9,7 @@
 #include <cstring>
 
 #include "tables/serial_frame.h"
-#include "tools/model/error.h"
+#include "tools/text/error.h"
 
 namespace vernier {
 namespace {
