@@ -8,6 +8,7 @@
 #include "tools/fit/domain.h"
 #include "tools/fit/fit.h"
 #include "tools/fit/freedom.h"
+#include "tools/fit/statistics.h"
 #include "tools/model/machine.h"
 #include "tools/model/measurement.h"
 #include "tools/results/results.h"
@@ -88,6 +89,9 @@ void print_result(std::FILE* out, const FitResult& result, const Measurement& m)
     fmt::print(out, "rms rotations   {} before {}\n", number_or_dash(result.after.rms_urad, "urad"),
                number_or_dash(result.before.rms_urad, "urad"));
   fmt::print(out, "noise           {}\n", number_or_dash(result.noise_um, "um"));
+  if (!result.noise.independent())
+    fmt::print(out, "errors that hang together, in every uncertainty below: {}\n",
+               in_words(result.noise, noise_unit_um(m)));
   fmt::print(out, "{} observations, {} parameters, rank {}, {} rows excluded, {} iterations{}\n",
              result.before.count, result.parameters.size(), result.observability.rank, m.excluded,
              result.iterations, result.converged ? "" : ", NOT CONVERGED");

@@ -2,14 +2,19 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
 #include "tools/diagnose/finder.h"
 #include "tools/diagnose/outliers.h"
 #include "tools/diagnose/pieces.h"
+#include "tools/diagnose/proof.h"
 #include "tools/diagnose/shape.h"
 #include "tools/fit/domain.h"
+#include "tools/fit/noise.h"
+#include "tools/fit/statistics.h"
+#include "tools/maths/factors.h"
 #include "tools/residual/structure.h"
 #include "tools/timebase/time_base.h"
 
@@ -37,6 +42,8 @@ class Diagnoser {
     finder_.find();
     chosen_ = finder_.chosen();
     result_.searched = finder_.candidates().size();
+    result_.noise = finder_.noise();
+    result_.noise_unit_um = noise_unit_um(measurement_);
     walk_ladder();
     if (!chosen_.empty()) rivals_ = finder_.rivals_of(chosen_.front());
     list_candidates();
@@ -47,7 +54,21 @@ class Diagnoser {
  private:
   FitResult fit_first(const Machine& machine, const Measurement& m) {
     options_.progress(0, "fitting the model");
-    return fit(machine, m);
+    return fit(machine, m, independent_readings());
+  }
+
+  /// What hangs together is not known before the search.
+  static FitOptions independent_readings() {
+    FitOptions options;
+    options.noise = NoiseModel{};
+    return options;
+  }
+
+  /// With the noise that the search settled on.
+  FitOptions settled_noise() const {
+    FitOptions options;
+    options.noise = result_.noise;
+    return options;
   }
 
   struct Fitted {
@@ -83,8 +104,8 @@ class Diagnoser {
     for (Static& item : machine.statics)
       if (const auto found = start.find(item.name); found != start.end()) item.value = found->second;
     const Measurement rows = rebind(measurement_, base_.machine, machine);
-    result.fit = fit(machine, rows);
-    if (hold_runaways(items, result, machine)) result.fit = fit(machine, rows);
+    result.fit = fit(machine, rows, settled_noise());
+    if (hold_runaways(items, result, machine)) result.fit = fit(machine, rows, settled_noise());
     result.text = update_machine_text(result.text, result.fit.machine, true);
     result.text = close_domains(result.text, result.fit.machine, rows);
     return result;
@@ -126,8 +147,18 @@ class Diagnoser {
 
   /// Fall of chi^2, or of what stands for it where nothing says how large the noise is.
   double fall_of(const FitResult& before, const FitResult& after) const {
-    if (finder_.evidence().noise_known()) return before.chi_square - after.chi_square;
+    if (has_uncertainty(measurement_)) return before.chi_square - after.chi_square;
     return static_cast<double>(before.after.count) * std::log(before.chi_square / after.chi_square);
+  }
+
+  Proof proof_of(const FitResult& before, const FitResult& after) const {
+    const NoiseModel noise = finder_.evidence().noise_of_file();
+    double variance = 1;
+    if (noise.independent()) {
+      variance = after.chi_square / std::max(1.0, after.freedom);
+      if (finder_.evidence().noise_known()) variance = std::max(1.0, variance);
+    }
+    return proof_on_check_rows(measurement_, before.residual, after.residual, noise, variance);
   }
 
   void walk_ladder() {
@@ -151,7 +182,15 @@ class Diagnoser {
         chosen_.erase(chosen_.begin() + static_cast<std::ptrdiff_t>(count - 1));
         continue;
       }
+      const Proof proof = proof_of(result_.end, fitted.fit);
+      if (proof.can_tell() && !proof.bears_out()) {
+        disproved_.push_back(pool_.candidate(items.back()).label);
+        chosen_.erase(chosen_.begin() + static_cast<std::ptrdiff_t>(count - 1));
+        continue;
+      }
       LadderStep step;
+      step.confirmed = true;
+      step.evidence = proof.can_tell() ? proof.evidence : finder_.held_out_evidence(items.back());
       step.effect = pool_.candidate(items.back()).choice.effect->id;
       step.add = add_string_of(items.back());
       step.label = pool_.candidate(items.back()).label;
@@ -222,6 +261,41 @@ class Diagnoser {
     }
   }
 
+  /// The residual at the end of the ladder with the errors that hang together taken out of the fit rows: what
+  /// an independent reading would have left.
+  Eigen::VectorXd independent_residual(const Measurement& rows) const {
+    const NoiseModel& noise = result_.noise;
+    Eigen::VectorXd residual = result_.end.residual;
+    if (noise.independent() && noise.own == 1) return residual;
+    const Eigen::VectorXd weights = fit_weights(rows);
+    std::vector<std::size_t> fitted;
+    for (std::size_t i = 0; i < rows.observations.size(); ++i)
+      if (weights[static_cast<Eigen::Index>(i)] > 0) fitted.push_back(i);
+    Eigen::MatrixXd left = weights(fitted).cwiseProduct(residual(fitted));
+    const NoiseLayout layout = noise_layout(rows, fitted);
+    if (!noise.steps.empty()) {
+      Eigen::MatrixXd columns = step_columns(layout, noise.steps, left.rows());
+      whiten(layout, noise, left);
+      whiten(layout, noise, columns);
+      left -= columns * columns.completeOrthogonalDecomposition().solve(left);
+    } else {
+      whiten(layout, noise, left);
+    }
+    residual(fitted) = left.col(0).cwiseQuotient(weights(fitted));
+    return residual;
+  }
+
+  /// The instrument, where what hangs together in time or by run is as large as the readings' own noise;
+  /// empty elsewhere.
+  std::string drift_of_instrument() const {
+    constexpr double kLeastShare = 0.7, kLeastSupport = 20;
+    const NoiseModel& noise = result_.noise;
+    double drift = std::hypot(noise.run, noise.drift);
+    for (const NoiseStep& step : noise.steps) drift = std::max(drift, std::abs(step.height));
+    if (drift < kLeastShare * noise.own || noise.support < kLeastSupport) return {};
+    return "The instrument does not hold still: " + ::vernier::in_words(noise, result_.noise_unit_um) + ".";
+  }
+
   /// Does the fit at the end of the ladder leave noise? By chi^2 where the uncertainty is given; where chi^2
   /// is above it by so little that the uncertainty itself may be in doubt, and where none is given, by
   /// whether what is left has any structure. `rows`: for the machine at that end.
@@ -229,12 +303,17 @@ class Diagnoser {
     const Machine& machine = result_.end.machine;
     StructureOptions structure;
     structure.fitted_parameters = static_cast<std::size_t>(result_.end.observability.rank);
-    result_.left = failure_picture(machine, rows, result_.end.residual, structure);
+    const Eigen::VectorXd left = independent_residual(rows);
+    result_.left = failure_picture(machine, rows, left, structure);
     constexpr double kStructure = 1e-4, kDoubtfulUncertainty = 2, kMostlyExplained = 0.5;
     const bool structured = result_.left.omnibus_p < kStructure;
     const double freedom = std::max(1.0, result_.end.freedom);
-    const double reduced = result_.end.chi_square / freedom;
-    if (!finder_.evidence().noise_known())
+    const Eigen::VectorXd weights = fit_weights(rows);
+    const NoiseModel& noise = result_.noise;
+    const bool told = !noise.independent() || noise.own != 1;
+    const double reduced =
+        (told ? weights.cwiseProduct(left).squaredNorm() : result_.end.chi_square) / freedom;
+    if (!has_uncertainty(measurement_))
       return !structured ||
              (!chosen_.empty() && result_.end.chi_square < (1 - kMostlyExplained) * base_.chi_square);
     // The number alone is enough for one effect or two that hit the noise; what is near it only, or was put
@@ -265,12 +344,23 @@ class Diagnoser {
         return;
       }
     }
+    if (!disproved_.empty()) {
+      std::string text = "The check rows do not bear out " + disproved_.front();
+      for (std::size_t i = 1; i < disproved_.size(); ++i) text += ", " + disproved_[i];
+      not_borne_out_ = text + ".";
+    }
+    if (const std::string drift = drift_of_instrument(); chosen_.empty() && !drift.empty()) {
+      result_.verdict = Verdict::kInstrument;
+      result_.explanation = drift + (noise_is_left ? " Beside it there is nothing to add." : where_left());
+      return;
+    }
     if (chosen_.empty()) {
       result_.verdict = noise_is_left ? Verdict::kConsistent : Verdict::kUnexplained;
       result_.explanation =
           result_.verdict == Verdict::kConsistent
               ? "The residual is noise: there is nothing to add."
               : "There is more than noise, and nothing in the catalogue explains it." + where_left();
+      if (!not_borne_out_.empty()) result_.explanation += " " + not_borne_out_;
       return;
     }
     if (pool_.candidate(chosen_.front()).choice.effect->id == "time-base") {
@@ -385,6 +475,8 @@ class Diagnoser {
   const Pool& pool_;                 // the finder's
   std::vector<std::size_t> chosen_;  // the finder's, without those that gain nothing in the fit
   std::vector<std::size_t> shown_;
+  std::vector<std::string> disproved_;  // labels of steps that the check rows speak against
+  std::string not_borne_out_;
   Rivals rivals_;
   Diagnosis result_;
 };
@@ -420,9 +512,10 @@ Diagnosis diagnose(const std::string& text, const Machine& given, const Measurem
   const bool more_than_outliers =
       all.verdict == Verdict::kInstrument && all.ladder.size() > 1 && !all.time_base.found;
   if (all.verdict != Verdict::kUnexplained && !more_than_outliers) return all;
-  const auto rest = without_gross_outliers(machine, measurement, all.base.residual);
-  if (!rest) return all;
-  Diagnosis clean = Diagnoser(text, machine, rest->rows, options).run();
+  const Measurement rows = rebind(measurement, all.base.machine, all.end.machine);
+  const auto rest = without_gross_outliers(all.end.machine, rows, all.end.residual);
+  if (!rest || rows.rows() != measurement.rows()) return all;
+  Diagnosis clean = Diagnoser(text, machine, select_rows(measurement, rest->kept), options).run();
   if (!is_named(clean.verdict)) return all;
   clean.explanation += " " + rest->sentence;
   return clean;

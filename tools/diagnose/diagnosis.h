@@ -6,6 +6,7 @@
 
 #include "tools/effects/candidate.h"
 #include "tools/fit/fit.h"
+#include "tools/fit/noise.h"
 #include "tools/model/machine.h"
 #include "tools/model/measurement.h"
 #include "tools/residual/structure.h"
@@ -43,6 +44,10 @@ struct LadderStep {
   std::string text;                // the machine file, fitted
   std::optional<double> rms_um, check_rms_um;
   double chi_square_per_freedom = 0;
+  /// Do rows that neither fit nor selection saw bear it out, and by what likelihood ratio (natural
+  /// logarithm): the check rows, where the step is large enough there to tell, else runs left out in turn.
+  std::optional<bool> confirmed;
+  std::optional<double> evidence;
 };
 
 /// Places of the candidates are those of base.machine, which may hold a stand-in row (with_base_row).
@@ -61,6 +66,8 @@ struct Diagnosis {
   FailurePicture left;                   // and at the end of the ladder
   TimeBaseFinding time_base;             // `found` where the clock is the likelier cause
   std::size_t searched = 0;              // candidates looked at
+  NoiseModel noise;                      // how the errors of the readings hang together
+  double noise_unit_um = 1;              // um that 1 of it stands for
 };
 
 /// Which physical effect is missing? Fits the model, ranks the catalogue at every place, accepts what passes

@@ -11,6 +11,7 @@
 #include "tools/fit/solve.h"
 #include "tools/fit/statistics.h"
 #include "tools/maths/chance.h"
+#include "tools/maths/orthonormal.h"
 #include "tools/model/evaluate.h"
 #include "tools/model/prediction.h"
 
@@ -32,10 +33,14 @@ void hold_all(Machine& machine) {
   for (BaseShift& shift : machine.base_shifts) shift.hidden = true;
 }
 
-Measurement thinned(const Measurement& all, std::size_t parameters) {
+/// Every how many rows one is kept.
+std::size_t stride_of(const Measurement& all, std::size_t parameters) {
   const double numbers = static_cast<double>(all.observations.size()) * static_cast<double>(parameters + 60);
-  if (numbers <= kMostNumbers) return all;
-  const auto stride = static_cast<std::size_t>(std::ceil(numbers / kMostNumbers));
+  return numbers <= kMostNumbers ? 1 : static_cast<std::size_t>(std::ceil(numbers / kMostNumbers));
+}
+
+Measurement thinned(const Measurement& all, std::size_t stride) {
+  if (stride == 1) return all;
   std::vector<std::size_t> keep;
   for (std::size_t row = 0; row < all.rows(); row += stride) keep.push_back(row);
   return select_rows(all, keep);
@@ -45,10 +50,12 @@ Measurement thinned(const Measurement& all, std::size_t parameters) {
 
 Evidence::Evidence(const Machine& fitted, const Measurement& measurement) : machine_(fitted) {
   const ParameterSet parameters(fitted, runs_of_fit_rows(measurement));
-  measurement_ = thinned(measurement, parameters.size());
+  const std::size_t stride = stride_of(measurement, parameters.size());
+  stride_ = static_cast<double>(stride);
+  measurement_ = thinned(measurement, stride);
   position_ = commanded_states(measurement_).axis;
   declared_ = fitted.inputs.size();
-  noise_known_ = has_uncertainty(measurement_);
+  noise_known_ = with_u_ = has_uncertainty(measurement_);
   take_inputs();
   const Eigen::VectorXd weights = fit_weights(measurement_);
   for (std::size_t i = 0; i < measurement_.observations.size(); ++i)
@@ -57,8 +64,11 @@ Evidence::Evidence(const Machine& fitted, const Measurement& measurement) : mach
       rows_.push_back(measurement_.observations[i].row);
     }
   weight_ = weights(observation_);
+  layout_ = noise_layout(measurement_, observation_);
   respond();
+  raw_residual_ = residual_;
   absorb();
+  raw_absorbed_ = absorbed_;
   split_blocks();
 }
 
@@ -103,13 +113,18 @@ void Evidence::respond() {
 void Evidence::absorb() {
   const ParameterSet parameters(machine_, runs_of_fit_rows(measurement_));
   absorbed_.resize(residual_.size(), 0);
-  if (parameters.size() == 0) return;
+  if (parameters.size() == 0 && noise_.steps.empty()) return;
   const Linearisation linear = linearise(machine_, measurement_, parameters);
   const Eigen::MatrixXd all(linear.jacobian);
   Eigen::MatrixXd jacobian(residual_.size(), all.cols());
   for (std::size_t i = 0; i < observation_.size(); ++i)
     jacobian.row(static_cast<Eigen::Index>(i)) =
         weight_[static_cast<Eigen::Index>(i)] * all.row(static_cast<Eigen::Index>(observation_[i]));
+  if (!noise_.steps.empty()) {
+    jacobian.conservativeResize(Eigen::NoChange, all.cols() + static_cast<Eigen::Index>(noise_.steps.size()));
+    jacobian.rightCols(static_cast<Eigen::Index>(noise_.steps.size())) =
+        step_columns(layout_, noise_.steps, residual_.size());
+  }
   whiten(jacobian);
   Eigen::VectorXd scale = jacobian.colwise().norm();
   const double tiny = 1e-12 * std::max(scale.maxCoeff(), 1e-300);
@@ -157,33 +172,6 @@ void Evidence::split_blocks() {
   }
 }
 
-double Evidence::correlation_time(const Eigen::VectorXd& residual) const {
-  std::map<std::pair<std::size_t, int>, std::vector<double>> series;
-  for (std::size_t i = 0; i < rows_.size(); ++i)
-    series[{measurement_.states.run[rows_[i]],
-            static_cast<int>(measurement_.observations[observation_[i]].kind)}]
-        .push_back(residual[static_cast<Eigen::Index>(i)]);
-  std::size_t longest = 0;
-  for (const auto& [key, values] : series) longest = std::max(longest, values.size());
-  double square = 0;
-  for (const double value : residual) square += value * value;
-  if (square <= 0) return 1;
-  const auto correlation = [&](std::size_t lag) {
-    double sum = 0;
-    for (const auto& [key, values] : series)
-      for (std::size_t i = lag; i < values.size(); ++i) sum += values[i] * values[i - lag];
-    return sum / square;
-  };
-  double time = 1;
-  for (std::size_t lag = 1; lag + 1 < longest / 2; lag += 2) {
-    const double pair = correlation(lag) + correlation(lag + 1);
-    // The sum of two neighbours of white noise has this spread: less is chance.
-    if (pair < 2 / std::sqrt(static_cast<double>(residual.size()))) break;
-    time += 2 * pair;
-  }
-  return time;
-}
-
 std::vector<std::vector<Eigen::Index>> Evidence::readings_at_one_pose() const {
   std::map<std::tuple<std::size_t, int, std::vector<double>>, std::vector<Eigen::Index>> poses;
   for (std::size_t i = 0; i < rows_.size(); ++i) {
@@ -228,19 +216,49 @@ double Evidence::shared_pose_error(const Eigen::VectorXd& residual, const Eigen:
 void Evidence::weigh_poses(double share) {
   poses_ = readings_at_one_pose();
   pose_share_ = share;
-  Eigen::MatrixXd residual = residual_;
-  whiten(residual);
+  assume(noise_);
+}
+
+void Evidence::assume(const NoiseModel& noise) {
+  noise_ = noise;
+  noise_known_ = with_u_ || !noise.independent();
+  Eigen::MatrixXd residual = raw_residual_;
+  share_poses(residual);
+  log_determinant_ = vernier::whiten(layout_, noise_, residual);
+  for (const auto& readings : poses_)
+    log_determinant_ += std::log(1 + static_cast<double>(readings.size()) * pose_share_);
   residual_ = residual;
   absorb();
 }
 
-void Evidence::whiten(Eigen::MatrixXd& columns) const {
+NoiseModel Evidence::estimate(const Eigen::MatrixXd& raw) const {
+  Eigen::MatrixXd residual = raw_residual_, fitted(raw_absorbed_.rows(), raw_absorbed_.cols() + raw.cols());
+  fitted << raw_absorbed_, raw;
+  share_poses(residual);
+  share_poses(fitted);
+  fitted = orthonormal(fitted, 1e-6, nullptr);
+  residual -= fitted * (fitted.transpose() * residual);
+  return estimate_noise(layout_, residual, fitted, with_u_);
+}
+
+NoiseModel Evidence::noise_of_file() const {
+  NoiseModel noise = noise_;
+  if (!noise.in_time) noise.time_constant *= stride_;
+  return noise;
+}
+
+void Evidence::share_poses(Eigen::MatrixXd& columns) const {
   for (const std::vector<Eigen::Index>& readings : poses_) {
     const auto n = static_cast<double>(readings.size());
     const double taken = (1 - 1 / std::sqrt(1 + n * pose_share_)) / n;
     const Eigen::RowVectorXd shift = taken * columns(readings, Eigen::all).colwise().sum();
     for (const Eigen::Index i : readings) columns.row(i) -= shift;
   }
+}
+
+void Evidence::whiten(Eigen::MatrixXd& columns) const {
+  share_poses(columns);
+  if (!noise_.independent() || noise_.own != 1) vernier::whiten(layout_, noise_, columns);
 }
 
 std::vector<int> Evidence::parts_of_runs() const {
@@ -267,7 +285,7 @@ std::size_t Evidence::index_of(const DofPlace& place) const {
 ColumnMaker::ColumnMaker(const Evidence& evidence)
     : evidence_(evidence), scratch_(evidence.machine()), own_statics_(scratch_.statics.size()) {}
 
-Eigen::MatrixXd ColumnMaker::columns(const Candidate& candidate, const std::vector<double>& scanned) {
+Eigen::MatrixXd ColumnMaker::raw(const Candidate& candidate, const std::vector<double>& scanned) {
   scratch_.statics.resize(own_statics_);
   std::vector<char> active(own_statics_, 0);
   std::vector<std::size_t> linear;
@@ -300,8 +318,17 @@ Eigen::MatrixXd ColumnMaker::columns(const Candidate& candidate, const std::vect
       }
     }
   }
+  return result;
+}
+
+Eigen::MatrixXd ColumnMaker::columns(const Candidate& candidate, const std::vector<double>& scanned) {
+  Eigen::MatrixXd result = raw(candidate, scanned);
   evidence_.whiten(result);
   return result;
+}
+
+Eigen::MatrixXd Evidence::raw_columns(const Candidate& candidate, const std::vector<double>& scanned) const {
+  return ColumnMaker(*this).raw(candidate, scanned);
 }
 
 Eigen::MatrixXd Evidence::columns(const Candidate& candidate, const std::vector<double>& scanned) const {

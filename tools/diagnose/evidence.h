@@ -7,6 +7,7 @@
 
 #include "tools/effects/candidate.h"
 #include "tools/fit/fit.h"
+#include "tools/fit/noise.h"
 #include "tools/model/machine.h"
 #include "tools/model/measurement.h"
 
@@ -52,10 +53,6 @@ class Evidence {
   /// The same with every run cut into parts that are left out in turn.
   std::vector<int> parts_of_runs() const;
 
-  /// Over how many readings of one kind and run a residual hangs together: 1 + 2 * sum of its
-  /// autocorrelations as long as pairs of them are positive (Geyer 1992); 1 for white noise.
-  double correlation_time(const Eigen::VectorXd& residual) const;
-
   /// Variance of the error that readings of one kind at one pose share, over that of what differs between
   /// them (one-way analysis of variance, Searle 1992, 3.6). 0 where no pose was read more than once, or where
   /// it is no more than chance. `residual`: what is left beside the model and the orthonormal columns
@@ -64,6 +61,18 @@ class Evidence {
   /// From now on readings at one pose count as sharing an error of `share` times their own variance
   /// (generalised least squares): residual, columns and what the model absorbs are weighed by it.
   void weigh_poses(double share);
+  /// From now on the readings' errors count as hanging together like this (generalised least squares):
+  /// residual, columns and what the model absorbs are whitened by it.
+  void assume(const NoiseModel& noise);
+  const NoiseModel& noise() const { return noise_; }
+  /// log det of the covariance of the readings under that model.
+  double log_determinant() const { return log_determinant_; }
+  /// How the readings' errors hang together beside the model and columns that `raw_columns` gave.
+  NoiseModel estimate(const Eigen::MatrixXd& raw) const;
+  /// Columns of a candidate before any whitening.
+  Eigen::MatrixXd raw_columns(const Candidate& candidate, const std::vector<double>& scanned) const;
+  /// The noise model for the rows of the file where every k-th one was enough here.
+  NoiseModel noise_of_file() const;
   /// That weighing, of columns over the fit observations.
   void whiten(Eigen::MatrixXd& columns) const;
 
@@ -79,6 +88,7 @@ class Evidence {
   void take_inputs();
   void respond();
   void absorb();
+  void share_poses(Eigen::MatrixXd& columns) const;
   void split_blocks();
   /// Fit observations of one kind, run and position of all axes, where there are two or more.
   std::vector<std::vector<Eigen::Index>> readings_at_one_pose() const;
@@ -94,7 +104,13 @@ class Evidence {
   std::vector<Column> position_;
   std::vector<std::vector<Eigen::Index>> poses_;  // observations that share an error
   double pose_share_ = 0;
-  bool noise_known_ = false;
+  bool noise_known_ = false, with_u_ = false;
+  double stride_ = 1;  // of the rows that were kept
+  NoiseLayout layout_;
+  NoiseModel noise_;
+  double log_determinant_ = 0;
+  Eigen::VectorXd raw_residual_;
+  Eigen::MatrixXd raw_absorbed_;
 };
 
 /// Works out the columns of one candidate after the other (Evidence::columns), on one copy of the machine.
@@ -102,6 +118,8 @@ class Evidence {
 class ColumnMaker {
  public:
   explicit ColumnMaker(const Evidence& evidence);
+  Eigen::MatrixXd raw(const Candidate& candidate, const std::vector<double>& scanned);
+  /// The same, whitened.
   Eigen::MatrixXd columns(const Candidate& candidate, const std::vector<double>& scanned);
 
  private:

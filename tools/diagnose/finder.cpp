@@ -5,6 +5,7 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "tools/diagnose/acceptance.h"
 #include "tools/maths/chance.h"
@@ -15,6 +16,32 @@ namespace {
 
 /// Of what an effect removes from the rows it was fitted to, this much must be removed from runs left out.
 constexpr double kHeldOutShare = 0.2;
+
+/// How much better a name must do than the instrument alone (Kass and Raftery 1995: very strong).
+constexpr double kInstrumentDistance = 10;
+
+/// A step of the instrument was looked for at every row of every series, in units of the logarithm of the
+/// readings: its height, and twice the place.
+constexpr double kPriceOfStep = 3;
+
+/// Does one noise model say what another says, to a tenth?
+bool is_alike(const NoiseModel& a, const NoiseModel& b) {
+  constexpr double kSame = 0.1;
+  const double unit = std::max(a.total(), b.total());
+  return std::abs(a.own - b.own) < kSame * unit && std::abs(a.pose - b.pose) < kSame * unit &&
+         std::abs(a.run - b.run) < kSame * unit && std::abs(a.drift - b.drift) < kSame * unit &&
+         a.steps == b.steps;
+}
+
+/// The same but for the readings' own noise.
+bool hangs_alike(NoiseModel a, const NoiseModel& b) {
+  const double scale = b.own / a.own;
+  a.own = b.own;
+  a.pose *= scale;
+  a.run *= scale;
+  a.drift *= scale;
+  return is_alike(a, b);
+}
 
 }  // namespace
 
@@ -29,11 +56,13 @@ Finder::Finder(const Machine& fitted, const Measurement& measurement, const std:
 
 void Finder::find() {
   search();
+  share_poses();
+  accept();
+  if (!linear_down_to_noise()) {
+    search_products();
+    accept();
+  }
   weigh_correlation();
-  accept();
-  if (linear_down_to_noise()) return;
-  search_products();
-  accept();
 }
 
 void Finder::scan_beside(const std::vector<std::size_t>& items, double from, double to, std::size_t first) {
@@ -64,10 +93,7 @@ void Finder::search_products() {
   select_again();
 }
 
-void Finder::pose_problem() {
-  problem_ = pool_.problem(entry_item_);
-  problem_.correlation_time = correlation_time_;
-}
+void Finder::pose_problem() { problem_ = pool_.problem(entry_item_); }
 
 std::optional<std::size_t> Finder::entry_of(std::size_t item) const {
   const auto entry = std::find(entry_item_.begin(), entry_item_.end(), item);
@@ -156,24 +182,103 @@ void Finder::search() {
   }
 }
 
-void Finder::weigh_correlation() {
-  const auto beside = [&] { return orthonormal(pool_.columns(chosen_), 1e-6, nullptr); };
-  const auto left = [&](const Eigen::MatrixXd& all) -> Eigen::VectorXd {
-    return evidence_.residual() - all * (all.transpose() * evidence_.residual());
-  };
-  Eigen::MatrixXd all = beside();
-  if (const double share = evidence_.shared_pose_error(left(all), all); share > 0) {
-    evidence_.weigh_poses(share);
-    pool_.clear();
-    search();
-    all = beside();
+Eigen::MatrixXd Finder::raw_columns(const std::vector<std::size_t>& items) const {
+  std::vector<Eigen::MatrixXd> parts;
+  Eigen::Index count = 0;
+  for (const std::size_t item : items) {
+    parts.push_back(evidence_.raw_columns(pool_.candidate(item), pool_[item].scored.scanned));
+    count += parts.back().cols();
   }
-  // A little of it (out and back) is the model's misfit; more is oversampling.
-  constexpr double kOversampled = 2.5;
-  const double time = evidence_.correlation_time(left(all));
-  if (time < kOversampled) return;
-  correlation_time_ = time;
-  select_again();
+  Eigen::MatrixXd all(evidence_.residual().size(), count);
+  Eigen::Index at = 0;
+  for (const Eigen::MatrixXd& part : parts) {
+    all.middleCols(at, part.cols()) = part;
+    at += part.cols();
+  }
+  return all;
+}
+
+void Finder::search_under(const NoiseModel& noise) {
+  evidence_.assume(noise);
+  pool_.clear();
+  chosen_.clear();
+  search();
+  accept();
+}
+
+double Finder::priced_criterion() const {
+  // Parameters of the noise cost what coefficients cost.
+  const NoiseModel& used = evidence_.noise();
+  const double parameters = (used.pose > 0 ? 1 : 0) + (used.run > 0 ? 1 : 0) + (used.drift > 0 ? 2 : 0) +
+                            static_cast<double>(used.steps.size()) * kPriceOfStep;
+  // Of the readings' own scale only what is left of them counts (restricted likelihood), as in the
+  // selection's criterion.
+  const auto readings = static_cast<double>(evidence_.residual().size());
+  const double own = 2 * std::log(used.own) * (readings - evidence_.freedom());
+  return evidence_.log_determinant() - own + criterion_ + parameters * std::log(readings);
+}
+
+double Finder::settle_noise_from(NoiseModel noise) {
+  constexpr int kMostRounds = 4;
+  for (int round = 0; round < kMostRounds; ++round) {
+    search_under(noise);
+    const NoiseModel next = evidence_.estimate(raw_columns(chosen_));
+    if (is_alike(next, noise)) return priced_criterion();
+    noise = next;
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
+NoiseModel Finder::noise() const {
+  NoiseModel noise = evidence_.noise_of_file();
+  if (!noise.independent()) return noise;
+  const NoiseModel estimated = evidence_.estimate(raw_columns(chosen_));
+  noise.own = estimated.own;
+  noise.support = estimated.support;
+  return noise;
+}
+
+void Finder::share_poses() {
+  const Eigen::MatrixXd all = orthonormal(pool_.columns(chosen_), 1e-6, nullptr);
+  const Eigen::VectorXd left = evidence_.residual() - all * (all.transpose() * evidence_.residual());
+  const double share = evidence_.shared_pose_error(left, all);
+  if (share <= 0) return;
+  evidence_.weigh_poses(share);
+  pool_.clear();
+  search();
+}
+
+void Finder::weigh_correlation() {
+  // The instrument is a rival of every name: errors that hang together may be its own drift, or what an
+  // effect leaves of itself. Both ways are gone, from all that a search can explain and from nothing
+  // explained, and the better one is taken.
+  const NoiseModel white = evidence_.noise();
+  const NoiseModel after_all = evidence_.estimate(raw_columns(chosen_));
+  const NoiseModel after_none =
+      chosen_.empty() ? after_all : evidence_.estimate(Eigen::MatrixXd(evidence_.residual().size(), 0));
+  // A set of effects stands only with the noise that it leaves.
+  const bool stands = hangs_alike(after_all, white);
+  if (stands && hangs_alike(after_none, white)) return;
+  double best = stands ? priced_criterion() : std::numeric_limits<double>::infinity();
+  NoiseModel kept = white;
+  bool is_current = true;  // do search and evidence stand as `kept` has them?
+  std::vector<NoiseModel> starts = {after_all};
+  if (!is_alike(after_none, after_all)) starts.push_back(after_none);
+  for (const NoiseModel& start : starts) {
+    if (hangs_alike(start, white)) continue;
+    double value = settle_noise_from(start);
+    if (chosen_.empty()) value -= kInstrumentDistance;
+    is_current = value < best;
+    if (!is_current) continue;
+    best = value;
+    kept = evidence_.noise();
+  }
+  if (is_current) return;
+  search_under(kept);
+  if (is_alike(kept, white) && !linear_down_to_noise()) {
+    search_products();
+    accept();
+  }
 }
 
 std::vector<std::size_t> Finder::without(std::size_t item) const {
@@ -224,6 +329,17 @@ std::string Finder::failed_test(std::size_t item) const {
           kHeldOutShare * gain)
         return "held out: it does not help at feeds or temperatures that were left out";
   return too_large(item);
+}
+
+double Finder::held_out_evidence(std::size_t item) const {
+  std::vector<std::size_t> others = without(item), all = {item};
+  all.insert(all.end(), others.begin(), others.end());
+  const bool of_run = !pool_.candidate(item).choice.runs.empty() || shows_in_one_block(item);
+  const double less = leave_runs_out(evidence_, pool_.columns(others), 0, 0, of_run).chi_square;
+  const double with = leave_runs_out(evidence_, pool_.columns(all), 0, 0, of_run).chi_square;
+  double variance = chi_square_ / std::max(1.0, evidence_.freedom());
+  if (evidence_.noise_known()) variance = std::max(1.0, variance);
+  return (less - with) / (2 * std::max(variance, 1e-300));
 }
 
 bool Finder::is_learned(std::size_t item) const {

@@ -43,6 +43,8 @@ class Finder {
   const std::vector<std::size_t>& chosen() const { return chosen_; }
   const Pool& pool() const { return pool_; }
   const Evidence& evidence() const { return evidence_; }
+  /// How the errors of the readings hang together beside the accepted effects.
+  NoiseModel noise() const;
   const std::vector<ScannedCandidate>& candidates() const { return list_; }
 
   /// Coefficients of an item's columns within the accepted set, in the unit of its unknowns.
@@ -51,6 +53,9 @@ class Finder {
   double score_alone(std::size_t item) const;
   /// Chance of such a gain on noise alone, times the number of candidates looked at.
   double p_value(std::size_t item) const;
+  /// Likelihood ratio (natural logarithm) of runs left out in turn, with an accepted item and without it,
+  /// each predicted from the others.
+  double held_out_evidence(std::size_t item) const;
   /// What fits nearly as well in the place of an accepted item, the others given.
   Rivals rivals_of(std::size_t item) const;
   /// Does what the accepted effects leave look like noise, by the linear estimate?
@@ -73,9 +78,16 @@ class Finder {
   /// How many entries hold a simpler one and more.
   double holders_of(std::size_t simple) const;
   void search();
-  /// Readings that hang together even after the richest explanation, at one pose or one after the other,
-  /// count for less.
+  /// Readings that hang together, at one pose, in a run or in time, count for less.
   void weigh_correlation();
+  void share_poses();
+  /// The criterion of selection with the price of the noise model.
+  double priced_criterion() const;
+  void search_under(const NoiseModel& noise);
+  /// Search and noise in turn until both stand still. Returns the criterion with the noise model's own price.
+  double settle_noise_from(NoiseModel noise);
+  /// Unwhitened columns of several items side by side.
+  Eigen::MatrixXd raw_columns(const std::vector<std::size_t>& items) const;
   std::vector<std::size_t> without(std::size_t item) const;
   Selection evaluate(const std::vector<std::size_t>& items) const;
   /// Bans products that would pass the tests by chance: those that a few readings carry, and those that do
@@ -101,7 +113,7 @@ class Finder {
   Pool pool_;
   SelectionProblem problem_;
   std::vector<std::size_t> entry_item_, chosen_;
-  double criterion_ = 0, chi_square_ = 0, correlation_time_ = 1;
+  double criterion_ = 0, chi_square_ = 0;
 };
 
 }  // namespace vernier

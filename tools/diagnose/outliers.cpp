@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "tools/diagnose/finder.h"
 #include "tools/fit/fit.h"
@@ -37,6 +38,7 @@ std::vector<std::size_t> far_rows(const Measurement& rows, const Eigen::VectorXd
 struct Peeled {
   Measurement rows;                // that are left
   std::vector<std::size_t> lines;  // of those that are not, in order
+  std::vector<std::size_t> kept;   // rows of all that are left
   FitResult fit;                   // to the rows that are left
 };
 
@@ -44,7 +46,9 @@ struct Peeled {
 /// `most`.
 std::optional<Peeled> peel(const Machine& machine, const Measurement& all, const Eigen::VectorXd& of_all,
                            double far, double most) {
-  Peeled peeled{all, {}, {}};
+  Peeled peeled{all, {}, {}, {}};
+  peeled.kept.resize(all.rows());
+  std::iota(peeled.kept.begin(), peeled.kept.end(), std::size_t{0});
   peeled.fit.residual = of_all;
   constexpr int kMostRounds = 5;
   for (int round = 0; round < kMostRounds; ++round) {
@@ -56,6 +60,8 @@ std::optional<Peeled> peel(const Machine& machine, const Measurement& all, const
     for (const std::size_t row : found) peeled.lines.push_back(peeled.rows.line[row]);
     if (static_cast<double>(peeled.lines.size()) > most) return std::nullopt;
     peeled.rows = select_rows(peeled.rows, keep);
+    for (std::size_t i = 0; i < keep.size(); ++i) peeled.kept[i] = peeled.kept[keep[i]];
+    peeled.kept.resize(keep.size());
     peeled.fit = fit(machine, peeled.rows);
   }
   if (peeled.lines.empty()) return std::nullopt;
@@ -77,7 +83,7 @@ std::string rows_in_words(const Peeled& peeled, const Measurement& all) {
 std::optional<std::string> outliers_to_blame(const Machine& machine, const Measurement& measurement,
                                              const Eigen::VectorXd& of_all) {
   if (!has_uncertainty(measurement)) return std::nullopt;  // nothing says what the rest should be
-  constexpr double kFar = 6, kMostOfThem = 0.03;
+  constexpr double kFar = 6, kMostOfThem = 0.05;
   const auto peeled =
       peel(machine, measurement, of_all, kFar, kMostOfThem * static_cast<double>(measurement.rows()));
   if (!peeled || peeled->fit.freedom <= 0) return std::nullopt;
@@ -91,12 +97,12 @@ std::optional<std::string> outliers_to_blame(const Machine& machine, const Measu
 
 std::optional<WithoutOutliers> without_gross_outliers(const Machine& machine, const Measurement& measurement,
                                                       const Eigen::VectorXd& of_all) {
-  constexpr double kFar = 15, kMostOfThem = 0.01;
+  constexpr double kFar = 6, kMostOfThem = 0.15;
   auto peeled = peel(machine, measurement, of_all, kFar,
                      std::max(1.0, kMostOfThem * static_cast<double>(measurement.rows())));
   if (!peeled) return std::nullopt;
   return WithoutOutliers{
-      std::move(peeled->rows),
+      std::move(peeled->kept),
       fmt::format("Left out: {}, off by more than {:.0f} times the spread of the others, as a lost "
                   "beam or a bumped target is.",
                   rows_in_words(*peeled, measurement), kFar)};

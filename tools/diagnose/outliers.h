@@ -2,6 +2,7 @@
 #include <Eigen/Core>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "tools/model/machine.h"
 #include "tools/model/measurement.h"
@@ -15,14 +16,15 @@ namespace vernier {
 std::optional<std::string> outliers_to_blame(const Machine& machine, const Measurement& measurement,
                                              const Eigen::VectorXd& of_all);
 
-/// Measurement without its gross outliers, and the sentence that says which.
+/// The rows beside the gross outliers, and the sentence that says which were left out.
 struct WithoutOutliers {
-  Measurement rows;
+  std::vector<std::size_t> kept;
   std::string sentence;
 };
 
-/// Leaves out up to a hundredth of the rows (one at least) that lie so far off that they hide what the others
-/// show; nothing where there are none. tool.
+/// Leaves out the rows with a reading far off what the effects found so far leave, up to 15 in a hundred rows
+/// (5 in a hundred readings of three each); nothing where there are none or more. `machine`, `of_all`: with
+/// those effects. tool.
 std::optional<WithoutOutliers> without_gross_outliers(const Machine& machine, const Measurement& measurement,
                                                       const Eigen::VectorXd& of_all);
 

@@ -5,6 +5,7 @@
 
 #include "tools/diagnose/enumerate.h"
 #include "tools/diagnose/evidence.h"
+#include "tools/maths/orthonormal.h"
 
 namespace vernier {
 
@@ -63,9 +64,5 @@ class Scanner {
 
 /// Every combination of the values of several lists.
 std::vector<std::vector<double>> grid_points(const std::vector<std::vector<double>>& lists);
-
-/// Columns made orthonormal one after the other; those with less than `least` of their length left are
-/// dropped. `kept`: the ones that stay.
-Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& columns, double least, std::vector<std::size_t>* kept);
 
 }  // namespace vernier

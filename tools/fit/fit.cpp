@@ -50,6 +50,7 @@ void estimate(FitResult& result, const Settled& end) {
   result.chi_square = end.chi_square;
   result.freedom = end.freedom;
   result.variance_factor = end.variance;
+  result.noise = end.noise;
   for (std::size_t i = 0; i < result.parameters.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
     const double std = std::sqrt(std::max(0.0, end.covariance(at, at)));
@@ -227,8 +228,8 @@ FitResult fit(const Machine& machine, const Measurement& measurement, const FitO
   } else {
     const Eigen::VectorXd near = solve(problem, machine, convention, stated, options, result);
     const bool squared = options.loss == Loss::kSquared;
-    end = squared ? settle(problem, near, convention, stated, result.before.count, with_u)
-                  : describe(problem, near, convention, stated, result.before.count, with_u);
+    end = squared ? settle(problem, near, convention, stated, result.before.count, with_u, options.noise)
+                  : describe(problem, near, convention, stated, result.before.count, with_u, options.noise);
     result.iterations += squared ? end.iterations : 0;
     result.converged = result.converged && (!squared || end.converged);
   }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/fit/noise.h"
 #include "tools/fit/observability.h"
 #include "tools/fit/sanity.h"
 #include "tools/fit/statistics.h"
@@ -33,6 +34,9 @@ struct FitOptions {
   /// each stage.
   std::vector<std::vector<std::string>> stages;
   std::vector<Prior> priors;  // besides the convention's own
+  /// How the errors of the readings hang together, for the uncertainties; nothing: estimated from what the
+  /// fit leaves.
+  std::optional<NoiseModel> noise;
   /// Called after every iteration with its number and the weighted sum of squares.
   std::function<void(int, double)> progress;
 };
@@ -82,6 +86,7 @@ struct FitResult {
   Observability observability;
   RoleStatistics before, after, check;
   std::optional<double> noise_um;
+  NoiseModel noise;  // how the errors of the readings hang together, as the covariance has it
   double misfit_mm = 0, reach_mm = 0;     // what the scales were made from (tools/fit/convention.h)
   Eigen::MatrixXd covariance;             // of all parameters, convention included
   double chi_square = 0;                  // weighted sum of squares at the end

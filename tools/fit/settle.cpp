@@ -1,6 +1,7 @@
 #include "tools/fit/settle.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -59,8 +60,9 @@ VectorXd solution_of(const MatrixXd& matrix, const VectorXd& right) {
 class Settler {
  public:
   Settler(FitProblem& problem, const Convention& convention, const StatedPriors& stated,
-          std::size_t observations, bool with_u)
+          std::size_t observations, bool with_u, const std::optional<NoiseModel>& noise)
       : problem_(problem),
+        noise_(noise),
         convention_(convention),
         stated_(stated),
         observations_(static_cast<double>(observations)),
@@ -229,11 +231,47 @@ class Settler {
     const MatrixXd spread = scale_.asDiagonal() * convention_.correlation * scale_.asDiagonal();
     const MatrixXd bias = left * spread * left.transpose();
     result_.bias = bias.diagonal().cwiseMax(0).cwiseSqrt();
-    result_.covariance = result_.variance * (gain * data * gain.transpose()) + bias;
+    result_.covariance = gain * readings_covariance(data) * gain.transpose() + bias;
     result_.normal = std::move(data);
   }
 
+  /// J^T W cov(readings) W J: `variance` times the normal matrix where errors are independent; where they
+  /// hang together, what they do to a fit that took them for independent (White 1980).
+  MatrixXd readings_covariance(const MatrixXd& data) {
+    constexpr double kMostNumbers = 5e7;
+    const Measurement& rows = problem_.measurement();
+    const VectorXd weights = fit_weights(rows);
+    std::vector<std::size_t> fitted;
+    for (std::size_t i = 0; i < rows.observations.size(); ++i)
+      if (weights[static_cast<Eigen::Index>(i)] > 0) fitted.push_back(i);
+    const double n = static_cast<double>(fitted.size()), p = static_cast<double>(data.cols());
+    const bool given_independent = noise_ && noise_->independent();
+    if (given_independent || n * p > kMostNumbers || p < 1) {
+      if (noise_) result_.noise = *noise_;
+      return result_.variance * data;
+    }
+    SparseRows jacobian;
+    const VectorXd residual = problem_.weighted_residuals(result_.point, &jacobian)(fitted);
+    const MatrixXd j = MatrixXd(jacobian)(fitted, Eigen::all);
+    const NoiseLayout layout = noise_layout(rows, fitted);
+    if (noise_) {
+      result_.noise = *noise_;
+    } else {
+      MatrixXd basis(residual.size(), 0);
+      if (n * p * p < kMostNoiseProducts) {
+        const Eigen::ColPivHouseholderQR<MatrixXd> qr(j);
+        basis = qr.householderQ() * MatrixXd::Identity(j.rows(), qr.rank());
+      }
+      result_.noise = estimate_noise(layout, residual, basis, with_u_);
+    }
+    if (result_.noise.independent()) return result_.variance * data;
+    MatrixXd hanging = j.transpose() * covariance_times(layout, result_.noise, j);
+    hanging.diagonal() += stated_unit() * stated_.weight;
+    return hanging;
+  }
+
   FitProblem& problem_;
+  const std::optional<NoiseModel>& noise_;
   const Convention& convention_;
   const StatedPriors& stated_;
   const double observations_;
@@ -248,13 +286,15 @@ class Settler {
 }  // namespace
 
 Settled settle(FitProblem& problem, const VectorXd& point, const Convention& convention,
-               const StatedPriors& stated, std::size_t observations, bool with_u) {
-  return Settler(problem, convention, stated, observations, with_u).run(point);
+               const StatedPriors& stated, std::size_t observations, bool with_u,
+               const std::optional<NoiseModel>& noise) {
+  return Settler(problem, convention, stated, observations, with_u, noise).run(point);
 }
 
 Settled describe(FitProblem& problem, const VectorXd& point, const Convention& convention,
-                 const StatedPriors& stated, std::size_t observations, bool with_u) {
-  return Settler(problem, convention, stated, observations, with_u).describe(point);
+                 const StatedPriors& stated, std::size_t observations, bool with_u,
+                 const std::optional<NoiseModel>& noise) {
+  return Settler(problem, convention, stated, observations, with_u, noise).describe(point);
 }
 
 }  // namespace vernier

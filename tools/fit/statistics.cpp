@@ -120,6 +120,10 @@ std::optional<double> noise_um(const Measurement& m) {
   return pool.rms();
 }
 
+double noise_unit_um(const Measurement& m) {
+  return has_uncertainty(m) ? noise_um(m).value_or(kUmPerMm) : kUmPerMm;
+}
+
 Eigen::VectorXd fit_weights(const Measurement& m) {
   Eigen::VectorXd weights(static_cast<Eigen::Index>(m.observations.size()));
   for (std::size_t i = 0; i < m.observations.size(); ++i) {

@@ -26,6 +26,9 @@ std::vector<double> row_conditions(const Measurement& m, std::size_t row);
 /// deviation, at least 5 degrees of freedom); else nothing.
 std::optional<double> noise_um(const Measurement& m);
 
+/// um that 1 of a weighted reading stands for: rms of u, 1000 where none is given (readings are mm then).
+double noise_unit_um(const Measurement& m);
+
 /// Weight of each observation in a fit: 1/u, 1 where u is absent, 0 for check rows. Multiplies the residual.
 Eigen::VectorXd fit_weights(const Measurement& m);
 

@@ -61,6 +61,7 @@ Json diagnosis_json(const Diagnosis& diagnosis, const Measurement& measurement) 
   json["rms_um"] = or_null(diagnosis.base.after.rms_um);
   json["check_rms_um"] = or_null(diagnosis.base.check.rms_um);
   json["noise_um"] = or_null(diagnosis.base.noise_um);
+  json["noise_model"] = noise_json(diagnosis.noise, diagnosis.noise_unit_um);
   json["n_obs"] = diagnosis.base.before.count;
   json["n_params"] = diagnosis.base.parameters.size();
   json["n_excluded"] = measurement.excluded;
@@ -69,19 +70,16 @@ Json diagnosis_json(const Diagnosis& diagnosis, const Measurement& measurement) 
   for (const CandidateFinding& finding : diagnosis.candidates)
     json["candidates"].push_back(candidate_json(finding, diagnosis.base.machine));
   json["ladder"] = Json::array();
-  std::optional<double> check_before;
   for (const LadderStep& step : diagnosis.ladder) {
     const bool given = step.effect.empty();
-    const bool judged = !given && step.check_rms_um && check_before;
-    json["ladder"].push_back(
-        {{"effect", given ? Json(nullptr) : Json(step.effect)},
-         {"add", given ? Json(nullptr) : Json(step.add)},
-         {"label", given ? "the model as given" : step.label},
-         {"rms_um", or_null(step.rms_um)},
-         {"check_rms_um", or_null(step.check_rms_um)},
-         {"confirmed", judged ? Json(*step.check_rms_um <= *check_before) : Json(nullptr)},
-         {"chi2_per_dof", step.chi_square_per_freedom}});
-    check_before = step.check_rms_um;
+    json["ladder"].push_back({{"effect", given ? Json(nullptr) : Json(step.effect)},
+                              {"add", given ? Json(nullptr) : Json(step.add)},
+                              {"label", given ? "the model as given" : step.label},
+                              {"rms_um", or_null(step.rms_um)},
+                              {"check_rms_um", or_null(step.check_rms_um)},
+                              {"confirmed", step.confirmed ? Json(*step.confirmed) : Json(nullptr)},
+                              {"evidence", or_null(step.evidence)},
+                              {"chi2_per_dof", step.chi_square_per_freedom}});
   }
   json["runner_up"] = Json(nullptr);
   if (diagnosis.runner_up) {

@@ -65,6 +65,7 @@ ordered_json fit_json(const FitResult& result, const Measurement& m) {
                                   {"unit", item.unit},
                                   {"from", origin_name(item.from)},
                                   {"scale", item.scale}});
+  json["noise_model"] = noise_json(result.noise, noise_unit_um(m));
   json["unidentifiable"] = ordered_json::array();
   for (const auto& group : result.observability.unidentifiable) {
     ordered_json names = ordered_json::array();
@@ -188,6 +189,17 @@ ordered_json stretches_json(const Measurement& m, const Eigen::VectorXd& residua
 
 std::string number_or_dash(const std::optional<double>& value, const char* unit) {
   return value ? fmt::format("{:.4g} {}", *value, unit) : std::string("-");
+}
+
+ordered_json noise_json(const NoiseModel& noise, double unit_um) {
+  return {{"own_um", noise.own * unit_um},
+          {"pose_um", noise.pose * unit_um},
+          {"run_um", noise.run * unit_um},
+          {"drift_um", noise.drift * unit_um},
+          {"drift_time", noise.drift > 0 ? ordered_json(noise.time_constant) : ordered_json(nullptr)},
+          {"drift_time_unit", noise.in_time ? "s" : "rows"},
+          {"support", noise.support},
+          {"sentence", in_words(noise, unit_um)}};
 }
 
 }  // namespace vernier

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "tools/fit/fit.h"
+#include "tools/fit/noise.h"
 
 namespace vernier {
 
@@ -40,6 +41,10 @@ void print_domains(std::FILE* out, const nlohmann::ordered_json& domains);
 
 /// ISO 230-4 numbers of every circular test among the rows (a list, empty where there is none).
 nlohmann::ordered_json circular_json(const Machine& machine, const Measurement& measurement);
+
+/// A noise model: {own_um, pose_um, run_um, drift_um, drift_time, drift_time_unit, support, sentence}.
+/// unit_um: um that 1 of it stands for.
+nlohmann::ordered_json noise_json(const NoiseModel& noise, double unit_um);
 
 /// A number for people: four significant digits, "-" for none.
 std::string number_or_dash(const std::optional<double>& value, const char* unit);

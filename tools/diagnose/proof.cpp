@@ -1,0 +1,43 @@
+#include "tools/diagnose/proof.h"
+
+#include <cmath>
+#include <vector>
+
+namespace vernier {
+namespace {
+
+/// log of 20: an e-value of 20 is wrong for one step in twenty at most that is not there, whatever was looked
+/// at before.
+constexpr double kTwentyToOne = 2.996;
+/// A step that is true brings its expectation within its spread, sqrt(2 expected): from here on that is above
+/// the limit.
+constexpr double kLeastExpected = 8;
+
+}  // namespace
+
+bool Proof::can_tell() const { return expected >= kLeastExpected; }
+
+bool Proof::bears_out() const { return evidence >= kTwentyToOne; }
+
+Proof proof_on_check_rows(const Measurement& rows, const Eigen::VectorXd& before,
+                          const Eigen::VectorXd& after, const NoiseModel& noise, double variance) {
+  Proof proof;
+  std::vector<std::size_t> check;
+  for (std::size_t i = 0; i < rows.observations.size(); ++i)
+    if (rows.check[rows.observations[i].row] != 0) check.push_back(i);
+  if (check.empty() || before.size() != after.size()) return proof;
+  Eigen::MatrixXd left(static_cast<Eigen::Index>(check.size()), 2);
+  for (std::size_t i = 0; i < check.size(); ++i) {
+    const double u = rows.uncertainty[static_cast<Eigen::Index>(rows.observations[check[i]].row)];
+    const double weight = (u > 0 ? 1 / u : 1) / std::sqrt(variance);
+    const auto from = static_cast<Eigen::Index>(check[i]), at = static_cast<Eigen::Index>(i);
+    left(at, 0) = weight * before[from];
+    left(at, 1) = weight * after[from];
+  }
+  if (!noise.independent()) whiten(noise_layout(rows, check), noise, left);
+  proof.evidence = (left.col(0).squaredNorm() - left.col(1).squaredNorm()) / 2;
+  proof.expected = (left.col(0) - left.col(1)).squaredNorm() / 2;
+  return proof;
+}
+
+}  // namespace vernier

@@ -1,0 +1,26 @@
+#pragma once
+#include <Eigen/Core>
+
+#include "tools/fit/noise.h"
+#include "tools/model/measurement.h"
+
+namespace vernier {
+
+/// What rows that no fit and no selection saw say of a step from one model to another.
+struct Proof {
+  double evidence = 0;  // natural logarithm of the likelihood ratio (an e-value): how much likelier the step
+                        // makes these rows
+  double expected = 0;  // what it would be on average if the step were true
+  /// Is the step large enough on these rows for them to speak?
+  bool can_tell() const;
+  /// They speak for it: 20 to 1 or more.
+  bool bears_out() const;
+};
+
+/// The check rows under two models. before, after: residuals (measured - model) of all observations; noise:
+/// how the readings' errors hang together; variance: of a weighted reading's own part, where the stated u is
+/// too small, at least 1 (with u); without u its square in mm. tool.
+Proof proof_on_check_rows(const Measurement& rows, const Eigen::VectorXd& before,
+                          const Eigen::VectorXd& after, const NoiseModel& noise, double variance);
+
+}  // namespace vernier

@@ -1,0 +1,503 @@
+#include "tools/fit/noise.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <map>
+
+#include "tools/maths/factors.h"
+
+namespace vernier {
+namespace {
+
+/// Steps between rows below this share of an axis' range may be the same pose read again; what separates them
+/// from real steps is a gap of at least this factor.
+constexpr double kSmallStep = 1e-2, kPoseGap = 20, kNoStep = 1e-9;
+/// Fall of -2 log likelihood at which a component is no chance: one parameter on its boundary, and two (chi^2
+/// tails of 1e-3).
+constexpr double kOneComponent = 9.5, kDriftComponent = 13;
+/// Price of a step in units of the logarithm of the readings: its height, and its place among all rows of all
+/// series.
+constexpr double kPriceOfStep = 3;
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Largest share of its range that any axis moves from one row to the next.
+std::vector<double> relative_steps(const Measurement& m, const std::vector<Column>& axes) {
+  std::vector<double> steps(m.rows(), 1);
+  std::vector<double> range;
+  for (const Column& axis : axes)
+    range.push_back(axis.size() > 0 ? std::max(axis.maxCoeff() - axis.minCoeff(), 1e-12) : 1);
+  for (std::size_t row = 1; row < m.rows(); ++row) {
+    double largest = 0;
+    for (std::size_t a = 0; a < axes.size(); ++a) {
+      const auto at = static_cast<Eigen::Index>(row);
+      largest = std::max(largest, std::abs(axes[a][at] - axes[a][at - 1]) / range[a]);
+    }
+    steps[row] = m.states.run[row] == m.states.run[row - 1] ? largest : 1;
+  }
+  return steps;
+}
+
+/// Below it a step is none: where the sizes of steps have their widest gap; 0 where they have none.
+double pose_tolerance(const std::vector<double>& steps) {
+  std::vector<double> sorted = steps;
+  for (double& step : sorted) step = std::max(step, kNoStep);
+  std::sort(sorted.begin(), sorted.end());
+  double widest = kPoseGap, tolerance = 0;
+  for (std::size_t i = 1; i < sorted.size(); ++i) {
+    if (sorted[i - 1] > kSmallStep) break;
+    const double gap = sorted[i] / sorted[i - 1];
+    if (gap <= widest) continue;
+    widest = gap;
+    tolerance = std::sqrt(sorted[i] * sorted[i - 1]);
+  }
+  return tolerance;
+}
+
+/// The parts of a model, relative to the own one: squares.
+struct Ratios {
+  double pose = 0, run = 0, drift = 0, time_constant = 1;
+};
+
+/// Kalman filter of three states (drift, run, pose) shared by all columns; the own part has variance 1.
+class Whitener {
+ public:
+  Whitener(const NoiseLayout& layout, const Ratios& ratios) : layout_(layout), ratios_(ratios) {}
+
+  /// rows x columns, transposed: a reading is a column. Returns log det.
+  double run(Eigen::MatrixXd& readings) {
+    double log_det = 0;
+    for (const NoiseSeries& series : layout_.series) log_det += run(series, readings);
+    return log_det;
+  }
+
+ private:
+  double run(const NoiseSeries& series, Eigen::MatrixXd& readings) {
+    Eigen::MatrixXd state = Eigen::MatrixXd::Zero(readings.rows(), 3);
+    Eigen::Matrix3d p = Eigen::Matrix3d::Zero();
+    double log_det = 0;
+    Eigen::VectorXd innovation(readings.rows());
+    for (std::size_t i = 0; i < series.reading.size(); ++i) {
+      const bool new_run = i == 0 || series.run[i] != series.run[i - 1];
+      if (new_run) {
+        begin(state, p, 0, ratios_.drift);
+        begin(state, p, 1, ratios_.run);
+      } else if (ratios_.drift > 0) {
+        const double rho = std::exp(-(series.time[i] - series.time[i - 1]) / ratios_.time_constant);
+        state.col(0) *= rho;
+        p.row(0) *= rho;
+        p.col(0) *= rho;
+        p(0, 0) += (1 - rho * rho) * ratios_.drift;
+      }
+      if (new_run || series.pose[i] != series.pose[i - 1]) begin(state, p, 2, ratios_.pose);
+      const double variance = 1 + p.sum();
+      const Eigen::Vector3d gain = p.rowwise().sum() / variance;
+      auto reading = readings.col(series.reading[i]);
+      innovation = reading - state.rowwise().sum();
+      state.noalias() += innovation * gain.transpose();
+      p -= variance * gain * gain.transpose();
+      reading = innovation / std::sqrt(variance);
+      log_det += std::log(variance);
+    }
+    return log_det;
+  }
+
+  static void begin(Eigen::MatrixXd& state, Eigen::Matrix3d& p, Eigen::Index which, double variance) {
+    state.col(which).setZero();
+    p.row(which).setZero();
+    p.col(which).setZero();
+    p(which, which) = variance;
+  }
+
+  const NoiseLayout& layout_;
+  const Ratios& ratios_;
+};
+
+Ratios ratios_of(const NoiseModel& model) {
+  const double own = model.own * model.own;
+  return {model.pose * model.pose / own, model.run * model.run / own, model.drift * model.drift / own,
+          std::max(model.time_constant, 1e-300)};
+}
+
+/// -2 log of the restricted likelihood as a function of the ratios, the own part at its best.
+class Likelihood {
+ public:
+  Likelihood(const NoiseLayout& layout, const Eigen::VectorXd& residual, const Eigen::MatrixXd& fitted,
+             bool with_u)
+      : layout_(layout), with_u_(with_u), freedom_(static_cast<double>(residual.size() - fitted.cols())) {
+    const auto n = static_cast<double>(residual.size()), k = static_cast<double>(fitted.cols());
+    const bool whole = n * k * k < kMostNoiseProducts;
+    const Eigen::Index columns = whole ? fitted.cols() : 0;
+    readings_.resize(columns + 1, residual.size());
+    if (columns > 0) readings_.topRows(columns) = fitted.transpose();
+    readings_.row(columns) = residual.transpose();
+  }
+
+  double operator()(const Ratios& ratios, double* own = nullptr) const {
+    Eigen::MatrixXd w = readings_;
+    double value = Whitener(layout_, ratios).run(w);
+    const Eigen::Index k = w.rows() - 1;
+    double squares = w.row(k).squaredNorm();
+    if (k > 0) {
+      const Eigen::MatrixXd normal = w.topRows(k) * w.topRows(k).transpose();
+      const Eigen::LLT<Eigen::MatrixXd> factor(normal);
+      if (factor.info() != Eigen::Success) return std::numeric_limits<double>::infinity();
+      const Eigen::VectorXd moment = w.topRows(k) * w.row(k).transpose();
+      squares -= moment.dot(factor.solve(moment));
+      value += 2 * factor.matrixLLT().diagonal().array().log().sum();
+    }
+    double variance = std::max(squares, 1e-300) / freedom_;
+    if (with_u_) variance = std::max(variance, 1.0);
+    if (own != nullptr) *own = std::sqrt(variance);
+    return value + freedom_ * std::log(variance) + squares / variance;
+  }
+
+ private:
+  const NoiseLayout& layout_;
+  bool with_u_;
+  double freedom_;
+  Eigen::MatrixXd readings_;
+};
+
+/// Which of the components are in, and the logarithms of their ratios and of the time constant.
+struct NoiseParts {
+  bool pose = false, run = false, drift = false;
+  std::array<double, 4> log = {0, 0, 0, 0};
+
+  Ratios ratios() const {
+    return {pose ? std::exp(log[0]) : 0, run ? std::exp(log[1]) : 0, drift ? std::exp(log[2]) : 0,
+            std::exp(log[3])};
+  }
+};
+
+/// Downhill along each coordinate in turn with shrinking steps: few parameters, a smooth valley.
+double descend(const Likelihood& likelihood, NoiseParts& parts, double best, double least_log_time,
+               double most_log_time) {
+  const std::array<bool, 4> free = {parts.pose, parts.run, parts.drift, parts.drift};
+  for (double step = 1; step > 0.1; step /= 2)
+    for (bool moved = true; moved;) {
+      moved = false;
+      for (std::size_t i = 0; i < free.size(); ++i) {
+        if (!free[i]) continue;
+        for (const double sign : {step, -step}) {
+          NoiseParts trial = parts;
+          trial.log[i] += sign;
+          trial.log[3] = std::clamp(trial.log[3], least_log_time, most_log_time);
+          const double value = likelihood(trial.ratios());
+          if (value > best - 1e-3) continue;
+          best = value;
+          parts = trial;
+          moved = true;
+          break;
+        }
+      }
+    }
+  return best;
+}
+
+/// The step that lowers the sum of squares most, and by how much: of every series, at every row but the first
+/// and last few of a run.
+struct BestStep {
+  NoiseStep step;
+  double gain = 0;
+};
+BestStep best_step(const NoiseLayout& layout, const Eigen::VectorXd& residual,
+                   const Eigen::MatrixXd& fitted) {
+  constexpr std::size_t kLeastRows = 10;
+  constexpr double kLeastOwn = 0.02;  // of a step's rows that the model cannot take over
+  BestStep best;
+  for (const NoiseSeries& series : layout.series) {
+    double sum = 0, count = 0;
+    Eigen::RowVectorXd along = Eigen::RowVectorXd::Zero(fitted.cols());
+    for (std::size_t i = series.reading.size(); i-- > 0;) {
+      sum += residual[series.reading[i]];
+      along += fitted.row(series.reading[i]);
+      ++count;
+      if (i < kLeastRows || i + kLeastRows > series.reading.size()) continue;
+      const double own = count - along.squaredNorm();
+      if (own < kLeastOwn * count) continue;
+      const double gain = sum * sum / own;
+      if (gain > best.gain) best = {{series.kind, series.row[i], sum / own, 1 / std::sqrt(own)}, gain};
+    }
+  }
+  return best;
+}
+
+/// A residual with its values held at 4 robust spreads: one wild reading is no property of the noise.
+Eigen::VectorXd held(const Eigen::VectorXd& residual) {
+  constexpr double kHeld = 4, kMadPerSpread = 1.4826;
+  std::vector<double> size(residual.data(), residual.data() + residual.size());
+  for (double& value : size) value = std::abs(value);
+  const double most = kHeld * kMadPerSpread * median(size);
+  if (most <= 0) return residual;
+  return residual.cwiseMax(-most).cwiseMin(most);
+}
+
+NoiseModel estimate_components(const NoiseLayout& layout, const Eigen::VectorXd& residual,
+                               const Eigen::MatrixXd& fitted, bool with_u) {
+  NoiseModel model;
+  model.in_time = layout.in_time;
+  constexpr Eigen::Index kLeastFreedom = 30;
+  if (residual.size() - fitted.cols() < kLeastFreedom || residual.squaredNorm() <= 0) return model;
+  const Likelihood likelihood(layout, held(residual), fitted, with_u);
+  const double least_log_time = std::log(layout.step), most_log_time = std::log(10 * layout.span);
+  NoiseParts parts;
+  const double white = likelihood(parts.ratios());
+  double best = white;
+  constexpr std::array<double, 5> kLogRatios = {-3, -1.5, 0, 1.5, 3};
+  // One component after the other, the one that helps most first.
+  for (int round = 0; round < 3; ++round) {
+    NoiseParts next = parts;
+    double next_value = best, gain = 0;
+    const auto offer = [&](const NoiseParts& start, double needed) {
+      NoiseParts trial = start;
+      const double value =
+          descend(likelihood, trial, likelihood(trial.ratios()), least_log_time, most_log_time);
+      if (best - value - needed <= gain) return;
+      gain = best - value - needed;
+      next = trial;
+      next_value = value;
+    };
+    const auto best_start = [&](const std::vector<NoiseParts>& starts) {
+      const NoiseParts* least = nullptr;
+      double value = 0;
+      for (const NoiseParts& start : starts) {
+        const double at = likelihood(start.ratios());
+        if (least != nullptr && at >= value) continue;
+        least = &start;
+        value = at;
+      }
+      return *least;
+    };
+    std::vector<NoiseParts> starts;
+    if (!parts.pose && layout.has_poses) {
+      for (const double log : kLogRatios) {
+        starts.push_back(parts);
+        starts.back().pose = true;
+        starts.back().log[0] = log;
+      }
+      offer(best_start(starts), kOneComponent);
+    }
+    if (!parts.run && layout.has_runs) {
+      starts.clear();
+      for (const double log : kLogRatios) {
+        starts.push_back(parts);
+        starts.back().run = true;
+        starts.back().log[1] = log;
+      }
+      offer(best_start(starts), kOneComponent);
+    }
+    if (!parts.drift) {
+      starts.clear();
+      constexpr double kTimeSteps = 1.2;
+      for (double time = least_log_time + kTimeSteps; time <= most_log_time; time += kTimeSteps)
+        for (const double log : kLogRatios) {
+          starts.push_back(parts);
+          starts.back().drift = true;
+          starts.back().log[2] = log;
+          starts.back().log[3] = time;
+        }
+      if (!starts.empty()) offer(best_start(starts), kDriftComponent);
+    }
+    if (gain <= 0) break;
+    parts = next;
+    best = next_value;
+  }
+  likelihood(parts.ratios(), &model.own);
+  const Ratios ratios = parts.ratios();
+  model.pose = model.own * std::sqrt(ratios.pose);
+  model.run = model.own * std::sqrt(ratios.run);
+  model.drift = model.own * std::sqrt(ratios.drift);
+  model.time_constant = parts.drift ? ratios.time_constant : 0;
+  model.support = white - best;
+  model.log_likelihood = -best / 2;
+  return model;
+}
+
+}  // namespace
+
+double NoiseModel::shared() const { return std::sqrt(pose * pose + run * run + drift * drift); }
+
+double NoiseModel::total() const { return std::hypot(own, shared()); }
+
+NoiseLayout noise_layout(const Measurement& measurement, const std::vector<std::size_t>& observations) {
+  NoiseLayout layout;
+  const States& states = measurement.states;
+  const std::vector<double> steps = relative_steps(measurement, commanded_states(measurement).axis);
+  const double tolerance = pose_tolerance(steps);
+  std::vector<int> pose(measurement.rows(), 0);
+  for (std::size_t row = 1; row < pose.size(); ++row)
+    pose[row] = pose[row - 1] + (steps[row] > tolerance ? 1 : 0);
+  // Time counts where it is told and never runs back within a run.
+  bool moves = false, falls = false;
+  for (std::size_t row = 1; row < measurement.rows(); ++row) {
+    if (states.run[row] != states.run[row - 1]) continue;
+    const auto at = static_cast<Eigen::Index>(row);
+    moves = moves || states.time[at] > states.time[at - 1];
+    falls = falls || states.time[at] < states.time[at - 1];
+  }
+  layout.in_time = moves && !falls;
+  std::map<int, NoiseSeries> of_kind;
+  for (std::size_t i = 0; i < observations.size(); ++i) {
+    const Observation& o = measurement.observations[observations[i]];
+    NoiseSeries& series = of_kind[static_cast<int>(o.kind)];
+    series.reading.push_back(static_cast<Eigen::Index>(i));
+    series.kind = static_cast<int>(o.kind);
+    series.row.push_back(o.row);
+    series.time.push_back(layout.in_time ? states.time[static_cast<Eigen::Index>(o.row)]
+                                         : static_cast<double>(o.row));
+    series.run.push_back(static_cast<int>(states.run[o.row]));
+    series.pose.push_back(pose[o.row]);
+  }
+  std::vector<double> gaps;
+  for (auto& [kind, series] : of_kind) {
+    double begun = 0;
+    for (std::size_t i = 0; i < series.reading.size(); ++i) {
+      if (i == 0 || series.run[i] != series.run[i - 1]) {
+        begun = series.time[i];
+        layout.has_runs = layout.has_runs || i > 0;
+        continue;
+      }
+      layout.has_poses = layout.has_poses || series.pose[i] == series.pose[i - 1];
+      gaps.push_back(series.time[i] - series.time[i - 1]);
+      layout.span = std::max(layout.span, series.time[i] - begun);
+    }
+    layout.series.push_back(std::move(series));
+  }
+  if (!gaps.empty()) layout.step = median(gaps);
+  if (!(layout.step > 0)) layout.step = layout.span / std::max<double>(1, static_cast<double>(gaps.size()));
+  return layout;
+}
+
+Eigen::MatrixXd step_columns(const NoiseLayout& layout, const std::vector<NoiseStep>& steps,
+                             Eigen::Index readings) {
+  Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(readings, static_cast<Eigen::Index>(steps.size()));
+  for (std::size_t k = 0; k < steps.size(); ++k)
+    for (const NoiseSeries& series : layout.series) {
+      if (series.kind != steps[k].kind) continue;
+      for (std::size_t i = 0; i < series.reading.size(); ++i)
+        if (series.row[i] >= steps[k].row) columns(series.reading[i], static_cast<Eigen::Index>(k)) = 1;
+    }
+  return columns;
+}
+
+double whiten(const NoiseLayout& layout, const NoiseModel& model, Eigen::MatrixXd& columns) {
+  const double own = 2 * std::log(model.own) * static_cast<double>(columns.rows());
+  if (model.independent()) {
+    columns /= model.own;
+    return own;
+  }
+  Eigen::MatrixXd readings = columns.transpose();
+  const Ratios ratios = ratios_of(model);
+  const double log_det = Whitener(layout, ratios).run(readings);
+  columns = readings.transpose() / model.own;
+  return own + log_det;
+}
+
+Eigen::MatrixXd covariance_times(const NoiseLayout& layout, const NoiseModel& model,
+                                 const Eigen::MatrixXd& columns) {
+  const Eigen::MatrixXd x = columns.transpose();
+  Eigen::MatrixXd y = model.own * model.own * x;
+  for (const NoiseSeries& series : layout.series) {
+    const std::size_t n = series.reading.size();
+    // Sums over stretches of one run and one pose, each given back to all its readings.
+    const auto share = [&](double variance, const std::function<bool(std::size_t)>& begins) {
+      if (variance <= 0) return;
+      for (std::size_t first = 0; first < n;) {
+        std::size_t last = first + 1;
+        while (last < n && !begins(last)) ++last;
+        Eigen::VectorXd sum = Eigen::VectorXd::Zero(x.rows());
+        for (std::size_t i = first; i < last; ++i) sum += x.col(series.reading[i]);
+        for (std::size_t i = first; i < last; ++i) y.col(series.reading[i]) += variance * sum;
+        first = last;
+      }
+    };
+    const auto new_run = [&](std::size_t i) { return series.run[i] != series.run[i - 1]; };
+    share(model.run * model.run, new_run);
+    share(model.pose * model.pose,
+          [&](std::size_t i) { return new_run(i) || series.pose[i] != series.pose[i - 1]; });
+    if (model.drift <= 0) continue;
+    // exp(-|t - t'| / tau): what came before, then what comes after, each by one recursion.
+    const auto rho = [&](std::size_t i) {
+      return new_run(i) ? 0 : std::exp(-(series.time[i] - series.time[i - 1]) / model.time_constant);
+    };
+    const double variance = model.drift * model.drift;
+    Eigen::VectorXd sum = Eigen::VectorXd::Zero(x.rows());
+    for (std::size_t i = 0; i < n; ++i) {
+      if (i > 0) sum *= rho(i);
+      sum += x.col(series.reading[i]);
+      y.col(series.reading[i]) += variance * sum;
+    }
+    sum.setZero();
+    for (std::size_t i = n; i-- > 0;) {
+      y.col(series.reading[i]) += variance * sum;
+      sum += x.col(series.reading[i]);
+      if (i > 0) sum *= rho(i);
+    }
+  }
+  return y.transpose();
+}
+
+NoiseModel estimate_noise(const NoiseLayout& layout, const Eigen::VectorXd& residual,
+                          const Eigen::MatrixXd& fitted, bool with_u) {
+  const NoiseModel without = estimate_components(layout, residual, fitted, with_u);
+  // Steps of the instrument, one after the other, each of which explains more than chance at so many places;
+  // they stand only where the whole is better than a drift without them.
+  constexpr std::size_t kMostSteps = 3;
+  const auto n = static_cast<double>(residual.size());
+  std::vector<NoiseStep> steps;
+  Eigen::VectorXd left = residual;
+  Eigen::MatrixXd all = fitted;
+  while (steps.size() < kMostSteps) {
+    const double variance = left.squaredNorm() / std::max(1.0, n - static_cast<double>(all.cols()));
+    const BestStep best = best_step(layout, left, all);
+    if (best.gain < kPriceOfStep * std::log(n) * std::max(variance, 1e-300)) break;
+    steps.push_back(best.step);
+    Eigen::VectorXd column = step_columns(layout, {best.step}, residual.size());
+    for (int pass = 0; pass < 2; ++pass) column -= all * (all.transpose() * column);
+    if (column.norm() < 1e-6) break;
+    column.normalize();
+    all.conservativeResize(Eigen::NoChange, all.cols() + 1);
+    all.rightCols(1) = column;
+    left -= column * column.dot(left);
+  }
+  if (steps.empty()) return without;
+  NoiseModel with = estimate_components(layout, left, all, with_u);
+  const auto price = [&](const NoiseModel& model, std::size_t count) {
+    return ((model.pose > 0 ? 1 : 0) + (model.run > 0 ? 1 : 0) + (model.drift > 0 ? 2 : 0) +
+            kPriceOfStep * static_cast<double>(count)) *
+               std::log(n) -
+           2 * model.log_likelihood;
+  };
+  if (price(with, steps.size()) >= price(without, 0)) return without;
+  with.support += 2 * (with.log_likelihood - without.log_likelihood) + without.support;
+  with.steps = std::move(steps);
+  return with;
+}
+
+std::string in_words(const NoiseModel& model, double unit_um) {
+  std::string text = fmt::format("each reading {:.3g} um", model.own * unit_um);
+  if (model.pose > 0)
+    text += fmt::format(", shared by the readings of a pose {:.3g} um", model.pose * unit_um);
+  if (model.run > 0) text += fmt::format(", by a run {:.3g} um", model.run * unit_um);
+  if (model.drift > 0)
+    text += fmt::format(", a drift of {:.3g} um that lasts {:.3g} {}", model.drift * unit_um,
+                        model.time_constant, model.in_time ? "s" : "rows");
+  for (const NoiseStep& step : model.steps)
+    text +=
+        fmt::format(", a step of {:.3g} +- {:.2g} um in {} from row {} on", step.height * unit_um,
+                    step.std * unit_um, kObservationNames[static_cast<std::size_t>(step.kind)], step.row + 1);
+  return text;
+}
+
+}  // namespace vernier

@@ -1,0 +1,12 @@
+#pragma once
+#include <Eigen/Core>
+#include <cstddef>
+#include <vector>
+
+namespace vernier {
+
+/// Columns made orthonormal one after the other; those with less than `least` of their length left are
+/// dropped. `kept`: the ones that stay.
+Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& columns, double least, std::vector<std::size_t>* kept);
+
+}  // namespace vernier
