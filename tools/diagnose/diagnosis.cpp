@@ -296,6 +296,17 @@ class Diagnoser {
     return "The instrument does not hold still: " + ::vernier::in_words(noise, result_.noise_unit_um) + ".";
   }
 
+  /// Is one of the candidates, whether it passed the tests or not, more than chance beside noise of the size
+  /// that is left?
+  bool something_stands_out() const {
+    constexpr double kChance = 1e-3;
+    for (std::size_t item = 0; item < pool_.size(); ++item) {
+      const bool chosen = std::find(chosen_.begin(), chosen_.end(), item) != chosen_.end();
+      if (!chosen && finder_.p_value(item) < kChance) return true;
+    }
+    return false;
+  }
+
   /// Does the fit at the end of the ladder leave noise? By chi^2 where the uncertainty is given; where chi^2
   /// is above it by so little that the uncertainty itself may be in doubt, and where none is given, by
   /// whether what is left has any structure. `rows`: for the machine at that end.
@@ -316,6 +327,13 @@ class Diagnoser {
     if (!has_uncertainty(measurement_))
       return !structured ||
              (!chosen_.empty() && result_.end.chi_square < (1 - kMostlyExplained) * base_.chi_square);
+    // More noise than stated is believed where nothing that was looked for stands out of it, and where there
+    // are enough readings for structure to show (outside the catalogue, 160 rows do not show it, 400 do).
+    constexpr double kEnoughReadings = 600;
+    const double stated = result_.end.chi_square / freedom;
+    if (noise.independent() && stated > kDoubtfulUncertainty &&
+        (freedom < kEnoughReadings || something_stands_out()))
+      return false;
     // The number alone is enough for one effect or two that hit the noise; what is near it only, or was put
     // together from more, must leave no structure either.
     constexpr double kHit = 2;

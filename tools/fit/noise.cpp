@@ -217,13 +217,20 @@ BestStep best_step(const NoiseLayout& layout, const Eigen::VectorXd& residual,
   constexpr double kLeastOwn = 0.02;  // of a step's rows that the model cannot take over
   BestStep best;
   for (const NoiseSeries& series : layout.series) {
+    // A step where a run begins is a set-up, which machine files have a name for.
+    std::vector<char> near_set_up(series.reading.size(), 0);
+    for (std::size_t i = 1; i < series.reading.size(); ++i)
+      if (series.run[i] != series.run[i - 1])
+        for (std::size_t k = i - std::min(i, kLeastRows); k < std::min(i + kLeastRows, near_set_up.size());
+             ++k)
+          near_set_up[k] = 1;
     double sum = 0, count = 0;
     Eigen::RowVectorXd along = Eigen::RowVectorXd::Zero(fitted.cols());
     for (std::size_t i = series.reading.size(); i-- > 0;) {
       sum += residual[series.reading[i]];
       along += fitted.row(series.reading[i]);
       ++count;
-      if (i < kLeastRows || i + kLeastRows > series.reading.size()) continue;
+      if (i < kLeastRows || i + kLeastRows > series.reading.size() || near_set_up[i] != 0) continue;
       const double own = count - along.squaredNorm();
       if (own < kLeastOwn * count) continue;
       const double gain = sum * sum / own;
