@@ -25,6 +25,10 @@ constexpr double kOneComponent = 9.5, kDriftComponent = 13;
 /// series.
 constexpr double kPriceOfStep = 3;
 
+/// Where no u is given and next to nothing is a reading's own, what is left is smooth: what the model lacks,
+/// no noise.
+constexpr double kLeastOwnPart = 0.02;
+
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
@@ -251,7 +255,7 @@ Eigen::VectorXd held(const Eigen::VectorXd& residual) {
 }
 
 NoiseModel estimate_components(const NoiseLayout& layout, const Eigen::VectorXd& residual,
-                               const Eigen::MatrixXd& fitted, bool with_u) {
+                               const Eigen::MatrixXd& fitted, bool with_u, bool& lacking) {
   NoiseModel model;
   model.in_time = layout.in_time;
   constexpr Eigen::Index kLeastFreedom = 30;
@@ -326,6 +330,14 @@ NoiseModel estimate_components(const NoiseLayout& layout, const Eigen::VectorXd&
   model.run = model.own * std::sqrt(ratios.run);
   model.drift = model.own * std::sqrt(ratios.drift);
   model.time_constant = parts.drift ? ratios.time_constant : 0;
+  if (!with_u && model.own < kLeastOwnPart * model.shared()) {
+    lacking = true;
+    NoiseModel left;
+    left.in_time = layout.in_time;
+    likelihood({}, &left.own);
+    left.log_likelihood = -white / 2;
+    return left;
+  }
   model.support = white - best;
   model.log_likelihood = -best / 2;
   return model;
@@ -457,7 +469,9 @@ Eigen::MatrixXd covariance_times(const NoiseLayout& layout, const NoiseModel& mo
 
 NoiseModel estimate_noise(const NoiseLayout& layout, const Eigen::VectorXd& residual,
                           const Eigen::MatrixXd& fitted, bool with_u) {
-  const NoiseModel without = estimate_components(layout, residual, fitted, with_u);
+  bool lacking = false;
+  const NoiseModel without = estimate_components(layout, residual, fitted, with_u, lacking);
+  if (lacking) return without;
   // Steps of the instrument, one after the other, each of which explains more than chance at so many places;
   // they stand only where the whole is better than a drift without them.
   constexpr std::size_t kMostSteps = 3;
@@ -479,7 +493,8 @@ NoiseModel estimate_noise(const NoiseLayout& layout, const Eigen::VectorXd& resi
     left -= column * column.dot(left);
   }
   if (steps.empty()) return without;
-  NoiseModel with = estimate_components(layout, left, all, with_u);
+  NoiseModel with = estimate_components(layout, left, all, with_u, lacking);
+  if (lacking) return without;
   const auto price = [&](const NoiseModel& model, std::size_t count) {
     return ((model.pose > 0 ? 1 : 0) + (model.run > 0 ? 1 : 0) + (model.drift > 0 ? 2 : 0) +
             kPriceOfStep * static_cast<double>(count)) *
@@ -488,6 +503,7 @@ NoiseModel estimate_noise(const NoiseLayout& layout, const Eigen::VectorXd& resi
   };
   if (price(with, steps.size()) >= price(without, 0)) return without;
   with.support += 2 * (with.log_likelihood - without.log_likelihood) + without.support;
+  for (NoiseStep& step : steps) step.std *= with.own;
   with.steps = std::move(steps);
   return with;
 }
