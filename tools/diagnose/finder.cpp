@@ -20,10 +20,6 @@ constexpr double kHeldOutShare = 0.2;
 /// How much better a name must do than the instrument alone (Kass and Raftery 1995: very strong).
 constexpr double kInstrumentDistance = 10;
 
-/// A step of the instrument was looked for at every row of every series, in units of the logarithm of the
-/// readings: its height, and twice the place.
-constexpr double kPriceOfStep = 3;
-
 /// Does one noise model say what another says, to a tenth?
 bool is_alike(const NoiseModel& a, const NoiseModel& b) {
   constexpr double kSame = 0.1;
@@ -207,15 +203,12 @@ void Finder::search_under(const NoiseModel& noise) {
 }
 
 double Finder::priced_criterion() const {
-  // Parameters of the noise cost what coefficients cost.
   const NoiseModel& used = evidence_.noise();
-  const double parameters = (used.pose > 0 ? 1 : 0) + (used.run > 0 ? 1 : 0) + (used.drift > 0 ? 2 : 0) +
-                            static_cast<double>(used.steps.size()) * kPriceOfStep;
   // Of the readings' own scale only what is left of them counts (restricted likelihood), as in the
   // selection's criterion.
   const auto readings = static_cast<double>(evidence_.residual().size());
   const double own = 2 * std::log(used.own) * (readings - evidence_.freedom());
-  return evidence_.log_determinant() - own + criterion_ + parameters * std::log(readings);
+  return evidence_.log_determinant() - own + criterion_ + used.price() * std::log(readings);
 }
 
 double Finder::settle_noise_from(NoiseModel noise) {

@@ -347,6 +347,11 @@ NoiseModel estimate_components(const NoiseLayout& layout, const Eigen::VectorXd&
 
 double NoiseModel::shared() const { return std::sqrt(pose * pose + run * run + drift * drift); }
 
+double NoiseModel::price() const {
+  const double parameters = (pose > 0 ? 1 : 0) + (run > 0 ? 1 : 0) + (drift > 0 ? 2 : 0);
+  return parameters + kPriceOfStep * static_cast<double>(steps.size());
+}
+
 double NoiseModel::total() const { return std::hypot(own, shared()); }
 
 NoiseLayout noise_layout(const Measurement& measurement, const std::vector<std::size_t>& observations) {
@@ -495,16 +500,13 @@ NoiseModel estimate_noise(const NoiseLayout& layout, const Eigen::VectorXd& resi
   if (steps.empty()) return without;
   NoiseModel with = estimate_components(layout, left, all, with_u, lacking);
   if (lacking) return without;
-  const auto price = [&](const NoiseModel& model, std::size_t count) {
-    return ((model.pose > 0 ? 1 : 0) + (model.run > 0 ? 1 : 0) + (model.drift > 0 ? 2 : 0) +
-            kPriceOfStep * static_cast<double>(count)) *
-               std::log(n) -
-           2 * model.log_likelihood;
-  };
-  if (price(with, steps.size()) >= price(without, 0)) return without;
-  with.support += 2 * (with.log_likelihood - without.log_likelihood) + without.support;
   for (NoiseStep& step : steps) step.std *= with.own;
   with.steps = std::move(steps);
+  const auto criterion = [&](const NoiseModel& model) {
+    return model.price() * std::log(n) - 2 * model.log_likelihood;
+  };
+  if (criterion(with) >= criterion(without)) return without;
+  with.support += 2 * (with.log_likelihood - without.log_likelihood) + without.support;
   return with;
 }
 

@@ -55,6 +55,9 @@ struct NoiseModel {
   /// Standard deviation of what is not a reading's own.
   double shared() const;
   double total() const;
+  /// What it costs in a criterion of selection, in units of the logarithm of the readings: a parameter 1, a
+  /// step its height and its place among all rows of all series.
+  double price() const;
 };
 
 /// Columns of the steps, an entry a reading: 1 from the step on. tool.
