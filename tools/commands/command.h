@@ -102,6 +102,10 @@ void register_image_diff(CLI::App& vernier);
 /// Numbers that are not finite become null.
 void write_json(const std::string& path, const nlohmann::ordered_json& result);
 
+/// What `--help` says of the option `--residuals`.
+inline constexpr const char* kResidualsHelp =
+    "every reading as CSV: row, observation, value, prediction, residual, u (mm or deg)";
+
 /// Where the human-readable lines go: standard output, or standard error where `--json -` has taken standard
 /// output.
 std::FILE* human_stream(const std::string& json_path);

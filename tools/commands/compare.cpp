@@ -10,6 +10,7 @@
 #include "tools/report/report.h"
 #include "tools/results/before_after_result.h"
 #include "tools/results/field_json.h"
+#include "tools/results/residual_csv.h"
 #include "tools/results/results.h"
 #include "tools/results/structure_json.h"
 #include "tools/simulate/corrected.h"
@@ -18,7 +19,7 @@ namespace vernier::compare_cli {
 namespace {
 
 struct CompareArguments {
-  std::string machine, output, json, images;
+  std::string machine, output, json, images, residuals;
   std::vector<std::string> measurements, before, after;
 };
 
@@ -102,6 +103,9 @@ void print_result(std::FILE* out, const nlohmann::ordered_json& json) {
   if (const auto& known = json["prediction_std_um"]; !known.is_null())
     fmt::print(out, "model known to  {:.4g} um on average over these rows, {:.4g} um at worst\n",
                known["rms"].get<double>(), known["max"].get<double>());
+  if (const auto& tilt = json["tilt_deg"]; !tilt.is_null())
+    fmt::print(out, "tool tilted by  {:.4g} deg on average by the modelled errors, {:.4g} deg at most\n",
+               tilt["rms"].get<double>(), tilt["max"].get<double>());
   fmt::print(out, "{} observations, {} of them check, {} rows excluded\n",
              json["n_obs"].get<std::size_t>() + json["n_check"].get<std::size_t>(),
              json["n_check"].get<std::size_t>(), json["n_excluded"].get<std::size_t>());
@@ -127,6 +131,7 @@ void run_before_after(const CompareArguments& arguments) {
   if (!arguments.measurements.empty())
     throw InputError("\"" + arguments.measurements.front() +
                      "\": with --before and --after there are no other measurement files");
+  if (!arguments.residuals.empty()) throw InputError("--residuals: of MEAS, not of --before and --after");
   const Machine machine = read_machine(arguments.machine);
   const ImageCorrection images = corrections_of_images(arguments.images);
   const BeforeAfter result =
@@ -158,6 +163,7 @@ void run_compare(const CompareArguments& arguments) {
     add_field(with_detail, machine);
     write_file(arguments.output, compare_report_html(with_detail));
   }
+  if (!arguments.residuals.empty()) write_file(arguments.residuals, residual_csv(m, residual));
   write_json(arguments.json, json);
   for (const std::string& note : machine.notes) fmt::print(stderr, "note: {}\n", note);
   print_result(human_stream(arguments.json), json);
@@ -181,6 +187,7 @@ void register_compare(CLI::App& vernier) {
   command->add_option("--images", arguments->images, kImagesHelp);
   command->add_option("-o,--output", arguments->output, "the report, one HTML file that opens offline");
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
+  command->add_option("--residuals", arguments->residuals, kResidualsHelp);
   command->footer(
       "Changes no parameter. For ball-bar data the ISO 230-4 numbers and the polar plot; for all data the\n"
       "residual against everything that was recorded, where the model fails in plain sentences, and the\n"

@@ -5,9 +5,11 @@
 
 #include "tools/commands/command.h"
 #include "tools/diagnose/diagnosis.h"
+#include "tools/fit/fit.h"
 #include "tools/plan/plan.h"
 #include "tools/report/report.h"
 #include "tools/results/diagnosis_json.h"
+#include "tools/results/residual_csv.h"
 #include "tools/results/results.h"
 #include "tools/simulate/corrected.h"
 #include "tools/text/files.h"
@@ -16,7 +18,7 @@ namespace vernier::diagnose_cli {
 namespace {
 
 struct DiagnoseArguments {
-  std::string machine, output, json, write, images;
+  std::string machine, output, json, write, images, residuals;
   std::vector<std::string> measurements, effects;
   std::size_t most = 5;
 };
@@ -76,6 +78,14 @@ std::vector<std::string> plan_for(const std::string& text, const Machine& machin
   return advice(first.add, first.confounded_with.front());
 }
 
+/// What the machine of the last step leaves of the readings.
+void write_residuals(const DiagnoseArguments& arguments, const Diagnosis& diagnosis) {
+  const Machine machine = parse_machine(diagnosis.machine_text, arguments.machine);
+  const Measurement m =
+      read_measurement(arguments.measurements, machine, corrections_of_images(arguments.images));
+  write_file(arguments.residuals, residual_csv(m, residuals(machine, m)));
+}
+
 void run_diagnose(const DiagnoseArguments& arguments) {
   const std::string text = read_file(arguments.machine);
   const Machine machine = parse_machine(text, arguments.machine);
@@ -96,6 +106,7 @@ void run_diagnose(const DiagnoseArguments& arguments) {
     write_file(arguments.output, diagnose_report_html(page));
   }
   if (!arguments.write.empty()) write_file(arguments.write, diagnosis.machine_text);
+  if (!arguments.residuals.empty()) write_residuals(arguments, diagnosis);
   write_json(arguments.json, json);
   std::FILE* out = human_stream(arguments.json);
   fmt::print(out, "verdict: {}\n{}\n\n", verdict_name(diagnosis.verdict), diagnosis.explanation);
@@ -115,6 +126,7 @@ void register_diagnose(CLI::App& vernier) {
   command->add_option("MEAS", arguments->measurements, "measurement files (CSV)")->required();
   command->add_option("-o,--output", arguments->output, "report (HTML)");
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
+  command->add_option("--residuals", arguments->residuals, kResidualsHelp);
   command->add_option("--machine-out", arguments->write,
                       "the machine file with the effects of the ladder, fitted");
   command->add_option("--effects", arguments->effects, "files with effects of your own; may be repeated");

@@ -11,6 +11,7 @@
 #include "tools/fit/statistics.h"
 #include "tools/model/machine.h"
 #include "tools/model/measurement.h"
+#include "tools/results/residual_csv.h"
 #include "tools/results/results.h"
 #include "tools/simulate/corrected.h"
 #include "tools/text/numbers.h"
@@ -19,7 +20,7 @@ namespace vernier::fit_cli {
 namespace {
 
 struct FitArguments {
-  std::string machine, output, json, images;
+  std::string machine, output, json, images, residuals;
   std::vector<std::string> measurements;
   std::vector<std::string> stages, priors, free, hold;
   std::string loss = "squared", solver = "normal-equations";
@@ -96,6 +97,14 @@ void print_result(std::FILE* out, const FitResult& result, const Measurement& m)
              result.before.count, result.parameters.size(), result.observability.rank, m.excluded,
              result.iterations, result.converged ? "" : ", NOT CONVERGED");
   print_verdict(out, result);
+  constexpr double kWild = 20;  // as the rule `outlier` of tools/docs/safety.md, which looks at the fit rows
+  if (result.worst_check.ratio > kWild)
+    fmt::print(out, "check reading {} is {:.3g} spreads off: look at it before you trust the check rows\n",
+               result.worst_check.reading, result.worst_check.ratio);
+  if (result.check_ratio && *result.check_ratio > 1)
+    fmt::print(out,
+               "check rows are {:.3g} times as far off as from the nominal machine: this model is no gain\n",
+               *result.check_ratio);
 }
 
 std::vector<std::string> split_list(const std::string& text) {
@@ -148,6 +157,7 @@ void run_fit(const FitArguments& arguments) {
   if (!arguments.output.empty())
     write_file(arguments.output,
                close_domains(update_machine_text(text, result.machine, true), result.machine, m));
+  if (!arguments.residuals.empty()) write_file(arguments.residuals, residual_csv(m, result.residual));
   write_json(arguments.json, json);
   for (const std::string& note : machine.notes) fmt::print(stderr, "note: {}\n", note);
   print_result(human_stream(arguments.json), result, m);
@@ -165,6 +175,7 @@ void register_fit(CLI::App& vernier) {
   command->add_option("-o,--output", arguments->output, "the fitted machine file");
   command->add_option("--images", arguments->images, kImagesHelp);
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
+  command->add_option("--residuals", arguments->residuals, kResidualsHelp);
   command->add_option("--loss", arguments->loss, "squared, huber or cauchy")
       ->check(CLI::IsMember({"squared", "huber", "cauchy"}))
       ->capture_default_str();

@@ -5,6 +5,7 @@
 #include "tools/commands/command.h"
 #include "tools/report/report.h"
 #include "tools/results/replay_report.h"
+#include "tools/simulate/corrected.h"
 #include "tools/simulate/replay.h"
 #include "tools/text/error.h"
 #include "tools/text/optional_json.h"
@@ -13,7 +14,7 @@ namespace vernier::replay_cli {
 namespace {
 
 struct Arguments {
-  std::string image, before, output, json;
+  std::string image, before, output, json, images;
   std::vector<std::string> measurements;
   std::vector<unsigned> dac;
   LoopOptions loop;
@@ -52,7 +53,8 @@ void print_step(std::FILE* out, const ReplayStep& step, const Measurement& m) {
 
 void run_replay(const Arguments& arguments) {
   const auto image = load_image_dir(arguments.image);
-  const Measurement m = read_measurement(arguments.measurements, image->machine);
+  const Measurement m =
+      read_measurement(arguments.measurements, image->machine, corrections_of_images(arguments.images));
   std::optional<Machine> before;
   if (!arguments.before.empty()) before = read_machine(arguments.before);
   std::vector<ReplayStep> steps;
@@ -87,6 +89,7 @@ void register_replay(CLI::App& vernier) {
       ->check(CLI::IsMember({8u, 16u}));
   command->add_option("--before", arguments->before,
                       "a simpler machine file, to stand beside the image's in the report");
+  command->add_option("--images", arguments->images, kImagesHelp);
   command->add_option("-o,--output", arguments->output, "the report, one HTML file that opens offline");
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->footer(

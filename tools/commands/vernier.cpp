@@ -46,6 +46,16 @@ constexpr vernier::RegisterCommand kCommands[] = {
     vernier::workbench_cli::register_workbench,
 };
 
+/// Before a command works: is there a place for the result that it writes last?
+void require_places(const CLI::App& app) {
+  for (const CLI::App* command : app.get_subcommands()) {
+    const CLI::Option* json = command->get_option_no_throw("--json");
+    if (json != nullptr && json->count() > 0 && json->as<std::string>() != "-")
+      vernier::require_place(json->as<std::string>());
+    require_places(*command);
+  }
+}
+
 int run(int argc, char** argv) {
   CLI::App app{
       "Vernier makes real machines accurate: from measurements to a model of the errors to a running "
@@ -60,6 +70,7 @@ int run(int argc, char** argv) {
     return kDone;
   }
   app.require_subcommand(1);
+  app.parse_complete_callback([&app] { require_places(app); });
   try {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp& call) {

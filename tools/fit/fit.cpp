@@ -111,7 +111,8 @@ double left_mm(const FitResult& result) {
 }
 
 void judge(FitResult& result, const Machine& machine, const Measurement& measurement) {
-  result.worst = worst_reading(measurement, result.residual);
+  result.worst = worst_reading(measurement, result.residual, false);
+  result.worst_check = worst_reading(measurement, result.residual, true);
   const bool misses = left_mm(result) > kAbsurdResidual * result.reach_mm;
   // Free tables can follow two swapped columns: the nominal machine, which cannot, is asked too.
   const bool far_off = result.misfit_mm > kFarOff * result.reach_mm;
@@ -136,6 +137,8 @@ void remember(FitResult& result, const Measurement& rows) {
   record->worst = result.worst.ratio;
   record->worst_reading = result.worst.reading;
   record->culprit = result.absurd;
+  record->check_ratio = result.check_ratio.value_or(0);
+  record->worst_check = result.check_ratio ? result.worst_check.reading : "";
   record->values.resize(static_cast<Eigen::Index>(result.estimates.size()));
   for (std::size_t i = 0; i < result.estimates.size(); ++i) {
     record->parameters.push_back(result.estimates[i].name);
@@ -157,6 +160,20 @@ void remember(FitResult& result, const Measurement& rows) {
   for (std::size_t i = 0; i < result.machine.inputs.size(); ++i)
     add(result.machine.inputs[i].name, rows.states.input[i]);
   result.machine.fitted = std::move(record);
+}
+
+/// The fitted machine against the nominal one, set up as well as it can be (`centre`), on rows that the fit
+/// has not seen.
+std::optional<double> check_ratio(const FitResult& result, const Eigen::VectorXd& centre,
+                                  const Measurement& m) {
+  constexpr std::size_t kEnough = 12;  // readings: the ratio of two spreads of twelve stays below 1.25 or so
+  if (result.check.count < kEnough || !result.check.rms_um) return std::nullopt;
+  Machine nominal = result.machine;
+  result.parameters.set(nominal, centre);
+  const Eigen::VectorXd left = residuals(nominal, m);
+  const double nominal_um = role_statistics(m, left, true).rms_um.value_or(0);
+  if (nominal_um <= 0) return std::nullopt;
+  return *result.check.rms_um / nominal_um;
 }
 
 /// residual / sqrt(u^2 + g C g^T) over the check rows; u is the reading's own, without it the fit's spread.
@@ -239,6 +256,7 @@ FitResult fit(const Machine& machine, const Measurement& measurement, const FitO
   result.check = role_statistics(measurement, result.residual, true);
   estimate(result, end);
   judge(result, machine, measurement);
+  result.check_ratio = check_ratio(result, convention.centre, measurement);
   remember(result, rows);
   result.correlations = strong_correlations(result.observability);
   result.normalised_check = normalised_error(result, measurement);

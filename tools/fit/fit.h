@@ -97,7 +97,10 @@ struct FitResult {
       normalised_check;  // where there are check rows and an uncertainty of their readings
   std::vector<std::pair<std::string, double>> priors;  // parameter, standard uncertainty
   std::vector<StageFigures> stages;                    // as asked for, then one of all together
-  WorstReading worst;
+  WorstReading worst, worst_check;                     // of the fit rows; of the check rows
+  /// rms that check rows leave of the fitted machine over what they leave of the nominal one, both in the
+  /// set-up that the fit rows give; nothing where there are too few of them.
+  std::optional<double> check_ratio;
   /// Why the readings are not those of this machine; empty where they are.
   std::string absurd;
   int iterations = 0;

@@ -109,15 +109,17 @@ std::string cell_out_of_range(const Machine& machine, const Measurement& m) {
 
 }  // namespace
 
-WorstReading worst_reading(const Measurement& m, const Eigen::VectorXd& residual) {
-  const Eigen::VectorXd weights = fit_weights(m);
+WorstReading worst_reading(const Measurement& m, const Eigen::VectorXd& residual, bool check) {
+  const bool with_u = has_uncertainty(m);
   std::vector<double> sizes;
   double squares = 0, largest = 0;
   WorstReading worst;
   for (std::size_t i = 0; i < m.observations.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
-    if (weights[at] == 0) continue;
-    const double size = std::abs(weights[at] * residual[at]);
+    const std::size_t row = m.observations[i].row;
+    if ((m.check[row] != 0) != check) continue;
+    const double u = m.uncertainty[static_cast<Eigen::Index>(row)];
+    const double size = std::abs(with_u && u > 0 ? residual[at] / u : residual[at]);
     sizes.push_back(size);
     squares += size * size;
     if (size <= largest) continue;
@@ -128,7 +130,7 @@ WorstReading worst_reading(const Measurement& m, const Eigen::VectorXd& residual
   const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
   std::nth_element(sizes.begin(), middle, sizes.end());
   // A spread below the stated uncertainty, or below what a file's digits hold, is none.
-  const double least = has_uncertainty(m) ? 1 : 1e-4;
+  const double least = with_u ? 1 : 1e-4;
   worst.ratio = largest / std::max(1.4826 * *middle, least);
   worst.share = largest * largest / squares;
   return worst;

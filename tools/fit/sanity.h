@@ -20,7 +20,8 @@ struct WorstReading {
   double share = 0;     // of the sum of squares
   std::string reading;  // "survey.csv:57 z"
 };
-WorstReading worst_reading(const Measurement& rows, const Eigen::VectorXd& residual);
+/// `check`: of which role.
+WorstReading worst_reading(const Measurement& rows, const Eigen::VectorXd& residual, bool check);
 
 /// Why readings are not those of this machine, in a sentence: one gross reading, two columns swapped, a unit,
 /// a sign. Each is tried; what lowers the misfit of the nominal machine fivefold is it. Empty: nothing found.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <set>
 
 #include "tools/text/numbers.h"
 #include "tools/text/words.h"
@@ -52,11 +53,12 @@ Column* column_of(const Machine& machine, States& states, const std::string& nam
   }
 }
 
-void set_word(const Machine& machine, States& states, const std::string& word) {
+void set_word(const Machine& machine, States& states, std::set<std::string>& seen, const std::string& word) {
   const auto equals = word.find('=');
   const std::string name = trimmed(word.substr(0, equals));
   const std::string value = equals == std::string::npos ? "" : trimmed(word.substr(equals + 1));
   if (name.empty() || value.empty()) throw InputError({}, word, "a state is NAME=NUMBER,NAME=NUMBER…");
+  if (!seen.insert(name).second) throw InputError({}, name, "stands twice in one state");
   if (name == "run") {
     states.run_names = {value};
     return;
@@ -77,7 +79,8 @@ States state_at(const Machine& machine, const std::string& words) {
   for (const Input& input : machine.inputs) references.push_back(input.reference);
   States states = make_states(1, machine.axes.size(), references);
   if (trimmed(words).empty()) return states;
-  for (const std::string& word : split(words)) set_word(machine, states, word);
+  std::set<std::string> seen;
+  for (const std::string& word : split(words)) set_word(machine, states, seen, word);
   return states;
 }
 

@@ -85,6 +85,9 @@ std::string fit_record_xml(const FitRecord& record) {
                      "\" worst=\"" + number_text(record.worst) + "\" reading=\"" +
                      escape_attribute(record.worst_reading) + "\"";
   if (!record.culprit.empty()) text += " culprit=\"" + escape_attribute(record.culprit) + "\"";
+  if (record.check_ratio > 0)
+    text += " check=\"" + number_text(record.check_ratio) + "\" check-reading=\"" +
+            escape_attribute(record.worst_check) + "\"";
   text += ">\n    <measured>";
   for (const FitRecord::Range& range : record.measured)
     text +=

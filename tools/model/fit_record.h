@@ -25,6 +25,10 @@ struct FitRecord {
   double worst = 0;                 // largest residual over the spread of all
   std::string worst_reading;        // "survey.csv:57 z"
   std::string culprit;              // what makes the readings not those of this machine; empty: nothing found
+  /// What check rows leave of this machine, over what they leave of the nominal one in the same set-up; 0:
+  /// too few of them to tell.
+  double check_ratio = 0;
+  std::string worst_check;  // the check reading that is left furthest off
   std::size_t line = 0;
 };
 

@@ -83,6 +83,8 @@ class Reader {
     record->worst = number(fitted, "worst", 0);
     record->worst_reading = attribute(fitted, "reading").value_or("");
     record->culprit = attribute(fitted, "culprit").value_or("");
+    record->check_ratio = number(fitted, "check", 0);
+    record->worst_check = attribute(fitted, "check-reading").value_or("");
     for (const pugi::xml_node node : children(fitted)) {
       if (is(node, "measured")) {
         for (const pugi::xml_node range : children(node))

@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
 #include "tools/fit/decisions.h"
 #include "tools/fit/domain.h"
 #include "tools/fit/reach.h"
+#include "tools/kinematics/correction.h"
 #include "tools/text/optional_json.h"
 
 namespace vernier {
@@ -50,6 +52,16 @@ ordered_json prediction_std_json(const Machine& machine, const Measurement& m) {
   const Eigen::VectorXd std_um = reach.std_um(m.states);
   return {{"rms", std::sqrt(std_um.squaredNorm() / static_cast<double>(std_um.size()))},
           {"max", std_um.maxCoeff()}};
+}
+
+/// How far the modelled errors tilt the tool over the rows, deg: the tool's own direction is what a machine
+/// with rotary axes can correct. Null for a machine of linear axes.
+ordered_json tilt_json(const Machine& machine, const Measurement& m) {
+  const bool turns =
+      std::any_of(machine.axes.begin(), machine.axes.end(), [](const Axis& axis) { return axis.rotary; });
+  if (!turns || m.rows() == 0) return nullptr;
+  const Column tilt = tilt_between(forward(machine, m.states), forward(nominal_machine(machine), m.states));
+  return {{"rms", std::sqrt(tilt.square().mean())}, {"max", tilt.maxCoeff()}};
 }
 
 }  // namespace
@@ -122,6 +134,7 @@ ordered_json compare_json(const Machine& machine, const Measurement& m, const Ei
   json["parameters"] = ordered_json::array();
   json["unidentifiable"] = ordered_json::array();
   json["prediction_std_um"] = prediction_std_json(machine, m);
+  json["tilt_deg"] = tilt_json(machine, m);
   json["stretches"] = stretches_json(m, residual);
   json["circular"] = circular_json(machine, m);
   json["domains"] = domains_json(machine, m);

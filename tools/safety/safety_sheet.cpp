@@ -44,6 +44,8 @@ const RuleText& text_of(SafetyRule rule) {
        "readings that the model misses by so much are not readings of this machine", 0.02},
       {"outlier", "times the residual's spread",
        "one reading that stands so far from all others has bent the fit", 20},
+      {"check-rows", "times the nominal machine's",
+       "rows that the fit has not seen are further off than without any correction", 1.25},
   }};
   return kTexts[static_cast<std::size_t>(rule)];
 }
@@ -230,6 +232,9 @@ class Judge {
     add(SafetyRule::kResidual, known(record ? record->rms_mm / std::max(record->reach_mm, 1e-9) : 0),
         record ? record->culprit : "");
     add(SafetyRule::kOutlier, known(record ? record->worst : 0), record ? record->worst_reading : "");
+    const bool checked = record != nullptr && record->check_ratio > 0;
+    add(SafetyRule::kCheckRows, checked ? std::optional(record->check_ratio) : std::nullopt,
+        checked ? record->worst_check : "");
   }
 
   const Machine& machine_;

@@ -20,8 +20,9 @@ enum class SafetyRule : std::uint8_t {
   kConverged = 7,      // the fit came to an end
   kResidual = 8,       // what the fit left of the readings
   kOutlier = 9,        // one reading against all the others
+  kCheckRows = 10,     // rows that the fit has not seen, against the nominal machine
 };
-inline constexpr std::size_t kSafetyRuleCount = 10;
+inline constexpr std::size_t kSafetyRuleCount = 11;
 const char* rule_name(SafetyRule rule);
 std::optional<SafetyRule> rule_named(const std::string& name);
 

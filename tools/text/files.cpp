@@ -1,5 +1,7 @@
 #include "tools/text/files.h"
 
+#include <unistd.h>
+
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -24,6 +26,19 @@ std::string read_file(const std::string& path) {
 void write_file(const std::string& path, const std::string& text) {
   if (const auto failed = write_output(path, text))
     throw InputError({path, 0}, "", "cannot be written: " + failed.message());
+}
+
+void require_place(const std::string& path) {
+  namespace fs = std::filesystem;
+  std::error_code none;
+  const fs::path end = fs::weakly_canonical(path, none);
+  const bool replaced = !fs::exists(end, none) || fs::is_regular_file(end, none);
+  const fs::path folder = end.parent_path().empty() ? "." : end.parent_path();
+  const bool can = replaced ? ::access(folder.c_str(), W_OK | X_OK) == 0 : ::access(end.c_str(), W_OK) == 0;
+  if (!can) throw InputError({path, 0}, "", std::string("cannot be written: ") + std::strerror(errno));
+  if (fs::is_directory(end, none)) throw InputError({path, 0}, "", "cannot be written: is a folder");
+  if (replaced && !fs::is_directory(folder, none))
+    throw InputError({path, 0}, "", "cannot be written: Not a directory");
 }
 
 void make_folder(const std::string& path) {

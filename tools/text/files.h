@@ -12,6 +12,10 @@ void write_file(const std::string& path, const std::string& text);
 /// with the path where it cannot. tool.
 void make_folder(const std::string& path);
 
+/// Would write_file(path) find a place? Asked before a long job, so that nothing is half written at its end.
+/// Throws InputError as write_file would. tool.
+void require_place(const std::string& path);
+
 /// The whole of a file. Throws InputError where it cannot be read. tool.
 std::string read_file(const std::string& path);
 

@@ -143,11 +143,32 @@ TEST(SafetySheet, RefusesAFitThatOneReadingBent) {
             "survey.csv:35 y");  // reading 100: row 33, header first
 }
 
+TEST(SafetySheet, RefusesAFitThatUnseenRowsDoNotBearOut) {
+  const Machine model =  // a twist, which no set-up takes
+      small_machine("<k value=\"0\" nominal=\"0\"/>", "", "X", "Z+k*(X-300)*(Y-200)");
+  Machine truth = model, other = model;
+  truth.statics[0].value = 1e-6;
+  other.statics[0].value = -1e-6;
+  Measurement m = survey(truth, model, 1e-3);
+  const Measurement elsewhere = survey(other, model, 1e-3);
+  for (std::size_t i = 0; i < m.observations.size(); ++i) {
+    const std::size_t row = m.observations[i].row;
+    if (row % 4 != 0) continue;
+    m.check[row] = 1;
+    m.observations[i].value = elsewhere.observations[i].value;
+  }
+  const Machine fitted = fit(model, m).machine;
+  const SafetySheet sheet = safety_sheet(fitted);
+  EXPECT_NEAR(*finding(sheet, SafetyRule::kCheckRows).value, 2, 0.2);
+  EXPECT_NE(sheet.refusal().find("check-rows"), std::string::npos) << sheet.refusal();
+  EXPECT_TRUE(safety_sheet(fitted, {SafetyRule::kCheckRows}).ok());
+}
+
 TEST(SafetySheet, RulesHaveTheirNamesAndNumbers) {
   // These numbers stand in images: they stay.
   const char* const kNames[] = {"correction",     "max-correction", "cancellation", "uncertainty",
                                 "measured-range", "input-range",    "set-up",       "converged",
-                                "residual",       "outlier"};
+                                "residual",       "outlier",        "check-rows"};
   for (std::size_t i = 0; i < kSafetyRuleCount; ++i) {
     EXPECT_STREQ(rule_name(static_cast<SafetyRule>(i)), kNames[i]);
     EXPECT_EQ(rule_named(kNames[i]), static_cast<SafetyRule>(i));
