@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "tools/commands/command.h"
-#include "tools/effects/candidate.h"
+#include "tools/effects/fitted_effect.h"
 #include "tools/text/error.h"
 #include "tools/text/files.h"
 
@@ -60,13 +60,11 @@ void run_effects(const EffectsArguments& arguments) {
 }
 
 void run_add(const AddArguments& arguments) {
-  const std::string text = read_file(arguments.machine);
-  const Machine machine = with_base_row(parse_machine(text, arguments.machine));
+  MachineText with = machine_text(read_file(arguments.machine), arguments.machine);
+  const Machine machine = with.machine;
   const std::vector<Effect> effects = effect_catalogue(arguments.files);
-  const Candidate candidate = make_candidate(machine, parse_add_string(arguments.effect, machine, effects));
-  const std::string added = add_to_machine_text(text, machine, candidate);
-  parse_machine(added, arguments.output);  // what is written can be read
-  write_file(arguments.output, added);
+  const Candidate candidate = put_in(with, parse_add_string(arguments.effect, machine, effects));
+  write_file(arguments.output, with.text);
   nlohmann::ordered_json json = {{"effect", candidate.choice.effect->id}, {"label", candidate.label}};
   for (const CandidateTerm& term : candidate.terms)
     json["terms"].push_back({{"branch", term.place.workpiece ? "workpiece" : "tool"},

@@ -6,6 +6,7 @@
 #include "tools/commands/command.h"
 #include "tools/compile/compile.h"
 #include "tools/diagnose/diagnosis.h"
+#include "tools/model/rebind.h"
 #include "tools/report/report.h"
 #include "tools/results/diagnosis_json.h"
 #include "tools/results/results.h"

@@ -11,10 +11,11 @@
 #include "tools/diagnose/pieces.h"
 #include "tools/diagnose/proof.h"
 #include "tools/diagnose/shape.h"
-#include "tools/fit/domain.h"
+#include "tools/effects/fitted_effect.h"
 #include "tools/fit/noise.h"
 #include "tools/fit/statistics.h"
 #include "tools/maths/factors.h"
+#include "tools/model/rebind.h"
 #include "tools/residual/structure.h"
 #include "tools/timebase/time_base.h"
 
@@ -71,78 +72,27 @@ class Diagnoser {
     return options;
   }
 
-  struct Fitted {
-    std::string text;
-    FitResult fit;
-    std::vector<Candidate> candidates;  // with their final names
-  };
-
-  /// The machine with several items added and fitted, from the linear estimate.
-  Fitted fit_with(const std::vector<std::size_t>& items) const {
-    Fitted result;
-    result.text = text_;
-    const auto parse = [this](const std::string& text) {
-      return with_base_row(parse_machine(text, machine_.file));
-    };
-    Machine machine = parse(text_);
-    std::map<std::string, double> start;
+  /// The machine with several items added and fitted, from the linear estimate. A period or time constant
+  /// that the fit drives out of the range in which it was looked for is held at the value found there.
+  FittedEffects fit_with(const std::vector<std::size_t>& items) const {
+    std::vector<EffectToFit> effects;
     for (const std::size_t item : items) {
-      Choice choice = pool_.candidate(item).choice;
-      set_starts(choice, item);
-      const Candidate candidate = make_candidate(machine, choice);
-      const Eigen::VectorXd k = finder_.own_coefficients(item);
-      std::size_t linear = 0;
-      for (const CandidateUnknown& unknown : candidate.unknowns) {
-        if (unknown.kind != UnknownKind::kLinear) continue;
-        const auto kept = std::find(pool_[item].kept.begin(), pool_[item].kept.end(), linear++);
-        if (kept != pool_[item].kept.end()) start[unknown.name] = k[kept - pool_[item].kept.begin()];
-      }
-      result.text = add_to_machine_text(result.text, machine, candidate);
-      machine = parse(result.text);
-      result.candidates.push_back(candidate);
+      const Scored& scored = pool_[item].scored;
+      const ScannedCandidate& found = finder_.candidates()[scored.candidate];
+      EffectToFit effect;
+      effect.choice = choice_at(pool_.candidate(item), scored.scanned);
+      effect.coefficients = finder_.coefficient_of_each_unknown(item);
+      effect.is_driven_out = [&](std::size_t unknown, double value) {
+        return found.is_driven_out(unknown, scored.scanned[unknown], value);
+      };
+      effects.push_back(std::move(effect));
     }
-    for (Static& item : machine.statics)
-      if (const auto found = start.find(item.name); found != start.end()) item.value = found->second;
-    const Measurement rows = rebind(measurement_, base_.machine, machine);
-    result.fit = fit(machine, rows, settled_noise());
-    if (hold_runaways(items, result, machine)) result.fit = fit(machine, rows, settled_noise());
-    result.text = update_machine_text(result.text, result.fit.machine, true);
-    result.text = close_domains(result.text, result.fit.machine, rows);
-    return result;
-  }
-
-  /// A period or time constant that the fit drove out of the range in which it was looked for is held at the
-  /// value found there. True where there was one.
-  bool hold_runaways(const std::vector<std::size_t>& items, const Fitted& fitted, Machine& machine) const {
-    bool any = false;
-    for (std::size_t i = 0; i < items.size(); ++i) {
-      const Scored& scored = pool_[items[i]].scored;
-      std::size_t next = 0;
-      for (const CandidateUnknown& unknown : fitted.candidates[i].unknowns) {
-        if (unknown.kind == UnknownKind::kLinear) continue;
-        const std::size_t index = next++;
-        const auto at = fitted.fit.machine.find_static(unknown.name);
-        const double value = fitted.fit.machine.statics[*at].value;
-        if (!finder_.candidates()[scored.candidate].is_driven_out(index, scored.scanned[index], value))
-          continue;
-        machine.statics[*machine.find_static(unknown.name)].hidden = true;
-        any = true;
-      }
-    }
-    return any;
-  }
-
-  void set_starts(Choice& choice, std::size_t item) const {
-    std::size_t scanned = 0;
-    for (const CandidateUnknown& unknown : pool_.candidate(item).unknowns)
-      if (unknown.kind != UnknownKind::kLinear)
-        choice.start[unknown.rule] = pool_[item].scored.scanned[scanned++];
+    return fit_with_effects({text_, base_.machine}, measurement_, effects, settled_noise());
   }
 
   std::string add_string_of(std::size_t item) const {
-    Candidate candidate = pool_.candidate(item);
-    set_starts(candidate.choice, item);
-    return add_string(finder_.evidence().machine(), candidate);
+    return add_string(finder_.evidence().machine(),
+                      choice_at(pool_.candidate(item), pool_[item].scored.scanned));
   }
 
   /// Fall of chi^2, or of what stands for it where nothing says how large the noise is.
@@ -176,7 +126,7 @@ class Diagnoser {
                         "fitting the ladder");
       const std::vector<std::size_t> items(chosen_.begin(),
                                            chosen_.begin() + static_cast<std::ptrdiff_t>(count));
-      const Fitted fitted = fit_with(items);
+      const FittedEffects fitted = fit_with(items);
       // What the linear estimate promised and the fit does not keep is no step.
       if (fall_of(result_.end, fitted.fit) < kEvidence) {
         chosen_.erase(chosen_.begin() + static_cast<std::ptrdiff_t>(count - 1));
@@ -238,9 +188,8 @@ class Diagnoser {
                         "fitting the candidates");
       const std::size_t item = items[i];
       CandidateFinding finding;
-      const Fitted fitted = fit_with({item});
-      finding.candidate = fitted.candidates[0];
-      set_starts(finding.candidate.choice, item);
+      const FittedEffects fitted = fit_with({item});
+      finding.candidate = fitted.effects[0];
       finding.add = add_string_of(item);
       const Choice& choice = finding.candidate.choice;
       finding.axis = choice.axis;
@@ -381,10 +330,10 @@ class Diagnoser {
       if (!not_borne_out_.empty()) result_.explanation += " " + not_borne_out_;
       return;
     }
-    if (pool_.candidate(chosen_.front()).choice.effect->id == "time-base") {
+    if (const std::string& why = pool_.candidate(chosen_.front()).choice.effect->of_instrument;
+        !why.empty()) {
       result_.verdict = Verdict::kInstrument;
-      result_.explanation =
-          "The time base of the measurement: the error grows with speed and with the time since the start.";
+      result_.explanation = why;
       return;
     }
     const Rivals& rivals = rivals_;

@@ -77,8 +77,4 @@ struct Diagnosis {
 Diagnosis diagnose(const std::string& text, const Machine& machine, const Measurement& measurement,
                    const DiagnoseOptions& options = {});
 
-/// The same rows for a machine that declares more of their columns as inputs; rows with an empty cell in a
-/// column that is now an input are excluded and counted.
-Measurement rebind(const Measurement& measurement, const Machine& from, const Machine& to);
-
 }  // namespace vernier

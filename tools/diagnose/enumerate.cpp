@@ -55,9 +55,9 @@ class Enumerator {
   }
 
  private:
-  /// A trigger needs touches (readings along a normal); readings that a trigger takes have no second clock.
+  /// Touches are readings along a normal; readings that a trigger takes have no second clock.
   bool goes_with_readings(const Effect& effect, const EffectForm& form) const {
-    if (effect.id == "trigger-delay") return has_normals_;
+    if (effect.needs_touches) return has_normals_;
     return !(form.place == PlaceRule::kEachAxis && has_normals_);
   }
 
@@ -389,9 +389,8 @@ class Enumerator {
       choice.start[rule.name] = grid[grid.size() / 2];
     }
     item.candidate = make_candidate(machine_, axes_, choice);
-    for (const CandidateUnknown& unknown : item.candidate.unknowns)
-      if (unknown.kind != UnknownKind::kLinear)
-        item.grid.push_back(grid_of(choice, *choice.effect->find_unknown(unknown.rule)));
+    for (const CandidateUnknown& unknown : scanned_unknowns(item.candidate))
+      item.grid.push_back(grid_of(choice, *choice.effect->find_unknown(unknown.rule)));
     item.may_lose_columns = contains(choice.form->term, "{hats") || choice.runs.size() > 1;
     add_fine_periods(item);
     list_.push_back(std::move(item));
@@ -400,8 +399,8 @@ class Enumerator {
   /// A wave by itself is looked for below the grid too.
   void add_fine_periods(ScannedCandidate& item) {
     if (item.grid.size() != 1 || !item.candidate.choice.axis) return;
-    for (const CandidateUnknown& unknown : item.candidate.unknowns)
-      if (unknown.kind != UnknownKind::kLinear && unknown.kind != UnknownKind::kPeriod) return;
+    for (const CandidateUnknown& unknown : scanned_unknowns(item.candidate))
+      if (unknown.kind != UnknownKind::kPeriod) return;
     const std::size_t axis = *item.candidate.choice.axis;
     const auto known = fine_.find(axis);
     FinePeriods fine = known != fine_.end()

@@ -287,19 +287,9 @@ ColumnMaker::ColumnMaker(const Evidence& evidence)
 
 Eigen::MatrixXd ColumnMaker::raw(const Candidate& candidate, const std::vector<double>& scanned) {
   scratch_.statics.resize(own_statics_);
-  std::vector<char> active(own_statics_, 0);
-  std::vector<std::size_t> linear;
-  std::size_t next = 0;
-  for (const CandidateUnknown& unknown : candidate.unknowns) {
-    Static item;
-    item.name = unknown.name;
-    if (unknown.kind == UnknownKind::kLinear)
-      linear.push_back(scratch_.statics.size());
-    else
-      item.value = scanned.at(next++);
-    active.push_back(unknown.kind == UnknownKind::kLinear ? 1 : 0);
-    scratch_.statics.push_back(item);
-  }
+  const std::vector<std::size_t> linear = add_unknowns(scratch_, candidate, scanned);
+  std::vector<char> active(scratch_.statics.size(), 0);
+  for (const std::size_t unknown : linear) active[unknown] = 1;
   active.resize(scratch_.statics.size() + 6 * scratch_.axes.size(), 0);
   const std::vector<std::size_t>& rows = evidence_.rows();
   Eigen::MatrixXd result =

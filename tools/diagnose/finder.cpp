@@ -356,14 +356,12 @@ bool Finder::shows_in_one_block(std::size_t item) const {
 
 std::string Finder::too_large(std::size_t item) const {
   const Candidate& candidate = pool_.candidate(item);
-  const Eigen::VectorXd k = own_coefficients(item);
+  const std::vector<double> k = coefficient_of_each_unknown(item);
   std::size_t linear = 0;
-  for (const CandidateUnknown& unknown : candidate.unknowns) {
-    if (unknown.kind != UnknownKind::kLinear) continue;
-    const auto kept = std::find(pool_[item].kept.begin(), pool_[item].kept.end(), linear++);
-    if (kept == pool_[item].kept.end() || unknown.limit <= 0) continue;
-    const double size =
-        std::abs(k[kept - pool_[item].kept.begin()]) * typical_size(candidate, linear - 1, item);
+  for (const CandidateUnknown& unknown : linear_unknowns(candidate)) {
+    const std::size_t at = linear++;
+    if (k[at] == 0 || unknown.limit <= 0) continue;
+    const double size = std::abs(k[at]) * typical_size(candidate, at, item);
     if (size > unknown.limit)
       return fmt::format("size: the term would reach {:.3g}, no machine shows more than {:g}", size,
                          unknown.limit);
@@ -373,14 +371,8 @@ std::string Finder::too_large(std::size_t item) const {
 
 double Finder::typical_size(const Candidate& candidate, std::size_t linear, std::size_t item) const {
   Machine scratch = evidence_.machine();
-  std::size_t index = 0, scanned = 0;
-  for (const CandidateUnknown& unknown : candidate.unknowns) {
-    Static value;
-    value.name = unknown.name;
-    value.value = unknown.kind == UnknownKind::kLinear ? (index++ == linear ? 1 : 0)
-                                                       : pool_[item].scored.scanned[scanned++];
-    scratch.statics.push_back(value);
-  }
+  const std::vector<std::size_t> statics = add_unknowns(scratch, candidate, pool_[item].scored.scanned);
+  scratch.statics[statics[linear]].value = 1;
   double largest = 0;
   for (const CandidateTerm& term : candidate.terms) {
     const Column column = ::vernier::evaluate(scratch, *parse_expression_for(scratch, term.text),
@@ -389,6 +381,15 @@ double Finder::typical_size(const Candidate& candidate, std::size_t linear, std:
       largest = std::max(largest, std::abs(column[static_cast<Eigen::Index>(row)]));
   }
   return largest;
+}
+
+std::vector<double> Finder::coefficient_of_each_unknown(std::size_t item) const {
+  const Eigen::VectorXd k = own_coefficients(item);
+  std::vector<double> each(
+      static_cast<std::size_t>(std::ranges::distance(linear_unknowns(pool_.candidate(item)))));
+  for (std::size_t i = 0; i < pool_[item].kept.size(); ++i)
+    each[pool_[item].kept[i]] = k[static_cast<Eigen::Index>(i)];
+  return each;
 }
 
 Eigen::VectorXd Finder::own_coefficients(std::size_t item) const {

@@ -49,6 +49,8 @@ class Finder {
 
   /// Coefficients of an item's columns within the accepted set, in the unit of its unknowns.
   Eigen::VectorXd own_coefficients(std::size_t item) const;
+  /// The same, one for each coefficient of its term: 0 for those whose column the model or others hold.
+  std::vector<double> coefficient_of_each_unknown(std::size_t item) const;
   /// Fall of the criterion that an item brings alone.
   double score_alone(std::size_t item) const;
   /// Chance of such a gain on noise alone, times the number of candidates looked at.

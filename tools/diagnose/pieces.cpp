@@ -9,10 +9,10 @@ namespace {
 
 /// Period of an item in the unit of its axis; 0 for one that has none.
 double period_of(const Pool& pool, std::size_t item) {
-  std::size_t scanned = 0;
-  for (const CandidateUnknown& unknown : pool.candidate(item).unknowns) {
-    if (unknown.kind == UnknownKind::kPeriod) return pool[item].scored.scanned[scanned];
-    if (unknown.kind != UnknownKind::kLinear) ++scanned;
+  auto value = pool[item].scored.scanned.begin();
+  for (const CandidateUnknown& unknown : scanned_unknowns(pool.candidate(item))) {
+    if (unknown.kind == UnknownKind::kPeriod) return *value;
+    ++value;
   }
   return 0;
 }

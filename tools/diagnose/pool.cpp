@@ -37,6 +37,12 @@ double rank_of(const Candidate& candidate) {
 /// calls so.
 constexpr double kRare = 6;
 
+/// Is the first unknown that is scanned a period?
+bool has_period(const Candidate& candidate) {
+  auto scanned = scanned_unknowns(candidate);
+  return !scanned.empty() && (*scanned.begin()).kind == UnknownKind::kPeriod;
+}
+
 /// What an axis moves out bends what carries it. A sag of what it carries, or of the other branch, has no
 /// load that would change with it.
 bool carries_not(const AxisPlaces& axes, const Choice& choice) {
@@ -50,11 +56,7 @@ bool carries_not(const AxisPlaces& axes, const Choice& choice) {
 std::set<std::pair<int, std::size_t>> drivers_of(const Machine& machine, const Candidate& candidate) {
   std::set<std::pair<int, std::size_t>> drivers;
   Machine scratch = machine;
-  for (const CandidateUnknown& unknown : candidate.unknowns) {
-    Static item;
-    item.name = unknown.name;
-    scratch.statics.push_back(item);
-  }
+  add_unknowns(scratch, candidate, {});
   for (const CandidateTerm& term : candidate.terms)
     walk(*parse_expression_for(scratch, term.text), [&](const Expr& node) {
       if (node.op == Op::kRunIs) drivers.insert({-1, 0});
@@ -93,14 +95,14 @@ double Pool::penalty(const Scored& scored) const {
 
 /// One key per effect and place; a second period at the same place is another one.
 std::string Pool::place_key(const Scored& scored) const {
-  const Choice& c = scanner_.candidates()[scored.candidate].candidate.choice;
+  const Candidate& candidate = scanner_.candidates()[scored.candidate].candidate;
+  const Choice& c = candidate.choice;
   std::string key = c.effect->id;
   if (c.axis) key += fmt::format(" a{}", *c.axis);
   if (c.axis2) key += fmt::format(" b{}", *c.axis2);
   for (const std::string& input : c.inputs) key += " " + input;
   if (c.place) key += fmt::format(" {}.{}.{}", c.place->workpiece, c.place->transform, c.place->dof);
-  if (c.form->place != PlaceRule::kJoint && !scored.scanned.empty() && c.effect->find_unknown("p") != nullptr)
-    key += fmt::format(" p{}", std::lround(8 * std::log(scored.scanned[0])));
+  if (has_period(candidate)) key += fmt::format(" p{}", std::lround(8 * std::log(scored.scanned[0])));
   key += c.runs.size() == 1 ? " " + c.runs[0] : "";
   if (c.effect == &custom_effect()) key += " " + c.term;
   return key;

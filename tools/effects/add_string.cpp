@@ -310,8 +310,7 @@ class AddReader {
 
 }  // namespace
 
-std::string add_string(const Machine& machine, const Candidate& candidate) {
-  const Choice& c = candidate.choice;
+std::string add_string(const Machine& machine, const Choice& c) {
   std::string text = c.effect->id;
   char separator = ':';
   const auto put = [&](const std::string& key, const std::string& value) {

@@ -360,6 +360,29 @@ const Effect& custom_effect() {
   return effect;
 }
 
+Choice choice_at(const Candidate& candidate, const std::vector<double>& scanned) {
+  Choice choice = candidate.choice;
+  auto value = scanned.begin();
+  for (const CandidateUnknown& unknown : scanned_unknowns(candidate)) choice.start[unknown.rule] = *value++;
+  return choice;
+}
+
+std::vector<std::size_t> add_unknowns(Machine& machine, const Candidate& candidate,
+                                      const std::vector<double>& scanned) {
+  std::vector<std::size_t> linear;
+  std::size_t next = 0;
+  for (const CandidateUnknown& unknown : candidate.unknowns) {
+    Static item;
+    item.name = unknown.name;
+    if (unknown.kind == UnknownKind::kLinear)
+      linear.push_back(machine.statics.size());
+    else if (!scanned.empty())
+      item.value = scanned.at(next++);
+    machine.statics.push_back(item);
+  }
+  return linear;
+}
+
 Candidate make_candidate(const Machine& machine, const AxisPlaces& axes, const Choice& choice) {
   return Maker(machine, axes, choice).make();
 }

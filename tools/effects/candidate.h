@@ -1,6 +1,7 @@
 #pragma once
 #include <map>
 #include <optional>
+#include <ranges>
 #include <string>
 #include <vector>
 
@@ -96,6 +97,27 @@ struct Candidate {
   std::string label;  // for people: "backlash of X"
 };
 
+/// The unknowns that are coefficients, in their order: what the term is linear in.
+inline auto linear_unknowns(const Candidate& candidate) {
+  return candidate.unknowns | std::views::filter([](const CandidateUnknown& unknown) {
+           return unknown.kind == UnknownKind::kLinear;
+         });
+}
+/// The others: periods, time constants, decay lengths. Lists of their values are in this order.
+inline auto scanned_unknowns(const Candidate& candidate) {
+  return candidate.unknowns | std::views::filter([](const CandidateUnknown& unknown) {
+           return unknown.kind != UnknownKind::kLinear;
+         });
+}
+
+/// The choice of a candidate with its scanned unknowns starting at these values. tool.
+Choice choice_at(const Candidate& candidate, const std::vector<double>& scanned);
+
+/// Adds a candidate's unknowns to the machine's statics, so that its terms can be evaluated: the coefficients
+/// at 0, the others at `scanned` (0 where that is empty). Returns the index of each coefficient. tool.
+std::vector<std::size_t> add_unknowns(Machine& machine, const Candidate& candidate,
+                                      const std::vector<double>& scanned);
+
 /// Fills the placeholders and names the unknowns so that they clash with nothing in the machine. `axes`: of
 /// the same machine. Throws InputError where the choice leaves something open that the form needs. tool.
 Candidate make_candidate(const Machine& machine, const AxisPlaces& axes, const Choice& choice);
@@ -103,7 +125,7 @@ Candidate make_candidate(const Machine& machine, const Choice& choice);
 
 /// The `add` string of a choice, and back (FORMATS section 3). What the string leaves open is filled with the
 /// axis' own transform and the form's first fit. Throws InputError with the offending word. tool.
-std::string add_string(const Machine& machine, const Candidate& candidate);
+std::string add_string(const Machine& machine, const Choice& choice);
 Choice parse_add_string(const std::string& text, const Machine& machine, const std::vector<Effect>& effects);
 
 /// The machine file with the candidate's terms, statics (nominal 0) and inputs written into it; nothing else

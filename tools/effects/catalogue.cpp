@@ -71,6 +71,10 @@ class CatalogueReader {
       while (!rest.empty()) now.impostors.push_back(next_word(rest));
     else if (key == "rare")
       now.rare = true;
+    else if (key == "touches")
+      now.needs_touches = true;
+    else if (key == "instrument")
+      now.of_instrument = rest;
     else if (key == "cause")
       now.cause = next_word(rest);
     else if (key == "seldom")
@@ -81,8 +85,8 @@ class CatalogueReader {
       take_unknown(now, rest);
     else
       fail(key,
-           "expected effect, title, formula, signature, exposed, impostors, rare, cause, seldom, form or "
-           "unknown");
+           "expected effect, title, formula, signature, exposed, impostors, rare, touches, instrument, "
+           "cause, seldom, form or unknown");
   }
 
   void begin(const std::string& id) {

@@ -54,8 +54,10 @@ struct EffectForm {
 struct Effect {
   std::string id, title, formula, signature, exposed_by;
   std::vector<std::string> impostors;
-  bool rare = false;  // met seldom: wants more evidence than its rivals
-  std::string cause;  // effects of one cause, axis and input differ in place or shape: no rivals
+  bool rare = false;           // met seldom: wants more evidence than its rivals
+  bool needs_touches = false;  // only readings along a surface's normal tell of it
+  std::string of_instrument;  // the instrument's doing and no error of the machine: the verdict in a sentence
+  std::string cause;          // effects of one cause, axis and input differ in place or shape: no rivals
   std::vector<EffectForm> forms;
   std::vector<UnknownRule> unknowns;
 

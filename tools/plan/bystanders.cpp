@@ -16,7 +16,7 @@ Cause cause_of(const Candidate& candidate) {
 
 }  // namespace
 
-std::vector<FittedRival> find_bystanders(const FittedModel& model, const Measurement& measurement,
+std::vector<FittedRival> find_bystanders(const MachineText& model, const Measurement& measurement,
                                          const std::vector<const FittedRival*>& named,
                                          const std::vector<Effect>& effects, std::size_t most) {
   const Evidence evidence(model.machine, measurement);
@@ -36,7 +36,8 @@ std::vector<FittedRival> find_bystanders(const FittedModel& model, const Measure
     Scored refined = item;
     scanner.refine(refined, none);
     found.push_back(fit_rival(model, evidence, measurement,
-                              add_string_at(evidence, candidate, refined.scanned), effects));
+                              add_string(evidence.machine(), choice_at(candidate, refined.scanned)),
+                              effects));
   }
   return found;
 }

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tools/diagnose/diagnosis.h"
 #include "tools/fit/fit.h"
 #include "tools/fit/statistics.h"
 #include "tools/model/prediction.h"
+#include "tools/model/rebind.h"
 #include "tools/plan/bystanders.h"
 #include "tools/plan/choice.h"
 #include "tools/plan/offers.h"
@@ -269,7 +269,7 @@ class Planner {
   }
 
   const PlanOptions& options_;
-  FittedModel model_;
+  MachineText model_;
   Plan plan_;
   Drivers drivers_;
   Measurement existing_;

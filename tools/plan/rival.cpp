@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tools/diagnose/diagnosis.h"
 #include "tools/diagnose/pool.h"
 #include "tools/fit/fit.h"
 #include "tools/text/error.h"
@@ -20,20 +19,11 @@ const Effect* effect_named(const std::vector<Effect>& effects, const std::string
 
 std::string id_of(const std::string& text) { return text.substr(0, text.find(':')); }
 
-/// Values of the unknowns that are no coefficients, in their order.
-std::vector<double> scanned_values(const Candidate& candidate) {
-  std::vector<double> values;
-  for (const CandidateUnknown& unknown : candidate.unknowns)
-    if (unknown.kind != UnknownKind::kLinear) values.push_back(unknown.start);
-  return values;
-}
-
 /// A time constant or decay length at the short end of what was looked at: the term has become a constant or
 /// a spike, and tells nothing of the effect that it is named for.
 bool degenerate(const Scored& scored, const ScannedCandidate& item) {
   std::size_t next = 0;
-  for (const CandidateUnknown& unknown : item.candidate.unknowns) {
-    if (unknown.kind == UnknownKind::kLinear) continue;
+  for (const CandidateUnknown& unknown : scanned_unknowns(item.candidate)) {
     const std::vector<double>& grid = item.grid[next];
     const bool decays = unknown.kind == UnknownKind::kTime || unknown.kind == UnknownKind::kTravel;
     if (decays && grid.size() > 1 && scored.scanned[next] < 0.5 * (grid[0] + grid[1])) return true;
@@ -62,30 +52,23 @@ std::string best_of_effect(const Evidence& evidence, const Effect& effect) {
   scored.resize(std::min(scored.size(), kRefined));
   for (Scored& item : scored) scanner.refine(item, none);
   const Scored& best = *std::max_element(scored.begin(), scored.end(), worse);
-  return add_string_at(evidence, list[best.candidate].candidate, best.scanned);
+  return add_string(evidence.machine(), choice_at(list[best.candidate].candidate, best.scanned));
 }
 
-/// The coefficients from the projected columns: a time constant has no derivative while its term is 0.
-void start_at_linear_estimate(Machine& machine, const Evidence& evidence, const Candidate& candidate) {
-  const Eigen::MatrixXd raw = evidence.columns(candidate, scanned_values(candidate));
+/// The coefficients from the projected columns; empty where the model absorbs all of them.
+std::vector<double> linear_estimate(const Evidence& evidence, const Candidate& candidate) {
+  std::vector<double> scanned;
+  for (const CandidateUnknown& unknown : scanned_unknowns(candidate)) scanned.push_back(unknown.start);
+  const Eigen::MatrixXd raw = evidence.columns(candidate, scanned);
   const Eigen::MatrixXd& q = evidence.absorbed();
   const Eigen::MatrixXd own = raw - q * (q.transpose() * raw);
   // Columns that the model absorbs leave only rounding here; it must not become a coefficient.
   constexpr double kLeastOwn = 1e-6;
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(own);
   qr.setThreshold(kLeastOwn);
-  if (own.norm() < kLeastOwn * raw.norm()) return;
+  if (own.norm() < kLeastOwn * raw.norm()) return {};
   const Eigen::VectorXd k = qr.solve(evidence.residual());
-  Eigen::Index next = 0;
-  for (const CandidateUnknown& unknown : candidate.unknowns)
-    if (unknown.kind == UnknownKind::kLinear)
-      machine.statics[*machine.find_static(unknown.name)].value = k[next++];
-}
-
-void hide_scanned(Machine& machine, const Candidate& candidate, bool hidden) {
-  for (const CandidateUnknown& unknown : candidate.unknowns)
-    if (unknown.kind != UnknownKind::kLinear)
-      machine.statics[*machine.find_static(unknown.name)].hidden = hidden;
+  return {k.begin(), k.end()};
 }
 
 }  // namespace
@@ -97,26 +80,16 @@ double value_of(const Scored& scored, const Evidence& evidence) {
          static_cast<double>(scored.unknowns) * std::log(static_cast<double>(evidence.rows().size()));
 }
 
-std::string add_string_at(const Evidence& evidence, Candidate candidate, const std::vector<double>& scanned) {
-  std::size_t next = 0;
-  for (const CandidateUnknown& unknown : candidate.unknowns)
-    if (unknown.kind != UnknownKind::kLinear) candidate.choice.start[unknown.rule] = scanned[next++];
-  return add_string(evidence.machine(), candidate);
+MachineText fit_model(const std::string& text, const Machine& machine, const Measurement& measurement) {
+  return fitted_text(text, fit(with_base_row(machine), measurement));
 }
 
-FittedModel fit_model(const std::string& text, const Machine& machine, const Measurement& measurement) {
-  FittedModel model;
-  model.machine = fit(with_base_row(machine), measurement).machine;
-  model.text = update_machine_text(text, model.machine, true);
-  return model;
-}
-
-FittedRival fit_rival(const FittedModel& model, const Measurement& measurement, const std::string& name,
+FittedRival fit_rival(const MachineText& model, const Measurement& measurement, const std::string& name,
                       const std::vector<Effect>& effects) {
   return fit_rival(model, Evidence(model.machine, measurement), measurement, name, effects);
 }
 
-FittedRival fit_rival(const FittedModel& model, const Evidence& evidence, const Measurement& measurement,
+FittedRival fit_rival(const MachineText& model, const Evidence& evidence, const Measurement& measurement,
                       const std::string& name, const std::vector<Effect>& effects) {
   const Effect* effect = effect_named(effects, id_of(name));
   if (effect == nullptr)
@@ -124,13 +97,15 @@ FittedRival fit_rival(const FittedModel& model, const Evidence& evidence, const 
   FittedRival rival;
   rival.add = name.find(':') == std::string::npos ? best_of_effect(evidence, *effect) : name;
   const Machine& base = model.machine;
-  rival.candidate = make_candidate(base, parse_add_string(rival.add, base, effects));
-  rival.machine = parse_machine(add_to_machine_text(model.text, base, rival.candidate), base.file);
-  start_at_linear_estimate(rival.machine, evidence, rival.candidate);
+  EffectToFit one;
+  one.choice = parse_add_string(rival.add, base, effects);
+  one.coefficients = linear_estimate(evidence, make_candidate(base, one.choice));
   // What the scan found is held: data that cannot tell two effects apart do not settle a period either.
-  hide_scanned(rival.machine, rival.candidate, true);
-  rival.machine = fit(rival.machine, rebind(measurement, base, rival.machine)).machine;
-  hide_scanned(rival.machine, rival.candidate, false);
+  one.hold_scanned = true;
+  FittedEffects fitted = fit_with_effects(model, measurement, {one});
+  rival.candidate = std::move(fitted.effects[0]);
+  rival.machine = std::move(fitted.fit.machine);
+  hold_scanned(rival.machine, rival.candidate, false);
   return rival;
 }
 
@@ -166,8 +141,8 @@ Drivers drivers_of(const std::vector<const FittedRival*>& rivals) {
 
 Machine without_effect(const FittedRival& rival) {
   Machine machine = rival.machine;
-  for (const CandidateUnknown& unknown : rival.candidate.unknowns)
-    if (unknown.kind == UnknownKind::kLinear) machine.statics[*machine.find_static(unknown.name)].value = 0;
+  for (const CandidateUnknown& unknown : linear_unknowns(rival.candidate))
+    machine.statics[*machine.find_static(unknown.name)].value = 0;
   return machine;
 }
 

@@ -6,17 +6,14 @@
 #include "tools/diagnose/evidence.h"
 #include "tools/diagnose/scan.h"
 #include "tools/effects/candidate.h"
+#include "tools/effects/fitted_effect.h"
 #include "tools/model/machine.h"
 #include "tools/model/measurement.h"
 
 namespace vernier {
 
-/// A machine at its best fit, with the text that says so: what rivals are added to.
-struct FittedModel {
-  std::string text;
-  Machine machine;
-};
-FittedModel fit_model(const std::string& text, const Machine& machine, const Measurement& measurement);
+/// The machine at its best fit: what rivals are added to.
+MachineText fit_model(const std::string& text, const Machine& machine, const Measurement& measurement);
 
 /// An effect added to a fitted machine and fitted to the same rows.
 struct FittedRival {
@@ -28,17 +25,15 @@ struct FittedRival {
 /// `name`: an effect id (the candidate of that effect which fits the rows best) or a complete `add` string.
 /// The effects must outlive the result. Throws InputError: unknown effect, no candidate of it in these rows.
 /// tool.
-FittedRival fit_rival(const FittedModel& model, const Measurement& measurement, const std::string& name,
+FittedRival fit_rival(const MachineText& model, const Measurement& measurement, const std::string& name,
                       const std::vector<Effect>& effects);
 
 /// The same with the evidence of the model and the rows at hand.
-FittedRival fit_rival(const FittedModel& model, const Evidence& evidence, const Measurement& measurement,
+FittedRival fit_rival(const MachineText& model, const Evidence& evidence, const Measurement& measurement,
                       const std::string& name, const std::vector<Effect>& effects);
 
 /// Fall of chi^2 in units of the noise less the price of the unknowns (BIC).
 double value_of(const Scored& scored, const Evidence& evidence);
-/// The `add` string of a candidate with these values of its scanned unknowns.
-std::string add_string_at(const Evidence& evidence, Candidate candidate, const std::vector<double>& scanned);
 
 /// The parts of `--separate`: cut at a comma only where what follows begins with the id of an effect.
 /// Throws InputError where they are not two. tool.

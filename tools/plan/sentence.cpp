@@ -7,8 +7,8 @@
 #include <cmath>
 #include <set>
 
-#include "tools/diagnose/diagnosis.h"
 #include "tools/model/prediction.h"
+#include "tools/model/rebind.h"
 #include "tools/plan/offers.h"
 
 namespace vernier {

@@ -2,8 +2,7 @@
 
 #include <cmath>
 
-#include "tools/diagnose/diagnosis.h"
-#include "tools/effects/candidate.h"
+#include "tools/effects/fitted_effect.h"
 #include "tools/fit/fit.h"
 #include "tools/maths/factors.h"
 #include "tools/model/chain.h"
@@ -155,18 +154,16 @@ std::string prediction_blob(const LoadedRows& rows, const std::map<std::string, 
 std::string explanation_blob(const LoadedRows& rows, const std::string& add) {
   const Measurement& m = rows.measurement;
   const FitResult base = fit(rows.machine, m);
-  const std::string fitted = update_machine_text(rows.text, base.machine, true);
-  const Machine machine = with_base_row(parse_machine(fitted, rows.machine.file));
-  const Candidate candidate = make_candidate(machine, parse_add_string(add, machine, built_in_effects()));
-  const Machine added = parse_machine(add_to_machine_text(fitted, machine, candidate), rows.machine.file);
-  const Measurement bound = rebind(m, machine, added);
-  if (bound.observations.size() != m.observations.size())
+  const MachineText fitted = machine_text(fitted_text(rows.text, base).text, rows.machine.file);
+  EffectToFit effect;
+  effect.choice = parse_add_string(add, fitted.machine, built_in_effects());
+  const FittedEffects with = fit_with_effects(fitted, m, {effect});
+  if (with.rows.observations.size() != m.observations.size())
     throw InputError("this effect excludes rows whose input is empty: nothing to lay over all rows");
-  const FitResult with = fit(added, bound);
   Blob blob;
-  Json json = {{"label", candidate.label}};
-  add_figures(json, bound, with.residual);
-  json["explained"] = blob.f32(in_report_units(m, base.residual - with.residual));
+  Json json = {{"label", with.effects[0].label}};
+  add_figures(json, with.rows, with.fit.residual);
+  json["explained"] = blob.f32(in_report_units(m, base.residual - with.fit.residual));
   json["before"] = blob.f32(in_report_units(m, base.residual));
   return blob.bytes(json);
 }

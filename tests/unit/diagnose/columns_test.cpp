@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "tests/unit/effects/candidates.h"
-#include "tools/diagnose/diagnosis.h"
 #include "tools/diagnose/evidence.h"
 #include "tools/model/prediction.h"
+#include "tools/model/rebind.h"
 
 namespace vernier::columns_test {
 namespace {
@@ -47,12 +47,10 @@ class Columns : public testing::TestWithParam<std::string> {
     added.tables = machine_.tables;
     const Measurement rows = rebind(rows_, machine_, added);
     std::vector<double> scanned;
-    for (const CandidateUnknown& unknown : candidate.unknowns)
-      if (unknown.kind != UnknownKind::kLinear) scanned.push_back(unknown.start);
+    for (const CandidateUnknown& unknown : scanned_unknowns(candidate)) scanned.push_back(unknown.start);
     const Eigen::MatrixXd columns = evidence.columns(candidate, scanned);
     Eigen::Index at = 0;
-    for (const CandidateUnknown& unknown : candidate.unknowns) {
-      if (unknown.kind != UnknownKind::kLinear) continue;
+    for (const CandidateUnknown& unknown : linear_unknowns(candidate)) {
       const Eigen::VectorXd column = columns.col(at++);
       // A weight is at least 1/(3 um) here: the column's largest entry is what a unit moves, times that.
       const double moves = column.cwiseAbs().maxCoeff() * 3e-3;

@@ -4,9 +4,9 @@
 #include <set>
 
 #include "tests/unit/effects/candidates.h"
-#include "tools/diagnose/diagnosis.h"
 #include "tools/fit/domain.h"
 #include "tools/model/prediction.h"
+#include "tools/model/rebind.h"
 #include "tools/text/error.h"
 
 namespace vernier::add_test {
@@ -58,11 +58,11 @@ class AddAnywhere : public testing::TestWithParam<std::string> {
   }
 
   void expect_round_trip(const Candidate& candidate) {
-    const std::string text = add_string(machine_, candidate);
+    const std::string text = add_string(machine_, candidate.choice);
     EXPECT_EQ(text.find_first_of(" \"'"), std::string::npos) << text;  // one word of a shell
     const Candidate again = make_candidate(machine_, parse_add_string(text, machine_, built_in_effects()));
     EXPECT_EQ(terms_of(machine_, again), terms_of(machine_, candidate));
-    EXPECT_EQ(add_string(machine_, again), text);
+    EXPECT_EQ(add_string(machine_, again.choice), text);
   }
 
   std::string text_;

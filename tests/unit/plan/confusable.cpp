@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <random>
 
-#include "tools/diagnose/diagnosis.h"
 #include "tools/model/prediction.h"
+#include "tools/model/rebind.h"
 #include "tools/plan/offers.h"
 
 namespace vernier::plan_test {
@@ -92,9 +92,8 @@ Machine true_machine(const Machine& machine, const Confusable& pair, int truth) 
   const Candidate candidate =
       make_candidate(machine, parse_add_string(pair.adds[truth], machine, built_in_effects()));
   Machine with = parse_machine(add_to_machine_text(model_text(), machine, candidate), "truth.xml");
-  for (const CandidateUnknown& unknown : candidate.unknowns)
-    if (unknown.kind == UnknownKind::kLinear)
-      with.statics[*with.find_static(unknown.name)].value = pair.amplitudes[truth];
+  for (const CandidateUnknown& unknown : linear_unknowns(candidate))
+    with.statics[*with.find_static(unknown.name)].value = pair.amplitudes[truth];
   with.statics[*with.find_static("alpha")].value = 3e-5;
   return with;
 }

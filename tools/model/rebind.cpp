@@ -1,6 +1,6 @@
-#include <cmath>
+#include "tools/model/rebind.h"
 
-#include "tools/diagnose/diagnosis.h"
+#include <cmath>
 
 namespace vernier {
 

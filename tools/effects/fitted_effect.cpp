@@ -1,0 +1,73 @@
+#include "tools/effects/fitted_effect.h"
+
+#include "tools/fit/domain.h"
+#include "tools/model/rebind.h"
+
+namespace vernier {
+namespace {
+
+Static& static_of(Machine& machine, const CandidateUnknown& unknown) {
+  return machine.statics[machine.find_static(unknown.name).value()];
+}
+
+void start_at(Machine& machine, const Candidate& effect, const std::vector<double>& coefficients) {
+  auto value = coefficients.begin();
+  if (coefficients.empty()) return;
+  for (const CandidateUnknown& unknown : linear_unknowns(effect))
+    static_of(machine, unknown).value = *value++;
+}
+
+/// Holds what the fit drove out of where it was looked for. True where there was one.
+bool hold_runaways(Machine& machine, const std::vector<EffectToFit>& effects, FittedEffects& result) {
+  bool any = false;
+  for (std::size_t i = 0; i < effects.size(); ++i) {
+    if (!effects[i].is_driven_out) continue;
+    std::size_t index = 0;
+    for (const CandidateUnknown& unknown : scanned_unknowns(result.effects[i])) {
+      if (!effects[i].is_driven_out(index++, static_of(result.fit.machine, unknown).value)) continue;
+      static_of(machine, unknown).hidden = true;
+      any = true;
+    }
+  }
+  return any;
+}
+
+}  // namespace
+
+MachineText machine_text(const std::string& text, const std::string& file) {
+  return {text, with_base_row(parse_machine(text, file))};
+}
+
+MachineText fitted_text(const std::string& text, const FitResult& fit) {
+  return {update_machine_text(text, fit.machine, true), fit.machine};
+}
+
+Candidate put_in(MachineText& into, const Choice& choice) {
+  Candidate effect = make_candidate(into.machine, choice);
+  into = machine_text(add_to_machine_text(into.text, into.machine, effect), into.machine.file);
+  return effect;
+}
+
+void hold_scanned(Machine& machine, const Candidate& effect, bool held) {
+  for (const CandidateUnknown& unknown : scanned_unknowns(effect)) static_of(machine, unknown).hidden = held;
+}
+
+FittedEffects fit_with_effects(const MachineText& base, const Measurement& rows,
+                               const std::vector<EffectToFit>& effects, const FitOptions& options) {
+  FittedEffects result;
+  MachineText with = machine_text(base.text, base.machine.file);
+  for (const EffectToFit& effect : effects) result.effects.push_back(put_in(with, effect.choice));
+  Machine& machine = with.machine;
+  for (std::size_t i = 0; i < effects.size(); ++i) {
+    start_at(machine, result.effects[i], effects[i].coefficients);
+    if (effects[i].hold_scanned) hold_scanned(machine, result.effects[i], true);
+  }
+  result.rows = rebind(rows, base.machine, machine);
+  result.fit = fit(machine, result.rows, options);
+  if (hold_runaways(machine, effects, result)) result.fit = fit(machine, result.rows, options);
+  result.text = update_machine_text(with.text, result.fit.machine, true);
+  result.text = close_domains(result.text, result.fit.machine, result.rows);
+  return result;
+}
+
+}  // namespace vernier
