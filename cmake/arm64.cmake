@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Cross build for an arm64 edge board (Debian's crossbuild-essential-arm64 and :arm64 libraries). Tests run under
 # user-mode emulation, which GoogleTest's discovery uses at build time too.
 set(CMAKE_SYSTEM_NAME Linux)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # cmake -DSOURCE_DIR=… -DCLANG_FORMAT=… -P check_format.cmake: fails where clang-format would change a tracked source.
 if(NOT CLANG_FORMAT)
   message("check_format: Skipped\nclang-format is not installed")

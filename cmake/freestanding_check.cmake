@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # cmake -DSOURCE_DIR=... -DCXX=arm-none-eabi-g++ -DNM=arm-none-eabi-nm -DWORK_DIR=... -P cmake/freestanding_check.cmake
 # Proves that comp and tables are freestanding, and firmware/core nearly so: compiles each source bare-metal, then looks at what it would link, then at
 # the words it uses. Prints "freestanding: N sources, 0 findings" or fails naming file and finding.

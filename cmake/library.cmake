@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # A clean build takes a third of the time where a handful of sources is one object: what their headers instantiate is
 # compiled once. The preset `dev` leaves it off, so that one changed source is one object.
 option(VERNIER_UNITY "Compile the sources of a target in groups" OFF)

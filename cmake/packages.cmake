@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Debian packages: `cpack --config build/PRESET/CPackConfig.cmake`. vernier-tools holds the tool (host builds); vernierd the
 # daemon with its systemd unit, started by whoever has written /etc/vernier/board.toml.
 include(GNUInstallDirs)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # The commit that `vernier --version` prints; "unknown" outside a checkout.
 set(VERNIER_COMMIT unknown)
 find_package(Git QUIET)

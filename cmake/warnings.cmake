@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Every target of the project links vernier_warnings; third-party headers are SYSTEM and stay out of it.
 add_library(vernier_warnings INTERFACE)
 target_compile_options(vernier_warnings INTERFACE

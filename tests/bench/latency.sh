@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Wake-up latency of vernierd beside cyclictest in the same run, and the time that a tick computes.
 # Usage: tests/bench/latency.sh IMAGE_DIR [SECONDS] [BIN_DIR]; needs rt-tests, python3 and the right to SCHED_FIFO.
 # Both run at the same time, at the same period and priority, each on its own processor where there are two, so

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Runs N ticks of an image over seeded poses and prints a hash of all corrections: the host's half of the
 // comparison with other targets (tests/bench/targets).
 #include <cstdio>

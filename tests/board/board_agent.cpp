@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What the test of the emulated board does inside of it: edges of a simulated probe against what the kernel's
 // stamps say, the bit rate of a CAN controller, and a talk over ISO-TP that is also cut off in the middle.
 #include <fcntl.h>

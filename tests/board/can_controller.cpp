@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A machine controller on a CAN bus, for the emulated board: sends the positions of two axes at 1 kHz. X goes
 // back and forth over ±30 mm at 20 mm/s; Y is always -X/2, so that a recording can be checked by itself. With
 // a sync identifier each cycle ends with that frame, until

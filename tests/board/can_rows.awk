@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Checks a recording of the emulated board; what: positions or corrections. Fails on a row that is wrong, and on too few.
 # Positions: the controller sends Y = -X/2; a tick between its two frames finds Y one cycle (10 um) behind.
 # Corrections: -X/10000 and -Y/5000 to 5 nm: rounding to 1 nm, the bound of the image, 1/(1+k).

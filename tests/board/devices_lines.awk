@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Decodes what the emulator says of the board's lines ("IRQ raise N", "IRQ lower N"). The converter takes 16 bits at the rising
 # clock while its select line is low: bit 15 the channel, bits 0..11 the code. A message that is not 16 bits long is an error.
 # show=codes: each code as "CHANNEL CODE"; show=pulse: of each period of line 4 "ON PERIOD", in converter messages of channel 0,

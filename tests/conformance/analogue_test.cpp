@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Analogue outputs and IIO sensors on a directory laid out as sysfs is: codes to the last one, the ends of
 // the range, what a refused write, a missing attribute and a silent sensor look like.
 #include <gtest/gtest.h>

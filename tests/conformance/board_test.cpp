@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What every backend of AxisReader, InputReader and CorrectionWriter owes the firmware: the simulated plant
 // in several states of disrepair, and the Linux devices (CAN axes, IIO sensors, PWM and IIO converters) on a
 // directory laid out as sysfs is and on joined sockets in place of a bus.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Axis positions in CAN frames: the layout, and what missing, repeated, late, malformed and stale frames are
 // to the firmware. The kernel's own CAN is met on the emulated board; here joined sockets carry the frames.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The sync of a bus on joined sockets: waits until it comes or the time is over, and takes several as one.
 #include "hal/linux/can_sync.h"
 

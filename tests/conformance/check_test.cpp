@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // `vernierd --check` as a process: every device is really tried, one line each, and what is missing is named;
 // and what a daemon does to a converter that holds a value from before.
 #include <gtest/gtest.h>

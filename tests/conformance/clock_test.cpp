@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What every Clock owes the firmware, whatever is behind it.
 #include <gtest/gtest.h>
 

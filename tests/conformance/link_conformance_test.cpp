@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What every CommandLink owes the firmware and the tools, on real sockets and lines: Modbus TCP on loopback,
 // Modbus RTU on a pair of pseudo terminals, ISO-TP where the kernel has virtual CAN.
 #include <arpa/inet.h>

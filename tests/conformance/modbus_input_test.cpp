@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Modbus sensors on a joined pseudo terminal, whose far end answers by hand: values to the digit, and what a
 // silent, a late, a babbling and a lying peer look like.
 #include <arpa/inet.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The way to a board at a plain serial line, on a pseudo terminal whose other end is the board.
 #include "tools/upload/serial_transport.h"
 

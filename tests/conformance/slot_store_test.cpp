@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What every SlotStore owes the uploader: in memory, and as files.
 #include <gtest/gtest.h>
 #include <unistd.h>

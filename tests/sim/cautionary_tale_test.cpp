@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A learned model that passes its validation and makes the machine worse: on the day of its training warmth
 // grew with the feed, and so with the vibration that the model learned from. What the tools say of it, and
 // what their advice is worth, through the 8 bit output and a tenth of a second of delay. Modelled on the mill

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // `vernier simulate` as a user calls it: keys, exit statuses, nothing written on error.
 #include <gtest/gtest.h>
 #include <sys/wait.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The whole way on machines whose truth is known: truth -> compile -> firmware on the simulated machine ->
 // error left.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Measured with the correction on, as a user goes about it: --images, compare --before --after.
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/fit/freedom.h"
 
 #include "tools/fit/solve.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/import/repair_report.h"
 #include "tools/text/optional_json.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/model/fit_record.h"
 
 #include <Eigen/Cholesky>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/part/b_head_machine.h"
 
 #include <fmt/format.h>

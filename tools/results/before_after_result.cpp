@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/results/before_after_result.h"
 
 #include <fmt/format.h>

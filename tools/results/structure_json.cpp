@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/results/structure_json.h"
 #include "tools/text/optional_json.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/upload/serial_transport.h"
 
 #include <fcntl.h>

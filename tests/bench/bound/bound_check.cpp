@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // bound_check [POSES [MACHINE...]]: the executed fixed-point program of each reference machine against the
 // double chain of tools/model, 10^7 poses: seven tenths anywhere, the rest on stations, one count beside
 // stations, and at the ends of the axes. Prints the proved bound of `vernier compile` beside what was seen,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The tick on an emulated Cortex-M4 or M7: instructions per tick by SysTick, and the hash that the host must
 // print too. Bare metal on the MPS2 AN386 and AN500 boards (Arm DAI 0386): code and data in the 4 MB SRAM at
 // 0, semihosting for the text.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Vector table, reset and the image under test. */
   .syntax unified
   .thumb

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // How often `vernier diagnose` names the effect that a survey hides: surveys of known truth are written, the
 // program is run on each as a user would, and its JSON is judged by the key. `diagnose_rates --help`.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The term-discovery benchmark: how often the selection core of diagnose names c * (T - 20) * x and nothing
 // else among all products of twelve inputs (two of them confounded with T) and positions, how well c comes
 // out, and how long it takes. `term_discovery [SEEDS]`.

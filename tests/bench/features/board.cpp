@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Cost of the accelerometer path on an emulated Cortex-M4, by SysTick, and the hash that the host must print
 // too.
 #include "tests/bench/cortex-m/semihost.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // feature_check [WINDOWS] [SEED]: the features of so many windows (10^6) of 1500 and 800 samples at 1651 Hz,
 // a new one each sample, in fixed point against double from the samples themselves; largest error of each
 // feature in units of its proved bound. Status 1 where one is beyond.

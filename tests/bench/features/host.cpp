@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // `host`: the hash that every target must print. `list`, `count CASE N`: for callgrind, as tests/bench/run
 // does.
 #include "tests/bench/features/workload.h"

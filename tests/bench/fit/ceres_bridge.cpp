@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tests/bench/fit/ceres_bridge.h"
 
 #include <ceres/ceres.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The own least squares against Ceres: a three-axis bridge with station tables, five set-ups and a tool, the
 // same data, one thread, processor time. Each solver runs in a process of its own, so that its peak memory is
 // its own. Two figures count: the time to the solver's own stop, and the time until its cost is within 1e-6

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Table look-ups beside their peers: three axes of six errors, 64 stations, one position each.
 #include <algorithm>
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The equation of one reference machine in every form, and its peers, over the same seeded poses:
 // machine_bench DIR list | count CASE N | time | check. Built by tests/bench/run, which prints the table.
 #include <algorithm>

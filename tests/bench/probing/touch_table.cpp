@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Error of the position at contact on simulated touches in acceleration, at constant feed and in
 // deceleration: latched (comp/probing/latch.h), position at the edge less feed times delay, position at the
 // edge. Delay 6.16 ms, stamps of 1 us.

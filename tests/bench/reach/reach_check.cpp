@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a fitted machine is worth where nobody measured: surveys with nothing hidden, fitted, and compared
 // with the true machine at fresh poses with a tool that was not measured.
 #include <fmt/format.h>

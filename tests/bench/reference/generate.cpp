@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // bench_generate NAME DIR: everything that the benches run of one reference machine: machine.vimg, the
 // printed equation.h/.cpp, given.cpp (the same with sines and cosines given), flat.cpp (the same equation in
 // double), chain.txt (degrees of freedom of every transform at seeded poses, for the peers that multiply

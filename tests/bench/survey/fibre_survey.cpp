@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A laser-tracker survey of the fibre placement machine (Rudberg, SAE 2012) is simulated and fitted from the
 // nominal machine: every axis with a table of true errors, axes out of square by tens of mrad, a ram that
 // bends, five tool points known, two set-ups of the tracker. Fit data: stations of each axis, rotary sweeps,

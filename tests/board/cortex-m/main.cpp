@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // firmware/core on an emulated Cortex-M4 (MPS2 AN386, Arm DAI 0386): a UART link, slots in RAM, two axes that
 // swing, and nothing else. The host uploads an image and confirms it; once it is active kTicks ticks of the
 // whole service are counted and the figures printed. This file is all that a port needs: firmware/PORTING.md.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Vector table and reset: data from where it is stored, bss to zero, main. */
   .syntax unified
   .thumb

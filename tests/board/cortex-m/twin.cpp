@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // twin IMAGE TAKEN BEGUN: the ticks of the emulated board once more on this host, from the image's file:
 // TAKEN ticks without a program, then with it, and from tick BEGUN on the hash of what the drives hold, which
 // must be the board's.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Malformed machine and measurement files from a seeded generator: each is refused with an InputError that
 // names a place, or it is one that still is a file of the format: then what was read, written out and read
 // again is the same, and every number in it is one that a second, independent scan finds in the text. Prints

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What the programs do to what stands where their outputs go: each writer, as a user calls it.
 #include <gtest/gtest.h>
 #include <sys/stat.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Chains that ask for more than three slides with fixed directions.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Every form of every effect of the catalogue, written into machines at places of every rule, compiles and
 // keeps its proved bound.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The published feature-based equations, in each of their unequal readings.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Position and direction of the tool, on the executed program against forward solutions in double.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Declared ranges hold at run time: beyond them the edge is held and the tick is flagged.
 #include <gtest/gtest.h>
 

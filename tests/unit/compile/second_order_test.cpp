@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The correction against the exact back solution, where one linear step is not enough.
 #include <gtest/gtest.h>
 

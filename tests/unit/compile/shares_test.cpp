@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The shares of the effects: named in the image, computed beside the tick, together the correction.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Leaving runs out in one go, against really fitting again without them; the tail of chi^2.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What the search believes of a term against what the term does: columns of Evidence, by the chain rule,
 // against differences of predictions of the machine file that `add` writes.
 #include <gtest/gtest.h>

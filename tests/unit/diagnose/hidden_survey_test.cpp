@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A fixed part of the table of recognition rates (tests/bench/diagnose): one survey of each effect, and
 // surveys that hide nothing, something unknown, or something that the data cannot tell.
 #include <gtest/gtest.h>

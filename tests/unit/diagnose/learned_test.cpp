@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Terms learned on accelerometer features: proved on whole feeds, written within their domain.
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Waves far shorter than the range of the axis: the pitch of a screw, the lines of a scale.
 #include "tools/diagnose/periods.h"
 

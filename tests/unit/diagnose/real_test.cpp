@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // `vernier diagnose` on measured machines, against what is known of them: the keys that come with the data.
 #include <gtest/gtest.h>
 #include <unistd.h>

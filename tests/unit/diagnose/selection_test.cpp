@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Which columns explain a residual: against hand-made traps and against trying everything.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What the answer says, not only which one it is.
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The argument of `vernier add`: short ones that people write, bad ones, and what becomes of the file.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Writing an effect into a machine file changes what a fit may find, and nothing that the machine says today.
 #include <gtest/gtest.h>
 

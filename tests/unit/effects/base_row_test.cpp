@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A place for rigid motions of the whole machine where the row at its base turns.
 #include <gtest/gtest.h>
 

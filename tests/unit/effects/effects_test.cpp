@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The catalogue: what is in it, users' own entries, and damaged files.
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Which degree of freedom an axis moves, in every reference machine.
 #include <gtest/gtest.h>
 

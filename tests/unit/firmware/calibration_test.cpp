@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Gain and zero of an output from measured points: the published chain of 8 bits to the digit, uncertainties
 // that cover, refusals, and the stepping itself.
 #include "firmware/daemon/calibration.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The daemon with a board file, as a process: uploads over Modbus TCP, kill -9 at any moment, a full store.
 #include <fcntl.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The lines from and to the machine's controller: enable lets the correction in, healthy says that it may be
 // believed.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "firmware/core/ed25519.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Features of an accelerometer at the board: against the definitions in double, and in the tick.
 #include "firmware/core/feature_inputs.h"
 

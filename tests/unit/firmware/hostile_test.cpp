@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The invariant of the slew limit: whatever the devices say and the operator asks, what a drive holds changes
 // by at most its slew limit a tick.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The tick allocates nothing: every way to the heap is counted while a tick runs, in this thread alone.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Ticks that follow the controller's sync: in step with a clock that runs off, through lost and early signs.
 #include <gtest/gtest.h>
 

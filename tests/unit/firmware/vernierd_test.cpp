@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The daemon itself, in real time, as a user calls it. Times are reported by it and not judged here.
 #include <gtest/gtest.h>
 #include <sys/wait.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Rows that a board had corrected are rows of the machine without it.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The edges of a probe's line: their order, and that none goes missing without a word.
 #include "hal/support/edge_queue.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What may stand where an output goes: nothing, a file, links, devices, pipes, a terminal, a folder.
 #include "hal/support/output_file.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // `vernier part` as a user calls it: artefacts, keys, exit statuses, nothing written on error.
 #include <gtest/gtest.h>
 #include <sys/wait.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/part/identify.h"
 
 #include <gtest/gtest.h>

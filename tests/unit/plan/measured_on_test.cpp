@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Rows that were measured with the correction on: a plan builds on them and asks for none.
 #include <gtest/gtest.h>
 

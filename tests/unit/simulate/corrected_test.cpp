@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Rows that say only which image ran: its own equation gives what it added.
 #include "tools/simulate/corrected.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Motion state derived from a path, against the closed forms of simple motions.
 #include <gtest/gtest.h>
 

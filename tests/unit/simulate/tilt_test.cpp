@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The tool's direction in the firmware loop: five axes, the B axis tilted by its published 0.0186 deg.
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tables/checksum.h"
 
 #include <gtest/gtest.h>

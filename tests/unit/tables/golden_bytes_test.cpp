@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What is stored is compared with bytes that were stored before: tests/golden/image_v3.txt and the like,
 // whose names carry the version of what they hold.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Every code that is stored or sent, with its number. A new one at the end of a list changes no version; a
 // number that changes does.
 #include <gtest/gtest.h>

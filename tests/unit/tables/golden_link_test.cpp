@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Every message of the link, request and reply, byte for byte: tests/golden/link_v1.txt.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tests/unit/tables/golden_machine.h"
 
 #include <sodium.h>

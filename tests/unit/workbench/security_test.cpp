@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The server as somebody on the same computer, or a page of another site in the same browser, would attack
 // it: real sockets, bytes as they come.
 #include <arpa/inet.h>

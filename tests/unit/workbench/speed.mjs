@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // speed.mjs BIN SOURCE [ROWS]: how fast the workbench is with very many rows, in a headless browser. No test: it prints.
 import { spawn } from 'node:child_process';
 import { copyFileSync, createWriteStream, mkdtempSync, rmSync } from 'node:fs';

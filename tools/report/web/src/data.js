@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The report's data as the program embedded it: JSON in which long rows of numbers are packed (tools/report/payload.h).
 
 function bytesOf(base64) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 import { el, table, tiles } from './dom.js';
 import { number } from './data.js';
 import { ladder } from './plots.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Everything that comes from a file or a user goes in as text, never as markup.
 
 /** An element with attributes and children; strings become text nodes. */

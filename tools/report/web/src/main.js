@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 import { el, section, table, tiles } from './dom.js';
 import { number, readData } from './data.js';
 import { circleTable, polarPlot } from './polar.js';

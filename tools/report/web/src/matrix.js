@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 import { axisStyle, chart, colours } from './chart.js';
 import { choice, el } from './dom.js';
 import { number } from './data.js';

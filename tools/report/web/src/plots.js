@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 import { axisStyle, chart, colours, legendStyle, tooltipStyle } from './chart.js';
 import { el } from './dom.js';
 import { byKind } from './matrix.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 import { axisStyle, chart, colours, legendStyle } from './chart.js';
 import { choice, el, table } from './dom.js';
 import { fixed, number } from './data.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 import { colours } from './chart.js';
 import { choice, el } from './dom.js';
 import { number } from './data.js';

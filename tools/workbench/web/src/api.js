@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 import { emit, on, store } from './store.js';
 
 /** What the server says no to, with its words. */

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 import { axisStyle, colours, legendStyle, tooltipStyle } from '../../../report/web/src/chart.js';
 import { number } from '../../../report/web/src/data.js';
 import { labelled } from '../../../report/web/src/diagnosis.js';

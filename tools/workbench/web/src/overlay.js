@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 import { postBlob } from './api.js';
 import { setResiduals, subject } from './rows.js';
 import { redrawAll } from './plot.js';

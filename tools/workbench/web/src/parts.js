@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 import { el } from '../../../report/web/src/dom.js';
 import { chart, colours } from '../../../report/web/src/chart.js';
 import { init } from 'echarts/core';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Two ways to draw the same picture: on a canvas, and as an SVG document for a report. Points and strokes by the hundred
 // thousand go into the pixels of an image, which is an order of magnitude faster than a call for each.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 import { colours } from '../../../report/web/src/chart.js';
 import { number } from '../../../report/web/src/data.js';
 import { el } from '../../../report/web/src/dom.js';

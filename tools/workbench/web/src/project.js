@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 import { el } from '../../../report/web/src/dom.js';
 import { fileAddress, postJson, putFile, refresh, run } from './api.js';
 import { button, panel } from './parts.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 import { getBlob } from './api.js';
 import { emit, select, selection, store } from './store.js';
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 import { Plot, axes, range, redrawAll } from './plot.js';
 import { select, selection } from './store.js';
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What the views share, and how they hear of a change. Events: project, rows, selection, overlay, diagnosis, job.
 const listeners = new Map();
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 import { el, choice } from '../../../report/web/src/dom.js';
 import { number } from '../../../report/web/src/data.js';
 import { Plot, redrawAll } from './plot.js';
