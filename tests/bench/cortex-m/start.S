@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Vector table, reset and the image under test. */
+/* Vector table and reset: data from where it is stored, bss to zero, main. With BENCH_IMAGE the image under test. */
   .syntax unified
   .thumb
   .section .vectors, "a"
@@ -32,9 +32,11 @@ reset:
   .thumb_func
 halt:
   b halt
+#ifdef BENCH_IMAGE
   .section .rodata.image, "a"
   .balign 8
   .global bench_image, bench_image_end
 bench_image:
   .incbin BENCH_IMAGE
 bench_image_end:
+#endif
