@@ -5,15 +5,29 @@ import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 
-export const browserName = () => ['chromium', 'chromium-browser', 'google-chrome'].find((name) => spawnSync('which', [name]).status === 0) ?? null;
+export const browserName = () =>
+  ['chromium', 'chromium-browser', 'google-chrome'].find((name) => spawnSync('which', [name]).status === 0) ?? null;
 
 /** One page of a browser of its own: evaluate, click, type, drop files, take pictures. */
 export class Page {
   static async open({ width = 1280, height = 720, dark = false } = {}) {
     const page = new Page();
     page.profile = mkdtempSync(join(tmpdir(), 'workbench-browser-'));
-    page.process = spawn(browserName(), ['--headless=new', '--no-sandbox', '--disable-gpu', '--disable-dev-shm-usage', '--no-first-run', '--remote-debugging-pipe',
-      `--user-data-dir=${page.profile}`, `--window-size=${width},${height}`, 'about:blank'], { stdio: ['ignore', 'ignore', 'ignore', 'pipe', 'pipe'] });
+    page.process = spawn(
+      browserName(),
+      [
+        '--headless=new',
+        '--no-sandbox',
+        '--disable-gpu',
+        '--disable-dev-shm-usage',
+        '--no-first-run',
+        '--remote-debugging-pipe',
+        `--user-data-dir=${page.profile}`,
+        `--window-size=${width},${height}`,
+        'about:blank',
+      ],
+      { stdio: ['ignore', 'ignore', 'ignore', 'pipe', 'pipe'] },
+    );
     page.waiting = new Map();
     page.next = 1;
     page.complaints = [];
@@ -24,7 +38,11 @@ export class Page {
       for (const part of parts) page.take(JSON.parse(part));
     });
     const { targetInfos } = await page.send('Target.getTargets', {}, null);
-    const { sessionId } = await page.send('Target.attachToTarget', { targetId: targetInfos.find((one) => one.type === 'page').targetId, flatten: true }, null);
+    const { sessionId } = await page.send(
+      'Target.attachToTarget',
+      { targetId: targetInfos.find((one) => one.type === 'page').targetId, flatten: true },
+      null,
+    );
     page.session = sessionId;
     for (const domain of ['Page', 'Runtime', 'DOM', 'Log', 'Network']) await page.send(`${domain}.enable`);
     await page.send('Emulation.setDeviceMetricsOverride', { width, height, deviceScaleFactor: 1, mobile: false });
@@ -45,11 +63,15 @@ export class Page {
       return;
     }
     // Whatever the page complains about, a broken content policy included, fails the test in the end.
-    if (message.method === 'Runtime.exceptionThrown') this.complaints.push(message.params.exceptionDetails.exception?.description ?? message.params.exceptionDetails.text);
-    if (message.method === 'Log.entryAdded' && message.params.entry.level === 'error') this.complaints.push(`${message.params.entry.text} ${message.params.entry.url ?? ''}`);
+    if (message.method === 'Runtime.exceptionThrown')
+      this.complaints.push(message.params.exceptionDetails.exception?.description ?? message.params.exceptionDetails.text);
+    if (message.method === 'Log.entryAdded' && message.params.entry.level === 'error')
+      this.complaints.push(`${message.params.entry.text} ${message.params.entry.url ?? ''}`);
     if (message.method === 'Network.requestWillBeSent') (this.requests ??= []).push(message.params.request.url);
   }
-  async go(url) { await this.send('Page.navigate', { url }); }
+  async go(url) {
+    await this.send('Page.navigate', { url });
+  }
   async evaluate(expression) {
     const { result, exceptionDetails } = await this.send('Runtime.evaluate', { expression, awaitPromise: true, returnByValue: true });
     if (exceptionDetails) throw new Error(`${expression}: ${exceptionDetails.exception?.description ?? exceptionDetails.text}`);
@@ -65,19 +87,37 @@ export class Page {
       await new Promise((done) => setTimeout(done, 60));
     }
   }
-  words() { return this.evaluate("[document.body.dataset.view, document.getElementById('command')?.textContent, document.getElementById('job-state')?.textContent, ...[...document.querySelectorAll('.error')].map((one) => one.textContent)].join(' | ')"); }
+  words() {
+    return this.evaluate(
+      "[document.body.dataset.view, document.getElementById('command')?.textContent, document.getElementById('job-state')?.textContent, ...[...document.querySelectorAll('.error')].map((one) => one.textContent)].join(' | ')",
+    );
+  }
   async click(selector) {
-    await this.until(`(() => { const one = document.querySelector(${JSON.stringify(selector)}); return one && !one.disabled && one.getClientRects().length > 0; })()`, selector);
+    await this.until(
+      `(() => { const one = document.querySelector(${JSON.stringify(selector)}); return one && !one.disabled && one.getClientRects().length > 0; })()`,
+      selector,
+    );
     await this.evaluate(`document.querySelector(${JSON.stringify(selector)}).scrollIntoView({ block: 'center' })`);
-    const [x, y] = await this.evaluate(`(() => { const box = document.querySelector(${JSON.stringify(selector)}).getBoundingClientRect(); return [box.left + box.width / 2, box.top + box.height / 2]; })()`);
+    const [x, y] = await this.evaluate(
+      `(() => { const box = document.querySelector(${JSON.stringify(selector)}).getBoundingClientRect(); return [box.left + box.width / 2, box.top + box.height / 2]; })()`,
+    );
     await this.drag([x, y], [x, y]);
   }
   /** The mouse from one point to another with its button down. */
   async drag([x0, y0], [x1, y1]) {
-    const mouse = (type, x, y, buttons) => this.send('Input.dispatchMouseEvent', { type, x, y, button: type === 'mouseMoved' && !buttons ? 'none' : 'left', buttons, clickCount: 1 });
+    const mouse = (type, x, y, buttons) =>
+      this.send('Input.dispatchMouseEvent', {
+        type,
+        x,
+        y,
+        button: type === 'mouseMoved' && !buttons ? 'none' : 'left',
+        buttons,
+        clickCount: 1,
+      });
     await mouse('mouseMoved', x0, y0, 0);
     await mouse('mousePressed', x0, y0, 1);
-    if (x0 !== x1 || y0 !== y1) for (const share of [0.3, 0.7, 1]) await mouse('mouseMoved', x0 + share * (x1 - x0), y0 + share * (y1 - y0), 1);
+    if (x0 !== x1 || y0 !== y1)
+      for (const share of [0.3, 0.7, 1]) await mouse('mouseMoved', x0 + share * (x1 - x0), y0 + share * (y1 - y0), 1);
     await mouse('mouseReleased', x1, y1, 0);
   }
   async type(selector, text) {
@@ -85,16 +125,28 @@ export class Page {
     await this.send('Input.insertText', { text });
   }
   async key(key, code = key) {
-    for (const type of ['keyDown', 'keyUp']) await this.send('Input.dispatchKeyEvent', { type, key, code, ...(key === 'Enter' ? { text: '\r', windowsVirtualKeyCode: 13 } : key === 'Tab' ? { windowsVirtualKeyCode: 9 } : {}) });
+    for (const type of ['keyDown', 'keyUp'])
+      await this.send('Input.dispatchKeyEvent', {
+        type,
+        key,
+        code,
+        ...(key === 'Enter' ? { text: '\r', windowsVirtualKeyCode: 13 } : key === 'Tab' ? { windowsVirtualKeyCode: 9 } : {}),
+      });
   }
   async choose(selector, value) {
-    await this.until(`[...document.querySelector(${JSON.stringify(selector)}).options].some((one) => one.value === ${JSON.stringify(value)})`, `${selector} to offer ${value}`);
-    await this.evaluate(`(() => { const one = document.querySelector(${JSON.stringify(selector)}); one.value = ${JSON.stringify(value)}; one.dispatchEvent(new Event('change')); })()`);
+    await this.until(
+      `[...document.querySelector(${JSON.stringify(selector)}).options].some((one) => one.value === ${JSON.stringify(value)})`,
+      `${selector} to offer ${value}`,
+    );
+    await this.evaluate(
+      `(() => { const one = document.querySelector(${JSON.stringify(selector)}); one.value = ${JSON.stringify(value)}; one.dispatchEvent(new Event('change')); })()`,
+    );
   }
   /** Files as if a person had dropped them on the page. */
   async drop(files) {
     const items = files.map((file) => ({ name: file.name, text: file.text }));
-    await this.evaluate(`(() => { const data = new DataTransfer(); for (const one of ${JSON.stringify(items)}) data.items.add(new File([one.text], one.name));
+    await this
+      .evaluate(`(() => { const data = new DataTransfer(); for (const one of ${JSON.stringify(items)}) data.items.add(new File([one.text], one.name));
       document.dispatchEvent(new DragEvent('drop', { dataTransfer: data, bubbles: true, cancelable: true })); })()`);
   }
   async picture(path) {
@@ -107,7 +159,11 @@ export class Page {
     await gone;
     // Its helpers write for a moment longer; a profile that stays in the temporary folder harms nobody.
     for (let i = 0; i < 50; ++i) {
-      try { return rmSync(this.profile, { recursive: true, force: true }); } catch { await new Promise((wait) => setTimeout(wait, 100)); }
+      try {
+        return rmSync(this.profile, { recursive: true, force: true });
+      } catch {
+        await new Promise((wait) => setTimeout(wait, 100));
+      }
     }
   }
 }

@@ -2,6 +2,7 @@
 #include "tools/workbench/excluded.h"
 
 #include "tests/unit/workbench/rig.h"
+#include "tools/model/machine_reader.h"
 #include "tools/model/measurement.h"
 #include "tools/text/error.h"
 #include "tools/workbench/values.h"

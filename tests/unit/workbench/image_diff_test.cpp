@@ -3,6 +3,7 @@
 
 #include "tests/unit/workbench/rig.h"
 #include "tools/compile/compile.h"
+#include "tools/model/machine_reader.h"
 #include "tools/text/error.h"
 
 namespace vernier::image_diff_test {

@@ -16,9 +16,16 @@ const top = mkdtempSync(join(tmpdir(), 'workbench-journey-'));
 const folder = join(top, 'project');
 const started = [];
 
-const json = (...words) => JSON.parse(execFileSync(vernier, [...words, '--json', '-'], { cwd: folder, stdio: ['ignore', 'pipe', 'ignore'], maxBuffer: 1 << 28 }));
+const json = (...words) =>
+  JSON.parse(execFileSync(vernier, [...words, '--json', '-'], { cwd: folder, stdio: ['ignore', 'pipe', 'ignore'], maxBuffer: 1 << 28 }));
 const data = (name) => readFileSync(join(source, 'tests/data', name), 'latin1');
-const freePort = () => new Promise((done) => { const server = createServer().listen(0, '127.0.0.1', () => { const { port } = server.address(); server.close(() => done(port)); }); });
+const freePort = () =>
+  new Promise((done) => {
+    const server = createServer().listen(0, '127.0.0.1', () => {
+      const { port } = server.address();
+      server.close(() => done(port));
+    });
+  });
 
 /** A program that runs until the end of the test. */
 function start(name, words, options = {}) {
@@ -40,35 +47,63 @@ async function workbench() {
 /** A board of the machine's axes, all simulated, which trusts the key of the project. */
 async function board(axes, keys) {
   const port = await freePort();
-  const axis = ([name, low, high]) => `[axis.${name}]\nlow = ${low}\nhigh = ${high}\nmax_speed = 500\nmax_acceleration = 5000\ncorrection_share = 0.05\nposition = { kind = "sim" }\noutput = { kind = "sim" }\n`;
-  writeFileSync(join(top, 'board.toml'), `[board]\nstore = "store"\npublic_key = "${join(folder, keys, 'vernier.pub')}"\ntrial_s = 60\nactivate = true\n${axes.map(axis).join('')}[[link]]\nkind = "modbus-tcp"\nport = ${port}\n`);
+  const axis = ([name, low, high]) =>
+    `[axis.${name}]\nlow = ${low}\nhigh = ${high}\nmax_speed = 500\nmax_acceleration = 5000\ncorrection_share = 0.05\nposition = { kind = "sim" }\noutput = { kind = "sim" }\n`;
+  writeFileSync(
+    join(top, 'board.toml'),
+    `[board]\nstore = "store"\npublic_key = "${join(folder, keys, 'vernier.pub')}"\ntrial_s = 60\nactivate = true\n${axes.map(axis).join('')}[[link]]\nkind = "modbus-tcp"\nport = ${port}\n`,
+  );
   start('vernierd', ['--board', join(top, 'board.toml')], { cwd: top, stdio: 'ignore' });
   const url = `tcp://127.0.0.1:${port}`;
   for (let i = 0; ; ++i) {
-    try { execFileSync(vernier, ['status', '--to', url], { stdio: 'ignore' }); return url; } catch (why) { if (i > 100) throw why; }
+    try {
+      execFileSync(vernier, ['status', '--to', url], { stdio: 'ignore' });
+      return url;
+    } catch (why) {
+      if (i > 100) throw why;
+    }
     await new Promise((done) => setTimeout(done, 50));
   }
 }
 
 const text = (page, selector) => page.evaluate(`document.querySelector(${JSON.stringify(selector)})?.textContent ?? ''`);
-const attribute = (page, selector, name) => page.evaluate(`document.querySelector(${JSON.stringify(selector)})?.dataset[${JSON.stringify(name)}] ?? null`);
+const attribute = (page, selector, name) =>
+  page.evaluate(`document.querySelector(${JSON.stringify(selector)})?.dataset[${JSON.stringify(name)}] ?? null`);
 const view = (page, name) => page.evaluate(`location.hash = '#${name}'`);
-const done = (page, command) => page.until(`document.getElementById('command').textContent.startsWith(${JSON.stringify(command)}) && document.getElementById('job-state').dataset.state === 'done'`, command, 120);
+const done = (page, command) =>
+  page.until(
+    `document.getElementById('command').textContent.startsWith(${JSON.stringify(command)}) && document.getElementById('job-state').dataset.state === 'done'`,
+    command,
+    120,
+  );
 async function picture(page, name, scroll = null) {
   if (!pictures) return;
-  if (scroll) await page.evaluate(`document.querySelector(${JSON.stringify(scroll)}).closest('.panel').scrollIntoView({ block: 'start' }); scrollBy(0, -54)`);
+  if (scroll)
+    await page.evaluate(
+      `document.querySelector(${JSON.stringify(scroll)}).closest('.panel').scrollIntoView({ block: 'start' }); scrollBy(0, -54)`,
+    );
   await new Promise((wait) => setTimeout(wait, 400));
   await page.picture(join(pictures, `workbench_${name}.png`));
 }
-const near = (shown, wanted, what) => assert.ok(Math.abs(Number(shown) - wanted) <= 1e-9 * Math.max(1, Math.abs(wanted)), `${what}: the page has ${shown}, the command ${wanted}`);
+const near = (shown, wanted, what) =>
+  assert.ok(
+    Math.abs(Number(shown) - wanted) <= 1e-9 * Math.max(1, Math.abs(wanted)),
+    `${what}: the page has ${shown}, the command ${wanted}`,
+  );
 
 /** The numbers of Compare against those of the command that the page shows. */
 async function checkCompare(page, machine, rows) {
   await view(page, 'compare');
-  await page.until(`document.getElementById('command').textContent === 'vernier compare ${machine} ${rows}' && document.getElementById('compare-figures')`, 'the numbers of compare');
+  await page.until(
+    `document.getElementById('command').textContent === 'vernier compare ${machine} ${rows}' && document.getElementById('compare-figures')`,
+    'the numbers of compare',
+  );
   const wanted = json('compare', machine, rows);
   // What stood there before goes when the numbers of this command come.
-  await page.until(`Math.abs(Number(document.getElementById('compare-figures')?.dataset.rms) - ${wanted.rms_um}) <= 1e-9 * ${Math.max(1, wanted.rms_um)}`, `the rms of ${rows}`);
+  await page.until(
+    `Math.abs(Number(document.getElementById('compare-figures')?.dataset.rms) - ${wanted.rms_um}) <= 1e-9 * ${Math.max(1, wanted.rms_um)}`,
+    `the rms of ${rows}`,
+  );
   near(await attribute(page, '#compare-figures', 'checkRms'), wanted.check_rms_um, 'check rms');
   assert.ok((await text(page, '#compare-figures')).includes(Number(wanted.rms_um.toPrecision(4)).toString()), 'the rms is readable');
   return wanted;
@@ -109,7 +144,9 @@ async function bringToBoard(page, axes) {
 /** The chosen rows are the same in all views, and can be left out with a reason and put back. */
 async function brushAndExclude(page, rows) {
   await page.evaluate("document.querySelector('.matrix canvas').scrollIntoView({ block: 'center' })");
-  const box = await page.evaluate("(() => { const b = document.querySelector('.matrix canvas').getBoundingClientRect(); return [b.left, b.top, b.width, b.height]; })()");
+  const box = await page.evaluate(
+    "(() => { const b = document.querySelector('.matrix canvas').getBoundingClientRect(); return [b.left, b.top, b.width, b.height]; })()",
+  );
   await page.drag([box[0] + 52, box[1] + 20], [box[0] + box[2] * 0.5, box[1] + box[3] - 34]);
   await page.until("Number(document.getElementById('chosen-count').textContent) > 0", 'a choice of rows');
   const count = Number(await text(page, '#chosen-count'));
@@ -133,11 +170,19 @@ async function brushAndExclude(page, rows) {
 
 /** A plot can be saved, and no view is wider than a small screen. */
 async function exports(page) {
-  await page.evaluate("(() => { const make = URL.createObjectURL; URL.createObjectURL = (blob) => { window.saved = blob; return make.call(URL, blob); }; })()");
-  const press = (label) => page.evaluate(`[...document.querySelector('.matrix figure').querySelectorAll('.exports button')].find((one) => one.textContent === '${label}').click()`);
+  await page.evaluate(
+    '(() => { const make = URL.createObjectURL; URL.createObjectURL = (blob) => { window.saved = blob; return make.call(URL, blob); }; })()',
+  );
+  const press = (label) =>
+    page.evaluate(
+      `[...document.querySelector('.matrix figure').querySelectorAll('.exports button')].find((one) => one.textContent === '${label}').click()`,
+    );
   await press('SVG');
-  const svg = await page.evaluate("window.saved.text()");
-  assert.ok(svg.startsWith('<svg ') && svg.endsWith('</svg>') && (svg.match(/h0/g) ?? []).length === 240, 'one dot for each of the 240 rows');
+  const svg = await page.evaluate('window.saved.text()');
+  assert.ok(
+    svg.startsWith('<svg ') && svg.endsWith('</svg>') && (svg.match(/h0/g) ?? []).length === 240,
+    'one dot for each of the 240 rows',
+  );
   await press('PNG');
   await page.until("window.saved.type === 'image/png' && window.saved.size > 1000", 'the PNG');
   for (const name of ['project', 'compare', 'diagnose', 'add', 'board']) {
@@ -147,13 +192,21 @@ async function exports(page) {
 }
 
 async function ballbar(page) {
-  await page.drop([{ name: 'xy.b5r', text: data('ballbar/ur10e_xy_100mm.b5r') }, { name: 'circle.xml', text: readFileSync(join(source, 'tables/machines/xy_ball_bar.xml'), 'utf8') }]);
-  await page.until("document.getElementById('machine').value === 'circle.xml' && document.getElementById('measurement').value === 'xy.csv'", 'the import');
+  await page.drop([
+    { name: 'xy.b5r', text: data('ballbar/ur10e_xy_100mm.b5r') },
+    { name: 'circle.xml', text: readFileSync(join(source, 'tables/machines/xy_ball_bar.xml'), 'utf8') },
+  ]);
+  await page.until(
+    "document.getElementById('machine').value === 'circle.xml' && document.getElementById('measurement').value === 'xy.csv'",
+    'the import',
+  );
   await picture(page, 'project');
   await checkCompare(page, 'circle.xml', 'xy.csv');
   await page.until("document.querySelectorAll('canvas[aria-label^=Polar]').length === 1", 'the polar plot');
   await page.evaluate("document.querySelector('canvas[aria-label^=Polar]').scrollIntoView({ block: 'center' })");
-  const polar = await page.evaluate("(() => { const b = document.querySelector('canvas[aria-label^=Polar]').getBoundingClientRect(); return [b.left + b.width / 2, b.top + b.height / 2, Math.min(b.width, b.height) / 2]; })()");
+  const polar = await page.evaluate(
+    "(() => { const b = document.querySelector('canvas[aria-label^=Polar]').getBoundingClientRect(); return [b.left + b.width / 2, b.top + b.height / 2, Math.min(b.width, b.height) / 2]; })()",
+  );
   await page.drag([polar[0] + 0.8 * polar[2], polar[1] - 5], [polar[0] + 0.1 * polar[2], polar[1] - 0.8 * polar[2]]);
   await page.until("Number(document.getElementById('chosen-count').textContent) > 100", 'the rows of a sector');
   await picture(page, 'polar', 'canvas[aria-label^=Polar]');
@@ -171,19 +224,31 @@ async function ballbar(page) {
   near(await attribute(page, '#steps .tiles', 'rms'), fitted.rms_um, 'fitted rms');
   near(await attribute(page, '#steps .tiles', 'checkRms'), fitted.check_rms_um, 'fitted check rms');
   await checkCompare(page, 'circle-fitted.xml', 'xy.csv');
-  await bringToBoard(page, [['X', -60, 60], ['Y', -60, 60]]);
+  await bringToBoard(page, [
+    ['X', -60, 60],
+    ['Y', -60, 60],
+  ]);
 }
 
 async function survey(page) {
   const hidden = 'hidden/bridge_lag_cyclic';
-  await page.drop([{ name: 'model.xml', text: data(`${hidden}/model.xml`) }, { name: 'survey.csv', text: data(`${hidden}/survey.csv`) }]);
-  await page.until("document.getElementById('machine').value === 'model.xml' && document.getElementById('measurement').value === 'survey.csv'", 'the files');
+  await page.drop([
+    { name: 'model.xml', text: data(`${hidden}/model.xml`) },
+    { name: 'survey.csv', text: data(`${hidden}/survey.csv`) },
+  ]);
+  await page.until(
+    "document.getElementById('machine').value === 'model.xml' && document.getElementById('measurement').value === 'survey.csv'",
+    'the files',
+  );
   await checkCompare(page, 'model.xml', 'survey.csv');
   await brushAndExclude(page, 'survey.csv');
   await exports(page);
   await view(page, 'diagnose');
   await page.click('#run-diagnose');
-  await page.until("document.getElementById('command').textContent.startsWith('vernier diagnose') && document.getElementById('job-state').dataset.state === 'running'", 'the diagnosis to be at work');
+  await page.until(
+    "document.getElementById('command').textContent.startsWith('vernier diagnose') && document.getElementById('job-state').dataset.state === 'running'",
+    'the diagnosis to be at work',
+  );
   await page.click('#cancel');
   await page.until("document.getElementById('job-state').dataset.state === 'cancelled'", 'the end of what was cancelled', 10);
   await page.click('#run-diagnose');
@@ -191,7 +256,10 @@ async function survey(page) {
   const wanted = json('diagnose', 'model.xml', 'survey.csv');
   assert.equal(await attribute(page, '#verdict', 'verdict'), wanted.verdict);
   const shown = await page.evaluate("[...document.querySelectorAll('#candidates tbody tr')].map((row) => row.dataset.add)");
-  assert.deepEqual(shown, wanted.candidates.map((one) => one.add));
+  assert.deepEqual(
+    shown,
+    wanted.candidates.map((one) => one.add),
+  );
   await page.evaluate("document.querySelector('#candidates tbody tr').focus()");
   assert.equal(await attribute(page, '#evidence', 'candidate'), wanted.candidates[0].add);
   assert.ok((await text(page, '#evidence')).includes(wanted.candidates[0].signature));
@@ -205,7 +273,11 @@ async function survey(page) {
   // The first step of the ladder, by the keyboard alone; then the second by its name.
   await page.evaluate("document.querySelector('#candidates .add-candidate').focus()");
   await page.key('Enter');
-  await page.until("document.querySelectorAll('#steps canvas').length === 1 && document.getElementById('machine').value === 'model-added-fitted.xml'", 'the effect to be added', 120);
+  await page.until(
+    "document.querySelectorAll('#steps canvas').length === 1 && document.getElementById('machine').value === 'model-added-fitted.xml'",
+    'the effect to be added',
+    120,
+  );
   near(await attribute(page, '#steps .tiles', 'rms'), json('fit', 'model-added.xml', 'survey.csv').rms_um, 'rms with the effect');
   await page.click('#show-catalogue');
   const known = json('effects').map((one) => one.id);
@@ -216,21 +288,34 @@ async function survey(page) {
   await page.click('#add-effect');
   await page.until("document.getElementById('machine').value === 'model-added-2-fitted.xml'", 'a wrong effect', 120);
   await page.click('#undo-step');
-  await page.until("document.getElementById('machine').value === 'model-added-fitted.xml' && document.querySelectorAll('#history .undone').length === 2", 'the step to be taken back');
+  await page.until(
+    "document.getElementById('machine').value === 'model-added-fitted.xml' && document.querySelectorAll('#history .undone').length === 2",
+    'the step to be taken back',
+  );
   assert.ok(!readFileSync(join(folder, 'history.sh'), 'utf8').includes('model-added-2'), 'what was undone is not replayed');
   await page.type('#effect', wanted.ladder[2].add);
   await page.click('#add-effect');
   await page.until("document.getElementById('machine').value === 'model-added-3-fitted.xml'", 'the second effect', 120);
   const last = await page.evaluate("document.getElementById('machine').value");
   const compared = json('compare', last, 'survey.csv');
-  await page.until(`Math.abs(Number(document.querySelector('#steps .tiles').dataset.checkRms) - ${compared.check_rms_um}) < 1e-3`, 'the last step to be drawn');
+  await page.until(
+    `Math.abs(Number(document.querySelector('#steps .tiles').dataset.checkRms) - ${compared.check_rms_um}) < 1e-3`,
+    'the last step to be drawn',
+  );
   // The fits start elsewhere than the ladder's, and what the data do not determine stays where it started: a few per cent.
-  assert.ok(compared.check_rms_um < 1.05 * wanted.ladder[2].check_rms_um, `held-out ${compared.check_rms_um}, the ladder promised ${wanted.ladder[2].check_rms_um}`);
+  assert.ok(
+    compared.check_rms_um < 1.05 * wanted.ladder[2].check_rms_um,
+    `held-out ${compared.check_rms_um}, the ladder promised ${wanted.ladder[2].check_rms_um}`,
+  );
   assert.ok(compared.check_rms_um < 0.45 * wanted.ladder[0].check_rms_um, 'the error has fallen');
   await picture(page, 'add');
   await tune(page, last);
   await checkCompare(page, last, 'survey.csv');
-  await bringToBoard(page, [['X', 0, 600], ['Y', 0, 400], ['Z', -300, 0]]);
+  await bringToBoard(page, [
+    ['X', 0, 600],
+    ['Y', 0, 400],
+    ['Z', -300, 0],
+  ]);
   // The script of the history does it all again, to the last byte.
   const again = join(top, 'again');
   execFileSync('mkdir', [again]);
@@ -258,8 +343,13 @@ async function tune(page, machine) {
 /** Files that mean harm: names and contents are text on the page, and nothing else. */
 async function hostile(page) {
   const evil = '<img src=x onerror=window.harmed=1>';
-  await page.drop([{ name: `${evil}.csv`, text: `X[mm],Y[mm],x[mm],run\n1,2,1.001,${evil}\n3,4,3.001,${evil}\n5,9,5.002,b\n` },
-    { name: 'm.xml', text: `<machine name="&lt;script&gt;window.harmed=1&lt;/script&gt;"><variables><static><k value="0" nominal="0" note="x"/></static><machineaxes><X/><Y/></machineaxes></variables><transforms><sixdof n="1" X="X+k" Y="Y"/></transforms></machine>` }]);
+  await page.drop([
+    { name: `${evil}.csv`, text: `X[mm],Y[mm],x[mm],run\n1,2,1.001,${evil}\n3,4,3.001,${evil}\n5,9,5.002,b\n` },
+    {
+      name: 'm.xml',
+      text: `<machine name="&lt;script&gt;window.harmed=1&lt;/script&gt;"><variables><static><k value="0" nominal="0" note="x"/></static><machineaxes><X/><Y/></machineaxes></variables><transforms><sixdof n="1" X="X+k" Y="Y"/></transforms></machine>`,
+    },
+  ]);
   await page.until(`document.getElementById('files').textContent.includes('onerror')`, 'the file with the hostile name');
   await view(page, 'compare');
   await page.until("document.getElementById('compare-figures')", 'the numbers of compare');
@@ -267,15 +357,20 @@ async function hostile(page) {
   await page.click('#run-diagnose');
   await page.until("document.getElementById('verdict') || document.querySelector('#view-diagnose .error')", 'an answer');
   await view(page, 'project');
-  await page.drop([{ name: 'bomb.xml', text: '<!DOCTYPE a [<!ENTITY b "bbbbbbbbbb"><!ENTITY c "&b;&b;&b;&b;&b;&b;">]><machine name="&c;">' },
-    { name: 'late.csv', text: 'X[mm]\n1\n' }]);
+  await page.drop([
+    { name: 'bomb.xml', text: '<!DOCTYPE a [<!ENTITY b "bbbbbbbbbb"><!ENTITY c "&b;&b;&b;&b;&b;&b;">]><machine name="&c;">' },
+    { name: 'late.csv', text: 'X[mm]\n1\n' },
+  ]);
   await page.until("document.querySelector('#drop-error .error')", 'the refusal');
   assert.equal(await page.evaluate('window.harmed ?? null'), null);
   assert.equal(await page.evaluate("document.querySelectorAll('img, iframe, object, main script').length"), 0);
   // Nothing was asked of any other host.
   const host = await page.evaluate('location.host');
-  assert.deepEqual((page.requests ?? []).filter((url) => /^(http|ws)/.test(url) && new URL(url).host !== host), []);
-  page.complaints = page.complaints.filter((one) => !/422/.test(one));  // the refusals that were asked for
+  assert.deepEqual(
+    (page.requests ?? []).filter((url) => /^(http|ws)/.test(url) && new URL(url).host !== host),
+    [],
+  );
+  page.complaints = page.complaints.filter((one) => !/422/.test(one)); // the refusals that were asked for
 }
 
 async function main() {
@@ -290,7 +385,10 @@ async function main() {
     await page.go(url);
     await page.until("document.body.dataset.ready === 'yes'", 'the page');
     await { ballbar, survey, hostile }[which](page);
-    assert.deepEqual(page.complaints.filter((one) => which !== 'ballbar' || !/422/.test(one)), []);
+    assert.deepEqual(
+      page.complaints.filter((one) => which !== 'ballbar' || !/422/.test(one)),
+      [],
+    );
     console.log(`journey: ${which} is as it should be`);
   } finally {
     await page.close();
@@ -304,6 +402,8 @@ try {
   process.exitCode = 1;
 } finally {
   for (const child of started) child.kill('SIGTERM');
-  await Promise.all(started.map((child) => child.exitCode !== null || child.signalCode !== null || new Promise((gone) => child.on('exit', gone))));
+  await Promise.all(
+    started.map((child) => child.exitCode !== null || child.signalCode !== null || new Promise((gone) => child.on('exit', gone))),
+  );
   rmSync(top, { recursive: true, force: true, maxRetries: 20 });
 }

@@ -2,6 +2,7 @@
 #include "tools/workbench/terms.h"
 
 #include "tests/unit/workbench/rig.h"
+#include "tools/model/machine_reader.h"
 #include "tools/workbench/dimensions.h"
 
 namespace vernier::terms_test {

@@ -5,8 +5,18 @@ import { GridComponent, LegendComponent, MarkLineComponent, PolarComponent, Titl
 import { CanvasRenderer } from 'echarts/renderers';
 import { el } from './dom.js';
 
-use([BarChart, LineChart, ScatterChart, GridComponent, LegendComponent, MarkLineComponent, PolarComponent, TitleComponent,
-  TooltipComponent, CanvasRenderer]);
+use([
+  BarChart,
+  LineChart,
+  ScatterChart,
+  GridComponent,
+  LegendComponent,
+  MarkLineComponent,
+  PolarComponent,
+  TitleComponent,
+  TooltipComponent,
+  CanvasRenderer,
+]);
 
 const charts = new Set();
 const dark = matchMedia('(prefers-color-scheme: dark)');
@@ -16,9 +26,17 @@ export function colours() {
   const style = getComputedStyle(document.documentElement);
   const colour = (name) => style.getPropertyValue(`--${name}`).trim();
   return {
-    ink: colour('ink'), soft: colour('soft'), line: colour('line'), panel: colour('panel'),
-    fit: colour('fit'), check: colour('check'), ccw: colour('ccw'), cw: colour('cw'), trend: colour('trend'),
-    accent: colour('accent'), accent2: colour('accent2'),
+    ink: colour('ink'),
+    soft: colour('soft'),
+    line: colour('line'),
+    panel: colour('panel'),
+    fit: colour('fit'),
+    check: colour('check'),
+    ccw: colour('ccw'),
+    cw: colour('cw'),
+    trend: colour('trend'),
+    accent: colour('accent'),
+    accent2: colour('accent2'),
   };
 }
 
@@ -37,18 +55,24 @@ export function chart(label, options) {
     }
   }
   charts.add(entry);
-  const near = new IntersectionObserver((seen) => {
-    if (seen.some((one) => one.isIntersecting)) {
-      near.disconnect();
-      draw(entry);
-    }
-  }, { rootMargin: '600px' });
+  const near = new IntersectionObserver(
+    (seen) => {
+      if (seen.some((one) => one.isIntersecting)) {
+        near.disconnect();
+        draw(entry);
+      }
+    },
+    { rootMargin: '600px' },
+  );
   near.observe(box);
   const { height } = options(1000);
   box.style.height = `${height}px`;
   box.redraw = () => draw(entry, true);
   box.options = () => options(box.clientWidth || 1000);
-  box.picture = () => { draw(entry); return entry.instance.getDataURL({ pixelRatio: 2, backgroundColor: colours().panel }); };
+  box.picture = () => {
+    draw(entry);
+    return entry.instance.getDataURL({ pixelRatio: 2, backgroundColor: colours().panel });
+  };
   return box;
 }
 
@@ -88,7 +112,14 @@ export function axisStyle(c) {
 }
 
 export function legendStyle(c) {
-  return { textStyle: { color: c.ink, fontSize: 12 }, inactiveColor: c.line, icon: 'roundRect', itemWidth: 18, itemHeight: 6, type: 'plain' };
+  return {
+    textStyle: { color: c.ink, fontSize: 12 },
+    inactiveColor: c.line,
+    icon: 'roundRect',
+    itemWidth: 18,
+    itemHeight: 6,
+    type: 'plain',
+  };
 }
 
 export function tooltipStyle(c) {

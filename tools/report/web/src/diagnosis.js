@@ -22,11 +22,22 @@ export function verdict(result) {
     items.push(um('rms with the first candidate', best.rms_after_um, true), um('… check rows', best.check_rms_after_um, true));
   }
   const second = typeof result.runner_up === 'string' ? result.runner_up : result.runner_up?.effect;
-  return [el('p', { class: `verdict ${result.verdict ?? ''}` }, words), result.explanation ? el('p', {}, result.explanation) : null,
-    tiles(items), second ? el('p', { class: 'note' }, `Runner-up: ${second}${Number.isFinite(result.runner_up?.score) ? `, score ${number(result.runner_up.score, 4)}` : ''}.`) : null];
+  return [
+    el('p', { class: `verdict ${result.verdict ?? ''}` }, words),
+    result.explanation ? el('p', {}, result.explanation) : null,
+    tiles(items),
+    second
+      ? el(
+          'p',
+          { class: 'note' },
+          `Runner-up: ${second}${Number.isFinite(result.runner_up?.score) ? `, score ${number(result.runner_up.score, 4)}` : ''}.`,
+        )
+      : null,
+  ];
 }
 
-const stepName = (step, i) => step.label ?? (step.effect ? `${i}. + ${step.effect}${step.axis ? ` of ${step.axis}` : ''}` : i === 0 ? 'model as given' : 'fitted');
+const stepName = (step, i) =>
+  step.label ?? (step.effect ? `${i}. + ${step.effect}${step.axis ? ` of ${step.axis}` : ''}` : i === 0 ? 'model as given' : 'fitted');
 
 /** The steps of a ladder, each with a label. */
 export const labelled = (result) => (result.ladder ?? []).map((step, i) => ({ ...step, label: stepName(step, i) }));
@@ -36,7 +47,10 @@ export function falling(result) {
   const steps = labelled(result);
   if (!steps.length) return null;
   const floor = steps.map((step) => step.noise_um).find(Number.isFinite) ?? result.noise_um;
-  return [ladder(steps, Number.isFinite(floor) ? floor : null), el('p', { class: 'note' }, 'Check rows are no part of any fit: only their fall is a gain.')];
+  return [
+    ladder(steps, Number.isFinite(floor) ? floor : null),
+    el('p', { class: 'note' }, 'Check rows are no part of any fit: only their fall is a gain.'),
+  ];
 }
 
 /** What each candidate would do alone. */
@@ -44,33 +58,77 @@ export function candidates(result) {
   const list = result.candidates ?? [];
   if (!list.length) return [el('p', {}, 'No candidate.')];
   const has = (key) => list.some((one) => one[key] !== undefined && one[key] !== null && one[key] !== '');
-  const place = (one) => [one.branch && one.branch !== 'tool' ? one.branch : null, one.transform ? `transform ${one.transform}` : null, one.dof].filter(Boolean).join(' ');
+  const place = (one) =>
+    [one.branch && one.branch !== 'tool' ? one.branch : null, one.transform ? `transform ${one.transform}` : null, one.dof]
+      .filter(Boolean)
+      .join(' ');
   const columns = [
-    ['effect', true, (one) => one.effect], ['axis', true, (one) => one.axis ?? ''], ['input', true, (one) => one.input ?? ''], ['where', true, place],
-    ['term', true, (one) => one.term ?? ''], ['rms after [µm]', false, (one) => number(one.rms_after_um, 4)], ['check rms after [µm]', false, (one) => number(one.check_rms_after_um, 4)],
-    ['share', false, (one) => (Number.isFinite(one.share) ? `${number(100 * one.share, 3)} %` : '–')], ['chance', false, (one) => number(one.p_value, 2)],
-    ...(has('score') ? [['score', false, (one) => number(one.score, 4)]] : []), ['cannot be told from', true, (one) => (one.confounded_with ?? []).join(', ')],
-    ...(has('why_not') ? [['why not', true, (one) => one.why_not ?? '']] : [])];
-  const values = (one) => (one.parameters ?? []).map((p) => (typeof p === 'string' ? p
-    : `${p.name} = ${number(p.value, 4)}${Number.isFinite(p.std) ? ` ± ${number(p.std, 2)}` : ''} ${p.unit ?? ''}`)).join('; ');
-  const detail = (one) => el('details', {}, el('summary', {}, `${one.effect}${one.axis ? ` of ${one.axis}` : ''}`), el('ul', {},
-    one.signature ? el('li', {}, `Signature: ${one.signature}`) : null, values(one) ? el('li', {}, `Fitted: ${values(one)}`) : null,
-    one.impostors?.length ? el('li', {}, `Known impostors: ${one.impostors.join(', ')}`) : null,
-    one.why_not ? el('li', {}, `Not named because: ${one.why_not}`) : null, one.add ? el('li', {}, 'vernier add ', el('code', {}, one.add)) : null));
-  return [table('Candidates, best first: what each would do alone', columns.map(([name, left]) => ({ name, left })), list.map((one) => columns.map(([, , text]) => text(one)))),
-    ...list.slice(0, 12).map(detail)];
+    ['effect', true, (one) => one.effect],
+    ['axis', true, (one) => one.axis ?? ''],
+    ['input', true, (one) => one.input ?? ''],
+    ['where', true, place],
+    ['term', true, (one) => one.term ?? ''],
+    ['rms after [µm]', false, (one) => number(one.rms_after_um, 4)],
+    ['check rms after [µm]', false, (one) => number(one.check_rms_after_um, 4)],
+    ['share', false, (one) => (Number.isFinite(one.share) ? `${number(100 * one.share, 3)} %` : '–')],
+    ['chance', false, (one) => number(one.p_value, 2)],
+    ...(has('score') ? [['score', false, (one) => number(one.score, 4)]] : []),
+    ['cannot be told from', true, (one) => (one.confounded_with ?? []).join(', ')],
+    ...(has('why_not') ? [['why not', true, (one) => one.why_not ?? '']] : []),
+  ];
+  const values = (one) =>
+    (one.parameters ?? [])
+      .map((p) =>
+        typeof p === 'string'
+          ? p
+          : `${p.name} = ${number(p.value, 4)}${Number.isFinite(p.std) ? ` ± ${number(p.std, 2)}` : ''} ${p.unit ?? ''}`,
+      )
+      .join('; ');
+  const detail = (one) =>
+    el(
+      'details',
+      {},
+      el('summary', {}, `${one.effect}${one.axis ? ` of ${one.axis}` : ''}`),
+      el(
+        'ul',
+        {},
+        one.signature ? el('li', {}, `Signature: ${one.signature}`) : null,
+        values(one) ? el('li', {}, `Fitted: ${values(one)}`) : null,
+        one.impostors?.length ? el('li', {}, `Known impostors: ${one.impostors.join(', ')}`) : null,
+        one.why_not ? el('li', {}, `Not named because: ${one.why_not}`) : null,
+        one.add ? el('li', {}, 'vernier add ', el('code', {}, one.add)) : null,
+      ),
+    );
+  return [
+    table(
+      'Candidates, best first: what each would do alone',
+      columns.map(([name, left]) => ({ name, left })),
+      list.map((one) => columns.map(([, , text]) => text(one))),
+    ),
+    ...list.slice(0, 12).map(detail),
+  ];
 }
 
 /** Texts, or objects with a sentence, as a list. */
 export function next(result) {
-  const list = (result.next_measurement ?? []).map((one) => (typeof one === 'string' ? one : one.sentence ?? JSON.stringify(one)));
-  return list.length ? el('ul', {}, list.map((text) => el('li', {}, text))) : null;
+  const list = (result.next_measurement ?? []).map((one) => (typeof one === 'string' ? one : (one.sentence ?? JSON.stringify(one))));
+  return list.length
+    ? el(
+        'ul',
+        {},
+        list.map((text) => el('li', {}, text)),
+      )
+    : null;
 }
 
 /** The same ladder in the simulated control loop. */
 export function simulated(result) {
   const s = result.simulation;
   if (!s) return null;
-  return tiles([um('rms without correction', s.rms_before_um, true), um('rms with correction', s.rms_after_um, true), um('largest with correction', s.max_after_um),
-    { label: 'ticks', value: number(s.ticks, 7) }]);
+  return tiles([
+    um('rms without correction', s.rms_before_um, true),
+    um('rms with correction', s.rms_after_um, true),
+    um('largest with correction', s.max_after_um),
+    { label: 'ticks', value: number(s.ticks, 7) },
+  ]);
 }

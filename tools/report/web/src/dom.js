@@ -27,22 +27,60 @@ export function section(root, title, ...children) {
 /** Table of texts; columns: [{name, left}] (left: text, else a right-aligned number). */
 export function table(caption, columns, rows) {
   const cell = (name, column, text) => el(name, { class: column.left ? 'text' : 'num', scope: name === 'th' ? 'col' : null }, text);
-  return el('div', { class: 'scroll', tabindex: '0', role: 'region', 'aria-label': caption },
-    el('table', {}, el('caption', {}, caption),
-      el('thead', {}, el('tr', {}, columns.map((column) => cell('th', column, column.name)))),
-      el('tbody', {}, rows.map((row) => el('tr', {}, row.map((text, i) => cell('td', columns[i], text)))))));
+  return el(
+    'div',
+    { class: 'scroll', tabindex: '0', role: 'region', 'aria-label': caption },
+    el(
+      'table',
+      {},
+      el('caption', {}, caption),
+      el(
+        'thead',
+        {},
+        el(
+          'tr',
+          {},
+          columns.map((column) => cell('th', column, column.name)),
+        ),
+      ),
+      el(
+        'tbody',
+        {},
+        rows.map((row) =>
+          el(
+            'tr',
+            {},
+            row.map((text, i) => cell('td', columns[i], text)),
+          ),
+        ),
+      ),
+    ),
+  );
 }
 
 /** Labelled numbers in a row of tiles: [{label, value, unit, hint}]. */
 export function tiles(items) {
-  return el('dl', { class: 'tiles' }, items.map((item) =>
-    el('div', { class: item.strong ? 'tile strong' : 'tile', title: item.hint },
-      el('dt', {}, item.label), el('dd', {}, item.value, item.unit && item.value !== '–' ? el('small', {}, ` ${item.unit}`) : null))));
+  return el(
+    'dl',
+    { class: 'tiles' },
+    items.map((item) =>
+      el(
+        'div',
+        { class: item.strong ? 'tile strong' : 'tile', title: item.hint },
+        el('dt', {}, item.label),
+        el('dd', {}, item.value, item.unit && item.value !== '–' ? el('small', {}, ` ${item.unit}`) : null),
+      ),
+    ),
+  );
 }
 
 /** A labelled choice; calls back with the value chosen. */
 export function choice(label, options, chosen, change) {
-  const select = el('select', {}, options.map(([value, text]) => el('option', { value, selected: value === chosen ? '' : null }, text)));
+  const select = el(
+    'select',
+    {},
+    options.map(([value, text]) => el('option', { value, selected: value === chosen ? '' : null }, text)),
+  );
   select.addEventListener('change', () => change(select.value));
   return el('label', { class: 'choice' }, `${label} `, select);
 }

@@ -3,8 +3,8 @@ import { axisStyle, chart, colours } from './chart.js';
 import { choice, el } from './dom.js';
 import { number } from './data.js';
 
-const kMostPoints = 8000;  // per cell; beyond it every n-th is drawn
-const kBins = 24;          // of the mean that is drawn over the points
+const kMostPoints = 8000; // per cell; beyond it every n-th is drawn
+const kBins = 24; // of the mean that is drawn over the points
 const kUnits = { rx: 'µrad', ry: 'µrad', rz: 'µrad' };
 export const unitOf = (kind) => kUnits[kind] ?? 'µm';
 
@@ -19,9 +19,11 @@ export function byKind(observations) {
 
 /** Columns that vary, and the names of those that do not. */
 function columnsOf(detail) {
-  const varying = [], constant = [];
+  const varying = [],
+    constant = [];
   detail.columns.forEach((column, i) => {
-    let low = Infinity, high = -Infinity;
+    let low = Infinity,
+      high = -Infinity;
     for (const value of detail.column_data[i]) {
       if (value < low) low = value;
       if (value > high) high = value;
@@ -42,7 +44,7 @@ function columnsOf(detail) {
 }
 
 // Points over a value that has few levels are spread a little, always in the same way.
-const spread = (i) => (((i * 2654435761) % 4294967296) / 4294967296 - 0.5);
+const spread = (i) => ((i * 2654435761) % 4294967296) / 4294967296 - 0.5;
 
 function pointsOf(column, group, detail, limit) {
   const { row, residual } = detail.observations;
@@ -64,7 +66,8 @@ function meanLine(column, group, detail) {
   const { row, residual } = detail.observations;
   const { levels } = column;
   const count = levels ? levels.length : kBins;
-  const sum = new Float64Array(count), n = new Uint32Array(count);
+  const sum = new Float64Array(count),
+    n = new Uint32Array(count);
   for (const i of group.index) {
     const x = column.values[row[i]];
     if (!Number.isFinite(x) || detail.row_check?.[row[i]]) continue;
@@ -79,35 +82,95 @@ function meanLine(column, group, detail) {
 function cellAxis(c, cell, column) {
   const margin = column.levels ? 0.15 * (column.high - column.low) : 0;
   const labels = column.labels;
-  return { ...axisStyle(c), gridIndex: cell, type: 'value', min: column.low - margin, max: column.high + margin,
-    name: `${column.name}${column.unit ? ` [${column.unit}]` : ''}`, nameLocation: 'middle', nameGap: 20, splitLine: { show: false }, splitNumber: 3,
-    axisLine: { ...axisStyle(c).axisLine, onZero: false }, axisTick: { ...axisStyle(c).axisTick, customValues: column.levels ?? undefined },
-    axisLabel: { ...axisStyle(c).axisLabel, fontSize: 10, showMinLabel: Boolean(column.levels), showMaxLabel: Boolean(column.levels), customValues: column.levels ?? undefined,
-      formatter: (value) => (labels ? labels[value] ?? '' : number(value, 4)) } };
+  return {
+    ...axisStyle(c),
+    gridIndex: cell,
+    type: 'value',
+    min: column.low - margin,
+    max: column.high + margin,
+    name: `${column.name}${column.unit ? ` [${column.unit}]` : ''}`,
+    nameLocation: 'middle',
+    nameGap: 20,
+    splitLine: { show: false },
+    splitNumber: 3,
+    axisLine: { ...axisStyle(c).axisLine, onZero: false },
+    axisTick: { ...axisStyle(c).axisTick, customValues: column.levels ?? undefined },
+    axisLabel: {
+      ...axisStyle(c).axisLabel,
+      fontSize: 10,
+      showMinLabel: Boolean(column.levels),
+      showMaxLabel: Boolean(column.levels),
+      customValues: column.levels ?? undefined,
+      formatter: (value) => (labels ? (labels[value] ?? '') : number(value, 4)),
+    },
+  };
 }
 
 function band(group, columns, detail, limit) {
   const label = `Residual of ${group.kind} in ${group.unit} against ${columns.map((column) => column.name).join(', ')}`;
   return chart(label, (width) => {
     const c = colours();
-    const left = 58, gap = 14, cellHeight = 128, rowHeight = cellHeight + 50;
+    const left = 58,
+      gap = 14,
+      cellHeight = 128,
+      rowHeight = cellHeight + 50;
     const across = Math.max(1, Math.min(columns.length, Math.floor((width - left) / 190)));
     const cellWidth = (width - left - 8 - gap * (across - 1)) / across;
     const option = { grid: [], xAxis: [], yAxis: [], series: [] };
     columns.forEach((column, cell) => {
-      const place = cell % across, line = Math.floor(cell / across);
-      option.grid.push({ left: left + place * (cellWidth + gap), top: 8 + line * rowHeight, width: cellWidth, height: cellHeight,
-        show: true, borderColor: c.line, backgroundColor: 'transparent' });
+      const place = cell % across,
+        line = Math.floor(cell / across);
+      option.grid.push({
+        left: left + place * (cellWidth + gap),
+        top: 8 + line * rowHeight,
+        width: cellWidth,
+        height: cellHeight,
+        show: true,
+        borderColor: c.line,
+        backgroundColor: 'transparent',
+      });
       option.xAxis.push(cellAxis(c, cell, column));
-      option.yAxis.push({ ...axisStyle(c), gridIndex: cell, type: 'value', min: -limit, max: limit, splitNumber: 4, interval: limit / 2, axisLine: { ...axisStyle(c).axisLine, onZero: false },
+      option.yAxis.push({
+        ...axisStyle(c),
+        gridIndex: cell,
+        type: 'value',
+        min: -limit,
+        max: limit,
+        splitNumber: 4,
+        interval: limit / 2,
+        axisLine: { ...axisStyle(c).axisLine, onZero: false },
         axisLabel: { ...axisStyle(c).axisLabel, show: place === 0, formatter: (value) => number(value, 3) },
-        name: place === 0 ? group.unit : '', nameLocation: 'middle', nameGap: 42, axisTick: { show: place === 0 } });
+        name: place === 0 ? group.unit : '',
+        nameLocation: 'middle',
+        nameGap: 42,
+        axisTick: { show: place === 0 },
+      });
       const points = pointsOf(column, group, detail, limit);
-      const dots = (data, color) => ({ type: 'scatter', xAxisIndex: cell, yAxisIndex: cell, data, symbolSize: 2.2, silent: true, large: true,
-        largeThreshold: 500, itemStyle: { color, opacity: 0.5 } });
+      const dots = (data, color) => ({
+        type: 'scatter',
+        xAxisIndex: cell,
+        yAxisIndex: cell,
+        data,
+        symbolSize: 2.2,
+        silent: true,
+        large: true,
+        largeThreshold: 500,
+        itemStyle: { color, opacity: 0.5 },
+      });
       option.series.push(dots(points.check, c.check), dots(points.fit, c.fit));
-      option.series.push({ type: 'line', xAxisIndex: cell, yAxisIndex: cell, data: meanLine(column, group, detail), silent: true, z: 5,
-        showSymbol: Boolean(column.levels), symbol: 'rect', symbolSize: [14, 3], itemStyle: { color: c.trend }, lineStyle: { color: c.trend, width: 2 } });
+      option.series.push({
+        type: 'line',
+        xAxisIndex: cell,
+        yAxisIndex: cell,
+        data: meanLine(column, group, detail),
+        silent: true,
+        z: 5,
+        showSymbol: Boolean(column.levels),
+        symbol: 'rect',
+        symbolSize: [14, 3],
+        itemStyle: { color: c.trend },
+        lineStyle: { color: c.trend, width: 2 },
+      });
     });
     return { height: Math.ceil(columns.length / across) * rowHeight + 12, option };
   });
@@ -115,13 +178,23 @@ function band(group, columns, detail, limit) {
 
 function sentences(findings, kind) {
   const own = (findings ?? []).filter((one) => one.observation === kind);
-  return own.length ? el('ul', { class: 'note' }, own.map((one) => el('li', {}, one.sentence))) : null;
+  return own.length
+    ? el(
+        'ul',
+        { class: 'note' },
+        own.map((one) => el('li', {}, one.sentence)),
+      )
+    : null;
 }
 
 function limitOf(groups, unit, detail, scale) {
   const { row, residual } = detail.observations;
-  const sizes = groups.filter((group) => group.unit === unit).flatMap((group) => group.index)
-    .filter((i) => scale !== 'fit' || !detail.row_check?.[row[i]]).map((i) => Math.abs(residual[i])).sort((p, q) => p - q);
+  const sizes = groups
+    .filter((group) => group.unit === unit)
+    .flatMap((group) => group.index)
+    .filter((i) => scale !== 'fit' || !detail.row_check?.[row[i]])
+    .map((i) => Math.abs(residual[i]))
+    .sort((p, q) => p - q);
   const at = scale === '0.99' ? Math.floor(0.99 * sizes.length) : sizes.length - 1;
   const size = sizes[Math.max(0, Math.min(sizes.length - 1, at))] || 1;
   const digit = 10 ** Math.floor(Math.log10(size));
@@ -134,20 +207,49 @@ export function residualMatrix(detail, findings = []) {
   const { varying, constant } = columnsOf(detail);
   if (groups.length === 0 || varying.length === 0) return [el('p', {}, 'No observation to draw.')];
   const host = el('div');
-  const fill = (scale) => host.replaceChildren(...groups.flatMap((group) => [
-    el('h3', {}, `Residual of ${group.kind}`, el('small', {}, ` ${group.unit}, measured − model, ${group.index.length} observations`)),
-    sentences(findings, group.kind),
-    band(group, varying, detail, limitOf(groups, group.unit, detail, scale))].filter(Boolean)));
+  const fill = (scale) =>
+    host.replaceChildren(
+      ...groups.flatMap((group) =>
+        [
+          el(
+            'h3',
+            {},
+            `Residual of ${group.kind}`,
+            el('small', {}, ` ${group.unit}, measured − model, ${group.index.length} observations`),
+          ),
+          sentences(findings, group.kind),
+          band(group, varying, detail, limitOf(groups, group.unit, detail, scale)),
+        ].filter(Boolean),
+      ),
+    );
   fill('1');
   const most = Math.max(...groups.map((group) => group.index.length));
   const stride = Math.ceil(most / kMostPoints);
   return [
-    el('div', { class: 'controls' },
-      choice('Scale', [['1', 'largest residual'], ['fit', 'largest residual of the fit rows (others at the edge)'], ['0.99', '99 % of the residuals (others at the edge)']], '1', fill),
-      el('span', { class: 'key' }, el('i', { class: 'dot fit' }), 'fit rows'), el('span', { class: 'key' }, el('i', { class: 'dot check' }), 'check rows'),
-      el('span', { class: 'key' }, el('i', { class: 'dash' }), `mean of the fit rows in ${kBins} bins`)),
+    el(
+      'div',
+      { class: 'controls' },
+      choice(
+        'Scale',
+        [
+          ['1', 'largest residual'],
+          ['fit', 'largest residual of the fit rows (others at the edge)'],
+          ['0.99', '99 % of the residuals (others at the edge)'],
+        ],
+        '1',
+        fill,
+      ),
+      el('span', { class: 'key' }, el('i', { class: 'dot fit' }), 'fit rows'),
+      el('span', { class: 'key' }, el('i', { class: 'dot check' }), 'check rows'),
+      el('span', { class: 'key' }, el('i', { class: 'dash' }), `mean of the fit rows in ${kBins} bins`),
+    ),
     host,
-    el('p', { class: 'note' }, 'One scale for all plots of a unit: what leans, bends or splits in a plot is what the model does not know.',
+    el(
+      'p',
+      { class: 'note' },
+      'One scale for all plots of a unit: what leans, bends or splits in a plot is what the model does not know.',
       constant.length ? ` Constant, so not drawn: ${constant.join(', ')}.` : '',
-      stride > 1 ? ` Of long kinds every n-th observation is drawn (n = ${stride}).` : '')];
+      stride > 1 ? ` Of long kinds every n-th observation is drawn (n = ${stride}).` : '',
+    ),
+  ];
 }

@@ -23,17 +23,55 @@ export function histogram(detail, unit) {
   };
   const plot = chart(`Histogram of the residuals in ${unit}`, () => {
     const c = colours();
-    const series = [{ name: 'fit rows', type: 'bar', data: share(values.fit), barWidth: '96%', barGap: '-100%', itemStyle: { color: c.fit, opacity: 0.55 } }];
+    const series = [
+      {
+        name: 'fit rows',
+        type: 'bar',
+        data: share(values.fit),
+        barWidth: '96%',
+        barGap: '-100%',
+        itemStyle: { color: c.fit, opacity: 0.55 },
+      },
+    ];
     if (values.check.length) {
-      series.push({ name: 'check rows', type: 'line', step: 'middle', data: share(values.check), showSymbol: false, itemStyle: { color: c.check },
-        lineStyle: { color: c.check, width: 2 } });
+      series.push({
+        name: 'check rows',
+        type: 'line',
+        step: 'middle',
+        data: share(values.check),
+        showSymbol: false,
+        itemStyle: { color: c.check },
+        lineStyle: { color: c.check, width: 2 },
+      });
     }
-    return { height: 260, option: {
-      legend: { ...legendStyle(c), top: 0, right: 8 }, tooltip: { ...tooltipStyle(c), trigger: 'axis', valueFormatter: (value) => `${number(value, 3)} %` },
-      grid: { left: 58, right: 16, top: 30, bottom: 46 },
-      xAxis: { ...axisStyle(c), type: 'value', min: -limit, max: limit, name: `residual [${unit}]`, nameLocation: 'middle', nameGap: 28, splitLine: { show: false },
-        axisLabel: { ...axisStyle(c).axisLabel, showMinLabel: false, showMaxLabel: false, formatter: (value) => number(value, 3) } },
-      yAxis: { ...axisStyle(c), type: 'value', axisLine: { show: false, onZero: false }, name: 'share of rows [%]', nameLocation: 'middle', nameGap: 38 }, series } };
+    return {
+      height: 260,
+      option: {
+        legend: { ...legendStyle(c), top: 0, right: 8 },
+        tooltip: { ...tooltipStyle(c), trigger: 'axis', valueFormatter: (value) => `${number(value, 3)} %` },
+        grid: { left: 58, right: 16, top: 30, bottom: 46 },
+        xAxis: {
+          ...axisStyle(c),
+          type: 'value',
+          min: -limit,
+          max: limit,
+          name: `residual [${unit}]`,
+          nameLocation: 'middle',
+          nameGap: 28,
+          splitLine: { show: false },
+          axisLabel: { ...axisStyle(c).axisLabel, showMinLabel: false, showMaxLabel: false, formatter: (value) => number(value, 3) },
+        },
+        yAxis: {
+          ...axisStyle(c),
+          type: 'value',
+          axisLine: { show: false, onZero: false },
+          name: 'share of rows [%]',
+          nameLocation: 'middle',
+          nameGap: 38,
+        },
+        series,
+      },
+    };
   });
   return el('figure', {}, plot);
 }
@@ -47,36 +85,98 @@ export function ladder(steps, noise = null) {
 export function ladderOptions(steps, noise = null) {
   return () => {
     const c = colours();
-    const bar = (name, key, color) => ({ name, type: 'bar', data: steps.map((step) => step[key] ?? null), barMaxWidth: 26, itemStyle: { color },
-      label: { show: true, position: 'right', color: c.ink, fontSize: 12, formatter: ({ value }) => number(value, 3) } });
+    const bar = (name, key, color) => ({
+      name,
+      type: 'bar',
+      data: steps.map((step) => step[key] ?? null),
+      barMaxWidth: 26,
+      itemStyle: { color },
+      label: { show: true, position: 'right', color: c.ink, fontSize: 12, formatter: ({ value }) => number(value, 3) },
+    });
     const series = [bar('fit rows', 'rms_um', c.fit)];
-    if (steps.some((step) => Number.isFinite(step.check_rms_um))) series.push(bar('check rows (not seen by the fit)', 'check_rms_um', c.check));
+    if (steps.some((step) => Number.isFinite(step.check_rms_um)))
+      series.push(bar('check rows (not seen by the fit)', 'check_rms_um', c.check));
     if (noise !== null) {
-      series[0].markLine = { silent: true, symbol: 'none', data: [{ xAxis: noise }], lineStyle: { color: c.trend, type: 'dashed', width: 1.5 },
-        label: { formatter: `noise ${number(noise, 3)} µm`, color: c.ink, position: 'start', distance: 2 } };
+      series[0].markLine = {
+        silent: true,
+        symbol: 'none',
+        data: [{ xAxis: noise }],
+        lineStyle: { color: c.trend, type: 'dashed', width: 1.5 },
+        label: { formatter: `noise ${number(noise, 3)} µm`, color: c.ink, position: 'start', distance: 2 },
+      };
     }
-    return { height: 90 + 58 * steps.length, option: {
-      legend: { ...legendStyle(c), top: 0, left: 0 }, tooltip: { ...tooltipStyle(c), trigger: 'axis', axisPointer: { type: 'shadow' }, valueFormatter: (value) => `${number(value, 4)} µm` },
-      grid: { left: 10, right: 60, top: 34, bottom: noise === null ? 44 : 62, containLabel: true },
-      xAxis: { ...axisStyle(c), type: 'value', min: 0, name: 'rms [µm]', nameLocation: 'middle', nameGap: noise === null ? 28 : 46 },
-      yAxis: { ...axisStyle(c), type: 'category', inverse: true, data: steps.map((step) => step.label), splitLine: { show: false },
-        axisLabel: { color: c.ink, fontSize: 13, width: 300, overflow: 'break' } }, series } };
+    return {
+      height: 90 + 58 * steps.length,
+      option: {
+        legend: { ...legendStyle(c), top: 0, left: 0 },
+        tooltip: {
+          ...tooltipStyle(c),
+          trigger: 'axis',
+          axisPointer: { type: 'shadow' },
+          valueFormatter: (value) => `${number(value, 4)} µm`,
+        },
+        grid: { left: 10, right: 60, top: 34, bottom: noise === null ? 44 : 62, containLabel: true },
+        xAxis: { ...axisStyle(c), type: 'value', min: 0, name: 'rms [µm]', nameLocation: 'middle', nameGap: noise === null ? 28 : 46 },
+        yAxis: {
+          ...axisStyle(c),
+          type: 'category',
+          inverse: true,
+          data: steps.map((step) => step.label),
+          splitLine: { show: false },
+          axisLabel: { color: c.ink, fontSize: 13, width: 300, overflow: 'break' },
+        },
+        series,
+      },
+    };
   };
 }
 
 /** Curves over one quantity: {x: {name, unit, values}, y: [{name, unit, values}], bars, log}. */
 export function curves(plotted) {
   const name = (one) => `${one.name}${one.unit ? ` [${one.unit}]` : ''}`;
-  return el('figure', {}, chart(`${plotted.y.map(name).join(', ')} against ${name(plotted.x)}`, () => {
-    const c = colours();
-    const palette = [c.fit, c.check, c.ccw, c.cw];
-    const series = plotted.y.map((one, i) => ({ name: one.name, type: plotted.bars ? 'bar' : 'line', showSymbol: false, sampling: 'lttb',
-      data: Array.from(plotted.x.values, (x, k) => [x, one.values[k]]), itemStyle: { color: palette[i % 4] }, lineStyle: { color: palette[i % 4], width: 1.5 } }));
-    const unit = plotted.y[0].unit ? ` [${plotted.y[0].unit}]` : '';
-    return { height: 300, option: {
-      legend: { ...legendStyle(c), top: 0, right: 8 }, tooltip: { ...tooltipStyle(c), trigger: 'axis', valueFormatter: (value) => number(value, 4) },
-      grid: { left: 66, right: 20, top: 34, bottom: 48 },
-      xAxis: { ...axisStyle(c), type: plotted.log ? 'log' : 'value', scale: true, name: name(plotted.x), nameLocation: 'middle', nameGap: 28, splitLine: { show: false } },
-      yAxis: { ...axisStyle(c), type: 'value', scale: true, name: plotted.y.length === 1 ? name(plotted.y[0]) : `value${unit}`, nameLocation: 'middle', nameGap: 48 }, series } };
-  }), plotted.caption ? el('figcaption', {}, plotted.caption) : null);
+  return el(
+    'figure',
+    {},
+    chart(`${plotted.y.map(name).join(', ')} against ${name(plotted.x)}`, () => {
+      const c = colours();
+      const palette = [c.fit, c.check, c.ccw, c.cw];
+      const series = plotted.y.map((one, i) => ({
+        name: one.name,
+        type: plotted.bars ? 'bar' : 'line',
+        showSymbol: false,
+        sampling: 'lttb',
+        data: Array.from(plotted.x.values, (x, k) => [x, one.values[k]]),
+        itemStyle: { color: palette[i % 4] },
+        lineStyle: { color: palette[i % 4], width: 1.5 },
+      }));
+      const unit = plotted.y[0].unit ? ` [${plotted.y[0].unit}]` : '';
+      return {
+        height: 300,
+        option: {
+          legend: { ...legendStyle(c), top: 0, right: 8 },
+          tooltip: { ...tooltipStyle(c), trigger: 'axis', valueFormatter: (value) => number(value, 4) },
+          grid: { left: 66, right: 20, top: 34, bottom: 48 },
+          xAxis: {
+            ...axisStyle(c),
+            type: plotted.log ? 'log' : 'value',
+            scale: true,
+            name: name(plotted.x),
+            nameLocation: 'middle',
+            nameGap: 28,
+            splitLine: { show: false },
+          },
+          yAxis: {
+            ...axisStyle(c),
+            type: 'value',
+            scale: true,
+            name: plotted.y.length === 1 ? name(plotted.y[0]) : `value${unit}`,
+            nameLocation: 'middle',
+            nameGap: 48,
+          },
+          series,
+        },
+      };
+    }),
+    plotted.caption ? el('figcaption', {}, plotted.caption) : null,
+  );
 }

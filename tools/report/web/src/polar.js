@@ -4,7 +4,8 @@ import { choice, el, table } from './dom.js';
 import { fixed, number } from './data.js';
 
 // From the centre of the plot to the nominal circle, and from there outwards, in divisions.
-const kInside = 5, kOutside = 3;
+const kInside = 5,
+  kOutside = 3;
 const kSteps = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000];
 
 // Of the fit rows, which decide the scale at first.
@@ -38,8 +39,18 @@ function series(run, least, c) {
   const line = (name, values, check, width, type, opacity, z) => {
     const data = values ? track(run, values, check, least) : [];
     if (data.length === 0) return null;
-    return { name, type: 'line', coordinateSystem: 'polar', data, showSymbol: false, connectNulls: false, silent: true, z,
-      itemStyle: { color: colour }, lineStyle: { color: colour, width, type, opacity } };
+    return {
+      name,
+      type: 'line',
+      coordinateSystem: 'polar',
+      data,
+      showSymbol: false,
+      connectNulls: false,
+      silent: true,
+      z,
+      itemStyle: { color: colour },
+      lineStyle: { color: colour, width, type, opacity },
+    };
   };
   return [
     line(`${run.label} measured`, run.measured_um, false, 1.2, 'solid', 0.75, 2),
@@ -60,32 +71,95 @@ export function polarPlot(circle) {
     const c = colours();
     const height = Math.min(640, Math.max(420, width));
     const all = circle.runs.flatMap((run) => series(run, -kInside * step, c)).filter((one) => withCheck || !one.name.includes(' check '));
-    const zero = { name: 'nominal circle', type: 'line', coordinateSystem: 'polar', showSymbol: false, silent: true, z: 5,
-      data: Array.from({ length: 181 }, (_, i) => [0, i * 2]), itemStyle: { color: c.ink }, lineStyle: { color: c.ink, width: 1.6, type: 'dashed' } };
+    const zero = {
+      name: 'nominal circle',
+      type: 'line',
+      coordinateSystem: 'polar',
+      showSymbol: false,
+      silent: true,
+      z: 5,
+      data: Array.from({ length: 181 }, (_, i) => [0, i * 2]),
+      itemStyle: { color: c.ink },
+      lineStyle: { color: c.ink, width: 1.6, type: 'dashed' },
+    };
     return {
       height,
       option: {
         legend: { ...legendStyle(c), bottom: 0, data: [...all.map((one) => one.name), zero.name] },
         polar: { radius: Math.min(width, height - 70) / 2 - 34, center: ['50%', (height - 60) / 2 + 4] },
-        angleAxis: { ...axisStyle(c), type: 'value', min: 0, max: 360, interval: 30, startAngle: 0, clockwise: false,
-          axisLabel: { color: c.ink, fontSize: 12, hideOverlap: false,
-            formatter: (deg) => ({ 0: `0° +${a}`, 90: `90° +${b}`, 180: `180° −${a}`, 270: `270° −${b}`, 360: '' })[deg] ?? `${deg}°` } },
-        radiusAxis: { ...axisStyle(c), type: 'value', min: -kInside * step, max: kOutside * step, interval: step,
-          axisLine: { show: false }, axisTick: { show: false }, z: 10,
-          axisLabel: { color: c.ink, fontSize: 11, rotate: 0, textBorderColor: c.panel, textBorderWidth: 3,
-            formatter: (um) => (Math.round(um / step) % 2 !== 0 ? '' : `${um > 0 ? '+' : ''}${number(um)}`) } },
+        angleAxis: {
+          ...axisStyle(c),
+          type: 'value',
+          min: 0,
+          max: 360,
+          interval: 30,
+          startAngle: 0,
+          clockwise: false,
+          axisLabel: {
+            color: c.ink,
+            fontSize: 12,
+            hideOverlap: false,
+            formatter: (deg) => ({ 0: `0° +${a}`, 90: `90° +${b}`, 180: `180° −${a}`, 270: `270° −${b}`, 360: '' })[deg] ?? `${deg}°`,
+          },
+        },
+        radiusAxis: {
+          ...axisStyle(c),
+          type: 'value',
+          min: -kInside * step,
+          max: kOutside * step,
+          interval: step,
+          axisLine: { show: false },
+          axisTick: { show: false },
+          z: 10,
+          axisLabel: {
+            color: c.ink,
+            fontSize: 11,
+            rotate: 0,
+            textBorderColor: c.panel,
+            textBorderWidth: 3,
+            formatter: (um) => (Math.round(um / step) % 2 !== 0 ? '' : `${um > 0 ? '+' : ''}${number(um)}`),
+          },
+        },
         series: [...all, zero],
       },
     };
   });
   const choices = kSteps.map((one) => [String(one), `${one} µm per division (${magnification(one)}×)`]);
   const hasCheck = circle.runs.some((run) => Array.from(run.check ?? []).some(Boolean));
-  const controls = el('div', { class: 'controls' },
-    choice('Magnification', choices, String(step), (value) => { step = Number(value); plot.redraw(); }),
-    hasCheck ? choice('Check rows', [['no', 'hidden'], ['yes', 'shown']], 'no', (value) => { withCheck = value === 'yes'; plot.redraw(); }) : null);
-  return el('figure', {}, controls, plot,
-    el('figcaption', {}, `Radial deviation in µm about the nominal circle of ${number(circle.nominal_radius_mm, 7)} mm `
-      + '(dashed); thin: measured, thick: model. Angles from the first axis towards the second.'));
+  const controls = el(
+    'div',
+    { class: 'controls' },
+    choice('Magnification', choices, String(step), (value) => {
+      step = Number(value);
+      plot.redraw();
+    }),
+    hasCheck
+      ? choice(
+          'Check rows',
+          [
+            ['no', 'hidden'],
+            ['yes', 'shown'],
+          ],
+          'no',
+          (value) => {
+            withCheck = value === 'yes';
+            plot.redraw();
+          },
+        )
+      : null,
+  );
+  return el(
+    'figure',
+    {},
+    controls,
+    plot,
+    el(
+      'figcaption',
+      {},
+      `Radial deviation in µm about the nominal circle of ${number(circle.nominal_radius_mm, 7)} mm ` +
+        '(dashed); thin: measured, thick: model. Angles from the first axis towards the second.',
+    ),
+  );
 }
 
 /** ISO 230-4 numbers of one circle. */

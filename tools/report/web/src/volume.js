@@ -4,7 +4,13 @@ import { choice, el } from './dom.js';
 import { number } from './data.js';
 
 // Dark to light through green, readable on light and dark paper alike.
-const kStops = [[59, 82, 139], [33, 145, 140], [94, 201, 98], [243, 176, 26], [220, 68, 44]];
+const kStops = [
+  [59, 82, 139],
+  [33, 145, 140],
+  [94, 201, 98],
+  [243, 176, 26],
+  [220, 68, 44],
+];
 
 function shade(share) {
   const at = Math.min(0.9999, Math.max(0, share)) * (kStops.length - 1);
@@ -88,8 +94,12 @@ function drawRing(pen, at, radius, colour) {
 export function volume(field) {
   const box = frame(field.point_mm);
   const view = { turn: -0.62, tilt: 0.42, zoom: 1, gain: 1, layer: 'all', only: 'all' };
-  const canvas = el('canvas', { tabindex: '0', role: 'img', style: 'width:100%;touch-action:none;cursor:grab;display:block',
-    'aria-label': `Deviation vectors at ${field.point_mm.length} points, at most ${number(field.max_um, 4)} µm` });
+  const canvas = el('canvas', {
+    tabindex: '0',
+    role: 'img',
+    style: 'width:100%;touch-action:none;cursor:grab;display:block',
+    'aria-label': `Deviation vectors at ${field.point_mm.length} points, at most ${number(field.max_um, 4)} µm`,
+  });
   const size = { width: 0, height: 0 };
   const project = ([x, y, z]) => {
     const [dx, dy, dz] = [x - box.middle[0], y - box.middle[1], z - box.middle[2]];
@@ -118,8 +128,12 @@ export function volume(field) {
     drawAxes(pen, project, box, c);
     const longest = field.max_um > 0 ? (view.gain * 0.16 * box.reach) / field.max_um : 0;
     const keep = (v) => (view.only === 'all' ? v : v.map((one, k) => (k === Number(view.only) ? one : 0)));
-    const nodes = shown().map((i) => ({ from: project(field.point_mm[i]), point: field.point_mm[i], v: keep(field.deviation_um[i]),
-      std: field.std_um?.[i] ?? 0 }));
+    const nodes = shown().map((i) => ({
+      from: project(field.point_mm[i]),
+      point: field.point_mm[i],
+      v: keep(field.deviation_um[i]),
+      std: field.std_um?.[i] ?? 0,
+    }));
     nodes.sort((a, b) => b.from[2] - a.from[2]);
     for (const { from, point, v, std } of nodes) {
       const to = project(point.map((one, k) => one + longest * v[k]));
@@ -137,14 +151,21 @@ export function volume(field) {
     draw();
   }
   let held = null;
-  canvas.addEventListener('pointerdown', (event) => { held = [event.clientX, event.clientY]; canvas.setPointerCapture(event.pointerId); });
+  canvas.addEventListener('pointerdown', (event) => {
+    held = [event.clientX, event.clientY];
+    canvas.setPointerCapture(event.pointerId);
+  });
   canvas.addEventListener('pointermove', (event) => {
     if (held === null) return;
     turn(event.clientX - held[0], event.clientY - held[1]);
     held = [event.clientX, event.clientY];
   });
-  canvas.addEventListener('pointerup', () => { held = null; });
-  canvas.addEventListener('pointercancel', () => { held = null; });
+  canvas.addEventListener('pointerup', () => {
+    held = null;
+  });
+  canvas.addEventListener('pointercancel', () => {
+    held = null;
+  });
   canvas.addEventListener('keydown', (event) => {
     const step = { ArrowLeft: [-12, 0], ArrowRight: [12, 0], ArrowUp: [0, -12], ArrowDown: [0, 12] }[event.key];
     if (step === undefined) return;
@@ -153,17 +174,45 @@ export function volume(field) {
   });
   const layers = [['all', 'whole volume']];
   field.axes.forEach((name, k) => {
-    for (let i = 0; field.axes.length > 1 && i < field.counts[k]; ++i) layers.push([`${k}:${i}`, `${name}: layer ${i + 1} of ${field.counts[k]}`]);
+    for (let i = 0; field.axes.length > 1 && i < field.counts[k]; ++i)
+      layers.push([`${k}:${i}`, `${name}: layer ${i + 1} of ${field.counts[k]}`]);
   });
-  const set = (key) => (value) => { view[key] = value; draw(); };
+  const set = (key) => (value) => {
+    view[key] = value;
+    draw();
+  };
   const steps = (list) => list.map((one) => [String(one), `× ${one}`]);
-  const legend = el('div', { class: 'key' }, '0', el('span', { style: `width:140px;height:10px;border-radius:3px;background:linear-gradient(90deg,${
-    kStops.map((_, i) => shade(i / (kStops.length - 1))).join(',')})` }), `${number(field.max_um, 4)} µm`,
-  field.std_um ? el('span', {}, `grey, ringed: not known to half of itself (worst ${number(field.max_std_um, 3)} µm)`) : null);
-  const controls = el('div', { class: 'controls' }, choice('show', layers, 'all', set('layer')),
-    choice('component', [['all', 'all'], ['0', 'x'], ['1', 'y'], ['2', 'z']], 'all', set('only')),
+  const legend = el(
+    'div',
+    { class: 'key' },
+    '0',
+    el('span', {
+      style: `width:140px;height:10px;border-radius:3px;background:linear-gradient(90deg,${kStops
+        .map((_, i) => shade(i / (kStops.length - 1)))
+        .join(',')})`,
+    }),
+    `${number(field.max_um, 4)} µm`,
+    field.std_um ? el('span', {}, `grey, ringed: not known to half of itself (worst ${number(field.max_std_um, 3)} µm)`) : null,
+  );
+  const controls = el(
+    'div',
+    { class: 'controls' },
+    choice('show', layers, 'all', set('layer')),
+    choice(
+      'component',
+      [
+        ['all', 'all'],
+        ['0', 'x'],
+        ['1', 'y'],
+        ['2', 'z'],
+      ],
+      'all',
+      set('only'),
+    ),
     choice('arrows', steps([0.5, 1, 2, 4, 8]), '1', (value) => set('gain')(Number(value))),
-    choice('zoom', steps([0.75, 1, 1.5, 2, 3]), '1', (value) => set('zoom')(Number(value))), legend);
+    choice('zoom', steps([0.75, 1, 1.5, 2, 3]), '1', (value) => set('zoom')(Number(value))),
+    legend,
+  );
   new ResizeObserver(draw).observe(canvas.parentElement ?? document.documentElement);
   matchMedia('(prefers-color-scheme: dark)').addEventListener('change', draw);
   requestAnimationFrame(draw);

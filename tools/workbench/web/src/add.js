@@ -46,37 +46,63 @@ export async function addEffect(effect, error) {
 /** Before and after, on fit and on held-out rows; the last step can be taken back. */
 function stepsPanel() {
   const box = el('div', { id: 'steps' });
-  const undo = button('Take the last step back', async () => {
-    const last = steps.pop();
-    for (const name of [last.machine, last.machine.replace(/-fitted(-\d+)?\.xml$/, '.xml')]) {
-      const entry = [...store.history].reverse().find((one) => !one.undone);
-      if (!entry?.outputs?.includes(name)) continue;
-      await postJson('/api/history', { do: 'undo' });
-      await refresh();
-    }
-    emit('steps');
-    if (steps.length) await choose(steps.at(-1).machine, store.measurements);
-  }, { class: 'quiet', id: 'undo-step' });
+  const undo = button(
+    'Take the last step back',
+    async () => {
+      const last = steps.pop();
+      for (const name of [last.machine, last.machine.replace(/-fitted(-\d+)?\.xml$/, '.xml')]) {
+        const entry = [...store.history].reverse().find((one) => !one.undone);
+        if (!entry?.outputs?.includes(name)) continue;
+        await postJson('/api/history', { do: 'undo' });
+        await refresh();
+      }
+      emit('steps');
+      if (steps.length) await choose(steps.at(-1).machine, store.measurements);
+    },
+    { class: 'quiet', id: 'undo-step' },
+  );
   const draw = () => {
     undo.disabled = steps.length < 2;
     const last = steps.at(-1);
     const um = (label, value) => ({ label, value: number(value, 4), unit: 'µm', strong: true });
-    const figures = last ? tiles([um('rms, fit rows', last.rms_um), um('rms, held-out rows', last.check_rms_um), um('noise', last.noise_um)]) : null;
+    const figures = last
+      ? tiles([um('rms, fit rows', last.rms_um), um('rms, held-out rows', last.check_rms_um), um('noise', last.noise_um)])
+      : null;
     if (figures) Object.assign(figures.dataset, { rms: last.rms_um, checkRms: last.check_rms_um });
-    box.replaceChildren(...(last ? [fallingFigure(steps, last.noise_um), figures] : [el('p', { class: 'note' }, 'Fit the model, then add what a diagnosis names, or a term of your own.')]));
+    box.replaceChildren(
+      ...(last
+        ? [fallingFigure(steps, last.noise_um), figures]
+        : [el('p', { class: 'note' }, 'Fit the model, then add what a diagnosis names, or a term of your own.')]),
+    );
     redrawAll();
   };
   on('steps', draw);
   draw();
-  return panel('Watch the error fall', box, el('div', { class: 'controls' }, undo, el('a', { href: fileAddress('history.sh'), download: 'history.sh' }, 'history.sh'),
-    el('span', { class: 'note' }, 'does all of this again')));
+  return panel(
+    'Watch the error fall',
+    box,
+    el(
+      'div',
+      { class: 'controls' },
+      undo,
+      el('a', { href: fileAddress('history.sh'), download: 'history.sh' }, 'history.sh'),
+      el('span', { class: 'note' }, 'does all of this again'),
+    ),
+  );
 }
 
 /** One parameter at a time by hand: the residual follows while the slider moves. */
 function sliderPanel(error) {
-  let parameters = [], chosen = null, busy = false, waiting = false, base = null;
-  const select = el('select', { id: 'parameter', 'aria-label': 'parameter' }), slider = el('input', { type: 'range', min: '-1', max: '1', step: '0.002', value: '0', id: 'slider', 'aria-label': 'value' });
-  const value = el('output', { id: 'slider-value' }), numbers = el('span', { id: 'slider-figures', class: 'note' }), span = el('select', { 'aria-label': 'range' });
+  let parameters = [],
+    chosen = null,
+    busy = false,
+    waiting = false,
+    base = null;
+  const select = el('select', { id: 'parameter', 'aria-label': 'parameter' }),
+    slider = el('input', { type: 'range', min: '-1', max: '1', step: '0.002', value: '0', id: 'slider', 'aria-label': 'value' });
+  const value = el('output', { id: 'slider-value' }),
+    numbers = el('span', { id: 'slider-figures', class: 'note' }),
+    span = el('select', { 'aria-label': 'range' });
   const box = el('div', {});
   let plot = null;
   const spans = [1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1, 1, 10];
@@ -85,7 +111,10 @@ function sliderPanel(error) {
   async function follow() {
     if (!chosen || !store.rows) return;
     value.textContent = `${number(now(), 7)} ${chosen.unit}`;
-    if (busy) { waiting = true; return; }
+    if (busy) {
+      waiting = true;
+      return;
+    }
     busy = true;
     const start = performance.now();
     try {
@@ -96,7 +125,10 @@ function sliderPanel(error) {
       redrawAll();
     } finally {
       busy = false;
-      if (waiting) { waiting = false; follow(); }
+      if (waiting) {
+        waiting = false;
+        follow();
+      }
     }
   }
   const pick = (name) => {
@@ -110,28 +142,63 @@ function sliderPanel(error) {
   select.addEventListener('change', () => pick(select.value));
   slider.addEventListener('input', follow);
   span.addEventListener('change', follow);
-  const keep = button('Keep this value', () => guarded(error, async () => {
-    const output = freeName(`${stem(store.machine)}-set`, '.xml');
-    await run({ command: 'set', machine: store.machine, values: [`${chosen.name}=${now()}`], output });
-    const { result } = await run({ command: 'compare', machine: output, measurements: store.measurements });
-    note(`${chosen.name} by hand`, output, result);
-    await choose(output, store.measurements);
-  }), { class: 'quiet', id: 'keep-value' });
-  const back = button('Back', async () => { slider.value = '0'; await loadRows(); }, { class: 'quiet' });
+  const keep = button(
+    'Keep this value',
+    () =>
+      guarded(error, async () => {
+        const output = freeName(`${stem(store.machine)}-set`, '.xml');
+        await run({ command: 'set', machine: store.machine, values: [`${chosen.name}=${now()}`], output });
+        const { result } = await run({ command: 'compare', machine: output, measurements: store.measurements });
+        note(`${chosen.name} by hand`, output, result);
+        await choose(output, store.measurements);
+      }),
+    { class: 'quiet', id: 'keep-value' },
+  );
+  const back = button(
+    'Back',
+    async () => {
+      slider.value = '0';
+      await loadRows();
+    },
+    { class: 'quiet' },
+  );
   async function build() {
     box.replaceChildren();
-    parameters = store.rows ? await getJson('/api/parameters', { machine: store.machine, measurement: store.measurements }).catch(() => []) : [];
+    parameters = store.rows
+      ? await getJson('/api/parameters', { machine: store.machine, measurement: store.measurements }).catch(() => [])
+      : [];
     select.replaceChildren(...parameters.map((one) => el('option', { value: one.name }, one.name)));
     pick(parameters[0]?.name);
     if (!store.rows) return;
     base = store.rows.columns[0];
-    const columns = choice('against', store.rows.columns.map((one, k) => [String(k), one.name]), '0', (k) => { base = store.rows.columns[Number(k)]; plot.reset(); });
+    const columns = choice(
+      'against',
+      store.rows.columns.map((one, k) => [String(k), one.name]),
+      '0',
+      (k) => {
+        base = store.rows.columns[Number(k)];
+        plot.reset();
+      },
+    );
     let kind = 0;
-    const kinds = choice('residual of', store.rows.kinds.map((one, k) => [String(k), one.kind]), '0', (k) => { kind = Number(k); plot.reset(); });
-    plot = scatter('residual while a parameter moves', { height: 260, name: 'by_hand', data: () => {
-      const one = store.rows?.kinds[kind];
-      return one ? { x: along(one, base), y: one.value, row: one.row, check: store.rows.row_check, overlay: null } : null;
-    }, words: () => ({ x: `${base.name} [${base.unit}]`, y: `${store.rows.kinds[kind].kind} [${store.rows.kinds[kind].unit}]` }) });
+    const kinds = choice(
+      'residual of',
+      store.rows.kinds.map((one, k) => [String(k), one.kind]),
+      '0',
+      (k) => {
+        kind = Number(k);
+        plot.reset();
+      },
+    );
+    plot = scatter('residual while a parameter moves', {
+      height: 260,
+      name: 'by_hand',
+      data: () => {
+        const one = store.rows?.kinds[kind];
+        return one ? { x: along(one, base), y: one.value, row: one.row, check: store.rows.row_check, overlay: null } : null;
+      },
+      words: () => ({ x: `${base.name} [${base.unit}]`, y: `${store.rows.kinds[kind].kind} [${store.rows.kinds[kind].unit}]` }),
+    });
     box.append(el('div', { class: 'controls' }, kinds, columns), plot.element);
     redrawAll();
   }
@@ -142,20 +209,36 @@ function sliderPanel(error) {
 
 /** A term of one's own: checked while it is written, names completed. */
 function termPanel(error) {
-  let names = [], transforms = [], at = 0;
-  const input = el('input', { type: 'text', class: 'term', id: 'term', spellcheck: 'false', autocomplete: 'off', placeholder: 'k*(T_column-20)*Z', 'aria-label': 'term' });
-  const place = el('select', { id: 'term-place', 'aria-label': 'where' }), list = el('ul', { class: 'completion', role: 'listbox', hidden: '' }), words = el('p', { id: 'term-check', class: 'note', role: 'status' });
+  let names = [],
+    transforms = [],
+    at = 0;
+  const input = el('input', {
+    type: 'text',
+    class: 'term',
+    id: 'term',
+    spellcheck: 'false',
+    autocomplete: 'off',
+    placeholder: 'k*(T_column-20)*Z',
+    'aria-label': 'term',
+  });
+  const place = el('select', { id: 'term-place', 'aria-label': 'where' }),
+    list = el('ul', { class: 'completion', role: 'listbox', hidden: '' }),
+    words = el('p', { id: 'term-check', class: 'note', role: 'status' });
   const wordAt = () => input.value.slice(0, input.selectionStart).match(/[A-Za-z_]\w*$/)?.[0] ?? '';
   const where = () => JSON.parse(place.value);
   // Columns that were recorded and that the machine does not know yet; a term may bring two of them along.
   const candidates = () => (store.rows?.columns ?? []).filter((one) => one.kind === 'candidate');
   const brought = () => {
-    const words = new Set(input.value.match(/[A-Za-z_]\w*/g) ?? []);
-    return candidates().filter((one) => words.has(one.name)).map((one, i) => `input${i ? i + 1 : ''}=${one.name},${i === 0 && one.unit ? `unit=${one.unit},` : ''}`).join('');
+    const used = new Set(input.value.match(/[A-Za-z_]\w*/g) ?? []);
+    return candidates()
+      .filter((one) => used.has(one.name))
+      .map((one, i) => `input${i ? i + 1 : ''}=${one.name},${i === 0 && one.unit ? `unit=${one.unit},` : ''}`)
+      .join('');
   };
   const unit = () => (/^(r[XYZ]|theta|alpha)$/.test(where().dof) ? 'deg' : 'mm');
   const take = (name) => {
-    const word = wordAt(), start = input.selectionStart - word.length;
+    const word = wordAt(),
+      start = input.selectionStart - word.length;
     input.setRangeText(name, start, input.selectionStart, 'end');
     list.hidden = true;
     input.focus();
@@ -166,22 +249,45 @@ function termPanel(error) {
     const found = word ? names.filter((one) => one.name.toLowerCase().startsWith(word.toLowerCase()) && one.name !== word).slice(0, 8) : [];
     at = 0;
     list.hidden = found.length === 0;
-    list.replaceChildren(...found.map((one, i) => {
-      const item = el('li', { role: 'option', 'aria-selected': i === 0 ? 'true' : 'false', 'data-name': one.name }, one.name, el('small', {}, `  ${one.unit} ${one.what}`));
-      item.addEventListener('pointerdown', (event) => { event.preventDefault(); take(one.name); });
-      return item;
-    }));
+    list.replaceChildren(
+      ...found.map((one, i) => {
+        const item = el(
+          'li',
+          { role: 'option', 'aria-selected': i === 0 ? 'true' : 'false', 'data-name': one.name },
+          one.name,
+          el('small', {}, `  ${one.unit} ${one.what}`),
+        );
+        item.addEventListener('pointerdown', (event) => {
+          event.preventDefault();
+          take(one.name);
+        });
+        return item;
+      }),
+    );
   };
   async function check() {
-    if (!input.value.trim() || !place.value) { words.textContent = ''; return; }
+    if (!input.value.trim() || !place.value) {
+      words.textContent = '';
+      return;
+    }
     const asked = input.value;
-    const answer = await postJson('/api/term', { machine: store.machine, term: asked, unit: unit(), columns: candidates().map(({ name, unit: of }) => ({ name, unit: of })) }).catch((why) => ({ ok: false, message: why.message, word: '' }));
+    const answer = await postJson('/api/term', {
+      machine: store.machine,
+      term: asked,
+      unit: unit(),
+      columns: candidates().map(({ name, unit: of }) => ({ name, unit: of })),
+    }).catch((why) => ({ ok: false, message: why.message, word: '' }));
     if (asked !== input.value) return;
     words.dataset.ok = answer.ok;
     words.className = answer.ok ? 'note' : 'error';
-    words.textContent = answer.ok ? [answer.k_unit === null ? 'the unit of k cannot be told' : `k is in ${answer.k_unit}`, ...answer.warnings].join('; ') : `${answer.message}${answer.word ? `: "${answer.word}"` : ''}`;
+    words.textContent = answer.ok
+      ? [answer.k_unit === null ? 'the unit of k cannot be told' : `k is in ${answer.k_unit}`, ...answer.warnings].join('; ')
+      : `${answer.message}${answer.word ? `: "${answer.word}"` : ''}`;
   }
-  input.addEventListener('input', () => { offer(); check(); });
+  input.addEventListener('input', () => {
+    offer();
+    check();
+  });
   place.addEventListener('change', check);
   input.addEventListener('keydown', (event) => {
     if (list.hidden) return;
@@ -194,12 +300,28 @@ function termPanel(error) {
     event.preventDefault();
     items.forEach((item, i) => item.setAttribute('aria-selected', String(i === at)));
   });
-  const add = button('Add and fit', () => addEffect(`custom:branch=${where().branch},transform=${where().n},dof=${where().dof},${brought()}term=${input.value.trim()}`, error), { id: 'add-term' });
+  const add = button(
+    'Add and fit',
+    () =>
+      addEffect(`custom:branch=${where().branch},transform=${where().n},dof=${where().dof},${brought()}term=${input.value.trim()}`, error),
+    { id: 'add-term' },
+  );
   async function build() {
-    ({ names, transforms } = store.machine ? await getJson('/api/names', { machine: store.machine }).catch(() => ({ names: [], transforms: [] })) : { names: [], transforms: [] });
+    ({ names, transforms } = store.machine
+      ? await getJson('/api/names', { machine: store.machine }).catch(() => ({ names: [], transforms: [] }))
+      : { names: [], transforms: [] });
     for (const column of candidates()) names.push({ name: column.name, unit: column.unit, what: 'column of the measurement' });
-    place.replaceChildren(...transforms.flatMap((one) => one.dofs.map(({ dof, text }) => el('option', { value: JSON.stringify({ branch: one.branch, n: one.n, dof }) },
-      `${one.branch === 'tool' ? '' : `${one.branch} `}${one.n} ${dof} = ${text}`))));
+    place.replaceChildren(
+      ...transforms.flatMap((one) =>
+        one.dofs.map(({ dof, text }) =>
+          el(
+            'option',
+            { value: JSON.stringify({ branch: one.branch, n: one.n, dof }) },
+            `${one.branch === 'tool' ? '' : `${one.branch} `}${one.n} ${dof} = ${text}`,
+          ),
+        ),
+      ),
+    );
     check();
   }
   on('rows', build);
@@ -210,29 +332,63 @@ function termPanel(error) {
 export function addView(root) {
   const error = el('div', { id: 'add-error' });
   const fit = button('Fit the model', () => guarded(error, () => fitInto(store.machine, 'the model, fitted')), { id: 'fit' });
-  const improve = button('Walk the whole ladder', () => guarded(error, async () => {
-    const output = freeName('better', '');
-    const { result } = await run({ command: 'improve', ...subject(), yes: true, output });
-    for (const step of result.ladder) note(step.label ?? step.effect ?? 'the model', step.machine, { ...step, noise_um: result.noise_um });
-    const last = result.ladder.at(-1)?.machine;
-    if (last) await choose(last, store.measurements);
-    improve.after(' ', el('a', { href: fileAddress(`${output}/improve.html`), target: '_blank', rel: 'noopener' }, `${output}/improve.html`));
-  }), { class: 'quiet' });
+  const improve = button(
+    'Walk the whole ladder',
+    () =>
+      guarded(error, async () => {
+        const output = freeName('better', '');
+        const { result } = await run({ command: 'improve', ...subject(), yes: true, output });
+        for (const step of result.ladder)
+          note(step.label ?? step.effect ?? 'the model', step.machine, { ...step, noise_um: result.noise_um });
+        const last = result.ladder.at(-1)?.machine;
+        if (last) await choose(last, store.measurements);
+        improve.after(
+          ' ',
+          el('a', { href: fileAddress(`${output}/improve.html`), target: '_blank', rel: 'noopener' }, `${output}/improve.html`),
+        );
+      }),
+    { class: 'quiet' },
+  );
   const effect = el('input', { type: 'text', class: 'term', 'aria-label': 'effect', placeholder: 'backlash:axis=X', id: 'effect' });
   const add = button('Add and fit', () => addEffect(effect.value.trim(), error), { class: 'quiet', id: 'add-effect' });
   const catalogue = el('div', { id: 'catalogue' });
-  const list = button('Catalogue', () => guarded(error, async () => {
-    if (catalogue.childElementCount) { catalogue.replaceChildren(); return; }
-    const { result } = await run({ command: 'effects' });
-    const columns = ['effect', 'what', 'term', 'signature', 'exposed by'].map((name) => ({ name, left: true }));
-    catalogue.replaceChildren(table('Effects that can be added', columns, result.map((one) => [one.id, one.title, one.formula, one.signature, one.exposed_by])));
-    catalogue.querySelectorAll('tbody tr').forEach((row, i) => {
-      row.tabIndex = 0;
-      row.dataset.add = result[i].id;
-      row.addEventListener('click', () => { effect.value = `${result[i].id}:axis=`; effect.focus(); });
-      row.addEventListener('keydown', (event) => { if (event.key === 'Enter') row.click(); });
-    });
-  }), { class: 'quiet', id: 'show-catalogue' });
-  root.append(error, panel(null, el('div', { class: 'controls' }, fit, improve, effect, add, list), catalogue), stepsPanel(), sliderPanel(error), termPanel(error));
+  const list = button(
+    'Catalogue',
+    () =>
+      guarded(error, async () => {
+        if (catalogue.childElementCount) {
+          catalogue.replaceChildren();
+          return;
+        }
+        const { result } = await run({ command: 'effects' });
+        const columns = ['effect', 'what', 'term', 'signature', 'exposed by'].map((name) => ({ name, left: true }));
+        catalogue.replaceChildren(
+          table(
+            'Effects that can be added',
+            columns,
+            result.map((one) => [one.id, one.title, one.formula, one.signature, one.exposed_by]),
+          ),
+        );
+        catalogue.querySelectorAll('tbody tr').forEach((row, i) => {
+          row.tabIndex = 0;
+          row.dataset.add = result[i].id;
+          row.addEventListener('click', () => {
+            effect.value = `${result[i].id}:axis=`;
+            effect.focus();
+          });
+          row.addEventListener('keydown', (event) => {
+            if (event.key === 'Enter') row.click();
+          });
+        });
+      }),
+    { class: 'quiet', id: 'show-catalogue' },
+  );
+  root.append(
+    error,
+    panel(null, el('div', { class: 'controls' }, fit, improve, effect, add, list), catalogue),
+    stepsPanel(),
+    sliderPanel(error),
+    termPanel(error),
+  );
   return { show: redrawAll };
 }

@@ -11,7 +11,11 @@ async function ask(method, path, params = {}, body = null) {
   if (response.ok) return response;
   const text = await response.text();
   let message = text;
-  try { message = JSON.parse(text).message ?? text; } catch { /* plain text */ }
+  try {
+    message = JSON.parse(text).message ?? text;
+  } catch {
+    /* plain text */
+  }
   throw new Refused(message.trim());
 }
 
@@ -31,7 +35,8 @@ export function decode(buffer) {
     if (Array.isArray(value)) return value.map(filled);
     if (value === null || typeof value !== 'object') return value;
     const [key] = Object.keys(value);
-    if (types[key] && Array.isArray(value[key]) && Object.keys(value).length === 1) return new types[key](buffer, base + value[key][0], value[key][1]);
+    if (types[key] && Array.isArray(value[key]) && Object.keys(value).length === 1)
+      return new types[key](buffer, base + value[key][0], value[key][1]);
     return Object.fromEntries(Object.entries(value).map(([name, one]) => [name, filled(one)]));
   };
   return filled(JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 4, length))));

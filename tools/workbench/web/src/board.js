@@ -7,31 +7,84 @@ import { livePanel } from './live.js';
 import { button, guarded, panel } from './parts.js';
 import { on, store } from './store.js';
 
-const folders = () => [...new Set(store.files.filter((file) => /\/machine\.vimg$/.test(file.name)).map((file) => file.name.replace(/\/machine\.vimg$/, '')))];
+const folders = () => [
+  ...new Set(store.files.filter((file) => /\/machine\.vimg$/.test(file.name)).map((file) => file.name.replace(/\/machine\.vimg$/, ''))),
+];
 
 function fill(select, names, chosen, none) {
-  select.replaceChildren(...(none ? [el('option', { value: '' }, none)] : []), ...names.map((name) => el('option', { value: name, selected: name === chosen ? '' : null }, name)));
+  select.replaceChildren(
+    ...(none ? [el('option', { value: '' }, none)] : []),
+    ...names.map((name) => el('option', { value: name, selected: name === chosen ? '' : null }, name)),
+  );
 }
 
 function differenceWords(diff) {
   const change = (sign, list) => list.map((name) => el('li', {}, `${sign} ${name}`));
-  const rows = (diff.corrections ?? []).map((one) => [one.axis, number(one.rms, 4), number(one.max, 4), one.unit, Object.entries(one.at).map(([axis, at]) => `${axis} ${number(at, 5)}`).join(', ')]);
-  return [el('p', { 'data-same': diff.same }, diff.same ? `The same equation: ${diff.a.fingerprint}.` : `${diff.b.fingerprint} runs there, ${diff.a.fingerprint} would.`),
-    el('ul', {}, change('+', diff.only_a), change('−', diff.only_b)), diff.why_not ? el('p', {}, `Corrections are not compared: ${diff.why_not}.`) : null,
-    rows.length ? table(`How far the corrections differ, over ${diff.poses} poses of the whole range`, [{ name: 'axis', left: true }, { name: 'rms' }, { name: 'largest' }, { name: 'unit', left: true },
-      { name: 'largest at', left: true }], rows) : null].filter(Boolean);
+  const rows = (diff.corrections ?? []).map((one) => [
+    one.axis,
+    number(one.rms, 4),
+    number(one.max, 4),
+    one.unit,
+    Object.entries(one.at)
+      .map(([axis, at]) => `${axis} ${number(at, 5)}`)
+      .join(', '),
+  ]);
+  return [
+    el(
+      'p',
+      { 'data-same': diff.same },
+      diff.same ? `The same equation: ${diff.a.fingerprint}.` : `${diff.b.fingerprint} runs there, ${diff.a.fingerprint} would.`,
+    ),
+    el('ul', {}, change('+', diff.only_a), change('−', diff.only_b)),
+    diff.why_not ? el('p', {}, `Corrections are not compared: ${diff.why_not}.`) : null,
+    rows.length
+      ? table(
+          `How far the corrections differ, over ${diff.poses} poses of the whole range`,
+          [
+            { name: 'axis', left: true },
+            { name: 'rms' },
+            { name: 'largest' },
+            { name: 'unit', left: true },
+            { name: 'largest at', left: true },
+          ],
+          rows,
+        )
+      : null,
+  ].filter(Boolean);
 }
 
 /** The sheet of compile: every rule with its value, limit and what counts most. */
 function safetyTable(sheet) {
-  const rows = sheet.map((one) => [one.rule, one.value === null ? '–' : number(one.value, 3), number(one.limit, 3), one.unit,
-    one.value === null ? 'not known' : one.ok ? 'ok' : one.accepted ? 'accepted' : 'no', one.culprit]);
-  return table('Safe to run?', [{ name: 'rule', left: true }, { name: 'value' }, { name: 'limit' }, { name: 'unit', left: true }, { name: '', left: true }, { name: 'most by', left: true }], rows);
+  const rows = sheet.map((one) => [
+    one.rule,
+    one.value === null ? '–' : number(one.value, 3),
+    number(one.limit, 3),
+    one.unit,
+    one.value === null ? 'not known' : one.ok ? 'ok' : one.accepted ? 'accepted' : 'no',
+    one.culprit,
+  ]);
+  return table(
+    'Safe to run?',
+    [
+      { name: 'rule', left: true },
+      { name: 'value' },
+      { name: 'limit' },
+      { name: 'unit', left: true },
+      { name: '', left: true },
+      { name: 'most by', left: true },
+    ],
+    rows,
+  );
 }
 
 export function boardView(root) {
-  const error = el('div', { id: 'board-error' }), budget = el('div', { id: 'budget' }), difference = el('div', { id: 'difference' }), slots = el('p', { id: 'slots', role: 'status' });
-  const image = el('select', { id: 'image', 'aria-label': 'image' }), key = el('select', { id: 'key', 'aria-label': 'key' }), other = el('select', { 'aria-label': 'other image' });
+  const error = el('div', { id: 'board-error' }),
+    budget = el('div', { id: 'budget' }),
+    difference = el('div', { id: 'difference' }),
+    slots = el('p', { id: 'slots', role: 'status' });
+  const image = el('select', { id: 'image', 'aria-label': 'image' }),
+    key = el('select', { id: 'key', 'aria-label': 'key' }),
+    other = el('select', { 'aria-label': 'other image' });
   const url = el('input', { type: 'text', id: 'board-url', value: 'tcp://127.0.0.1:1502', 'aria-label': 'board', spellcheck: 'false' });
   const limit = el('input', { type: 'text', placeholder: 'budget, e.g. 0.1um', 'aria-label': 'budget' });
   limit.style.minWidth = '9em';
@@ -42,35 +95,76 @@ export function boardView(root) {
     fill(other, folders(), other.value, 'the image that the board runs');
   };
   const step = (label, act, attributes = {}) => button(label, () => guarded(error, act), attributes);
-  const compile = step('Compile', async () => {
-    const output = freeName(`image-${store.machine.replace(/.*\//, '').replace(/\.xml$/i, '')}`, '');
-    const { result } = await run({ command: 'compile', machine: store.machine, ...(limit.value ? { budget: limit.value } : {}), output });
-    draw();
-    image.value = output;
-    const summary = el('p', { id: 'bound' }, `bound ${number(result.bound_um, 4)} µm, ${result.operations} operations a tick, ${result.tables} tables, ${result.image_bytes} bytes: `,
-      el('a', { href: fileAddress(`${output}/equation.cpp`) }, 'the same as C++'));
-    summary.dataset.bound = result.bound_um;
-    summary.dataset.fingerprint = result.fingerprint;
-    budget.replaceChildren(budgetFigure(result, store.compare?.noise_um), summary, safetyTable(result.safe_to_run));
-  }, { id: 'compile' });
-  const diff = step('What would change?', async () => {
-    const { result } = await run({ command: 'image-diff', image: image.value, ...(other.value ? { with: other.value } : { to: url.value }) });
-    difference.replaceChildren(...differenceWords(result));
-  }, { class: 'quiet', id: 'diff' });
+  const compile = step(
+    'Compile',
+    async () => {
+      const output = freeName(`image-${store.machine.replace(/.*\//, '').replace(/\.xml$/i, '')}`, '');
+      const { result } = await run({ command: 'compile', machine: store.machine, ...(limit.value ? { budget: limit.value } : {}), output });
+      draw();
+      image.value = output;
+      const summary = el(
+        'p',
+        { id: 'bound' },
+        `bound ${number(result.bound_um, 4)} µm, ${result.operations} operations a tick, ${result.tables} tables, ${result.image_bytes} bytes: `,
+        el('a', { href: fileAddress(`${output}/equation.cpp`) }, 'the same as C++'),
+      );
+      summary.dataset.bound = result.bound_um;
+      summary.dataset.fingerprint = result.fingerprint;
+      budget.replaceChildren(budgetFigure(result, store.compare?.noise_um), summary, safetyTable(result.safe_to_run));
+    },
+    { id: 'compile' },
+  );
+  const diff = step(
+    'What would change?',
+    async () => {
+      const { result } = await run({
+        command: 'image-diff',
+        image: image.value,
+        ...(other.value ? { with: other.value } : { to: url.value }),
+      });
+      difference.replaceChildren(...differenceWords(result));
+    },
+    { class: 'quiet', id: 'diff' },
+  );
   const showSlots = ({ result }) => {
-    slots.textContent = result.trial ? `${result.trial} on trial, ${number(result.trial_left_s, 3)} s left: confirm it or it goes back to ${result.confirmed ?? 'none'}` : `${result.confirmed ?? 'no image'} is confirmed`;
+    slots.textContent = result.trial
+      ? `${result.trial} on trial, ${number(result.trial_left_s, 3)} s left: confirm it or it goes back to ${result.confirmed ?? 'none'}`
+      : `${result.confirmed ?? 'no image'} is confirmed`;
     Object.assign(slots.dataset, { confirmed: result.confirmed ?? '', trial: result.trial ?? '' });
   };
-  const makeKey = step('Make a key', async () => { await run({ command: 'keys', output: freeName('keys', '') }); draw(); }, { class: 'quiet', id: 'make-key' });
-  const upload = step('Upload (on trial)', async () => showSlots(await run({ command: 'upload', image: image.value, to: url.value, key: key.value })), { id: 'upload' });
+  const makeKey = step(
+    'Make a key',
+    async () => {
+      await run({ command: 'keys', output: freeName('keys', '') });
+      draw();
+    },
+    { class: 'quiet', id: 'make-key' },
+  );
+  const upload = step(
+    'Upload (on trial)',
+    async () => showSlots(await run({ command: 'upload', image: image.value, to: url.value, key: key.value })),
+    { id: 'upload' },
+  );
   const confirm = step('Confirm', async () => showSlots(await run({ command: 'upload', confirm: true, to: url.value })), { id: 'confirm' });
-  const revert = step('Revert', async () => showSlots(await run({ command: 'upload', revert: true, to: url.value })), { class: 'quiet', id: 'revert' });
+  const revert = step('Revert', async () => showSlots(await run({ command: 'upload', revert: true, to: url.value })), {
+    class: 'quiet',
+    id: 'revert',
+  });
   const tell = (what) => step(what, () => run({ command: 'board', what, to: url.value }), { class: 'quiet', id: `board-${what}` });
   on('project', draw);
   draw();
-  root.append(error, panel('Compile', el('div', { class: 'controls' }, compile, limit), budget),
-    panel('Board', el('div', { class: 'controls' }, image, url, key, makeKey), el('div', { class: 'controls' }, diff, el('span', {}, 'against ', other)), difference,
-      el('div', { class: 'controls' }, upload, confirm, revert, ...['activate', 'deactivate', 'clear', 'hold', 'release'].map(tell)), slots),
-    livePanel(() => url.value, getJson));
+  root.append(
+    error,
+    panel('Compile', el('div', { class: 'controls' }, compile, limit), budget),
+    panel(
+      'Board',
+      el('div', { class: 'controls' }, image, url, key, makeKey),
+      el('div', { class: 'controls' }, diff, el('span', {}, 'against ', other)),
+      difference,
+      el('div', { class: 'controls' }, upload, confirm, revert, ...['activate', 'deactivate', 'clear', 'hold', 'release'].map(tell)),
+      slots,
+    ),
+    livePanel(() => url.value, getJson),
+  );
   return { show() {} };
 }

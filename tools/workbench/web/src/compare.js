@@ -20,8 +20,14 @@ const um = (label, value, strong) => ({ label, value: number(value, 4), unit: '�
 
 /** The numbers of the command's JSON, as they are. */
 function figures(result) {
-  const box = tiles([um('rms, fit rows', result.rms_um, true), um('rms, check rows', result.check_rms_um, true), um('max', result.max_um), um('noise', result.noise_um),
-    { label: 'observations', value: String(result.n_obs) }, { label: 'rows left out', value: String(result.n_excluded) }]);
+  const box = tiles([
+    um('rms, fit rows', result.rms_um, true),
+    um('rms, check rows', result.check_rms_um, true),
+    um('max', result.max_um),
+    um('noise', result.noise_um),
+    { label: 'observations', value: String(result.n_obs) },
+    { label: 'rows left out', value: String(result.n_excluded) },
+  ]);
   box.dataset.rms = result.rms_um;
   box.dataset.checkRms = result.check_rms_um;
   box.id = 'compare-figures';
@@ -29,26 +35,60 @@ function figures(result) {
 }
 
 function findings(result) {
-  const list = (result.findings ?? []).slice(0, 8).map((one) => el('li', {}, one.sentence,
-    el('small', {}, ` ${number(100 * one.share_alone, 3)} % alone, ${number(100 * one.share_after, 3)} % beyond the others`)));
-  return list.length ? el('ol', { class: 'findings' }, list) : el('p', { class: 'note' }, 'Nothing beyond chance stands out along any recorded column.');
+  const list = (result.findings ?? [])
+    .slice(0, 8)
+    .map((one) =>
+      el(
+        'li',
+        {},
+        one.sentence,
+        el('small', {}, ` ${number(100 * one.share_alone, 3)} % alone, ${number(100 * one.share_after, 3)} % beyond the others`),
+      ),
+    );
+  return list.length
+    ? el('ol', { class: 'findings' }, list)
+    : el('p', { class: 'note' }, 'Nothing beyond chance stands out along any recorded column.');
 }
 
 function matrix() {
-  const plots = store.rows.columns.map((column) => scatter(`residual against ${column.name}`, { height: 168, name: `residual_${column.name}`,
-    data: () => ({ x: along(group(), column), y: group().value, row: group().row, check: store.rows.row_check, overlay: null }),
-    words: () => ({ title: `${column.name}${column.unit ? ` [${column.unit}]` : ''}` }) }));
-  const grid = el('div', { class: 'matrix' }, plots.slice(0, kMatrixAtOnce).map((plot) => plot.element));
+  const plots = store.rows.columns.map((column) =>
+    scatter(`residual against ${column.name}`, {
+      height: 168,
+      name: `residual_${column.name}`,
+      data: () => ({ x: along(group(), column), y: group().value, row: group().row, check: store.rows.row_check, overlay: null }),
+      words: () => ({ title: `${column.name}${column.unit ? ` [${column.unit}]` : ''}` }),
+    }),
+  );
+  const grid = el(
+    'div',
+    { class: 'matrix' },
+    plots.slice(0, kMatrixAtOnce).map((plot) => plot.element),
+  );
   const rest = plots.slice(kMatrixAtOnce);
-  const more = rest.length ? button(`${rest.length} more columns`, (node) => { grid.append(...rest.map((plot) => plot.element)); node.remove(); redrawAll(); }, { class: 'quiet' }) : null;
+  const more = rest.length
+    ? button(
+        `${rest.length} more columns`,
+        (node) => {
+          grid.append(...rest.map((plot) => plot.element));
+          node.remove();
+          redrawAll();
+        },
+        { class: 'quiet' },
+      )
+    : null;
   return { element: el('div', {}, grid, more), reset: () => plots.forEach((plot) => plot.reset()) };
 }
 
 function probability() {
-  const plot = scatter('normal probability plot', { height: 230, name: 'probability', data: () => {
-    const one = sortedGroup(group());
-    return { x: one.value, y: one.score, row: one.row, check: store.rows.row_check, overlay: null };
-  }, words: () => ({ title: 'normal probability', x: `residual ${group().kind} [${group().unit}]`, y: 'normal score' }) });
+  const plot = scatter('normal probability plot', {
+    height: 230,
+    name: 'probability',
+    data: () => {
+      const one = sortedGroup(group());
+      return { x: one.value, y: one.score, row: one.row, check: store.rows.row_check, overlay: null };
+    },
+    words: () => ({ title: 'normal probability', x: `residual ${group().kind} [${group().unit}]`, y: 'normal score' }),
+  });
   return plot;
 }
 
@@ -58,16 +98,22 @@ function exclusion(error) {
   const count = el('strong', { id: 'chosen-count' }, '0');
   const list = el('div', { id: 'excluded-list' });
   const target = (name) => (/\.kept\.csv$/.test(name) ? name : `${name.replace(/\.csv$/i, '')}.kept.csv`);
-  const change = (name, fields) => guarded(error, async () => {
-    const output = target(name);
-    await run({ command: 'exclude', measurement: name, ...fields, output });
-    store.measurements = store.measurements.map((one) => (one === name ? output : one));
-    select(new Uint8Array(store.rows.n_rows));
-    await loadRows();
-  });
-  const exclude = button('Leave out', async () => {
-    for (const [name, lines] of chosenLines()) await change(name, { lines: lineWords(lines), reason: reason.value.replace(/"/g, '') || 'by hand' });
-  }, { id: 'exclude' });
+  const change = (name, fields) =>
+    guarded(error, async () => {
+      const output = target(name);
+      await run({ command: 'exclude', measurement: name, ...fields, output });
+      store.measurements = store.measurements.map((one) => (one === name ? output : one));
+      select(new Uint8Array(store.rows.n_rows));
+      await loadRows();
+    });
+  const exclude = button(
+    'Leave out',
+    async () => {
+      for (const [name, lines] of chosenLines())
+        await change(name, { lines: lineWords(lines), reason: reason.value.replace(/"/g, '') || 'by hand' });
+    },
+    { id: 'exclude' },
+  );
   const fill = async () => {
     const items = [];
     for (const name of store.measurements) {
@@ -75,27 +121,55 @@ function exclusion(error) {
       const byReason = new Map();
       for (const one of excluded) byReason.set(one.reason, [...(byReason.get(one.reason) ?? []), one.line]);
       for (const [why, lines] of byReason) {
-        items.push(el('li', {}, `${name}, ${lines.length} rows (lines ${lineWords(lines).slice(0, 60)}): ${why} `,
-          button('put back', () => change(name, { lines: lineWords(lines), restore: true }), { class: 'quiet restore' })));
+        items.push(
+          el(
+            'li',
+            {},
+            `${name}, ${lines.length} rows (lines ${lineWords(lines).slice(0, 60)}): ${why} `,
+            button('put back', () => change(name, { lines: lineWords(lines), restore: true }), { class: 'quiet restore' }),
+          ),
+        );
       }
     }
     list.replaceChildren(items.length ? el('ul', {}, items) : el('span', { class: 'note' }, 'no row is left out by hand'));
   };
-  on('selection', () => { count.textContent = String(selection.count); exclude.disabled = selection.count === 0; });
+  on('selection', () => {
+    count.textContent = String(selection.count);
+    exclude.disabled = selection.count === 0;
+  });
   exclude.disabled = true;
   fill();
-  return el('div', {}, el('div', { class: 'controls' }, el('span', {}, count, ' rows chosen'), button('none', () => select(new Uint8Array(selection.rows.length)), { class: 'quiet' }),
-    reason, exclude), list);
+  return el(
+    'div',
+    {},
+    el(
+      'div',
+      { class: 'controls' },
+      el('span', {}, count, ' rows chosen'),
+      button('none', () => select(new Uint8Array(selection.rows.length)), { class: 'quiet' }),
+      reason,
+      exclude,
+    ),
+    list,
+  );
 }
 
 export function compareView(root) {
-  const error = el('div', {}), numbers = el('div', { id: 'compare-numbers' }), where = el('div', {}), linked = el('div', {});
+  const error = el('div', {}),
+    numbers = el('div', { id: 'compare-numbers' }),
+    where = el('div', {}),
+    linked = el('div', {});
   let table = null;
-  const report = button('Report (offline HTML)', () => guarded(error, async () => {
-    const output = freeName('compare', '.html');
-    await run({ command: 'compare', ...subject(), output });
-    report.after(' ', el('a', { href: fileAddress(output), target: '_blank', rel: 'noopener' }, output));
-  }), { class: 'quiet' });
+  const report = button(
+    'Report (offline HTML)',
+    () =>
+      guarded(error, async () => {
+        const output = freeName('compare', '.html');
+        await run({ command: 'compare', ...subject(), output });
+        report.after(' ', el('a', { href: fileAddress(output), target: '_blank', rel: 'noopener' }, output));
+      }),
+    { class: 'quiet' },
+  );
   where.classList.add('findings-room');
   root.append(error, panel('How well', numbers, report), panel('Where it fails', where), linked);
   async function numbersOf() {
@@ -111,23 +185,53 @@ export function compareView(root) {
   function build() {
     linked.replaceChildren();
     where.replaceChildren();
-    if (!store.rows) { numbers.replaceChildren(el('p', { class: 'note' }, 'Choose a machine and measurements above.')); return; }
+    if (!store.rows) {
+      numbers.replaceChildren(el('p', { class: 'note' }, 'Choose a machine and measurements above.'));
+      return;
+    }
     kind = 0;
     const { rows } = store;
     const words = el('p', { class: 'note' }, spreadWords(group()));
-    const grid = matrix(), bars = histogram('histogram of the residuals', 230, group), normal = probability();
+    const grid = matrix(),
+      bars = histogram('histogram of the residuals', 230, group),
+      normal = probability();
     table = rowTable(300);
-    const kinds = choice('residual of', rows.kinds.map((one, k) => [String(k), `${one.kind} [${one.unit}]`]), '0', (value) => {
-      kind = Number(value);
-      words.textContent = spreadWords(group());
-      grid.reset(); normal.reset(); redrawAll();
-    });
+    const kinds = choice(
+      'residual of',
+      rows.kinds.map((one, k) => [String(k), `${one.kind} [${one.unit}]`]),
+      '0',
+      (value) => {
+        kind = Number(value);
+        words.textContent = spreadWords(group());
+        grid.reset();
+        normal.reset();
+        redrawAll();
+      },
+    );
     const spatial = [vectorPlot(rows.circular.length ? 380 : 420), ...rows.circular.slice(0, 3).map((circle) => polarPlot(circle, 400))];
-    linked.append(panel('In space', el('div', { class: 'beside-equal' }, spatial.map((plot) => plot.element))),
-      panel('Against everything', el('div', { class: 'controls' }, kinds), words, grid.element, el('p', { class: 'note' },
-        'Drag: choose rows, Ctrl adds to the choice. Shift-drag or arrow keys: move. + and − or the wheel (while in focus): zoom. 0 or double click: the whole. Escape: choose nothing.')),
+    linked.append(
+      panel(
+        'In space',
+        el(
+          'div',
+          { class: 'beside-equal' },
+          spatial.map((plot) => plot.element),
+        ),
+      ),
+      panel(
+        'Against everything',
+        el('div', { class: 'controls' }, kinds),
+        words,
+        grid.element,
+        el(
+          'p',
+          { class: 'note' },
+          'Drag: choose rows, Ctrl adds to the choice. Shift-drag or arrow keys: move. + and − or the wheel (while in focus): zoom. 0 or double click: the whole. Escape: choose nothing.',
+        ),
+      ),
       panel('How they scatter', el('div', { class: 'beside-equal' }, bars.element, normal.element)),
-      panel('Rows', exclusion(error), table.element));
+      panel('Rows', exclusion(error), table.element),
+    );
     table.draw();
     redrawAll();
     numbersOf();
@@ -136,9 +240,10 @@ export function compareView(root) {
   on('selection', () => {
     table?.draw();
     const { started } = selection;
-    redrawAll(() => { document.body.dataset.redrawMs = (performance.now() - started).toFixed(1); });
+    redrawAll(() => {
+      document.body.dataset.redrawMs = (performance.now() - started).toFixed(1);
+    });
   });
   build();
   return { show: redrawAll };
 }
-

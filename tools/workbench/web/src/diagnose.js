@@ -17,31 +17,84 @@ const text = (value) => (value === null || value === undefined ? '' : String(val
 
 /** What a candidate says for itself. */
 function evidence(one) {
-  const values = (one.parameters ?? []).map((p) => `${p.name} = ${number(p.value, 4)}${Number.isFinite(p.std) ? ` ± ${number(p.std, 2)}` : ''} ${text(p.unit)}`).join('; ');
-  return el('ul', {}, [['Term', one.term], ['Fitted', values], ['Signature', one.signature], ['Exposed by', one.exposed_by],
-    ['Known impostors', (one.impostors ?? []).join(', ')], ['Cannot be told from', (one.confounded_with ?? []).join(', ')], ['Not accepted', one.why_not]]
-    .filter(([, words]) => words).map(([name, words]) => el('li', {}, `${name}: ${words}`)), el('li', {}, el('code', {}, `vernier add '${one.add}'`)));
+  const values = (one.parameters ?? [])
+    .map((p) => `${p.name} = ${number(p.value, 4)}${Number.isFinite(p.std) ? ` ± ${number(p.std, 2)}` : ''} ${text(p.unit)}`)
+    .join('; ');
+  return el(
+    'ul',
+    {},
+    [
+      ['Term', one.term],
+      ['Fitted', values],
+      ['Signature', one.signature],
+      ['Exposed by', one.exposed_by],
+      ['Known impostors', (one.impostors ?? []).join(', ')],
+      ['Cannot be told from', (one.confounded_with ?? []).join(', ')],
+      ['Not accepted', one.why_not],
+    ]
+      .filter(([, words]) => words)
+      .map(([name, words]) => el('li', {}, `${name}: ${words}`)),
+    el('li', {}, el('code', {}, `vernier add '${one.add}'`)),
+  );
 }
 
 function candidateTable(result, error, details) {
   const row = (one) => {
-    const line = el('tr', { tabindex: '0', 'data-add': one.add, class: one.accepted ? 'chosen' : null },
-      [one.effect, text(one.axis), [text(one.transform), text(one.dof)].filter(Boolean).join(' ')].map((words) => el('td', { class: 'text' }, words)),
-      [number(one.rms_after_um, 4), number(one.check_rms_after_um, 4), `${number(100 * one.share, 3)} %`, number(one.p_value, 2), number(one.score, 4)].map((words) => el('td', { class: 'num' }, words)),
-      el('td', {}, button('Add', () => addEffect(one.add, error), { class: 'quiet add-candidate' })));
+    const line = el(
+      'tr',
+      { tabindex: '0', 'data-add': one.add, class: one.accepted ? 'chosen' : null },
+      [one.effect, text(one.axis), [text(one.transform), text(one.dof)].filter(Boolean).join(' ')].map((words) =>
+        el('td', { class: 'text' }, words),
+      ),
+      [
+        number(one.rms_after_um, 4),
+        number(one.check_rms_after_um, 4),
+        `${number(100 * one.share, 3)} %`,
+        number(one.p_value, 2),
+        number(one.score, 4),
+      ].map((words) => el('td', { class: 'num' }, words)),
+      el(
+        'td',
+        {},
+        button('Add', () => addEffect(one.add, error), { class: 'quiet add-candidate' }),
+      ),
+    );
     const enter = () => {
-      details.replaceChildren(el('h3', {}, `${one.effect}${one.axis ? ` of ${one.axis}` : ''}${one.title ? `: ${one.title}` : ''}`), evidence(one));
+      details.replaceChildren(
+        el('h3', {}, `${one.effect}${one.axis ? ` of ${one.axis}` : ''}${one.title ? `: ${one.title}` : ''}`),
+        evidence(one),
+      );
       details.dataset.candidate = one.add;
       store.hovered = one;
-      showExplanation(one.add, () => emit('overlay'), (why) => showError(error, why));
+      showExplanation(
+        one.add,
+        () => emit('overlay'),
+        (why) => showError(error, why),
+      );
     };
     line.addEventListener('pointerenter', enter);
     line.addEventListener('focus', enter);
     return line;
   };
   const head = ['effect', 'axis', 'where', 'rms after [µm]', 'check [µm]', 'share', 'chance', 'score', ''];
-  return el('div', { class: 'scroll' }, el('table', { id: 'candidates' }, el('thead', {}, el('tr', {}, head.map((name, i) => el('th', { class: i > 2 ? 'num' : 'text' }, name)))),
-    el('tbody', {}, result.candidates.map(row))));
+  return el(
+    'div',
+    { class: 'scroll' },
+    el(
+      'table',
+      { id: 'candidates' },
+      el(
+        'thead',
+        {},
+        el(
+          'tr',
+          {},
+          head.map((name, i) => el('th', { class: i > 2 ? 'num' : 'text' }, name)),
+        ),
+      ),
+      el('tbody', {}, result.candidates.map(row)),
+    ),
+  );
 }
 
 /** The residual over what drives the candidate that is looked at, with what it would explain. */
@@ -56,63 +109,147 @@ function overlayPlot() {
     const used = store.rows.columns.filter((one) => words.has(one.name)).sort((a, b) => (a.kind === 'axis') - (b.kind === 'axis'));
     return used[0] ?? store.rows.columns.find((one) => one.name === store.hovered?.axis) ?? store.rows.columns[0];
   };
-  return scatter('residual and what the candidate would explain', { height: 330, name: 'explained', data: () => {
-    if (!store.rows) return null;
-    const one = group();
-    const over = store.overlay ? valuesOf(one, store.overlay.explained) : null;
-    return { x: along(one, column()), y: store.overlay ? valuesOf(one, store.overlay.before) : one.value, row: one.row, check: store.rows.row_check, overlay: over };
-  }, words: () => ({ x: `${column().name} [${column().unit}]`, y: `${group().kind} [${group().unit}]`,
-    title: store.overlay ? `residual of the fitted model; laid over: ${store.overlay.label}` : 'residual of the model as given' }) });
+  return scatter('residual and what the candidate would explain', {
+    height: 330,
+    name: 'explained',
+    data: () => {
+      if (!store.rows) return null;
+      const one = group();
+      const over = store.overlay ? valuesOf(one, store.overlay.explained) : null;
+      return {
+        x: along(one, column()),
+        y: store.overlay ? valuesOf(one, store.overlay.before) : one.value,
+        row: one.row,
+        check: store.rows.row_check,
+        overlay: over,
+      };
+    },
+    words: () => ({
+      x: `${column().name} [${column().unit}]`,
+      y: `${group().kind} [${group().unit}]`,
+      title: store.overlay ? `residual of the fitted model; laid over: ${store.overlay.label}` : 'residual of the model as given',
+    }),
+  });
 }
 
 function planPanel(result, error) {
   const names = result.candidates.map((one) => one.add);
   if (names.length < 2) return null;
   let [a, b] = names;
-  const label = (one) => `${one.effect}${one.axis ? ` of ${one.axis}` : ''}${one.transform !== null ? ` at ${one.transform} ${text(one.dof)}` : ''}`;
+  const label = (one) =>
+    `${one.effect}${one.axis ? ` of ${one.axis}` : ''}${one.transform !== null ? ` at ${one.transform} ${text(one.dof)}` : ''}`;
   const options = result.candidates.map((one) => [one.add, label(one)]);
   const box = el('div', { id: 'plan' });
-  const ask = button('What would I have to measure to be sure?', () => guarded(error, async () => {
-    const output = freeName('plan', '.csv'), gcode = freeName('plan', '.nc');
-    const { result: plan } = await run({ command: 'plan', ...subject(), separate: [a, b], output, gcode });
-    const rows = plan.rows ?? [];
-    const axes = Object.keys(rows[0]?.axes ?? {}), inputs = Object.keys(rows[0]?.inputs ?? {});
-    const columns = [{ name: '#' }, ...axes.map((name) => ({ name })), ...axes.map((name) => ({ name: `dir ${name}` })), { name: 'feed' }, ...inputs.map((name) => ({ name }))];
-    const line = (row, i) => [i + 1, ...axes.map((name) => number(row.axes[name], 6)), ...axes.map((name) => text(row.dir[name])), number(row.feed, 4), ...inputs.map((name) => number(row.inputs[name], 4))];
-    box.replaceChildren(el('p', {}, plan.sentence), rows.length ? table(`${rows.length} points to measure next`, columns, rows.map(line)) : '',
-      el('p', {}, el('a', { href: fileAddress(output) }, output), ' · ', el('a', { href: fileAddress(gcode) }, gcode)));
-  }), { id: 'ask-plan' });
-  return panel('Measure next', next(result), el('div', { class: 'controls' }, choice('tell', options, a, (value) => { a = value; }), choice('from', options, b, (value) => { b = value; }), ask), box);
+  const ask = button(
+    'What would I have to measure to be sure?',
+    () =>
+      guarded(error, async () => {
+        const output = freeName('plan', '.csv'),
+          gcode = freeName('plan', '.nc');
+        const { result: plan } = await run({ command: 'plan', ...subject(), separate: [a, b], output, gcode });
+        const rows = plan.rows ?? [];
+        const axes = Object.keys(rows[0]?.axes ?? {}),
+          inputs = Object.keys(rows[0]?.inputs ?? {});
+        const columns = [
+          { name: '#' },
+          ...axes.map((name) => ({ name })),
+          ...axes.map((name) => ({ name: `dir ${name}` })),
+          { name: 'feed' },
+          ...inputs.map((name) => ({ name })),
+        ];
+        const line = (row, i) => [
+          i + 1,
+          ...axes.map((name) => number(row.axes[name], 6)),
+          ...axes.map((name) => text(row.dir[name])),
+          number(row.feed, 4),
+          ...inputs.map((name) => number(row.inputs[name], 4)),
+        ];
+        box.replaceChildren(
+          el('p', {}, plan.sentence),
+          rows.length ? table(`${rows.length} points to measure next`, columns, rows.map(line)) : '',
+          el('p', {}, el('a', { href: fileAddress(output) }, output), ' · ', el('a', { href: fileAddress(gcode) }, gcode)),
+        );
+      }),
+    { id: 'ask-plan' },
+  );
+  return panel(
+    'Measure next',
+    next(result),
+    el(
+      'div',
+      { class: 'controls' },
+      choice('tell', options, a, (value) => {
+        a = value;
+      }),
+      choice('from', options, b, (value) => {
+        b = value;
+      }),
+      ask,
+    ),
+    box,
+  );
 }
 
 export function diagnoseView(root) {
-  const error = el('div', {}), box = el('div', { id: 'diagnosis' });
-  const go = button('Diagnose: what is missing?', () => guarded(error, async () => {
-    const { result } = await run({ command: 'diagnose', ...subject() });
-    store.diagnosis = result;
-    show(result);
-    emit('diagnosis');
-  }), { id: 'run-diagnose' });
-  const report = button('Report (offline HTML)', () => guarded(error, async () => {
-    const output = freeName('diagnose', '.html');
-    await run({ command: 'diagnose', ...subject(), output });
-    report.after(' ', el('a', { href: fileAddress(output), target: '_blank', rel: 'noopener' }, output));
-  }), { class: 'quiet' });
+  const error = el('div', {}),
+    box = el('div', { id: 'diagnosis' });
+  const go = button(
+    'Diagnose: what is missing?',
+    () =>
+      guarded(error, async () => {
+        const { result } = await run({ command: 'diagnose', ...subject() });
+        store.diagnosis = result;
+        show(result);
+        emit('diagnosis');
+      }),
+    { id: 'run-diagnose' },
+  );
+  const report = button(
+    'Report (offline HTML)',
+    () =>
+      guarded(error, async () => {
+        const output = freeName('diagnose', '.html');
+        await run({ command: 'diagnose', ...subject(), output });
+        report.after(' ', el('a', { href: fileAddress(output), target: '_blank', rel: 'noopener' }, output));
+      }),
+    { class: 'quiet' },
+  );
   let explained = null;
-  on('overlay', () => { if (explained) explained.reset(); else redrawAll(); });
+  on('overlay', () => {
+    if (explained) explained.reset();
+    else redrawAll();
+  });
   function show(result) {
-    const details = el('div', { id: 'evidence' }, el('p', { class: 'note' }, 'Point at a candidate, or go to it with the Tab key: what it rests on, and what it would explain.'));
+    const details = el(
+      'div',
+      { id: 'evidence' },
+      el('p', { class: 'note' }, 'Point at a candidate, or go to it with the Tab key: what it rests on, and what it would explain.'),
+    );
     const words = el('div', {}, verdict(result));
     words.dataset.verdict = result.verdict;
     words.id = 'verdict';
     const plots = [overlayPlot(), vectorPlot(300, 'Residual vectors and what the candidate would explain')];
-    box.replaceChildren(panel('Verdict', words, ladderFigure(result)),
-      panel('Candidates', result.candidates.length ? candidateTable(result, error, details) : el('p', { class: 'note' }, 'None.'), details,
-        el('div', { class: 'beside-equal' }, plots.map((plot) => plot.element))), planPanel(result, error) ?? '');
+    box.replaceChildren(
+      panel('Verdict', words, ladderFigure(result)),
+      panel(
+        'Candidates',
+        result.candidates.length ? candidateTable(result, error, details) : el('p', { class: 'note' }, 'None.'),
+        details,
+        el(
+          'div',
+          { class: 'beside-equal' },
+          plots.map((plot) => plot.element),
+        ),
+      ),
+      planPanel(result, error) ?? '',
+    );
     [explained] = plots;
     redrawAll();
   }
   root.append(error, panel(null, el('div', { class: 'controls' }, go, report)), box);
-  on('rows', () => { box.replaceChildren(); store.diagnosis = explained = null; });
+  on('rows', () => {
+    box.replaceChildren();
+    store.diagnosis = explained = null;
+  });
   return { show: redrawAll };
 }

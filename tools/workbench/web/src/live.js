@@ -9,49 +9,81 @@ const kHealth = ['overruns', 'skipped', 'missing_readings', 'saturated', 'slewin
 
 /** Values of an axis' correction over the last seconds. */
 function trace(samples, c) {
-  const names = Object.keys(samples.at(-1)?.axes ?? {}), inks = [c.fit, c.check, c.ccw, c.cw, c.accent2, c.soft];
+  const names = Object.keys(samples.at(-1)?.axes ?? {}),
+    inks = [c.fit, c.check, c.ccw, c.cw, c.accent2, c.soft];
   const end = samples.at(-1)?.at_s ?? 0;
-  return names.map((name, k) => ({ name, colour: inks[k % inks.length], unit: samples.at(-1).axes[name].unit === 'deg' ? 'mdeg' : 'µm',
-    x: samples.map((one) => one.at_s - end), y: samples.map((one) => 1e3 * (one.axes[name]?.correction ?? NaN)) }));
+  return names.map((name, k) => ({
+    name,
+    colour: inks[k % inks.length],
+    unit: samples.at(-1).axes[name].unit === 'deg' ? 'mdeg' : 'µm',
+    x: samples.map((one) => one.at_s - end),
+    y: samples.map((one) => 1e3 * (one.axes[name]?.correction ?? NaN)),
+  }));
 }
 
 /** What a board does just now: corrections over time, what each effect adds, latency, faults; ten pictures a second or more. */
 export function livePanel(url, getJson) {
-  let running = false, samples = [], after = 0, drawn = [];
-  const figures = el('div', { id: 'live-figures' }), words = el('p', { class: 'note', role: 'status', id: 'live-state' }, 'not watching');
-  const lines = new Plot('corrections over time', { height: 230, name: 'live_corrections', paint(pen, c) {
-    const traces = trace(samples, c);
-    const area = { x: 56, y: 18, w: pen.width - 66, h: pen.height - 50 };
-    if (!traces.length) return;
-    const view = { x: [-kSeconds, 0], y: range(traces.flatMap((one) => one.y).filter(Number.isFinite), 0.1) };
-    axes(pen, area, view, { x: 'seconds', y: `correction [${traces[0].unit}]`, title: 'correction of each axis' }, c);
-    traces.forEach((one, k) => {
-      const points = [];
-      one.x.forEach((x, i) => points.push(area.x + Math.max(0, 1 + x / kSeconds) * area.w, area.y + area.h * (1 - (one.y[i] - view.y[0]) / (view.y[1] - view.y[0]))));
-      pen.line(points, one.colour, 1.6);
-      pen.text(area.x + area.w - 8 - 26 * (traces.length - 1 - k), 9, one.name, { colour: one.colour, bold: true, align: 'right' });
-    });
-  } });
-  const shares = new Plot('what each effect adds', { height: 230, name: 'live_effects', paint(pen, c) {
-    const list = [...(samples.at(-1)?.shares ?? [])].sort((a, b) => Math.abs(b.correction) - Math.abs(a.correction)).slice(0, 11);
-    const most = Math.max(1e-9, ...list.map((one) => Math.abs(one.correction)));
-    pen.text(4, 8, 'what each effect adds just now [µm or mdeg]', { colour: c.ink, bold: true });
-    const middle = pen.width * 0.72, half = pen.width * 0.2;
-    list.forEach((one, i) => {
-      const y = 20 + i * 19, w = (half * one.correction) / most;
-      pen.text(4, y + 8, `${one.axis}  ${one.effect.slice(0, Math.max(8, Math.floor((middle - half) / 6.4)))}`, { colour: c.soft });
-      pen.rect(Math.min(middle, middle + w), y, Math.abs(w), 15, one.correction < 0 ? c.check : c.fit);
-      pen.text(pen.width - 4, y + 8, number(1e3 * one.correction, 3), { colour: c.ink, align: 'right' });
-    });
-    pen.line([middle, 18, middle, pen.height], c.line);
-  } });
+  let running = false,
+    samples = [],
+    after = 0,
+    drawn = [];
+  const figures = el('div', { id: 'live-figures' }),
+    words = el('p', { class: 'note', role: 'status', id: 'live-state' }, 'not watching');
+  const lines = new Plot('corrections over time', {
+    height: 230,
+    name: 'live_corrections',
+    paint(pen, c) {
+      const traces = trace(samples, c);
+      const area = { x: 56, y: 18, w: pen.width - 66, h: pen.height - 50 };
+      if (!traces.length) return;
+      const view = { x: [-kSeconds, 0], y: range(traces.flatMap((one) => one.y).filter(Number.isFinite), 0.1) };
+      axes(pen, area, view, { x: 'seconds', y: `correction [${traces[0].unit}]`, title: 'correction of each axis' }, c);
+      traces.forEach((one, k) => {
+        const points = [];
+        one.x.forEach((x, i) =>
+          points.push(
+            area.x + Math.max(0, 1 + x / kSeconds) * area.w,
+            area.y + area.h * (1 - (one.y[i] - view.y[0]) / (view.y[1] - view.y[0])),
+          ),
+        );
+        pen.line(points, one.colour, 1.6);
+        pen.text(area.x + area.w - 8 - 26 * (traces.length - 1 - k), 9, one.name, { colour: one.colour, bold: true, align: 'right' });
+      });
+    },
+  });
+  const shares = new Plot('what each effect adds', {
+    height: 230,
+    name: 'live_effects',
+    paint(pen, c) {
+      const list = [...(samples.at(-1)?.shares ?? [])].sort((a, b) => Math.abs(b.correction) - Math.abs(a.correction)).slice(0, 11);
+      const most = Math.max(1e-9, ...list.map((one) => Math.abs(one.correction)));
+      pen.text(4, 8, 'what each effect adds just now [µm or mdeg]', { colour: c.ink, bold: true });
+      const middle = pen.width * 0.72,
+        half = pen.width * 0.2;
+      list.forEach((one, i) => {
+        const y = 20 + i * 19,
+          w = (half * one.correction) / most;
+        pen.text(4, y + 8, `${one.axis}  ${one.effect.slice(0, Math.max(8, Math.floor((middle - half) / 6.4)))}`, { colour: c.soft });
+        pen.rect(Math.min(middle, middle + w), y, Math.abs(w), 15, one.correction < 0 ? c.check : c.fit);
+        pen.text(pen.width - 4, y + 8, number(1e3 * one.correction, 3), { colour: c.ink, align: 'right' });
+      });
+      pen.line([middle, 18, middle, pen.height], c.line);
+    },
+  });
   function show(last) {
     const rate = drawn.length > 1 ? (drawn.length - 1) / (drawn.at(-1) - drawn[0]) : 0;
-    words.textContent = `mode ${last.mode}${last.holding ? ', held' : ''}, fault ${last.fault}, image ${last.trial ? `${last.trial} on trial` : last.confirmed ?? 'none'}; ${number(rate, 3)} pictures a second`;
+    words.textContent = `mode ${last.mode}${last.holding ? ', held' : ''}, fault ${last.fault}, image ${last.trial ? `${last.trial} on trial` : (last.confirmed ?? 'none')}; ${number(rate, 3)} pictures a second`;
     Object.assign(words.dataset, { mode: last.mode, rate: rate.toFixed(2), tick: last.tick });
     const us = (label, value) => ({ label, value: number(value, 3), unit: 'µs' });
-    figures.replaceChildren(tiles([us('latency p99', last.latency_us.p99), us('latency max', last.latency_us.max), us('tick p99', last.execution_us.p99), us('tick max', last.execution_us.max),
-      ...kHealth.map((name) => ({ label: name.replace(/_/g, ' '), value: String(last.health[name]) }))]));
+    figures.replaceChildren(
+      tiles([
+        us('latency p99', last.latency_us.p99),
+        us('latency max', last.latency_us.max),
+        us('tick p99', last.execution_us.p99),
+        us('tick max', last.execution_us.max),
+        ...kHealth.map((name) => ({ label: name.replace(/_/g, ' '), value: String(last.health[name]) })),
+      ]),
+    );
     lines.draw();
     shares.draw();
   }
@@ -76,14 +108,18 @@ export function livePanel(url, getJson) {
       await new Promise((done) => requestAnimationFrame(done));
     }
   }
-  const go = button('Watch', () => {
-    running = !running;
-    go.textContent = running ? 'Stop' : 'Watch';
-    if (!running) return;
-    samples = [];
-    drawn = [];
-    after = 0;
-    follow();
-  }, { id: 'watch' });
+  const go = button(
+    'Watch',
+    () => {
+      running = !running;
+      go.textContent = running ? 'Stop' : 'Watch';
+      if (!running) return;
+      samples = [];
+      drawn = [];
+      after = 0;
+      follow();
+    },
+    { id: 'watch' },
+  );
   return panel('Live', el('div', { class: 'controls' }, go, words), figures, el('div', { class: 'live' }, lines.element, shares.element));
 }

@@ -11,8 +11,13 @@ import { redrawAll } from './plot.js';
 import { choose, projectView } from './project.js';
 import { on, store } from './store.js';
 
-const kViews = [['project', 'Project', projectView], ['compare', 'Compare', compareView], ['diagnose', 'Diagnose', diagnoseView],
-  ['add', 'Add and watch', addView], ['board', 'Compile and upload', boardView]];
+const kViews = [
+  ['project', 'Project', projectView],
+  ['compare', 'Compare', compareView],
+  ['diagnose', 'Diagnose', diagnoseView],
+  ['add', 'Add and watch', addView],
+  ['board', 'Compile and upload', boardView],
+];
 
 const views = new Map();
 
@@ -29,11 +34,15 @@ function show(id) {
 
 /** The machine and the measurements that everything is about. */
 function subjectBar() {
-  const machine = el('select', { id: 'machine', 'aria-label': 'machine' }), rows = el('select', { id: 'measurement', 'aria-label': 'measurement' });
+  const machine = el('select', { id: 'machine', 'aria-label': 'machine' }),
+    rows = el('select', { id: 'measurement', 'aria-label': 'measurement' });
   const fill = (select, kind, chosen) => {
     const names = store.files.filter((file) => file.kind === kind).map((file) => file.name);
     if (chosen && !names.includes(chosen)) names.push(chosen);
-    select.replaceChildren(el('option', { value: '' }, `choose a ${kind}`), ...names.map((name) => el('option', { value: name, selected: name === chosen ? '' : null }, name)));
+    select.replaceChildren(
+      el('option', { value: '' }, `choose a ${kind}`),
+      ...names.map((name) => el('option', { value: name, selected: name === chosen ? '' : null }, name)),
+    );
   };
   const draw = () => {
     fill(machine, 'machine', store.machine);
@@ -48,7 +57,8 @@ function subjectBar() {
 
 /** The command behind what was done last: to copy, with its progress and a way to end it. */
 function commandBar() {
-  const words = el('code', { id: 'command', tabindex: '0' }), state = el('span', { id: 'job-state', role: 'status' });
+  const words = el('code', { id: 'command', tabindex: '0' }),
+    state = el('span', { id: 'job-state', role: 'status' });
   const meter = el('progress', { max: '1', value: '0', hidden: '' });
   const stop = el('button', { type: 'button', class: 'quiet', id: 'cancel', hidden: '' }, 'Cancel');
   stop.addEventListener('click', cancel);
@@ -59,7 +69,8 @@ function commandBar() {
     words.textContent = one.command;
     meter.hidden = stop.hidden = one.state !== 'running';
     meter.value = one.fraction;
-    state.textContent = one.state === 'running' ? `${Math.round(100 * one.fraction)} % ${one.step}` : `${one.state}, ${number(one.seconds, 2)} s`;
+    state.textContent =
+      one.state === 'running' ? `${Math.round(100 * one.fraction)} % ${one.step}` : `${one.state}, ${number(one.seconds, 2)} s`;
     state.dataset.state = one.state;
   });
   return el('footer', {}, el('span', { class: 'prompt' }, '$'), words, copy, meter, state, stop);
@@ -67,7 +78,8 @@ function commandBar() {
 
 function themeButton() {
   const node = el('button', { type: 'button', class: 'quiet', id: 'theme', title: 'light or dark' }, '◐');
-  const dark = () => (document.documentElement.dataset.theme ?? (matchMedia('(prefers-color-scheme: dark)').matches ? 'dark' : 'light')) === 'dark';
+  const dark = () =>
+    (document.documentElement.dataset.theme ?? (matchMedia('(prefers-color-scheme: dark)').matches ? 'dark' : 'light')) === 'dark';
   node.addEventListener('click', () => {
     document.documentElement.dataset.theme = dark() ? 'light' : 'dark';
     redrawCharts();
@@ -77,7 +89,11 @@ function themeButton() {
 }
 
 function remembered() {
-  try { return JSON.parse(localStorage.getItem(`chosen:${store.folder}`)) ?? {}; } catch { return {}; }
+  try {
+    return JSON.parse(localStorage.getItem(`chosen:${store.folder}`)) ?? {};
+  } catch {
+    return {};
+  }
 }
 
 async function start() {
@@ -85,8 +101,12 @@ async function start() {
   const title = el('strong', {}, 'Vernier');
   const nav = el('nav', { 'aria-label': 'Steps' });
   const main = el('main', {});
-  document.body.append(el('a', { class: 'skip', href: '#main' }, 'to the content'), el('header', {}, title, el('span', { class: 'note folder', title: store.version }, store.folder),
-    nav, subjectBar(), themeButton()), main, commandBar());
+  document.body.append(
+    el('a', { class: 'skip', href: '#main' }, 'to the content'),
+    el('header', {}, title, el('span', { class: 'note folder', title: store.version }, store.folder), nav, subjectBar(), themeButton()),
+    main,
+    commandBar(),
+  );
   main.id = 'main';
   for (const [id, name, build] of kViews) {
     const root = el('div', { id: `view-${id}`, class: 'view' });
@@ -97,10 +117,14 @@ async function start() {
   }
   addEventListener('hashchange', () => show(location.hash.slice(1)));
   show(location.hash.slice(1));
-  const old = remembered(), there = (name) => store.files.some((file) => file.name === name);
-  const machines = store.files.filter((file) => file.kind === 'machine'), rows = store.files.filter((file) => file.kind === 'measurement');
-  await choose(there(old.machine) ? old.machine : machines.length === 1 ? machines[0].name : '',
-    old.measurements?.every(there) && old.measurements.length ? old.measurements : rows.length === 1 ? [rows[0].name] : []);
+  const old = remembered(),
+    there = (name) => store.files.some((file) => file.name === name);
+  const machines = store.files.filter((file) => file.kind === 'machine'),
+    rows = store.files.filter((file) => file.kind === 'measurement');
+  await choose(
+    there(old.machine) ? old.machine : machines.length === 1 ? machines[0].name : '',
+    old.measurements?.every(there) && old.measurements.length ? old.measurements : rows.length === 1 ? [rows[0].name] : [],
+  );
   document.body.dataset.ready = 'yes';
 }
 

@@ -13,7 +13,11 @@ export function button(label, act, attributes = {}) {
   const node = el('button', { type: 'button', ...attributes }, label);
   node.addEventListener('click', async () => {
     node.disabled = true;
-    try { await act(node); } finally { node.disabled = false; }
+    try {
+      await act(node);
+    } finally {
+      node.disabled = false;
+    }
   });
   return node;
 }
@@ -31,8 +35,13 @@ export function figure(label, options, caption = null) {
     twin.dispose();
     return text;
   };
-  return el('figure', {}, box, exportButtons({ name: label.replace(/[^\w]+/g, '_'), png: async () => (await fetch(box.picture())).blob(), svg }),
-    caption ? el('figcaption', {}, caption) : null);
+  return el(
+    'figure',
+    {},
+    box,
+    exportButtons({ name: label.replace(/[^\w]+/g, '_'), png: async () => (await fetch(box.picture())).blob(), svg }),
+    caption ? el('figcaption', {}, caption) : null,
+  );
 }
 
 /** An error in its box: the words, and where they name a line of a file, that line. */
@@ -43,11 +52,19 @@ export async function showError(box, error) {
   if (!where) return;
   try {
     const context = await getJson('/api/lines', { name: where[1], line: where[2] });
-    box.append(el('pre', { class: 'source' }, context.lines.map((text, i) => {
-      const number = context.first + i;
-      return el('span', { class: number === Number(where[2]) ? 'bad' : null }, `${String(number).padStart(6)}  ${text}\n`);
-    })));
-  } catch { /* The file was not kept: its words are all there is. */ }
+    box.append(
+      el(
+        'pre',
+        { class: 'source' },
+        context.lines.map((text, i) => {
+          const number = context.first + i;
+          return el('span', { class: number === Number(where[2]) ? 'bad' : null }, `${String(number).padStart(6)}  ${text}\n`);
+        }),
+      ),
+    );
+  } catch {
+    /* The file was not kept: its words are all there is. */
+  }
 }
 
 /** Shows the error of a job where it belongs instead of failing silently. */

@@ -6,7 +6,11 @@
 function pixelOf(colour) {
   let rgb;
   if (colour.startsWith('#')) rgb = [1, 3, 5].map((at) => parseInt(colour.slice(at, at + 2), 16));
-  else rgb = colour.match(/[\d.]+/g).slice(0, 3).map(Number);
+  else
+    rgb = colour
+      .match(/[\d.]+/g)
+      .slice(0, 3)
+      .map(Number);
   return (0xff000000 | (rgb[2] << 16) | (rgb[1] << 8) | rgb[0]) >>> 0;
 }
 
@@ -24,27 +28,48 @@ export class CanvasPen {
   rect(x, y, w, h, fill, stroke = null, opacity = 1) {
     const c = this.context;
     c.globalAlpha = opacity;
-    if (fill) { c.fillStyle = fill; c.fillRect(x, y, w, h); }
+    if (fill) {
+      c.fillStyle = fill;
+      c.fillRect(x, y, w, h);
+    }
     c.globalAlpha = 1;
-    if (stroke) { c.strokeStyle = stroke; c.lineWidth = 1; c.strokeRect(x + 0.5, y + 0.5, w - 1, h - 1); }
+    if (stroke) {
+      c.strokeStyle = stroke;
+      c.lineWidth = 1;
+      c.strokeRect(x + 0.5, y + 0.5, w - 1, h - 1);
+    }
   }
   /** points: [x0, y0, x1, y1 ...]; NaN breaks the line. */
   line(points, colour, width = 1, dash = []) {
     const c = this.context;
-    c.strokeStyle = colour; c.lineWidth = width; c.setLineDash(dash); c.beginPath();
+    c.strokeStyle = colour;
+    c.lineWidth = width;
+    c.setLineDash(dash);
+    c.beginPath();
     let open = false;
     for (let i = 0; i + 1 < points.length; i += 2) {
-      if (Number.isNaN(points[i + 1]) || Number.isNaN(points[i])) { open = false; continue; }
-      if (open) c.lineTo(points[i], points[i + 1]); else c.moveTo(points[i], points[i + 1]);
+      if (Number.isNaN(points[i + 1]) || Number.isNaN(points[i])) {
+        open = false;
+        continue;
+      }
+      if (open) c.lineTo(points[i], points[i + 1]);
+      else c.moveTo(points[i], points[i + 1]);
       open = true;
     }
-    c.stroke(); c.setLineDash([]);
+    c.stroke();
+    c.setLineDash([]);
   }
   text(x, y, words, { colour, align = 'left', size = 11, turn = 0, bold = false }) {
     const c = this.context;
-    c.save(); c.translate(x, y); c.rotate(turn);
+    c.save();
+    c.translate(x, y);
+    c.rotate(turn);
     c.font = `${bold ? '600 ' : ''}${size}px system-ui, "DejaVu Sans", sans-serif`;
-    c.fillStyle = colour; c.textAlign = align; c.textBaseline = 'middle'; c.fillText(words, 0, 0); c.restore();
+    c.fillStyle = colour;
+    c.textAlign = align;
+    c.textBaseline = 'middle';
+    c.fillText(words, 0, 0);
+    c.restore();
   }
   image(area, paint) {
     const r = this.ratio;
@@ -63,10 +88,12 @@ export class CanvasPen {
   dots(area, px, py, colour, palette, size) {
     this.image(area, (pixels, w, h, r, x0, y0) => {
       const inks = Uint32Array.from(palette, pixelOf);
-      const side = Math.max(1, Math.round(size * r)), half = side >> 1;
+      const side = Math.max(1, Math.round(size * r)),
+        half = side >> 1;
       for (let i = 0; i < px.length; ++i) {
         if (colour[i] === 255) continue;
-        const x = Math.round(px[i] * r) - x0 - half, y = Math.round(py[i] * r) - y0 - half;
+        const x = Math.round(px[i] * r) - x0 - half,
+          y = Math.round(py[i] * r) - y0 - half;
         if (!(x >= 0 && y >= 0 && x + side <= w && y + side <= h)) continue;
         const ink = inks[colour[i]];
         for (let k = 0, at = y * w + x; k < side; ++k, at += w) for (let j = 0; j < side; ++j) pixels[at + j] = ink;
@@ -79,14 +106,19 @@ export class CanvasPen {
       const inks = Uint32Array.from(palette, pixelOf);
       for (let i = 0; i < ax.length; i += step) {
         if (colour[i] === 255 || !Number.isFinite(ax[i] + ay[i] + bx[i] + by[i])) continue;
-        const x = ax[i] * r - x0, y = ay[i] * r - y0, dx = bx[i] * r - x0 - x, dy = by[i] * r - y0 - y;
+        const x = ax[i] * r - x0,
+          y = ay[i] * r - y0,
+          dx = bx[i] * r - x0 - x,
+          dy = by[i] * r - y0 - y;
         const steps = Math.min(4000, Math.max(1, Math.ceil(Math.max(Math.abs(dx), Math.abs(dy)))));
         const ink = inks[colour[i]];
         for (let k = 0; k <= steps; ++k) {
-          const u = Math.round(x + (dx * k) / steps), v = Math.round(y + (dy * k) / steps);
+          const u = Math.round(x + (dx * k) / steps),
+            v = Math.round(y + (dy * k) / steps);
           if (u >= 0 && v >= 0 && u < w && v < h) pixels[v * w + u] = ink;
         }
-        const u = Math.round(x), v = Math.round(y);
+        const u = Math.round(x),
+          v = Math.round(y);
         if (u > 0 && v > 0 && u < w - 1 && v < h - 1) pixels[v * w + u + 1] = pixels[(v + 1) * w + u] = ink;
       }
     });
@@ -103,22 +135,32 @@ export class SvgPen {
     this.parts = [`<rect width="${short(width)}" height="${short(height)}" fill="${escaped(paper)}"/>`];
   }
   rect(x, y, w, h, fill, stroke = null, opacity = 1) {
-    this.parts.push(`<rect x="${short(x)}" y="${short(y)}" width="${short(Math.max(0, w))}" height="${short(Math.max(0, h))}" fill="${escaped(fill || 'none')}"`
-      + `${stroke ? ` stroke="${escaped(stroke)}"` : ''}${opacity < 1 ? ` fill-opacity="${opacity}"` : ''}/>`);
+    this.parts.push(
+      `<rect x="${short(x)}" y="${short(y)}" width="${short(Math.max(0, w))}" height="${short(Math.max(0, h))}" fill="${escaped(fill || 'none')}"` +
+        `${stroke ? ` stroke="${escaped(stroke)}"` : ''}${opacity < 1 ? ` fill-opacity="${opacity}"` : ''}/>`,
+    );
   }
   line(points, colour, width = 1, dash = []) {
-    let path = '', open = false;
+    let path = '',
+      open = false;
     for (let i = 0; i + 1 < points.length; i += 2) {
-      if (Number.isNaN(points[i + 1]) || Number.isNaN(points[i])) { open = false; continue; }
+      if (Number.isNaN(points[i + 1]) || Number.isNaN(points[i])) {
+        open = false;
+        continue;
+      }
       path += `${open ? 'L' : 'M'}${short(points[i])} ${short(points[i + 1])}`;
       open = true;
     }
-    this.parts.push(`<path d="${path}" fill="none" stroke="${escaped(colour)}" stroke-width="${width}"${dash.length ? ` stroke-dasharray="${dash.join(' ')}"` : ''}/>`);
+    this.parts.push(
+      `<path d="${path}" fill="none" stroke="${escaped(colour)}" stroke-width="${width}"${dash.length ? ` stroke-dasharray="${dash.join(' ')}"` : ''}/>`,
+    );
   }
   text(x, y, words, { colour, align = 'left', size = 11, turn = 0, bold = false }) {
     const anchor = { left: 'start', center: 'middle', right: 'end' }[align];
-    this.parts.push(`<text transform="translate(${short(x)} ${short(y)}) rotate(${short((turn * 180) / Math.PI)})" dy="0.35em" font-family="sans-serif" `
-      + `font-size="${size}"${bold ? ' font-weight="600"' : ''} fill="${escaped(colour)}" text-anchor="${anchor}">${escaped(words)}</text>`);
+    this.parts.push(
+      `<text transform="translate(${short(x)} ${short(y)}) rotate(${short((turn * 180) / Math.PI)})" dy="0.35em" font-family="sans-serif" ` +
+        `font-size="${size}"${bold ? ' font-weight="600"' : ''} fill="${escaped(colour)}" text-anchor="${anchor}">${escaped(words)}</text>`,
+    );
   }
   dots(area, px, py, colour, palette, size) {
     const paths = palette.map(() => []);
@@ -138,7 +180,10 @@ export class SvgPen {
   }
   push(paths, palette, width) {
     paths.forEach((list, k) => {
-      if (list.length) this.parts.push(`<path d="${list.join('')}" fill="none" stroke-linecap="round" stroke-width="${width}" stroke="${escaped(palette[k])}"/>`);
+      if (list.length)
+        this.parts.push(
+          `<path d="${list.join('')}" fill="none" stroke-linecap="round" stroke-width="${width}" stroke="${escaped(palette[k])}"/>`,
+        );
     });
   }
   toString() {

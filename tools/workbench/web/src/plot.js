@@ -5,7 +5,8 @@ import { el } from '../../../report/web/src/dom.js';
 import { CanvasPen, SvgPen } from './pens.js';
 
 const plots = new Set();
-let asked = false, whenDrawn = [];
+let asked = false,
+  whenDrawn = [];
 
 const shown = (plot) => plot.canvas.isConnected && plot.canvas.clientWidth > 0;
 
@@ -20,7 +21,10 @@ export function redrawAll(done = null) {
   requestAnimationFrame(() => {
     asked = false;
     for (const plot of plots) {
-      if (!plot.canvas.isConnected) { if (plot.seen) plots.delete(plot); } else if (plot.inSight && shown(plot)) plot.draw(); else plot.late = true;
+      if (!plot.canvas.isConnected) {
+        if (plot.seen) plots.delete(plot);
+      } else if (plot.inSight && shown(plot)) plot.draw();
+      else plot.late = true;
     }
     const calls = whenDrawn;
     whenDrawn = [];
@@ -43,8 +47,12 @@ export function exportButtons({ name, png, svg }) {
     node.addEventListener('click', act);
     return node;
   };
-  return el('span', { class: 'exports' }, button('PNG', async () => save(`${name}.png`, await png())),
-    button('SVG', () => save(`${name}.svg`, new Blob([svg()], { type: 'image/svg+xml' }))));
+  return el(
+    'span',
+    { class: 'exports' },
+    button('PNG', async () => save(`${name}.png`, await png())),
+    button('SVG', () => save(`${name}.svg`, new Blob([svg()], { type: 'image/svg+xml' }))),
+  );
 }
 
 /** A picture of our own: `paint(pen, colours)` draws it with any pen; pen.width and pen.height are its size. */
@@ -56,14 +64,31 @@ export class Plot {
     this.canvas.style.height = `${height}px`;
     this.seen = this.inSight = false;
     this.late = true;
-    this.element = el('figure', { class: 'plot' }, this.canvas, exportButtons({ name: name ?? label.replace(/[^\w]+/g, '_'),
-      png: () => new Promise((done) => { this.draw(); this.canvas.toBlob(done); }), svg: () => this.svg() }));
+    this.element = el(
+      'figure',
+      { class: 'plot' },
+      this.canvas,
+      exportButtons({
+        name: name ?? label.replace(/[^\w]+/g, '_'),
+        png: () =>
+          new Promise((done) => {
+            this.draw();
+            this.canvas.toBlob(done);
+          }),
+        svg: () => this.svg(),
+      }),
+    );
     plots.add(this);
-    new ResizeObserver(() => { if (shown(this)) this.draw(); }).observe(this.canvas);
-    new IntersectionObserver((entries) => {
-      this.inSight = entries.at(-1).isIntersecting;
-      if (this.inSight && this.late && shown(this)) this.draw();
-    }, { rootMargin: '120px' }).observe(this.canvas);
+    new ResizeObserver(() => {
+      if (shown(this)) this.draw();
+    }).observe(this.canvas);
+    new IntersectionObserver(
+      (entries) => {
+        this.inSight = entries.at(-1).isIntersecting;
+        if (this.inSight && this.late && shown(this)) this.draw();
+      },
+      { rootMargin: '120px' },
+    ).observe(this.canvas);
   }
   draw() {
     this.seen = true;
@@ -109,7 +134,8 @@ export function axes(pen, area, view, { x, y, title }, c) {
 
 /** Least and largest finite value, a little apart. */
 export function range(values, margin = 0.04) {
-  let low = Infinity, high = -Infinity;
+  let low = Infinity,
+    high = -Infinity;
   for (let i = 0; i < values.length; ++i) {
     const value = values[i];
     if (value < low && value > -1e30) low = value;

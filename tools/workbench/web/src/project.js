@@ -5,14 +5,26 @@ import { button, panel } from './parts.js';
 import { loadRows } from './rows.js';
 import { on, store } from './store.js';
 
-const kKinds = { machine: 'machine', measurement: 'measurement', instrument: 'instrument file', report: 'report', image: 'image', key: 'key', other: '' };
+const kKinds = {
+  machine: 'machine',
+  measurement: 'measurement',
+  instrument: 'instrument file',
+  report: 'report',
+  image: 'image',
+  key: 'key',
+  other: '',
+};
 const size = (bytes) => (bytes < 10000 ? `${bytes} B` : bytes < 1e7 ? `${Math.round(bytes / 1000)} kB` : `${Math.round(bytes / 1e6)} MB`);
 
 /** Choose what everything else is about. */
 export async function choose(machine, measurements) {
   store.machine = machine;
   store.measurements = measurements;
-  try { localStorage.setItem(`chosen:${store.folder}`, JSON.stringify({ machine, measurements })); } catch { /* private mode */ }
+  try {
+    localStorage.setItem(`chosen:${store.folder}`, JSON.stringify({ machine, measurements }));
+  } catch {
+    /* private mode */
+  }
   await loadRows();
 }
 
@@ -37,43 +49,81 @@ async function showBadLine(box, file, message) {
   const where = message.match(/:(\d+): /);
   box.replaceChildren(el('p', { class: 'error', role: 'alert' }, message));
   if (!where || file.size > 64 << 20) return;
-  const lines = (await file.text()).split('\n'), at = Number(where[1]);
-  box.append(el('pre', { class: 'source' }, lines.slice(Math.max(0, at - 3), at + 2).map((text, i) => {
-    const number = Math.max(0, at - 3) + i + 1;
-    return el('span', { class: number === at ? 'bad' : null }, `${String(number).padStart(6)}  ${text.slice(0, 400)}\n`);
-  })));
+  const lines = (await file.text()).split('\n'),
+    at = Number(where[1]);
+  box.append(
+    el(
+      'pre',
+      { class: 'source' },
+      lines.slice(Math.max(0, at - 3), at + 2).map((text, i) => {
+        const number = Math.max(0, at - 3) + i + 1;
+        return el('span', { class: number === at ? 'bad' : null }, `${String(number).padStart(6)}  ${text.slice(0, 400)}\n`);
+      }),
+    ),
+  );
 }
 
 function fileRow(file) {
   const usable = { machine: 'use', measurement: 'use' }[file.kind];
-  const act = !usable ? null : button(usable, () => choose(file.kind === 'machine' ? file.name : store.machine, file.kind === 'machine' ? store.measurements : [file.name]), { class: 'quiet' });
-  const also = file.kind === 'measurement' && store.measurements.length && !store.measurements.includes(file.name)
-    ? button('use too', () => choose(store.machine, [...store.measurements, file.name]), { class: 'quiet' }) : null;
+  const act = !usable
+    ? null
+    : button(
+        usable,
+        () => choose(file.kind === 'machine' ? file.name : store.machine, file.kind === 'machine' ? store.measurements : [file.name]),
+        { class: 'quiet' },
+      );
+  const also =
+    file.kind === 'measurement' && store.measurements.length && !store.measurements.includes(file.name)
+      ? button('use too', () => choose(store.machine, [...store.measurements, file.name]), { class: 'quiet' })
+      : null;
   const chosen = file.name === store.machine || store.measurements.includes(file.name);
-  return el('tr', { class: chosen ? 'chosen' : null }, el('td', { class: 'text' }, el('a', { href: fileAddress(file.name), target: '_blank', rel: 'noopener' }, file.name)),
-    el('td', { class: 'text' }, kKinds[file.kind] ?? ''), el('td', { class: 'num' }, size(file.bytes)), el('td', { class: 'text' }, act, ' ', also));
+  return el(
+    'tr',
+    { class: chosen ? 'chosen' : null },
+    el('td', { class: 'text' }, el('a', { href: fileAddress(file.name), target: '_blank', rel: 'noopener' }, file.name)),
+    el('td', { class: 'text' }, kKinds[file.kind] ?? ''),
+    el('td', { class: 'num' }, size(file.bytes)),
+    el('td', { class: 'text' }, act, ' ', also),
+  );
 }
 
 function history() {
   const box = el('div', { id: 'history' });
-  const act = (what) => async () => { await postJson('/api/history', { do: what }); await refresh(); };
+  const act = (what) => async () => {
+    await postJson('/api/history', { do: what });
+    await refresh();
+  };
   const draw = () => {
     const items = store.history.map((entry) => el('li', { class: entry.undone ? 'undone' : null }, el('code', {}, entry.command)));
     box.replaceChildren(items.length ? el('ol', {}, items) : el('p', { class: 'note' }, 'Nothing was done yet.'));
   };
   on('project', draw);
   draw();
-  return panel('History', box, el('div', { class: 'controls' }, button('Undo', act('undo'), { class: 'quiet', id: 'undo' }), button('Redo', act('redo'), { class: 'quiet', id: 'redo' }),
-    el('a', { href: fileAddress('history.sh'), download: 'history.sh' }, 'history.sh'),
-    el('span', { class: 'note' }, 'does it all again: a shell script of these commands. Undone steps stay out of it; their files stay.')));
+  return panel(
+    'History',
+    box,
+    el(
+      'div',
+      { class: 'controls' },
+      button('Undo', act('undo'), { class: 'quiet', id: 'undo' }),
+      button('Redo', act('redo'), { class: 'quiet', id: 'redo' }),
+      el('a', { href: fileAddress('history.sh'), download: 'history.sh' }, 'history.sh'),
+      el('span', { class: 'note' }, 'does it all again: a shell script of these commands. Undone steps stay out of it; their files stay.'),
+    ),
+  );
 }
 
 export function projectView(root) {
   const error = el('div', { id: 'drop-error' });
   const repair = el('input', { type: 'checkbox' });
   const pick = el('input', { type: 'file', multiple: '', id: 'file-input', 'aria-label': 'Files to take into the project' });
-  const zone = el('div', { class: 'drop', id: 'drop' }, el('p', {}, 'Drop machine files (.xml), measurements (.csv) or ball-bar files (.b5r) here, or choose them: '), pick,
-    el('label', { class: 'choice' }, repair, ' repair the time base of ball-bar files'));
+  const zone = el(
+    'div',
+    { class: 'drop', id: 'drop' },
+    el('p', {}, 'Drop machine files (.xml), measurements (.csv) or ball-bar files (.b5r) here, or choose them: '),
+    pick,
+    el('label', { class: 'choice' }, repair, ' repair the time base of ball-bar files'),
+  );
   const takeAll = async (files) => {
     error.replaceChildren();
     for (const file of files) {
@@ -85,8 +135,14 @@ export function projectView(root) {
       }
     }
   };
-  pick.addEventListener('change', async () => { await takeAll([...pick.files]); pick.value = ''; });
-  document.addEventListener('dragover', (event) => { event.preventDefault(); zone.classList.add('over'); });
+  pick.addEventListener('change', async () => {
+    await takeAll([...pick.files]);
+    pick.value = '';
+  });
+  document.addEventListener('dragover', (event) => {
+    event.preventDefault();
+    zone.classList.add('over');
+  });
   document.addEventListener('dragleave', () => zone.classList.remove('over'));
   document.addEventListener('drop', (event) => {
     event.preventDefault();
@@ -98,8 +154,30 @@ export function projectView(root) {
   on('project', draw);
   on('rows', draw);
   draw();
-  root.append(panel('Take in', zone, error), panel('Files', el('div', { class: 'scroll' }, el('table', {}, el('thead', {}, el('tr', {},
-    ['name', 'is', 'size', ''].map((name) => el('th', { class: 'text' }, name)))), files))), history());
+  root.append(
+    panel('Take in', zone, error),
+    panel(
+      'Files',
+      el(
+        'div',
+        { class: 'scroll' },
+        el(
+          'table',
+          {},
+          el(
+            'thead',
+            {},
+            el(
+              'tr',
+              {},
+              ['name', 'is', 'size', ''].map((name) => el('th', { class: 'text' }, name)),
+            ),
+          ),
+          files,
+        ),
+      ),
+    ),
+    history(),
+  );
   return { show() {} };
 }
-

@@ -9,11 +9,17 @@ const kAcross = { x: 0, y: 1, z: 2 };
 function byKind(observations) {
   const counts = new Uint32Array(observations.kinds.length);
   for (const kind of observations.kind) ++counts[kind];
-  const groups = observations.kinds.map((kind, k) => ({ kind, unit: kRotations.has(kind) ? 'µrad' : 'µm',
-    index: new Uint32Array(counts[k]), row: new Uint32Array(counts[k]), value: new Float32Array(counts[k]) }));
+  const groups = observations.kinds.map((kind, k) => ({
+    kind,
+    unit: kRotations.has(kind) ? 'µrad' : 'µm',
+    index: new Uint32Array(counts[k]),
+    row: new Uint32Array(counts[k]),
+    value: new Float32Array(counts[k]),
+  }));
   const next = new Uint32Array(groups.length);
   for (let i = 0; i < observations.kind.length; ++i) {
-    const group = groups[observations.kind[i]], at = next[observations.kind[i]]++;
+    const group = groups[observations.kind[i]],
+      at = next[observations.kind[i]]++;
     group.index[at] = i;
     group.row[at] = observations.row[i];
     group.value[at] = observations.residual[i];

@@ -3,9 +3,16 @@
 const listeners = new Map();
 
 export const store = {
-  folder: '', version: '', files: [], history: [],
-  machine: '', measurements: [],
-  rows: null, compare: null, diagnosis: null, overlay: null,
+  folder: '',
+  version: '',
+  files: [],
+  history: [],
+  machine: '',
+  measurements: [],
+  rows: null,
+  compare: null,
+  diagnosis: null,
+  overlay: null,
 };
 
 export const selection = { rows: new Uint8Array(0), count: 0 };

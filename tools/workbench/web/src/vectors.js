@@ -7,23 +7,42 @@ import { selection, store } from './store.js';
 import { twinOf } from './overlay.js';
 
 const kShades = 32;
-const kStops = [[59, 82, 139], [33, 145, 140], [94, 201, 98], [243, 176, 26], [220, 68, 44]];
-const kBoth = [[44, 103, 201], [140, 160, 190], [170, 170, 170], [214, 150, 110], [214, 90, 30]];
+const kStops = [
+  [59, 82, 139],
+  [33, 145, 140],
+  [94, 201, 98],
+  [243, 176, 26],
+  [220, 68, 44],
+];
+const kBoth = [
+  [44, 103, 201],
+  [140, 160, 190],
+  [170, 170, 170],
+  [214, 150, 110],
+  [214, 90, 30],
+];
 
 function ramp(stops) {
   return Array.from({ length: kShades }, (_, i) => {
-    const at = Math.min(stops.length - 1.0001, (i / (kShades - 1)) * (stops.length - 1)), k = Math.floor(at);
+    const at = Math.min(stops.length - 1.0001, (i / (kShades - 1)) * (stops.length - 1)),
+      k = Math.floor(at);
     return `rgb(${[0, 1, 2].map((j) => Math.round(stops[k][j] + (at - k) * (stops[k + 1][j] - stops[k][j]))).join(',')})`;
   });
 }
-const kMagnitude = ramp(kStops), kSigned = ramp(kBoth);
+const kMagnitude = ramp(kStops),
+  kSigned = ramp(kBoth);
 
 function bounds(point) {
-  const low = [], high = [];
+  const low = [],
+    high = [];
   for (const list of point) {
     let [a, b] = [Infinity, -Infinity];
-    for (const value of list) { if (value < a) a = value; if (value > b) b = value; }
-    low.push(a); high.push(b);
+    for (const value of list) {
+      if (value < a) a = value;
+      if (value > b) b = value;
+    }
+    low.push(a);
+    high.push(b);
   }
   return { low, high, middle: low.map((v, k) => (v + high[k]) / 2), reach: Math.hypot(...low.map((v, k) => high[k] - v)) / 2 || 1 };
 }
@@ -37,14 +56,25 @@ function typical(size) {
 /** Residual vectors where the tool was: rotate by dragging or with the arrow keys, zoom with + and -. */
 export function vectorPlot(height, label = 'Residual vectors in the working volume') {
   const view = { turn: -0.6, tilt: 0.45, zoom: 1, gain: 1, colour: 'size' };
-  let kept = null, step = 1, calm = null;
+  let kept = null,
+    step = 1,
+    calm = null;
   const prepare = () => {
     // With an overlay: the residual of the fitted model, which it explains a part of.
     const rows = store.overlay ? twinOf(store.overlay, 'before') : store.rows;
     if (kept?.rows !== rows || kept.residual !== rows.observations.residual) {
       const n = rows.n_rows;
-      kept = { rows, residual: rows.observations.residual, box: bounds(rows.point), typical: typical(rows.size), ax: new Float32Array(n), ay: new Float32Array(n),
-        bx: new Float32Array(n), by: new Float32Array(n), colour: new Uint8Array(n) };
+      kept = {
+        rows,
+        residual: rows.observations.residual,
+        box: bounds(rows.point),
+        typical: typical(rows.size),
+        ax: new Float32Array(n),
+        ay: new Float32Array(n),
+        bx: new Float32Array(n),
+        by: new Float32Array(n),
+        colour: new Uint8Array(n),
+      };
     }
     return kept;
   };
@@ -52,10 +82,16 @@ export function vectorPlot(height, label = 'Residual vectors in the working volu
     const scale = (0.62 * Math.min(pen.width, pen.height) * view.zoom) / box.reach;
     const [cos, sin, up, down] = [Math.cos(view.turn), Math.sin(view.turn), Math.cos(view.tilt), Math.sin(view.tilt)];
     // Right and up on the screen as linear functions of x, y, z.
-    return { right: [cos * scale, -sin * scale, 0], up: [down * sin * scale, down * cos * scale, up * scale], cx: pen.width / 2, cy: pen.height / 2 };
+    return {
+      right: [cos * scale, -sin * scale, 0],
+      up: [down * sin * scale, down * cos * scale, up * scale],
+      cx: pen.width / 2,
+      cy: pen.height / 2,
+    };
   };
   const strokesOf = (k, cam, v, length) => {
-    const { middle } = k.box, [X, Y, Z] = k.rows.point;
+    const { middle } = k.box,
+      [X, Y, Z] = k.rows.point;
     for (let i = 0; i < X.length; i += step) {
       const [x, y, z] = [X[i] - middle[0], Y[i] - middle[1], Z[i] - middle[2]];
       k.ax[i] = cam.cx + cam.right[0] * x + cam.right[1] * y;
@@ -73,33 +109,46 @@ export function vectorPlot(height, label = 'Residual vectors in the working volu
   };
   const drawBox = (pen, cam, box, c) => {
     const corner = (k) => [0, 1, 2].map((j) => ((k >> j) & 1 ? box.high : box.low)[j] - box.middle[j]);
-    const place = (p) => [cam.cx + cam.right[0] * p[0] + cam.right[1] * p[1], cam.cy - (cam.up[0] * p[0] + cam.up[1] * p[1] + cam.up[2] * p[2])];
-    for (let a = 0; a < 8; ++a) for (let j = 0; j < 3; ++j) if (!((a >> j) & 1)) pen.line([...place(corner(a)), ...place(corner(a | (1 << j)))], c.line, 1);
+    const place = (p) => [
+      cam.cx + cam.right[0] * p[0] + cam.right[1] * p[1],
+      cam.cy - (cam.up[0] * p[0] + cam.up[1] * p[1] + cam.up[2] * p[2]),
+    ];
+    for (let a = 0; a < 8; ++a)
+      for (let j = 0; j < 3; ++j) if (!((a >> j) & 1)) pen.line([...place(corner(a)), ...place(corner(a | (1 << j)))], c.line, 1);
     ['x', 'y', 'z'].forEach((name, j) => {
       const [x, y] = place(corner(1 << j));
       pen.text(x, y - 8, `${name} ${number(box.high[j], 4)} mm`, { colour: c.soft, align: 'center' });
     });
   };
-  const plot = new Plot(label, { height, name: 'residual_vectors', paint(pen, c) {
-    if (!store.rows?.n_rows) return;
-    const k = prepare();
-    const cam = camera(pen, k.box);
-    drawBox(pen, cam, k.box, c);
-    const area = { x: 0, y: 0, w: pen.width, h: pen.height };
-    const length = (view.gain * 0.12 * k.box.reach) / k.typical;
-    const v = k.rows.vector;
-    strokesOf(k, cam, v, length);
-    shadesOf(k, v, k.rows.size);
-    if (selection.count) for (let i = 0; i < k.colour.length; ++i) if (!selection.rows[i]) k.colour[i] = kNone;
-    const dimmed = selection.count ? k.colour.map((shade) => (shade === kNone ? 0 : kNone)) : null;
-    if (dimmed) pen.strokes(area, k.ax, k.ay, k.bx, k.by, dimmed, [c.line], step);
-    pen.strokes(area, k.ax, k.ay, k.bx, k.by, k.colour, view.colour === 'size' ? kMagnitude : kSigned, step);
-    if (store.overlay) {
-      strokesOf(k, cam, twinOf(store.overlay, 'explained').vector, length);
-      pen.strokes(area, k.ax, k.ay, k.bx, k.by, k.colour.fill(0), [c.ccw], step);
-    }
-    pen.text(8, pen.height - 12, `colours to ${number(k.typical, 3)} µm${store.overlay ? ', laid over: what the candidate would explain' : ''}`, { colour: c.soft });
-  } });
+  const plot = new Plot(label, {
+    height,
+    name: 'residual_vectors',
+    paint(pen, c) {
+      if (!store.rows?.n_rows) return;
+      const k = prepare();
+      const cam = camera(pen, k.box);
+      drawBox(pen, cam, k.box, c);
+      const area = { x: 0, y: 0, w: pen.width, h: pen.height };
+      const length = (view.gain * 0.12 * k.box.reach) / k.typical;
+      const v = k.rows.vector;
+      strokesOf(k, cam, v, length);
+      shadesOf(k, v, k.rows.size);
+      if (selection.count) for (let i = 0; i < k.colour.length; ++i) if (!selection.rows[i]) k.colour[i] = kNone;
+      const dimmed = selection.count ? k.colour.map((shade) => (shade === kNone ? 0 : kNone)) : null;
+      if (dimmed) pen.strokes(area, k.ax, k.ay, k.bx, k.by, dimmed, [c.line], step);
+      pen.strokes(area, k.ax, k.ay, k.bx, k.by, k.colour, view.colour === 'size' ? kMagnitude : kSigned, step);
+      if (store.overlay) {
+        strokesOf(k, cam, twinOf(store.overlay, 'explained').vector, length);
+        pen.strokes(area, k.ax, k.ay, k.bx, k.by, k.colour.fill(0), [c.ccw], step);
+      }
+      pen.text(
+        8,
+        pen.height - 12,
+        `colours to ${number(k.typical, 3)} µm${store.overlay ? ', laid over: what the candidate would explain' : ''}`,
+        { colour: c.soft },
+      );
+    },
+  });
   const turn = (dx, dy) => {
     view.turn += 0.008 * dx;
     view.tilt = Math.max(-1.57, Math.min(1.57, view.tilt + 0.008 * dy));
@@ -111,23 +160,61 @@ export function vectorPlot(height, label = 'Residual vectors in the working volu
     if ((store.rows?.n_rows ?? 0) > 20000) calm = setTimeout(() => plot.draw(), 150);
   };
   let held = null;
-  plot.canvas.addEventListener('pointerdown', (event) => { held = [event.clientX, event.clientY]; plot.canvas.setPointerCapture(event.pointerId); });
+  plot.canvas.addEventListener('pointerdown', (event) => {
+    held = [event.clientX, event.clientY];
+    plot.canvas.setPointerCapture(event.pointerId);
+  });
   plot.canvas.addEventListener('pointermove', (event) => {
     if (held === null) return;
     turn(event.clientX - held[0], event.clientY - held[1]);
     held = [event.clientX, event.clientY];
   });
-  for (const end of ['pointerup', 'pointercancel']) plot.canvas.addEventListener(end, () => { held = null; });
+  for (const end of ['pointerup', 'pointercancel'])
+    plot.canvas.addEventListener(end, () => {
+      held = null;
+    });
   plot.canvas.addEventListener('keydown', (event) => {
-    const act = { ArrowLeft: () => turn(-12, 0), ArrowRight: () => turn(12, 0), ArrowUp: () => turn(0, -12), ArrowDown: () => turn(0, 12),
-      '+': () => { view.zoom *= 1.15; plot.draw(); }, '-': () => { view.zoom /= 1.15; plot.draw(); } }[event.key];
+    const act = {
+      ArrowLeft: () => turn(-12, 0),
+      ArrowRight: () => turn(12, 0),
+      ArrowUp: () => turn(0, -12),
+      ArrowDown: () => turn(0, 12),
+      '+': () => {
+        view.zoom *= 1.15;
+        plot.draw();
+      },
+      '-': () => {
+        view.zoom /= 1.15;
+        plot.draw();
+      },
+    }[event.key];
     if (!act) return;
     event.preventDefault();
     act();
   });
-  const set = (key) => (value) => { view[key] = key === 'colour' ? value : Number(value); redrawAll(); };
+  const set = (key) => (value) => {
+    view[key] = key === 'colour' ? value : Number(value);
+    redrawAll();
+  };
   const steps = [0.25, 0.5, 1, 2, 4, 8].map((one) => [String(one), `× ${one}`]);
-  plot.element.prepend(el('div', { class: 'controls' }, choice('colour', [['size', 'magnitude'], ['x', 'x'], ['y', 'y'], ['z', 'z']], 'size', set('colour')),
-    choice('arrows', steps, '1', set('gain')), choice('zoom', steps, '1', set('zoom'))));
+  plot.element.prepend(
+    el(
+      'div',
+      { class: 'controls' },
+      choice(
+        'colour',
+        [
+          ['size', 'magnitude'],
+          ['x', 'x'],
+          ['y', 'y'],
+          ['z', 'z'],
+        ],
+        'size',
+        set('colour'),
+      ),
+      choice('arrows', steps, '1', set('gain')),
+      choice('zoom', steps, '1', set('zoom')),
+    ),
+  );
   return plot;
 }
