@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The commit that `vernier --version` prints; "unknown" outside a checkout.
+# The commit that `vernier --version` and `vernierd --version` print beside PROJECT_VERSION (CMakeLists.txt, its one place); "unknown" outside a checkout.
 set(VERNIER_COMMIT unknown)
 find_package(Git QUIET)
 if(GIT_FOUND)

@@ -34,25 +34,23 @@ const char* const kUsage =
     "  --seed N        seed of the simulated motion (default 1)\n"
     "  --no-realtime   do not ask for SCHED_FIFO, locked memory and shallow idle states\n"
     "  --json FILE     result for programs; - is standard output\n"
+    "  -V, --version   print the version and end\n"
     "Exit status: 0 done, 1 bad input or usage, 2 a fault latched, a device is missing or a limit was not "
     "met.\n";
 
+const char* const kVersion = "vernierd " VERNIER_VERSION " (" VERNIER_COMMIT ")\n";
+
 bool parse_arguments(int argc, char** argv, Arguments& arguments) {
-  const option kOptions[] = {{"image", required_argument, nullptr, 'i'},
-                             {"simulate", no_argument, nullptr, 's'},
-                             {"seconds", required_argument, nullptr, 't'},
-                             {"seed", required_argument, nullptr, 'r'},
-                             {"no-realtime", no_argument, nullptr, 'n'},
-                             {"json", required_argument, nullptr, 'j'},
-                             {"board", required_argument, nullptr, 'b'},
-                             {"check", no_argument, nullptr, 'c'},
-                             {"calibrate", required_argument, nullptr, 'a'},
-                             {"measured", required_argument, nullptr, 'm'},
-                             {"steps", required_argument, nullptr, 'p'},
-                             {"help", no_argument, nullptr, 'h'},
-                             {nullptr, 0, nullptr, 0}};
+  const option kOptions[] = {
+      {"image", required_argument, nullptr, 'i'},     {"simulate", no_argument, nullptr, 's'},
+      {"seconds", required_argument, nullptr, 't'},   {"seed", required_argument, nullptr, 'r'},
+      {"no-realtime", no_argument, nullptr, 'n'},     {"json", required_argument, nullptr, 'j'},
+      {"board", required_argument, nullptr, 'b'},     {"check", no_argument, nullptr, 'c'},
+      {"calibrate", required_argument, nullptr, 'a'}, {"measured", required_argument, nullptr, 'm'},
+      {"steps", required_argument, nullptr, 'p'},     {"help", no_argument, nullptr, 'h'},
+      {"version", no_argument, nullptr, 'V'},         {nullptr, 0, nullptr, 0}};
   double number = 0;
-  for (int c = 0; (c = getopt_long(argc, argv, "h", kOptions, nullptr)) != -1;) {
+  for (int c = 0; (c = getopt_long(argc, argv, "hV", kOptions, nullptr)) != -1;) {
     if (c == 'i') arguments.image = optarg;
     if (c == 's') arguments.simulate = true;
     if (c == 'n') arguments.realtime = false;
@@ -67,6 +65,7 @@ bool parse_arguments(int argc, char** argv, Arguments& arguments) {
     if (c == 'r' && !parse_value(optarg, 0, 1e15, number)) return false;
     if (c == 'r') arguments.seed = static_cast<unsigned long>(number);
     if (c == 'h') return arguments.help = true;
+    if (c == 'V') return arguments.version = true;
     if (c == '?') return false;
   }
   if (!arguments.calibrate.empty() && arguments.board.empty()) return false;

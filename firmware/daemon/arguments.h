@@ -10,10 +10,12 @@ struct Arguments {
   int steps = 11;
   double seconds = 0;
   unsigned long seed = 1;
-  bool simulate = false, realtime = true, check = false, help = false;
+  bool simulate = false, realtime = true, check = false, help = false, version = false;
 };
 
 extern const char* const kUsage;
+/// "vernierd 0.1.0 (commit)".
+extern const char* const kVersion;
 
 /// False: not understood, kUsage tells why. setup.
 bool parse_arguments(int argc, char** argv, Arguments& arguments);

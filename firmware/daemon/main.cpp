@@ -278,6 +278,10 @@ int main(int argc, char** argv) {
     std::fputs(kUsage, stdout);
     return kDone;
   }
+  if (arguments.version) {
+    std::fputs(kVersion, stdout);
+    return kDone;
+  }
   std::signal(SIGTERM, [](int) { stop_asked = true; });
   std::signal(SIGINT, [](int) { stop_asked = true; });
   try {

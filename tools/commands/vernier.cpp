@@ -61,7 +61,7 @@ int run(int argc, char** argv) {
   CLI::App app{
       "Vernier makes real machines accurate: from measurements to a model of the errors to a running "
       "correction."};
-  app.set_version_flag("--version", "vernier " VERNIER_VERSION " (" VERNIER_COMMIT ")");
+  app.set_version_flag("-V,--version", "vernier " VERNIER_VERSION " (" VERNIER_COMMIT ")");
   app.footer(
       "Exit status: 0 done, 1 bad input or usage (nothing written), 2 the answer is no, 70 internal error.\n"
       "`vernier COMMAND --help` documents each command.");
