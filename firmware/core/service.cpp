@@ -24,7 +24,7 @@ ProbeSettings probe_settings(const ServiceOptions& options) {
 }  // namespace
 
 Service::Service(ServiceOptions options, const Board& board, SlotStore& store)
-    : options_(std::move(options)),
+    : options_(options),
       board_(board),
       uploader_(store, options_.wiring, options_.upload),
       exchange_(options_.ticks_kept, options_.touches_kept),

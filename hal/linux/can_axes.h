@@ -45,7 +45,7 @@ class CanAxes : public AxisReader {
   /// Takes what has come since the last call, at most kMostFrames, without waiting. realtime.
   void begin_tick() noexcept override;
   /// kNoReading: no new, valid frame of this axis since the tick before. realtime.
-  HalFault read_axis(std::uint32_t axis, AxisReading& reading) noexcept override;
+  HalFault read_axis(std::uint32_t index, AxisReading& reading) noexcept override;
   /// The frames know neither feed nor curvature: zero. realtime.
   HalFault read_path(PathReading& reading) noexcept override;
   bool gives_motion() const noexcept override { return false; }

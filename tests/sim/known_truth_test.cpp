@@ -11,6 +11,7 @@
 #include <memory>
 
 #include "hal/sim/analogue_chain.h"
+#include "tools/model/machine_reader.h"
 #include "tools/simulate/simulate.h"
 #include "tools/text/error.h"
 

@@ -11,7 +11,12 @@
 
 #include "tests/support/hidden_survey_columns.h"
 #include "tests/support/hidden_survey_csv.h"
+#include "tests/support/hidden_survey_inputs.h"
+#include "tests/support/hidden_survey_key.h"
+#include "tests/support/hidden_survey_outside.h"
 #include "tests/support/hidden_survey_rivals.h"
+#include "tools/model/machine_reader.h"
+#include "tools/model/machine_writer.h"
 #include "tools/model/prediction.h"
 
 namespace vernier::support {

@@ -31,8 +31,6 @@ enum class SurveyClass : std::uint8_t {
   kNoise,       // nothing
   kConfusable,  // one effect that the survey's design cannot tell from another
 };
-const char* class_name(SurveyClass kind);
-SurveyClass class_named(const std::string& name);
 
 struct SurveySpec {
   Family family = Family::kBridge;
@@ -80,13 +78,7 @@ struct HiddenSurvey {
   std::vector<Rival> rivals;  // best first, at most five; for kSingle and kConfusable
   bool can_tell = false;      // the best rival's excess is 20 or more
   std::size_t observations = 0, parameters = 0;
-
-  /// The key as JSON.
-  std::string key() const;
 };
-
-/// The effects that surveys of a family can hide.
-std::vector<std::string> effects_of(Family family);
 
 /// A survey, the same for the same specification. Throws std::runtime_error where the family cannot show the
 /// effect (nothing of it is left beside the model's free parameters after many draws).

@@ -5,7 +5,9 @@
 
 #include <cmath>
 
+#include "tests/support/hidden_survey_inputs.h"
 #include "tools/model/chain.h"
+#include "tools/model/machine_reader.h"
 #include "tools/text/numbers.h"
 
 namespace vernier::support {

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/hidden_survey_inputs.h"
 #include "tests/support/hidden_survey_motion.h"
 
 namespace vernier::support {

@@ -12,6 +12,7 @@
 #include <stdexcept>
 
 #include "tools/model/chain.h"
+#include "tools/model/machine_reader.h"
 #include "tools/model/parameters.h"
 #include "tools/text/files.h"
 #include "tools/text/numbers.h"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tests/support/hidden_survey_forms.h"
+#include "tests/support/hidden_survey_inputs.h"
 
 #include <fmt/format.h>
 

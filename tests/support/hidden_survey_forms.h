@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "tests/support/hidden_survey_family.h"
+#include "tests/support/hidden_survey_inputs.h"
 #include "tests/support/hidden_survey_motion.h"
 
 namespace vernier::support {
@@ -36,9 +37,6 @@ using Share = std::function<double()>;
 std::vector<Form> forms_of(const std::string& effect, const Geometry& geometry,
                            const std::vector<LoggedColumn>& columns, const std::vector<std::string>& runs,
                            const Share& share, Draw& draw);
-
-/// A form that is in no catalogue and beyond a product of three factors.
-Form outside_form(const Geometry& geometry, const std::vector<LoggedColumn>& columns, Draw& draw);
 
 /// Is this degree of freedom an angle?
 bool is_angle(const std::string& dof);

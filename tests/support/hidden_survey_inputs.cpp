@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "tests/support/hidden_survey_inputs.h"
+
 #include <cmath>
 #include <numbers>
 

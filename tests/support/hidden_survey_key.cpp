@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "tests/support/hidden_survey_key.h"
+
 #include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
@@ -63,9 +65,9 @@ std::vector<std::string> effects_of(Family family) {
   return effects;
 }
 
-std::string HiddenSurvey::key() const {
+std::string key_of(const HiddenSurvey& survey) {
   nlohmann::json list = nlohmann::json::array(), others = nlohmann::json::array();
-  for (const HiddenEffect& e : effects) {
+  for (const HiddenEffect& e : survey.effects) {
     nlohmann::json item = to_json(e.cause), names = nlohmann::json::array();
     for (const Cause& cause : e.accept) names.push_back(to_json(cause));
     item.update({{"inputs", e.inputs},
@@ -80,20 +82,20 @@ std::string HiddenSurvey::key() const {
     if (const std::string why = why_outside(e.cause.effect); !why.empty()) item["why_outside"] = why;
     list.push_back(item);
   }
-  for (const Rival& r : rivals) {
+  for (const Rival& r : survey.rivals) {
     nlohmann::json item = to_json(r.cause);
     item.update({{"term", r.term}, {"excess_chi_square", r.excess}});
     others.push_back(item);
   }
-  return nlohmann::json{{"seed", spec.seed},
-                        {"family", family_name(spec.family)},
-                        {"class", class_name(spec.kind)},
-                        {"u_mm", spec.u_mm},
-                        {"observations", observations},
-                        {"parameters", parameters},
+  return nlohmann::json{{"seed", survey.spec.seed},
+                        {"family", family_name(survey.spec.family)},
+                        {"class", class_name(survey.spec.kind)},
+                        {"u_mm", survey.spec.u_mm},
+                        {"observations", survey.observations},
+                        {"parameters", survey.parameters},
                         {"effects", list},
                         {"rivals", others},
-                        {"can_tell", can_tell}}
+                        {"can_tell", survey.can_tell}}
              .dump(2) +
          "\n";
 }

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "tools/model/chain.h"
+#include "tools/model/machine_reader.h"
 
 namespace vernier::support {
 namespace {

@@ -37,17 +37,6 @@ struct MotionRow {
 
 std::vector<MotionRow> move(const Geometry& geometry, const MotionOptions& options, Draw& draw);
 
-/// A column beside the axes that is no motion: thermometers, loads, an accelerometer, decoys.
-struct LoggedColumn {
-  enum class Sort : std::uint8_t { kTemperature, kLoad, kVibration, kDecoy };
-  std::string name, unit;
-  Sort sort = Sort::kDecoy;
-  double reference = 0;
-  std::vector<double> value;
-};
-std::vector<LoggedColumn> log_inputs(const std::vector<MotionRow>& rows, const MotionOptions& options,
-                                     Draw& draw);
-
 /// Label of a run.
 std::string run_label(std::size_t run);
 

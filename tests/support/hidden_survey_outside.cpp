@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "tests/support/hidden_survey_outside.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "tests/support/hidden_survey_forms.h"
+#include "tests/support/hidden_survey_inputs.h"
 
 namespace vernier::support {
 namespace {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tests/support/hidden_survey_rivals.h"
+#include "tests/support/hidden_survey_inputs.h"
 
 #include <algorithm>
 #include <limits>

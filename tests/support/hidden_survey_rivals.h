@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "tests/support/hidden_survey_columns.h"
+#include "tests/support/hidden_survey_inputs.h"
 
 namespace vernier::support {
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tests/support/machines.h"
+#include "tools/model/machine_reader.h"
 
 #include <fmt/format.h>
 

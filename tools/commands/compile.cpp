@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "tools/compile/compile.h"
+#include "tools/model/machine_reader.h"
 #include "tools/results/safety_json.h"
 #include "tools/text/files.h"
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "tools/derive/print_equation.h"
+#include "tools/model/machine_reader.h"
 
 namespace vernier::derive_cli {
 namespace {

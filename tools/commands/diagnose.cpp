@@ -7,6 +7,7 @@
 #include "tools/commands/command.h"
 #include "tools/diagnose/diagnosis.h"
 #include "tools/fit/fit.h"
+#include "tools/model/machine_reader.h"
 #include "tools/plan/plan.h"
 #include "tools/report/report.h"
 #include "tools/results/diagnosis_json.h"

@@ -5,6 +5,8 @@
 
 #include "tools/commands/command.h"
 #include "tools/model/machine.h"
+#include "tools/model/machine_reader.h"
+#include "tools/model/machine_writer.h"
 #include "tools/model/parameters.h"
 #include "tools/text/numbers.h"
 #include "tools/workbench/excluded.h"

@@ -4,7 +4,9 @@
 #include <memory>
 
 #include "tools/commands/command.h"
+#include "tools/effects/candidate.h"
 #include "tools/effects/fitted_effect.h"
+#include "tools/model/machine_reader.h"
 #include "tools/text/error.h"
 #include "tools/text/files.h"
 

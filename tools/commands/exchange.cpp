@@ -9,6 +9,7 @@
 #include "tools/exchange/screw_comp.h"
 #include "tools/exchange/table_text.h"
 #include "tools/kinematics/at.h"
+#include "tools/model/machine_reader.h"
 #include "tools/safety/safety_sheet.h"
 
 namespace vernier::exchange_cli {

@@ -11,6 +11,8 @@
 #include "tools/fit/freedom.h"
 #include "tools/fit/statistics.h"
 #include "tools/model/machine.h"
+#include "tools/model/machine_reader.h"
+#include "tools/model/machine_writer.h"
 #include "tools/model/measurement.h"
 #include "tools/results/residual_csv.h"
 #include "tools/results/results.h"

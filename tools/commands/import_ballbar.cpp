@@ -7,10 +7,13 @@
 
 #include "tools/commands/command.h"
 #include "tools/commands/import_kinds.h"
+#include "tools/import/b5r_reader.h"
+#include "tools/import/ballbar_csv.h"
 #include "tools/import/ballbar_file.h"
 #include "tools/import/ballbar_motion.h"
 #include "tools/import/printed_results.h"
 #include "tools/import/repair_report.h"
+#include "tools/import/trace_reader.h"
 #include "tools/text/optional_json.h"
 
 namespace vernier::import_cli {

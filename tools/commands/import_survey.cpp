@@ -7,6 +7,7 @@
 #include "tools/commands/command.h"
 #include "tools/commands/import_kinds.h"
 #include "tools/import/survey.h"
+#include "tools/model/machine_reader.h"
 #include "tools/model/measurement.h"
 
 namespace vernier::import_cli {

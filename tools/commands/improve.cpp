@@ -7,6 +7,7 @@
 #include "tools/commands/command.h"
 #include "tools/compile/compile.h"
 #include "tools/diagnose/diagnosis.h"
+#include "tools/model/machine_reader.h"
 #include "tools/model/rebind.h"
 #include "tools/report/report.h"
 #include "tools/results/diagnosis_json.h"

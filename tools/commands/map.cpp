@@ -6,6 +6,7 @@
 
 #include "tools/commands/command.h"
 #include "tools/map/simulated.h"
+#include "tools/model/machine_reader.h"
 #include "tools/report/report.h"
 #include "tools/results/field_json.h"
 

@@ -6,8 +6,13 @@
 #include <set>
 
 #include "tools/commands/command.h"
+#include "tools/model/machine_reader.h"
+#include "tools/model/machine_writer.h"
 #include "tools/part/gauge_block.h"
+#include "tools/part/measured_part.h"
+#include "tools/part/part_json.h"
 #include "tools/part/part_report.h"
+#include "tools/part/s_part.h"
 #include "tools/report/report.h"
 #include "tools/text/csv.h"
 #include "tools/text/numbers.h"

@@ -6,6 +6,7 @@
 
 #include "tools/commands/command.h"
 #include "tools/effects/catalogue.h"
+#include "tools/model/machine_reader.h"
 #include "tools/model/measurement.h"
 #include "tools/plan/plan.h"
 #include "tools/plan/sheets.h"

@@ -7,6 +7,7 @@
 #include "tools/fit/reach.h"
 #include "tools/kinematics/at.h"
 #include "tools/kinematics/correction.h"
+#include "tools/model/machine_reader.h"
 #include "tools/results/result_json.h"
 
 namespace vernier::pose_cli {

@@ -8,6 +8,7 @@
 
 #include "tools/commands/command.h"
 #include "tools/model/machine.h"
+#include "tools/model/machine_reader.h"
 #include "tools/text/error.h"
 #include "tools/upload/client.h"
 

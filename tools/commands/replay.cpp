@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "tools/commands/command.h"
+#include "tools/model/machine_reader.h"
 #include "tools/report/report.h"
 #include "tools/results/replay_report.h"
 #include "tools/simulate/corrected.h"

@@ -5,6 +5,8 @@
 
 #include <memory>
 
+#include "tools/compile/functions.h"
+#include "tools/model/machine_reader.h"
 #include "tools/simulate/simulate.h"
 #include "tools/text/error.h"
 

@@ -7,6 +7,7 @@
 #include "tools/commands/command.h"
 #include "tools/kinematics/at.h"
 #include "tools/kinematics/closed.h"
+#include "tools/model/machine_reader.h"
 #include "tools/results/result_json.h"
 
 namespace vernier::solve_cli {

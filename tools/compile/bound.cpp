@@ -7,6 +7,7 @@
 #include <set>
 
 #include "tools/compile/calculus.h"
+#include "tools/compile/functions.h"
 #include "tools/maths/factors.h"
 
 namespace vernier {
@@ -98,7 +99,7 @@ double error_from(const LoweredProgram& p, std::uint32_t target, const std::set<
   gain[target] = 1;
   double error = 0;
   for (std::size_t i = target + 1; i-- > 0;) {
-    if (gain[i] == 0 || given.count(static_cast<std::uint32_t>(i)) != 0) continue;
+    if (gain[i] == 0 || given.contains(static_cast<std::uint32_t>(i))) continue;
     if (i != target && p.registers[i].given) continue;
     error += gain[i] * p.registers[i].own_error;
     for (const Register::Use& use : p.registers[i].uses) gain[use.from] += gain[i] * use.gain;
@@ -153,7 +154,7 @@ class LeastSquaresBound {
   // A product takes the coefficient out of a scaled node: the register is the inner one's.
   std::pair<double, NodeId> bare(NodeId id) const {
     const Node& n = g_[id];
-    if (p_.register_of.count(id) == 0 && n.kind == NodeKind::kSum && n.terms.size() == 1 && n.number == 0)
+    if (!p_.register_of.contains(id) && n.kind == NodeKind::kSum && n.terms.size() == 1 && n.number == 0)
       return {std::abs(n.terms[0].coefficient), n.terms[0].node};
     return {1, id};
   }

@@ -23,7 +23,7 @@ class ProgramBuilder {
   Id constant(double value, int fraction_bits);
   /// counts: the range in the quantity's own counts; unit: size of a count in the machine file's unit.
   /// reach: largest magnitude that must be representable beside the range itself (stations of a table).
-  Id channel(Channel kind, double unit, double reach, const std::string& name);
+  Id channel(Channel channel, double unit, double reach, const std::string& name);
 
   /// A register of another program, `source` there, as a channel of this one.
   Id imported(const LoweredProgram& other, std::uint32_t source);

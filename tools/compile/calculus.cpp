@@ -7,6 +7,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "tools/compile/functions.h"
 #include "tools/maths/factors.h"
 
 namespace vernier {

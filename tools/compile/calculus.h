@@ -13,10 +13,10 @@ namespace vernier {
 class Derivative {
  public:
   Derivative(Graph& graph, NodeId channel) : g_(graph), channel_(channel) {}
-  NodeId of(NodeId node);
+  NodeId of(NodeId id);
 
  private:
-  NodeId make(NodeId node);
+  NodeId make(NodeId id);
 
   Graph& g_;
   NodeId channel_;
@@ -33,7 +33,7 @@ class Samples {
   void set(NodeId channel, Eigen::ArrayXd values) { known_[channel] = std::move(values); }
 
  private:
-  Eigen::ArrayXd evaluate(NodeId node);
+  Eigen::ArrayXd evaluate(NodeId id);
 
   const Graph& graph_;
   Eigen::Index count_;
@@ -47,7 +47,7 @@ std::optional<double> sampled_constant(Samples& samples, NodeId node);
 class Enclosure {
  public:
   Enclosure(const Graph& graph, const std::map<NodeId, Interval>& box) : graph_(graph), box_(box) {}
-  Interval of(NodeId node);
+  Interval of(NodeId id);
 
  private:
   const Graph& graph_;
@@ -67,7 +67,7 @@ class Slopes {
       : graph_(graph), channel_(channel), table_slopes_(table_slopes) {}
   /// This node counts as given: it does not change with the channel.
   void hold(NodeId node) { known_[node] = {}; }
-  Interval of(NodeId node);
+  Interval of(NodeId id);
 
  private:
   Interval slope(const Node& node);

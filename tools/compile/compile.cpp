@@ -9,6 +9,9 @@
 
 #include "tables/checksum.h"
 #include "tools/compile/bound.h"
+#include "tools/compile/image_writer.h"
+#include "tools/compile/print.h"
+#include "tools/model/machine_reader.h"
 #include "tools/text/files.h"
 
 namespace vernier {
@@ -96,8 +99,10 @@ CompiledMachine compile_machine(const Machine& machine, const std::string& machi
     result = compile_again(machine, options.tick_us, kNeglect_mm, more, std::move(result));
     if (result.evaluations < more) break;
   }
-  for (double neglect = kNeglect_mm / 10; over(result) && neglect >= kFinestNeglect_mm; neglect /= 10)
-    result = compile_again(machine, options.tick_us, neglect, result.evaluations, std::move(result));
+  for (double neglect = kNeglect_mm / 10; over(result) && neglect >= kFinestNeglect_mm; neglect /= 10) {
+    const int evaluations = result.evaluations;
+    result = compile_again(machine, options.tick_us, neglect, evaluations, std::move(result));
+  }
   if (over(result) && result.evaluations == 1)
     result = compile_again(machine, options.tick_us, kFinestNeglect_mm, 2, std::move(result));
   result.operations_of_one = operations_of_one;

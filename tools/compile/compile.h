@@ -60,17 +60,6 @@ std::unique_ptr<LoadedImage> load_image_dir(const std::string& directory);
 /// The same from bytes. Throws InputError with the cause.
 std::unique_ptr<LoadedImage> load_image(const std::vector<std::uint8_t>& image, const Machine& machine);
 
-/// The bytes of an image (tables/image_format.h). tool.
-std::vector<std::uint8_t> write_image(const Machine& machine, const LoweredProgram& program,
-                                      const LoweredShares& shares, std::uint32_t tick_us,
-                                      std::uint64_t source_hash, std::uint32_t accepted_rules,
-                                      std::uint64_t& fingerprint);
-
-/// The program as readable C++: equation.h and equation.cpp. Same program, same bytes. tool.
-std::string print_header(const Machine& machine, const LoweredProgram& program, std::uint64_t source_hash,
-                         std::uint64_t fingerprint);
-std::string print_source(const Machine& machine, const LoweredProgram& program, std::uint64_t source_hash);
-
 /// FNV-1a of a text.
 std::uint64_t hash_of(const std::string& text);
 

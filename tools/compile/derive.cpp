@@ -8,6 +8,7 @@
 
 #include "tools/compile/calculus.h"
 #include "tools/compile/orientation.h"
+#include "tools/compile/ranges.h"
 #include "tools/compile/solve.h"
 #include "tools/compile/walk.h"
 #include "tools/maths/factors.h"

@@ -104,12 +104,6 @@ struct Derivation {
   std::vector<std::string> switching;  // comparisons and the like: the bound holds away from their steps
 };
 
-/// Range of a channel in the unit of the machine file: declared, or the default of docs for its kind and
-/// unit.
-Interval axis_range(const Machine& machine, std::size_t axis);
-Interval input_range(const Input& input);
-Interval channel_range(const Machine& machine, ChannelKind kind, std::size_t index);
-
 /// Derives p(actual) - p(nominal) in factored form along the chain, seen along the linear axes where they
 /// span it, else along the rotary ones too. neglect_mm: a higher-order term smaller than this over the
 /// declared ranges is left out and entered in `neglected`. evaluations: beyond the first, the deviation is

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/compile/functions.h"
+
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -6,7 +9,24 @@
 #include "tools/maths/factors.h"
 
 namespace vernier {
-namespace {}  // namespace
+namespace {
+
+// Sine over an interval in degrees: its ends, and the crests and troughs at 90 + 360 k and -90 + 360 k
+// between.
+Interval range_of_sine(const Interval& x) {
+  if (x.high - x.low >= 360) return {-1, 1};
+  constexpr double kSlack = 1e-15;  // of the library's sine
+  Interval range = hull({std::sin(x.low * kRadPerDeg), std::sin(x.low * kRadPerDeg)},
+                        {std::sin(x.high * kRadPerDeg), std::sin(x.high * kRadPerDeg)});
+  const auto reaches = [&](double angle) {
+    return std::floor((x.high - angle) / 360) >= std::ceil((x.low - angle) / 360);
+  };
+  if (reaches(90)) range.high = 1;
+  if (reaches(-90)) range.low = -1;
+  return {std::max(-1.0, range.low - kSlack), std::min(1.0, range.high + kSlack)};
+}
+
+}  // namespace
 
 double value_of(Function f, double x) {
   switch (f) {
@@ -103,6 +123,19 @@ const char* name_of(Function f) {
       return "atan";
   }
   throw std::logic_error("unknown function");
+}
+
+Interval range_of_function(Function f, const Interval& x) {
+  switch (f) {
+    case Function::kSin:
+      return range_of_sine(x);
+    case Function::kCos:
+      return range_of_sine({x.low + 90, x.high + 90});
+    case Function::kReciprocal:
+      return {1 / x.high, 1 / x.low};
+    default:
+      return {value_of(f, x.low), value_of(f, x.high)};
+  }
 }
 
 }  // namespace vernier

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "tools/compile/functions.h"
 #include "tools/maths/factors.h"
 
 namespace vernier {
@@ -12,21 +13,6 @@ namespace {
 
 // Coefficients that only rounding of cos 90 deg and the like keeps from being zero.
 constexpr double kRoundOff = 1e-15;
-
-// Sine over an interval in degrees: its ends, and the crests and troughs at 90 + 360 k and -90 + 360 k
-// between.
-Interval range_of_sine(const Interval& x) {
-  if (x.high - x.low >= 360) return {-1, 1};
-  constexpr double kSlack = 1e-15;  // of the library's sine
-  Interval range = hull({std::sin(x.low * kRadPerDeg), std::sin(x.low * kRadPerDeg)},
-                        {std::sin(x.high * kRadPerDeg), std::sin(x.high * kRadPerDeg)});
-  const auto reaches = [&](double angle) {
-    return std::floor((x.high - angle) / 360) >= std::ceil((x.low - angle) / 360);
-  };
-  if (reaches(90)) range.high = 1;
-  if (reaches(-90)) range.low = -1;
-  return {std::max(-1.0, range.low - kSlack), std::min(1.0, range.high + kSlack)};
-}
 
 void check_domain(Function f, const Interval& x) {
   if ((f == Function::kLog || f == Function::kSqrt) && x.low <= 0)
@@ -56,19 +42,6 @@ double value_of_choice(NodeKind kind, double a, double b) {
 }
 
 }  // namespace
-
-Interval range_of_function(Function f, const Interval& x) {
-  switch (f) {
-    case Function::kSin:
-      return range_of_sine(x);
-    case Function::kCos:
-      return range_of_sine({x.low + 90, x.high + 90});
-    case Function::kReciprocal:
-      return {1 / x.high, 1 / x.low};
-    default:
-      return {value_of(f, x.low), value_of(f, x.high)};
-  }
-}
 
 Interval range_of_choice(NodeKind kind, const Interval& a, const Interval& b) {
   switch (kind) {
@@ -121,7 +94,7 @@ NodeId Graph::channel(ChannelKind kind, std::uint32_t index, const Interval& ran
   return intern(std::move(node));
 }
 
-NodeId Graph::sum(double constant_part, std::vector<Term> terms) {
+NodeId Graph::sum(double constant_part, const std::vector<Term>& terms) {
   std::map<NodeId, double> collected;
   std::map<NodeId, double> largest;  // to tell a cancelled coefficient from a small one
   const auto collect = [&](double k, NodeId id) {
@@ -227,9 +200,10 @@ bool Graph::depends_on(NodeId id, NodeId other) const {
   for (NodeId i = other + 1; i <= id; ++i) {
     const auto is_reached = [&](NodeId n) { return n >= other && reached[n - other] != 0; };
     const Node& node = nodes_[i];
-    reached[i - other] = std::any_of(node.args.begin(), node.args.end(), is_reached) ||
+    const bool through = std::any_of(node.args.begin(), node.args.end(), is_reached) ||
                          std::any_of(node.terms.begin(), node.terms.end(),
                                      [&](const Term& term) { return is_reached(term.node); });
+    reached[i - other] = through ? 1 : 0;
   }
   return reached.back() != 0;
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "comp/compensator.h"
+#include "tools/compile/functions.h"
 #include "tools/compile/interval.h"
 #include "tools/model/machine.h"
 
@@ -32,8 +33,6 @@ enum class NodeKind : std::uint8_t {
   kLess,
   kLag,  // first-order lag of args[0] with time constant `number` (s)
 };
-
-enum class Function : std::uint8_t { kSin, kCos, kExp, kLog, kSqrt, kReciprocal, kArcTangent };
 
 struct Term {
   double coefficient;
@@ -60,7 +59,7 @@ class Graph {
   NodeId constant(double value);
   /// range: what the channel can read, in the machine file's unit.
   NodeId channel(ChannelKind kind, std::uint32_t index, const Interval& range);
-  NodeId sum(double constant, std::vector<Term> terms);
+  NodeId sum(double constant_part, const std::vector<Term>& terms);
   NodeId product(NodeId a, NodeId b);
   NodeId table(std::uint32_t axis, std::uint32_t column, NodeId position, const Interval& range);
   /// Throws std::domain_error where the function is not defined over the whole range of the argument.
@@ -92,17 +91,7 @@ class Graph {
   std::map<Key, NodeId> known_;
 };
 
-/// Value of a function and of its first derivative; arguments of sine and cosine, results of the arc tangent
-/// in degrees.
-double value_of(Function f, double x);
-double slope_of(Function f, double x);
-/// Largest |first| and |fourth| derivative over an interval (closed form). The fourth bounds the error of
-/// cubic pieces.
-double slope_bound(Function f, const Interval& x);
-double fourth_derivative_bound(Function f, const Interval& x);
-const char* name_of(Function f);
-/// All values of a function over an interval of its domain, and of a choice.
-Interval range_of_function(Function f, const Interval& x);
+/// All values of a choice.
 Interval range_of_choice(NodeKind kind, const Interval& a, const Interval& b);
 
 }  // namespace vernier

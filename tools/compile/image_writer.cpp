@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/compile/image_writer.h"
+
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
 #include "tables/checksum.h"
 #include "tools/compile/compile.h"
+#include "tools/compile/ranges.h"
 
 namespace vernier {
 namespace {
@@ -49,7 +53,7 @@ class Writer {
 void copy_text(char* field, std::size_t size, const std::string& text, const Machine& machine,
                std::size_t line) {
   if (text.size() >= size) throw InputError({machine.file, line}, text, "too long a name for an image");
-  std::memcpy(field, text.data(), text.size());
+  std::copy(text.begin(), text.end(), field);  // the rest of the field is zero
 }
 
 std::vector<AxisRecord> axis_records(const Machine& machine) {

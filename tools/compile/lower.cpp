@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "tools/compile/builder.h"
+#include "tools/compile/functions.h"
 #include "tools/compile/segments.h"
 #include "tools/model/station_table.h"
 
@@ -147,7 +148,7 @@ class Lowering {
     const std::string name = std::exchange(wanted_name_, {});
     const Id id = make(node, name);
     done_[node] = id;
-    if (given_.count(node) != 0) b_.give(id);
+    if (given_.contains(node)) b_.give(id);
     return id;
   }
 
@@ -247,8 +248,8 @@ class Lowering {
   // a product from its fusion.
   bool goes_into_sums(NodeId id, double coefficient) const {
     const Node& n = g_[id];
-    if (n.kind != NodeKind::kSum || kept_.count(id) != 0 || factors_.count(id) != 0) return false;
-    if (tick_ != nullptr && tick_->register_of.count(id) != 0) return false;
+    if (n.kind != NodeKind::kSum || kept_.contains(id) || factors_.contains(id)) return false;
+    if (tick_ != nullptr && tick_->register_of.contains(id)) return false;
     const std::size_t more_uses = uses_.at(id) - 1;
     if (more_uses > 0 && (flat_size(id) - 1) * more_uses > most_shared_) return false;
     return std::abs(coefficient) == 1 ||
@@ -284,7 +285,7 @@ class Lowering {
   // A product within a sum is no register of its own: it is added at full length and rounded with the sum.
   bool fuses(const Term& term) const {
     return g_[term.node].kind == NodeKind::kProduct && std::abs(term.coefficient) == 1 &&
-           kept_.count(term.node) == 0;
+           !kept_.contains(term.node);
   }
   Id dot(const Node& n, const std::string& name) {
     std::vector<ProgramBuilder::Product> products;

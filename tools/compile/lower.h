@@ -6,6 +6,7 @@
 
 #include "comp/shares.h"
 #include "tools/compile/derive.h"
+#include "tools/compile/functions.h"
 
 namespace vernier {
 

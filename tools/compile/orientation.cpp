@@ -9,6 +9,8 @@
 
 #include "tools/compile/calculus.h"
 #include "tools/compile/compile.h"
+#include "tools/compile/functions.h"
+#include "tools/compile/ranges.h"
 #include "tools/compile/solve.h"
 #include "tools/maths/factors.h"
 

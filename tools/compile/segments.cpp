@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "tools/compile/builder.h"
+#include "tools/compile/functions.h"
 
 namespace vernier {
 namespace {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "comp/error_table.h"
+#include "tools/compile/functions.h"
 #include "tools/compile/graph.h"
 #include "tools/compile/lower.h"
 

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "tools/compile/calculus.h"
+#include "tools/compile/functions.h"
 
 namespace vernier {
 namespace {

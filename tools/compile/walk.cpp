@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "tools/compile/calculus.h"
+#include "tools/compile/functions.h"
 #include "tools/maths/factors.h"
 
 namespace vernier {

@@ -75,13 +75,12 @@ class NominalChain {
 ex nominal_slope(const Machine& machine, const ElementaryMotion& motion, const ErrorParameter& parameter,
                  const SymbolBook& book, const GiNaC::exmap& no_errors) {
   const Transform& transform = transform_of(machine, motion);
-  const InputError refusal({machine.file, transform.line}, transform.text[motion.dof],
-                           "has no first order in " + parameter.name);
   ex slope;
   try {
     slope = motion.value.diff(parameter.symbol).subs(no_errors, GiNaC::subs_options::no_pattern);
   } catch (const std::exception&) {
-    throw refusal;
+    throw InputError({machine.file, transform.line}, transform.text[motion.dof],
+                     "has no first order in " + parameter.name);
   }
   const std::string word = book.rough_word(slope);
   if (!word.empty())

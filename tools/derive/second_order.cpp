@@ -7,6 +7,7 @@
 #include <random>
 
 #include "tools/compile/derive.h"
+#include "tools/compile/ranges.h"
 #include "tools/derive/numeric.h"
 #include "tools/model/chain.h"
 

@@ -16,6 +16,8 @@
 #include "tools/fit/noise.h"
 #include "tools/fit/statistics.h"
 #include "tools/maths/factors.h"
+#include "tools/model/machine_reader.h"
+#include "tools/model/machine_writer.h"
 #include "tools/model/rebind.h"
 #include "tools/residual/structure.h"
 #include "tools/timebase/time_base.h"

@@ -75,7 +75,7 @@ struct Diagnosis {
 /// all tests, and says which of the five answers the data give (FORMATS section 3). `text`: of the machine
 /// file. Check rows enter nothing but the figures that judge. The candidates point
 /// into options.effects, which must outlive them. Throws InputError. tool.
-Diagnosis diagnose(const std::string& text, const Machine& machine, const Measurement& measurement,
+Diagnosis diagnose(const std::string& text, const Machine& given, const Measurement& measurement,
                    const DiagnoseOptions& options = {});
 
 }  // namespace vernier

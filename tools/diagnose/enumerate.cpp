@@ -150,7 +150,7 @@ class Enumerator {
     }
   }
 
-  void with_inputs(Choice choice) {
+  void with_inputs(const Choice& choice) {
     const std::string& term = choice.form->term;
     const auto needs = [&](const char* mark) { return contains(term, mark); };
     if (!needs("{T}") && !needs("{L}") && !needs("{F}")) return with_axis(choice);

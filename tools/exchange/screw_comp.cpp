@@ -9,6 +9,8 @@
 
 #include "tools/exchange/table_text.h"
 #include "tools/kinematics/correction.h"
+#include "tools/model/machine_reader.h"
+#include "tools/model/machine_writer.h"
 #include "tools/text/numbers.h"
 
 namespace vernier {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <set>
 
+#include "tools/model/machine_reader.h"
 #include "tools/text/numbers.h"
 #include "tools/text/xml_text.h"
 
@@ -96,7 +97,7 @@ void check_used(const Machine& machine, const Table& table) {
   for (std::size_t k = 0; k < 6; ++k) {
     const auto zero = [&](const Station& station) { return station.value[k] == 0; };
     if (std::all_of(table.stations.begin(), table.stations.end(), zero)) continue;
-    if (used.count(6 * table.axis + k) > 0) continue;
+    if (used.contains(6 * table.axis + k)) continue;
     throw InputError({machine.file, 0}, symbol_name(machine, {SymbolKind::kTableValue, 6 * table.axis + k}),
                      "no transform uses this table value, so the table would have no effect");
   }

@@ -280,7 +280,7 @@ Convention convention_of(const Machine& machine, const Measurement& rows, const 
     }
     const Static& item = machine.statics[p.item];
     const double nominal = std::abs(item.nominal.value_or(item.value));
-    const bool shape = shapes.count(p.item) > 0;
+    const bool shape = shapes.contains(p.item);
     result.shape[i] = shape ? 1 : 0;
     scale = shape ? nominal : scale_by_unit(item.unit, length_mm, result.reach_mm);
     if (scale > 0 && !shape) result.kind[i] = item.unit == "mm" ? kLengthStatics : kAngleStatics;

@@ -58,7 +58,7 @@ std::vector<Decision> decisions_of(const FitResult& result, std::size_t most) {
   // Combinations join the columns that take part in them; what is open alone stands alone.
   std::map<std::string, std::string> head;
   const auto root = [&](std::string name) {
-    while (head.count(name) > 0 && head[name] != name) name = head[name];
+    while (head.contains(name) && head[name] != name) name = head[name];
     return name;
   };
   const auto is_set_up = [&](std::size_t i) {

@@ -48,7 +48,7 @@ class Minimiser {
   VectorXd bent(const VectorXd& straight) const;
   Slope look(const VectorXd& point) const;
   VectorXd solve(const VectorXd& gradient) const;
-  void accept(const VectorXd& point, Slope slope);
+  void accept(const VectorXd& point, const Slope& slope);
 
   const std::function<NormalEquations(const VectorXd&)>& equations_;
   const std::function<double(const VectorXd&)>& cost_;
@@ -104,7 +104,7 @@ Slope Minimiser::look(const VectorXd& point) const {
   return {cost_(point), {}};
 }
 
-void Minimiser::accept(const VectorXd& point, Slope slope) {
+void Minimiser::accept(const VectorXd& point, const Slope& slope) {
   quiet_ = result_.cost - slope.cost <= options_.negligible(slope.cost) ? quiet_ + 1 : 0;
   result_.point = point;
   result_.cost = slope.cost;
@@ -125,7 +125,7 @@ Minimiser::Step Minimiser::step() {
       Slope there = look(next);
       const double gain = (result_.cost - there.cost) / promised_;
       if (std::isfinite(there.cost) && gain > 1e-4) {
-        accept(next, std::move(there));
+        accept(next, there);
         damping_ *= std::max(1.0 / 30, 1 - std::pow(2 * gain - 1, 3));
         if (damping_ < kLeastDamping) damping_ = 0;
         growth_ = 2;
@@ -150,7 +150,7 @@ Minimiser::Step Minimiser::chord() {
   const VectorXd next = result_.point + shrink_.cwiseProduct(straight);
   Slope there = look(next);
   if (!std::isfinite(there.cost) || result_.cost - there.cost < 0.5 * promised_) return Step::kPoor;
-  accept(next, std::move(there));
+  accept(next, there);
   return Step::kGood;
 }
 

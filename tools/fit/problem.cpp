@@ -96,8 +96,8 @@ Machine FitProblem::at(const Eigen::VectorXd& point) const {
   return machine;
 }
 
-void FitProblem::set_priors(Eigen::SparseMatrix<double> precision, Eigen::VectorXd centre) {
-  prior_precision_ = std::move(precision);
+void FitProblem::set_priors(const Eigen::SparseMatrix<double>& precision, Eigen::VectorXd centre) {
+  prior_precision_ = precision;
   prior_centre_ = std::move(centre);
 }
 

@@ -19,7 +19,7 @@ class FitProblem {
   FitProblem(const Machine& machine, const Measurement& measurement, const ParameterSet& parameters);
 
   /// Parameters held near `centre`: (value - centre)^T precision (value - centre) is added to the cost.
-  void set_priors(Eigen::SparseMatrix<double> precision, Eigen::VectorXd centre);
+  void set_priors(const Eigen::SparseMatrix<double>& precision, Eigen::VectorXd centre);
   void clear_priors() { prior_centre_.resize(0); }
 
   /// Sum of squared weighted residuals and priors; infinity where the model is undefined at this point.

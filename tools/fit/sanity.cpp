@@ -110,22 +110,22 @@ std::string cell_out_of_range(const Machine& machine, const Measurement& m) {
 
 }  // namespace
 
-WorstReading worst_reading(const Measurement& m, const Eigen::VectorXd& residual, bool check) {
-  const bool with_u = has_uncertainty(m);
+WorstReading worst_reading(const Measurement& measurement, const Eigen::VectorXd& residual, bool check) {
+  const bool with_u = has_uncertainty(measurement);
   std::vector<double> sizes;
   double squares = 0, largest = 0;
   WorstReading worst;
-  for (std::size_t i = 0; i < m.observations.size(); ++i) {
+  for (std::size_t i = 0; i < measurement.observations.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
-    const std::size_t row = m.observations[i].row;
-    if ((m.check[row] != 0) != check) continue;
-    const double u = m.uncertainty[static_cast<Eigen::Index>(row)];
+    const std::size_t row = measurement.observations[i].row;
+    if ((measurement.check[row] != 0) != check) continue;
+    const double u = measurement.uncertainty[static_cast<Eigen::Index>(row)];
     const double size = std::abs(with_u && u > 0 ? residual[at] / u : residual[at]);
     sizes.push_back(size);
     squares += size * size;
     if (size <= largest) continue;
     largest = size;
-    worst.reading = reading_name(m, m.observations[i]);
+    worst.reading = reading_name(measurement, measurement.observations[i]);
   }
   if (sizes.empty() || largest <= 0) return worst;
   const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);

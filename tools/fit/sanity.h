@@ -22,7 +22,7 @@ struct WorstReading {
   std::string reading;  // "survey.csv:57 z"
 };
 /// `check`: of which role.
-WorstReading worst_reading(const Measurement& rows, const Eigen::VectorXd& residual, bool check);
+WorstReading worst_reading(const Measurement& measurement, const Eigen::VectorXd& residual, bool check);
 
 /// Why readings are not those of this machine, in a sentence: one gross reading, two columns swapped, a unit,
 /// a sign. Each is tried; what lowers the misfit of the nominal machine fivefold is it. Empty: nothing found.

@@ -201,7 +201,7 @@ class Settler {
 
   void descend(const VectorXd& centre) {
     double last = std::numeric_limits<double>::infinity();
-    const VectorXd fixed = centre;  // may be result_.point itself
+    const VectorXd fixed = centre;  // NOLINT: a copy, because it may be result_.point itself
     for (int i = 0; i < kMostSteps; ++i) {
       const double size = step_to(fixed);
       result_.converged = std::isfinite(size) && size < kConverged;

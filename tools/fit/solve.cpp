@@ -96,7 +96,7 @@ void hold_near_centre(FitProblem& problem, const Convention& convention, const S
   }
   Eigen::SparseMatrix<double> precision = variance * scaled_precision(convention, convention.scale);
   precision += Eigen::SparseMatrix<double>(stated.weight.asDiagonal());
-  problem.set_priors(std::move(precision), convention.centre);
+  problem.set_priors(precision, convention.centre);
 }
 
 /// The machine's own values, its set-ups aligned, or the convention's centre: whichever is nearer. Set-ups

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/import/b5r_reader.h"
+
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -182,16 +184,5 @@ class B5rReader {
 }  // namespace
 
 BallbarFile read_b5r(const std::string& path) { return B5rReader(path, read_file(path)).read(); }
-
-std::optional<double> printed_result(const BallbarFile& file, const std::string& analysis,
-                                     const std::string& version, const std::string& feature) {
-  for (const auto& candidate : file.analyses) {
-    if (candidate.name != analysis || candidate.version != version) continue;
-    for (const auto& printed : candidate.features) {
-      if (printed.name == feature) return printed.value;
-    }
-  }
-  return std::nullopt;
-}
 
 }  // namespace vernier

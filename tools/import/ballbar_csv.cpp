@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/import/ballbar_csv.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>

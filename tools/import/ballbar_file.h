@@ -65,24 +65,4 @@ struct BallbarFile {
 std::optional<double> printed_result(const BallbarFile& file, const std::string& analysis,
                                      const std::string& version, const std::string& feature);
 
-/// Reads a result file (.b5r, XML) of Renishaw Ballbar 20. Indices are 0-based and END is inclusive. Throws
-/// InputError with file, line and word: not XML, a missing or odd element, a view other than +A+B, indices
-/// outside the readings. tool.
-BallbarFile read_b5r(const std::string& path);
-
-/// What a file of Ballbar Trace does not hold and the operator must say.
-struct TraceSetup {
-  std::string axis_a = "X", axis_b = "Y";
-  double length_mm = 100;
-  double radius_mm = 100;  // of the programmed circle
-  double feed_mm_min = 0;  // actual; the speed is taken as constant
-  double start_deg = 180;  // angle of the first reading, from +A towards +B
-  double sample_rate_hz = 200;
-  int direction_of_zero = +1;  // sense of "Direction": 0
-};
-
-/// Reads a file of Renishaw Ballbar Trace (JSON: Runs[].Direction 0 or 1, Runs[].Readings, ErrorUnits). All
-/// readings lie in the arc, none is overshoot. Throws InputError with file, line and word. tool.
-BallbarFile read_ballbar_trace(const std::string& path, const TraceSetup& setup);
-
 }  // namespace vernier

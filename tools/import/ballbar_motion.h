@@ -28,21 +28,4 @@ CirclePoint circle_point(const BallbarFile& file, const BallbarRun& run, std::si
 /// The analysed arcs (start..end) of all runs for analyse_circle. tool.
 std::vector<CircularPass> circular_passes(const BallbarFile& file);
 
-struct BallbarCsvOptions {
-  /// Time between the records of two runs, s, where the instrument does not log it. The default is what the
-  /// dwell (5 s) and the feeds in and out between the runs of the usual program take.
-  double pause_s = 9.0;
-};
-
-struct BallbarCsv {
-  std::string text;
-  std::size_t rows = 0, fit_rows = 0, check_rows = 0;
-  std::vector<std::string> run_labels;
-};
-
-/// Measurement file (CSV) of some ball-bar files: positions, motion, clock, length with its centre, run and
-/// role. Samples in start..end are `fit`, those before and after it `check`. An axis is a column if some
-/// file's plane has it. tool.
-BallbarCsv ballbar_csv(const std::vector<BallbarFile>& files, const BallbarCsvOptions& options);
-
 }  // namespace vernier

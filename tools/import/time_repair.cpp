@@ -175,7 +175,7 @@ RunClock clock_of(const BallbarRun& run, const Found& found) {
   clock.turn_samples = found.turn;
   for (std::size_t i = 0; i < found.sample.size(); ++i) {
     clock.turned_deg.push_back((found.sample[i] - found.sample[run.start] + 0.5) * 360 / found.turn);
-    clock.on_circle.push_back(i >= found.feed_in && i + found.feed_out < found.sample.size());
+    clock.on_circle.push_back(i >= found.feed_in && i + found.feed_out < found.sample.size() ? 1 : 0);
   }
   return clock;
 }

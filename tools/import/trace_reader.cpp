@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/import/trace_reader.h"
+
 #include <cmath>
 #include <nlohmann/json.hpp>
 

@@ -5,6 +5,7 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <optional>
@@ -129,7 +130,8 @@ LineResult measure_line(const Bench& bench, const std::string& name, const Vecto
   const Vector3d along = (to - from).normalized();
   LineResult line{name, from, to, {}, {}, {}};
   const double start = along.dot(off.col(0));
-  double mean_low = INFINITY, mean_high = -INFINITY, low = INFINITY, high = -INFINITY;
+  constexpr double kBeyond = std::numeric_limits<double>::infinity();
+  double mean_low = kBeyond, mean_high = -kBeyond, low = kBeyond, high = -kBeyond;
   for (int i = 0; i < positions; ++i) {
     const double f = kUmPerMm * (along.dot(off.col(i)) - start);
     const double r = kUmPerMm * (along.dot(off.col(2 * positions - 1 - i)) - start);
@@ -287,7 +289,7 @@ Json free_lines_json(const Bench& bench, const std::string& path) {
     }
     if (!bench.reaches(point))
       throw InputError({path, csv.line[i]}, "", "this point is outside the working volume");
-    lines[column.count("run") > 0 ? csv.rows[i][column["run"]] : ""].push_back(point);
+    lines[column.contains("run") ? csv.rows[i][column["run"]] : ""].push_back(point);
   }
   Json list = Json::array();
   for (const auto& [name, points] : lines) {

@@ -58,7 +58,7 @@ class Linearizer {
     const RowLinear& row() const { return row_; }
 
    private:
-    void fill(std::size_t row);
+    void fill(std::size_t i);
 
     const Linearizer& all_;
     const Machine& machine_;

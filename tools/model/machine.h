@@ -131,11 +131,6 @@ Machine with_tool(const Machine& machine, const std::array<double, 3>& point);
 /// Where an axis works: <volume>, else its min and max. Nothing where neither is given.
 std::optional<std::array<double, 2>> work_range(const Machine& machine, std::size_t axis);
 
-/// Reads a machine file. Throws InputError with file, line and word. tool.
-Machine read_machine(const std::string& path);
-/// The same from text; `file` is only used in messages.
-Machine parse_machine(const std::string& text, const std::string& file);
-
 /// What a name means in expressions of this machine; kUnresolved where it means nothing.
 Symbol resolve_name(const Machine& machine, std::string_view name);
 /// Parses and resolves an expression for this machine. Throws ExpressionError with the unknown name.
@@ -148,10 +143,5 @@ std::string symbol_unit(const Machine& machine, const Symbol& symbol);
 /// The machine of the nominal chain: statics at `nominal` (hidden ones without it at their value),
 /// tables and scalefactor 0; inputs and motion as they are. BaseShift is identity.
 Machine nominal_machine(const Machine& machine);
-
-/// Writes the machine back into the text it was read from: values of statics, tables and BaseShift changed,
-/// everything else (comments, order, unknown spelling) as the user wrote it. Throws InputError. tool.
-/// `set_nominal`: a static without `nominal` gets the value that it had in the text.
-std::string update_machine_text(const std::string& text, const Machine& machine, bool set_nominal);
 
 }  // namespace vernier

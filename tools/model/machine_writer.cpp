@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/model/machine_writer.h"
+
 #include <pugixml.hpp>
 
 #include "tools/model/fit_record.h"

@@ -29,7 +29,7 @@ class FileReader {
     for (std::size_t i = 0; i < csv.columns.size(); ++i) index_[csv.columns[i].name] = i;
   }
 
-  bool has(const std::string& name) const { return index_.count(name) > 0; }
+  bool has(const std::string& name) const { return index_.contains(name); }
 
   /// A column that must have this dimension; `required`: an empty cell is an error.
   Column numbers(const std::string& name, Dimension dimension, bool required) {
@@ -61,7 +61,7 @@ class FileReader {
   std::vector<CsvColumn> unused() const {
     std::vector<CsvColumn> list;
     for (const CsvColumn& column : csv_.columns)
-      if (used_.count(column.name) == 0) list.push_back(column);
+      if (!used_.contains(column.name)) list.push_back(column);
     return list;
   }
 
@@ -99,7 +99,7 @@ class FileReader {
 /// Reads one file into a Measurement of its own.
 class Builder {
  public:
-  Builder(const CsvFile& csv, const Machine& machine) : csv_(csv), machine_(machine), reader_(csv) {
+  Builder(const CsvFile& csv, const Machine& machine) : machine_(machine), reader_(csv) {
     std::vector<double> references;
     for (const Input& input : machine.inputs) references.push_back(input.reference);
     result_.states = make_states(reader_.rows(), machine.axes.size(), references);
@@ -336,7 +336,6 @@ class Builder {
       throw InputError(reader_.place(row), reader_.cell("nx", row), "nx, ny, nz must be a unit vector");
   }
 
-  const CsvFile& csv_;
   const Machine& machine_;
   FileReader reader_;
   Measurement result_;

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "tools/model/chain_rows.h"
+#include "tools/part/s_part.h"
 
 namespace vernier {
 namespace {

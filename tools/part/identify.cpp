@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "tools/maths/factors.h"
+#include "tools/part/measured_part.h"
 
 namespace vernier {
 namespace {

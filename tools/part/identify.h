@@ -6,27 +6,9 @@
 
 #include "tools/fit/observability.h"
 #include "tools/part/defect.h"
+#include "tools/part/measured_part.h"
 
 namespace vernier {
-
-/// One measured point of the part.
-struct MeasuredPoint {
-  PartPoint at;
-  double defect_mm = 0;       // along the outward normal, positive: material left
-  double uncertainty_mm = 0;  // standard uncertainty; 0 where not given
-  std::size_t line = 0;       // in the file
-};
-
-struct MeasuredPart {
-  std::string file;
-  std::vector<MeasuredPoint> points;
-};
-
-/// Reads `sx[mm],sy[mm],sz[mm]` (nominal surface point, workpiece coordinates), `defect[mm]` and, if there,
-/// `u[mm]`; other columns are of no concern. Each point is placed on the flank that it is nearest to. Throws
-/// InputError with file, line and word: a missing column, no number, a point farther than 0.05 mm from both
-/// flanks, u not positive or given for some rows only. tool.
-MeasuredPart read_measured_part(const std::string& text, const std::string& file);
 
 struct IdentifyOptions {
   DefectOptions defect;

@@ -22,7 +22,7 @@ struct ToolPose {
 enum class RotarySolution : std::uint8_t { kContinuous, kPositiveB };
 
 /// Direct solution (the paper's equation 9): the nominal machine. pivot_mm: B axis to tool tip.
-ToolPose tool_pose(const JointPose& joints, double pivot_mm);
+ToolPose tool_pose(const JointPose& q, double pivot_mm);
 
 /// Back solution of one pose with the rotary axes given.
 JointPose joints_for(const ToolPose& pose, double pivot_mm, double b_deg, double c_deg);

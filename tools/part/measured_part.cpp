@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/part/measured_part.h"
+
 #include <fmt/format.h>
 
 #include <cmath>
 
 #include "tools/part/identify.h"
+#include "tools/part/s_part.h"
 #include "tools/text/csv.h"
 #include "tools/text/numbers.h"
 #include "tools/text/units.h"

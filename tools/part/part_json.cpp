@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/part/part_json.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,6 +9,7 @@
 #include "tools/maths/factors.h"
 #include "tools/part/envelope.h"
 #include "tools/part/part_report.h"
+#include "tools/part/s_part.h"
 
 namespace vernier {
 namespace {

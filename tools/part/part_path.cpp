@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "tools/maths/factors.h"
+#include "tools/part/s_part.h"
 
 namespace vernier {
 namespace {

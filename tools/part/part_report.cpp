@@ -8,6 +8,8 @@
 
 #include "tools/maths/factors.h"
 #include "tools/part/envelope.h"
+#include "tools/part/part_json.h"
+#include "tools/part/s_part.h"
 
 namespace vernier {
 namespace {

@@ -38,13 +38,4 @@ SurfaceFoot nearest(const RuledSurface& surface, const Eigen::Vector3d& point, d
 /// The same with a start found by searching the whole surface.
 SurfaceFoot nearest(const RuledSurface& surface, const Eigen::Vector3d& point);
 
-/// The two flanks of the S-shaped test part of ISO 10791-7, A and B. Control points: the programs of tables 1
-/// and 2 in Chanal, Duc, Chevalier, Precision Engineering 75 (2022) 193-209, with the misprints that
-/// tools/docs/s_part.md lists put right. tool.
-const std::array<RuledSurface, 2>& s_part();
-
-/// Height of the part and the heights at which it is measured (bottom and top line), mm.
-inline constexpr double kPartHeightMm = 30;
-inline constexpr std::array<double, 2> kMeasuredHeightsMm = {11, 25};
-
 }  // namespace vernier

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/part/s_part.h"
+
 #include <Eigen/Geometry>
 #include <vector>
 

@@ -7,6 +7,8 @@
 
 #include "tools/diagnose/pool.h"
 #include "tools/fit/fit.h"
+#include "tools/model/machine_reader.h"
+#include "tools/model/machine_writer.h"
 #include "tools/text/error.h"
 
 namespace vernier {

@@ -30,7 +30,7 @@ bool any_nonzero(const Column& column) { return (column != 0).any(); }
 
 class Sheet {
  public:
-  explicit Sheet(const Plan& plan) : plan_(plan), rows_(plan.rows) {
+  explicit Sheet(const Plan& plan) : rows_(plan.rows) {
     drivers_ = drivers_of(std::vector<const FittedRival*>{&plan.a, &plan.b});
     const std::vector<Axis>& axes = plan.machine.axes;
     for (std::size_t a = 0; a < axes.size(); ++a)
@@ -93,7 +93,6 @@ class Sheet {
       add("since" + axis.name + "[" + unit + "]", rows_.states.since[a]);
   }
 
-  const Plan& plan_;
   const Measurement& rows_;
   Drivers drivers_;
 };

@@ -33,7 +33,8 @@ std::pair<std::string, std::string> split(const std::string& words, const char* 
 }
 
 void rename(CsvFile& csv, const std::string& words) {
-  auto [from, to] = split(words, "--column");
+  auto parts = split(words, "--column");
+  std::string &from = parts.first, &to = parts.second;
   const auto found = std::find_if(csv.columns.begin(), csv.columns.end(),
                                   [&](const CsvColumn& c) { return c.name == from; });
   if (found == csv.columns.end()) throw InputError({csv.file, csv.header_line}, from, "no such column");

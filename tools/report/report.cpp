@@ -5,6 +5,7 @@
 
 #include "tools/report/assets.h"
 #include "tools/report/payload.h"
+#include "tools/report/thinning.h"
 
 namespace vernier {
 namespace {

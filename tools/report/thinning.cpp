@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/report/thinning.h"
+
 #include <algorithm>
 #include <set>
 #include <stdexcept>

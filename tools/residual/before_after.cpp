@@ -376,8 +376,8 @@ BeforeAfter compare_before_after(const Machine& machine, const Measurement& befo
   Resampler resampler(samples, first_after, options);
   result.all = resampler.group({}, first, second);
   for (const PickedRows& selection : selections(first, second)) {
-    ReductionGroup group = resampler.group(selection, first, second);
-    if (group.before.count > 0 && group.after.count > 0) result.groups.push_back(std::move(group));
+    const ReductionGroup group = resampler.group(selection, first, second);
+    if (group.before.count > 0 && group.after.count > 0) result.groups.push_back(group);
   }
   return result;
 }

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/residual/cells.h"
+
 #include <algorithm>
 #include <cmath>
 #include <map>

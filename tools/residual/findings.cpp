@@ -8,6 +8,7 @@
 
 #include "tools/maths/chance.h"
 #include "tools/maths/factors.h"
+#include "tools/residual/sentence.h"
 
 namespace vernier {
 namespace {

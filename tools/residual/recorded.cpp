@@ -238,7 +238,6 @@ int pair_rank(const RecordedColumn& a, const RecordedColumn& b) {
       case ColumnKind::kAxis:
         return 0;
       case ColumnKind::kDirection:
-        return 1;
       case ColumnKind::kInput:
         return 1;
       case ColumnKind::kTime:

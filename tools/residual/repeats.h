@@ -23,9 +23,4 @@ Repeats compare_repeats(const std::vector<KindSample>& samples, const Measuremen
 std::optional<double> neighbour_error_um(const std::vector<KindSample>& samples,
                                          const std::vector<RecordedColumn>& columns);
 
-/// Mean residual vectors over at most 5 x 5 x 5 parts of the volume (lengths: x y z as such, `length` along
-/// the bar, `d` along its normal). residual: mm or deg, one per observation. tool.
-std::vector<FailureCell> failure_cells(const Machine& machine, const Measurement& measurement,
-                                       const Eigen::VectorXd& residual);
-
 }  // namespace vernier

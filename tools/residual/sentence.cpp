@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/residual/sentence.h"
+
 #include <fmt/format.h>
 
 #include <cmath>

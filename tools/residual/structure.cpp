@@ -6,6 +6,7 @@
 
 #include "tools/fit/statistics.h"
 #include "tools/maths/chance.h"
+#include "tools/residual/cells.h"
 #include "tools/residual/findings.h"
 #include "tools/residual/omnibus.h"
 #include "tools/residual/repeats.h"

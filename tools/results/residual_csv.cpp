@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/results/residual_csv.h"
 
 #include "tools/text/numbers.h"

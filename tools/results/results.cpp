@@ -11,6 +11,7 @@
 #include "tools/fit/domain.h"
 #include "tools/fit/reach.h"
 #include "tools/kinematics/correction.h"
+#include "tools/results/detail.h"
 #include "tools/text/optional_json.h"
 
 namespace vernier {

@@ -15,21 +15,6 @@ nlohmann::ordered_json fit_json(const FitResult& result, const Measurement& meas
 nlohmann::ordered_json compare_json(const Machine& machine, const Measurement& measurement,
                                     const Eigen::VectorXd& residual);
 
-/// Everything that the report draws: rows, columns, observations, circles, worst rows. `result` gets a
-/// "detail" member.
-void add_detail(nlohmann::ordered_json& result, const Machine& machine, const Measurement& measurement,
-                const Eigen::VectorXd& residual);
-
-/// Calls visit(name, unit, kind, values) for everything that was set or recorded in each row: axes, motion,
-/// time, visit, inputs, candidate inputs. kind: axis, direction, motion, time, visit, input or candidate.
-using VisitColumn = std::function<void(const std::string&, const std::string&, const char*, const Column&)>;
-void each_column(const Machine& machine, const Measurement& measurement, const VisitColumn& visit);
-
-/// The circular tests among the rows with their curves: the numbers of circular_json and, for each run,
-/// angle_deg, measured_um, model_um and check of every sample, and its row where asked for.
-nlohmann::ordered_json circular_detail(const Machine& machine, const Measurement& measurement,
-                                       const Eigen::VectorXd& residual, bool with_rows = false);
-
 /// Stretches of rows of one role within each run, in the order of the file: {run, role, first_line,
 /// last_line, n_obs, rms_um}. Shows where in a run a model holds (an overshoot arc, a warm-up, a late row).
 nlohmann::ordered_json stretches_json(const Measurement& measurement, const Eigen::VectorXd& residual);
@@ -39,9 +24,6 @@ nlohmann::ordered_json stretches_json(const Measurement& measurement, const Eige
 /// rows are outside.
 nlohmann::ordered_json domains_json(const Machine& machine, const Measurement& measurement);
 void print_domains(std::FILE* out, const nlohmann::ordered_json& domains);
-
-/// ISO 230-4 numbers of every circular test among the rows (a list, empty where there is none).
-nlohmann::ordered_json circular_json(const Machine& machine, const Measurement& measurement);
 
 /// A noise model: {own_um, pose_um, run_um, drift_um, drift_time, drift_time_unit, support, sentence}.
 /// unit_um: um that 1 of it stands for.

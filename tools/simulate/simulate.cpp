@@ -7,8 +7,10 @@
 #include <iterator>
 
 #include "hal/sim/analogue_chain.h"
+#include "tools/compile/functions.h"
 #include "tools/kinematics/correction.h"
 #include "tools/model/chain.h"
+#include "tools/simulate/motion.h"
 #include "tools/text/error.h"
 
 namespace vernier {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 #include <Eigen/Core>
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -64,7 +65,7 @@ struct LagJump {
   bool in_later_pass() const { return after < before; }
   /// The row of the series before which they are missing.
   std::size_t missing_before() const {
-    return in_later_pass() ? row + static_cast<std::size_t>(before + 0.5) : row;
+    return in_later_pass() ? row + static_cast<std::size_t>(std::lround(before)) : row;
   }
 };
 

@@ -18,7 +18,7 @@ double concordance(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 double effective_rows(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 
 /// Chance that unrelated stretches of so many independent rows agree so well (Fisher's z). tool.
-double chance_of_agreement(double concordance, double rows);
+double chance_of_agreement(double correlation, double rows);
 
 /// Chance that noise alone makes one rms so much larger than the other (Fisher's z of a ratio of variances).
 /// tool.

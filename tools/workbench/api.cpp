@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "tools/model/machine.h"
+#include "tools/model/machine_reader.h"
 #include "tools/text/csv.h"
 #include "tools/text/error.h"
 #include "tools/text/files.h"

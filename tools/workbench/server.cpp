@@ -53,7 +53,8 @@ void set_plain(httplib::Response& response, std::string_view bytes, const std::s
                std::shared_ptr<const std::string> owner = nullptr) {
   if (bytes.empty()) return response.set_content("", type);
   response.set_content_provider(
-      bytes.size(), type, [bytes, owner](std::size_t offset, std::size_t length, httplib::DataSink& sink) {
+      bytes.size(), type,
+      [bytes, owner = std::move(owner)](std::size_t offset, std::size_t length, httplib::DataSink& sink) {
         return sink.write(bytes.data() + offset, length);
       });
 }

@@ -13,6 +13,7 @@
 #include "tests/bench/diagnose/held_out.h"
 #include "tests/bench/diagnose/process.h"
 #include "tests/bench/diagnose/rates.h"
+#include "tests/support/hidden_survey_key.h"
 #include "tools/text/files.h"
 
 namespace {
@@ -120,7 +121,7 @@ void write(const HiddenSurvey& survey, const std::string& folder) {
   std::filesystem::create_directories(folder);
   write_file(folder + "/model.xml", survey.model);
   write_file(folder + "/survey.csv", survey.csv);
-  write_file(folder + "/key.json", survey.key());
+  write_file(folder + "/key.json", key_of(survey));
   write_file(folder + "/truth.xml", survey.truth);
 }
 

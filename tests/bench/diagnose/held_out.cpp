@@ -5,6 +5,7 @@
 
 #include "tests/bench/diagnose/process.h"
 #include "tools/fit/fit.h"
+#include "tools/model/machine_reader.h"
 
 namespace vernier::bench {
 

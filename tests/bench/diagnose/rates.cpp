@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tests/bench/diagnose/rates.h"
+#include "tests/support/hidden_survey_key.h"
 
 #include <fmt/format.h>
 

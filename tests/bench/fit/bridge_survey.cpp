@@ -9,6 +9,7 @@
 #include <string>
 #include <tuple>
 
+#include "tools/model/machine_reader.h"
 #include "tools/model/prediction.h"
 
 namespace vernier::bench {

@@ -19,6 +19,7 @@
 #include "tools/fit/fit.h"
 #include "tools/fit/reach.h"
 #include "tools/model/chain.h"
+#include "tools/model/machine_reader.h"
 #include "tools/model/prediction.h"
 #include "tools/text/files.h"
 

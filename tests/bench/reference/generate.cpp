@@ -11,6 +11,7 @@
 #include "tests/bench/poses.h"
 #include "tests/bench/reference/flat_double.h"
 #include "tests/bench/reference/reference_machine.h"
+#include "tools/compile/print.h"
 
 namespace vernier::bench {
 namespace {

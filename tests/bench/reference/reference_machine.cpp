@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tests/bench/reference/reference_machine.h"
+#include "tools/model/machine_reader.h"
 
 #include <map>
 #include <random>

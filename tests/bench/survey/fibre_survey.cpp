@@ -14,6 +14,7 @@
 #include <string>
 
 #include "tools/fit/fit.h"
+#include "tools/model/machine_reader.h"
 #include "tools/model/prediction.h"
 #include "tools/text/files.h"
 

@@ -13,6 +13,8 @@
 
 #include "tests/support/machines.h"
 #include "tools/model/machine.h"
+#include "tools/model/machine_reader.h"
+#include "tools/model/machine_writer.h"
 #include "tools/model/measurement.h"
 #include "tools/model/prediction.h"
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/unit/compile/agreement.h"
+#include "tools/model/machine_reader.h"
 
 namespace vernier::chains_test {
 namespace {

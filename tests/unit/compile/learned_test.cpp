@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "tests/unit/compile/agreement.h"
+#include "tools/model/machine_reader.h"
 #include "tools/model/measurement.h"
 
 namespace vernier::learned_test {

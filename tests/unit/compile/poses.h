@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "tools/compile/compile.h"
+#include "tools/compile/ranges.h"
 #include "tools/model/chain.h"
+#include "tools/model/machine_reader.h"
 #include "tools/text/files.h"
 
 namespace vernier {

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "tests/unit/compile/poses.h"
+#include "tools/model/machine_reader.h"
 
 namespace vernier::refusal_test {
 namespace {

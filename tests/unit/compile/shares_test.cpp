@@ -6,6 +6,7 @@
 
 #include "tests/unit/compile/agreement.h"
 #include "tests/unit/effects/candidates.h"
+#include "tools/model/machine_reader.h"
 
 namespace vernier::shares_test {
 namespace {

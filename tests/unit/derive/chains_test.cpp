@@ -11,6 +11,7 @@
 #include "tools/derive/numeric.h"
 #include "tools/derive/second_order.h"
 #include "tools/model/chain.h"
+#include "tools/model/machine_reader.h"
 #include "tools/text/files.h"
 
 namespace vernier::chains_test {

@@ -13,6 +13,7 @@
 #include "tools/derive/second_order.h"
 #include "tools/derive/tidy.h"
 #include "tools/model/chain.h"
+#include "tools/model/machine_reader.h"
 #include "tools/text/files.h"
 
 namespace vernier::closed_forms_test {

@@ -4,6 +4,7 @@
 #include <cstdlib>
 
 #include "tools/derive/print_equation.h"
+#include "tools/model/machine_reader.h"
 #include "tools/text/files.h"
 
 namespace vernier::printing_test {

@@ -8,6 +8,7 @@
 #include "tools/diagnose/acceptance.h"
 #include "tools/diagnose/evidence.h"
 #include "tools/maths/chance.h"
+#include "tools/model/machine_reader.h"
 
 namespace vernier::acceptance_test {
 namespace {

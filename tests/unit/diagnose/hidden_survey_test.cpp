@@ -9,6 +9,7 @@
 
 #include "tests/bench/diagnose/answer.h"
 #include "tests/bench/diagnose/process.h"
+#include "tests/support/hidden_survey_key.h"
 #include "tools/text/files.h"
 
 namespace vernier::hidden_survey_test {

@@ -9,6 +9,7 @@
 #include "tools/diagnose/diagnosis.h"
 #include "tools/fit/domain.h"
 #include "tools/model/chain.h"
+#include "tools/model/machine_reader.h"
 
 namespace vernier::learned_test {
 namespace {

@@ -12,6 +12,7 @@
 
 #include "tools/diagnose/diagnosis.h"
 #include "tools/diagnose/enumerate.h"
+#include "tools/model/machine_reader.h"
 
 namespace vernier::periods_test {
 namespace {

@@ -9,6 +9,7 @@
 #include <random>
 
 #include "tools/diagnose/diagnosis.h"
+#include "tools/model/machine_reader.h"
 
 namespace vernier::verdict_test {
 namespace {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/unit/effects/candidates.h"
+#include "tools/model/machine_reader.h"
 #include "tools/text/error.h"
 
 namespace vernier::add_strings_test {

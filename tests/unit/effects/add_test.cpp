@@ -6,6 +6,7 @@
 
 #include "tests/unit/effects/candidates.h"
 #include "tools/fit/domain.h"
+#include "tools/model/machine_reader.h"
 #include "tools/model/prediction.h"
 #include "tools/model/rebind.h"
 #include "tools/text/error.h"

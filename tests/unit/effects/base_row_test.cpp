@@ -7,6 +7,7 @@
 #include "tests/unit/effects/candidates.h"
 #include "tools/diagnose/diagnosis.h"
 #include "tools/model/chain.h"
+#include "tools/model/machine_reader.h"
 #include "tools/model/prediction.h"
 
 namespace vernier::base_row_test {

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "tests/unit/effects/candidates.h"
+#include "tools/model/machine_reader.h"
 
 namespace vernier::places_test {
 namespace {

@@ -6,6 +6,8 @@
 #include "tests/support/machines.h"
 #include "tools/exchange/left_out.h"
 #include "tools/exchange/table_text.h"
+#include "tools/model/machine_reader.h"
+#include "tools/model/machine_writer.h"
 #include "tools/text/numbers.h"
 
 namespace vernier::component_csv_test {

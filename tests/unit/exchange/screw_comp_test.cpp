@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "tools/exchange/left_out.h"
+#include "tools/model/machine_reader.h"
+#include "tools/model/machine_writer.h"
 
 namespace vernier::screw_comp_test {
 namespace {

@@ -13,6 +13,7 @@
 #include "hal/sim/roaming.h"
 #include "hal/sim/sim_clock.h"
 #include "tests/unit/firmware/small_machine.h"
+#include "tools/model/machine_reader.h"
 #include "tools/vibration/signal_features.h"
 
 namespace vernier::feature_inputs_test {

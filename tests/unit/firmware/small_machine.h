@@ -4,6 +4,7 @@
 #include <string>
 
 #include "tools/compile/compile.h"
+#include "tools/model/machine_reader.h"
 
 namespace vernier {
 

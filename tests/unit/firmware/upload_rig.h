@@ -10,6 +10,7 @@
 #include "hal/sim/sim_clock.h"
 #include "hal/sim/sim_slot_store.h"
 #include "tests/unit/firmware/small_machine.h"
+#include "tools/model/machine_reader.h"
 #include "tools/upload/signing.h"
 
 namespace vernier {

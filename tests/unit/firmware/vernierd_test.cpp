@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/unit/firmware/small_machine.h"
+#include "tools/model/machine_reader.h"
 #include "tools/text/files.h"
 
 namespace vernier::vernierd_test {

@@ -14,6 +14,8 @@
 #include "tools/fit/reach.h"
 #include "tools/model/chain.h"
 #include "tools/model/fit_record.h"
+#include "tools/model/machine_reader.h"
+#include "tools/model/machine_writer.h"
 #include "tools/model/prediction.h"
 
 namespace vernier::convention_test {

@@ -5,6 +5,8 @@
 
 #include "tools/fit/fit.h"
 #include "tools/model/chain.h"
+#include "tools/model/machine_reader.h"
+#include "tools/model/machine_writer.h"
 
 namespace vernier::domain_test {
 namespace {

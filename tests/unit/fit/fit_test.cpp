@@ -9,6 +9,7 @@
 #include <random>
 
 #include "tests/support/machines.h"
+#include "tools/model/machine_reader.h"
 #include "tools/model/prediction.h"
 
 namespace vernier::fit_test {

@@ -7,6 +7,7 @@
 
 #include "tests/support/machines.h"
 #include "tools/fit/fit.h"
+#include "tools/model/machine_reader.h"
 #include "tools/model/prediction.h"
 
 namespace vernier::measured_on_test {

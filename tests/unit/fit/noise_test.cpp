@@ -9,6 +9,7 @@
 #include <random>
 
 #include "tools/fit/fit.h"
+#include "tools/model/machine_reader.h"
 
 namespace vernier::noise_test {
 namespace {

@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
 
-#include <array>
-#include <cstdio>
-#include <filesystem>
-#include <fstream>
-#include <memory>
-#include <sstream>
 #include <string>
 #include <vector>
+
+#include "tests/unit/house/tracked_files.h"
 
 namespace vernier::house {
 namespace {
@@ -18,22 +14,6 @@ namespace {
 std::vector<std::string> words_of_a_workplace() {
   return {std::string("/wo") + "rk/", std::string("/home") + "/", std::string("registry.") + "npmjs",
           std::string("artifact") + "ory", std::string("/root") + "/"};
-}
-
-std::vector<std::string> tracked_files() {
-  const std::string command = std::string("git -C '") + VERNIER_SOURCE_DIR + "' ls-files -z 2>/dev/null";
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> pipe(popen(command.c_str(), "r"), pclose);
-  std::vector<std::string> files;
-  std::string name;
-  for (int c = pipe ? std::fgetc(pipe.get()) : EOF; c != EOF; c = std::fgetc(pipe.get())) {
-    if (c != '\0') {
-      name.push_back(static_cast<char>(c));
-      continue;
-    }
-    files.push_back(name);
-    name.clear();
-  }
-  return files;
 }
 
 std::vector<std::string> found_words(const std::string& text) {
@@ -54,11 +34,7 @@ TEST(TrackedText, NamesNoWorkplace) {
   const auto files = tracked_files();
   if (files.empty()) GTEST_SKIP() << "not a git checkout: no list of tracked files";
   for (const auto& file : files) {
-    const auto path = std::filesystem::path(VERNIER_SOURCE_DIR) / file;
-    if (!std::filesystem::is_regular_file(path)) continue;  // deleted in the working tree
-    std::ostringstream text;
-    text << std::ifstream(path, std::ios::binary).rdbuf();
-    for (const auto& word : found_words(text.str())) ADD_FAILURE() << file << " names \"" << word << '"';
+    for (const auto& word : found_words(text_of(file))) ADD_FAILURE() << file << " names \"" << word << '"';
   }
 }
 

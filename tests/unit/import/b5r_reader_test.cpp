@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include "tests/unit/import/ballbar_data.h"
+#include "tools/import/b5r_reader.h"
 #include "tools/import/ballbar_file.h"
 #include "tools/import/ballbar_motion.h"
 #include "tools/text/error.h"

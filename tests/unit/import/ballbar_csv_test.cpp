@@ -5,6 +5,8 @@
 #include <map>
 
 #include "tests/unit/import/ballbar_data.h"
+#include "tools/import/b5r_reader.h"
+#include "tools/import/ballbar_csv.h"
 #include "tools/import/ballbar_motion.h"
 
 namespace vernier::ballbar_csv_test {

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "tests/unit/import/ballbar_data.h"
+#include "tools/import/b5r_reader.h"
 #include "tools/import/ballbar_motion.h"
 #include "tools/import/printed_results.h"
 

@@ -5,6 +5,7 @@
 #include <random>
 
 #include "tests/unit/import/ballbar_data.h"
+#include "tools/import/b5r_reader.h"
 #include "tools/import/ballbar_file.h"
 #include "tools/import/diagnostics.h"
 

@@ -10,6 +10,7 @@
 #include <random>
 
 #include "tools/model/chain_rows.h"
+#include "tools/model/machine_reader.h"
 #include "tools/model/measurement.h"
 
 namespace vernier::survey_test {

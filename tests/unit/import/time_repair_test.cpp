@@ -8,6 +8,8 @@
 #include <random>
 
 #include "tests/unit/import/ballbar_data.h"
+#include "tools/import/b5r_reader.h"
+#include "tools/import/ballbar_csv.h"
 #include "tools/import/ballbar_motion.h"
 #include "tools/import/profile.h"
 #include "tools/import/repair_report.h"

@@ -6,6 +6,7 @@
 #include "tests/support/machines.h"
 #include "tests/unit/kinematics/machines.h"
 #include "tools/kinematics/at.h"
+#include "tools/model/machine_reader.h"
 
 namespace vernier::closed_test {
 namespace {

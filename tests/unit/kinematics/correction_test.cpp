@@ -8,6 +8,7 @@
 
 #include "tests/support/machines.h"
 #include "tests/unit/kinematics/machines.h"
+#include "tools/model/machine_reader.h"
 
 namespace vernier::correction_test {
 namespace {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "tools/model/machine.h"
+#include "tools/model/machine_reader.h"
 #include "tools/model/states.h"
 #include "tools/text/numbers.h"
 

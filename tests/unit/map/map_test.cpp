@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "tools/map/simulated.h"
+#include "tools/model/machine_reader.h"
 #include "tools/results/field_json.h"
 #include "tools/text/files.h"
 

@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "tests/support/machines.h"
+#include "tools/model/machine_reader.h"
 #include "tools/model/prediction.h"
 #include "tools/model/station_table.h"
 #include "tools/text/files.h"

@@ -9,6 +9,7 @@
 #include "tools/model/chain.h"
 #include "tools/model/evaluate.h"
 #include "tools/model/machine.h"
+#include "tools/model/machine_reader.h"
 
 namespace vernier::expression_test {
 namespace {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/model/machine.h"
+#include "tools/model/machine_reader.h"
+#include "tools/model/machine_writer.h"
 
 #include <gtest/gtest.h>
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "tools/model/machine_reader.h"
 #include "tools/text/files.h"
 
 namespace vernier::measurement_test {

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/unit/part/part_data.h"
+#include "tools/model/machine_reader.h"
 #include "tools/simulate/path.h"
 
 namespace vernier::command_test {

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "tests/unit/part/part_data.h"
+#include "tools/part/s_part.h"
 
 namespace vernier::envelope_test {
 namespace {

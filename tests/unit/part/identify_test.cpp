@@ -10,6 +10,7 @@
 #include <set>
 
 #include "tests/unit/part/part_data.h"
+#include "tools/part/measured_part.h"
 
 namespace vernier::identify_test {
 namespace {

@@ -9,6 +9,7 @@
 #include <random>
 
 #include "tools/part/flank_path.h"
+#include "tools/part/s_part.h"
 
 namespace vernier::joint_path_test {
 namespace {

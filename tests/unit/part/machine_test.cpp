@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/unit/part/part_data.h"
+#include "tools/model/machine_reader.h"
 
 namespace vernier::machine_test {
 namespace {

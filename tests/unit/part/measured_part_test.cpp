@@ -5,7 +5,9 @@
 
 #include "tests/unit/part/part_data.h"
 #include "tools/part/identify.h"
+#include "tools/part/measured_part.h"
 #include "tools/part/part_path.h"
+#include "tools/part/s_part.h"
 
 namespace vernier::measured_part_test {
 namespace {

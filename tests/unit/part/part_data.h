@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/model/machine_reader.h"
 #include "tools/part/b_head_machine.h"
 #include "tools/text/csv.h"
 #include "tools/text/files.h"

@@ -7,6 +7,7 @@
 
 #include "tests/unit/part/part_data.h"
 #include "tools/part/ruled_surface.h"
+#include "tools/part/s_part.h"
 
 namespace vernier::surface_test {
 namespace {

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <random>
 
+#include "tools/diagnose/diagnosis.h"
+#include "tools/model/machine_reader.h"
 #include "tools/model/prediction.h"
 #include "tools/model/rebind.h"
 #include "tools/plan/offers.h"

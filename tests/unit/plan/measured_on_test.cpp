@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "tools/model/machine_reader.h"
 #include "tools/plan/offers.h"
 
 namespace vernier::measured_on_test {

@@ -4,6 +4,7 @@
 #include <regex>
 
 #include "tests/unit/plan/confusable.h"
+#include "tools/model/machine_reader.h"
 #include "tools/plan/sheets.h"
 
 namespace vernier::plan_test {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/report/payload.h"
+#include "tools/report/thinning.h"
 
 #include <gtest/gtest.h>
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <random>
 
+#include "tools/model/machine_reader.h"
 #include "tools/model/prediction.h"
 #include "tools/text/error.h"
 

@@ -6,6 +6,7 @@
 #include "tests/support/machines.h"
 #include "tools/fit/fit.h"
 #include "tools/model/fit_record.h"
+#include "tools/model/machine_reader.h"
 #include "tools/model/prediction.h"
 #include "tools/safety/safety_sheet.h"
 #include "tools/safety/sources.h"

@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 #include <cmath>
 
+#include "tools/model/machine_reader.h"
+#include "tools/simulate/motion.h"
 #include "tools/simulate/path.h"
 #include "tools/text/error.h"
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "tools/model/machine_reader.h"
 #include "tools/simulate/simulate.h"
 
 namespace vernier::tilt_test {

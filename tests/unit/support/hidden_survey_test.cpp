@@ -6,7 +6,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "tests/support/hidden_survey_key.h"
 #include "tools/fit/fit.h"
+#include "tools/model/machine_reader.h"
 #include "tools/model/prediction.h"
 
 namespace vernier::support {
@@ -49,7 +51,7 @@ TEST_P(HiddenSurveyOf, LeavesTheRatioAskedForAfterAFit) {
     SurveySpec spec = spec_of(GetParam());
     spec.ratio = ratio;
     const HiddenSurvey survey = make_survey(spec);
-    SCOPED_TRACE(survey.key());
+    SCOPED_TRACE(key_of(survey));
     const Machine truth = parse_machine(survey.truth, "truth.xml");
     const Machine model = parse_machine(survey.model, "model.xml");
     Measurement m = measured(survey, model);
@@ -62,7 +64,7 @@ TEST_P(HiddenSurveyOf, LeavesTheRatioAskedForAfterAFit) {
 
 TEST_P(HiddenSurveyOf, IsTheModelOnceTheTermIsZero) {
   const HiddenSurvey survey = make_survey(spec_of(GetParam()));
-  SCOPED_TRACE(survey.key());
+  SCOPED_TRACE(key_of(survey));
   Machine truth = parse_machine(survey.truth, "truth.xml");
   for (const std::string& name : survey.effects.at(0).statics) {
     ASSERT_TRUE(truth.find_static(name)) << name;
@@ -133,7 +135,7 @@ TEST(HiddenSurvey, IsTheSameForASeedAndAnotherForTheNext) {
   EXPECT_EQ(one.truth, again.truth);
   EXPECT_EQ(one.model, again.model);
   EXPECT_EQ(one.csv, again.csv);
-  EXPECT_EQ(one.key(), again.key());
+  EXPECT_EQ(key_of(one), key_of(again));
   ++spec.seed;
   EXPECT_NE(one.csv, make_survey(spec).csv);
 }
@@ -219,7 +221,7 @@ TEST(HiddenSurvey, RefusesWhatTheFamilyCannotShow) {
 }
 
 TEST(HiddenSurvey, WritesItsKey) {
-  const auto key = nlohmann::json::parse(make_survey(spec_of(Family::kRobot, "joint-compliance")).key());
+  const auto key = nlohmann::json::parse(key_of(make_survey(spec_of(Family::kRobot, "joint-compliance"))));
   EXPECT_EQ(key["family"], "robot");
   EXPECT_EQ(key["effects"][0]["accept"][0]["effect"], "joint-compliance");
   EXPECT_TRUE(key["effects"][0]["input"].is_null());

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "tools/fit/fit.h"
+#include "tools/model/machine_reader.h"
 
 namespace vernier::support {
 namespace {

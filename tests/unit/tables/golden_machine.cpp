@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "tools/compile/compile.h"
+#include "tools/model/machine_reader.h"
 
 namespace vernier::golden {
 namespace {

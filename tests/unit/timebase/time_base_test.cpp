@@ -5,8 +5,11 @@
 
 #include "tests/unit/timebase/circle_record.h"
 #include "tools/fit/fit.h"
+#include "tools/import/b5r_reader.h"
+#include "tools/import/ballbar_csv.h"
 #include "tools/import/ballbar_motion.h"
 #include "tools/import/time_repair.h"
+#include "tools/model/machine_reader.h"
 #include "tools/text/files.h"
 #include "tools/timebase/revisit.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The signature check of targets without a cryptographic library.
-#include "firmware/core/ed25519.h"
 #include "firmware/core/signature.h"
+#include "firmware/core/ed25519.h"
 
 namespace vernier {
 

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tests/unit/house/tracked_files.h"
+
+namespace vernier::house {
+namespace {
+
+bool has_ending(std::string_view path, const std::vector<std::string_view>& endings) {
+  return std::any_of(endings.begin(), endings.end(),
+                     [&](std::string_view end) { return path.ends_with(end); });
+}
+
+// Sources that a header of their name declares. A test, a bench and a command are programs or parts of one.
+bool wants_header(std::string_view path) {
+  const std::vector<std::string_view> folders = {"comp/",     "tables/", "hal/",
+                                                 "firmware/", "tools/",  "tests/support/"};
+  return path.ends_with(".cpp") && !path.starts_with("tools/commands/") &&
+         std::any_of(folders.begin(), folders.end(), [&](std::string_view f) { return path.starts_with(f); });
+}
+
+// `headers`: all of the repository. A port's own version of a function of the core stands under the name of
+// the core's header, which it includes.
+bool is_paired(std::string_view path, const std::string& text, const std::set<std::string>& headers) {
+  const std::string stem(path.substr(0, path.size() - 4));
+  if (headers.contains(stem + ".h") || text.find("\nint main(") != std::string::npos) return true;
+  const std::string name = stem.substr(stem.rfind('/') + 1);
+  return text.find("/" + name + ".h\"\n") != std::string::npos;
+}
+
+TEST(Sources, MissingHeaderIsDetected) {
+  EXPECT_TRUE(wants_header("tools/fit/a.cpp"));
+  EXPECT_FALSE(wants_header("tools/commands/a.cpp"));
+  EXPECT_FALSE(is_paired("tools/fit/a.cpp", "#include \"tools/fit/b.h\"\n", {"tools/fit/b.h"}));
+  EXPECT_TRUE(is_paired("tools/fit/a.cpp", "", {"tools/fit/a.h"}));
+  EXPECT_TRUE(is_paired("tools/fit/a.cpp", "\nint main() {}", {}));
+  EXPECT_TRUE(is_paired("firmware/daemon/a.cpp", "#include \"firmware/core/a.h\"\n", {}));
+}
+
+TEST(Sources, HaveAHeaderOfTheirName) {
+  const auto files = tracked_files();
+  if (files.empty()) GTEST_SKIP() << "not a git checkout: no list of tracked files";
+  const std::set<std::string> headers(files.begin(), files.end());
+  // Still under the header of a neighbour.
+  const std::set<std::string> waiting = {"tools/diagnose/products.cpp", "tools/diagnose/rebind.cpp",
+                                         "tools/effects/add.cpp", "tools/effects/add_string.cpp",
+                                         "tools/effects/places.cpp"};
+  std::size_t seen = 0;
+  for (const std::string& file : files) {
+    if (!wants_header(file) || waiting.contains(file)) continue;
+    ++seen;
+    EXPECT_TRUE(is_paired(file, text_of(file), headers)) << file << " has no header of its name";
+  }
+  EXPECT_GT(seen, 200u) << "the walk over the sources found next to nothing";
+}
+
+// What a person wrote as program text, by its ending or its first line.
+bool wants_licence(std::string_view path, std::string_view text) {
+  if (path.starts_with("tests/data/") || path.starts_with("tests/golden/")) return false;
+  return text.starts_with("#!") || path.ends_with("CMakeLists.txt") ||
+         has_ending(path, {".h", ".cpp", ".in", ".c", ".S", ".ld", ".js", ".mjs", ".css", ".html", ".cmake",
+                           ".sh", ".awk", ".dtsi", ".service"});
+}
+
+// As LICENSE has it: what runs beside a machine, and the rest.
+std::string_view licence_of(std::string_view path) {
+  static const std::set<std::string_view> kBesideAMachine = {"comp", "tables", "hal", "firmware"};
+  return kBesideAMachine.contains(path.substr(0, path.find('/'))) ? "Apache-2.0" : "GPL-3.0-or-later";
+}
+
+// Its licence line stands at the top, behind what must be first.
+bool says_its_licence(std::string_view path, std::string_view text) {
+  std::size_t end = 0;
+  for (int line = 0; line < 2 && end != std::string_view::npos; ++line) end = text.find('\n', end + 1);
+  const std::string wanted = std::string("SPDX-License-") + "Identifier: " + std::string(licence_of(path));
+  return text.substr(0, end).find(wanted) != std::string_view::npos;
+}
+
+TEST(Sources, MissingOrWrongLicenceIsDetected) {
+  const std::string gpl = std::string("// SPDX-License-") + "Identifier: GPL-3.0-or-later\n";
+  EXPECT_TRUE(says_its_licence("tools/a.cpp", gpl));
+  EXPECT_TRUE(says_its_licence("tools/build", "#!/bin/sh\n" + gpl));
+  EXPECT_FALSE(says_its_licence("comp/a.cpp", gpl));
+  EXPECT_FALSE(says_its_licence("tools/a.cpp", "int a;\nint b;\n" + gpl));
+  EXPECT_TRUE(wants_licence("tests/run", "#!/usr/bin/env bash\n"));
+  EXPECT_FALSE(wants_licence("README.md", "# Vernier"));
+}
+
+TEST(Sources, SayTheirLicence) {
+  const auto files = tracked_files();
+  if (files.empty()) GTEST_SKIP() << "not a git checkout: no list of tracked files";
+  std::size_t seen = 0;
+  for (const std::string& file : files) {
+    const std::string text = text_of(file);
+    if (!wants_licence(file, text)) continue;
+    ++seen;
+    EXPECT_TRUE(says_its_licence(file, text)) << file << " does not say " << licence_of(file);
+  }
+  EXPECT_GT(seen, 500u) << "the walk over the sources found next to nothing";
+}
+
+}  // namespace
+}  // namespace vernier::house

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "tools/compile/lower.h"
+#include "tools/model/machine.h"
+
+namespace vernier {
+
+/// The bytes of an image (tables/image_format.h). tool.
+std::vector<std::uint8_t> write_image(const Machine& machine, const LoweredProgram& program,
+                                      const LoweredShares& shares, std::uint32_t tick_us,
+                                      std::uint64_t source_hash, std::uint32_t accepted_rules,
+                                      std::uint64_t& fingerprint);
+
+}  // namespace vernier

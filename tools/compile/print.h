@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <cstdint>
+#include <string>
+
+#include "tools/compile/lower.h"
+#include "tools/model/machine.h"
+
+namespace vernier {
+
+/// The program as readable C++: equation.h and equation.cpp. Same program, same bytes. tool.
+std::string print_header(const Machine& machine, const LoweredProgram& program, std::uint64_t source_hash,
+                         std::uint64_t fingerprint);
+std::string print_source(const Machine& machine, const LoweredProgram& program, std::uint64_t source_hash);
+
+}  // namespace vernier

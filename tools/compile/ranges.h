@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <cstddef>
+
+#include "comp/compensator.h"
+#include "tools/compile/interval.h"
+#include "tools/model/machine.h"
+
+namespace vernier {
+
+/// Range of a channel in the unit of the machine file: declared, or the default of docs for its kind and
+/// unit.
+Interval axis_range(const Machine& machine, std::size_t axis);
+Interval input_range(const Input& input);
+Interval channel_range(const Machine& machine, ChannelKind kind, std::size_t index);
+
+}  // namespace vernier

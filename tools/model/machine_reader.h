@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <string>
+
+#include "tools/model/machine.h"
+
+namespace vernier {
+
+/// Reads a machine file. Throws InputError with file, line and word. tool.
+Machine read_machine(const std::string& path);
+/// The same from text; `file` is only used in messages.
+Machine parse_machine(const std::string& text, const std::string& file);
+
+}  // namespace vernier

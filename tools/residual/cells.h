@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <Eigen/Core>
+#include <vector>
+
+#include "tools/residual/sample.h"
+
+namespace vernier {
+
+/// Mean residual vectors over at most 5 x 5 x 5 parts of the volume (lengths: x y z as such, `length` along
+/// the bar, `d` along its normal). residual: mm or deg, one per observation. tool.
+std::vector<FailureCell> failure_cells(const Machine& machine, const Measurement& measurement,
+                                       const Eigen::VectorXd& residual);
+
+}  // namespace vernier
