@@ -369,6 +369,9 @@ class Diagnoser {
       result_.verdict = Verdict::kUnexplained;
       result_.explanation =
           "The residual comes down to the noise, and what does it is not given a name: " + doubt + ".";
+    } else if (const std::string other = other_periods(); !other.empty()) {
+      result_.verdict = Verdict::kAmbiguous;
+      result_.explanation = other;
     } else if (!rivals.close.empty()) {
       result_.verdict = Verdict::kAmbiguous;
       result_.explanation = fmt::format("One of {} causes that explain these data alike, {} first.",
@@ -377,6 +380,31 @@ class Diagnoser {
       result_.verdict = Verdict::kMissingEffect;
       result_.explanation = in_words();
     }
+  }
+
+  /// Periods that the positions do not tell from the found ones, of the first accepted effect that has any;
+  /// empty: each is the only one.
+  std::string other_periods() {
+    std::string text;
+    for (const std::size_t item : chosen_) {
+      const std::vector<double> aliases = finder_.aliases_of(item);
+      if (aliases.empty()) continue;
+      const auto shown = std::find(shown_.begin(), shown_.end(), item);
+      if (shown != shown_.end())
+        result_.candidates[static_cast<std::size_t>(shown - shown_.begin())].aliases = aliases;
+      if (!text.empty()) continue;
+      const Choice& choice = pool_.candidate(item).choice;
+      const Axis& axis = machine_.axes[*choice.axis];
+      text = fmt::format("{}: {}, with any of {} periods: the positions of {} do not tell them apart. {:.5g}",
+                         choice.effect->title, pool_.candidate(item).label, aliases.size() + 1, axis.name,
+                         pool_[item].scored.scanned.front());
+      constexpr std::size_t kListed = 20;
+      for (std::size_t i = 0; i < std::min(kListed, aliases.size()); ++i)
+        text += fmt::format(", {:.5g}", aliases[i]);
+      text += fmt::format(" {}{}. Measure {} in uneven steps.", axis.rotary ? "deg" : "mm",
+                          aliases.size() > kListed ? " and shorter ones" : "", axis.name);
+    }
+    return text;
   }
 
   /// The cause with its coefficients, how far the next one is behind, and what the whole ladder does.

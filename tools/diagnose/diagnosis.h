@@ -38,6 +38,7 @@ struct CandidateFinding {
   bool accepted = false;  // stands in the ladder
   std::string why_not;    // the test that it fails
   std::vector<std::string> confounded_with;
+  std::vector<double> aliases;  // other periods that the positions do not tell from its own, longest first
 };
 
 struct LadderStep {

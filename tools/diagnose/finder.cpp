@@ -484,6 +484,10 @@ Rivals Finder::rivals_of(std::size_t item) const {
   return rivals;
 }
 
+std::vector<double> Finder::aliases_of(std::size_t item) const {
+  return scanner_.aliases(pool_[item].scored, orthonormal(pool_.columns(without(item)), 1e-6, nullptr));
+}
+
 bool Finder::linear_down_to_noise() const {
   if (!evidence_.noise_known()) return true;
   const double freedom = std::max(1.0, evidence_.freedom());

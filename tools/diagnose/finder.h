@@ -61,6 +61,8 @@ class Finder {
   double held_out_evidence(std::size_t item) const;
   /// What fits nearly as well in the place of an accepted item, the others given.
   Rivals rivals_of(std::size_t item) const;
+  /// Other periods that do as well as an accepted item's own (Scanner::aliases), the other items given.
+  std::vector<double> aliases_of(std::size_t item) const;
   /// Does what the accepted effects leave look like noise, by the linear estimate?
   bool linear_down_to_noise() const;
 

@@ -125,6 +125,31 @@ std::vector<Index> best_peaks(const Eigen::MatrixXd& power, Index row, double le
 
 }  // namespace
 
+std::vector<double> alias_frequencies(const Evidence& evidence, std::size_t axis, double most) {
+  // Positions that are off the even by so much tell two waves apart in readings of any use.
+  constexpr double kNearly = 0.9, kPerWindow = 5, kFirst = 1.5;
+  const Evidence::Range range = evidence.range_of(axis);
+  const double length = range.high - range.low;
+  std::vector<double> found;
+  if (length <= 0) return found;
+  const Positions positions = stations(evidence, axis, length);
+  const double step = 1 / (kPerWindow * length), first = kFirst / length;
+  const auto count = static_cast<Index>(std::ceil((most - first) / step)) + 2;
+  if (count < 3) return found;
+  const Eigen::MatrixXd window = powers(positions, first, step, count);
+  const double all = std::pow(positions.sum.sum(), 2);
+  for (Index k = 1; k + 1 < count; ++k) {
+    // Between two of the steps a peak keeps nine tenths.
+    if (window(0, k) < kNearly * kNearly * all || window(0, k) < window(0, k - 1) ||
+        window(0, k) < window(0, k + 1))
+      continue;
+    const double middle = first + static_cast<double>(k) * step;
+    const double peak = peak_between(positions, 0, middle - step, middle + step);
+    if (power_at(positions, 0, peak) > kNearly * all) found.push_back(peak);
+  }
+  return found;
+}
+
 double shortest_told_apart(const Evidence& evidence, std::size_t axis) {
   // The waves that look the same at two positions have a frequency at which all positions look alike.
   constexpr double kStepsPerAlias = 2.1, kPerWindow = 5, kNear = 0.8, kSame = 0.9999;

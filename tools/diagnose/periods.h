@@ -28,6 +28,10 @@ struct FinePeriods {
 /// down to 1/1000 of the range. In the axis' unit. tool.
 double shortest_told_apart(const Evidence& evidence, std::size_t axis);
 
+/// Frequencies, in periods per unit of an axis, by which two waves may differ and still be the same at all of
+/// its positions, nearly: 1/s and its multiples where they stand s apart. Up to `most`. tool.
+std::vector<double> alias_frequencies(const Evidence& evidence, std::size_t axis, double most);
+
 /// What to look for at an axis below the shortest period of `grid` (increasing): down to 1/1000 of the range
 /// that was read, to 2.5 periods for each position, and not below `shortest`, as above. `carrier` stays
 /// empty. tool.

@@ -205,6 +205,57 @@ void Scanner::refine(Scored& scored, const Eigen::MatrixXd& beside) const {
   }
 }
 
+std::vector<double> Scanner::aliases(const Scored& scored, const Eigen::MatrixXd& beside) const {
+  const Candidate& candidate = candidates_[scored.candidate].candidate;
+  std::size_t scanned = 0;
+  for (const CandidateUnknown& unknown : candidate.unknowns) {
+    if (unknown.kind == UnknownKind::kPeriod) ++scanned;
+    if (unknown.kind != UnknownKind::kPeriod && unknown.kind != UnknownKind::kLinear) return {};
+  }
+  if (scanned != 1 || scored.scanned.size() != 1 || !candidate.choice.axis) return {};
+  const std::size_t axis = *candidate.choice.axis;
+  const Evidence::Range range = evidence_.range_of(axis);
+  const double length = range.high - range.low, own = 1 / scored.scanned[0];
+  constexpr double kMostPeriods = 1000, kApart = 6;
+  const double most = kMostPeriods / length;
+
+  Eigen::VectorXd residual = evidence_.residual();
+  if (beside.cols() > 0) residual -= beside * (beside.transpose() * residual);
+  const Eigen::MatrixXd& q = evidence_.absorbed();
+  ColumnMaker maker(evidence_);
+  const auto gain_at = [&](double frequency) {
+    const Eigen::MatrixXd raw = maker.columns(candidate, {1 / frequency});
+    Scored trial = scored;
+    return score(raw, raw - q * (q.transpose() * raw), beside, residual, trial) ? trial.gain : 0.0;
+  };
+  const double mine = gain_at(own), left = residual.squaredNorm() - mine;
+  const double unit = evidence_.noise_known() ? 1 : left / std::max(1.0, evidence_.freedom());
+  // Readings that leave more than their noise tell apart by that.
+  const double near = mine - kApart * std::max(unit, left / std::max(1.0, evidence_.freedom()));
+  const auto known = [&](const std::vector<double>& list, double frequency) {
+    return std::any_of(list.begin(), list.end(),
+                       [&](double other) { return std::abs(other - frequency) * length < 0.5; });
+  };
+  std::vector<double> frequencies = {own};
+  for (const double shift : alias_frequencies(evidence_, axis, most + own))
+    for (const double middle : {shift - own, shift + own}) {
+      const double frequency = std::abs(middle);
+      if (frequency > most || frequency * length < 0.5 || known(frequencies, frequency)) continue;
+      constexpr int kSections = 10;
+      const double width = 0.25 / length;
+      // The middle itself is right where positions are even to the last digit.
+      const double there = gain_at(frequency);
+      if (there < mine / 2) continue;
+      const Peak best = golden_peak(gain_at, frequency - width, frequency + width, kSections);
+      if (std::max(there, best.value) >= near)
+        frequencies.push_back(there >= best.value ? frequency : best.at);
+    }
+  std::vector<double> periods;
+  for (std::size_t i = 1; i < frequencies.size(); ++i) periods.push_back(1 / frequencies[i]);
+  std::sort(periods.begin(), periods.end(), std::greater<>());
+  return periods;
+}
+
 Eigen::MatrixXd Scanner::projected(const Scored& scored, std::vector<std::size_t>* kept) const {
   const Eigen::MatrixXd raw = evidence_.columns(candidates_[scored.candidate].candidate, scored.scanned);
   const Eigen::MatrixXd& q = evidence_.absorbed();

@@ -39,6 +39,11 @@ class Scanner {
   /// The scanned values moved between the grid's neighbours to where the gain is largest.
   void refine(Scored& scored, const Eigen::MatrixXd& beside) const;
 
+  /// The other periods at which a candidate with one period does as well, but for what chance would do: the
+  /// positions of its axis do not tell them apart. Longest first, down to 1/1000 of the range; empty for
+  /// other candidates.
+  std::vector<double> aliases(const Scored& scored, const Eigen::MatrixXd& beside) const;
+
   /// Independent columns of a scored candidate after projection; dropped are those that the model or the
   /// columns before them hold already. `kept`: which of the linear unknowns they are.
   Eigen::MatrixXd projected(const Scored& scored, std::vector<std::size_t>* kept = nullptr) const;

@@ -50,6 +50,7 @@ Json candidate_json(const CandidateFinding& finding, const Machine& machine) {
   json["impostors"] = choice.effect->impostors;
   json["exposed_by"] = choice.effect->exposed_by;
   json["confounded_with"] = finding.confounded_with;
+  json["aliases"] = finding.aliases;
   return json;
 }
 
