@@ -11,9 +11,6 @@
 namespace vernier {
 namespace {
 
-/// A direction of which the other runs hold less than this share of the information is theirs no more.
-constexpr double kDetermined = 0.01;
-
 /// Rows of a matrix or vector that belong to one block.
 std::vector<Eigen::Index> rows_of(const std::vector<int>& blocks, int block) {
   std::vector<Eigen::Index> rows;
@@ -22,37 +19,39 @@ std::vector<Eigen::Index> rows_of(const std::vector<int>& blocks, int block) {
   return rows;
 }
 
-/// How many directions the other runs do not determine. `information`: theirs of each direction, increasing.
-Eigen::Index lost_directions(const Eigen::VectorXd& information) {
+/// How many directions the other runs do not determine. `information`: theirs of each direction, increasing;
+/// `least`: of what is theirs.
+Eigen::Index lost_directions(const Eigen::VectorXd& information, double least) {
   Eigen::Index lost = 0;
-  while (lost < information.size() && information[lost] < kDetermined) ++lost;
+  while (lost < information.size() && information[lost] < least) ++lost;
   return lost;
 }
 
 /// What of the model's free parameters only the rows left out determine (their own set-up), as orthonormal
 /// columns over these rows: it is fitted to them. New columns are not, they must come from the other rows.
-Eigen::MatrixXd fitted_to_block_alone(const Eigen::MatrixXd& model_rows) {
+Eigen::MatrixXd fitted_to_block_alone(const Eigen::MatrixXd& model_rows, double least) {
   if (model_rows.cols() == 0) return model_rows;  // nothing is free
   const Eigen::MatrixXd normal =
       Eigen::MatrixXd::Identity(model_rows.cols(), model_rows.cols()) - model_rows.transpose() * model_rows;
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(normal);
-  return orthonormal(model_rows * eigen.eigenvectors().leftCols(lost_directions(eigen.eigenvalues())), 1e-6,
-                     nullptr);
+  return orthonormal(model_rows * eigen.eigenvectors().leftCols(lost_directions(eigen.eigenvalues(), least)),
+                     1e-6, nullptr);
 }
 
 /// Level of each value: levels are apart where neighbours in size are by `least_width`; where that gives one
-/// level or more than eight, thirds of the range, if each third is as wide.
-std::vector<int> levels_of(const std::vector<double>& values, double least_width) {
-  constexpr int kMostLevels = 8, kParts = 3;
+/// level or too many of them, parts of the range, if each part is as wide.
+std::vector<int> levels_of(const std::vector<double>& values, double least_width,
+                           const AcceptanceThresholds& thresholds) {
+  const auto parts = static_cast<int>(thresholds.parts_of_sweep);
   std::vector<double> sorted = values;
   std::sort(sorted.begin(), sorted.end());
   std::vector<double> begins;
   for (std::size_t i = 1; i < sorted.size(); ++i)
     if (sorted[i] - sorted[i - 1] > least_width) begins.push_back(sorted[i]);
   const double width = sorted.back() - sorted.front();
-  if ((begins.empty() || begins.size() >= kMostLevels) && width > kParts * least_width) {
+  if ((begins.empty() || begins.size() >= thresholds.most_levels) && width > parts * least_width) {
     begins.clear();
-    for (int i = 1; i < kParts; ++i) begins.push_back(sorted.front() + i * width / kParts);
+    for (int i = 1; i < parts; ++i) begins.push_back(sorted.front() + i * width / parts);
   }
   std::vector<int> levels;
   for (const double value : values)
@@ -81,6 +80,7 @@ HeldOut leave_blocks_out(const Evidence& evidence, const Eigen::MatrixXd& column
            coefficient.segment(watched_first, watched_count);
   };
   const Eigen::VectorXd whole = watched_part(all);
+  const double determined = evidence.thresholds().acceptance.determined_share;
   const int count = 1 + *std::max_element(blocks.begin(), blocks.end());
   for (int block = 0; block < count; ++block) {
     const std::vector<Eigen::Index> rows = rows_of(blocks, block);
@@ -95,12 +95,12 @@ HeldOut leave_blocks_out(const Evidence& evidence, const Eigen::MatrixXd& column
         Eigen::MatrixXd::Identity(basis.cols(), basis.cols()) - left_out.transpose() * left_out;
     const Eigen::VectorXd moment = all - left_out.transpose() * r_out;
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(normal);
-    const Eigen::Index lost = lost_directions(eigen.eigenvalues());
+    const Eigen::Index lost = lost_directions(eigen.eigenvalues(), determined);
     const Eigen::Index seen = basis.cols() - lost;
     const Eigen::MatrixXd v = eigen.eigenvectors().rightCols(seen);
     const Eigen::VectorXd theta = v * (v.transpose() * moment).cwiseQuotient(eigen.eigenvalues().tail(seen));
     Eigen::VectorXd error = r_out - left_out * theta;
-    const Eigen::MatrixXd own_of_block = fitted_to_block_alone(left_out.leftCols(q.cols()));
+    const Eigen::MatrixXd own_of_block = fitted_to_block_alone(left_out.leftCols(q.cols()), determined);
     error -= own_of_block * (own_of_block.transpose() * error);
     result.chi_square += error.squaredNorm();
     const Eigen::VectorXd part = watched_part(theta);
@@ -118,21 +118,21 @@ HeldOut leave_runs_out(const Evidence& evidence, const Eigen::MatrixXd& columns,
 
 std::vector<std::vector<int>> level_blocks(const Evidence& evidence) {
   const States& states = evidence.measurement().states;
+  const AcceptanceThresholds& thresholds = evidence.thresholds().acceptance;
   std::vector<std::vector<int>> all;
   const auto take = [&](const Column& column, double least_width) {
     std::vector<double> values;
     for (const std::size_t row : evidence.rows()) values.push_back(column[static_cast<Eigen::Index>(row)]);
-    const std::vector<int> levels = levels_of(values, least_width);
+    const std::vector<int> levels = levels_of(values, least_width, thresholds);
     if (*std::max_element(levels.begin(), levels.end()) > 0) all.push_back(levels);
   };
-  constexpr double kSameFeed = 0.05, kLeastWarmth_degC = 1;
   double fastest = 0;
   for (const std::size_t row : evidence.rows())
     fastest = std::max(fastest, states.feed[static_cast<Eigen::Index>(row)]);
-  if (fastest > 0) take(states.feed, kSameFeed * fastest);
+  if (fastest > 0) take(states.feed, thresholds.same_feed * fastest);
   for (std::size_t i = 0; i < evidence.machine().inputs.size(); ++i)
     if (class_of_input(evidence.machine().inputs[i]) == InputClass::kTemperature)
-      take(states.input[i], kLeastWarmth_degC);
+      take(states.input[i], thresholds.least_warmth_degC);
   return all;
 }
 

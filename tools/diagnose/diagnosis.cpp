@@ -31,11 +31,13 @@ class Diagnoser {
   Diagnoser(const std::string& text, const Machine& machine, const Measurement& measurement,
             const DiagnoseOptions& options)
       : options_(options),
+        limits_(options.thresholds.verdict),
         measurement_(measurement),
         machine_(machine),
         base_(fit_first(machine, measurement)),
         text_(update_machine_text(text, base_.machine, true)),
-        finder_(base_.machine, measurement, options.effects, options.most_effects, options.progress),
+        finder_(base_.machine, measurement, options.effects, options.most_effects, options.progress,
+                options.thresholds),
         pool_(finder_.pool()) {}
 
   Diagnosis run() {
@@ -131,19 +133,20 @@ class Diagnoser {
                                            chosen_.begin() + static_cast<std::ptrdiff_t>(count));
       const FittedEffects fitted = fit_with(items);
       // What the linear estimate promised and the fit does not keep is no step.
-      if (fall_of(result_.end, fitted.fit) < kEvidence) {
+      if (fall_of(result_.end, fitted.fit) < options_.thresholds.acceptance.evidence) {
         chosen_.erase(chosen_.begin() + static_cast<std::ptrdiff_t>(count - 1));
         continue;
       }
       const Proof proof = proof_of(result_.end, fitted.fit);
-      if (proof.can_tell() && !proof.bears_out()) {
+      const bool can_tell = proof.can_tell(options_.thresholds.proof);
+      if (can_tell && !proof.bears_out(options_.thresholds.proof)) {
         disproved_.push_back(pool_.candidate(items.back()).label);
         chosen_.erase(chosen_.begin() + static_cast<std::ptrdiff_t>(count - 1));
         continue;
       }
       LadderStep step;
       step.confirmed = true;
-      step.evidence = proof.can_tell() ? proof.evidence : finder_.held_out_evidence(items.back());
+      step.evidence = can_tell ? proof.evidence : finder_.held_out_evidence(items.back());
       step.effect = pool_.candidate(items.back()).choice.effect->id;
       step.add = add_string_of(items.back());
       step.label = pool_.candidate(items.back()).label;
@@ -240,21 +243,19 @@ class Diagnoser {
   /// The instrument, where what hangs together in time or by run is as large as the readings' own noise;
   /// empty elsewhere.
   std::string drift_of_instrument() const {
-    constexpr double kLeastShare = 0.7, kLeastSupport = 20;
     const NoiseModel& noise = result_.noise;
     double drift = std::hypot(noise.run, noise.drift);
     for (const NoiseStep& step : noise.steps) drift = std::max(drift, std::abs(step.height));
-    if (drift < kLeastShare * noise.own || noise.support < kLeastSupport) return {};
+    if (drift < limits_.drift_share * noise.own || noise.support < limits_.drift_support) return {};
     return "The instrument does not hold still: " + ::vernier::in_words(noise, result_.noise_unit_um) + ".";
   }
 
   /// Is one of the candidates, whether it passed the tests or not, more than chance beside noise of the size
   /// that is left?
   bool something_stands_out() const {
-    constexpr double kChance = 1e-3;
     for (std::size_t item = 0; item < pool_.size(); ++item) {
       const bool chosen = std::find(chosen_.begin(), chosen_.end(), item) != chosen_.end();
-      if (!chosen && finder_.p_value(item) < kChance) return true;
+      if (!chosen && finder_.p_value(item) < limits_.stands_out) return true;
     }
     return false;
   }
@@ -268,8 +269,7 @@ class Diagnoser {
     structure.fitted_parameters = static_cast<std::size_t>(result_.end.observability.rank);
     const Eigen::VectorXd left = independent_residual(rows);
     result_.left = failure_picture(machine, rows, left, structure);
-    constexpr double kStructure = 1e-4, kDoubtfulUncertainty = 2, kMostlyExplained = 0.5;
-    const bool structured = result_.left.omnibus_p < kStructure;
+    const bool structured = result_.left.omnibus_p < limits_.structure;
     const double freedom = std::max(1.0, result_.end.freedom);
     const Eigen::VectorXd weights = fit_weights(rows);
     const NoiseModel& noise = result_.noise;
@@ -278,22 +278,19 @@ class Diagnoser {
         (told ? weights.cwiseProduct(left).squaredNorm() : result_.end.chi_square) / freedom;
     if (!has_uncertainty(measurement_))
       return !structured ||
-             (!chosen_.empty() && result_.end.chi_square < (1 - kMostlyExplained) * base_.chi_square);
+             (!chosen_.empty() && result_.end.chi_square < (1 - limits_.mostly_explained) * base_.chi_square);
     // More noise than stated is believed where nothing that was looked for stands out of it, and where there
-    // are enough readings for structure to show (outside the catalogue, 160 rows do not show it, 400 do).
-    constexpr double kEnoughReadings = 600;
+    // are enough readings for structure to show.
     const double stated = result_.end.chi_square / freedom;
-    if (noise.independent() && stated > kDoubtfulUncertainty &&
-        (freedom < kEnoughReadings || something_stands_out()))
+    if (noise.independent() && stated > limits_.doubtful_uncertainty &&
+        (freedom < limits_.enough_readings || something_stands_out()))
       return false;
     // The number alone is enough for one effect or two that hit the noise; what is near it only, or was put
     // together from more, must leave no structure either.
-    constexpr double kHit = 2;
-    constexpr std::size_t kFew = 2;
     const double sigmas = (reduced - 1) / std::sqrt(2 / freedom);
-    if (sigmas < kHit && !chosen_.empty() && chosen_.size() <= kFew) return true;
-    if (sigmas < kNoiseSigmas) return !structured;
-    return reduced < kDoubtfulUncertainty && !structured;
+    if (sigmas < limits_.hit_sigmas && !chosen_.empty() && chosen_.size() <= limits_.few_effects) return true;
+    if (sigmas < limits_.noise_sigmas) return !structured;
+    return reduced < limits_.doubtful_uncertainty && !structured;
   }
 
   void decide() {
@@ -308,7 +305,7 @@ class Diagnoser {
     const bool noise_is_left = down_to_noise(rows);
     const std::vector<std::size_t> pieces = pieces_of_one_function(finder_.evidence(), pool_, chosen_);
     if (!noise_is_left && pieces.empty()) {
-      if (const auto sentence = outliers_to_blame(result_.end.machine, rows, result_.end.residual)) {
+      if (const auto sentence = outliers_to_blame(result_.end.machine, rows, result_.end.residual, limits_)) {
         result_.verdict = Verdict::kInstrument;
         result_.explanation = *sentence;
         return;
@@ -465,6 +462,7 @@ class Diagnoser {
   }
 
   const DiagnoseOptions& options_;
+  const VerdictThresholds& limits_;
   const Measurement& measurement_;
   Machine machine_;
   FitResult base_;
@@ -511,7 +509,8 @@ Diagnosis diagnose(const std::string& text, const Machine& given, const Measurem
       all.verdict == Verdict::kInstrument && all.ladder.size() > 1 && !all.time_base.found;
   if (all.verdict != Verdict::kUnexplained && !more_than_outliers) return all;
   const Measurement rows = rebind(measurement, all.base.machine, all.end.machine);
-  const auto rest = without_gross_outliers(all.end.machine, rows, all.end.residual);
+  const auto rest =
+      without_gross_outliers(all.end.machine, rows, all.end.residual, options.thresholds.verdict);
   if (!rest || rows.rows() != measurement.rows()) return all;
   Diagnosis clean = Diagnoser(text, machine, select_rows(measurement, rest->kept), options).run();
   if (!is_named(clean.verdict)) return all;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/diagnose/thresholds.h"
 #include "tools/effects/candidate.h"
 #include "tools/fit/fit.h"
 #include "tools/fit/noise.h"
@@ -23,6 +24,7 @@ struct DiagnoseOptions {
   std::vector<Effect> effects = built_in_effects();
   std::size_t most_effects = 5;  // steps of the ladder
   std::size_t shown = 8;         // candidates that are fitted and listed
+  DiagnoseThresholds thresholds;
   std::function<void(double, const std::string&)> progress = [](double, const std::string&) {};
 };
 

@@ -14,8 +14,6 @@
 namespace vernier {
 namespace {
 
-constexpr double kShare = 0.3;  // of a unit vector along or across gravity
-
 bool contains(const std::string& text, std::string_view part) { return text.find(part) != std::string::npos; }
 
 std::vector<double> logarithmic(double low, double high, std::size_t count) {
@@ -29,7 +27,11 @@ std::vector<double> logarithmic(double low, double high, std::size_t count) {
 class Enumerator {
  public:
   Enumerator(const Evidence& evidence, const std::vector<Effect>& effects)
-      : evidence_(evidence), machine_(evidence.machine()), axes_(machine_), effects_(effects) {
+      : evidence_(evidence),
+        thresholds_(evidence.thresholds().candidates),
+        machine_(evidence.machine()),
+        axes_(machine_),
+        effects_(effects) {
     for (std::size_t axis = 0; axis < machine_.axes.size(); ++axis) {
       own_.push_back(axes_.own(axis));
       range_.push_back(evidence.range_of(axis));
@@ -105,8 +107,8 @@ class Enumerator {
       }
     }
     for (std::size_t i = 0; i < across.size(); ++i) {
-      const bool sags =
-          is_angle(machine_, evidence_.places()[i]) ? across[i] > kShare * count : along[i] > kShare * count;
+      const double share = is_angle(machine_, evidence_.places()[i]) ? across[i] : along[i];
+      const bool sags = share > thresholds_.sag_share * count;
       if (sags) sag_.push_back(evidence_.places()[i]);
     }
   }
@@ -137,9 +139,10 @@ class Enumerator {
     for (std::size_t i = 0; i < rotary.size(); ++i) {
       // From the first joint that is parallel to this one without a break, up to each joint at or behind it.
       std::size_t first = i;
-      while (first > 0 && std::abs(direction[first - 1].dot(direction[i])) > 0.999) --first;
+      while (first > 0 && std::abs(direction[first - 1].dot(direction[i])) > thresholds_.parallel_cosine)
+        --first;
       for (std::size_t last = i; last < rotary.size(); ++last) {
-        if (std::abs(direction[last].dot(direction[i])) < 0.999) break;
+        if (std::abs(direction[last].dot(direction[i])) < thresholds_.parallel_cosine) break;
         std::string sum;
         for (std::size_t k = first; k <= last; ++k) {
           const bool minus = direction[k].dot(direction[first]) < 0;
@@ -225,9 +228,8 @@ class Enumerator {
     choice.from = std::floor(range_[axis].low / digit) * digit;
     choice.to = std::ceil(range_[axis].high / digit) * digit;
     const Axis& item = machine_.axes[axis];
-    constexpr double kMostOfIt = 0.8;
     if (contains(choice.form->term, "{hats") || !item.min || !item.max) return;
-    if (choice.to - choice.from < kMostOfIt * (*item.max - *item.min)) return;
+    if (choice.to - choice.from < thresholds_.declared_range_share * (*item.max - *item.min)) return;
     choice.from = *item.min;
     choice.to = *item.max;
   }
@@ -323,9 +325,7 @@ class Enumerator {
       finish(one);
       if (run != *seen.begin()) all.runs.push_back(names[run]);
     }
-    // More steps than this follow any drift: they would name a jump where there is none.
-    constexpr std::size_t kMostRuns = 4;
-    if (all.runs.size() > 1 && all.runs.size() <= kMostRuns) finish(all);
+    if (all.runs.size() > 1 && all.runs.size() <= thresholds_.most_steps_of_runs) finish(all);
   }
 
   void with_hats(const Choice& choice) {
@@ -334,7 +334,7 @@ class Enumerator {
       const double nodes = std::stod(choice.form->term.substr(at + 6));
       const Evidence::Range& range = range_[*choice.axis];
       if (range.step <= 0 || (range.high - range.low) / range.step + 1 < nodes) return;
-      if (nodes * 4 > static_cast<double>(evidence_.rows().size())) return;
+      if (nodes * thresholds_.readings_per_hat > static_cast<double>(evidence_.rows().size())) return;
     }
     finish(choice);
   }
@@ -345,13 +345,16 @@ class Enumerator {
         const Evidence::Range range = evidence_.time_range();
         const double length = range.high - range.low;
         if (length <= 0) return {};
-        return logarithmic(std::max(3 * range.step, length / 200), 3 * length, 16);
+        return logarithmic(
+            std::max(thresholds_.time_least_steps * range.step, length / thresholds_.time_least_part),
+            thresholds_.time_most * length, thresholds_.time_values);
       }
       case UnknownKind::kTravel: {
         const Evidence::Range& range = range_[*choice.axis];
         const double length = range.high - range.low;
         if (length <= 0) return {};
-        return logarithmic(length / 500, length / 2, 14);
+        return logarithmic(length / thresholds_.travel_least_part, length / thresholds_.travel_most_part,
+                           thresholds_.travel_values);
       }
       case UnknownKind::kPeriod:
         return periods(*choice.axis);
@@ -367,14 +370,15 @@ class Enumerator {
     const double length = range.high - range.low;
     std::vector<double> grid;
     if (length <= 0 || range.step <= 0) return grid;
-    constexpr double kMostPeriods = 100, kPerRange = 2.5, kLongest = 0.4;
+    const CandidateThresholds& to = thresholds_;
     // Even steps cannot tell a period below two of them from a longer one; uneven steps can.
-    const double shortest = std::max(range.even ? 2.1 * range.step : 0, shortest_[axis]);
-    const double fastest = kMostPeriods / std::max(length, kMostPeriods * shortest);
-    for (double f = 1 / (kLongest * length); f <= fastest; f += 1 / (kPerRange * length))
+    const double shortest = std::max(range.even ? to.steps_per_period * range.step : 0, shortest_[axis]);
+    const double fastest = to.most_periods / std::max(length, to.most_periods * shortest);
+    for (double f = 1 / (to.longest_period_share * length); f <= fastest;
+         f += 1 / (to.periods_per_range * length))
       grid.push_back(1 / f);
     if (machine_.axes[axis].rotary)
-      for (double harmonic = 1; harmonic <= 12; ++harmonic)
+      for (double harmonic = 1; harmonic <= static_cast<double>(to.harmonics_of_turn); ++harmonic)
         if (harmonic / 360 <= fastest && length > 90 / harmonic) grid.push_back(360 / harmonic);
     std::sort(grid.begin(), grid.end());
     return grid;
@@ -392,6 +396,7 @@ class Enumerator {
     item.candidate = make_candidate(machine_, axes_, choice);
     for (const CandidateUnknown& unknown : scanned_unknowns(item.candidate))
       item.grid.push_back(grid_of(choice, *choice.effect->find_unknown(unknown.rule)));
+    item.most_driven = thresholds_.driven_out;
     item.may_lose_columns = contains(choice.form->term, "{hats") || choice.runs.size() > 1;
     add_fine_periods(item);
     list_.push_back(std::move(item));
@@ -423,6 +428,7 @@ class Enumerator {
   }
 
   const Evidence& evidence_;
+  const CandidateThresholds& thresholds_;
   const Machine& machine_;
   AxisPlaces axes_;
   const std::vector<Effect>& effects_;
@@ -442,11 +448,10 @@ bool ScannedCandidate::is_driven_out(std::size_t unknown, double found, double v
   const std::vector<double>& range = grid[unknown];
   // From one wave to the next that the range tells apart.
   if (fine.holds(found)) return !(std::abs(1 / value - 1 / found) * fine.length <= 1);
-  return !(value >= range.front() / 2 && value <= range.back() * 2);
+  return !(value >= range.front() / most_driven && value <= range.back() * most_driven);
 }
 
 std::vector<DofPlace> distinct_places(const Evidence& evidence, bool angles_apart) {
-  constexpr double kSamePlace = 1e-7;
   std::vector<DofPlace> places;
   std::vector<Eigen::VectorXd> seen;
   std::vector<std::size_t> order(evidence.places().size());
@@ -463,7 +468,7 @@ std::vector<DofPlace> distinct_places(const Evidence& evidence, bool angles_apar
     bool known = false;
     for (std::size_t k = 0; k < seen.size() && !known; ++k)
       known = (!angles_apart || is_kind(places[k]) == is_kind(evidence.places()[i])) &&
-              1 - std::abs(column.dot(seen[k])) < kSamePlace;
+              1 - std::abs(column.dot(seen[k])) < evidence.thresholds().candidates.same_place;
     if (known) continue;
     seen.push_back(column);
     places.push_back(evidence.places()[i]);

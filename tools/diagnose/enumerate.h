@@ -15,6 +15,7 @@ struct ScannedCandidate {
   std::vector<std::vector<double>> grid;  // one list per unknown that is no coefficient, increasing
   bool may_lose_columns = false;          // hats: the model may absorb a part of their span
   FinePeriods fine;                       // of a wave: the periods below its grid
+  double most_driven = 2;                 // times beyond the grid that is still where it was looked for
 
   /// Did a fit drive a scanned unknown from where it was found out of the range in which it was looked for?
   bool is_driven_out(std::size_t unknown, double found, double value) const;

@@ -19,14 +19,6 @@
 namespace vernier {
 namespace {
 
-/// Directions of the scaled Jacobian below this share of the largest are not followed by a fit: they show
-/// only through products of errors (measured on chains with station tables, whose spectrum has its gap here).
-constexpr double kAbsorbCutoff = 1e-4;
-/// Blocks that a single run is cut into for leaving out.
-constexpr std::size_t kBlocksOfOneRun = 5;
-/// More numbers than this in the Jacobian: every k-th row is enough to name an effect.
-constexpr double kMostNumbers = 3e7;
-
 /// All free parameters held: only the probes of a machine are left free.
 void hold_all(Machine& machine) {
   for (Static& item : machine.statics) item.hidden = true;
@@ -34,10 +26,10 @@ void hold_all(Machine& machine) {
   for (BaseShift& shift : machine.base_shifts) shift.hidden = true;
 }
 
-/// Every how many rows one is kept.
-std::size_t stride_of(const Measurement& all, std::size_t parameters) {
+/// Every how many rows one is kept, so that the Jacobian has no more than `most` numbers.
+std::size_t stride_of(const Measurement& all, std::size_t parameters, double most) {
   const double numbers = static_cast<double>(all.observations.size()) * static_cast<double>(parameters + 60);
-  return numbers <= kMostNumbers ? 1 : static_cast<std::size_t>(std::ceil(numbers / kMostNumbers));
+  return numbers <= most ? 1 : static_cast<std::size_t>(std::ceil(numbers / most));
 }
 
 Measurement thinned(const Measurement& all, std::size_t stride) {
@@ -49,9 +41,11 @@ Measurement thinned(const Measurement& all, std::size_t stride) {
 
 }  // namespace
 
-Evidence::Evidence(const Machine& fitted, const Measurement& measurement) : machine_(fitted) {
+Evidence::Evidence(const Machine& fitted, const Measurement& measurement,
+                   const DiagnoseThresholds& thresholds)
+    : thresholds_(thresholds), machine_(fitted) {
   const ParameterSet parameters(fitted, runs_of_fit_rows(measurement));
-  const std::size_t stride = stride_of(measurement, parameters.size());
+  const std::size_t stride = stride_of(measurement, parameters.size(), thresholds.evidence.most_numbers);
   stride_ = static_cast<double>(stride);
   measurement_ = thinned(measurement, stride);
   position_ = commanded_states(measurement_).axis;
@@ -133,7 +127,7 @@ void Evidence::absorb() {
   jacobian *= scale.asDiagonal();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(jacobian.transpose() * jacobian);
   const Eigen::VectorXd& values = eigen.eigenvalues();
-  const double limit = kAbsorbCutoff * kAbsorbCutoff * values[values.size() - 1];
+  const double limit = std::pow(thresholds_.evidence.absorb_cutoff, 2) * values[values.size() - 1];
   Eigen::Index lost = 0;
   while (lost < values.size() && values[lost] < limit) ++lost;
   const Eigen::Index rank = std::min(values.size() - lost, residual_.size());
@@ -158,8 +152,9 @@ void Evidence::split_blocks() {
   std::map<std::size_t, std::size_t> parts, first;
   std::size_t next = 0;
   for (const auto& [run, rows] : rows_of_run) {
-    parts[run] = std::max<std::size_t>(1, rows.size() * kBlocksOfOneRun / total);
-    if (rows.size() * 3 < total) parts[run] = 1;
+    const AcceptanceThresholds& cut = thresholds_.acceptance;
+    parts[run] = std::max<std::size_t>(1, rows.size() * cut.blocks_of_one_run / total);
+    if (static_cast<double>(rows.size()) < cut.large_run * static_cast<double>(total)) parts[run] = 1;
     first[run] = next;
     next += parts[run];
   }
@@ -207,10 +202,10 @@ double Evidence::shared_pose_error(const Eigen::VectorXd& residual, const Eigen:
     freedom_within += n - 1 - (taken - taken_mean);
     count += n;
   }
-  constexpr double kLeastFreedom = 10, kChance = 1e-3;
-  if (freedom_between < kLeastFreedom || freedom_within < kLeastFreedom || within <= 0) return 0;
+  const double least = thresholds_.evidence.pose_freedom;
+  if (freedom_between < least || freedom_within < least || within <= 0) return 0;
   const double f = (between / freedom_between) / (within / freedom_within);
-  if (log_f_tail(f, freedom_between, freedom_within) > std::log(kChance)) return 0;
+  if (log_f_tail(f, freedom_between, freedom_within) > std::log(thresholds_.evidence.pose_chance)) return 0;
   return (f - 1) * static_cast<double>(groups.size()) / count;
 }
 
@@ -263,7 +258,6 @@ void Evidence::whiten(Eigen::MatrixXd& columns) const {
 }
 
 std::vector<int> Evidence::parts_of_runs() const {
-  constexpr std::size_t kParts = 4;
   std::map<std::size_t, std::vector<std::size_t>> rows_of_run;
   for (const std::size_t row : rows_) {
     auto& rows = rows_of_run[measurement_.states.run[row]];
@@ -274,7 +268,7 @@ std::vector<int> Evidence::parts_of_runs() const {
     const auto& rows = rows_of_run[measurement_.states.run[rows_[i]]];
     const auto at =
         static_cast<std::size_t>(std::lower_bound(rows.begin(), rows.end(), rows_[i]) - rows.begin());
-    parts[i] = static_cast<int>(at * kParts / rows.size());
+    parts[i] = static_cast<int>(at * thresholds_.acceptance.parts_of_run / rows.size());
   }
   return parts;
 }
@@ -334,13 +328,12 @@ Evidence::Range Evidence::range_of(std::size_t axis) const {
   range.low = *values.begin();
   range.high = *values.rbegin();
   range.step = (range.high - range.low) / std::max<double>(1, static_cast<double>(values.size() - 1));
-  constexpr double kUneven = 0.05;
   double least = range.high - range.low;
   for (auto next = std::next(values.begin()); next != values.end(); ++next)
     least = std::min(least, *next - *std::prev(next));
   for (const double value : values) {
     const double steps = (value - range.low) / std::max(least, 1e-300);
-    range.even = range.even && std::abs(steps - std::round(steps)) < kUneven;
+    range.even = range.even && std::abs(steps - std::round(steps)) < thresholds_.evidence.even_step;
   }
   return range;
 }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/diagnose/thresholds.h"
 #include "tools/effects/candidate.h"
 #include "tools/fit/fit.h"
 #include "tools/fit/noise.h"
@@ -19,8 +20,10 @@ namespace vernier {
 class Evidence {
  public:
   /// `fitted`: the machine at its best fit; every logged column becomes an input. tool.
-  Evidence(const Machine& fitted, const Measurement& measurement);
+  Evidence(const Machine& fitted, const Measurement& measurement, const DiagnoseThresholds& thresholds = {});
 
+  /// What every part of the search goes by.
+  const DiagnoseThresholds& thresholds() const { return thresholds_; }
   const Machine& machine() const { return machine_; }  // with every logged column as an input
   const Measurement& measurement() const { return measurement_; }
   /// Names of inputs that the user's machine does not declare start at this index.
@@ -80,7 +83,7 @@ class Evidence {
   /// Range of an axis over the fit rows, and the mean step between different values.
   struct Range {
     double low = 0, high = 0, step = 0;
-    bool even = true;  // the steps are multiples of one, all but a twentieth of it
+    bool even = true;  // the steps are multiples of one, or nearly so
   };
   Range range_of(std::size_t axis) const;
   Range time_range() const;
@@ -94,6 +97,7 @@ class Evidence {
   /// Fit observations of one kind, run and position of all axes, where there are two or more.
   std::vector<std::vector<Eigen::Index>> readings_at_one_pose() const;
 
+  DiagnoseThresholds thresholds_;
   Machine machine_;
   Measurement measurement_;
   std::size_t declared_ = 0;

@@ -15,38 +15,32 @@
 namespace vernier {
 namespace {
 
-/// Of what an effect removes from the rows it was fitted to, this much must be removed from runs left out.
-constexpr double kHeldOutShare = 0.2;
-
-/// How much better a name must do than the instrument alone (Kass and Raftery 1995: very strong).
-constexpr double kInstrumentDistance = 10;
-
-/// Does one noise model say what another says, to a tenth?
-bool is_alike(const NoiseModel& a, const NoiseModel& b) {
-  constexpr double kSame = 0.1;
-  const double unit = std::max(a.total(), b.total());
-  return std::abs(a.own - b.own) < kSame * unit && std::abs(a.pose - b.pose) < kSame * unit &&
-         std::abs(a.run - b.run) < kSame * unit && std::abs(a.drift - b.drift) < kSame * unit &&
-         a.steps == b.steps;
+/// Does one noise model say what another says, but for this share of the noise?
+bool is_alike(const NoiseModel& a, const NoiseModel& b, double share) {
+  const double same = share * std::max(a.total(), b.total());
+  return std::abs(a.own - b.own) < same && std::abs(a.pose - b.pose) < same &&
+         std::abs(a.run - b.run) < same && std::abs(a.drift - b.drift) < same && a.steps == b.steps;
 }
 
 /// The same but for the readings' own noise.
-bool hangs_alike(NoiseModel a, const NoiseModel& b) {
+bool hangs_alike(NoiseModel a, const NoiseModel& b, double share) {
   const double scale = b.own / a.own;
   a.own = b.own;
   a.pose *= scale;
   a.run *= scale;
   a.drift *= scale;
-  return is_alike(a, b);
+  return is_alike(a, b, share);
 }
 
 }  // namespace
 
 Finder::Finder(const Machine& fitted, const Measurement& measurement, const std::vector<Effect>& effects,
-               std::size_t most_effects, std::function<void(double, const std::string&)> progress)
+               std::size_t most_effects, std::function<void(double, const std::string&)> progress,
+               const DiagnoseThresholds& thresholds)
     : most_effects_(most_effects),
       progress_(std::move(progress)),
-      evidence_(fitted, measurement),
+      evidence_(fitted, measurement, thresholds),
+      thresholds_(evidence_.thresholds().acceptance),
       list_(enumerate_candidates(evidence_, effects)),
       scanner_(evidence_, list_),
       pool_(evidence_, scanner_) {}
@@ -71,8 +65,7 @@ void Finder::scan_beside(const std::vector<std::size_t>& items, double from, dou
       },
       first);
   for (Scored& fine : scanner_.scan_fine(beside, first)) scored.push_back(std::move(fine));
-  constexpr std::size_t kMostAtOnce = 50;
-  pool_.add(scored, kMostAtOnce, beside);
+  pool_.add(scored, beside);
 }
 
 void Finder::search_products() {
@@ -105,8 +98,7 @@ std::vector<Product> Finder::best_products() {
     if (pool_.is_custom(i)) order.emplace_back(-score_alone(i), i);
   std::sort(order.begin(), order.end());
   std::vector<Product> best;
-  constexpr std::size_t kExtended = 25;
-  for (std::size_t i = 0; i < std::min(kExtended, order.size()); ++i) {
+  for (std::size_t i = 0; i < std::min(thresholds_.extended, order.size()); ++i) {
     const Choice& choice = pool_.candidate(order[i].second).choice;
     best.push_back({*choice.place, choice.term, choice.inputs, choice.units});
   }
@@ -133,7 +125,7 @@ void Finder::simplify() {
       std::vector<std::size_t> set = chosen_;
       set[i] = other;
       const Selection trial = evaluate(set);
-      if (trial.criterion - criterion_ >= kEvidence + most_price) continue;
+      if (trial.criterion - criterion_ >= thresholds_.evidence + most_price) continue;
       if (simplest && trial.criterion >= best.criterion) continue;
       // The same columns from a place further from the axis, or from a term without a name, are only the
       // longer way to say it.
@@ -145,7 +137,7 @@ void Finder::simplify() {
       if (!same_but_nearer && !pool_.contains(chosen_[i], other)) continue;
       // One of many that hold it fits better by chance: what it has more pays for that.
       const double price = same_but_nearer ? 0 : 2 * std::log(std::max(1.0, holders_of(other)));
-      if (trial.criterion - criterion_ >= kEvidence + price) continue;
+      if (trial.criterion - criterion_ >= thresholds_.evidence + price) continue;
       simplest = other;
       best = trial;
     }
@@ -217,7 +209,7 @@ double Finder::settle_noise_from(NoiseModel noise) {
   for (int round = 0; round < kMostRounds; ++round) {
     search_under(noise);
     const NoiseModel next = evidence_.estimate(raw_columns(chosen_));
-    if (is_alike(next, noise)) return priced_criterion();
+    if (is_alike(next, noise, thresholds_.same_noise)) return priced_criterion();
     noise = next;
   }
   return std::numeric_limits<double>::infinity();
@@ -251,17 +243,18 @@ void Finder::weigh_correlation() {
   const NoiseModel after_none =
       chosen_.empty() ? after_all : evidence_.estimate(Eigen::MatrixXd(evidence_.residual().size(), 0));
   // A set of effects stands only with the noise that it leaves.
-  const bool stands = hangs_alike(after_all, white);
-  if (stands && hangs_alike(after_none, white)) return;
+  const double same = thresholds_.same_noise;
+  const bool stands = hangs_alike(after_all, white, same);
+  if (stands && hangs_alike(after_none, white, same)) return;
   double best = stands ? priced_criterion() : std::numeric_limits<double>::infinity();
   NoiseModel kept = white;
   bool is_current = true;  // do search and evidence stand as `kept` has them?
   std::vector<NoiseModel> starts = {after_all};
-  if (!is_alike(after_none, after_all)) starts.push_back(after_none);
+  if (!is_alike(after_none, after_all, same)) starts.push_back(after_none);
   for (const NoiseModel& start : starts) {
-    if (hangs_alike(start, white)) continue;
+    if (hangs_alike(start, white, same)) continue;
     double value = settle_noise_from(start);
-    if (chosen_.empty()) value -= kInstrumentDistance;
+    if (chosen_.empty()) value -= thresholds_.instrument_distance;
     is_current = value < best;
     if (!is_current) continue;
     best = value;
@@ -269,7 +262,7 @@ void Finder::weigh_correlation() {
   }
   if (is_current) return;
   search_under(kept);
-  if (is_alike(kept, white) && !linear_down_to_noise()) {
+  if (is_alike(kept, white, same) && !linear_down_to_noise()) {
     search_products();
     accept();
   }
@@ -289,12 +282,12 @@ Selection Finder::evaluate(const std::vector<std::size_t>& items) const {
 }
 
 void Finder::ban_hollow_products() {
-  constexpr double kSame = 0.9, kWitnesses = 10;
   for (std::size_t i = 0; i < pool_.size(); ++i) {
     if (!pool_.is_custom(i) || pool_[i].banned) continue;
-    if (pool_.witnesses(i) < kWitnesses) pool_.ban(i, "witnesses: a few readings carry it");
+    if (pool_.witnesses(i) < thresholds_.witnesses) pool_.ban(i, "witnesses: a few readings carry it");
     for (std::size_t failed = 0; failed < pool_.size() && !pool_[i].banned; ++failed)
-      if (pool_[failed].banned && !pool_.is_custom(failed) && pool_.common_share(i, failed) > kSame)
+      if (pool_[failed].banned && !pool_.is_custom(failed) &&
+          pool_.common_share(i, failed) > thresholds_.copy_of_failed)
         pool_.ban(i, "nearly the same as " + pool_.candidate(failed).label +
                          ", which failed: " + pool_[failed].why_not);
   }
@@ -302,7 +295,8 @@ void Finder::ban_hollow_products() {
 
 std::string Finder::failed_test(std::size_t item) const {
   const Selection rest = evaluate(without(item));
-  if (rest.criterion - criterion_ < kEvidence) return "evidence: the fall of the criterion is below 6";
+  if (rest.criterion - criterion_ < thresholds_.evidence)
+    return fmt::format("evidence: the fall of the criterion is below {:g}", thresholds_.evidence);
   const Eigen::Index count = pool_[item].columns.cols();
   std::vector<std::size_t> others = without(item), all = {item};
   all.insert(all.end(), others.begin(), others.end());
@@ -310,17 +304,17 @@ std::string Finder::failed_test(std::size_t item) const {
   const HeldOut with = leave_runs_out(evidence_, pool_.columns(all), 0, count, of_run);
   const HeldOut less = leave_runs_out(evidence_, pool_.columns(others), 0, 0, of_run);
   const double gain = rest.chi_square - chi_square_;
-  if (less.chi_square - with.chi_square < kHeldOutShare * gain)
+  if (less.chi_square - with.chi_square < thresholds_.held_out_share * gain)
     return "held out: it does not help on runs that were left out";
   std::size_t agree = 0;
-  for (const double cosine : with.agreement) agree += cosine > 0.5 ? 1 : 0;
-  if (static_cast<double>(agree) < 0.75 * static_cast<double>(with.agreement.size()))
+  for (const double cosine : with.agreement) agree += cosine > thresholds_.stable_cosine ? 1 : 0;
+  if (static_cast<double>(agree) < thresholds_.stable_runs * static_cast<double>(with.agreement.size()))
     return "stability: its coefficients change when a run is left out";
   if (is_learned(item))
     for (const std::vector<int>& levels : level_blocks(evidence_))
       if (leave_blocks_out(evidence_, pool_.columns(others), 0, 0, levels).chi_square -
               leave_blocks_out(evidence_, pool_.columns(all), 0, count, levels).chi_square <
-          kHeldOutShare * gain)
+          thresholds_.held_out_share * gain)
         return "held out: it does not help at feeds or temperatures that were left out";
   return too_large(item);
 }
@@ -346,13 +340,13 @@ bool Finder::is_learned(std::size_t item) const {
 }
 
 bool Finder::shows_in_one_block(std::size_t item) const {
-  constexpr double kMostOfIt = 0.8;
   const Eigen::VectorXd part = pool_[item].columns * own_coefficients(item);
   std::map<int, double> of_block;
   for (Eigen::Index i = 0; i < part.size(); ++i)
     of_block[evidence_.blocks()[static_cast<std::size_t>(i)]] += part[i] * part[i];
-  return std::any_of(of_block.begin(), of_block.end(),
-                     [&](const auto& block) { return block.second > kMostOfIt * part.squaredNorm(); });
+  return std::any_of(of_block.begin(), of_block.end(), [&](const auto& block) {
+    return block.second > thresholds_.in_one_block * part.squaredNorm();
+  });
 }
 
 std::string Finder::too_large(std::size_t item) const {
@@ -461,7 +455,7 @@ Rivals Finder::rivals_of(std::size_t item) const {
     std::vector<std::size_t> set = others;
     set.push_back(rival);
     const double distance = evaluate(set).criterion - criterion_;
-    if (distance < kDistance) {
+    if (distance < thresholds_.distance) {
       // A form that holds this one and more would need evidence of its own: no rival.
       if (pool_.contains(rival, item)) continue;
       const Choice &mine = pool_.candidate(item).choice, &other = pool_.candidate(rival).choice;
@@ -477,7 +471,7 @@ Rivals Finder::rivals_of(std::size_t item) const {
       rivals.distance = distance;
       rivals.best = rival;
     }
-    if (distance < kDistance) close.emplace_back(distance, rival);
+    if (distance < thresholds_.distance) close.emplace_back(distance, rival);
   }
   std::sort(close.begin(), close.end());
   for (const auto& [distance, rival] : close) rivals.close.push_back(rival);
@@ -491,7 +485,7 @@ std::vector<double> Finder::aliases_of(std::size_t item) const {
 bool Finder::linear_down_to_noise() const {
   if (!evidence_.noise_known()) return true;
   const double freedom = std::max(1.0, evidence_.freedom());
-  return chi_square_ / freedom < 1 + kNoiseSigmas * std::sqrt(2 / freedom);
+  return chi_square_ / freedom < 1 + evidence_.thresholds().verdict.noise_sigmas * std::sqrt(2 / freedom);
 }
 
 }  // namespace vernier

@@ -13,12 +13,6 @@
 
 namespace vernier {
 
-/// Fall of the criterion that counts as evidence (Kass and Raftery 1995: strong), and the distance a rival
-/// must keep for a name to be given with confidence.
-inline constexpr double kEvidence = 6, kDistance = 6;
-/// chi^2 per degree of freedom up to this many of its own standard deviations above 1 is noise.
-inline constexpr double kNoiseSigmas = 4;
-
 /// What could stand in the place of an accepted effect. All are items of the pool.
 struct Rivals {
   std::vector<std::size_t> close;  // other causes that fit nearly as well, best first
@@ -33,7 +27,8 @@ class Finder {
  public:
   /// `fitted`: the machine at its best fit. `progress`: share of the whole diagnosis, and what is being done.
   Finder(const Machine& fitted, const Measurement& measurement, const std::vector<Effect>& effects,
-         std::size_t most_effects, std::function<void(double, const std::string&)> progress);
+         std::size_t most_effects, std::function<void(double, const std::string&)> progress,
+         const DiagnoseThresholds& thresholds = {});
   Finder(const Finder&) = delete;
   Finder& operator=(const Finder&) = delete;
 
@@ -113,6 +108,7 @@ class Finder {
   std::size_t most_effects_;
   std::function<void(double, const std::string&)> progress_;
   Evidence evidence_;
+  const AcceptanceThresholds& thresholds_;  // the evidence's
   std::vector<ScannedCandidate> list_;
   Scanner scanner_;
   Pool pool_;

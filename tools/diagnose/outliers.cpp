@@ -8,7 +8,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "tools/diagnose/finder.h"
 #include "tools/fit/fit.h"
 #include "tools/fit/statistics.h"
 
@@ -82,14 +81,15 @@ std::string rows_in_words(const Peeled& peeled, const Measurement& all) {
 }  // namespace
 
 std::optional<std::string> outliers_to_blame(const Machine& machine, const Measurement& measurement,
-                                             const Eigen::VectorXd& of_all) {
+                                             const Eigen::VectorXd& of_all,
+                                             const VerdictThresholds& thresholds) {
   if (!has_uncertainty(measurement)) return std::nullopt;  // nothing says what the rest should be
-  constexpr double kFar = 6, kMostOfThem = 0.05;
-  const auto peeled =
-      peel(machine, measurement, of_all, kFar, kMostOfThem * static_cast<double>(measurement.rows()));
+  const auto peeled = peel(machine, measurement, of_all, thresholds.outlier_spreads,
+                           thresholds.outliers_alone * static_cast<double>(measurement.rows()));
   if (!peeled || peeled->fit.freedom <= 0) return std::nullopt;
   const double freedom = peeled->fit.freedom;
-  if (peeled->fit.chi_square / freedom > 1 + kNoiseSigmas * std::sqrt(2 / freedom)) return std::nullopt;
+  if (peeled->fit.chi_square / freedom > 1 + thresholds.noise_sigmas * std::sqrt(2 / freedom))
+    return std::nullopt;
   return fmt::format(
       "Outliers: without {} the residual is noise. A lost beam or a bumped target is likelier than the "
       "machine.",
@@ -97,16 +97,16 @@ std::optional<std::string> outliers_to_blame(const Machine& machine, const Measu
 }
 
 std::optional<WithoutOutliers> without_gross_outliers(const Machine& machine, const Measurement& measurement,
-                                                      const Eigen::VectorXd& of_all) {
-  constexpr double kFar = 6, kMostOfThem = 0.15;
-  auto peeled = peel(machine, measurement, of_all, kFar,
-                     std::max(1.0, kMostOfThem * static_cast<double>(measurement.rows())));
+                                                      const Eigen::VectorXd& of_all,
+                                                      const VerdictThresholds& thresholds) {
+  auto peeled = peel(machine, measurement, of_all, thresholds.outlier_spreads,
+                     std::max(1.0, thresholds.outliers_beside * static_cast<double>(measurement.rows())));
   if (!peeled) return std::nullopt;
   return WithoutOutliers{
       std::move(peeled->kept),
       fmt::format("Left out: {}, off by more than {:.0f} times the spread of the others, as a lost "
                   "beam or a bumped target is.",
-                  rows_in_words(*peeled, measurement), kFar)};
+                  rows_in_words(*peeled, measurement), thresholds.outlier_spreads)};
 }
 
 }  // namespace vernier

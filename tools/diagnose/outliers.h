@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/diagnose/thresholds.h"
 #include "tools/model/machine.h"
 #include "tools/model/measurement.h"
 
@@ -15,7 +16,8 @@ namespace vernier {
 /// numbers; nothing where it is not so or where no uncertainty says what noise is. `of_all`: residual of the
 /// machine's fit to all rows, mm or deg. tool.
 std::optional<std::string> outliers_to_blame(const Machine& machine, const Measurement& measurement,
-                                             const Eigen::VectorXd& of_all);
+                                             const Eigen::VectorXd& of_all,
+                                             const VerdictThresholds& thresholds);
 
 /// The rows beside the gross outliers, and the sentence that says which were left out.
 struct WithoutOutliers {
@@ -23,10 +25,11 @@ struct WithoutOutliers {
   std::string sentence;
 };
 
-/// Leaves out the rows with a reading far off what the effects found so far leave, up to 15 in a hundred rows
-/// (5 in a hundred readings of three each); nothing where there are none or more. `machine`, `of_all`: with
+/// Leaves out the rows with a reading far off what the effects found so far leave, up to a share of the rows;
+/// nothing where there are none or more. `machine`, `of_all`: with
 /// those effects. tool.
 std::optional<WithoutOutliers> without_gross_outliers(const Machine& machine, const Measurement& measurement,
-                                                      const Eigen::VectorXd& of_all);
+                                                      const Eigen::VectorXd& of_all,
+                                                      const VerdictThresholds& thresholds);
 
 }  // namespace vernier

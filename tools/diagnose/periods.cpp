@@ -80,43 +80,38 @@ double peak_between(const Positions& positions, Index column, double low, double
       .at;
 }
 
-/// Frequencies looked at for each that the range tells apart: a peak between two of them keeps nine tenths.
-constexpr double kPerRange = 3;
-
-/// More waves than these over the range are not looked for, nor more for each position.
-constexpr double kMostPeriods = 1000, kPerPosition = 2.5;
-
 /// The positions of an axis, one of those that a wave as short as any looked for does not tell apart: where
 /// an axis stood, and not how often. A weight of 1 each.
 Positions stations(const Evidence& evidence, std::size_t axis, double length) {
-  constexpr double kApart = 1 / (4 * kMostPeriods);
+  const double apart = 1 / (4 * evidence.thresholds().fine.most_periods);
   std::vector<double> all;
   for (std::size_t i = 0; i < evidence.rows().size(); ++i) all.push_back(position(evidence, axis, i));
   std::sort(all.begin(), all.end());
   std::vector<double> kept;
   for (const double one : all)
-    if (kept.empty() || one - kept.back() > kApart * length) kept.push_back(one);
+    if (kept.empty() || one - kept.back() > apart * length) kept.push_back(one);
   const auto count = static_cast<Index>(kept.size());
   return {Eigen::Map<const Eigen::ArrayXd>(kept.data(), count), Eigen::MatrixXd::Ones(count, 1)};
 }
 
-double most_frequency(const Positions& positions, double length) {
-  return std::min(kMostPeriods, kPerPosition * static_cast<double>(positions.at.size())) / length;
+double most_frequency(const Positions& positions, double length, const FinePeriodThresholds& limits) {
+  return std::min(limits.most_periods, limits.per_position * static_cast<double>(positions.at.size())) /
+         length;
 }
 
-/// Peaks of a row of powers worth a closer look: the highest ones, and the slowest of those that come within
-/// `margin` of the highest.
-std::vector<Index> best_peaks(const Eigen::MatrixXd& power, Index row, double least, double margin) {
-  constexpr std::size_t kPeaks = 3;
+/// Peaks of a row of powers worth a closer look: the `most` highest ones, and the slowest of those that come
+/// within `margin` of the highest.
+std::vector<Index> best_peaks(const Eigen::MatrixXd& power, Index row, double least, double margin,
+                              std::size_t most) {
   std::vector<Index> peaks;
   for (Index k = 1; k + 1 < power.cols(); ++k)
     if (power(row, k) > least && power(row, k) >= power(row, k - 1) && power(row, k) > power(row, k + 1))
       peaks.push_back(k);
-  if (peaks.size() <= kPeaks) return peaks;
+  if (peaks.size() <= most) return peaks;
   std::vector<Index> order = peaks;
   std::sort(order.begin(), order.end(), [&](Index a, Index b) { return power(row, a) > power(row, b); });
   const double near = power(row, order[0]) - margin;
-  order.resize(kPeaks);
+  order.resize(most);
   const Index slowest =
       *std::find_if(peaks.begin(), peaks.end(), [&](Index k) { return power(row, k) >= near; });
   if (std::find(order.begin(), order.end(), slowest) == order.end()) order.push_back(slowest);
@@ -152,41 +147,44 @@ std::vector<double> alias_frequencies(const Evidence& evidence, std::size_t axis
 
 double shortest_told_apart(const Evidence& evidence, std::size_t axis) {
   // The waves that look the same at two positions have a frequency at which all positions look alike.
-  constexpr double kStepsPerAlias = 2.1, kPerWindow = 5, kNear = 0.8, kSame = 0.9999;
+  constexpr double kPerWindow = 5;  // frequencies looked at for each that the range tells apart
+  const FinePeriodThresholds& limits = evidence.thresholds().fine;
+  const double steps_per_alias = evidence.thresholds().candidates.steps_per_period;
   const Evidence::Range range = evidence.range_of(axis);
   const double length = range.high - range.low;
   if (length <= 0) return 0;
   const Positions positions = stations(evidence, axis, length);
   const double step = 1 / (kPerWindow * length), first = 1.5 / length;
-  const auto count =
-      static_cast<Index>(std::ceil((kStepsPerAlias * most_frequency(positions, length) - first) / step));
+  const auto count = static_cast<Index>(
+      std::ceil((steps_per_alias * most_frequency(positions, length, limits) - first) / step));
   if (count < 3) return 0;
   const Eigen::MatrixXd window = powers(positions, first, step, count);
   const double all = std::pow(positions.sum.sum(), 2);
   for (Index k = 1; k + 1 < count; ++k) {
-    if (window(0, k) < kNear * all || window(0, k) < window(0, k - 1) || window(0, k) < window(0, k + 1))
+    if (window(0, k) < limits.alias_near * all || window(0, k) < window(0, k - 1) ||
+        window(0, k) < window(0, k + 1))
       continue;
     const double middle = first + static_cast<double>(k) * step;
     const double peak = peak_between(positions, 0, middle - step, middle + step);
-    if (power_at(positions, 0, peak) > kSame * all) return kStepsPerAlias / peak;
+    if (power_at(positions, 0, peak) > limits.alias_same * all) return steps_per_alias / peak;
   }
   return 0;
 }
 
 FinePeriods fine_periods(const Evidence& evidence, std::size_t axis, const std::vector<double>& grid,
                          double shortest) {
-  constexpr double kFewest = 4;  // frequencies that are worth the search
+  const FinePeriodThresholds& limits = evidence.thresholds().fine;
   if (grid.empty()) return {};
   const Evidence::Range range = evidence.range_of(axis);
   FinePeriods fine;
   fine.axis = axis;
   fine.length = range.high - range.low;
-  fine.step = 1 / (kPerRange * fine.length);
+  fine.step = 1 / (limits.per_range * fine.length);
   // The two lists overlap, so that a peak between them is one of this.
   fine.slowest = 1 / grid.front() - 3 * fine.step;
-  fine.fastest = most_frequency(stations(evidence, axis, fine.length), fine.length);
+  fine.fastest = most_frequency(stations(evidence, axis, fine.length), fine.length, limits);
   if (shortest > 0) fine.fastest = std::min(fine.fastest, 1 / shortest);
-  return fine.fastest > fine.slowest + kFewest * fine.step ? fine : FinePeriods{};
+  return fine.fastest > fine.slowest + limits.fewest * fine.step ? fine : FinePeriods{};
 }
 
 Eigen::VectorXd carrier_of(const Evidence& evidence, const Candidate& candidate, const FinePeriods& fine) {
@@ -225,11 +223,12 @@ std::vector<std::vector<double>> promising_periods(const Evidence& evidence,
   const Eigen::MatrixXd power = powers(positions, fine.slowest, fine.step, count);
   // Power at which the wave explains as much as the highest of so many waves does of noise.
   const double variance = residual.squaredNorm() / std::max(1.0, evidence.freedom());
-  constexpr double kNearlyAsWell = 10;
+  const FinePeriodThresholds& limits = evidence.thresholds().fine;
   for (std::size_t i = 0; i < of_axis.size(); ++i) {
     const double unit = variance * of_axis[i]->carrier.squaredNorm() / 2;
     const double least = unit * 2 * std::log(fine.tries());
-    for (const Index k : best_peaks(power, static_cast<Index>(i), least, unit * kNearlyAsWell)) {
+    for (const Index k :
+         best_peaks(power, static_cast<Index>(i), least, unit * limits.nearly_as_well, limits.peaks)) {
       const double middle = fine.slowest + static_cast<double>(k) * fine.step;
       found[i].push_back(
           1 / peak_between(positions, static_cast<Index>(i), middle - fine.step, middle + fine.step));

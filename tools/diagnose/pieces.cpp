@@ -18,11 +18,10 @@ double period_of(const Pool& pool, std::size_t item) {
   return 0;
 }
 
-bool harmonics(double a, double b) {
-  constexpr double kSame = 0.03;
+bool harmonics(double a, double b, double allowed) {
   if (a <= 0 || b <= 0) return false;
   const double ratio = std::max(a, b) / std::min(a, b);
-  return std::round(ratio) > 1 && std::abs(ratio - std::round(ratio)) < kSame * ratio;
+  return std::round(ratio) > 1 && std::abs(ratio - std::round(ratio)) < allowed * ratio;
 }
 
 /// Do two periods beat less than once over a length? Then they are one wave whose height or length changes.
@@ -36,15 +35,15 @@ bool is_function_of_its_axis(const Evidence& evidence, const Candidate& candidat
 }
 
 bool moves_alike(const Evidence& evidence, const DofPlace& a, const DofPlace& b) {
-  constexpr double kAlike = 0.9;
   const auto x = evidence.response(evidence.index_of(a)), y = evidence.response(evidence.index_of(b));
-  return std::abs(x.dot(y)) > kAlike * x.norm() * y.norm();
+  return std::abs(x.dot(y)) > evidence.thresholds().shape.moves_alike * x.norm() * y.norm();
 }
 
 /// The largest group of functions, seen from each of them; `alike` says which belong together.
 template <class Counts, class Alike>
-std::vector<std::size_t> largest_group(const Pool& pool, const std::vector<std::size_t>& items,
-                                       const Counts& counts, const Alike& alike) {
+std::vector<std::size_t> largest_group(const Evidence& evidence, const Pool& pool,
+                                       const std::vector<std::size_t>& items, const Counts& counts,
+                                       const Alike& alike) {
   std::vector<std::size_t> most;
   for (const std::size_t first : items) {
     if (!counts(first)) continue;
@@ -52,7 +51,7 @@ std::vector<std::size_t> largest_group(const Pool& pool, const std::vector<std::
     for (const std::size_t item : items) {
       if (!counts(item) || !alike(first, item)) continue;
       const bool harmonic = std::any_of(group.begin(), group.end(), [&](std::size_t other) {
-        return harmonics(period_of(pool, item), period_of(pool, other));
+        return harmonics(period_of(pool, item), period_of(pool, other), evidence.thresholds().shape.harmonic);
       });
       if (!harmonic) group.push_back(item);
     }
@@ -98,24 +97,27 @@ bool follows_from_position(const Evidence& evidence, const Candidate& candidate)
 
 std::vector<std::size_t> pieces_of_one_function(const Evidence& evidence, const Pool& pool,
                                                 const std::vector<std::size_t>& items) {
-  constexpr std::size_t kMostOfOneAxis = 2, kMostOfOneReading = 3, kMostBesideACurve = 2;
-  constexpr Eigen::Index kCurve = 3;
+  const ShapeThresholds& thresholds = evidence.thresholds().shape;
   const auto choice = [&](std::size_t item) -> const Choice& { return pool.candidate(item).choice; };
   std::vector<std::size_t> group = largest_group(
-      pool, items, [&](std::size_t item) { return is_function_of_its_axis(evidence, pool.candidate(item)); },
+      evidence, pool, items,
+      [&](std::size_t item) { return is_function_of_its_axis(evidence, pool.candidate(item)); },
       [&](std::size_t a, std::size_t b) {
         return choice(a).axis == choice(b).axis && moves_alike(evidence, *choice(a).place, *choice(b).place);
       });
-  if (group.size() > kMostOfOneAxis) return group;
+  if (group.size() > thresholds.most_of_one_axis) return group;
   if (const auto pair = unresolved_periods(evidence, pool, items); !pair.empty()) return pair;
   if (!has_one_reading_a_row(evidence)) return {};
   group = largest_group(
-      pool, items, [&](std::size_t item) { return follows_from_position(evidence, pool.candidate(item)); },
+      evidence, pool, items,
+      [&](std::size_t item) { return follows_from_position(evidence, pool.candidate(item)); },
       [](std::size_t, std::size_t) { return true; });
   std::vector<std::size_t> curves;
-  std::copy_if(group.begin(), group.end(), std::back_inserter(curves),
-               [&](std::size_t item) { return pool[item].columns.cols() >= kCurve; });
-  if (group.size() > (curves.empty() ? kMostOfOneReading : kMostBesideACurve)) return group;
+  std::copy_if(group.begin(), group.end(), std::back_inserter(curves), [&](std::size_t item) {
+    return static_cast<double>(pool[item].columns.cols()) >= thresholds.curve;
+  });
+  if (group.size() > (curves.empty() ? thresholds.most_of_one_reading : thresholds.most_beside_a_curve))
+    return group;
   if (curves.size() > 1) return curves;
   return {};
 }

@@ -12,31 +12,26 @@ namespace {
 
 /// Between forms that fit alike the simpler one wins: at the axis' own degree of freedom first, then across
 /// the axis, then anywhere. Far below any evidence.
-double rank_of(const Candidate& candidate) {
-  constexpr double kStep = 0.05;
+double rank_of(const Candidate& candidate, double step) {
   switch (candidate.choice.form->place) {
     case PlaceRule::kOwn:
       return 0;
     case PlaceRule::kPair:
     case PlaceRule::kEachAxis:
-      return kStep;
+      return step;
     case PlaceRule::kCross:
     case PlaceRule::kNormal:
     case PlaceRule::kBase:
     case PlaceRule::kJoint:
-      return 2 * kStep;
+      return 2 * step;
     case PlaceRule::kTurn:
     case PlaceRule::kBaseTurn:
     case PlaceRule::kLength:
-      return 3 * kStep;
+      return 3 * step;
     default:
-      return 4 * kStep;
+      return 4 * step;
   }
 }
-
-/// Twice the logarithm of how much more seldom than the others an effect or form is met that the catalogue
-/// calls so.
-constexpr double kRare = 6;
 
 /// Is the first unknown that is scanned a period?
 bool has_period(const Candidate& candidate) {
@@ -70,7 +65,10 @@ std::set<std::pair<int, std::size_t>> drivers_of(const Machine& machine, const C
 }
 
 Pool::Pool(const Evidence& evidence, const Scanner& scanner)
-    : evidence_(evidence), scanner_(scanner), axes_(evidence.machine()) {}
+    : evidence_(evidence),
+      thresholds_(evidence.thresholds().pool),
+      scanner_(scanner),
+      axes_(evidence.machine()) {}
 
 const Candidate& Pool::candidate(std::size_t i) const {
   return scanner_.candidates()[items_[i].scored.candidate].candidate;
@@ -78,16 +76,16 @@ const Candidate& Pool::candidate(std::size_t i) const {
 
 double Pool::penalty(const Scored& scored) const {
   const ScannedCandidate& item = scanner_.candidates()[scored.candidate];
-  double cost = 2 * std::log(static_cast<double>(scanner_.candidates().size())) + rank_of(item.candidate);
+  double cost = 2 * std::log(static_cast<double>(scanner_.candidates().size())) +
+                rank_of(item.candidate, thresholds_.step_of_place);
   // A jump between runs follows any slow drift: it is named only where no continuous effect does as well.
   const Choice& choice = item.candidate.choice;
-  if (choice.effect->rare || choice.form->rare || !choice.runs.empty()) cost += kRare;
-  if (carries_not(axes_, choice)) cost += 2 * kRare;
+  if (choice.effect->rare || choice.form->rare || !choice.runs.empty()) cost += thresholds_.rare;
+  if (carries_not(axes_, choice)) cost += 2 * thresholds_.rare;
   // A scanned unknown is as many tries as the grid has values that differ, where that is more than the price
   // of a coefficient.
-  constexpr double kPointsPerTry = 2.5;
   for (std::size_t i = 0; i < item.grid.size(); ++i) {
-    double tries = static_cast<double>(item.grid[i].size()) / kPointsPerTry;
+    double tries = static_cast<double>(item.grid[i].size()) / thresholds_.points_per_try;
     if (item.fine.holds(scored.scanned.at(i))) tries += item.fine.tries();
     cost += std::max(0.0, 2 * std::log(tries) - std::log(static_cast<double>(evidence_.rows().size())));
   }
@@ -103,17 +101,17 @@ std::string Pool::place_key(const Scored& scored) const {
   if (c.axis2) key += fmt::format(" b{}", *c.axis2);
   for (const std::string& input : c.inputs) key += " " + input;
   if (c.place) key += fmt::format(" {}.{}.{}", c.place->workpiece, c.place->transform, c.place->dof);
-  if (has_period(candidate)) key += fmt::format(" p{}", std::lround(8 * std::log(scored.scanned[0])));
+  if (has_period(candidate))
+    key += fmt::format(" p{}", std::lround(thresholds_.periods_per_e * std::log(scored.scanned[0])));
   key += c.runs.size() == 1 ? " " + c.runs[0] : "";
   if (c.effect == &custom_effect()) key += " " + c.term;
   return key;
 }
 
-void Pool::add(const std::vector<Scored>& scored, std::size_t most, const Eigen::MatrixXd& beside) {
+void Pool::add(const std::vector<Scored>& scored, const Eigen::MatrixXd& beside) {
   std::vector<std::size_t> order(scored.size());
-  const double scale = evidence_.noise_known()
-                           ? std::max(1.0, 0.5 * evidence_.chi_square() / evidence_.freedom())
-                           : 0.5 * evidence_.chi_square() / evidence_.freedom();
+  const double noise = thresholds_.noise_share * evidence_.chi_square() / evidence_.freedom();
+  const double scale = evidence_.noise_known() ? std::max(1.0, noise) : noise;
   std::vector<double> value(scored.size());
   for (std::size_t i = 0; i < scored.size(); ++i) {
     order[i] = i;
@@ -123,17 +121,16 @@ void Pool::add(const std::vector<Scored>& scored, std::size_t most, const Eigen:
         penalty(scored[i]);
   }
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return value[a] > value[b]; });
-  std::map<std::string, int> of_effect;
-  constexpr int kOfEachEffect = 3;
+  std::map<std::string, std::size_t> of_effect;
   std::size_t taken = 0;
   for (const std::size_t i : order) {
-    int& count = of_effect[scanner_.candidates()[scored[i].candidate].candidate.choice.effect->id];
-    if (taken >= most && count >= kOfEachEffect) continue;
+    std::size_t& count = of_effect[scanner_.candidates()[scored[i].candidate].candidate.choice.effect->id];
+    if (taken >= thresholds_.most_at_once && count >= thresholds_.of_each_effect) continue;
     ++count;
     ++taken;
     Item item;
     item.scored = scored[i];
-    if (value[i] > -20) scanner_.refine(item.scored, beside);
+    if (value[i] > thresholds_.refined_above) scanner_.refine(item.scored, beside);
     const std::string key =
         place_key(item.scored) + " " +
         scanner_.candidates()[item.scored.candidate].candidate.choice.form->label +
@@ -183,6 +180,7 @@ SelectionProblem Pool::problem(std::vector<std::size_t>& items) const {
   p.observations = static_cast<double>(evidence_.residual().size());
   p.freedom = evidence_.freedom();
   p.noise_known = evidence_.noise_known();
+  p.least_pivot = thresholds_.least_pivot;
   return p;
 }
 
@@ -200,7 +198,7 @@ bool Pool::same_columns(std::size_t a, std::size_t b) const {
   if (x.cols() != y.cols()) return false;
   // Squares of the cosines between the two spans, the least of them decides.
   const double common = (x.transpose() * y).squaredNorm();
-  return static_cast<double>(x.cols()) - common < 1e-3;
+  return static_cast<double>(x.cols()) - common < thresholds_.same_share;
 }
 
 double Pool::common_share(std::size_t item, std::size_t other) const {
@@ -213,9 +211,6 @@ double Pool::witnesses(std::size_t item) const {
   return std::pow(square.sum(), 2) / square.squaredNorm();
 }
 
-/// A span that holds all but this of another's squares holds it.
-constexpr double kHeldShare = 0.02;
-
 bool Pool::contains(std::size_t general, std::size_t special) const {
   const Eigen::MatrixXd x = orthonormal(items_[general].columns, 1e-6, nullptr);
   const Eigen::MatrixXd y = orthonormal(items_[special].columns, 1e-6, nullptr);
@@ -227,7 +222,7 @@ bool Pool::contains(std::size_t general, std::size_t special) const {
   const auto mine = drivers_of(evidence_.machine(), candidate(general)),
              its = drivers_of(evidence_.machine(), candidate(special));
   if (!std::includes(mine.begin(), mine.end(), its.begin(), its.end())) return false;
-  return static_cast<double>(y.cols()) - (x.transpose() * y).squaredNorm() < kHeldShare;
+  return static_cast<double>(y.cols()) - (x.transpose() * y).squaredNorm() < thresholds_.held_share;
 }
 
 bool Pool::same_kind(std::size_t a, std::size_t b) const {

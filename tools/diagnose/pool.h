@@ -26,9 +26,9 @@ class Pool {
 
   Pool(const Evidence& evidence, const Scanner& scanner);
 
-  /// Puts the most promising ones in: `most` by gain less cost, and the best of every effect. Scanned values
-  /// are refined first.
-  void add(const std::vector<Scored>& scored, std::size_t most, const Eigen::MatrixXd& beside);
+  /// Puts the most promising ones in: those with most gain less cost, and the best of every effect. Scanned
+  /// values are refined first.
+  void add(const std::vector<Scored>& scored, const Eigen::MatrixXd& beside);
 
   /// Takes all out again.
   void clear() {
@@ -76,6 +76,7 @@ class Pool {
   std::string place_key(const Scored& scored) const;
 
   const Evidence& evidence_;
+  const PoolThresholds& thresholds_;
   const Scanner& scanner_;
   AxisPlaces axes_;
   std::vector<Item> items_;

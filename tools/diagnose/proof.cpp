@@ -5,21 +5,6 @@
 #include <vector>
 
 namespace vernier {
-namespace {
-
-/// log of 20: an e-value of 20 is wrong for one step in twenty at most that is not there, whatever was looked
-/// at before.
-constexpr double kTwentyToOne = 2.996;
-/// A step that is true brings its expectation within its spread, sqrt(2 expected): from here on that is above
-/// the limit.
-constexpr double kLeastExpected = 8;
-
-}  // namespace
-
-bool Proof::can_tell() const { return expected >= kLeastExpected; }
-
-bool Proof::bears_out() const { return evidence >= kTwentyToOne; }
-
 Proof proof_on_check_rows(const Measurement& rows, const Eigen::VectorXd& before,
                           const Eigen::VectorXd& after, const NoiseModel& noise, double variance) {
   Proof proof;

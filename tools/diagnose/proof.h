@@ -2,6 +2,7 @@
 #pragma once
 #include <Eigen/Core>
 
+#include "tools/diagnose/thresholds.h"
 #include "tools/fit/noise.h"
 #include "tools/model/measurement.h"
 
@@ -13,9 +14,9 @@ struct Proof {
                         // makes these rows
   double expected = 0;  // what it would be on average if the step were true
   /// Is the step large enough on these rows for them to speak?
-  bool can_tell() const;
-  /// They speak for it: 20 to 1 or more.
-  bool bears_out() const;
+  bool can_tell(const ProofThresholds& thresholds) const { return expected >= thresholds.expected; }
+  /// They speak for it.
+  bool bears_out(const ProofThresholds& thresholds) const { return evidence >= thresholds.evidence; }
 };
 
 /// The check rows under two models. before, after: residuals (measured - model) of all observations; noise:

@@ -15,8 +15,6 @@ namespace {
 
 /// Columns projected at a time: one product of matrices instead of many of vectors.
 constexpr Eigen::Index kBatch = 192;
-/// Less than this share of a column's length outside of the model's reach: the data cannot see it.
-constexpr double kLeastOwn = 1e-3;
 /// 1/value of the values looked at on both sides of one that was.
 std::pair<double, double> neighbours(const ScannedCandidate& item, std::size_t unknown, double value) {
   if (item.fine.holds(value)) return {1 / value - item.fine.step, 1 / value + item.fine.step};
@@ -24,9 +22,6 @@ std::pair<double, double> neighbours(const ScannedCandidate& item, std::size_t u
   const auto at = static_cast<std::size_t>(std::lower_bound(grid.begin(), grid.end(), value) - grid.begin());
   return {1 / grid[std::min(at + 1, grid.size() - 1)], 1 / grid[at > 0 ? at - 1 : 0]};
 }
-
-/// A column of hats that repeats the others is dropped below this share.
-constexpr double kLeastIndependent = 1e-3;
 
 }  // namespace
 
@@ -45,7 +40,7 @@ std::vector<std::vector<double>> grid_points(const std::vector<std::vector<doubl
 }
 
 Scanner::Scanner(const Evidence& evidence, const std::vector<ScannedCandidate>& candidates)
-    : evidence_(evidence), candidates_(candidates) {}
+    : evidence_(evidence), thresholds_(evidence.thresholds().pool), candidates_(candidates) {}
 
 bool Scanner::score(const Eigen::MatrixXd& raw, const Eigen::MatrixXd& projected,
                     const Eigen::MatrixXd& beside, const Eigen::VectorXd& residual, Scored& scored) const {
@@ -55,7 +50,7 @@ bool Scanner::score(const Eigen::MatrixXd& raw, const Eigen::MatrixXd& projected
   if (beside.cols() > 0) own -= beside * (beside.transpose() * own);
   for (Eigen::Index j = 0; j < own.cols(); ++j) {
     const double before = raw.col(j).norm(), after = own.col(j).norm();
-    if (!(before > 0) || !std::isfinite(after) || after < kLeastOwn * before) {
+    if (!(before > 0) || !std::isfinite(after) || after < thresholds_.least_own * before) {
       if (!item.may_lose_columns) return false;
       own.col(j).setZero();
       continue;
@@ -63,7 +58,7 @@ bool Scanner::score(const Eigen::MatrixXd& raw, const Eigen::MatrixXd& projected
     scored.own_share = std::min(scored.own_share, after / before);
   }
   std::vector<std::size_t> kept;
-  const Eigen::MatrixXd basis = orthonormal(own, kLeastIndependent, &kept);
+  const Eigen::MatrixXd basis = orthonormal(own, thresholds_.least_independent, &kept);
   if (basis.cols() == 0) return false;
   if (!item.may_lose_columns && basis.cols() < own.cols()) return false;
   scored.gain = (basis.transpose() * residual).squaredNorm();
@@ -146,9 +141,8 @@ Scored Scanner::best_period(std::size_t candidate, const std::vector<double>& pe
     most = std::max(most, scored.gain);
     seen.push_back(std::move(scored));
   }
-  // As far apart as rivals must be to be told apart.
-  constexpr double kApart = 6;
-  const double near = most - kApart * residual.squaredNorm() / std::max(1.0, evidence_.freedom());
+  const double apart = evidence_.thresholds().fine.told_apart;
+  const double near = most - apart * residual.squaredNorm() / std::max(1.0, evidence_.freedom());
   Scored best;
   for (Scored& scored : seen)
     if (scored.gain >= near && (best.unknowns == 0 || scored.scanned[0] > best.scanned[0])) best = scored;
@@ -263,8 +257,8 @@ Eigen::MatrixXd Scanner::projected(const Scored& scored, std::vector<std::size_t
   std::vector<std::size_t> chosen;
   Eigen::MatrixXd usable = own;
   for (Eigen::Index j = 0; j < own.cols(); ++j)
-    if (own.col(j).norm() < kLeastOwn * raw.col(j).norm()) usable.col(j).setZero();
-  orthonormal(usable, kLeastIndependent, &chosen);
+    if (own.col(j).norm() < thresholds_.least_own * raw.col(j).norm()) usable.col(j).setZero();
+  orthonormal(usable, thresholds_.least_independent, &chosen);
   Eigen::MatrixXd result(own.rows(), static_cast<Eigen::Index>(chosen.size()));
   for (std::size_t j = 0; j < chosen.size(); ++j)
     result.col(static_cast<Eigen::Index>(j)) = own.col(static_cast<Eigen::Index>(chosen[j]));

@@ -65,6 +65,7 @@ class Scanner {
              const Eigen::VectorXd& residual, Scored& scored) const;
 
   const Evidence& evidence_;
+  const PoolThresholds& thresholds_;
   const std::vector<ScannedCandidate>& candidates_;
 };
 

@@ -9,9 +9,6 @@
 namespace vernier {
 namespace {
 
-/// What is left of a column's square after the columns before it; less counts as a copy of them.
-constexpr double kLeastOwnShare = 1e-5;
-
 Eigen::Index column_count(const SelectionProblem& p, const std::vector<std::size_t>& chosen) {
   Eigen::Index count = 0;
   for (const std::size_t entry : chosen) count += p.entries[entry].count;
@@ -52,7 +49,7 @@ bool explained(const SelectionProblem& p, const std::vector<std::size_t>& chosen
     if (before <= 0) return false;
     double pivot = before;
     for (Eigen::Index k = 0; k < j; ++k) pivot -= gram(j, k) * gram(j, k);
-    if (pivot < kLeastOwnShare * before) return false;
+    if (pivot < p.least_pivot * before) return false;
     pivot = std::sqrt(pivot);
     double value = moment[j];
     for (Eigen::Index k = 0; k < j; ++k) value -= gram(j, k) * moment[k];
@@ -157,15 +154,14 @@ Selection evaluate_selection(const SelectionProblem& p, const std::vector<std::s
     unknowns += static_cast<double>(p.entries[entry].count) + static_cast<double>(p.entries[entry].scanned);
     penalty += p.entries[entry].penalty;
   }
-  const double freedom = std::max(p.freedom / p.correlation_time, 1.0);
-  const double chi_square = result.chi_square / p.correlation_time;
-  const double reduced = chi_square / freedom;
+  const double freedom = std::max(p.freedom, 1.0);
+  const double reduced = result.chi_square / freedom;
   // With the noise at its best value the likelihood is n log(chi^2/n); a noise below the given uncertainty is
   // not believed.
   const bool at_noise = p.noise_known && reduced <= 1;
-  const double likelihood = at_noise ? chi_square : freedom * (1 + std::log(std::max(reduced, 1e-300)));
-  result.criterion =
-      likelihood + unknowns * std::log(std::max(2.0, p.observations / p.correlation_time)) + penalty;
+  const double likelihood =
+      at_noise ? result.chi_square : freedom * (1 + std::log(std::max(reduced, 1e-300)));
+  result.criterion = likelihood + unknowns * std::log(std::max(2.0, p.observations)) + penalty;
   return result;
 }
 

@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "tools/diagnose/thresholds.h"
+
 namespace vernier {
 
 /// A group of columns that enter a model together.
@@ -23,8 +25,7 @@ struct SelectionProblem {
   double observations = 0;  // for the penalty of a coefficient (BIC)
   double freedom = 0;       // observations - rank of the model
   bool noise_known = false;
-  /// Readings per independent one, where the residual of neighbours hangs together; 1 for white noise.
-  double correlation_time = 1;
+  double least_pivot = PoolThresholds().least_pivot;  // share of its square that a column keeps beside others
   std::vector<SelectionEntry> entries;
 };
 

@@ -14,10 +14,6 @@ namespace {
 
 using Index = Eigen::Index;
 
-/// Logarithms of 1e-3 and 1e-4: what is less likely to be noise is a doubt. Every term is asked whether it
-/// changes, and none should be doubted by chance; what is no effect of the catalogue is far beyond.
-constexpr double kChance = -6.9, kChangeChance = -9.2;
-
 /// Positions of the fit observations over the range that was read: 0 .. 1.
 Eigen::VectorXd positions(const Evidence& evidence, std::size_t axis) {
   const Evidence::Range range = evidence.range_of(axis);
@@ -30,14 +26,13 @@ Eigen::VectorXd positions(const Evidence& evidence, std::size_t axis) {
   return u;
 }
 
-/// How many positions were read, those closer than a 64th of the range counted once.
-int positions_read(Eigen::VectorXd u) {
-  constexpr double kApart = 1.0 / 64;
+/// How many positions were read, those closer than `apart` (of the range) counted once.
+int positions_read(Eigen::VectorXd u, double apart) {
   std::sort(u.begin(), u.end());
   int count = 0;
   double last = -1;
   for (const double one : u) {
-    if (one - last < kApart) continue;
+    if (one - last < apart) continue;
     ++count;
     last = one;
   }
@@ -56,8 +51,7 @@ struct Gain {
 
 /// What columns explain of the residual beside what the model absorbs and `beside`, in units of the noise.
 Gain gain_of(const Evidence& evidence, const Eigen::MatrixXd& raw, const Eigen::MatrixXd& beside) {
-  // A direction of which the others leave less is none of its own.
-  constexpr double kOwn = 1e-3;
+  const double least_own = evidence.thresholds().shape.own;
   Eigen::MatrixXd own = raw;
   const Eigen::VectorXd before = own.colwise().norm();
   const Eigen::MatrixXd& q = evidence.absorbed();
@@ -67,8 +61,8 @@ Gain gain_of(const Evidence& evidence, const Eigen::MatrixXd& raw, const Eigen::
     own -= others * (others.transpose() * own);
   }
   for (Index j = 0; j < own.cols(); ++j)
-    if (own.col(j).norm() < kOwn * before[j]) own.col(j).setZero();
-  const Eigen::MatrixXd basis = orthonormal(own, kOwn, nullptr);
+    if (own.col(j).norm() < least_own * before[j]) own.col(j).setZero();
+  const Eigen::MatrixXd basis = orthonormal(own, least_own, nullptr);
   const Eigen::VectorXd rest = evidence.residual() - others * (others.transpose() * evidence.residual());
   const double explained = (basis.transpose() * rest).squaredNorm();
   const double freedom =
@@ -116,11 +110,11 @@ struct Jump {
 /// The jump along the axis, at one degree of freedom, that explains most.
 Jump best_jump(const Evidence& evidence, const DofPlace& place, const Eigen::VectorXd& u,
                const Eigen::MatrixXd& beside) {
-  constexpr int kPlaces = 64;
+  const auto places = static_cast<int>(evidence.thresholds().shape.places_of_jump);
   const Eigen::ArrayXd answer = evidence.response(evidence.index_of(place)).array();
   Jump best;
-  for (int k = 1; k < kPlaces; ++k) {
-    const double at = static_cast<double>(k) / kPlaces;
+  for (int k = 1; k < places; ++k) {
+    const double at = static_cast<double>(k) / places;
     Eigen::MatrixXd column = answer * (u.array() > at).cast<double>();
     evidence.whiten(column);
     if (const Gain gain = gain_of(evidence, column, beside); gain.chi_square > best.gain)
@@ -148,16 +142,17 @@ std::vector<std::size_t> of_other_axes(const Evidence& evidence, const Pool& poo
 
 std::string doubt_of_curve(const Evidence& evidence, const Pool& pool, const std::vector<std::size_t>& items,
                            std::size_t item) {
-  constexpr double kMostFast = 0.15, kCurve = 3;
+  const ShapeThresholds& limits = evidence.thresholds().shape;
   // A period was found among many: it asks for more witnesses than a curve.
-  const double seen_per_unknown = pool[item].scored.scanned.empty() ? 1.5 : 2;
+  const double seen_per_unknown =
+      pool[item].scored.scanned.empty() ? limits.seen_per_unknown : limits.seen_per_period;
   const Choice& choice = pool.candidate(item).choice;
   const Eigen::MatrixXd beside = pool.columns(of_other_axes(evidence, pool, items, item));
   const AxisFunction shape = function_of_axis(evidence, *choice.axis, *choice.place, beside);
   const auto coefficients = static_cast<double>(pool[item].columns.cols());
   const double unknowns = coefficients + static_cast<double>(pool[item].scored.scanned.size());
-  const bool curve = coefficients >= kCurve && pool[item].scored.scanned.empty();
-  if (curve && shape.fast_share > kMostFast && shape.log_p < kChance)
+  const bool curve = coefficients >= limits.curve && pool[item].scored.scanned.empty();
+  if (curve && shape.fast_share > limits.fast_share && shape.log_p < limits.curve_chance)
     return fmt::format(
         "{} removes it, but {:.0f} % of it changes faster than a smooth curve does (half-waves below {:.3g} "
         "of "
@@ -172,7 +167,7 @@ std::string doubt_of_curve(const Evidence& evidence, const Pool& pool, const std
           "name",
           range.low + jump.at * (range.high - range.low), pool.candidate(item).label);
   }
-  if ((unknowns >= kCurve || shape.own_table) && shape.seen < seen_per_unknown * unknowns)
+  if ((unknowns >= limits.curve || shape.own_table) && shape.seen < seen_per_unknown * unknowns)
     return fmt::format(
         "{} takes {:.0f} unknowns where the readings show only {:.0f} independent functions of the axis "
         "beside the model: any function of it would do as well",
@@ -184,10 +179,13 @@ std::string doubt_of_curve(const Evidence& evidence, const Pool& pool, const std
 
 AxisFunction function_of_axis(const Evidence& evidence, std::size_t axis, const DofPlace& place,
                               const Eigen::MatrixXd& beside) {
-  constexpr int kMost = 8, kFewest = 3;
+  const ShapeThresholds& limits = evidence.thresholds().shape;
+  const auto most_slow = static_cast<int>(limits.most_half_waves);
+  const auto fewest_slow = static_cast<int>(limits.fewest_half_waves);
   const Eigen::VectorXd u = positions(evidence, axis);
-  const int read = positions_read(u), slow_count = std::clamp((read - 1) / 2, kFewest, kMost);
-  const int most = std::max(2 * slow_count, std::min(read - 1, 5 * kMost));
+  const int read = positions_read(u, limits.apart);
+  const int slow_count = std::clamp((read - 1) / 2, fewest_slow, std::max(fewest_slow, most_slow));
+  const int most = std::max(2 * slow_count, std::min(read - 1, 5 * most_slow));
   const Eigen::MatrixXd waves = half_waves(evidence, place, u, most);
   const Evidence::Range range = evidence.range_of(axis);
   AxisFunction shape;
@@ -234,7 +232,8 @@ std::string doubt_of_shape(const Evidence& evidence, const Pool& pool, const std
     if (!doubt.empty()) return doubt;
   }
   // Without a given uncertainty nothing says that what is left is noise: it may hold other effects.
-  if (evidence.noise_known() && log_p_of_change(evidence, pool, items, item) < kChangeChance)
+  if (evidence.noise_known() &&
+      log_p_of_change(evidence, pool, items, item) < evidence.thresholds().shape.change_chance)
     return fmt::format("{} changes along the axes, which what it is called does not",
                        pool.candidate(item).label);
   return {};

@@ -159,16 +159,6 @@ TEST(Selection, OrdersByWhatEachStepWins) {
 }
 
 /// Readings that hang together count for less: the same columns are no evidence any more.
-TEST(Selection, CorrelatedReadingsAreFewerReadings) {
-  std::mt19937_64 random(kSeed);
-  const Eigen::MatrixXd columns = random_columns(200, 5, random);
-  const Eigen::VectorXd residual = 0.5 * columns.col(1) + random_columns(200, 1, random);
-  SelectionProblem p = problem_of(columns, residual, true);
-  EXPECT_EQ(select(p, 3).chosen, std::vector<std::size_t>{1});
-  p.correlation_time = 20;
-  EXPECT_TRUE(select(p, 3).chosen.empty());
-}
-
 /// Small problems with correlated columns: nothing of up to three entries is better than what is found.
 TEST(Selection, IsAsGoodAsTryingEverything) {
   RecordProperty("seed", static_cast<int>(kSeed));

@@ -1,0 +1,204 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <cmath>
+#include <mutex>
+#include <thread>
+#include <type_traits>
+
+#include "tests/bench/diagnose/rates.h"
+#include "tools/diagnose/diagnosis.h"
+#include "tools/results/diagnosis_json.h"
+
+namespace vernier::bench {
+namespace {
+
+using support::Family;
+using support::HiddenSurvey;
+using support::SurveyClass;
+using support::SurveySpec;
+
+struct SweepOptions {
+  std::vector<std::string> families = {"single-axis", "ball-bar", "bridge", "robot"}, only;
+  std::size_t count = 2, rows = 120, jobs = 2;
+  std::uint64_t seed = 1;
+  double most_seconds = 0.6;  // of a survey's diagnosis, for it to be used
+};
+
+/// A survey with what is needed to diagnose it again and again.
+struct Subject {
+  HiddenSurvey survey;
+  Machine machine;
+  Measurement rows;
+};
+
+/// What a user is told, and whether that is as asked.
+struct Told {
+  std::string verdict, names;
+  bool good = false, wrong = false;
+};
+
+/// One threshold at one factor, over all surveys.
+struct Change {
+  std::string name;
+  double factor = 1, value = 0;
+  std::size_t verdicts = 0, names = 0, lost = 0, gained = 0, wrong = 0;
+  bool any() const { return verdicts + names > 0; }
+};
+
+DiagnoseThresholds changed(const std::string& name, double factor, double* value = nullptr) {
+  DiagnoseThresholds thresholds;
+  thresholds.for_each([&](const std::string& each, auto& number) {
+    if (each != name) return;
+    const double scaled = factor * static_cast<double>(number);
+    if constexpr (std::is_integral_v<std::decay_t<decltype(number)>>)
+      number = static_cast<std::size_t>(std::max(1L, std::lround(scaled)));
+    else
+      // A cosine, or a share of a whole, of more than 1 would switch off what it decides.
+      number = number < 1 && number > 0 ? std::min(scaled, 0.5 * (1 + number)) : scaled;
+    if (value != nullptr) *value = static_cast<double>(number);
+  });
+  return thresholds;
+}
+
+std::vector<std::pair<std::string, double>> all_thresholds() {
+  std::vector<std::pair<std::string, double>> list;
+  DiagnoseThresholds().for_each(
+      [&](const std::string& name, auto& number) { list.emplace_back(name, static_cast<double>(number)); });
+  return list;
+}
+
+Told told(const Subject& subject, const DiagnoseThresholds& thresholds) {
+  DiagnoseOptions options;
+  options.thresholds = thresholds;
+  Told result;
+  try {
+    const Diagnosis diagnosis = diagnose(subject.survey.model, subject.machine, subject.rows, options);
+    result.verdict = verdict_name(diagnosis.verdict);
+    for (const LadderStep& step : diagnosis.ladder) result.names += step.label + "; ";
+    Case one;
+    one.spec = subject.survey.spec;
+    one.can_tell = subject.survey.can_tell;
+    one.judgement = judge(subject.survey, diagnosis_json(diagnosis, subject.rows).dump());
+    result.good = is_good(one);
+    result.wrong = is_wrong_name(one);
+  } catch (const std::exception& error) {
+    result.verdict = std::string("error: ") + error.what();
+  }
+  return result;
+}
+
+/// Calls work(i) for every i below `count`, `jobs` at a time.
+void in_parallel(std::size_t count, std::size_t jobs, const std::function<void(std::size_t)>& work) {
+  std::atomic<std::size_t> next = 0;
+  std::vector<std::jthread> threads;
+  for (std::size_t k = 0; k < jobs; ++k)
+    threads.emplace_back([&] {
+      for (std::size_t i = 0; (i = next++) < count;) work(i);
+    });
+}
+
+std::vector<SurveySpec> specs_of(const SweepOptions& o) {
+  std::vector<SurveySpec> specs;
+  for (const std::string& family : o.families)
+    for (const SurveyClass kind : {SurveyClass::kSingle, SurveyClass::kTwo, SurveyClass::kOutside,
+                                   SurveyClass::kNoise, SurveyClass::kConfusable})
+      for (std::size_t i = 0; i < o.count; ++i) {
+        SurveySpec spec;
+        spec.family = support::family_named(family);
+        spec.kind = kind;
+        spec.rows = o.rows;
+        // Where thresholds decide: effects near the noise, and effects well above it.
+        spec.ratio = i % 2 == 0 ? 0.7 : 2;
+        spec.seed = o.seed + 1000 * specs.size();
+        specs.push_back(spec);
+      }
+  return specs;
+}
+
+void run(const SweepOptions& o) {
+  std::vector<Subject> subjects;
+  std::vector<Told> before;
+  std::mutex lock;
+  const std::vector<SurveySpec> specs = specs_of(o);
+  std::size_t slow = 0;
+  in_parallel(specs.size(), o.jobs, [&](std::size_t i) {
+    try {
+      Subject subject;
+      subject.survey = support::make_survey(specs[i]);
+      subject.machine = parse_machine(subject.survey.model, "model.xml");
+      subject.rows = parse_measurement(subject.survey.csv, "survey.csv", subject.machine);
+      const auto begin = std::chrono::steady_clock::now();
+      const Told plain = told(subject, {});
+      const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+      const std::lock_guard<std::mutex> guard(lock);
+      if (took.count() > o.most_seconds) {
+        ++slow;
+        return;
+      }
+      subjects.push_back(std::move(subject));
+      before.push_back(plain);
+    } catch (const std::runtime_error&) {  // the family cannot show it
+    }
+  });
+  std::vector<Change> changes;
+  for (const auto& [name, value] : all_thresholds())
+    if (o.only.empty() || std::any_of(o.only.begin(), o.only.end(),
+                                      [&](const std::string& part) { return name.rfind(part, 0) == 0; }))
+      for (const double factor : {0.5, 2.0}) {
+        Change change{.name = name, .factor = factor};
+        changed(name, factor, &change.value);
+        changes.push_back(change);
+      }
+  std::size_t good = 0;
+  for (const Told& one : before) good += one.good ? 1 : 0;
+  fmt::print("{} surveys of {} rows, seed {} ({} more take longer than {} s), {} as asked; {} thresholds\n\n",
+             subjects.size(), o.rows, o.seed, slow, o.most_seconds, good, changes.size() / 2);
+  in_parallel(changes.size(), o.jobs, [&](std::size_t i) {
+    Change& change = changes[i];
+    const DiagnoseThresholds thresholds = changed(change.name, change.factor);
+    for (std::size_t k = 0; k < subjects.size(); ++k) {
+      const Told now = told(subjects[k], thresholds);
+      const Told& was = before[k];
+      change.verdicts += now.verdict != was.verdict ? 1 : 0;
+      change.names += now.names != was.names ? 1 : 0;
+      change.lost += was.good && !now.good ? 1 : 0;
+      change.gained += !was.good && now.good ? 1 : 0;
+      change.wrong += !was.wrong && now.wrong ? 1 : 0;
+    }
+    fmt::print(stderr, "\r{} {}          ", change.name, change.factor);
+  });
+  fmt::print(
+      "| threshold | at | verdicts | ladders | right answers | new wrong names "
+      "|\n|---|---|---|---|---|---|\n");
+  std::vector<std::string> idle;
+  for (std::size_t i = 0; i + 1 < changes.size(); i += 2) {
+    for (const Change& change : {changes[i], changes[i + 1]})
+      if (change.any())
+        fmt::print("| `{}` | {:.4g} | {} | {} | {:+d} | {} |\n", change.name, change.value, change.verdicts,
+                   change.names, static_cast<int>(change.gained) - static_cast<int>(change.lost),
+                   change.wrong);
+    if (!changes[i].any() && !changes[i + 1].any()) idle.push_back(changes[i].name);
+  }
+  fmt::print("\nNothing changed by {} of {}:\n", idle.size(), changes.size() / 2);
+  for (const std::string& name : idle) fmt::print("`{}`\n", name);
+}
+
+}  // namespace
+}  // namespace vernier::bench
+
+int main(int argc, char** argv) {
+  vernier::bench::SweepOptions o;
+  CLI::App app("Halves and doubles each threshold of a diagnosis over surveys of known truth");
+  app.add_option("--family", o.families, "machine families")->delimiter(',');
+  app.add_option("--only", o.only, "thresholds whose names begin so")->delimiter(',');
+  app.add_option("-n,--count", o.count, "surveys of each family and class");
+  app.add_option("--rows", o.rows, "rows of a survey")->check(CLI::Range(20, 1000000));
+  app.add_option("--seed", o.seed, "of the first survey");
+  app.add_option("--most-seconds", o.most_seconds, "leave out surveys whose diagnosis takes longer");
+  app.add_option("-j,--jobs", o.jobs, "diagnoses at the same time")->check(CLI::Range(1, 64));
+  CLI11_PARSE(app, argc, argv);
+  vernier::bench::run(o);
+  return 0;
+}
