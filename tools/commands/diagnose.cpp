@@ -9,6 +9,7 @@
 #include "tools/fit/fit.h"
 #include "tools/model/machine_reader.h"
 #include "tools/plan/plan.h"
+#include "tools/plan/uneven.h"
 #include "tools/report/report.h"
 #include "tools/results/diagnosis_json.h"
 #include "tools/results/residual_csv.h"
@@ -71,6 +72,10 @@ std::vector<std::string> plan_for(const std::string& text, const Machine& machin
       return {fmt::format("no advice on {} against {}: {}", a, b, error.what())};
     }
   };
+  std::vector<std::string> uneven;
+  for (const CandidateFinding& one : d.candidates)
+    if (!one.aliases.empty()) uneven.push_back(uneven_sentence(machine, m, one));
+  if (!uneven.empty()) return uneven;
   for (const CandidateFinding& other : d.candidates) {
     const auto& names = other.confounded_with;
     if (&other == &first || std::find(names.begin(), names.end(), id) == names.end()) continue;

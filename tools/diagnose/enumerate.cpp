@@ -380,6 +380,8 @@ class Enumerator {
     if (machine_.axes[axis].rotary)
       for (double harmonic = 1; harmonic <= static_cast<double>(to.harmonics_of_turn); ++harmonic)
         if (harmonic / 360 <= fastest && length > 90 / harmonic) grid.push_back(360 / harmonic);
+    // At two even steps a wave has lost its sine, and may still be the true one's only likeness.
+    if (range.even && !grid.empty()) grid.push_back(2 * range.step);
     std::sort(grid.begin(), grid.end());
     return grid;
   }

@@ -121,8 +121,8 @@ std::vector<Index> best_peaks(const Eigen::MatrixXd& power, Index row, double le
 }  // namespace
 
 std::vector<double> alias_frequencies(const Evidence& evidence, std::size_t axis, double most) {
-  // Positions that are off the even by so much tell two waves apart in readings of any use.
-  constexpr double kNearly = 0.9, kPerWindow = 5, kFirst = 1.5;
+  constexpr double kPerWindow = 5, kFirst = 1.5;  // frequencies for each that the range tells apart
+  const double partly = evidence.thresholds().fine.alias_partly;
   const Evidence::Range range = evidence.range_of(axis);
   const double length = range.high - range.low;
   std::vector<double> found;
@@ -135,12 +135,12 @@ std::vector<double> alias_frequencies(const Evidence& evidence, std::size_t axis
   const double all = std::pow(positions.sum.sum(), 2);
   for (Index k = 1; k + 1 < count; ++k) {
     // Between two of the steps a peak keeps nine tenths.
-    if (window(0, k) < kNearly * kNearly * all || window(0, k) < window(0, k - 1) ||
+    if (window(0, k) < partly * partly * all || window(0, k) < window(0, k - 1) ||
         window(0, k) < window(0, k + 1))
       continue;
     const double middle = first + static_cast<double>(k) * step;
     const double peak = peak_between(positions, 0, middle - step, middle + step);
-    if (power_at(positions, 0, peak) > kNearly * all) found.push_back(peak);
+    if (power_at(positions, 0, peak) > partly * all) found.push_back(peak);
   }
   return found;
 }

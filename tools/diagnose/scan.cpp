@@ -42,13 +42,29 @@ std::vector<std::vector<double>> grid_points(const std::vector<std::vector<doubl
 Scanner::Scanner(const Evidence& evidence, const std::vector<ScannedCandidate>& candidates)
     : evidence_(evidence), thresholds_(evidence.thresholds().pool), candidates_(candidates) {}
 
+namespace {
+
+/// Is a column nothing but rounding beside the others of its candidate: the sine of a wave of two even steps?
+bool vanishes(const Eigen::MatrixXd& raw, Eigen::Index column) {
+  constexpr double kRounding = 1e-9;
+  return raw.col(column).norm() <= kRounding * raw.colwise().norm().maxCoeff();
+}
+
+}  // namespace
+
 bool Scanner::score(const Eigen::MatrixXd& raw, const Eigen::MatrixXd& projected,
                     const Eigen::MatrixXd& beside, const Eigen::VectorXd& residual, Scored& scored) const {
   const ScannedCandidate& item = candidates_[scored.candidate];
   scored.own_share = 1;
   Eigen::MatrixXd own = projected;
   if (beside.cols() > 0) own -= beside * (beside.transpose() * own);
+  Eigen::Index vanished = 0;
   for (Eigen::Index j = 0; j < own.cols(); ++j) {
+    if (own.cols() > 1 && vanishes(raw, j)) {
+      own.col(j).setZero();
+      ++vanished;
+      continue;
+    }
     const double before = raw.col(j).norm(), after = own.col(j).norm();
     if (!(before > 0) || !std::isfinite(after) || after < thresholds_.least_own * before) {
       if (!item.may_lose_columns) return false;
@@ -60,7 +76,7 @@ bool Scanner::score(const Eigen::MatrixXd& raw, const Eigen::MatrixXd& projected
   std::vector<std::size_t> kept;
   const Eigen::MatrixXd basis = orthonormal(own, thresholds_.least_independent, &kept);
   if (basis.cols() == 0) return false;
-  if (!item.may_lose_columns && basis.cols() < own.cols()) return false;
+  if (!item.may_lose_columns && basis.cols() < own.cols() - vanished) return false;
   scored.gain = (basis.transpose() * residual).squaredNorm();
   scored.unknowns = basis.cols() + static_cast<Eigen::Index>(item.grid.size());
   return true;
@@ -210,8 +226,8 @@ std::vector<double> Scanner::aliases(const Scored& scored, const Eigen::MatrixXd
   const std::size_t axis = *candidate.choice.axis;
   const Evidence::Range range = evidence_.range_of(axis);
   const double length = range.high - range.low, own = 1 / scored.scanned[0];
-  constexpr double kMostPeriods = 1000, kApart = 6;
-  const double most = kMostPeriods / length;
+  const FinePeriodThresholds& limits = evidence_.thresholds().fine;
+  const double most = limits.most_periods / length;
 
   Eigen::VectorXd residual = evidence_.residual();
   if (beside.cols() > 0) residual -= beside * (beside.transpose() * residual);
@@ -225,7 +241,7 @@ std::vector<double> Scanner::aliases(const Scored& scored, const Eigen::MatrixXd
   const double mine = gain_at(own), left = residual.squaredNorm() - mine;
   const double unit = evidence_.noise_known() ? 1 : left / std::max(1.0, evidence_.freedom());
   // Readings that leave more than their noise tell apart by that.
-  const double near = mine - kApart * std::max(unit, left / std::max(1.0, evidence_.freedom()));
+  const double near = mine - limits.told_apart * std::max(unit, left / std::max(1.0, evidence_.freedom()));
   const auto known = [&](const std::vector<double>& list, double frequency) {
     return std::any_of(list.begin(), list.end(),
                        [&](double other) { return std::abs(other - frequency) * length < 0.5; });
@@ -257,7 +273,8 @@ Eigen::MatrixXd Scanner::projected(const Scored& scored, std::vector<std::size_t
   std::vector<std::size_t> chosen;
   Eigen::MatrixXd usable = own;
   for (Eigen::Index j = 0; j < own.cols(); ++j)
-    if (own.col(j).norm() < thresholds_.least_own * raw.col(j).norm()) usable.col(j).setZero();
+    if (own.col(j).norm() < thresholds_.least_own * raw.col(j).norm() || (own.cols() > 1 && vanishes(raw, j)))
+      usable.col(j).setZero();
   orthonormal(usable, thresholds_.least_independent, &chosen);
   Eigen::MatrixXd result(own.rows(), static_cast<Eigen::Index>(chosen.size()));
   for (std::size_t j = 0; j < chosen.size(); ++j)

@@ -101,12 +101,16 @@ struct FinePeriodThresholds {
   double per_range = 3;
   /// Waves over the range, and waves for each position read, beyond which none are looked for: a ball screw
   /// of 1 mm on a metre; a wave of fewer positions is not shown by them.
-  double most_periods = 1000, per_position = 2.5;
+  /// With twelve positions the best of a thousand waves holds 80 % of a pattern that has nothing to do with
+  /// it, and others hold as much: such a wave is told with its aliases (Scanner::aliases).
+  double most_periods = 1000, per_position = 80;
   /// Peaks of a place that are scored in full, beside the slowest of those that do nearly as well.
   std::size_t peaks = 3;
   /// Power of the position's own window, as a share of its largest, at which waves are aliases of one
   /// another: where to look, and where it is so.
   double alias_near = 0.8, alias_same = 0.9999;
+  /// The same from which on two waves are compared in full, whether the readings tell them apart.
+  double alias_partly = 0.9;
   /// Frequencies that are worth the search.
   double fewest = 4;
   /// chi^2 by which the highest peak may lead over a slower one that it may be the alias of. Kass and Raftery

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/plan/uneven.h"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <random>
+
+#include "tools/text/numbers.h"
+
+namespace vernier {
+namespace {
+
+using Wave = std::complex<double>;
+
+constexpr double kMostPeriods = 1000;  // as a diagnosis looks for (FinePeriodThresholds::most_periods)
+constexpr std::size_t kPerRange = 2;   // frequencies looked at for each that the range tells apart
+constexpr std::size_t kFrequencies = static_cast<std::size_t>(kMostPeriods) * kPerRange;
+
+/// sum over the positions of exp(2 pi i f q) at f = k / (kPerRange * span), k = 0 ...
+std::vector<Wave> window(const std::vector<double>& positions, double low, double span) {
+  std::vector<Wave> sum(kFrequencies, 0);
+  for (const double q : positions) {
+    const Wave turn = std::polar(1.0, 2 * std::numbers::pi * (q - low) / span / kPerRange);
+    Wave now = 1;
+    for (Wave& at : sum) {
+      at += now;
+      now *= turn;
+    }
+  }
+  return sum;
+}
+
+}  // namespace
+
+std::vector<double> uneven_positions(double low, double high, const std::vector<double>& taken,
+                                     std::size_t count) {
+  constexpr int kDraws = 60;
+  constexpr std::size_t kFirst = 3 * kPerRange;  // below, waves differ by less than three over the range
+  const double span = high - low;
+  std::vector<double> distinct = taken;
+  std::sort(distinct.begin(), distinct.end());
+  distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
+  const std::vector<Wave> there = window(distinct, low, span);
+  // To a ten-thousandth of the range or so, so that they can be read and typed.
+  const double digit = std::pow(10, std::floor(std::log10(span / 5000)));
+  std::mt19937_64 random(1);
+  std::vector<double> best;
+  double least = 0;
+  for (int draw = 0; draw < kDraws; ++draw) {
+    std::vector<double> positions(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      // One in each stretch, anywhere in it.
+      const double share = (static_cast<double>(i) + static_cast<double>(random() >> 11) * 0x1p-53) /
+                           static_cast<double>(count);
+      positions[i] = std::round((low + share * span) / digit) * digit;
+    }
+    const std::vector<Wave> more = window(positions, low, span);
+    double highest = 0;
+    for (std::size_t k = kFirst; k < kFrequencies; ++k)
+      highest = std::max(highest, std::abs(there[k] + more[k]));
+    if (!best.empty() && highest >= least) continue;
+    least = highest;
+    best = positions;
+  }
+  return best;
+}
+
+std::string uneven_sentence(const Machine& machine, const Measurement& measurement,
+                            const CandidateFinding& finding) {
+  constexpr std::size_t kPositions = 12;
+  const std::size_t axis = finding.axis.value();
+  const Column at = commanded(measurement, axis);
+  std::vector<double> taken;
+  for (std::size_t row = 0; row < measurement.rows(); ++row)
+    if (measurement.check[row] == 0) taken.push_back(at[static_cast<Eigen::Index>(row)]);
+  const auto [low, high] = std::minmax_element(taken.begin(), taken.end());
+  std::string text;
+  for (const double q : uneven_positions(*low, *high, taken, kPositions))
+    text += (text.empty() ? "" : ", ") + number_text(q);
+  const Axis& item = machine.axes[axis];
+  return "Measure " + item.name + " in uneven steps as well, which tell the " +
+         std::to_string(finding.aliases.size() + 1) + " periods apart: " + text +
+         (item.rotary ? " deg, both senses." : " mm, both senses.");
+}
+
+}  // namespace vernier

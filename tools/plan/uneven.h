@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "tools/diagnose/diagnosis.h"
+#include "tools/model/machine.h"
+#include "tools/model/measurement.h"
+
+namespace vernier {
+
+/// `count` more positions of an axis between `low` and `high`, in its unit and increasing, such that no two
+/// waves down to 1/1000 of the range look alike at them and at the positions `taken` together: of many draws
+/// the one whose window has the lowest highest peak. The same for the same input. tool.
+std::vector<double> uneven_positions(double low, double high, const std::vector<double>& taken,
+                                     std::size_t count);
+
+/// Where to measure next, as a sentence, where the positions of the axis do not tell the periods of `finding`
+/// from others (CandidateFinding::aliases). tool.
+std::string uneven_sentence(const Machine& machine, const Measurement& measurement,
+                            const CandidateFinding& finding);
+
+}  // namespace vernier
