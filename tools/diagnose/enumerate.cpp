@@ -374,7 +374,10 @@ class Enumerator {
     // Even steps cannot tell a period below two of them from a longer one; uneven steps can.
     const double shortest = std::max(range.even ? to.steps_per_period * range.step : 0, shortest_[axis]);
     const double fastest = to.most_periods / std::max(length, to.most_periods * shortest);
-    for (double f = 1 / (to.longest_period_share * length); f <= fastest;
+    // A long wave on even positions may be the alias of a short one.
+    const bool aliased = !machine_.axes[axis].rotary && shortest_[axis] > 0;
+    const double longest = aliased ? to.longest_aliased_share : to.longest_period_share;
+    for (double f = 1 / (longest * length); f <= fastest;
          f += 1 / (to.periods_per_range * length))
       grid.push_back(1 / f);
     if (machine_.axes[axis].rotary)

@@ -61,6 +61,9 @@ struct CandidateThresholds {
   /// frequencies for each that the range tells apart, the longest this share of the range (a longer one is no
   /// period yet, but a curve).
   double most_periods = 100, periods_per_range = 2.5, longest_period_share = 0.4;
+  /// The same for a linear axis that was read at even positions only, where a short wave looks like a long
+  /// one: six tenths of a wave in the range are no parabola yet.
+  double longest_aliased_share = 1.6;
   /// Whole fractions of a turn that are always looked at: gears and bearings up to the twelfth order.
   std::size_t harmonics_of_turn = 12;
   /// Steps per period: the sampling theorem's two, and a twentieth for steps that are not quite even.
@@ -88,6 +91,7 @@ struct CandidateThresholds {
     visit("candidates.most_periods", most_periods);
     visit("candidates.periods_per_range", periods_per_range);
     visit("candidates.longest_period_share", longest_period_share);
+    visit("candidates.longest_aliased_share", longest_aliased_share);
     visit("candidates.harmonics_of_turn", harmonics_of_turn);
     visit("candidates.steps_per_period", steps_per_period);
     visit("candidates.same_place", same_place);
