@@ -18,6 +18,7 @@
 #include "tools/results/results.h"
 #include "tools/simulate/corrected.h"
 #include "tools/text/numbers.h"
+#include "tools/text/words.h"
 
 namespace vernier::fit_cli {
 namespace {
@@ -110,21 +111,10 @@ void print_result(std::FILE* out, const FitResult& result, const Measurement& m)
                *result.check_ratio);
 }
 
-std::vector<std::string> split_list(const std::string& text) {
-  std::vector<std::string> list(1);
-  for (const char c : text) {
-    if (c == ',')
-      list.emplace_back();
-    else
-      list.back() += c;
-  }
-  return list;
-}
-
 std::vector<std::string> split_all(const std::vector<std::string>& texts) {
   std::vector<std::string> all;
   for (const std::string& text : texts)
-    for (std::string& one : split_list(text)) all.push_back(std::move(one));
+    for (std::string& one : parts_of(text, ',')) all.push_back(std::move(one));
   return all;
 }
 
@@ -147,7 +137,7 @@ void run_fit(const FitArguments& arguments) {
                                               : Loss::kSquared;
   options.loss_scale = arguments.loss_scale;
   options.solver = arguments.solver == "ceres" ? Solver::kCeres : Solver::kNormalEquations;
-  for (const std::string& stage : arguments.stages) options.stages.push_back(split_list(stage));
+  for (const std::string& stage : arguments.stages) options.stages.push_back(parts_of(stage, ','));
   for (const std::string& prior : arguments.priors) options.priors.push_back(prior_of(prior));
   Progress progress("fit");
   options.progress = [&](int iteration, double cost) {

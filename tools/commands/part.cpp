@@ -16,6 +16,7 @@
 #include "tools/report/report.h"
 #include "tools/text/csv.h"
 #include "tools/text/numbers.h"
+#include "tools/text/words.h"
 
 namespace vernier::part_cli {
 namespace {
@@ -36,13 +37,10 @@ struct GaugeArguments {
 /// Leaves only the named statics free.
 void free_only(Machine& machine, const std::string& names) {
   std::set<std::size_t> wanted;
-  for (std::size_t at = 0; (at = names.find_first_not_of(", ", at)) != std::string::npos;) {
-    const std::size_t end = std::min(names.find_first_of(", ", at), names.size());
-    const std::string name = names.substr(at, end - at);
+  for (const std::string& name : words_in(names, ", ")) {
     const auto index = machine.find_static(name);
     if (!index) throw InputError({"--free", 0}, name, "no static of this name in " + machine.name);
     wanted.insert(*index);
-    at = end;
   }
   for (std::size_t i = 0; i < machine.statics.size(); ++i) {
     Static& item = machine.statics[i];

@@ -3,46 +3,12 @@
 
 #include <algorithm>
 
+#include "tools/text/csv.h"
 #include "tools/text/error.h"
 #include "tools/text/words.h"
 
 namespace vernier {
 namespace {
-
-/// Fields of one line; blanks separate as one where they are the separator.
-std::vector<std::string> split(const std::string& line, char separator, const Place& place) {
-  std::vector<std::string> fields(1);
-  bool quoted = false, was_quoted = false;
-  const auto is_separator = [&](char c) { return separator == ' ' ? c == ' ' || c == '\t' : c == separator; };
-  const auto close = [&] {
-    if (!was_quoted) fields.back() = trimmed(fields.back());
-    was_quoted = false;
-  };
-  const std::string text = separator == ' ' ? trimmed(line) : line;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    if (quoted) {
-      if (c == '"')
-        quoted = false;
-      else
-        fields.back() += c;
-    } else if (is_separator(c)) {
-      if (separator == ' ' && is_separator(text[i - 1])) continue;
-      close();
-      fields.emplace_back();
-    } else if (c == '"' && trimmed(fields.back()).empty() && !was_quoted) {
-      fields.back().clear();
-      quoted = was_quoted = true;
-    } else if (!was_quoted) {
-      fields.back() += c;
-    } else if (c != ' ' && c != '\t') {
-      throw InputError(place, text.substr(i, 20), "text behind a closing quote");
-    }
-  }
-  if (quoted) throw InputError(place, fields.back(), "a closing quote is missing");
-  close();
-  return fields;
-}
 
 char separator_in(const std::string& line, bool decimal_comma) {
   for (const char c : {'\t', ';', ','})
@@ -98,7 +64,7 @@ DelimitedFile parse_delimited(const std::string& text, const std::string& file,
     if (place.line <= format.skip || bare.empty()) continue;
     if (!format.comment.empty() && bare.starts_with(format.comment)) continue;
     if (separator == 0) separator = separator_in(line, format.decimal_comma);
-    std::vector<std::string> fields = split(line, separator, place);
+    std::vector<std::string> fields = fields_of(line, {separator, true}, place);
     if (format.header && result.header.empty()) {
       result.header = std::move(fields);
       result.header_line = place.line;

@@ -11,18 +11,6 @@
 namespace vernier {
 namespace {
 
-std::vector<std::string> split(const std::string& text) {
-  std::vector<std::string> parts(1);
-  for (const char c : text) {
-    if (c == ',')
-      parts.emplace_back();
-    else
-      parts.back() += c;
-  }
-  for (std::string& part : parts) part = trimmed(part);
-  return parts;
-}
-
 /// The column of a state that a name means, or nullptr.
 Column* column_of(const Machine& machine, States& states, const std::string& name) {
   const Symbol symbol = resolve_name(machine, name);
@@ -81,14 +69,14 @@ States state_at(const Machine& machine, const std::string& words) {
   States states = make_states(1, machine.axes.size(), references);
   if (trimmed(words).empty()) return states;
   std::set<std::string> seen;
-  for (const std::string& word : split(words)) set_word(machine, states, seen, word);
+  for (const std::string& word : parts_of(words, ',')) set_word(machine, states, seen, word);
   return states;
 }
 
 std::vector<double> number_list(const std::string& text, const std::vector<std::size_t>& counts,
                                 const std::string& what) {
   std::vector<double> result;
-  for (const std::string& word : split(text)) {
+  for (const std::string& word : parts_of(text, ',')) {
     const auto number = parse_number(word);
     if (!number) throw InputError({}, word, "not a number, in " + what);
     result.push_back(*number);

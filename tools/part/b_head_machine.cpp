@@ -8,6 +8,7 @@
 #include "tools/model/chain.h"
 #include "tools/text/numbers.h"
 #include "tools/text/units.h"
+#include "tools/text/words.h"
 
 namespace vernier {
 namespace {
@@ -82,9 +83,7 @@ BHeadMachine b_head_machine(Machine machine) {
 }
 
 void set_errors(Machine& machine, const std::string& text) {
-  for (std::size_t at = 0; (at = text.find_first_not_of(", ", at)) != std::string::npos;) {
-    const std::size_t end = std::min(text.find_first_of(", ", at), text.size());
-    const std::string word = text.substr(at, end - at);
+  for (const std::string& word : words_in(text, ", ")) {
     const std::size_t equals = word.find('=');
     if (equals == std::string::npos) throw InputError({"--errors", 0}, word, "expected NAME=VALUE");
     const auto index = machine.find_static(word.substr(0, equals));
@@ -93,7 +92,6 @@ void set_errors(Machine& machine, const std::string& text) {
     if (target.hidden) throw InputError({"--errors", 0}, word, "a hidden static is no error of the machine");
     if (!target.nominal) target.nominal = target.value;
     target.value = error_value(target, word, word.substr(equals + 1));
-    at = end;
   }
 }
 

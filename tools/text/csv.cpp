@@ -3,45 +3,12 @@
 
 #include <set>
 
-#include "tools/text/error.h"
 #include "tools/text/numbers.h"
 #include "tools/text/units.h"
 #include "tools/text/words.h"
 
 namespace vernier {
 namespace {
-
-std::vector<std::string> split(const std::string& text, const Place& place) {
-  std::vector<std::string> fields(1);
-  bool quoted = false, was_quoted = false;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    if (quoted) {
-      if (c != '"')
-        fields.back() += c;
-      else if (i + 1 < text.size() && text[i + 1] == '"')
-        fields.back() += text[++i];
-      else
-        quoted = false;
-    } else if (c == ',') {
-      if (!was_quoted) fields.back() = trimmed(fields.back());
-      fields.emplace_back();
-      was_quoted = false;
-    } else if (c == '"') {
-      if (was_quoted || !trimmed(fields.back()).empty())
-        throw InputError(place, text.substr(i, 20), "a stray quote");
-      fields.back().clear();
-      quoted = was_quoted = true;
-    } else if (!was_quoted) {
-      fields.back() += c;
-    } else if (c != ' ' && c != '\t') {
-      throw InputError(place, text.substr(i, 20), "text behind a closing quote");
-    }
-  }
-  if (quoted) throw InputError(place, fields.back(), "a closing quote is missing");
-  if (!was_quoted) fields.back() = trimmed(fields.back());
-  return fields;
-}
 
 CsvColumn column_of(const std::string& field, const Place& place) {
   CsvColumn column{field, ""};
@@ -60,6 +27,44 @@ CsvColumn column_of(const std::string& field, const Place& place) {
 
 }  // namespace
 
+std::vector<std::string> fields_of(const std::string& line, const FieldRules& rules, const Place& place) {
+  const bool blanks = rules.separator == ' ';
+  const auto is_separator = [&](char c) { return c == rules.separator || (blanks && c == '\t'); };
+  const std::string text = blanks ? trimmed(line) : line;
+  std::vector<std::string> fields(1);
+  bool quoted = false, was_quoted = false;
+  const auto close = [&] {
+    if (!was_quoted) fields.back() = trimmed(fields.back());
+    was_quoted = false;
+  };
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    const bool at_begin = !was_quoted && trimmed(fields.back()).empty();
+    if (quoted) {
+      const bool doubled = c == '"' && i + 1 < text.size() && text[i + 1] == '"';
+      quoted = c != '"' || doubled;
+      if (quoted) fields.back() += c;
+      if (doubled) ++i;
+    } else if (is_separator(c)) {
+      if (blanks && is_separator(text[i - 1])) continue;
+      close();
+      fields.emplace_back();
+    } else if (c == '"' && at_begin) {
+      fields.back().clear();
+      quoted = was_quoted = true;
+    } else if (c == '"' && (was_quoted || !rules.quotes_inside)) {
+      throw InputError(place, text.substr(i, 20), "a stray quote");
+    } else if (!was_quoted) {
+      fields.back() += c;
+    } else if (c != ' ' && c != '\t') {
+      throw InputError(place, text.substr(i, 20), "text behind a closing quote");
+    }
+  }
+  if (quoted) throw InputError(place, fields.back(), "a closing quote is missing");
+  close();
+  return fields;
+}
+
 CsvFile parse_csv(const std::string& text, const std::string& file) {
   CsvFile csv;
   csv.file = file;
@@ -77,7 +82,7 @@ CsvFile parse_csv(const std::string& text, const std::string& file) {
     const Place place{file, line};
     if (content.find('\0') != std::string::npos)
       throw InputError(place, "", "a zero byte: this is not a text file");
-    std::vector<std::string> fields = split(content, place);
+    std::vector<std::string> fields = fields_of(content, {}, place);
     if (csv.columns.empty()) {
       csv.header_line = line;
       for (const std::string& field : fields) {

@@ -3,7 +3,18 @@
 #include <string>
 #include <vector>
 
+#include "tools/text/error.h"
+
 namespace vernier {
+
+struct FieldRules {
+  char separator = ',';        // a blank: blanks and tabs, several count once
+  bool quotes_inside = false;  // a quote within a field that does not begin with one is a letter (5")
+};
+
+/// The fields of one line, without blanks around them. A field may stand in double quotes, in which a doubled
+/// one is one. Throws InputError. tool.
+std::vector<std::string> fields_of(const std::string& line, const FieldRules& rules, const Place& place);
 
 /// A column of a measurement file's header: `name[unit]`.
 struct CsvColumn {

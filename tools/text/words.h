@@ -9,6 +9,12 @@ namespace vernier {
 /// The text without blanks, tabs and ends of line around it. tool.
 std::string trimmed(std::string_view text);
 
+/// The words between any of the separators; several in a row count once. tool.
+std::vector<std::string> words_in(std::string_view text, std::string_view separators);
+
+/// The parts between single separators, without blanks around them; parts may be empty. tool.
+std::vector<std::string> parts_of(std::string_view text, char separator);
+
 /// "a,b": the words with a separator between them. tool.
 std::string joined(const std::vector<std::string>& words, std::string_view separator);
 
