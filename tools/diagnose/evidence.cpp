@@ -21,9 +21,7 @@ namespace {
 
 /// All free parameters held: only the probes of a machine are left free.
 void hold_all(Machine& machine) {
-  for (Static& item : machine.statics) item.hidden = true;
-  for (Table& table : machine.tables) table.free = {};
-  for (BaseShift& shift : machine.base_shifts) shift.hidden = true;
+  for (Freedom& one : freedoms_of(machine)) one.set_free(false);
 }
 
 /// Every how many rows one is kept, so that the Jacobian has no more than `most` numbers.

@@ -54,14 +54,15 @@ std::set<std::size_t> shape_statics(const Machine& machine) {
 /// Where parameters stay: statics at nominal (or where they are), tables 0, set-ups as fitted.
 Machine centre_of(const Machine& machine) {
   Machine centre = machine;
-  for (Static& item : centre.statics)
-    if (!item.hidden) item.value = item.nominal.value_or(item.value);
-  for (Axis& axis : centre.axes)
-    if (axis.scale_free) axis.scale_factor = 0;
-  for (Table& table : centre.tables)
-    for (Station& station : table.stations)
-      for (std::size_t c = 0; c < 6; ++c)
-        if (table.free[c]) station.value[c] = 0;
+  const ParameterSet parameters(machine, {});  // no runs: without set-ups
+  Eigen::VectorXd values = parameters.get(machine);
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    double& value = values[static_cast<Eigen::Index>(i)];
+    value = parameters[i].kind == ParameterKind::kStatic
+                ? machine.statics[parameters[i].item].nominal.value_or(value)
+                : 0;
+  }
+  parameters.set(centre, values);
   return centre;
 }
 
@@ -223,9 +224,8 @@ SetUp fitted_set_up(const Machine& machine, const ParameterSet& shifts, const Fi
 
 Machine set_up(const Machine& machine, const Measurement& rows) {
   Machine rigid = machine;
-  for (Static& item : rigid.statics) item.hidden = true;
-  for (Axis& axis : rigid.axes) axis.scale_free = false;
-  for (Table& table : rigid.tables) table.free.fill(false);
+  for (Freedom& one : freedoms_of(rigid))
+    if (one.kind() != ParameterKind::kBaseShift) one.set_free(false);
   const ParameterSet shifts(rigid, runs_of_fit_rows(rows));
   if (shifts.size() == 0) return machine;
   const FitProblem problem(rigid, rows, shifts);

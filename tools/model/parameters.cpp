@@ -31,6 +31,21 @@ std::optional<std::size_t> base_shift_of(const Machine& machine, const std::stri
   return plain;
 }
 
+std::vector<Freedom> freedoms_of(Machine& machine) {
+  std::vector<Freedom> all;
+  for (Static& item : machine.statics) all.emplace_back(ParameterKind::kStatic, item.name, item.hidden);
+  for (Axis& axis : machine.axes)
+    all.emplace_back(ParameterKind::kScaleFactor, "scalefactor." + axis.name, axis.scale_free);
+  for (Table& table : machine.tables)
+    for (std::size_t c = 0; c < 6; ++c)
+      all.emplace_back(ParameterKind::kStation,
+                       "table." + machine.axes[table.axis].name + "." + kSixDofNames[c], table.free[c]);
+  for (BaseShift& shift : machine.base_shifts)
+    all.emplace_back(ParameterKind::kBaseShift, shift.run ? "BaseShift[" + *shift.run + "]" : "BaseShift",
+                     shift.hidden);
+  return all;
+}
+
 ParameterSet::ParameterSet(const Machine& machine, const std::vector<std::string>& runs) {
   for (std::size_t i = 0; i < machine.statics.size(); ++i)
     if (!machine.statics[i].hidden)

@@ -20,6 +20,30 @@ struct Parameter {
   std::size_t column = 0;   // kStation, kBaseShift: 0..5 = X Y Z rX rY rZ
 };
 
+/// What a fit frees or holds as one: a static, a scale factor, a column of a table, a BaseShift.
+class Freedom {
+ public:
+  Freedom(ParameterKind kind, std::string name, bool& flag)
+      : kind_(kind), name_(std::move(name)), flag_(flag) {}
+
+  ParameterKind kind() const { return kind_; }
+  /// `alpha`, `scalefactor.X`, `table.X.rY`, `BaseShift`, `BaseShift[s2]`.
+  const std::string& name() const { return name_; }
+  /// Statics and BaseShifts say that they are hidden, the others that they are free.
+  bool is_free() const { return flag_ != says_hidden(); }
+  void set_free(bool free) { flag_ = free != says_hidden(); }
+
+ private:
+  bool says_hidden() const { return kind_ == ParameterKind::kStatic || kind_ == ParameterKind::kBaseShift; }
+
+  ParameterKind kind_;
+  std::string name_;
+  bool& flag_;
+};
+
+/// The one walk over all that a fit could free, in the order of ParameterSet. They point into the machine.
+std::vector<Freedom> freedoms_of(Machine& machine);
+
 /// The free parameters of a machine, in a fixed order: statics, scale factors, stations, BaseShifts.
 class ParameterSet {
  public:
