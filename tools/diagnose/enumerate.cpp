@@ -14,7 +14,34 @@
 namespace vernier {
 namespace {
 
-bool contains(const std::string& text, std::string_view part) { return text.find(part) != std::string::npos; }
+bool is_symbol(const Expr& node, std::string_view name) {
+  return node.op == Op::kSymbol && node.name == name;
+}
+
+bool is_wave(const Expr& node) { return node.op == Op::kSin || node.op == Op::kCos; }
+
+/// Does a node of the term answer that stands within no function?
+template <class Is>
+bool any_outside_functions(const Expr& node, const Is& is) {
+  return is(node) || (function_name(node.op) == nullptr &&
+                      std::any_of(node.args.begin(), node.args.end(),
+                                  [&](const auto& arg) { return any_outside_functions(*arg, is); }));
+}
+
+bool grows_with_axis(const Expr& node) {
+  return any_outside_functions(node, [](const Expr& one) { return is_symbol(one, "{q}"); });
+}
+
+/// Is {q} raised to a power, or multiplied by a sum?
+bool is_bent_or_mixed(const Expr& node) {
+  if (node.op == Op::kPower) return grows_with_axis(*node.args[0]);
+  const auto is_sum = [](const ExprPtr& one) { return one->op == Op::kAdd || one->op == Op::kSubtract; };
+  return node.op == Op::kMultiply && (is_sum(node.args[0]) || is_sum(node.args[1])) && grows_with_axis(node);
+}
+
+bool any_tree(const EffectForm& form, bool (*is)(const Expr&)) {
+  return std::any_of(form.trees.begin(), form.trees.end(), [&](const ExprPtr& tree) { return is(*tree); });
+}
 
 std::vector<double> logarithmic(double low, double high, std::size_t count) {
   std::vector<double> grid;
@@ -143,32 +170,31 @@ class Enumerator {
         --first;
       for (std::size_t last = i; last < rotary.size(); ++last) {
         if (std::abs(direction[last].dot(direction[i])) < thresholds_.parallel_cosine) break;
-        std::string sum;
-        for (std::size_t k = first; k <= last; ++k) {
-          const bool minus = direction[k].dot(direction[first]) < 0;
-          sum += (minus ? "-" : k > first ? "+" : "") + machine_.axes[rotary[k]].name;
+        ExprPtr sum = make_symbol(machine_.axes[rotary[first]].name);
+        for (std::size_t k = first + 1; k <= last; ++k) {
+          const Op op = direction[k].dot(direction[first]) < 0 ? Op::kSubtract : Op::kAdd;
+          sum = make_node(op, {sum, make_symbol(machine_.axes[rotary[k]].name)});
         }
-        sums_[rotary[i]].push_back(sum);
+        sums_[rotary[i]].push_back(to_text(*sum));
       }
     }
   }
 
   void with_inputs(const Choice& choice) {
-    const std::string& term = choice.form->term;
-    const auto needs = [&](const char* mark) { return contains(term, mark); };
-    if (!needs("{T}") && !needs("{L}") && !needs("{F}")) return with_axis(choice);
-    const InputClass wanted = needs("{T}")   ? InputClass::kTemperature
-                              : needs("{L}") ? InputClass::kLoad
-                                             : InputClass::kFeature;
+    const EffectForm& form = *choice.form;
+    if (!form.asks_for("T") && !form.asks_for("L") && !form.asks_for("F")) return with_axis(choice);
+    const InputClass wanted = form.asks_for("T")   ? InputClass::kTemperature
+                              : form.asks_for("L") ? InputClass::kLoad
+                                                   : InputClass::kFeature;
     for (std::size_t i = 0; i < machine_.inputs.size(); ++i) {
       if (class_of_input(machine_.inputs[i]) != wanted) continue;
       Choice one = choice;
       one.inputs = {machine_.inputs[i].name};
       one.units = {machine_.inputs[i].unit};
-      if (needs("{ref}"))
+      if (form.asks_for("ref"))
         one.reference = i < evidence_.declared_inputs() ? machine_.inputs[i].reference
                                                         : standard_reference(machine_.inputs[i].unit);
-      if (!needs("{S}")) {
+      if (!form.asks_for("S")) {
         with_axis(one);
         continue;
       }
@@ -184,13 +210,14 @@ class Enumerator {
 
   void with_axis(Choice choice) {
     const EffectForm& form = *choice.form;
-    const bool driven = contains(form.term, "{q}") || contains(form.term, "{hats") ||
-                        form.place == PlaceRule::kOwn || form.place == PlaceRule::kCross ||
-                        form.place == PlaceRule::kTurn || form.place == PlaceRule::kJoint;
+    const bool driven = form.asks_for("q") || form.asks_for("hats") || form.place == PlaceRule::kOwn ||
+                        form.place == PlaceRule::kCross || form.place == PlaceRule::kTurn ||
+                        form.place == PlaceRule::kJoint;
     if (form.place == PlaceRule::kEachAxis || !driven) return with_place(choice);
     for (std::size_t axis = 0; axis < machine_.axes.size(); ++axis) {
       if (!own_[axis]) continue;
-      const bool turns = contains(form.term, "sin({q})") || contains(form.term, "cos({q})");
+      const bool turns =
+          form.any([](const Expr& node) { return is_wave(node) && is_symbol(*node.args[0], "{q}"); });
       if (turns && !machine_.axes[axis].rotary) continue;  // degrees of a turn, not millimetres
       if (!turns && machine_.axes[axis].rotary && !has_meaning_of_turns(form)) continue;
       Choice one = choice;
@@ -211,13 +238,9 @@ class Enumerator {
 
   /// A power of an angle says nothing: errors of a rotary axis are periodic, or a table.
   static bool has_meaning_of_turns(const EffectForm& form) {
-    const std::string& t = form.term;
-    // The square of a speed does.
-    const auto power = t.find("{q}^");
-    if (power != std::string::npos && (power == 0 || (t[power - 1] != 'v' && t[power - 1] != 'a')))
-      return false;
-    return !contains(t, "{mid}") && !contains(t, "*{q}*(") &&
-           !(t.size() >= 4 && t.substr(t.size() - 4) == "*{q}" && form.place != PlaceRule::kOwn);
+    const auto bent = [](const Expr& tree) { return any_outside_functions(tree, is_bent_or_mixed); };
+    if (form.asks_for("mid") || any_tree(form, bent)) return false;
+    return form.place == PlaceRule::kOwn || !any_tree(form, grows_with_axis);
   }
 
   /// Hats stand on the range that was measured, waves on the declared one where that was measured too.
@@ -228,7 +251,7 @@ class Enumerator {
     choice.from = std::floor(range_[axis].low / digit) * digit;
     choice.to = std::ceil(range_[axis].high / digit) * digit;
     const Axis& item = machine_.axes[axis];
-    if (contains(choice.form->term, "{hats") || !item.min || !item.max) return;
+    if (choice.form->asks_for("hats") || !item.min || !item.max) return;
     if (choice.to - choice.from < thresholds_.declared_range_share * (*item.max - *item.min)) return;
     choice.from = *item.min;
     choice.to = *item.max;
@@ -277,7 +300,7 @@ class Enumerator {
         });
         break;
       case PlaceRule::kSag:
-        if (!contains(form.term, "sin(") && !contains(form.term, "cos(") && rotary) return;
+        if (rotary && !form.any(is_wave)) return;
         at_each(distinct_, [&](const DofPlace& p) {
           const auto sags = [&](const DofPlace& x) {
             return std::find(sag_.begin(), sag_.end(), x) != sag_.end();
@@ -299,13 +322,13 @@ class Enumerator {
   }
 
   /// Effects that speak of lengths (thermal growth, squareness) mean no rotary axis.
-  static bool needs_linear(const EffectForm& form) { return contains(form.term, "{T}"); }
+  static bool needs_linear(const EffectForm& form) { return form.asks_for("T"); }
 
   void with_sum(const Choice& choice) {
-    if (!contains(choice.form->term, "{sum}")) return with_runs(choice);
+    if (!choice.form->asks_for("sum")) return with_runs(choice);
     for (const std::string& sum : sums_[*choice.axis]) {
       // The two-link forms say the same as one link where the sum is the joint itself.
-      if (contains(choice.form->term, "{q}") && sum == machine_.axes[*choice.axis].name) continue;
+      if (choice.form->asks_for("q") && sum == machine_.axes[*choice.axis].name) continue;
       Choice one = choice;
       one.sum = sum;
       with_runs(one);
@@ -313,7 +336,7 @@ class Enumerator {
   }
 
   void with_runs(const Choice& choice) {
-    if (!contains(choice.form->term, "{runs}")) return with_hats(choice);
+    if (!choice.form->asks_for("runs")) return with_hats(choice);
     std::set<std::size_t> seen;
     for (const std::size_t row : evidence_.rows()) seen.insert(evidence_.measurement().states.run[row]);
     if (seen.size() < 2) return;
@@ -329,9 +352,8 @@ class Enumerator {
   }
 
   void with_hats(const Choice& choice) {
-    if (contains(choice.form->term, "{hats")) {
-      const auto at = choice.form->term.find("{hats ");
-      const double nodes = std::stod(choice.form->term.substr(at + 6));
+    if (choice.form->asks_for("hats")) {
+      const auto nodes = static_cast<double>(choice.form->hats);
       const Evidence::Range& range = range_[*choice.axis];
       if (range.step <= 0 || (range.high - range.low) / range.step + 1 < nodes) return;
       if (nodes * thresholds_.readings_per_hat > static_cast<double>(evidence_.rows().size())) return;
@@ -393,7 +415,7 @@ class Enumerator {
     // Starts of the scanned unknowns: any value of the grid, to make the candidate whole.
     ScannedCandidate item;
     for (const UnknownRule& rule : choice.effect->unknowns) {
-      if (rule.kind == UnknownKind::kLinear || !uses(choice.form->term, rule.name)) continue;
+      if (rule.kind == UnknownKind::kLinear || !uses(*choice.form, rule.name)) continue;
       const std::vector<double> grid = grid_of(choice, rule);
       if (grid.empty()) return;
       choice.start[rule.name] = grid[grid.size() / 2];
@@ -402,7 +424,7 @@ class Enumerator {
     for (const CandidateUnknown& unknown : scanned_unknowns(item.candidate))
       item.grid.push_back(grid_of(choice, *choice.effect->find_unknown(unknown.rule)));
     item.most_driven = thresholds_.driven_out;
-    item.may_lose_columns = contains(choice.form->term, "{hats") || choice.runs.size() > 1;
+    item.may_lose_columns = choice.form->asks_for("hats") || choice.runs.size() > 1;
     add_fine_periods(item);
     list_.push_back(std::move(item));
   }
@@ -422,14 +444,8 @@ class Enumerator {
     if (fine.carrier.size() > 0) item.fine = std::move(fine);
   }
 
-  static bool uses(const std::string& term, const std::string& name) {
-    for (std::size_t at = term.find(name); at != std::string::npos; at = term.find(name, at + 1)) {
-      const auto is_part = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; };
-      const bool before = at > 0 && is_part(term[at - 1]);
-      const bool after = at + name.size() < term.size() && is_part(term[at + name.size()]);
-      if (!before && !after) return true;
-    }
-    return false;
+  static bool uses(const EffectForm& form, const std::string& name) {
+    return form.any([&](const Expr& node) { return is_symbol(node, name); });
   }
 
   const Evidence& evidence_;

@@ -26,10 +26,10 @@ struct ScannedCandidate {
 std::vector<ScannedCandidate> enumerate_candidates(const Evidence& evidence,
                                                    const std::vector<Effect>& effects);
 
-/// A product of recorded quantities at one degree of freedom: "k*X*(T-20)".
+/// A product of recorded quantities at one degree of freedom: k*X*(T-20).
 struct Product {
   DofPlace place;
-  std::string term;
+  ExprPtr term;
   std::vector<std::string> inputs, units;
 };
 

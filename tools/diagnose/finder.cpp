@@ -100,7 +100,7 @@ std::vector<Product> Finder::best_products() {
   std::vector<Product> best;
   for (std::size_t i = 0; i < std::min(thresholds_.extended, order.size()); ++i) {
     const Choice& choice = pool_.candidate(order[i].second).choice;
-    best.push_back({*choice.place, choice.term, choice.inputs, choice.units});
+    best.push_back({*choice.place, parse_expression(choice.term), choice.inputs, choice.units});
   }
   return best;
 }

@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "tools/diagnose/enumerate.h"
-#include "tools/text/numbers.h"
 
 namespace vernier {
 namespace {
 
 /// A recorded quantity as a factor of a term.
 struct ProductFactor {
-  std::string text, input, unit;  // input: name where it is one
+  ExprPtr value;
+  std::string input, unit;  // name and unit where it is an input
 };
 
 bool varies(const Column& column, const std::vector<std::size_t>& rows) {
@@ -40,35 +38,35 @@ ProductFactor input_factor(const Evidence& evidence, std::size_t index) {
       if (std::abs(average) < 1e-9) reference = 0;
     }
   }
-  const std::string text = reference == 0  ? input.name
-                           : reference < 0 ? fmt::format("({}+{})", input.name, number_text(-reference))
-                                           : fmt::format("({}-{})", input.name, number_text(reference));
-  return {text, input.name, input.unit};
+  return {subtract_number(make_symbol(input.name), reference), input.name, input.unit};
 }
 
 std::vector<ProductFactor> factors_of(const Evidence& evidence) {
   const Machine& machine = evidence.machine();
   const States& s = evidence.measurement().states;
   std::vector<ProductFactor> list;
-  const auto take = [&](const std::string& text, const Column& column) {
-    if (varies(column, evidence.rows())) list.push_back({text, {}, {}});
+  const auto take = [&](const ExprPtr& value, const Column& column) {
+    if (varies(column, evidence.rows())) list.push_back({value, {}, {}});
+  };
+  const auto take_named = [&](const std::string& name, const Column& column) {
+    take(make_symbol(name), column);
   };
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
     const std::string& name = machine.axes[i].name;
     if (machine.axes[i].rotary) {
-      take("sin(" + name + ")", evidence.position(i));
-      take("cos(" + name + ")", evidence.position(i));
+      take(make_node(Op::kSin, {make_symbol(name)}), evidence.position(i));
+      take(make_node(Op::kCos, {make_symbol(name)}), evidence.position(i));
     } else {
-      take(name, evidence.position(i));
+      take_named(name, evidence.position(i));
     }
-    take("dir" + name, s.direction[i]);
-    take("v" + name, s.velocity[i]);
-    take("a" + name, s.acceleration[i]);
+    take_named("dir" + name, s.direction[i]);
+    take_named("v" + name, s.velocity[i]);
+    take_named("a" + name, s.acceleration[i]);
   }
-  take("feed", s.feed);
-  take("curv", s.curvature);
-  take("t", s.time);
-  take("visit", s.visit);
+  take_named("feed", s.feed);
+  take_named("curv", s.curvature);
+  take_named("t", s.time);
+  take_named("visit", s.visit);
   for (std::size_t i = 0; i < machine.inputs.size(); ++i)
     if (varies(s.input[i], evidence.rows())) list.push_back(input_factor(evidence, i));
   return list;
@@ -79,7 +77,7 @@ ScannedCandidate as_candidate(const Machine& machine, const AxisPlaces& axes, co
   choice.effect = &custom_effect();
   choice.form = &custom_effect().forms[0];
   choice.place = product.place;
-  choice.term = product.term;
+  choice.term = to_text(*product.term);
   choice.inputs = product.inputs;
   choice.units = product.units;
   ScannedCandidate item;
@@ -87,8 +85,16 @@ ScannedCandidate as_candidate(const Machine& machine, const AxisPlaces& axes, co
   return item;
 }
 
+constexpr std::size_t kMostFactors = 3;
+
+std::size_t factors_in(const Expr& term) {
+  std::size_t count = 0;
+  walk(term, [&](const Expr& node) { count += node.op == Op::kMultiply ? 1 : 0; });
+  return count;
+}
+
 Product with_factor(Product product, const ProductFactor& factor) {
-  product.term += "*" + factor.text;
+  product.term = make_node(Op::kMultiply, {product.term, factor.value});
   if (!factor.input.empty() &&
       std::find(product.inputs.begin(), product.inputs.end(), factor.input) == product.inputs.end()) {
     product.inputs.push_back(factor.input);
@@ -107,13 +113,13 @@ std::vector<ScannedCandidate> enumerate_products(const Evidence& evidence,
   if (!extend.empty()) {
     for (const Product& product : extend)
       for (const ProductFactor& factor : factors)
-        if (std::count(product.term.begin(), product.term.end(), '*') < 3)
+        if (factors_in(*product.term) < kMostFactors)
           list.push_back(as_candidate(evidence.machine(), axes, with_factor(product, factor)));
     return list;
   }
   for (const DofPlace& place : distinct_places(evidence, false))
     for (std::size_t i = 0; i < factors.size(); ++i) {
-      const Product one = with_factor({place, "k", {}, {}}, factors[i]);
+      const Product one = with_factor({place, make_symbol("k"), {}, {}}, factors[i]);
       list.push_back(as_candidate(evidence.machine(), axes, one));
       for (std::size_t k = i; k < factors.size(); ++k)
         list.push_back(as_candidate(evidence.machine(), axes, with_factor(one, factors[k])));

@@ -81,7 +81,8 @@ class Adder {
     if (domain_.empty()) return term;
     std::vector<std::string> quantities;
     for (const auto& [quantity, unit] : domain_) quantities.push_back(quantity);
-    return domain_weight(domain_name_, quantities) + "*(" + term + ")";
+    const ExprPtr weight = parse_expression(domain_weight(domain_name_, quantities));
+    return to_text(*make_node(Op::kMultiply, {weight, parse_expression(term)}));
   }
 
   static std::size_t offset(const pugi::xml_node& node) {

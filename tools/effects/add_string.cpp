@@ -41,11 +41,9 @@ std::string unquote(const std::string& text) {
   return value;
 }
 
-bool asks_for(const EffectForm& form, const char* mark) { return form.term.find(mark) != std::string::npos; }
-
 bool has_range(const EffectForm& form) {
-  return asks_for(form, "{hats") || asks_for(form, "{mid}") || asks_for(form, "{from}") ||
-         asks_for(form, "{to}") || asks_for(form, "{span}");
+  return form.asks_for("hats") || form.asks_for("mid") || form.asks_for("from") || form.asks_for("to") ||
+         form.asks_for("span");
 }
 
 /// input, input2, input3 ...
@@ -195,9 +193,9 @@ class AddReader {
 
   /// Does a form go with what has been said?
   bool fits(const EffectForm& form) const {
-    const std::size_t inputs = asks_for(form, "{S}")                                                     ? 2
-                               : asks_for(form, "{T}") || asks_for(form, "{L}") || asks_for(form, "{F}") ? 1
-                                                                                                         : 0;
+    const std::size_t inputs = form.asks_for("S")                                               ? 2
+                               : form.asks_for("T") || form.asks_for("L") || form.asks_for("F") ? 1
+                                                                                                : 0;
     if (inputs != choice_.inputs.size()) return false;
     const std::optional<std::size_t> axis = choice_.axis ? choice_.axis : default_axis_;
     if ((form.place == PlaceRule::kPair) != choice_.axis2.has_value()) return false;
@@ -244,7 +242,7 @@ class AddReader {
   }
 
   void fill_place() {
-    const bool needs_axis = asks_for(*choice_.form, "{q}") || asks_for(*choice_.form, "{hats");
+    const bool needs_axis = choice_.form->asks_for("q") || choice_.form->asks_for("hats");
     if (needs_axis && !choice_.axis) choice_.axis = default_axis_;
     if (!acts_at_one(*choice_.form)) {
       if (transform_ || dof_)
@@ -331,7 +329,7 @@ std::string add_string(const Machine& machine, const Choice& c) {
   for (std::size_t i = 0; i < c.units.size(); ++i)
     if (!c.units[i].empty()) put(numbered("unit", i), quote(c.units[i]));
   if (!custom) put("form", c.form->label);
-  if (!custom && asks_for(*c.form, "{sum}")) put("sum", c.sum);
+  if (!custom && c.form->asks_for("sum")) put("sum", c.sum);
   if (!custom && has_range(*c.form)) {
     put("from", number_text(c.from));
     put("to", number_text(c.to));

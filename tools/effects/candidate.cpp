@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <set>
 
 #include "tools/effects/input_class.h"
@@ -26,42 +27,28 @@ std::string plain(std::string_view text) {
   return name;
 }
 
-/// `- -x` and `+-x` read badly and parse well; numbers in terms are put in parentheses where negative.
-std::string number_in_term(double value) {
-  const std::string text = number_text(value);
-  return value < 0 ? "(" + text + ")" : text;
+ExprPtr sum_of(const std::vector<ExprPtr>& parts) {
+  ExprPtr sum = parts.at(0);
+  for (std::size_t i = 1; i < parts.size(); ++i) sum = make_node(Op::kAdd, {sum, parts[i]});
+  return sum;
 }
 
-/// Unknowns carry this in front of their name until they have their final one, so that an axis or an input
-/// that is called like one of them (L, k, p ...) stays what it is.
-constexpr std::string_view kMark = "unknown__";
+bool is_product(const Expr& expr) { return expr.op == Op::kMultiply || expr.op == Op::kDivide; }
 
-bool in_name(char c) {
-  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+/// A product with its first factor negated: "-k*X".
+ExprPtr with_first_negated(const ExprPtr& expr) {
+  if (!is_product(*expr)) return make_node(Op::kNegate, {expr});
+  return make_node(expr->op, {with_first_negated(expr->args[0]), expr->args[1]});
 }
 
-/// The text with every whole name replaced by what `change` makes of it; run labels and placeholders stay.
-template <class Change>
-std::string with_names(const std::string& text, const Change& change) {
-  std::string result;
-  for (std::size_t at = 0; at < text.size();) {
-    if (text[at] == '"' || text[at] == '{') {
-      const auto end = std::min(text.find(text[at] == '"' ? '"' : '}', at + 1), text.size() - 1);
-      result.append(text, at, end - at + 1);
-      at = end + 1;
-    } else if (in_name(text[at])) {
-      std::size_t end = at;
-      while (end < text.size() && in_name(text[end])) ++end;
-      result += change(text.substr(at, end - at));
-      at = end;
-    } else {
-      result += text[at++];
-    }
-  }
-  return result;
+ExprPtr negative(const ExprPtr& expr) {
+  const Expr* first = expr.get();
+  while (is_product(*first)) first = first->args[0].get();
+  return first->op == Op::kNegate ? make_node(Op::kNegate, {expr}) : with_first_negated(expr);
 }
 
-/// Works one choice out into terms and unknowns.
+/// Works one choice out into terms and unknowns: every placeholder and every unknown of the form's tree is
+/// replaced by what the choice and the machine put there.
 class Maker {
  public:
   Maker(const Machine& machine, const AxisPlaces& axes, const Choice& choice)
@@ -75,186 +62,192 @@ class Maker {
   Candidate make() {
     settle_reference();
     result_.choice = choice_;
-    try {
-      add_terms();
-      name_unknowns();
-    } catch (const ExpressionError& error) {
-      std::string word = error.word;
-      replace_all(word, kMark, "");
-      throw InputError(choice_.effect->id + ": \"" + word + "\": " + error.what() + ", in its term");
+    const std::vector<TermAt> terms = terms_to_fill();
+    if (terms.empty()) missing("a degree of freedom to act at");
+    name_unknowns(terms);
+    for (const TermAt& term : terms) {
+      const ExprPtr filled = fill(term);
+      result_.terms.push_back({term.place, to_text(term.negated ? *negative(filled) : *filled)});
     }
     result_.label = label();
     return std::move(result_);
   }
 
  private:
+  /// A form's tree and where it goes.
+  struct TermAt {
+    DofPlace place;
+    ExprPtr tree;
+    std::optional<std::size_t> axis;
+    bool negated =
+        false;  // terms that share a coefficient count in the same sense along the machine's motion
+    const char* normal = nullptr;  // {n}
+  };
+
   [[noreturn]] void missing(const std::string& what) const {
     throw InputError(choice_.effect->id + ": " + what + " is missing");
   }
 
+  bool is_custom() const { return choice_.effect == &custom_effect(); }
+
   /// The reference that a term subtracts is the one that the input is declared with: the term is 0 there.
   void settle_reference() {
-    if (choice_.reference || choice_.inputs.empty() || choice_.effect == &custom_effect()) return;
-    if (choice_.form->term.find("{ref}") == std::string::npos) return;
+    if (choice_.reference || choice_.inputs.empty() || !choice_.form->asks_for("ref")) return;
     choice_.reference = standard_reference(choice_.units.empty() ? "" : choice_.units[0]);
     if (const auto known = machine_.find_input(choice_.inputs[0]))
       choice_.reference = machine_.inputs[*known].reference;
   }
 
-  void add_terms() {
-    const std::string form = marked(choice_.effect == &custom_effect() ? choice_.term : choice_.form->term);
-    switch (choice_.effect == &custom_effect() ? PlaceRule::kOwn : choice_.form->place) {
+  std::vector<ExprPtr> trees() const {
+    if (!is_custom()) return choice_.form->trees;
+    try {
+      return {parse_expression(choice_.term)};
+    } catch (const ExpressionError& error) {
+      throw InputError(choice_.effect->id + ": \"" + error.word + "\": " + error.what() + ", in its term");
+    }
+  }
+
+  std::vector<TermAt> terms_to_fill() const {
+    const std::vector<ExprPtr> form = trees();
+    std::vector<TermAt> terms;
+    const auto at_own = [&](std::size_t axis, const ExprPtr& tree) {
+      if (const auto& own = axes_.own(axis)) terms.push_back({*own, tree, axis, axes_.sense(axis) < 0});
+    };
+    switch (choice_.form->place) {
       case PlaceRule::kEachAxis:
-        for (std::size_t axis = 0; axis < machine_.axes.size(); ++axis)
-          if (const auto& own = axes_.own(axis)) add_term(*own, form, axis, axes_.sense(axis) < 0);
+        for (std::size_t axis = 0; axis < machine_.axes.size(); ++axis) at_own(axis, form[0]);
         break;
       case PlaceRule::kPair:
-        add_pair(form);
+        if (form.size() != 2) missing("\"|\" in the term of a pair");
+        if (!choice_.axis || !choice_.axis2) missing("axis or axis2");
+        at_own(*choice_.axis, form[0]);
+        at_own(*choice_.axis2, form[1]);
+        if (terms.size() != 2) missing("the degree of freedom of an axis");
         break;
-      case PlaceRule::kNormal:
-        add_normal(form);
+      case PlaceRule::kNormal: {
+        static constexpr std::array<const char*, 3> kNormals = {"nx", "ny", "nz"};
+        const std::vector<DofPlace> base = base_places(machine_);
+        // The workpiece branch enters inverted: what moves it forward moves the point back.
+        for (std::size_t i = 0; i < base.size(); ++i)
+          terms.push_back({base[i], form[0], std::nullopt, base[i].workpiece, kNormals.at(i)});
         break;
+      }
       default:
         if (!choice_.place) missing("branch, transform or dof");
-        add_term(*choice_.place, form, choice_.axis);
+        terms.push_back({*choice_.place, form[0], choice_.axis});
     }
-    if (result_.terms.empty()) missing("a degree of freedom to act at");
+    return terms;
   }
 
-  /// The term with every unknown marked as one.
-  std::string marked(const std::string& term) const {
-    return with_names(term, [&](const std::string& name) {
-      return choice_.effect->find_unknown(name) == nullptr ? name : std::string(kMark) + name;
+  ExprPtr fill(const TermAt& term) const {
+    return substitute(term.tree, [&](const std::string& name) -> ExprPtr {
+      if (const auto unknown = final_name_.find(name); unknown != final_name_.end())
+        return make_symbol(unknown->second);
+      const std::vector<std::string> marks = marks_in(name);
+      if (marks.empty()) {
+        check_name(name);
+        return nullptr;
+      }
+      if (name.front() == '{' && marks.size() == 1 && name.size() == marks[0].size() + 2)
+        return value_of(marks[0], term);
+      // dir{q}, v{q}, lag of an input: a name with another name in it.
+      std::string whole = name;
+      for (const std::string& mark : marks)
+        whole.replace(whole.find('{'), mark.size() + 2, to_text(*value_of(mark, term)));
+      check_name(whole);
+      return make_symbol(whole);
     });
   }
 
-  void add_pair(const std::string& form) {
-    const auto bar = form.find('|');
-    if (bar == std::string::npos) missing("\"|\" in the term of a pair");
-    if (!choice_.axis || !choice_.axis2) missing("axis or axis2");
-    const auto &first = axes_.own(*choice_.axis), &second = axes_.own(*choice_.axis2);
-    if (!first || !second) missing("the degree of freedom of an axis");
-    add_term(*first, form.substr(0, bar), choice_.axis, axes_.sense(*choice_.axis) < 0);
-    add_term(*second, form.substr(bar + 1), choice_.axis2, axes_.sense(*choice_.axis2) < 0);
-  }
-
-  void add_normal(const std::string& form) {
-    static constexpr std::array<const char*, 3> kNormals = {"nx", "ny", "nz"};
-    const std::vector<DofPlace> base = base_places(machine_);
-    for (std::size_t i = 0; i < base.size(); ++i) {
-      std::string text = form;
-      replace_all(text, "{n}", kNormals[i]);
-      // The workpiece branch enters inverted: what moves it forward moves the point back.
-      add_term(base[i], text, std::nullopt, base[i].workpiece);
-    }
-  }
-
-  /// `negated`: terms that share a coefficient count in the same sense along the machine's motion.
-  void add_term(const DofPlace& place, std::string text, std::optional<std::size_t> axis,
-                bool negated = false) {
-    const auto begin = text.find_first_not_of(' '), end = text.find_last_not_of(' ');
-    text = begin == std::string::npos ? std::string() : text.substr(begin, end - begin + 1);
-    if (text.find("{q}") != std::string::npos) {
-      if (!axis) missing("axis");
-      replace_all(text, "{q}", machine_.axes[*axis].name);
-    }
-    fill_inputs(text);
-    replace_all(text, "{mid}", number_in_term(0.5 * (choice_.from + choice_.to)));
-    replace_all(text, "{span}", number_in_term(choice_.to - choice_.from));
-    replace_all(text, "-{from}",
-                choice_.from == 0  ? std::string()
-                : choice_.from < 0 ? "+" + number_text(-choice_.from)
-                                   : "-" + number_text(choice_.from));
-    replace_all(text, "{from}", number_in_term(choice_.from));
-    replace_all(text, "{to}", number_in_term(choice_.to));
-    if (text.find("{sum}") != std::string::npos) {
+  /// What stands in the place of a placeholder.
+  ExprPtr value_of(const std::string& mark, const TermAt& term) const {
+    if (mark == "q") return make_symbol(axis_of(term));
+    if (mark == "T" || mark == "L" || mark == "F") return make_symbol(input(0));
+    if (mark == "S") return make_symbol(input(1));
+    if (mark == "ref") return make_number(choice_.reference ? *choice_.reference : (missing("input"), 0));
+    if (mark == "from") return make_number(choice_.from);
+    if (mark == "to") return make_number(choice_.to);
+    if (mark == "mid") return make_number(0.5 * (choice_.from + choice_.to));
+    if (mark == "span") return make_number(choice_.to - choice_.from);
+    if (mark == "n") return make_symbol(term.normal == nullptr ? (missing("place normal"), "") : term.normal);
+    if (mark == "runs") return steps();
+    if (mark == "sum") {
       if (choice_.sum.empty()) missing("sum");
-      replace_all(text, "{sum}", choice_.sum);
+      return parse_expression(choice_.sum);
     }
-    fill_hats(text, axis);
-    fill_runs(text);
-    if (negated) {
-      const Op op = parse_expression(text)->op;
-      const bool product = (op == Op::kMultiply || op == Op::kDivide) && text[0] != '-';
-      text = product ? "-" + text : "-(" + text + ")";
-    }
-    result_.terms.push_back({place, text});
+    return hats(axis_of(term));
   }
 
-  void fill_inputs(std::string& text) const {
-    const auto fill = [&](const char* mark, std::size_t index) {
-      if (text.find(mark) == std::string::npos) return;
-      if (choice_.inputs.size() <= index) missing(index == 0 ? "input" : "input2");
-      replace_all(text, mark, choice_.inputs[index]);
-    };
-    for (const char* mark : {"{T}", "{L}", "{F}"}) fill(mark, 0);
-    fill("{S}", 1);
-    if (text.find("{ref}") == std::string::npos) return;
-    if (!choice_.reference) missing("input");
-    const double reference = *choice_.reference;
-    replace_all(text, "-{ref}",
-                reference == 0  ? ""
-                : reference < 0 ? "+" + number_text(-reference)
-                                : "-" + number_text(reference));
-    replace_all(text, "{ref}", number_in_term(reference));
+  const std::string& axis_of(const TermAt& term) const {
+    if (!term.axis) missing("axis");
+    return machine_.axes[*term.axis].name;
   }
 
-  void fill_hats(std::string& text, std::optional<std::size_t> axis) {
-    const auto at = text.find("{hats ");
-    if (at == std::string::npos) return;
-    const auto end = text.find('}', at);
-    const auto count = parse_number(text.substr(at + 6, end - at - 6));
-    if (!count || *count < 2) missing("the number of hats");
-    if (!axis) missing("axis");
+  const std::string& input(std::size_t index) const {
+    if (choice_.inputs.size() <= index) missing(index == 0 ? "input" : "input2");
+    return choice_.inputs[index];
+  }
+
+  /// h1·hat1 + h2·hat2 …: triangles over the range.
+  ExprPtr hats(const std::string& axis) const {
+    const std::size_t count = choice_.form->hats;
     if (!(choice_.to > choice_.from)) missing("from or to (the range of the axis)");
-    const auto nodes = static_cast<std::size_t>(*count);
-    const double width = (choice_.to - choice_.from) / (*count - 1);
-    std::string sum;
-    for (std::size_t i = 0; i < nodes; ++i) {
+    const double width = (choice_.to - choice_.from) / static_cast<double>(count - 1);
+    std::vector<ExprPtr> parts;
+    for (std::size_t i = 0; i < count; ++i) {
       const double node = choice_.from + width * static_cast<double>(i);
-      const std::string& q = machine_.axes[*axis].name;
-      const std::string away = node == 0  ? "abs(" + q + ")"
-                               : node < 0 ? fmt::format("abs({}+{})", q, number_text(-node))
-                                          : fmt::format("abs({}-{})", q, number_text(node));
-      sum += (i > 0 ? "+" : "") + fmt::format("{}h{}*max(0,1-{}/{})", kMark, i + 1, away, number_text(width));
+      const ExprPtr away = make_node(Op::kAbs, {subtract_number(make_symbol(axis), node)});
+      const ExprPtr falling =
+          make_node(Op::kSubtract, {make_number(1), make_node(Op::kDivide, {away, make_number(width)})});
+      parts.push_back(make_node(Op::kMultiply, {make_symbol(final_name_.at(fmt::format("h{}", i + 1))),
+                                                make_node(Op::kMax, {make_number(0), falling})}));
     }
-    text.replace(at, end - at + 1, sum);
+    return sum_of(parts);
   }
 
-  void fill_runs(std::string& text) {
-    if (text.find("{runs}") == std::string::npos) return;
+  /// h1·run("a") + h2·run("b") …
+  ExprPtr steps() const {
+    std::vector<ExprPtr> parts;
+    const std::vector<std::string> names = names_of_steps();
+    for (std::size_t i = 0; i < names.size(); ++i)
+      parts.push_back(
+          make_node(Op::kMultiply, {make_symbol(final_name_.at(names[i])), make_run(choice_.runs[i])}));
+    return sum_of(parts);
+  }
+
+  std::vector<std::string> names_of_steps() const {
     if (choice_.runs.empty()) missing("runs");
-    std::string sum;
-    for (std::size_t i = 0; i < choice_.runs.size(); ++i) {
-      const std::string name = choice_.runs.size() == 1 ? "h" : fmt::format("h{}", i + 1);
-      sum += (i > 0 ? "+" : "") + fmt::format("{}{}*run(\"{}\")", kMark, name, choice_.runs[i]);
-    }
-    replace_all(text, "{runs}", sum);
+    if (choice_.runs.size() == 1) return {"h"};
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < choice_.runs.size(); ++i) names.push_back(fmt::format("h{}", i + 1));
+    return names;
   }
 
-  /// The unknowns of a text, in the order of the expression, without their mark.
-  static std::vector<std::string> unknowns_in(const std::string& text) {
+  /// The unknowns of the form's terms, by their names there, in the order of the expression.
+  std::vector<std::string> unknowns_in(const std::vector<TermAt>& terms) const {
     std::vector<std::string> found;
-    const ExprPtr expr = parse_expression(text);
-    walk(*expr, [&](const Expr& node) {
-      if (node.op != Op::kSymbol || node.name.rfind(kMark, 0) != 0) return;
-      const std::string name = node.name.substr(kMark.size());
+    const auto take = [&](const std::string& name) {
       if (std::find(found.begin(), found.end(), name) == found.end()) found.push_back(name);
-    });
+    };
+    for (const TermAt& term : terms)
+      walk(*term.tree, [&](const Expr& node) {
+        if (node.op != Op::kSymbol) return;
+        if (choice_.effect->find_unknown(node.name) != nullptr) take(node.name);
+        if (node.name == "{runs}")
+          for (const std::string& name : names_of_steps()) take(name);
+        if (node.name.rfind("{hats", 0) == 0)
+          for (std::size_t i = 0; i < choice_.form->hats; ++i) take(fmt::format("h{}", i + 1));
+      });
     return found;
   }
 
   /// Every other name of a term is one of the machine's or an input that comes with it.
-  void check_names(const std::string& text) const {
-    const ExprPtr expr = parse_expression(text);
-    walk(*expr, [&](const Expr& node) {
-      if (node.op != Op::kSymbol || node.name.rfind(kMark, 0) == 0) return;
-      const auto& inputs = choice_.inputs;
-      if (resolve_name(machine_, node.name).kind == SymbolKind::kUnresolved &&
-          std::find(inputs.begin(), inputs.end(), node.name) == inputs.end())
-        throw InputError(choice_.effect->id + ": \"" + node.name +
-                         "\": unknown name in its term (a logged column is named by input=NAME)");
-    });
+  void check_name(const std::string& name) const {
+    const auto& inputs = choice_.inputs;
+    if (resolve_name(machine_, name).kind == SymbolKind::kUnresolved &&
+        std::find(inputs.begin(), inputs.end(), name) == inputs.end())
+      throw InputError(choice_.effect->id + ": \"" + name +
+                       "\": unknown name in its term (a logged column is named by input=NAME)");
   }
 
   bool is_free(const std::string& name) const {
@@ -262,38 +255,28 @@ class Maker {
            resolve_name(machine_, name).kind == SymbolKind::kUnresolved;
   }
 
-  void name_unknowns() {
-    std::vector<std::string> order;
-    for (const CandidateTerm& term : result_.terms) check_names(term.text);
-    for (const CandidateTerm& term : result_.terms)
-      for (const std::string& name : unknowns_in(term.text))
-        if (std::find(order.begin(), order.end(), name) == order.end()) order.push_back(name);
+  void name_unknowns(const std::vector<TermAt>& terms) {
+    const std::vector<std::string> order = unknowns_in(terms);
     if (order.empty()) missing("an unknown in the term");
     const std::string stem = name_stem();
-    std::map<std::string, std::string> renamed;
     for (const std::string& rule : order) {
       const std::string first = order.size() == 1 ? stem : stem + "_" + rule;
       std::string name = first;
       for (int suffix = 2; !is_free(name); ++suffix) name = first + "_" + std::to_string(suffix);
       taken_.insert(name);
-      renamed[std::string(kMark) + rule] = name;
-      result_.unknowns.push_back(unknown(rule, name));
+      final_name_[rule] = name;
+      result_.unknowns.push_back(unknown(rule, name, terms[0].place));
     }
-    for (CandidateTerm& term : result_.terms)
-      term.text = with_names(term.text, [&](const std::string& name) {
-        const auto found = renamed.find(name);
-        return found == renamed.end() ? name : found->second;
-      });
   }
 
-  CandidateUnknown unknown(const std::string& rule_name, const std::string& name) const {
+  CandidateUnknown unknown(const std::string& rule_name, const std::string& name, const DofPlace& at) const {
     const UnknownRule* rule = choice_.effect->find_unknown(rule_name);
     if (rule == nullptr) rule = choice_.effect->find_unknown("h");
     CandidateUnknown item{name, {}, rule_name, UnknownKind::kLinear, 0, 0};
     if (rule != nullptr) {
       item.kind = rule->kind;
       item.limit = rule->limit;
-      item.unit = unit(rule->unit);
+      item.unit = unit(rule->unit, at);
     }
     const auto start = choice_.start.find(rule_name);
     if (start != choice_.start.end()) item.start = start->second;
@@ -302,8 +285,8 @@ class Maker {
     return item;
   }
 
-  std::string unit(std::string text) const {
-    replace_all(text, "{dof}", is_angle(machine_, result_.terms[0].place) ? "deg" : "mm");
+  std::string unit(std::string text, const DofPlace& at) const {
+    replace_all(text, "{dof}", is_angle(machine_, at) ? "deg" : "mm");
     if (choice_.axis) replace_all(text, "{q}", machine_.axes[*choice_.axis].rotary ? "deg" : "mm");
     if (!choice_.units.empty())
       for (const char* mark : {"{T}", "{L}", "{F}"})
@@ -342,6 +325,7 @@ class Maker {
   Choice choice_;
   Candidate result_;
   std::set<std::string> taken_;
+  std::map<std::string, std::string> final_name_;  // of an unknown, by its name in the form
 };
 
 }  // namespace
@@ -354,7 +338,10 @@ const Effect& custom_effect() {
     e.formula = "product of at most three factors in one degree of freedom";
     e.signature = "The residual follows this expression; no effect of the catalogue does.";
     e.exposed_by = "Vary one factor of the expression while the others stay.";
-    e.forms.push_back({"term", PlaceRule::kOwn, "k"});
+    EffectForm& form = e.forms.emplace_back();
+    form.label = "term";
+    form.term = "k";
+    read_term(form);
     e.unknowns.push_back({"k", "", UnknownKind::kLinear, 0, 0, 0, 0});
     return e;
   }();

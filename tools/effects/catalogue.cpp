@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <set>
 #include <sstream>
 
@@ -19,6 +20,17 @@ namespace {
 
 constexpr std::array<const char*, 12> kPlaceNames = {
     "own", "cross", "turn", "length", "angle", "base", "baseturn", "sag", "joint", "each", "pair", "normal"};
+
+/// N of "hats N".
+std::optional<std::size_t> hats_of(const std::string& mark) {
+  constexpr std::string_view kHats = "hats ";
+  // A table of more stations is no effect to be searched for.
+  constexpr double kMostHats = 100;
+  if (mark.rfind(kHats, 0) != 0) return std::nullopt;
+  const auto count = parse_number(mark.substr(kHats.size()));
+  if (!count || *count < 2 || *count > kMostHats || *count != std::floor(*count)) return std::nullopt;
+  return static_cast<std::size_t>(*count);
+}
 
 /// Reads one catalogue, line by line.
 class CatalogueReader {
@@ -110,10 +122,26 @@ class CatalogueReader {
     if (rest.empty()) fail(form.label, "a form is \"form LABEL PLACE TERM\"");
     form.place = static_cast<PlaceRule>(found - kPlaceNames.begin());
     form.term = rest;
+    check_braces(rest);
+    try {
+      read_term(form);
+    } catch (const ExpressionError& error) {
+      fail(rest, error.what());
+    }
     for (const EffectForm& other : effect.forms)
       if (other.label == form.label) fail(form.label, "this form stands twice");
     effect.forms.push_back(form);
     form_line_.push_back(line_);
+  }
+
+  void check_braces(const std::string& term) const {
+    for (std::size_t at = 0; at < term.size(); ++at) {
+      if (term[at] == '}') fail(term.substr(at), "} without {");
+      if (term[at] != '{') continue;
+      const auto end = term.find('}', at);
+      if (end == std::string::npos) fail(term.substr(at), "{ without }");
+      at = end;
+    }
   }
 
   void take_seldom(Effect& effect, std::string rest) const {
@@ -179,61 +207,28 @@ class CatalogueReader {
       if (!used.contains(rule.name)) fail_at(first_line_, rule.name, "no form uses this unknown");
   }
 
-  /// The unknowns that a form uses; errors where its term cannot be read.
+  /// The unknowns that a form uses; errors where its term holds what a term may not.
   std::set<std::string> unknowns_of(const Effect& effect, const EffectForm& form, std::size_t line) const {
-    std::set<std::string> used;
-    std::string term = filled(form, line, used);
-    const auto bar = term.find('|');
-    if ((bar != std::string::npos) != (form.place == PlaceRule::kPair))
+    if ((form.trees.size() == 2) != (form.place == PlaceRule::kPair))
       fail_at(line, form.term, "a pair has two terms with | between them, other places have one");
-    if (bar != std::string::npos) term = "(" + term.substr(0, bar) + ")+(" + term.substr(bar + 1) + ")";
+    std::set<std::string> used;
+    for (const ExprPtr& tree : form.trees)
+      walk(*tree, [&](const Expr& node) {
+        if (node.op != Op::kSymbol) return;
+        for (const std::string& mark : marks_in(node.name)) check_mark(mark, line);
+        if (effect.find_unknown(node.name) != nullptr) used.insert(node.name);
+      });
+    if (form.asks_for("hats") || form.asks_for("runs")) used.insert("h");
     if (used.contains("h") && effect.find_unknown("h") == nullptr)
       fail_at(line, form.term, "hats and runs need the unknown h");
-    try {
-      walk(*parse_expression(term), [&](const Expr& node) {
-        if (node.op == Op::kSymbol && effect.find_unknown(node.name) != nullptr) used.insert(node.name);
-      });
-    } catch (const ExpressionError& error) {
-      fail_at(line, form.term, error.what());
-    }
     return used;
   }
 
-  /// The term with something that an expression may hold in the place of each placeholder.
-  std::string filled(const EffectForm& form, std::size_t line, std::set<std::string>& used) const {
-    static constexpr std::array kNumbers = {"ref", "mid", "from", "to", "span", "sum", "n"};
-    static constexpr std::array kNames = {"q", "T", "S", "L", "F"};
-    std::string text;
-    for (std::size_t at = 0; at < form.term.size(); ++at) {
-      if (form.term[at] == '}') fail_at(line, form.term.substr(at), "} without {");
-      if (form.term[at] != '{') {
-        text += form.term[at];
-        continue;
-      }
-      const auto end = form.term.find('}', at);
-      if (end == std::string::npos) fail_at(line, form.term.substr(at), "{ without }");
-      const std::string mark = form.term.substr(at + 1, end - at - 1);
-      const auto is_mark = [&](const char* known) { return mark == known; };
-      if (std::any_of(kNames.begin(), kNames.end(), is_mark)) {
-        text += "placeholder_" + mark;
-      } else if (mark == "runs" || is_hats(mark)) {
-        used.insert("h");
-        text += "1";
-      } else if (std::any_of(kNumbers.begin(), kNumbers.end(), is_mark)) {
-        text += "1";
-      } else {
-        fail_at(line, "{" + mark + "}", "not a placeholder");
-      }
-      at = end;
-    }
-    return text;
-  }
-
-  static bool is_hats(const std::string& mark) {
-    if (mark.rfind("hats ", 0) != 0) return false;
-    const auto count = parse_number(mark.substr(5));
-    constexpr double kMostHats = 100;
-    return count && *count >= 2 && *count <= kMostHats && *count == std::floor(*count);
+  void check_mark(const std::string& mark, std::size_t line) const {
+    static constexpr std::array kMarks = {"q",    "T",  "S",    "L",   "F", "ref", "mid",
+                                          "from", "to", "span", "sum", "n", "runs"};
+    const bool known = std::any_of(kMarks.begin(), kMarks.end(), [&](const char* m) { return mark == m; });
+    if (!known && !hats_of(mark)) fail_at(line, "{" + mark + "}", "not a placeholder");
   }
 
   std::string file_;
@@ -243,6 +238,28 @@ class CatalogueReader {
 };
 
 }  // namespace
+
+std::vector<std::string> marks_in(const std::string& name) {
+  std::vector<std::string> marks;
+  for (std::size_t at = name.find('{'); at != std::string::npos; at = name.find('{', at + 1))
+    marks.push_back(name.substr(at + 1, name.find('}', at) - at - 1));
+  return marks;
+}
+
+void read_term(EffectForm& form) {
+  // No label of a run stands in a catalogue: a bar is one of a pair.
+  const auto bar = form.term.find('|');
+  form.trees = {parse_template(form.term.substr(0, bar))};
+  if (bar != std::string::npos) form.trees.push_back(parse_template(form.term.substr(bar + 1)));
+  for (const ExprPtr& tree : form.trees)
+    walk(*tree, [&](const Expr& node) {
+      if (node.op != Op::kSymbol) return;
+      for (const std::string& mark : marks_in(node.name)) {
+        if (const auto hats = hats_of(mark)) form.hats = *hats;
+        form.marks.insert(mark.substr(0, mark.find(' ')));
+      }
+    });
+}
 
 const UnknownRule* Effect::find_unknown(std::string_view name) const {
   for (const UnknownRule& rule : unknowns)

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
+#include <algorithm>
 #include <cstdint>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "tools/model/expression.h"
 
 namespace vernier {
 
@@ -48,8 +52,23 @@ struct EffectForm {
   std::string label;
   PlaceRule place = PlaceRule::kOwn;
   std::string term;
-  bool rare = false;  // met more seldom than the effect's other forms
+  bool rare = false;            // met more seldom than the effect's other forms
+  std::vector<ExprPtr> trees;   // the term, read: one, of a pair two
+  std::set<std::string> marks;  // of its placeholders: q, T, hats ...
+  std::size_t hats = 0;         // N of {hats N}
+
+  bool asks_for(const std::string& mark) const { return marks.contains(mark); }
+  /// Does any node of the term answer?
+  template <class Is>
+  bool any(const Is& is) const {
+    return std::any_of(trees.begin(), trees.end(), [&](const ExprPtr& tree) { return any_node(*tree, is); });
+  }
 };
+
+/// Reads form.term into the rest. Throws ExpressionError. tool.
+void read_term(EffectForm& form);
+/// The placeholders in a name of a term: dir{q} has q, {hats 5} has "hats 5".
+std::vector<std::string> marks_in(const std::string& name);
 
 /// An entry of the catalogue: what a user may be told is missing.
 struct Effect {

@@ -38,7 +38,8 @@ bool is_digit(char c) { return c >= '0' && c <= '9'; }
 /// Recursive descent, loosest first: comparison, sum, product, sign, power, primary.
 class Parser {
  public:
-  explicit Parser(std::string_view text) : text_(text) {}
+  explicit Parser(std::string_view text, bool placeholders = false)
+      : text_(text), placeholders_(placeholders) {}
 
   ExprPtr whole() {
     ExprPtr result = comparison();
@@ -106,7 +107,7 @@ class Parser {
     if (at_ >= text_.size()) fail("a value is missing at the end");
     const char c = text_[at_];
     if (is_digit(c) || c == '.') return number();
-    if (is_letter(c)) return name_or_call();
+    if (is_letter(c) || (placeholders_ && c == '{')) return name_or_call();
     if (take('(')) {
       ExprPtr inside = comparison();
       expect(')');
@@ -134,7 +135,7 @@ class Parser {
 
   ExprPtr name_or_call() {
     const std::size_t start = at_;
-    while (at_ < text_.size() && (is_letter(text_[at_]) || is_digit(text_[at_]))) ++at_;
+    while (at_ < text_.size() && (is_letter(text_[at_]) || is_digit(text_[at_]) || skip_placeholder())) ++at_;
     const std::string name(text_.substr(start, at_ - start));
     if (!peek('(')) return symbol(name, start);
     if (name == "run") return run_label();
@@ -143,13 +144,19 @@ class Parser {
     fail_at(start, name, "unknown function");
   }
 
+  /// At a placeholder, goes to its closing brace.
+  bool skip_placeholder() {
+    if (!placeholders_ || text_[at_] != '{') return false;
+    const std::size_t end = text_.find('}', at_);
+    if (end == std::string_view::npos) fail("{ without }");
+    at_ = end;
+    return true;
+  }
+
   ExprPtr symbol(const std::string& name, std::size_t start) {
     if (name == "run" || is_function(name))
       fail_at(start, name, "a function needs its argument in parentheses");
-    auto node = std::make_shared<Expr>();
-    node->op = Op::kSymbol;
-    node->name = name;
-    return node;
+    return make_symbol(name);
   }
 
   ExprPtr call(const NamedFunction& function) {
@@ -170,9 +177,7 @@ class Parser {
     if (quote != '"' && quote != '\'') fail("run needs a label in quotes");
     const std::size_t end = text_.find(quote, at_ + 1);
     if (end == std::string_view::npos) fail("the label's closing quote is missing");
-    auto node = std::make_shared<Expr>();
-    node->op = Op::kRunIs;
-    node->name = std::string(text_.substr(at_ + 1, end - at_ - 1));
+    ExprPtr node = make_run(std::string(text_.substr(at_ + 1, end - at_ - 1)));
     at_ = end + 1;
     expect(')');
     return node;
@@ -235,6 +240,7 @@ class Parser {
   };
 
   std::string_view text_;
+  bool placeholders_;
   std::size_t at_ = 0;
   int depth_ = 0;
 };
@@ -275,10 +281,45 @@ std::string binary_text(const Expr& expr, const char* sign, int left, int right)
 
 ExprPtr parse_expression(std::string_view text) { return Parser(text).whole(); }
 
+ExprPtr parse_template(std::string_view text) { return Parser(text, true).whole(); }
+
+ExprPtr substitute(const ExprPtr& expr, const std::function<ExprPtr(const std::string&)>& replace) {
+  if (expr->op == Op::kSymbol) {
+    ExprPtr other = replace(expr->name);
+    return other ? other : expr;
+  }
+  if (expr->args.empty()) return expr;
+  std::vector<ExprPtr> args;
+  for (const ExprPtr& arg : expr->args) args.push_back(substitute(arg, replace));
+  if (expr->op == Op::kSubtract && args[1]->op == Op::kNumber && expr->args[1]->op == Op::kSymbol)
+    return subtract_number(args[0], args[1]->number);
+  return args == expr->args ? expr : make_node(expr->op, std::move(args));
+}
+
 ExprPtr make_number(double value) {
   auto node = std::make_shared<Expr>();
   node->number = value;
   return node;
+}
+
+ExprPtr make_symbol(std::string name) {
+  auto node = std::make_shared<Expr>();
+  node->op = Op::kSymbol;
+  node->name = std::move(name);
+  return node;
+}
+
+ExprPtr make_run(std::string label) {
+  auto node = std::make_shared<Expr>();
+  node->op = Op::kRunIs;
+  node->name = std::move(label);
+  return node;
+}
+
+ExprPtr subtract_number(ExprPtr left, double value) {
+  if (value == 0) return left;
+  return value < 0 ? make_node(Op::kAdd, {std::move(left), make_number(-value)})
+                   : make_node(Op::kSubtract, {std::move(left), make_number(value)});
 }
 
 ExprPtr make_node(Op op, std::vector<ExprPtr> args) {

@@ -2,6 +2,7 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -88,10 +89,24 @@ class ExpressionError : public std::runtime_error {
 /// tool.
 ExprPtr parse_expression(std::string_view text);
 
+/// The same for a term with placeholders: names may hold something in braces ({q}, dir{q}, {hats 5}), which
+/// stays a part of the name until substitute() puts something there. tool.
+ExprPtr parse_template(std::string_view text);
+
+/// The expression with some of its names replaced: `replace` is asked for every name and gives what stands
+/// there instead, or nothing to leave it.
+ExprPtr substitute(const ExprPtr& expr, const std::function<ExprPtr(const std::string&)>& replace);
+
 /// Text that parses back to the same tree, with the fewest parentheses.
 std::string to_text(const Expr& expr);
 
 ExprPtr make_number(double value);
+/// A name, unresolved.
+ExprPtr make_symbol(std::string name);
+/// 1 in the rows of one run.
+ExprPtr make_run(std::string label);
+/// left - value, written so that it reads well: "x", "x-3", "x+3".
+ExprPtr subtract_number(ExprPtr left, double value);
 ExprPtr make_node(Op op, std::vector<ExprPtr> args);
 
 /// True where the expression is a number after folding, and its value.
@@ -110,6 +125,14 @@ template <class Visit>
 void walk(const Expr& expr, const Visit& visit) {
   for (const ExprPtr& arg : expr.args) walk(*arg, visit);
   visit(expr);
+}
+
+/// Does any node of the expression answer? `is(node)` says which do.
+template <class Is>
+bool any_node(const Expr& expr, const Is& is) {
+  bool found = false;
+  walk(expr, [&](const Expr& node) { found = found || is(node); });
+  return found;
 }
 
 }  // namespace vernier

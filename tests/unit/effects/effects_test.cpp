@@ -80,6 +80,33 @@ TEST(Effects, AUsersEntrySaysWhatIsSeldomAndWhatCauseItHas) {
   EXPECT_TRUE(one[0].forms[1].rare);
 }
 
+TEST(Effects, AUsersEntryMayBeTheInstrumentsAndMayNeedTouches) {
+  const std::vector<Effect> two =
+      parse_effects(std::string(kSound) +
+                        "effect bump\ntitle A bump\nsignature It is touched\ntouches it is felt\n"
+                        "instrument The probe: its tip is worn.\nform plain own k\nunknown k mm linear\n",
+                    "mine.txt");
+  ASSERT_EQ(two.size(), 2U);
+  EXPECT_FALSE(two[0].needs_touches);
+  EXPECT_TRUE(two[0].of_instrument.empty());
+  EXPECT_TRUE(two[1].needs_touches);
+  EXPECT_EQ(two[1].of_instrument, "The probe: its tip is worn.");
+}
+
+TEST(Effects, ATermIsReadIntoItsTreesAndPlaceholders) {
+  EffectForm pair;
+  pair.term = "k*v{q} | -k*v{q}";
+  read_term(pair);
+  ASSERT_EQ(pair.trees.size(), 2U);
+  EXPECT_EQ(to_text(*pair.trees[1]), "-k*v{q}");
+  EXPECT_EQ(pair.marks, std::set<std::string>{"q"});
+  EffectForm table;
+  table.term = "dir{q}*({hats 5})";
+  read_term(table);
+  EXPECT_EQ(table.hats, 5U);
+  EXPECT_EQ(table.marks, (std::set<std::string>{"hats", "q"}));
+}
+
 TEST(Effects, AMissingFileIsAnError) { EXPECT_THROW(effect_catalogue({"/nowhere/effects.txt"}), InputError); }
 
 struct Damage {

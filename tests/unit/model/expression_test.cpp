@@ -94,6 +94,25 @@ TEST(Expression, TextReadsBackToTheSameTree) {
   EXPECT_EQ(to_text(*parse_expression("((a)*(b))")), "a*b");
 }
 
+TEST(Expression, PlaceholdersArePartOfANameInTemplatesOnly) {
+  EXPECT_THROW(parse_expression("k*{q}"), ExpressionError);
+  EXPECT_THROW(parse_template("k*{q"), ExpressionError);
+  EXPECT_EQ(to_text(*parse_template("k*dir{q}*({hats 5})")), "k*dir{q}*{hats 5}");
+}
+
+/// A tree needs no parentheses to stay what it is, where text would.
+TEST(Expression, WhatIsSubstitutedStaysOneOperand) {
+  const auto with = [](const char* term, const ExprPtr& value) {
+    return to_text(*substitute(parse_template(term),
+                               [&](const std::string& name) { return name == "{q}" ? value : nullptr; }));
+  };
+  EXPECT_EQ(with("k*{q}", parse_expression("A+B")), "k*(A+B)");
+  EXPECT_EQ(with("(X-{q})^2", make_number(-3)), "(X+3)^2");
+  EXPECT_EQ(with("(X-{q})^2", make_number(3)), "(X-3)^2");
+  EXPECT_EQ(with("(X-{q})^2", make_number(0)), "X^2");
+  EXPECT_EQ(with("X-3", make_number(0)), "X-3");
+}
+
 TEST(Expression, LagOfARampTrailsByTau) {
   const Machine machine = parse_machine(kMachine, "m.xml");
   constexpr std::size_t kCount = 200;
