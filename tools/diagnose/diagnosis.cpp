@@ -138,15 +138,17 @@ class Diagnoser {
         continue;
       }
       const Proof proof = proof_of(result_.end, fitted.fit);
-      const bool can_tell = proof.can_tell(options_.thresholds.proof);
-      if (can_tell && !proof.bears_out(options_.thresholds.proof)) {
+      const bool proven =
+          proof.can_tell(options_.thresholds.proof) && proof.bears_out(options_.thresholds.proof);
+      if (proof.speaks_against(options_.thresholds.proof)) {
         disproved_.push_back(pool_.candidate(items.back()).label);
         chosen_.erase(chosen_.begin() + static_cast<std::ptrdiff_t>(count - 1));
         continue;
       }
       LadderStep step;
       step.confirmed = true;
-      step.evidence = can_tell ? proof.evidence : finder_.held_out_evidence(items.back());
+      step.evidence = proven ? proof.evidence : finder_.held_out_evidence(items.back());
+      if (proven) proven_.insert(items.back());
       step.effect = pool_.candidate(items.back()).choice.effect->id;
       step.add = add_string_of(items.back());
       step.label = pool_.candidate(items.back()).label;
@@ -353,14 +355,11 @@ class Diagnoser {
       for (std::size_t i = 1; i < pieces.size(); ++i)
         result_.explanation += "; " + pool_.candidate(pieces[i]).label;
       result_.explanation += ".";
-    } else if (const auto nameless = std::count_if(chosen_.begin(), chosen_.end(),
-                                                   [&](std::size_t item) { return pool_.is_custom(item); });
-               nameless > 1) {
+    } else if (const std::size_t nameless = terms_without_standing(); nameless > 0) {
       result_.verdict = Verdict::kUnexplained;
       result_.explanation = fmt::format(
           "The residual comes down to the noise with {} terms that only a search found: more likely pieces "
-          "of what "
-          "the catalogue does not hold.",
+          "of what the catalogue does not hold.",
           nameless);
     } else if (const std::string doubt = doubt_of_shapes(); !doubt.empty()) {
       result_.verdict = Verdict::kUnexplained;
@@ -377,6 +376,22 @@ class Diagnoser {
       result_.verdict = Verdict::kMissingEffect;
       result_.explanation = in_words();
     }
+  }
+
+  /// How many terms that only a search found are more likely pieces of one thing: all of them, where there
+  /// are two at one degree of freedom, or two that the check rows do not both bear out. 0: each stands for
+  /// itself.
+  std::size_t terms_without_standing() const {
+    std::vector<DofPlace> places;
+    bool apart = true;
+    for (const std::size_t item : chosen_) {
+      if (!pool_.is_custom(item)) continue;
+      const DofPlace place = pool_.candidate(item).terms.front().place;
+      apart =
+          apart && proven_.count(item) > 0 && std::find(places.begin(), places.end(), place) == places.end();
+      places.push_back(place);
+    }
+    return places.size() > 1 && !apart ? places.size() : 0;
   }
 
   /// Periods that the positions do not tell from the found ones, of the first accepted effect that has any;
@@ -471,6 +486,7 @@ class Diagnoser {
   const Pool& pool_;                 // the finder's
   std::vector<std::size_t> chosen_;  // the finder's, without those that gain nothing in the fit
   std::vector<std::size_t> shown_;
+  std::set<std::size_t> proven_;        // items that the check rows bear out
   std::vector<std::string> disproved_;  // labels of steps that the check rows speak against
   std::string not_borne_out_;
   Rivals rivals_;

@@ -399,8 +399,7 @@ class Enumerator {
     // A long wave on even positions may be the alias of a short one.
     const bool aliased = !machine_.axes[axis].rotary && shortest_[axis] > 0;
     const double longest = aliased ? to.longest_aliased_share : to.longest_period_share;
-    for (double f = 1 / (longest * length); f <= fastest;
-         f += 1 / (to.periods_per_range * length))
+    for (double f = 1 / (longest * length); f <= fastest; f += 1 / (to.periods_per_range * length))
       grid.push_back(1 / f);
     if (machine_.axes[axis].rotary)
       for (double harmonic = 1; harmonic <= static_cast<double>(to.harmonics_of_turn); ++harmonic)

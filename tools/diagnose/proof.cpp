@@ -5,6 +5,12 @@
 #include <vector>
 
 namespace vernier {
+
+bool Proof::speaks_against(const ProofThresholds& thresholds) const {
+  const double least = expected - thresholds.chance_sigmas * std::sqrt(2 * expected);
+  return can_tell(thresholds) && !bears_out(thresholds) && evidence < least;
+}
+
 Proof proof_on_check_rows(const Measurement& rows, const Eigen::VectorXd& before,
                           const Eigen::VectorXd& after, const NoiseModel& noise, double variance) {
   Proof proof;

@@ -17,6 +17,9 @@ struct Proof {
   bool can_tell(const ProofThresholds& thresholds) const { return expected >= thresholds.expected; }
   /// They speak for it.
   bool bears_out(const ProofThresholds& thresholds) const { return evidence >= thresholds.evidence; }
+  /// They speak against it: less than what bears it out, and less than one true step in so many brings by
+  /// chance. (Of a true step the evidence is normal with mean `expected` and twice that as variance.)
+  bool speaks_against(const ProofThresholds& thresholds) const;
 };
 
 /// The check rows under two models. before, after: residuals (measured - model) of all observations; noise:

@@ -131,6 +131,7 @@ struct FinePeriodThresholds {
     visit("fine.peaks", peaks);
     visit("fine.alias_near", alias_near);
     visit("fine.alias_same", alias_same);
+    visit("fine.alias_partly", alias_partly);
     visit("fine.fewest", fewest);
     visit("fine.nearly_as_well", nearly_as_well);
     visit("fine.told_apart", told_apart);
@@ -246,11 +247,15 @@ struct ProofThresholds {
   /// A step that is true brings its expectation within its spread, sqrt(2 expected): from here on that is
   /// above the limit.
   double expected = 8;
+  /// Spreads of that evidence below its mean from which on the rows speak against the step: one true step in
+  /// a hundred.
+  double chance_sigmas = 2.33;
 
   template <class Visit>
   void for_each(const Visit& visit) {
     visit("proof.evidence", evidence);
     visit("proof.expected", expected);
+    visit("proof.chance_sigmas", chance_sigmas);
   }
 };
 
