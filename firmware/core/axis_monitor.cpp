@@ -10,6 +10,8 @@ namespace {
 constexpr std::int64_t kMostCounts = std::int64_t{1} << 50;
 // Readings whose mean velocity and acceleration are taken; a power of two.
 constexpr unsigned kSmoothShift = 4;
+// What comes later than that is late; clocks and wake-ups vary by less, and a mean over sixteen takes it out.
+constexpr std::int32_t kJitter = kOneTick.count / 8;
 
 constexpr std::int64_t size_of(std::int64_t value) noexcept {
   return value < 0 ? -higher(value, -kMostCounts) : lower(value, kMostCounts);
@@ -30,16 +32,31 @@ std::int64_t AxisMonitor::travel_to(AxisPosition position) const noexcept {
   return static_cast<std::int64_t>(difference);
 }
 
+bool AxisMonitor::on_time() const noexcept { return elapsed_.count <= kOneTick.count + kJitter; }
+
+// A controller that sends by its own clock may have sent once more in a longer time. Below 2^50 * 2^13.
+std::int64_t AxisMonitor::most_travel() const noexcept {
+  if (missing_ == 0 && on_time()) return limits_.step;
+  const std::int64_t own = (std::int64_t{missing_} + 1) * kOneTick.count;
+  const std::int64_t ticks = higher<std::int64_t>(elapsed_.count, own);
+  const std::int64_t once_more = elapsed_.count > own + kJitter ? kOneTick.count : 0;
+  return (lower(limits_.step, kMostCounts >> 8) *
+          lower<std::int64_t>(ticks + once_more, kMostElapsed.count)) >>
+         8;
+}
+
 Fault AxisMonitor::check(std::int64_t travel, AxisSpeed velocity, Health& health) noexcept {
   Fault fault = Fault::kNone;
-  const std::int64_t ticks = std::int64_t{missing_} + 1;
-  if (size_of(travel) > limits_.step * ticks) {
+  if (size_of(travel) > most_travel()) {
     ++health.jumps;
     fault = Fault::kPositionJump;
   }
   // Signed, so that the noise of a standing axis' speed averages out.
   const std::int64_t speed = clamp(velocity.count, -kMostCounts, kMostCounts);
-  claimed_ = travel != 0 ? 0 : clamp(claimed_ + speed, -kMostCounts, kMostCounts);
+  // Of a long silence no more than a second counts: the sum stays far from overflow.
+  const std::int64_t ticks_q8 = on_time() ? kOneTick.count : lower<std::int64_t>(elapsed_.count, 1000 << 8);
+  const std::int64_t claim = (clamp(speed, -kMostCounts >> 10, kMostCounts >> 10) * ticks_q8) >> 8;
+  claimed_ = travel != 0 ? 0 : clamp(claimed_ + claim, -kMostCounts, kMostCounts);
   if (size_of(claimed_) > frozen_speed_sum_) {
     ++health.frozen_readings;
     if (fault == Fault::kNone) fault = Fault::kPositionFrozen;
@@ -51,7 +68,8 @@ Fault AxisMonitor::check(std::int64_t travel, AxisSpeed velocity, Health& health
 // noise.
 void AxisMonitor::derive(std::int64_t any_travel) noexcept {
   const std::int64_t travel = clamp(any_travel, -kMostCounts >> 20, kMostCounts >> 20);
-  const std::int64_t speed = travel * ticks_per_s_;
+  const std::int64_t in_a_tick = on_time() ? travel : (travel * per_tick_q16(elapsed_)) >> 16;
+  const std::int64_t speed = in_a_tick * ticks_per_s_;
   const std::int64_t before = state_.velocity.count;
   const std::int64_t after = before + round_shift(speed - before, kSmoothShift);
   state_.velocity = AxisSpeed(after);
@@ -71,7 +89,8 @@ void AxisMonitor::derive(std::int64_t any_travel) noexcept {
   }
 }
 
-Fault AxisMonitor::take(bool present, const AxisReading& reading, Health& health) noexcept {
+Fault AxisMonitor::take(bool present, const AxisReading& reading, Health& health, TicksQ8 elapsed) noexcept {
+  elapsed_.count = lower(elapsed_.count + elapsed.count, kMostElapsed.count);
   if (!present) {
     ++health.missing_readings;
     missing_ = missing_ < UINT32_MAX ? missing_ + 1 : missing_;
@@ -90,6 +109,7 @@ Fault AxisMonitor::take(bool present, const AxisReading& reading, Health& health
   }
   known_ = true;
   missing_ = 0;
+  elapsed_.count = 0;
   if (!reading.referenced) {
     ++health.unreferenced;
     return Fault::kReferenceLost;

@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "comp/compensator.h"
+#include "firmware/core/elapsed.h"
 #include "firmware/core/health.h"
 #include "hal/axis_reader.h"
 #include "tables/codes.h"
@@ -26,8 +27,9 @@ class AxisMonitor {
   AxisMonitor(const AxisLimits& limits, TimeUs tick, bool gives_motion) noexcept;
 
   /// One reading, or none (present false); counts into health. A reading that jumps is a fault once and the
-  /// measure of the next ones. realtime.
-  Fault take(bool present, const AxisReading& reading, Health& health) noexcept;
+  /// measure of the next ones. elapsed: since the call before, so that a late tick is no jump and makes no
+  /// false speed. realtime.
+  Fault take(bool present, const AxisReading& reading, Health& health, TicksQ8 elapsed = kOneTick) noexcept;
 
   bool known() const noexcept { return known_; }
   /// The newest good state; held while readings are missing.
@@ -37,6 +39,8 @@ class AxisMonitor {
   std::int64_t travel_to(AxisPosition position) const noexcept;
   Fault check(std::int64_t travel, AxisSpeed velocity, Health& health) noexcept;
   void derive(std::int64_t any_travel) noexcept;
+  bool on_time() const noexcept;
+  std::int64_t most_travel() const noexcept;
 
   AxisLimits limits_;
   std::int64_t frozen_speed_sum_ = 0;  // frozen_travel as a sum of counts/s over ticks
@@ -44,6 +48,7 @@ class AxisMonitor {
   bool gives_motion_ = true;
   bool known_ = false;
   std::uint32_t missing_ = 0;
+  TicksQ8 elapsed_{0};        // since the last reading
   std::int64_t claimed_ = 0;  // sum of speeds since the position last changed
   std::int64_t back_ = 0;     // travel against the sense
   AxisInput state_;

@@ -55,20 +55,21 @@ BoundProgram* Cycle::use(BoundProgram& next) noexcept {
   return before;
 }
 
-Fault Cycle::read_axes() noexcept {
+Fault Cycle::read_axes(TicksQ8 elapsed) noexcept {
   Fault fault = Fault::kNone;
   board_.axes.begin_tick();
   for (std::uint32_t i = 0; i < now_->program.axis_count; ++i) {
     const std::uint32_t axis = now_->axis[i];
     AxisReading reading;
     const bool present = board_.axes.read_axis(axis, reading) == HalFault::kNone;
-    fault = first_of(fault, axes_[axis].take(present, reading, health_));
+    fault = first_of(fault, axes_[axis].take(present, reading, health_, elapsed));
   }
   // What no program needs is read as well, for records and touches; where it fails nobody is hurt.
   for (std::uint32_t axis = 0; axis < axis_count_; ++axis) {
     AxisReading reading;
-    if (!uses_axis_[axis] && board_.axes.read_axis(axis, reading) == HalFault::kNone)
-      axes_[axis].take(true, reading, idle_health_);
+    if (uses_axis_[axis]) continue;
+    const bool present = board_.axes.read_axis(axis, reading) == HalFault::kNone;
+    axes_[axis].take(present, reading, idle_health_, elapsed);
   }
   // Feed and curvature of a silent controller are held; its axes are silent too and raise the fault.
   PathReading path;
@@ -183,8 +184,8 @@ void Cycle::count(const CycleOutput& output) noexcept {
   health_.beyond_range += (output.flags & kBeyondRange) != 0 ? 1 : 0;
 }
 
-TickReport Cycle::tick(TimeUs time, Command command, Fault outer) noexcept {
-  const Fault axes = read_axes(), inputs = read_inputs();
+TickReport Cycle::tick(TimeUs time, Command command, Fault outer, TicksQ8 elapsed) noexcept {
+  const Fault axes = read_axes(elapsed), inputs = read_inputs();
   mode_.before(command, first_of(outer, first_of(axes, inputs)), complete(), health_);
   const bool ramping_out_fault = mode_.latched() != Fault::kNone && mode_.mode() == Mode::kRampOut;
   if (!ramping_out_fault) fill_input(time);

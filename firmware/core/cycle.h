@@ -55,9 +55,10 @@ class Cycle {
   /// A board of its own wiring that has no program yet. setup.
   Cycle(const Wiring& wiring, TimeUs tick, const Board& board, const CycleLimits& limits = {}) noexcept;
 
-  /// time: since start (the machine file's t); outer: a fault found around the tick (clock, overruns).
-  /// realtime.
-  TickReport tick(TimeUs time, Command command, Fault outer = Fault::kNone) noexcept;
+  /// time: since start (the machine file's t); outer: a fault found around the tick (clock, overruns);
+  /// elapsed: since the tick before, by the clock. realtime.
+  TickReport tick(TimeUs time, Command command, Fault outer = Fault::kNone,
+                  TicksQ8 elapsed = kOneTick) noexcept;
 
   /// Goes on with another program from the next tick, without a step: corrections move from where they are,
   /// within the limits of their axes; axes that the new one does not correct go to zero. next: bound to this
@@ -88,7 +89,7 @@ class Cycle {
 
  private:
   void set_up(const Wiring& wiring, TimeUs tick) noexcept;
-  Fault read_axes() noexcept;
+  Fault read_axes(TicksQ8 elapsed) noexcept;
   Fault read_inputs() noexcept;
   Fault take_input(std::uint32_t input, InputMicro value) noexcept;
   bool complete() const noexcept;

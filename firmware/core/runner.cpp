@@ -5,7 +5,7 @@ namespace vernier {
 namespace {
 
 // Ticks that are left out one by one; a longer stop starts a new count.
-constexpr int kMostSkipped = 1000;
+constexpr std::uint32_t kMostSkipped = 1000;
 // Signs in one period that are too early to be the next cycle; more is no sync.
 constexpr int kMostEarlySyncs = 64;
 // A wake-up so much later than asked is no late wake-up: time was set, or the machine stood still.
@@ -14,10 +14,17 @@ constexpr InstantNs kClockStep(1'000'000'000);
 }  // namespace
 
 Runner::Runner(Cycle& cycle, Clock& clock, TimeUs period) noexcept
-    : cycle_(cycle), clock_(clock), period_(period), last_(clock.now()), due_(last_ + instant_ns(period)) {}
+    : cycle_(cycle),
+      clock_(clock),
+      period_(period),
+      last_(clock.now()),
+      due_(last_ + instant_ns(period)),
+      elapsed_(period) {}
 
-Runner::Runner(Cycle& cycle, Clock& clock, TimeUs period, TickSync* sync, TimeUs patience) noexcept
+Runner::Runner(Cycle& cycle, Clock& clock, TimeUs period, TickSync* sync, TimeUs patience,
+               const OverrunLimits& overruns) noexcept
     : Runner(cycle, clock, period) {
+  limits_ = overruns;
   sync_ = sync;
   patience_ = patience;
 }
@@ -48,7 +55,7 @@ HalFault Runner::wait() noexcept {
   // The controller's cycles that brought no sign are ticks that were left out.
   const InstantNs now = clock_.now();
   if (now - due_ > kClockStep) return HalFault::kRefused;
-  for (int i = 0; i < kMostSkipped && (now - due_).count > instant_ns(period_).count / 2; ++i) {
+  for (std::uint32_t i = 0; i < kMostSkipped && (now - due_).count > instant_ns(period_).count / 2; ++i) {
     due_ = due_ + instant_ns(period_);
     time_ = time_ + period_;
     ++cycle_.health().skipped;
@@ -57,31 +64,37 @@ HalFault Runner::wait() noexcept {
   return HalFault::kNone;
 }
 
+// A leaking bucket.
+void Runner::count_lost(std::uint32_t ticks) noexcept {
+  cycle_.health().skipped += ticks;
+  const std::uint64_t level = lost_level_ + (std::uint64_t{ticks} << 16);
+  lost_level_ = level > limits_.lost_share_q16 ? level - limits_.lost_share_q16 : 0;
+}
+
 void Runner::schedule(InstantNs ended) noexcept {
   due_ = due_ + instant_ns(period_);
   time_ = time_ + period_;
-  if (ended <= due_) {
-    overruns_ = 0;
-    return;
-  }
-  ++cycle_.health().overruns;
-  ++overruns_;
-  for (int i = 0; i < kMostSkipped && due_ < ended; ++i) {
+  const bool late = ended > due_;
+  overruns_ = late ? overruns_ + 1 : 0;
+  cycle_.health().overruns += late ? 1 : 0;
+  std::uint32_t lost = 0;
+  for (; lost < kMostSkipped && due_ < ended; ++lost) {
     due_ = due_ + instant_ns(period_);
     time_ = time_ + period_;
-    ++cycle_.health().skipped;
   }
+  count_lost(lost);
   if (due_ < ended) due_ = ended + instant_ns(period_);
 }
 
 TickReport Runner::step(Command command) noexcept {
-  Fault outer = overruns_ >= kMostOverruns ? Fault::kOverrun : Fault::kNone;
+  Fault outer = overran_too_often() ? Fault::kOverrun : Fault::kNone;
   if (wait() != HalFault::kNone) outer = Fault::kClock;
   const InstantNs woke = clock_.now();
   // A monotonic clock that runs backwards is broken, whatever the reason.
   if (woke < last_ || woke - due_ > kClockStep) outer = Fault::kClock;
+  const TicksQ8 elapsed = elapsed_.of(woke - last_);
   last_ = woke;
-  const TickReport report = cycle_.tick(time_, command, outer);
+  const TickReport report = cycle_.tick(time_, command, outer, elapsed);
   const InstantNs ended = clock_.now();
   times_.latency.add((woke - due_).count);
   times_.execution.add((ended - woke).count);

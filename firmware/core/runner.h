@@ -9,8 +9,13 @@
 
 namespace vernier {
 
-/// Overruns in a row that are a fault.
-constexpr std::uint32_t kMostOverruns = 10;
+/// When overruns are a fault. Now and then one is late on every system; a tick that is left out as a rule is
+/// no tick, however the late ones are spread.
+struct OverrunLimits {
+  std::uint32_t in_a_row = 10;
+  std::uint32_t lost_share_q16 = 65536 / 20;  // of the ticks, that may be left out for ever
+  std::uint32_t lost_at_once = 200;  // beyond that share: a stop of 0.2 s is none, two in a second are
+};
 
 /// How the ticks of a runner went, ns.
 struct TickTimes {
@@ -27,7 +32,8 @@ class Runner {
   Runner(Cycle& cycle, Clock& clock, TimeUs period) noexcept;
   /// Each tick starts with a sign of `sync`. One that is earlier than half a period is none; where none comes
   /// for `patience` after the tick was due, the clock starts the ticks until the next sign. setup.
-  Runner(Cycle& cycle, Clock& clock, TimeUs period, TickSync* sync, TimeUs patience) noexcept;
+  Runner(Cycle& cycle, Clock& clock, TimeUs period, TickSync* sync, TimeUs patience,
+         const OverrunLimits& overruns = {}) noexcept;
 
   /// Sleeps, then one tick; its time is counted from the construction or set_time(). realtime.
   TickReport step(Command command) noexcept;
@@ -47,6 +53,10 @@ class Runner {
 
  private:
   void schedule(InstantNs ended) noexcept;
+  void count_lost(std::uint32_t ticks) noexcept;
+  bool overran_too_often() const noexcept {
+    return overruns_ >= limits_.in_a_row || lost_level_ > std::uint64_t{limits_.lost_at_once} << 16;
+  }
   HalFault wait() noexcept;
   bool wait_for_sync() noexcept;
 
@@ -60,7 +70,10 @@ class Runner {
   InstantNs last_;  // wake-up before
   InstantNs due_;
   TimeUs time_;
-  std::uint32_t overruns_ = 0;  // in a row
+  ElapsedTicks elapsed_;
+  OverrunLimits limits_;
+  std::uint32_t overruns_ = 0;    // in a row
+  std::uint64_t lost_level_ = 0;  // ticks, Q16: rises with each that is left out, falls with each that ran
   TickTimes times_;
 };
 

@@ -29,7 +29,8 @@ Service::Service(ServiceOptions options, const Board& board, SlotStore& store)
       uploader_(store, options_.wiring, options_.upload),
       exchange_(options_.ticks_kept, options_.touches_kept),
       cycle_(options_.wiring, options_.upload.tick, board_, options_.limits),
-      runner_(cycle_, board_.clock, options_.upload.tick, board_.sync, options_.sync_patience),
+      runner_(cycle_, board_.clock, options_.upload.tick, board_.sync, options_.sync_patience,
+              options_.overruns),
       link_(exchange_, uploader_, options_.wiring, options_.upload.tick, options_.upload.key) {
   if (board_.probe != nullptr) probing_.emplace(*board_.probe, probe_settings(options_));
 }

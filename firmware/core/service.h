@@ -21,6 +21,7 @@ struct ServiceOptions {
   Wiring wiring;
   CycleLimits limits;
   Uploader::Options upload;
+  OverrunLimits overruns;
   TimeUs sync_patience;   // beyond a tick's time, until the clock takes the place of the sync
   ProbeSettings probe;    // where the board has one; axes are filled in from the wiring
   bool activate = false;  // bring the correction in when the board becomes ready, once for each enable

@@ -221,6 +221,8 @@ void read_board(BoardFile& board, const toml::table& table) {
   board.service.upload.trial_time = TimeUs(counts(1e6 * settings.number("trial_s", 60, 0.1, 86400)));
   board.service.activate = settings.flag("activate", false);
   board.priority = static_cast<int>(settings.number("priority", 80, 1, 99));
+  board.service.overruns.lost_share_q16 =
+      static_cast<std::uint32_t>(65536 * settings.number("max_lost_ticks", 0.05, 0, 0.99));
   const toml::table* const sync = settings.table("sync");
   board.sync = source_of(sync, board.path, "board.sync");
   if (sync != nullptr)

@@ -83,6 +83,7 @@ store = "store"
 public_key = "key.pub"
 trial_s = 30
 activate = true
+max_lost_ticks = 0.9   # an emulation, or a busy computer, leaves many out
 [axis.X]
 high = 600
 position = { kind = "sim" }
@@ -223,7 +224,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadBoard{"UnknownSetting", "trial_s", "trail_s", "board.toml:4: board: unknown setting trail_s"},
         BadBoard{"UnknownSection", "[[link]]", "[[lnik]]", "unknown section lnik"},
         BadBoard{"NoKeyFile", "key.pub", "none.pub", "none.pub: cannot be read as a public key"},
-        BadBoard{"Type", "high = 600", "high = \"600\"", "board.toml:7: axis.X: high must be a number"},
+        BadBoard{"Type", "high = 600", "high = \"600\"", "board.toml:8: axis.X: high must be a number"},
         BadBoard{"Range", "trial_s = 30", "trial_s = -1", "trial_s must be between 0.1 and 86400"},
         BadBoard{"Kind", "[input.T]\nunit = \"degC\"", "[input.T]\nkind = \"degC\"", "unknown setting kind"},
         BadBoard{"NoPosition", "position = { kind = \"sim\" }\n", "", "axis.X: position is missing"},

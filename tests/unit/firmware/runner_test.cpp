@@ -82,11 +82,80 @@ TEST(Runner, ManyOverrunsInARowAreAFault) {
   while (bench.rig.cycle().mode() != Mode::kActive)
     bench.step(bench.rig.cycle().mode() == Mode::kReady && !bench.rig.asked() ? Command::kActivate
                                                                               : Command::kNone);
-  for (std::uint32_t i = 0; i < kMostOverruns; ++i) {
+  for (std::uint32_t i = 0; i < OverrunLimits{}.in_a_row; ++i) {
     bench.clock.late = InstantNs(1'500'000);
     EXPECT_EQ(bench.step().latched, Fault::kNone) << i;
   }
   EXPECT_EQ(bench.step().latched, Fault::kOverrun);
+}
+
+// One tick in twenty may be left out for ever; what stalls a tick for 130 ms every hundred ticks may not,
+// though no two overruns follow each other.
+TEST(Runner, OverrunsAreJudgedByTheirRateToo) {
+  struct {
+    std::int64_t late_ns;
+    int every;
+    Fault fault;
+  } const cases[] = {{130'000'000, 100, Fault::kOverrun},
+                     {1'400'000, 4, Fault::kOverrun},
+                     {1'400'000, 22, Fault::kNone},
+                     {150'000'000, 5000, Fault::kNone}};
+  for (const auto& wanted : cases) {
+    RunnerBench bench;
+    while (bench.rig.cycle().mode() != Mode::kActive)
+      bench.step(bench.rig.cycle().mode() == Mode::kReady && !bench.rig.asked() ? Command::kActivate
+                                                                                : Command::kNone);
+    for (int i = 0; i < 20000; ++i) {
+      if (i % wanted.every == 1) bench.clock.late = InstantNs(wanted.late_ns);
+      bench.step();
+    }
+    EXPECT_EQ(bench.rig.cycle().latched(), wanted.fault) << wanted.late_ns << " every " << wanted.every;
+  }
+}
+
+/// An axis at constant speed by the clock: what it reads says when it was read.
+class MovingAxes : public SimPlant {
+ public:
+  MovingAxes(Trajectory& motion, Clock& clock, double mm_per_s)
+      : SimPlant(motion, 2, 1, PlantOptions{.gives_motion = false, .faults = {}}),
+        clock_(clock),
+        speed_(mm_per_s) {}
+  HalFault read_axis(std::uint32_t, AxisReading& reading) noexcept override {
+    reading = {};
+    reading.position =
+        AxisPosition(static_cast<std::int64_t>(static_cast<double>(clock_.now().count) * 1e-3 * speed_));
+    return HalFault::kNone;
+  }
+
+ private:
+  Clock& clock_;
+  double speed_;
+};
+
+// The axis moves at 300 mm/s and may move at 500: a tick that is 1.1 ms late sees 0.63 mm, which no axis does
+// in a millisecond, and a speed of 630 mm/s, which it never had.
+TEST(Runner, LateTickIsNoJumpAndMakesNoFalseSpeed) {
+  const auto image = small_image();
+  Roaming motion({{0, 600'000'000}, {0, 200'000'000}}, {InputMicro(20'000'000)}, TimeUs(1000), 0.1, 1);
+  LateClock clock;
+  MovingAxes axes(motion, clock, 300);
+  CycleLimits limits;
+  limits.axis[0].own = limits.axis[1].own = true;
+  limits.axis[0].limits.step = limits.axis[1].limits.step = 500'000;
+  Cycle cycle(image->view, Board{clock, axes, axes, axes}, limits);
+  Runner runner(cycle, clock, TimeUs(1000));
+  axes.release();
+  for (int i = 0; i < 3000; ++i) {
+    axes.advance();
+    if (i >= 500 && i % 100 == 0) clock.late = InstantNs(1'100'000 + 10'000 * (i / 100));
+    runner.step(cycle.mode() == Mode::kReady ? Command::kActivate : Command::kNone);
+    if (i > 400) {
+      ASSERT_NEAR(static_cast<double>(cycle.axis_state(0).velocity.count), 300e6, 25e6) << i;
+    }
+  }
+  EXPECT_EQ(cycle.health().jumps, 0u);
+  EXPECT_EQ(cycle.latched(), Fault::kNone);
+  EXPECT_EQ(cycle.mode(), Mode::kActive);
 }
 
 TEST(Runner, BrokenTimerIsAFault) {
