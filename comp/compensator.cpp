@@ -2,7 +2,6 @@
 #include "comp/compensator.h"
 
 #include "comp/fixed.h"
-#include "comp/shares.h"
 
 namespace vernier {
 namespace {
@@ -73,17 +72,16 @@ void Compensator::read_channels(const CycleInput& input, CycleOutput& output) no
   }
 }
 
-void Compensator::shares(const ShareProgram& program, Correction* corrections) noexcept {
-  if (printed_ != nullptr) {
-    // The printed form leaves no registers behind: the tick is executed again from where it began.
-    run_equation(program_.equation, registers_, lags_before_, started_now_);
-  }
-  run_shares(program, program_, registers_, corrections);
+void Compensator::state(EquationState& state) const noexcept {
+  const Equation& e = program_.equation;
+  state.channel_count = e.channel_count <= EquationState::kMostChannels ? e.channel_count : 0;
+  state.starting = started_now_ ? 1 : 0;
+  for (std::uint32_t i = 0; i < state.channel_count; ++i)
+    state.channel[i] = registers_[e.first_channel() + i];
+  for (std::uint32_t i = 0; i < e.lag_count; ++i) state.lag[i] = lags_before_[i];
 }
 
 void Compensator::run_printed() noexcept {
-  for (std::uint32_t i = 0; i < program_.equation.lag_count; ++i) lags_before_[i] = lags_[i];
-  started_now_ = starting_;
   std::int32_t deviation[kMaxAxes];
   printed_(registers_ + program_.equation.first_channel(), lags_, starting_, deviation);
   for (std::uint32_t i = 0; i < program_.outputs.size; ++i)
@@ -93,6 +91,8 @@ void Compensator::run_printed() noexcept {
 CycleOutput Compensator::step(const CycleInput& input, WeightQ16 weight) noexcept {
   CycleOutput output;
   read_channels(input, output);
+  for (std::uint32_t i = 0; i < program_.equation.lag_count; ++i) lags_before_[i] = lags_[i];
+  started_now_ = starting_;
   if (printed_ != nullptr)
     run_printed();
   else

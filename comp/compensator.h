@@ -120,6 +120,14 @@ std::int32_t channel_value(const Channel& channel, std::int64_t value) noexcept;
 
 struct ShareProgram;
 
+/// What a tick began with: from it the tick can be executed again elsewhere.
+struct EquationState {
+  static constexpr std::uint32_t kMostChannels = 256;  // of a program whose shares can be shown
+  std::uint32_t channel_count = 0, starting = 0;
+  std::int32_t channel[kMostChannels] = {};
+  LagState lag[kMaxLags] = {};
+};
+
 /// The printed form of a program (`vernier compile`, equation.cpp): deviations of the outputs, in their order
 /// and formats, from the channels. realtime.
 using PrintedEquation = void (*)(const std::int32_t* channel, LagState* lag, bool starting,
@@ -144,9 +152,9 @@ class Compensator {
   /// Forgets lags and slew state: the next step starts from zero correction. setup.
   void reset() noexcept;
 
-  /// The shares of the effects in the correction of the last step (comp/shares.h); one entry per share.
-  /// realtime, but not needed by the tick.
-  void shares(const ShareProgram& program, Correction* corrections) noexcept;
+  /// What the last step began with; a program of more channels than fit gives none. Copies the channels and
+  /// lags that there are. realtime.
+  void state(EquationState& state) const noexcept;
 
   /// Runs the printed form instead of executing the program: the same corrections to the last bit, in a sixth
   /// to a third of the instructions. equation: printed from this program. setup.
@@ -164,7 +172,7 @@ class Compensator {
   PrintedEquation printed_ = nullptr;
   std::int32_t registers_[kMaxRegisters] = {};
   LagState lags_[kMaxLags] = {};
-  LagState lags_before_[kMaxLags] = {};  // of the tick, kept where the printed form runs
+  LagState lags_before_[kMaxLags] = {};  // of the tick
   bool started_now_ = false;
   SlewLimit slew_[kMaxAxes];
   bool starting_ = true;

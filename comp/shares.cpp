@@ -48,8 +48,16 @@ ProgramFault verify_shares(const ShareProgram& shares, const Program& program, V
   return verify_share_outputs(shares, program);
 }
 
-void run_shares(const ShareProgram& shares, const Program& program, std::int32_t* registers,
-                Correction* corrections) noexcept {
+bool run_shares(const ShareProgram& shares, const Program& program, const EquationState& state,
+                std::int32_t* registers, Correction* corrections) noexcept {
+  const Equation& tick = program.equation;
+  if (state.channel_count != tick.channel_count) return false;
+  for (std::uint32_t i = 0; i < tick.constants.size; ++i) registers[i] = tick.constants[i];
+  for (std::uint32_t i = 0; i < tick.channel_count; ++i)
+    registers[tick.first_channel() + i] = state.channel[i];
+  LagState lags[kMaxLags];
+  for (std::uint32_t i = 0; i < tick.lag_count; ++i) lags[i] = state.lag[i];
+  run_equation(tick, registers, lags, state.starting != 0);
   const Equation& e = shares.equation;
   std::int32_t* const own = registers + program.equation.register_count();
   for (std::uint32_t i = 0; i < e.constants.size; ++i) own[i] = e.constants[i];
@@ -62,6 +70,7 @@ void run_shares(const ShareProgram& shares, const Program& program, std::int32_t
     const std::int64_t deviation = round_shift(std::int64_t{own[s.source]} * s.multiplier, s.shift);
     corrections[i] = correction_for(Deviation{saturate(deviation, saturated)});
   }
+  return true;
 }
 
 }  // namespace vernier

@@ -35,10 +35,11 @@ struct ShareProgram {
 /// kMaxRegisters, holds the ranges of the program's registers, gets those of the shares behind them. setup.
 ProgramFault verify_shares(const ShareProgram& shares, const Program& program, ValueRange* ranges) noexcept;
 
-/// The shares of the last tick's correction, before its limits and ramps: one entry per share, in their
-/// order. A VERIFIED share program. registers: those of the tick, kMaxRegisters long; what is behind them is
-/// overwritten. realtime, but not needed by the tick.
-void run_shares(const ShareProgram& shares, const Program& program, std::int32_t* registers,
-                Correction* corrections) noexcept;
+/// The shares of a tick's correction, before its limits and ramps: one entry per share, in their order. The
+/// tick is executed again from what it began with, so that no work for a display is ever done in a tick. A
+/// VERIFIED share program. state: of the same program; registers: room for kMaxRegisters. False where the
+/// state is of another program. setup.
+bool run_shares(const ShareProgram& shares, const Program& program, const EquationState& state,
+                std::int32_t* registers, Correction* corrections) noexcept;
 
 }  // namespace vernier

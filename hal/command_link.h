@@ -11,8 +11,19 @@ namespace vernier {
 class CommandHandler {
  public:
   virtual ~CommandHandler() = default;
-  /// request: any bytes; reply: room for the longest. Returns the bytes of the reply, 0: none. setup.
+  /// A reply that takes its time: a medium is at work.
+  static constexpr std::uint32_t kLater = UINT32_MAX;
+
+  /// request: any bytes; reply: room for the longest. Returns the bytes of the reply, 0: none, or kLater: the
+  /// link asks later() for it, and serves others meanwhile. setup.
   virtual std::uint32_t answer(const std::uint8_t* request, std::uint32_t size, std::uint8_t* reply) = 0;
+  /// What later() is to be asked with, right after answer() said kLater. setup.
+  virtual std::uint32_t ticket() const { return 0; }
+  /// The reply that was to come later: its bytes, kLater while it is worked on, 0 where there is none any
+  /// more. setup.
+  virtual std::uint32_t later(std::uint32_t ticket, std::uint8_t* reply) {
+    return static_cast<void>(ticket), static_cast<void>(reply), 0;
+  }
   /// The live registers for masters that know nothing but registers. setup.
   virtual void fill_registers(std::uint16_t* values) = 0;
   /// A command from such a master: false where it is none, or cannot be taken now. setup.
@@ -23,8 +34,9 @@ class CommandHandler {
 class CommandLink {
  public:
   virtual ~CommandLink() = default;
-  /// Waits at most `wait` for requests and answers those that came. kRefused: the link is broken and has been
-  /// taken up again, or will be at the next call; a peer that misbehaves is no fault. setup.
+  /// Waits at most `wait` for requests and answers those that came; never for a peer that stops in the middle
+  /// of one, or does not take its reply. kRefused: the link is broken and has been taken up again, or will be
+  /// at the next call; a peer that misbehaves is no fault. setup.
   virtual HalFault serve(CommandHandler& handler, TimeUs wait) noexcept = 0;
   /// What the operating system can wait on until a request comes: at most `room` handles are put into
   /// `handles`. Returns how many; 0 where the link has none. setup.

@@ -11,7 +11,7 @@
 /// reply repeats it.
 namespace vernier {
 
-constexpr std::uint16_t kLinkVersion = 1;
+constexpr std::uint16_t kLinkVersion = 2;
 constexpr std::uint32_t kMaxRequestBytes = 240;
 constexpr std::uint32_t kMaxReplyBytes = 244;
 constexpr std::uint32_t kRequestHeaderBytes = 2, kReplyHeaderBytes = 3;

@@ -43,14 +43,6 @@ static_assert(offsetof(HealthRecord, ticks) == 0 && offsetof(HealthRecord, activ
               offsetof(HealthRecord, refused_commands) == 120 && offsetof(HealthRecord, programs) == 128 &&
               offsetof(HealthRecord, latency_ns) == 136 && offsetof(HealthRecord, execution_ns) == 168);
 
-/// What each effect adds to the corrections, as others see it.
-struct ShareRecord {
-  std::uint64_t programs = 0;  // HealthRecord::programs when it was taken: which program's shares these are
-  std::uint32_t count = 0, reserved = 0;
-  std::int32_t correction[kMaxShares] = {};  // counts of the share's axis
-};
-static_assert(sizeof(ShareRecord) % 8 == 0);
-
 /// What is to be known about a touch.
 enum TouchFlag : std::uint8_t {
   kTouchUncompensated = 1u << 0,  // no program ran: `compensated` is `position`

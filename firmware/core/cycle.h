@@ -83,9 +83,8 @@ class Cycle {
   InputMicro input_value(std::uint32_t input) const noexcept { return inputs_[input]; }
   const PathReading& path() const noexcept { return path_; }
   const BoundProgram& program() const noexcept { return *now_; }
-  /// What each effect adds to the corrections of the last tick, before limits and ramps, by share of the
-  /// program. corrections: room for kMaxShares. realtime, but not needed by the tick.
-  void shares(Correction* corrections) noexcept { now_->compensator.shares(now_->shares, corrections); }
+  /// What the last tick began with. realtime.
+  void equation_state(EquationState& state) const noexcept { now_->compensator.state(state); }
 
  private:
   void set_up(const Wiring& wiring, TimeUs tick) noexcept;

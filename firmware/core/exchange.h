@@ -133,13 +133,19 @@ class History {
   std::unique_ptr<AtomicWords<T>[]> values_;
 };
 
+/// What a tick began with, so that others can work out what each effect added.
+struct EquationRecord {
+  std::uint32_t programs = 0, reserved = 0;  // HealthRecord::programs: whose state it is
+  EquationState state;
+};
+
 /// All that passes between the tick and the rest of the daemon. No locks: the tick never waits for anybody.
 struct Exchange {
   static constexpr std::uint32_t kHistory = 4096;  // ticks, about four seconds
   static constexpr std::uint32_t kTouches = 256;
 
   Published<HealthRecord> health;
-  Published<ShareRecord> shares;
+  Published<EquationRecord> equation;  // ten a second
   History<TickRecord> ticks;
   History<TouchRecord> touches;
   Published<WorkpieceFrame> workpiece;           // written by the links

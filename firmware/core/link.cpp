@@ -82,6 +82,24 @@ std::uint32_t Link::answer(const std::uint8_t* request, std::uint32_t size, std:
   return kReplyHeaderBytes + out.used();
 }
 
+bool Link::needs_store(const std::uint8_t* request, std::uint32_t size) noexcept {
+  if (size < kRequestHeaderBytes) return false;
+  const auto op = static_cast<LinkOp>(request[0]);
+  return op == LinkOp::kFinish || op == LinkOp::kConfirm || op == LinkOp::kRevert || op == LinkOp::kRead;
+}
+
+bool Link::is_upload_step(const std::uint8_t* request, std::uint32_t size) noexcept {
+  if (size < kRequestHeaderBytes) return false;
+  const auto op = static_cast<LinkOp>(request[0]);
+  return op == LinkOp::kBegin || op == LinkOp::kData;
+}
+
+std::uint32_t Link::answer_busy(const std::uint8_t* request, std::uint8_t* reply) noexcept {
+  reply[0] = request[0], reply[1] = request[1];
+  reply[2] = static_cast<std::uint8_t>(LinkStatus::kNotReady);
+  return kReplyHeaderBytes;
+}
+
 LinkStatus Link::run(LinkOp op, Reader& in, Writer& out, TimeUs now) {
   switch (op) {
     case LinkOp::kHello:
@@ -117,7 +135,7 @@ LinkStatus Link::run(LinkOp op, Reader& in, Writer& out, TimeUs now) {
     case LinkOp::kFinish:
     case LinkOp::kConfirm:
     case LinkOp::kRevert:
-      return upload(op, in, out, now);
+      return upload(op, in, out);
   }
   return LinkStatus::kUnknownOp;
 }
@@ -204,12 +222,13 @@ LinkStatus Link::health(Reader& in, Writer& out) const {
 }
 
 LinkStatus Link::slots(Writer& out, TimeUs now) const {
+  const SlotsRecord record = uploader_.record();
   SlotsReply reply{};
-  reply.confirmed = uploader_.slots().confirmed();
-  reply.trial = uploader_.slots().trial();
-  reply.confirmed_fingerprint = uploader_.confirmed_fingerprint();
-  reply.trial_fingerprint = uploader_.trial_fingerprint();
-  reply.issued = uploader_.slots().issued();
+  reply.confirmed = record.confirmed;
+  reply.trial = record.trial;
+  reply.confirmed_fingerprint = record.confirmed_fingerprint;
+  reply.trial_fingerprint = record.trial_fingerprint;
+  reply.issued = record.issued;
   reply.trial_left_ms =
       static_cast<std::uint32_t>(clamp<std::int64_t>(uploader_.trial_left(now).count / 1000, 0, UINT32_MAX));
   out.put(reply);
@@ -245,32 +264,55 @@ LinkStatus Link::weight(Reader& in) {
   return LinkStatus::kDone;
 }
 
-LinkStatus Link::shares(Reader& in, Writer& out) const {
+namespace {
+
+/// The program that runs, kept where it is while it is looked at.
+class Look {
+ public:
+  explicit Look(Programs& programs) : programs_(programs), program_(programs.look()) {}
+  ~Look() { programs_.look_away(); }
+  Look(const Look&) = delete;
+  Look& operator=(const Look&) = delete;
+  const LoadedProgram* program() const { return program_; }
+
+ private:
+  Programs& programs_;
+  const LoadedProgram* program_;
+};
+
+}  // namespace
+
+// What was published may be of a program that has gone, or that has not been collected yet.
+bool Link::work_out_shares(const LoadedProgram& program) {
+  if (!exchange_.equation.read(equation_) || equation_.programs != program.number.load()) return false;
+  return run_shares(program.view.shares(), program.view.program(), equation_.state, registers_, shares_);
+}
+
+LinkStatus Link::shares(Reader& in, Writer& out) {
   const auto first = in.take<std::uint16_t>();
   if (!in.complete()) return LinkStatus::kBadLength;
-  ShareRecord record;
-  if (program_ == nullptr || !exchange_.shares.read(record)) return LinkStatus::kNotReady;
-  // What was published may be of a program that has gone, or that has not been collected yet.
-  if (record.programs != programs_ || record.count != program_->shares.shares.size)
-    return LinkStatus::kNotReady;
-  if (first > record.count) return LinkStatus::kBadValue;
-  out.put(static_cast<std::uint16_t>(record.count));
-  out.put(static_cast<std::uint32_t>(record.programs));
-  for (std::uint32_t i = first; i < record.count; ++i) {
-    const std::uint32_t axis = program_->axis[program_->shares.shares[i].axis];
-    if (!out.put(LinkShare{static_cast<std::uint8_t>(axis), record.correction[i]})) break;
-  }
+  const Look look(uploader_.programs());
+  const LoadedProgram* const program = look.program();
+  if (program == nullptr || !work_out_shares(*program)) return LinkStatus::kNotReady;
+  const View<Share>& shares = program->view.shares().shares;
+  if (first > shares.size) return LinkStatus::kBadValue;
+  out.put(static_cast<std::uint16_t>(shares.size));
+  out.put(equation_.programs);
+  for (std::uint32_t i = first; i < shares.size; ++i)
+    if (!out.put(LinkShare{static_cast<std::uint8_t>(program->axis[shares[i].axis]), shares_[i].counts}))
+      break;
   return LinkStatus::kDone;
 }
 
-LinkStatus Link::share_name(Reader& in, Writer& out) const {
+LinkStatus Link::share_name(Reader& in, Writer& out) {
   const auto index = in.take<std::uint16_t>();
   const auto programs = in.take<std::uint32_t>();
   if (!in.complete()) return LinkStatus::kBadLength;
-  if (program_ == nullptr || programs != static_cast<std::uint32_t>(programs_) ||
-      index >= program_->share_names.size)
+  const Look look(uploader_.programs());
+  const LoadedProgram* const program = look.program();
+  if (program == nullptr || programs != program->number.load() || index >= program->view.share_names().size)
     return LinkStatus::kBadValue;
-  out.put(program_->share_names[index]);
+  out.put(program->view.share_names()[index]);
   return LinkStatus::kDone;
 }
 
@@ -309,11 +351,14 @@ LinkStatus Link::workpiece(Reader& in) {
   return LinkStatus::kDone;
 }
 
-LinkStatus Link::upload(LinkOp op, Reader& in, Writer& out, TimeUs now) {
+LinkStatus Link::upload(LinkOp op, Reader& in, Writer& out) {
   UploadResult result;
   if (op == LinkOp::kBegin) {
     const auto bytes = in.take<std::uint32_t>();
     if (!in.complete()) return LinkStatus::kBadLength;
+    const Trial trial = uploader_.programs().trial();
+    // The trial before is being put away.
+    if (trial == Trial::kOver || trial == Trial::kKept) return LinkStatus::kNotReady;
     result = uploader_.begin(bytes);
   } else if (op == LinkOp::kData) {
     const auto offset = in.take<std::uint32_t>();
@@ -322,7 +367,7 @@ LinkStatus Link::upload(LinkOp op, Reader& in, Writer& out, TimeUs now) {
   } else if (!in.complete()) {
     return LinkStatus::kBadLength;
   } else {
-    result = op == LinkOp::kFinish    ? uploader_.finish(now)
+    result = op == LinkOp::kFinish    ? uploader_.finish()
              : op == LinkOp::kConfirm ? uploader_.confirm()
                                       : uploader_.revert();
   }

@@ -21,12 +21,12 @@ class Link {
   /// 0 where the request is too short to be answered. now: as the uploader's. setup.
   std::uint32_t answer(const std::uint8_t* request, std::uint32_t size, std::uint8_t* reply, TimeUs now);
 
-  /// The program that the tick has taken over, and how many it has taken: for the names of its shares. It
-  /// lives until the next call. setup.
-  void set_program(const BoundProgram& program, std::uint64_t programs) noexcept {
-    program_ = &program;
-    programs_ = programs;
-  }
+  /// Has the request to do with the medium? It is then answered by the store, which may wait for it. setup.
+  static bool needs_store(const std::uint8_t* request, std::uint32_t size) noexcept;
+  /// Is it a step of an upload? None while the store is at work for one. setup.
+  static bool is_upload_step(const std::uint8_t* request, std::uint32_t size) noexcept;
+  /// "Ask again": the reply to a request that comes while the store is at work. setup.
+  static std::uint32_t answer_busy(const std::uint8_t* request, std::uint8_t* reply) noexcept;
 
   /// The live registers for plain Modbus masters; values: kLiveRegisters. setup.
   void fill_registers(std::uint16_t* values) const;
@@ -45,11 +45,12 @@ class Link {
   LinkStatus slots(Writer& out, TimeUs now) const;
   LinkStatus read(Reader& in, Writer& out);
   LinkStatus weight(Reader& in);
-  LinkStatus shares(Reader& in, Writer& out) const;
-  LinkStatus share_name(Reader& in, Writer& out) const;
+  LinkStatus shares(Reader& in, Writer& out);
+  bool work_out_shares(const LoadedProgram& program);
+  LinkStatus share_name(Reader& in, Writer& out);
   LinkStatus touches(Reader& in, Writer& out) const;
   LinkStatus workpiece(Reader& in);
-  LinkStatus upload(LinkOp op, Reader& in, Writer& out, TimeUs now);
+  LinkStatus upload(LinkOp op, Reader& in, Writer& out);
   bool put_touch(Writer& out, std::uint64_t number, const TouchRecord& touch) const;
   bool put_tick(Writer& out, std::uint64_t number, const TickRecord& tick) const;
 
@@ -58,8 +59,10 @@ class Link {
   const Wiring& wiring_;
   TimeUs tick_;
   std::optional<PublicKey> key_;
-  const BoundProgram* program_ = nullptr;
-  std::uint64_t programs_ = 0;
+  // Room for the shares, which are worked out when they are asked for.
+  EquationRecord equation_;
+  std::int32_t registers_[kMaxRegisters];
+  Correction shares_[kMaxShares];
 };
 
 }  // namespace vernier

@@ -26,8 +26,8 @@ ProbeSettings probe_settings(const ServiceOptions& options) {
 Service::Service(ServiceOptions options, const Board& board, SlotStore& store)
     : options_(options),
       board_(board),
-      uploader_(store, options_.wiring, options_.upload),
       exchange_(options_.ticks_kept, options_.touches_kept),
+      uploader_(store, options_.wiring, exchange_, options_.upload),
       cycle_(options_.wiring, options_.upload.tick, board_, options_.limits),
       runner_(cycle_, board_.clock, options_.upload.tick, board_.sync, options_.sync_patience,
               options_.overruns),
@@ -104,18 +104,16 @@ void Service::publish(const TickReport& report) noexcept {
   record_.holding = cycle_.holding() ? 1 : 0;
   exchange_.ticks.add(record_);
   publish_health();
-  if (--until_shares_ == 0) {
-    until_shares_ = kTicksPerShares;
-    publish_shares();
+  if (--until_equation_ == 0) {
+    until_equation_ = kTicksPerEquation;
+    publish_equation();
   }
 }
 
-void Service::publish_shares() noexcept {
-  cycle_.shares(share_corrections_);
-  shares_.programs = cycle_.health().programs;
-  shares_.count = cycle_.program().shares.shares.size;
-  for (std::uint32_t i = 0; i < shares_.count; ++i) shares_.correction[i] = share_corrections_[i].counts;
-  exchange_.shares.publish(shares_);
+void Service::publish_equation() noexcept {
+  equation_.programs = static_cast<std::uint32_t>(cycle_.health().programs);
+  cycle_.equation_state(equation_.state);
+  exchange_.equation.publish(equation_);
 }
 
 void Service::publish_health() noexcept {
@@ -140,21 +138,31 @@ void Service::publish_health() noexcept {
   exchange_.health.publish(r);
 }
 
+UploadResult Service::boot() {
+  const UploadResult result = uploader_.boot();
+  guard();
+  return result;
+}
+
+bool Service::look_after_store() noexcept {
+  uploader_.look_after_store();
+  if (!desk_.asked()) return false;
+  if (!answered_) answer_size_ = link_.answer(desk_.request(), desk_.size(), desk_.reply(), now());
+  // An image is given up when the tick has been offered another one, a moment after the order.
+  answered_ =
+      desk_.request()[0] == static_cast<std::uint8_t>(LinkOp::kRevert) && uploader_.programs().giving_up();
+  if (answered_) return false;
+  desk_.done(answer_size_);
+  return true;
+}
+
 void Service::look_after_programs() noexcept {
-  uploader_.poll(now());
-  if (exchange_.retired.load(std::memory_order_acquire) != nullptr) {
-    // The tick runs what was offered; what it ran before is nobody's any more.
-    running_ = std::move(offered_);
-    link_.set_program(running_->bound, ++programs_);
-    exchange_.retired.store(nullptr, std::memory_order_release);
-  }
-  if (ProgramRef next = uploader_.take_next()) waiting_ = std::move(next);
-  if (waiting_ == nullptr || offered_ != nullptr) return;
-  offered_ = std::move(waiting_);
-  exchange_.offered.store(&offered_->bound, std::memory_order_release);
+  guard();
+  look_after_store();
 }
 
 HalFault Service::serve(CommandLink& link, TimeUs wait) noexcept {
+  if (options_.store_beside) return link.serve(*this, wait);
   look_after_programs();
   const HalFault fault = link.serve(*this, wait);
   look_after_programs();
@@ -162,7 +170,13 @@ HalFault Service::serve(CommandLink& link, TimeUs wait) noexcept {
 }
 
 std::uint32_t Service::answer(const std::uint8_t* request, std::uint32_t size, std::uint8_t* reply) {
-  return link_.answer(request, size, reply, now());
+  const bool for_store = Link::needs_store(request, size);
+  if (!options_.store_beside || !(for_store || Link::is_upload_step(request, size)))
+    return link_.answer(request, size, reply, now());
+  if (!desk_.free()) return Link::answer_busy(request, reply);
+  if (!for_store) return link_.answer(request, size, reply, now());
+  ticket_ = desk_.leave(request, size);
+  return kLater;
 }
 
 bool Service::give(std::uint16_t command) {

@@ -9,6 +9,7 @@
 #include "firmware/core/link.h"
 #include "firmware/core/probing.h"
 #include "firmware/core/runner.h"
+#include "firmware/core/store_desk.h"
 #include "firmware/core/uploader.h"
 #include "hal/board.h"
 #include "hal/command_link.h"
@@ -22,22 +23,26 @@ struct ServiceOptions {
   CycleLimits limits;
   Uploader::Options upload;
   OverrunLimits overruns;
-  TimeUs sync_patience;   // beyond a tick's time, until the clock takes the place of the sync
-  ProbeSettings probe;    // where the board has one; axes are filled in from the wiring
+  TimeUs sync_patience;  // beyond a tick's time, until the clock takes the place of the sync
+  ProbeSettings probe;   // where the board has one; axes are filled in from the wiring
+  bool store_beside =
+      false;  // look_after_store() has a context of its own, so that links never wait for the medium
   bool activate = false;  // bring the correction in when the board becomes ready, once for each enable
   std::uint32_t ticks_kept = Exchange::kHistory;  // for readers of the history; powers of two
   std::uint32_t touches_kept = Exchange::kTouches;
 };
 
-/// The board's program: on one side the tick, which never waits; on the other, in a thread of their own,
-/// uploads and links. Between them stands Exchange. All memory is taken at construction.
+/// The board's program, in four duties that may each have a context of their own: the tick; the guardian,
+/// which hands programs over and ends trials and waits for nothing; the links; the store, which waits for its
+/// medium. The guardian may stop the links and the store anywhere, the tick all three. Between them stand
+/// Exchange, Programs and StoreDesk. All memory is taken at construction.
 class Service : private CommandHandler {
  public:
   /// board, store: outlive the service. setup.
   Service(ServiceOptions options, const Board& board, SlotStore& store);
 
   /// Checks what the store holds and offers it to the first tick. setup.
-  UploadResult boot() { return uploader_.boot(); }
+  UploadResult boot();
 
   /// Sleeps until the next tick is due and runs it. realtime.
   TickReport tick() noexcept;
@@ -45,9 +50,16 @@ class Service : private CommandHandler {
   /// From the next tick on the correction is taken out and nothing brings it in again. realtime.
   void end() noexcept { ending_ = true; }
 
-  /// Waits at most `wait` for requests of one link, answers them, and looks after trials and programs. setup.
+  /// The guardian: hands programs over to the tick, ends trials. Never waits. setup.
+  void guard() noexcept { uploader_.programs().guard(now()); }
+  /// The links: waits at most `wait` for requests of one link and answers them. Without store_beside all
+  /// other duties but the tick are done too. setup.
   HalFault serve(CommandLink& link, TimeUs wait) noexcept;
-  /// The same without a link: hands programs over, ends trials. setup.
+  /// The store: does what a link has left for it and writes down what the guardian did. True: a link can
+  /// collect a reply. setup.
+  bool look_after_store() noexcept;
+  bool store_is_asked() const noexcept { return desk_.asked(); }
+  /// Guardian and store in one context, one after the other. setup.
   void look_after_programs() noexcept;
 
   const Cycle& cycle() const noexcept { return cycle_; }
@@ -59,10 +71,14 @@ class Service : private CommandHandler {
  private:
   // A percentile walks a whole histogram; one of the six is brought up to date every so many ticks.
   static constexpr std::uint32_t kTicksPerPercentile = 64;
-  // Ten pictures a second of what each effect adds.
-  static constexpr std::uint32_t kTicksPerShares = 100;
+  // Ten pictures a second of what an equation began with, for who asks what each effect adds.
+  static constexpr std::uint32_t kTicksPerEquation = 100;
 
   std::uint32_t answer(const std::uint8_t* request, std::uint32_t size, std::uint8_t* reply) override;
+  std::uint32_t ticket() const override { return ticket_; }
+  std::uint32_t later(std::uint32_t ticket, std::uint8_t* reply) override {
+    return desk_.collect(ticket, reply);
+  }
   void fill_registers(std::uint16_t* values) override { link_.fill_registers(values); }
   bool give(std::uint16_t command) override;
   TimeUs now() noexcept { return TimeUs(board_.clock.now().count / 1000); }
@@ -72,25 +88,25 @@ class Service : private CommandHandler {
   void tell_health(const TickReport& report) noexcept;
   void publish(const TickReport& report) noexcept;
   void publish_health() noexcept;
-  void publish_shares() noexcept;
+  void publish_equation() noexcept;
 
   ServiceOptions options_;
   Board board_;
-  Uploader uploader_;
   Exchange exchange_;
+  Uploader uploader_;
   Cycle cycle_;
   Runner runner_;
   Link link_;
   std::optional<Probing> probing_;
-  // Owned outside the tick: what runs, and what has been offered to it.
-  ProgramRef running_, offered_, waiting_;
-  std::uint64_t programs_ = 0;  // taken over by the tick so far
+  StoreDesk desk_;
+  std::uint32_t ticket_ = 0;  // the links'
+  bool answered_ = false;     // the store's: its reply waits for the guardian
+  std::uint32_t answer_size_ = 0;
   // Owned by the tick.
-  std::uint32_t until_percentile_ = kTicksPerPercentile, percentile_ = 0, until_shares_ = kTicksPerShares;
+  std::uint32_t until_percentile_ = kTicksPerPercentile, percentile_ = 0, until_equation_ = kTicksPerEquation;
   HealthRecord health_;
   TickRecord record_;
-  ShareRecord shares_;
-  Correction share_corrections_[kMaxShares];
+  EquationRecord equation_;
   bool activated_ = false, ending_ = false, enabled_ = true;
   enum class Told : std::uint8_t { kNothing, kUnwell, kWell } told_ = Told::kNothing;
 };

@@ -44,28 +44,15 @@ Line describe(const UploadResult& result) noexcept {
   return line;
 }
 
-ProgramPool::ProgramPool(std::uint32_t places, std::uint32_t image_bytes)
-    : places_(places), image_bytes_(image_bytes), programs_(new LoadedProgram[places]) {
-  for (std::uint32_t i = 0; i < places_; ++i)
-    programs_[i].words.reset(new std::uint64_t[(image_bytes + 7) / 8]);
-}
-
-ProgramRef ProgramPool::take() noexcept {
-  for (std::uint32_t i = 0; i < places_; ++i) {
-    LoadedProgram& program = programs_[i];
-    if (program.taken) continue;
-    program.taken = true;
-    return ProgramRef(&program);
-  }
-  return nullptr;
-}
-
-Uploader::Uploader(SlotStore& store, const Wiring& wiring, const Options& options)
+Uploader::Uploader(SlotStore& store, const Wiring& wiring, Exchange& exchange, const Options& options)
     : store_(store),
       wiring_(wiring),
       options_(options),
-      pool_(options.places, store.capacity() - lower(store.capacity(), std::uint32_t{sizeof(UploadHeader)})),
-      workspace_(new ImageWorkspace) {}
+      programs_(exchange, options.places,
+                store.capacity() - lower(store.capacity(), std::uint32_t{sizeof(UploadHeader)})),
+      workspace_(new ImageWorkspace) {
+  publish();
+}
 
 bool Uploader::store(const SlotChange& change) {
   std::uint8_t bytes[sizeof(SlotRecord)];
@@ -75,15 +62,34 @@ bool Uploader::store(const SlotChange& change) {
   return true;
 }
 
-UploadResult Uploader::check(const UploadHeader& header, LoadedProgram& loaded) {
+void Uploader::publish() noexcept {
+  record_.confirmed = slots_.confirmed();
+  record_.trial = slots_.trial();
+  record_.issued = slots_.issued();
+  published_.publish(record_);
+}
+
+SlotsRecord Uploader::record() const noexcept {
+  SlotsRecord record;
+  published_.read(record);
+  const Trial trial = programs_.trial();
+  if (trial == Trial::kNone || trial == Trial::kOver) record.trial = kNoSlot, record.trial_fingerprint = 0;
+  return record;
+}
+
+TimeUs Uploader::trial_left(TimeUs now) const noexcept {
+  return record().trial == kNoSlot ? TimeUs{} : programs_.trial_left(now, options_.trial_time);
+}
+
+UploadResult Uploader::check(LoadedProgram& loaded) {
+  const UploadHeader& header = loaded.header;
   if (!options_.key) return refused(UploadFault::kNoKey);
   if (std::memcmp(header.key, options_.key->data(), sizeof(header.key)) != 0)
     return refused(UploadFault::kForeignKey);
-  const auto* const bytes = reinterpret_cast<const std::uint8_t*>(loaded.words.get());
-  if (!signature_fits(header, {bytes, header.image_bytes}, *options_.key))
+  if (!signature_fits(header, {loaded.image(), header.image_bytes}, *options_.key))
     return refused(UploadFault::kSignature);
   UploadResult result;
-  result.image = loaded.view.open(bytes, header.image_bytes, *workspace_);
+  result.image = loaded.view.open(loaded.image(), header.image_bytes, *workspace_);
   if (result.image != ImageFault::kNone) {
     result.fault = UploadFault::kImage;
     return result;
@@ -93,46 +99,49 @@ UploadResult Uploader::check(const UploadHeader& header, LoadedProgram& loaded) 
   std::construct_at(&loaded.bound, loaded.view);
   result.bind = bind(loaded.view, wiring_, options_.tick, loaded.bound, result.offender);
   if (result.bind != BindFault::kNone) result.fault = UploadFault::kForeignMachine;
-  loaded.issued = header.issued;
-  loaded.fingerprint = header.fingerprint;
+  std::copy_n(loaded.bound.axis, kMaxAxes, loaded.axis);
   return result;
 }
 
 // Header and image of a slot, from the medium, checked.
-UploadResult Uploader::load(std::uint8_t slot, LoadedProgram& loaded, UploadHeader& header) {
+UploadResult Uploader::load(std::uint8_t slot, LoadedProgram& loaded) {
   std::uint8_t bytes[sizeof(UploadHeader)];
+  UploadHeader& header = loaded.header;
   if (store_.read_image(slot, 0, bytes, sizeof(bytes)) != HalFault::kNone)
     return refused(UploadFault::kNotAnUpload);
   std::memcpy(&header, bytes, sizeof(header));
   if (std::memcmp(header.magic, kUploadMagic, sizeof(kUploadMagic)) != 0 ||
-      header.header_bytes != sizeof(UploadHeader) || header.image_bytes > pool_.image_bytes() ||
-      store_.read_image(slot, sizeof(UploadHeader), reinterpret_cast<std::uint8_t*>(loaded.words.get()),
-                        header.image_bytes) != HalFault::kNone)
+      header.header_bytes != sizeof(UploadHeader) || header.image_bytes > programs_.image_bytes() ||
+      store_.read_image(slot, sizeof(UploadHeader), loaded.image(), header.image_bytes) != HalFault::kNone)
     return refused(UploadFault::kNotAnUpload);
-  return check(header, loaded);
+  return check(loaded);
 }
 
 UploadResult Uploader::boot() {
   slots_ = Slots::load(read_record(store_, 0), read_record(store_, 1));
   // A reset ends a trial. Where even that cannot be stored, the state on the medium says the same next time.
   if (slots_.trial() != kNoSlot) store(slots_.revert());
+  publish();
   if (slots_.confirmed() == kNoSlot) return {};
-  ProgramRef loaded = pool_.take();
+  ProgramRef loaded = programs_.take();
   if (loaded == nullptr) return refused(UploadFault::kStore);
-  UploadHeader header;
-  const UploadResult result = load(slots_.confirmed(), *loaded, header);
+  const UploadResult result = load(slots_.confirmed(), *loaded);
   if (result.fault != UploadFault::kNone) return result;
-  confirmed_fingerprint_ = loaded->fingerprint;
-  next_ = std::move(loaded);
+  record_.confirmed_fingerprint = loaded->header.fingerprint;
+  publish();
+  programs_.run_confirmed(std::move(loaded));
   return result;
 }
 
 UploadResult Uploader::begin(std::uint32_t bytes) {
   receiving_ = false;
-  if (slots_.trial() != kNoSlot) return refused(UploadFault::kTrialRuns);
+  coming_ = nullptr;
+  if (programs_.trial() != Trial::kNone) return refused(UploadFault::kTrialRuns);
   if (bytes > store_.capacity()) return refused(UploadFault::kTooLarge);
   if (bytes < sizeof(UploadHeader)) return refused(UploadFault::kNotAnUpload);
   if (!options_.key) return refused(UploadFault::kNoKey);
+  coming_ = programs_.take();
+  if (coming_ == nullptr) return refused(UploadFault::kStore);
   receiving_ = true;
   expected_ = bytes;
   received_ = last_offset_ = 0;
@@ -145,13 +154,30 @@ UploadResult Uploader::add(std::uint32_t offset, const std::uint8_t* bytes, std:
   const bool again = offset == last_offset_ && offset + std::uint64_t{size} == received_;
   if (!again && offset != received_) return refused(UploadFault::kOutOfOrder);
   if (size == 0 || offset + std::uint64_t{size} > expected_) return refused(UploadFault::kTooLarge);
-  if (store_.write_image(slots_.free_slot(), offset, bytes, size) != HalFault::kNone) {
-    receiving_ = false;
-    return refused(UploadFault::kStore);
+  std::uint8_t header[sizeof(UploadHeader)];
+  std::memcpy(header, &coming_->header, sizeof(header));
+  for (std::uint32_t i = 0; i < size; ++i) {
+    const std::uint32_t at = offset + i;
+    (at < sizeof(header) ? header[at] : coming_->image()[at - sizeof(header)]) = bytes[i];
   }
+  std::memcpy(&coming_->header, header, sizeof(header));
   last_offset_ = offset;
   received_ = offset + size;
   return {};
+}
+
+// From where it came in to the medium, in pieces that a small flash driver takes.
+UploadResult Uploader::write_slot(std::uint8_t slot) {
+  constexpr std::uint32_t kPiece = 4096;
+  std::uint8_t header[sizeof(UploadHeader)];
+  std::memcpy(header, &coming_->header, sizeof(header));
+  bool written = store_.write_image(slot, 0, header, sizeof(header)) == HalFault::kNone;
+  const std::uint32_t image_bytes = expected_ - static_cast<std::uint32_t>(sizeof(header));
+  for (std::uint32_t at = 0; written && at < image_bytes; at += kPiece)
+    written = store_.write_image(slot, at + static_cast<std::uint32_t>(sizeof(header)), coming_->image() + at,
+                                 lower(kPiece, image_bytes - at)) == HalFault::kNone;
+  written = written && store_.finish_image(slot, expected_) == HalFault::kNone;
+  return written ? UploadResult{} : refused(UploadFault::kStore);
 }
 
 bool Uploader::may_replace(const UploadHeader& header) const noexcept {
@@ -159,71 +185,44 @@ bool Uploader::may_replace(const UploadHeader& header) const noexcept {
   return header.replaces != 0 && header.replaces == slots_.issued();
 }
 
-UploadResult Uploader::finish(TimeUs now) {
+UploadResult Uploader::finish() {
   if (!receiving_) return refused(UploadFault::kNoUpload);
   if (received_ != expected_) return refused(UploadFault::kIncomplete);
   receiving_ = false;
   const std::uint8_t slot = slots_.free_slot();
-  if (store_.finish_image(slot, expected_) != HalFault::kNone) return refused(UploadFault::kStore);
+  UploadResult result = write_slot(slot);
   // What counts is what the medium gives back, not what came over the wire.
-  ProgramRef loaded = pool_.take();
-  if (loaded == nullptr) return refused(UploadFault::kStore);
-  UploadHeader header;
-  const UploadResult result = load(slot, *loaded, header);
+  ProgramRef loaded = std::move(coming_);
+  if (result.fault == UploadFault::kNone) result = load(slot, *loaded);
   if (result.fault != UploadFault::kNone) return result;
+  const UploadHeader& header = loaded->header;
   if (sizeof(header) + header.image_bytes != expected_) return refused(UploadFault::kNotAnUpload);
   if (!may_replace(header)) return refused(UploadFault::kOlder);
   if (!store(slots_.start_trial(header.issued))) return refused(UploadFault::kStore);
-  trial_began_ = now;
-  given_up_ = owed_ = false;
-  trial_fingerprint_ = loaded->fingerprint;
-  next_ = std::move(loaded);
+  record_.trial_fingerprint = header.fingerprint;
+  publish();
+  programs_.run_trial(std::move(loaded), options_.trial_time);
   return result;
 }
 
 UploadResult Uploader::confirm() {
-  if (slots_.trial() == kNoSlot || given_up_) return refused(UploadFault::kNoTrial);
-  if (!store(slots_.confirm())) return refused(UploadFault::kStore);
-  confirmed_fingerprint_ = trial_fingerprint_;
-  trial_fingerprint_ = 0;
-  return {};
-}
-
-void Uploader::offer_confirmed() {
-  // What was not taken over yet is not wanted any more: its place is the one that is needed.
-  next_ = nullptr;
-  ProgramRef loaded = pool_.take();
-  owed_ = loaded == nullptr;
-  if (owed_) return;
-  UploadHeader header;
-  if (slots_.confirmed() == kNoSlot ||
-      load(slots_.confirmed(), *loaded, header).fault != UploadFault::kNone) {
-    std::destroy_at(&loaded->bound);
-    std::construct_at(&loaded->bound);
-    loaded->fingerprint = loaded->issued = 0;
-  }
-  next_ = std::move(loaded);
+  if (!programs_.begin_to_keep()) return refused(UploadFault::kNoTrial);
+  const bool written = store(slots_.confirm());
+  if (written) record_.confirmed_fingerprint = record_.trial_fingerprint;
+  publish();
+  programs_.kept(written);
+  return written ? UploadResult{} : refused(UploadFault::kStore);
 }
 
 UploadResult Uploader::revert() {
-  if (slots_.trial() == kNoSlot) return refused(UploadFault::kNoTrial);
-  // The confirmed image runs again even where the medium cannot store that: the next boot reverts too.
-  if (!given_up_) offer_confirmed();
-  given_up_ = true;
-  trial_fingerprint_ = 0;
-  return store(slots_.revert()) ? UploadResult{} : refused(UploadFault::kStore);
+  return programs_.give_up() ? UploadResult{} : refused(UploadFault::kNoTrial);
 }
 
-TimeUs Uploader::trial_left(TimeUs now) const noexcept {
-  if (slots_.trial() == kNoSlot) return TimeUs{};
-  const TimeUs left = trial_began_ + options_.trial_time - now;
-  return std::max(left, TimeUs{});
-}
-
-bool Uploader::poll(TimeUs now) {
-  if (owed_) offer_confirmed();
-  if (slots_.trial() == kNoSlot || given_up_ || trial_left(now) > TimeUs{}) return false;
-  return revert().fault == UploadFault::kNone;
+bool Uploader::look_after_store() {
+  if (programs_.trial() != Trial::kOver || !store(slots_.revert())) return false;
+  publish();
+  programs_.given_up();
+  return true;
 }
 
 HalFault Uploader::read_confirmed(std::uint32_t offset, std::uint8_t* bytes, std::uint32_t size) noexcept {

@@ -301,6 +301,7 @@ std::string SignalSource::text(const std::string& name, const std::string& other
 BoardFile read_board_file(const std::string& path) {
   BoardFile board;
   board.path = path;
+  board.service.store_beside = true;
   toml::table file;
   try {
     file = toml::parse_file(path);

@@ -21,6 +21,7 @@
 #include "hal/linux/can_axes.h"
 #include "hal/linux/monotonic_clock.h"
 #include "hal/linux/sampled_input.h"
+#include "hal/linux/wake_up.h"
 #include "hal/sim/plant.h"
 #include "hal/sim/roaming.h"
 
@@ -300,15 +301,17 @@ void Devices::advance() noexcept { parts_->plant->advance(); }
 bool Devices::has_sensors() const noexcept { return !parts_->sensors.empty(); }
 
 // All links are waited for at once: one that is quiet does not keep a request of another waiting.
-void Devices::wait_for_request(TimeUs wait) noexcept {
-  pollfd waiting[kMostHandles];
+void Devices::wait_for_request(TimeUs wait, WakeUp& wake_up) noexcept {
+  pollfd waiting[kMostHandles + 1];
   std::uint32_t count = 0;
   for (const auto& link : parts_->links) {
     int handles[kMostHandles];
     const std::uint32_t added = link->handles(handles, kMostHandles - count);
     for (std::uint32_t i = 0; i < added; ++i) waiting[count++] = {handles[i], POLLIN, 0};
   }
+  waiting[count++] = {wake_up.handle(), POLLIN, 0};
   ::poll(waiting, count, static_cast<int>(wait.count / 1000));
+  wake_up.clear();
 }
 
 void Devices::sample() noexcept {

@@ -12,6 +12,8 @@
 
 namespace vernier {
 
+class WakeUp;
+
 /// What `--check` says of a device.
 struct DeviceFinding {
   std::string device;                    // "axis.X.output  pwm"
@@ -33,8 +35,8 @@ class Devices {
   Board board() noexcept;
   Clock& clock() noexcept;
   std::vector<std::unique_ptr<CommandLink>>& links() noexcept;
-  /// Waits until a request comes over one of the links, at most `wait`. setup.
-  void wait_for_request(TimeUs wait) noexcept;
+  /// Waits until a request comes over one of the links or somebody wakes it, at most `wait`. setup.
+  void wait_for_request(TimeUs wait, WakeUp& wake_up) noexcept;
   /// One of each device, in the order of the board file. setup.
   std::vector<DeviceFinding>& findings() noexcept;
 

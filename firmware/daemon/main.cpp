@@ -9,7 +9,6 @@
 #include <iostream>
 #include <memory>
 #include <string>
-#include <thread>
 
 #include "firmware/core/runner.h"
 #include "firmware/core/service.h"
@@ -18,6 +17,7 @@
 #include "firmware/daemon/calibrate_output.h"
 #include "firmware/daemon/device_settings.h"
 #include "firmware/daemon/devices.h"
+#include "firmware/daemon/duties.h"
 #include "firmware/daemon/image_file.h"
 #include "firmware/daemon/open_devices.h"
 #include "firmware/daemon/report.h"
@@ -36,10 +36,7 @@ using namespace vernier;
 constexpr int kDone = 0, kBadInput = 1, kAnswerIsNo = 2;
 constexpr int kPriority = 80;  // as cyclictest is usually run, above the kernel's threaded interrupts (50)
 constexpr double kShareOfRangePerS = 0.1;
-constexpr TimeUs kServeWait(20'000);
 constexpr int kMostTicksToEnd = 30'000;
-constexpr std::uint64_t kTicksBetweenSigns = 100;  // of life, to the service manager
-constexpr TimeUs kSampleWait(10'000);              // between two samples of the sensors
 
 std::atomic<bool> stop_asked{false};
 static_assert(std::atomic<bool>::is_always_lock_free);
@@ -142,27 +139,11 @@ bool all_there(Devices& devices) {
 void say_image(const UploadResult& result, const Service& service) {
   if (result.fault != UploadFault::kNone)
     std::fprintf(stderr, "vernierd: the confirmed image is not used: %s\n", describe(result).c_str());
-  else if (service.uploader().slots().confirmed() == kNoSlot)
+  else if (service.uploader().record().confirmed == kNoSlot)
     std::fputs("vernierd: no image has been confirmed yet: nothing is corrected\n", stderr);
   else
     std::fprintf(stderr, "vernierd: image %016llx\n",
-                 static_cast<unsigned long long>(service.uploader().confirmed_fingerprint()));
-}
-
-/// Serves links and looks after programs until told to stop. The service manager hears of it only while the
-/// tick moves on: a tick that hangs is a daemon that hangs.
-void serve_until(const std::atomic<bool>& stop, Service& service, Devices& devices) {
-  std::uint64_t ticks_told = 0;
-  while (!stop) {
-    if (const std::uint64_t ticks = service.exchange().ticks.count();
-        ticks > ticks_told + kTicksBetweenSigns) {
-      notify_service_manager("WATCHDOG=1");
-      ticks_told = ticks;
-    }
-    devices.wait_for_request(kServeWait);
-    for (auto& link : devices.links()) service.serve(*link, TimeUs(0));
-    service.look_after_programs();
-  }
+                 static_cast<unsigned long long>(service.uploader().record().confirmed_fingerprint));
 }
 
 /// A daemon that ends leaves no correction in the drives: it is ramped out first, within the limits of the
@@ -177,14 +158,6 @@ void take_correction_out(Service& service, Devices& devices) {
   for (int tick = 0; tick < kMostTicksToEnd && !out(); ++tick) {
     devices.advance();
     service.tick();
-  }
-}
-
-/// Sensors wait for their drivers, and are sampled beside the tick.
-void sample_until(const std::atomic<bool>& stop, Devices& devices) {
-  while (!stop && devices.has_sensors()) {
-    devices.sample();
-    devices.clock().sleep_until(devices.clock().now() + instant_ns(kSampleWait));
   }
 }
 
@@ -243,22 +216,20 @@ int run_board(const Arguments& arguments) {
   FileSlotStore store(file.store, file.slot_bytes);
   const auto service = std::make_unique<Service>(file.service, devices.board(), store);
   say_image(service->boot(), *service);
-  std::atomic<bool> stop_beside{false};
-  std::thread server([&] { serve_until(stop_beside, *service, devices); });
-  std::thread sampler([&] { sample_until(stop_beside, devices); });
+  ServiceManager manager;
+  keep_stacks_small();
   const GrantReport grant = ask_for_realtime(arguments.realtime, file.priority);
+  auto duties = std::make_unique<Duties>(*service, devices, manager, grant.fifo ? file.priority - 1 : 0);
   devices.release();
-  if (!notify_service_manager("READY=1"))
-    std::fputs("vernierd: note: the service manager cannot be told\n", stderr);
+  if (!manager.notify("READY=1")) std::fputs("vernierd: note: the service manager cannot be told\n", stderr);
   const auto ticks = static_cast<std::int64_t>(arguments.seconds * 1e6) / file.service.upload.tick.count;
   for (std::int64_t tick = 0; (ticks == 0 || tick < ticks) && !stop_asked; ++tick) {
     devices.advance();
     service->tick();
   }
-  notify_service_manager("STOPPING=1");
+  manager.notify("STOPPING=1");
   take_correction_out(*service, devices);
-  stop_beside = true;
-  server.join(), sampler.join();
+  duties = nullptr;
   devices.say_held();
   if (service->runner().lost_syncs() > 0)
     std::fprintf(stderr, "vernierd: the sync was lost %llu times\n",

@@ -21,7 +21,7 @@ constexpr std::uint32_t kMostBytes = 4095;  // of a message with a 12-bit length
 
 std::unique_ptr<IsotpLink> IsotpLink::open(const std::string& interface, std::uint32_t receive,
                                            std::uint32_t transmit, std::string& error) {
-  const int fd = ::socket(PF_CAN, SOCK_DGRAM | SOCK_CLOEXEC, CAN_ISOTP);
+  const int fd = ::socket(PF_CAN, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, CAN_ISOTP);
   if (fd < 0) {
     can_failed(interface, "no ISO-TP in this kernel", fd, error);
     return nullptr;
@@ -35,16 +35,30 @@ std::unique_ptr<IsotpLink> IsotpLink::open(const std::string& interface, std::ui
 
 IsotpLink::~IsotpLink() { ::close(fd_); }
 
+// A peer that does not take its reply has none: the kernel refuses the next one until it gave up on it.
+HalFault IsotpLink::send(const std::uint8_t* reply, std::uint32_t size) noexcept {
+  if (size == 0 || ::write(fd_, reply, size) >= 0) return HalFault::kNone;
+  return errno == EAGAIN || errno == EWOULDBLOCK ? HalFault::kNone : HalFault::kRefused;
+}
+
 HalFault IsotpLink::serve(CommandHandler& handler, TimeUs wait) noexcept {
+  std::uint8_t request[kMostBytes], reply[256];
+  if (waits_for_reply_) {
+    const std::uint32_t answered = handler.later(ticket_, reply);
+    if (answered == CommandHandler::kLater) return HalFault::kNone;
+    waits_for_reply_ = false;
+    return send(reply, answered);
+  }
   pollfd waiting{fd_, POLLIN, 0};
   const int ready = ::poll(&waiting, 1, static_cast<int>(wait.count / 1000));
   if (ready <= 0) return ready == 0 || errno == EINTR ? HalFault::kNone : HalFault::kRefused;
-  std::uint8_t request[kMostBytes], reply[256];
   const ssize_t size = ::read(fd_, request, sizeof(request));
   // A peer that stopped in the middle of a message shows as an error of the socket and is forgotten with it.
   if (size < 0) return errno == ENETDOWN || errno == ENODEV ? HalFault::kRefused : HalFault::kNone;
   const std::uint32_t answered = handler.answer(request, static_cast<std::uint32_t>(size), reply);
-  if (answered > 0 && ::write(fd_, reply, answered) < 0) return HalFault::kRefused;
+  waits_for_reply_ = answered == CommandHandler::kLater;
+  if (!waits_for_reply_) return send(reply, answered);
+  ticket_ = handler.ticket();
   return HalFault::kNone;
 }
 

@@ -20,8 +20,9 @@ class IsotpLink : public CommandLink {
 
   HalFault serve(CommandHandler& handler, TimeUs wait) noexcept override;
   std::uint32_t handles(int* handles, std::uint32_t room) const noexcept override {
-    if (room > 0) handles[0] = fd_;
-    return room > 0 ? 1 : 0;
+    if (room == 0 || waits_for_reply_) return 0;
+    handles[0] = fd_;
+    return 1;
   }
 
   /// The asking side: sends a request and waits for its reply. Returns the bytes of the reply, -1 with errno
@@ -31,7 +32,11 @@ class IsotpLink : public CommandLink {
 
  private:
   explicit IsotpLink(int fd) : fd_(fd) {}
+  HalFault send(const std::uint8_t* reply, std::uint32_t size) noexcept;
+
   int fd_;
+  std::uint32_t ticket_ = 0;
+  bool waits_for_reply_ = false;
 };
 
 }  // namespace vernier

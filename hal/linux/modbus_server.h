@@ -6,22 +6,15 @@
 #include <vector>
 
 #include "hal/command_link.h"
+#include "hal/linux/modbus_conversation.h"
 
 struct _modbus;
-struct _modbus_mapping_t;
 
 namespace vernier {
 
-/// Where things stand in the register map. The mailbox: a request is written (function 16) to the holding
-/// registers from `mailbox` on, its length in bytes, then the bytes, high byte first; the reply stands in the
-/// input registers there, for each client its own. Input registers from 0: live state; holding register 0:
-/// command (function 6).
-struct ModbusLayout {
-  int mailbox = 0, mailbox_registers = 0, live_registers = 0;
-};
-
-/// A Modbus server (libmodbus) over TCP for a few clients at a time, or over a serial line. Functions 3, 4, 6
-/// and 16; everything else is refused with the exceptions of the standard.
+/// A Modbus server over TCP for a few clients at a time, or over a serial line (which libmodbus opens). No
+/// client can hold it up: it reads and writes what there is, and closes a connection whose request is not
+/// whole within half a second of its first byte, or whose reply is not taken within a second.
 class ModbusServer : public CommandLink {
  public:
   /// address: numeric, "127.0.0.1"; port 0 takes any free one. Null with `error` set where it cannot listen.
@@ -41,21 +34,23 @@ class ModbusServer : public CommandLink {
   int port() const noexcept { return port_; }
 
  private:
-  /// The serial line, or a connection, with the reply that stands in its mailbox.
   struct Client {
     int fd;
-    std::vector<std::uint16_t> reply;
+    ModbusConversation talk;
   };
 
-  ModbusServer(_modbus* context, const ModbusLayout& layout);
-  void accept_client() noexcept;
-  bool serve_client(Client& client, CommandHandler& handler) noexcept;
-  bool respond(Client& client, CommandHandler& handler, const std::uint8_t* query, int size) noexcept;
-  void open_mailbox(Client& client, CommandHandler& handler, int registers) noexcept;
+  ModbusServer(const ModbusLayout& layout, int unit, InstantNs frame_time)
+      : layout_(layout), unit_(unit), frame_time_(frame_time) {}
+  void accept_clients(InstantNs now);
+  bool make_room(InstantNs now);
+  bool serve_client(Client& client, CommandHandler& handler, InstantNs now) noexcept;
+  bool receive(Client& client, InstantNs now) noexcept;
+  bool send(Client& client) noexcept;
 
-  _modbus* context_;
-  _modbus_mapping_t* mapping_;
   ModbusLayout layout_;
+  int unit_;
+  InstantNs frame_time_;
+  _modbus* line_ = nullptr;  // of a serial line, which is the only client then
   int listening_ = -1, port_ = 0;
   std::vector<Client> clients_;
 };

@@ -2,6 +2,7 @@
 #include "hal/linux/realtime.h"
 
 #include <fcntl.h>
+#include <pthread.h>
 #include <sched.h>
 #include <sys/mman.h>
 #include <unistd.h>
@@ -30,17 +31,32 @@ int hold_awake() noexcept {
   return error;
 }
 
+// Threads that this one makes are ordinary ones.
+int become_fifo(int priority) noexcept {
+  sched_param schedule{};
+  schedule.sched_priority = priority;
+  return sched_setscheduler(0, SCHED_FIFO | SCHED_RESET_ON_FORK, &schedule) != 0 ? errno : 0;
+}
+
 }  // namespace
 
 RealtimeGrant become_realtime(int priority) noexcept {
   RealtimeGrant grant;
   if (mlockall(MCL_CURRENT | MCL_FUTURE) != 0) grant.memory_error = errno;
   touch_stack();
-  sched_param schedule{};
-  schedule.sched_priority = priority;
-  if (sched_setscheduler(0, SCHED_FIFO, &schedule) != 0) grant.schedule_error = errno;
+  grant.schedule_error = become_fifo(priority);
   grant.idle_error = hold_awake();
   return grant;
+}
+
+int become_realtime_thread(int priority) noexcept { return become_fifo(priority); }
+
+void keep_stacks_small() noexcept {
+  pthread_attr_t attributes;
+  if (pthread_attr_init(&attributes) != 0) return;
+  if (pthread_attr_setstacksize(&attributes, std::size_t{1} << 20) == 0)
+    pthread_setattr_default_np(&attributes);
+  pthread_attr_destroy(&attributes);
 }
 
 }  // namespace vernier

@@ -15,6 +15,12 @@ struct RealtimeGrant {
 /// while the process lives. Goes on without what is refused; the caller says so. priority: 1..99. setup.
 RealtimeGrant become_realtime(int priority) noexcept;
 
+/// Gives the calling thread SCHED_FIFO alone, for one beside the tick. Returns 0 or the errno. setup.
+int become_realtime_thread(int priority) noexcept;
+
+/// Threads made from now on have stacks of 1 MB, in the place of 8 that would all be locked in memory. setup.
+void keep_stacks_small() noexcept;
+
 /// Bytes of stack that become_realtime touches, so that the tick does not fault pages in.
 constexpr std::size_t kPrefaultedStack = std::size_t{256} * 1024;
 

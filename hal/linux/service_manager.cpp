@@ -11,24 +11,32 @@
 
 namespace vernier {
 
-bool notify_service_manager(const char* state) noexcept {
+ServiceManager::ServiceManager() noexcept {
   const char* const path = std::getenv("NOTIFY_SOCKET");
-  if (path == nullptr) return true;
+  asked_ = path != nullptr;
+  if (!asked_) return;
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
   const std::size_t length = std::strlen(path);
-  if (length == 0 || length >= sizeof(address.sun_path)) return false;
+  if (length == 0 || length >= sizeof(address.sun_path)) return;
   std::memcpy(address.sun_path, path, length);
   // A name that begins with @ lives in the abstract namespace, whose names begin with a zero byte.
   if (address.sun_path[0] == '@') address.sun_path[0] = '\0';
-  const int fd = ::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  if (fd < 0) return false;
+  fd_ = ::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
   const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + length);
-  const bool sent =
-      ::sendto(fd, state, std::strlen(state), MSG_NOSIGNAL, reinterpret_cast<const sockaddr*>(&address),
-               size) == static_cast<ssize_t>(std::strlen(state));
-  ::close(fd);
-  return sent;
+  if (fd_ < 0 || ::connect(fd_, reinterpret_cast<const sockaddr*>(&address), size) == 0) return;
+  ::close(fd_);
+  fd_ = -1;
+}
+
+ServiceManager::~ServiceManager() {
+  if (fd_ >= 0) ::close(fd_);
+}
+
+bool ServiceManager::notify(const char* state) noexcept {
+  if (!asked_) return true;
+  const std::size_t size = std::strlen(state);
+  return fd_ >= 0 && ::send(fd_, state, size, MSG_NOSIGNAL | MSG_DONTWAIT) == static_cast<ssize_t>(size);
 }
 
 }  // namespace vernier

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 #include <Eigen/Dense>
+#include <stdexcept>
+#include <vector>
 
 #include "tests/unit/compile/poses.h"
 
@@ -15,6 +17,15 @@ struct Agreement {
   std::size_t at_steps =
       0;  // beyond the bound and not counted above: the machine has steps, some within a correction
 };
+
+/// The shares of the compensator's last step.
+inline void shares_of(const Compensator& compensator, const ShareProgram& shares, const Program& program,
+                      Correction* corrections) {
+  EquationState state;
+  std::vector<std::int32_t> registers(kMaxRegisters);
+  compensator.state(state);
+  if (!run_shares(shares, program, state, registers.data(), corrections)) throw std::logic_error("no shares");
+}
 
 /// Nominal motion of the tool point per mm or deg of each axis, for every state: by differences, a derivation
 /// that shares nothing with the compiler's.

@@ -86,8 +86,8 @@ TEST_P(Generated, CorrectsAndSharesAsTheExecutedProgramDoes) {
       ASSERT_EQ(one.correction[axis].counts, two.correction[axis].counts);
     if (++tick % 100 != 0) continue;
     std::vector<Correction> first(view.shares().shares.size), second(view.shares().shares.size);
-    executed.shares(view.shares(), first.data());
-    built_in.shares(view.shares(), second.data());
+    shares_of(executed, view.shares(), view.program(), first.data());
+    shares_of(built_in, view.shares(), view.program(), second.data());
     for (std::size_t i = 0; i < first.size(); ++i) ASSERT_EQ(first[i].counts, second[i].counts);
   }
 }

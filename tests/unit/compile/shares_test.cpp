@@ -24,7 +24,7 @@ double worst_sum_um(const TestMachine& test, std::size_t poses, double& largest_
   double worst = 0;
   for (const CycleInput& input : test.random_poses(poses, random)) {
     compensator.step(input);
-    compensator.shares(shares, each.data());
+    shares_of(compensator, shares, program, each.data());
     for (std::uint32_t k = 0; k < program.outputs.size; ++k) {
       double sum = 0;
       for (std::uint32_t i = 0; i < shares.shares.size; ++i)
@@ -85,7 +85,7 @@ TEST(Share, IsThatOfItsEffectAlone) {
   for (const CycleInput& input : both.random_poses(500, random)) {
     with_all.step(input);
     with_one.step(input);
-    with_all.shares(both.loaded->view.shares(), each.data());
+    shares_of(with_all, both.loaded->view.shares(), both.loaded->view.program(), each.data());
     EXPECT_NEAR(each[backlash.at(0)].counts, -1e6 * one.deviation_units(with_one, 0),
                 20.0);  // nm: second order
     EXPECT_EQ(std::abs(each[backlash.at(0)].counts) > 1000, input.axis[0].sense != 0);

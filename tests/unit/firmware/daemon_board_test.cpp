@@ -1,114 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The daemon with a board file, as a process: uploads over Modbus TCP, kill -9 at any moment, a full store.
-#include <fcntl.h>
-#include <gtest/gtest.h>
-#include <signal.h>
-#include <spawn.h>
-#include <sys/socket.h>
-#include <sys/un.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
-#include <chrono>
 #include <filesystem>
-#include <functional>
-#include <thread>
 
-#include "tests/unit/firmware/upload_rig.h"
-#include "tools/text/files.h"
-#include "tools/upload/client.h"
-
-extern char** environ;
+#include "tests/unit/firmware/daemon_process.h"
 
 namespace vernier::daemon_board_test {
 namespace {
 
-bool wait_for(const std::function<bool()>& done, int seconds = 20) {
-  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(seconds);
-  while (!done()) {
-    if (std::chrono::steady_clock::now() > end) return false;
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  }
-  return true;
-}
-
-/// A running vernierd.
-class Daemon {
- public:
-  explicit Daemon(const std::string& directory) : log_(directory + "/log") {
-    write_file(log_, "");
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_addopen(&actions, 1, "/dev/null", O_WRONLY, 0);
-    posix_spawn_file_actions_addopen(&actions, 2, log_.c_str(), O_WRONLY | O_APPEND, 0);
-    const std::string program = std::string(VERNIER_BIN_DIR) + "/vernierd", board = directory + "/board.toml";
-    const char* const arguments[] = {program.c_str(), "--board", board.c_str(), "--no-realtime", nullptr};
-    EXPECT_EQ(posix_spawn(&pid_, program.c_str(), &actions, nullptr, const_cast<char**>(arguments), environ),
-              0);
-    posix_spawn_file_actions_destroy(&actions);
-    EXPECT_TRUE(wait_for([&] { return port() != 0; })) << read_file(log_);
-  }
-  ~Daemon() { end(SIGKILL); }
-  /// Exit status after a signal; -1 where the signal ended it.
-  int end(int signal) {
-    if (pid_ == 0) return 0;
-    ::kill(pid_, signal);
-    int status = 0;
-    ::waitpid(pid_, &status, 0);
-    pid_ = 0;
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  }
-  int port() const {
-    const std::string text = read_file(log_), before = "Modbus TCP on 127.0.0.1:";
-    const std::size_t at = text.find(before);
-    if (at == std::string::npos || text.find('\n', at) == std::string::npos) return 0;
-    return std::atoi(text.c_str() + at + before.size());
-  }
-  Client client() const {
-    return Client(open_transport(parse_url("tcp://127.0.0.1:" + std::to_string(port()))));
-  }
-
- private:
-  std::string log_;
-  pid_t pid_ = 0;
-};
-
-class DaemonBoard : public testing::Test {
- protected:
-  DaemonBoard() {
-    std::filesystem::create_directories(directory_);
-    write_file(directory_ + "/key.pub", public_key_text(key_));
-    write_file(directory_ + "/board.toml", R"([board]
-store = "store"
-public_key = "key.pub"
-trial_s = 30
-activate = true
-max_lost_ticks = 0.9   # an emulation, or a busy computer, leaves many out
-[axis.X]
-high = 600
-position = { kind = "sim" }
-output = { kind = "sim" }
-[axis.Y]
-high = 200
-position = { kind = "sim" }
-output = { kind = "sim" }
-[input.T]
-unit = "degC"
-reference = 21
-source = { kind = "sim" }
-[[link]]
-kind = "modbus-tcp"
-port = 0
-)");
-  }
-  ~DaemonBoard() override { std::filesystem::remove_all(directory_); }
-  std::vector<std::uint8_t> upload(double scale, std::uint64_t issued) const {
-    return make_upload(small_image_bytes(scale), key_, issued, 0);
-  }
-  const SigningKey key_ = new_key();
-  const std::string directory_ = testing::TempDir() + "daemon_" + std::to_string(getpid()) + "_" +
-                                 testing::UnitTest::GetInstance()->current_test_info()->name();
-};
+class DaemonBoard : public DaemonFolder {};
 
 TEST_F(DaemonBoard, TakesAnImageKeepsItAndRunsItAfterAKill) {
   Daemon first(directory_);
@@ -169,28 +68,12 @@ TEST_F(DaemonBoard, CommandThatDoesNotFitIsCounted) {
 }
 
 TEST_F(DaemonBoard, TellsTheServiceManagerThatItIsReadyAliveAndStopping) {
-  const std::string path = directory_ + "/notify";
-  const int fd = ::socket(AF_UNIX, SOCK_DGRAM, 0);
-  sockaddr_un address{};
-  address.sun_family = AF_UNIX;
-  ASSERT_LT(path.size(), sizeof(address.sun_path));
-  path.copy(address.sun_path, path.size());
-  ASSERT_EQ(::bind(fd, reinterpret_cast<const sockaddr*>(&address), sizeof(address)), 0);
-  ASSERT_EQ(::setenv("NOTIFY_SOCKET", path.c_str(), 1), 0);
-  Daemon daemon(directory_);
-  ::unsetenv("NOTIFY_SOCKET");
-  std::string heard;
-  const auto hears = [&](const char* word) {
-    char text[64];
-    const ssize_t got = ::recv(fd, text, sizeof(text), MSG_DONTWAIT);
-    if (got > 0) heard += std::string(text, static_cast<std::size_t>(got)) + "\n";
-    return heard.find(word) != std::string::npos;
-  };
-  EXPECT_TRUE(wait_for([&] { return hears("READY=1"); })) << heard;
-  EXPECT_TRUE(wait_for([&] { return hears("WATCHDOG=1"); })) << heard;
+  NotifySocket manager(directory_ + "/notify");
+  Daemon daemon(directory_, {manager.setting()});
+  EXPECT_TRUE(wait_for([&] { return manager.hears("READY=1"); })) << manager.heard();
+  EXPECT_TRUE(wait_for([&] { return manager.hears("WATCHDOG=1"); })) << manager.heard();
   EXPECT_EQ(daemon.end(SIGTERM), 0);
-  EXPECT_TRUE(wait_for([&] { return hears("STOPPING=1"); })) << heard;
-  ::close(fd);
+  EXPECT_TRUE(wait_for([&] { return manager.hears("STOPPING=1"); })) << manager.heard();
 }
 
 struct BadBoard {

@@ -280,7 +280,11 @@ TEST(FeatureInputs, ALearnedTermIsCorrectedAtTheBoard) {
   EXPECT_NEAR(board.correction_um(), -100 * 0.25 / std::sqrt(2), 0.002);
   ASSERT_EQ(board.cycle().program().share_names.size, 1u) << "one effect";
   Correction shares[kMaxShares];
-  board.cycle().shares(shares);
+  EquationState state;
+  std::int32_t registers[kMaxRegisters];
+  board.cycle().equation_state(state);
+  const BoundProgram& program = board.cycle().program();
+  ASSERT_TRUE(run_shares(program.shares, program.program, state, registers, shares));
   EXPECT_NEAR(1e-3 * shares[0].counts, board.correction_um(), 0.002) << "what watch shows of the effect";
 }
 

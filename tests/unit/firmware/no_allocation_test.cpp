@@ -81,9 +81,10 @@ TEST(Tick, TouchesNoHeapWhileImagesComeInAndFaultsHappen) {
     if (tick % 2000 == 1000) {
       const auto upload =
           make_upload(small_image_bytes(1e-5 * (1 + tick / 2000)), key, static_cast<std::uint64_t>(tick), 0);
+      service.look_after_programs();
       uploader.begin(static_cast<std::uint32_t>(upload.size()));
       uploader.add(0, upload.data(), static_cast<std::uint32_t>(upload.size()));
-      ASSERT_EQ(uploader.finish(TimeUs{}).fault, UploadFault::kNone);
+      ASSERT_EQ(uploader.finish().fault, UploadFault::kNone);
       ASSERT_EQ(uploader.confirm().fault, UploadFault::kNone);
     }
     service.look_after_programs();

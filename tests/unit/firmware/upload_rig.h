@@ -61,12 +61,13 @@ class UploadRig {
   /// The whole way of an upload in pieces; the result of the step that failed, or of finish.
   UploadResult send(const std::vector<std::uint8_t>& upload, std::uint32_t piece = 100) {
     Uploader& uploader = this->uploader();
+    service_->look_after_programs();
     UploadResult result = uploader.begin(static_cast<std::uint32_t>(upload.size()));
     for (std::uint32_t at = 0; at < upload.size() && result.fault == UploadFault::kNone; at += piece)
       result = uploader.add(at, upload.data() + at,
                             std::min<std::uint32_t>(piece, static_cast<std::uint32_t>(upload.size()) - at));
     if (result.fault != UploadFault::kNone) return result;
-    return uploader.finish(TimeUs(clock_.now().count / 1000));
+    return uploader.finish();
   }
 
   Service& service() { return *service_; }

@@ -193,38 +193,56 @@ TEST_F(Upload, OlderImageIsTakenWhereItsSignerForcedItOverTheConfirmedOne) {
 
 TEST_F(Upload, BoardWithoutAKeyTrustsNobody) {
   const Wiring wiring{{{"X"}, {"Y"}}, {"T"}};
-  Uploader uploader(store_, wiring, {});
+  Exchange exchange;
+  Uploader uploader(store_, wiring, exchange, {});
   EXPECT_EQ(uploader.boot().fault, UploadFault::kNone);
   EXPECT_EQ(uploader.begin(1000).fault, UploadFault::kNoKey);
 }
 
-TEST_F(Upload, WithoutAPlaceItIsRefusedAndTheConfirmedOneComesAsSoonAsThereIsOne) {
+TEST_F(Upload, WithoutAPlaceItIsRefusedAndTheConfirmedOneStaysAtHand) {
   // GIVEN a board with places for two images, of which one runs
   const Wiring wiring{{{"X"}, {"Y"}}, {"T"}};
-  Uploader uploader(store_, wiring, {TimeUs(1000), key_.public_part(), TimeUs(60'000'000), 2});
+  Exchange exchange;
+  Uploader uploader(store_, wiring, exchange, {TimeUs(1000), key_.public_part(), TimeUs(60'000'000), 2});
+  Programs& programs = uploader.programs();
+  BoundProgram before;
+  const auto tick = [&] {  // takes over what is offered
+    BoundProgram* const next = exchange.offered.exchange(nullptr);
+    if (next != nullptr) exchange.retired.store(&before);
+    programs.guard(TimeUs{});
+    return next;
+  };
   const auto send = [&](const std::vector<std::uint8_t>& bytes) {
     const auto size = static_cast<std::uint32_t>(bytes.size());
-    EXPECT_EQ(uploader.begin(size).fault, UploadFault::kNone);
+    const UploadFault fault = uploader.begin(size).fault;
+    if (fault != UploadFault::kNone) return fault;
     EXPECT_EQ(uploader.add(0, bytes.data(), size).fault, UploadFault::kNone);
-    return uploader.finish(TimeUs{}).fault;
+    return uploader.finish().fault;
   };
   ASSERT_EQ(send(upload(2e-5)), UploadFault::kNone);
   ASSERT_EQ(uploader.confirm().fault, UploadFault::kNone);
-  ProgramRef running = uploader.take_next();
-  // WHEN one is tried, taken, and given up before the tick has let go of the first
+  programs.guard(TimeUs{});
+  const BoundProgram* const first = tick();
+  ASSERT_NE(first, nullptr);
+  // WHEN one is tried and given up before the tick has taken it
   ASSERT_EQ(send(upload(4e-5, kIssued + 1)), UploadFault::kNone);
-  ProgramRef tried = uploader.take_next();
+  programs.guard(TimeUs{});
   ASSERT_EQ(uploader.revert().fault, UploadFault::kNone);
-  // THEN there is no place for the confirmed one, nor for a third
-  EXPECT_EQ(uploader.take_next(), nullptr);
-  EXPECT_EQ(send(upload(5e-5, kIssued + 2)), UploadFault::kStore);
-  EXPECT_EQ(uploader.slots().trial(), kNoSlot);
-  // AND with the first place that is free it is offered
-  running = nullptr;
-  uploader.poll(TimeUs{});
-  const ProgramRef next = uploader.take_next();
-  ASSERT_NE(next, nullptr);
-  EXPECT_EQ(next->issued, kIssued);
+  programs.guard(TimeUs{});
+  // THEN it is never taken, its place is free, and the first one still runs
+  EXPECT_EQ(tick(), nullptr);
+  EXPECT_TRUE(uploader.look_after_store());
+  ASSERT_EQ(send(upload(5e-5, kIssued + 2)), UploadFault::kNone);
+  programs.guard(TimeUs{});
+  ASSERT_NE(tick(), nullptr);
+  // AND where it was taken, the first one comes back from memory, though there is no third place
+  ASSERT_EQ(uploader.begin(1000).fault, UploadFault::kTrialRuns);
+  ASSERT_EQ(uploader.revert().fault, UploadFault::kNone);
+  programs.guard(TimeUs{});
+  EXPECT_TRUE(uploader.look_after_store());
+  EXPECT_EQ(uploader.begin(1000).fault, UploadFault::kStore) << "both places are in use until the next tick";
+  EXPECT_EQ(tick(), first);
+  EXPECT_EQ(uploader.begin(1000).fault, UploadFault::kNone);
 }
 
 TEST_F(Upload, FullStoreIsSaidAndTheOldImageRuns) {
@@ -242,17 +260,17 @@ TEST_F(Upload, PiecesOutOfOrderAreRefusedAndARepeatedOneIsNot) {
   const std::vector<std::uint8_t> bytes = upload(2e-5);
   Uploader& uploader = rig.uploader();
   EXPECT_EQ(uploader.add(0, bytes.data(), 10).fault, UploadFault::kNoUpload);
-  EXPECT_EQ(uploader.finish(TimeUs{}).fault, UploadFault::kNoUpload);
+  EXPECT_EQ(uploader.finish().fault, UploadFault::kNoUpload);
   ASSERT_EQ(uploader.begin(static_cast<std::uint32_t>(bytes.size())).fault, UploadFault::kNone);
   EXPECT_EQ(uploader.add(0, bytes.data(), 100).fault, UploadFault::kNone);
   EXPECT_EQ(uploader.add(0, bytes.data(), 100).fault, UploadFault::kNone);
   EXPECT_EQ(uploader.add(200, bytes.data() + 200, 100).fault, UploadFault::kOutOfOrder);
   EXPECT_EQ(uploader.add(50, bytes.data() + 50, 100).fault, UploadFault::kOutOfOrder);
-  EXPECT_EQ(uploader.finish(TimeUs{}).fault, UploadFault::kIncomplete);
+  EXPECT_EQ(uploader.finish().fault, UploadFault::kIncomplete);
   const auto rest = static_cast<std::uint32_t>(bytes.size() - 100);
   EXPECT_EQ(uploader.add(100, bytes.data() + 100, rest + 1).fault, UploadFault::kTooLarge);
   EXPECT_EQ(uploader.add(100, bytes.data() + 100, rest).fault, UploadFault::kNone);
-  EXPECT_EQ(uploader.finish(TimeUs{}).fault, UploadFault::kNone);
+  EXPECT_EQ(uploader.finish().fault, UploadFault::kNone);
 }
 
 // The power fails after every single byte that an upload, its trial and its confirmation write.

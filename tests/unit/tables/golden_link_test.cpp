@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Every message of the link, request and reply, byte for byte: tests/golden/link_v1.txt.
+// Every message of the link, request and reply, byte for byte: tests/golden/link_v2.txt.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -77,17 +77,11 @@ TouchRecord touch_record() {
 class Board {
  public:
   Board() {
-    program_ = std::make_unique<BoundProgram>(image_.view);
     exchange_->ticks.add(tick_record());
     exchange_->ticks.add(tick_record());
     exchange_->health.publish(health_record());
     exchange_->touches.add(touch_record());
-    ShareRecord shares;
-    shares.programs = 1;
-    shares.count = image_.view.shares().shares.size;
-    for (std::uint32_t i = 0; i < shares.count; ++i) shares.correction[i] = static_cast<int>(0x71727300 + i);
-    exchange_->shares.publish(shares);
-    link_.set_program(*program_, 1);
+    run_the_image();
   }
   Bytes ask(const Bytes& request) {
     Bytes reply(kMaxReplyBytes);
@@ -97,13 +91,38 @@ class Board {
   }
 
  private:
+  /// As if a tick had taken it over.
+  void run_the_image() {
+    ProgramRef program = uploader_.programs().take();
+    const auto size = static_cast<std::uint32_t>(8 * image_.words.size());
+    std::memcpy(program->image(), image_.words.data(), size);
+    ImageWorkspace workspace;
+    if (program->view.open(program->image(), image_.view.header().image_bytes, workspace) !=
+        ImageFault::kNone)
+      throw std::logic_error("image");
+    std::destroy_at(&program->bound);
+    std::construct_at(&program->bound, program->view);
+    for (std::uint32_t i = 0; i < kMaxAxes; ++i) program->axis[i] = i;
+    uploader_.programs().run_confirmed(std::move(program));
+    uploader_.programs().guard(TimeUs{});
+    exchange_->offered.store(nullptr);
+    exchange_->retired.store(&before_);
+    uploader_.programs().guard(TimeUs{});
+    EquationRecord equation;
+    equation.programs = 1;
+    equation.state.channel_count = image_.view.program().equation.channel_count;
+    for (std::uint32_t i = 0; i < equation.state.channel_count; ++i)
+      equation.state.channel[i] = static_cast<int>(0x01020300 + 0x100 * i);
+    exchange_->equation.publish(equation);
+  }
+
   AlignedImage image_{bytes_in(golden_text("image_v" + std::to_string(kImageFormatVersion) + ".txt"))};
   SimSlotStore store_{1 << 16};
   Wiring wiring_{{{"X"}, {"Y"}, {"C", true, true}}, {"T"}};
-  Uploader uploader_{
-      store_, wiring_, {TimeUs(1000), golden_key().public_part(), TimeUs(60'000'000), ProgramPool::kUsual}};
   std::unique_ptr<Exchange> exchange_ = std::make_unique<Exchange>();
-  std::unique_ptr<BoundProgram> program_;
+  Uploader uploader_{
+      store_, wiring_, *exchange_, {TimeUs(1000), golden_key().public_part(), TimeUs(60'000'000)}};
+  BoundProgram before_;
   Link link_{*exchange_, uploader_, wiring_, TimeUs(1000), golden_key().public_part()};
 };
 

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <algorithm>
+#include <atomic>
+#include <cstdint>
+
+#include "hal/command_link.h"
+#include "tables/link_format.h"
+
+namespace vernier {
+
+/// Where a request that the medium has to do with lies between the links, which never wait, and the store,
+/// which may wait for its medium as long as that takes. One at a time.
+class StoreDesk {
+ public:
+  // ---- the links
+  /// May a request be left here? One whose reply nobody has collected gives way after a while: its peer has
+  /// gone.
+  bool free() noexcept {
+    const State state = state_.load(std::memory_order_acquire);
+    return state == State::kFree || (state == State::kDone && ++asked_while_done_ > kPatience);
+  }
+  /// Only where free(). Returns the ticket for collect().
+  std::uint32_t leave(const std::uint8_t* request, std::uint32_t size) noexcept {
+    size_ = std::min<std::uint32_t>(size, sizeof(request_));
+    std::copy_n(request, size_, request_);
+    asked_while_done_ = 0;
+    ++ticket_;
+    state_.store(State::kAsked, std::memory_order_release);
+    return ticket_;
+  }
+  /// Bytes of the reply; CommandHandler::kLater while it is worked on, 0 where it gave way to another.
+  std::uint32_t collect(std::uint32_t ticket, std::uint8_t* reply) noexcept {
+    if (ticket != ticket_) return 0;
+    const State state = state_.load(std::memory_order_acquire);
+    if (state != State::kDone) return state == State::kFree ? 0 : CommandHandler::kLater;
+    std::copy_n(reply_, reply_size_, reply);
+    state_.store(State::kFree, std::memory_order_release);
+    return reply_size_;
+  }
+
+  // ---- the store
+  bool asked() const noexcept { return state_.load(std::memory_order_acquire) == State::kAsked; }
+  const std::uint8_t* request() const noexcept { return request_; }
+  std::uint32_t size() const noexcept { return size_; }
+  std::uint8_t* reply() noexcept { return reply_; }
+  void done(std::uint32_t reply_size) noexcept {
+    reply_size_ = reply_size;
+    state_.store(State::kDone, std::memory_order_release);
+  }
+
+ private:
+  static constexpr std::uint32_t kPatience = 10;  // requests of others that are turned away meanwhile
+  enum class State : std::uint8_t { kFree, kAsked, kDone };
+  std::atomic<State> state_{State::kFree};
+  std::uint8_t request_[kMaxRequestBytes] = {}, reply_[kMaxReplyBytes] = {};
+  std::uint32_t size_ = 0, reply_size_ = 0, ticket_ = 0, asked_while_done_ = 0;
+};
+
+}  // namespace vernier

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware/daemon/duties.h"
+
+#include "hal/linux/realtime.h"
+
+namespace vernier {
+namespace {
+
+constexpr TimeUs kGuardPeriod(5'000);
+constexpr TimeUs kServeWait(20'000);
+constexpr TimeUs kStoreWait(50'000);           // what the guardian did is written down at the latest then
+constexpr TimeUs kSampleWait(10'000);          // between two samples of the sensors
+constexpr InstantNs kSignPeriod(250'000'000);  // of life; an eighth of the unit's WatchdogSec
+
+}  // namespace
+
+Duties::Duties(Service& service, Devices& devices, ServiceManager& manager, int priority)
+    : service_(service), devices_(devices), manager_(manager) {
+  guardian_ = std::thread([this, priority] { guard(priority); });
+  link_thread_ = std::thread([this] { serve_links(); });
+  store_thread_ = std::thread([this] { look_after_store(); });
+  sensor_thread_ = std::thread([this] { sample(); });
+}
+
+Duties::~Duties() {
+  stop_ = true;
+  store_.wake();
+  links_.wake();
+  for (std::thread* const thread : {&link_thread_, &store_thread_, &sensor_thread_, &guardian_})
+    thread->join();
+}
+
+// A sign of life says that the tick ran since the last one, not that this thread did.
+void Duties::guard(int priority) {
+  if (priority > 0) become_realtime_thread(priority);
+  Clock& clock = devices_.clock();
+  std::uint64_t ticks_told = 0;
+  InstantNs due = clock.now(), told = due;
+  while (!stop_) {
+    service_.guard();
+    const std::uint64_t ticks = service_.exchange().ticks.count();
+    if (clock.now() - told >= kSignPeriod && ticks > ticks_told) {
+      manager_.notify("WATCHDOG=1");
+      ticks_told = ticks;
+      told = clock.now();
+    }
+    due = std::max(due + instant_ns(kGuardPeriod), clock.now());
+    clock.sleep_until(due);
+  }
+}
+
+void Duties::serve_links() {
+  while (!stop_) {
+    devices_.wait_for_request(kServeWait, links_);
+    for (auto& link : devices_.links()) service_.serve(*link, TimeUs(0));
+    if (service_.store_is_asked()) store_.wake();
+  }
+}
+
+void Duties::look_after_store() {
+  while (!stop_) {
+    store_.wait(service_.store_is_asked() ? kGuardPeriod : kStoreWait);
+    if (service_.look_after_store()) links_.wake();
+  }
+}
+
+void Duties::sample() {
+  while (!stop_ && devices_.has_sensors()) {
+    devices_.sample();
+    devices_.clock().sleep_until(devices_.clock().now() + instant_ns(kSampleWait));
+  }
+}
+
+}  // namespace vernier

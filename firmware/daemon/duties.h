@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <atomic>
+#include <string>
+#include <thread>
+
+#include "firmware/core/service.h"
+#include "firmware/daemon/devices.h"
+#include "hal/linux/service_manager.h"
+#include "hal/linux/wake_up.h"
+
+namespace vernier {
+
+/// The daemon's threads beside the tick, one a duty:
+///   guardian  hands programs over, ends trials, tells the service manager that the tick ran; it waits for
+///   nothing
+///             but time, so that no client and no medium can keep it from that;
+///   links     answers requests;
+///   store     waits for the medium;
+///   sensors   waits for drivers.
+class Duties {
+ public:
+  /// All outlive this. priority: SCHED_FIFO of the guardian, 0: an ordinary thread. setup.
+  Duties(Service& service, Devices& devices, ServiceManager& manager, int priority);
+  /// Ends the threads; the store finishes what it is at.
+  ~Duties();
+  Duties(const Duties&) = delete;
+  Duties& operator=(const Duties&) = delete;
+
+ private:
+  void guard(int priority);
+  void serve_links();
+  void look_after_store();
+  void sample();
+
+  Service& service_;
+  Devices& devices_;
+  ServiceManager& manager_;
+  std::atomic<bool> stop_{false};
+  WakeUp store_, links_;
+  std::thread guardian_, link_thread_, store_thread_, sensor_thread_;
+};
+
+}  // namespace vernier

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+
+#include "hal/clock.h"
+#include "hal/command_link.h"
+
+namespace vernier {
+
+/// Where things stand in the register map. The mailbox: a request is written (function 16) to the holding
+/// registers from `mailbox` on, its length in bytes, then the bytes, high byte first; the reply stands in the
+/// input registers there, for each client its own. Input registers from 0: live state; holding register 0:
+/// command (function 6).
+struct ModbusLayout {
+  int mailbox = 0, mailbox_registers = 0, live_registers = 0;
+};
+
+/// The server's side of a conversation with one Modbus client: bytes in, bytes out, no device and no wait.
+/// One buffer each way: while a reply is being worked out or has not been sent, nothing more is taken in.
+/// Functions 3, 4, 6 and 16; everything else is refused with the exceptions of the standard (Modbus
+/// Application Protocol V1.1b3; Modbus over Serial Line V1.02 for the frames of RTU).
+class ModbusConversation {
+ public:
+  static constexpr std::uint32_t kMostFrame = 260;           // 7 of MBAP and 253 of a request
+  static constexpr std::uint32_t kMostMailbox = 123;         // registers
+  static constexpr std::uint32_t kMostLive = 125;            // registers
+  static constexpr InstantNs kReplyDeadline{1'000'000'000};  // for a peer to take its reply
+
+  /// unit: of a serial line, 1..247; 0: TCP, any unit. frame_time: for the whole of a request, from its first
+  /// byte on. setup.
+  ModbusConversation(const ModbusLayout& layout, int unit, InstantNs frame_time) noexcept
+      : layout_(layout), unit_(unit), frame_time_(frame_time) {}
+
+  /// It counts as having asked something at `when`.
+  void begin(InstantNs when) noexcept { last_request_ = when; }
+
+  /// Where received bytes go, and how many fit now.
+  std::uint8_t* space() noexcept { return in_ + used_; }
+  std::uint32_t room() const noexcept { return busy() ? 0 : kMostFrame - used_; }
+  /// So many bytes came into space().
+  void took(std::uint32_t bytes, InstantNs now) noexcept;
+
+  /// Answers the request that is complete, if one is, or goes on with one whose reply takes its time.
+  void work(CommandHandler& handler, InstantNs now) noexcept;
+
+  /// What is to be sent, and how much of it was.
+  const std::uint8_t* out() const noexcept { return out_ + sent_; }
+  std::uint32_t waiting() const noexcept { return out_size_ - sent_; }
+  void sent(std::uint32_t bytes) noexcept;
+
+  /// The peer lies about lengths, is too slow, or does not take its reply: a connection is to be closed. A
+  /// serial line goes on: what came is thrown away.
+  bool broken(InstantNs now) noexcept;
+  /// Where many want to be served, the one with the lowest number gives way: first who does not take his
+  /// reply, then who has asked nothing for longest; never who waits for the medium.
+  std::int64_t worth() const noexcept {
+    return waiting() > 0 ? -1 : waits_for_reply_ ? INT64_MAX : last_request_.count;
+  }
+
+ private:
+  bool tcp() const noexcept { return unit_ == 0; }
+  bool busy() const noexcept { return waiting() > 0 || waits_for_reply_; }
+  std::uint32_t frame_size() noexcept;
+  void respond(CommandHandler& handler, const std::uint8_t* pdu, std::uint32_t size) noexcept;
+  void open_mailbox(CommandHandler& handler, const std::uint8_t* bytes, std::uint32_t size) noexcept;
+  void read_registers(CommandHandler& handler, std::uint8_t function, int address, int count) noexcept;
+  void refuse(std::uint8_t function, std::uint8_t code) noexcept;
+  void put(std::uint8_t byte) noexcept { out_[out_size_++] = byte; }
+  void begin_reply(const std::uint8_t* frame) noexcept;
+  void end_reply(InstantNs now) noexcept;
+  void drop(std::uint32_t bytes) noexcept;
+
+  ModbusLayout layout_;
+  int unit_;
+  InstantNs frame_time_, frame_began_, reply_began_, last_request_, last_byte_;
+  std::uint8_t in_[kMostFrame] = {}, out_[kMostFrame] = {};
+  std::uint32_t used_ = 0, out_size_ = 0, sent_ = 0;
+  std::uint8_t mailbox_[2 * kMostMailbox] = {};  // what the peer wrote
+  std::uint8_t reply_[256] = {};
+  std::uint32_t reply_size_ = 0, ticket_ = 0;
+  bool waits_for_reply_ = false, senseless_ = false;
+};
+
+/// CRC of an RTU frame (Modbus over Serial Line V1.02, 6.2.2).
+std::uint16_t modbus_crc(const std::uint8_t* bytes, std::uint32_t size) noexcept;
+
+}  // namespace vernier
