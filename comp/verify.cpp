@@ -281,4 +281,31 @@ ProgramFault verify_program(const Program& program, ValueRange* ranges) noexcept
   return verify_outputs(program);
 }
 
+namespace {
+
+// One piece found, and a value of each column: a cubic is three products where a line is one.
+std::uint64_t look_up_work(const ErrorTable& table) noexcept {
+  constexpr std::uint64_t kGrid = 10, kStep = 4;
+  std::uint64_t search = kGrid;
+  if (table.grid_multiplier == 0)
+    for (std::uint32_t left = table.pieces; left > 1; left /= 2) search += kStep;
+  return search + std::uint64_t{table.columns} * (table.degree == 3 ? 6 : 2);
+}
+
+}  // namespace
+
+std::uint64_t work_of(const Equation& equation, std::uint32_t channels) noexcept {
+  constexpr std::uint64_t kInstruction = 4, kChannel = 6, kSine = 30, kLagStep = 8;
+  std::uint64_t work = channels * kChannel + equation.lag_count;
+  for (const Instruction& step : equation.instructions) {
+    work += kInstruction;
+    if (step.op == OpCode::kDot) work += std::uint64_t{step.a} + step.b;
+    if (step.op == OpCode::kLookUp && step.b < equation.tables.size)
+      work += look_up_work(equation.tables[step.b]);
+    if (step.op == OpCode::kSineCosine) work += kSine;
+    if (step.op == OpCode::kLag) work += kLagStep;
+  }
+  return work;
+}
+
 }  // namespace vernier

@@ -43,6 +43,8 @@ const char* name_of(Fault fault) noexcept {
       return "reference-lost";
     case Fault::kInputImplausible:
       return "input-implausible";
+    case Fault::kImageLost:
+      return "image-lost";
   }
   return "unknown";
 }
@@ -81,6 +83,8 @@ const char* describe(UploadFault fault) noexcept {
       return "not newer than the confirmed image";
     case UploadFault::kNoTrial:
       return "no image is on trial";
+    case UploadFault::kTooMuchWork:
+      return "more work than this board does in its share of a tick";
   }
   return "unknown";
 }

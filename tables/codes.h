@@ -37,11 +37,12 @@ enum class Fault : std::uint8_t {
   kClock = 7,             // the timer failed, or time jumped
   kReferenceLost = 8,     // an axis does not know its zero any more
   kInputImplausible = 9,  // a sensor reads beyond its plausible range or jumps
+  kImageLost = 10,        // the confirmed image cannot be loaded: nothing is corrected
 };
 
 /// One line for people: "position-missing".
 const char* name_of(Fault fault) noexcept;
-constexpr std::uint8_t kFaultCount = static_cast<std::uint8_t>(Fault::kInputImplausible) + 1;
+constexpr std::uint8_t kFaultCount = static_cast<std::uint8_t>(Fault::kImageLost) + 1;
 
 /// What an operator may ask for. A command that does not fit the mode is refused and counted.
 enum class Command : std::uint8_t {
@@ -72,8 +73,9 @@ enum class UploadFault : std::uint8_t {
   kForeignMachine = 13,  // the image does not fit the board's wiring
   kOlder = 14,           // not newer than the confirmed one, and not forced over it
   kNoTrial = 15,         // nothing is on trial
+  kTooMuchWork = 16,     // more work than the board does in its share of a tick
 };
-constexpr std::uint8_t kUploadFaultCount = static_cast<std::uint8_t>(UploadFault::kNoTrial) + 1;
+constexpr std::uint8_t kUploadFaultCount = static_cast<std::uint8_t>(UploadFault::kTooMuchWork) + 1;
 const char* describe(UploadFault fault) noexcept;
 
 /// Why an image does not fit a board.

@@ -35,8 +35,9 @@ enum class LinkOp : std::uint8_t {
   kShareName = 16,  // u16 share, u32 programs -> char[64]; kBadValue where another program runs by now
   kTouches = 17,    // u64 first -> u64 next, u16 lost, then LinkTouch and LinkTouchAxis each, as many as fit
   kWorkpiece = 18,  // WorkpieceFrame -> nothing; kBadValue where it is no turn
+  kState = 19,      // -> LinkState, LinkAxisState each: what runs, and what of it arrives
 };
-constexpr std::uint8_t kLinkOpCount = static_cast<std::uint8_t>(LinkOp::kWorkpiece) + 1;
+constexpr std::uint8_t kLinkOpCount = static_cast<std::uint8_t>(LinkOp::kState) + 1;
 
 enum class LinkStatus : std::uint8_t {
   kDone = 0,
@@ -75,7 +76,8 @@ struct LinkTick {
   std::uint64_t number;  // ticks since power-on
   std::int64_t time_us;  // the machine file's t
   std::int64_t feed_nm_per_min;
-  std::uint8_t mode, fault, holding, reserved;
+  std::uint8_t mode, fault, holding;
+  std::uint8_t saturated;  // bit i: the correction of axis i is held at a limit
 };
 struct LinkAxis {
   std::int64_t position;    // nm, or 2^-32 turn
@@ -88,6 +90,33 @@ struct LinkInput {
 struct LinkShare {
   std::uint8_t axis;        // board's
   std::int32_t correction;  // what the effect adds, counts of the axis, before limits and ramps
+};
+/// What the tick runs.
+enum class ImageState : std::uint8_t {
+  kNone = 0,       // nothing was ever confirmed, or nothing runs yet
+  kConfirmed = 1,  // the confirmed image
+  kTrial = 2,      // the image on trial
+  kLost = 3,       // an image is confirmed and cannot be loaded: Fault::kImageLost
+};
+struct LinkState {
+  std::uint64_t fingerprint;  // of the image that runs; 0: none
+  std::int64_t since_us;      // the machine file's t when the tick took it over
+  std::uint32_t weight;       // share of every correction that is in, 0..65536: ramps and faults
+  std::uint8_t image;         // ImageState
+  std::uint8_t reserved[3];
+};
+struct LinkAxisState {
+  std::int32_t wanted;    // counts: of the equation, at full weight and within its limit
+  std::int32_t achieved;  // counts: what the output gives, after all limits
+  std::uint32_t weight;   // of the axis, 0..65536
+  std::uint8_t limits;    // AxisLimitFlag
+};
+/// Which limits hold a correction now.
+enum AxisLimitFlag : std::uint8_t {
+  kAtImageLimit = 1u << 0,   // maxcorrection of the machine file
+  kAtBoardLimit = 1u << 1,   // max_correction of the board file
+  kAtOutputLimit = 1u << 2,  // the end of the converter's range
+  kOnItsWay = 1u << 3,       // slew or acceleration
 };
 struct LinkTouch {
   std::uint64_t number;  // of the touch since power-on
@@ -110,7 +139,7 @@ static_assert(sizeof(LinkTick) == 28);
 static_assert(offsetof(LinkTick, number) == 0 && offsetof(LinkTick, time_us) == 8 &&
               offsetof(LinkTick, feed_nm_per_min) == 16 && offsetof(LinkTick, mode) == 24 &&
               offsetof(LinkTick, fault) == 25 && offsetof(LinkTick, holding) == 26 &&
-              offsetof(LinkTick, reserved) == 27);
+              offsetof(LinkTick, saturated) == 27);
 static_assert(sizeof(LinkAxis) == 13);
 static_assert(offsetof(LinkAxis, position) == 0 && offsetof(LinkAxis, correction) == 8 &&
               offsetof(LinkAxis, sense) == 12);
@@ -118,6 +147,13 @@ static_assert(sizeof(LinkInput) == 4);
 static_assert(offsetof(LinkInput, value) == 0);
 static_assert(sizeof(LinkShare) == 5);
 static_assert(offsetof(LinkShare, axis) == 0 && offsetof(LinkShare, correction) == 1);
+static_assert(sizeof(LinkState) == 24);
+static_assert(offsetof(LinkState, fingerprint) == 0 && offsetof(LinkState, since_us) == 8 &&
+              offsetof(LinkState, weight) == 16 && offsetof(LinkState, image) == 20 &&
+              offsetof(LinkState, reserved) == 21);
+static_assert(sizeof(LinkAxisState) == 13);
+static_assert(offsetof(LinkAxisState, wanted) == 0 && offsetof(LinkAxisState, achieved) == 4 &&
+              offsetof(LinkAxisState, weight) == 8 && offsetof(LinkAxisState, limits) == 12);
 static_assert(sizeof(LinkTouch) == 60);
 static_assert(offsetof(LinkTouch, number) == 0 && offsetof(LinkTouch, time_ns) == 8 &&
               offsetof(LinkTouch, workpiece_nm) == 16 && offsetof(LinkTouch, lost_edges) == 40 &&
@@ -151,13 +187,20 @@ enum LiveRegister : int {
   kLiveTicks = 4,     // 2 registers, high word first: ticks since power-on, low 32 bits
   kLiveOverruns = 6,  // 2 registers
   kLiveLatency = 8,   // p99 of the wake-up latency, us
+  kLiveImage = 9,     // ImageState
+  kLiveWeight = 10,   // share of every correction that is in, 0.01 %
+  kLiveLimits = 11,   // bit i: the correction of axis i is held at a limit
+  kLiveSince = 12,    // 2 registers: s since the tick took the image over
   kLiveAxes = 16,  // per axis 4 registers: position in um (linear) or 1e-3 deg (rotary), 2 registers, signed;
                    // correction in 0.01 um or 1e-6 deg, 2 registers, signed
-  kLiveInputs = 48,    // per input 2 registers: 0.001 of its unit, signed
-  kLiveRegisters = 96  // all of them
+  kLiveInputs = 48,        // per input 2 registers: 0.001 of its unit, signed
+  kLiveFingerprint = 96,   // 4 registers, highest word first: of the image that runs; 0: none
+  kLiveAxisWeights = 100,  // per axis its weight, 0.01 %
+  kLiveRegisters = 108     // all of them
 };
 constexpr int kLiveRegistersPerAxis = 4;
 static_assert(kLiveInputs == kLiveAxes + kLiveRegistersPerAxis * static_cast<int>(kMaxAxes));
-static_assert(kLiveRegisters == kLiveInputs + 2 * static_cast<int>(kMaxInputs));
+static_assert(kLiveFingerprint == kLiveInputs + 2 * static_cast<int>(kMaxInputs));
+static_assert(kLiveRegisters == kLiveAxisWeights + static_cast<int>(kMaxAxes));
 
 }  // namespace vernier

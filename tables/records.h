@@ -16,9 +16,18 @@ struct TickRecord {
   std::int64_t input[kMaxInputs] = {};
   std::int64_t feed_nm_per_min = 0;
   std::int8_t sense[kMaxAxes] = {};
-  std::uint8_t mode = 0, fault = 0, holding = 0, reserved[5] = {};
+  std::uint8_t mode = 0, fault = 0, holding = 0, saturated = 0, reserved[4] = {};
 };
 static_assert(sizeof(TickRecord) % 8 == 0);
+
+/// What of the equation arrives at the drives, as others see it. Axes in the board's order, in their counts.
+struct StateRecord {
+  std::int64_t since_us = 0;  // the machine file's t when the program was taken over
+  std::uint32_t programs = 0, weight = 0;
+  std::int32_t wanted[kMaxAxes] = {}, achieved[kMaxAxes] = {}, axis_weight[kMaxAxes] = {};
+  std::uint8_t limits[kMaxAxes] = {};
+};
+static_assert(sizeof(StateRecord) % 8 == 0);
 
 /// What is counted and measured, as others see it.
 struct HealthRecord {

@@ -2,6 +2,7 @@
 #include "firmware/core/cycle.h"
 
 #include "comp/fixed.h"
+#include "tables/link_format.h"
 
 namespace vernier {
 namespace {
@@ -136,11 +137,28 @@ void Cycle::fill_input(TimeUs time) noexcept {
 
 void Cycle::collect_wishes(const CycleOutput& output) noexcept {
   if (mode_.holding()) return;
-  for (Drive& drive : drive_) drive.wanted = 0;
+  for (Drive& drive : drive_) drive.wanted = drive.whole = 0, drive.limits = 0;
   for (const Output& out : now_->program.outputs) {
     const std::uint32_t axis = now_->axis[out.axis];
-    drive_[axis].wanted = multiply(output.correction[out.axis].counts, axis_weight_[axis].count, 16);
+    Drive& drive = drive_[axis];
+    const std::int64_t largest = limits_.axis[axis].largest;
+    const std::int64_t asked = multiply(output.correction[out.axis].counts, axis_weight_[axis].count, 16);
+    drive.whole = output.wanted[out.axis].counts;
+    drive.wanted = clamp(asked, -largest, largest);
+    if (drive.wanted != asked) drive.limits |= kAtBoardLimit;
+    if (higher(drive.whole, -drive.whole) >= out.limit && drive.whole != 0) drive.limits |= kAtImageLimit;
   }
+}
+
+// What is told of an axis: what its output gives, and what holds it.
+void Cycle::judge_limits(std::uint32_t axis) noexcept {
+  Drive& drive = drive_[axis];
+  drive.achieved = board_.corrections.within_range(axis, written_[axis]);
+  const std::uint32_t kept = drive.limits & (kAtBoardLimit | kAtImageLimit);
+  const std::uint32_t at_end = drive.achieved != written_[axis] ? std::uint32_t{kAtOutputLimit} : 0u;
+  const std::uint32_t moving = written_[axis].count != drive.wanted ? std::uint32_t{kOnItsWay} : 0u;
+  drive.limits = static_cast<std::uint8_t>(kept | at_end | moving);
+  held_ = held_ || (drive.limits & (kAtBoardLimit | kAtOutputLimit)) != 0;
 }
 
 // A refused write is repeated with the same value: whichever of the two the drive holds, its next step is
@@ -148,8 +166,11 @@ void Cycle::collect_wishes(const CycleOutput& output) noexcept {
 bool Cycle::write_axis(std::uint32_t axis) noexcept {
   Drive& drive = drive_[axis];
   const MotionBounds bounds{drive.slew, limits_.axis[axis].motion.acceleration};
+  // Whatever went before, no more than the board's own limit ever leaves it.
+  const std::int64_t largest = limits_.axis[axis].largest;
   const AxisTravel next =
-      drive.repeat ? drive.pending : AxisTravel(drive.motion.approach(drive.wanted, bounds));
+      drive.repeat ? drive.pending
+                   : AxisTravel(clamp(drive.motion.approach(drive.wanted, bounds), -largest, largest));
   drive.repeat = board_.corrections.write_correction(axis, next) != HalFault::kNone;
   if (drive.repeat) {
     ++health_.failed_writes;
@@ -164,10 +185,12 @@ bool Cycle::write_axis(std::uint32_t axis) noexcept {
 Fault Cycle::write(const CycleOutput& output) noexcept {
   Fault fault = Fault::kNone;
   at_zero_ = settled_ = true;
+  held_ = false;
   collect_wishes(output);
   for (std::uint32_t axis = 0; axis < kMaxAxes; ++axis) {
     if (drive_[axis].slew == 0) continue;
     const bool written = write_axis(axis);
+    judge_limits(axis);
     if (!written) fault = Fault::kWriteFailed;
     at_zero_ = at_zero_ && written && written_[axis] == AxisTravel{};
     settled_ = settled_ && written && written_[axis].count == drive_[axis].wanted;
@@ -179,7 +202,7 @@ Fault Cycle::write(const CycleOutput& output) noexcept {
 void Cycle::count(const CycleOutput& output) noexcept {
   ++health_.ticks;
   health_.active_ticks += mode_.mode() == Mode::kActive ? 1 : 0;
-  health_.saturated += (output.flags & kSaturated) != 0 ? 1 : 0;
+  health_.saturated += (output.flags & kSaturated) != 0 || held_ ? 1 : 0;
   health_.slewing += (output.flags & kSlewing) != 0 ? 1 : 0;
   health_.beyond_range += (output.flags & kBeyondRange) != 0 ? 1 : 0;
 }

@@ -17,7 +17,8 @@ namespace vernier {
 struct AxisSetting {
   bool own = false;  // `limits` count instead of those of the kind
   AxisLimits limits;
-  MotionBounds motion;  // of the correction, on top of the image's slew limit; counts and ticks
+  MotionBounds motion;               // of the correction, on top of the image's slew limit; counts and ticks
+  std::int64_t largest = INT32_MAX;  // correction that may ever be written, whatever the image says; counts
 };
 
 /// When a reading of a sensor is a fault; 1e-6 of its unit.
@@ -76,6 +77,11 @@ class Cycle {
   WeightQ16 weight() const noexcept { return mode_.weight(); }
   Health& health() noexcept { return health_; }
   const Health& health() const noexcept { return health_; }
+  /// What the equation wants of a board's axis at full weight, what its output gives of that, and which
+  /// limits (AxisLimitFlag) hold it.
+  AxisTravel wanted(std::uint32_t axis) const noexcept { return AxisTravel(drive_[axis].whole); }
+  AxisTravel achieved(std::uint32_t axis) const noexcept { return drive_[axis].achieved; }
+  std::uint8_t limits(std::uint32_t axis) const noexcept { return drive_[axis].limits; }
   /// The correction that a board's axis was given last.
   AxisTravel written(std::uint32_t axis) const noexcept { return written_[axis]; }
   /// Newest good state of a board's axis, and value of a board's input.
@@ -96,12 +102,16 @@ class Cycle {
   void collect_wishes(const CycleOutput& output) noexcept;
   Fault write(const CycleOutput& output) noexcept;
   bool write_axis(std::uint32_t axis) noexcept;
+  void judge_limits(std::uint32_t axis) noexcept;
   void count(const CycleOutput& output) noexcept;
 
   /// What is to reach a drive, by board's axis.
   struct Drive {
-    std::int64_t wanted = 0;  // counts
-    std::int64_t slew = 0;    // counts a tick; 0: no program has moved this axis yet
+    std::int64_t wanted = 0;  // counts, within the board's limit
+    std::int64_t whole = 0;   // the same at full weight, before that limit
+    AxisTravel achieved;
+    std::uint8_t limits = 0;
+    std::int64_t slew = 0;  // counts a tick; 0: no program has moved this axis yet
     MotionLimit motion;
     AxisTravel pending;  // refused, to be written again
     bool repeat = false;
@@ -124,7 +134,7 @@ class Cycle {
   WeightQ16 axis_weight_[kMaxAxes];
   AxisTravel written_[kMaxAxes];
   Drive drive_[kMaxAxes];
-  bool at_zero_ = true, settled_ = false;
+  bool at_zero_ = true, settled_ = false, held_ = false;
 };
 
 }  // namespace vernier

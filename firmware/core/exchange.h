@@ -145,6 +145,7 @@ struct Exchange {
   static constexpr std::uint32_t kTouches = 256;
 
   Published<HealthRecord> health;
+  Published<StateRecord> state;
   Published<EquationRecord> equation;  // ten a second
   History<TickRecord> ticks;
   History<TouchRecord> touches;

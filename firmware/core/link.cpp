@@ -126,6 +126,8 @@ LinkStatus Link::run(LinkOp op, Reader& in, Writer& out, TimeUs now) {
       return shares(in, out);
     case LinkOp::kShareName:
       return share_name(in, out);
+    case LinkOp::kState:
+      return in.complete() ? state(out) : LinkStatus::kBadLength;
     case LinkOp::kTouches:
       return touches(in, out);
     case LinkOp::kWorkpiece:
@@ -173,7 +175,8 @@ bool Link::put_tick(Writer& out, std::uint64_t number, const TickRecord& tick) c
   const std::size_t bytes =
       sizeof(LinkTick) + wiring_.axes.size() * sizeof(LinkAxis) + wiring_.inputs.size() * sizeof(LinkInput);
   if (bytes > out.room()) return false;
-  out.put(LinkTick{number, tick.time_us, tick.feed_nm_per_min, tick.mode, tick.fault, tick.holding, 0});
+  out.put(LinkTick{number, tick.time_us, tick.feed_nm_per_min, tick.mode, tick.fault, tick.holding,
+                   tick.saturated});
   for (std::size_t i = 0; i < wiring_.axes.size(); ++i)
     out.put(LinkAxis{tick.position[i], tick.correction[i], tick.sense[i]});
   for (std::size_t i = 0; i < wiring_.inputs.size(); ++i)
@@ -281,6 +284,30 @@ class Look {
 };
 
 }  // namespace
+
+Link::Running Link::running(const LoadedProgram* program) const {
+  Running found;
+  if (program != nullptr) found.fingerprint = program->header.fingerprint;
+  const SlotsRecord slots = uploader_.record();
+  const bool trial = slots.trial != kNoSlot && found.fingerprint == slots.trial_fingerprint;
+  found.image = found.fingerprint == 0 ? (uploader_.image_lost() ? ImageState::kLost : ImageState::kNone)
+                : trial                ? ImageState::kTrial
+                                       : ImageState::kConfirmed;
+  return found;
+}
+
+LinkStatus Link::state(Writer& out) {
+  StateRecord record;
+  if (exchange_.ticks.count() == 0 || !exchange_.state.read(record)) return LinkStatus::kNotReady;
+  const Look look(uploader_.programs());
+  const Running now = running(look.program());
+  out.put(
+      LinkState{now.fingerprint, record.since_us, record.weight, static_cast<std::uint8_t>(now.image), {}});
+  for (std::size_t i = 0; i < wiring_.axes.size(); ++i)
+    out.put(LinkAxisState{record.wanted[i], record.achieved[i],
+                          static_cast<std::uint32_t>(record.axis_weight[i]), record.limits[i]});
+  return LinkStatus::kDone;
+}
 
 // What was published may be of a program that has gone, or that has not been collected yet.
 bool Link::work_out_shares(const LoadedProgram& program) {
@@ -393,9 +420,30 @@ std::int64_t turns_to(std::int64_t counts, std::int64_t parts_per_turn) {
   return turns * parts_per_turn + ((rest * (parts_per_turn / 8)) >> 29);
 }
 
+// Shares of 65536 in hundredths of a percent.
+std::uint16_t share_of(std::uint32_t weight) {
+  return static_cast<std::uint16_t>((std::uint64_t{weight} * 10'000 + 32768) >> 16);
+}
+
 }  // namespace
 
-void Link::fill_registers(std::uint16_t* values) const {
+void Link::fill_state(std::uint16_t* values, const TickRecord& tick) {
+  StateRecord state;
+  if (!exchange_.state.read(state)) return;
+  const Look look(uploader_.programs());
+  const Running now = running(look.program());
+  values[kLiveImage] = static_cast<std::uint16_t>(now.image);
+  values[kLiveWeight] = share_of(state.weight);
+  values[kLiveLimits] = tick.saturated;
+  put_pair(values + kLiveSince, now.fingerprint == 0 ? 0 : (tick.time_us - state.since_us) / 1'000'000);
+  for (int i = 0; i < 4; ++i)
+    values[kLiveFingerprint + i] = static_cast<std::uint16_t>(now.fingerprint >> (48 - 16 * i));
+  for (std::uint32_t i = 0; i < wiring_.axes.size(); ++i)
+    values[kLiveAxisWeights + static_cast<int>(i)] =
+        share_of(static_cast<std::uint32_t>(state.axis_weight[i]));
+}
+
+void Link::fill_registers(std::uint16_t* values) {
   std::fill_n(values, int{kLiveRegisters}, std::uint16_t{0});
   values[kLiveLayout] = kLinkVersion;
   TickRecord tick;
@@ -405,6 +453,7 @@ void Link::fill_registers(std::uint16_t* values) const {
   values[kLiveMode] = tick.mode;
   values[kLiveFault] = tick.fault;
   values[kLiveHolding] = tick.holding;
+  fill_state(values, tick);
   put_pair(values + kLiveTicks, static_cast<std::int32_t>(static_cast<std::uint32_t>(count)));
   put_pair(values + kLiveOverruns, static_cast<std::int64_t>(health.overruns));
   values[kLiveLatency] =

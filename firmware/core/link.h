@@ -29,7 +29,7 @@ class Link {
   static std::uint32_t answer_busy(const std::uint8_t* request, std::uint8_t* reply) noexcept;
 
   /// The live registers for plain Modbus masters; values: kLiveRegisters. setup.
-  void fill_registers(std::uint16_t* values) const;
+  void fill_registers(std::uint16_t* values);
   /// A command from a plain master: refused where it is none or the one before has not been taken. setup.
   LinkStatus give(std::uint8_t command);
 
@@ -45,6 +45,14 @@ class Link {
   LinkStatus slots(Writer& out, TimeUs now) const;
   LinkStatus read(Reader& in, Writer& out);
   LinkStatus weight(Reader& in);
+  /// What the tick runs.
+  struct Running {
+    std::uint64_t fingerprint = 0;
+    ImageState image = ImageState::kNone;
+  };
+  Running running(const LoadedProgram* program) const;
+  LinkStatus state(Writer& out);
+  void fill_state(std::uint16_t* values, const TickRecord& tick);
   LinkStatus shares(Reader& in, Writer& out);
   bool work_out_shares(const LoadedProgram& program);
   LinkStatus share_name(Reader& in, Writer& out);

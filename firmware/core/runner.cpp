@@ -86,8 +86,8 @@ void Runner::schedule(InstantNs ended) noexcept {
   if (due_ < ended) due_ = ended + instant_ns(period_);
 }
 
-TickReport Runner::step(Command command) noexcept {
-  Fault outer = overran_too_often() ? Fault::kOverrun : Fault::kNone;
+TickReport Runner::step(Command command, Fault found) noexcept {
+  Fault outer = overran_too_often() ? Fault::kOverrun : found;
   if (wait() != HalFault::kNone) outer = Fault::kClock;
   const InstantNs woke = clock_.now();
   // A monotonic clock that runs backwards is broken, whatever the reason.

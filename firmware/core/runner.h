@@ -35,8 +35,9 @@ class Runner {
   Runner(Cycle& cycle, Clock& clock, TimeUs period, TickSync* sync, TimeUs patience,
          const OverrunLimits& overruns = {}) noexcept;
 
-  /// Sleeps, then one tick; its time is counted from the construction or set_time(). realtime.
-  TickReport step(Command command) noexcept;
+  /// Sleeps, then one tick; found: a fault from outside of the tick. Its time is counted from the
+  /// construction or set_time(). realtime.
+  TickReport step(Command command, Fault found = Fault::kNone) noexcept;
   /// The machine file's t of the next tick; for a run that starts in the middle of a machine's day. setup.
   void set_time(TimeUs time) noexcept { time_ = time; }
   /// The machine file's t of the next tick.

@@ -55,9 +55,20 @@ void Service::tell_health(const TickReport& report) noexcept {
   if (board_.healthy == nullptr) return;
   const bool well = report.latched == Fault::kNone && report.mode != Mode::kBoot &&
                     report.mode != Mode::kChecking && !ending_;
+  if (well && options_.healthy_toggle > 0) return pump();
   const Told now = well ? Told::kWell : Told::kUnwell;
   // A line that could not be switched is tried again with the next tick.
-  if (now != told_ && board_.healthy->write_line(well) == HalFault::kNone) told_ = now;
+  if (now != told_ && board_.healthy->write_line(well) == HalFault::kNone) told_ = now, line_ = well;
+}
+
+// A line that stands still says nothing good, be it high or low: the relay behind it drops when the tick
+// stops.
+void Service::pump() noexcept {
+  told_ = Told::kNothing;
+  if (until_edge_ > 0) --until_edge_;
+  if (until_edge_ > 0 || board_.healthy->write_line(!line_) != HalFault::kNone) return;
+  line_ = !line_;
+  until_edge_ = options_.healthy_toggle;
 }
 
 Command Service::next_command() noexcept {
@@ -80,7 +91,8 @@ TickReport Service::tick() noexcept {
   for (std::uint32_t i = 0; i < kMaxAxes; ++i)
     cycle_.set_axis_weight(i, WeightQ16(exchange_.axis_weight[i].load(std::memory_order_relaxed)));
   const TimeUs time = runner_.time();
-  const TickReport report = runner_.step(next_command());
+  const TickReport report =
+      runner_.step(next_command(), uploader_.image_lost() ? Fault::kImageLost : Fault::kNone);
   if (probing_) probing_->after_tick(cycle_, report, runner_.woke(), time, exchange_);
   tell_health(report);
   publish(report);
@@ -102,12 +114,30 @@ void Service::publish(const TickReport& report) noexcept {
   record_.mode = static_cast<std::uint8_t>(report.mode);
   record_.fault = static_cast<std::uint8_t>(report.latched);
   record_.holding = cycle_.holding() ? 1 : 0;
+  publish_state();
   exchange_.ticks.add(record_);
   publish_health();
   if (--until_equation_ == 0) {
     until_equation_ = kTicksPerEquation;
     publish_equation();
   }
+}
+
+void Service::publish_state() noexcept {
+  const auto programs = static_cast<std::uint32_t>(cycle_.health().programs);
+  if (programs != state_.programs) state_.since_us = record_.time_us;
+  state_.programs = programs;
+  state_.weight = static_cast<std::uint32_t>(cycle_.weight().count);
+  record_.saturated = 0;
+  for (std::uint32_t i = 0; i < options_.wiring.axes.size(); ++i) {
+    state_.wanted[i] = narrow(clamp<std::int64_t>(cycle_.wanted(i).count, INT32_MIN, INT32_MAX));
+    state_.achieved[i] = narrow(clamp<std::int64_t>(cycle_.achieved(i).count, INT32_MIN, INT32_MAX));
+    state_.axis_weight[i] = cycle_.axis_weight(i).count;
+    state_.limits[i] = cycle_.limits(i);
+    const bool held = (cycle_.limits(i) & (kAtImageLimit | kAtBoardLimit | kAtOutputLimit)) != 0;
+    record_.saturated = static_cast<std::uint8_t>(record_.saturated | (held ? 1u << i : 0u));
+  }
+  exchange_.state.publish(state_);
 }
 
 void Service::publish_equation() noexcept {

@@ -27,6 +27,8 @@ struct ServiceOptions {
   ProbeSettings probe;   // where the board has one; axes are filled in from the wiring
   bool store_beside =
       false;  // look_after_store() has a context of its own, so that links never wait for the medium
+  std::uint32_t healthy_toggle =
+      0;                  // ticks between two edges of the healthy line while all is well; 0: it is on
   bool activate = false;  // bring the correction in when the board becomes ready, once for each enable
   std::uint32_t ticks_kept = Exchange::kHistory;  // for readers of the history; powers of two
   std::uint32_t touches_kept = Exchange::kTouches;
@@ -86,8 +88,10 @@ class Service : private CommandHandler {
   Command next_command() noexcept;
   void read_enable() noexcept;
   void tell_health(const TickReport& report) noexcept;
+  void pump() noexcept;
   void publish(const TickReport& report) noexcept;
   void publish_health() noexcept;
+  void publish_state() noexcept;
   void publish_equation() noexcept;
 
   ServiceOptions options_;
@@ -106,8 +110,11 @@ class Service : private CommandHandler {
   std::uint32_t until_percentile_ = kTicksPerPercentile, percentile_ = 0, until_equation_ = kTicksPerEquation;
   HealthRecord health_;
   TickRecord record_;
+  StateRecord state_;
   EquationRecord equation_;
   bool activated_ = false, ending_ = false, enabled_ = true;
+  std::uint32_t until_edge_ = 0;
+  bool line_ = false;
   enum class Told : std::uint8_t { kNothing, kUnwell, kWell } told_ = Told::kNothing;
 };
 

@@ -81,6 +81,14 @@ TimeUs Uploader::trial_left(TimeUs now) const noexcept {
   return record().trial == kNoSlot ? TimeUs{} : programs_.trial_left(now, options_.trial_time);
 }
 
+// An image that the verifier passes may still be more than the board can do in its time.
+bool Uploader::within_budget(const ImageView& view) const noexcept {
+  const Program& program = view.program();
+  const std::uint64_t tick = work_of(program.equation, program.channels.size);
+  const std::uint64_t shares = work_of(view.shares().equation, 0) + view.shares().shares.size;
+  return tick <= options_.work_budget && (tick + shares) / kShareWorkFactor <= options_.work_budget;
+}
+
 UploadResult Uploader::check(LoadedProgram& loaded) {
   const UploadHeader& header = loaded.header;
   if (!options_.key) return refused(UploadFault::kNoKey);
@@ -95,6 +103,7 @@ UploadResult Uploader::check(LoadedProgram& loaded) {
     return result;
   }
   if (loaded.view.header().fingerprint != header.fingerprint) return refused(UploadFault::kFingerprint);
+  if (!within_budget(loaded.view)) return refused(UploadFault::kTooMuchWork);
   std::destroy_at(&loaded.bound);
   std::construct_at(&loaded.bound, loaded.view);
   result.bind = bind(loaded.view, wiring_, options_.tick, loaded.bound, result.offender);
@@ -123,6 +132,7 @@ UploadResult Uploader::boot() {
   if (slots_.trial() != kNoSlot) store(slots_.revert());
   publish();
   if (slots_.confirmed() == kNoSlot) return {};
+  image_lost_ = true;
   ProgramRef loaded = programs_.take();
   if (loaded == nullptr) return refused(UploadFault::kStore);
   const UploadResult result = load(slots_.confirmed(), *loaded);
@@ -130,6 +140,7 @@ UploadResult Uploader::boot() {
   record_.confirmed_fingerprint = loaded->header.fingerprint;
   publish();
   programs_.run_confirmed(std::move(loaded));
+  image_lost_ = false;
   return result;
 }
 
@@ -209,6 +220,7 @@ UploadResult Uploader::confirm() {
   if (!programs_.begin_to_keep()) return refused(UploadFault::kNoTrial);
   const bool written = store(slots_.confirm());
   if (written) record_.confirmed_fingerprint = record_.trial_fingerprint;
+  if (written) image_lost_ = false;
   publish();
   programs_.kept(written);
   return written ? UploadResult{} : refused(UploadFault::kStore);

@@ -6,6 +6,7 @@
 
 #include "firmware/core/programs.h"
 #include "firmware/core/signature.h"
+#include "firmware/core/work_budget.h"
 #include "hal/slot_store.h"
 #include "tables/codes.h"
 #include "tables/image_view.h"
@@ -47,6 +48,7 @@ class Uploader {
     std::optional<PublicKey> key;
     TimeUs trial_time{60'000'000};  // an image on trial is given up after that
     std::uint32_t places = Programs::kFewest;
+    std::uint64_t work_budget = kAnyWork;  // measured_work_budget()
   };
   /// store, wiring, exchange: outlive the uploader. setup.
   Uploader(SlotStore& store, const Wiring& wiring, Exchange& exchange, const Options& options);
@@ -76,6 +78,8 @@ class Uploader {
   // ---- anybody
   /// The store's contents; a trial that is over is none, whatever the medium knows of it by now.
   SlotsRecord record() const noexcept;
+  /// Is there a confirmed image that could not be loaded, and no other runs in its place?
+  bool image_lost() const noexcept { return image_lost_.load(); }
   /// Left of the trial; 0 where none runs.
   TimeUs trial_left(TimeUs now) const noexcept;
   std::uint32_t capacity() const noexcept { return store_.capacity(); }
@@ -88,6 +92,7 @@ class Uploader {
  private:
   UploadResult load(std::uint8_t slot, LoadedProgram& loaded);
   UploadResult check(LoadedProgram& loaded);
+  bool within_budget(const ImageView& view) const noexcept;
   UploadResult write_slot(std::uint8_t slot);
   bool may_replace(const UploadHeader& header) const noexcept;
   bool store(const SlotChange& change);
@@ -101,6 +106,7 @@ class Uploader {
   std::unique_ptr<ImageWorkspace> workspace_;
   Published<SlotsRecord> published_;
   SlotsRecord record_;
+  std::atomic<bool> image_lost_{false};
   // The links', until finish().
   ProgramRef coming_;
   bool receiving_ = false;

@@ -17,12 +17,13 @@ bool parse_value(const char* text, double low, double high, double& value) {
 }  // namespace
 
 const char* const kUsage =
-    "usage: vernierd --board FILE [--check] [--seconds S] [--no-realtime] [--json FILE]\n"
+    "usage: vernierd --board FILE [--check | --zero] [--seconds S] [--no-realtime] [--json FILE]\n"
     "       vernierd --board FILE --calibrate AXIS [--steps N | --measured CSV] [--json FILE]\n"
     "       vernierd --image DIR --simulate [--seconds S] [--seed N] [--no-realtime] [--json FILE]\n"
     "Runs the 1 kHz compensation cycle.\n"
     "  --board FILE    the board: its axes, sensors, outputs, links and store (tools/docs/board.md)\n"
     "  --check         try every device of the board file once, say what is missing, and end\n"
+    "  --zero          take out what a daemon that is gone left in the outputs, within the limits, and end\n"
     "  --calibrate AXIS  step the output of an axis through its range, ask for the measured value at each "
     "code,\n"
     "                  and store gain and zero in the file that the output names as its calibration\n"
@@ -41,14 +42,21 @@ const char* const kUsage =
 const char* const kVersion = "vernierd " VERNIER_VERSION " (" VERNIER_COMMIT ")\n";
 
 bool parse_arguments(int argc, char** argv, Arguments& arguments) {
-  const option kOptions[] = {
-      {"image", required_argument, nullptr, 'i'},     {"simulate", no_argument, nullptr, 's'},
-      {"seconds", required_argument, nullptr, 't'},   {"seed", required_argument, nullptr, 'r'},
-      {"no-realtime", no_argument, nullptr, 'n'},     {"json", required_argument, nullptr, 'j'},
-      {"board", required_argument, nullptr, 'b'},     {"check", no_argument, nullptr, 'c'},
-      {"calibrate", required_argument, nullptr, 'a'}, {"measured", required_argument, nullptr, 'm'},
-      {"steps", required_argument, nullptr, 'p'},     {"help", no_argument, nullptr, 'h'},
-      {"version", no_argument, nullptr, 'V'},         {nullptr, 0, nullptr, 0}};
+  const option kOptions[] = {{"image", required_argument, nullptr, 'i'},
+                             {"simulate", no_argument, nullptr, 's'},
+                             {"seconds", required_argument, nullptr, 't'},
+                             {"seed", required_argument, nullptr, 'r'},
+                             {"no-realtime", no_argument, nullptr, 'n'},
+                             {"json", required_argument, nullptr, 'j'},
+                             {"board", required_argument, nullptr, 'b'},
+                             {"check", no_argument, nullptr, 'c'},
+                             {"calibrate", required_argument, nullptr, 'a'},
+                             {"measured", required_argument, nullptr, 'm'},
+                             {"steps", required_argument, nullptr, 'p'},
+                             {"zero", no_argument, nullptr, 'z'},
+                             {"help", no_argument, nullptr, 'h'},
+                             {"version", no_argument, nullptr, 'V'},
+                             {nullptr, 0, nullptr, 0}};
   double number = 0;
   for (int c = 0; (c = getopt_long(argc, argv, "hV", kOptions, nullptr)) != -1;) {
     if (c == 'i') arguments.image = optarg;
@@ -57,6 +65,7 @@ bool parse_arguments(int argc, char** argv, Arguments& arguments) {
     if (c == 'j') arguments.json = optarg;
     if (c == 'b') arguments.board = optarg;
     if (c == 'c') arguments.check = true;
+    if (c == 'z') arguments.zero = true;
     if (c == 'a') arguments.calibrate = optarg;
     if (c == 'm') arguments.measured = optarg;
     if (c == 'p' && !parse_value(optarg, 2, 1000, number)) return false;

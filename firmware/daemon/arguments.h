@@ -10,7 +10,7 @@ struct Arguments {
   int steps = 11;
   double seconds = 0;
   unsigned long seed = 1;
-  bool simulate = false, realtime = true, check = false, help = false, version = false;
+  bool simulate = false, realtime = true, check = false, zero = false, help = false, version = false;
 };
 
 extern const char* const kUsage;

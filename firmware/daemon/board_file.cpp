@@ -110,6 +110,8 @@ AxisSetting setting_of(Table& settings, bool rotary, TimeUs tick) {
   if (acceleration > 0)
     setting.motion.acceleration =
         std::clamp<std::int64_t>(counts(share * acceleration * tick_s * tick_s * scale), 1, INT32_MAX);
+  const double largest = settings.number("max_correction", 0, 1e-6, 1e3);
+  if (largest > 0) setting.largest = std::clamp<std::int64_t>(counts(largest * scale), 1, INT32_MAX);
   setting.limits.missing_ticks =
       static_cast<std::uint32_t>(settings.number("missing_ticks", setting.limits.missing_ticks, 0, 10000));
   return setting;
@@ -142,6 +144,21 @@ void apply_calibration(const std::string& board_path, SignalSource& output) {
   settings.nothing_else();
 }
 
+/// What a real output may do is for the board to say, outside of every image.
+void require_limits(const Table& settings, const SignalSource& output, bool rotary) {
+  if (output.kind.empty() || output.kind == "sim") return;
+  const std::string unit = rotary ? "deg" : "mm";
+  const auto require = [&](const char* name, const std::string& mend) {
+    if (!settings.has(name))
+      settings.fail(std::string(name) + " is missing: an output of kind " + output.kind + " needs it; add " +
+                    mend);
+  };
+  require("max_correction",
+          "max_correction = 0.1  # " + unit + ", the most that is ever added to the command");
+  require("max_speed",
+          "max_speed = 500  # " + unit + "/s of the axis; correction_share of it moves a correction");
+}
+
 void read_axis(BoardFile& board, const std::string& name, const toml::table& table) {
   Table settings(table, board.path, "axis." + name);
   if (board.axes.size() == kMaxAxes) settings.fail("more axes than the firmware has room for");
@@ -161,6 +178,7 @@ void read_axis(BoardFile& board, const std::string& name, const toml::table& tab
   axis.position = source_of(settings.table("position"), board.path, "axis." + name + ".position");
   axis.output = source_of(settings.table("output"), board.path, "axis." + name + ".output");
   if (axis.position.kind.empty()) settings.fail("position is missing");
+  require_limits(settings, axis.output, axis.wiring.rotary);
   apply_calibration(board.path, axis.output);
   settings.nothing_else();
   board.service.wiring.axes.push_back(axis.wiring);
@@ -209,6 +227,11 @@ void read_digital(BoardFile& board, const toml::table& table) {
   Table settings(table, board.path, "digital");
   board.enable = source_of(settings.table("enable"), board.path, "digital.enable");
   board.healthy = source_of(settings.table("healthy"), board.path, "digital.healthy");
+  const double tick_ms = static_cast<double>(board.service.upload.tick.count) * 1e-3;
+  const std::int64_t toggle_ms = board.healthy.whole("toggle_ms", 0, 0, 1000);
+  if (toggle_ms > 0)
+    board.service.healthy_toggle =
+        static_cast<std::uint32_t>(std::max(1.0, std::round(static_cast<double>(toggle_ms) / tick_ms)));
   settings.nothing_else();
 }
 
@@ -223,6 +246,7 @@ void read_board(BoardFile& board, const toml::table& table) {
   board.priority = static_cast<int>(settings.number("priority", 80, 1, 99));
   board.service.overruns.lost_share_q16 =
       static_cast<std::uint32_t>(65536 * settings.number("max_lost_ticks", 0.05, 0, 0.99));
+  board.watchdog = settings.text("watchdog", "");
   const toml::table* const sync = settings.table("sync");
   board.sync = source_of(sync, board.path, "board.sync");
   if (sync != nullptr)
@@ -257,6 +281,35 @@ void read_links(BoardFile& board, const toml::node& node) {
                        ": link must be a table"};
     board.links.push_back(source_of(link.as_table(), board.path, "link"));
   }
+}
+
+/// One device, one use: what two settings name would be driven by both in turns.
+void refuse_duplicates(const BoardFile& board) {
+  std::vector<const SignalSource*> used;
+  const auto claim = [&](const SignalSource& source, std::initializer_list<const char*> place) {
+    if (source.kind.empty() || source.kind == "sim") return;
+    const auto same = [&](const SignalSource* other) {
+      if (other->kind != source.kind) return false;
+      for (const char* const name : place) {
+        const auto text = [&](const SignalSource& s) {
+          return s.texts.contains(name) ? s.texts.at(name) : "";
+        };
+        const auto number = [&](const SignalSource& s) {
+          return s.numbers.contains(name) ? s.numbers.at(name) : 0;
+        };
+        if (text(*other) != text(source) || number(*other) != number(source)) return false;
+      }
+      return true;
+    };
+    const auto found = std::find_if(used.begin(), used.end(), same);
+    if (found != used.end()) source.fail("the device of " + (*found)->where + " too: one device has one use");
+    used.push_back(&source);
+  };
+  for (const AxisEntry& axis : board.axes) claim(axis.output, {"path", "device", "root", "channel"});
+  for (const SignalSource* const line : {&board.probe, &board.enable, &board.healthy})
+    claim(*line, {"chip", "line"});
+  for (const SignalSource& link : board.links)
+    claim(link, {"address", "port", "device", "interface", "receive", "transmit"});
 }
 
 }  // namespace
@@ -325,6 +378,7 @@ BoardFile read_board_file(const std::string& path) {
   if (settings.has("link")) read_links(board, *file.get("link"));
   for (const auto& [key, node] : file)
     if (!kSections.contains(key.str())) settings.fail("unknown section " + std::string(key.str()), &node);
+  refuse_duplicates(board);
   return board;
 }
 

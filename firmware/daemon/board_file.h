@@ -56,6 +56,7 @@ struct BoardFile {
   SignalSource enable, healthy;     // digital lines from and to the machine's controller
   std::vector<SignalSource> links;  // kind: "modbus-tcp", "modbus-rtu", "isotp"
   int priority = 80;                // SCHED_FIFO
+  std::string watchdog;             // device of a hardware watchdog; empty: none
 };
 
 /// What is wrong with a board file: "board.toml:12: axis.X: kind: 'lineal' is neither linear nor rotary".

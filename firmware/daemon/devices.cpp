@@ -19,6 +19,8 @@
 #include "firmware/daemon/routing.h"
 #include "hal/linux/analogue_output.h"
 #include "hal/linux/can_axes.h"
+#include "hal/linux/file_lock.h"
+#include "hal/linux/hardware_watchdog.h"
 #include "hal/linux/monotonic_clock.h"
 #include "hal/linux/sampled_input.h"
 #include "hal/linux/wake_up.h"
@@ -31,6 +33,7 @@ namespace {
 constexpr double kShareOfRangePerS = 0.1;    // speed of a simulated axis
 constexpr std::int64_t kTicksToZero = 1000;  // at least, for what a drive holds at the start
 constexpr std::uint32_t kMostHandles = 64;   // of all links together
+constexpr int kWatchdogSeconds = 10;  // many drivers know whole seconds only; the unit's watchdog is quicker
 constexpr TimeUs kPatience(1'000'000), kTrialWait(5'000);
 
 struct AnalogueAxis {
@@ -76,6 +79,8 @@ struct Devices::Parts {
   std::unique_ptr<DigitalInput> enable;
   std::unique_ptr<DigitalOutput> healthy;
   std::vector<std::unique_ptr<CommandLink>> links;
+  std::unique_ptr<HardwareWatchdog> watchdog;
+  FileLock store_lock;
   std::vector<DeviceFinding> findings;
 
   explicit Parts(const BoardFile& board_file) : file(board_file) {}
@@ -168,6 +173,7 @@ std::vector<Route<CorrectionWriter>> Devices::Parts::make_outputs() {
     }
     std::string error;
     auto output = open_analogue(axis.output, axis.wiring.rotary, error);
+    if (output && !output->lock()) error = "in use by another axis or another process";
     routes[i] = {output.get(), 0};
     note(name, error, [output = output.get()] { return try_output(*output); });
     if (output) analogue.push_back({i, std::move(output)});
@@ -265,6 +271,7 @@ void Devices::Parts::make_store() {
   std::string missing = failed ? failed.message() : "";
   if (missing.empty() && ::access(file.store.c_str(), R_OK | W_OK | X_OK) != 0)
     missing = std::strerror(errno);
+  if (missing.empty()) missing = store_lock.take(file.store);
   note("store  " + file.store, missing);
 }
 
@@ -291,6 +298,22 @@ Board Devices::board() noexcept {
           .sync = parts_->sync.get(),
           .enable = parts_->enable.get(),
           .healthy = parts_->healthy.get()};
+}
+
+// It begins to count when it is opened, so that happens last and not for a trial.
+std::string Devices::start_watchdog() {
+  std::string error;
+  if (!parts_->file.watchdog.empty())
+    parts_->watchdog = HardwareWatchdog::open(parts_->file.watchdog, kWatchdogSeconds, error);
+  return error;
+}
+
+void Devices::feed_watchdog() noexcept {
+  if (parts_->watchdog) parts_->watchdog->feed();
+}
+
+void Devices::disarm_watchdog() noexcept {
+  if (parts_->watchdog) parts_->watchdog->disarm();
 }
 
 Clock& Devices::clock() noexcept { return parts_->clock; }

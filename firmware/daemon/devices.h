@@ -44,6 +44,12 @@ class Devices {
   /// out before the first tick: within the limits of the axis, and over a second at least. stop: ends it
   /// early. setup.
   void take_left_overs_out(const std::atomic<bool>& stop) noexcept;
+  /// The hardware watchdog, where the board file names one: what is missing, or empty; then it is to be fed,
+  /// and disarmed at an orderly end. setup.
+  std::string start_watchdog();
+  void feed_watchdog() noexcept;
+  void disarm_watchdog() noexcept;
+
   /// Simulated axes begin to move. setup.
   void release() noexcept;
   /// The next tick of simulated axes begins. realtime.

@@ -41,6 +41,7 @@ void Duties::guard(int priority) {
     const std::uint64_t ticks = service_.exchange().ticks.count();
     if (clock.now() - told >= kSignPeriod && ticks > ticks_told) {
       manager_.notify("WATCHDOG=1");
+      devices_.feed_watchdog();
       ticks_told = ticks;
       told = clock.now();
     }

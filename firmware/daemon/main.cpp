@@ -126,6 +126,19 @@ int check_devices(Devices& devices) {
   return missing == 0 ? kDone : kAnswerIsNo;
 }
 
+/// What outputs a daemon that is gone left behind is taken out, as far as they are there.
+int take_to_zero(Devices& devices) {
+  devices.take_left_overs_out(stop_asked);
+  int missing = 0;
+  for (const DeviceFinding& finding : devices.findings())
+    if (finding.device.find(".output ") != std::string::npos && !finding.missing.empty()) {
+      std::fprintf(stderr, "vernierd: not at zero: %s: %s\n", finding.device.c_str(),
+                   finding.missing.c_str());
+      ++missing;
+    }
+  return missing == 0 ? kDone : kAnswerIsNo;
+}
+
 bool all_there(Devices& devices) {
   bool all = true;
   for (const DeviceFinding& finding : devices.findings()) {
@@ -172,6 +185,8 @@ std::vector<CalibrationPoint> measured_points(const Arguments& arguments, const 
       analogue_scale(source, axis.wiring.rotary, codes, source.kind == "pwm" ? "_ns" : "");
   const auto output = open_analogue(source, axis.wiring.rotary, error);
   if (!output) throw BoardError{std::string("axis.") + axis.wiring.name.c_str() + ".output: " + error};
+  if (!output->lock())
+    throw BoardError{std::string("axis.") + axis.wiring.name.c_str() + ".output: in use by another process"};
   AxisTravel held;
   const bool known = output->read_back(held) == HalFault::kNone;
   MonotonicClock clock;
@@ -206,19 +221,25 @@ int calibrate(const Arguments& arguments, const BoardFile& file) {
 }
 
 int run_board(const Arguments& arguments) {
-  const BoardFile file = read_board_file(arguments.board);
+  BoardFile file = read_board_file(arguments.board);
   if (!arguments.calibrate.empty()) return calibrate(arguments, file);
   Devices devices(file, arguments.seed);
   if (arguments.check) return check_devices(devices);
+  if (arguments.zero) return take_to_zero(devices);
   if (!all_there(devices)) return kAnswerIsNo;
   devices.sample();
   devices.take_left_overs_out(stop_asked);
   FileSlotStore store(file.store, file.slot_bytes);
+  file.service.upload.work_budget = measured_work_budget(devices.clock(), file.service.upload.tick);
   const auto service = std::make_unique<Service>(file.service, devices.board(), store);
   say_image(service->boot(), *service);
   ServiceManager manager;
   keep_stacks_small();
   const GrantReport grant = ask_for_realtime(arguments.realtime, file.priority);
+  if (const std::string missing = devices.start_watchdog(); !missing.empty()) {
+    std::fprintf(stderr, "vernierd: missing: watchdog: %s\n", missing.c_str());
+    return kAnswerIsNo;
+  }
   auto duties = std::make_unique<Duties>(*service, devices, manager, grant.fifo ? file.priority - 1 : 0);
   devices.release();
   if (!manager.notify("READY=1")) std::fputs("vernierd: note: the service manager cannot be told\n", stderr);
@@ -229,6 +250,7 @@ int run_board(const Arguments& arguments) {
   }
   manager.notify("STOPPING=1");
   take_correction_out(*service, devices);
+  devices.disarm_watchdog();
   duties = nullptr;
   devices.say_held();
   if (service->runner().lost_syncs() > 0)

@@ -155,7 +155,7 @@ std::unique_ptr<DigitalInput> open_digital_input(const SignalSource& source, std
 }
 
 std::unique_ptr<DigitalOutput> open_digital_output(const SignalSource& source, std::string& error) {
-  source.only({"chip", "line", "polarity"});
+  source.only({"chip", "line", "polarity", "toggle_ms"});
   return GpioOutput::open(gpio_address(source), error);
 }
 

@@ -70,6 +70,10 @@ class RoutedOutputs : public CorrectionWriter {
       return correction == AxisTravel{} ? HalFault::kNone : HalFault::kNoDevice;
     return routes_[axis].port->write_correction(routes_[axis].index, correction);
   }
+  AxisTravel within_range(std::uint32_t axis, AxisTravel correction) const noexcept override {
+    if (axis >= routes_.size() || routes_[axis].port == nullptr) return AxisTravel{};
+    return routes_[axis].port->within_range(routes_[axis].index, correction);
+  }
 
  private:
   std::vector<Route<CorrectionWriter>> routes_;

@@ -72,6 +72,10 @@ HalFault AnalogueOutput::write_correction(std::uint32_t axis, AxisTravel correct
   return attribute_.write(code);
 }
 
+AxisTravel AnalogueOutput::within_range(std::uint32_t, AxisTravel correction) const noexcept {
+  return AxisTravel(clamp(correction.count, lowest_.count, highest_.count));
+}
+
 HalFault AnalogueOutput::read_back(AxisTravel& correction) noexcept {
   std::int64_t code = 0;
   if (attribute_.read(code) != HalFault::kNone || code < 0 || code > INT32_MAX) return HalFault::kNoReading;

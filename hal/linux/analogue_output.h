@@ -27,6 +27,11 @@ class AnalogueOutput : public CorrectionWriter {
   /// far as the device's bus is quick: an SPI converter takes some ten microseconds.
   HalFault write_correction(std::uint32_t axis, AxisTravel correction) noexcept override;
 
+  AxisTravel within_range(std::uint32_t axis, AxisTravel correction) const noexcept override;
+
+  /// Has the device to itself from now on; false where another process, or another output, does. setup.
+  bool lock() noexcept { return attribute_.lock(); }
+
   /// The correction that the device holds. kNoReading: the driver does not say. setup.
   HalFault read_back(AxisTravel& correction) noexcept;
   /// Reads the code that the device holds and writes the same again, which moves nothing. kNoReading: the
@@ -39,10 +44,14 @@ class AnalogueOutput : public CorrectionWriter {
 
  private:
   AnalogueOutput(SysfsAttribute attribute, const AnalogueScale& scale)
-      : attribute_(std::move(attribute)), converter_(scale) {}
+      : attribute_(std::move(attribute)), converter_(scale) {
+    const AxisTravel low = scale.correction_of(scale.low), high = scale.correction_of(scale.high);
+    lowest_ = scale.inverted ? high : low, highest_ = scale.inverted ? low : high;
+  }
 
   SysfsAttribute attribute_;
   AnalogueConverter converter_;
+  AxisTravel lowest_, highest_;  // ends of the range
   std::uint64_t held_at_end_ = 0;
 };
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hal/linux/sysfs_attribute.h"
 
+#include "hal/linux/file_lock.h"
+
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -34,6 +36,8 @@ SysfsAttribute& SysfsAttribute::operator=(SysfsAttribute&& other) noexcept {
   std::swap(fd_, other.fd_);
   return *this;
 }
+
+bool SysfsAttribute::lock() noexcept { return lock_descriptor(fd_); }
 
 SysfsAttribute::~SysfsAttribute() {
   if (fd_ >= 0) ::close(fd_);

@@ -20,6 +20,9 @@ class SysfsAttribute {
   SysfsAttribute& operator=(SysfsAttribute&& other) noexcept;
   ~SysfsAttribute();
 
+  /// Has it to itself from now on; false where another process does. setup.
+  bool lock() noexcept;
+
   /// Writes the number and a line feed. kRefused: the driver or the device said no. realtime, as far as the
   /// device's bus is quick.
   HalFault write(std::int64_t value) noexcept;

@@ -16,10 +16,12 @@ constexpr const char* kBoard = R"([board]
 store = "store"
 [axis.X]
 max_speed = 100
+max_correction = 0.2
 position = { kind = "sim" }
 output = { kind = "pwm", path = "ROOT/pwm0", period_ns = 50000, span = 0.25 }
 [axis.Y]
 max_speed = 100
+max_correction = 0.2
 position = { kind = "sim" }
 output = { kind = "iio-dac", root = "ROOT", device = "mcp4922", channel = 1, codes = 255, span = 0.25, zero = 127, high = 254 }
 [input.T]
@@ -32,6 +34,7 @@ constexpr const char* kPublished = R"([board]
 store = "store"
 [axis.X]
 max_speed = 20
+max_correction = 0.2
 correction_share = 0.01
 position = { kind = "sim" }
 output = { kind = "iio-dac", root = "ROOT", device = "mcp4922", channel = 1, codes = 255, span = 0.25, zero = 127, high = 254, delay_ms = 83.3 }
@@ -156,6 +159,51 @@ TEST_F(Check, WrongSettingsOfLinesAreNamed) {
     EXPECT_EQ(said.status, 1) << wrong << said.text;
     EXPECT_NE(said.text.find("board.toml:"), std::string::npos) << wrong << said.text;
   }
+}
+
+// What a real output may do is not for an image to say.
+TEST_F(Check, RealOutputsNeedLimitsOfTheBoardsOwn) {
+  const std::pair<const char*, const char*> kLimits[] = {
+      {"max_correction = 0.2\n",
+       "board.toml:3: axis.X: max_correction is missing: an output of kind pwm needs it"},
+      {"max_speed = 100\n", "board.toml:3: axis.X: max_speed is missing: an output of kind pwm needs it"}};
+  for (const auto& [setting, said_of_it] : kLimits) {
+    write(replaced(kBoard, setting, ""));
+    const Said said = run("--check");
+    EXPECT_EQ(said.status, 1) << said.text;
+    EXPECT_NE(said.text.find(said_of_it), std::string::npos) << said.text;
+  }
+}
+
+TEST_F(Check, OneDeviceHasOneUse) {
+  const std::string y =
+      "output = { kind = \"iio-dac\", root = \"ROOT\", device = \"mcp4922\", channel = 1, codes = 255, ";
+  write(replaced(kBoard, "output = { kind = \"pwm\", path = \"ROOT/pwm0\", period_ns = 50000, ", y));
+  Said said = run("--check");
+  EXPECT_EQ(said.status, 1) << said.text;
+  EXPECT_NE(said.text.find("axis.Y.output: the device of "), std::string::npos) << said.text;
+  // Under another name it is found when it is opened.
+  write(replaced(replaced(kBoard, "output = { kind = \"pwm\", path = \"ROOT/pwm0\", period_ns = 50000, ", y),
+                 "\"mcp4922\", channel = 1, codes = 255, span",
+                 "\"ROOT/iio:device3\", channel = 1, codes = 255, span"));
+  said = run("--check");
+  EXPECT_EQ(said.status, 2) << said.text;
+  EXPECT_NE(said.text.find("in use by another axis or another process"), std::string::npos) << said.text;
+}
+
+TEST_F(Check, ZeroTakesOutWhatWasLeftAndNamesWhatItCannotReach) {
+  files_.put("pwm0/duty_cycle", "31000");
+  Said said = run("--zero");
+  EXPECT_EQ(said.status, 0) << said.text;
+  EXPECT_EQ(files_.get("pwm0/duty_cycle"), "25000");
+  EXPECT_EQ(files_.get("iio:device3/out_voltage1_raw"), "127");
+  // A device that is gone does not keep the others from their zero.
+  files_.put("pwm0/duty_cycle", "31000");
+  std::filesystem::remove(files_.path() + "/iio:device3/out_voltage1_raw");
+  said = run("--zero");
+  EXPECT_EQ(said.status, 2) << said.text;
+  EXPECT_NE(said.text.find("not at zero: axis.Y.output"), std::string::npos) << said.text;
+  EXPECT_EQ(files_.get("pwm0/duty_cycle"), "25000");
 }
 
 TEST_F(Check, WrongSettingsAreNamedWithTheirLine) {

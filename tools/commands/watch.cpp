@@ -22,16 +22,20 @@ struct Live {
   HealthRecord health;
   SlotsReply slots;
   std::vector<BoardShare> shares;
+  BoardState state;
 };
 
-Live look(Client& client) { return {client.newest(), client.health(), client.slots(), client.shares()}; }
+Live look(Client& client) {
+  return {client.newest(), client.health(), client.slots(), client.shares(), client.state()};
+}
 
 void status(const Arguments& arguments) {
   Client client(open_transport(parse_url(arguments.url)));
   const Live live = look(client);
   fmt::print(human_stream(arguments.json), "{}",
-             live_text(client.info(), live.tick, live.health, live.slots, live.shares));
-  write_json(arguments.json, live_json(client.info(), live.tick, live.health, live.slots, live.shares));
+             live_text(client.info(), live.tick, live.health, live.slots, live.shares, live.state));
+  write_json(arguments.json,
+             live_json(client.info(), live.tick, live.health, live.slots, live.shares, live.state));
 }
 
 // On a terminal the picture is drawn over the one before; into a pipe or file, one block after the other.
@@ -57,9 +61,12 @@ void watch(const Arguments& arguments) {
     std::this_thread::sleep_until(due);
     const Live live = look(client);
     if (arguments.json.empty()) {
-      draw(live_text(client.info(), live.tick, live.health, live.slots, live.shares), terminal, lines);
+      draw(live_text(client.info(), live.tick, live.health, live.slots, live.shares, live.state), terminal,
+           lines);
     } else {
-      fmt::print("{}\n", live_json(client.info(), live.tick, live.health, live.slots, live.shares).dump());
+      fmt::print(
+          "{}\n",
+          live_json(client.info(), live.tick, live.health, live.slots, live.shares, live.state).dump());
       std::fflush(stdout);
     }
     due = std::max(due, Clock::now() - period);  // a slow line gets fewer pictures, not a backlog

@@ -125,6 +125,8 @@ BoardTick Client::parse_tick(const std::uint8_t* bytes) const {
   tick.mode = static_cast<Mode>(head.mode);
   tick.fault = static_cast<Fault>(head.fault);
   tick.holding = head.holding != 0;
+  for (std::size_t i = 0; i < info_.axes.size(); ++i)
+    tick.saturated.push_back((head.saturated >> i & 1) != 0);
   for (const BoardSignal& signal : info_.axes) {
     LinkAxis axis;
     std::memcpy(&axis, bytes, sizeof(axis));
@@ -141,6 +143,49 @@ BoardTick Client::parse_tick(const std::uint8_t* bytes) const {
     tick.input.push_back(input.value * 1e-3);
   }
   return tick;
+}
+
+const char* name_of(ImageState image) {
+  switch (image) {
+    case ImageState::kNone:
+      return "none";
+    case ImageState::kConfirmed:
+      return "confirmed";
+    case ImageState::kTrial:
+      return "on trial";
+    case ImageState::kLost:
+      return "lost";
+  }
+  return "unknown";
+}
+
+std::string limits_text(std::uint8_t limits) {
+  constexpr std::pair<AxisLimitFlag, const char*> kWords[] = {{kAtImageLimit, "at the image's limit"},
+                                                              {kAtBoardLimit, "at the board's limit"},
+                                                              {kAtOutputLimit, "at the end of the output"},
+                                                              {kOnItsWay, "on its way"}};
+  std::string text;
+  for (const auto& [flag, word] : kWords)
+    if ((limits & flag) != 0) text += (text.empty() ? "" : ", ") + std::string(word);
+  return text;
+}
+
+BoardState Client::state() {
+  const auto reply = ask(LinkOp::kState);
+  if (reply.size() != sizeof(LinkState) + info_.axes.size() * sizeof(LinkAxisState))
+    throw InputError("the board's reply is of the wrong size");
+  const auto head = get<LinkState>(reply, 0);
+  BoardState state;
+  state.fingerprint = head.fingerprint;
+  state.image = static_cast<ImageState>(head.image);
+  state.since_s = static_cast<double>(head.since_us) * 1e-6;
+  state.weight = head.weight / 65536.0;
+  for (std::size_t i = 0; i < info_.axes.size(); ++i) {
+    const auto axis = get<LinkAxisState>(reply, sizeof(LinkState) + i * sizeof(LinkAxisState));
+    const double counts = info_.axes[i].rotary ? kCountsPerDeg : kNmPerMm;
+    state.axes.push_back({axis.wanted / counts, axis.achieved / counts, axis.weight / 65536.0, axis.limits});
+  }
+  return state;
 }
 
 BoardTick Client::newest() {

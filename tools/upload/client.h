@@ -37,6 +37,7 @@ struct BoardTick {
   Mode mode = Mode::kBoot;
   Fault fault = Fault::kNone;
   bool holding = false;
+  std::vector<bool> saturated;  // by axis: its correction is held at a limit
   std::vector<double> position, correction, input;
   std::vector<int> sense;
 };
@@ -47,6 +48,22 @@ struct BoardHistory {
   std::uint64_t next = 0;
   std::uint32_t lost = 0;
 };
+
+/// What the board runs, and what of it arrives; mm or deg.
+struct BoardState {
+  std::uint64_t fingerprint = 0;  // of the image that runs; 0: none
+  ImageState image = ImageState::kNone;
+  double since_s = 0;  // the board's t when it was taken over
+  double weight = 0;   // share of every correction that is in
+  struct Axis {
+    double wanted = 0, achieved = 0, weight = 0;
+    std::uint8_t limits = 0;  // AxisLimitFlag
+  };
+  std::vector<Axis> axes;
+};
+/// "confirmed", "on trial", "lost" or "none"; "at the image's limit, on its way" or nothing.
+const char* name_of(ImageState image);
+std::string limits_text(std::uint8_t limits);
 
 /// What one effect or table adds to the correction of an axis just now, before limits and ramps; mm or deg.
 struct BoardShare {
@@ -87,6 +104,7 @@ class Client {
 
   const BoardInfo& info() const { return info_; }
   BoardTick newest();
+  BoardState state();
   /// Ticks from number `first`, each `every`th.
   BoardHistory history(std::uint64_t first, std::uint16_t every);
   HealthRecord health();

@@ -66,21 +66,41 @@ std::string shares_text(const BoardInfo& info, std::vector<BoardShare> shares) {
   return text.empty() ? text : "what the effects add\n" + text;
 }
 
+// What runs, since when, and how much of it is in: no correction must not look like one.
+std::string running_text(const BoardTick& tick, const BoardState& state) {
+  if (state.image == ImageState::kLost) return "RUNS NOTHING: the confirmed image is lost\n";
+  if (state.fingerprint == 0) return "runs nothing\n";
+  return fmt::format("runs {:016x} ({}) for {:.1f} s, {:.0f} % of it in\n", state.fingerprint,
+                     name_of(state.image), tick.time_s - state.since_s, 100 * state.weight);
+}
+
 }  // namespace
 
 nlohmann::ordered_json live_json(const BoardInfo& info, const BoardTick& tick, const HealthRecord& health,
-                                 const SlotsReply& slots, const std::vector<BoardShare>& shares) {
-  nlohmann::ordered_json result = {{"tick", tick.number},
-                                   {"t", tick.time_s},
-                                   {"mode", name_of(tick.mode)},
-                                   {"fault", name_of(tick.fault)},
-                                   {"holding", tick.holding},
-                                   {"confirmed", image_json(slots.confirmed, slots.confirmed_fingerprint)},
-                                   {"trial", image_json(slots.trial, slots.trial_fingerprint)},
-                                   {"trial_left_s", slots.trial_left_ms * 1e-3}};
+                                 const SlotsReply& slots, const std::vector<BoardShare>& shares,
+                                 const BoardState& state) {
+  nlohmann::ordered_json result = {
+      {"tick", tick.number},
+      {"t", tick.time_s},
+      {"mode", name_of(tick.mode)},
+      {"fault", name_of(tick.fault)},
+      {"holding", tick.holding},
+      {"confirmed", image_json(slots.confirmed, slots.confirmed_fingerprint)},
+      {"trial", image_json(slots.trial, slots.trial_fingerprint)},
+      {"trial_left_s", slots.trial_left_ms * 1e-3},
+      {"image", name_of(state.image)},
+      {"running", state.fingerprint == 0 ? nlohmann::ordered_json(nullptr)
+                                         : nlohmann::ordered_json(fmt::format("{:016x}", state.fingerprint))},
+      {"running_since_t", state.since_s},
+      {"weight", state.weight}};
   for (std::size_t i = 0; i < info.axes.size(); ++i)
     result["axes"][info.axes[i].name] = {{"position", tick.position[i]},
                                          {"correction", tick.correction[i]},
+                                         {"wanted", state.axes[i].wanted},
+                                         {"achieved", state.axes[i].achieved},
+                                         {"weight", state.axes[i].weight},
+                                         {"saturated", bool(tick.saturated[i])},
+                                         {"limits", limits_text(state.axes[i].limits)},
                                          {"sense", tick.sense[i]},
                                          {"unit", info.axes[i].rotary ? "deg" : "mm"}};
   result["inputs"] = nlohmann::ordered_json::object();
@@ -96,7 +116,8 @@ nlohmann::ordered_json live_json(const BoardInfo& info, const BoardTick& tick, c
 }
 
 std::string live_text(const BoardInfo& info, const BoardTick& tick, const HealthRecord& health,
-                      const SlotsReply& slots, const std::vector<BoardShare>& shares) {
+                      const SlotsReply& slots, const std::vector<BoardShare>& shares,
+                      const BoardState& state) {
   std::string text = fmt::format("t {:.3f} s  mode {}{}  fault {}\n", tick.time_s, name_of(tick.mode),
                                  tick.holding ? " (held)" : "", name_of(tick.fault));
   auto out = std::back_inserter(text);
@@ -106,11 +127,14 @@ std::string live_text(const BoardInfo& info, const BoardTick& tick, const Health
   if (slots.trial != kNoSlot)
     fmt::format_to(out, "image {:016x} on trial, {:.0f} s left\n", slots.trial_fingerprint,
                    slots.trial_left_ms * 1e-3);
-  fmt::format_to(out, "{:<12} {:>16} {:>16}\n", "axis", "position", "correction");
+  text += running_text(tick, state);
+  fmt::format_to(out, "{:<12} {:>16} {:>16} {:>13} {:>7}\n", "axis", "position", "achieved", "wanted",
+                 "weight");
   for (std::size_t i = 0; i < info.axes.size(); ++i)
-    fmt::format_to(out, "{:<12} {:>13.4f} {:<3}{:>12.3f} {}\n", info.axes[i].name, tick.position[i],
-                   info.axes[i].rotary ? "deg" : "mm", 1e3 * tick.correction[i],
-                   info.axes[i].rotary ? "mdeg" : "um");
+    fmt::format_to(out, "{:<12} {:>13.4f} {:<3}{:>12.3f} {:<4}{:>12.3f} {:>7.2f} {}\n", info.axes[i].name,
+                   tick.position[i], info.axes[i].rotary ? "deg" : "mm", 1e3 * state.axes[i].achieved,
+                   info.axes[i].rotary ? "mdeg" : "um", 1e3 * state.axes[i].wanted, state.axes[i].weight,
+                   limits_text(state.axes[i].limits));
   for (std::size_t i = 0; i < info.inputs.size(); ++i)
     fmt::format_to(out, "{:<12} {:>13.4f}\n", info.inputs[i], tick.input[i]);
   text += shares_text(info, shares);

@@ -9,9 +9,11 @@ namespace vernier {
 
 /// What a board does just now, for programs: mode, fault, axes, inputs, counters, latency, slots. tool.
 nlohmann::ordered_json live_json(const BoardInfo& info, const BoardTick& tick, const HealthRecord& health,
-                                 const SlotsReply& slots, const std::vector<BoardShare>& shares);
+                                 const SlotsReply& slots, const std::vector<BoardShare>& shares,
+                                 const BoardState& state);
 /// The same for people, several lines, each ended. tool.
 std::string live_text(const BoardInfo& info, const BoardTick& tick, const HealthRecord& health,
-                      const SlotsReply& slots, const std::vector<BoardShare>& shares);
+                      const SlotsReply& slots, const std::vector<BoardShare>& shares,
+                      const BoardState& state);
 
 }  // namespace vernier

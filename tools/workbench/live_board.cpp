@@ -33,8 +33,8 @@ void LiveBoard::look(const std::string& url) {
   const auto period = std::chrono::duration<double>(1 / kLiveRateHz);
   auto due = std::chrono::steady_clock::now();
   while (true) {
-    nlohmann::ordered_json picture =
-        live_json(client.info(), client.newest(), client.health(), client.slots(), client.shares());
+    nlohmann::ordered_json picture = live_json(client.info(), client.newest(), client.health(),
+                                               client.slots(), client.shares(), client.state());
     std::unique_lock lock(guard_);
     picture["seq"] = next_++;
     picture["at_s"] = steady_s();

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "tables/link_format.h"
 #include "tests/unit/firmware/rig.h"
 
 namespace vernier::cycle_test {
@@ -158,6 +159,52 @@ TEST(Cycle, RefusedWriteIsRepeatedWithTheSameValue) {
   rig.tick();
   EXPECT_LE(std::abs((rig.plant().written(0) - held).count), kSmallSlewX);
   EXPECT_EQ(rig.cycle().health().failed_writes, 100u);
+}
+
+// The image may correct X by 30 um and says so; the board lets 10 um out, whatever the image says.
+TEST(Cycle, BoardsOwnLimitHoldsAndIsTold) {
+  CycleLimits limits;
+  limits.axis[0].own = true;
+  limits.axis[0].limits = limits.linear;
+  limits.axis[0].largest = 10'000;
+  Rig rig({}, limits);
+  ASSERT_TRUE(rig.run_to(Mode::kActive));
+  bool held = false;
+  for (int i = 0; i < 8000; ++i) {
+    rig.tick();
+    ASSERT_LE(std::abs(rig.plant().written(0).count), 10'000);
+    const bool at_limit = (rig.cycle().limits(0) & kAtBoardLimit) != 0;
+    ASSERT_EQ(at_limit, std::abs(rig.cycle().wanted(0).count) > 10'000);
+    held = held || at_limit;
+  }
+  EXPECT_TRUE(held);
+  EXPECT_GT(rig.cycle().health().saturated, 0u);
+}
+
+/// A plant whose drive takes 5 um at most.
+class ShortPlant : public SimPlant {
+ public:
+  using SimPlant::SimPlant;
+  AxisTravel within_range(std::uint32_t, AxisTravel correction) const noexcept override {
+    return AxisTravel(std::clamp<std::int64_t>(correction.count, -5000, 5000));
+  }
+};
+
+TEST(Cycle, EndOfAnOutputIsToldAndAchievedIsWhatItGives) {
+  const auto image = small_image();
+  Roaming motion({{0, 600'000'000}, {0, 200'000'000}}, {InputMicro(20'000'000)}, TimeUs(1000), 0.1, 1);
+  SimClock clock;
+  ShortPlant plant(motion, 2, 1, PlantOptions{});
+  Cycle cycle(image->view, Board{clock, plant, plant, plant});
+  plant.release();
+  for (int i = 0; i < 4000; ++i) {
+    plant.advance();
+    cycle.tick(TimeUs(1000 * i), cycle.mode() == Mode::kReady ? Command::kActivate : Command::kNone);
+  }
+  ASSERT_EQ(cycle.mode(), Mode::kActive);
+  EXPECT_GT(std::abs(cycle.written(0).count), 5000);
+  EXPECT_EQ(std::abs(cycle.achieved(0).count), 5000);
+  EXPECT_NE(cycle.limits(0) & kAtOutputLimit, 0);
 }
 
 }  // namespace

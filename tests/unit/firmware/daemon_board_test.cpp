@@ -76,6 +76,36 @@ TEST_F(DaemonBoard, TellsTheServiceManagerThatItIsReadyAliveAndStopping) {
   EXPECT_TRUE(wait_for([&] { return manager.hears("STOPPING=1"); })) << manager.heard();
 }
 
+TEST_F(DaemonBoard, TwoDaemonsDoNotShareAStore) {
+  Daemon daemon(directory_);
+  const std::string command = std::string(VERNIER_BIN_DIR) + "/vernierd --seconds 1 --no-realtime --board " +
+                              directory_ + "/board.toml 2>&1";
+  std::FILE* const pipe = popen(command.c_str(), "r");
+  std::string out;
+  for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe)) out.push_back(static_cast<char>(c));
+  EXPECT_EQ(WEXITSTATUS(pclose(pipe)), 2);
+  EXPECT_NE(out.find("store: in use by another process"), std::string::npos) << out;
+  EXPECT_GT(daemon.client().newest().number, 0u);
+}
+
+TEST_F(DaemonBoard, StatusSaysWhatRunsSinceWhenAndHowMuchOfItArrives) {
+  Daemon daemon(directory_);
+  Client client = daemon.client();
+  EXPECT_EQ(client.state().image, ImageState::kNone);
+  client.upload(upload(2e-5, 1), [](double) {});
+  EXPECT_TRUE(wait_for([&] { return client.newest().mode == Mode::kActive; }));
+  const BoardState tried = client.state();
+  EXPECT_EQ(tried.image, ImageState::kTrial);
+  EXPECT_NE(tried.fingerprint, 0u);
+  EXPECT_EQ(tried.weight, 1);
+  client.confirm();
+  EXPECT_TRUE(wait_for([&] { return client.state().image == ImageState::kConfirmed; }));
+  client.weight(1, 0);
+  EXPECT_TRUE(wait_for([&] { return client.state().axes[1].weight == 0; }));
+  EXPECT_TRUE(wait_for([&] { return std::abs(client.state().axes[1].achieved) < 1e-6; }));
+  EXPECT_NE(client.state().axes[1].wanted, 0);
+}
+
 struct BadBoard {
   const char* name;
   const char* from;

@@ -96,5 +96,27 @@ TEST_F(Digital, HealthyLineThatRefusesIsTriedAgain) {
   EXPECT_TRUE(healthy_.on);
 }
 
+// A line that stands still, high or low, says that nothing toggles it any more: a tick that hangs is seen by
+// a relay.
+TEST(DigitalPump, TogglesWhileAllIsWellAndStandsOtherwise) {
+  const SigningKey key = new_key();
+  SimSlotStore store(1 << 16);
+  Switch healthy;
+  UploadRig rig(store, key, TimeUs(5'000'000), nullptr, &healthy, 10);
+  rig.run(500);
+  EXPECT_EQ(healthy.writes, 1) << "nothing runs: it is off";
+  rig.send(make_upload(small_image_bytes(2e-5), key, 5, 0));
+  rig.run(2000);
+  const int before = healthy.writes;
+  rig.run(1000);
+  EXPECT_EQ(healthy.writes - before, 100);
+  rig.service().end();
+  rig.run(20);
+  const int ended = healthy.writes;
+  rig.run(1000);
+  EXPECT_EQ(healthy.writes, ended);
+  EXPECT_FALSE(healthy.on);
+}
+
 }  // namespace
 }  // namespace vernier::digital_test

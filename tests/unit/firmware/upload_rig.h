@@ -28,7 +28,8 @@ inline std::vector<std::uint8_t> small_image_bytes(double scale, const std::stri
 class UploadRig {
  public:
   explicit UploadRig(SimSlotStore& store, const SigningKey& key, TimeUs trial = TimeUs(5'000'000),
-                     DigitalInput* enable = nullptr, DigitalOutput* healthy = nullptr)
+                     DigitalInput* enable = nullptr, DigitalOutput* healthy = nullptr,
+                     std::uint32_t toggle = 0)
       : store_(store),
         motion_({{0, 600'000'000}, {0, 200'000'000}}, {InputMicro(21'000'000)}, TimeUs(1000), 0.1, 1),
         plant_(motion_, 2, 1, {}) {
@@ -37,6 +38,7 @@ class UploadRig {
     options.upload.key = key.public_part();
     options.upload.trial_time = trial;
     options.activate = true;
+    options.healthy_toggle = toggle;
     const Board board{.clock = clock_,
                       .axes = plant_,
                       .inputs = plant_,

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include <chrono>
+
 #include <algorithm>
 #include <cstdio>
 #include <cstring>
@@ -253,6 +255,75 @@ TEST_F(Upload, FullStoreIsSaidAndTheOldImageRuns) {
   EXPECT_EQ(rig.send(upload(4e-5, kIssued + 1)).fault, UploadFault::kStore);
   rig.run(3000);
   EXPECT_NEAR(slope(rig), 2e-5, 1e-7);
+}
+
+// Every sum takes all the terms there are: a program that passes the verifier, and stands for ever.
+TEST_F(Upload, ImageThatIsTooMuchWorkForTheBoardIsRefusedWithThatReason) {
+  const Wiring wiring{{{"X"}, {"Y"}}, {"T"}};
+  Exchange exchange;
+  Uploader::Options options{.key = key_.public_part()};
+  const auto send = [&](std::uint64_t budget) {
+    options.work_budget = budget;
+    SimSlotStore store(1 << 16);
+    Uploader uploader(store, wiring, exchange, options);
+    const auto bytes = upload(2e-5);
+    EXPECT_EQ(uploader.begin(static_cast<std::uint32_t>(bytes.size())).fault, UploadFault::kNone);
+    EXPECT_EQ(uploader.add(0, bytes.data(), static_cast<std::uint32_t>(bytes.size())).fault,
+              UploadFault::kNone);
+    return uploader.finish();
+  };
+  const auto image = small_image();
+  const std::uint64_t work = work_of(image->view.program().equation, image->view.program().channels.size);
+  EXPECT_GT(work, 20u);
+  EXPECT_EQ(send(work).fault, UploadFault::kNone);
+  EXPECT_EQ(send(work - 1).fault, UploadFault::kTooMuchWork);
+  EXPECT_STREQ(describe(send(1)), "more work than this board does in its share of a tick");
+}
+
+TEST_F(Upload, WorkCountsTermsSoThatNoImageStallsTheTick) {
+  std::vector<ProductTerm> terms(kMaxTerms, ProductTerm{0, 0, 40});
+  std::vector<Instruction> steps(900, Instruction{OpCode::kDot, 20, kMaxTerms / 2, kMaxTerms / 2, 0, 0, 0});
+  Equation equation;
+  equation.channel_count = 1;
+  equation.instructions = {steps.data(), 900};
+  equation.terms = {terms.data(), kMaxTerms};
+  equation.result_count = 900;
+  EXPECT_GT(work_of(equation, 1), 3'600'000u);
+  struct RealClock : Clock {
+    InstantNs now() noexcept override {
+      return InstantNs(std::chrono::steady_clock::now().time_since_epoch().count());
+    }
+    HalFault sleep_until(InstantNs) noexcept override { return HalFault::kNone; }
+  } clock;
+  const std::uint64_t budget = measured_work_budget(clock, TimeUs(1000));
+  std::printf("this computer: %llu a tick of 1 ms; the image of 3.7 million is %.1f quarters of one\n",
+              static_cast<unsigned long long>(budget), 3.7e6 / static_cast<double>(budget));
+  EXPECT_GT(budget, 2000u);
+  EXPECT_LT(budget, 3'000'000u);
+}
+
+TEST_F(Upload, ConfirmedImageThatDoesNotLoadIsAFaultAndAnotherOneEndsIt) {
+  {
+    UploadRig rig(store_, key_);
+    ASSERT_EQ(rig.send(upload(2e-5)).fault, UploadFault::kNone);
+    ASSERT_EQ(rig.uploader().confirm().fault, UploadFault::kNone);
+  }
+  // GIVEN a slot in which a bit turned
+  std::uint8_t byte = 0;
+  ASSERT_EQ(store_.read_image(0, 700, &byte, 1), HalFault::kNone);
+  byte = static_cast<std::uint8_t>(byte ^ 8);
+  ASSERT_EQ(store_.write_image(0, 700, &byte, 1), HalFault::kNone);
+  UploadRig rig(store_, key_);
+  EXPECT_EQ(rig.boot_result().fault, UploadFault::kSignature);
+  rig.run(1000);
+  EXPECT_EQ(rig.service().cycle().mode(), Mode::kFaulted);
+  EXPECT_EQ(rig.service().cycle().latched(), Fault::kImageLost);
+  // WHEN another image is confirmed and the fault is cleared
+  ASSERT_EQ(rig.send(upload(3e-5, kIssued + 1)).fault, UploadFault::kNone);
+  ASSERT_EQ(rig.uploader().confirm().fault, UploadFault::kNone);
+  const_cast<Exchange&>(rig.service().exchange()).command = Command::kClearFault;
+  rig.run(3000);
+  EXPECT_EQ(rig.service().cycle().mode(), Mode::kActive);
 }
 
 TEST_F(Upload, PiecesOutOfOrderAreRefusedAndARepeatedOneIsNot) {

@@ -88,6 +88,7 @@ std::string upload_codes() {
   VERNIER_CODE(UploadFault, kForeignMachine);
   VERNIER_CODE(UploadFault, kOlder);
   VERNIER_CODE(UploadFault, kNoTrial);
+  VERNIER_CODE(UploadFault, kTooMuchWork);
   VERNIER_CODE(BindFault, kNone);
   VERNIER_CODE(BindFault, kTick);
   VERNIER_CODE(BindFault, kUnknownAxis);
@@ -137,6 +138,7 @@ std::string state_codes() {
   VERNIER_CODE(Fault, kClock);
   VERNIER_CODE(Fault, kReferenceLost);
   VERNIER_CODE(Fault, kInputImplausible);
+  VERNIER_CODE(Fault, kImageLost);
   VERNIER_CODE(Command, kNone);
   VERNIER_CODE(Command, kActivate);
   VERNIER_CODE(Command, kDeactivate);
@@ -177,6 +179,7 @@ std::string message_codes() {
   VERNIER_CODE(LinkOp, kShareName);
   VERNIER_CODE(LinkOp, kTouches);
   VERNIER_CODE(LinkOp, kWorkpiece);
+  VERNIER_CODE(LinkOp, kState);
   VERNIER_CODE(LinkStatus, kDone);
   VERNIER_CODE(LinkStatus, kUnknownOp);
   VERNIER_CODE(LinkStatus, kBadLength);
@@ -190,9 +193,23 @@ std::string message_codes() {
   VERNIER_CODE(LiveRegister, kLiveTicks);
   VERNIER_CODE(LiveRegister, kLiveOverruns);
   VERNIER_CODE(LiveRegister, kLiveLatency);
+  VERNIER_CODE(LiveRegister, kLiveImage);
+  VERNIER_CODE(LiveRegister, kLiveWeight);
+  VERNIER_CODE(LiveRegister, kLiveLimits);
+  VERNIER_CODE(LiveRegister, kLiveSince);
   VERNIER_CODE(LiveRegister, kLiveAxes);
   VERNIER_CODE(LiveRegister, kLiveInputs);
+  VERNIER_CODE(LiveRegister, kLiveFingerprint);
+  VERNIER_CODE(LiveRegister, kLiveAxisWeights);
   VERNIER_CODE(LiveRegister, kLiveRegisters);
+  VERNIER_CODE(ImageState, kNone);
+  VERNIER_CODE(ImageState, kConfirmed);
+  VERNIER_CODE(ImageState, kTrial);
+  VERNIER_CODE(ImageState, kLost);
+  VERNIER_CODE(AxisLimitFlag, kAtImageLimit);
+  VERNIER_CODE(AxisLimitFlag, kAtBoardLimit);
+  VERNIER_CODE(AxisLimitFlag, kAtOutputLimit);
+  VERNIER_CODE(AxisLimitFlag, kOnItsWay);
   return codes;
 }
 

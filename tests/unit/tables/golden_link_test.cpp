@@ -81,6 +81,13 @@ class Board {
     exchange_->ticks.add(tick_record());
     exchange_->health.publish(health_record());
     exchange_->touches.add(touch_record());
+    StateRecord state;
+    state.since_us = 0x0102030405060708, state.programs = 1, state.weight = 0x8000;
+    for (std::uint8_t i = 0; i < 3; ++i) {
+      state.wanted[i] = 0x51525300 + i, state.achieved[i] = 0x61626300 + i, state.axis_weight[i] = 0x10000;
+      state.limits[i] = static_cast<std::uint8_t>(1u << i);
+    }
+    exchange_->state.publish(state);
     run_the_image();
   }
   Bytes ask(const Bytes& request) {
@@ -147,12 +154,12 @@ class Talk {
   std::uint8_t sequence_ = 0x80;
 };
 
-const std::vector<Field> kTickFields = {{"number", 8},   {"time_us", 8},    {"feed_nm_per_min", 8},
-                                        {"mode", 1},     {"fault", 1},      {"holding", 1},
-                                        {"reserved", 1}, {"X position", 8}, {"X correction", 4},
-                                        {"X sense", 1},  {"Y position", 8}, {"Y correction", 4},
-                                        {"Y sense", 1},  {"C position", 8}, {"C correction", 4},
-                                        {"C sense", 1},  {"T", 4}};
+const std::vector<Field> kTickFields = {{"number", 8},    {"time_us", 8},    {"feed_nm_per_min", 8},
+                                        {"mode", 1},      {"fault", 1},      {"holding", 1},
+                                        {"saturated", 1}, {"X position", 8}, {"X correction", 4},
+                                        {"X sense", 1},   {"Y position", 8}, {"Y correction", 4},
+                                        {"Y sense", 1},   {"C position", 8}, {"C correction", 4},
+                                        {"C sense", 1},   {"T", 4}};
 
 std::vector<Field> operator+(std::vector<Field> a, const std::vector<Field>& b) {
   a.insert(a.end(), b.begin(), b.end());
@@ -203,6 +210,11 @@ void talk_of_state(Talk& talk) {
             {"execution p99", 8},
             {"execution p99.9", 8},
             {"execution maximum", 8}});
+  std::vector<Field> state = {
+      {"fingerprint", 8}, {"since_us", 8}, {"weight", 4}, {"image", 1}, {"reserved", 3}};
+  for (int i = 0; i < 3; ++i)
+    state = state + std::vector<Field>{{"wanted", 4}, {"achieved", 4}, {"weight", 4}, {"limits", 1}};
+  talk.say("what runs", LinkOp::kState, {}, {}, state);
   talk.say("command", LinkOp::kCommand, {static_cast<std::uint8_t>(Command::kHold)}, {{"command", 1}}, {});
   talk.say("weight", LinkOp::kWeight, Bytes{1} + bytes_of(std::uint32_t{0x8000}),
            {{"axis", 1}, {"weight", 4}}, {});

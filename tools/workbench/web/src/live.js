@@ -21,6 +21,15 @@ function trace(samples, c) {
   }));
 }
 
+/** What runs, since when, and how much of it arrives: no correction must not look like one. */
+function runs(last) {
+  if (!last.running) return last.image === 'lost' ? 'RUNS NOTHING: the confirmed image is lost' : 'runs nothing';
+  const held = Object.entries(last.axes)
+    .filter(([, axis]) => axis.saturated)
+    .map(([name, axis]) => `${name} ${axis.limits}`);
+  return `${last.running} (${last.image}) runs for ${number(last.t - last.running_since_t, 4)} s, ${number(100 * last.weight, 3)} % of it in${held.length ? `; held: ${held.join('; ')}` : ''}`;
+}
+
 /** What a board does just now: corrections over time, what each effect adds, latency, faults; ten pictures a second or more. */
 export function livePanel(url, getJson) {
   let running = false,
@@ -72,7 +81,8 @@ export function livePanel(url, getJson) {
   });
   function show(last) {
     const rate = drawn.length > 1 ? (drawn.length - 1) / (drawn.at(-1) - drawn[0]) : 0;
-    words.textContent = `mode ${last.mode}${last.holding ? ', held' : ''}, fault ${last.fault}, image ${last.trial ? `${last.trial} on trial` : (last.confirmed ?? 'none')}; ${number(rate, 3)} pictures a second`;
+    words.textContent = `mode ${last.mode}${last.holding ? ', held' : ''}, fault ${last.fault}; ${runs(last)}; ${number(rate, 3)} pictures a second`;
+    words.classList.toggle('error', last.fault !== 'none' || last.image === 'lost');
     Object.assign(words.dataset, { mode: last.mode, rate: rate.toFixed(2), tick: last.tick });
     const us = (label, value) => ({ label, value: number(value, 3), unit: 'µs' });
     figures.replaceChildren(
@@ -94,12 +104,21 @@ export function livePanel(url, getJson) {
         answer = await getJson('/api/live', { to: url(), after });
         if (answer.error && !answer.pictures.length) throw new Error(answer.error);
       } catch (why) {
-        words.textContent = why.message;
+        words.textContent = `${why.message}: what is shown is old`;
+        words.classList.add('error');
+        figures.classList.add('stale');
         running = false;
         go.textContent = 'Watch';
         return;
       }
-      if (!answer.pictures.length) continue;
+      // A board that says nothing new is not shown as if it were well.
+      const stale = !answer.pictures.length;
+      figures.classList.toggle('stale', stale);
+      if (stale) {
+        words.textContent = 'no news from the board: what is shown is old';
+        words.classList.add('error');
+        continue;
+      }
       after = answer.pictures.at(-1).seq;
       const end = answer.pictures.at(-1).at_s;
       samples = [...samples, ...answer.pictures].filter((one) => end - one.at_s < kSeconds);

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+
+namespace vernier {
+
+/// A file or directory that one process has to itself (flock(2)), until it closes its descriptor or ends.
+class FileLock {
+ public:
+  /// Locks `path`, which exists. Empty, or what stands in the way: "in use by another process". setup.
+  std::string take(const std::string& path);
+  FileLock() = default;
+  ~FileLock();
+  FileLock(const FileLock&) = delete;
+  FileLock& operator=(const FileLock&) = delete;
+
+ private:
+  int fd_ = -1;
+};
+
+/// Locks an open descriptor; false where another process has it. setup.
+bool lock_descriptor(int fd) noexcept;
+
+}  // namespace vernier

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <memory>
+#include <string>
+
+namespace vernier {
+
+/// A watchdog of the kernel (/dev/watchdog): what is not fed for its time resets the computer.
+class HardwareWatchdog {
+ public:
+  /// Begins its time at once, where the driver lets it be set `seconds` long. Null with `error` set where it
+  /// cannot be opened. setup.
+  static std::unique_ptr<HardwareWatchdog> open(const std::string& device, int seconds, std::string& error);
+  /// Without disarm() the computer is reset when its time is over.
+  ~HardwareWatchdog();
+  HardwareWatchdog(const HardwareWatchdog&) = delete;
+  HardwareWatchdog& operator=(const HardwareWatchdog&) = delete;
+
+  void feed() noexcept;
+  /// An orderly end: it stops, where the driver allows that at all. setup.
+  void disarm() noexcept;
+
+ private:
+  explicit HardwareWatchdog(int fd) noexcept : fd_(fd) {}
+  int fd_;
+};
+
+}  // namespace vernier
