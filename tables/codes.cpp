@@ -80,11 +80,21 @@ const char* describe(UploadFault fault) noexcept {
     case UploadFault::kForeignMachine:
       return "of another machine";
     case UploadFault::kOlder:
-      return "not newer than the confirmed image";
+      return "not newer than the newest image that was ever tried";
     case UploadFault::kNoTrial:
       return "no image is on trial";
     case UploadFault::kTooMuchWork:
       return "more work than this board does in its share of a tick";
+    case UploadFault::kOtherBoard:
+      return "signed for another board";
+    case UploadFault::kSecurity:
+      return "below the board's security counter";
+    case UploadFault::kAbsurdTime:
+      return "signed at a time that cannot be";
+    case UploadFault::kOldForm:
+      return "signed in a form that names no board: sign it again";
+    case UploadFault::kKeyMayNot:
+      return "signed with a key that may not upload";
   }
   return "unknown";
 }

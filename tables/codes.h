@@ -71,11 +71,16 @@ enum class UploadFault : std::uint8_t {
   kImage = 11,           // the image is refused
   kFingerprint = 12,     // the header names another equation
   kForeignMachine = 13,  // the image does not fit the board's wiring
-  kOlder = 14,           // not newer than the confirmed one, and not forced over it
+  kOlder = 14,           // not newer than all that were ever tried
   kNoTrial = 15,         // nothing is on trial
   kTooMuchWork = 16,     // more work than the board does in its share of a tick
+  kOtherBoard = 17,      // signed for another board or class
+  kSecurity = 18,        // below the security counter
+  kAbsurdTime = 19,      // signed at a time that cannot be
+  kOldForm = 20,         // of a version that names no board
+  kKeyMayNot = 21,       // signed with a key that may not upload, or not any more
 };
-constexpr std::uint8_t kUploadFaultCount = static_cast<std::uint8_t>(UploadFault::kTooMuchWork) + 1;
+constexpr std::uint8_t kUploadFaultCount = static_cast<std::uint8_t>(UploadFault::kKeyMayNot) + 1;
 const char* describe(UploadFault fault) noexcept;
 
 /// Why an image does not fit a board.

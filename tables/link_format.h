@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "tables/image_format.h"
+#include "tables/upload_format.h"
 
 /// Messages between a board and a tool, the same over Modbus and ISO-TP. A request is
 /// op, sequence, payload; its reply is op, sequence, status, payload. Little-endian, sizes as declared; a
@@ -35,33 +36,50 @@ enum class LinkOp : std::uint8_t {
   kShareName = 16,  // u16 share, u32 programs -> char[64]; kBadValue where another program runs by now
   kTouches = 17,    // u64 first -> u64 next, u16 lost, then LinkTouch and LinkTouchAxis each, as many as fit
   kWorkpiece = 18,  // WorkpieceFrame -> nothing; kBadValue where it is no turn
-  kState = 19,      // -> LinkState, LinkAxisState each: what runs, and what of it arrives
+  kChallenge = 20,  // -> ChallengeReply
+  kSigned =
+      21,       // SignedRequest, then op and payload of the request; answered as that with the outer sequence
+  kState = 19,  // -> LinkState, LinkAxisState each: what runs, and what of it arrives
 };
-constexpr std::uint8_t kLinkOpCount = static_cast<std::uint8_t>(LinkOp::kState) + 1;
+constexpr std::uint8_t kLinkOpCount = static_cast<std::uint8_t>(LinkOp::kSigned) + 1;
 
 enum class LinkStatus : std::uint8_t {
   kDone = 0,
   kUnknownOp = 1,
-  kBadLength = 2,  // shorter or longer than the op's request
-  kBadValue = 3,   // no such axis, command, counter ...
-  kNotReady = 4,   // nothing published yet, or the command before has not been taken
-  kRefused = 5,    // an upload step: payload is u8 UploadFault, u8 ImageFault, u8 BindFault, char[] the
-                   // offending name
+  kBadLength = 2,     // shorter or longer than the op's request
+  kBadValue = 3,      // no such axis, command, counter ...
+  kNotReady = 4,      // nothing published yet, or the command before has not been taken
+  kRefused = 5,       // an upload step: payload is u8 UploadFault, u8 ImageFault, u8 BindFault, char[] the
+                      // offending name
+  kNotAllowed = 6,    // not over this link
+  kUnsigned = 7,      // only in a signed request
+  kBadSignature = 8,  // it does not fit, or its key is not trusted for that
+  kStale = 9,         // of another nonce, or a counter that is not higher: ask for the challenge again
 };
-constexpr std::uint8_t kLinkStatusCount = static_cast<std::uint8_t>(LinkStatus::kRefused) + 1;
+constexpr std::uint8_t kLinkStatusCount = static_cast<std::uint8_t>(LinkStatus::kStale) + 1;
+
+/// What a link of a board may be used for; each includes those before it.
+enum class LinkAccess : std::uint8_t {
+  kRead = 0,     // state
+  kCommand = 1,  // commands, weights, the workpiece's frame, giving an image up
+  kUpload = 2,   // images: upload, confirmation, reading back
+};
 
 struct SlotsReply {
   std::uint64_t confirmed_fingerprint, trial_fingerprint;
   std::uint64_t issued;           // of the confirmed image
+  std::uint64_t newest_issued;    // the newest that was ever tried
+  std::uint32_t security;         // the highest that was ever tried
   std::uint32_t trial_left_ms;    // 0 where none runs
   std::uint8_t confirmed, trial;  // slot, or 255
-  std::uint8_t reserved[2];
+  std::uint8_t reserved[6];
 };
-static_assert(sizeof(SlotsReply) == 32);
+static_assert(sizeof(SlotsReply) == 48);
 static_assert(offsetof(SlotsReply, confirmed_fingerprint) == 0 &&
               offsetof(SlotsReply, trial_fingerprint) == 8 && offsetof(SlotsReply, issued) == 16 &&
-              offsetof(SlotsReply, trial_left_ms) == 24 && offsetof(SlotsReply, confirmed) == 28 &&
-              offsetof(SlotsReply, trial) == 29 && offsetof(SlotsReply, reserved) == 30);
+              offsetof(SlotsReply, newest_issued) == 24 && offsetof(SlotsReply, security) == 32 &&
+              offsetof(SlotsReply, trial_left_ms) == 36 && offsetof(SlotsReply, confirmed) == 40 &&
+              offsetof(SlotsReply, trial) == 41 && offsetof(SlotsReply, reserved) == 42);
 #pragma pack(push, 1)
 struct HelloReply {
   std::uint16_t link_version;
@@ -70,7 +88,20 @@ struct HelloReply {
   std::uint32_t capacity;  // bytes of a slot
   std::uint8_t axes, inputs;
   std::uint8_t has_key;
-  std::uint8_t key[24];  // first bytes of the public key
+  std::uint8_t key[24];  // first bytes of the first public key
+  char board[kBoardNameBytes], board_class[kBoardNameBytes];
+};
+struct ChallengeReply {
+  std::uint8_t nonce[16];
+  std::uint32_t counter;  // the next that is taken
+  std::uint8_t access;    // LinkAccess of the link that it came over
+  std::uint8_t keys;      // that the board trusts; 0: nothing needs a signature
+  std::uint8_t reserved[2];
+};
+struct SignedRequest {
+  std::uint8_t key[8];  // first bytes of the public key
+  std::uint32_t counter;
+  std::uint8_t signature[64];
 };
 struct LinkTick {
   std::uint64_t number;  // ticks since power-on
@@ -130,11 +161,19 @@ struct LinkTouchAxis {
   std::uint32_t uncertainty;           // standard, counts; the largest value: at least that
 };
 #pragma pack(pop)
-static_assert(sizeof(HelloReply) == 39);
+static_assert(sizeof(ChallengeReply) == 24);
+static_assert(offsetof(ChallengeReply, nonce) == 0 && offsetof(ChallengeReply, counter) == 16 &&
+              offsetof(ChallengeReply, access) == 20 && offsetof(ChallengeReply, keys) == 21 &&
+              offsetof(ChallengeReply, reserved) == 22);
+static_assert(sizeof(SignedRequest) == 76);
+static_assert(offsetof(SignedRequest, key) == 0 && offsetof(SignedRequest, counter) == 8 &&
+              offsetof(SignedRequest, signature) == 12);
+static_assert(sizeof(HelloReply) == 87);
 static_assert(offsetof(HelloReply, link_version) == 0 && offsetof(HelloReply, image_version) == 2 &&
               offsetof(HelloReply, tick_us) == 4 && offsetof(HelloReply, capacity) == 8 &&
               offsetof(HelloReply, axes) == 12 && offsetof(HelloReply, inputs) == 13 &&
-              offsetof(HelloReply, has_key) == 14 && offsetof(HelloReply, key) == 15);
+              offsetof(HelloReply, has_key) == 14 && offsetof(HelloReply, key) == 15 &&
+              offsetof(HelloReply, board) == 39 && offsetof(HelloReply, board_class) == 63);
 static_assert(sizeof(LinkTick) == 28);
 static_assert(offsetof(LinkTick, number) == 0 && offsetof(LinkTick, time_us) == 8 &&
               offsetof(LinkTick, feed_nm_per_min) == 16 && offsetof(LinkTick, mode) == 24 &&

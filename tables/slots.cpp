@@ -16,9 +16,20 @@ bool is_slot(std::uint8_t slot) noexcept { return slot < kSlotCount || slot == k
 
 }  // namespace
 
+SlotRecord upgraded(const SlotRecordV1& old) noexcept {
+  const auto* const bytes = reinterpret_cast<const std::uint8_t*>(&old);
+  if (old.magic != kSlotMagicV1 || old.checksum != crc32c(bytes, offsetof(SlotRecordV1, checksum))) return {};
+  const std::uint64_t newest = old.issued > old.trial_issued ? old.issued : old.trial_issued;
+  SlotRecord record{kSlotMagic, old.sequence,  old.issued, old.trial_issued, newest,
+                    0,          old.confirmed, old.trial,  old.reserved,     0,
+                    0};
+  record.checksum = checksum_of(record);
+  return record;
+}
+
 bool is_valid(const SlotRecord& record) noexcept {
-  return record.magic == kSlotMagic && record.reserved == 0 && record.checksum == checksum_of(record) &&
-         is_slot(record.confirmed) && is_slot(record.trial) &&
+  return record.magic == kSlotMagic && record.reserved == 0 && record.reserved2 == 0 &&
+         record.checksum == checksum_of(record) && is_slot(record.confirmed) && is_slot(record.trial) &&
          (record.trial == kNoSlot || record.trial != record.confirmed);
 }
 
@@ -44,10 +55,12 @@ SlotChange Slots::change_to(SlotRecord next) const noexcept {
   return {next_place_, next};
 }
 
-SlotChange Slots::start_trial(std::uint64_t issued) const noexcept {
+SlotChange Slots::start_trial(std::uint64_t issued, std::uint32_t security) const noexcept {
   SlotRecord next = now_;
   next.trial = free_slot();
   next.trial_issued = issued;
+  next.newest_issued = issued > now_.newest_issued ? issued : now_.newest_issued;
+  next.security = security > now_.security ? security : now_.security;
   return change_to(next);
 }
 

@@ -11,25 +11,46 @@ constexpr std::uint32_t kSlotCount = 2;
 /// The store keeps the record twice; a change overwrites the older one.
 constexpr std::uint32_t kSlotRecordCount = 2;
 
-/// Which slot of a board's image store counts. Little-endian, 32 bytes, as stored.
+/// Which slot of a board's image store counts. Little-endian, 48 bytes, as stored.
 struct SlotRecord {
   std::uint32_t magic;     // kSlotMagic
   std::uint32_t sequence;  // of the change that wrote it, from 1; the higher of two valid records counts
   std::uint64_t issued;    // when the confirmed image was signed (upload_format.h); 0: none confirmed
   std::uint64_t trial_issued;
-  std::uint8_t confirmed;  // slot, or kNoSlot
-  std::uint8_t trial;      // slot that is on trial, or kNoSlot
-  std::uint16_t reserved;  // 0
-  std::uint32_t checksum;  // CRC-32C of the bytes before it
+  std::uint64_t newest_issued;  // of all that were ever tried: what is not newer is not taken again
+  std::uint32_t security;       // highest that was ever tried
+  std::uint8_t confirmed;       // slot, or kNoSlot
+  std::uint8_t trial;           // slot that is on trial, or kNoSlot
+  std::uint16_t reserved;       // 0
+  std::uint32_t reserved2;      // 0
+  std::uint32_t checksum;       // CRC-32C of the bytes before it
 };
-static_assert(sizeof(SlotRecord) == 32);
+static_assert(sizeof(SlotRecord) == 48);
 static_assert(offsetof(SlotRecord, magic) == 0 && offsetof(SlotRecord, sequence) == 4 &&
               offsetof(SlotRecord, issued) == 8 && offsetof(SlotRecord, trial_issued) == 16 &&
-              offsetof(SlotRecord, confirmed) == 24 && offsetof(SlotRecord, trial) == 25 &&
-              offsetof(SlotRecord, reserved) == 26 && offsetof(SlotRecord, checksum) == 28);
+              offsetof(SlotRecord, newest_issued) == 24 && offsetof(SlotRecord, security) == 32 &&
+              offsetof(SlotRecord, confirmed) == 36 && offsetof(SlotRecord, trial) == 37 &&
+              offsetof(SlotRecord, reserved) == 38 && offsetof(SlotRecord, reserved2) == 40 &&
+              offsetof(SlotRecord, checksum) == 44);
 /// Not stored: another layout takes another kSlotMagic and another number here.
-constexpr std::uint32_t kSlotRecordVersion = 1;
-constexpr std::uint32_t kSlotMagic = 0x544f4c53;  // "SLOT"
+constexpr std::uint32_t kSlotRecordVersion = 2;
+constexpr std::uint32_t kSlotMagic = 0x324f4c53;  // "SLO2"
+
+/// Version 1, which a store may still hold.
+struct SlotRecordV1 {
+  std::uint32_t magic;  // kSlotMagicV1
+  std::uint32_t sequence;
+  std::uint64_t issued, trial_issued;
+  std::uint8_t confirmed, trial;
+  std::uint16_t reserved;
+  std::uint32_t checksum;
+};
+static_assert(sizeof(SlotRecordV1) == 32);
+static_assert(offsetof(SlotRecordV1, magic) == 0 && offsetof(SlotRecordV1, sequence) == 4 &&
+              offsetof(SlotRecordV1, issued) == 8 && offsetof(SlotRecordV1, trial_issued) == 16 &&
+              offsetof(SlotRecordV1, confirmed) == 24 && offsetof(SlotRecordV1, trial) == 25 &&
+              offsetof(SlotRecordV1, reserved) == 26 && offsetof(SlotRecordV1, checksum) == 28);
+constexpr std::uint32_t kSlotMagicV1 = 0x544f4c53;  // "SLOT"
 
 /// A record and the place, 0 or 1, where it is to be stored.
 struct SlotChange {
@@ -53,11 +74,14 @@ class Slots {
   /// Signing time of the confirmed image; 0 where there is none.
   std::uint64_t issued() const noexcept { return now_.issued; }
   std::uint64_t trial_issued() const noexcept { return now_.trial_issued; }
+  /// What an upload has to be above, and at least: the highest that were ever tried, kept or not.
+  std::uint64_t newest_issued() const noexcept { return now_.newest_issued; }
+  std::uint32_t security() const noexcept { return now_.security; }
   /// The slot that may be overwritten: neither confirmed nor on trial; kNoSlot while a trial runs.
   std::uint8_t free_slot() const noexcept;
 
   /// The image in free_slot() is to be tried. Only while no trial runs. setup.
-  SlotChange start_trial(std::uint64_t issued) const noexcept;
+  SlotChange start_trial(std::uint64_t issued, std::uint32_t security) const noexcept;
   /// The image on trial is kept. Only while one is on trial. setup.
   SlotChange confirm() const noexcept;
   /// The image on trial is given up. setup.
@@ -68,10 +92,12 @@ class Slots {
  private:
   SlotChange change_to(SlotRecord next) const noexcept;
 
-  SlotRecord now_{kSlotMagic, 0, 0, 0, kNoSlot, kNoSlot, 0, 0};
+  SlotRecord now_{kSlotMagic, 0, 0, 0, 0, 0, kNoSlot, kNoSlot, 0, 0, 0};
   std::uint32_t next_place_ = 0;
 };
 
+/// A valid record of version 1 as one of this version; no record where it is not valid. setup.
+SlotRecord upgraded(const SlotRecordV1& record) noexcept;
 /// Is it a record that a board may follow: magic, checksum, slots that exist and differ. setup.
 bool is_valid(const SlotRecord& record) noexcept;
 

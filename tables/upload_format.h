@@ -5,28 +5,67 @@
 
 namespace vernier {
 
-/// What is uploaded and stored in a slot: this header (little-endian, 128 bytes), then the image
+constexpr std::uint32_t kBoardNameBytes = 24;
+
+/// What is uploaded and stored in a slot: this header (little-endian, 152 bytes), then the image
 /// (image_format.h). The signature, Ed25519 in its pre-hashed form (RFC 8032, Ed25519ph), covers the header
 /// before it and the whole image.
 struct UploadHeader {
   std::uint8_t magic[8];       // kUploadMagic
-  std::uint32_t header_bytes;  // 128
+  std::uint32_t header_bytes;  // 152
   std::uint32_t image_bytes;
-  std::uint64_t issued;    // when it was signed, microseconds since 1970: the higher, the newer
-  std::uint64_t replaces;  // 0, or `issued` of the confirmed image that it may replace although it is older
+  std::uint64_t issued;  // when it was signed, microseconds since 1970: higher than all that were ever tried
   std::uint64_t fingerprint;  // of the image's equation
-  std::uint8_t key[24];       // first bytes of the public key that checks the signature
+  std::uint32_t
+      security;  // at least the highest that was ever tried: raised to shut older images out for good
+  std::uint32_t reserved;  // 0
+  char
+      board[kBoardNameBytes];  // name of the board that it is for, or of its class; zeros: one without a name
+  std::uint8_t key[24];        // first bytes of the public key that checks the signature
   std::uint8_t signature[64];
 };
-static_assert(sizeof(UploadHeader) == 128);
+static_assert(sizeof(UploadHeader) == 152);
 static_assert(offsetof(UploadHeader, magic) == 0 && offsetof(UploadHeader, header_bytes) == 8 &&
               offsetof(UploadHeader, image_bytes) == 12 && offsetof(UploadHeader, issued) == 16 &&
-              offsetof(UploadHeader, replaces) == 24 && offsetof(UploadHeader, fingerprint) == 32 &&
-              offsetof(UploadHeader, key) == 40 && offsetof(UploadHeader, signature) == 64);
+              offsetof(UploadHeader, fingerprint) == 24 && offsetof(UploadHeader, security) == 32 &&
+              offsetof(UploadHeader, reserved) == 36 && offsetof(UploadHeader, board) == 40 &&
+              offsetof(UploadHeader, key) == 64 && offsetof(UploadHeader, signature) == 88);
 /// Not sent: another layout takes another kUploadMagic and another number here.
-constexpr std::uint32_t kUploadFormatVersion = 1;
-constexpr std::uint8_t kUploadMagic[8] = {'V', 'E', 'R', 'N', 'U', 'P', 'L', '\n'};
-constexpr std::uint32_t kSignedHeaderBytes = 64;  // of the header, those under the signature
+constexpr std::uint32_t kUploadFormatVersion = 2;
+constexpr std::uint8_t kUploadMagic[8] = {'V', 'E', 'R', 'N', 'U', 'P', '2', '\n'};
+constexpr std::uint32_t kSignedHeaderBytes = 88;  // of the header, those under the signature
+/// A time of signing beyond it (the year 2200) is a clock that is wrong, and would leave no room for later
+/// ones.
+constexpr std::uint64_t kLatestIssued = 7'258'118'400'000'000;
+
+/// Version 1, which named no board: a slot that was confirmed with it still runs, a new one is refused.
+struct UploadHeaderV1 {
+  std::uint8_t magic[8];       // kUploadMagicV1
+  std::uint32_t header_bytes;  // 128
+  std::uint32_t image_bytes;
+  std::uint64_t issued, replaces, fingerprint;
+  std::uint8_t key[24];
+  std::uint8_t signature[64];
+};
+static_assert(sizeof(UploadHeaderV1) == 128);
+static_assert(offsetof(UploadHeaderV1, magic) == 0 && offsetof(UploadHeaderV1, header_bytes) == 8 &&
+              offsetof(UploadHeaderV1, image_bytes) == 12 && offsetof(UploadHeaderV1, issued) == 16 &&
+              offsetof(UploadHeaderV1, replaces) == 24 && offsetof(UploadHeaderV1, fingerprint) == 32 &&
+              offsetof(UploadHeaderV1, key) == 40 && offsetof(UploadHeaderV1, signature) == 64);
+constexpr std::uint8_t kUploadMagicV1[8] = {'V', 'E', 'R', 'N', 'U', 'P', 'L', '\n'};
+constexpr std::uint32_t kSignedHeaderBytesV1 = 64;
+
+/// What a signed request is signed over, before its op and payload: Ed25519ph of both.
+struct SignedRequestHead {
+  std::uint8_t magic[8];   // kRequestMagic
+  std::uint8_t nonce[16];  // of the board, new with each start
+  std::uint32_t counter;   // higher than that of every request that the board has taken since
+  char board[kBoardNameBytes];
+};
+static_assert(sizeof(SignedRequestHead) == 52);
+static_assert(offsetof(SignedRequestHead, magic) == 0 && offsetof(SignedRequestHead, nonce) == 8 &&
+              offsetof(SignedRequestHead, counter) == 24 && offsetof(SignedRequestHead, board) == 28);
+constexpr std::uint8_t kRequestMagic[8] = {'V', 'E', 'R', 'N', 'C', 'M', 'D', '1'};
 
 constexpr std::uint32_t kPublicKeyBytes = 32;
 

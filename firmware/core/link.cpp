@@ -62,8 +62,8 @@ class Link::Writer {
 };
 
 Link::Link(Exchange& exchange, Uploader& uploader, const Wiring& wiring, TimeUs tick,
-           const std::optional<PublicKey>& key)
-    : exchange_(exchange), uploader_(uploader), wiring_(wiring), tick_(tick), key_(key) {}
+           const BoardIdentity& identity)
+    : exchange_(exchange), uploader_(uploader), wiring_(wiring), tick_(tick), identity_(identity) {}
 
 std::uint32_t Link::answer(const std::uint8_t* request, std::uint32_t size, std::uint8_t* reply, TimeUs now) {
   if (size < kRequestHeaderBytes) return 0;
@@ -88,15 +88,16 @@ bool Link::needs_store(const std::uint8_t* request, std::uint32_t size) noexcept
   return op == LinkOp::kFinish || op == LinkOp::kConfirm || op == LinkOp::kRevert || op == LinkOp::kRead;
 }
 
-bool Link::is_upload_step(const std::uint8_t* request, std::uint32_t size) noexcept {
+bool Link::may_need_store(const std::uint8_t* request, std::uint32_t size) noexcept {
   if (size < kRequestHeaderBytes) return false;
   const auto op = static_cast<LinkOp>(request[0]);
-  return op == LinkOp::kBegin || op == LinkOp::kData;
+  return needs_store(request, size) || op == LinkOp::kBegin || op == LinkOp::kData || op == LinkOp::kSigned;
 }
 
-std::uint32_t Link::answer_busy(const std::uint8_t* request, std::uint8_t* reply) noexcept {
+std::uint32_t Link::answer_with(LinkStatus status, const std::uint8_t* request,
+                                std::uint8_t* reply) noexcept {
   reply[0] = request[0], reply[1] = request[1];
-  reply[2] = static_cast<std::uint8_t>(LinkStatus::kNotReady);
+  reply[2] = static_cast<std::uint8_t>(status);
   return kReplyHeaderBytes;
 }
 
@@ -132,6 +133,9 @@ LinkStatus Link::run(LinkOp op, Reader& in, Writer& out, TimeUs now) {
       return touches(in, out);
     case LinkOp::kWorkpiece:
       return workpiece(in);
+    case LinkOp::kChallenge:
+    case LinkOp::kSigned:
+      return LinkStatus::kUnknownOp;  // the gate's
     case LinkOp::kBegin:
     case LinkOp::kData:
     case LinkOp::kFinish:
@@ -150,8 +154,10 @@ LinkStatus Link::hello(Writer& out) const {
   reply.capacity = uploader_.capacity();
   reply.axes = static_cast<std::uint8_t>(wiring_.axes.size());
   reply.inputs = static_cast<std::uint8_t>(wiring_.inputs.size());
-  reply.has_key = key_ ? 1 : 0;
-  if (key_) std::memcpy(reply.key, key_->data(), sizeof(reply.key));
+  reply.has_key = identity_.keys.empty() ? 0 : 1;
+  if (!identity_.keys.empty()) std::memcpy(reply.key, identity_.keys[0].key.data(), sizeof(reply.key));
+  std::memcpy(reply.board, identity_.board.c_str(), identity_.board.size());
+  std::memcpy(reply.board_class, identity_.board_class.c_str(), identity_.board_class.size());
   out.put(reply);
   return LinkStatus::kDone;
 }
@@ -232,6 +238,8 @@ LinkStatus Link::slots(Writer& out, TimeUs now) const {
   reply.confirmed_fingerprint = record.confirmed_fingerprint;
   reply.trial_fingerprint = record.trial_fingerprint;
   reply.issued = record.issued;
+  reply.newest_issued = record.newest_issued;
+  reply.security = record.security;
   reply.trial_left_ms =
       static_cast<std::uint32_t>(clamp<std::int64_t>(uploader_.trial_left(now).count / 1000, 0, UINT32_MAX));
   out.put(reply);

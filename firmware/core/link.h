@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
-#include <optional>
 
 #include "firmware/core/exchange.h"
 #include "firmware/core/uploader.h"
@@ -13,9 +12,9 @@ namespace vernier {
 /// of a request is hostile until it is checked.
 class Link {
  public:
-  /// All outlive the link. key: what HelloReply names. setup.
+  /// All outlive the link. identity: what HelloReply names. setup.
   Link(Exchange& exchange, Uploader& uploader, const Wiring& wiring, TimeUs tick,
-       const std::optional<PublicKey>& key);
+       const BoardIdentity& identity);
 
   /// Answers one request. request: any bytes; reply: room for kMaxReplyBytes. Returns the bytes of the reply,
   /// 0 where the request is too short to be answered. now: as the uploader's. setup.
@@ -23,10 +22,16 @@ class Link {
 
   /// Has the request to do with the medium? It is then answered by the store, which may wait for it. setup.
   static bool needs_store(const std::uint8_t* request, std::uint32_t size) noexcept;
-  /// Is it a step of an upload? None while the store is at work for one. setup.
-  static bool is_upload_step(const std::uint8_t* request, std::uint32_t size) noexcept;
+  /// Is it, or may it carry (signed), a request for the store or a step of an upload? None while the store is
+  /// at work for one. setup.
+  static bool may_need_store(const std::uint8_t* request, std::uint32_t size) noexcept;
   /// "Ask again": the reply to a request that comes while the store is at work. setup.
-  static std::uint32_t answer_busy(const std::uint8_t* request, std::uint8_t* reply) noexcept;
+  static std::uint32_t answer_busy(const std::uint8_t* request, std::uint8_t* reply) noexcept {
+    return answer_with(LinkStatus::kNotReady, request, reply);
+  }
+  /// A reply without payload. request: two bytes at least. setup.
+  static std::uint32_t answer_with(LinkStatus status, const std::uint8_t* request,
+                                   std::uint8_t* reply) noexcept;
 
   /// The live registers for plain Modbus masters; values: kLiveRegisters. setup.
   void fill_registers(std::uint16_t* values);
@@ -66,7 +71,7 @@ class Link {
   Uploader& uploader_;
   const Wiring& wiring_;
   TimeUs tick_;
-  std::optional<PublicKey> key_;
+  const BoardIdentity& identity_;
   // Room for the shares, which are worked out when they are asked for.
   EquationRecord equation_;
   std::int32_t registers_[kMaxRegisters];

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware/core/service.h"
 
+#include <cstring>
+
 #include "comp/fixed.h"
 
 namespace vernier {
@@ -31,7 +33,8 @@ Service::Service(ServiceOptions options, const Board& board, SlotStore& store)
       cycle_(options_.wiring, options_.upload.tick, board_, options_.limits),
       runner_(cycle_, board_.clock, options_.upload.tick, board_.sync, options_.sync_patience,
               options_.overruns),
-      link_(exchange_, uploader_, options_.wiring, options_.upload.tick, options_.upload.key) {
+      link_(exchange_, uploader_, options_.wiring, options_.upload.tick, options_.upload.identity),
+      gate_(options_.upload.identity, options_.nonce) {
   if (board_.probe != nullptr) probing_.emplace(*board_.probe, probe_settings(options_));
 }
 
@@ -191,7 +194,8 @@ void Service::look_after_programs() noexcept {
   look_after_store();
 }
 
-HalFault Service::serve(CommandLink& link, TimeUs wait) noexcept {
+HalFault Service::serve(CommandLink& link, TimeUs wait, const LinkRights& rights) noexcept {
+  rights_ = rights;
   if (options_.store_beside) return link.serve(*this, wait);
   look_after_programs();
   const HalFault fault = link.serve(*this, wait);
@@ -200,16 +204,25 @@ HalFault Service::serve(CommandLink& link, TimeUs wait) noexcept {
 }
 
 std::uint32_t Service::answer(const std::uint8_t* request, std::uint32_t size, std::uint8_t* reply) {
-  const bool for_store = Link::needs_store(request, size);
-  if (!options_.store_beside || !(for_store || Link::is_upload_step(request, size)))
-    return link_.answer(request, size, reply, now());
-  if (!desk_.free()) return Link::answer_busy(request, reply);
-  if (!for_store) return link_.answer(request, size, reply, now());
-  ticket_ = desk_.leave(request, size);
+  if (Gate::is_challenge(request, size)) {
+    const ChallengeReply challenge = gate_.challenge(rights_.access);
+    std::memcpy(reply + kReplyHeaderBytes, &challenge, sizeof(challenge));
+    return Link::answer_with(LinkStatus::kDone, request, reply) +
+           static_cast<std::uint32_t>(sizeof(challenge));
+  }
+  // Before the gate: a request that is turned away now comes again as it is, with its signature not yet used.
+  const bool may_need_store = options_.store_beside && Link::may_need_store(request, size);
+  if (may_need_store && !desk_.free()) return Link::answer_busy(request, reply);
+  const Gate::Opened opened = gate_.open(request, size, rights_.access);
+  if (opened.status != LinkStatus::kDone) return Link::answer_with(opened.status, request, reply);
+  if (!may_need_store || !Link::needs_store(opened.request, opened.size))
+    return link_.answer(opened.request, opened.size, reply, now());
+  ticket_ = desk_.leave(opened.request, opened.size);
   return kLater;
 }
 
 bool Service::give(std::uint16_t command) {
+  if (!gate_.lets_plain_commands(rights_.access, rights_.plain_commands)) return false;
   return command < kCommandCount && link_.give(static_cast<std::uint8_t>(command)) == LinkStatus::kDone;
 }
 

@@ -6,6 +6,7 @@
 
 #include "firmware/core/cycle.h"
 #include "firmware/core/exchange.h"
+#include "firmware/core/gate.h"
 #include "firmware/core/link.h"
 #include "firmware/core/probing.h"
 #include "firmware/core/runner.h"
@@ -23,6 +24,7 @@ struct ServiceOptions {
   CycleLimits limits;
   Uploader::Options upload;
   OverrunLimits overruns;
+  Nonce nonce{};         // of this start of the board; nobody can foretell it
   TimeUs sync_patience;  // beyond a tick's time, until the clock takes the place of the sync
   ProbeSettings probe;   // where the board has one; axes are filled in from the wiring
   bool store_beside =
@@ -32,6 +34,12 @@ struct ServiceOptions {
   bool activate = false;  // bring the correction in when the board becomes ready, once for each enable
   std::uint32_t ticks_kept = Exchange::kHistory;  // for readers of the history; powers of two
   std::uint32_t touches_kept = Exchange::kTouches;
+};
+
+/// What a link of the board may be used for.
+struct LinkRights {
+  LinkAccess access = LinkAccess::kUpload;
+  bool plain_commands = false;  // commands by register, which cannot be signed, though the board has keys
 };
 
 /// The board's program, in four duties that may each have a context of their own: the tick; the guardian,
@@ -56,7 +64,7 @@ class Service : private CommandHandler {
   void guard() noexcept { uploader_.programs().guard(now()); }
   /// The links: waits at most `wait` for requests of one link and answers them. Without store_beside all
   /// other duties but the tick are done too. setup.
-  HalFault serve(CommandLink& link, TimeUs wait) noexcept;
+  HalFault serve(CommandLink& link, TimeUs wait, const LinkRights& rights = {}) noexcept;
   /// The store: does what a link has left for it and writes down what the guardian did. True: a link can
   /// collect a reply. setup.
   bool look_after_store() noexcept;
@@ -101,6 +109,8 @@ class Service : private CommandHandler {
   Cycle cycle_;
   Runner runner_;
   Link link_;
+  Gate gate_;
+  LinkRights rights_;  // of the link that is being served
   std::optional<Probing> probing_;
   StoreDesk desk_;
   std::uint32_t ticket_ = 0;  // the links'

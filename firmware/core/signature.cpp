@@ -5,9 +5,10 @@
 
 namespace vernier {
 
-bool signature_fits(const UploadHeader& header, std::span<const std::uint8_t> image, const PublicKey& key) {
-  return ed25519ph_fits(reinterpret_cast<const std::uint8_t*>(&header), kSignedHeaderBytes, image.data(),
-                        static_cast<std::uint32_t>(image.size()), header.signature, key.data());
+bool signature_fits(std::span<const std::uint8_t> head, std::span<const std::uint8_t> rest,
+                    const std::uint8_t* signature, const PublicKey& key) {
+  return ed25519ph_fits(head.data(), static_cast<std::uint32_t>(head.size()), rest.data(),
+                        static_cast<std::uint32_t>(rest.size()), signature, key.data());
 }
 
 }  // namespace vernier

@@ -15,12 +15,23 @@ UploadResult refused(UploadFault fault) {
   return result;
 }
 
+// A store of an earlier version has shorter records.
 SlotRecord read_record(SlotStore& store, std::uint32_t place) {
   SlotRecord record{};
   std::uint8_t bytes[sizeof(SlotRecord)];
   if (store.read_record(place, bytes, sizeof(bytes)) == HalFault::kNone)
     std::memcpy(&record, bytes, sizeof(record));
-  return record;
+  if (is_valid(record) || store.read_record(place, bytes, sizeof(SlotRecordV1)) != HalFault::kNone)
+    return record;
+  SlotRecordV1 old;
+  std::memcpy(&old, bytes, sizeof(old));
+  return old.magic == kSlotMagicV1 ? upgraded(old) : record;
+}
+
+bool names(const char (&board)[kBoardNameBytes], const Name& name) {
+  char wanted[kBoardNameBytes] = {};
+  std::memcpy(wanted, name.c_str(), name.size());
+  return std::memcmp(wanted, board, sizeof(wanted)) == 0;
 }
 
 void append(Line& line, const char* text) noexcept {
@@ -66,6 +77,8 @@ void Uploader::publish() noexcept {
   record_.confirmed = slots_.confirmed();
   record_.trial = slots_.trial();
   record_.issued = slots_.issued();
+  record_.newest_issued = slots_.newest_issued();
+  record_.security = slots_.security();
   published_.publish(record_);
 }
 
@@ -89,13 +102,21 @@ bool Uploader::within_budget(const ImageView& view) const noexcept {
   return tick <= options_.work_budget && (tick + shares) / kShareWorkFactor <= options_.work_budget;
 }
 
-UploadResult Uploader::check(LoadedProgram& loaded) {
+// A key that is retired vouches for what was confirmed with it while it was not, and for nothing else.
+UploadResult Uploader::check_signature(const LoadedProgram& loaded, Origin origin) const {
   const UploadHeader& header = loaded.header;
-  if (!options_.key) return refused(UploadFault::kNoKey);
-  if (std::memcmp(header.key, options_.key->data(), sizeof(header.key)) != 0)
-    return refused(UploadFault::kForeignKey);
-  if (!signature_fits(header, {loaded.image(), header.image_bytes}, *options_.key))
-    return refused(UploadFault::kSignature);
+  if (options_.identity.keys.empty()) return refused(UploadFault::kNoKey);
+  const TrustedKey* const key = options_.identity.find(header.key, sizeof(header.key));
+  if (key == nullptr) return refused(UploadFault::kForeignKey);
+  if (origin == Origin::kNew && (key->retired || !key->upload)) return refused(UploadFault::kKeyMayNot);
+  const std::span<const std::uint8_t> image{const_cast<LoadedProgram&>(loaded).image(), header.image_bytes};
+  return signature_fits(bytes_of_head(header, kSignedHeaderBytes), image, header.signature, key->key)
+             ? UploadResult{}
+             : refused(UploadFault::kSignature);
+}
+
+UploadResult Uploader::check_image(LoadedProgram& loaded) {
+  const UploadHeader& header = loaded.header;
   UploadResult result;
   result.image = loaded.view.open(loaded.image(), header.image_bytes, *workspace_);
   if (result.image != ImageFault::kNone) {
@@ -113,17 +134,46 @@ UploadResult Uploader::check(LoadedProgram& loaded) {
 }
 
 // Header and image of a slot, from the medium, checked.
-UploadResult Uploader::load(std::uint8_t slot, LoadedProgram& loaded) {
+UploadResult Uploader::load(std::uint8_t slot, LoadedProgram& loaded, Origin origin) {
   std::uint8_t bytes[sizeof(UploadHeader)];
   UploadHeader& header = loaded.header;
   if (store_.read_image(slot, 0, bytes, sizeof(bytes)) != HalFault::kNone)
     return refused(UploadFault::kNotAnUpload);
   std::memcpy(&header, bytes, sizeof(header));
+  if (std::memcmp(header.magic, kUploadMagicV1, sizeof(kUploadMagicV1)) == 0)
+    return origin == Origin::kStored ? load_v1(slot, loaded) : refused(UploadFault::kOldForm);
   if (std::memcmp(header.magic, kUploadMagic, sizeof(kUploadMagic)) != 0 ||
       header.header_bytes != sizeof(UploadHeader) || header.image_bytes > programs_.image_bytes() ||
       store_.read_image(slot, sizeof(UploadHeader), loaded.image(), header.image_bytes) != HalFault::kNone)
     return refused(UploadFault::kNotAnUpload);
-  return check(loaded);
+  UploadResult result = check_signature(loaded, origin);
+  const BoardIdentity& own = options_.identity;
+  if (result.fault == UploadFault::kNone && !names(header.board, own.board) &&
+      (own.board_class.empty() || !names(header.board, own.board_class)))
+    result = refused(UploadFault::kOtherBoard);
+  return result.fault == UploadFault::kNone ? check_image(loaded) : result;
+}
+
+// What was confirmed before boards had names still runs, until another one is uploaded.
+UploadResult Uploader::load_v1(std::uint8_t slot, LoadedProgram& loaded) {
+  std::uint8_t bytes[sizeof(UploadHeaderV1)];
+  UploadHeaderV1 old;
+  if (store_.read_image(slot, 0, bytes, sizeof(bytes)) != HalFault::kNone)
+    return refused(UploadFault::kNotAnUpload);
+  std::memcpy(&old, bytes, sizeof(old));
+  if (old.header_bytes != sizeof(old) || old.image_bytes > programs_.image_bytes() ||
+      store_.read_image(slot, sizeof(old), loaded.image(), old.image_bytes) != HalFault::kNone)
+    return refused(UploadFault::kNotAnUpload);
+  const TrustedKey* const key = options_.identity.find(old.key, sizeof(old.key));
+  if (key == nullptr) return refused(UploadFault::kForeignKey);
+  if (!signature_fits(bytes_of_head(old, kSignedHeaderBytesV1), {loaded.image(), old.image_bytes},
+                      old.signature, key->key))
+    return refused(UploadFault::kSignature);
+  loaded.header = {};
+  loaded.header.image_bytes = old.image_bytes;
+  loaded.header.issued = old.issued;
+  loaded.header.fingerprint = old.fingerprint;
+  return check_image(loaded);
 }
 
 UploadResult Uploader::boot() {
@@ -135,7 +185,7 @@ UploadResult Uploader::boot() {
   image_lost_ = true;
   ProgramRef loaded = programs_.take();
   if (loaded == nullptr) return refused(UploadFault::kStore);
-  const UploadResult result = load(slots_.confirmed(), *loaded);
+  const UploadResult result = load(slots_.confirmed(), *loaded, Origin::kStored);
   if (result.fault != UploadFault::kNone) return result;
   record_.confirmed_fingerprint = loaded->header.fingerprint;
   publish();
@@ -150,7 +200,7 @@ UploadResult Uploader::begin(std::uint32_t bytes) {
   if (programs_.trial() != Trial::kNone) return refused(UploadFault::kTrialRuns);
   if (bytes > store_.capacity()) return refused(UploadFault::kTooLarge);
   if (bytes < sizeof(UploadHeader)) return refused(UploadFault::kNotAnUpload);
-  if (!options_.key) return refused(UploadFault::kNoKey);
+  if (options_.identity.keys.empty()) return refused(UploadFault::kNoKey);
   coming_ = programs_.take();
   if (coming_ == nullptr) return refused(UploadFault::kStore);
   receiving_ = true;
@@ -191,9 +241,11 @@ UploadResult Uploader::write_slot(std::uint8_t slot) {
   return written ? UploadResult{} : refused(UploadFault::kStore);
 }
 
-bool Uploader::may_replace(const UploadHeader& header) const noexcept {
-  if (slots_.confirmed() == kNoSlot || header.issued > slots_.issued()) return true;
-  return header.replaces != 0 && header.replaces == slots_.issued();
+// The floor is what was ever tried, not what was kept: what an operator gave up does not come back by itself.
+UploadFault Uploader::judge_history(const UploadHeader& header) const noexcept {
+  if (header.security < slots_.security()) return UploadFault::kSecurity;
+  if (header.issued > kLatestIssued) return UploadFault::kAbsurdTime;
+  return header.issued > slots_.newest_issued() ? UploadFault::kNone : UploadFault::kOlder;
 }
 
 UploadResult Uploader::finish() {
@@ -204,12 +256,12 @@ UploadResult Uploader::finish() {
   UploadResult result = write_slot(slot);
   // What counts is what the medium gives back, not what came over the wire.
   ProgramRef loaded = std::move(coming_);
-  if (result.fault == UploadFault::kNone) result = load(slot, *loaded);
+  if (result.fault == UploadFault::kNone) result = load(slot, *loaded, Origin::kNew);
   if (result.fault != UploadFault::kNone) return result;
   const UploadHeader& header = loaded->header;
   if (sizeof(header) + header.image_bytes != expected_) return refused(UploadFault::kNotAnUpload);
-  if (!may_replace(header)) return refused(UploadFault::kOlder);
-  if (!store(slots_.start_trial(header.issued))) return refused(UploadFault::kStore);
+  if (const UploadFault fault = judge_history(header); fault != UploadFault::kNone) return refused(fault);
+  if (!store(slots_.start_trial(header.issued, header.security))) return refused(UploadFault::kStore);
   record_.trial_fingerprint = header.fingerprint;
   publish();
   programs_.run_trial(std::move(loaded), options_.trial_time);

@@ -4,8 +4,8 @@
 #include <memory>
 #include <optional>
 
+#include "firmware/core/identity.h"
 #include "firmware/core/programs.h"
-#include "firmware/core/signature.h"
 #include "firmware/core/work_budget.h"
 #include "hal/slot_store.h"
 #include "tables/codes.h"
@@ -33,8 +33,9 @@ Line describe(const UploadResult& result) noexcept;
 /// Which images the store holds, as others see it.
 struct SlotsRecord {
   std::uint64_t confirmed_fingerprint = 0, trial_fingerprint = 0;  // 0: none
-  std::uint64_t issued = 0;                                        // of the confirmed image
-  std::uint8_t confirmed = kNoSlot, trial = kNoSlot, reserved[6] = {};
+  std::uint64_t issued = 0, newest_issued = 0;  // of the confirmed image, and of all that were ever tried
+  std::uint8_t confirmed = kNoSlot, trial = kNoSlot, reserved[2] = {};
+  std::uint32_t security = 0;
 };
 static_assert(sizeof(SlotsRecord) % 8 == 0);
 
@@ -45,7 +46,7 @@ class Uploader {
  public:
   struct Options {
     TimeUs tick{1000};
-    std::optional<PublicKey> key;
+    BoardIdentity identity;
     TimeUs trial_time{60'000'000};  // an image on trial is given up after that
     std::uint32_t places = Programs::kFewest;
     std::uint64_t work_budget = kAnyWork;  // measured_work_budget()
@@ -90,11 +91,15 @@ class Uploader {
   const Slots& slots() const noexcept { return slots_; }
 
  private:
-  UploadResult load(std::uint8_t slot, LoadedProgram& loaded);
-  UploadResult check(LoadedProgram& loaded);
+  /// Where an upload is checked: one that was confirmed has passed what follows from its history.
+  enum class Origin : std::uint8_t { kStored, kNew };
+  UploadResult load(std::uint8_t slot, LoadedProgram& loaded, Origin origin);
+  UploadResult load_v1(std::uint8_t slot, LoadedProgram& loaded);
+  UploadResult check_signature(const LoadedProgram& loaded, Origin origin) const;
+  UploadResult check_image(LoadedProgram& loaded);
   bool within_budget(const ImageView& view) const noexcept;
   UploadResult write_slot(std::uint8_t slot);
-  bool may_replace(const UploadHeader& header) const noexcept;
+  UploadFault judge_history(const UploadHeader& header) const noexcept;
   bool store(const SlotChange& change);
   void publish() noexcept;
 

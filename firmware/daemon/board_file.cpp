@@ -17,7 +17,7 @@ constexpr double kNmPerMm = 1e6, kCountsPerDeg = static_cast<double>(kTurnCounts
 constexpr double kMostCounts = 1e15;
 constexpr double kMostDelayUs = 40'000;  // of a probe: what the latch remembers at 1 kHz, less its settling
 
-const std::set<std::string_view> kSections = {"board", "axis", "input", "probe", "digital", "link"};
+const std::set<std::string_view> kSections = {"board", "axis", "input", "probe", "digital", "link", "key"};
 
 /// Reads the settings of one table and knows which of them nobody asked for.
 class Table {
@@ -235,6 +235,45 @@ void read_digital(BoardFile& board, const toml::table& table) {
   settings.nothing_else();
 }
 
+Name board_name(Table& settings, const char* setting) {
+  const std::string name = settings.text(setting, "");
+  if (name.size() >= kBoardNameBytes)
+    settings.fail(std::string(setting) + " must be shorter than " + std::to_string(kBoardNameBytes) +
+                  " characters");
+  return std::string_view(name);
+}
+
+void read_key(BoardFile& board, const toml::table& table) {
+  Table settings(table, board.path, "key");
+  TrustedKey key;
+  const std::string name = settings.text("name", ""), role = settings.text("role", "all");
+  const std::string file = settings.text("file", "");
+  if (name.empty()) settings.fail("name is missing: whose key it is");
+  if (file.empty()) settings.fail("file is missing: the public key of `vernier keys`");
+  if (role != "all" && role != "command" && role != "upload" && role != "retired")
+    settings.fail("role: '" + role + "' is none of all, command, upload, retired");
+  key.name = std::string_view(name);
+  key.key = read_public_key(beside(board.path, file));
+  key.command = role != "upload", key.upload = role != "command";
+  key.retired = role == "retired";
+  settings.nothing_else();
+  BoardIdentity& identity = board.service.upload.identity;
+  if (identity.find(key.key.data(), kPublicKeyBytes) != nullptr)
+    settings.fail(name + ": this key is there twice");
+  if (identity.keys.size() == BoardIdentity::kMostKeys)
+    settings.fail("more keys than the board has room for");
+  identity.keys.push_back(key);
+}
+
+/// An image is signed for a board: one that trusts a key has to have a name.
+void require_name(const BoardFile& board, const Table& general) {
+  const BoardIdentity& identity = board.service.upload.identity;
+  if (!identity.keys.empty() && identity.board.empty())
+    general.fail(
+        "name is missing: images are signed for a board; add name = \"mill-1\" (and class, where several "
+        "boards take the same images)");
+}
+
 void read_board(BoardFile& board, const toml::table& table) {
   Table settings(table, board.path, "board");
   board.service.upload.tick =
@@ -251,8 +290,11 @@ void read_board(BoardFile& board, const toml::table& table) {
   board.sync = source_of(sync, board.path, "board.sync");
   if (sync != nullptr)
     board.service.sync_patience = TimeUs(1000 * board.sync.whole("timeout_ms", 20, 1, 1000));
+  BoardIdentity& identity = board.service.upload.identity;
+  identity.board = board_name(settings, "name");
+  identity.board_class = board_name(settings, "class");
   const std::string key = settings.text("public_key", "");
-  if (!key.empty()) board.service.upload.key = read_public_key(beside(board.path, key));
+  if (!key.empty()) identity.keys.push_back({read_public_key(beside(board.path, key)), "public_key"});
   settings.nothing_else();
 }
 
@@ -270,17 +312,43 @@ void in_order_of_file(const toml::table& table, const std::string& file, const s
   for (const auto& [name, entry] : entries) use(name, *entry);
 }
 
-void read_links(BoardFile& board, const toml::node& node) {
-  const toml::array* const links = node.as_array();
-  if (links == nullptr)
-    throw BoardError{board.path + ":" + std::to_string(node.source().begin.line) +
-                     ": link must be [[link]] tables"};
-  for (const toml::node& link : *links) {
-    if (!link.is_table())
-      throw BoardError{board.path + ":" + std::to_string(link.source().begin.line) +
-                       ": link must be a table"};
-    board.links.push_back(source_of(link.as_table(), board.path, "link"));
+/// [[link]] and [[key]]: a table each.
+template <class Use>
+void each_table(const BoardFile& board, const char* section, const toml::node& node, Use use) {
+  const auto fail = [&](const toml::node& at, const char* what) {
+    throw BoardError{board.path + ":" + std::to_string(at.source().begin.line) + ": " + section + what};
+  };
+  const toml::array* const tables = node.as_array();
+  if (tables == nullptr) return fail(node, " must be a [[table]] each");
+  for (const toml::node& entry : *tables) {
+    if (!entry.is_table()) fail(entry, " must be a table");
+    use(*entry.as_table());
   }
+}
+
+/// What a link may be used for. Off this computer it shows the state and no more, unless the file says so.
+LinkRights rights_of(SignalSource& link) {
+  LinkRights rights;
+  const bool loopback = link.kind == "modbus-tcp" && link.text("address", "127.0.0.1").starts_with("127.");
+  const std::string access = link.text("access", loopback ? "upload" : "read");
+  if (access != "read" && access != "command" && access != "upload")
+    link.fail("access: '" + access + "' is none of read, command, upload");
+  rights.access = access == "read"      ? LinkAccess::kRead
+                  : access == "command" ? LinkAccess::kCommand
+                                        : LinkAccess::kUpload;
+  const std::string plain = link.text("plain_commands", "refused");
+  if (plain != "refused" && plain != "allowed")
+    link.fail("plain_commands: '" + plain + "' is neither refused nor allowed");
+  rights.plain_commands = plain == "allowed";
+  link.texts.erase("access"), link.texts.erase("plain_commands");
+  return rights;
+}
+
+void read_link(BoardFile& board, const toml::table& table) {
+  LinkEntry link;
+  link.source = source_of(&table, board.path, "link");
+  link.rights = rights_of(link.source);
+  board.links.push_back(link);
 }
 
 /// One device, one use: what two settings name would be driven by both in turns.
@@ -308,8 +376,8 @@ void refuse_duplicates(const BoardFile& board) {
   for (const AxisEntry& axis : board.axes) claim(axis.output, {"path", "device", "root", "channel"});
   for (const SignalSource* const line : {&board.probe, &board.enable, &board.healthy})
     claim(*line, {"chip", "line"});
-  for (const SignalSource& link : board.links)
-    claim(link, {"address", "port", "device", "interface", "receive", "transmit"});
+  for (const LinkEntry& link : board.links)
+    claim(link.source, {"address", "port", "device", "interface", "receive", "transmit"});
 }
 
 }  // namespace
@@ -375,7 +443,11 @@ BoardFile read_board_file(const std::string& path) {
   if (board.axes.empty()) settings.fail("no [axis.NAME]");
   if (const toml::table* const probe = settings.table("probe")) read_probe(board, *probe);
   if (const toml::table* const digital = settings.table("digital")) read_digital(board, *digital);
-  if (settings.has("link")) read_links(board, *file.get("link"));
+  if (settings.has("link"))
+    each_table(board, "link", *file.get("link"), [&](const toml::table& t) { read_link(board, t); });
+  if (settings.has("key"))
+    each_table(board, "key", *file.get("key"), [&](const toml::table& t) { read_key(board, t); });
+  require_name(board, Table(*general, path, "board"));
   for (const auto& [key, node] : file)
     if (!kSections.contains(key.str())) settings.fail("unknown section " + std::string(key.str()), &node);
   refuse_duplicates(board);

@@ -43,6 +43,12 @@ struct InputEntry {
   double reference = 0;  // what a simulated one reads
 };
 
+/// A link, and what it may be used for.
+struct LinkEntry {
+  SignalSource source;
+  LinkRights rights;
+};
+
 /// A board file (TOML), read and checked: tools/docs/board.md describes it.
 struct BoardFile {
   std::string path;
@@ -51,12 +57,12 @@ struct BoardFile {
   ServiceOptions service;
   std::vector<AxisEntry> axes;
   std::vector<InputEntry> inputs;
-  SignalSource probe;               // line of the touch probe; how late it is stands in `service`
-  SignalSource sync;                // of the ticks
-  SignalSource enable, healthy;     // digital lines from and to the machine's controller
-  std::vector<SignalSource> links;  // kind: "modbus-tcp", "modbus-rtu", "isotp"
-  int priority = 80;                // SCHED_FIFO
-  std::string watchdog;             // device of a hardware watchdog; empty: none
+  SignalSource probe;            // line of the touch probe; how late it is stands in `service`
+  SignalSource sync;             // of the ticks
+  SignalSource enable, healthy;  // digital lines from and to the machine's controller
+  std::vector<LinkEntry> links;  // kind: "modbus-tcp", "modbus-rtu", "isotp"
+  int priority = 80;             // SCHED_FIFO
+  std::string watchdog;          // device of a hardware watchdog; empty: none
 };
 
 /// What is wrong with a board file: "board.toml:12: axis.X: kind: 'lineal' is neither linear nor rotary".

@@ -78,7 +78,7 @@ struct Devices::Parts {
   std::unique_ptr<TickSync> sync;
   std::unique_ptr<DigitalInput> enable;
   std::unique_ptr<DigitalOutput> healthy;
-  std::vector<std::unique_ptr<CommandLink>> links;
+  std::vector<OpenLink> links;
   std::unique_ptr<HardwareWatchdog> watchdog;
   FileLock store_lock;
   std::vector<DeviceFinding> findings;
@@ -257,11 +257,11 @@ void Devices::Parts::make_lines() {
 }
 
 void Devices::Parts::make_links() {
-  for (const SignalSource& source : file.links) {
+  for (const LinkEntry& entry : file.links) {
     std::string error;
-    auto link = open_link(source, error);
-    note("link  " + source.kind, error);
-    if (link) links.push_back(std::move(link));
+    auto link = open_link(entry.source, error);
+    note("link  " + entry.source.kind, error);
+    if (link) links.push_back({std::move(link), entry.rights});
   }
 }
 
@@ -317,7 +317,7 @@ void Devices::disarm_watchdog() noexcept {
 }
 
 Clock& Devices::clock() noexcept { return parts_->clock; }
-std::vector<std::unique_ptr<CommandLink>>& Devices::links() noexcept { return parts_->links; }
+std::vector<OpenLink>& Devices::links() noexcept { return parts_->links; }
 std::vector<DeviceFinding>& Devices::findings() noexcept { return parts_->findings; }
 void Devices::release() noexcept { parts_->plant->release(); }
 void Devices::advance() noexcept { parts_->plant->advance(); }
@@ -329,7 +329,7 @@ void Devices::wait_for_request(TimeUs wait, WakeUp& wake_up) noexcept {
   std::uint32_t count = 0;
   for (const auto& link : parts_->links) {
     int handles[kMostHandles];
-    const std::uint32_t added = link->handles(handles, kMostHandles - count);
+    const std::uint32_t added = link.device->handles(handles, kMostHandles - count);
     for (std::uint32_t i = 0; i < added; ++i) waiting[count++] = {handles[i], POLLIN, 0};
   }
   waiting[count++] = {wake_up.handle(), POLLIN, 0};

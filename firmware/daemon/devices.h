@@ -21,6 +21,11 @@ struct DeviceFinding {
   std::function<std::string()> attempt;  // tries it once more; what is missing, or empty
 };
 
+struct OpenLink {
+  std::unique_ptr<CommandLink> device;
+  LinkRights rights;
+};
+
 /// The devices that a board file names, alive as long as the board runs.
 class Devices {
  public:
@@ -34,7 +39,7 @@ class Devices {
   /// Only where nothing is missing. setup.
   Board board() noexcept;
   Clock& clock() noexcept;
-  std::vector<std::unique_ptr<CommandLink>>& links() noexcept;
+  std::vector<OpenLink>& links() noexcept;
   /// Waits until a request comes over one of the links or somebody wakes it, at most `wait`. setup.
   void wait_for_request(TimeUs wait, WakeUp& wake_up) noexcept;
   /// One of each device, in the order of the board file. setup.

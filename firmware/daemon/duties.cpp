@@ -53,7 +53,7 @@ void Duties::guard(int priority) {
 void Duties::serve_links() {
   while (!stop_) {
     devices_.wait_for_request(kServeWait, links_);
-    for (auto& link : devices_.links()) service_.serve(*link, TimeUs(0));
+    for (OpenLink& link : devices_.links()) service_.serve(*link.device, TimeUs(0), link.rights);
     if (service_.store_is_asked()) store_.wake();
   }
 }

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // vernierd: with devices.cpp and open_devices.cpp the composition root, which alone names backends.
+#include <sys/random.h>
+
 #include <algorithm>
 #include <atomic>
 #include <csignal>
@@ -231,6 +233,11 @@ int run_board(const Arguments& arguments) {
   devices.take_left_overs_out(stop_asked);
   FileSlotStore store(file.store, file.slot_bytes);
   file.service.upload.work_budget = measured_work_budget(devices.clock(), file.service.upload.tick);
+  if (::getrandom(file.service.nonce.data(), file.service.nonce.size(), 0) !=
+      static_cast<ssize_t>(file.service.nonce.size())) {
+    std::fputs("vernierd: no random numbers: nothing could be signed for this start\n", stderr);
+    return kAnswerIsNo;
+  }
   const auto service = std::make_unique<Service>(file.service, devices.board(), store);
   say_image(service->boot(), *service);
   ServiceManager manager;

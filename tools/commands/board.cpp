@@ -13,7 +13,7 @@ namespace vernier::board_cli {
 namespace {
 
 struct Arguments {
-  std::string url, what, axis, json;
+  std::string url, what, axis, key, json;
   double weight = 1;
 };
 
@@ -39,6 +39,7 @@ void set_weight(const Arguments& arguments, Client& client) {
 
 void run(const Arguments& arguments) {
   Client client(open_transport(parse_url(arguments.url)));
+  client.sign_with(given_key(arguments.key));
   if (arguments.what == "weight") {
     set_weight(arguments, client);
   } else {
@@ -70,6 +71,8 @@ void register_board(CLI::App& vernier) {
       ->check(CLI::IsMember({"activate", "deactivate", "clear", "hold", "release", "weight"}));
   command->add_option("--to", arguments->url, "board: tcp://HOST[:1502], rtu://DEVICE, can://INTERFACE")
       ->required();
+  command->add_option("--key", arguments->key,
+                      "secret key of `vernier keys` (or VERNIER_KEY), where the board has keys");
   command->add_option("--axis", arguments->axis, "axis of a weight");
   command->add_option("--weight", arguments->weight, "share of its correction that is applied")
       ->check(CLI::Range(0.0, 1.0));

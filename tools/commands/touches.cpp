@@ -15,7 +15,7 @@ namespace vernier::touches_cli {
 namespace {
 
 struct Arguments {
-  std::string url, output, json, run;
+  std::string url, output, key, json, run;
   double seconds = 0;
   std::uint64_t first = 0, count = std::numeric_limits<std::uint64_t>::max();
   double x = 0, y = 0, z = 0, angle = 0;
@@ -69,6 +69,7 @@ std::string in_words(const Lost& lost) {
 
 void run(const Arguments& arguments) {
   Client client(open_transport(parse_url(arguments.url)));
+  client.sign_with(given_key(arguments.key));
   if (arguments.frame) {
     client.workpiece({arguments.x, arguments.y, arguments.z}, arguments.angle);
     if (arguments.output.empty()) {
@@ -130,6 +131,9 @@ void register_touches(CLI::App& vernier) {
       "told.");
   command->add_option("--to", arguments->url, "board: tcp://HOST[:1502], rtu://DEVICE, can://INTERFACE")
       ->required();
+  command->add_option(
+      "--key", arguments->key,
+      "secret key of `vernier keys` (or VERNIER_KEY), to set the workpiece of a board with keys");
   command->add_option("-o", arguments->output, "CSV file");
   command->add_option("--first", arguments->first, "number of the first touch")->capture_default_str();
   command->add_option("--count", arguments->count, "stop after so many touches");

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <chrono>
-#include <cstdlib>
 #include <cstring>
 #include <memory>
 
@@ -17,7 +16,8 @@ namespace vernier::upload_cli {
 namespace {
 
 struct Arguments {
-  std::string directory, url, key, json, output;
+  std::string directory, url, key, board, json, output;
+  std::int64_t security = -1;  // the board's
   bool confirm = false, revert = false, force = false;
 };
 
@@ -38,12 +38,6 @@ std::vector<std::uint8_t> read_image(const std::string& directory) {
 std::uint64_t now_us() {
   const auto now = std::chrono::system_clock::now().time_since_epoch();
   return static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::microseconds>(now).count());
-}
-
-std::string key_path(const Arguments& arguments) {
-  if (!arguments.key.empty()) return arguments.key;
-  if (const char* const path = std::getenv("VERNIER_KEY"); path != nullptr && *path != '\0') return path;
-  throw InputError("--key is missing: the secret key that signs the image (`vernier keys` makes one)");
 }
 
 nlohmann::ordered_json slots_json(const SlotsReply& slots) {
@@ -68,13 +62,38 @@ void require_safe(const std::string& directory) {
   if (!sheet.ok()) throw LimitNotMet(sheet.refusal());
 }
 
+/// An image must be newer than all that the board has ever tried. Where this computer's clock is behind them,
+/// it is signed right after the newest one, when that is wanted: the board's floor itself is never lowered.
+std::uint64_t time_of_signing(const Arguments& arguments, const SlotsReply& slots) {
+  const std::uint64_t now = now_us();
+  if (now > slots.newest_issued) return now;
+  if (!arguments.force)
+    throw LimitNotMet(
+        "this computer's clock is behind the newest image that the board has tried: set it, or sign right "
+        "after that image with --force");
+  return slots.newest_issued + 1;
+}
+
+std::uint32_t security_of(const Arguments& arguments, const SlotsReply& slots) {
+  if (arguments.security < 0) return slots.security;
+  if (arguments.security < slots.security)
+    throw LimitNotMet(fmt::format("the board's security counter is {} and never falls", slots.security));
+  return static_cast<std::uint32_t>(arguments.security);
+}
+
 void send(const Arguments& arguments, Client& client) {
   const std::vector<std::uint8_t> image = read_image(arguments.directory);
   require_safe(arguments.directory);
-  const SigningKey key = read_secret_key(key_path(arguments));
+  const auto key = given_key(arguments.key);
+  if (!key)
+    throw InputError("--key is missing: the secret key that signs the image (`vernier keys` makes one)");
+  const std::string& board = client.info().board;
+  if (!arguments.board.empty() && arguments.board != board)
+    throw LimitNotMet(
+        fmt::format("this board is {}, not {}", board.empty() ? "without a name" : board, arguments.board));
   const SlotsReply slots = client.slots();
-  // A forced upload names what it replaces, so that nobody can force it a second time over something else.
-  const auto upload = make_upload(image, key, now_us(), arguments.force ? slots.issued : 0);
+  const auto upload =
+      make_upload(image, *key, time_of_signing(arguments, slots), security_of(arguments, slots), board);
   Progress progress("upload");
   client.upload(upload, [&](double share) { progress.update(share); });
 }
@@ -85,6 +104,7 @@ void run(const Arguments& arguments) {
   if (arguments.revert && (arguments.confirm || !arguments.directory.empty()))
     throw InputError("--revert stands alone");
   Client client(open_transport(parse_url(arguments.url)));
+  client.sign_with(given_key(arguments.key));
   if (!arguments.directory.empty()) send(arguments, client);
   if (arguments.confirm) client.confirm();
   if (arguments.revert) client.revert();
@@ -118,7 +138,14 @@ void register_upload(CLI::App& vernier) {
   command->add_option("--key", arguments->key, "secret key of `vernier keys` (or VERNIER_KEY)");
   command->add_flag("--confirm", arguments->confirm, "keep the image on trial; with DIR: at once");
   command->add_flag("--revert", arguments->revert, "give the image on trial up");
-  command->add_flag("--force", arguments->force, "even where the board's clock of images says it is older");
+  command->add_flag(
+      "--force", arguments->force,
+      "where this computer's clock is behind the newest image of the board: sign right after that");
+  command->add_option("--board", arguments->board, "only where the board has this name");
+  command
+      ->add_option("--security", arguments->security,
+                   "raise the board's security counter: images below it are never taken again")
+      ->check(CLI::Range(std::int64_t{0}, std::int64_t{UINT32_MAX}));
   command->add_option("--json", arguments->json, "result for programs; - is standard output");
   command->footer("Exit status: 0 done, 1 bad input or no board, 2 the board refuses (and says why).");
   command->callback([arguments] { run(*arguments); });

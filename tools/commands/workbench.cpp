@@ -68,7 +68,7 @@ void run_workbench(const WorkbenchArguments& arguments) {
 }
 
 struct DiffArguments {
-  std::string directory, with, url, json;
+  std::string directory, with, url, key, json;
 };
 
 std::vector<std::uint8_t> image_bytes(const std::string& directory) {
@@ -76,21 +76,21 @@ std::vector<std::uint8_t> image_bytes(const std::string& directory) {
   return {text.begin(), text.end()};
 }
 
-std::vector<std::uint8_t> board_image(const std::string& url) {
+std::vector<std::uint8_t> board_image(const std::string& url, const std::string& key) {
   Client client(open_transport(parse_url(url)));
+  client.sign_with(given_key(key));
   Progress progress("image-diff");
   auto upload =
       client.confirmed([&](double share) { progress.update(share, "reading what the board runs"); });
   if (!upload) throw LimitNotMet("the board has no confirmed image");
-  if (upload->size() < sizeof(UploadHeader)) throw InputError(url + ": the board's upload is too short");
-  upload->erase(upload->begin(), upload->begin() + sizeof(UploadHeader));
-  return *upload;
+  return image_in(*upload);
 }
 
 void run_diff(const DiffArguments& arguments) {
   if (arguments.with.empty() == arguments.url.empty()) throw InputError("either --with DIR or --to URL");
   const auto mine = image_bytes(arguments.directory);
-  const auto other = arguments.url.empty() ? image_bytes(arguments.with) : board_image(arguments.url);
+  const auto other =
+      arguments.url.empty() ? image_bytes(arguments.with) : board_image(arguments.url, arguments.key);
   const nlohmann::ordered_json json = image_diff(mine, other);
   write_json(arguments.json, json);
   std::FILE* const out = human_stream(arguments.json);
@@ -133,6 +133,9 @@ void register_image_diff(CLI::App& vernier) {
   command->add_option("DIR", arguments->directory, "directory that `vernier compile` wrote")->required();
   command->add_option("--with", arguments->with, "another such directory");
   command->add_option("--to", arguments->url, "the board whose confirmed image it is compared with");
+  command->add_option(
+      "--key", arguments->key,
+      "secret key of `vernier keys` (or VERNIER_KEY): a board with keys gives its image to nobody else");
   command->add_option("--json", arguments->json, "result for programs; - is standard output");
   command->footer("Exit status 0 done, 1 bad input or no board, 2 the board has no confirmed image.");
   command->callback([arguments] { run_diff(*arguments); });

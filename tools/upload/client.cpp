@@ -10,6 +10,7 @@
 
 #include "comp/probing/latch.h"
 #include "comp/probing/touch_filter.h"
+#include "firmware/core/gate.h"
 #include "firmware/core/uploader.h"
 #include "tools/maths/factors.h"
 #include "tools/text/error.h"
@@ -20,7 +21,7 @@ namespace {
 constexpr double kNmPerMm = 1e6, kCountsPerDeg = static_cast<double>(kTurnCounts) / 360;
 constexpr std::uint32_t kPieceBytes = kMaxRequestBytes - kRequestHeaderBytes - 4;
 constexpr std::uint32_t kReadBytes = 232;
-constexpr int kTriesWhileNotReady = 50;
+constexpr int kTriesWhileNotReady = 300;  // five seconds: a medium may be slow
 
 void append(std::vector<std::uint8_t>& bytes, const void* from, std::size_t size) {
   const std::size_t before = bytes.size();
@@ -56,15 +57,45 @@ T get(const std::vector<std::uint8_t>& bytes, std::size_t offset) {
 
 }  // namespace
 
-std::vector<std::uint8_t> Client::ask(LinkOp op, const std::vector<std::uint8_t>& payload) {
+std::vector<std::uint8_t> Client::ask_once(const std::vector<std::uint8_t>& request) {
+  const bool is_signed = request[0] == static_cast<std::uint8_t>(LinkOp::kSigned);
+  const std::uint8_t inner = is_signed ? request[kRequestHeaderBytes + sizeof(SignedRequest)] : request[0];
+  const std::vector<std::uint8_t> reply = transport_->ask(request);
+  // What is carried out is answered as itself, what the board turns away as what was sent.
+  if (reply.size() < kReplyHeaderBytes || (reply[0] != inner && reply[0] != request[0]) ||
+      reply[1] != request[1])
+    throw InputError("the board's reply does not belong to the request");
+  return reply;
+}
+
+// Signed where the board wants that and there is a key: over its nonce and the next counter.
+std::vector<std::uint8_t> Client::request_of(LinkOp op, const std::vector<std::uint8_t>& payload) {
   std::vector<std::uint8_t> request;
-  put(request, static_cast<std::uint8_t>(op));
+  if (!key_ || info_.hello.has_key == 0 || !signature_needed(op)) {
+    put(request, static_cast<std::uint8_t>(op));
+    put(request, ++sequence_);
+    append(request, payload.data(), payload.size());
+    return request;
+  }
+  const auto challenge = get<ChallengeReply>(ask(LinkOp::kChallenge), 0);
+  SignedRequestHead head{};
+  std::memcpy(head.magic, kRequestMagic, sizeof(head.magic));
+  std::memcpy(head.nonce, challenge.nonce, sizeof(head.nonce));
+  head.counter = challenge.counter;
+  std::memcpy(head.board, info_.hello.board, sizeof(head.board));
+  std::vector<std::uint8_t> rest;
+  put(rest, static_cast<std::uint8_t>(op));
+  append(rest, payload.data(), payload.size());
+  put(request, static_cast<std::uint8_t>(LinkOp::kSigned));
   put(request, ++sequence_);
-  append(request, payload.data(), payload.size());
+  put(request, sign_request(*key_, head, rest));
+  append(request, rest.data(), rest.size());
+  return request;
+}
+
+std::vector<std::uint8_t> Client::ask(LinkOp op, const std::vector<std::uint8_t>& payload) {
   for (int attempt = 0;; ++attempt) {
-    const std::vector<std::uint8_t> reply = transport_->ask(request);
-    if (reply.size() < kReplyHeaderBytes || reply[0] != request[0] || reply[1] != request[1])
-      throw InputError("the board's reply does not belong to the request");
+    const std::vector<std::uint8_t> reply = ask_once(request_of(op, payload));
     const std::vector<std::uint8_t> rest(reply.begin() + kReplyHeaderBytes, reply.end());
     switch (static_cast<LinkStatus>(reply[2])) {
       case LinkStatus::kDone:
@@ -72,11 +103,18 @@ std::vector<std::uint8_t> Client::ask(LinkOp op, const std::vector<std::uint8_t>
       case LinkStatus::kRefused:
         refused(rest);
       case LinkStatus::kNotReady:
+      case LinkStatus::kStale:  // another client was quicker
         if (attempt >= kTriesWhileNotReady) throw InputError("the board is not ready");
-        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+        std::this_thread::sleep_for(std::chrono::milliseconds(attempt < 50 ? 2 : 20));
         continue;
       case LinkStatus::kUnknownOp:
         throw InputError("the board does not know this request");
+      case LinkStatus::kNotAllowed:
+        throw LimitNotMet("the board refuses: not over this link (access in its board file)");
+      case LinkStatus::kUnsigned:
+        throw LimitNotMet("the board refuses: it wants this signed (--key, or VERNIER_KEY)");
+      case LinkStatus::kBadSignature:
+        throw LimitNotMet("the board refuses: it does not trust this key with that");
       case LinkStatus::kBadLength:
       case LinkStatus::kBadValue:
         throw InputError("the board finds the request senseless");
@@ -86,10 +124,13 @@ std::vector<std::uint8_t> Client::ask(LinkOp op, const std::vector<std::uint8_t>
 }
 
 Client::Client(std::unique_ptr<Transport> transport) : transport_(std::move(transport)) {
-  info_.hello = get<HelloReply>(ask(LinkOp::kHello), 0);
-  if (info_.hello.link_version != kLinkVersion)
-    throw InputError(fmt::format("the board speaks version {} of the link, this tool {}",
-                                 info_.hello.link_version, kLinkVersion));
+  const auto hello = ask(LinkOp::kHello);
+  const auto version = get<std::uint16_t>(hello, 0);
+  if (version != kLinkVersion)
+    throw InputError(
+        fmt::format("the board speaks version {} of the link, this tool {}", version, kLinkVersion));
+  info_.hello = get<HelloReply>(hello, 0);
+  info_.board = std::string(info_.hello.board, strnlen(info_.hello.board, sizeof(info_.hello.board)));
   if (info_.hello.axes > kMaxAxes || info_.hello.inputs > kMaxInputs)
     throw InputError("the board claims more axes or inputs than there can be");
   const auto name = [this](std::uint8_t kind, std::uint8_t index, std::uint8_t& flags) {
@@ -287,8 +328,10 @@ std::optional<std::vector<std::uint8_t>> Client::confirmed(const std::function<v
     put(payload, size);
     return ask(LinkOp::kRead, payload);
   };
-  std::vector<std::uint8_t> bytes = piece(0, sizeof(UploadHeader));
-  const std::size_t total = sizeof(UploadHeader) + get<UploadHeader>(bytes, 0).image_bytes;
+  // Sizes stand in the same place of every version.
+  std::vector<std::uint8_t> bytes = piece(0, 16);
+  const std::size_t total = std::size_t{get<std::uint32_t>(bytes, offsetof(UploadHeader, header_bytes))} +
+                            get<std::uint32_t>(bytes, offsetof(UploadHeader, image_bytes));
   if (total > info_.hello.capacity) throw InputError("the board's image is larger than its slot");
   while (bytes.size() < total) {
     const auto size = static_cast<std::uint8_t>(std::min<std::size_t>(kReadBytes, total - bytes.size()));

@@ -13,6 +13,7 @@
 #include "tables/link_format.h"
 #include "tables/records.h"
 #include "tables/slots.h"
+#include "tools/upload/signing.h"
 #include "tools/upload/transport.h"
 
 namespace vernier {
@@ -26,6 +27,7 @@ struct BoardSignal {
 /// What a board is.
 struct BoardInfo {
   HelloReply hello;
+  std::string board;  // its name; empty: it has none
   std::vector<BoardSignal> axes;
   std::vector<std::string> inputs;
 };
@@ -101,6 +103,8 @@ struct BoardTouches {
 class Client {
  public:
   explicit Client(std::unique_ptr<Transport> transport);
+  /// What the board wants signed is signed with this key from now on; nothing is where there is none.
+  void sign_with(const std::optional<SigningKey>& key) { key_ = key; }
 
   const BoardInfo& info() const { return info_; }
   BoardTick newest();
@@ -129,11 +133,14 @@ class Client {
 
  private:
   std::vector<std::uint8_t> ask(LinkOp op, const std::vector<std::uint8_t>& payload = {});
+  std::vector<std::uint8_t> request_of(LinkOp op, const std::vector<std::uint8_t>& payload);
+  std::vector<std::uint8_t> ask_once(const std::vector<std::uint8_t>& request);
   std::string share_name(std::uint16_t index, std::uint32_t programs);
   BoardTick parse_tick(const std::uint8_t* bytes) const;
   std::size_t tick_bytes() const;
 
   std::unique_ptr<Transport> transport_;
+  std::optional<SigningKey> key_;
   std::uint8_t sequence_ = 0;
   std::uint32_t named_program_ = 0;  // whose share names are kept
   std::vector<std::string> share_names_;

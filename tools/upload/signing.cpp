@@ -4,6 +4,8 @@
 #include <sodium.h>
 #include <sys/stat.h>
 
+#include <cstddef>
+#include <cstdlib>
 #include <cstring>
 #include <sstream>
 
@@ -72,9 +74,19 @@ SigningKey read_secret_key(const std::string& path) {
   return key;
 }
 
+std::optional<SigningKey> given_key(const std::string& path) {
+  if (!path.empty()) return read_secret_key(path);
+  const char* const named = std::getenv("VERNIER_KEY");
+  if (named == nullptr || *named == '\0') return std::nullopt;
+  return read_secret_key(named);
+}
+
 std::vector<std::uint8_t> make_upload(const std::vector<std::uint8_t>& image, const SigningKey& key,
-                                      std::uint64_t issued, std::uint64_t replaces) {
+                                      std::uint64_t issued, std::uint32_t security,
+                                      const std::string& board) {
   start_sodium();
+  if (board.size() >= kBoardNameBytes)
+    throw InputError("\"" + board + "\": too long for the name of a board");
   ImageHeader inside;
   std::memcpy(&inside, image.data(), sizeof(inside));
   UploadHeader header{};
@@ -82,8 +94,9 @@ std::vector<std::uint8_t> make_upload(const std::vector<std::uint8_t>& image, co
   header.header_bytes = sizeof(UploadHeader);
   header.image_bytes = static_cast<std::uint32_t>(image.size());
   header.issued = issued;
-  header.replaces = replaces;
   header.fingerprint = inside.fingerprint;
+  header.security = security;
+  std::memcpy(header.board, board.data(), board.size());
   std::memcpy(header.key, key.public_part().data(), sizeof(header.key));
   crypto_sign_state state;
   crypto_sign_init(&state);
@@ -94,6 +107,30 @@ std::vector<std::uint8_t> make_upload(const std::vector<std::uint8_t>& image, co
   std::memcpy(upload.data(), &header, sizeof(header));
   std::memcpy(upload.data() + sizeof(header), image.data(), image.size());
   return upload;
+}
+
+std::vector<std::uint8_t> image_in(const std::vector<std::uint8_t>& upload) {
+  std::uint32_t header_bytes = 0;
+  if (upload.size() > offsetof(UploadHeader, image_bytes))
+    std::memcpy(&header_bytes, upload.data() + offsetof(UploadHeader, header_bytes), sizeof(header_bytes));
+  const bool known = header_bytes == sizeof(UploadHeader) || header_bytes == sizeof(UploadHeaderV1);
+  if (!known || upload.size() < header_bytes)
+    throw InputError("the board's upload is not one of this tool's");
+  return {upload.begin() + static_cast<std::ptrdiff_t>(header_bytes), upload.end()};
+}
+
+SignedRequest sign_request(const SigningKey& key, const SignedRequestHead& head,
+                           const std::vector<std::uint8_t>& rest) {
+  start_sodium();
+  SignedRequest request{};
+  std::memcpy(request.key, key.public_part().data(), sizeof(request.key));
+  request.counter = head.counter;
+  crypto_sign_state state;
+  crypto_sign_init(&state);
+  crypto_sign_update(&state, reinterpret_cast<const std::uint8_t*>(&head), sizeof(head));
+  crypto_sign_update(&state, rest.data(), rest.size());
+  crypto_sign_final_create(&state, request.signature, nullptr, key.secret.data());
+  return request;
 }
 
 }  // namespace vernier

@@ -2,9 +2,11 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "tables/link_format.h"
 #include "tables/upload_format.h"
 
 namespace vernier {
@@ -23,9 +25,20 @@ std::string public_key_text(const SigningKey& key);
 /// Reads a secret key file; throws InputError where it is none, or others than its owner may read it. tool.
 SigningKey read_secret_key(const std::string& path);
 
-/// The upload of an image: header and image, signed. issued: microseconds since 1970; replaces: see
+/// The key of a file, else that of VERNIER_KEY, else none. tool.
+std::optional<SigningKey> given_key(const std::string& path);
+
+/// The upload of an image: header and image, signed. issued: microseconds since 1970; security, board: see
 /// UploadHeader. image: a whole image. tool.
 std::vector<std::uint8_t> make_upload(const std::vector<std::uint8_t>& image, const SigningKey& key,
-                                      std::uint64_t issued, std::uint64_t replaces);
+                                      std::uint64_t issued, std::uint32_t security,
+                                      const std::string& board = {});
+
+/// The image in an upload as a board stores it, of this version or the one before. Throws InputError. tool.
+std::vector<std::uint8_t> image_in(const std::vector<std::uint8_t>& upload);
+
+/// Signs a request (op, then payload) over the board's nonce. tool.
+SignedRequest sign_request(const SigningKey& key, const SignedRequestHead& head,
+                           const std::vector<std::uint8_t>& rest);
 
 }  // namespace vernier

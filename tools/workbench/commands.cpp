@@ -80,7 +80,10 @@ const std::vector<Allowed>& allowed() {
       {"image-diff",
        false,
        false,
-       {{"image", K::kIn, "", true}, {"with", K::kIn, "--with"}, {"to", K::kText, "--to"}}},
+       {{"image", K::kIn, "", true},
+        {"with", K::kIn, "--with"},
+        {"to", K::kText, "--to"},
+        {"key", K::kIn, "--key"}}},
       {"upload",
        true,
        true,
@@ -90,7 +93,7 @@ const std::vector<Allowed>& allowed() {
         {"force", K::kFlag, "--force"},
         url,
         {"key", K::kIn, "--key"}}},
-      {"board", true, false, {{"what", K::kText, "", true}, url}},
+      {"board", true, false, {{"what", K::kText, "", true}, url, {"key", K::kIn, "--key"}}},
       {"status", true, false, {url}},
   };
   return kAll;

@@ -128,7 +128,7 @@ ServiceOptions options_of_the_board() {
   options.wiring = {{{"X"}, {"Y"}}, {"T"}};
   PublicKey key;
   copy(key.data(), reinterpret_cast<const std::uint8_t*>(kFactoryKey), kPublicKeyBytes);
-  options.upload.key = key;
+  options.upload.identity = key;
   options.upload.places = Programs::kFewest;
   options.upload.trial_time = TimeUs(std::int64_t{3'600'000'000});  // ticks run faster than time here
   options.activate = true;

@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "tests/unit/firmware/daemon_process.h"
+#include "tools/text/error.h"
 
 namespace vernier::daemon_board_test {
 namespace {
@@ -12,7 +13,7 @@ class DaemonBoard : public DaemonFolder {};
 TEST_F(DaemonBoard, TakesAnImageKeepsItAndRunsItAfterAKill) {
   Daemon first(directory_);
   {
-    Client client = first.client();
+    Client client = first.client(key_);
     client.upload(upload(2e-5, 1), [](double) {});
     EXPECT_TRUE(wait_for([&] { return client.newest().mode == Mode::kActive; }));
     client.confirm();
@@ -20,7 +21,7 @@ TEST_F(DaemonBoard, TakesAnImageKeepsItAndRunsItAfterAKill) {
   }
   EXPECT_EQ(first.end(SIGKILL), -1);
   Daemon second(directory_);
-  Client client = second.client();
+  Client client = second.client(key_);
   EXPECT_EQ(client.slots().issued, 1u);
   EXPECT_EQ(client.slots().trial, kNoSlot);
   EXPECT_TRUE(wait_for([&] { return client.newest().mode == Mode::kActive; }));
@@ -30,7 +31,7 @@ TEST_F(DaemonBoard, TakesAnImageKeepsItAndRunsItAfterAKill) {
 TEST_F(DaemonBoard, KilledAtAnyMomentOfUploadsItRunsAConfirmedImage) {
   {
     Daemon daemon(directory_);
-    Client client = daemon.client();
+    Client client = daemon.client(key_);
     client.upload(upload(2e-5, 1), [](double) {});
     client.confirm();
   }
@@ -43,7 +44,7 @@ TEST_F(DaemonBoard, KilledAtAnyMomentOfUploadsItRunsAConfirmedImage) {
       daemon.end(SIGKILL);
     });
     try {
-      Client client = daemon.client();
+      Client client = daemon.client(key_);
       for (std::uint64_t issued = confirmed + 1; issued < confirmed + 1000; ++issued) {
         client.upload(upload(2e-5 + 1e-8 * static_cast<double>(issued), issued), [](double) {});
         client.confirm();
@@ -54,7 +55,7 @@ TEST_F(DaemonBoard, KilledAtAnyMomentOfUploadsItRunsAConfirmedImage) {
     }
     killer.join();
     Daemon again(directory_);
-    const std::uint64_t found = again.client().slots().issued;
+    const std::uint64_t found = again.client(key_).slots().issued;
     ASSERT_TRUE(found == done || found == done + 1) << "round " << round << ": " << done << ", " << found;
     confirmed = found;
   }
@@ -62,7 +63,7 @@ TEST_F(DaemonBoard, KilledAtAnyMomentOfUploadsItRunsAConfirmedImage) {
 
 TEST_F(DaemonBoard, CommandThatDoesNotFitIsCounted) {
   Daemon daemon(directory_);
-  Client client = daemon.client();
+  Client client = daemon.client(key_);
   client.command(Command::kClearFault);
   EXPECT_TRUE(wait_for([&] { return client.health().refused_commands == 1; }));
 }
@@ -85,12 +86,12 @@ TEST_F(DaemonBoard, TwoDaemonsDoNotShareAStore) {
   for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe)) out.push_back(static_cast<char>(c));
   EXPECT_EQ(WEXITSTATUS(pclose(pipe)), 2);
   EXPECT_NE(out.find("store: in use by another process"), std::string::npos) << out;
-  EXPECT_GT(daemon.client().newest().number, 0u);
+  EXPECT_GT(daemon.client(key_).newest().number, 0u);
 }
 
 TEST_F(DaemonBoard, StatusSaysWhatRunsSinceWhenAndHowMuchOfItArrives) {
   Daemon daemon(directory_);
-  Client client = daemon.client();
+  Client client = daemon.client(key_);
   EXPECT_EQ(client.state().image, ImageState::kNone);
   client.upload(upload(2e-5, 1), [](double) {});
   EXPECT_TRUE(wait_for([&] { return client.newest().mode == Mode::kActive; }));
@@ -104,6 +105,16 @@ TEST_F(DaemonBoard, StatusSaysWhatRunsSinceWhenAndHowMuchOfItArrives) {
   EXPECT_TRUE(wait_for([&] { return client.state().axes[1].weight == 0; }));
   EXPECT_TRUE(wait_for([&] { return std::abs(client.state().axes[1].achieved) < 1e-6; }));
   EXPECT_NE(client.state().axes[1].wanted, 0);
+}
+
+// Off this computer a link shows the state and no more, unless the board file says so.
+TEST_F(DaemonBoard, LinkOffThisComputerOnlyShowsTheState) {
+  replace_in_board("port = 0", "address = \"0.0.0.0\"\nport = 0");
+  Daemon daemon(directory_, {}, "0.0.0.0");
+  Client client = daemon.client(key_);
+  EXPECT_NO_THROW(client.newest());
+  EXPECT_THROW(client.command(Command::kActivate), LimitNotMet);
+  EXPECT_THROW(client.upload(upload(2e-5, 1), [](double) {}), LimitNotMet);
 }
 
 struct BadBoard {
@@ -134,10 +145,10 @@ INSTANTIATE_TEST_SUITE_P(
     Kinds, BoardFileError,
     testing::Values(
         BadBoard{"Syntax", "[board]", "[board", "board.toml:1: "},
-        BadBoard{"UnknownSetting", "trial_s", "trail_s", "board.toml:4: board: unknown setting trail_s"},
+        BadBoard{"UnknownSetting", "trial_s", "trail_s", "board.toml:5: board: unknown setting trail_s"},
         BadBoard{"UnknownSection", "[[link]]", "[[lnik]]", "unknown section lnik"},
         BadBoard{"NoKeyFile", "key.pub", "none.pub", "none.pub: cannot be read as a public key"},
-        BadBoard{"Type", "high = 600", "high = \"600\"", "board.toml:8: axis.X: high must be a number"},
+        BadBoard{"Type", "high = 600", "high = \"600\"", "board.toml:9: axis.X: high must be a number"},
         BadBoard{"Range", "trial_s = 30", "trial_s = -1", "trial_s must be between 0.1 and 86400"},
         BadBoard{"Kind", "[input.T]\nunit = \"degC\"", "[input.T]\nkind = \"degC\"", "unknown setting kind"},
         BadBoard{"NoPosition", "position = { kind = \"sim\" }\n", "", "axis.X: position is missing"},
@@ -160,6 +171,13 @@ INSTANTIATE_TEST_SUITE_P(
                  "source = { kind = \"feature\", of = \"A\", feature = \"RMS\", resolution = 1.5e-6 }\n"
                  "[input.A]\nsource = { kind = \"sim\" }",
                  "resolution must be a whole number of millionths"},
+        BadBoard{"NoName", "name = \"test\"\n", "",
+                 "board.toml:1: board: name is missing: images are signed for a board"},
+        BadBoard{"Role", "[[link]]", "[[key]]\nname = \"a\"\nfile = \"key.pub\"\nrole = \"boss\"\n[[link]]",
+                 "role: 'boss' is none of"},
+        BadBoard{"KeyTwice", "[[link]]", "[[key]]\nname = \"a\"\nfile = \"key.pub\"\n[[link]]",
+                 "this key is there twice"},
+        BadBoard{"Access", "port = 0", "access = \"all\"", "access: 'all' is none of"},
         BadBoard{"Link", "kind = \"modbus-tcp\"", "kind = \"telnet\"", "no link of kind telnet"}),
     [](const auto& parameter) { return parameter.param.name; });
 

@@ -13,6 +13,7 @@
 #include <chrono>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -38,8 +39,9 @@ inline bool wait_for(const std::function<bool()>& done, int seconds = 20) {
 class Daemon {
  public:
   /// more: further settings of its environment, "NAME=value".
-  explicit Daemon(const std::string& directory, const std::vector<std::string>& more = {})
-      : log_(directory + "/log") {
+  explicit Daemon(const std::string& directory, const std::vector<std::string>& more = {},
+                  const std::string& address = "127.0.0.1")
+      : log_(directory + "/log"), address_(address) {
     write_file(log_, "");
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
@@ -70,17 +72,19 @@ class Daemon {
   pid_t pid() const { return pid_; }
   std::string log() const { return read_file(log_); }
   int port() const {
-    const std::string text = read_file(log_), before = "Modbus TCP on 127.0.0.1:";
+    const std::string text = read_file(log_), before = "Modbus TCP on " + address_ + ":";
     const std::size_t at = text.find(before);
     if (at == std::string::npos || text.find('\n', at) == std::string::npos) return 0;
     return std::atoi(text.c_str() + at + before.size());
   }
-  Client client() const {
-    return Client(open_transport(parse_url("tcp://127.0.0.1:" + std::to_string(port()))));
+  Client client(const std::optional<SigningKey>& key = std::nullopt) const {
+    Client client(open_transport(parse_url("tcp://127.0.0.1:" + std::to_string(port()))));
+    client.sign_with(key);
+    return client;
   }
 
  private:
-  std::string log_;
+  std::string log_, address_;
   pid_t pid_ = 0;
 };
 
@@ -130,6 +134,7 @@ class NotifySocket {
 };
 
 inline constexpr const char* kBoardText = R"([board]
+name = "test"
 store = "store"
 public_key = "key.pub"
 trial_s = 30
@@ -162,7 +167,7 @@ class DaemonFolder : public testing::Test {
   }
   ~DaemonFolder() override { std::filesystem::remove_all(directory_); }
   std::vector<std::uint8_t> upload(double scale, std::uint64_t issued) const {
-    return make_upload(small_image_bytes(scale), key_, issued, 0);
+    return make_upload(small_image_bytes(scale), key_, issued, 0, "test");
   }
   void replace_in_board(const std::string& from, const std::string& to) const {
     std::string text = read_file(directory_ + "/board.toml");

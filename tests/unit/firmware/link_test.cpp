@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <functional>
 #include <random>
 
 #include "tests/unit/firmware/upload_rig.h"
@@ -38,8 +39,9 @@ class LinkTest : public testing::Test {
   SimSlotStore store_{1 << 16};
   UploadRig rig_{store_, key_};
   Wiring wiring_{{{"X"}, {"Y"}}, {"T"}};
+  BoardIdentity identity_{key_.public_part()};
   Link link_{const_cast<Exchange&>(rig_.service().exchange()), rig_.uploader(), wiring_, TimeUs(1000),
-             key_.public_part()};
+             identity_};
   Client client() { return Client(std::make_unique<Direct>(link_, rig_)); }
 };
 
@@ -69,31 +71,45 @@ TEST_F(LinkTest, WholeJourneyOfAnImage) {
   EXPECT_EQ(board.newest().mode, Mode::kReady);
 }
 
+/// Goes through the service's own link.
+struct Through : Transport, CommandLink {
+  Through(Service& s, UploadRig& r) : service(s), rig(r) {}
+  std::vector<std::uint8_t> ask(const std::vector<std::uint8_t>& request) override {
+    pending = request;
+    service.serve(*this, TimeUs(0), rights);
+    rig.run(2);
+    return answer;
+  }
+  HalFault serve(CommandHandler& handler, TimeUs) noexcept override {
+    if (registers != 0) {
+      given = handler.give(registers);
+      registers = 0;
+      return HalFault::kNone;
+    }
+    answer.resize(kMaxReplyBytes);
+    answer.resize(handler.answer(pending.data(), static_cast<std::uint32_t>(pending.size()), answer.data()));
+    return HalFault::kNone;
+  }
+  bool give(std::uint16_t command) {
+    registers = command;
+    service.serve(*this, TimeUs(0), rights);
+    return given;
+  }
+  Service& service;
+  UploadRig& rig;
+  LinkRights rights;
+  std::uint16_t registers = 0;
+  bool given = false;
+  std::vector<std::uint8_t> pending, answer;
+};
+
 TEST(LinkShares, NameWhatEachEffectAddsAndSumToTheCorrection) {
   const SigningKey key = new_key();
   SimSlotStore store(1 << 16);
   UploadRig rig(store, key);
-  /// Goes through the service's own link.
-  struct Through : Transport, CommandLink {
-    Through(Service& s, UploadRig& r) : service(s), rig(r) {}
-    std::vector<std::uint8_t> ask(const std::vector<std::uint8_t>& request) override {
-      pending = request;
-      service.serve(*this, TimeUs(0));
-      rig.run(2);
-      return answer;
-    }
-    HalFault serve(CommandHandler& handler, TimeUs) noexcept override {
-      answer.resize(kMaxReplyBytes);
-      answer.resize(
-          handler.answer(pending.data(), static_cast<std::uint32_t>(pending.size()), answer.data()));
-      return HalFault::kNone;
-    }
-    Service& service;
-    UploadRig& rig;
-    std::vector<std::uint8_t> pending, answer;
-  };
   rig.run(10);
   Client board(std::make_unique<Through>(rig.service(), rig));
+  board.sign_with(key);
   EXPECT_TRUE(board.shares().empty());
   board.upload(make_upload(small_image_bytes(2e-5), key, 5, 0), [](double) {});
   board.confirm();
@@ -113,6 +129,113 @@ TEST(LinkShares, NameWhatEachEffectAddsAndSumToTheCorrection) {
   EXPECT_NEAR(sum[0], tick.correction[0], 0.01);
   EXPECT_NEAR(sum[1], tick.correction[1], 0.01);
   EXPECT_GT(std::abs(sum[0]), 0.002);
+}
+
+/// A board with keys of all roles, and clients that reach it over links of different rights.
+class GateTest : public testing::Test {
+ protected:
+  GateTest() {
+    rig_.run(10);
+    auto direct = std::make_unique<Through>(rig_.service(), rig_);
+    way_ = direct.get();
+    board_ = std::make_unique<Client>(std::move(direct));
+  }
+  std::string refused(const std::function<void()>& act) {
+    try {
+      act();
+    } catch (const std::exception& error) {
+      return error.what();
+    }
+    return "";
+  }
+  void over(LinkAccess access, bool plain = false) { way_->rights = {access, plain}; }
+  SigningKey key_ = new_key();
+  SimSlotStore store_{1 << 16};
+  UploadRig rig_{store_, key_};
+  Through* way_ = nullptr;
+  std::unique_ptr<Client> board_;
+};
+
+TEST_F(GateTest, WithoutASignatureABoardWithKeysShowsItsStateAndDoesNothing) {
+  const auto upload = make_upload(small_image_bytes(2e-5), key_, 5, 0);
+  const std::function<void()> acts[] = {[&] { board_->command(Command::kActivate); },
+                                        [&] { board_->weight(0, 0.5); },
+                                        [&] {
+                                          board_->workpiece({1, 2, 3}, 0);
+                                        },
+                                        [&] { board_->upload(upload, [](double) {}); },
+                                        [&] { board_->confirm(); },
+                                        [&] { board_->revert(); }};
+  for (const auto& act : acts)
+    EXPECT_EQ(refused(act), "the board refuses: it wants this signed (--key, or VERNIER_KEY)");
+  EXPECT_FALSE(way_->give(1)) << "nor by register";
+  board_->sign_with(new_key());
+  for (const auto& act : acts)
+    EXPECT_EQ(refused(act), "the board refuses: it does not trust this key with that");
+  EXPECT_EQ(refused([&] { board_->newest(), board_->slots(); }), "");
+  board_->sign_with(key_);
+  EXPECT_NO_THROW(board_->upload(upload, [](double) {}));
+  EXPECT_NO_THROW(board_->confirm());
+  board_->sign_with(std::nullopt);
+  EXPECT_NE(refused([&] { board_->confirmed([](double) {}); }), "") << "nor is the image given to anybody";
+  board_->sign_with(key_);
+  EXPECT_EQ(board_->confirmed([](double) {}), upload);
+}
+
+TEST_F(GateTest, LinkIsUsedForWhatItMayBeUsedForWhoeverSigns) {
+  board_->sign_with(key_);
+  const std::string not_allowed = "the board refuses: not over this link (access in its board file)";
+  over(LinkAccess::kRead, true);
+  EXPECT_EQ(refused([&] { board_->command(Command::kActivate); }), not_allowed);
+  EXPECT_EQ(refused([&] { board_->confirm(); }), not_allowed);
+  EXPECT_FALSE(way_->give(1));
+  EXPECT_NO_THROW(board_->newest());
+  over(LinkAccess::kCommand, true);
+  EXPECT_EQ(refused([&] { board_->command(Command::kActivate); }), "");
+  rig_.run(5);
+  EXPECT_TRUE(way_->give(2)) << "a line that the board file trusts";
+  EXPECT_EQ(refused([&] { board_->upload(make_upload(small_image_bytes(2e-5), key_, 5, 0), [](double) {}); }),
+            not_allowed);
+}
+
+TEST_F(GateTest, SignedRequestIsTakenOnceAndByThisStartOfThisBoardOnly) {
+  const auto challenge_of = [&](Through& way) {
+    const auto reply = way.ask({static_cast<std::uint8_t>(LinkOp::kChallenge), 1});
+    ChallengeReply challenge;
+    std::memcpy(&challenge, reply.data() + kReplyHeaderBytes, sizeof(challenge));
+    return challenge;
+  };
+  const ChallengeReply challenge = challenge_of(*way_);
+  const auto request_with = [&](std::uint8_t nonce_bit, std::uint32_t counter, const char* board,
+                                Command command) {
+    SignedRequestHead head{};
+    std::memcpy(head.magic, kRequestMagic, sizeof(head.magic));
+    std::memcpy(head.nonce, challenge.nonce, sizeof(head.nonce));
+    head.nonce[3] = static_cast<std::uint8_t>(head.nonce[3] ^ nonce_bit);
+    head.counter = counter;
+    std::memcpy(head.board, board, std::strlen(board));
+    const std::vector<std::uint8_t> rest = {static_cast<std::uint8_t>(LinkOp::kCommand),
+                                            static_cast<std::uint8_t>(command)};
+    const SignedRequest proof = sign_request(key_, head, rest);
+    std::vector<std::uint8_t> request(2 + sizeof(proof) + rest.size());
+    request[0] = static_cast<std::uint8_t>(LinkOp::kSigned), request[1] = 9;
+    std::memcpy(request.data() + 2, &proof, sizeof(proof));
+    std::copy(rest.begin(), rest.end(), request.end() - static_cast<std::ptrdiff_t>(rest.size()));
+    return request;
+  };
+  const auto status = [&](const std::vector<std::uint8_t>& request) {
+    return static_cast<LinkStatus>(way_->ask(request).at(2));
+  };
+  const auto good = request_with(0, challenge.counter + 3, "", Command::kHold);
+  EXPECT_EQ(status(request_with(1, challenge.counter, "", Command::kHold)), LinkStatus::kBadSignature);
+  EXPECT_EQ(status(request_with(0, challenge.counter, "mill-2", Command::kHold)), LinkStatus::kBadSignature);
+  std::vector<std::uint8_t> changed = good;
+  changed.back() = static_cast<std::uint8_t>(Command::kActivate);
+  EXPECT_EQ(status(changed), LinkStatus::kBadSignature);
+  EXPECT_EQ(status(good), LinkStatus::kDone);
+  EXPECT_EQ(status(good), LinkStatus::kStale) << "replayed";
+  EXPECT_EQ(status(request_with(0, challenge.counter, "", Command::kHold)), LinkStatus::kStale) << "older";
+  EXPECT_EQ(challenge_of(*way_).counter, challenge.counter + 4);
 }
 
 TEST_F(LinkTest, RefusalTellsTheReason) {
@@ -149,7 +272,8 @@ TEST_F(LinkTest, HistoryIsCompleteOrSaysWhatIsLost) {
 // A small board keeps few ticks; its history must not be all distance to the end that is overwritten.
 TEST_F(LinkTest, ShortHistoryIsGivenToo) {
   Exchange small(64, 8);
-  Link link(small, rig_.uploader(), wiring_, TimeUs(1000), std::nullopt);
+  const BoardIdentity nobody;
+  Link link(small, rig_.uploader(), wiring_, TimeUs(1000), nobody);
   for (int i = 0; i < 200; ++i) small.ticks.add(TickRecord{});
   std::uint8_t request[12] = {static_cast<std::uint8_t>(LinkOp::kHistory), 1}, reply[kMaxReplyBytes];
   request[10] = 1;  // every tick from number 0 on

@@ -71,7 +71,7 @@ TEST(Tick, TouchesNoHeapWhileImagesComeInAndFaultsHappen) {
   SimClock clock;
   ServiceOptions service_options;
   service_options.wiring = {{{"X"}, {"Y"}}, {"T", "acc", "acc_RMS"}};
-  service_options.upload.key = key.public_part();
+  service_options.upload.identity = key.public_part();
   service_options.activate = true;
   Service service(service_options, Board{clock, plant, features, plant}, store);
   service.boot();

@@ -124,7 +124,8 @@ TEST(Probing, GivesAReaderEveryTouchOrTheNumberOfThoseThatAreGone) {
   TouchRig rig(profile, published_probe(), kResolution);
   auto& exchange = const_cast<Exchange&>(rig.service->exchange());
   const Wiring wiring{{{"X"}, {"Y"}, {"Z"}}, {}};
-  Link link(exchange, const_cast<Uploader&>(rig.service->uploader()), wiring, TimeUs(1000), std::nullopt);
+  const BoardIdentity nobody;
+  Link link(exchange, const_cast<Uploader&>(rig.service->uploader()), wiring, TimeUs(1000), nobody);
   Client client(std::make_unique<Direct>(link));
   client.workpiece({1, 2, 3}, 90);
   std::vector<std::pair<double, bool>> edges;

@@ -35,7 +35,7 @@ class UploadRig {
         plant_(motion_, 2, 1, {}) {
     ServiceOptions options;
     options.wiring = {{{"X"}, {"Y"}}, {"T"}};
-    options.upload.key = key.public_part();
+    options.upload.identity = key.public_part();
     options.upload.trial_time = trial;
     options.activate = true;
     options.healthy_toggle = toggle;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
+#include <sodium.h>
 
 #include <chrono>
 
@@ -8,18 +9,20 @@
 #include <cstring>
 #include <random>
 
+#include "tables/checksum.h"
 #include "tests/unit/firmware/upload_rig.h"
 
 namespace vernier::upload_test {
 namespace {
 
 constexpr std::uint64_t kIssued = 1'000'000;
+constexpr std::uint32_t kSecurity = 2;
 
 class Upload : public testing::Test {
  protected:
   std::vector<std::uint8_t> upload(double scale, std::uint64_t issued = kIssued,
-                                   std::uint64_t replaces = 0) const {
-    return make_upload(small_image_bytes(scale), key_, issued, replaces);
+                                   std::uint32_t security = kSecurity) const {
+    return make_upload(small_image_bytes(scale), key_, issued, security);
   }
   /// The correction of X that its drive holds, per mm of its position: minus the scale error of what runs.
   static double slope(UploadRig& rig) {
@@ -111,8 +114,9 @@ TEST_P(UploadRefusal, SaysWhyAndChangesNothing) {
 }
 
 std::vector<std::uint8_t> signed_again(const std::vector<std::uint8_t>& image, const SigningKey& key,
-                                       std::uint64_t issued = kIssued + 1, std::uint64_t replaces = 0) {
-  return make_upload(image, key, issued, replaces);
+                                       std::uint64_t issued = kIssued + 1, std::uint32_t security = kSecurity,
+                                       const std::string& board = {}) {
+  return make_upload(image, key, issued, security, board);
 }
 
 /// The small machine with words of its file replaced.
@@ -126,7 +130,9 @@ INSTANTIATE_TEST_SUITE_P(
     Kinds, UploadRefusal,
     testing::Values(
         Refused{"Unsigned", UploadFault::kSignature,
-                [](auto& bytes, const auto&) { std::fill_n(bytes.begin() + 64, 64, std::uint8_t{0}); }},
+                [](auto& bytes, const auto&) {
+                  std::fill_n(bytes.begin() + offsetof(UploadHeader, signature), 64, std::uint8_t{0});
+                }},
         Refused{"ForeignKey", UploadFault::kForeignKey,
                 [](auto& bytes, const auto&) {
                   bytes = signed_again({bytes.begin() + sizeof(UploadHeader), bytes.end()}, new_key());
@@ -179,18 +185,98 @@ INSTANTIATE_TEST_SUITE_P(
                 [](auto& bytes, const auto& key) {
                   bytes = signed_again({bytes.begin() + sizeof(UploadHeader), bytes.end()}, key, kIssued - 1);
                 }},
-        Refused{"ForcedOverAnother", UploadFault::kOlder,
+        Refused{"AbsurdTime", UploadFault::kAbsurdTime,
                 [](auto& bytes, const auto& key) {
-                  bytes = signed_again({bytes.begin() + sizeof(UploadHeader), bytes.end()}, key, kIssued - 1,
-                                       kIssued - 2);
+                  bytes = signed_again({bytes.begin() + sizeof(UploadHeader), bytes.end()}, key, UINT64_MAX);
+                }},
+        Refused{
+            "BelowTheSecurityCounter", UploadFault::kSecurity,
+            [](auto& bytes, const auto& key) {
+              bytes = signed_again({bytes.begin() + sizeof(UploadHeader), bytes.end()}, key, kIssued + 1, 1);
+            }},
+        Refused{"OfAnotherBoard", UploadFault::kOtherBoard,
+                [](auto& bytes, const auto& key) {
+                  bytes = signed_again({bytes.begin() + sizeof(UploadHeader), bytes.end()}, key, kIssued + 1,
+                                       kSecurity, "mill-2");
+                }},
+        Refused{"OldForm", UploadFault::kOldForm,
+                [](auto& bytes, const auto&) {
+                  std::memcpy(bytes.data(), kUploadMagicV1, sizeof(kUploadMagicV1));
                 }}),
     [](const auto& parameter) { return parameter.param.name; });
 
-TEST_F(Upload, OlderImageIsTakenWhereItsSignerForcedItOverTheConfirmedOne) {
+// Once signed and given up, an image does not come back, whoever sends it; nor does one below a counter that
+// was raised.
+TEST_F(Upload, WhatWasTriedOnceIsNeverTakenAgain) {
   UploadRig rig(store_, key_);
   ASSERT_EQ(rig.send(upload(2e-5)).fault, UploadFault::kNone);
   ASSERT_EQ(rig.uploader().confirm().fault, UploadFault::kNone);
-  EXPECT_EQ(rig.send(upload(4e-5, kIssued - 5, kIssued)).fault, UploadFault::kNone);
+  const auto given_up = upload(4e-5, kIssued + 5, kSecurity + 1);
+  ASSERT_EQ(rig.send(given_up).fault, UploadFault::kNone);
+  ASSERT_EQ(rig.uploader().revert().fault, UploadFault::kNone);
+  rig.run(5);
+  EXPECT_EQ(rig.send(given_up).fault, UploadFault::kOlder);
+  EXPECT_EQ(rig.send(upload(3e-5, kIssued + 2, kSecurity + 1)).fault, UploadFault::kOlder);
+  EXPECT_EQ(rig.send(upload(3e-5, kIssued + 9)).fault, UploadFault::kSecurity)
+      << "the counter was raised by a trial";
+  EXPECT_EQ(rig.send(upload(3e-5, kIssued + 9, kSecurity + 1)).fault, UploadFault::kNone);
+}
+
+TEST_F(Upload, RetiredKeyKeepsItsImageRunningAndSignsNoOther) {
+  {
+    UploadRig rig(store_, key_);
+    ASSERT_EQ(rig.send(upload(2e-5)).fault, UploadFault::kNone);
+    ASSERT_EQ(rig.uploader().confirm().fault, UploadFault::kNone);
+  }
+  const SigningKey next = new_key();
+  const Wiring wiring{{{"X"}, {"Y"}}, {"T"}};
+  Exchange exchange;
+  BoardIdentity identity(next.public_part());
+  identity.keys.push_back({.key = key_.public_part(), .name = "before", .retired = true});
+  Uploader uploader(store_, wiring, exchange, {TimeUs(1000), identity});
+  EXPECT_EQ(uploader.boot().fault, UploadFault::kNone);
+  const auto send = [&](const std::vector<std::uint8_t>& bytes) {
+    uploader.programs().guard(TimeUs{});
+    EXPECT_EQ(uploader.begin(static_cast<std::uint32_t>(bytes.size())).fault, UploadFault::kNone);
+    EXPECT_EQ(uploader.add(0, bytes.data(), static_cast<std::uint32_t>(bytes.size())).fault,
+              UploadFault::kNone);
+    return uploader.finish().fault;
+  };
+  EXPECT_EQ(send(upload(4e-5, kIssued + 1)), UploadFault::kKeyMayNot);
+  EXPECT_EQ(send(make_upload(small_image_bytes(4e-5), next, kIssued + 2, kSecurity)), UploadFault::kNone);
+  // A key that is taken out of the board file takes its image with it, and says so.
+  Uploader without(store_, wiring, exchange, {TimeUs(1000), next.public_part()});
+  EXPECT_EQ(without.boot().fault, UploadFault::kForeignKey);
+  EXPECT_TRUE(without.image_lost());
+}
+
+TEST_F(Upload, StoreOfTheVersionBeforeRuns) {
+  const auto image = small_image_bytes(2e-5);
+  const auto now = make_upload(image, key_, kIssued, 0);
+  UploadHeader header;
+  std::memcpy(&header, now.data(), sizeof(header));
+  UploadHeaderV1 old{};
+  std::memcpy(old.magic, kUploadMagicV1, sizeof(old.magic));
+  old.header_bytes = sizeof(old), old.image_bytes = header.image_bytes;
+  old.issued = kIssued, old.fingerprint = header.fingerprint;
+  std::memcpy(old.key, header.key, sizeof(old.key));
+  crypto_sign_state state;
+  crypto_sign_init(&state);
+  crypto_sign_update(&state, reinterpret_cast<const std::uint8_t*>(&old), kSignedHeaderBytesV1);
+  crypto_sign_update(&state, image.data(), image.size());
+  crypto_sign_final_create(&state, old.signature, nullptr, key_.secret.data());
+  SlotRecordV1 record{kSlotMagicV1, 1, kIssued, 0, 0, kNoSlot, 0, 0};
+  record.checksum = crc32c(reinterpret_cast<const std::uint8_t*>(&record), offsetof(SlotRecordV1, checksum));
+  store_.write_image(0, 0, reinterpret_cast<const std::uint8_t*>(&old), sizeof(old));
+  store_.write_image(0, sizeof(old), image.data(), static_cast<std::uint32_t>(image.size()));
+  store_.write_record(0, reinterpret_cast<const std::uint8_t*>(&record), sizeof(record));
+  UploadRig rig(store_, key_);
+  EXPECT_EQ(rig.boot_result().fault, UploadFault::kNone) << describe(rig.boot_result());
+  rig.run(3000);
+  EXPECT_NEAR(slope(rig), 2e-5, 1e-7);
+  // The floor came along, and the next image is of this version.
+  EXPECT_EQ(rig.send(upload(3e-5, kIssued)).fault, UploadFault::kOlder);
+  EXPECT_EQ(rig.send(upload(3e-5, kIssued + 1)).fault, UploadFault::kNone);
 }
 
 TEST_F(Upload, BoardWithoutAKeyTrustsNobody) {
@@ -261,7 +347,7 @@ TEST_F(Upload, FullStoreIsSaidAndTheOldImageRuns) {
 TEST_F(Upload, ImageThatIsTooMuchWorkForTheBoardIsRefusedWithThatReason) {
   const Wiring wiring{{{"X"}, {"Y"}}, {"T"}};
   Exchange exchange;
-  Uploader::Options options{.key = key_.public_part()};
+  Uploader::Options options{.identity = key_.public_part()};
   const auto send = [&](std::uint64_t budget) {
     options.work_budget = budget;
     SimSlotStore store(1 << 16);

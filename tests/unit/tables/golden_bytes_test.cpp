@@ -189,10 +189,11 @@ TEST(GoldenBytes, UploadIsSignedAndLaidOutAsBefore) {
   const std::vector<std::uint8_t> image = bytes_in(golden_text(file_of("image", kImageFormatVersion)));
   ASSERT_FALSE(image.empty());
   const SigningKey key = golden_key();
-  std::vector<std::uint8_t> upload = make_upload(image, key, 0x0102030405060708, 0x1112131415161718);
+  std::vector<std::uint8_t> upload = make_upload(image, key, 0x0102030405060708, 0x11121314, "mill-1");
   UploadHeader header;
   std::memcpy(&header, upload.data(), sizeof(header));
-  EXPECT_TRUE(signature_fits(header, image, key.public_part()));
+  EXPECT_TRUE(
+      signature_fits(bytes_of_head(header, kSignedHeaderBytes), image, header.signature, key.public_part()));
   ASSERT_EQ(std::memcmp(upload.data() + sizeof(UploadHeader), image.data(), image.size()), 0);
   upload.resize(sizeof(UploadHeader));
   expect_golden(file_of("upload", kUploadFormatVersion),
@@ -202,15 +203,19 @@ TEST(GoldenBytes, UploadIsSignedAndLaidOutAsBefore) {
                                     {"header_bytes", 4},
                                     {"image_bytes", 4},
                                     {"issued", 8},
-                                    {"replaces", 8},
                                     {"fingerprint", 8},
+                                    {"security", 4},
+                                    {"reserved", 4},
+                                    {"board", 24},
                                     {"key", 24},
                                     {"signature", 64}}));
 }
 
 TEST(GoldenBytes, SlotRecordIsStoredAsBefore) {
-  const std::vector<Field> fields = {{"magic", 4},     {"sequence", 4}, {"issued", 8},   {"trial_issued", 8},
-                                     {"confirmed", 1}, {"trial", 1},    {"reserved", 2}, {"checksum", 4}};
+  const std::vector<Field> fields = {{"magic", 4},        {"sequence", 4},      {"issued", 8},
+                                     {"trial_issued", 8}, {"newest_issued", 8}, {"security", 4},
+                                     {"confirmed", 1},    {"trial", 1},         {"reserved", 2},
+                                     {"reserved2", 4},    {"checksum", 4}};
   std::string text = "# slot record, version " + text_of(kSlotRecordVersion) + "\n";
   Slots slots = Slots::load({}, {});
   const auto take = [&](const char* what, const SlotChange& change) {
@@ -221,9 +226,9 @@ TEST(GoldenBytes, SlotRecordIsStoredAsBefore) {
             listed(bytes, fields);
     slots.stored(change);
   };
-  take("trial of the first image", slots.start_trial(0x0102030405060708));
+  take("trial of the first image", slots.start_trial(0x0102030405060708, 3));
   take("confirmed", slots.confirm());
-  take("trial of a second one", slots.start_trial(0x1112131415161718));
+  take("trial of a second one", slots.start_trial(0x1112131415161718, 4));
   take("reverted", slots.revert());
   expect_golden(file_of("slot_record", kSlotRecordVersion), text);
 }

@@ -6,6 +6,7 @@
 
 #include "comp/probing/latch.h"
 #include "comp/probing/touch_filter.h"
+#include "firmware/core/gate.h"
 #include "firmware/core/link.h"
 #include "hal/sim/sim_slot_store.h"
 #include "tests/unit/tables/golden_listing.h"
@@ -90,11 +91,27 @@ class Board {
     exchange_->state.publish(state);
     run_the_image();
   }
+  /// As the service answers, except that what is not signed is carried out too.
   Bytes ask(const Bytes& request) {
     Bytes reply(kMaxReplyBytes);
-    reply.resize(link_.answer(request.data(), static_cast<std::uint32_t>(request.size()), reply.data(),
-                              TimeUs(1'000'000)));
+    const auto size = static_cast<std::uint32_t>(request.size());
+    if (Gate::is_challenge(request.data(), size)) {
+      const ChallengeReply challenge = gate_.challenge(LinkAccess::kUpload);
+      reply.resize(Link::answer_with(LinkStatus::kDone, request.data(), reply.data()));
+      return reply + bytes_of(challenge);
+    }
+    Gate::Opened opened{LinkStatus::kDone, request.data(), size};
+    if (request[0] == static_cast<std::uint8_t>(LinkOp::kSigned))
+      opened = gate_.open(request.data(), size, LinkAccess::kUpload);
+    reply.resize(opened.status == LinkStatus::kDone
+                     ? link_.answer(opened.request, opened.size, reply.data(), TimeUs(1'000'000))
+                     : Link::answer_with(opened.status, request.data(), reply.data()));
     return reply;
+  }
+  static Nonce nonce() {
+    Nonce nonce;
+    for (std::uint8_t i = 0; i < nonce.size(); ++i) nonce[i] = static_cast<std::uint8_t>(0xa0 + i);
+    return nonce;
   }
 
  private:
@@ -126,11 +143,17 @@ class Board {
   AlignedImage image_{bytes_in(golden_text("image_v" + std::to_string(kImageFormatVersion) + ".txt"))};
   SimSlotStore store_{1 << 16};
   Wiring wiring_{{{"X"}, {"Y"}, {"C", true, true}}, {"T"}};
+  BoardIdentity identity_ = golden_identity();
   std::unique_ptr<Exchange> exchange_ = std::make_unique<Exchange>();
-  Uploader uploader_{
-      store_, wiring_, *exchange_, {TimeUs(1000), golden_key().public_part(), TimeUs(60'000'000)}};
+  Uploader uploader_{store_, wiring_, *exchange_, {TimeUs(1000), golden_identity(), TimeUs(60'000'000)}};
   BoundProgram before_;
-  Link link_{*exchange_, uploader_, wiring_, TimeUs(1000), golden_key().public_part()};
+  Gate gate_{identity_, nonce()};
+  Link link_{*exchange_, uploader_, wiring_, TimeUs(1000), identity_};
+  static BoardIdentity golden_identity() {
+    BoardIdentity identity(golden_key().public_part());
+    identity.board = "mill-1", identity.board_class = "mill";
+    return identity;
+  }
 };
 
 /// Asks the board and writes both sides down.
@@ -175,7 +198,9 @@ void talk_of_state(Talk& talk) {
             {"axes", 1},
             {"inputs", 1},
             {"has_key", 1},
-            {"key", 24}});
+            {"key", 24},
+            {"board", 24},
+            {"class", 24}});
   const std::vector<Field> name = {{"kind", 1}, {"index", 1}}, named = {{"name", 24}, {"flags", 1}};
   talk.say("name of an axis", LinkOp::kName, {0, 2}, name, named);
   talk.say("name of an input", LinkOp::kName, {1, 0}, name, named);
@@ -224,14 +249,33 @@ const std::vector<Field> kRefusal = {{"upload fault", 1}, {"image fault", 1}, {"
 const std::vector<Field> kSlots = {{"confirmed_fingerprint", 8},
                                    {"trial_fingerprint", 8},
                                    {"issued", 8},
+                                   {"newest_issued", 8},
+                                   {"security", 4},
                                    {"trial_left_ms", 4},
                                    {"confirmed", 1},
                                    {"trial", 1},
-                                   {"reserved", 2}};
+                                   {"reserved", 6}};
+
+void talk_of_signatures(Talk& talk) {
+  talk.say("challenge", LinkOp::kChallenge, {}, {},
+           {{"nonce", 16}, {"counter", 4}, {"access", 1}, {"keys", 1}, {"reserved", 2}});
+  SignedRequestHead head{};
+  std::memcpy(head.magic, kRequestMagic, sizeof(head.magic));
+  std::memcpy(head.nonce, Board::nonce().data(), sizeof(head.nonce));
+  head.counter = 1;
+  std::memcpy(head.board, "mill-1", 6);
+  const Bytes rest =
+      Bytes{static_cast<std::uint8_t>(LinkOp::kWeight)} + Bytes{2} + bytes_of(std::uint32_t{0x4000});
+  const std::vector<Field> fields = {{"key", 8},       {"counter", 4}, {"signature", 64},
+                                     {"weight op", 1}, {"axis", 1},    {"weight", 4}};
+  const Bytes request = bytes_of(sign_request(golden_key(), head, rest)) + rest;
+  talk.say("a signed weight", LinkOp::kSigned, request, fields, {});
+  talk.say("the same once more", LinkOp::kSigned, request, fields, {});
+}
 
 void talk_of_upload(Talk& talk) {
   const Bytes image = bytes_in(golden_text("image_v" + std::to_string(kImageFormatVersion) + ".txt"));
-  const Bytes upload = make_upload(image, golden_key(), 0x0102030405060708, 0);
+  const Bytes upload = make_upload(image, golden_key(), 0x0002030405060708, 5, "mill-1");
   const auto size = bytes_of(static_cast<std::uint32_t>(upload.size()));
   talk.say("begin of an upload", LinkOp::kBegin, size, {{"bytes", 4}}, {});
   constexpr std::uint32_t kPiece = 64;
@@ -279,6 +323,7 @@ TEST(GoldenBytes, EveryMessageOfTheLinkIsAsBefore) {
   Talk talk;
   talk.text = "# link, version " + std::to_string(kLinkVersion) + "\n";
   talk_of_state(talk);
+  talk_of_signatures(talk);
   talk_of_upload(talk);
   const AlignedImage image(bytes_in(golden_text("image_v" + std::to_string(kImageFormatVersion) + ".txt")));
   talk_of_effects_and_touches(talk, image.view.shares().shares.size);

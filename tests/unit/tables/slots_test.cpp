@@ -5,6 +5,8 @@
 
 #include <cstring>
 
+#include "tables/checksum.h"
+
 namespace vernier::slots_test {
 namespace {
 
@@ -29,7 +31,7 @@ TEST(Slots, TriesConfirmsAndNeverOffersTheConfirmedSlot) {
   for (std::uint64_t round = 1; round <= 20; ++round) {
     const std::uint8_t slot = slots.free_slot();
     ASSERT_NE(slot, slots.confirmed());
-    SlotChange change = slots.start_trial(100 * round);
+    SlotChange change = slots.start_trial(100 * round, 0);
     places.put(change), slots.stored(change);
     EXPECT_EQ(places.load().trial(), slot);
     EXPECT_EQ(slots.free_slot(), kNoSlot) << "both slots are taken during a trial";
@@ -49,7 +51,7 @@ TEST(Slots, RecordCutAtAnyByteLeavesTheStateBefore) {
   Places places;
   Slots slots = places.load();
   for (const bool confirm : {false, true, false, true}) {
-    const SlotChange change = confirm ? slots.confirm() : slots.start_trial(7);
+    const SlotChange change = confirm ? slots.confirm() : slots.start_trial(7, 0);
     for (std::size_t cut = 0; cut < sizeof(SlotRecord); ++cut) {
       Places torn = places;
       std::memcpy(&torn.record[change.place], &change.record, cut);
@@ -66,7 +68,7 @@ TEST(Slots, RecordCutAtAnyByteLeavesTheStateBefore) {
 TEST(Slots, SenselessRecordIsNotFollowed) {
   Places places;
   Slots slots;
-  const SlotChange change = slots.start_trial(5);
+  const SlotChange change = slots.start_trial(5, 0);
   places.put(change);
   ASSERT_TRUE(is_valid(places.record[change.place]));
   for (std::size_t bit = 0; bit < 8 * sizeof(SlotRecord); ++bit) {
@@ -75,6 +77,33 @@ TEST(Slots, SenselessRecordIsNotFollowed) {
     bytes[bit / 8] = static_cast<std::uint8_t>(bytes[bit / 8] ^ (1u << bit % 8));
     EXPECT_FALSE(is_valid(record)) << bit;
   }
+}
+
+TEST(Slots, FloorsRiseWithWhatIsTriedAndNeverFall) {
+  Places places;
+  Slots slots = places.load();
+  const auto take = [&](const SlotChange& change) { places.put(change), slots.stored(change); };
+  take(slots.start_trial(100, 3));
+  take(slots.revert());
+  EXPECT_EQ(places.load().newest_issued(), 100u) << "tried and given up: it does not come back";
+  EXPECT_EQ(places.load().security(), 3u);
+  take(slots.start_trial(50, 1));
+  take(slots.confirm());
+  EXPECT_EQ(places.load().newest_issued(), 100u);
+  EXPECT_EQ(places.load().security(), 3u);
+  EXPECT_EQ(places.load().issued(), 50u);
+}
+
+TEST(Slots, RecordOfTheVersionBeforeIsReadAndADamagedOneIsNot) {
+  SlotRecordV1 old{kSlotMagicV1, 7, 1000, 2000, 1, 0, 0, 0};
+  old.checksum = crc32c(reinterpret_cast<const std::uint8_t*>(&old), offsetof(SlotRecordV1, checksum));
+  const Slots slots = Slots::load(upgraded(old), {});
+  EXPECT_EQ(slots.confirmed(), 1);
+  EXPECT_EQ(slots.trial(), 0);
+  EXPECT_EQ(slots.issued(), 1000u);
+  EXPECT_EQ(slots.newest_issued(), 2000u);
+  old.issued = 1001;
+  EXPECT_FALSE(is_valid(upgraded(old)));
 }
 
 }  // namespace

@@ -50,7 +50,7 @@ async function board(axes, keys) {
     `[axis.${name}]\nlow = ${low}\nhigh = ${high}\nmax_speed = 500\nmax_acceleration = 5000\ncorrection_share = 0.05\nposition = { kind = "sim" }\noutput = { kind = "sim" }\n`;
   writeFileSync(
     join(top, 'board.toml'),
-    `[board]\nstore = "store"\npublic_key = "${join(folder, keys, 'vernier.pub')}"\ntrial_s = 60\nactivate = true\nmax_lost_ticks = 0.9\n${axes.map(axis).join('')}[[link]]\nkind = "modbus-tcp"\nport = ${port}\n`,
+    `[board]\nname = "journey"\nstore = "store"\npublic_key = "${join(folder, keys, 'vernier.pub')}"\ntrial_s = 60\nactivate = true\nmax_lost_ticks = 0.9\n${axes.map(axis).join('')}[[link]]\nkind = "modbus-tcp"\nport = ${port}\n`,
   );
   start('vernierd', ['--board', join(top, 'board.toml')], { cwd: top, stdio: 'ignore' });
   const url = `tcp://127.0.0.1:${port}`;

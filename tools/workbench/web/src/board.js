@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
 import { el, table } from '../../../report/web/src/dom.js';
 import { number } from '../../../report/web/src/data.js';
 import { fileAddress, freeName, getJson, run } from './api.js';
@@ -88,6 +87,7 @@ export function boardView(root) {
   const url = el('input', { type: 'text', id: 'board-url', value: 'tcp://127.0.0.1:1502', 'aria-label': 'board', spellcheck: 'false' });
   const limit = el('input', { type: 'text', placeholder: 'budget, e.g. 0.1um', 'aria-label': 'budget' });
   limit.style.minWidth = '9em';
+  const signed = () => (key.value ? { key: key.value } : {});
   const draw = () => {
     const keys = store.files.filter((file) => file.kind === 'key' && file.name.endsWith('.key')).map((file) => file.name);
     fill(image, folders(), image.value || folders().at(-1), folders().length ? null : 'no image yet');
@@ -120,7 +120,7 @@ export function boardView(root) {
       const { result } = await run({
         command: 'image-diff',
         image: image.value,
-        ...(other.value ? { with: other.value } : { to: url.value }),
+        ...(other.value ? { with: other.value } : { to: url.value, ...signed() }),
       });
       difference.replaceChildren(...differenceWords(result));
     },
@@ -145,12 +145,15 @@ export function boardView(root) {
     async () => showSlots(await run({ command: 'upload', image: image.value, to: url.value, key: key.value })),
     { id: 'upload' },
   );
-  const confirm = step('Confirm', async () => showSlots(await run({ command: 'upload', confirm: true, to: url.value })), { id: 'confirm' });
-  const revert = step('Revert', async () => showSlots(await run({ command: 'upload', revert: true, to: url.value })), {
+  const confirm = step('Confirm', async () => showSlots(await run({ command: 'upload', confirm: true, to: url.value, ...signed() })), {
+    id: 'confirm',
+  });
+  const revert = step('Revert', async () => showSlots(await run({ command: 'upload', revert: true, to: url.value, ...signed() })), {
     class: 'quiet',
     id: 'revert',
   });
-  const tell = (what) => step(what, () => run({ command: 'board', what, to: url.value }), { class: 'quiet', id: `board-${what}` });
+  const tell = (what) =>
+    step(what, () => run({ command: 'board', what, to: url.value, ...signed() }), { class: 'quiet', id: `board-${what}` });
   on('project', draw);
   draw();
   root.append(
