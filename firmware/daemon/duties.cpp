@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware/daemon/duties.h"
 
+#include "firmware/core/sign_of_life.h"
 #include "hal/linux/realtime.h"
 
 namespace vernier {
@@ -8,9 +9,8 @@ namespace {
 
 constexpr TimeUs kGuardPeriod(5'000);
 constexpr TimeUs kServeWait(20'000);
-constexpr TimeUs kStoreWait(50'000);           // what the guardian did is written down at the latest then
-constexpr TimeUs kSampleWait(10'000);          // between two samples of the sensors
-constexpr InstantNs kSignPeriod(250'000'000);  // of life; an eighth of the unit's WatchdogSec
+constexpr TimeUs kStoreWait(50'000);   // what the guardian did is written down at the latest then
+constexpr TimeUs kSampleWait(10'000);  // between two samples of the sensors
 
 }  // namespace
 
@@ -30,20 +30,16 @@ Duties::~Duties() {
     thread->join();
 }
 
-// A sign of life says that the tick ran since the last one, not that this thread did.
 void Duties::guard(int priority) {
   if (priority > 0) become_realtime_thread(priority);
   Clock& clock = devices_.clock();
-  std::uint64_t ticks_told = 0;
-  InstantNs due = clock.now(), told = due;
+  InstantNs due = clock.now();
+  SignOfLife life(due);
   while (!stop_) {
     service_.guard();
-    const std::uint64_t ticks = service_.exchange().ticks.count();
-    if (clock.now() - told >= kSignPeriod && ticks > ticks_told) {
+    if (life.due(service_.exchange().ticks.count(), clock.now())) {
       manager_.notify("WATCHDOG=1");
       devices_.feed_watchdog();
-      ticks_told = ticks;
-      told = clock.now();
     }
     due = std::max(due + instant_ns(kGuardPeriod), clock.now());
     clock.sleep_until(due);

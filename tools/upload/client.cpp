@@ -105,7 +105,7 @@ std::vector<std::uint8_t> Client::ask(LinkOp op, const std::vector<std::uint8_t>
       case LinkStatus::kNotReady:
       case LinkStatus::kStale:  // another client was quicker
         if (attempt >= kTriesWhileNotReady) throw InputError("the board is not ready");
-        std::this_thread::sleep_for(std::chrono::milliseconds(attempt < 50 ? 2 : 20));
+        transport_->pause(std::chrono::milliseconds(attempt < 50 ? 2 : 20));
         continue;
       case LinkStatus::kUnknownOp:
         throw InputError("the board does not know this request");

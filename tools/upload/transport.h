@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
+#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "tools/upload/url.h"
@@ -16,6 +18,8 @@ class Transport {
   /// request: at most kMaxRequestBytes. Throws InputError where no reply comes; the transport can be used
   /// again.
   virtual std::vector<std::uint8_t> ask(const std::vector<std::uint8_t>& request) = 0;
+  /// Waits before a board that was busy is asked again.
+  virtual void pause(std::chrono::milliseconds time) { std::this_thread::sleep_for(time); }
 };
 
 /// Opens the way to a board. Throws InputError naming the address. tool.

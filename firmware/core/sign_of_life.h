@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+
+#include "hal/clock.h"
+
+namespace vernier {
+
+/// When a watchdog may be fed: four times a second, and only where the tick ran since the last time. It says
+/// that the tick lives, not that who asks does.
+class SignOfLife {
+ public:
+  static constexpr InstantNs kPeriod{250'000'000};  // an eighth of the unit's WatchdogSec
+
+  explicit SignOfLife(InstantNs now) noexcept : told_(now) {}
+  /// ticks: that ran so far. setup.
+  bool due(std::uint64_t ticks, InstantNs now) noexcept {
+    if (now - told_ < kPeriod || ticks == ticks_) return false;
+    ticks_ = ticks;
+    told_ = now;
+    return true;
+  }
+
+ private:
+  std::uint64_t ticks_ = 0;
+  InstantNs told_;
+};
+
+}  // namespace vernier
