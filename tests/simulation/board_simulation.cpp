@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // board_simulation SEED|fresh HOURS: simulated hours of a board at 50 Hz with an operator, an eavesdropper, a
 // medium, a line and a clock, all of which fail at random (in the manner of deterministic simulation testing:
 // one seed, one thread, invariants after each step). Prints what was injected and found; exit 1 where an

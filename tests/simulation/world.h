@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 // A board, its links, its medium and its clock in one thread and one seeded world, in which all of them fail.
 #include <functional>

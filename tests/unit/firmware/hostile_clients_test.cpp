@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // No client and no medium keeps the daemon from its duties: the service manager hears of it in time, trials
 // end on time, and it ends when it is told to. Each of these was once held up by what is done here.
 #include <arpa/inet.h>

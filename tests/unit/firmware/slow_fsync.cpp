@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Loaded before the C library: every fsync takes so many milliseconds as the file VERNIER_SLOW_FSYNC says.
 #include <fcntl.h>
 #include <sys/syscall.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // journey.mjs WHICH BIN SOURCE [PICTURES]: the workbench as a person uses it, in a real headless browser; what the page
 // shows is compared with what the command gives. PICTURES: a folder that gets a picture of each view. Prints
 // "journey: Skipped, ..." where there is no browser.
