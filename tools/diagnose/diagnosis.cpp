@@ -388,7 +388,7 @@ class Diagnoser {
       if (!pool_.is_custom(item)) continue;
       const DofPlace place = pool_.candidate(item).terms.front().place;
       apart =
-          apart && proven_.count(item) > 0 && std::find(places.begin(), places.end(), place) == places.end();
+          apart && proven_.contains(item) && std::find(places.begin(), places.end(), place) == places.end();
       places.push_back(place);
     }
     return places.size() > 1 && !apart ? places.size() : 0;

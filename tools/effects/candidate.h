@@ -2,7 +2,6 @@
 #pragma once
 #include <map>
 #include <optional>
-#include <ranges>
 #include <string>
 #include <vector>
 
@@ -99,16 +98,18 @@ struct Candidate {
 };
 
 /// The unknowns that are coefficients, in their order: what the term is linear in.
-inline auto linear_unknowns(const Candidate& candidate) {
-  return candidate.unknowns | std::views::filter([](const CandidateUnknown& unknown) {
-           return unknown.kind == UnknownKind::kLinear;
-         });
+inline std::vector<CandidateUnknown> linear_unknowns(const Candidate& candidate) {
+  std::vector<CandidateUnknown> unknowns;
+  for (const CandidateUnknown& unknown : candidate.unknowns)
+    if (unknown.kind == UnknownKind::kLinear) unknowns.push_back(unknown);
+  return unknowns;
 }
 /// The others: periods, time constants, decay lengths. Lists of their values are in this order.
-inline auto scanned_unknowns(const Candidate& candidate) {
-  return candidate.unknowns | std::views::filter([](const CandidateUnknown& unknown) {
-           return unknown.kind != UnknownKind::kLinear;
-         });
+inline std::vector<CandidateUnknown> scanned_unknowns(const Candidate& candidate) {
+  std::vector<CandidateUnknown> unknowns;
+  for (const CandidateUnknown& unknown : candidate.unknowns)
+    if (unknown.kind != UnknownKind::kLinear) unknowns.push_back(unknown);
+  return unknowns;
 }
 
 /// The choice of a candidate with its scanned unknowns starting at these values. tool.
