@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "tools/text/error.h"
+#include "tools/text/words.h"
 #include "tools/text/xml_text.h"
 
 namespace vernier {
@@ -87,6 +88,8 @@ struct Counting {
 }  // namespace
 
 nlohmann::json parse_json(const std::string& path, std::string_view text) {
+  if (nests_deeper_than(text, kMostJsonDepth))
+    throw InputError({path, 1}, "[", "nests deeper than any record does");
   try {
     return nlohmann::json::parse(text);
   } catch (const nlohmann::json::parse_error& error) {

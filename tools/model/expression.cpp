@@ -13,6 +13,9 @@ namespace {
 
 /// Nesting deeper than this is refused, so that no input can exhaust the stack.
 constexpr int kMaxDepth = 200;
+/// A sum of n terms is a tree of depth n, which evaluation and destruction walk down: nodes are counted too.
+/// The longest term that was ever learned or written has some hundreds.
+constexpr int kMaxNodes = 4000;
 
 struct NamedFunction {
   const char* name;
@@ -103,6 +106,7 @@ class Parser {
 
   ExprPtr primary() {
     const Nesting nesting(*this);
+    count_node();
     skip_space();
     if (at_ >= text_.size()) fail("a value is missing at the end");
     const char c = text_[at_];
@@ -214,6 +218,11 @@ class Parser {
     if (!take(c)) fail(std::string("'") + c + "' is missing here");
   }
 
+  // Every node of the tree is made of a primary, or joins one to what is there.
+  void count_node() {
+    if (++nodes_ > kMaxNodes) fail("too long an expression");
+  }
+
   [[noreturn]] void fail(const std::string& what) {
     std::size_t end = at_;
     if (end < text_.size() && (is_letter(text_[end]) || is_digit(text_[end]) || text_[end] == '.')) {
@@ -242,7 +251,7 @@ class Parser {
   std::string_view text_;
   bool placeholders_;
   std::size_t at_ = 0;
-  int depth_ = 0;
+  int depth_ = 0, nodes_ = 0;
 };
 
 /// Binding strength of what a node prints as; a child that binds more loosely is put in parentheses.

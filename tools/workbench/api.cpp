@@ -10,6 +10,7 @@
 #include "tools/text/csv.h"
 #include "tools/text/error.h"
 #include "tools/text/files.h"
+#include "tools/text/words.h"
 #include "tools/workbench/excluded.h"
 #include "tools/workbench/terms.h"
 
@@ -25,6 +26,7 @@ ApiReply json_reply(const Json& json, int status = 200) {
 ApiReply blob_reply(std::string bytes) { return {200, "application/octet-stream", std::move(bytes), {}}; }
 
 nlohmann::json body_json(const ApiRequest& request) {
+  if (nests_deeper_than(request.body, kMostJsonDepth)) throw InputError("the request nests too deeply");
   auto json = nlohmann::json::parse(request.body, nullptr, false);
   if (!json.is_object()) throw InputError("the request holds no JSON object");
   return json;

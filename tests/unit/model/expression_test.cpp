@@ -172,5 +172,18 @@ TEST(Expression, DerivativesAgreeWithDifferences) {
   }
 }
 
+// A sum is a tree as deep as it is long: a million terms once ended the program that read them.
+TEST(Expression, OfMoreTermsThanAnyMachineHasIsRefused) {
+  const auto sum_of = [](std::size_t terms) {
+    std::string text = "1";
+    for (std::size_t i = 1; i < terms; ++i) text += "+1";
+    return text;
+  };
+  EXPECT_NO_THROW(parse_expression(sum_of(3000)));
+  for (const std::size_t terms : {5000u, 1'000'000u})
+    EXPECT_THROW(parse_expression(sum_of(terms)), ExpressionError);
+  EXPECT_THROW(parse_expression("1e999"), ExpressionError);
+}
+
 }  // namespace
 }  // namespace vernier::expression_test
