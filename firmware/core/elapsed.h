@@ -4,6 +4,7 @@
 
 #include "comp/fixed.h"
 #include "comp/quantity.h"
+#include "firmware/core/quotient.h"
 
 namespace vernier {
 
@@ -22,7 +23,9 @@ class ElapsedTicks {
   ElapsedTicks() = default;
   /// tick: 1 us .. 1 s. setup.
   explicit ElapsedTicks(TimeUs tick) noexcept
-      : per_ns_(((std::int64_t{256} << kShift) + 500 * tick.count) / (1000 * tick.count)) {}
+      : per_ns_(static_cast<std::int64_t>(
+            quotient_of((std::uint64_t{256} << kShift) + 500 * static_cast<std::uint64_t>(tick.count),
+                        1000 * static_cast<std::uint64_t>(tick.count)))) {}
   /// Rounded to the nearest; at least one tick, at most kMostElapsed. realtime.
   TicksQ8 of(InstantNs time) const noexcept {
     // Beyond 2^30 ns the limit holds anyway for ticks below a millisecond; above, a second is few ticks.

@@ -3,13 +3,14 @@
 
 #include "comp/equation.h"
 #include "comp/verify.h"
+#include "firmware/core/quotient.h"
 
 namespace vernier {
 namespace {
 
 constexpr std::uint32_t kTerms = 64, kSums = 32, kRuns = 40;
 constexpr int kTries = 8;
-constexpr std::int64_t kShareOfTick = 4;
+constexpr std::uint64_t kShareOfTick = 4;
 
 /// An equation of sums of products, each of the one before.
 struct Sums {
@@ -42,9 +43,8 @@ std::uint64_t measured_work_budget(Clock& clock, TimeUs tick) noexcept {
     best_ns = took_ns < best_ns ? took_ns : best_ns;
   }
   if (best_ns <= 0) return kAnyWork;
-  const std::uint64_t work = kRuns * work_of(sums.equation, 0);
-  return work * static_cast<std::uint64_t>(1000 * tick.count / kShareOfTick) /
-         static_cast<std::uint64_t>(best_ns);
+  const std::uint64_t share_ns = quotient_of(1000 * static_cast<std::uint64_t>(tick.count), kShareOfTick);
+  return quotient_of(kRuns * work_of(sums.equation, 0) * share_ns, static_cast<std::uint64_t>(best_ns));
 }
 
 }  // namespace vernier
