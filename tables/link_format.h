@@ -37,9 +37,9 @@ enum class LinkOp : std::uint8_t {
   kTouches = 17,    // u64 first -> u64 next, u16 lost, then LinkTouch and LinkTouchAxis each, as many as fit
   kWorkpiece = 18,  // WorkpieceFrame -> nothing; kBadValue where it is no turn
   kChallenge = 20,  // -> ChallengeReply
-  kSigned =
-      21,       // SignedRequest, then op and payload of the request; answered as that with the outer sequence
-  kState = 19,  // -> LinkState, LinkAxisState each: what runs, and what of it arrives
+  kSigned = 21,  // SignedRequest, then op and payload of the request; the reply is that of the request, with
+                 // this op
+  kState = 19,   // -> LinkState, LinkAxisState each: what runs, and what of it arrives
 };
 constexpr std::uint8_t kLinkOpCount = static_cast<std::uint8_t>(LinkOp::kSigned) + 1;
 
@@ -54,7 +54,7 @@ enum class LinkStatus : std::uint8_t {
   kNotAllowed = 6,    // not over this link
   kUnsigned = 7,      // only in a signed request
   kBadSignature = 8,  // it does not fit, or its key is not trusted for that
-  kStale = 9,         // of another nonce, or a counter that is not higher: ask for the challenge again
+  kStale = 9,         // of another nonce, or of a challenge that is used up or too old: ask for another
 };
 constexpr std::uint8_t kLinkStatusCount = static_cast<std::uint8_t>(LinkStatus::kStale) + 1;
 
@@ -93,7 +93,7 @@ struct HelloReply {
 };
 struct ChallengeReply {
   std::uint8_t nonce[16];
-  std::uint32_t counter;  // the next that is taken
+  std::uint32_t counter;  // of this challenge: for one request in the next ten seconds
   std::uint8_t access;    // LinkAccess of the link that it came over
   std::uint8_t keys;      // that the board trusts; 0: nothing needs a signature
   std::uint8_t reserved[2];

@@ -59,7 +59,7 @@ constexpr std::uint32_t kSignedHeaderBytesV1 = 64;
 struct SignedRequestHead {
   std::uint8_t magic[8];   // kRequestMagic
   std::uint8_t nonce[16];  // of the board, new with each start
-  std::uint32_t counter;   // higher than that of every request that the board has taken since
+  std::uint32_t counter;   // of a challenge of the last ten seconds, which is used up by it
   char board[kBoardNameBytes];
 };
 static_assert(sizeof(SignedRequestHead) == 52);

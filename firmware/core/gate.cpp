@@ -32,17 +32,25 @@ bool Gate::is_challenge(const std::uint8_t* request, std::uint32_t size) noexcep
   return size == kRequestHeaderBytes && request[0] == static_cast<std::uint8_t>(LinkOp::kChallenge);
 }
 
-ChallengeReply Gate::challenge(LinkAccess access) const noexcept {
+ChallengeReply Gate::challenge(LinkAccess access, TimeUs now) noexcept {
+  ++counter_;
+  open_[counter_ % kMostOpen] = {counter_, now};
   ChallengeReply reply{};
   std::memcpy(reply.nonce, nonce_.data(), nonce_.size());
-  reply.counter = counter_ + 1;
+  reply.counter = counter_;
   reply.access = static_cast<std::uint8_t>(access);
   reply.keys = static_cast<std::uint8_t>(identity_.keys.size());
   return reply;
 }
 
+Gate::Challenge* Gate::find(std::uint32_t counter, TimeUs now) noexcept {
+  Challenge& challenge = open_[counter % kMostOpen];
+  const bool good = counter != 0 && challenge.counter == counter && now - challenge.given <= kOpenFor;
+  return good ? &challenge : nullptr;
+}
+
 // request: a signed one, whole.
-LinkStatus Gate::check(const std::uint8_t* request, std::uint32_t size) noexcept {
+LinkStatus Gate::check(const std::uint8_t* request, std::uint32_t size, TimeUs now) noexcept {
   SignedRequest head;
   std::memcpy(&head, request + kRequestHeaderBytes, sizeof(head));
   const std::uint8_t* const rest = request + kRequestHeaderBytes + sizeof(head);
@@ -50,7 +58,8 @@ LinkStatus Gate::check(const std::uint8_t* request, std::uint32_t size) noexcept
   const bool for_upload = access_needed(static_cast<LinkOp>(rest[0])) == LinkAccess::kUpload;
   if (key == nullptr || key->retired || !(for_upload ? key->upload : key->command))
     return LinkStatus::kBadSignature;
-  if (head.counter <= counter_) return LinkStatus::kStale;
+  Challenge* const challenge = find(head.counter, now);
+  if (challenge == nullptr) return LinkStatus::kStale;
   SignedRequestHead over{};
   std::memcpy(over.magic, kRequestMagic, sizeof(over.magic));
   std::memcpy(over.nonce, nonce_.data(), nonce_.size());
@@ -59,11 +68,12 @@ LinkStatus Gate::check(const std::uint8_t* request, std::uint32_t size) noexcept
   const std::uint32_t rest_bytes = size - kRequestHeaderBytes - static_cast<std::uint32_t>(sizeof(head));
   if (!signature_fits(bytes_of_head(over), {rest, rest_bytes}, head.signature, key->key))
     return LinkStatus::kBadSignature;
-  counter_ = head.counter;
+  challenge->counter = 0;
   return LinkStatus::kDone;
 }
 
-Gate::Opened Gate::open(const std::uint8_t* request, std::uint32_t size, LinkAccess access) noexcept {
+Gate::Opened Gate::open(const std::uint8_t* request, std::uint32_t size, LinkAccess access,
+                        TimeUs now) noexcept {
   Opened opened{LinkStatus::kDone, request, size};
   if (size < kRequestHeaderBytes || size > kMaxRequestBytes) return opened;
   bool is_signed = false;
@@ -72,7 +82,7 @@ Gate::Opened Gate::open(const std::uint8_t* request, std::uint32_t size, LinkAcc
     if (size <= kHead) return {LinkStatus::kBadLength, request, size};
     const auto inner = static_cast<LinkOp>(request[kHead]);
     if (access_needed(inner) > access) return {LinkStatus::kNotAllowed, request, size};
-    if (const LinkStatus status = check(request, size); status != LinkStatus::kDone)
+    if (const LinkStatus status = check(request, size, now); status != LinkStatus::kDone)
       return {status, request, size};
     is_signed = true;
     inner_[0] = request[kHead];

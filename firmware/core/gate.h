@@ -11,8 +11,9 @@ namespace vernier {
 using Nonce = std::array<std::uint8_t, sizeof(ChallengeReply::nonce)>;
 
 /// Decides which requests of a link are carried out: what the link may be used for, and where the board has
-/// keys, only what one of them has signed. A signed request is taken once: it names the nonce of this start
-/// of the board and a counter above that of all before it.
+/// keys, /// only what one of them has signed. A signed request is taken once: it names the nonce of this
+/// start of the board and the number of a challenge that was given in the last seconds, so that what was held
+/// back on its way is worth nothing later.
 class Gate {
  public:
   /// identity: outlives this; nonce: nobody can foretell it. setup.
@@ -24,21 +25,31 @@ class Gate {
     const std::uint8_t* request;
     std::uint32_t size;
   };
-  Opened open(const std::uint8_t* request, std::uint32_t size, LinkAccess access) noexcept;
-  /// Is it the request for a challenge? Its payload then.
+  /// now: of any clock, the same as challenge()'s.
+  Opened open(const std::uint8_t* request, std::uint32_t size, LinkAccess access, TimeUs now) noexcept;
+  /// Is it the request for a challenge? Its payload then; each can be used once.
   static bool is_challenge(const std::uint8_t* request, std::uint32_t size) noexcept;
-  ChallengeReply challenge(LinkAccess access) const noexcept;
+  ChallengeReply challenge(LinkAccess access, TimeUs now) noexcept;
   /// May a master that knows nothing but registers give commands over this link?
   bool lets_plain_commands(LinkAccess access, bool trusted_line) const noexcept {
     return access >= LinkAccess::kCommand && (identity_.keys.empty() || trusted_line);
   }
 
  private:
-  LinkStatus check(const std::uint8_t* request, std::uint32_t size) noexcept;
+  /// Challenges that are open at a time; whoever asks for more drops the oldest, and has to sign again.
+  static constexpr std::uint32_t kMostOpen = 32;
+  static constexpr TimeUs kOpenFor{10'000'000};
+  struct Challenge {
+    std::uint32_t counter = 0;  // 0: none
+    TimeUs given;
+  };
+  Challenge* find(std::uint32_t counter, TimeUs now) noexcept;
+  LinkStatus check(const std::uint8_t* request, std::uint32_t size, TimeUs now) noexcept;
 
   const BoardIdentity& identity_;
   Nonce nonce_;
-  std::uint32_t counter_ = 0;  // of the last one that was taken
+  std::uint32_t counter_ = 0;  // of the newest challenge
+  Challenge open_[kMostOpen];
   std::uint8_t inner_[kMaxRequestBytes] = {};
 };
 

@@ -205,7 +205,7 @@ HalFault Service::serve(CommandLink& link, TimeUs wait, const LinkRights& rights
 
 std::uint32_t Service::answer(const std::uint8_t* request, std::uint32_t size, std::uint8_t* reply) {
   if (Gate::is_challenge(request, size)) {
-    const ChallengeReply challenge = gate_.challenge(rights_.access);
+    const ChallengeReply challenge = gate_.challenge(rights_.access, now());
     std::memcpy(reply + kReplyHeaderBytes, &challenge, sizeof(challenge));
     return Link::answer_with(LinkStatus::kDone, request, reply) +
            static_cast<std::uint32_t>(sizeof(challenge));
@@ -213,11 +213,15 @@ std::uint32_t Service::answer(const std::uint8_t* request, std::uint32_t size, s
   // Before the gate: a request that is turned away now comes again as it is, with its signature not yet used.
   const bool may_need_store = options_.store_beside && Link::may_need_store(request, size);
   if (may_need_store && !desk_.free()) return Link::answer_busy(request, reply);
-  const Gate::Opened opened = gate_.open(request, size, rights_.access);
+  const Gate::Opened opened = gate_.open(request, size, rights_.access, now());
   if (opened.status != LinkStatus::kDone) return Link::answer_with(opened.status, request, reply);
-  if (!may_need_store || !Link::needs_store(opened.request, opened.size))
-    return link_.answer(opened.request, opened.size, reply, now());
-  ticket_ = desk_.leave(opened.request, opened.size);
+  if (!may_need_store || !Link::needs_store(opened.request, opened.size)) {
+    const std::uint32_t answered = link_.answer(opened.request, opened.size, reply, now());
+    // A reply repeats what was asked, in its cover too.
+    if (answered > 0) reply[0] = request[0];
+    return answered;
+  }
+  ticket_ = desk_.leave(opened.request, opened.size, request[0]);
   return kLater;
 }
 

@@ -20,8 +20,10 @@ class StoreDesk {
     const State state = state_.load(std::memory_order_acquire);
     return state == State::kFree || (state == State::kDone && ++asked_while_done_ > kPatience);
   }
-  /// Only where free(). Returns the ticket for collect().
-  std::uint32_t leave(const std::uint8_t* request, std::uint32_t size) noexcept {
+  /// Only where free(). op: that the reply repeats, which is that of the request's cover. Returns the ticket
+  /// for collect().
+  std::uint32_t leave(const std::uint8_t* request, std::uint32_t size, std::uint8_t op) noexcept {
+    op_ = op;
     size_ = std::min<std::uint32_t>(size, sizeof(request_));
     std::copy_n(request, size_, request_);
     asked_while_done_ = 0;
@@ -46,6 +48,7 @@ class StoreDesk {
   std::uint8_t* reply() noexcept { return reply_; }
   void done(std::uint32_t reply_size) noexcept {
     reply_size_ = reply_size;
+    reply_[0] = op_;
     state_.store(State::kDone, std::memory_order_release);
   }
 
@@ -54,6 +57,7 @@ class StoreDesk {
   enum class State : std::uint8_t { kFree, kAsked, kDone };
   std::atomic<State> state_{State::kFree};
   std::uint8_t request_[kMaxRequestBytes] = {}, reply_[kMaxReplyBytes] = {};
+  std::uint8_t op_ = 0;
   std::uint32_t size_ = 0, reply_size_ = 0, ticket_ = 0, asked_while_done_ = 0;
 };
 

@@ -95,8 +95,8 @@ class World {
   Service& service() { return *service_; }
   /// The operator says that an image may run from now on; and that its confirmation was asked for.
   void signed_image(std::uint64_t fingerprint) { signed_.insert(fingerprint); }
-  void asked_to_confirm(std::uint64_t issued) { in_flight_ = issued; }
-  void knows_confirmed(std::uint64_t issued) { confirmed_ = issued, in_flight_ = 0; }
+  void asked_to_confirm(std::uint64_t issued) { in_flight_.insert(issued); }
+  void knows_confirmed(std::uint64_t issued) { confirmed_ = issued, in_flight_.clear(); }
   std::uint64_t confirmed() const { return confirmed_; }
   std::uint64_t deaths() const { return counts.deaths; }
   /// Nothing fails for a while: for what must succeed in the end.
@@ -128,8 +128,14 @@ class World {
   std::unique_ptr<ModbusConversation> talk_;
   std::unique_ptr<SignOfLife> life_;
   std::set<std::uint64_t> signed_;
-  std::vector<std::vector<std::uint8_t>> seen_;  // by who listens on the line
-  std::uint64_t confirmed_ = 0, in_flight_ = 0, newest_ = 0;
+  struct Seen {
+    std::vector<std::uint8_t> frame;
+    InstantNs at;
+    bool delivered;
+  };
+  std::vector<Seen> seen_;  // by who listens on the line
+  std::uint64_t confirmed_ = 0, newest_ = 0;
+  std::set<std::uint64_t> in_flight_;  // asked to be confirmed, without an answer since
   std::uint32_t security_ = 0;
   AxisTravel before_[2];
   std::int64_t silent_left_ = 0, refuse_left_ = 0, medium_busy_ = 0, ticks_at_sign_ = -1;

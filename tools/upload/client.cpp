@@ -58,12 +58,8 @@ T get(const std::vector<std::uint8_t>& bytes, std::size_t offset) {
 }  // namespace
 
 std::vector<std::uint8_t> Client::ask_once(const std::vector<std::uint8_t>& request) {
-  const bool is_signed = request[0] == static_cast<std::uint8_t>(LinkOp::kSigned);
-  const std::uint8_t inner = is_signed ? request[kRequestHeaderBytes + sizeof(SignedRequest)] : request[0];
   const std::vector<std::uint8_t> reply = transport_->ask(request);
-  // What is carried out is answered as itself, what the board turns away as what was sent.
-  if (reply.size() < kReplyHeaderBytes || (reply[0] != inner && reply[0] != request[0]) ||
-      reply[1] != request[1])
+  if (reply.size() < kReplyHeaderBytes || reply[0] != request[0] || reply[1] != request[1])
     throw InputError("the board's reply does not belong to the request");
   return reply;
 }

@@ -15,7 +15,8 @@
 namespace vernier {
 namespace {
 
-constexpr int kReplyTimeoutMs = 15'000;  // as over Modbus: checking an image takes a small board seconds
+constexpr int kReplyTimeoutMs =
+    60'000;  // a small board checks two signatures for the end of an upload: seconds each
 
 speed_t speed_of(std::uint32_t baud) {
   switch (baud) {

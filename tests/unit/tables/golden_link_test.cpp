@@ -96,16 +96,17 @@ class Board {
     Bytes reply(kMaxReplyBytes);
     const auto size = static_cast<std::uint32_t>(request.size());
     if (Gate::is_challenge(request.data(), size)) {
-      const ChallengeReply challenge = gate_.challenge(LinkAccess::kUpload);
+      const ChallengeReply challenge = gate_.challenge(LinkAccess::kUpload, TimeUs{});
       reply.resize(Link::answer_with(LinkStatus::kDone, request.data(), reply.data()));
       return reply + bytes_of(challenge);
     }
     Gate::Opened opened{LinkStatus::kDone, request.data(), size};
     if (request[0] == static_cast<std::uint8_t>(LinkOp::kSigned))
-      opened = gate_.open(request.data(), size, LinkAccess::kUpload);
+      opened = gate_.open(request.data(), size, LinkAccess::kUpload, TimeUs{});
     reply.resize(opened.status == LinkStatus::kDone
                      ? link_.answer(opened.request, opened.size, reply.data(), TimeUs(1'000'000))
                      : Link::answer_with(opened.status, request.data(), reply.data()));
+    reply[0] = request[0];
     return reply;
   }
   static Nonce nonce() {
