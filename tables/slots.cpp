@@ -16,15 +16,16 @@ bool is_slot(std::uint8_t slot) noexcept { return slot < kSlotCount || slot == k
 
 }  // namespace
 
-SlotRecord upgraded(const SlotRecordV1& old) noexcept {
-  const auto* const bytes = reinterpret_cast<const std::uint8_t*>(&old);
-  if (old.magic != kSlotMagicV1 || old.checksum != crc32c(bytes, offsetof(SlotRecordV1, checksum))) return {};
-  const std::uint64_t newest = old.issued > old.trial_issued ? old.issued : old.trial_issued;
-  SlotRecord record{kSlotMagic, old.sequence,  old.issued, old.trial_issued, newest,
-                    0,          old.confirmed, old.trial,  old.reserved,     0,
-                    0};
-  record.checksum = checksum_of(record);
-  return record;
+SlotRecord upgraded(const SlotRecordV1& record) noexcept {
+  const auto* const bytes = reinterpret_cast<const std::uint8_t*>(&record);
+  if (record.magic != kSlotMagicV1 || record.checksum != crc32c(bytes, offsetof(SlotRecordV1, checksum)))
+    return {};
+  const std::uint64_t newest = record.issued > record.trial_issued ? record.issued : record.trial_issued;
+  SlotRecord now{kSlotMagic, record.sequence,  record.issued, record.trial_issued, newest,
+                 0,          record.confirmed, record.trial,  record.reserved,     0,
+                 0};
+  now.checksum = checksum_of(now);
+  return now;
 }
 
 bool is_valid(const SlotRecord& record) noexcept {
