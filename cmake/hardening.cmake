@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # What runs on a board and listens there is built to be hard to misuse: stack protectors, checked library calls, and nothing
 # that is linked can be written over (full RELRO). The same source gives the same bytes wherever it stands.
 function(vernier_harden_folder)
