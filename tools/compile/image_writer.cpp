@@ -76,7 +76,7 @@ std::vector<InputRecord> input_records(const Machine& machine) {
     InputRecord r{};
     copy_text(r.name, sizeof(r.name), input.name, machine, input.line);
     copy_text(r.unit, sizeof(r.unit), input.unit, machine, input.line);
-    const Interval range = input_range(input);
+    const Interval range = input_range(machine, records.size());
     r.reference = std::llround(input.reference * 1e6);
     r.low = std::llround(range.low * 1e6);
     r.high = std::llround(range.high * 1e6);

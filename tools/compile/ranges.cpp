@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/compile/ranges.h"
 
+#include <algorithm>
+
 #include "tools/compile/derive.h"
+#include "tools/model/fit_record.h"
 
 namespace vernier {
 namespace {
@@ -34,9 +37,18 @@ Interval axis_range(const Machine& machine, std::size_t axis) {
   return {*a.min, *a.max};
 }
 
-Interval input_range(const Input& input) {
+Interval input_range(const Machine& machine, std::size_t index) {
+  const Input& input = machine.inputs[index];
   const double width = half_width_of(input.unit);
-  return {input.min.value_or(input.reference - width), input.max.value_or(input.reference + width)};
+  Interval range{input.reference - width, input.reference + width};
+  constexpr double kBeyond = 0.1;  // of what was measured: a day a little warmer than that of the survey
+  if (machine.fitted)
+    for (const FitRecord::Range& measured : machine.fitted->measured)
+      if (measured.name == input.name) {
+        const double more = kBeyond * (measured.max - measured.min);
+        range = {std::min(range.low, measured.min - more), std::max(range.high, measured.max + more)};
+      }
+  return {input.min.value_or(range.low), input.max.value_or(range.high)};
 }
 
 Interval channel_range(const Machine& machine, ChannelKind kind, std::size_t index) {
@@ -58,7 +70,7 @@ Interval channel_range(const Machine& machine, ChannelKind kind, std::size_t ind
       return {0, std::max(1000.0, 10 * (travel.high - travel.low))};
     }
     case ChannelKind::kInput:
-      return input_range(machine.inputs[index]);
+      return input_range(machine, index);
     case ChannelKind::kFeed:
       return {0, kFeed};
     case ChannelKind::kCurvature:

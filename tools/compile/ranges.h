@@ -11,7 +11,8 @@ namespace vernier {
 /// Range of a channel in the unit of the machine file: declared, or the default of docs for its kind and
 /// unit.
 Interval axis_range(const Machine& machine, std::size_t axis);
-Interval input_range(const Input& input);
+/// Where nothing is declared, the default reaches as far as the last fit's rows did, and a tenth beyond.
+Interval input_range(const Machine& machine, std::size_t input);
 Interval channel_range(const Machine& machine, ChannelKind kind, std::size_t index);
 
 }  // namespace vernier

@@ -107,7 +107,7 @@ std::optional<Interval> nominal_range(const Machine& machine, const Symbol& key)
     case SymbolKind::kAxis:
       return axis_symbol_range(machine, i);
     case SymbolKind::kInput:
-      return input_range(machine.inputs[i]);
+      return input_range(machine, i);
     case SymbolKind::kVelocity:
       return channel_range(machine, ChannelKind::kVelocity, i);
     case SymbolKind::kAcceleration:

@@ -226,7 +226,7 @@ Machine set_up(const Machine& machine, const Measurement& rows) {
   Machine rigid = machine;
   for (Freedom& one : freedoms_of(rigid))
     if (one.kind() != ParameterKind::kBaseShift) one.set_free(false);
-  const ParameterSet shifts(rigid, runs_of_fit_rows(rows));
+  const ParameterSet shifts(rigid, setups_of_fit_rows(rows));
   if (shifts.size() == 0) return machine;
   const FitProblem problem(rigid, rows, shifts);
   // From the measuring frame itself, so that what no reading sees (the tilt of a flat bar's circle) is 0

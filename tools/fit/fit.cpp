@@ -194,7 +194,7 @@ std::optional<NormalisedError> normalised_error(const FitResult& result, const M
     for (SparseRows::InnerIterator a(linear.jacobian, at); a; ++a)
       for (SparseRows::InnerIterator b(linear.jacobian, at); b; ++b)
         model += a.value() * b.value() * result.observability.covariance(a.col(), b.col());
-    const double u = rows.uncertainty[static_cast<Eigen::Index>(o.row)];
+    const double u = uncertainty_of(rows, o);
     const double reading = u > 0 ? u * u : result.variance_factor;
     const double e = (o.value - linear.predicted[at]) / std::sqrt(reading + result.variance_factor * model);
     error.rms += e * e;
@@ -227,7 +227,7 @@ Eigen::VectorXd residuals(const Machine& machine, const Measurement& m) {
 FitResult fit(const Machine& machine, const Measurement& measurement, const FitOptions& options) {
   FitResult result;
   result.machine = machine;
-  result.parameters = ParameterSet(machine, runs_of_fit_rows(measurement));
+  result.parameters = ParameterSet(machine, setups_of_fit_rows(measurement));
   const Eigen::VectorXd start_residual = residuals(machine, measurement);
   result.before = role_statistics(measurement, start_residual, false);
   if (result.before.count == 0) throw InputError("no observation with role fit: there is nothing to fit");

@@ -48,7 +48,8 @@ std::vector<double> relative_steps(const Measurement& m, const std::vector<Colum
       const auto at = static_cast<Eigen::Index>(row);
       largest = std::max(largest, std::abs(axes[a][at] - axes[a][at - 1]) / range[a]);
     }
-    steps[row] = m.states.run[row] == m.states.run[row - 1] ? largest : 1;
+    const Labels& setup = m.states.setup;
+    steps[row] = m.states.of(setup, row) == m.states.of(setup, row - 1) ? largest : 1;
   }
   return steps;
 }
@@ -93,10 +94,10 @@ class Whitener {
     double log_det = 0;
     Eigen::VectorXd innovation(readings.rows());
     for (std::size_t i = 0; i < series.reading.size(); ++i) {
-      const bool new_run = i == 0 || series.run[i] != series.run[i - 1];
-      if (new_run) {
+      const bool new_setup = i == 0 || series.setup[i] != series.setup[i - 1];
+      if (new_setup) begin(state, p, 1, ratios_.run);
+      if (i == 0 || series.clock[i] != series.clock[i - 1]) {
         begin(state, p, 0, ratios_.drift);
-        begin(state, p, 1, ratios_.run);
       } else if (ratios_.drift > 0) {
         const double rho = std::exp(-(series.time[i] - series.time[i - 1]) / ratios_.time_constant);
         state.col(0) *= rho;
@@ -104,7 +105,7 @@ class Whitener {
         p.col(0) *= rho;
         p(0, 0) += (1 - rho * rho) * ratios_.drift;
       }
-      if (new_run || series.pose[i] != series.pose[i - 1]) begin(state, p, 2, ratios_.pose);
+      if (new_setup || series.pose[i] != series.pose[i - 1]) begin(state, p, 2, ratios_.pose);
       const double variance = 1 + p.sum();
       const Eigen::Vector3d gain = p.rowwise().sum() / variance;
       auto reading = readings.col(series.reading[i]);
@@ -225,7 +226,7 @@ BestStep best_step(const NoiseLayout& layout, const Eigen::VectorXd& residual,
     // A step where a run begins is a set-up, which machine files have a name for.
     std::vector<char> near_set_up(series.reading.size(), 0);
     for (std::size_t i = 1; i < series.reading.size(); ++i)
-      if (series.run[i] != series.run[i - 1])
+      if (series.setup[i] != series.setup[i - 1])
         for (std::size_t k = i - std::min(i, kLeastRows); k < std::min(i + kLeastRows, near_set_up.size());
              ++k)
           near_set_up[k] = 1;
@@ -363,10 +364,10 @@ NoiseLayout noise_layout(const Measurement& measurement, const std::vector<std::
   std::vector<int> pose(measurement.rows(), 0);
   for (std::size_t row = 1; row < pose.size(); ++row)
     pose[row] = pose[row - 1] + (steps[row] > tolerance ? 1 : 0);
-  // Time counts where it is told and never runs back within a run.
+  // Time counts where it is told and never runs back within a clock.
   bool moves = false, falls = false;
   for (std::size_t row = 1; row < measurement.rows(); ++row) {
-    if (states.run[row] != states.run[row - 1]) continue;
+    if (states.of(states.clock, row) != states.of(states.clock, row - 1)) continue;
     const auto at = static_cast<Eigen::Index>(row);
     moves = moves || states.time[at] > states.time[at - 1];
     falls = falls || states.time[at] < states.time[at - 1];
@@ -381,16 +382,17 @@ NoiseLayout noise_layout(const Measurement& measurement, const std::vector<std::
     series.row.push_back(o.row);
     series.time.push_back(layout.in_time ? states.time[static_cast<Eigen::Index>(o.row)]
                                          : static_cast<double>(o.row));
-    series.run.push_back(static_cast<int>(states.run[o.row]));
+    series.setup.push_back(static_cast<int>(states.of(states.setup, o.row)));
+    series.clock.push_back(static_cast<int>(states.of(states.clock, o.row)));
     series.pose.push_back(pose[o.row]);
   }
   std::vector<double> gaps;
   for (auto& [kind, series] : of_kind) {
     double begun = 0;
     for (std::size_t i = 0; i < series.reading.size(); ++i) {
-      if (i == 0 || series.run[i] != series.run[i - 1]) {
+      layout.has_runs = layout.has_runs || (i > 0 && series.setup[i] != series.setup[i - 1]);
+      if (i == 0 || series.clock[i] != series.clock[i - 1]) {
         begun = series.time[i];
-        layout.has_runs = layout.has_runs || i > 0;
         continue;
       }
       layout.has_poses = layout.has_poses || series.pose[i] == series.pose[i - 1];
@@ -435,7 +437,7 @@ Eigen::MatrixXd covariance_times(const NoiseLayout& layout, const NoiseModel& mo
   Eigen::MatrixXd y = model.own * model.own * x;
   for (const NoiseSeries& series : layout.series) {
     const std::size_t n = series.reading.size();
-    // Sums over stretches of one run and one pose, each given back to all its readings.
+    // Sums over stretches of one set-up and one pose, each given back to all its readings.
     const auto share = [&](double variance, const std::function<bool(std::size_t)>& begins) {
       if (variance <= 0) return;
       for (std::size_t first = 0; first < n;) {
@@ -447,14 +449,15 @@ Eigen::MatrixXd covariance_times(const NoiseLayout& layout, const NoiseModel& mo
         first = last;
       }
     };
-    const auto new_run = [&](std::size_t i) { return series.run[i] != series.run[i - 1]; };
-    share(model.run * model.run, new_run);
+    const auto new_setup = [&](std::size_t i) { return series.setup[i] != series.setup[i - 1]; };
+    const auto new_clock = [&](std::size_t i) { return series.clock[i] != series.clock[i - 1]; };
+    share(model.run * model.run, new_setup);
     share(model.pose * model.pose,
-          [&](std::size_t i) { return new_run(i) || series.pose[i] != series.pose[i - 1]; });
+          [&](std::size_t i) { return new_setup(i) || series.pose[i] != series.pose[i - 1]; });
     if (model.drift <= 0) continue;
     // exp(-|t - t'| / tau): what came before, then what comes after, each by one recursion.
     const auto rho = [&](std::size_t i) {
-      return new_run(i) ? 0 : std::exp(-(series.time[i] - series.time[i - 1]) / model.time_constant);
+      return new_clock(i) ? 0 : std::exp(-(series.time[i] - series.time[i - 1]) / model.time_constant);
     };
     const double variance = model.drift * model.drift;
     Eigen::VectorXd sum = Eigen::VectorXd::Zero(x.rows());

@@ -13,10 +13,10 @@ namespace vernier {
 /// shared along.
 struct NoiseSeries {
   std::vector<Eigen::Index> reading;  // positions in the list that the layout was made for
-  std::vector<double> time;           // s, or rows where no time tells them apart; never falling within a run
-  int kind = 0;                       // of ObservationKind
+  std::vector<double> time;  // s, or rows where no time tells them apart; never falling within a clock
+  int kind = 0;              // of ObservationKind
   std::vector<std::size_t> row;
-  std::vector<int> run, pose;  // an index each; a pose: rows that follow one another at one position
+  std::vector<int> setup, clock, pose;  // an index each; a pose: rows that follow one another at one place
 };
 
 /// The readings of a list of observations, as a noise model sees them.
@@ -41,9 +41,9 @@ struct NoiseStep {
 };
 
 /// How the errors of readings hang together: each reading's own, one that the readings of a pose share, one
-/// that a run shares (its set-up), and one that wanders within a run (Ornstein-Uhlenbeck; a random walk where
-/// the time constant is far beyond the run). Standard deviations in units of u, in mm and deg where no u is
-/// given.
+/// that a set-up shares (`run`), and one that wanders with the clock (Ornstein-Uhlenbeck; a random walk where
+/// the time constant is far beyond its stretch). Standard deviations in units of u, in mm and deg where no u
+/// is given.
 struct NoiseModel {
   double own = 1, pose = 0, run = 0, drift = 0;
   double time_constant = 0;  // of the drift, s or rows

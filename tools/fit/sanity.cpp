@@ -119,7 +119,7 @@ WorstReading worst_reading(const Measurement& measurement, const Eigen::VectorXd
     const auto at = static_cast<Eigen::Index>(i);
     const std::size_t row = measurement.observations[i].row;
     if ((measurement.check[row] != 0) != check) continue;
-    const double u = measurement.uncertainty[static_cast<Eigen::Index>(row)];
+    const double u = uncertainty_of(measurement, measurement.observations[i]);
     const double size = std::abs(with_u && u > 0 ? residual[at] / u : residual[at]);
     sizes.push_back(size);
     squares += size * size;

@@ -117,14 +117,15 @@ Eigen::VectorXd with_shapes_of(const Eigen::VectorXd& given, const Convention& c
 
 }  // namespace
 
-std::vector<std::string> runs_of_fit_rows(const Measurement& m) {
-  std::vector<char> seen(m.states.run_names.size(), 0);
+std::vector<std::string> setups_of_fit_rows(const Measurement& m) {
+  const std::vector<std::string>& names = m.states.names(m.states.setup);
+  std::vector<char> seen(names.size(), 0);
   for (const Observation& o : m.observations)
-    if (m.check[o.row] == 0) seen[m.states.run[o.row]] = 1;
-  std::vector<std::string> runs;
+    if (m.check[o.row] == 0) seen[m.states.of(m.states.setup, o.row)] = 1;
+  std::vector<std::string> setups;
   for (std::size_t i = 0; i < seen.size(); ++i)
-    if (seen[i] != 0) runs.push_back(m.states.run_names[i]);
-  return runs;
+    if (seen[i] != 0) setups.push_back(names[i]);
+  return setups;
 }
 
 bool matches_pattern(std::string_view pattern, std::string_view name) {

@@ -16,7 +16,7 @@ namespace vernier {
 bool matches_pattern(std::string_view pattern, std::string_view name);
 
 /// The runs that have an observation with role fit.
-std::vector<std::string> runs_of_fit_rows(const Measurement& m);
+std::vector<std::string> setups_of_fit_rows(const Measurement& m);
 
 /// From the machine's own values, or from nominal where that is nearer, through the stages to the minimum
 /// over all parameters, with the solver that `options` name; the convention's scales are in force from the

@@ -106,7 +106,7 @@ bool has_uncertainty(const Measurement& m) {
   bool any = false;
   for (const Observation& o : m.observations) {
     if (m.check[o.row] != 0) continue;
-    if (m.uncertainty[static_cast<Eigen::Index>(o.row)] <= 0) return false;
+    if (uncertainty_of(m, o) <= 0) return false;
     any = true;
   }
   return any;
@@ -117,7 +117,7 @@ std::optional<double> noise_um(const Measurement& m) {
   RepeatPool pool;
   for (const Observation& o : m.observations)
     if (m.check[o.row] == 0 && !is_rotation(o.kind))
-      pool.add(m.uncertainty[static_cast<Eigen::Index>(o.row)] * kUmPerMm);
+      pool.add(uncertainty_of(m, o) * kUmPerMm);
   return pool.rms();
 }
 
@@ -129,7 +129,7 @@ Eigen::VectorXd fit_weights(const Measurement& m) {
   Eigen::VectorXd weights(static_cast<Eigen::Index>(m.observations.size()));
   for (std::size_t i = 0; i < m.observations.size(); ++i) {
     const std::size_t row = m.observations[i].row;
-    const double u = m.uncertainty[static_cast<Eigen::Index>(row)];
+    const double u = uncertainty_of(m, m.observations[i]);
     weights[static_cast<Eigen::Index>(i)] = m.check[row] != 0 ? 0 : u > 0 ? 1 / u : 1;
   }
   return weights;

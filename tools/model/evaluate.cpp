@@ -222,20 +222,21 @@ ValueAndSlopes Evaluator::lag(const ValueAndSlopes& input, const ValueAndSlopes&
   const auto n = static_cast<Eigen::Index>(states_.count);
   Column y(n), by_tau(n);
   std::vector<Column> by_input(input.by.size(), Column(n));
-  std::vector<std::size_t> last(states_.run_names.size(),
-                                states_.count);  // last row of each run, count: none yet
+  std::vector<std::size_t> last(states_.names(states_.clock).size(),
+                                states_.count);  // last row of each clock, count: none yet
   for (std::size_t i = 0; i < states_.count; ++i) {
     const auto at = static_cast<Eigen::Index>(i);
-    std::size_t& before = last[states_.run[i]];
+    const std::size_t clock = states_.of(states_.clock, i);
+    std::size_t& before = last[clock];
     const auto from = static_cast<Eigen::Index>(before);
-    LagStep step{0, 0, 1, 0, 0, 0};  // first row of a run, or no lag at all: y = u
+    LagStep step{0, 0, 1, 0, 0, 0};  // first row of a clock, or no lag at all: y = u
     double h_by_tau = 0;
     if (before < states_.count && tau.value[i] > 0) {
       const double dt = states_.time[at] - states_.time[from];
       if (dt < 0)
         throw InputError("lag needs rows in time order: t falls from " + std::to_string(states_.time[from]) +
                          " to " + std::to_string(states_.time[at]) + " s in run \"" +
-                         states_.run_names[states_.run[i]] + "\"");
+                         states_.names(states_.clock)[clock] + "\"");
       step = lag_step(dt / tau.value[i]);
       h_by_tau = -dt / (tau.value[i] * tau.value[i]);
     }

@@ -2,6 +2,7 @@
 #include "tools/model/linearizer.h"
 
 #include <algorithm>
+#include <map>
 
 #include "tools/model/observation_model.h"
 #include "tools/model/station_table.h"
@@ -68,9 +69,9 @@ Linearizer::Linearizer(const Machine& machine, const Measurement& measurement, c
 Linearizer::Pass::Pass(const Linearizer& all, const Machine& machine)
     : all_(all), machine_(machine), chain_(machine, all.measurement_.states, all.active_) {
   for (const std::size_t key : chain_.keys()) slot_of_key_.push_back(all.slot_of_key_[key]);
-  for (const std::string& run : all.measurement_.states.run_names) {
+  for (const std::string& run : all.measurement_.states.names(all.measurement_.states.setup)) {
     const auto found = base_shift_of(machine, run);
-    shift_of_run_.push_back(found ? &machine.base_shifts[*found] : nullptr);
+    shift_of_setup_.push_back(found ? &machine.base_shifts[*found] : nullptr);
   }
   row_.groups = all.static_groups_;
   for (const TableGroup& table : all.tables_) row_.groups.push_back(table.group);
@@ -79,24 +80,64 @@ Linearizer::Pass::Pass(const Linearizer& all, const Machine& machine)
 bool Linearizer::Pass::next() {
   while (at_ < all_.measurement_.rows() && all_.start_[at_] == all_.start_[at_ + 1]) ++at_;
   if (at_ >= all_.measurement_.rows()) return false;
-  fill(at_++);
+  const std::size_t other = all_.measurement_.other_end.empty() ? kNoRow : all_.measurement_.other_end[at_];
+  is_joined_ = other != kNoRow;
+  if (is_joined_)
+    join_other_end(at_, other);
+  else
+    fill(at_, at_, Eigen::Vector3d::Zero());
+  ++at_;
   return true;
 }
 
-void Linearizer::Pass::fill(std::size_t i) {
+void Linearizer::Pass::join_other_end(std::size_t i, std::size_t other) {
+  // By parameter: what the row's own pose does, then what the other end's does.
+  std::map<Index, Eigen::VectorXd> by_parameter;
+  const auto add = [&] {
+    for (const ParameterGroup& group : row_.groups)
+      for (const auto& [first, weight] : group.first_weight)
+        for (Index k = 0; k < group.width; ++k) {
+          Eigen::VectorXd& sum = by_parameter[first + k];
+          if (sum.size() == 0) sum = Eigen::VectorXd::Zero(row_.predicted.size());
+          sum += weight * row_.gradient.row(group.slot + k).transpose();
+        }
+  };
+  fill(i, i, point_at(other));
+  add();
+  joined_.first_observation = row_.first_observation;
+  joined_.predicted = row_.predicted;
+  fill(i, other, point_at(i));
+  add();
+  joined_.groups.clear();
+  joined_.gradient.resize(static_cast<Index>(by_parameter.size()), joined_.predicted.size());
+  Index slot = 0;
+  for (const auto& [parameter, sum] : by_parameter) {
+    joined_.gradient.row(slot) = sum.transpose();
+    joined_.groups.push_back({slot++, 1, {{parameter, 1.0}}});
+  }
+}
+
+Eigen::Vector3d Linearizer::Pass::point_at(std::size_t row) const {
+  const Frame pose = chain_.pose(row);
+  return ObservationModel(all_.measurement_, machine_.gravity, shift_of(row), pose).point();
+}
+
+void Linearizer::Pass::fill(std::size_t row, std::size_t i, const Eigen::Vector3d& other_end) {
   const Measurement& m = all_.measurement_;
-  const BaseShift* shift = shift_of_run_[m.states.run[i]];
+  const BaseShift* shift = shift_of(i);
   const Frame pose = chain_.pose(i, twists_);
-  ObservationModel model(m, shift, pose);
-  const std::size_t first = all_.start_[i], count = all_.start_[i + 1] - first;
+  ObservationModel model(m, machine_.gravity, shift, pose);
+  model.set_other_end(other_end);
+  const std::size_t first = all_.start_[row], count = all_.start_[row + 1] - first;
   row_.first_observation = first;
-  row_.predicted.resize(static_cast<Index>(count));
+  row_.predicted.setZero(static_cast<Index>(count));
   row_.gradient.setZero(all_.slots_ + 6, static_cast<Index>(count));
   std::array<Twist, 6> base;
   if (shift != nullptr) base = model.base_twists();
   for (std::size_t k = 0; k < count; ++k) {
     const auto o = static_cast<Index>(k);
     const Observation& observation = m.observations[first + k];
+    if (row != i && observation.kind != ObservationKind::kDistance) continue;  // of its own pose only
     row_.predicted[o] = model.predicted(observation);
     const Twist g = model.gradient(observation);
     const Twist in_workpiece{model.base_rotation().transpose() * g.point,
@@ -104,8 +145,7 @@ void Linearizer::Pass::fill(std::size_t i) {
     for (std::size_t s = 0; s < twists_.size(); ++s)
       row_.gradient(slot_of_key_[s], o) =
           in_workpiece.point.dot(twists_[s].point) + in_workpiece.rotation.dot(twists_[s].rotation);
-    if (shift == nullptr || observation.kind == ObservationKind::kD)
-      continue;  // d is in workpiece coordinates
+    if (shift == nullptr || is_free_of_setup(observation.kind)) continue;
     for (std::size_t c = 0; c < 6; ++c)
       row_.gradient(all_.slots_ + static_cast<Index>(c), o) =
           g.point.dot(base[c].point) + g.rotation.dot(base[c].rotation);

@@ -55,19 +55,30 @@ class Linearizer {
    public:
     Pass(const Linearizer& all, const Machine& machine);
     bool next();
-    const RowLinear& row() const { return row_; }
+    const RowLinear& row() const { return is_joined_ ? joined_ : row_; }
 
    private:
-    void fill(std::size_t i);
+    /// A row's observations as they answer to the pose of row `at`: its own, or of a distance the other
+    /// end's. `other_end`: where the end stands that is not looked at.
+    void fill(std::size_t row, std::size_t at, const Eigen::Vector3d& other_end);
+    Eigen::Vector3d point_at(std::size_t row) const;
+    /// Adds what the pose at the other end of the row's distance does to it, and gives every parameter of
+    /// both rows a slot of its own.
+    void join_other_end(std::size_t row, std::size_t other);
+    const BaseShift* shift_of(std::size_t row) const {
+      const States& states = all_.measurement_.states;
+      return shift_of_setup_[states.of(states.setup, row)];
+    }
 
     const Linearizer& all_;
     const Machine& machine_;
     ChainRows chain_;
     std::vector<Eigen::Index> slot_of_key_;
-    std::vector<const BaseShift*> shift_of_run_;
+    std::vector<const BaseShift*> shift_of_setup_;
     std::vector<Twist> twists_;
     std::size_t at_ = 0;
-    RowLinear row_;
+    RowLinear row_, joined_;
+    bool is_joined_ = false;
   };
 
   const Measurement& measurement_;

@@ -67,7 +67,8 @@ struct Table {
 };
 
 struct BaseShift {
-  std::optional<std::string> run;  // none: the plain one
+  std::optional<std::string> run;  // label of the set-up that it stands for; none: the plain one
+  bool of_setup = false;           // the file says setup=, not run=
   std::array<double, 6> value{};   // mm, deg
   bool hidden = false;
   std::size_t line = 0;

@@ -220,15 +220,21 @@ class Reader {
   }
 
   void read_base_shift(const pugi::xml_node& node) {
-    check_attributes(node, {"X", "Y", "Z", "rX", "rY", "rZ", "run", "Hide", "note"});
+    check_attributes(node, {"X", "Y", "Z", "rX", "rY", "rZ", "run", "setup", "Hide", "note"});
     BaseShift shift;
     shift.line = line(node);
     shift.run = attribute(node, "run");
+    if (const auto setup = attribute(node, "setup")) {
+      if (shift.run) fail(node, "setup", "a BaseShift is of a run or of a set-up, not of both");
+      shift.run = setup;
+      shift.of_setup = true;
+    }
     for (std::size_t i = 0; i < 6; ++i) shift.value[i] = number(node, kSixDofNames[i], 0);
     shift.hidden = boolean(node, "Hide", false);
     for (const BaseShift& other : machine_.base_shifts)
       if (other.run == shift.run)
-        fail(node, shift.run.value_or("BaseShift"), "a second BaseShift of the same run");
+        fail(node, shift.run.value_or("BaseShift"),
+             "a second BaseShift of the same " + std::string(shift.of_setup ? "set-up" : "run"));
     machine_.base_shifts.push_back(shift);
   }
 

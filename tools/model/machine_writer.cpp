@@ -42,7 +42,7 @@ class Writer {
     if (equal_no_case(node.name(), "BaseShift")) {
       std::optional<std::string> run;
       for (const pugi::xml_attribute item : node.attributes())
-        if (equal_no_case(item.name(), "run")) run = item.value();
+        if (equal_no_case(item.name(), "run") || equal_no_case(item.name(), "setup")) run = item.value();
       for (const BaseShift& shift : machine_.base_shifts)
         if (shift.run == run) set_six(node, shift.value);
       return;

@@ -44,6 +44,20 @@ class FileReader {
     return read(column, unit.factor, unit.offset, required);
   }
 
+  /// Does a column hold words, and no number at all?
+  bool is_text(const std::string& name) const {
+    const std::size_t column = index_.at(name);
+    bool any = false;
+    for (const auto& row : csv_.rows) {
+      if (row[column].empty()) continue;
+      if (parse_number(row[column])) return false;
+      any = true;
+    }
+    return any && csv_.columns[column].unit.empty();
+  }
+
+  Dimension dimension(const std::string& name) const { return find_unit(unit(name))->dimension; }
+
   /// A column as it is, without conversion.
   Column raw(const std::string& name) {
     used_.insert(name);
@@ -52,9 +66,13 @@ class FileReader {
 
   std::vector<std::string> words(const std::string& name) {
     used_.insert(name);
-    const std::size_t column = index_.at(name);
+    return peek(name);
+  }
+
+  /// The same of a column that is somebody else's.
+  std::vector<std::string> peek(const std::string& name) const {
     std::vector<std::string> result;
-    for (const auto& row : csv_.rows) result.push_back(row[column]);
+    for (const auto& row : csv_.rows) result.push_back(row[index_.at(name)]);
     return result;
   }
 
@@ -116,9 +134,14 @@ class Builder {
     read_inputs();
     read_labels();
     read_geometry();
+    read_directions();
+    read_distances();
     read_observations();
     for (const CsvColumn& column : reader_.unused())
-      result_.candidates.push_back({column.name, column.unit, reader_.raw(column.name)});
+      if (reader_.is_text(column.name))
+        result_.labels.push_back({column.name, reader_.words(column.name)});
+      else
+        result_.candidates.push_back({column.name, column.unit, reader_.raw(column.name)});
     return std::move(result_);
   }
 
@@ -135,8 +158,14 @@ class Builder {
         if (name == word) return true;
       return false;
     };
+    const auto reserved_since = [](const std::string& name) {
+      for (const char* word :
+           {"setup", "clock", "block", "ax", "ay", "az", "ua", "distance", "from", "ix", "iy"})
+        if (name == word) return true;
+      return false;
+    };
     for (const Axis& axis : machine_.axes)
-      if (reserved(axis.name))
+      if (reserved(axis.name) || reserved_since(axis.name))
         throw InputError({machine_.file, axis.line}, axis.name,
                          "measurement files use this name for a measured column");
     for (const Input& input : machine_.inputs)
@@ -254,26 +283,109 @@ class Builder {
     }
     States& states = result_.states;
     if (reader_.has("run")) {
-      states.run_names.clear();
-      std::map<std::string, std::size_t> known;
-      const std::vector<std::string> runs = reader_.words("run");
-      for (std::size_t row = 0; row < runs.size(); ++row) {
-        const auto [found, fresh] = known.emplace(runs[row], states.run_names.size());
-        if (fresh) states.run_names.push_back(runs[row]);
-        states.run[row] = found->second;
-      }
+      const Labels runs = labels_of(reader_.words("run"));
+      states.run = runs.of;
+      states.run_names = runs.names;
     }
-    std::vector<double> seen(states.run_names.size(), 0);
+    if (has_word("setup")) states.setup = labels_of(setups_of_rows());
+    if (has_word("clock")) states.clock = labels_of(reader_.words("clock"));
+    if (has_word("block")) states.block = labels_of(reader_.words("block"));
+    std::vector<double> seen(states.names(states.clock).size(), 0);
     for (std::size_t row = 0; row < reader_.rows(); ++row)
-      states.visit[static_cast<Eigen::Index>(row)] = seen[states.run[row]]++;
+      states.visit[static_cast<Eigen::Index>(row)] = seen[states.of(states.clock, row)]++;
     if (reader_.has("visit")) states.visit = reader_.numbers("visit", Dimension::kNone, true);
     result_.uncertainty = Column::Zero(static_cast<Eigen::Index>(reader_.rows()));
-    if (!reader_.has("u")) return;
-    const bool angle = find_unit(reader_.unit("u"))->dimension == Dimension::kAngle;
-    result_.uncertainty = reader_.numbers("u", angle ? Dimension::kAngle : Dimension::kLength, true);
+    if (reader_.has("u")) {
+      const bool angle = reader_.dimension("u") == Dimension::kAngle;
+      result_.uncertainty = reader_.numbers("u", angle ? Dimension::kAngle : Dimension::kLength, true);
+      require_above_zero("u", result_.uncertainty);
+    }
+    if (!has_word("ua") || reader_.dimension("ua") != Dimension::kAngle) return;
+    const Column read = reader_.numbers("ua", Dimension::kAngle, false);
+    require_above_zero("ua", read);
+    result_.angle_uncertainty = read.isNaN().select(0, read);
+  }
+
+  void require_above_zero(const std::string& name, const Column& values) const {
     for (std::size_t row = 0; row < reader_.rows(); ++row)
-      if (result_.uncertainty[static_cast<Eigen::Index>(row)] <= 0)
-        throw InputError(reader_.place(row), reader_.cell("u", row), "an uncertainty is greater than 0");
+      if (values[static_cast<Eigen::Index>(row)] <= 0)
+        throw InputError(reader_.place(row), reader_.cell(name, row), "an uncertainty is greater than 0");
+  }
+
+  /// Is there a column of this name, and does the machine file not claim it for an input of its own?
+  bool has_word(const std::string& name) const { return reader_.has(name) && !machine_.find_input(name); }
+
+  static Labels labels_of(const std::vector<std::string>& words) {
+    Labels labels;
+    std::map<std::string, std::size_t> known;
+    for (const std::string& word : words) {
+      const auto [found, fresh] = known.emplace(word, labels.names.size());
+      if (fresh) labels.names.push_back(word);
+      labels.of.push_back(found->second);
+    }
+    return labels;
+  }
+
+  /// The set-up of each row; a run for which the machine file has a BaseShift keeps that.
+  std::vector<std::string> setups_of_rows() {
+    std::vector<std::string> setups = reader_.words("setup");
+    const States& states = result_.states;
+    for (std::size_t row = 0; row < setups.size(); ++row)
+      for (const BaseShift& shift : machine_.base_shifts)
+        if (!shift.of_setup && shift.run == states.run_names[states.run[row]]) setups[row] = *shift.run;
+    return setups;
+  }
+
+  /// ax ay az: three pure numbers, a unit vector where they are given. With a unit they are other columns.
+  void read_directions() {
+    for (const char* name : {"ax", "ay", "az"})
+      if (!has_word(name) || reader_.dimension(name) != Dimension::kNone || reader_.is_text(name)) return;
+    result_.direction.resize(3, static_cast<Eigen::Index>(reader_.rows()));
+    for (Eigen::Index k = 0; k < 3; ++k)
+      result_.direction.row(k) =
+          reader_.numbers(std::string("a") + "xyz"[k], Dimension::kNone, false).matrix().transpose();
+    for (std::size_t row = 0; row < reader_.rows(); ++row) {
+      auto direction = result_.direction.col(static_cast<Eigen::Index>(row));
+      const auto given = 3 - direction.array().isNaN().count();
+      if (given != 0 && (given != 3 || std::abs(direction.norm() - 1) > 0.01))
+        throw InputError(reader_.place(row), reader_.cell("ax", row), "ax, ay, az must be a unit vector");
+      direction.normalize();
+    }
+    has_directions_ = true;
+  }
+
+  /// A word that names the row at the other end of a distance: a label that one row of the file bears, or the
+  /// number of a row of data, from 1.
+  void read_distances() {
+    if (!has_word("distance") || !reader_.has("from")) return;
+    const std::vector<std::string> from = reader_.words("from");
+    std::map<std::string, std::size_t> rows_of_word;
+    std::set<std::string> twice;
+    for (const CsvColumn& column : reader_.unused())
+      if (reader_.is_text(column.name)) {
+        const std::vector<std::string> words = reader_.peek(column.name);
+        for (std::size_t row = 0; row < words.size(); ++row)
+          if (!words[row].empty() && !rows_of_word.emplace(words[row], row).second) twice.insert(words[row]);
+      }
+    result_.other_end.assign(reader_.rows(), kNoRow);
+    for (std::size_t row = 0; row < reader_.rows(); ++row) {
+      if (from[row].empty()) continue;
+      const auto known = rows_of_word.find(from[row]);
+      if (known != rows_of_word.end() && !twice.contains(from[row])) {
+        result_.other_end[row] = known->second;
+      } else {
+        const auto number = known == rows_of_word.end() ? parse_number(from[row]) : std::nullopt;
+        if (!number || *number < 1 || *number > static_cast<double>(reader_.rows()) ||
+            *number != std::floor(*number))
+          throw InputError(reader_.place(row), from[row],
+                           known == rows_of_word.end() ? "no row has this label, and it is no number of a row"
+                                                       : "more than one row has this label");
+        result_.other_end[row] = static_cast<std::size_t>(*number) - 1;
+      }
+      if (result_.other_end[row] == row)
+        throw InputError(reader_.place(row), from[row], "a distance has two ends, this row is both");
+    }
+    has_distances_ = true;
   }
 
   void three(const std::string& prefix, const char* owner, Eigen::Matrix3Xd& target) {
@@ -299,16 +411,21 @@ class Builder {
   }
 
   void read_observations() {
-    std::array<Column, 8> values;
+    std::array<Column, kObservationNames.size()> values;
     bool any = false;
     for (std::size_t k = 0; k < kObservationNames.size(); ++k) {
-      if (!reader_.has(kObservationNames[k])) continue;
-      const bool rotation = is_rotation(static_cast<ObservationKind>(k));
-      values[k] =
-          reader_.numbers(kObservationNames[k], rotation ? Dimension::kAngle : Dimension::kLength, false);
-      any = true;
+      const auto kind = static_cast<ObservationKind>(k);
+      if (is_direction(kind)) {
+        if (has_directions_) values[k] = 0 * result_.direction.row(0).transpose().array();
+      } else if (is_measured(kind)) {
+        values[k] = reader_.numbers(kObservationNames[k],
+                                    is_rotation(kind) ? Dimension::kAngle : Dimension::kLength, false);
+      }
+      any = any || values[k].size() > 0;
     }
-    if (!any) throw InputError(reader_.header(), "", "no measured column (x y z rx ry rz length d)");
+    if (!any)
+      throw InputError(reader_.header(), "",
+                       "no measured column (x y z rx ry rz length d ax ay az distance ix iy)");
     for (std::size_t row = 0; row < reader_.rows(); ++row)
       for (std::size_t k = 0; k < values.size(); ++k) {
         const auto at = static_cast<Eigen::Index>(row);
@@ -319,14 +436,30 @@ class Builder {
       }
   }
 
+  /// Is there a column of this kind of reading? Words of the second round that stand for something else in
+  /// older files are readings only with what belongs to them.
+  bool is_measured(ObservationKind kind) const {
+    const char* name = kObservationNames[static_cast<std::size_t>(kind)];
+    if (kind == ObservationKind::kDistance) return has_distances_;
+    if (is_inclination(kind)) return has_word(name) && reader_.dimension(name) == Dimension::kAngle;
+    return reader_.has(name);
+  }
+
   /// A length needs its centre, a deviation its nominal point and a unit normal.
   void check_geometry(ObservationKind kind, std::size_t row) {
     const auto at = static_cast<Eigen::Index>(row);
     const auto finite = [&](const Eigen::Matrix3Xd& m) { return m.col(at).allFinite(); };
     if (kind == ObservationKind::kLength && !finite(result_.centre))
       throw InputError(reader_.place(row), "length", "cx, cy and cz may not be empty here");
-    if (kind == ObservationKind::kLength && reader_.cell("length", row).front() == '-')
-      throw InputError(reader_.place(row), reader_.cell("length", row), "a length is not negative");
+    for (const char* name : {"length", "distance"})
+      if (kObservationNames[static_cast<std::size_t>(kind)] == std::string_view(name) &&
+          reader_.cell(name, row).front() == '-')
+        throw InputError(reader_.place(row), reader_.cell(name, row), "a length is not negative");
+    if (kind == ObservationKind::kDistance && result_.other_end[row] == kNoRow)
+      throw InputError(reader_.place(row), "from", "may not be empty here: the row at the other end");
+    if (is_inclination(kind) && !machine_.workpiece.empty())
+      throw InputError(reader_.header(), kObservationNames[static_cast<std::size_t>(kind)],
+                       "an inclination is read on the tool of a machine whose workpiece stands still");
     if (kind != ObservationKind::kD) return;
     if (!finite(result_.nominal_point))
       throw InputError(reader_.place(row), "d", "px, py and pz may not be empty here");
@@ -340,6 +473,7 @@ class Builder {
   FileReader reader_;
   Measurement result_;
   std::vector<char> excluded_;
+  bool has_directions_ = false, has_distances_ = false;
 };
 
 Column join(const Column& a, const Column& b) {
@@ -360,14 +494,8 @@ void join_all(std::vector<Column>& a, const std::vector<Column>& b) {
   for (std::size_t i = 0; i < a.size(); ++i) a[i] = join(a[i], b[i]);
 }
 
-void append_states(States& all, const States& next) {
-  std::vector<std::size_t> run_of;
-  for (const std::string& name : next.run_names) {
-    auto found = std::find(all.run_names.begin(), all.run_names.end(), name);
-    if (found == all.run_names.end()) found = all.run_names.insert(all.run_names.end(), name);
-    run_of.push_back(static_cast<std::size_t>(found - all.run_names.begin()));
-  }
-  for (const std::size_t run : next.run) all.run.push_back(run_of[run]);
+void append_states(States& all, const States& next, bool apart) {
+  append_labels(all, next, apart);
   join_all(all.axis, next.axis);
   join_all(all.velocity, next.velocity);
   join_all(all.acceleration, next.acceleration);
@@ -402,6 +530,42 @@ void append_candidates(Measurement& all, const Measurement& next) {
           {candidate.name, candidate.unit, join(Column::Constant(before, kAbsent), candidate.value)});
 }
 
+/// A column of words that one of two files lacks is empty there.
+void append_labels_of_rows(Measurement& all, const Measurement& next) {
+  for (const LabelColumn& other : next.labels)
+    if (std::none_of(all.labels.begin(), all.labels.end(),
+                     [&](const LabelColumn& one) { return one.name == other.name; }))
+      all.labels.push_back({other.name, std::vector<std::string>(all.rows())});
+  for (LabelColumn& one : all.labels) {
+    one.value.resize(all.rows() + next.rows());
+    for (const LabelColumn& other : next.labels)
+      if (other.name == one.name)
+        std::copy(other.value.begin(), other.value.end(),
+                  one.value.begin() + static_cast<std::ptrdiff_t>(all.rows()));
+  }
+}
+
+/// What some rows have and others do not: ua, directions, other ends of distances.
+void append_optional(Measurement& all, const Measurement& next) {
+  const auto before = static_cast<Eigen::Index>(all.rows()), more = static_cast<Eigen::Index>(next.rows());
+  const auto with = [](const Column& column, Eigen::Index count) {
+    return column.size() > 0 ? column : Column(Column::Zero(count));
+  };
+  if (all.angle_uncertainty.size() > 0 || next.angle_uncertainty.size() > 0)
+    all.angle_uncertainty = join(with(all.angle_uncertainty, before), with(next.angle_uncertainty, more));
+  const auto pointing = [](const Eigen::Matrix3Xd& m, Eigen::Index count) {
+    return m.cols() > 0 ? m : Eigen::Matrix3Xd(Eigen::Matrix3Xd::Constant(3, count, kAbsent));
+  };
+  if (all.direction.cols() > 0 || next.direction.cols() > 0)
+    all.direction = join(pointing(all.direction, before), pointing(next.direction, more));
+  if (all.other_end.empty() && next.other_end.empty()) return;
+  all.other_end.resize(all.rows(), kNoRow);
+  for (std::size_t row = 0; row < next.rows(); ++row) {
+    const std::size_t other = next.other_end.empty() ? kNoRow : next.other_end[row];
+    all.other_end.push_back(other == kNoRow ? kNoRow : other + all.rows());
+  }
+}
+
 /// Where only one of two has a correction, the other's is 0; and so with the images.
 void append_corrections(Measurement& all, Measurement& next) {
   for (auto [one, other] : {std::pair(&all, &next), std::pair(&next, &all)}) {
@@ -411,27 +575,6 @@ void append_corrections(Measurement& all, Measurement& next) {
   }
   join_all(all.correction, next.correction);
   append(all.corrected, next.corrected);
-}
-
-void append_measurement(Measurement& all, Measurement next) {
-  append_candidates(all, next);
-  append_corrections(all, next);
-  for (Observation observation : next.observations) {
-    observation.row += all.rows();
-    all.observations.push_back(observation);
-  }
-  all.uncertainty = join(all.uncertainty, next.uncertainty);
-  append(all.check, next.check);
-  for (std::size_t& file : next.file) file = all.files.size();
-  append(all.file, next.file);
-  append(all.line, next.line);
-  append(all.files, next.files);
-  all.centre = join(all.centre, next.centre);
-  all.nominal_point = join(all.nominal_point, next.nominal_point);
-  all.excluded += next.excluded;
-  for (const std::string& name : next.recorded)
-    if (!all.has_recorded(name)) all.recorded.push_back(name);
-  append_states(all.states, next.states);
 }
 
 /// Fills the corrections of rows that name only the image, and moves the axes to where the machine stood.
@@ -478,6 +621,13 @@ Column commanded(const Measurement& m, std::size_t axis) {
   return ((m.states.axis[axis] - m.correction[axis]) * 1e9).round() / 1e9;
 }
 
+double uncertainty_of(const Measurement& m, const Observation& o) {
+  const auto row = static_cast<Eigen::Index>(o.row);
+  if (is_rotation(o.kind) && m.angle_uncertainty.size() > 0 && m.angle_uncertainty[row] > 0)
+    return m.angle_uncertainty[row];
+  return m.uncertainty[row];
+}
+
 double commanded(const Measurement& m, std::size_t axis, Eigen::Index row) {
   if (m.correction.empty()) return m.states.axis[axis][row];
   return std::round((m.states.axis[axis][row] - m.correction[axis][row]) * 1e9) / 1e9;
@@ -494,15 +644,16 @@ bool Measurement::has_recorded(std::string_view name) const {
 }
 
 void require_time_order(const Measurement& m) {
-  std::vector<std::size_t> last(m.states.run_names.size(), m.rows());
+  const std::vector<std::string>& clocks = m.states.names(m.states.clock);
+  std::vector<std::size_t> last(clocks.size(), m.rows());
   for (std::size_t row = 0; row < m.rows(); ++row) {
-    std::size_t& before = last[m.states.run[row]];
+    const std::size_t clock = m.states.of(m.states.clock, row);
+    std::size_t& before = last[clock];
     const auto at = static_cast<Eigen::Index>(row), from = static_cast<Eigen::Index>(before);
     if (before < m.rows() && m.states.time[at] < m.states.time[from])
-      throw InputError(
-          {m.files[m.file[row]], m.line[row]}, "t",
-          fmt::format("falls from {} to {} s in run \"{}\": rows are in the order of time",
-                      m.states.time[from], m.states.time[at], m.states.run_names[m.states.run[row]]));
+      throw InputError({m.files[m.file[row]], m.line[row]}, "t",
+                       fmt::format("falls from {} to {} s in run \"{}\": rows are in the order of time",
+                                   m.states.time[from], m.states.time[at], clocks[clock]));
     before = row;
   }
 }
@@ -511,18 +662,29 @@ Measurement select_rows(const Measurement& all, const std::vector<std::size_t>& 
   Measurement result;
   result.files = all.files;
   result.states = select_states(all.states, keep);
-  std::vector<std::size_t> position(all.rows(), all.rows());
-  for (std::size_t i = 0; i < keep.size(); ++i) position[keep[i]] = i;
-  for (Observation o : all.observations)
-    if (position[o.row] < all.rows()) {
-      o.row = position[o.row];
+  // A row's observations stand together; of a row that is kept twice the first one stands for it elsewhere.
+  std::vector<std::size_t> position(all.rows(), kNoRow), first(all.rows() + 1, 0);
+  for (std::size_t i = keep.size(); i-- > 0;) position[keep[i]] = i;
+  for (const Observation& o : all.observations) ++first[o.row + 1];
+  for (std::size_t row = 0; row < all.rows(); ++row) first[row + 1] += first[row];
+  for (std::size_t i = 0; i < keep.size(); ++i) {
+    const std::size_t other = all.other_end.empty() ? kNoRow : all.other_end[keep[i]];
+    const std::size_t end = other == kNoRow ? kNoRow : position[other];
+    if (!all.other_end.empty()) result.other_end.push_back(end);
+    for (std::size_t k = first[keep[i]]; k < first[keep[i] + 1]; ++k) {
+      Observation o = all.observations[k];
+      if (o.kind == ObservationKind::kDistance && end == kNoRow) continue;
+      o.row = i;
       result.observations.push_back(o);
     }
+  }
   const auto count = static_cast<Eigen::Index>(keep.size());
   result.uncertainty.resize(count);
   result.correction.assign(all.correction.size(), Column(count));
-  result.centre.resize(3, count);
-  result.nominal_point.resize(3, count);
+  if (all.centre.cols() > 0) result.centre.resize(3, count);
+  if (all.nominal_point.cols() > 0) result.nominal_point.resize(3, count);
+  if (all.angle_uncertainty.size() > 0) result.angle_uncertainty.resize(count);
+  if (all.direction.cols() > 0) result.direction.resize(3, count);
   for (const CandidateInput& candidate : all.candidates)
     result.candidates.push_back({candidate.name, candidate.unit, Column(count)});
   for (Eigen::Index to = 0; to < count; ++to) {
@@ -530,11 +692,14 @@ Measurement select_rows(const Measurement& all, const std::vector<std::size_t>& 
     result.uncertainty[to] = all.uncertainty[from];
     for (std::size_t k = 0; k < all.correction.size(); ++k)
       result.correction[k][to] = all.correction[k][from];
-    result.centre.col(to) = all.centre.col(from);
-    result.nominal_point.col(to) = all.nominal_point.col(from);
+    if (all.centre.cols() > 0) result.centre.col(to) = all.centre.col(from);
+    if (all.nominal_point.cols() > 0) result.nominal_point.col(to) = all.nominal_point.col(from);
+    if (all.angle_uncertainty.size() > 0) result.angle_uncertainty[to] = all.angle_uncertainty[from];
+    if (all.direction.cols() > 0) result.direction.col(to) = all.direction.col(from);
     for (std::size_t k = 0; k < all.candidates.size(); ++k)
       result.candidates[k].value[to] = all.candidates[k].value[from];
   }
+  for (const LabelColumn& label : all.labels) result.labels.push_back({label.name, pick(label.value, keep)});
   if (!all.corrected.empty()) result.corrected = pick(all.corrected, keep);
   result.check = pick(all.check, keep);
   result.file = pick(all.file, keep);
@@ -542,6 +707,29 @@ Measurement select_rows(const Measurement& all, const std::vector<std::size_t>& 
   result.excluded = all.excluded;
   result.recorded = all.recorded;
   return result;
+}
+
+void append_measurement(Measurement& all, Measurement next, bool apart) {
+  append_candidates(all, next);
+  append_corrections(all, next);
+  append_labels_of_rows(all, next);
+  append_optional(all, next);
+  for (Observation observation : next.observations) {
+    observation.row += all.rows();
+    all.observations.push_back(observation);
+  }
+  all.uncertainty = join(all.uncertainty, next.uncertainty);
+  append(all.check, next.check);
+  for (std::size_t& file : next.file) file = all.files.size();
+  append(all.file, next.file);
+  append(all.line, next.line);
+  append(all.files, next.files);
+  all.centre = join(all.centre, next.centre);
+  all.nominal_point = join(all.nominal_point, next.nominal_point);
+  all.excluded += next.excluded;
+  for (const std::string& name : next.recorded)
+    if (!all.has_recorded(name)) all.recorded.push_back(name);
+  append_states(all.states, next.states, apart);
 }
 
 Measurement parse_measurement(const std::string& text, const std::string& file, const Machine& machine,

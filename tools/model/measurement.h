@@ -10,12 +10,41 @@
 
 namespace vernier {
 
-enum class ObservationKind : std::uint8_t { kX, kY, kZ, kRx, kRy, kRz, kLength, kD };
-inline constexpr std::array<const char*, 8> kObservationNames = {"x",  "y",  "z",      "rx",
-                                                                 "ry", "rz", "length", "d"};
-/// rx ry rz: the tool's rotation vector; the others are lengths.
+/// a1 a2: the two angles by which a measured direction is off (columns ax ay az); ix iy: inclinations of the
+/// tool's x and y axes against the horizontal; distance: to the tool point of another row.
+enum class ObservationKind : std::uint8_t {
+  kX,
+  kY,
+  kZ,
+  kRx,
+  kRy,
+  kRz,
+  kLength,
+  kD,
+  kA1,
+  kA2,
+  kDistance,
+  kIx,
+  kIy
+};
+inline constexpr std::array<const char*, 13> kObservationNames = {
+    "x", "y", "z", "rx", "ry", "rz", "length", "d", "a1", "a2", "distance", "ix", "iy"};
+constexpr bool is_direction(ObservationKind kind) {
+  return kind == ObservationKind::kA1 || kind == ObservationKind::kA2;
+}
+constexpr bool is_inclination(ObservationKind kind) {
+  return kind == ObservationKind::kIx || kind == ObservationKind::kIy;
+}
+/// Readings of the tool's orientation, deg: rx ry rz (its rotation vector), a1 a2, ix iy. The others are
+/// lengths, mm.
 constexpr bool is_rotation(ObservationKind kind) {
-  return kind == ObservationKind::kRx || kind == ObservationKind::kRy || kind == ObservationKind::kRz;
+  return kind == ObservationKind::kRx || kind == ObservationKind::kRy || kind == ObservationKind::kRz ||
+         is_direction(kind) || is_inclination(kind);
+}
+/// Readings that no set-up of the instrument touches: d is told in workpiece coordinates, an inclination by
+/// gravity.
+constexpr bool is_free_of_setup(ObservationKind kind) {
+  return kind == ObservationKind::kD || is_inclination(kind);
 }
 
 /// One measured number: mm, or deg for rotations.
@@ -32,6 +61,15 @@ struct CandidateInput {
   Column value;
 };
 
+/// A column of words, kept as it stands.
+struct LabelColumn {
+  std::string name;
+  std::vector<std::string> value;
+};
+
+/// `other_end` of a row without a distance.
+inline constexpr std::size_t kNoRow = static_cast<std::size_t>(-1);
+
 /// The rows of one or several measurement files, bound to a machine (FORMATS section 2). Rows excluded for an
 /// empty input cell are not in it, only counted.
 struct Measurement {
@@ -39,7 +77,9 @@ struct Measurement {
   States states;
   std::vector<Observation> observations;  // by row, in the order of kObservationNames
   std::vector<CandidateInput> candidates;
+  std::vector<LabelColumn> labels;
   Column uncertainty;                   // u of the row, mm (deg for its rotations); 0 where not given
+  Column angle_uncertainty;             // ua: of its rotations, deg; 0 where not given; empty: in all
   std::vector<char> check;              // role of the row
   std::vector<std::size_t> file, line;  // where the row stands
   /// What a board had added in each row, an entry an axis, mm or deg; empty: nothing. states.axis is where
@@ -48,12 +88,18 @@ struct Measurement {
   std::vector<std::string> corrected;  // fingerprint of the image that ran in each row; empty: none in all
   Eigen::Matrix3Xd centre;             // of `length`, measuring frame, mm
   Eigen::Matrix3Xd nominal_point;      // of `d`, workpiece coordinates, mm
+  Eigen::Matrix3Xd direction;          // of a1 a2, unit vectors, measuring frame; empty: none in all
+  std::vector<std::size_t> other_end;  // row at the other end of a distance, else kNoRow; empty: none in all
   std::size_t excluded = 0;            // rows with an empty input cell
   std::vector<std::string> recorded;   // names of the columns of motion that some file has (vX, feed, t ...)
 
   std::size_t rows() const { return states.count; }
   bool has_recorded(std::string_view name) const;
 };
+
+/// Standard uncertainty of a reading: ua of its row for a rotation that has one, else u; 0 where none is
+/// given. mm or deg. tool.
+double uncertainty_of(const Measurement& measurement, const Observation& observation);
 
 /// The position that an axis was commanded to in each row (read, where that was logged), mm or deg: what was
 /// set, and so what tells whether two rows are at one pose. states.axis less the correction, to 1e-9 as it
@@ -78,8 +124,13 @@ Measurement read_measurement(const std::vector<std::string>& paths, const Machin
 /// time or lags has no meaning there. tool.
 void require_time_order(const Measurement& measurement);
 
-/// The rows `keep` (increasing) of a measurement, with their observations.
+/// The rows `keep` of a measurement, any of them more than once, with their observations; a distance only
+/// where both its ends are kept.
 Measurement select_rows(const Measurement& all, const std::vector<std::size_t>& keep);
+
+/// Appends rows bound to the same machine. Runs (and set-ups ...) of one name are one, or where `apart` none
+/// of `next` is one of `all`. Throws InputError where a column stands in two units. tool.
+void append_measurement(Measurement& all, Measurement next, bool apart = false);
 
 /// The same from text (one file), for tests and imports.
 Measurement parse_measurement(const std::string& text, const std::string& file, const Machine& machine,

@@ -40,14 +40,31 @@ Matrix3d inverse_left_jacobian(const Vector3d& phi) {
   return Matrix3d::Identity() - 0.5 * k + factor * k * k;
 }
 
+struct ValueAndSlope {
+  double value = 0, slope = 0;
+};
+/// acos(x) / sqrt(1 - x^2), 1 at x = 1: the angle between two directions over its sine, by its cosine.
+ValueAndSlope angle_over_sine(double x) {
+  constexpr double kNear = 1e-8;  // below, a series: 1 + (1 - x)/3
+  x = std::clamp(x, -1 + 1e-12, 1.0);
+  if (1 - x < kNear) return {1 + (1 - x) / 3, -1.0 / 3};
+  const double square = 1 - x * x, value = std::acos(x) / std::sqrt(square);
+  return {value, (x * value - 1) / square};
+}
+
+/// Column of the sight for a1 and a2, of the tool's frame for ix and iy.
+int across(ObservationKind kind) { return kind == ObservationKind::kA1 ? 1 : 2; }
+int level(ObservationKind kind) { return kind == ObservationKind::kIx ? 0 : 1; }
+
 int component(ObservationKind kind) {
   return static_cast<int>(kind) - static_cast<int>(ObservationKind::kRx);
 }
 
 }  // namespace
 
-ObservationModel::ObservationModel(const Measurement& measurement, const BaseShift* shift, const Frame& pose)
-    : m_(measurement), pose_(pose) {
+ObservationModel::ObservationModel(const Measurement& measurement, const std::array<double, 3>& gravity,
+                                   const BaseShift* shift, const Frame& pose)
+    : m_(measurement), pose_(pose), up_(-gravity[0], -gravity[1], -gravity[2]) {
   if (shift != nullptr) {
     base_ = sixdof_frame(shift->value);
     base_value_ = shift->value;
@@ -67,10 +84,20 @@ const Vector3d& ObservationModel::rotation_vector(std::size_t row) {
   auto o = std::lower_bound(m_.observations.begin(), m_.observations.end(), row,
                             [](const Observation& a, std::size_t r) { return a.row < r; });
   for (; o != m_.observations.end() && o->row == row; ++o)
-    if (is_rotation(o->kind)) measured[component(o->kind)] = o->value / kDegPerRad;
+    if (o->kind >= ObservationKind::kRx && o->kind <= ObservationKind::kRz)
+      measured[component(o->kind)] = o->value / kDegPerRad;
   phi_ = nearest_rotation_vector(base_.rotation * pose_.rotation, measured);
   has_phi_ = true;
   return phi_;
+}
+
+Matrix3d ObservationModel::sight(Eigen::Index row) const {
+  Vector3d along = tool_axis();
+  if (m_.direction.cols() > 0 && m_.direction.col(row).allFinite()) along = m_.direction.col(row);
+  const Vector3d across = along.unitOrthogonal();
+  Matrix3d frame;
+  frame << along, across, along.cross(across);
+  return frame;
 }
 
 double ObservationModel::predicted(const Observation& o) {
@@ -86,6 +113,17 @@ double ObservationModel::predicted(const Observation& o) {
       return (point_ - m_.centre.col(at)).norm();
     case ObservationKind::kD:
       return normal(at).dot(pose_.origin - m_.nominal_point.col(at));
+    case ObservationKind::kA1:
+    case ObservationKind::kA2: {
+      const Matrix3d frame = sight(at);
+      const Vector3d axis = tool_axis();
+      return kDegPerRad * angle_over_sine(frame.col(0).dot(axis)).value * frame.col(across(o.kind)).dot(axis);
+    }
+    case ObservationKind::kDistance:
+      return (point_ - other_end_).norm();
+    case ObservationKind::kIx:
+    case ObservationKind::kIy:
+      return kDegPerRad * std::asin(std::clamp(up_.dot(pose_.rotation.col(level(o.kind))), -1.0, 1.0));
     default:
       return kDegPerRad * rotation_vector(o.row)[component(o.kind)];
   }
@@ -100,6 +138,21 @@ Twist ObservationModel::gradient(const Observation& o) const {
     if (length > 0) g.point = arm / length;
   } else if (o.kind == ObservationKind::kD) {
     g.point = base_.rotation * normal(at);
+  } else if (is_direction(o.kind)) {
+    // d/d(turn w) of phi(a . d) (e . d), where the tool axis d moves by w x d.
+    const Matrix3d frame = sight(at);
+    const Vector3d axis = tool_axis(), along = frame.col(0), aside = frame.col(across(o.kind));
+    const ValueAndSlope phi = angle_over_sine(along.dot(axis));
+    g.rotation =
+        kDegPerRad * (phi.value * axis.cross(aside) + aside.dot(axis) * phi.slope * axis.cross(along));
+  } else if (o.kind == ObservationKind::kDistance) {
+    const Vector3d arm = point_ - other_end_;
+    const double length = arm.norm();
+    if (length > 0) g.point = arm / length;
+  } else if (is_inclination(o.kind)) {
+    const Vector3d arm = pose_.rotation.col(level(o.kind));
+    const double cosine = std::sqrt(std::max(1 - std::pow(up_.dot(arm), 2), 1e-12));
+    g.rotation = base_.rotation * (kDegPerRad / cosine * arm.cross(up_));
   } else if (is_rotation(o.kind)) {
     g.rotation = kDegPerRad * inverse_left_jacobian(phi_).row(component(o.kind)).transpose();
   } else {

@@ -8,10 +8,17 @@
 namespace vernier {
 
 /// What the observations of one row should read, given the tool's pose in workpiece coordinates and the
-/// BaseShift of the row's run (null: identity). Keeps references. tool.
+/// BaseShift of the row's set-up (null: identity). gravity: of the machine, unit vector. Keeps references.
+/// tool.
 class ObservationModel {
  public:
-  ObservationModel(const Measurement& measurement, const BaseShift* shift, const Frame& pose);
+  ObservationModel(const Measurement& measurement, const std::array<double, 3>& gravity,
+                   const BaseShift* shift, const Frame& pose);
+
+  /// Tool point in the measuring frame, mm.
+  const Eigen::Vector3d& point() const { return point_; }
+  /// Where the other end of the row's distance is; before predicted() of one.
+  void set_other_end(const Eigen::Vector3d& point) { other_end_ = point; }
 
   /// mm, or deg for rotations: of the rotation vectors that repeat every 360 deg the one nearest to the
   /// reading.
@@ -28,12 +35,18 @@ class ObservationModel {
  private:
   Eigen::Vector3d normal(Eigen::Index row) const;
   const Eigen::Vector3d& rotation_vector(std::size_t row);
+  /// The measured direction and two across it; where none was measured the tool's own.
+  Eigen::Matrix3d sight(Eigen::Index row) const;
+  /// Tool axis (z of the tool's frame) in the measuring frame.
+  Eigen::Vector3d tool_axis() const { return base_.rotation * pose_.rotation.col(2); }
 
   const Measurement& m_;
   const Frame& pose_;
+  Eigen::Vector3d up_;
   Frame base_;
   std::array<double, 6> base_value_{};
   Eigen::Vector3d point_, phi_ = Eigen::Vector3d::Zero();  // measuring frame: mm, rad
+  Eigen::Vector3d other_end_ = Eigen::Vector3d::Zero();    // mm
   bool has_phi_ = false;
 };
 

@@ -10,7 +10,7 @@ namespace vernier {
 Eigen::VectorXd predict(const Machine& machine, const Measurement& m) {
   const ChainRows chain(machine, m.states);
   std::vector<const BaseShift*> shifts;
-  for (const std::string& run : m.states.run_names) {
+  for (const std::string& run : m.states.names(m.states.setup)) {
     const auto found = base_shift_of(machine, run);
     shifts.push_back(found ? &machine.base_shifts[*found] : nullptr);
   }
@@ -18,7 +18,12 @@ Eigen::VectorXd predict(const Machine& machine, const Measurement& m) {
   for (std::size_t k = 0; k < m.observations.size();) {
     const std::size_t row = m.observations[k].row;
     const Frame pose = chain.pose(row);
-    ObservationModel model(m, shifts[m.states.run[row]], pose);
+    ObservationModel model(m, machine.gravity, shifts[m.states.of(m.states.setup, row)], pose);
+    if (const std::size_t other = m.other_end.empty() ? kNoRow : m.other_end[row]; other != kNoRow) {
+      const Frame there = chain.pose(other);
+      model.set_other_end(
+          ObservationModel(m, machine.gravity, shifts[m.states.of(m.states.setup, other)], there).point());
+    }
     for (; k < m.observations.size() && m.observations[k].row == row; ++k)
       predicted[static_cast<Eigen::Index>(k)] = model.predicted(m.observations[k]);
   }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/model/states.h"
 
+#include <algorithm>
+
 namespace vernier {
 namespace {
 
@@ -36,6 +38,51 @@ States make_states(std::size_t count, std::size_t axes, const std::vector<double
   return states;
 }
 
+void make_one_run(States& states, const std::string& name) {
+  states.run.assign(states.count, 0);
+  states.run_names = {name};
+  for (const auto labels : kStateLabels) states.*labels = {};
+}
+
+void begin_run(States& states, std::size_t moment, const std::string& name) {
+  states.run[moment] = states.run_names.size();
+  states.run_names.push_back(name);
+  for (const auto labels : kStateLabels) {
+    Labels& one = states.*labels;
+    if (one.of.empty()) continue;
+    one.of[moment] = one.names.size();
+    one.names.push_back(name);
+  }
+}
+
+void append_labels(States& all, const States& next, bool apart) {
+  const auto append = [&](std::vector<std::size_t>& of, std::vector<std::string>& names,
+                          const std::vector<std::size_t>& next_of,
+                          const std::vector<std::string>& next_names) {
+    std::vector<std::size_t> at;
+    const auto known = static_cast<std::ptrdiff_t>(apart ? 0 : names.size());
+    for (const std::string& name : next_names) {
+      const auto found = std::find(names.begin(), names.begin() + known, name);
+      at.push_back(found == names.begin() + known ? names.size()
+                                                  : static_cast<std::size_t>(found - names.begin()));
+      if (at.back() == names.size()) names.push_back(name);
+    }
+    for (const std::size_t one : next_of) of.push_back(at[one]);
+  };
+  for (const auto labels : kStateLabels) {
+    Labels& one = all.*labels;
+    const Labels& other = next.*labels;
+    if (one.of.empty() && other.of.empty()) continue;
+    // Where one of two files tells them, the runs of the other stand for its own.
+    if (one.of.empty()) one = {all.run, all.run_names};
+    if (other.of.empty())
+      append(one.of, one.names, next.run, next.run_names);
+    else
+      append(one.of, one.names, other.of, other.names);
+  }
+  append(all.run, all.run_names, next.run, next.run_names);
+}
+
 States select_states(const States& states, const std::vector<std::size_t>& which) {
   States result;
   result.count = which.size();
@@ -52,6 +99,11 @@ States select_states(const States& states, const std::vector<std::size_t>& which
   result.input = pick(states.input, which);
   for (const std::size_t i : which) result.run.push_back(states.run[i]);
   result.run_names = states.run_names;
+  for (const auto labels : kStateLabels) {
+    (result.*labels).names = (states.*labels).names;
+    if ((states.*labels).of.empty()) continue;
+    for (const std::size_t i : which) (result.*labels).of.push_back((states.*labels).of[i]);
+  }
   return result;
 }
 

@@ -10,6 +10,12 @@ namespace vernier {
 
 using Column = Eigen::ArrayXd;
 
+/// A label of each moment. Without any the label of its run stands for it.
+struct Labels {
+  std::vector<std::size_t> of;     // index into names, an entry a moment; empty: as the run
+  std::vector<std::string> names;  // each once
+};
+
 /// Everything an expression may depend on, for N moments (rows of a measurement or ticks of a path), column
 /// by column. All columns have N entries; axis-wise vectors are indexed like Machine::axes, inputs like
 /// Machine::inputs.
@@ -24,11 +30,33 @@ struct States {
   Column curvature;                  // 1/mm
   std::array<Column, 3> normal;      // unit vector of the row, 0 where it has none
   Column time;                       // s
-  Column visit;                      // rows since the start of the run
+  Column visit;                      // rows since the start of the clock
   std::vector<Column> input;
   std::vector<std::size_t> run;  // index into run_names
   std::vector<std::string> run_names;
+  Labels setup;  // what a BaseShift stands for
+  Labels clock;  // of unbroken time: a lag, a count of visits and a drift begin with each
+  Labels block;  // part that may be left out to judge the rest
+
+  std::size_t of(const Labels& labels, std::size_t moment) const {
+    return labels.of.empty() ? run[moment] : labels.of[moment];
+  }
+  const std::vector<std::string>& names(const Labels& labels) const {
+    return labels.of.empty() ? run_names : labels.names;
+  }
 };
+
+/// The labels of moments that set-ups, clocks and blocks may be told by.
+inline constexpr std::array<Labels States::*, 3> kStateLabels = {&States::setup, &States::clock,
+                                                                 &States::block};
+
+/// All moments are one run of this name, and one of all else.
+void make_one_run(States& states, const std::string& name);
+/// A moment begins a run of its own by this name, and with it all else that is told apart.
+void begin_run(States& states, std::size_t moment, const std::string& name);
+/// Appends the runs, set-ups, clocks and blocks of `next`; labels of one name are one, or where `apart` none
+/// of `next` is one of `all`. The columns are not touched.
+void append_labels(States& all, const States& next, bool apart = false);
 
 /// `since` where no column says it: far beyond any decay length.
 inline constexpr double kLongWay = 1e9;

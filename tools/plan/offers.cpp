@@ -47,27 +47,6 @@ class Spread {
   int prime_ = 1;
 };
 
-Column picked(const Column& column, const std::vector<std::size_t>& which) {
-  Column result(static_cast<Eigen::Index>(which.size()));
-  for (std::size_t i = 0; i < which.size(); ++i)
-    result[static_cast<Eigen::Index>(i)] = column[static_cast<Eigen::Index>(which[i])];
-  return result;
-}
-
-template <class T>
-std::vector<T> picked(const std::vector<T>& list, const std::vector<std::size_t>& which) {
-  std::vector<T> result;
-  for (const std::size_t i : which) result.push_back(list[i]);
-  return result;
-}
-
-Eigen::Matrix3Xd picked(const Eigen::Matrix3Xd& points, const std::vector<std::size_t>& which) {
-  Eigen::Matrix3Xd result(3, points.cols() == 0 ? 0 : static_cast<Eigen::Index>(which.size()));
-  for (Eigen::Index i = 0; i < result.cols(); ++i)
-    result.col(i) = points.col(static_cast<Eigen::Index>(which[static_cast<std::size_t>(i)]));
-  return result;
-}
-
 double median(std::vector<double> values) {
   if (values.empty()) return 0;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -168,15 +147,17 @@ class Offerer {
     for (std::size_t i = 0; i < count_; ++i)
       which.push_back(std::min(
           old_.rows() - 1, static_cast<std::size_t>(Spread(i).next() * static_cast<double>(old_.rows()))));
-    Measurement& rows = result_.rows = take_rows(old_, which);
+    Measurement& rows = result_.rows = select_rows(old_, which);
     const double u = median(values_of(old_.uncertainty));
     plan_without_correction(rows);
     for (std::size_t row = result_.existing; row < rows.rows(); ++row) {
       rows.uncertainty[static_cast<Eigen::Index>(row)] = u;
-      rows.states.run[row] = rows.states.run_names.size();
-      rows.states.run_names.emplace_back(kPlanRun);
+      begin_run(rows.states, row, kPlanRun);
       rows.states.visit[static_cast<Eigen::Index>(row)] = 0;
     }
+    // Where a tool will point is not known before it stands there.
+    if (rows.direction.cols() > 0)
+      rows.direction.rightCols(static_cast<Eigen::Index>(count_)).setConstant(std::nan(""));
     fixed_pose_.assign(rows.rows(), 0);
     for (const Observation& o : rows.observations)
       if (o.kind == ObservationKind::kLength || o.kind == ObservationKind::kD) fixed_pose_[o.row] = 1;
@@ -246,67 +227,9 @@ class Offerer {
 
 }  // namespace
 
-Measurement take_rows(const Measurement& all, const std::vector<std::size_t>& which) {
-  Measurement result;
-  result.files = all.files;
-  result.states = select_states(all.states, which);
-  std::vector<std::vector<Observation>> of_row(all.rows());
-  for (const Observation& o : all.observations) of_row[o.row].push_back(o);
-  for (std::size_t i = 0; i < which.size(); ++i)
-    for (Observation o : of_row[which[i]]) {
-      o.row = i;
-      result.observations.push_back(o);
-    }
-  for (const CandidateInput& candidate : all.candidates)
-    result.candidates.push_back({candidate.name, candidate.unit, picked(candidate.value, which)});
-  for (const Column& column : all.correction) result.correction.push_back(picked(column, which));
-  if (!all.corrected.empty()) result.corrected = picked(all.corrected, which);
-  result.uncertainty = picked(all.uncertainty, which);
-  result.check = picked(all.check, which);
-  result.file = picked(all.file, which);
-  result.line = picked(all.line, which);
-  result.centre = picked(all.centre, which);
-  result.nominal_point = picked(all.nominal_point, which);
-  result.recorded = all.recorded;
-  return result;
-}
-
 Measurement append_rows(const Measurement& first, const Measurement& second) {
-  std::vector<std::size_t> which(first.rows() + second.rows(), 0);
-  for (std::size_t row = 0; row < first.rows(); ++row) which[row] = row;
-  Measurement all = take_rows(first, which);
-  std::erase_if(all.observations, [&](const Observation& o) { return o.row >= first.rows(); });
-  const auto from = static_cast<Eigen::Index>(first.rows()), count = static_cast<Eigen::Index>(second.rows());
-  const auto put = [&](Column& to, const Column& what) { to.segment(from, count) = what; };
-  States& s = all.states;
-  const States& t = second.states;
-  for (auto list : {&States::axis, &States::velocity, &States::acceleration, &States::direction,
-                    &States::since, &States::input})
-    for (std::size_t i = 0; i < (s.*list).size(); ++i) put((s.*list)[i], (t.*list)[i]);
-  for (auto column : {&States::feed, &States::curvature, &States::time, &States::visit})
-    put(s.*column, t.*column);
-  for (std::size_t i = 0; i < s.normal.size(); ++i) put(s.normal[i], t.normal[i]);
-  for (std::size_t i = 0; i < all.candidates.size(); ++i)
-    put(all.candidates[i].value, second.candidates[i].value);
-  for (std::size_t a = 0; a < all.correction.size(); ++a)
-    if (second.correction.empty())
-      all.correction[a].segment(from, count).setZero();
-    else
-      put(all.correction[a], second.correction[a]);
-  for (std::size_t row = 0; row < second.rows() && !all.corrected.empty(); ++row)
-    all.corrected[first.rows() + row] = second.corrected.empty() ? "" : second.corrected[row];
-  put(all.uncertainty, second.uncertainty);
-  if (second.centre.cols() > 0) all.centre.rightCols(count) = second.centre;
-  if (second.nominal_point.cols() > 0) all.nominal_point.rightCols(count) = second.nominal_point;
-  for (std::size_t row = 0; row < second.rows(); ++row) {
-    s.run[first.rows() + row] = s.run_names.size() + t.run[row];
-    all.check[first.rows() + row] = second.check[row];
-  }
-  s.run_names.insert(s.run_names.end(), t.run_names.begin(), t.run_names.end());
-  for (Observation o : second.observations) {
-    o.row += first.rows();
-    all.observations.push_back(o);
-  }
+  Measurement all = first;
+  append_measurement(all, second, true);
   return all;
 }
 
@@ -324,7 +247,7 @@ Measurement rows_to_build_on(const Measurement& all, const Drivers& drivers, std
   const std::size_t stride = (keep.size() + most - 1) / std::max<std::size_t>(1, most);
   std::vector<std::size_t> thinned;
   for (std::size_t i = 0; i < keep.size(); i += std::max<std::size_t>(1, stride)) thinned.push_back(keep[i]);
-  return take_rows(all, thinned);
+  return select_rows(all, thinned);
 }
 
 Offers offer_rows(const Machine& machine, const Measurement& existing, const Drivers& drivers,

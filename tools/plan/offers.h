@@ -12,9 +12,6 @@ namespace vernier {
 /// Label of the planned rows: a set-up of their own.
 inline constexpr const char* kPlanRun = "plan";
 
-/// Rows in an order of choice, with repeats. Times and inputs are copied with them.
-Measurement take_rows(const Measurement& all, const std::vector<std::size_t>& which);
-
 /// Rows of `second` behind those of `first`; both bound to the same machine, with the same columns. tool.
 Measurement append_rows(const Measurement& first, const Measurement& second);
 

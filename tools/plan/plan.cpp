@@ -51,7 +51,7 @@ class Planner {
     free_shift_of_plan(plan_.a.machine);
     free_shift_of_plan(plan_.b.machine);
     drivers_ = drivers_of(std::vector<const FittedRival*>{&plan_.a, &plan_.b});
-    plan_.rows = take_rows(measurement, {});
+    plan_.rows = select_rows(measurement, {});
     existing_ = rows_to_build_on(measurement, drivers_, kMostExisting);
     spread_ = spread();
     bystanders_ =
@@ -124,9 +124,9 @@ class Planner {
   }
 
   ParameterSet parameters_of(const FittedRival& rival) const {
-    std::vector<std::string> runs = existing_.states.run_names;
-    runs.emplace_back(kPlanRun);
-    return {rival.machine, runs};
+    std::vector<std::string> setups = existing_.states.names(existing_.states.setup);
+    setups.emplace_back(kPlanRun);
+    return {rival.machine, setups};
   }
 
   /// A bystander with an input that the rows lack here and there is left aside.
@@ -249,8 +249,8 @@ class Planner {
       return std::tuple(all.states.time[at], settings(row), rest);
     };
     std::sort(order.begin(), order.end(), [&](std::size_t x, std::size_t y) { return key(x) < key(y); });
-    Measurement rows = take_rows(all, order);
-    rows.states.run_names = {kPlanRun};
+    Measurement rows = select_rows(all, order);
+    make_one_run(rows.states, kPlanRun);
     double time = -1e300;
     for (std::size_t i = 0; i < order.size(); ++i) {
       const bool other = i > 0 && settings(order[i]) != settings(order[i - 1]);
@@ -258,7 +258,6 @@ class Planner {
       time = std::max(rows.states.time[at], i == 0 ? -1e300 : time + (other ? kSoakS : pace()));
       rows.states.time[at] = time;
       rows.states.visit[at] = static_cast<double>(i);
-      rows.states.run[i] = 0;
     }
     return rows;
   }

@@ -89,7 +89,7 @@ Explanation::Contrast Explanation::speed() const {
   if (std::abs(farthest / usual - 1) < 0.2) return c;
   for (std::size_t row = 0; row < plan_.rows.rows(); ++row)
     if (std::abs(planned[static_cast<Eigen::Index>(row)] / farthest - 1) < 1e-6) which.push_back(row);
-  c.planned = c.as_was = take_rows(plan_.rows, which);
+  c.planned = c.as_was = select_rows(plan_.rows, which);
   const double back = usual / farthest;
   for (Column& v : c.as_was.states.velocity) v *= back;
   for (Column& a : c.as_was.states.acceleration) a *= back * back;
@@ -115,7 +115,7 @@ Explanation::Contrast Explanation::sense(std::size_t axis) const {
   for (std::size_t row = 0; row < plan_.rows.rows(); ++row)
     if (plan_.rows.states.direction[axis][static_cast<Eigen::Index>(row)] * usual < 0) which.push_back(row);
   if (which.empty()) return c;
-  c.planned = c.as_was = take_rows(plan_.rows, which);
+  c.planned = c.as_was = select_rows(plan_.rows, which);
   c.as_was.states.direction[axis] *= -1;
   c.as_was.states.velocity[axis] *= -1;
   const std::string& name = plan_.machine.axes[axis].name;
@@ -137,7 +137,7 @@ Explanation::Contrast Explanation::level(const std::string& name, const std::str
   std::vector<std::size_t> which;
   for (std::size_t row = 0; row < plan_.rows.rows(); ++row)
     if (std::abs(planned[static_cast<Eigen::Index>(row)] - planned[at]) < 0.05 * away) which.push_back(row);
-  c.planned = c.as_was = take_rows(plan_.rows, which);
+  c.planned = c.as_was = select_rows(plan_.rows, which);
   set(c.as_was, usual);
   c.where = fmt::format("at {} {}{} ({})", name, listed(planned), with_unit(unit), so_far(old));
   c.farthest = fmt::format("{} {:.4g}{}", name, planned[at], with_unit(unit));

@@ -158,7 +158,7 @@ KindSample make_sample(const Measurement& m, const Eigen::VectorXd& residual,
   sample.weight.resize(n);
   for (Eigen::Index i = 0; i < n; ++i) {
     const std::size_t at = which[static_cast<std::size_t>(i)], row = m.observations[at].row;
-    const double u = m.uncertainty[static_cast<Eigen::Index>(row)];
+    const double u = uncertainty_of(m, m.observations[at]);
     sample.rows.push_back(row);
     sample.residual[i] = residual[static_cast<Eigen::Index>(at)];
     sample.weight[i] = u > 0 ? 1 / u : 1;
@@ -280,7 +280,8 @@ PairTest serial_pairs(const KindSample& sample, const Measurement& m, const Eige
                       std::size_t phase) {
   std::vector<std::pair<std::size_t, std::size_t>> pairs;
   for (std::size_t i = phase; i + 1 < sample.rows.size(); i += 2)
-    if (m.states.run[sample.rows[i]] == m.states.run[sample.rows[i + 1]]) pairs.emplace_back(i, i + 1);
+    if (m.states.of(m.states.clock, sample.rows[i]) == m.states.of(m.states.clock, sample.rows[i + 1]))
+      pairs.emplace_back(i, i + 1);
   return correlate(residual, pairs);
 }
 

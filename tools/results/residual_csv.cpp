@@ -21,7 +21,7 @@ std::string residual_csv(const Measurement& m, const Eigen::VectorXd& residual) 
   for (std::size_t i = 0; i < m.observations.size(); ++i) {
     const Observation& o = m.observations[i];
     const double left = residual[static_cast<Eigen::Index>(i)];
-    const double u = m.uncertainty[static_cast<Eigen::Index>(o.row)];
+    const double u = uncertainty_of(m, o);
     text += std::to_string(o.row + 1) + "," + kObservationNames[static_cast<std::size_t>(o.kind)] + "," +
             number_text(o.value) + "," + number_text(o.value - left) + "," + number_text(left) + "," +
             (u > 0 ? number_text(u) : "") + "," + (is_rotation(o.kind) ? "deg" : "mm") + "," +

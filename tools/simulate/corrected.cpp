@@ -123,14 +123,14 @@ class ImageRun {
     if (remembers && !rows_.has_recorded("t"))
       throw InputError({rows_.files.front(), 0}, "t", "the image that ran has lags: it needs this column");
     if (remembers) require_time_order(rows_);
-    std::vector<std::size_t> last(rows_.states.run_names.size(), rows_.rows());
-    // Run by run, since a lag starts anew with each.
-    for (std::size_t run = 0; run < last.size(); ++run) {
+    std::vector<std::size_t> last(rows_.states.names(rows_.states.clock).size(), rows_.rows());
+    // Clock by clock, since a lag starts anew with each.
+    for (std::size_t clock = 0; clock < last.size(); ++clock) {
       compensator_->reset();
       for (std::size_t row = 0; row < rows_.rows(); ++row) {
-        if (rows_.states.run[row] != run) continue;
-        if (remembers && last[run] < rows_.rows()) walk(last[run], row);
-        last[run] = row;
+        if (rows_.states.of(rows_.states.clock, row) != clock) continue;
+        if (remembers && last[clock] < rows_.rows()) walk(last[clock], row);
+        last[clock] = row;
         note(row, compensator_->step(input_of(row)));
       }
     }

@@ -70,8 +70,7 @@ States states_at_ticks(const States& rows, const RunTicks& ticks, std::size_t ru
   states.time = between_rows(rows.time, ticks, false);
   states.visit = between_rows(rows.visit, ticks, true);
   for (std::size_t k = 0; k < 3; ++k) states.normal[k] = between_rows(rows.normal[k], ticks, true);
-  states.run.assign(states.count, 0);
-  states.run_names = {rows.run_names[run]};
+  make_one_run(states, rows.run_names[run]);
   return states;
 }
 

@@ -173,7 +173,8 @@ std::string explanation_blob(const LoadedRows& rows, const std::string& add) {
 }
 
 nlohmann::ordered_json parameters_json(const LoadedRows& rows) {
-  const ParameterSet parameters(rows.machine, rows.measurement.states.run_names);
+  const ParameterSet parameters(rows.machine,
+                               rows.measurement.states.names(rows.measurement.states.setup));
   const Eigen::VectorXd values = parameters.get(rows.machine);
   Json list = Json::array();
   for (std::size_t i = 0; i < parameters.size(); ++i)

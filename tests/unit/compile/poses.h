@@ -92,7 +92,7 @@ struct TestMachine {
         p.axis[i].sense = static_cast<std::int8_t>(static_cast<int>(uniform(0, 3)) - 1);
       }
       for (std::size_t i = 0; i < machine.inputs.size(); ++i) {
-        const Interval range = input_range(machine.inputs[i]);
+        const Interval range = input_range(machine, i);
         p.input[i] = InputMicro(counts(range.low, range.high, 1e-6));
         // A hidden axis is mostly a number that selects a tool.
         if (machine.inputs[i].hidden_axis) p.input[i] = InputMicro((p.input[i].count / 1000000) * 1000000);

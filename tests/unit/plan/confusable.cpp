@@ -158,7 +158,7 @@ Measurement random_rows(const Plan& plan, const Measurement& existing, std::uint
     const Column& t = offers.rows.states.time;
     return t[static_cast<Eigen::Index>(a)] < t[static_cast<Eigen::Index>(b)];
   });
-  Measurement rows = take_rows(offers.rows, which);
+  Measurement rows = select_rows(offers.rows, which);
   rows.states.run_names = {kPlanRun};
   for (std::size_t i = 0; i < which.size(); ++i) {
     rows.states.run[i] = 0;

@@ -43,10 +43,10 @@ TEST(PlanFromCorrectedRows, OffersAreCommandedAndCarryNoCorrection) {
 
 TEST(PlanFromCorrectedRows, AppendedRowsKeepWhatEachHas) {
   const Measurement all = rows();
-  const Measurement some = take_rows(all, {2, 0});
+  const Measurement some = select_rows(all, {2, 0});
   EXPECT_EQ(some.correction[0][0], all.correction[0][2]);
   EXPECT_EQ(some.corrected[1], "0123456789abcdef");
-  Measurement planned = take_rows(all, {4});
+  Measurement planned = select_rows(all, {4});
   planned.correction.clear();
   planned.corrected.clear();
   const Measurement both = append_rows(all, planned);
