@@ -140,7 +140,9 @@ class Diagnoser {
       const Proof proof = proof_of(result_.end, fitted.fit);
       const bool proven =
           proof.can_tell(options_.thresholds.proof) && proof.bears_out(options_.thresholds.proof);
-      if (proof.speaks_against(options_.thresholds.proof)) {
+      // A step of one run carries to no other: rows of others that grow by it are enough.
+      const bool of_runs = !pool_.candidate(items.back()).choice.runs.empty();
+      if (proof.speaks_against(options_.thresholds.proof) || (of_runs && proof.evidence < 0)) {
         disproved_.push_back(pool_.candidate(items.back()).label);
         chosen_.erase(chosen_.begin() + static_cast<std::ptrdiff_t>(count - 1));
         continue;
@@ -279,8 +281,8 @@ class Diagnoser {
     const double reduced =
         (told ? weights.cwiseProduct(left).squaredNorm() : result_.end.chi_square) / freedom;
     if (!has_uncertainty(measurement_))
-      return !structured ||
-             (!chosen_.empty() && result_.end.chi_square < (1 - limits_.mostly_explained) * base_.chi_square);
+      return !structured || (!chosen_.empty() && is_mostly_explained() &&
+                             finder_.growth_without(chosen_.front()) > limits_.larger_than_rest);
     // More noise than stated is believed where nothing that was looked for stands out of it, and where there
     // are enough readings for structure to show.
     const double stated = result_.end.chi_square / freedom;
@@ -295,15 +297,22 @@ class Diagnoser {
     return reduced < limits_.doubtful_uncertainty && !structured;
   }
 
+  bool is_mostly_explained() const {
+    return result_.end.chi_square < (1 - limits_.mostly_explained) * base_.chi_square;
+  }
+
   void decide() {
+    const Measurement rows = rebind(measurement_, base_.machine, result_.end.machine);
     const TimeBaseFinding clock = examine_time_base(measurement_, base_.residual);
-    if (clock.found) {
+    // What effects of the machine take away was no clock: a reading that comes late looks like one.
+    const bool explained =
+        !chosen_.empty() && is_mostly_explained() && !examine_time_base(rows, result_.end.residual).found;
+    if (clock.found && !explained) {
       result_.verdict = Verdict::kInstrument;
       result_.explanation = "The time base of the measurement: " + clock.why;
       result_.time_base = clock;
       return;
     }
-    const Measurement rows = rebind(measurement_, base_.machine, result_.end.machine);
     const bool noise_is_left = down_to_noise(rows);
     const std::vector<std::size_t> pieces = pieces_of_one_function(finder_.evidence(), pool_, chosen_);
     if (!noise_is_left && pieces.empty()) {
@@ -431,11 +440,27 @@ class Diagnoser {
     if (rivals_.best)
       text += fmt::format(" The next best other cause, {}, is {:.0f} behind.",
                           pool_.candidate(*rivals_.best).label, rivals_.distance);
-    const LadderStep &first = result_.ladder.front(), &last = result_.ladder.back();
-    if (first.check_rms_um && last.check_rms_um)
-      text += fmt::format(" With {} effect{} the check rows go from {:.4g} to {:.4g} um.", chosen_.size(),
-                          chosen_.size() == 1 ? "" : "s", *first.check_rms_um, *last.check_rms_um);
-    return text;
+    return text + check_rows_in_words();
+  }
+
+  /// What the check rows do with every step, and which step makes them worse.
+  std::string check_rows_in_words() const {
+    std::string way, worse;
+    for (std::size_t i = 0; i < result_.ladder.size(); ++i) {
+      const LadderStep& step = result_.ladder[i];
+      if (!step.check_rms_um) return {};
+      way += fmt::format("{}{:.4g}",
+                         i == 0                           ? ""
+                         : i + 1 == result_.ladder.size() ? " to "
+                                                          : ", ",
+                         *step.check_rms_um);
+      if (i > 0 && *step.check_rms_um > *result_.ladder[i - 1].check_rms_um)
+        worse += (worse.empty() ? "" : ", ") + step.label;
+    }
+    std::string text = fmt::format(" With {} effect{} the check rows go from {} um", chosen_.size(),
+                                   chosen_.size() == 1 ? "" : "s", way);
+    if (!worse.empty()) text += "; worse by " + worse;
+    return text + ".";
   }
 
   /// Why one of the accepted effects cannot be what its name says; empty where all can.
@@ -523,15 +548,25 @@ Diagnosis diagnose(const std::string& text, const Machine& given, const Measurem
   // Outliers beside effects that were found are not the whole answer either.
   const bool more_than_outliers =
       all.verdict == Verdict::kInstrument && all.ladder.size() > 1 && !all.time_base.found;
-  if (all.verdict != Verdict::kUnexplained && !more_than_outliers) return all;
+  // Without u nothing says that readings far off are too far: they are looked for whatever was found.
+  const bool by_spread = !has_uncertainty(measurement) && !all.time_base.found;
+  if (all.verdict != Verdict::kUnexplained && !more_than_outliers && !by_spread) return all;
   const Measurement rows = rebind(measurement, all.base.machine, all.end.machine);
   const auto rest =
       without_gross_outliers(all.end.machine, rows, all.end.residual, options.thresholds.verdict);
   if (!rest || rows.rows() != measurement.rows()) return all;
   Diagnosis clean = Diagnoser(text, machine, select_rows(measurement, rest->kept), options).run();
-  if (!is_named(clean.verdict)) return all;
-  clean.explanation += " " + rest->sentence;
-  return clean;
+  if (by_spread && clean.verdict == Verdict::kConsistent) {
+    clean.verdict = Verdict::kInstrument;
+    clean.explanation = "Outliers, and noise beside them. " + rest->sentence;
+    return clean;
+  }
+  if (is_named(clean.verdict) || (by_spread && clean.verdict == all.verdict)) {
+    clean.explanation += " " + rest->sentence;
+    return clean;
+  }
+  if (by_spread) all.explanation += " " + rest->sentence;
+  return all;
 }
 
 }  // namespace vernier

@@ -182,18 +182,18 @@ class Enumerator {
 
   void with_inputs(const Choice& choice) {
     const EffectForm& form = *choice.form;
-    if (!form.asks_for("T") && !form.asks_for("L") && !form.asks_for("F")) return with_axis(choice);
+    if (!form.asks_for_input()) return with_axis(choice);
     const InputClass wanted = form.asks_for("T")   ? InputClass::kTemperature
                               : form.asks_for("L") ? InputClass::kLoad
-                                                   : InputClass::kFeature;
+                              : form.asks_for("F") ? InputClass::kFeature
+                                                   : InputClass::kOther;
     for (std::size_t i = 0; i < machine_.inputs.size(); ++i) {
       if (class_of_input(machine_.inputs[i]) != wanted) continue;
+      if (wanted == InputClass::kOther && is_like_a_clock(i)) continue;
       Choice one = choice;
       one.inputs = {machine_.inputs[i].name};
       one.units = {machine_.inputs[i].unit};
-      if (form.asks_for("ref"))
-        one.reference = i < evidence_.declared_inputs() ? machine_.inputs[i].reference
-                                                        : standard_reference(machine_.inputs[i].unit);
+      if (form.asks_for("ref")) one.reference = evidence_.reference_of(i);
       if (!form.asks_for("S")) {
         with_axis(one);
         continue;
@@ -208,6 +208,22 @@ class Enumerator {
     }
   }
 
+  /// Does a column count on with the rows, as a cycle or a stamp does? It says no more than time.
+  bool is_like_a_clock(std::size_t input) const {
+    const std::vector<std::size_t>& rows = evidence_.rows();
+    Eigen::MatrixXd both(static_cast<Eigen::Index>(rows.size()), 2);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const auto at = static_cast<Eigen::Index>(i), row = static_cast<Eigen::Index>(rows[i]);
+      both(at, 0) = static_cast<double>(rows[i]);
+      both(at, 1) = evidence_.measurement().states.input[input][row];
+    }
+    const Eigen::ArrayXd steps = both.col(1).tail(both.rows() - 1) - both.col(1).head(both.rows() - 1);
+    if ((steps >= 0).all() || (steps <= 0).all()) return true;
+    both.rowwise() -= both.colwise().mean();
+    const double common = both.col(0).dot(both.col(1));
+    return std::abs(common) > thresholds_.like_a_clock * both.col(0).norm() * both.col(1).norm();
+  }
+
   void with_axis(Choice choice) {
     const EffectForm& form = *choice.form;
     const bool driven = form.asks_for("q") || form.asks_for("hats") || form.place == PlaceRule::kOwn ||
@@ -219,6 +235,11 @@ class Enumerator {
       const bool turns =
           form.any([](const Expr& node) { return is_wave(node) && is_symbol(*node.args[0], "{q}"); });
       if (turns && !machine_.axes[axis].rotary) continue;  // degrees of a turn, not millimetres
+      // Once per turn; what gravity does to an arm has that period whatever its travel.
+      const bool own_wave =
+          form.place == PlaceRule::kOwn || form.place == PlaceRule::kCross || form.place == PlaceRule::kTurn;
+      const double travel = range_[axis].high - range_[axis].low;
+      if (turns && own_wave && travel < thresholds_.least_of_a_turn * 360) continue;
       if (!turns && machine_.axes[axis].rotary && !has_meaning_of_turns(form)) continue;
       Choice one = choice;
       one.axis = axis;
@@ -357,8 +378,32 @@ class Enumerator {
       const Evidence::Range& range = range_[*choice.axis];
       if (range.step <= 0 || (range.high - range.low) / range.step + 1 < nodes) return;
       if (nodes * thresholds_.readings_per_hat > static_cast<double>(evidence_.rows().size())) return;
+      if (!is_each_hat_read(choice)) return;
     }
     finish(choice);
+  }
+
+  /// Was the axis read near every station of a table; of one that has a sense, in both of them? An end is
+  /// reached in one.
+  bool is_each_hat_read(const Choice& choice) const {
+    const std::size_t axis = *choice.axis;
+    const double length = range_[axis].high - range_[axis].low;
+    const double spacing = length / static_cast<double>(choice.form->hats - 1);
+    const std::string sense = "dir{q}";
+    const bool both = choice.form->any([&](const Expr& node) { return is_symbol(node, sense); });
+    for (const int one : both ? std::vector<int>{-1, 1} : std::vector<int>{0}) {
+      const std::vector<double> read =
+          evidence_.places_read(axis, one, evidence_.thresholds().shape.apart * length);
+      const std::size_t end = both ? 1 : 0;
+      if (read.size() < choice.form->hats - 2 * end) return false;
+      for (std::size_t k = end; k + end < choice.form->hats; ++k) {
+        const double station = range_[axis].low + static_cast<double>(k) * spacing;
+        if (std::none_of(read.begin(), read.end(),
+                         [&](double q) { return std::abs(q - station) <= spacing / 2; }))
+          return false;
+      }
+    }
+    return true;
   }
 
   std::vector<double> grid_of(const Choice& choice, const UnknownRule& rule) const {
@@ -403,7 +448,8 @@ class Enumerator {
       grid.push_back(1 / f);
     if (machine_.axes[axis].rotary)
       for (double harmonic = 1; harmonic <= static_cast<double>(to.harmonics_of_turn); ++harmonic)
-        if (harmonic / 360 <= fastest && length > 90 / harmonic) grid.push_back(360 / harmonic);
+        if (harmonic / 360 <= fastest && length > to.least_of_a_period * 360 / harmonic)
+          grid.push_back(360 / harmonic);
     // At two even steps a wave has lost its sine, and may still be the true one's only likeness.
     if (range.even && !grid.empty()) grid.push_back(2 * range.step);
     std::sort(grid.begin(), grid.end());

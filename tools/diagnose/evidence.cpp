@@ -8,6 +8,7 @@
 #include <set>
 #include <tuple>
 
+#include "tools/effects/input_class.h"
 #include "tools/effects/probe.h"
 #include "tools/fit/solve.h"
 #include "tools/fit/statistics.h"
@@ -42,7 +43,7 @@ Measurement thinned(const Measurement& all, std::size_t stride) {
 Evidence::Evidence(const Machine& fitted, const Measurement& measurement,
                    const DiagnoseThresholds& thresholds)
     : thresholds_(thresholds), machine_(fitted) {
-  const ParameterSet parameters(fitted, runs_of_fit_rows(measurement));
+  const ParameterSet parameters(fitted, setups_of_fit_rows(measurement));
   const std::size_t stride = stride_of(measurement, parameters.size(), thresholds.evidence.most_numbers);
   stride_ = static_cast<double>(stride);
   measurement_ = thinned(measurement, stride);
@@ -86,6 +87,18 @@ void Evidence::take_inputs() {
   measurement_.candidates.clear();
 }
 
+double Evidence::reference_of(std::size_t index) const {
+  const Input& input = machine_.inputs[index];
+  if (index < declared_) return input.reference;
+  if (class_of_input(input) == InputClass::kTemperature) return standard_reference(input.unit);
+  double sum = 0;
+  for (const std::size_t row : rows_) sum += measurement_.states.input[index][static_cast<Eigen::Index>(row)];
+  const double mean = rows_.empty() ? 0 : sum / static_cast<double>(rows_.size());
+  if (std::abs(mean) < 1e-9) return 0;
+  const double digit = std::pow(10, std::floor(std::log10(std::abs(mean))) - 1);
+  return std::round(mean / digit) * digit;
+}
+
 void Evidence::respond() {
   places_ = all_places(machine_);
   Machine probed = machine_;
@@ -101,10 +114,35 @@ void Evidence::respond() {
     response_.row(at) = weight_[at] * all.row(from);
     residual_[at] = weight_[at] * (measurement_.observations[observation_[i]].value - linear.predicted[from]);
   }
+  silence_rounding();
+  find_reach(linear.predicted);
+}
+
+void Evidence::silence_rounding() {
+  double largest[2] = {0, 0};
+  const auto kind = [&](std::size_t place) { return is_angle(machine_, places_[place]) ? 1 : 0; };
+  for (std::size_t i = 0; i < places_.size(); ++i)
+    largest[kind(i)] = std::max(largest[kind(i)], response(i).norm());
+  for (std::size_t i = 0; i < places_.size(); ++i)
+    if (response(i).norm() < thresholds_.evidence.rounding * largest[kind(i)])
+      response_.col(static_cast<Eigen::Index>(i)).setZero();
+}
+
+void Evidence::find_reach(const Eigen::VectorXd& predicted) {
+  // Of each length that is read, how far the model goes; a ball bar's own length says nothing of it.
+  std::map<ObservationKind, std::pair<double, double>> ranges;
+  for (const std::size_t i : observation_) {
+    const ObservationKind kind = measurement_.observations[i].kind;
+    if (is_rotation(kind)) continue;
+    const double value = predicted[static_cast<Eigen::Index>(i)];
+    auto& range = ranges.try_emplace(kind, value, value).first->second;
+    range = {std::min(range.first, value), std::max(range.second, value)};
+  }
+  for (const auto& [kind, range] : ranges) reach_mm_ = std::hypot(reach_mm_, range.second - range.first);
 }
 
 void Evidence::absorb() {
-  const ParameterSet parameters(machine_, runs_of_fit_rows(measurement_));
+  const ParameterSet parameters(machine_, setups_of_fit_rows(measurement_));
   absorbed_.resize(residual_.size(), 0);
   if (parameters.size() == 0 && noise_.steps.empty()) return;
   const Linearisation linear = linearise(machine_, measurement_, parameters);
@@ -141,7 +179,7 @@ void Evidence::split_blocks() {
   std::map<std::size_t, std::vector<std::size_t>> rows_of_run;
   std::size_t total = 0;
   for (const std::size_t row : rows_) {
-    auto& rows = rows_of_run[measurement_.states.run[row]];
+    auto& rows = rows_of_run[block_of(row)];
     if (!rows.empty() && rows.back() == row) continue;
     rows.push_back(row);
     ++total;
@@ -158,7 +196,7 @@ void Evidence::split_blocks() {
   }
   block_.resize(rows_.size());
   for (std::size_t i = 0; i < rows_.size(); ++i) {
-    const std::size_t run = measurement_.states.run[rows_[i]];
+    const std::size_t run = block_of(rows_[i]);
     const auto& rows = rows_of_run[run];
     const auto at =
         static_cast<std::size_t>(std::lower_bound(rows.begin(), rows.end(), rows_[i]) - rows.begin());
@@ -172,7 +210,8 @@ std::vector<std::vector<Eigen::Index>> Evidence::readings_at_one_pose() const {
     std::vector<double> position;
     for (const Column& axis : position_) position.push_back(axis[static_cast<Eigen::Index>(rows_[i])]);
     const auto kind = static_cast<int>(measurement_.observations[observation_[i]].kind);
-    poses[{measurement_.states.run[rows_[i]], kind, position}].push_back(static_cast<Eigen::Index>(i));
+    poses[{measurement_.states.of(measurement_.states.setup, rows_[i]), kind, position}].push_back(
+        static_cast<Eigen::Index>(i));
   }
   std::vector<std::vector<Eigen::Index>> groups;
   for (auto& [pose, readings] : poses)
@@ -235,6 +274,13 @@ NoiseModel Evidence::estimate(const Eigen::MatrixXd& raw) const {
   return estimate_noise(layout_, residual, fitted, with_u_);
 }
 
+double Evidence::left_in_full(const Eigen::MatrixXd& raw) const {
+  Eigen::MatrixXd fitted(raw_absorbed_.rows(), raw_absorbed_.cols() + raw.cols());
+  fitted << raw_absorbed_, raw;
+  fitted = orthonormal(fitted, 1e-6, nullptr);
+  return (raw_residual_ - fitted * (fitted.transpose() * raw_residual_)).squaredNorm();
+}
+
 NoiseModel Evidence::noise_of_file() const {
   NoiseModel noise = noise_;
   if (!noise.in_time) noise.time_constant *= stride_;
@@ -258,12 +304,12 @@ void Evidence::whiten(Eigen::MatrixXd& columns) const {
 std::vector<int> Evidence::parts_of_runs() const {
   std::map<std::size_t, std::vector<std::size_t>> rows_of_run;
   for (const std::size_t row : rows_) {
-    auto& rows = rows_of_run[measurement_.states.run[row]];
+    auto& rows = rows_of_run[block_of(row)];
     if (rows.empty() || rows.back() != row) rows.push_back(row);
   }
   std::vector<int> parts(rows_.size());
   for (std::size_t i = 0; i < rows_.size(); ++i) {
-    const auto& rows = rows_of_run[measurement_.states.run[rows_[i]]];
+    const auto& rows = rows_of_run[block_of(rows_[i])];
     const auto at =
         static_cast<std::size_t>(std::lower_bound(rows.begin(), rows.end(), rows_[i]) - rows.begin());
     parts[i] = static_cast<int>(at * thresholds_.acceptance.parts_of_run / rows.size());
@@ -334,6 +380,30 @@ Evidence::Range Evidence::range_of(std::size_t axis) const {
     range.even = range.even && std::abs(steps - std::round(steps)) < thresholds_.evidence.even_step;
   }
   return range;
+}
+
+std::vector<double> Evidence::places_read(std::size_t axis, int sense, double apart) const {
+  std::vector<double> all;
+  for (const std::size_t row : rows_)
+    if (sense == 0 || sense_of(axis, row) == sense)
+      all.push_back(position_[axis][static_cast<Eigen::Index>(row)]);
+  std::sort(all.begin(), all.end());
+  std::vector<double> kept;
+  for (const double one : all)
+    if (kept.empty() || one - kept.back() > apart) kept.push_back(one);
+  return kept;
+}
+
+int Evidence::sense_of(std::size_t axis, std::size_t row) const {
+  const auto at = static_cast<Eigen::Index>(row);
+  const Column& direction = measurement_.states.direction[axis];
+  if (measurement_.has_recorded("dir" + machine_.axes[axis].name)) return static_cast<int>(direction[at]);
+  // Not told: the way from the row before, over repeats at one place.
+  for (Eigen::Index before = at; before-- > 0;) {
+    const double step = position_[axis][at] - position_[axis][before];
+    if (step != 0) return step > 0 ? 1 : -1;
+  }
+  return 0;
 }
 
 Evidence::Range Evidence::time_range() const {

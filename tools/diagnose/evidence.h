@@ -28,6 +28,8 @@ class Evidence {
   const Measurement& measurement() const { return measurement_; }
   /// Names of inputs that the user's machine does not declare start at this index.
   std::size_t declared_inputs() const { return declared_; }
+  /// What an input is counted from: the declared reference, 20 degC, else a round number near its mean.
+  double reference_of(std::size_t input) const;
   const std::vector<DofPlace>& places() const { return places_; }
   std::size_t index_of(const DofPlace& place) const;
 
@@ -73,6 +75,8 @@ class Evidence {
   double log_determinant() const { return log_determinant_; }
   /// How the readings' errors hang together beside the model and columns that `raw_columns` gave.
   NoiseModel estimate(const Eigen::MatrixXd& raw) const;
+  /// Sum of squares of the weighted residual that the model and such columns leave, nothing whitened.
+  double left_in_full(const Eigen::MatrixXd& raw) const;
   /// Columns of a candidate before any whitening.
   Eigen::MatrixXd raw_columns(const Candidate& candidate, const std::vector<double>& scanned) const;
   /// The noise model for the rows of the file where every k-th one was enough here.
@@ -86,14 +90,27 @@ class Evidence {
     bool even = true;  // the steps are multiples of one, or nearly so
   };
   Range range_of(std::size_t axis) const;
+  /// Positions at which an axis was read, increasing, those no further apart than `apart` counted once; sense
+  /// +1 or -1: of the rows that it reached in that sense, 0: of all.
+  std::vector<double> places_read(std::size_t axis, int sense, double apart) const;
+  /// Sense in which a row was reached: as recorded, else from the rows before; 0 where nothing tells.
+  int sense_of(std::size_t axis, std::size_t row) const;
+  /// How far apart the points are that were read, mm; 0 where no lengths were.
+  double reach_mm() const { return reach_mm_; }
   Range time_range() const;
 
  private:
   void take_inputs();
   void respond();
+  void silence_rounding();
+  void find_reach(const Eigen::VectorXd& predicted);
   void absorb();
   void share_poses(Eigen::MatrixXd& columns) const;
   void split_blocks();
+  /// Index of the part that a row may be left out with: its block, where none are told its run.
+  std::size_t block_of(std::size_t row) const {
+    return measurement_.states.of(measurement_.states.block, row);
+  }
   /// Fit observations of one kind, run and position of all axes, where there are two or more.
   std::vector<std::vector<Eigen::Index>> readings_at_one_pose() const;
 
@@ -113,7 +130,7 @@ class Evidence {
   double stride_ = 1;  // of the rows that were kept
   NoiseLayout layout_;
   NoiseModel noise_;
-  double log_determinant_ = 0;
+  double log_determinant_ = 0, reach_mm_ = 0;
   Eigen::VectorXd raw_residual_;
   Eigen::MatrixXd raw_absorbed_;
 };

@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "tools/diagnose/acceptance.h"
+#include "tools/fit/statistics.h"
 #include "tools/maths/chance.h"
 #include "tools/model/chain.h"
 
@@ -54,6 +55,37 @@ void Finder::find() {
     accept();
   }
   weigh_correlation();
+  if (!has_uncertainty(evidence_.measurement())) name_simplest();
+  if (!evidence_.noise().independent()) order_by_size();
+}
+
+void Finder::order_by_size() {
+  std::vector<std::size_t> rest = chosen_;
+  chosen_.clear();
+  while (!rest.empty()) {
+    const auto left_with = [&](std::size_t item) {
+      std::vector<std::size_t> set = chosen_;
+      set.push_back(item);
+      return evidence_.left_in_full(raw_columns(set));
+    };
+    std::vector<double> left;
+    for (const std::size_t item : rest) left.push_back(left_with(item));
+    const auto best = std::min_element(left.begin(), left.end()) - left.begin();
+    chosen_.push_back(rest[static_cast<std::size_t>(best)]);
+    rest.erase(rest.begin() + best);
+  }
+}
+
+void Finder::name_simplest() {
+  const std::vector<std::size_t> found = chosen_;
+  const double criterion = criterion_, chi_square = chi_square_;
+  simplify(evidence_.thresholds().pool.simple_share);
+  if (std::all_of(chosen_.begin(), chosen_.end(),
+                  [&](std::size_t item) { return failed_test(item).empty(); }))
+    return;
+  chosen_ = found;
+  criterion_ = criterion;
+  chi_square_ = chi_square;
 }
 
 void Finder::scan_beside(const std::vector<std::size_t>& items, double from, double to, std::size_t first) {
@@ -95,7 +127,7 @@ std::vector<Product> Finder::best_products() {
   pose_problem();
   std::vector<std::pair<double, std::size_t>> order;
   for (std::size_t i = 0; i < pool_.size(); ++i)
-    if (pool_.is_custom(i)) order.emplace_back(-score_alone(i), i);
+    if (pool_.is_custom(i) && !pool_[i].banned) order.emplace_back(-score_alone(i), i);
   std::sort(order.begin(), order.end());
   std::vector<Product> best;
   for (std::size_t i = 0; i < std::min(thresholds_.extended, order.size()); ++i) {
@@ -115,17 +147,19 @@ void Finder::select_again() {
   simplify();
 }
 
-void Finder::simplify() {
+void Finder::simplify(double share) {
   const double most_price = 2 * std::log(static_cast<double>(entry_item_.size()));
-  for (std::size_t i = 0; i < chosen_.size(); ++i) {
+  for (std::size_t i = 0; i < chosen_.size();) {
     std::optional<std::size_t> simplest;
     Selection best;
+    const double apart = evaluate(without(chosen_[i])).chi_square;
     for (const std::size_t other : entry_item_) {
       if (std::find(chosen_.begin(), chosen_.end(), other) != chosen_.end()) continue;
       std::vector<std::size_t> set = chosen_;
       set[i] = other;
       const Selection trial = evaluate(set);
-      if (trial.criterion - criterion_ >= thresholds_.evidence + most_price) continue;
+      const bool does_it = apart - trial.chi_square >= share * (apart - chi_square_);
+      if (!does_it && trial.criterion - criterion_ >= thresholds_.evidence + most_price) continue;
       if (simplest && trial.criterion >= best.criterion) continue;
       // The same columns from a place further from the axis, or from a term without a name, are only the
       // longer way to say it.
@@ -137,14 +171,18 @@ void Finder::simplify() {
       if (!same_but_nearer && !pool_.contains(chosen_[i], other)) continue;
       // One of many that hold it fits better by chance: what it has more pays for that.
       const double price = same_but_nearer ? 0 : 2 * std::log(std::max(1.0, holders_of(other)));
-      if (trial.criterion - criterion_ >= thresholds_.evidence + price) continue;
+      if (!does_it && trial.criterion - criterion_ >= thresholds_.evidence + price) continue;
       simplest = other;
       best = trial;
     }
-    if (!simplest) continue;
+    if (!simplest) {
+      ++i;
+      continue;
+    }
     chosen_[i] = *simplest;
     criterion_ = best.criterion;
     chi_square_ = best.chi_square;
+    if (share > 1) ++i;  // else it may be simplified further
   }
 }
 
@@ -357,23 +395,52 @@ std::string Finder::too_large(std::size_t item) const {
     const std::size_t at = linear++;
     if (k[at] == 0 || unknown.limit <= 0) continue;
     const double size = std::abs(k[at]) * typical_size(candidate, at, item);
-    if (size > unknown.limit)
-      return fmt::format("size: the term would reach {:.3g}, no machine shows more than {:g}", size,
-                         unknown.limit);
+    const double limit = std::max(unknown.limit, thresholds_.size_share * extent_of(candidate));
+    if (size > limit)
+      return fmt::format("size: the term would reach {:.3g}, no machine shows more than {:g}", size, limit);
   }
   return {};
 }
 
+double Finder::extent_of(const Candidate& candidate) const {
+  const Machine& machine = evidence_.machine();
+  const auto& place = candidate.choice.place;
+  if (place && is_angle(machine, *place)) {
+    const auto axis = candidate.choice.axis;
+    if (!axis || !machine.axes[*axis].rotary) return 0;
+    const Evidence::Range range = evidence_.range_of(*axis);
+    return range.high - range.low;
+  }
+  return evidence_.reach_mm();
+}
+
 double Finder::typical_size(const Candidate& candidate, std::size_t linear, std::size_t item) const {
+  // Where it was read, and all along the axis that drives it: a curve may leave its stations there.
+  const States& read = evidence_.measurement().states;
+  double largest = largest_value(candidate, linear, item, read);
+  if (candidate.choice.axis) {
+    const Evidence::Range range = evidence_.range_of(*candidate.choice.axis);
+    States along = select_states(read, evidence_.rows());
+    Column& position = along.axis[*candidate.choice.axis];
+    constexpr double kGolden = 0.61803398874989485;  // of a turn: even over the range in any order of rows
+    for (Eigen::Index i = 0; i < position.size(); ++i) {
+      const double at = static_cast<double>(i) * kGolden;
+      position[i] = range.low + (at - std::floor(at)) * (range.high - range.low);
+    }
+    largest = std::max(largest, largest_value(candidate, linear, item, along));
+  }
+  return largest;
+}
+
+double Finder::largest_value(const Candidate& candidate, std::size_t linear, std::size_t item,
+                             const States& states) const {
   Machine scratch = evidence_.machine();
   const std::vector<std::size_t> statics = add_unknowns(scratch, candidate, pool_[item].scored.scanned);
   scratch.statics[statics[linear]].value = 1;
   double largest = 0;
   for (const CandidateTerm& term : candidate.terms) {
-    const Column column = ::vernier::evaluate(scratch, *parse_expression_for(scratch, term.text),
-                                              evidence_.measurement().states);
-    for (const std::size_t row : evidence_.rows())
-      largest = std::max(largest, std::abs(column[static_cast<Eigen::Index>(row)]));
+    const Column column = ::vernier::evaluate(scratch, *parse_expression_for(scratch, term.text), states);
+    largest = std::max(largest, column.abs().maxCoeff());
   }
   return largest;
 }
@@ -408,27 +475,20 @@ Eigen::VectorXd Finder::own_coefficients(std::size_t item) const {
 }
 
 void Finder::accept() {
-  constexpr int kMostRounds = 12;
-  for (int round = 0; round < kMostRounds; ++round) {
-    bool all_pass = true;
-    for (const std::size_t item : std::vector<std::size_t>(chosen_.rbegin(), chosen_.rend())) {
-      const std::string failed = failed_test(item);
-      if (failed.empty()) continue;
-      pool_.ban(item, failed);
-      ban_hollow_products();
-      all_pass = false;
-      break;
-    }
-    if (all_pass) return;
+  // Every round bans an item: it ends with a set that passes, or with none.
+  while (!chosen_.empty()) {
+    const auto failing = std::find_if(chosen_.rbegin(), chosen_.rend(),
+                                      [&](std::size_t item) { return !failed_test(item).empty(); });
+    if (failing == chosen_.rend()) return;
+    pool_.ban(*failing, failed_test(*failing));
+    ban_hollow_products();
     select_again();
   }
-  chosen_.clear();
 }
 
 double Finder::score_alone(std::size_t item) const {
-  const std::optional<std::size_t> entry = entry_of(item);
-  if (!entry) return -1e300;
-  return evaluate_selection(problem_, {}).criterion - evaluate_selection(problem_, {*entry}).criterion;
+  const SelectionProblem alone = pool_.problem_of({item});
+  return evaluate_selection(alone, {}).criterion - evaluate_selection(alone, {0}).criterion;
 }
 
 double Finder::p_value(std::size_t item) const {
@@ -480,6 +540,10 @@ Rivals Finder::rivals_of(std::size_t item) const {
 
 std::vector<double> Finder::aliases_of(std::size_t item) const {
   return scanner_.aliases(pool_[item].scored, orthonormal(pool_.columns(without(item)), 1e-6, nullptr));
+}
+
+double Finder::growth_without(std::size_t item) const {
+  return evaluate(without(item)).chi_square / std::max(chi_square_, 1e-300);
 }
 
 bool Finder::linear_down_to_noise() const {

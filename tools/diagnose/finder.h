@@ -58,6 +58,8 @@ class Finder {
   Rivals rivals_of(std::size_t item) const;
   /// Other periods that do as well as an accepted item's own (Scanner::aliases), the other items given.
   std::vector<double> aliases_of(std::size_t item) const;
+  /// How many times chi^2 grows where an accepted item is left out, the others fitted again.
+  double growth_without(std::size_t item) const;
   /// Does what the accepted effects leave look like noise, by the linear estimate?
   bool linear_down_to_noise() const;
 
@@ -74,7 +76,15 @@ class Finder {
   void select_again();
   /// A form that holds a simpler one is taken only where what it has more is evidence by itself; of forms
   /// with the same columns the one nearest to the axis.
-  void simplify();
+  /// share: of what a richer form explains from which on the simpler one stands whatever the rest is worth;
+  /// above 1: none does.
+  void simplify(double share = 2);
+  /// The effect first that takes most off the residual as it stands, and so on. What is most certain beside
+  /// errors that hang together need not be large.
+  void order_by_size();
+  /// Without u, where any structure left counts as noise: the simplest form that does nearly all, where it
+  /// passes the tests.
+  void name_simplest();
   /// How many entries hold a simpler one and more.
   double holders_of(std::size_t simple) const;
   void search();
@@ -101,8 +111,14 @@ class Finder {
   bool shows_in_one_block(std::size_t item) const;
   /// Is the term larger than any machine shows it?
   std::string too_large(std::size_t item) const;
-  /// Largest value over the fit rows that a linear unknown of 1 gives its term, mm or deg.
+  /// What the size of a term is judged by: travel of the rotary axis that drives an angle, deg (0: none
+  /// does); reach of the machine for lengths, mm.
+  double extent_of(const Candidate& candidate) const;
+  /// Largest value over the fit rows and along the axis that drives it that a linear unknown of 1 gives its
+  /// term, mm or deg.
   double typical_size(const Candidate& candidate, std::size_t linear, std::size_t item) const;
+  double largest_value(const Candidate& candidate, std::size_t linear, std::size_t item,
+                       const States& states) const;
   void accept();
 
   std::size_t most_effects_;

@@ -99,14 +99,17 @@ std::optional<std::string> outliers_to_blame(const Machine& machine, const Measu
 std::optional<WithoutOutliers> without_gross_outliers(const Machine& machine, const Measurement& measurement,
                                                       const Eigen::VectorXd& of_all,
                                                       const VerdictThresholds& thresholds) {
-  auto peeled = peel(machine, measurement, of_all, thresholds.outlier_spreads,
-                     std::max(1.0, thresholds.outliers_beside * static_cast<double>(measurement.rows())));
+  const bool with_u = has_uncertainty(measurement);
+  const double far = with_u ? thresholds.outlier_spreads : thresholds.outlier_spreads_without_u;
+  const double share = with_u ? thresholds.outliers_beside : thresholds.outliers_alone;
+  auto peeled =
+      peel(machine, measurement, of_all, far, std::max(1.0, share * static_cast<double>(measurement.rows())));
   if (!peeled) return std::nullopt;
   return WithoutOutliers{
       std::move(peeled->kept),
       fmt::format("Left out: {}, off by more than {:.0f} times the spread of the others, as a lost "
                   "beam or a bumped target is.",
-                  rows_in_words(*peeled, measurement), thresholds.outlier_spreads)};
+                  rows_in_words(*peeled, measurement), far)};
 }
 
 }  // namespace vernier

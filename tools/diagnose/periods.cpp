@@ -82,14 +82,9 @@ double peak_between(const Positions& positions, Index column, double low, double
 
 /// The positions of an axis, one of those that a wave as short as any looked for does not tell apart: where
 /// an axis stood, and not how often. A weight of 1 each.
-Positions stations(const Evidence& evidence, std::size_t axis, double length) {
+Positions stations(const Evidence& evidence, std::size_t axis, double length, int sense = 0) {
   const double apart = 1 / (4 * evidence.thresholds().fine.most_periods);
-  std::vector<double> all;
-  for (std::size_t i = 0; i < evidence.rows().size(); ++i) all.push_back(position(evidence, axis, i));
-  std::sort(all.begin(), all.end());
-  std::vector<double> kept;
-  for (const double one : all)
-    if (kept.empty() || one - kept.back() > apart * length) kept.push_back(one);
+  const std::vector<double> kept = evidence.places_read(axis, sense, apart * length);
   const auto count = static_cast<Index>(kept.size());
   return {Eigen::Map<const Eigen::ArrayXd>(kept.data(), count), Eigen::MatrixXd::Ones(count, 1)};
 }
@@ -145,15 +140,14 @@ std::vector<double> alias_frequencies(const Evidence& evidence, std::size_t axis
   return found;
 }
 
-double shortest_told_apart(const Evidence& evidence, std::size_t axis) {
+namespace {
+
+/// The same of some positions.
+double shortest_of(const Evidence& evidence, const Positions& positions, double length) {
   // The waves that look the same at two positions have a frequency at which all positions look alike.
   constexpr double kPerWindow = 5;  // frequencies looked at for each that the range tells apart
   const FinePeriodThresholds& limits = evidence.thresholds().fine;
   const double steps_per_alias = evidence.thresholds().candidates.steps_per_period;
-  const Evidence::Range range = evidence.range_of(axis);
-  const double length = range.high - range.low;
-  if (length <= 0) return 0;
-  const Positions positions = stations(evidence, axis, length);
   const double step = 1 / (kPerWindow * length), first = 1.5 / length;
   const auto count = static_cast<Index>(
       std::ceil((steps_per_alias * most_frequency(positions, length, limits) - first) / step));
@@ -169,6 +163,30 @@ double shortest_told_apart(const Evidence& evidence, std::size_t axis) {
     if (power_at(positions, 0, peak) > limits.alias_same * all) return steps_per_alias / peak;
   }
   return 0;
+}
+
+}  // namespace
+
+double shortest_told_apart(const Evidence& evidence, std::size_t axis) {
+  const Evidence::Range range = evidence.range_of(axis);
+  const double length = range.high - range.low;
+  if (length <= 0) return 0;
+  const Positions all = stations(evidence, axis, length);
+  const double together = shortest_of(evidence, all, length);
+  // Two senses whose stops are out of step make a finer comb than either has: what it shows and they do not
+  // is how the senses differ.
+  double apart = 1e300;
+  for (const int sense : {-1, 1}) {
+    const Positions one = stations(evidence, axis, length, sense);
+    std::size_t rows = 0;
+    for (const std::size_t row : evidence.rows()) rows += evidence.sense_of(axis, row) == sense ? 1 : 0;
+    const CandidateThresholds& limits = evidence.thresholds().candidates;
+    if (one.at.size() < static_cast<Index>(limits.comb_positions) ||
+        static_cast<double>(rows) < limits.comb_share * static_cast<double>(evidence.rows().size()))
+      return together;
+    apart = std::min(apart, shortest_of(evidence, one, length));
+  }
+  return std::max(together, apart);
 }
 
 FinePeriods fine_periods(const Evidence& evidence, std::size_t axis, const std::vector<double>& grid,

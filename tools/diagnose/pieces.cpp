@@ -34,6 +34,14 @@ bool is_function_of_its_axis(const Evidence& evidence, const Candidate& candidat
          drivers_of(evidence.machine(), candidate).empty();
 }
 
+/// A wave that repeats often enough in the range to be seen for one.
+bool is_plain_wave(const Evidence& evidence, const Pool& pool, std::size_t item) {
+  const double period = period_of(pool, item);
+  if (period <= 0 || !pool.candidate(item).choice.axis) return false;
+  const Evidence::Range range = evidence.range_of(*pool.candidate(item).choice.axis);
+  return range.high - range.low >= evidence.thresholds().shape.periods_of_a_wave * period;
+}
+
 bool moves_alike(const Evidence& evidence, const DofPlace& a, const DofPlace& b) {
   const auto x = evidence.response(evidence.index_of(a)), y = evidence.response(evidence.index_of(b));
   return std::abs(x.dot(y)) > evidence.thresholds().shape.moves_alike * x.norm() * y.norm();
@@ -99,9 +107,16 @@ std::vector<std::size_t> pieces_of_one_function(const Evidence& evidence, const 
                                                 const std::vector<std::size_t>& items) {
   const ShapeThresholds& thresholds = evidence.thresholds().shape;
   const auto choice = [&](std::size_t item) -> const Choice& { return pool.candidate(item).choice; };
+  const auto waves = static_cast<std::size_t>(std::count_if(
+      items.begin(), items.end(), [&](std::size_t item) { return is_plain_wave(evidence, pool, item); }));
+  const auto is_cause = [&](std::size_t item) {
+    return waves <= thresholds.most_waves && is_plain_wave(evidence, pool, item);
+  };
   std::vector<std::size_t> group = largest_group(
       evidence, pool, items,
-      [&](std::size_t item) { return is_function_of_its_axis(evidence, pool.candidate(item)); },
+      [&](std::size_t item) {
+        return is_function_of_its_axis(evidence, pool.candidate(item)) && !is_cause(item);
+      },
       [&](std::size_t a, std::size_t b) {
         return choice(a).axis == choice(b).axis && moves_alike(evidence, *choice(a).place, *choice(b).place);
       });
@@ -110,7 +125,9 @@ std::vector<std::size_t> pieces_of_one_function(const Evidence& evidence, const 
   if (!has_one_reading_a_row(evidence)) return {};
   group = largest_group(
       evidence, pool, items,
-      [&](std::size_t item) { return follows_from_position(evidence, pool.candidate(item)); },
+      [&](std::size_t item) {
+        return follows_from_position(evidence, pool.candidate(item)) && !is_cause(item);
+      },
       [](std::size_t, std::size_t) { return true; });
   std::vector<std::size_t> curves;
   std::copy_if(group.begin(), group.end(), std::back_inserter(curves), [&](std::size_t item) {

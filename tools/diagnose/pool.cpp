@@ -154,10 +154,14 @@ Eigen::MatrixXd Pool::columns(const std::vector<std::size_t>& items) const {
 }
 
 SelectionProblem Pool::problem(std::vector<std::size_t>& items) const {
-  SelectionProblem p;
   items.clear();
   for (std::size_t i = 0; i < items_.size(); ++i)
     if (!items_[i].banned) items.push_back(i);
+  return problem_of(items);
+}
+
+SelectionProblem Pool::problem_of(const std::vector<std::size_t>& items) const {
+  SelectionProblem p;
   Eigen::MatrixXd all = columns(items);
   std::map<std::string, std::size_t> causes;
   Eigen::Index at = 0;

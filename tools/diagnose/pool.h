@@ -38,9 +38,8 @@ class Pool {
 
   /// The entries that are not banned, as a problem of selection; `items`: which item each entry is.
   SelectionProblem problem(std::vector<std::size_t>& items) const;
-
-  /// Counts the scanner's candidates again, after some were added to its list.
-  void count_instances();
+  /// The same of given items, banned or not.
+  SelectionProblem problem_of(const std::vector<std::size_t>& items) const;
 
   std::size_t size() const { return items_.size(); }
   const Item& operator[](std::size_t i) const { return items_[i]; }

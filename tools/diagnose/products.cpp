@@ -19,26 +19,10 @@ bool varies(const Column& column, const std::vector<std::size_t>& rows) {
   return false;
 }
 
-double mean(const Column& column, const std::vector<std::size_t>& rows) {
-  double sum = 0;
-  for (const std::size_t row : rows) sum += column[static_cast<Eigen::Index>(row)];
-  return sum / static_cast<double>(rows.size());
-}
-
-/// An input about its reference: the declared one, 20 degC, else a round number near its mean.
+/// An input about its reference.
 ProductFactor input_factor(const Evidence& evidence, std::size_t index) {
   const Input& input = evidence.machine().inputs[index];
-  double reference = input.reference;
-  if (index >= evidence.declared_inputs()) {
-    reference = standard_reference(input.unit);
-    if (class_of_input(input) != InputClass::kTemperature) {
-      const double average = mean(evidence.measurement().states.input[index], evidence.rows());
-      const double digit = std::pow(10, std::floor(std::log10(std::abs(average) + 1e-300)) - 1);
-      reference = std::round(average / digit) * digit;
-      if (std::abs(average) < 1e-9) reference = 0;
-    }
-  }
-  return {subtract_number(make_symbol(input.name), reference), input.name, input.unit};
+  return {subtract_number(make_symbol(input.name), evidence.reference_of(index)), input.name, input.unit};
 }
 
 std::vector<ProductFactor> factors_of(const Evidence& evidence) {
@@ -68,7 +52,8 @@ std::vector<ProductFactor> factors_of(const Evidence& evidence) {
   take_named("t", s.time);
   take_named("visit", s.visit);
   for (std::size_t i = 0; i < machine.inputs.size(); ++i)
-    if (varies(s.input[i], evidence.rows())) list.push_back(input_factor(evidence, i));
+    if (varies(s.input[i], evidence.rows()) && class_of_input(machine.inputs[i]) != InputClass::kSetpoint)
+      list.push_back(input_factor(evidence, i));
   return list;
 }
 

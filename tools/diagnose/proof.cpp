@@ -20,7 +20,7 @@ Proof proof_on_check_rows(const Measurement& rows, const Eigen::VectorXd& before
   if (check.empty() || before.size() != after.size()) return proof;
   Eigen::MatrixXd left(static_cast<Eigen::Index>(check.size()), 2);
   for (std::size_t i = 0; i < check.size(); ++i) {
-    const double u = rows.uncertainty[static_cast<Eigen::Index>(rows.observations[check[i]].row)];
+    const double u = uncertainty_of(rows, rows.observations[check[i]]);
     const double weight = (u > 0 ? 1 / u : 1) / std::sqrt(variance);
     const auto from = static_cast<Eigen::Index>(check[i]), at = static_cast<Eigen::Index>(i);
     left(at, 0) = weight * before[from];

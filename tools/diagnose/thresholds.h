@@ -25,6 +25,9 @@ struct EvidenceThresholds {
   /// Steps of an axis are even where they are multiples of the least one but for this share of it. Stands for
   /// the accuracy of positioning beside the step of a measurement.
   double even_step = 0.05;
+  /// Response of a place, as a share of the largest of its kind, below which it is rounding: a point that no
+  /// turn about it moves.
+  double rounding = 1e-9;
 
   template <class Visit>
   void for_each(const Visit& visit) {
@@ -33,6 +36,7 @@ struct EvidenceThresholds {
     visit("evidence.pose_chance", pose_chance);
     visit("evidence.pose_freedom", pose_freedom);
     visit("evidence.even_step", even_step);
+    visit("evidence.rounding", rounding);
   }
 };
 
@@ -48,6 +52,8 @@ struct CandidateThresholds {
   double declared_range_share = 0.8;
   /// More steps between runs than this follow any drift: they would name a jump where there is none.
   std::size_t most_steps_of_runs = 4;
+  /// Correlation with the number of the row from which on a logged column is a clock or a counter.
+  double like_a_clock = 0.95;
   /// Readings for each hat of a table: fewer let the table follow the noise of single readings.
   double readings_per_hat = 4;
   /// Time constants looked for: from this many spacings of the rows, or this part of their duration where
@@ -67,6 +73,13 @@ struct CandidateThresholds {
   double longest_aliased_share = 1.6;
   /// Whole fractions of a turn that are always looked at: gears and bearings up to the twelfth order.
   std::size_t harmonics_of_turn = 12;
+  /// Share of a period that an axis must travel for that wave, whose period is known: less of it is a curve.
+  double least_of_a_period = 0.75;
+  /// The same of a wave of one turn, the commonest period of a rotary axis: half of it.
+  double least_of_a_turn = 0.5;
+  /// Positions of an axis in one sense, and share of the rows, from which on the sense has a comb of its own.
+  std::size_t comb_positions = 6;
+  double comb_share = 0.25;
   /// Steps per period: the sampling theorem's two, and a twentieth for steps that are not quite even.
   double steps_per_period = 2.1;
   /// 1 - cosine below which two places do the same to all readings: sqrt of rounding, with three digits to
@@ -81,6 +94,7 @@ struct CandidateThresholds {
     visit("candidates.parallel_cosine", parallel_cosine);
     visit("candidates.declared_range_share", declared_range_share);
     visit("candidates.most_steps_of_runs", most_steps_of_runs);
+    visit("candidates.like_a_clock", like_a_clock);
     visit("candidates.readings_per_hat", readings_per_hat);
     visit("candidates.time_least_steps", time_least_steps);
     visit("candidates.time_least_part", time_least_part);
@@ -94,6 +108,10 @@ struct CandidateThresholds {
     visit("candidates.longest_period_share", longest_period_share);
     visit("candidates.longest_aliased_share", longest_aliased_share);
     visit("candidates.harmonics_of_turn", harmonics_of_turn);
+    visit("candidates.least_of_a_period", least_of_a_period);
+    visit("candidates.least_of_a_turn", least_of_a_turn);
+    visit("candidates.comb_positions", comb_positions);
+    visit("candidates.comb_share", comb_share);
     visit("candidates.steps_per_period", steps_per_period);
     visit("candidates.same_place", same_place);
     visit("candidates.driven_out", driven_out);
@@ -164,6 +182,9 @@ struct PoolThresholds {
   double periods_per_e = 8;
   /// Share of another's squares that a span may miss and still holds it; and where two are the same.
   double held_share = 0.02, same_share = 1e-3;
+  /// Without u, where any structure left over counts as noise: share of what a richer form
+  /// explains from which on the simpler one that it holds is the cause, and the rest another matter.
+  double simple_share = 0.9;
 
   template <class Visit>
   void for_each(const Visit& visit) {
@@ -180,6 +201,7 @@ struct PoolThresholds {
     visit("pool.periods_per_e", periods_per_e);
     visit("pool.held_share", held_share);
     visit("pool.same_share", same_share);
+    visit("pool.simple_share", simple_share);
   }
 };
 
@@ -208,6 +230,10 @@ struct AcceptanceThresholds {
   /// than this are a sweep, which is cut into so many parts.
   double same_feed = 0.05, least_warmth_degC = 1;
   std::size_t most_levels = 8, parts_of_sweep = 3;
+  /// Share of the machine's reach, or of the travel of the rotary axis that drives it, up to which a term may
+  /// grow where the catalogue's own limit, made for machine tools, is less: the eccentricity of a resolver,
+  /// the sag of a long arm. Joints of humanoids give way by a degree in fifty.
+  double size_share = 0.02;
   /// A product of the search is hollow with fewer readings than this behind it, or with this share of its
   /// squares in the span of what failed.
   double witnesses = 10, copy_of_failed = 0.9;
@@ -233,6 +259,7 @@ struct AcceptanceThresholds {
     visit("acceptance.least_warmth_degC", least_warmth_degC);
     visit("acceptance.most_levels", most_levels);
     visit("acceptance.parts_of_sweep", parts_of_sweep);
+    visit("acceptance.size_share", size_share);
     visit("acceptance.witnesses", witnesses);
     visit("acceptance.copy_of_failed", copy_of_failed);
     visit("acceptance.extended", extended);
@@ -272,6 +299,9 @@ struct VerdictThresholds {
   double doubtful_uncertainty = 2;
   /// Without u: share of chi^2 that an accepted ladder explains, for its name to be believed.
   double mostly_explained = 0.5;
+  /// ... and how many times chi^2 must grow without the effect that is named: then it is larger than all that
+  /// is left beside it.
+  double larger_than_rest = 2;
   /// More noise than stated is believed from so many degrees of freedom on. Experiment: outside the
   /// catalogue, 160 rows do not show structure, 400 do.
   double enough_readings = 600;
@@ -282,6 +312,9 @@ struct VerdictThresholds {
   double drift_share = 0.7, drift_support = 20;
   /// Spreads beyond which a reading is an outlier: one in 5e8 of a normal distribution.
   double outlier_spreads = 6;
+  /// The same where no u says how large the spread may be: tails of an effect that was not found reach
+  /// further.
+  double outlier_spreads_without_u = 8;
   /// Share of the rows up to which outliers are the whole answer, and up to which they are left out beside an
   /// effect.
   double outliers_alone = 0.05, outliers_beside = 0.15;
@@ -294,11 +327,13 @@ struct VerdictThresholds {
     visit("verdict.structure", structure);
     visit("verdict.doubtful_uncertainty", doubtful_uncertainty);
     visit("verdict.mostly_explained", mostly_explained);
+    visit("verdict.larger_than_rest", larger_than_rest);
     visit("verdict.enough_readings", enough_readings);
     visit("verdict.stands_out", stands_out);
     visit("verdict.drift_share", drift_share);
     visit("verdict.drift_support", drift_support);
     visit("verdict.outlier_spreads", outlier_spreads);
+    visit("verdict.outlier_spreads_without_u", outlier_spreads_without_u);
     visit("verdict.outliers_alone", outliers_alone);
     visit("verdict.outliers_beside", outliers_beside);
   }
@@ -328,6 +363,10 @@ struct ShapeThresholds {
   /// Pieces of one function: so many functions of one axis, so many of position where rows have one reading,
   /// so many beside a curve, are believed to be as many causes.
   std::size_t most_of_one_axis = 2, most_of_one_reading = 3, most_beside_a_curve = 2;
+  /// Periods of a wave in the range from which on it is a cause of its own (a worm, its gear) and no piece,
+  /// and how many such waves are believed.
+  double periods_of_a_wave = 2;
+  std::size_t most_waves = 3;
   /// Share of the longer period by which a ratio of two may miss a whole number and be a harmonic.
   double harmonic = 0.03;
   /// Cosine from which on two places move the readings alike.
@@ -349,6 +388,8 @@ struct ShapeThresholds {
     visit("shape.most_of_one_axis", most_of_one_axis);
     visit("shape.most_of_one_reading", most_of_one_reading);
     visit("shape.most_beside_a_curve", most_beside_a_curve);
+    visit("shape.periods_of_a_wave", periods_of_a_wave);
+    visit("shape.most_waves", most_waves);
     visit("shape.harmonic", harmonic);
     visit("shape.moves_alike", moves_alike);
   }

@@ -193,9 +193,7 @@ class AddReader {
 
   /// Does a form go with what has been said?
   bool fits(const EffectForm& form) const {
-    const std::size_t inputs = form.asks_for("S")                                               ? 2
-                               : form.asks_for("T") || form.asks_for("L") || form.asks_for("F") ? 1
-                                                                                                : 0;
+    const std::size_t inputs = form.asks_for("S") ? 2 : form.asks_for_input() ? 1 : 0;
     if (inputs != choice_.inputs.size()) return false;
     const std::optional<std::size_t> axis = choice_.axis ? choice_.axis : default_axis_;
     if ((form.place == PlaceRule::kPair) != choice_.axis2.has_value()) return false;

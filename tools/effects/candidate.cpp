@@ -162,7 +162,7 @@ class Maker {
   /// What stands in the place of a placeholder.
   ExprPtr value_of(const std::string& mark, const TermAt& term) const {
     if (mark == "q") return make_symbol(axis_of(term));
-    if (mark == "T" || mark == "L" || mark == "F") return make_symbol(input(0));
+    if (mark == "T" || mark == "L" || mark == "F" || mark == "V") return make_symbol(input(0));
     if (mark == "S") return make_symbol(input(1));
     if (mark == "ref") return make_number(choice_.reference ? *choice_.reference : (missing("input"), 0));
     if (mark == "from") return make_number(choice_.from);
@@ -289,7 +289,7 @@ class Maker {
     replace_all(text, "{dof}", is_angle(machine_, at) ? "deg" : "mm");
     if (choice_.axis) replace_all(text, "{q}", machine_.axes[*choice_.axis].rotary ? "deg" : "mm");
     if (!choice_.units.empty())
-      for (const char* mark : {"{T}", "{L}", "{F}"})
+      for (const char* mark : {"{T}", "{L}", "{F}", "{V}"})
         replace_all(text, mark, choice_.units[0].empty() ? "1" : choice_.units[0]);
     if (text == "mm/mm" || text == "deg/deg" || text == "{}") return {};
     return text;

@@ -225,8 +225,8 @@ class CatalogueReader {
   }
 
   void check_mark(const std::string& mark, std::size_t line) const {
-    static constexpr std::array kMarks = {"q",    "T",  "S",    "L",   "F", "ref", "mid",
-                                          "from", "to", "span", "sum", "n", "runs"};
+    static constexpr std::array kMarks = {"q",   "T",    "S",  "L",    "F",   "V", "ref",
+                                          "mid", "from", "to", "span", "sum", "n", "runs"};
     const bool known = std::any_of(kMarks.begin(), kMarks.end(), [&](const char* m) { return mark == m; });
     if (!known && !hats_of(mark)) fail_at(line, "{" + mark + "}", "not a placeholder");
   }

@@ -45,9 +45,10 @@ struct UnknownRule {
 };
 
 /// One way to write an effect. The term is an expression with placeholders: {q} the driving axis, {T} {S}
-/// inputs that are temperatures, {L} a load, {F} an accelerometer feature, {ref} the reference of {T},
-/// {mid} {from} {to} {span} of the range of {q}, {hats N} a sum of N hat functions over that range, {runs} a
-/// sum of one step a run, {sum} the sum of parallel joints up to {q} and beyond, {n} nx, ny or nz.
+/// inputs that are temperatures, {L} a load, {F} an accelerometer feature, {V} any other logged quantity,
+/// {ref} the reference of {T}, {mid} {from} {to} {span} of the range of {q}, {hats N} a sum of N hat
+/// functions over that range, {runs} a sum of one step a run, {sum} the sum of parallel joints up to {q} and
+/// beyond, {n} nx, ny or nz.
 struct EffectForm {
   std::string label;
   PlaceRule place = PlaceRule::kOwn;
@@ -58,6 +59,7 @@ struct EffectForm {
   std::size_t hats = 0;         // N of {hats N}
 
   bool asks_for(const std::string& mark) const { return marks.contains(mark); }
+  bool asks_for_input() const { return asks_for("T") || asks_for("L") || asks_for("F") || asks_for("V"); }
   /// Does any node of the term answer?
   template <class Is>
   bool any(const Is& is) const {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/effects/input_class.h"
 
+#include <algorithm>
+#include <array>
 #include <cctype>
 #include <string>
 
@@ -9,14 +11,30 @@
 
 namespace vernier {
 
+namespace {
+
+constexpr std::array<std::string_view, 8> kSetpoints = {"target", "set",     "setpoint", "sp",
+                                                        "cmd",    "command", "demand",   "goal"};
+
+/// Does a name end like that of a set-point: T_bed_target, nozzle_set?
+bool is_setpoint(const std::string& name) {
+  const auto last = name.find_last_of("_-. ");
+  if (last == std::string::npos) return false;
+  const std::string end = name.substr(last + 1);
+  return std::find(kSetpoints.begin(), kSetpoints.end(), end) != kSetpoints.end();
+}
+
+}  // namespace
+
 InputClass class_of_input(const Input& input) {
   const std::string& unit = input.unit;
+  std::string lower;
+  for (const char c : input.name) lower += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  if (is_setpoint(lower)) return InputClass::kSetpoint;
   if (unit == "degC" || unit == "K") return InputClass::kTemperature;
   if (unit == "N" || unit == "kg") return InputClass::kLoad;
   if (unit == "mm/s^2" || unit == "m/s^2" || unit == "deg/s^2" || unit == "g") return InputClass::kFeature;
   if (!unit.empty() && unit != "V" && unit != "mV") return InputClass::kOther;
-  std::string lower;
-  for (const char c : input.name) lower += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   const auto has = [&](const char* part) { return lower.find(part) != std::string::npos; };
   if (has("temp") || input.name.rfind("T_", 0) == 0) return InputClass::kTemperature;
   if (has("load") || has("force") || has("mass") || has("torque") || has("weight")) return InputClass::kLoad;

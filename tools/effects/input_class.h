@@ -8,7 +8,9 @@
 namespace vernier {
 
 /// What a logged column is, by its unit (by its name where it has none).
-enum class InputClass : std::uint8_t { kTemperature, kLoad, kFeature, kOther };
+/// kSetpoint: what a controller asked for, no reading: it explains nothing that the reading beside it does
+/// not.
+enum class InputClass : std::uint8_t { kTemperature, kLoad, kFeature, kSetpoint, kOther };
 InputClass class_of_input(const Input& input);
 
 /// The temperature at which dimensions are specified (ISO 1), in a unit of temperature: 20 degC or 293.15 K.

@@ -77,6 +77,7 @@ inline std::vector<Choice> choices_of(const Machine& machine, const Effect& effe
   for (const auto& [mark, name, unit] : {std::tuple{"{T}", "T_probe", "degC"},
                                          {"{L}", "push", "N"},
                                          {"{F}", "shake", "g"},
+                                         {"{V}", "tilt", "deg"},
                                          {"{S}", "T_other", "degC"}})
     if (asks(mark)) {
       base.inputs.push_back(name);
@@ -136,7 +137,7 @@ inline Measurement random_rows(const Machine& machine, std::size_t rows, std::mt
   }
   for (const Input& input : machine.inputs)
     header += input.unit.empty() ? input.name + "," : fmt::format("{}[{}],", input.name, input.unit);
-  header += "T_probe[degC],push[N],shake[g],T_other[degC],feed[mm/min],curv[1/mm],t[s],nx,ny,nz,";
+  header += "T_probe[degC],push[N],shake[g],T_other[degC],tilt[deg],feed[mm/min],curv[1/mm],t[s],nx,ny,nz,";
   header += "px[mm],py[mm],pz[mm],d[mm],x[mm],y[mm],z[mm],u[um],run\n";
   std::string text = header;
   for (std::size_t i = 0; i < rows; ++i) {
@@ -147,9 +148,9 @@ inline Measurement random_rows(const Machine& machine, std::size_t rows, std::mt
                           200 * unit(random));
     }
     for (const Input& input : machine.inputs) text += fmt::format("{},", input.reference + unit(random));
-    text += fmt::format("{},{},{},{},{},{},{},0.6,0,0.8,", 20 + 5 * unit(random), 50 * unit(random),
-                        unit(random), 20 + 5 * unit(random), 1000 + 500 * unit(random), 0.01 * unit(random),
-                        static_cast<double>(i) * 10);
+    text += fmt::format("{},{},{},{},{},{},{},{},0.6,0,0.8,", 20 + 5 * unit(random), 50 * unit(random),
+                        unit(random), 20 + 5 * unit(random), 3 * unit(random), 1000 + 500 * unit(random),
+                        0.01 * unit(random), static_cast<double>(i) * 10);
     text += fmt::format("1,2,3,0,0,0,0,{},{}\n", 1 + i % 3, i < rows / 2 ? "a" : "\"the second, |odd| one\"");
   }
   return parse_measurement(text, "rows.csv", machine);

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What records of real machines contain and surveys of our own do not: stops in two combs, three waves on one
+// axis, wild readings without a stated uncertainty, set-points, counters, tables where nobody measured.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <random>
+
+#include "tools/diagnose/diagnosis.h"
+#include "tools/diagnose/enumerate.h"
+#include "tools/diagnose/periods.h"
+#include "tools/model/machine_reader.h"
+
+namespace vernier::records_test {
+namespace {
+
+const char* const kLinear = R"(<machine name="m"><variables><static><c value="0" unit="mm"/></static>
+  <machineaxes><X min="0" max="600"/></machineaxes></variables>
+  <transforms branch="tool"><sixdof n="1" X="X+c"/></transforms></machine>)";
+const char* const kRotary = R"(<machine name="m"><variables><static><c value="0" unit="deg"/></static>
+  <machineaxes><C rotary="true" min="0" max="360"/></machineaxes></variables>
+  <transforms branch="tool"><sixdof n="1" rZ="C+c"/></transforms></machine>)";
+
+double sine(double turns) { return std::sin(2 * std::numbers::pi * turns); }
+
+Diagnosis diagnosed(const std::string& machine_text, const std::string& rows) {
+  static const DiagnoseOptions options;  // answers point into its effects
+  const Machine machine = parse_machine(machine_text, "m.xml");
+  return diagnose(machine_text, machine, parse_measurement(rows, "m.csv", machine), options);
+}
+
+const CandidateFinding* find(const Diagnosis& answer, const std::string& id) {
+  const auto found =
+      std::find_if(answer.candidates.begin(), answer.candidates.end(),
+                   [&](const CandidateFinding& one) { return one.candidate.choice.effect->id == id; });
+  return found == answer.candidates.end() ? nullptr : &*found;
+}
+
+/// Rows of X in three runs of 121 positions, forth and back, with an error and noise of 1 um.
+std::string forth_and_back(const std::function<double(double, int)>& error_mm,
+                           const std::string& columns = "", const std::function<std::string(int)>& cells = {},
+                           bool with_u = true, double comb_mm = 0) {
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> noise(0, 0.001);
+  std::string text = "X[mm],dirX,x[mm],run" + std::string(with_u ? ",u[um]" : "") + columns + "\n";
+  int row = 0;
+  for (int run = 0; run < 3; ++run)
+    for (int i = 0; i < 122; ++i, ++row) {
+      const int sense = i < 61 ? 1 : -1;
+      const double x = 10.0 * (i < 61 ? i : 121 - i) + (sense < 0 ? comb_mm : 0);
+      text += fmt::format("{:.3f},{},{:.6f},r{}{}{}\n", x, sense, x + error_mm(x, sense) + noise(random), run,
+                          with_u ? ",1" : "", cells ? cells(row) : "");
+    }
+  return text;
+}
+
+TEST(Records, TwoCombsOutOfStepHideNoAlias) {
+  const Machine machine = parse_machine(kLinear, "m.xml");
+  const auto shortest = [&](double comb_mm) {
+    const std::string rows = forth_and_back([](double, int) { return 0.0; }, "", {}, true, comb_mm);
+    return shortest_told_apart(Evidence(machine, parse_measurement(rows, "m.csv", machine)), 0);
+  };
+  EXPECT_GT(shortest(0), 15);
+  EXPECT_GT(shortest(3.7), 15);  // together they would tell periods down to a few tenths
+  // The sense is named and no wave, where the stops of the two senses are out of step.
+  const Diagnosis answer =
+      diagnosed(kLinear, forth_and_back([](double, int sense) { return 0.004 * sense; }, "", {}, true, 3.7));
+  EXPECT_EQ(answer.verdict, Verdict::kMissingEffect) << answer.explanation;
+  EXPECT_EQ(answer.candidates.at(0).candidate.choice.effect->id, "backlash");
+}
+
+TEST(Records, WormGearAndLongWaveAreThreeCauses) {
+  std::mt19937_64 random(9);
+  std::normal_distribution<double> noise(0, 0.001);
+  std::uniform_real_distribution<double> share(0, 1);
+  std::string text = "C[deg],rz[deg],u[deg],run\n";
+  for (int i = 0; i < 400; ++i) {
+    const double c = 360 * share(random);
+    const double error = 0.012 * sine(c / 360 + 0.1) + 0.008 * sine(c / 4) + 0.006 * sine(c / 26.18 + 0.3);
+    text += fmt::format("{:.4f},{:.6f},0.001,r{}\n", c, c + error + noise(random), i / 100);
+  }
+  const Diagnosis answer = diagnosed(kRotary, text);
+  EXPECT_EQ(answer.verdict, Verdict::kMissingEffect) << answer.explanation;
+  EXPECT_EQ(answer.ladder.size(), 4U);
+  for (std::size_t i = 1; i < answer.ladder.size(); ++i) EXPECT_EQ(answer.ladder[i].effect, "cyclic-error");
+}
+
+TEST(Records, WildReadingsAreToldWithoutAnUncertainty) {
+  const auto cells = [](int) { return std::string(); };
+  const auto error = [](double x, int sense) {
+    const bool failed = sense > 0 && (x == 30 || x == 220 || x == 470);
+    return 0.006 * sense + (failed ? 4.0 : 0);
+  };
+  const Diagnosis answer = diagnosed(kLinear, forth_and_back(error, "", cells, false));
+  EXPECT_EQ(answer.verdict, Verdict::kMissingEffect) << answer.explanation;
+  EXPECT_EQ(answer.candidates.at(0).candidate.choice.effect->id, "backlash");
+  EXPECT_NE(answer.explanation.find("9 of 366 rows"), std::string::npos) << answer.explanation;
+  const Diagnosis only = diagnosed(
+      kLinear,
+      forth_and_back([&](double x, int sense) { return error(x, sense) - 0.006 * sense; }, "", cells, false));
+  EXPECT_EQ(only.verdict, Verdict::kInstrument) << only.explanation;
+}
+
+TEST(Records, SetpointsAndCountersAreNoCauses) {
+  // The thermometer lags its set-point; the error follows the thermometer. `cycle` counts the runs.
+  const auto warmth = [](int row) { return 20 + 15 * (1 - std::exp(-row / 120.0)); };
+  const auto cells = [&](int row) {
+    return fmt::format(",{:.3f},{:.1f},{}", warmth(row), row < 10 ? 20.0 : 35.0, row / 122);
+  };
+  int row = 0;
+  const auto error = [&](double, int) { return 0.002 * (warmth(row++) - 20); };
+  const Diagnosis answer =
+      diagnosed(kLinear, forth_and_back(error, ",T_bed[degC],T_bed_target[degC],cycle", cells));
+  EXPECT_EQ(answer.verdict, Verdict::kMissingEffect) << answer.explanation;
+  EXPECT_EQ(answer.candidates.at(0).candidate.choice.inputs, std::vector<std::string>{"T_bed"});
+  for (const CandidateFinding& one : answer.candidates)
+    for (const std::string& input : one.candidate.choice.inputs) EXPECT_EQ(input, "T_bed");
+}
+
+TEST(Records, AColumnWithoutAClassMayBeTheCause) {
+  const auto tilt = [](int row) { return 2 * std::sin(0.7 * row) + std::sin(2.1 * row + 1); };
+  int row = 0;
+  const Diagnosis answer =
+      diagnosed(kLinear, forth_and_back([&](double, int) { return 0.003 * tilt(row++); }, ",rotator[deg]",
+                                        [&](int i) { return fmt::format(",{:.4f}", tilt(i)); }));
+  EXPECT_EQ(answer.verdict, Verdict::kMissingEffect) << answer.explanation;
+  EXPECT_EQ(answer.candidates.at(0).candidate.choice.effect->id, "input-dependence");
+  EXPECT_EQ(answer.candidates.at(0).candidate.choice.inputs, std::vector<std::string>{"rotator"});
+}
+
+TEST(Records, NoTableStandsWhereNobodyMeasured) {
+  // Two groups of stops at the ends: hats between them would be free to take any value.
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> noise(0, 0.001);
+  std::string text = "X[mm],dirX,x[mm],u[um],run\n";
+  for (int i = 0; i < 240; ++i) {
+    const double x = (i % 2 == 0 ? 0 : 540) + 6.0 * (i / 2 % 10) + 0.01 * (i % 7);
+    const int sense = i / 20 % 2 == 0 ? 1 : -1;
+    text += fmt::format("{:.3f},{},{:.6f},1,r{}\n", x, sense, x + 0.003 * sense + noise(random), i / 80);
+  }
+  const Machine machine = parse_machine(kLinear, "m.xml");
+  const Evidence evidence(machine, parse_measurement(text, "m.csv", machine));
+  const std::vector<Effect> effects = built_in_effects();
+  for (const ScannedCandidate& one : enumerate_candidates(evidence, effects))
+    EXPECT_FALSE(one.candidate.choice.form->asks_for("hats")) << one.candidate.label;
+  EXPECT_EQ(diagnosed(kLinear, text).candidates.at(0).candidate.choice.effect->id, "backlash");
+}
+
+TEST(Records, APartOfATurnIsNoPeriod) {
+  // A parabola over 68 degrees of travel.
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> noise(0, 0.001);
+  std::string text = "C[deg],rz[deg],u[deg],run\n";
+  for (int i = 0; i < 300; ++i) {
+    const double c = 68.0 * (i % 100) / 99;
+    text += fmt::format("{:.4f},{:.6f},0.001,r{}\n", c, c + 2e-5 * c * (68 - c) + noise(random), i / 100);
+  }
+  const Diagnosis answer = diagnosed(kRotary, text);
+  const CandidateFinding* wave = find(answer, "cyclic-error");
+  EXPECT_TRUE(answer.verdict != Verdict::kMissingEffect || wave == nullptr || wave != &answer.candidates[0])
+      << answer.explanation;
+}
+
+TEST(Records, WhatFailedATestIsShownWithIt) {
+  // A wave of one run only: found, and refused because the other runs know nothing of it.
+  int row = 0;
+  const auto error = [&](double x, int) { return row++ < 122 ? 0.02 * sine(x / 53) : 0.0; };
+  const Diagnosis answer = diagnosed(kLinear, forth_and_back(error));
+  EXPECT_NE(answer.verdict, Verdict::kMissingEffect) << answer.explanation;
+  EXPECT_TRUE(std::any_of(answer.candidates.begin(), answer.candidates.end(),
+                          [](const CandidateFinding& one) { return !one.why_not.empty(); }));
+}
+
+TEST(Records, EveryStepOfTheCheckRowsIsTold) {
+  std::string rows = forth_and_back([](double x, int sense) { return 0.006 * sense + 2e-5 * x; });
+  // The last run checks.
+  std::string text;
+  for (std::size_t at = 0, line = 0; at < rows.size(); ++line) {
+    const std::size_t end = rows.find('\n', at);
+    const std::string one = rows.substr(at, end - at);
+    text += one + (line == 0 ? ",role" : one.find(",r2,") != std::string::npos ? ",check" : ",fit") + "\n";
+    at = end + 1;
+  }
+  const Diagnosis answer = diagnosed(kLinear, text);
+  ASSERT_EQ(answer.ladder.size(), 3U) << answer.explanation;
+  for (const LadderStep& step : answer.ladder)
+    EXPECT_NE(answer.explanation.find(fmt::format("{:.4g}", *step.check_rms_um)), std::string::npos)
+        << answer.explanation;
+}
+
+}  // namespace
+}  // namespace vernier::records_test
