@@ -18,15 +18,6 @@ struct PoseArguments {
   bool with_rotary = false;
 };
 
-/// The machine with one of its tools, or with a tool given as "X,Y,Z" (mm, beyond the end of the chain).
-Machine tooled(const Machine& machine, const std::string& tool) {
-  if (tool.empty()) return machine;
-  for (const Tool& one : machine.tools)
-    if (one.name == tool) return with_tool(machine, one.point);
-  const std::vector<double> point = number_list(tool, {3}, "--tool");
-  return with_tool(machine, {point[0], point[1], point[2]});
-}
-
 void run_pose(const PoseArguments& arguments) {
   const Machine machine = tooled(read_machine(arguments.machine), arguments.tool);
   const States states = state_at(machine, arguments.at);

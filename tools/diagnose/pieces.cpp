@@ -109,8 +109,15 @@ std::vector<std::size_t> pieces_of_one_function(const Evidence& evidence, const 
   const auto choice = [&](std::size_t item) -> const Choice& { return pool.candidate(item).choice; };
   const auto waves = static_cast<std::size_t>(std::count_if(
       items.begin(), items.end(), [&](std::size_t item) { return is_plain_wave(evidence, pool, item); }));
+  // Waves beside a curve of the same axis are what a table cannot follow of one function, a chirp.
+  const auto beside_a_curve = [&](std::size_t wave) {
+    return std::any_of(items.begin(), items.end(), [&](std::size_t item) {
+      return choice(item).axis == choice(wave).axis && period_of(pool, item) <= 0 &&
+             static_cast<double>(pool[item].columns.cols()) >= thresholds.curve;
+    });
+  };
   const auto is_cause = [&](std::size_t item) {
-    return waves <= thresholds.most_waves && is_plain_wave(evidence, pool, item);
+    return waves <= thresholds.most_waves && is_plain_wave(evidence, pool, item) && !beside_a_curve(item);
   };
   std::vector<std::size_t> group = largest_group(
       evidence, pool, items,

@@ -103,13 +103,6 @@ std::string cell_of(const std::string& text, const MappedColumn& column, bool de
   return *number;
 }
 
-std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"# \t") == std::string::npos) return text;
-  std::string result = "\"";
-  for (const char c : text) result += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return result + "\"";
-}
-
 }  // namespace
 
 void add_column(ColumnMap& map, const std::string& words, const Place& place) {
@@ -197,7 +190,7 @@ std::string measurement_csv(const ImportTable& table) {
   text += "\n";
   for (std::size_t i = 0; i < table.line.size(); ++i) {
     for (std::size_t k = 0; k < table.columns.size(); ++k)
-      text += (k > 0 ? "," : "") + quoted(table.columns[k].cells[i]);
+      text += (k > 0 ? "," : "") + csv_cell(table.columns[k].cells[i]);
     text += "\n";
   }
   const CsvFile back = parse_csv(text, table.file);

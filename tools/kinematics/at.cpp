@@ -73,6 +73,14 @@ States state_at(const Machine& machine, const std::string& words) {
   return states;
 }
 
+Machine tooled(const Machine& machine, const std::string& tool) {
+  if (tool.empty()) return machine;
+  for (const Tool& one : machine.tools)
+    if (one.name == tool) return with_tool(machine, one.point);
+  const std::vector<double> point = number_list(tool, {3}, "--tool");
+  return with_tool(machine, {point[0], point[1], point[2]});
+}
+
 std::vector<double> number_list(const std::string& text, const std::vector<std::size_t>& counts,
                                 const std::string& what) {
   std::vector<double> result;

@@ -1,21 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/results/residual_csv.h"
 
+#include "tools/text/csv.h"
 #include "tools/text/numbers.h"
 
 namespace vernier {
-namespace {
-
-/// Quoted where the text holds what separates.
-std::string cell(const std::string& text) {
-  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
-}
-
-}  // namespace
-
 std::string residual_csv(const Measurement& m, const Eigen::VectorXd& residual) {
   std::string text = "row,observation,value,prediction,residual,u,unit,role,run,file,line\n";
   for (std::size_t i = 0; i < m.observations.size(); ++i) {
@@ -25,8 +14,9 @@ std::string residual_csv(const Measurement& m, const Eigen::VectorXd& residual) 
     text += std::to_string(o.row + 1) + "," + kObservationNames[static_cast<std::size_t>(o.kind)] + "," +
             number_text(o.value) + "," + number_text(o.value - left) + "," + number_text(left) + "," +
             (u > 0 ? number_text(u) : "") + "," + (is_rotation(o.kind) ? "deg" : "mm") + "," +
-            (m.check[o.row] != 0 ? "check" : "fit") + "," + cell(m.states.run_names[m.states.run[o.row]]) +
-            "," + cell(m.files[m.file[o.row]]) + "," + std::to_string(m.line[o.row]) + "\n";
+            (m.check[o.row] != 0 ? "check" : "fit") + "," +
+            csv_cell(m.states.run_names[m.states.run[o.row]]) + "," + csv_cell(m.files[m.file[o.row]]) + "," +
+            std::to_string(m.line[o.row]) + "\n";
   }
   return text;
 }

@@ -27,6 +27,13 @@ CsvColumn column_of(const std::string& field, const Place& place) {
 
 }  // namespace
 
+std::string csv_cell(const std::string& text) {
+  if (text.find_first_of(",\"# \t\n\r") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
 std::vector<std::string> fields_of(const std::string& line, const FieldRules& rules, const Place& place) {
   const bool blanks = rules.separator == ' ';
   const auto is_separator = [&](char c) { return c == rules.separator || (blanks && c == '\t'); };

@@ -16,6 +16,9 @@ struct FieldRules {
 /// one is one. Throws InputError. tool.
 std::vector<std::string> fields_of(const std::string& line, const FieldRules& rules, const Place& place);
 
+/// A field as it is written: in quotes where it holds what a reader might take for more than a letter. tool.
+std::string csv_cell(const std::string& text);
+
 /// A column of a measurement file's header: `name[unit]`.
 struct CsvColumn {
   std::string name, unit;

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/offline/positions.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/offline/machine.h"
+#include "tools/model/chain.h"
+#include "tools/text/csv.h"
+#include "tools/text/error.h"
+#include "tools/text/numbers.h"
+
+namespace vernier::offline_test {
+namespace {
+
+std::string list_corrected(const std::string& text, bool back = false) {
+  const Machine machine = bridge();
+  Corrector corrector(machine, {.with_rotary = false, .back = back});
+  return corrected_positions(text, "p.csv", at_rest(machine), corrector);
+}
+
+TEST(Positions, ComeToTheIdealPointAndBack) {
+  const std::string there =
+      list_corrected("# a list\nname,X[mm],dirY,Y[mm],Z[mm]\n\"a, b\",100,1,50,-20\nc,333.3,-1,60,-30\n");
+  const CsvFile csv = parse_csv(there, "there");
+  ASSERT_EQ(csv.rows.size(), 2U);
+  EXPECT_EQ(csv.rows[0][0], "a, b");
+  const Machine machine = bridge();
+  States states = make_states(2, 3, {});
+  for (Eigen::Index row = 0; row < 2; ++row)
+    for (const auto& [axis, column] : {std::pair{0, 1}, {1, 3}, {2, 4}})
+      states.axis[static_cast<std::size_t>(axis)][row] =
+          *parse_number(csv.rows[static_cast<std::size_t>(row)][static_cast<std::size_t>(column)]);
+  states.direction[1] << 1, -1;
+  const Eigen::Matrix3Xd actual = forward(machine, states).position;
+  EXPECT_LT((actual.col(0) - Eigen::Vector3d(100, 80, -100)).norm(), 1e-6);
+  EXPECT_LT((actual.col(1) - Eigen::Vector3d(333.3, 90, -110)).norm(), 1e-6);
+  EXPECT_GT(std::abs(states.axis[0][0] - 100), 0.001);
+  const CsvFile again = parse_csv(list_corrected(there.substr(there.find('\n') + 1), true), "back");
+  EXPECT_NEAR(*parse_number(again.rows[1][1]), 333.3, 1e-6);
+}
+
+TEST(Positions, TargetsAreSolvedFirst) {
+  const CsvFile csv = parse_csv(list_corrected("x[mm],y[mm],z[mm]\n100,80,-100\n"), "targets");
+  EXPECT_EQ(csv.columns[0].name, "X");
+  EXPECT_NEAR(*parse_number(csv.rows[0][0]), 100, 0.1);
+  EXPECT_NE(*parse_number(csv.rows[0][0]), 100);
+  EXPECT_THROW(list_corrected("x[mm],y[mm],z[mm]\n9000,80,-100\n"), LimitNotMet);
+}
+
+TEST(Positions, AreRefusedASecondTimeAndWithoutAnAxis) {
+  const std::string text = "X[mm],Y[mm],Z[mm]\n1,2,-3\n";
+  EXPECT_THROW(list_corrected(list_corrected(text)), InputError);
+  EXPECT_THROW(list_corrected("X[mm],Y[mm]\n1,2\n"), InputError);
+  EXPECT_THROW(list_corrected("X[mm],Y[mm],Z[mm]\n1,2,three\n"), InputError);
+}
+
+}  // namespace
+}  // namespace vernier::offline_test

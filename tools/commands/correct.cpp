@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <memory>
+
+#include "tools/commands/command.h"
+#include "tools/kinematics/at.h"
+#include "tools/model/machine_reader.h"
+#include "tools/offline/part_program.h"
+#include "tools/offline/positions.h"
+#include "tools/text/error.h"
+#include "tools/text/optional_json.h"
+
+namespace vernier::correct_cli {
+namespace {
+
+struct CorrectArguments {
+  std::string machine, path, output, json, at, zero, tool;
+  double deviation_um = 0.5;
+  bool back = false, with_rotary = false;
+};
+
+/// Is this a list of positions? Its first line that is no comment is a header with commas or the name of a
+/// column; a part program's is a block.
+bool is_table(const std::string& path, const std::string& text) {
+  if (path.ends_with(".csv")) return true;
+  std::size_t at = 0;
+  while (at < text.size()) {
+    const auto end = std::min(text.find('\n', at), text.size());
+    const std::string line = text.substr(at, end - at);
+    at = end + 1;
+    if (line.empty() || line[0] == '#' || line[0] == '\r') continue;
+    return line.find(',') != std::string::npos && line.find('[') != std::string::npos;
+  }
+  return false;
+}
+
+/// Which axes a user's words name.
+std::vector<char> named_in(const Machine& machine, const std::string& words) {
+  std::vector<char> named(machine.axes.size(), 0);
+  for (std::size_t i = 0; i < machine.axes.size(); ++i)
+    named[i] = ("," + words).find("," + machine.axes[i].name + "=") != std::string::npos ? 1 : 0;
+  return named;
+}
+
+void run_correct(const CorrectArguments& arguments) {
+  const Machine read = read_machine(arguments.machine);
+  const Machine machine = arguments.tool.empty() ? read : tooled(read, arguments.tool);
+  const std::string text = read_file(arguments.path);
+  const States at = state_at(machine, arguments.at);
+  CorrectorOptions options;
+  options.back = arguments.back;
+  options.with_rotary = arguments.with_rotary || machine.correct_orientation;
+  Corrector corrector(machine, options);
+  nlohmann::ordered_json json = {{"machine", machine.name}, {"path", arguments.path}};
+  std::string result;
+  if (is_table(arguments.path, text)) {
+    result = corrected_positions(text, arguments.path, at, corrector);
+  } else {
+    if (arguments.back)
+      throw InputError({arguments.path, 0}, "--back",
+                       "goes with a CSV of positions, not with a part program");
+    PartProgramOptions program;
+    program.deviation_mm = 1e-3 * arguments.deviation_um;
+    const States zero = state_at(machine, arguments.zero);
+    for (std::size_t i = 0; i < machine.axes.size(); ++i) program.zero.push_back(zero.axis[i][0]);
+    PartProgram corrected =
+        corrected_program(text, arguments.path, at, named_in(machine, arguments.at), program, corrector);
+    json["moves"] = corrected.moves;
+    json["moves_written"] = corrected.written;
+    result = std::move(corrected.text);
+  }
+  const CorrectionSummary& summary = corrector.summary();
+  json["positions"] = summary.positions;
+  json["max_correction_um"] = summary.largest_um(machine);
+  json["max_correction"] = nlohmann::ordered_json::object();
+  for (std::size_t i = 0; i < machine.axes.size(); ++i)
+    json["max_correction"][machine.axes[i].name] = summary.largest[i];
+  json["left_um"] = 1000 * summary.left_mm;
+  json["not_converged"] = summary.not_converged;
+  if (summary.not_converged > 0)
+    throw LimitNotMet(fmt::format("{} of {} positions cannot be corrected with these axes",
+                                  summary.not_converged, summary.positions));
+  write_file(arguments.output, result);
+  write_json(arguments.json, json);
+  std::FILE* out = human_stream(arguments.json);
+  fmt::print(out, "{}: {} positions, corrections up to {:.4g} um", arguments.output, summary.positions,
+             summary.largest_um(machine));
+  if (json.contains("moves"))
+    fmt::print(out, "; {} moves as {}", json["moves"].get<std::size_t>(),
+               json["moves_written"].get<std::size_t>());
+  fmt::print(out, "; left over {:.3g} um\n", 1000 * summary.left_mm);
+}
+
+}  // namespace
+
+void register_correct(CLI::App& vernier) {
+  auto arguments = std::make_shared<CorrectArguments>();
+  CLI::App* command = vernier.add_subcommand(
+      "correct", "Positions or a part program with the correction in them, for a control without a board");
+  command->add_option("MACHINE", arguments->machine, "machine file (XML), fitted")->required();
+  command->add_option("PATH", arguments->path, "CSV of positions or targets, or a part program (RS-274)")
+      ->required();
+  command->add_option("-o,--output", arguments->output, "the same, corrected")->required();
+  command->add_option("--at", arguments->at,
+                      "inputs, and where the axes stand before a program begins: \"T=25,X=0,Z=100\"");
+  command->add_option("--zero", arguments->zero,
+                      "machine position of the program's zero, tool length included: \"X=120,Y=80,Z=-40\"");
+  command->add_option("--tool", arguments->tool,
+                      "a tool of the file's <tools>, or \"X,Y,Z\" in mm from the end of the chain");
+  command
+      ->add_option("--deviation", arguments->deviation_um,
+                   "how far a straight block may leave the path that is corrected at every moment, um")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command->add_flag(
+      "--back", arguments->back,
+      "the other way: positions as commanded, to those of an ideal machine that would be there");
+  command->add_flag(
+      "--rotary", arguments->with_rotary,
+      "correct with all axes, tool point and tool direction; default: as the machine file says");
+  command->add_option("--json", arguments->json, "result for programs; - for standard output");
+  command->footer(
+      "What was corrected is marked, and refused a second time. Exit status 0 done, 1 bad input (nothing\n"
+      "written), 2 some position cannot be corrected with these axes or a target cannot be reached.");
+  command->callback([arguments] { run_correct(*arguments); });
+}
+
+}  // namespace vernier::correct_cli

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "tools/model/machine.h"
+#include "tools/model/states.h"
+
+namespace vernier {
+
+struct CorrectorOptions {
+  bool with_rotary =
+      false;  // all axes put point and tool direction right, not the linear ones the point alone
+  /// Positions of a machine as it is are given, and the commands of an ideal one that would be there are
+  /// asked.
+  bool back = false;
+};
+
+/// What was done to the positions of a list or program.
+struct CorrectionSummary {
+  std::size_t positions = 0;      // that were asked for
+  std::size_t not_converged = 0;  // of these
+  std::vector<double> largest;    // by axis, mm or deg
+  double left_mm = 0;             // largest distance between the corrected tool point and the ideal one
+
+  /// Largest correction of the linear axes together, um.
+  double largest_um(const Machine& machine) const;
+};
+
+/// Commands with the correction in them: axis positions that bring the tool of the machine as it is to where
+/// its nominal chain has it.
+class Corrector {
+ public:
+  explicit Corrector(const Machine& machine, CorrectorOptions options = {});
+
+  const Machine& machine() const { return machine_; }
+  /// Axis positions (axes x states) to command for states that are as if the machine were ideal; motion and
+  /// inputs count as they are. Throws InputError where the chain is not finite. tool.
+  Eigen::MatrixXd commands(const States& states);
+  /// Adds positions that will be written to the summary.
+  void count(const States& states, const Eigen::MatrixXd& commands);
+  const CorrectionSummary& summary() const { return summary_; }
+
+ private:
+  const Machine& machine_;
+  Machine nominal_;
+  CorrectorOptions options_;
+  CorrectionSummary summary_;
+};
+
+/// First words of what is written, by which a file that was corrected before is known.
+inline constexpr const char* kCorrectedMark = "corrected by vernier";
+
+/// Throws InputError, naming the line, where a text says that it was corrected. tool.
+void refuse_corrected(const std::string& text, const std::string& file);
+
+}  // namespace vernier
