@@ -22,6 +22,9 @@ void register_compare(CLI::App& vernier);
 namespace compile_cli {
 void register_compile(CLI::App& vernier);
 }  // namespace compile_cli
+namespace check_cli {
+void register_check(CLI::App& vernier);
+}  // namespace check_cli
 namespace correct_cli {
 void register_correct(CLI::App& vernier);
 }  // namespace correct_cli

@@ -35,6 +35,7 @@ constexpr vernier::RegisterCommand kCommands[] = {
     vernier::probe_cli::register_probe_path,
     vernier::probe_cli::register_probe_cal,
     vernier::probe_cli::register_feature,
+    vernier::check_cli::register_check,
     vernier::correct_cli::register_correct,
     vernier::pose_cli::register_pose,
     vernier::solve_cli::register_solve,

@@ -54,6 +54,7 @@ const std::vector<Room>& rooms_of_tools() {
       {"simulate", {"compile", "fit", "kinematics", "maths", "model", "text"}},
       {"upload", {"maths", "text"}},
       {"map", {"import", "kinematics", "maths", "model", "text"}},
+      {"check", {"effects", "fit", "maths", "model", "text"}},
       {"offline", {"kinematics", "maths", "model", "text"}},
       {"plan", {"diagnose", "effects", "fit", "maths", "model", "text"}},
       {"results",

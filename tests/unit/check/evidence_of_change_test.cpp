@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/check/evidence_of_change.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <random>
+
+#include "tools/check/history.h"
+#include "tools/fit/fit.h"
+#include "tools/model/chain.h"
+#include "tools/model/fit_record.h"
+#include "tools/model/machine_reader.h"
+#include "tools/model/machine_writer.h"
+
+namespace vernier::check_test {
+namespace {
+
+constexpr double kNoise_mm = 0.001, kFalseAlarms = 0.05;
+
+const char* const kBridge = R"XML(<machine name="bridge"><variables><static>
+    <sxy value="0" nominal="0" unit="rad"/><szx value="0" nominal="0" unit="rad"/><kx value="0" nominal="0"/>
+    <BaseShift X="0" Y="0" Z="0" rX="0" rY="0" rZ="0"/></static>
+    <machineaxes><X min="0" max="600"/><Y min="0" max="400"/><Z min="-300" max="0"/></machineaxes></variables>
+    <transforms branch="tool"><sixdof n="1" X="X+kx*X"/><sixdof n="2" Y="Y" X="sxy*Y"/><sixdof n="3" Z="Z" X="szx*Z"/>
+    </transforms></machine>)XML";
+
+/// Points of a machine with the values given, in a set-up of their own, with noise.
+std::string rows(int count, const std::function<void(Machine&)>& change, std::mt19937_64& random,
+                 double noise_mm, double drift_mm = 0) {
+  Machine truth = parse_machine(kBridge, "m.xml");
+  truth.statics[*truth.find_static("sxy")].value = 20e-6;
+  truth.statics[*truth.find_static("szx")].value = -15e-6;
+  truth.statics[*truth.find_static("kx")].value = 10e-6;
+  change(truth);
+  std::uniform_real_distribution<double> share(0, 1);
+  std::normal_distribution<double> normal(0, 1);
+  States states = make_states(static_cast<std::size_t>(count), 3, {});
+  for (Eigen::Index i = 0; i < count; ++i) {
+    states.axis[0][i] = std::round(600 * share(random));
+    states.axis[1][i] = std::round(400 * share(random));
+    states.axis[2][i] = std::round(-300 * share(random));
+  }
+  const Eigen::Vector3d shift(normal(random), normal(random), normal(random));
+  const Eigen::Matrix3Xd points = forward(truth, states).position.colwise() + shift;
+  std::string text = "X[mm],Y[mm],Z[mm],dirX,x[mm],y[mm],z[mm],u[mm]\n";
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const int sense = i % 2 == 0 ? 1 : -1;
+    text += fmt::format(
+        "{},{},{},{},{:.6f},{:.6f},{:.6f},{}\n", states.axis[0][i], states.axis[1][i], states.axis[2][i],
+        sense, points(0, i) + noise_mm * normal(random) + drift_mm * static_cast<double>(i) / count,
+        points(1, i) + noise_mm * normal(random), points(2, i) + noise_mm * normal(random), kNoise_mm);
+  }
+  return text;
+}
+
+void nothing(Machine& /*machine*/) {}
+
+Machine fitted(std::mt19937_64& random) {
+  const Machine machine = parse_machine(kBridge, "m.xml");
+  const FitResult result =
+      fit(machine, parse_measurement(rows(40, nothing, random, kNoise_mm), "s.csv", machine));
+  return result.machine;
+}
+
+CheckRecord check(const Machine& machine, const std::string& text) {
+  return record_of(machine, parse_measurement(text, "c.csv", machine), "a check");
+}
+
+TEST(Checks, AQuietMachineRaisesFewerAlarmsThanStated) {
+  // 200 machines, each fitted from its own survey and looked at after each of 15 checks.
+  std::mt19937_64 random(41);
+  constexpr int kMachines = 200, kChecks = 15;
+  int alarms = 0;
+  for (int k = 0; k < kMachines; ++k) {
+    const Machine machine = fitted(random);
+    std::vector<CheckRecord> history;
+    bool alarm = false;
+    for (int week = 0; week < kChecks && !alarm; ++week) {
+      history.push_back(check(machine, rows(8, nothing, random, kNoise_mm)));
+      alarm = judge(machine, history, kFalseAlarms).verdict != CheckVerdict::kValid;
+    }
+    alarms += alarm ? 1 : 0;
+  }
+  // Two tests of 5 % each, of change and of noise: 20 expected at most, four standard deviations above.
+  EXPECT_LE(alarms, 20 + 17);
+}
+
+TEST(Checks, AChangeIsNamedWithItsSize) {
+  std::mt19937_64 random(42);
+  int named = 0;
+  constexpr int kMachines = 40;
+  for (int k = 0; k < kMachines; ++k) {
+    const Machine machine = fitted(random);
+    std::vector<CheckRecord> history;
+    for (int week = 0; week < 3; ++week)
+      history.push_back(check(machine, rows(8, nothing, random, kNoise_mm)));
+    const auto crash = [](Machine& m) { m.statics[*m.find_static("sxy")].value += 40e-6; };
+    history.push_back(check(machine, rows(8, crash, random, kNoise_mm)));
+    const CheckAnswer answer = judge(machine, history, kFalseAlarms);
+    if (answer.verdict != CheckVerdict::kChanged) continue;
+    if (answer.changed.front().suspect.name != "sxy") continue;
+    ++named;
+    EXPECT_NEAR(answer.changed.front().change, 40e-6, 5 * answer.changed.front().std);
+    EXPECT_EQ(answer.changed.front().since, 3U);
+  }
+  EXPECT_GE(named, 38);
+}
+
+TEST(Checks, TheInstrumentIsTold) {
+  std::mt19937_64 random(43);
+  const Machine machine = fitted(random);
+  EXPECT_EQ(judge(machine, {check(machine, rows(12, nothing, random, 5 * kNoise_mm))}, kFalseAlarms).verdict,
+            CheckVerdict::kInstrument);
+  EXPECT_EQ(
+      judge(machine, {check(machine, rows(12, nothing, random, kNoise_mm, 0.03))}, kFalseAlarms).verdict,
+      CheckVerdict::kInstrument);
+}
+
+TEST(Checks, TooLittleIsSaid) {
+  std::mt19937_64 random(44);
+  const Machine machine = fitted(random);
+  EXPECT_EQ(judge(machine, {check(machine, rows(2, nothing, random, kNoise_mm))}, kFalseAlarms).verdict,
+            CheckVerdict::kTooLittle);
+  EXPECT_THROW(check(parse_machine(kBridge, "m.xml"), rows(8, nothing, random, kNoise_mm)), InputError);
+}
+
+TEST(Checks, AHistoryReadsBackAsItWasWritten) {
+  std::mt19937_64 random(45);
+  const Machine machine = fitted(random);
+  CheckHistory history{identity_of(machine), {}};
+  for (int week = 0; week < 3; ++week)
+    history.checks.push_back(check(machine, rows(8, nothing, random, kNoise_mm)));
+  const CheckHistory again = parse_history(history_text(history), "h.json");
+  EXPECT_EQ(history_text(again), history_text(history));
+  EXPECT_DOUBLE_EQ(judge(machine, again.checks, 0.01).evidence,
+                   judge(machine, history.checks, 0.01).evidence);
+  EXPECT_THROW(parse_history("{\"format\":\"other\"}", "h.json"), InputError);
+  EXPECT_THROW(parse_history("[[[", "h.json"), InputError);
+}
+
+}  // namespace
+}  // namespace vernier::check_test

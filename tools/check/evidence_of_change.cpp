@@ -1,0 +1,416 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/check/evidence_of_change.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+#include "tools/effects/probe.h"
+#include "tools/fit/solve.h"
+#include "tools/maths/chance.h"
+#include "tools/maths/orthonormal.h"
+#include "tools/model/fit_record.h"
+#include "tools/model/prediction.h"
+
+namespace vernier {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// Share of a column's square that must be its own beside the set-up and the suspects before it: less is the
+/// same suspect under another name.
+constexpr double kOwn = 1e-3;
+/// Part of the readings' information on a suspect that the fit's own doubt must leave for it to be seen.
+constexpr double kSeen = 1e-6;
+/// Sizes of a change, in standard deviations of the first check that could show it, that are mixed with equal
+/// weight.
+constexpr std::array kSizes = {2.0, 4.0, 8.0, 16.0, 32.0, 64.0};
+
+/// Collects the columns of suspects, weighted, with the set-up projected out.
+class Collector {
+ public:
+  Collector(const Machine& machine, const Measurement& m) : machine_(machine), m_(m) {
+    const double fallback = std::max(machine.fitted->rms_mm, 1e-9);
+    weight_.resize(static_cast<Index>(m.observations.size()));
+    for (std::size_t i = 0; i < m.observations.size(); ++i) {
+      const double u = uncertainty_of(m, m.observations[i]);
+      weight_[static_cast<Index>(i)] = 1 / (u > 0 ? u : fallback);
+    }
+  }
+
+  CheckRecord collect(std::string label) {
+    record_.label = std::move(label);
+    record_.readings = m_.observations.size();
+    take_parameters();
+    take_places();
+    take_drifts();
+    const Index count = static_cast<Index>(columns_.size());
+    MatrixXd x(weight_.size(), count);
+    for (Index j = 0; j < count; ++j) x.col(j) = columns_[static_cast<std::size_t>(j)];
+    record_.gram = x.transpose() * x;
+    record_.moment = x.transpose() * residual_;
+    const MatrixXd basis = orthonormal(x, 1e-6, nullptr);
+    record_.rest = (residual_ - basis * (basis.transpose() * residual_)).squaredNorm();
+    record_.beyond_set_up = static_cast<double>(weight_.size() - set_up_.cols());
+    record_.freedom = static_cast<double>(weight_.size() - set_up_.cols() - basis.cols());
+    return std::move(record_);
+  }
+
+ private:
+  VectorXd beside_set_up(const VectorXd& column) const {
+    VectorXd own = weight_.cwiseProduct(column);
+    if (set_up_.cols() > 0) own -= set_up_ * (set_up_.transpose() * own);
+    return own;
+  }
+
+  void take_parameters() {
+    const ParameterSet parameters(machine_, m_.states.names(m_.states.setup));
+    const Linearisation linear = linearise(machine_, m_, parameters);
+    const MatrixXd jacobian(linear.jacobian);
+    std::vector<Index> shifts, others;
+    for (std::size_t i = 0; i < parameters.size(); ++i)
+      (parameters[i].kind == ParameterKind::kBaseShift ? shifts : others).push_back(static_cast<Index>(i));
+    set_up_ = orthonormal(weight_.asDiagonal() * jacobian(Eigen::all, shifts), 1e-9, nullptr);
+    VectorXd left(weight_.size());
+    for (std::size_t i = 0; i < m_.observations.size(); ++i)
+      left[static_cast<Index>(i)] = m_.observations[i].value - linear.predicted[static_cast<Index>(i)];
+    residual_ = beside_set_up(left);
+    for (const Index i : others) {
+      const Parameter& p = parameters[static_cast<std::size_t>(i)];
+      columns_.push_back(beside_set_up(jacobian.col(i)));
+      record_.suspects.push_back({p.name, p.unit, false});
+    }
+    record_.parameters = columns_.size();
+    for (std::size_t i = 0; i < columns_.size(); ++i) note(columns_[i]);
+  }
+
+  /// Adds a column to what is known already.
+  void note(const VectorXd& column) {
+    known_.push_back(column.norm() > 0 ? VectorXd(column.normalized()) : column);
+  }
+
+  void offer(Suspect suspect, const VectorXd& raw) {
+    const VectorXd column = beside_set_up(raw);
+    const double full = weight_.cwiseProduct(raw).norm();
+    if (!(column.norm() > kOwn * full) || full <= 0) return;
+    const VectorXd unit = column.normalized();
+    for (const VectorXd& other : known_)
+      if (1 - std::abs(unit.dot(other)) < kOwn) return;
+    known_.push_back(unit);
+    columns_.push_back(column);
+    record_.suspects.push_back(std::move(suspect));
+  }
+
+  void take_places() {
+    const std::vector<DofPlace> places = all_places(machine_);
+    Machine probed = machine_;
+    for (Freedom& one : freedoms_of(probed)) one.set_free(false);
+    for (const DofPlace& place : places) add_probe(probed, place);
+    const MatrixXd response(linearise(probed, m_, ParameterSet(probed, {})).jacobian);
+    const auto of = [&](const DofPlace& place) {
+      return static_cast<Index>(std::find(places.begin(), places.end(), place) - places.begin());
+    };
+    const auto times = [&](Index place, const Column& factor) {
+      VectorXd column = response.col(place);
+      for (std::size_t i = 0; i < m_.observations.size(); ++i)
+        column[static_cast<Index>(i)] *= factor[static_cast<Index>(m_.observations[i].row)];
+      return column;
+    };
+    const AxisPlaces axes(machine_);
+    for (std::size_t axis = 0; axis < machine_.axes.size(); ++axis) {
+      if (!axes.own(axis)) continue;
+      const std::string &name = machine_.axes[axis].name, unit = machine_.axes[axis].rotary ? "deg" : "mm";
+      offer({"reversal of " + name, unit, false}, times(of(*axes.own(axis)), m_.states.direction[axis]));
+      if (!machine_.axes[axis].rotary)
+        offer({"scale of " + name, "", false}, times(of(*axes.own(axis)), m_.states.axis[axis]));
+    }
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      const bool angle = is_angle(machine_, places[i]);
+      offer({fmt::format("{} {} of transform {}{}", angle ? "tilt" : "offset", dof_name(machine_, places[i]),
+                         transform_at(machine_, places[i]).n, places[i].workpiece ? " (workpiece)" : ""),
+             angle ? "deg" : "mm", false},
+            response.col(static_cast<Index>(i)));
+    }
+  }
+
+  /// The instrument, or what it stands on, moves steadily from the first row to the last.
+  void take_drifts() {
+    std::map<ObservationKind, VectorXd> of_kind;
+    const double last = std::max<double>(1, static_cast<double>(m_.rows()) - 1);
+    for (std::size_t i = 0; i < m_.observations.size(); ++i) {
+      VectorXd& column = of_kind[m_.observations[i].kind];
+      if (column.size() == 0) column = VectorXd::Zero(weight_.size());
+      column[static_cast<Index>(i)] = static_cast<double>(m_.observations[i].row) / last;
+    }
+    for (const auto& [kind, column] : of_kind)
+      offer({fmt::format("drift of the instrument in {}", kObservationNames[static_cast<std::size_t>(kind)]),
+             is_rotation(kind) ? "deg" : "mm", true},
+            column);
+  }
+
+  const Machine& machine_;
+  const Measurement& m_;
+  VectorXd weight_, residual_;
+  MatrixXd set_up_;
+  std::vector<VectorXd> columns_, known_;
+  CheckRecord record_;
+};
+
+/// The fit's covariance of the parameters as L L^T: rows of the record's factor; 0 for what it does not name.
+MatrixXd spread_of_fit(const Machine& machine, const CheckRecord& record) {
+  const FitRecord& fitted = *machine.fitted;
+  MatrixXd spread = MatrixXd::Zero(static_cast<Index>(record.parameters), fitted.factor.cols());
+  for (std::size_t i = 0; i < record.parameters; ++i) {
+    const auto found = std::find(fitted.parameters.begin(), fitted.parameters.end(), record.suspects[i].name);
+    if (found != fitted.parameters.end())
+      spread.row(static_cast<Index>(i)) = fitted.factor.row(found - fitted.parameters.begin());
+  }
+  return spread;
+}
+
+/// What the checks from some check on say of one suspect.
+struct Information {
+  double amount = 0, score = 0;  // of a change by 1; its most likely value is score / amount
+  double log_ratio(double size) const {
+    const double share = size * size * amount;
+    return -0.5 * std::log1p(share) + 0.5 * size * size * score * score / (1 + share);
+  }
+};
+
+double log_sum(const std::vector<double>& logs) {
+  if (logs.empty()) return -1e300;
+  const double most = *std::max_element(logs.begin(), logs.end());
+  double sum = 0;
+  for (const double one : logs) sum += std::exp(one - most);
+  return most + std::log(sum);
+}
+
+class Judge {
+ public:
+  Judge(const Machine& machine, const std::vector<CheckRecord>& checks, double false_alarms)
+      : checks_(checks), last_(checks.back()), false_alarms_(false_alarms) {
+    answer_.alarm = 1 / false_alarms;
+    const MatrixXd spread = spread_of_fit(machine, last_);
+    const auto p = static_cast<Index>(last_.parameters);
+    from_.resize(checks.size());
+    for (std::size_t k = checks.size(); k-- > 0;) {
+      from_[k].gram = checks[k].gram;
+      from_[k].moment = checks[k].moment;
+      if (k + 1 == checks.size()) continue;
+      from_[k].gram += from_[k + 1].gram;
+      from_[k].moment += from_[k + 1].moment;
+    }
+    // What the fit left uncertain, once the checks up to each have told of it: L (1 + L' G L)^-1 L'.
+    MatrixXd told = MatrixXd::Zero(p, p);
+    for (const CheckRecord& check : checks) {
+      told += check.gram.topLeftCorner(p, p);
+      const MatrixXd inner =
+          MatrixXd::Identity(spread.cols(), spread.cols()) + spread.transpose() * told * spread;
+      doubt_after_.push_back(spread * inner.llt().solve(spread.transpose()));
+    }
+  }
+
+  CheckAnswer answer() {
+    weigh();
+    look_at_noise();
+    decide();
+    return std::move(answer_);
+  }
+
+ private:
+  struct Sum {
+    MatrixXd gram;
+    VectorXd moment;
+  };
+
+  Information information(std::size_t since, Index suspect) const {
+    const auto p = static_cast<Index>(last_.parameters);
+    const VectorXd with_parameters = from_[since].gram.col(suspect).head(p);
+    Information one;
+    const MatrixXd& doubt = doubt_after_.back();
+    one.amount = from_[since].gram(suspect, suspect) - with_parameters.dot(doubt * with_parameters);
+    one.score = from_[since].moment[suspect] - with_parameters.dot(doubt * from_[0].moment.head(p));
+    return one;
+  }
+
+  bool is_seen(std::size_t since, Index suspect, const Information& one) const {
+    const double full = from_[since].gram(suspect, suspect);
+    return full > 0 && one.amount > kSeen * full;
+  }
+
+  void weigh() {
+    const auto count = static_cast<Index>(last_.suspects.size());
+    std::vector<double> all;
+    std::map<Index, std::vector<std::pair<double, std::size_t>>> of_suspect;
+    for (std::size_t since = 0; since < checks_.size(); ++since) {
+      const auto k = static_cast<double>(since + 1);
+      // A change at any later check has its share: 1/2, 1/6, 1/12 ...
+      const double share = std::log(1 / (k * (k + 1)) / static_cast<double>(std::max<Index>(1, count)));
+      for (Index j = 0; j < count; ++j) {
+        const Information one = information(since, j);
+        if (!is_seen(since, j, one)) {
+          all.push_back(share);  // no information: a ratio of one
+          continue;
+        }
+        std::vector<double> sizes;
+        for (const double size : kSizes)
+          sizes.push_back(one.log_ratio(size / std::sqrt(first_amount(since, j))));
+        const double ratio = share + log_sum(sizes) - std::log(static_cast<double>(kSizes.size()));
+        all.push_back(ratio);
+        of_suspect[j].emplace_back(ratio, since);
+      }
+    }
+    // What is left of the weight is on changes that are still to come.
+    all.push_back(-std::log(static_cast<double>(checks_.size() + 1)));
+    const double total = log_sum(all);
+    answer_.evidence = std::exp(std::min(total, 700.0));
+    for (const auto& [j, ratios] : of_suspect) {
+      std::vector<double> logs;
+      for (const auto& one : ratios) logs.push_back(one.first);
+      const std::size_t since = std::max_element(ratios.begin(), ratios.end())->second;
+      const Information one = information(since, j);
+      ranked_.push_back({last_.suspects[static_cast<std::size_t>(j)], one.score / one.amount,
+                         1 / std::sqrt(one.amount), std::exp(log_sum(logs) - total), since});
+    }
+    std::sort(ranked_.begin(), ranked_.end(),
+              [](const Change& a, const Change& b) { return a.weight > b.weight; });
+    for (Index j = 0; j < static_cast<Index>(last_.parameters); ++j) {
+      const Information one = information(checks_.size() - 1, j);
+      const Suspect& suspect = last_.suspects[static_cast<std::size_t>(j)];
+      if (!is_seen(checks_.size() - 1, j, one))
+        answer_.not_seen.push_back(suspect.name);
+      else
+        answer_.resolved.push_back({suspect, 0, 1 / std::sqrt(one.amount), 0, checks_.size() - 1});
+    }
+  }
+
+  /// Information of the first check alone that could show a change since then: what is known before its
+  /// readings are, as the size of a change that is looked for must be.
+  double first_amount(std::size_t since, Index suspect) const {
+    const auto p = static_cast<Index>(last_.parameters);
+    const MatrixXd& gram = checks_[since].gram;
+    const VectorXd with_parameters = gram.col(suspect).head(p);
+    const double amount = gram(suspect, suspect) - with_parameters.dot(doubt_after_[since] * with_parameters);
+    return std::max(amount, kSeen * gram(suspect, suspect) + 1e-300);
+  }
+
+  void look_at_noise() {
+    if (last_.freedom < 1) return;
+    answer_.noise_p = chi_square_tail(last_.rest, last_.freedom);
+  }
+
+  void decide() {
+    const auto k = static_cast<double>(checks_.size());
+    const bool loud = answer_.noise_p < false_alarms_ / (k * (k + 1));
+    const bool any_of_machine = std::any_of(ranked_.begin(), ranked_.end(),
+                                            [](const Change& one) { return !one.suspect.of_instrument; });
+    double beyond = 0;
+    for (const CheckRecord& check : checks_) beyond += check.beyond_set_up;
+    constexpr double kFewest = 3;  // numbers: with fewer any of them may be any suspect's
+    if (beyond < kFewest || !any_of_machine) {
+      answer_.verdict = CheckVerdict::kTooLittle;
+      answer_.explanation =
+          "The readings tell of the set-up of the instrument and of nothing else: more of them, further "
+          "apart.";
+      return;
+    }
+    const bool alarm = answer_.evidence >= answer_.alarm;
+    if (loud || (alarm && ranked_.front().suspect.of_instrument)) {
+      answer_.verdict = CheckVerdict::kInstrument;
+      answer_.explanation =
+          loud ? fmt::format(
+                     "The readings scatter by {:.2g} times their stated uncertainty, whatever may have "
+                     "changed "
+                     "in the machine (chance {:.1g}).",
+                     std::sqrt(last_.rest / last_.freedom), answer_.noise_p)
+               : fmt::format("{} by {:.3g} {} +- {:.2g}.", ranked_.front().suspect.name,
+                             ranked_.front().change, ranked_.front().suspect.unit, ranked_.front().std);
+      return;
+    }
+    if (!alarm) {
+      answer_.verdict = CheckVerdict::kValid;
+      answer_.explanation = fmt::format("Nothing speaks for a change (evidence {:.3g}, told from {:g}).",
+                                        answer_.evidence, answer_.alarm);
+      if (!answer_.not_seen.empty())
+        answer_.explanation +=
+            fmt::format(" These readings could not see: {}.", fmt::join(answer_.not_seen, ", "));
+      return;
+    }
+    answer_.verdict = CheckVerdict::kChanged;
+    const Change& best = ranked_.front();
+    answer_.changed.push_back(best);
+    constexpr double kNearly = 0.05;  // of the likeliest one's weight
+    for (std::size_t i = 1; i < ranked_.size(); ++i)
+      if (ranked_[i].weight > kNearly * best.weight)
+        answer_.not_told_apart.push_back(ranked_[i].suspect.name);
+    answer_.explanation =
+        fmt::format("{} has changed by {:.4g} +- {:.2g} {} since check {} ({}).", best.suspect.name,
+                    best.change, best.std, best.suspect.unit, best.since + 1, checks_[best.since].label);
+    if (!answer_.not_told_apart.empty())
+      answer_.explanation +=
+          fmt::format(" Not told apart from: {}.", fmt::join(answer_.not_told_apart, ", "));
+  }
+
+  const std::vector<CheckRecord>& checks_;
+  const CheckRecord& last_;
+  double false_alarms_;
+  std::vector<Sum> from_;  // over the checks from each on
+  std::vector<MatrixXd> doubt_after_;
+  std::vector<Change> ranked_;
+  CheckAnswer answer_;
+};
+
+}  // namespace
+
+const char* verdict_name(CheckVerdict verdict) {
+  constexpr const char* kNames[] = {"valid", "changed", "instrument", "too-little"};
+  return kNames[static_cast<std::size_t>(verdict)];
+}
+
+CheckRecord record_of(const Machine& machine, const Measurement& measurement, std::string label) {
+  if (!machine.fitted)
+    throw InputError({machine.file, 0}, machine.name,
+                     "was never fitted (no <fitted>): a check needs to know how well the machine is known");
+  return Collector(machine, measurement).collect(std::move(label));
+}
+
+namespace {
+
+/// Checks with the suspects of all of them, in one order; what a check did not look at it tells nothing of.
+std::vector<CheckRecord> aligned(const std::vector<CheckRecord>& checks) {
+  std::vector<Suspect> all = checks.back().suspects;
+  for (const CheckRecord& check : checks)
+    for (const Suspect& one : check.suspects)
+      if (std::find(all.begin(), all.end(), one) == all.end()) all.push_back(one);
+  std::vector<CheckRecord> result;
+  for (const CheckRecord& check : checks) {
+    CheckRecord wide = check;
+    wide.suspects = all;
+    wide.gram = MatrixXd::Zero(static_cast<Index>(all.size()), static_cast<Index>(all.size()));
+    wide.moment = VectorXd::Zero(static_cast<Index>(all.size()));
+    std::vector<Index> at;
+    for (const Suspect& one : check.suspects)
+      at.push_back(std::find(all.begin(), all.end(), one) - all.begin());
+    wide.gram(at, at) = check.gram;
+    wide.moment(at) = check.moment;
+    result.push_back(std::move(wide));
+  }
+  return result;
+}
+
+}  // namespace
+
+CheckAnswer judge(const Machine& machine, const std::vector<CheckRecord>& checks, double false_alarms) {
+  const std::vector<CheckRecord> all = aligned(checks);
+  return Judge(machine, all, false_alarms).answer();
+}
+
+}  // namespace vernier

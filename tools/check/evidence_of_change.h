@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "tools/model/machine.h"
+#include "tools/model/measurement.h"
+
+namespace vernier {
+
+/// Something that may be other than it was when the machine was fitted.
+struct Suspect {
+  std::string name, unit;
+  bool of_instrument = false;
+  bool operator==(const Suspect&) const = default;
+};
+
+/// All that is kept of one check: its readings as they bear on the suspects, in units of their uncertainty,
+/// with what its own set-ups take up projected out.
+struct CheckRecord {
+  std::string label;              // when or what it was
+  std::vector<Suspect> suspects;  // the machine's free parameters first, in their order
+  std::size_t parameters = 0;     // how many of them are
+  Eigen::MatrixXd gram;           // suspects x suspects
+  Eigen::VectorXd moment;
+  double rest = 0, freedom = 0;  // chi^2 beside all suspects, and its degrees of freedom
+  std::size_t readings = 0;
+  double beyond_set_up = 0;  // readings less what the set-up takes
+};
+
+/// Reads what a measurement says of a fitted machine; fit and check rows alike. Suspects are the free
+/// parameters, and where the chain has them and they are not the same: reversal and scale of every axis, a
+/// tilt and an offset of every transform, a drift of the instrument along each direction that it reads.
+/// Throws InputError where the machine was never fitted. tool.
+CheckRecord record_of(const Machine& machine, const Measurement& measurement, std::string label);
+
+enum class CheckVerdict : std::uint8_t { kValid, kChanged, kInstrument, kTooLittle };
+const char* verdict_name(CheckVerdict verdict);
+
+struct Change {
+  Suspect suspect;
+  double change = 0, std = 0;  // in the suspect's unit
+  double weight = 0;           // of the evidence, 0..1
+  std::size_t since = 0;       // index of the first check that shows it
+};
+
+struct CheckAnswer {
+  CheckVerdict verdict = CheckVerdict::kValid;
+  double evidence = 1;  // e-value: by how much the checks speak for a change, whatever was looked at before
+  double alarm = 100;   // at which a change is told: 1 / false alarms
+  double noise_p = 1;   // chance of the last check's noise, told at false alarms / (k (k+1))
+  std::vector<Change> changed;              // the likeliest first; nothing where none is told
+  std::vector<std::string> not_told_apart;  // that explain it nearly as well
+  std::vector<std::string> not_seen;        // suspects that these readings do not move by
+  std::vector<Change> resolved;  // how small a change of each seen parameter the last check would show: std
+  std::string explanation;
+};
+
+/// The whole history as one sequential test: the mixture, over the check since which and the suspect by
+/// which, of the likelihood ratios of a change against none (Robbins 1970; Grünwald, de Heide and Koolen
+/// 2024), with what the fit itself does not know of the parameters integrated out. If nothing changes it
+/// exceeds 1/false_alarms in the lifetime of a machine with that probability at most, however often one looks
+/// (Ville 1939), under independent normal readings of the stated uncertainty. checks: in the order of time,
+/// of one machine, at least one. tool.
+CheckAnswer judge(const Machine& machine, const std::vector<CheckRecord>& checks, double false_alarms);
+
+}  // namespace vernier

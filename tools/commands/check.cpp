@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "tools/check/history.h"
+#include "tools/commands/command.h"
+#include "tools/model/machine_reader.h"
+#include "tools/model/machine_writer.h"
+#include "tools/model/parameters.h"
+#include "tools/simulate/corrected.h"
+#include "tools/text/error.h"
+#include "tools/text/words.h"
+
+namespace vernier::check_cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct CheckArguments {
+  std::string machine, history, output, label, json, images;
+  std::vector<std::string> measurements;
+  double false_alarms = 0.01;
+};
+
+Json change_json(const Change& one) {
+  return {{"name", one.suspect.name}, {"change", one.change}, {"std", one.std},
+          {"unit", one.suspect.unit}, {"weight", one.weight}, {"since", one.since + 1}};
+}
+
+Json answer_json(const CheckAnswer& answer, const CheckHistory& history) {
+  Json json = {{"verdict", verdict_name(answer.verdict)},
+               {"explanation", answer.explanation},
+               {"evidence", answer.evidence},
+               {"alarm", answer.alarm},
+               {"noise_p", answer.noise_p},
+               {"checks", history.checks.size()},
+               {"readings", history.checks.back().readings}};
+  json["changed"] = Json::array();
+  for (const Change& one : answer.changed) json["changed"].push_back(change_json(one));
+  json["not_told_apart"] = answer.not_told_apart;
+  json["not_seen"] = answer.not_seen;
+  json["resolved"] = Json::array();
+  for (const Change& one : answer.resolved)
+    json["resolved"].push_back({{"name", one.suspect.name}, {"std", one.std}, {"unit", one.suspect.unit}});
+  return json;
+}
+
+/// The machine file with what has changed put right. Throws LimitNotMet where it is none of its parameters.
+std::string put_right(const CheckArguments& arguments, Machine machine, const Measurement& rows,
+                      const CheckAnswer& answer) {
+  const ParameterSet parameters(machine, rows.states.names(rows.states.setup));
+  Eigen::VectorXd values = parameters.get(machine);
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    if (parameters[i].name != answer.changed.front().suspect.name) continue;
+    values[static_cast<Eigen::Index>(i)] += answer.changed.front().change;
+    parameters.set(machine, values);
+    return update_machine_text(read_file(arguments.machine), machine, false);
+  }
+  throw LimitNotMet("\"" + answer.changed.front().suspect.name +
+                    "\" is no parameter of this machine file: diagnose a longer measurement, and fit");
+}
+
+void run_check(const CheckArguments& arguments) {
+  if (!(arguments.false_alarms > 0 && arguments.false_alarms < 1))
+    throw InputError({}, fmt::format("{}", arguments.false_alarms),
+                     "a rate of false alarms is between 0 and 1");
+  const Machine machine = read_machine(arguments.machine);
+  const Measurement rows =
+      read_measurement(arguments.measurements, machine, corrections_of_images(arguments.images));
+  CheckRecord now = record_of(
+      machine, rows, arguments.label.empty() ? joined(arguments.measurements, " ") : arguments.label);
+  CheckHistory history{identity_of(machine), {}};
+  bool anew = false;
+  if (!arguments.history.empty() && std::filesystem::exists(arguments.history)) {
+    CheckHistory before = parse_history(read_file(arguments.history), arguments.history);
+    anew = before.machine != history.machine;
+    if (!anew) history = std::move(before);
+  }
+  history.checks.push_back(std::move(now));
+  const CheckAnswer answer = judge(machine, history.checks, arguments.false_alarms);
+  std::string text;
+  if (!arguments.output.empty() && answer.verdict == CheckVerdict::kChanged)
+    text = put_right(arguments, machine, rows, answer);
+  if (!arguments.history.empty()) write_file(arguments.history, history_text(history));
+  if (!text.empty()) write_file(arguments.output, text);
+  Json json = answer_json(answer, history);
+  json["history_begun_anew"] = anew;
+  write_json(arguments.json, json);
+  std::FILE* out = human_stream(arguments.json);
+  if (anew) fmt::print(out, "note: the history was of another fit of this machine; it begins anew\n");
+  fmt::print(out, "verdict: {}. {}\n", verdict_name(answer.verdict), answer.explanation);
+  fmt::print(out, "evidence {:.3g} over {} check{}; a change is told from {:g}\n", answer.evidence,
+             history.checks.size(), history.checks.size() == 1 ? "" : "s", answer.alarm);
+}
+
+}  // namespace
+
+void register_check(CLI::App& vernier) {
+  auto arguments = std::make_shared<CheckArguments>();
+  CLI::App* command = vernier.add_subcommand(
+      "check", "Is the calibration still valid? A short measurement against the machine file that runs");
+  command->add_option("MACHINE", arguments->machine, "machine file (XML) as `fit` wrote it")->required();
+  command->add_option("MEAS", arguments->measurements, "measurement files (CSV) of this check")->required();
+  command->add_option("--history", arguments->history,
+                      "file of all checks so far; this one is added (made where there is none)");
+  command
+      ->add_option("--false-alarms", arguments->false_alarms,
+                   "chance of ever telling a change where there is none, over all checks together")
+      ->capture_default_str();
+  command->add_option("--label", arguments->label, "name of this check; default: its files");
+  command->add_option("-o,--output", arguments->output,
+                      "the machine file with the changed parameter put right, where one has changed");
+  command->add_option("--images", arguments->images, "folder of images, for rows measured with one running");
+  command->add_option("--json", arguments->json, "result for programs; - for standard output");
+  command->footer(
+      "The set-up of the instrument is new in every check. Readings count as independent, normal, and as\n"
+      "uncertain as their u says (without u: as the fit's own residual). Exit status 0 done, whatever the\n"
+      "finding; 1 bad input (nothing written); 2 -o was asked, and what has changed is no parameter.");
+  command->callback([arguments] { run_check(*arguments); });
+}
+
+}  // namespace vernier::check_cli
