@@ -58,6 +58,9 @@ void register_keys(CLI::App& vernier);
 namespace map_cli {
 void register_map(CLI::App& vernier);
 }  // namespace map_cli
+namespace new_cli {
+void register_new(CLI::App& vernier);
+}  // namespace new_cli
 namespace part_cli {
 void register_part(CLI::App& vernier);
 }  // namespace part_cli

@@ -12,6 +12,7 @@ constexpr int kDone = 0, kBadInput = 1, kAnswerIsNo = 2, kOurBug = 70;
 
 /// In the order of the journey; `vernier` alone prints them so.
 constexpr vernier::RegisterCommand kCommands[] = {
+    vernier::new_cli::register_new,
     vernier::import_cli::register_import,
     vernier::features_cli::register_features,
     vernier::fit_cli::register_fit,

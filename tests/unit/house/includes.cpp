@@ -42,6 +42,7 @@ const std::vector<Room>& rooms_of_tools() {
       {"vibration", {"maths", "model", "text"}},
       {"probe", {"maths", "model", "text"}},
       {"timebase", {"maths", "model", "text"}},
+      {"create", {"model", "text"}},
       {"import", {"maths", "model", "text", "timebase"}},
       {"exchange", {"kinematics", "maths", "model", "text"}},
       {"part", {"fit", "maths", "model", "text"}},
