@@ -55,6 +55,9 @@ void register_improve(CLI::App& vernier);
 namespace keys_cli {
 void register_keys(CLI::App& vernier);
 }  // namespace keys_cli
+namespace lint_cli {
+void register_lint(CLI::App& vernier);
+}  // namespace lint_cli
 namespace map_cli {
 void register_map(CLI::App& vernier);
 }  // namespace map_cli
