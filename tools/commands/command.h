@@ -36,6 +36,9 @@ namespace effects_cli {
 void register_effects(CLI::App& vernier);
 void register_add(CLI::App& vernier);
 }  // namespace effects_cli
+namespace evaluate_cli {
+void register_evaluate(CLI::App& vernier);
+}  // namespace evaluate_cli
 namespace exchange_cli {
 void register_export(CLI::App& vernier);
 void register_import_tables(CLI::App& vernier);

@@ -24,6 +24,7 @@ constexpr vernier::RegisterCommand kCommands[] = {
     vernier::features_cli::register_features,
     vernier::fit_cli::register_fit,
     vernier::compare_cli::register_compare,
+    vernier::evaluate_cli::register_evaluate,
     vernier::diagnose_cli::register_diagnose,
     vernier::effects_cli::register_add,
     vernier::effects_cli::register_effects,

@@ -44,6 +44,7 @@ const std::vector<Room>& rooms_of_tools() {
       {"probe", {"maths", "model", "text"}},
       {"timebase", {"maths", "model", "text"}},
       {"create", {"model", "text"}},
+      {"evaluate", {"text"}},
       {"import", {"maths", "model", "sheet", "text", "timebase"}},
       {"exchange", {"kinematics", "maths", "model", "text"}},
       {"lint", {"model", "sheet", "text"}},
@@ -61,6 +62,8 @@ const std::vector<Room>& rooms_of_tools() {
       {"results",
        {"diagnose", "effects", "fit", "import", "kinematics", "map", "maths", "model", "residual", "safety",
         "simulate", "text"}},
+      {"python",
+       {"diagnose", "effects", "fit", "model", "plan", "residual", "results", "text"}},
       {"workbench", {"diagnose", "effects", "fit", "maths", "model", "results", "text", "upload"}},
   };
   return kRooms;
