@@ -22,6 +22,9 @@ void register_compare(CLI::App& vernier);
 namespace compile_cli {
 void register_compile(CLI::App& vernier);
 }  // namespace compile_cli
+namespace completion_cli {
+void register_completion(CLI::App& vernier);
+}  // namespace completion_cli
 namespace derive_cli {
 void register_derive(CLI::App& vernier);
 }  // namespace derive_cli

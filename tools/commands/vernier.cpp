@@ -54,6 +54,7 @@ constexpr vernier::RegisterCommand kCommands[] = {
     vernier::edit_cli::register_exclude,
     vernier::workbench_cli::register_image_diff,
     vernier::workbench_cli::register_workbench,
+    vernier::completion_cli::register_completion,
 };
 
 /// Before a command works: is there a place for the result that it writes last?

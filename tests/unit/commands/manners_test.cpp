@@ -130,6 +130,23 @@ TEST_F(Manners, LintExitsByWhetherTheFilesAreOfUse) {
   EXPECT_NE(read_file(folder_ + "/lint.json").find("\"weight\": \"error\""), std::string::npos);
 }
 
+TEST_F(Manners, ShellCompletesCommandsKindsOptionsAndFiles) {
+  const auto completed = [&](const std::string& words) {
+    // As bash calls it: the words typed so far, the cursor at the end of the last.
+    run("vernier completion bash > c.sh && bash -c 'source ./c.sh; COMP_WORDS=(vernier " + words +
+        "); COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); _vernier; echo \"${COMPREPLY[@]}\"'");
+    return said_;
+  };
+  EXPECT_EQ(completed("comp"), "compare compile completion\n");
+  EXPECT_EQ(completed("import tab"), "table\n");
+  EXPECT_EQ(completed("import table --dec"), "--decimal\n");
+  EXPECT_EQ(completed("fit --resid"), "--residuals\n");
+  EXPECT_EQ(completed("fit m."), "m.xml\n");
+  EXPECT_EQ(run("vernier completion zsh && vernier completion fish"), 0);
+  EXPECT_TRUE(said("#compdef vernier") && said("-a diagnose -d")) << said_;
+  EXPECT_EQ(run("vernier completion tcsh"), 1);
+}
+
 TEST(WordMeant, IsTheNearestThatIsNearEnough) {
   const std::vector<std::string> words = {"fit", "plan", "pose", "part", "compare", "compile", "diagnose"};
   EXPECT_EQ(word_meant("fti", words), "fit");
