@@ -10,6 +10,7 @@
 #include "tools/import/survey.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/measurement.h"
+#include "tools/text/error.h"
 
 namespace vernier::import_cli {
 namespace {
@@ -123,7 +124,15 @@ void run_table(const TableArguments& arguments, const CLI::App& kind) {
   const std::vector<SheetColumn> columns = columns_of_sheet(sheet, table, wishes);
   std::FILE* out = human_stream(arguments.json);
   if (arguments.preview) print_columns(out, sheet, table, columns);
-  ImportTable read = table_of_sheet(sheet, table, columns, wishes);
+  ImportTable read = [&] {
+    try {
+      return table_of_sheet(sheet, table, columns, wishes);
+    } catch (const InputError&) {
+      // What was understood is where the mend begins.
+      if (!arguments.preview) print_columns(stderr, sheet, table, columns);
+      throw;
+    }
+  }();
   if (arguments.check_every > 0) set_roles(read, arguments.check_every);
   const std::string csv = measurement_csv(read);
   Json result = {{"kind", "table"},

@@ -148,6 +148,7 @@ void warn_of_machine(const CLI::App& vernier) {
 }
 
 std::string import_hint(const std::string& message, const std::vector<std::string>& arguments) {
+  if (!arguments.empty() && arguments.front() == "import") return "";  // who reads it already knows how
   for (const std::string& path : arguments) {
     if (path.empty() || !(message.starts_with(path + ":"))) continue;
     const std::string bytes = head_of(path, kMostRead);

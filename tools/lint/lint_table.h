@@ -53,7 +53,7 @@ class LintNames {
 /// x y z rx ry rz length d.
 const std::set<std::string>& reading_names();
 
-/// A path as it may stand in a command.
-std::string quoted_for_shell(const std::string& path);
+/// A file's name as it may stand in a command.
+std::string quoted_for_shell(const std::string& file);
 
 }  // namespace vernier

@@ -178,7 +178,7 @@ class Look {
               meant ? "meant is " + *meant + "? " + command(file_) + " reads it so"
                     : "known are " + known_units());
         column.unit = meant.value_or("");
-      } else if (!bracket && names_.needed_unit(column.name) != "" &&
+      } else if (!bracket && !names_.needed_unit(column.name).empty() &&
                  names_.needed_unit(column.name) != "?") {
         error(
             table_.header_line, column.name, "no unit",

@@ -52,18 +52,20 @@ constexpr Unit kPerMm = {"1/mm", Dimension::kCurvature, 1, 0};
 
 /// Signs in UTF-8 and what the formats write for them; a longer sign before one that begins it.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 12> kSigns = {{
-    {"\u00b5", "u"},       // micro sign
-    {"\u03bc", "u"},       // Greek small mu
-    {"\u00b0C", "degC"},   // degree sign
-    {"\u00ba" "C", "degC"},  // masculine ordinal, which stands for it on many keyboards
-    {"\u2103", "degC"},    // degree Celsius in one sign
+    {"\u00b5", "u"},      // micro sign
+    {"\u03bc", "u"},      // Greek small mu
+    {"\u00b0C", "degC"},  // degree sign
+    {"\u00ba"
+     "C",
+     "degC"},            // masculine ordinal, which stands for it on many keyboards
+    {"\u2103", "degC"},  // degree Celsius in one sign
     {"\u00b0", "deg"},
     {"\u00ba", "deg"},
     {"\u2033", "arcsec"},  // double prime
     {"\u00b2", "^2"},
-    {"\u00b7", ""},        // middle dot: N·m
-    {"\u22c5", ""},        // dot operator
-    {"\u00a0", ""},        // no-break space
+    {"\u00b7", ""},  // middle dot: N·m
+    {"\u22c5", ""},  // dot operator
+    {"\u00a0", ""},  // no-break space
 }};
 
 }  // namespace
@@ -90,11 +92,11 @@ std::string canonical_unit(std::string_view unit) {
   return found ? found->name : std::string(unit);
 }
 
-std::optional<Unit> find_unit(std::string_view written) {
-  const std::string name = usual_spelling(written);
+std::optional<Unit> find_unit(std::string_view name) {
+  const std::string spelled = usual_spelling(name);
   for (const Unit& unit : kUnits)
-    if (name == unit.name) return unit;
-  if (name == kPerMm.name) return kPerMm;
+    if (spelled == unit.name) return unit;
+  if (spelled == kPerMm.name) return kPerMm;
   return std::nullopt;
 }
 

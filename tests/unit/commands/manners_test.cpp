@@ -110,6 +110,18 @@ TEST_F(Manners, SpreadsheetIsRefusedWithTheCommandThatReadsIt) {
       << said_;
 }
 
+TEST_F(Manners, ImportThatFailsSaysWhatItUnderstood) {
+  write_file(folder_ + "/odd.csv", "Soll;Ist\n0;0,1\n5;5,1\n");
+  EXPECT_EQ(run("vernier import table odd.csv -o odd_read.csv"), 1);
+  EXPECT_TRUE(said("columns parted by semicolon, decimal comma") &&
+              said("nothing measured among the columns"))
+      << said_;
+  EXPECT_FALSE(said("this reads it")) << said_;
+  EXPECT_EQ(run("vernier import table odd.csv -o odd_read.csv --column 'X[mm]=Soll' --column 'x[mm]=Ist'"), 0)
+      << said_;
+  EXPECT_EQ(read_file(folder_ + "/odd_read.csv"), "X[mm],x[mm]\n0,0.1\n5,5.1\n");
+}
+
 TEST_F(Manners, UnknownUnitAndUnusedAxisAreWarnedOf) {
   run("vernier compare m.xml rows.csv");
   EXPECT_TRUE(said("\"inch\": nobody knows this unit, of k -- did you mean in?")) << said_;
