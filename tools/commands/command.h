@@ -28,6 +28,9 @@ void register_check(CLI::App& vernier);
 namespace correct_cli {
 void register_correct(CLI::App& vernier);
 }  // namespace correct_cli
+namespace completion_cli {
+void register_completion(CLI::App& vernier);
+}  // namespace completion_cli
 namespace derive_cli {
 void register_derive(CLI::App& vernier);
 }  // namespace derive_cli
@@ -42,6 +45,9 @@ namespace effects_cli {
 void register_effects(CLI::App& vernier);
 void register_add(CLI::App& vernier);
 }  // namespace effects_cli
+namespace evaluate_cli {
+void register_evaluate(CLI::App& vernier);
+}  // namespace evaluate_cli
 namespace exchange_cli {
 void register_export(CLI::App& vernier);
 void register_import_tables(CLI::App& vernier);
@@ -61,9 +67,15 @@ void register_improve(CLI::App& vernier);
 namespace keys_cli {
 void register_keys(CLI::App& vernier);
 }  // namespace keys_cli
+namespace lint_cli {
+void register_lint(CLI::App& vernier);
+}  // namespace lint_cli
 namespace map_cli {
 void register_map(CLI::App& vernier);
 }  // namespace map_cli
+namespace new_cli {
+void register_new(CLI::App& vernier);
+}  // namespace new_cli
 namespace part_cli {
 void register_part(CLI::App& vernier);
 }  // namespace part_cli

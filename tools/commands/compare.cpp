@@ -57,6 +57,14 @@ void print_circle(std::FILE* out, const nlohmann::ordered_json& circle) {
                circle["hysteresis_um"].get<double>(), circle["hysteresis_deg"].get<double>(),
                circle["hysteresis_by_angle_um"].get<double>(),
                circle["hysteresis_by_angle_deg"].get<double>());
+  if (circle["diagnostics"].is_null()) return;
+  constexpr std::size_t kMost = 6;
+  fmt::print(out, "  what shapes it, strongest first (effect on the radius, peak to peak)\n");
+  for (std::size_t i = 0; i < std::min(kMost, circle["diagnostics"].size()); ++i) {
+    const auto& one = circle["diagnostics"][i];
+    fmt::print(out, "    {:<38} {:>9.3g} {:<5} {:>7.1f} um\n", one["name"].get<std::string>(),
+               one["value"].get<double>(), one["unit"].get<std::string>(), one["effect_um"].get<double>());
+  }
 }
 
 /// Worth a look where the rows of a run change roles, and few enough to read.

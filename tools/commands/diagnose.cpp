@@ -8,8 +8,7 @@
 #include "tools/diagnose/diagnosis.h"
 #include "tools/fit/fit.h"
 #include "tools/model/machine_reader.h"
-#include "tools/plan/plan.h"
-#include "tools/plan/uneven.h"
+#include "tools/plan/advice.h"
 #include "tools/report/report.h"
 #include "tools/results/diagnosis_json.h"
 #include "tools/results/residual_csv.h"
@@ -58,33 +57,6 @@ void print_candidates(std::FILE* out, const Diagnosis& d) {
   }
 }
 
-/// What to measure next where the first candidate and one that it is confounded with explain the rows alike.
-std::vector<std::string> plan_for(const std::string& text, const Machine& machine, const Measurement& m,
-                                  const Diagnosis& d, const std::vector<Effect>& effects) {
-  if (d.verdict != Verdict::kAmbiguous || d.candidates.empty()) return {};
-  const CandidateFinding& first = d.candidates.front();
-  const std::string& id = first.candidate.choice.effect->id;
-  // A finding is not lost because no advice can be made of it.
-  const auto advice = [&](const std::string& a, const std::string& b) -> std::vector<std::string> {
-    try {
-      return next_measurement(text, machine, m, a, b, effects);
-    } catch (const InputError& error) {
-      return {fmt::format("no advice on {} against {}: {}", a, b, error.what())};
-    }
-  };
-  std::vector<std::string> uneven;
-  for (const CandidateFinding& one : d.candidates)
-    if (!one.aliases.empty()) uneven.push_back(uneven_sentence(machine, m, one));
-  if (!uneven.empty()) return uneven;
-  for (const CandidateFinding& other : d.candidates) {
-    const auto& names = other.confounded_with;
-    if (&other == &first || std::find(names.begin(), names.end(), id) == names.end()) continue;
-    return advice(first.add, other.add);
-  }
-  if (first.confounded_with.empty()) return {};
-  return advice(first.add, first.confounded_with.front());
-}
-
 /// What the machine of the last step leaves of the readings.
 void write_residuals(const DiagnoseArguments& arguments, const Diagnosis& diagnosis) {
   const Machine machine = parse_machine(diagnosis.machine_text, arguments.machine);
@@ -104,7 +76,7 @@ void run_diagnose(const DiagnoseArguments& arguments) {
   Progress progress("diagnose");
   options.progress = [&](double fraction, const std::string& step) { progress.update(fraction, step); };
   Diagnosis diagnosis = diagnose(text, machine, m, options);
-  diagnosis.next_measurement = plan_for(text, machine, m, diagnosis, options.effects);
+  diagnosis.next_measurement = advice_for(text, machine, m, diagnosis, options.effects);
   const nlohmann::ordered_json json = diagnosis_json(diagnosis, m);
   if (!arguments.output.empty()) {
     nlohmann::ordered_json page = json;

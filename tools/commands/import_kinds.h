@@ -15,6 +15,7 @@ void add_import_output(CLI::App& kind, ImportOutput& output);
 
 // One function a kind: adds its subcommand, options and callback to `vernier import`; listed in
 // import_command.cpp.
+void add_table_kind(CLI::App& import);
 void add_ballbar_kind(CLI::App& import);
 void add_ballbar_trace_kind(CLI::App& import);
 void add_tracker_kind(CLI::App& import);

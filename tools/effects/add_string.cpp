@@ -197,6 +197,8 @@ class AddReader {
     if (inputs != choice_.inputs.size()) return false;
     const std::optional<std::size_t> axis = choice_.axis ? choice_.axis : default_axis_;
     if ((form.place == PlaceRule::kPair) != choice_.axis2.has_value()) return false;
+    // Once a turn means nothing on a slide: 360 mm would be a period that nobody has asked for.
+    if (axis && !machine_.axes[*axis].rotary && form.term.find("sin({q})") != std::string::npos) return false;
     if (!choice_.place) return true;
     if (!acts_at_one(form)) return false;
     const bool angle = is_angle(machine_, *choice_.place);

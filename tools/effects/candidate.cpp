@@ -281,8 +281,25 @@ class Maker {
     const auto start = choice_.start.find(rule_name);
     if (start != choice_.start.end()) item.start = start->second;
     if (item.kind != UnknownKind::kLinear && item.start == 0)
-      throw InputError(choice_.effect->id + ": start." + rule_name + " is missing");
+      throw InputError(choice_.effect->id + ": start." + rule_name + " is missing: " + why_a_start(item));
     return item;
+  }
+
+  /// What a person must say who adds by hand: a fit finds no period from nothing.
+  static std::string why_a_start(const CandidateUnknown& item) {
+    const std::string unit = item.unit.empty() ? "" : " in " + item.unit;
+    const std::string say = "; add start." + item.rule + "=VALUE";
+    switch (item.kind) {
+      case UnknownKind::kPeriod:
+        return "the period" + unit + " (pitch of the screw, period of the scale, a turn of a gear)" + say +
+               ", or let `vernier diagnose` find it";
+      case UnknownKind::kTime:
+        return "a time constant" + unit + say + " as a first guess";
+      case UnknownKind::kTravel:
+        return "a decay length" + unit + say + " as a first guess";
+      default:
+        return "a value" + unit + " to start from" + say;
+    }
   }
 
   std::string unit(std::string text, const DofPlace& at) const {

@@ -41,6 +41,7 @@ void set_target(MappedColumn& column, const std::string& target) {
   column.unit = trimmed(target.substr(open + 1, target.size() - open - 2));
   if (column.unit.empty() || !find_unit(column.unit))
     throw InputError(column.place, column.unit, "unknown unit; known are " + known_units());
+  column.unit = canonical_unit(column.unit);
 }
 
 void add(ColumnMap& map, MappedColumn column) {

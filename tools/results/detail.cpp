@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/results/detail.h"
+#include "tools/results/ball_bar_table.h"
 
 #include <algorithm>
 #include <cmath>
@@ -119,6 +120,7 @@ ordered_json circle_summary(const Circle& circle, const Measurement& m) {
   json["hysteresis_deg"] = hysteresis(result.hysteresis, true);
   json["hysteresis_by_angle_um"] = hysteresis(result.hysteresis_by_angle, false);
   json["hysteresis_by_angle_deg"] = hysteresis(result.hysteresis_by_angle, true);
+  json["diagnostics"] = ball_bar_table(circle, m);
   return json;
 }
 

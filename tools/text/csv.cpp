@@ -22,6 +22,7 @@ CsvColumn column_of(const std::string& field, const Place& place) {
   if (!is_name(column.name)) throw InputError(place, field, "a column name is letters, digits and _");
   if (!find_unit(column.unit))
     throw InputError(place, column.unit, "unknown unit; known are " + known_units());
+  column.unit = canonical_unit(column.unit);
   return column;
 }
 

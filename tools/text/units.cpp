@@ -2,6 +2,7 @@
 #include "tools/text/units.h"
 
 #include <array>
+#include <utility>
 
 #include "tools/maths/factors.h"
 
@@ -11,7 +12,7 @@ namespace {
 /// Standard gravity, mm/s^2 (ISO 80000-3).
 constexpr double kStandardGravity = 9806.65;
 
-constexpr std::array<Unit, 25> kUnits = {{
+constexpr std::array<Unit, 34> kUnits = {{
     {"", Dimension::kNone, 1, 0},
     {"mm", Dimension::kLength, 1, 0},
     {"um", Dimension::kLength, 1e-3, 0},
@@ -37,15 +38,65 @@ constexpr std::array<Unit, 25> kUnits = {{
     {"mV", Dimension::kVoltage, 1e-3, 0},
     {"N", Dimension::kForce, 1, 0},
     {"kg", Dimension::kMass, 1, 0},
+    {"rpm", Dimension::kAngularSpeed, 6, 0},
+    {"A", Dimension::kCurrent, 1, 0},
+    {"Hz", Dimension::kFrequency, 1, 0},
+    {"Pa", Dimension::kPressure, 1, 0},
+    {"bar", Dimension::kPressure, 1e5, 0},
+    {"Nm", Dimension::kTorque, 1, 0},
+    {"W", Dimension::kPower, 1, 0},
+    {"um/m", Dimension::kRatio, 1, 0},
+    {"%", Dimension::kRatio, 1e4, 0},
 }};
 constexpr Unit kPerMm = {"1/mm", Dimension::kCurvature, 1, 0};
 
+/// Signs in UTF-8 and what the formats write for them; a longer sign before one that begins it.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 12> kSigns = {{
+    {"\u00b5", "u"},      // micro sign
+    {"\u03bc", "u"},      // Greek small mu
+    {"\u00b0C", "degC"},  // degree sign
+    {"\u00ba"
+     "C",
+     "degC"},            // masculine ordinal, which stands for it on many keyboards
+    {"\u2103", "degC"},  // degree Celsius in one sign
+    {"\u00b0", "deg"},
+    {"\u00ba", "deg"},
+    {"\u2033", "arcsec"},  // double prime
+    {"\u00b2", "^2"},
+    {"\u00b7", ""},  // middle dot: N·m
+    {"\u22c5", ""},  // dot operator
+    {"\u00a0", ""},  // no-break space
+}};
+
 }  // namespace
 
+std::string usual_spelling(std::string_view unit) {
+  std::string text;
+  while (!unit.empty()) {
+    std::size_t taken = 1;
+    std::string_view written = unit.substr(0, 1);
+    for (const auto& [sign, meaning] : kSigns)
+      if (unit.starts_with(sign)) {
+        taken = sign.size();
+        written = meaning;
+        break;
+      }
+    text += written;
+    unit.remove_prefix(taken);
+  }
+  return text;
+}
+
+std::string canonical_unit(std::string_view unit) {
+  const auto found = find_unit(unit);
+  return found ? found->name : std::string(unit);
+}
+
 std::optional<Unit> find_unit(std::string_view name) {
+  const std::string spelled = usual_spelling(name);
   for (const Unit& unit : kUnits)
-    if (name == unit.name) return unit;
-  if (name == kPerMm.name) return kPerMm;
+    if (spelled == unit.name) return unit;
+  if (spelled == kPerMm.name) return kPerMm;
   return std::nullopt;
 }
 

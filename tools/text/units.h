@@ -20,18 +20,32 @@ enum class Dimension {
   kForce,
   kMass,
   kCurvature,
+  kCurrent,
+  kFrequency,
+  kPressure,
+  kTorque,
+  kPower,
+  kRatio,
 };
 
 /// A unit that measurement files may write. value in base unit = factor * value + offset; base units are mm,
-/// deg, degC, s, mm/s, deg/s, mm/s^2, deg/s^2, V, N, kg, 1/mm.
+/// deg, degC, s, mm/s, deg/s, mm/s^2, deg/s^2, V, N, kg, 1/mm, A, Hz, Pa, Nm, W, um/m.
 struct Unit {
   const char* name;
   Dimension dimension;
   double factor, offset;
 };
 
-/// The unit of that name (case-sensitive); nothing for an unknown one. "" is the pure number.
+/// The unit of that name (case-sensitive), with the signs that people type for it (µ, °, ²: `usual_spelling`);
+/// nothing for an unknown one. "" is the pure number.
 std::optional<Unit> find_unit(std::string_view name);
+
+/// The text with signs of the keyboard: µ (both of Unicode's) as u, °C as degC, ° as deg, ″ as arcsec, ² as ^2,
+/// a middle dot left out. tool.
+std::string usual_spelling(std::string_view unit);
+
+/// The name that find_unit has for it; the text itself where it has none. tool.
+std::string canonical_unit(std::string_view unit);
 
 /// All names, for messages.
 std::string known_units();

@@ -8,7 +8,7 @@
 namespace vernier {
 namespace {
 
-constexpr std::array<const char*, 7> kNames = {"mm", "deg", "degC", "s", "V", "N", "kg"};
+constexpr std::array<const char*, 8> kNames = {"mm", "deg", "degC", "s", "V", "N", "kg", "A"};
 
 std::optional<UnitPowers> powers_of(Dimension dimension) {
   switch (dimension) {
@@ -38,6 +38,18 @@ std::optional<UnitPowers> powers_of(Dimension dimension) {
       return UnitPowers{0, 0, 0, 0, 0, 0, 1};
     case Dimension::kCurvature:
       return UnitPowers{-1};
+    case Dimension::kCurrent:
+      return UnitPowers{0, 0, 0, 0, 0, 0, 0, 1};
+    case Dimension::kFrequency:
+      return UnitPowers{0, 0, 0, -1};
+    case Dimension::kPressure:
+      return UnitPowers{-2, 0, 0, 0, 0, 1};
+    case Dimension::kTorque:
+      return UnitPowers{1, 0, 0, 0, 0, 1};
+    case Dimension::kPower:
+      return UnitPowers{1, 0, 0, -1, 0, 1};
+    case Dimension::kRatio:
+      return UnitPowers{};
   }
   return std::nullopt;
 }

@@ -10,7 +10,7 @@
 namespace vernier {
 
 /// Powers of mm, deg, degC, s, V, N, kg.
-using UnitPowers = std::array<int, 7>;
+using UnitPowers = std::array<int, 8>;
 
 /// Powers of a unit of FORMATS section 2 ("mm/s", "1/mm"); nothing for a unit that is none of them.
 std::optional<UnitPowers> unit_powers(const std::string& unit);

@@ -103,9 +103,13 @@ struct WorkbenchServer::Inside {
 };
 
 bool WorkbenchServer::Inside::is_ours(const httplib::Request& request) const {
-  if (request.get_header_value_count("Host") != 1 || request.get_header_value("Host") != host()) return false;
+  if (request.get_header_value_count("Host") != 1) return false;
+  // localhost is this computer too (RFC 6761, 6.3); any other name may have been bound to its address by a
+  // stranger.
+  const std::string name = request.get_header_value("Host");
+  if (name != host() && name != "localhost:" + std::to_string(port)) return false;
   if (!request.has_header("Origin")) return true;
-  return request.get_header_value("Origin") == "http://" + host();
+  return request.get_header_value("Origin") == "http://" + name;
 }
 
 /// The first visit: the token of the address becomes a cookie, and the address loses it.

@@ -47,6 +47,25 @@ TEST(MeasurementFile, ConvertsUnitsToTheBaseUnits) {
   EXPECT_EQ(m.states.run_names, (std::vector<std::string>{"a", "b"}));
 }
 
+TEST(MeasurementFile, UnitsOfAShopFloorAreRead) {
+  const Measurement m = read(
+      "X[µm],B[°],T[°C],vB[rpm],x[\u03bcm],u[µm],i[A],n[rpm],duty[%],f[Hz],p[bar],q[Pa],m[Nm],w[N·m],e[W],"
+      "s[µm/m]\n2000,3,21,2,1500,2,1,2,3,4,5,6,7,8,9,10\n");
+  EXPECT_DOUBLE_EQ(m.states.axis[0][0], 2);
+  EXPECT_DOUBLE_EQ(m.states.axis[1][0], 3);
+  EXPECT_DOUBLE_EQ(m.states.input[0][0], 21);
+  EXPECT_DOUBLE_EQ(m.states.velocity[1][0], 12);  // 2 turns a minute
+  EXPECT_DOUBLE_EQ(m.observations[0].value, 1.5);
+  EXPECT_DOUBLE_EQ(m.uncertainty[0], 0.002);
+  std::vector<std::string> units;
+  for (const CandidateInput& candidate : m.candidates) units.push_back(candidate.unit);
+  EXPECT_EQ(units, (std::vector<std::string>{"A", "rpm", "%", "Hz", "bar", "Pa", "Nm", "Nm", "W", "um/m"}));
+}
+
+TEST(MeasurementFile, UnknownUnitIsNamedAsWritten) {
+  EXPECT_EQ(error_of("X[mm],B[deg],x[furlong]\n1,2,3\n").substr(0, 32), "m.csv:1: \"furlong\": unknown unit");
+}
+
 TEST(MeasurementFile, AbsentColumnsHaveTheirDefaults) {
   const Measurement m = read("X[mm],B[deg],x[mm]\n1,2,3\n");
   EXPECT_EQ(m.states.velocity[0][0], 0);

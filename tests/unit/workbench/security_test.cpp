@@ -93,11 +93,21 @@ TEST_F(Attack, OnlyTheSessionsTokenOpensAnything) {
 
 TEST_F(Attack, OtherNamesOfThisHostAreRefused) {
   for (const std::string& name :
-       {std::string("evil.example"), "localhost:" + std::to_string(server_.port()), std::string("127.0.0.1"),
+       {std::string("evil.example"), std::string("localhost"),
+        "localhost.evil.example:" + std::to_string(server_.port()), std::string("127.0.0.1"),
         "evil.example:" + std::to_string(server_.port()), host() + ".evil.example", std::string()})
     EXPECT_EQ(status(ask("GET", "/api/project", "Host: " + name + "\r\n" + cookie())), 403) << name;
   EXPECT_EQ(status(ask("GET", "/api/project", cookie())), 403);
   EXPECT_EQ(status(ask("GET", "/api/project", ours() + "Host: evil.example\r\n")), 403);
+}
+
+TEST_F(Attack, LocalhostIsThisComputer) {
+  const std::string name = "localhost:" + std::to_string(server_.port());
+  const std::string line = "Host: " + name + "\r\n" + cookie();
+  EXPECT_EQ(status(ask("GET", "/api/project", line)), 200);
+  EXPECT_EQ(status(ask("GET", "/api/project", line + "Origin: http://" + name + "\r\n")), 200);
+  // A page of one name is no page of the other.
+  EXPECT_EQ(status(ask("GET", "/api/project", line + "Origin: http://" + host() + "\r\n")), 403);
 }
 
 TEST_F(Attack, OtherOriginsAreRefusedEvenWithTheCookie) {

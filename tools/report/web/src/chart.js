@@ -96,8 +96,22 @@ addEventListener('resize', () => {
   for (const entry of charts) if (entry.instance && entry.box.clientWidth !== entry.width) draw(entry);
 });
 dark.addEventListener('change', redrawCharts);
+
+// A canvas does not flow: for paper each chart is drawn anew, no wider than A4 or Letter between their margins, in ink's colours.
+const paperWidth = 640;
 addEventListener('beforeprint', () => {
-  for (const entry of charts) draw(entry);
+  document.documentElement.dataset.print = 'yes';
+  for (const entry of charts) {
+    if (entry.box.clientWidth > paperWidth) entry.box.style.width = `${paperWidth}px`;
+    draw(entry);
+  }
+});
+addEventListener('afterprint', () => {
+  delete document.documentElement.dataset.print;
+  for (const entry of charts) {
+    entry.box.style.width = '';
+    draw(entry);
+  }
 });
 
 /** Text and lines of an axis in the page's colours. */

@@ -177,4 +177,17 @@ const data = readData();
 const pages = { compare: comparison, diagnose: diagnosis, improve: improvement };
 if (pages[data.type]) pages[data.type](data.result);
 else for (const one of data.result.sections) part(one);
+// What is folded away on the screen cannot be unfolded on paper.
+addEventListener('beforeprint', () => {
+  for (const folded of document.querySelectorAll('details:not([open])')) {
+    folded.open = true;
+    folded.dataset.folded = 'yes';
+  }
+});
+addEventListener('afterprint', () => {
+  for (const unfolded of document.querySelectorAll('details[data-folded]')) {
+    unfolded.open = false;
+    delete unfolded.dataset.folded;
+  }
+});
 document.documentElement.dataset.ready = 'yes';

@@ -186,8 +186,22 @@ export function circleTable(circle) {
     ['Hysteresis, samples paired by angle', 'µm', fixed(circle.hysteresis_by_angle_um, 1)],
     ['   at', 'deg', fixed(circle.hysteresis_by_angle_deg, 3)],
   ].filter((one) => one[2] !== '–');
+  const ranked = (circle.diagnostics ?? []).map((one) => [
+    one.name,
+    one.unit === 'um' ? 'µm' : one.unit === 'um/m' ? 'µm/m' : one.unit,
+    fixed(one.value, one.unit === 'ms' ? 3 : 1),
+    fixed(one.effect_um, 1),
+    `${fixed(100 * one.share, 1)} %`,
+  ]);
   return [
     table(`ISO 230-4, ${a}${b} plane, each sense about its own centre`, columns, rows),
     both.length ? table('Both senses', [{ name: '', left: true }, { name: 'unit', left: true }, { name: 'value' }], both) : null,
+    ranked.length
+      ? table(
+          'What shapes the circle, strongest first (effect on the radius, peak to peak)',
+          [{ name: '', left: true }, { name: 'unit', left: true }, { name: 'value' }, { name: 'effect, µm' }, { name: 'share' }],
+          ranked,
+        )
+      : null,
   ].filter(Boolean);
 }

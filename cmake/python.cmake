@@ -1,0 +1,27 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# The Python module needs every library as code that can be placed anywhere, so it is asked for before any is declared. It is left
+# out where pybind11 is missing, for other machines than this one, and under the sanitizers (Python itself is not built with them).
+set(VERNIER_PYTHON_DEFAULT OFF)
+set(VERNIER_NO_PYTHON "")
+if(VERNIER_SANITIZE)
+  set(VERNIER_NO_PYTHON "the sanitizers are on")
+elseif(CMAKE_CROSSCOMPILING OR NOT VERNIER_BUILD_TOOLS)
+  set(VERNIER_NO_PYTHON "no tools are built for this machine")
+else()
+  # Debian's own interpreter: its modules (numpy) and pybind11's headers are of one make.
+  if(NOT DEFINED PYTHON_EXECUTABLE AND EXISTS /usr/bin/python3)
+    set(PYTHON_EXECUTABLE /usr/bin/python3 CACHE FILEPATH "Python that the module is for")
+  endif()
+  find_package(pybind11 QUIET)
+  if(pybind11_FOUND)
+    set(VERNIER_PYTHON_DEFAULT ON)
+  else()
+    set(VERNIER_NO_PYTHON "pybind11 is not installed (pybind11-dev python3-dev python3-numpy)")
+  endif()
+endif()
+option(VERNIER_PYTHON "Build the Python module" ${VERNIER_PYTHON_DEFAULT})
+if(VERNIER_PYTHON)
+  set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+elseif(VERNIER_NO_PYTHON STREQUAL "")
+  set(VERNIER_NO_PYTHON "VERNIER_PYTHON is off")
+endif()

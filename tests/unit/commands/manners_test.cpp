@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the program answers to those who are still learning it.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <sstream>
+
+#include "tools/text/files.h"
+#include "tools/text/similar.h"
+
+namespace vernier::manners_test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Manners : public testing::Test {
+ protected:
+  Manners() {
+    fs::create_directories(folder_);
+    write_file(folder_ + "/m.xml",
+               "<machine><variables><static><k value=\"0\" nominal=\"0\" "
+               "unit=\"inch\"/></static><machineaxes><X min=\"0\" "
+               "max=\"600\"/><Q min=\"0\" max=\"9\"/></machineaxes></variables><transforms><sixdof "
+               "X=\"X+k*X\"/></transforms></machine>");
+    write_file(folder_ + "/rows.csv", "X[mm],Q[mm],x[mm]\n0,0,0\n100,1,100.01\n300,2,300.02\n");
+    write_file(folder_ + "/sheet.csv", "X (mm);Q (mm);x (mm)\n0,5;0;0,5\n100;1;100,01\n");
+  }
+  ~Manners() override { fs::remove_all(folder_); }
+
+  int run(const std::string& line) {
+    const std::string command =
+        "cd '" + folder_ + "' && PATH=" VERNIER_BIN_DIR ":$PATH && { " + line + "; } >out.txt 2>&1";
+    const int status = std::system(command.c_str());
+    said_ = read_file(folder_ + "/out.txt");
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+  bool said(const std::string& part) const { return said_.find(part) != std::string::npos; }
+
+  const std::string folder_ = testing::TempDir() + "manners_" + std::to_string(getpid());
+  std::string said_;
+};
+
+TEST_F(Manners, MistypedCommandIsNamedWithTheOneMeant) {
+  EXPECT_EQ(run("vernier fti m.xml rows.csv"), 1);
+  EXPECT_TRUE(said("\"fti\": there is no command vernier fti; did you mean vernier fit?")) << said_;
+  EXPECT_EQ(run("vernier import tabel x"), 1);
+  EXPECT_TRUE(said("did you mean vernier import table?")) << said_;
+  EXPECT_EQ(run("vernier frobnicate"), 1);
+  EXPECT_TRUE(said("\"frobnicate\": there is no command") && said("vernier help")) << said_;
+  EXPECT_EQ(run("vernier fit m.xml rows.csv --outptu x.xml"), 1);
+  EXPECT_TRUE(said("\"--outptu\": no option of this command; did you mean --output?")) << said_;
+}
+
+TEST_F(Manners, HelpIsACommandToo) {
+  EXPECT_EQ(run("vernier help"), 0);
+  const std::string all = said_;
+  EXPECT_EQ(run("vernier --help"), 0);
+  EXPECT_EQ(said_, all);
+  EXPECT_EQ(run("vernier"), 0);
+  EXPECT_EQ(said_, all);
+  EXPECT_EQ(run("vernier help fit"), 0);
+  EXPECT_TRUE(said("Usage: vernier fit")) << said_;
+  EXPECT_EQ(run("vernier help import table"), 0);
+  EXPECT_TRUE(said("--preview")) << said_;
+  EXPECT_EQ(run("vernier help fti"), 1);
+}
+
+TEST_F(Manners, HelpFitsEightyColumns) {
+  ASSERT_EQ(run("vernier help"), 0);
+  std::vector<std::string> commands = {""};
+  std::istringstream list(said_.substr(said_.find("Subcommands:")));
+  for (std::string line; std::getline(list, line);)
+    if (line.size() > 3 && line.starts_with("  ") && line[2] != ' ')
+      commands.push_back(line.substr(2, line.find(' ', 2) - 2));
+  EXPECT_GT(commands.size(), 30u);
+  commands.insert(commands.end(), {"import table", "import ballbar", "import ballbar-trace", "import tracker",
+                                   "import probe", "part s-shape"});
+  for (const std::string& command : commands) {
+    EXPECT_EQ(run("vernier " + command + " --help"), 0) << command;
+    std::istringstream help(said_);
+    for (std::string line; std::getline(help, line);) {
+      std::size_t letters = 0;
+      for (const char c : line) letters += (static_cast<unsigned char>(c) & 0xC0) != 0x80 ? 1 : 0;
+      EXPECT_LE(letters, 80u) << command << ": " << line;
+    }
+  }
+}
+
+TEST_F(Manners, SwappedFilesAreRecognised) {
+  EXPECT_EQ(run("vernier fit rows.csv m.xml -o f.xml"), 1);
+  EXPECT_TRUE(
+      said("rows.csv: a table of measurements where the machine file (XML) is wanted; did you mean vernier "
+           "fit m.xml rows.csv -o f.xml?"))
+      << said_;
+  EXPECT_EQ(run("vernier compare m.xml m.xml"), 1);
+  EXPECT_TRUE(said("a machine file where a measurement file (CSV) is wanted")) << said_;
+}
+
+TEST_F(Manners, SpreadsheetIsRefusedWithTheCommandThatReadsIt) {
+  for (const char* command :
+       {"fit m.xml sheet.csv -o f.xml", "compare m.xml sheet.csv", "diagnose m.xml sheet.csv"}) {
+    EXPECT_EQ(run(std::string("vernier ") + command), 1);
+    EXPECT_TRUE(said("this reads it: vernier import table sheet.csv -o sheet_read.csv")) << said_;
+  }
+  EXPECT_EQ(run("vernier import table sheet.csv -o sheet_read.csv && vernier compare m.xml sheet_read.csv"),
+            0)
+      << said_;
+}
+
+TEST_F(Manners, ImportThatFailsSaysWhatItUnderstood) {
+  write_file(folder_ + "/odd.csv", "Soll;Ist\n0;0,1\n5;5,1\n");
+  EXPECT_EQ(run("vernier import table odd.csv -o odd_read.csv"), 1);
+  EXPECT_TRUE(said("columns parted by semicolon, decimal comma") &&
+              said("nothing measured among the columns"))
+      << said_;
+  EXPECT_FALSE(said("this reads it")) << said_;
+  EXPECT_EQ(run("vernier import table odd.csv -o odd_read.csv --column 'X[mm]=Soll' --column 'x[mm]=Ist'"), 0)
+      << said_;
+  EXPECT_EQ(read_file(folder_ + "/odd_read.csv"), "X[mm],x[mm]\n0,0.1\n5,5.1\n");
+}
+
+TEST_F(Manners, UnknownUnitAndUnusedAxisAreWarnedOf) {
+  run("vernier compare m.xml rows.csv");
+  EXPECT_TRUE(said("\"inch\": nobody knows this unit, of k -- did you mean in?")) << said_;
+  EXPECT_TRUE(said("\"Q\": no transform uses this axis")) << said_;
+}
+
+TEST_F(Manners, CyclicErrorOfASlideAsksForItsPeriod) {
+  EXPECT_EQ(run("vernier add cyclic-error:axis=X m.xml -o new.xml"), 1);
+  EXPECT_TRUE(said("start.p is missing: the period in mm (pitch of the screw")) << said_;
+  EXPECT_FALSE(fs::exists(folder_ + "/new.xml"));
+  EXPECT_EQ(run("vernier add cyclic-error:axis=X,start.p=5 m.xml -o new.xml"), 0) << said_;
+  EXPECT_NE(read_file(folder_ + "/new.xml").find("360*X/"), std::string::npos);
+}
+
+TEST_F(Manners, LintExitsByWhetherTheFilesAreOfUse) {
+  EXPECT_EQ(run("vernier lint m.xml rows.csv"), 0) << said_;
+  EXPECT_EQ(run("vernier lint m.xml sheet.csv --json lint.json"), 1) << said_;
+  EXPECT_NE(read_file(folder_ + "/lint.json").find("\"weight\": \"error\""), std::string::npos);
+}
+
+TEST_F(Manners, ShellCompletesCommandsKindsOptionsAndFiles) {
+  const auto completed = [&](const std::string& words) {
+    // As bash calls it: the words typed so far, the cursor at the end of the last.
+    run("vernier completion bash > c.sh && bash -c 'source ./c.sh; COMP_WORDS=(vernier " + words +
+        "); COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); _vernier; echo \"${COMPREPLY[@]}\"'");
+    return said_;
+  };
+  EXPECT_EQ(completed("comp"), "compare compile completion\n");
+  EXPECT_EQ(completed("import tab"), "table\n");
+  EXPECT_EQ(completed("import table --dec"), "--decimal\n");
+  EXPECT_EQ(completed("fit --resid"), "--residuals\n");
+  EXPECT_EQ(completed("fit m."), "m.xml\n");
+  EXPECT_EQ(run("vernier completion zsh && vernier completion fish"), 0);
+  EXPECT_TRUE(said("#compdef vernier") && said("-a diagnose -d")) << said_;
+  EXPECT_EQ(run("vernier completion tcsh"), 1);
+}
+
+TEST(WordMeant, IsTheNearestThatIsNearEnough) {
+  const std::vector<std::string> words = {"fit", "plan", "pose", "part", "compare", "compile", "diagnose"};
+  EXPECT_EQ(word_meant("fti", words), "fit");
+  EXPECT_EQ(word_meant("diagnos", words), "diagnose");
+  EXPECT_EQ(word_meant("compair", words), "compare");
+  EXPECT_EQ(word_meant("dia", words), "diagnose");
+  EXPECT_EQ(word_meant("xyz", words), std::nullopt);
+  EXPECT_EQ(letters_apart("flaw", "lawn"), 2u);
+  EXPECT_EQ(letters_apart("ab", "ba"), 1u);
+}
+
+}  // namespace
+}  // namespace vernier::manners_test

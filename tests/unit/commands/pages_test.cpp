@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the pages print is what the programs do: their blocks are run as they stand, from the folder that they
+// say.
+#include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "tools/text/files.h"
+#include "tools/text/words.h"
+
+namespace vernier::pages_test {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The fenced blocks of a kind, in order.
+std::vector<std::string> blocks(const std::string& page, const std::string& kind) {
+  std::vector<std::string> list;
+  std::istringstream in(page);
+  bool inside = false;
+  for (std::string line; std::getline(in, line);) {
+    if (!inside && line == "```" + kind) {
+      inside = true;
+      list.emplace_back();
+    } else if (inside && line == "```") {
+      inside = false;
+    } else if (inside) {
+      list.back() += line + "\n";
+    }
+  }
+  return list;
+}
+
+std::string page(const std::string& name) { return read_file(std::string(VERNIER_SOURCE_DIR) + "/" + name); }
+
+/// A port that nobody has at the moment: other tests run boards too.
+int free_port() {
+  const int socket = ::socket(AF_INET, SOCK_STREAM, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof address;
+  EXPECT_EQ(::bind(socket, reinterpret_cast<sockaddr*>(&address), size), 0);
+  EXPECT_EQ(::getsockname(socket, reinterpret_cast<sockaddr*>(&address), &size), 0);
+  ::close(socket);
+  return ntohs(address.sin_port);
+}
+
+/// A folder that looks like the root of a fresh checkout: what it has is there, what it builds goes aside.
+class Pages : public testing::Test {
+ protected:
+  Pages() {
+    fs::create_directories(folder_ + "/build");
+    for (const char* name : {"tables", "tests", "tools"})
+      fs::create_directory_symlink(std::string(VERNIER_SOURCE_DIR) + "/" + name, folder_ + "/" + name);
+  }
+  ~Pages() override { fs::remove_all(folder_); }
+
+  int run(const std::string& script) {
+    write_file(folder_ + "/script", script);
+    const int status = std::system(
+        ("cd '" + folder_ + "' && PATH=" VERNIER_BIN_DIR ":$PATH timeout 300 bash -em script >out.txt 2>&1")
+            .c_str());
+    said_ = read_file(folder_ + "/out.txt");
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+
+  const std::string folder_ = testing::TempDir() + "pages_" + std::to_string(getpid());
+  std::string said_;
+};
+
+TEST_F(Pages, TutorialRunsAsPrinted) {
+  const std::string text = page("tools/docs/tutorial.md");
+  std::string script;
+  for (const std::string& block : blocks(text, "sh")) script += block;
+  EXPECT_EQ(run(script), 0) << said_;
+  // The figures that the page prints.
+  for (const char* figure :
+       {"bed > Y (bridge) > X (carriage) > Z (ram) > tool", "3.134 um", "3.381 um",
+        "the residual is 3.3 times the noise", "X error repeats every 62.71 mm", "63.62 +- 0.3 mm",
+        "check rows 2.468 um", "check rows 1.281 um", "verdict: consistent"})
+    EXPECT_NE(said_.find(figure), std::string::npos) << figure << " is not what the commands print\n"
+                                                     << said_;
+  for (const char* picture :
+       {"tutorial_where.png", "tutorial_why.png", "tutorial_improve.png", "before_after.svg"})
+    EXPECT_TRUE(fs::exists(std::string(VERNIER_SOURCE_DIR) + "/tools/docs/img/" + picture)) << picture;
+}
+
+TEST_F(Pages, ReadmeRunsAsPrinted) {
+  std::string script;
+  for (const std::string& block : blocks(page("README.md"), "sh")) {
+    // The first block installs and builds: what runs this test has been built by it.
+    if (block.find("./tools/demo") != std::string::npos) continue;
+    script += block;
+  }
+  const std::string port = std::to_string(free_port());
+  script += "\n";
+  for (std::size_t at = 0; (at = script.find("1502", at)) != std::string::npos;) script.replace(at, 4, port);
+  const std::string copy = "cp tests/data/board/xy_simulated.toml build/board.toml\n";
+  ASSERT_NE(script.find(copy), std::string::npos);
+  script.insert(script.find(copy) + copy.size(), "sed -i 's/1502/" + port + "/' build/board.toml\n");
+  EXPECT_EQ(run(script), 0) << said_;
+  for (const char* figure : {"98.78 um", "1.419 um"})
+    EXPECT_NE(said_.find(figure), std::string::npos) << figure;
+}
+
+TEST_F(Pages, ExamplesOfTheFormatsAreGoodFiles) {
+  const auto machines = blocks(page("tools/docs/machine_file.md"), "xml");
+  const auto tables = blocks(page("tools/docs/measurement_file.md"), "csv");
+  ASSERT_EQ(machines.size(), 1u);
+  ASSERT_EQ(tables.size(), 1u);
+  write_file(folder_ + "/m.xml", machines[0]);
+  write_file(folder_ + "/meas.csv", tables[0]);
+  ASSERT_EQ(run("vernier new bridge --axis X:0:600 --axis Y:0:400 --axis Z:-300:0 -o b.xml\n"
+                "vernier lint m.xml --json machine.json\nvernier lint b.xml meas.csv --json meas.json\n"),
+            0)
+      << said_;
+  for (const char* result : {"/machine.json", "/meas.json"})
+    for (const auto& finding : nlohmann::json::parse(read_file(folder_ + result))["findings"])
+      // Two rows cannot move all axes; nothing else may be odd about an example.
+      EXPECT_TRUE(finding["weight"] == "remark" ||
+                  finding["what"].get<std::string>().find("never moves") != std::string::npos)
+          << finding.dump();
+}
+
+TEST(Links, OfTheFirstPagesLeadSomewhere) {
+  for (const std::string name :
+       {"README.md", "tools/docs/tutorial.md", "tools/docs/new.md", "tools/docs/lint.md",
+        "tools/docs/machine_file.md", "tools/docs/measurement_file.md", "tools/docs/figures.md",
+        "tools/docs/import.md", "tools/docs/board.md"}) {
+    const std::string text = page(name);
+    const fs::path folder = (fs::path(VERNIER_SOURCE_DIR) / name).parent_path();
+    for (std::size_t at = 0; (at = text.find("](", at)) != std::string::npos; ++at) {
+      std::string link = text.substr(at + 2, text.find(')', at) - at - 2);
+      link = link.substr(0, link.find('#'));
+      if (link.empty() || link.starts_with("http")) continue;
+      EXPECT_TRUE(fs::exists(folder / link)) << name << ": " << link;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace vernier::pages_test

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Spreadsheets as people send them: each is read rightly, or refused with the mend.
+#include "tools/import/sheet_columns.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "tools/text/files.h"
+
+namespace vernier::sheet_columns_test {
+namespace {
+
+std::string import(const std::string& bytes, SheetWishes wishes = {},
+                   const std::function<void(SheetWishes&, const SheetTable&)>& say = {}) {
+  try {
+    const Sheet sheet = read_sheet(bytes, "s.csv", wishes.format);
+    const SheetTable table = parts_of_sheet(sheet);
+    if (say) say(wishes, table);
+    return measurement_csv(table_of_sheet(sheet, table, columns_of_sheet(sheet, table, wishes), wishes));
+  } catch (const InputError& error) {
+    return std::string("refused: ") + error.what();
+  }
+}
+
+std::string utf16(const std::string& ascii, bool mark) {
+  std::string text = mark ? "\xFF\xFE" : "";
+  for (const char c : ascii) text += std::string{c, '\0'};
+  return text;
+}
+
+struct Case {
+  const char* name;
+  std::string bytes;
+  const char* read;  // the measurement file, or a part of the refusal behind "refused"
+};
+void PrintTo(const Case& one, std::ostream* out) { *out << one.name; }
+
+const Case kCases[] = {
+    {"PlainCsv", "X[mm],x[mm]\n1,2\n", "X[mm],x[mm]\n1,2\n"},
+    {"Semicolons", "X[mm];x[mm]\n1;2.5\n", "X[mm],x[mm]\n1,2.5\n"},
+    {"DecimalComma", "X[mm];x[mm]\n1;2,5\n", "X[mm],x[mm]\n1,2.5\n"},
+    {"Tabs", "X[mm]\tx[mm]\n1\t2,5\n", "X[mm],x[mm]\n1,2.5\n"},
+    {"Blanks", "X[mm] x[mm]\n1   2.5\n", "X[mm],x[mm]\n1,2.5\n"},
+    {"ByteOrderMark", "\xEF\xBB\xBFX[mm];x[mm]\n1;2\n", "X[mm],x[mm]\n1,2\n"},
+    {"Utf16", utf16("X[mm]\tx[mm]\r\n1\t2,5\r\n", true), "X[mm],x[mm]\n1,2.5\n"},
+    {"Utf16WithoutMark", utf16("X[mm];x[mm]\n1;2\n", false), "X[mm],x[mm]\n1,2\n"},
+    {"OldCodePage",
+     "X[mm];x[\xB5m];T[\xB0"
+     "C]\n1;2,5;20,1\n",
+     "X[mm],x[um],T[degC]\n1,2.5,20.1\n"},
+    {"Parentheses", "X(mm);x (µm)\n1;2\n", "X[mm],x[um]\n1,2\n"},
+    {"RowOfUnits", "X;x;Temp\n[mm];[µm];[°C]\n1;2;3\n", "X[mm],x[um],Temp[degC]\n1,2,3\n"},
+    {"TitleLines", "Messung Portal 4;;\n12.03.2026;;\nX[mm];x[mm];\n1;2;\n", "X[mm],x[mm]\n1,2\n"},
+    {"TrailingSemicolons", "X[mm];x[mm];;;\n1;2;;;\n", "X[mm],x[mm]\n1,2\n"},
+    {"EmptyRows", "X[mm];x[mm]\n1;2\n;\n\n2;3\n;\n", "X[mm],x[mm]\n1,2\n2,3\n"},
+    {"ExcelsFirstLine", "sep=;\nX[mm];x[mm]\n1;2\n", "X[mm],x[mm]\n1,2\n"},
+    {"MacLineEnds", "X[mm];x[mm]\r1;2\r2;3\r", "X[mm],x[mm]\n1,2\n2,3\n"},
+    {"Thousands", "X[mm];x[mm]\n1.000,5;1.000,75\n", "X[mm],x[mm]\n1000.5,1000.75\n"},
+    {"LongMinus",
+     "X[mm];x[mm]\n1;\u2212"
+     "0,5\n",
+     "X[mm],x[mm]\n1,-0.5\n"},
+    {"TargetAndActual", "X soll [mm];X ist [mm]\n1;1,5\n", "X[mm],x[mm]\n1,1.5\n"},
+    {"TargetAndDeviation", "X target (mm);Deviation (µm)\n100;-1.5\n", "X[mm],x[mm]\n100,99.9985\n"},
+    {"SensesInWords", "X[mm];x[mm];Richtung;Lauf\n1;2;hin;1\n1;2;zurück;1\n",
+     "X[mm],x[mm],dirX,run\n1,2,1,1\n1,2,-1,1\n"},
+    {"RemarksAreLeftOut", "X[mm];x[mm];Bemerkung\n1;2;gut\n3;4;\n", "X[mm],x[mm]\n1,2\n3,4\n"},
+    {"MissingReadings", "X[mm];x[mm]\n1;-\n2;3\n", "X[mm],x[mm]\n1,\n2,3\n"},
+    {"QuotedCommas", "X[mm],x[mm]\n\"1,5\",\"2,5\"\n", "X[mm],x[mm]\n1.5,2.5\n"},
+    {"Inches", "X (inch);x (inch)\n1;1.0001\n", "X[in],x[in]\n1,1.0001\n"},
+    {"NoUnits", "X;x\n1;2\n", "refused: s.csv:1: no unit: say it for all (--unit mm)"},
+    {"TwoSigns", "X[mm];x[mm]\n1,5;2\n3.5;2\n", "--decimal comma or point"},
+    {"CommaInCommas", "X[mm],x[mm]\n0,5,1,5\n",
+     "decimal commas in a table that commas part? Save it with semicolons"},
+    {"Words", "X[mm];x[mm]\n1;2\n2;abc\n3;4\n", "refused: s.csv:3: \"abc\": not a number, for x"},
+    {"NothingMeasured", "X[mm];Y[mm]\n1;2\n", "nothing measured among the columns"},
+    {"OldWorkbook", "\xD0\xCF\x11\xE0\xA1\xB1\x1A\xE1", "save it as .xlsx or as CSV"},
+    {"NoNumbers", "only;words\nhere;too\n", "no row of this table holds numbers"},
+    {"OpenQuote", "X[mm];x[mm]\n1;\"2\n", "a closing quote is missing"},
+};
+
+class Spreadsheet : public testing::TestWithParam<Case> {};
+
+TEST_P(Spreadsheet, IsReadRightlyOrRefusedWithTheMend) {
+  const std::string result = import(GetParam().bytes);
+  if (result.starts_with("refused"))
+    EXPECT_NE(result.find(GetParam().read), std::string::npos) << result;
+  else
+    EXPECT_EQ(result, GetParam().read);
+}
+INSTANTIATE_TEST_SUITE_P(AsPeopleSendThem, Spreadsheet, testing::ValuesIn(kCases),
+                         [](const auto& one) { return std::string(one.param.name); });
+
+const std::string kOdd = "Pos;Anzeige [µm];Stift\n100;1,5;a\n200;2,5;b\n";
+
+TEST(SheetWish, ColumnsAreAssignedInEitherOrder) {
+  const char* const wanted = "Z[mm],x[um]\n100,1.5\n200,2.5\n";
+  EXPECT_EQ(import(kOdd, {},
+                   [](SheetWishes& wishes, const SheetTable& table) {
+                     assign_column(wishes, table, "Z[mm]=Pos");
+                     assign_column(wishes, table, "x=Anzeige [µm]");
+                   }),
+            wanted);
+  EXPECT_EQ(import(kOdd, {},
+                   [](SheetWishes& wishes, const SheetTable& table) {
+                     assign_column(wishes, table, "1=Z[mm]");
+                     assign_column(wishes, table, "Anzeige=x[um]");
+                   }),
+            wanted);
+}
+
+TEST(SheetWish, DeviationIsAddedToThePosition) {
+  EXPECT_EQ(import(kOdd, {},
+                   [](SheetWishes& wishes, const SheetTable& table) {
+                     assign_column(wishes, table, "X[mm]=Pos");
+                     assign_deviation(wishes, "X=Anzeige");
+                   }),
+            "X[mm],x[mm]\n100,100.0015\n200,200.0025\n");
+}
+
+TEST(SheetWish, UnknownHeadingIsNamedWithThoseThatAreThere) {
+  const std::string result = import(
+      kOdd, {}, [](SheetWishes& wishes, const SheetTable& table) { assign_column(wishes, table, "x=Weg"); });
+  EXPECT_NE(result.find("no such heading; there are Pos, Anzeige [µm], Stift"), std::string::npos) << result;
+}
+
+TEST(SheetProfile, ReadsTheNextFileAsThisOne) {
+  SheetWishes wishes;
+  const Sheet sheet = read_sheet(kOdd, "s.csv", {});
+  const SheetTable table = parts_of_sheet(sheet);
+  assign_column(wishes, table, "X[mm]=Pos");
+  assign_deviation(wishes, "X=Anzeige");
+  const std::string profile = sheet_profile(sheet, table, columns_of_sheet(sheet, table, wishes), wishes);
+  SheetWishes again;
+  read_sheet_profile(again, profile, "p.txt");
+  EXPECT_TRUE(again.format.decimal_comma.value());
+  EXPECT_EQ(import(kOdd, again), "X[mm],x[mm]\n100,100.0015\n200,200.0025\n") << profile;
+  SheetWishes bad;
+  EXPECT_THROW(read_sheet_profile(bad, "colunm X = x[mm]\n", "p.txt"), InputError);
+}
+
+}  // namespace
+}  // namespace vernier::sheet_columns_test

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/lint/measurement_lint.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+
+#include "tools/lint/lint.h"
+#include "tools/model/machine_reader.h"
+#include "tools/model/measurement.h"
+#include "tools/text/error.h"
+#include "tools/text/files.h"
+
+namespace vernier::measurement_lint_test {
+namespace {
+
+const Machine& machine() {
+  static const Machine kMachine = parse_machine(
+      R"xml(<machine><variables><static><k value="0" nominal="0"/><m value="0" nominal="0"/></static>
+      <machineaxes><X min="0" max="600"/><Y min="0" max="400"/><Z min="-300" max="0"/></machineaxes>
+      <inputs><T_column unit="degC" reference="20"/></inputs></variables>
+      <transforms><sixdof X="X+k*dirX*T_column" Y="Y+m*vY" Z="Z+lag(k*X,2)"/></transforms></machine>)xml",
+      "m.xml");
+  return kMachine;
+}
+
+struct Case {
+  const char* name;
+  std::string bytes;
+  const char* says;  // part of a finding in one line
+};
+void PrintTo(const Case& one, std::ostream* out) { *out << one.name; }
+
+const std::string kHead = "X[mm],Y[mm],Z[mm],dirX,vY[mm/s],t[s],T_column[degC],x[mm],y[mm],z[mm],run,role\n";
+const std::string kRow1 = "0,0,-300,1,0,1,20,0,0,-300,a,fit\n",
+                  kRow2 = "300,200,-100,1,0,2,21,300,200,-100,a,fit\n",
+                  kRow3 = "600,400,0,-1,5,3,22,600,400,0,a,check\n";
+
+const Case kCases[] = {
+    {"Semicolons", "X[mm];x[mm]\n1;2\n",
+     "error: \"X[mm];x[mm]\": columns parted by semicolon, not by comma -- a spreadsheet"},
+    {"DecimalCommaBehindSemicolons", "X[mm];x[mm]\n1;2,5\n", "s.csv:2: error: \"2,5\": a decimal comma"},
+    {"QuotedDecimalComma", kHead + "0,0,-300,1,0,1,20,\"0,5\",0,-300,a,fit\n" + kRow2,
+     "s.csv:2: error: \"0,5\": not a number, in column x -- decimal comma?"},
+    {"TrailingCommas", "X[mm],Y[mm],Z[mm],x[mm],,\n1,2,3,4,,\n",
+     "commas at the end of the header -- empty columns of a spreadsheet"},
+    {"TrailingCommasInRows", "X[mm],Y[mm],Z[mm],x[mm]\n1,2,3,4,,\n2,3,4,5,,\n",
+     "s.csv:2: error: commas at the end of the row; so in 1 further place, the last in line 3"},
+    {"ByteOrderMark", "\xEF\xBB\xBF" + kHead + kRow1 + kRow2 + kRow3,
+     "remark: begins with a byte order mark"},
+    {"Utf16", std::string("\xFF\xFEX\0,\0", 6),
+     "written in UTF-16 (little endian) -- read it: vernier import table s.csv -o s_read.csv"},
+    {"Workbook", "PK\x03\x04", "a workbook (.xlsx), no measurement file -- read it: vernier import table"},
+    {"CodePage", "X[\xB5m],Y[mm],Z[mm],x[mm]\n1,2,3,4\n", "not UTF-8"},
+    {"UnknownUnit", "X[furlong],Y[mm],Z[mm],x[mm]\n1,2,3,4\n",
+     "\"furlong\": nobody knows this unit -- known are"},
+    {"UnitInAnotherSpelling", "X[Inch],Y[mm],Z[mm],x[mm]\n1,2,3,4\n",
+     "\"Inch\": nobody knows this unit -- meant is in?"},
+    {"UnitInParentheses", "X(mm),Y[mm],Z[mm],x[mm]\n1,2,3,4\n",
+     "\"X(mm)\": a column is name[unit], its name of letters, digits and _ -- meant is X[mm]?"},
+    {"NoUnit", "X,Y[mm],Z[mm],x[mm]\n1,2,3,4\n", "\"X\": no unit -- write X[mm]"},
+    {"WrongDimension", "X[deg],Y[mm],Z[mm],x[mm]\n1,2,3,4\n", "\"X[deg]\": this column needs a unit like mm"},
+    {"NameTwice", "X[mm],X[mm],Y[mm],Z[mm],x[mm]\n1,1,2,3,4\n", "\"X\": this column stands twice"},
+    {"AxisMissing", "X[mm],Y[mm],x[mm]\n1,2,3\n", "\"Z\": the column of this axis is missing"},
+    {"AxisInSmallLetters", "X[mm],Y[mm],z[mm],x[mm]\n1,2,3,4\n", "there is z: names have capitals"},
+    {"NothingMeasured", "X[mm],Y[mm],Z[mm]\n1,2,3\n", "no measured column"},
+    {"NotFilledIn", kHead + "0,0,-300,1,0,1,20,,,,a,fit\n",
+     "no reading in any row -- a template that is still to be filled in?"},
+    {"NoHeader", "1,2,3,4\n5,6,7,8\n", "a row of numbers where the header should be"},
+    {"ShortRow", kHead + kRow1 + "1,2,3\n",
+     "s.csv:3: error: \"1,2,3\": 3 fields where the header has 12 -- a line that was cut"},
+    {"LongRow", "X[mm],Y[mm],Z[mm],x[mm]\n1,5,2,3,4\n", "5 fields where the header has 4 -- decimal commas?"},
+    {"Word", kHead + kRow1 + "1,2,abc,1,0,4,20,1,2,-3,a,fit\n", "\"abc\": not a number, in column Z"},
+    {"AxisNeverMoves", kHead + "0,0,-300,1,0,1,20,0,0,-300,a,fit\n5,9,-300,1,0,2,20,5,9,-300,a,fit\n",
+     "axis Z never moves: it stands at -300 mm in all rows"},
+    {"TimeFalls", kHead + kRow1 + "300,200,-100,1,0,0.5,21,300,200,-100,a,fit\n" + kRow3,
+     "s.csv:3: warning: \"0.5\": t falls in run a: 0.5 s after 1 s"},
+    {"OutsideTheTravel", kHead + kRow1 + "900,200,-100,1,0,2,21,900,200,-100,a,fit\n",
+     "\"900\": X is outside the travel of 0 to 600 mm in 1 of 2 rows"},
+    {"Micrometres",
+     "X[mm],Y[mm],Z[mm],x[mm],y[mm],z[mm]\n0,0,-300,0,0,-300000\n600,400,0,600000,400000,0\n300,100,-9,"
+     "300000,100000,-9000\n",
+     "spreads over 1000 of what the machine was sent -- the readings are in µm"},
+    {"Deviations", "X[mm],Y[mm],Z[mm],x[mm]\n0,0,-300,0.001\n600,400,0,0.004\n300,100,-9,0.002\n",
+     "deviations instead of positions?"},
+    {"InchesInAMillimetreColumn", "X[mm],Y[mm],Z[mm],x[mm]\n0,0,-11,0\n23.6,15,0,599.44\n11,4,-5,279.4\n",
+     "moves over 23.6 of 600 mm only -- inch read as mm?"},
+    {"DirectionNotOne", kHead + "0,0,-300,2,0,1,20,0,0,-300,a,fit\n" + kRow2,
+     "\"2\": a direction is 1, -1 or 0"},
+    {"RoleMistyped", kHead + kRow1 + "300,200,-100,1,0,2,21,300,200,-100,a,chek\n",
+     "\"chek\": a role is fit or check -- did you mean check?"},
+    {"MotionMissing", "X[mm],Y[mm],Z[mm],x[mm]\n1,2,-3,4\n2,3,-4,5\n",
+     "warning: \"dirX\": a term of the machine file needs this column"},
+    {"TimeForALagMissing", "X[mm],Y[mm],Z[mm],x[mm]\n1,2,-3,4\n2,3,-4,5\n",
+     "warning: \"t\": a term of the machine file needs this column"},
+    {"InputMissing", "X[mm],Y[mm],Z[mm],x[mm]\n1,2,-3,4\n2,3,-4,5\n",
+     "\"T_column\": no column for this input: it is 20 in all rows"},
+    {"InputMistyped", "X[mm],Y[mm],Z[mm],Tcolumn[degC],x[mm]\n1,2,-3,20,4\n2,3,-4,20,5\n",
+     "\"Tcolumn\": a column that the machine does not know -- did you mean T_column?"},
+    {"NoUncertainty", kHead + kRow1 + kRow2 + kRow3, "remark: \"u\": no standard uncertainty"},
+    {"NoCheckRows", kHead + kRow1 + kRow2, "remark: \"role\": no check rows"},
+    {"RowTwice", kHead + kRow1 + kRow2 + kRow1 + kRow3, "s.csv:4: warning: the same row as line 2"},
+    {"NormalTooLong", "X[mm],Y[mm],Z[mm],d[mm],nx,ny,nz,px[mm],py[mm],pz[mm]\n1,2,-3,0.1,1,1,0,0,0,0\n",
+     "nx ny nz is no unit vector: its length is 1.414"},
+    {"LengthWithoutCentre", "X[mm],Y[mm],Z[mm],length[mm]\n1,2,-3,100\n",
+     "\"length\": this column needs cx beside it"},
+    {"UncertaintyInMicrometres", "X[mm],Y[mm],Z[mm],x[mm],u[mm]\n1,2,-3,4,5\n2,3,-4,5,5\n",
+     "an uncertainty of 5 mm -- µm? Write u[um]"},
+    {"CheckRowsOnly", kHead + kRow3, "all rows are check rows"},
+    {"EmptyAxisCell", kHead + "0,,-300,1,0,1,20,0,0,-300,a,fit\n" + kRow2,
+     "\"Y\": an axis position may not be empty"},
+    {"OnlyRemarks", "# nothing\n\n", "nothing but remarks and empty lines"},
+    {"OpenQuote", kHead + kRow1 + "\"1,2\n", "a quote without its fellow"},
+};
+
+class MeasurementLint : public testing::TestWithParam<Case> {};
+
+TEST_P(MeasurementLint, SaysWhatIsTheMatter) {
+  std::string all;
+  for (const LintFinding& finding : lint_measurement(GetParam().bytes, "s.csv", &machine()))
+    all += in_one_line(finding) + "\n";
+  EXPECT_NE(all.find(GetParam().says), std::string::npos) << all;
+}
+INSTANTIATE_TEST_SUITE_P(Everything, MeasurementLint, testing::ValuesIn(kCases),
+                         [](const auto& one) { return std::string(one.param.name); });
+
+TEST(MeasurementLintOf, AGoodFileSaysNothingThatIsWrong) {
+  for (const LintFinding& finding : lint_measurement(kHead + kRow1 + kRow2 + kRow3, "s.csv", &machine()))
+    EXPECT_EQ(finding.weight, LintWeight::kRemark) << in_one_line(finding);
+}
+
+TEST(MeasurementLintOf, WhatItCallsUsableAFitReads) {
+  // A file with no error must be read; one that the reader refuses must have one.
+  for (const Case& one : kCases) {
+    bool error = false, refused = false;
+    for (const LintFinding& finding : lint_measurement(one.bytes, "s.csv", &machine()))
+      error |= finding.weight == LintWeight::kError;
+    try {
+      parse_measurement(one.bytes, "s.csv", machine());
+    } catch (const InputError&) {
+      refused = true;
+    }
+    EXPECT_TRUE(error || !refused) << one.name;
+  }
+}
+
+TEST(MeasurementLintOf, FilesOfBothKindsAreLookedAtTogether) {
+  namespace fs = std::filesystem;
+  const std::string folder = testing::TempDir() + "lint_" + std::to_string(getpid());
+  fs::create_directories(folder);
+  write_file(folder + "/s.csv", "X[mm],x[mm]\n1,2\n2,3\n");
+  write_file(folder + "/m.xml",
+             "<machine><variables><machineaxes><X/><Y/></machineaxes></variables><transforms><sixdof X=\"X\" "
+             "Y=\"Y\"/></transforms></machine>");
+  const std::vector<LintedFile> files = lint_files({folder + "/s.csv", folder + "/m.xml"});
+  EXPECT_EQ(files[0].kind, LintedKind::kMeasurement);
+  EXPECT_FALSE(files[0].usable) << "the machine behind it has a Y";
+  EXPECT_EQ(files[1].kind, LintedKind::kMachine);
+  EXPECT_TRUE(files[1].usable);
+  fs::remove_all(folder);
+}
+
+TEST(ImportCommand, IsGivenForSpreadsheetsOnly) {
+  EXPECT_EQ(import_command_for("X[mm],x[mm]\n1,2\n", "a.csv"), "");
+  EXPECT_EQ(import_command_for("X[mm];x[mm]\n1;2\n", "a b.csv"),
+            "vernier import table 'a b.csv' -o 'a b_read.csv'");
+  EXPECT_NE(import_command_for("X (mm),x (mm)\n1,2\n", "a.csv"), "");
+  EXPECT_NE(import_command_for("X[mm],x[mm],,\n1,2,,\n", "a.csv"), "");
+  EXPECT_EQ(import_command_for("<machine/>", "a.xml"), "");
+}
+
+}  // namespace
+}  // namespace vernier::measurement_lint_test

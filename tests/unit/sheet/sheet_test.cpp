@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/sheet/sheet.h"
+
+#include <gtest/gtest.h>
+
+#include "tools/sheet/heading.h"
+#include "tools/sheet/sheet_number.h"
+#include "tools/text/error.h"
+
+namespace vernier::sheet_test {
+namespace {
+
+using Text = std::string;
+
+TEST(Encoding, IsToldByMarkAndByBytes) {
+  EXPECT_EQ(encoding_of("a,b\n"), Encoding::kUtf8);
+  EXPECT_EQ(encoding_of("\xEF\xBB\xBF"
+                        "a"),
+            Encoding::kUtf8Bom);
+  EXPECT_EQ(encoding_of(Text("\xFF\xFE"
+                             "a\0;\0",
+                             6)),
+            Encoding::kUtf16Le);
+  EXPECT_EQ(encoding_of(Text("\xFE\xFF\0a\0;", 6)), Encoding::kUtf16Be);
+  EXPECT_EQ(encoding_of(Text("a\0;\0b\0\n\0", 8)), Encoding::kUtf16Le);  // without a mark
+  EXPECT_EQ(encoding_of("\xB5m"), Encoding::kWindows1252);
+  EXPECT_EQ(encoding_of("\xC2\xB5m"), Encoding::kUtf8);
+}
+
+TEST(Encoding, LettersBecomeUtf8) {
+  EXPECT_EQ(utf8_of("\xB5m \xB0"
+                    "C \x80 \x96",
+                    Encoding::kWindows1252),
+            "µm °C € –");
+  EXPECT_EQ(utf8_of(Text("\xFF\xFE\xB5\0m\0\x3D\xD8\x00\xDE", 10), Encoding::kUtf16Le), "µm\U0001F600");
+  EXPECT_EQ(utf8_of(Text("\xFE\xFF\0\xB5\0m", 6), Encoding::kUtf16Be), "µm");
+  EXPECT_EQ(utf8_of(Text("\xFF\xFE\x3D\xD8", 4), Encoding::kUtf16Le), "\uFFFD");  // half a letter
+}
+
+struct Number {
+  const char* cell;
+  bool comma;
+  const char* plain;  // nullptr: no number
+};
+
+TEST(SheetNumber, ReadsEverySignThatSpreadsheetsWrite) {
+  const Number kNumbers[] = {{"1,5", true, "1.5"},
+                             {"1.5", false, "1.5"},
+                             {"1,5", false, nullptr},
+                             {"1.5", true, nullptr},
+                             {"1.234,5", true, "1234.5"},
+                             {"1,234.5", false, "1234.5"},
+                             {"1'234.5", false, "1234.5"},
+                             {"1 234,5", true, "1234.5"},
+                             {"\u2212"
+                              "0,2",
+                              true, "-0.2"},
+                             {"+3", true, "3"},
+                             {"1e-3", false, "1e-3"},
+                             {"0,125", true, "0.125"},
+                             {"0,125", false, nullptr},
+                             {"12.03.2026", true, nullptr},
+                             {"14:05", false, nullptr},
+                             {"1,2,3", true, nullptr},
+                             {"abc", false, nullptr},
+                             {"", false, nullptr},
+                             {"1234,567", false, nullptr},
+                             {"1,23,456", false, nullptr}};
+  for (const Number& one : kNumbers) {
+    const auto plain = plain_number(one.cell, one.comma);
+    EXPECT_EQ(plain.value_or("none"), one.plain == nullptr ? "none" : one.plain)
+        << one.cell << (one.comma ? " comma" : " point");
+  }
+  EXPECT_EQ(decimal_sign_in("1,5"), DecimalSign::kComma);
+  EXPECT_EQ(decimal_sign_in("1.5"), DecimalSign::kPoint);
+  EXPECT_EQ(decimal_sign_in("1,234"), DecimalSign::kEither);
+  EXPECT_EQ(decimal_sign_in("1.234,5"), DecimalSign::kComma);
+  EXPECT_EQ(decimal_sign_in("12"), DecimalSign::kNeither);
+}
+
+TEST(Heading, PartsNameAndUnit) {
+  const auto parts = [](const char* cell) {
+    const Heading heading = parse_heading(cell);
+    return heading.name + "|" + heading.unit;
+  };
+  EXPECT_EQ(parts("X [mm]"), "X|mm");
+  EXPECT_EQ(parts("X(mm)"), "X|mm");
+  EXPECT_EQ(parts("X / mm"), "X|mm");
+  EXPECT_EQ(parts("X in µm"), "X|um");
+  EXPECT_EQ(parts("X, \u03bcm"), "X|um");
+  EXPECT_EQ(parts("Abweichung X [µm]"), "Abweichung X|um");
+  EXPECT_EQ(parts("Temp. Spindel (°C)"), "Temp. Spindel|degC");
+  EXPECT_EQ(parts("Vorschub [mm/Min.]"), "Vorschub|mm/min");
+  EXPECT_EQ(parts("Drehzahl U/min"), "Drehzahl|rpm");
+  EXPECT_EQ(parts("x_mm"), "x|mm");
+  EXPECT_EQ(parts("Y inch"), "Y|in");
+  EXPECT_EQ(parts("X soll"), "X soll|");
+  EXPECT_EQ(parts("T_column[degC]"), "T_column|degC");
+  EXPECT_EQ(parse_heading("x [furlong]").unknown_unit, "furlong");
+  EXPECT_EQ(name_from_words("Länge über alles (2)"), "Laenge_ueber_alles_2");
+}
+
+TEST(Sheet, SeparatorIsWhatTheLinesAgreeOn) {
+  EXPECT_EQ(guess_separator("a;b\n1,5;2,5\n", "#"), ';');
+  EXPECT_EQ(guess_separator("a,b\n1.5,2.5\n", "#"), ',');
+  EXPECT_EQ(guess_separator("a\tb\n1,5\t2,5\n", "#"), '\t');
+  EXPECT_EQ(guess_separator("a b\n1.5 2.5\n", "#"), ' ');
+  EXPECT_EQ(guess_separator("sep=|\na|b\n", "#"), '|');
+  EXPECT_EQ(guess_separator("\"a;b\",c\n\"1;2\",3\n", "#"), ',');
+}
+
+TEST(Sheet, BothDecimalSignsAreRefusedWithBothPlaces) {
+  try {
+    read_sheet("a;b\n1,5;2\n3;2.5\n4;1,25\n", "s.csv");
+    FAIL();
+  } catch (const InputError& error) {
+    const std::string text = error.what();
+    EXPECT_NE(text.find("s.csv:3: \"2.5\""), std::string::npos) << text;
+    EXPECT_NE(text.find("line 2 (1,5)"), std::string::npos) << text;
+    EXPECT_NE(text.find("--decimal"), std::string::npos) << text;
+  }
+}
+
+TEST(Sheet, DoubtfulSignIsSaid) {
+  const Sheet sheet = read_sheet("a;b\n1,234;2,345\n", "s.csv");
+  EXPECT_TRUE(sheet.decimal_comma);
+  EXPECT_TRUE(sheet.decimal_doubtful);
+  EXPECT_FALSE(read_sheet("a;b\n1.234;2.345\n", "s.csv").decimal_comma);
+}
+
+TEST(Sheet, PartsAreTitleHeadingsUnitsAndData) {
+  const Sheet sheet = read_sheet("Survey of 12.03.2026;;\n;;\nX;x;T\nmm;µm;°C\n1;2;3\n", "s.csv");
+  const SheetTable table = parts_of_sheet(sheet);
+  ASSERT_EQ(table.headings.size(), 3u);
+  EXPECT_EQ(table.headings[1].unit, "um");
+  EXPECT_EQ(sheet.line[table.heading_row], 3u);
+  EXPECT_EQ(sheet.line[table.first_data], 5u);
+}
+
+}  // namespace
+}  // namespace vernier::sheet_test

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <memory>
+
+#include "tools/commands/command.h"
+#include "tools/evaluate/positioning_page.h"
+#include "tools/report/report.h"
+#include "tools/text/error.h"
+#include "tools/text/numbers.h"
+#include "tools/text/units.h"
+
+namespace vernier::evaluate_cli {
+namespace {
+
+struct PositioningArguments {
+  std::vector<std::string> measurements, axes, tolerances, uncertainties, header;
+  std::string reading, output, json;
+};
+
+/// "A=10um" as a letter and a value in mm or deg.
+std::pair<std::string, double> limit_of(const std::string& words, const char* option) {
+  const auto at = words.find('=');
+  const std::string name = words.substr(0, at);
+  const std::string rest = at == std::string::npos ? "" : words.substr(at + 1);
+  std::size_t end = 0;
+  while (end < rest.size() && (std::isdigit(static_cast<unsigned char>(rest[end])) != 0 || rest[end] == '.'))
+    ++end;
+  const auto number = parse_number(rest.substr(0, end));
+  const auto unit = find_unit(rest.substr(end));
+  const bool fits = unit && (unit->dimension == Dimension::kLength || unit->dimension == Dimension::kAngle);
+  if (!number || !fits || (name != "A" && name != "E" && name != "M" && name != "R" && name != "B"))
+    throw InputError(std::string(option) + " " + words + ": of the form A=10um, for one of A E M R B");
+  return {name, *number * unit->factor};
+}
+
+void print_result(std::FILE* out, const nlohmann::ordered_json& json) {
+  fmt::print(out, "axis {}: {} targets, {} readings, sense {}\n", json["axis"].get<std::string>(),
+             json["n_targets"].get<std::size_t>(), json["n_rows"].get<std::size_t>(),
+             json["sense"].get<std::string>());
+  const std::string unit = json["unit"];
+  for (const auto& one : json["characteristics"]) {
+    if (one["value"].is_null()) continue;
+    fmt::print(out, "  {:<7} {:>10.3f} {:<7}{}", one["name"].get<std::string>(), one["value"].get<double>(),
+               unit, one["meaning"].get<std::string>());
+    if (!one["uncertainty"].is_null()) fmt::print(out, ", U {:.3g}", one["uncertainty"].get<double>());
+    if (one.contains("conformity"))
+      fmt::print(out, "; tolerance {:.3g}: {}", one["tolerance"].get<double>(),
+                 one["conformity"].get<std::string>());
+    fmt::print(out, "\n");
+  }
+}
+
+void run_positioning(const PositioningArguments& arguments) {
+  if (arguments.axes.size() != 1) throw InputError("--axis: one axis a call");
+  PositioningWords words;
+  words.axis = arguments.axes.front();
+  words.files = arguments.measurements;
+  for (const std::string& one : arguments.tolerances) words.tolerance.insert(limit_of(one, "--tolerance"));
+  for (const std::string& one : arguments.uncertainties)
+    words.uncertainty.insert(limit_of(one, "--uncertainty"));
+  for (const std::string& one : arguments.header) {
+    const auto at = one.find('=');
+    if (at == std::string::npos) throw InputError("--header " + one + ": of the form \"serial number=4711\"");
+    words.header.emplace_back(one.substr(0, at), one.substr(at + 1));
+  }
+  std::string reading = arguments.reading;
+  if (reading.empty())
+    for (const char c : words.axis) reading += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  PositioningFile all;
+  for (const std::string& path : arguments.measurements) {
+    PositioningFile one = read_positioning(read_file(path), path, words.axis, reading);
+    all.unit = one.unit;
+    all.rows += one.rows;
+    all.sense_from_order |= one.sense_from_order;
+    for (TargetReadings& target : one.readings) {
+      bool known = false;
+      for (TargetReadings& other : all.readings)
+        if (std::abs(other.target - target.target) < 1e-6) {
+          known = true;
+          for (std::size_t sense = 0; sense < 2; ++sense)
+            other.deviation[sense].insert(other.deviation[sense].end(), target.deviation[sense].begin(),
+                                          target.deviation[sense].end());
+        }
+      if (!known) all.readings.push_back(std::move(target));
+    }
+  }
+  std::sort(all.readings.begin(), all.readings.end(),
+            [](const auto& a, const auto& b) { return a.target < b.target; });
+  const nlohmann::ordered_json json = positioning_json(evaluate_positioning(all.readings), all, words);
+  if (!arguments.output.empty())
+    write_file(arguments.output, improvement_report_html(positioning_page(json, words)));
+  write_json(arguments.json, json);
+  print_result(human_stream(arguments.json), json);
+  for (const auto& one : json["characteristics"])
+    if (one.contains("conformity") && one["conformity"] == "not met")
+      throw LimitNotMet("the tolerance of " + one["name"].get<std::string>() + " is not met");
+}
+
+}  // namespace
+
+void register_evaluate(CLI::App& vernier) {
+  CLI::App* evaluate =
+      vernier.add_subcommand("evaluate", "Judge a measurement by a standard: positioning (ISO 230-2)");
+  evaluate->require_subcommand(1);
+  auto arguments = std::make_shared<PositioningArguments>();
+  CLI::App* kind =
+      evaluate->add_subcommand("iso230-2", "Accuracy and repeatability of positioning of one axis");
+  kind->add_option("MEAS", arguments->measurements, "measurement files (CSV)")->required();
+  kind->add_option("--axis", arguments->axes, "the axis that was moved")->required()->allow_extra_args(false);
+  kind->add_option("--reading", arguments->reading,
+                   "column that was measured along it; default: the axis' name in small letters");
+  kind->add_option("--tolerance", arguments->tolerances, "A=10um (also E M R B); again for each")
+      ->allow_extra_args(false);
+  kind->add_option("--uncertainty", arguments->uncertainties,
+                   "expanded uncertainty (k = 2) of a characteristic: A=2um; again for each")
+      ->allow_extra_args(false);
+  kind->add_option("--header", arguments->header,
+                   "an entry of the report: \"serial number=4711\", operator, date …; again for each")
+      ->allow_extra_args(false);
+  kind->add_option("-o,--output", arguments->output, "report (HTML)");
+  kind->add_option("--json", arguments->json, "result for programs; - for standard output");
+  kind->footer(
+      "Deviation = reading - position. A, R, E, B, M by ISO 230-2:2014, both senses, from dirX or the order "
+      "of the rows. Exit status 0 "
+      "done, 1 bad input, 2 a tolerance is not met (ISO 14253-1: beyond it by more than the uncertainty).");
+  kind->callback([arguments] { run_positioning(*arguments); });
+}
+
+}  // namespace vernier::evaluate_cli

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/commands/manners.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+
+#include "tools/lint/machine_lint.h"
+#include "tools/lint/measurement_lint.h"
+#include "tools/text/error.h"
+#include "tools/text/similar.h"
+#include "tools/text/words.h"
+
+namespace vernier {
+namespace {
+
+/// What a hint looks at of a file: any machine file, and more of a table than its headings.
+constexpr std::size_t kMostRead = 1u << 22;
+
+std::vector<std::string> names_of_commands(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+    names.push_back(command->get_name());
+  return names;
+}
+
+const CLI::App* command_named(const CLI::App& app, const std::string& name) {
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+    if (command->get_name() == name) return command;
+  return nullptr;
+}
+
+/// The commands that were asked for, outermost first.
+std::vector<const CLI::App*> parsed_commands(const CLI::App& app) {
+  std::vector<const CLI::App*> list = {&app};
+  while (!list.back()->get_subcommands().empty()) list.push_back(list.back()->get_subcommands().front());
+  return list;
+}
+
+/// The beginning of an ordinary file; empty where it is none (a device may never end) or cannot be opened.
+std::string head_of(const std::string& path, std::size_t most = 4096) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored)) return {};
+  std::ifstream file(path, std::ios::binary);
+  std::string head(most, '\0');
+  file.read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(std::max<std::streamsize>(file.gcount(), 0)));
+  return head;
+}
+
+bool is_xml(const std::string& head) {
+  const std::string bare = trimmed(head.starts_with("\xEF\xBB\xBF") ? head.substr(3) : head);
+  return bare.starts_with('<');
+}
+
+/// A table by its looks: text, and its first line that is no remark has a separator and no angle bracket.
+bool is_table(const std::string& head) {
+  if (head.empty() || is_xml(head) || head.find('\0') != std::string::npos) return false;
+  for (const std::string& line : parts_of(head, '\n'))
+    if (!line.empty() && line.front() != '#') return line.find_first_of(",;\t") != std::string::npos;
+  return false;
+}
+
+std::vector<std::string> values_of(const CLI::App& command, const char* name) {
+  for (const CLI::Option* option : command.get_options())
+    if (option->get_name(true) == name || option->get_name() == name) return option->results();
+  return {};
+}
+
+}  // namespace
+
+std::vector<std::string> without_help_command(std::vector<std::string> arguments) {
+  if (arguments.empty() || arguments.front() != "help") return arguments;
+  arguments.erase(arguments.begin());
+  arguments.emplace_back("--help");
+  return arguments;
+}
+
+void require_known_commands(const CLI::App& vernier, const std::vector<std::string>& arguments) {
+  const CLI::App* app = &vernier;
+  for (const std::string& word : arguments) {
+    if (names_of_commands(*app).empty() || word.starts_with('-')) return;
+    const CLI::App* next = command_named(*app, word);
+    if (next == nullptr) {
+      const auto meant = word_meant(word, names_of_commands(*app));
+      const std::string at = app == &vernier ? "" : app->get_name() + " ";
+      throw InputError("\"" + word + "\": there is no command vernier " + at + word +
+                       (meant ? "; did you mean vernier " + at + *meant + "?" : "; vernier help lists them"));
+    }
+    app = next;
+  }
+}
+
+std::string option_meant(const CLI::App& vernier, const CLI::ParseError& error) {
+  const std::string message = error.what();
+  const auto at = message.find("--");
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) == nullptr || at == std::string::npos) return "";
+  const std::string word = message.substr(at, message.find_first_of(" =\n", at) - at);
+  std::vector<std::string> names;
+  for (const CLI::App* command : parsed_commands(vernier))
+    for (const CLI::Option* option : command->get_options())
+      for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  const auto meant = word_meant(word, names);
+  return meant ? "\"" + word + "\": no option of this command; did you mean " + *meant + "?" : "";
+}
+
+void require_files_in_their_places(const CLI::App& vernier, const std::vector<std::string>& arguments) {
+  const CLI::App& command = *parsed_commands(vernier).back();
+  const std::vector<std::string> machines = values_of(command, "MACHINE"),
+                                 measurements = values_of(command, "MEAS");
+  std::string table, xml;
+  for (const std::string& path : machines)
+    if (is_table(head_of(path))) table = path;
+  for (const std::string& path : measurements)
+    if (is_xml(head_of(path))) xml = path;
+  if (table.empty() && xml.empty()) return;
+  std::string meant;
+  if (!table.empty() && !xml.empty()) {
+    meant = "; did you mean vernier";
+    for (const std::string& word : arguments)
+      meant += " " + (word == table ? xml : word == xml ? table : word);
+    meant += "?";
+  }
+  if (!table.empty())
+    throw InputError({table, 0}, "",
+                     "a table of measurements where the machine file (XML) is wanted" + meant);
+  throw InputError({xml, 0}, "",
+                   "a machine file where a measurement file (CSV) is wanted; the machine comes first");
+}
+
+void warn_of_machine(const CLI::App& vernier) {
+  static const std::vector<std::string> kCommands = {"fit",     "compare", "diagnose",
+                                                     "improve", "plan",    "compile"};
+  const CLI::App& command = *parsed_commands(vernier).back();
+  if (std::find(kCommands.begin(), kCommands.end(), command.get_name()) == kCommands.end()) return;
+  std::vector<std::string> paths = values_of(command, "MACHINE");
+  if (paths.empty()) paths = values_of(command, "machine");
+  for (const std::string& path : paths) {
+    const std::string text = head_of(path, kMostRead);
+    // What cannot be read the command itself will say.
+    const MachineLint lint = lint_machine(text, path);
+    if (!lint.machine) continue;
+    for (const LintFinding& finding : lint.findings)
+      if (finding.weight == LintWeight::kWarning)
+        std::fprintf(stderr, "vernier: %s\n", in_one_line(finding).c_str());
+  }
+}
+
+std::string import_hint(const std::string& message, const std::vector<std::string>& arguments) {
+  if (!arguments.empty() && arguments.front() == "import") return "";  // who reads it already knows how
+  for (const std::string& path : arguments) {
+    if (path.empty() || !(message.starts_with(path + ":"))) continue;
+    const std::string bytes = head_of(path, kMostRead);
+    if (bytes.empty() || is_xml(bytes)) continue;
+    const std::string command = import_command_for(bytes, path);
+    if (!command.empty()) return path + " is a spreadsheet's table as it stands; this reads it: " + command;
+  }
+  return "";
+}
+
+}  // namespace vernier

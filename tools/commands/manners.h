@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+namespace vernier {
+
+/// `vernier help fit` as `vernier fit --help`, `vernier help` as `vernier --help`. tool.
+std::vector<std::string> without_help_command(std::vector<std::string> arguments);
+
+/// Throws InputError where the first word of a command or of one of its kinds names none, with the one that
+/// was probably meant. tool.
+void require_known_commands(const CLI::App& vernier, const std::vector<std::string>& arguments);
+
+/// What a parser's complaint of an unknown option probably means: "did you mean --json?"; else empty. tool.
+std::string option_meant(const CLI::App& vernier, const CLI::ParseError& error);
+
+/// Throws InputError where a measurement stands where a machine file is wanted, or the reverse, with the
+/// command as it was meant. tool.
+void require_files_in_their_places(const CLI::App& vernier, const std::vector<std::string>& arguments);
+
+/// What lint warns of in the machine file of a command that fits, judges or compiles it: on standard error, a
+/// line each, once. tool.
+void warn_of_machine(const CLI::App& vernier);
+
+/// The command that reads a spreadsheet of which an error complains; empty where none does. tool.
+std::string import_hint(const std::string& message, const std::vector<std::string>& arguments);
+
+}  // namespace vernier

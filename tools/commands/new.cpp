@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "tools/commands/command.h"
+#include "tools/create/machine_file.h"
+#include "tools/create/survey_template.h"
+#include "tools/model/machine_reader.h"
+#include "tools/text/numbers.h"
+#include "tools/text/words.h"
+
+namespace vernier::new_cli {
+namespace {
+
+struct NewArguments {
+  std::string type, output, measurements, json, name, tool, dh, reading = "point";
+  std::string tool_side, work_side;
+  std::vector<std::string> axes, centres, joints;
+};
+
+std::array<double, 3> point_of(const std::string& text, char separator, const std::string& what) {
+  const std::vector<std::string> parts = parts_of(text, separator);
+  std::array<double, 3> point{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto number = k < parts.size() ? parse_number(parts[k]) : std::nullopt;
+    if (!number || parts.size() != 3)
+      throw InputError(what + " " + text + ": three lengths in mm, such as " +
+                       (separator == ',' ? "0,0,-120" : "C:250:200:0"));
+    point[k] = *number;
+  }
+  return point;
+}
+
+std::vector<DhRow> arm_of(const NewArguments& arguments) {
+  if (!arguments.dh.empty() && !arguments.joints.empty())
+    throw InputError("the arm is given twice: --dh and --joint");
+  if (!arguments.dh.empty()) return parse_dh_table(read_file(arguments.dh), arguments.dh);
+  std::vector<DhRow> rows;
+  for (const std::string& words : arguments.joints) rows.push_back(parse_dh_row(words));
+  return rows.empty() ? default_arm() : rows;
+}
+
+MachinePlan plan_of(const NewArguments& arguments, const CLI::App& command) {
+  std::vector<PlannedAxis> axes;
+  for (const std::string& words : arguments.axes) axes.push_back(parse_planned_axis(words));
+  const auto order = [&](const char* option, const std::string& names) {
+    return command.count(option) > 0 ? std::optional(parts_of(names, ',')) : std::nullopt;
+  };
+  MachinePlan plan;
+  if (arguments.type == "robot") {
+    for (const char* option : {"--tool-side", "--work-side", "--centre"})
+      if (command.count(option) > 0)
+        throw InputError(std::string(option) + ": a robot's chain is its table (--dh, --joint)");
+    plan = plan_robot(std::move(axes), arm_of(arguments));
+  } else {
+    for (const char* option : {"--dh", "--joint"})
+      if (command.count(option) > 0)
+        throw InputError(std::string(option) + ": only a robot has such a table");
+    plan = plan_machine(arguments.type, std::move(axes), order("--tool-side", arguments.tool_side),
+                        order("--work-side", arguments.work_side));
+  }
+  // A tool of some length in the usual direction: without one, angles of the last axis would do nothing.
+  plan.tool = {0, 0, plan.arm.empty() ? -100.0 : 100.0};
+  if (!arguments.tool.empty()) plan.tool = point_of(arguments.tool, ',', "--tool");
+  if (!arguments.name.empty()) plan.name = arguments.name;
+  for (const std::string& words : arguments.centres) {
+    const auto colon = words.find(':');
+    const std::string name = words.substr(0, colon);
+    bool found = false;
+    for (PlannedAxis& axis : plan.axes)
+      if (axis.name == name && axis.rotary() && colon != std::string::npos) {
+        axis.centre = point_of(words.substr(colon + 1), ':', "--centre");
+        found = true;
+      }
+    if (!found) throw InputError("--centre " + words + ": NAME:X:Y:Z of a turning axis");
+  }
+  return plan;
+}
+
+void run_new(const NewArguments& arguments, const CLI::App& command) {
+  const MachinePlan plan = plan_of(arguments, command);
+  const std::string text = machine_file(plan);
+  const Machine machine = parse_machine(text, arguments.output);
+  if (!arguments.measurements.empty()) require_place(arguments.measurements);
+  const std::string survey = survey_template(machine, reading_of(arguments.reading));
+  write_file(arguments.output, text);
+  if (!arguments.measurements.empty()) write_file(arguments.measurements, survey);
+  nlohmann::ordered_json json = {
+      {"type", plan.type}, {"machine", arguments.output}, {"drawing", drawing(plan)}};
+  for (const Axis& axis : machine.axes) json["axes"].push_back(axis.name);
+  json["measurements"] = arguments.measurements.empty() ? nlohmann::ordered_json(nullptr)
+                                                        : nlohmann::ordered_json(arguments.measurements);
+  write_json(arguments.json, json);
+  std::FILE* out = human_stream(arguments.json);
+  fmt::print(out, "{}\n", drawing(plan));
+  fmt::print(out, "{}: {} axes, {} tables, tool {} {} {} mm\n", arguments.output, machine.axes.size(),
+             machine.tables.size(), plan.tool[0], plan.tool[1], plan.tool[2]);
+  const std::string meas = arguments.measurements.empty() ? "MEAS.csv" : arguments.measurements;
+  if (!arguments.measurements.empty())
+    fmt::print(out, "{}: rows to be measured, with empty cells for the readings\n", meas);
+  fmt::print(out, "next: vernier lint {0} {1}, then vernier fit {0} {1} -o fitted.xml\n", arguments.output,
+             meas);
+}
+
+}  // namespace
+
+void register_new(CLI::App& vernier) {
+  auto arguments = std::make_shared<NewArguments>();
+  CLI::App* command =
+      vernier.add_subcommand("new", "Begin a machine file, and an empty table for its survey");
+  command
+      ->add_option("TYPE", arguments->type,
+                   "gantry bridge column c-frame head-head head-table table-table arm robot")
+      ->required();
+  command
+      ->add_option("--axis", arguments->axes,
+                   "NAME:MIN:MAX in mm or deg; again for each. Behind it, where the name does not tell: X Y "
+                   "Z (along) or "
+                   "A B C (about); wrap (turns without end)")
+      ->allow_extra_args(false);
+  command->add_option("-o,--output", arguments->output, "the machine file (XML)")->required();
+  command->add_option("--measurements", arguments->measurements,
+                      "also a measurement file to be filled in (CSV)");
+  command
+      ->add_option("--reading", arguments->reading,
+                   "what the survey reads: point (x y z), length (ball bar), touch (dial gauge, probe), pose")
+      ->capture_default_str();
+  command->add_option("--tool", arguments->tool,
+                      "tool point in the frame of the last axis that carries it, mm: 0,0,-120");
+  command->add_option("--name", arguments->name, "name of the machine");
+  command->add_option("--tool-side", arguments->tool_side, "axes from the bed to the tool: Y,X,Z");
+  command->add_option("--work-side", arguments->work_side, "axes from the bed to the workpiece: A,C");
+  command
+      ->add_option("--centre", arguments->centres,
+                   "NAME:X:Y:Z: where the line of a turning axis is, mm; again for each")
+      ->allow_extra_args(false);
+  command->add_option("--dh", arguments->dh,
+                      "robot: its rows as CSV, theta[deg],d[mm],a[mm],alpha[deg] (type R or P)");
+  command
+      ->add_option("--joint", arguments->joints,
+                   "robot: a row, theta,d,a,alpha (P, before it where it slides); again for each")
+      ->allow_extra_args(false);
+  command->add_option("--json", arguments->json, "result for programs; - for standard output");
+  command->footer(
+      "Which side carries which axis is the type's habit, printed as a line; --tool-side and\n"
+      "--work-side say otherwise. A robot without rows is six joints with the lengths of a\n"
+      "UR10e. A delta or hexapod cannot be written: its chain closes loops.");
+  command->callback([arguments, command] { run_new(*arguments, *command); });
+}
+
+}  // namespace vernier::new_cli

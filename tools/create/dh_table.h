@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <string>
+#include <vector>
+
+namespace vernier {
+
+/// One joint of an arm: Tz(d)·Rz(theta)·Tx(a)·Rx(alpha), the row of Denavit and Hartenberg. The joint's
+/// position is added to theta, or to d where it is prismatic.
+struct DhRow {
+  double theta = 0, d = 0, a = 0, alpha = 0;  // deg, mm, mm, deg
+  bool prismatic = false;
+  /// Is the next joint's axis parallel to this one's?
+  bool parallel() const;
+};
+
+/// The arm that is written where none is given: six joints, published lengths of the UR10e.
+const std::vector<DhRow>& default_arm();
+
+/// A table of rows: a header of `theta[deg] d[mm] a[mm] alpha[deg]` in any order (`type` of R or P may stand
+/// beside them), a row a joint; theta absent is 0. Throws InputError with file, line and word. tool.
+std::vector<DhRow> parse_dh_table(const std::string& text, const std::string& file);
+
+/// "theta,d,a,alpha" or "P,theta,d,a,alpha" of one joint. Throws InputError with the word. tool.
+DhRow parse_dh_row(const std::string& words);
+
+}  // namespace vernier

@@ -1,0 +1,314 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/create/machine_file.h"
+
+#include <fmt/format.h>
+
+#include "tools/model/machine.h"
+#include "tools/text/numbers.h"
+#include "tools/text/xml_text.h"
+
+namespace vernier {
+namespace {
+
+constexpr std::array<char, 3> kLengths = {'X', 'Y', 'Z'}, kTurns = {'A', 'B', 'C'};
+/// Bounds of what a correction may do: a millimetre is a crash, a tenth of a degree at a metre nearly two.
+constexpr const char* kLinearLimits = R"(maxcorrection="0.5" maxslew="5")";
+constexpr const char* kRotaryLimits = R"(maxcorrection="0.1" maxslew="1")";
+/// A joint's zero is off by more, and near a singular pose a joint turns far for a short way of the tool.
+constexpr const char* kJointLimits = R"(maxcorrection="5" maxslew="20")";
+
+const MachineType* type_named(const std::string& name) {
+  for (const MachineType& type : machine_types())
+    if (name == type.name) return &type;
+  return nullptr;
+}
+
+/// "carriage", "head", "table": what moves with the axis.
+std::string what_moves(const MachinePlan& plan, std::size_t index, bool work) {
+  const PlannedAxis& axis = plan.axes[index];
+  if (axis.rotary()) return work ? "turning table" : "turning head";
+  return type_named(plan.type)->slides[axis.along()];
+}
+
+std::string side_text(const MachinePlan& plan, const std::vector<std::size_t>& side, bool work) {
+  std::string text = "bed";
+  for (const std::size_t i : side)
+    text += " > " + plan.axes[i].name + (plan.arm.empty() ? " (" + what_moves(plan, i, work) + ")" : "");
+  return text + (work ? " > workpiece" : " > tool");
+}
+
+/// One static of an error: 0, free in a fit.
+std::string error_static(const std::string& name, const char* unit, const std::string& note) {
+  return fmt::format("      <{0} value=\"0\" nominal=\"0\" unit=\"{1}\" note=\"{2}\"/>\n", name, unit, note);
+}
+std::string length_static(const std::string& name, double value, const std::string& note) {
+  return fmt::format("      <{0} value=\"{1}\" unit=\"mm\" Hide=\"true\" note=\"{2}\"/>\n", name,
+                     number_text(value), note);
+}
+
+/// An angle of a slide's travel about one axis of the machine: E + turn + 0 + the slide's name.
+struct TravelAngle {
+  std::string name, towards;
+  std::size_t about = 0;
+};
+
+/// Which way a slide's travel may be out of square. The first X is the datum of direction, the first Y lies
+/// with it in the plane of the set-up, every other one leans both ways.
+std::vector<TravelAngle> travel_angles(const MachinePlan& plan, std::size_t index) {
+  const PlannedAxis& axis = plan.axes[index];
+  std::array<std::string, 3> first;
+  for (const PlannedAxis& other : plan.axes)
+    if (!other.rotary() && first[other.along()].empty()) first[other.along()] = other.name;
+  const bool leads = first[axis.along()] == axis.name;
+  std::vector<TravelAngle> angles;
+  for (std::size_t about = 0; about < 3; ++about) {
+    if (about == axis.along()) continue;
+    // Turned about `about`, the travel leans towards the third direction.
+    const std::size_t towards = 3 - about - axis.along();
+    if (leads && (towards > axis.along() || first[towards].empty())) continue;
+    const std::string to = leads ? first[towards] : std::string(1, kLengths[towards]);
+    angles.push_back({fmt::format("E{}0{}", kTurns[about], axis.name), to, about});
+  }
+  return angles;
+}
+
+std::string with_sign(double sign, const std::string& term, bool first) {
+  return (sign < 0 ? "-" : first ? "" : "+") + term;
+}
+
+/// A slide: travel, its errors from the table, the angles of its travel. Under the workpiece all of it the
+/// other way, so that position and errors are the tool's, seen from the workpiece.
+std::string slide_row(const MachinePlan& plan, std::size_t index, bool work, int n) {
+  const PlannedAxis& axis = plan.axes[index];
+  const double side = work ? -1 : 1;
+  std::array<std::string, 6> dof;
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (k == axis.along()) dof[k] += with_sign(side, axis.name, true);
+    dof[k] += with_sign(side, fmt::format("l{}{}", axis.name, "xyz"[k]), dof[k].empty());
+    dof[3 + k] = with_sign(side, fmt::format("r{}{}", axis.name, "xyz"[k]), true);
+  }
+  for (const TravelAngle& angle : travel_angles(plan, index)) {
+    const std::size_t towards = 3 - angle.about - axis.along();
+    // The cross product of the unit vectors: +1 where about, along, towards are in cyclic order.
+    const double turn = (angle.about + 1) % 3 == axis.along() ? 1 : -1;
+    dof[towards] += with_sign(side * turn, angle.name + "*" + axis.name, false);
+  }
+  std::string row = fmt::format("    <sixdof n=\"{}\"", n);
+  for (std::size_t k = 0; k < 6; ++k) row += fmt::format(" {}=\"{}\"", kSixDofNames[k], dof[k]);
+  return row + "/>\n";
+}
+
+/// A turning axis: where its line is and how it leans, with the errors of its own motion; then the turn. A
+/// table turns the workpiece the other way (ISO 841), its positioning error with it.
+std::string turning_rows(const MachinePlan& plan, std::size_t index, bool work, int n) {
+  const PlannedAxis& axis = plan.axes[index];
+  std::array<std::string, 6> dof;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const bool own = k == axis.along();
+    const std::string length = fmt::format("l{}{}", axis.name, "xyz"[k]),
+                      angle = fmt::format("r{}{}", axis.name, "xyz"[k]);
+    const bool away = axis.centre[k] != 0;
+    if (away) dof[k] = fmt::format("P{}{}+", kLengths[k], axis.name);
+    if (!own) dof[k] += fmt::format("E{}0{}+", kLengths[k], axis.name);
+    dof[k] += length;
+    dof[3 + k] = own ? (work ? "-" : "") + angle : fmt::format("E{}0{}+{}", kTurns[k], axis.name, angle);
+  }
+  std::string rows = fmt::format("    <sixdof n=\"{}\"", n);
+  for (std::size_t k = 0; k < 6; ++k) rows += fmt::format(" {}=\"{}\"", kSixDofNames[k], dof[k]);
+  return rows + fmt::format("/>\n    <sixdof n=\"{}\" {}=\"{}{}\"/>\n", n + 1, kSixDofNames[3 + axis.along()],
+                            work ? "-" : "", axis.name);
+}
+
+std::string branch(const MachinePlan& plan, bool work) {
+  const auto& side = work ? plan.work_side : plan.tool_side;
+  if (work && side.empty()) return "";
+  std::string text = fmt::format("  <transforms branch=\"{}\">\n", work ? "workpiece" : "tool");
+  int n = 1;
+  for (const std::size_t i : side) {
+    const bool rotary = plan.axes[i].rotary();
+    text += rotary ? turning_rows(plan, i, work, n) : slide_row(plan, i, work, n);
+    n += rotary ? 2 : 1;
+  }
+  if (!work) text += fmt::format("    <sixdof n=\"{}\" X=\"TPX\" Y=\"TPY\" Z=\"TPZ\"/>\n", n);
+  return text + "  </transforms>\n";
+}
+
+std::string tool_statics(const MachinePlan& plan) {
+  std::string text =
+      "      <!-- Where the tool point is, in the frame of the last axis that carries it. Hide: a fit leaves "
+      "it alone. -->\n";
+  for (std::size_t k = 0; k < 3; ++k)
+    text += length_static(fmt::format("TP{}", kLengths[k]), plan.tool[k],
+                          plan.arm.empty() ? "tool point" : "tool point on the flange");
+  return text;
+}
+
+std::string slide_statics(const MachinePlan& plan) {
+  std::string text;
+  for (std::size_t i = 0; i < plan.axes.size(); ++i) {
+    if (plan.axes[i].rotary()) continue;
+    for (const TravelAngle& angle : travel_angles(plan, i))
+      text += error_static(angle.name, "rad",
+                           fmt::format("squareness of {} to {}", plan.axes[i].name, angle.towards));
+  }
+  if (text.empty()) return "";
+  return "      <!-- Squareness: how the travel of one slide leans against another's. X is the datum: its "
+         "travel is the\n"
+         "           direction that the others are measured against. -->\n" +
+         text;
+}
+
+std::string turning_statics(const MachinePlan& plan) {
+  std::string text;
+  for (const PlannedAxis& axis : plan.axes) {
+    if (!axis.rotary()) continue;
+    for (std::size_t k = 0; k < 3; ++k)
+      if (k != axis.along())
+        text += error_static(fmt::format("E{}0{}", kLengths[k], axis.name), "mm",
+                             fmt::format("line of {} off its place along {}", axis.name, kLengths[k]));
+    for (std::size_t k = 0; k < 3; ++k)
+      if (k != axis.along())
+        text += error_static(fmt::format("E{}0{}", kTurns[k], axis.name), "deg",
+                             fmt::format("line of {} leaning about {}", axis.name, kLengths[k]));
+    for (std::size_t k = 0; k < 3; ++k)
+      if (axis.centre[k] != 0)
+        text += length_static(fmt::format("P{}{}", kLengths[k], axis.name), axis.centre[k],
+                              fmt::format("nominal place of {} along {}", axis.name, kLengths[k]));
+  }
+  if (text.empty()) return "";
+  return "      <!-- Location errors of the turning axes (ISO 230-7): where the line is and how it leans. "
+         "-->\n" +
+         text;
+}
+
+std::string arm_statics(const MachinePlan& plan) {
+  std::string text =
+      "      <!-- Errors of the arm: zero th of each joint, twist al between two, lengths d and a. Where two "
+      "joints are\n"
+      "           parallel a turn be about y takes the place of one length (Hayati): parallel lines have no "
+      "common point. -->\n";
+  for (std::size_t i = 0; i < plan.arm.size(); ++i) {
+    const DhRow& row = plan.arm[i];
+    const std::string j = std::to_string(i + 1);
+    const bool last = i + 1 == plan.arm.size(), parallel = row.parallel() && !last;
+    const auto length = [&](const std::string& name, double value) {
+      text += fmt::format("      <{0} value=\"{1}\" nominal=\"{1}\" unit=\"mm\"/>\n", name + j,
+                          number_text(value));
+    };
+    text += error_static("th" + j, "deg", (row.prismatic ? "turn of joint " : "zero of joint ") + j);
+    if (!parallel) length("d", row.d);
+    if (!last) length("a", row.a);
+    if (!last) text += error_static("al" + j, "deg", fmt::format("twist from joint {} to {}", i + 1, i + 2));
+    if (parallel)
+      text += error_static("be" + j, "deg",
+                           fmt::format("joint {} not parallel to joint {}, about y", i + 2, i + 1));
+  }
+  return text;
+}
+
+std::string plus(double value, const std::string& name) {
+  return value == 0 ? name : number_text(value) + "+" + name;
+}
+
+std::string arm_rows(const MachinePlan& plan) {
+  std::string text = "  <transforms branch=\"tool\">\n";
+  int n = 1;
+  for (std::size_t i = 0; i < plan.arm.size(); ++i) {
+    const DhRow& row = plan.arm[i];
+    const std::string j = std::to_string(i + 1), axis = plan.axes[i].name;
+    const bool last = i + 1 == plan.arm.size(), parallel = row.parallel() && !last;
+    const std::string theta = plus(row.theta, (row.prismatic ? "" : axis + "+") + "th" + j);
+    const std::string d = (row.prismatic ? axis + "+" : "") + (parallel ? number_text(row.d) : "d" + j);
+    text += fmt::format("    <DH n=\"{}\" theta=\"{}\" d=\"{}\" a=\"{}\" alpha=\"{}\"/>\n", n++, theta, d,
+                        last ? number_text(row.a) : "a" + j,
+                        last ? number_text(row.alpha) : plus(row.alpha, "al" + j));
+    if (parallel) text += fmt::format("    <sixdof n=\"{}\" rY=\"be{}\"/>\n", n++, j);
+  }
+  return text + fmt::format("    <sixdof n=\"{}\" X=\"TPX\" Y=\"TPY\" Z=\"TPZ\"/>\n  </transforms>\n", n);
+}
+
+std::string axes_text(const MachinePlan& plan) {
+  std::string text =
+      "    <!-- Travel in mm or deg. maxcorrection and maxslew bound what a board may add to an axis: mm or "
+      "deg, and that per\n"
+      "         second. Set them to what your machine can take. -->\n    <machineaxes>\n";
+  for (const PlannedAxis& axis : plan.axes)
+    text +=
+        fmt::format("      <{} rotary=\"{}\"{} min=\"{}\" max=\"{}\" {}/>\n", axis.name, axis.rotary(),
+                    axis.rollover ? " rollover=\"true\"" : "", number_text(axis.min), number_text(axis.max),
+                    !axis.rotary()     ? kLinearLimits
+                    : plan.arm.empty() ? kRotaryLimits
+                                       : kJointLimits);
+  return text + "    </machineaxes>\n";
+}
+
+std::string tables_text(const MachinePlan& plan) {
+  std::string text =
+      "    <!-- Six errors of each axis at stations along it, linear between them: X Y Z in mm (positioning "
+      "and straightness),\n"
+      "         rX rY rZ in deg (roll, pitch, yaw). fit names the columns that a fit may change; take out "
+      "what your\n"
+      "         measurements cannot see, or add stations where you measured more densely. -->\n    "
+      "<comptables>\n";
+  for (const PlannedAxis& axis : plan.axes) {
+    text += fmt::format("      <table axis=\"{}\" fit=\"X Y Z rX rY rZ\">\n", axis.name);
+    for (const double loc : round_stations(axis.min, axis.max, axis.rotary()))
+      text +=
+          fmt::format("        <station loc=\"{}\" X=\"0\" Y=\"0\" Z=\"0\" rX=\"0\" rY=\"0\" rZ=\"0\"/>\n",
+                      number_text(loc));
+    text += "      </table>\n";
+  }
+  return text + "    </comptables>\n";
+}
+
+std::string signs_remark(const MachinePlan& plan) {
+  if (!plan.arm.empty())
+    return "     Each DH row is Tz(d) Rz(theta) Tx(a) Rx(alpha); positions of turning joints are in deg.\n";
+  std::string text = "     Positions are the tool's, seen from the workpiece, as a control shows them.";
+  if (!plan.work_side.empty())
+    text +=
+        " What carries the workpiece therefore stands with\n     a minus sign: it moves the other way (ISO "
+        "841). Does "
+        "a table of yours count the other way, take its minus signs away.";
+  return text + "\n";
+}
+
+std::string head(const MachinePlan& plan) {
+  std::string text = "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n<!-- ";
+  text += std::string(type_named(plan.type)->title) + ".\n\n       ";
+  text += side_text(plan, plan.tool_side, false) + "\n";
+  if (!plan.work_side.empty()) text += "       " + side_text(plan, plan.work_side, true) + "\n";
+  text += "\n" + signs_remark(plan);
+  return text +
+         "     All errors are 0 until `vernier fit` finds them from measurements. value is what the machine "
+         "is thought to be,\n"
+         "     nominal what its control believes. tools/docs/machine_file.md defines every element. -->\n";
+}
+
+}  // namespace
+
+std::string drawing(const MachinePlan& plan) {
+  std::string text = side_text(plan, plan.tool_side, false);
+  if (!plan.work_side.empty()) text += "\n" + side_text(plan, plan.work_side, true);
+  return text;
+}
+
+std::string machine_file(const MachinePlan& plan) {
+  const bool robot = !plan.arm.empty();
+  std::string text = head(plan);
+  text += fmt::format("<machine name=\"{}\">\n  <variables>\n    <static>\n", escape_attribute(plan.name));
+  text += robot ? arm_statics(plan) : slide_statics(plan) + turning_statics(plan);
+  text += tool_statics(plan);
+  text +=
+      "      <!-- How the measuring instrument stood: chain base to measuring frame, found by the fit. One "
+      "for all rows, or\n"
+      "           a further one for the rows of a run, written with run=\"its label\". -->\n"
+      "      <BaseShift X=\"0\" Y=\"0\" Z=\"0\" rX=\"0\" rY=\"0\" rZ=\"0\"/>\n    </static>\n";
+  text += axes_text(plan);
+  if (!robot) text += tables_text(plan);
+  text += "  </variables>\n";
+  text += robot ? arm_rows(plan) : branch(plan, true) + branch(plan, false);
+  return text + "</machine>\n";
+}
+
+}  // namespace vernier

@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/create/machine_plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "tools/model/expression.h"
+#include "tools/text/numbers.h"
+#include "tools/text/words.h"
+
+namespace vernier {
+namespace {
+
+/// No direction given and none in the name; an axis of a robot needs none.
+constexpr char kNoDirection = '?';
+
+char direction_in(const std::string& name) {
+  switch (name.front()) {
+    case 'X':
+    case 'U':
+      return 'X';
+    case 'Y':
+    case 'V':
+      return 'Y';
+    case 'Z':
+    case 'W':
+      return 'Z';
+    case 'A':
+    case 'B':
+    case 'C':
+      return name.front();
+    default:
+      return kNoDirection;
+  }
+}
+
+double end_of(const std::string& text, const std::string& words) {
+  const auto number = parse_number(text);
+  if (number) return *number;
+  const bool comma = text.find(',') != std::string::npos;
+  throw InputError("--axis " + words + ": \"" + text + "\": not a number" +
+                   (comma ? "; a decimal sign is a point" : ""));
+}
+
+void check_name(const std::string& name) {
+  static const std::set<std::string> kMeasured = {"x",  "y",  "z",  "rx", "ry", "rz", "length", "cx",  "cy",
+                                                  "cz", "px", "py", "pz", "d",  "u",  "run",    "role"};
+  if (!is_name(name))
+    throw InputError("\"" + name + "\": a name is letters, digits and _, and begins with a letter or _");
+  if (is_reserved_word(name) || kMeasured.contains(name))
+    throw InputError("\"" + name +
+                     "\": the formats use this name for something else; axes are X, Y, B, J1 …");
+}
+
+void check_names(const std::vector<PlannedAxis>& axes) {
+  std::set<std::string> seen;
+  for (const PlannedAxis& axis : axes)
+    if (!seen.insert(axis.name).second) throw InputError("\"" + axis.name + "\": this axis is given twice");
+}
+
+const MachineType& type_of(const std::string& name) {
+  std::string known;
+  for (const MachineType& type : machine_types()) {
+    if (name == type.name) return type;
+    known += (known.empty() ? "" : " ") + std::string(type.name);
+  }
+  if (name == "delta" || name == "hexapod" || name == "parallel")
+    throw InputError("\"" + name +
+                     "\": the chain of a machine file is one arm from bed to tool; a parallel machine closes "
+                     "several, and such a chain cannot be written");
+  throw InputError("\"" + name + "\": unknown type of machine; known are " + known);
+}
+
+std::vector<std::size_t> by_names(const std::vector<PlannedAxis>& axes,
+                                  const std::vector<std::string>& names) {
+  std::vector<std::size_t> side;
+  for (const std::string& name : names) {
+    if (name.empty()) continue;
+    const auto found =
+        std::find_if(axes.begin(), axes.end(), [&](const auto& axis) { return axis.name == name; });
+    if (found == axes.end()) throw InputError("\"" + name + "\": no --axis of this name");
+    side.push_back(static_cast<std::size_t>(found - axes.begin()));
+  }
+  return side;
+}
+
+/// Axes by their directions, in the order that `directions` names them.
+std::vector<std::size_t> by_directions(const std::vector<PlannedAxis>& axes, const std::string& directions) {
+  std::vector<std::size_t> side;
+  for (const char direction : directions)
+    for (std::size_t i = 0; i < axes.size(); ++i)
+      if (axes[i].direction == direction) side.push_back(i);
+  return side;
+}
+
+/// Between head and table a machine with one turning axis each: the table's is C, else the last one.
+void share_rotaries(MachinePlan& plan) {
+  std::vector<std::size_t> rotary;
+  for (std::size_t i = 0; i < plan.axes.size(); ++i)
+    if (plan.axes[i].rotary()) rotary.push_back(i);
+  if (rotary.empty()) return;
+  std::size_t table = rotary.back();
+  for (const std::size_t i : rotary)
+    if (plan.axes[i].direction == 'C') table = i;
+  for (const std::size_t i : rotary) (i == table ? plan.work_side : plan.tool_side).push_back(i);
+}
+
+bool holds(const std::vector<std::size_t>& side, std::size_t axis) {
+  return std::find(side.begin(), side.end(), axis) != side.end();
+}
+
+void place_all(MachinePlan& plan, bool tool_given, bool work_given) {
+  for (std::size_t i = 0; i < plan.axes.size(); ++i) {
+    const bool tool = holds(plan.tool_side, i), work = holds(plan.work_side, i);
+    if (tool && work) throw InputError("\"" + plan.axes[i].name + "\": this axis is on both sides");
+    if (tool || work) continue;
+    if (tool_given && work_given)
+      throw InputError("\"" + plan.axes[i].name + "\": neither --tool-side nor --work-side has this axis");
+    // What one side was not given belongs to the other; a turning axis that a type does not know is a table.
+    (work_given ? plan.tool_side : plan.work_side).push_back(i);
+  }
+  for (const auto* side : {&plan.tool_side, &plan.work_side})
+    for (std::size_t k = 0; k < side->size(); ++k)
+      if (std::count(side->begin(), side->end(), (*side)[k]) > 1)
+        throw InputError("\"" + plan.axes[(*side)[k]].name + "\": this axis stands twice on its side");
+}
+
+}  // namespace
+
+const std::vector<MachineType>& machine_types() {
+  static const std::vector<MachineType> kTypes = {
+      {"gantry", "Gantry: the workpiece stands still under a beam", "YXZ", "", {"carriage", "beam", "ram"}},
+      {"bridge",
+       "Moving bridge: the workpiece stands still, a bridge runs over it",
+       "YXZ",
+       "",
+       {"carriage", "bridge", "ram"}},
+      {"column",
+       "Column machine: table on a saddle, the column carries the spindle",
+       "Z",
+       "YX",
+       {"table", "saddle", "column"}},
+      {"c-frame",
+       "C-frame: table on a saddle, the head slides on the column",
+       "Z",
+       "YX",
+       {"table", "saddle", "head"}},
+      {"head-head", "Five axes, both turning axes in the head", "YXZCAB", "", {"carriage", "beam", "ram"}},
+      {"head-table",
+       "Five axes, a turning head and a turning table",
+       "XZ",
+       "Y",
+       {"carriage", "table slide", "ram"}},
+      {"table-table",
+       "Five axes, both turning axes under the workpiece",
+       "YXZ",
+       "ABC",
+       {"carriage", "beam", "ram"}},
+      {"arm",
+       "Horizontal arm: a column runs along the plate, its carriage carries the arm",
+       "XZY",
+       "",
+       {"column", "arm", "carriage"}},
+      {"robot", "Robot: a row of Denavit and Hartenberg a joint", "", "", {"", "", ""}},
+  };
+  return kTypes;
+}
+
+PlannedAxis parse_planned_axis(const std::string& words) {
+  const std::vector<std::string> parts = parts_of(words, ':');
+  if (parts.size() < 3 || parts[0].empty())
+    throw InputError("--axis " + words +
+                     ": an axis is NAME:MIN:MAX, in mm or deg, such as X:0:600 or B:-90:90");
+  PlannedAxis axis;
+  axis.name = parts[0];
+  check_name(axis.name);
+  axis.min = end_of(parts[1], words);
+  axis.max = end_of(parts[2], words);
+  if (axis.min >= axis.max) throw InputError("--axis " + words + ": MAX must be greater than MIN");
+  axis.direction = direction_in(axis.name);
+  for (std::size_t i = 3; i < parts.size(); ++i) {
+    if (parts[i] == "wrap")
+      axis.rollover = true;
+    else if (parts[i].size() == 1 && std::string("XYZABC").find(parts[i]) != std::string::npos)
+      axis.direction = parts[i].front();
+    else
+      throw InputError("--axis " + words + ": \"" + parts[i] +
+                       "\": is neither a direction (X Y Z along it, A B C about X Y Z) nor wrap");
+  }
+  if (axis.rollover && !axis.rotary()) throw InputError("--axis " + words + ": only a turning axis wraps");
+  if (axis.rollover && std::abs(axis.max - axis.min - 360) > 1e-9)
+    throw InputError("--axis " + words + ": an axis that wraps has a range of one turn, 360 deg");
+  return axis;
+}
+
+MachinePlan plan_machine(const std::string& type_name, std::vector<PlannedAxis> axes,
+                         const std::optional<std::vector<std::string>>& tool_order,
+                         const std::optional<std::vector<std::string>>& work_order) {
+  const MachineType& type = type_of(type_name);
+  if (axes.empty()) throw InputError("no axis: give --axis NAME:MIN:MAX for each, such as --axis X:0:600");
+  check_names(axes);
+  for (const PlannedAxis& axis : axes)
+    if (axis.direction == kNoDirection)
+      throw InputError("\"" + axis.name + "\": which way does this axis go? Add a direction, such as " +
+                       axis.name + ":MIN:MAX:X (X Y Z along it, A B C about X Y Z)");
+  MachinePlan plan;
+  plan.type = plan.name = type.name;
+  plan.axes = std::move(axes);
+  if (tool_order) plan.tool_side = by_names(plan.axes, *tool_order);
+  if (work_order) plan.work_side = by_names(plan.axes, *work_order);
+  if (!tool_order && !work_order) {
+    plan.tool_side = by_directions(plan.axes, type.tool_side);
+    plan.work_side = by_directions(plan.axes, type.work_side);
+    if (type_name == "head-table") share_rotaries(plan);
+  }
+  place_all(plan, tool_order.has_value(), work_order.has_value());
+  return plan;
+}
+
+MachinePlan plan_robot(std::vector<PlannedAxis> axes, const std::vector<DhRow>& rows) {
+  if (axes.empty())
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const bool slides = rows[i].prismatic;
+      axes.push_back(
+          {"J" + std::to_string(i + 1), slides ? 0.0 : -180.0, slides ? 500.0 : 180.0, 'C', false, {}});
+    }
+  check_names(axes);
+  if (axes.size() != rows.size())
+    throw InputError(
+        std::to_string(axes.size()) + " axes, but " + std::to_string(rows.size()) +
+        " rows of the arm: give a row of Denavit and Hartenberg for each joint (--dh FILE, or --joint "
+        "theta,d,a,alpha for each)");
+  MachinePlan plan;
+  plan.type = plan.name = "robot";
+  plan.arm = rows;
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    axes[i].direction = rows[i].prismatic ? 'Z' : 'C';
+    plan.tool_side.push_back(i);
+  }
+  plan.axes = std::move(axes);
+  return plan;
+}
+
+std::vector<double> round_stations(double min, double max, bool rotary) {
+  constexpr double kMostParts = 7;
+  static const std::vector<double> kTurns = {0.5, 1, 2, 5, 10, 15, 30, 45, 60, 90, 180, 360};
+  double step = 0;
+  if (rotary) {
+    for (const double turn : kTurns)
+      if (step == 0 && (max - min) / turn <= 1.3 * kMostParts) step = turn;
+  }
+  // 1, 2, 2.5, 5 times a power of ten: the first that leaves few enough parts.
+  for (double decade = 1e-6; step == 0; decade *= 10)
+    for (const double lead : {1.0, 2.0, 2.5, 5.0})
+      if (step == 0 && (max - min) / (lead * decade) <= kMostParts) step = lead * decade;
+  std::vector<double> stations = {min};
+  // A short last part would be measured by too few readings: it joins its neighbour.
+  for (double at = std::ceil(min / step + 0.35) * step; at < max - 0.35 * step; at += step)
+    stations.push_back(std::round(at * 1e6) / 1e6);
+  stations.push_back(max);
+  return stations;
+}
+
+}  // namespace vernier

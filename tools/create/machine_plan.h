@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/create/dh_table.h"
+
+namespace vernier {
+
+/// An axis as its owner knows it: name, travel, and the direction that it moves along (X Y Z) or turns about
+/// (A B C).
+struct PlannedAxis {
+  std::string name;
+  double min = 0, max = 0;  // mm or deg
+  char direction = 'X';
+  bool rollover = false;           // turns without end; the range is one turn
+  std::array<double, 3> centre{};  // of a rotary axis, at zero of all others: mm
+  bool rotary() const { return direction >= 'A' && direction <= 'C'; }
+  /// 0 1 2 for X Y Z and A B C.
+  std::size_t along() const { return static_cast<std::size_t>(direction - (rotary() ? 'A' : 'X')); }
+};
+
+/// What a new machine file is made of. Both sides begin at the bed; the last entry carries tool or workpiece.
+struct MachinePlan {
+  std::string type, name;
+  std::vector<PlannedAxis> axes;                  // as the file lists them
+  std::vector<std::size_t> tool_side, work_side;  // indices of axes
+  std::array<double, 3> tool{};                   // its point in the frame of the last axis of its side, mm
+  std::vector<DhRow> arm;                         // of a robot, a row a joint; else empty
+};
+
+/// A kind of machine that can be begun from.
+struct MachineType {
+  const char* name;
+  const char* title;
+  const char* tool_side;  // directions from the bed to the tool, "YXZ"; those the machine lacks are left out
+  const char* work_side;
+  std::array<const char*, 3> slides;  // what X, Y and Z are called
+};
+
+/// Those of `vernier new`, a robot's too. tool.
+const std::vector<MachineType>& machine_types();
+
+/// "X:0:600", "U:0:300:X" (along X), "C:0:360:wrap". Throws InputError with the word. tool.
+PlannedAxis parse_planned_axis(const std::string& words);
+
+/// Puts the axes on the sides as the type has them. tool_order, work_order: names from the bed outwards where
+/// they are given otherwise. Throws InputError: an unknown type (a delta says why), no axis, a name twice, an
+/// axis on no side. tool.
+MachinePlan plan_machine(const std::string& type, std::vector<PlannedAxis> axes,
+                         const std::optional<std::vector<std::string>>& tool_order,
+                         const std::optional<std::vector<std::string>>& work_order);
+
+/// A robot: its rows, and axes as many as they have (none: J1, J2 … of ±180 deg, prismatic 0 to 500 mm).
+/// Throws InputError where their numbers differ. tool.
+MachinePlan plan_robot(std::vector<PlannedAxis> axes, const std::vector<DhRow>& rows);
+
+/// Positions that divide a range at round numbers into four to seven parts: stations of its table. tool.
+std::vector<double> round_stations(double min, double max, bool rotary);
+
+}  // namespace vernier

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace vernier {
+
+/// Deviations at one target, by sense of approach: forward (0) and backward (1). mm or deg.
+struct TargetReadings {
+  double target = 0;
+  std::array<std::vector<double>, 2> deviation;  // actual − target, in the order of the runs
+};
+
+/// What ISO 230-2 computes at one target (2014, 3.8 to 3.15). mm or deg; [0] forward, [1] backward.
+struct TargetResult {
+  double target = 0;
+  std::array<std::size_t, 2> count{};
+  std::array<double, 2> mean{};           // mean unidirectional deviation
+  std::array<double, 2> spread{};         // estimator s of unidirectional repeatability (n − 1)
+  std::array<double, 2> repeatability{};  // 4 s
+  double mean_both = 0;                   // mean of the two means
+  double reversal = 0;                    // B_i: forward mean less backward mean
+  double repeatability_both = 0;          // R_i: the largest of 2 s+ + 2 s− + |B_i|, R_i+, R_i−
+};
+
+/// Of the axis (2014, 3.16 to 3.23). Values of both senses are absent where one was measured only.
+struct PositioningResult {
+  std::vector<TargetResult> targets;                                         // in the order of positions
+  std::array<std::optional<double>, 2> accuracy, systematic, repeatability;  // A, E, R of one sense
+  std::optional<double> accuracy_both, systematic_both, repeatability_both;  // A, E, R
+  std::optional<double> reversal, mean_reversal, range;                      // B, mean B, M
+};
+
+/// Evaluates readings; each target that was approached in a sense has two readings in it at least. Throws
+/// InputError: fewer than two targets, a single reading. tool.
+PositioningResult evaluate_positioning(const std::vector<TargetReadings>& readings);
+
+/// Readings of one axis from a measurement file: deviation = `reading` − position of the axis (of a tracker's
+/// or interferometer's own coordinate along it; a constant between them plays no part in any result). Sense
+/// by `dirX`, else by the way from the row before. check rows count too. tool.
+struct PositioningFile {
+  std::vector<TargetReadings> readings;
+  std::string unit;  // of all values: mm or deg
+  bool sense_from_order = false;
+  std::size_t rows = 0;     // that were used
+  std::optional<double> u;  // largest standard uncertainty that a row gives
+};
+PositioningFile read_positioning(const std::string& text, const std::string& file, const std::string& axis,
+                                 const std::string& reading);
+
+/// Decision rule of ISO 14253-1: a tolerance is met where the value with its expanded uncertainty stays
+/// within, not met where it is beyond even without it.
+enum class Conformity { kMet, kNotMet, kUndecided };
+Conformity conformity(double value, double tolerance, double expanded_uncertainty);
+/// "met", "not met", "not decided (within the uncertainty)".
+const char* conformity_text(Conformity conformity);
+
+}  // namespace vernier

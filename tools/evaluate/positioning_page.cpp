@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/evaluate/positioning_page.h"
+
+#include <fmt/format.h>
+
+#include <array>
+
+namespace vernier {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Characteristic {
+  const char* name;
+  const char* meaning;
+};
+constexpr std::array<Characteristic, 12> kCharacteristics = {{
+    {"A", "bidirectional accuracy of positioning"},
+    {"A+", "accuracy forward"},
+    {"A-", "accuracy backward"},
+    {"R", "bidirectional repeatability of positioning"},
+    {"R+", "repeatability forward"},
+    {"R-", "repeatability backward"},
+    {"E", "bidirectional systematic positioning error"},
+    {"E+", "systematic error forward"},
+    {"E-", "systematic error backward"},
+    {"M", "mean bidirectional positioning error"},
+    {"B", "reversal error"},
+    {"mean B", "mean reversal error"},
+}};
+
+Json or_none(const std::optional<double>& value, double factor) {
+  return value ? Json(*value * factor) : Json(nullptr);
+}
+
+Json cell(const Json& value) {
+  return value.is_null()     ? Json("–")
+         : value.is_number() ? Json(fmt::format("{:.2f}", value.get<double>()))
+                             : value;
+}
+
+Json column(const Json& targets, const char* key, std::size_t sense) {
+  Json values = Json::array();
+  for (const Json& target : targets) values.push_back(key[0] == 't' ? target[key] : target[key][sense]);
+  return values;
+}
+
+}  // namespace
+
+std::optional<double> characteristic(const PositioningResult& result, const std::string& name) {
+  if (name == "A") return result.accuracy_both;
+  if (name == "A+") return result.accuracy[0];
+  if (name == "A-") return result.accuracy[1];
+  if (name == "R") return result.repeatability_both;
+  if (name == "R+") return result.repeatability[0];
+  if (name == "R-") return result.repeatability[1];
+  if (name == "E") return result.systematic_both;
+  if (name == "E+") return result.systematic[0];
+  if (name == "E-") return result.systematic[1];
+  if (name == "M") return result.range;
+  if (name == "B") return result.reversal;
+  if (name == "mean B") return result.mean_reversal;
+  return std::nullopt;
+}
+
+Json positioning_json(const PositioningResult& result, const PositioningFile& file,
+                      const PositioningWords& words) {
+  const double factor = file.unit == "mm" ? 1e3 : 3600;
+  Json json = {{"standard", "ISO 230-2"},
+               {"axis", words.axis},
+               {"unit", file.unit == "mm" ? "um" : "arcsec"},
+               {"position_unit", file.unit},
+               {"n_rows", file.rows},
+               {"n_targets", result.targets.size()},
+               {"sense", file.sense_from_order ? "from the order of the rows" : "dir" + words.axis}};
+  for (const auto& [key, value] : words.header) json["header"][key] = value;
+  for (const TargetResult& at : result.targets) {
+    Json one = {{"target", at.target}, {"n", {at.count[0], at.count[1]}}};
+    for (std::size_t sense = 0; sense < 2; ++sense) {
+      const bool there = at.count[sense] > 0;
+      one["mean"].push_back(there ? Json(at.mean[sense] * factor) : Json(nullptr));
+      one["s"].push_back(there ? Json(at.spread[sense] * factor) : Json(nullptr));
+      one["R"].push_back(there ? Json(at.repeatability[sense] * factor) : Json(nullptr));
+    }
+    const bool both = at.count[0] > 0 && at.count[1] > 0;
+    one["mean_both"] = both ? Json(at.mean_both * factor) : Json(nullptr);
+    one["B"] = both ? Json(at.reversal * factor) : Json(nullptr);
+    one["R_both"] = both ? Json(at.repeatability_both * factor) : Json(nullptr);
+    json["targets"].push_back(std::move(one));
+  }
+  for (const Characteristic& known : kCharacteristics) {
+    const auto value = characteristic(result, known.name);
+    Json one = {{"name", known.name}, {"meaning", known.meaning}, {"value", or_none(value, factor)}};
+    const auto limit = words.tolerance.find(known.name), u = words.uncertainty.find(known.name);
+    one["uncertainty"] = u == words.uncertainty.end() ? Json(nullptr) : Json(u->second * factor);
+    if (limit != words.tolerance.end()) {
+      one["tolerance"] = limit->second * factor;
+      const double expanded = u == words.uncertainty.end() ? 0 : u->second;
+      one["conformity"] =
+          value ? Json(conformity_text(conformity(*value, limit->second, expanded))) : Json(nullptr);
+    }
+    json["characteristics"].push_back(std::move(one));
+  }
+  return json;
+}
+
+Json positioning_page(const Json& json, const PositioningWords& words) {
+  const std::string unit = json["unit"] == "um" ? "µm" : "″";
+  Json header = Json::array(), tiles = Json::array(), table = Json::array(), places = Json::array();
+  for (const auto& [key, value] : words.header) header.push_back({key, value});
+  for (const Json& one : json["characteristics"]) {
+    const std::string name = one["name"];
+    if (name == "A" || name == "R" || name == "E" || name == "M" || name == "B")
+      tiles.push_back({{"label", name},
+                       {"value", one["value"]},
+                       {"unit", unit},
+                       {"hint", one["meaning"]},
+                       {"strong", name == "A"}});
+    table.push_back({name, one["meaning"], cell(one["value"]), cell(one["uncertainty"]),
+                     cell(one.value("tolerance", Json(nullptr))),
+                     cell(one.value("conformity", Json(nullptr)))});
+  }
+  for (const Json& at : json["targets"])
+    places.push_back({at["target"], cell(at["mean"][0]), cell(at["mean"][1]), cell(at["s"][0]),
+                      cell(at["s"][1]), cell(at["mean_both"]), cell(at["B"]), cell(at["R_both"])});
+  const std::string position = json["position_unit"] == "mm" ? "mm" : "deg";
+  Json plot = {
+      {"x", {{"name", words.axis}, {"unit", position}, {"values", column(json["targets"], "target", 0)}}}};
+  plot["y"] = {{{"name", "mean forward"}, {"unit", unit}, {"values", column(json["targets"], "mean", 0)}},
+               {{"name", "mean backward"}, {"unit", unit}, {"values", column(json["targets"], "mean", 1)}}};
+  Json first = {{"title", "Positioning of axis " + words.axis + " (ISO 230-2)"}, {"numbers", tiles}};
+  if (!header.empty())
+    first["tables"] = {{{"caption", "Test"}, {"columns", {"", "entry"}}, {"rows", header}}};
+  const Json rule =
+      "A tolerance is met where the value and its expanded uncertainty (k = 2) together stay within it, not "
+      "met where it is exceeded "
+      "by more than the uncertainty (ISO 14253-1). Without an uncertainty given, the value alone is judged.";
+  return {{"title", "Positioning accuracy"},
+          {"machine", words.axis},
+          {"files", words.files},
+          {"sections",
+           {first,
+            {{"title", "Characteristics"},
+             {"prose", {rule}},
+             {"tables",
+              {{{"caption", "in " + unit},
+                {"columns", {"", "is", "value", "U (k = 2)", "tolerance", "verdict"}},
+                {"rows", table}}}}},
+            {{"title", "Mean deviations"}, {"plots", {plot}}},
+            {{"title", "Targets"},
+             {"tables",
+              {{{"caption", "position in " + position + ", all else in " + unit},
+                {"columns",
+                 {"target", "mean forward", "mean backward", "s forward", "s backward", "mean of both",
+                  "reversal", "R"}},
+                {"rows", places}}}}}}}};
+}
+
+}  // namespace vernier

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tools/evaluate/positioning.h"
+
+namespace vernier {
+
+/// What a report to be handed over says besides its numbers.
+struct PositioningWords {
+  std::string axis;
+  std::vector<std::string> files;
+  std::vector<std::pair<std::string, std::string>> header;  // "serial number" and the like, as given
+  std::map<std::string, double> tolerance, uncertainty;     // by A E M R B, in the unit of the axis; U95
+};
+
+/// The characteristic of that letter: A, A+, A-, E, E+, E-, R, R+, R-, B, M, mean B. Nothing for one not
+/// measured.
+std::optional<double> characteristic(const PositioningResult& result, const std::string& name);
+
+/// {axis, unit, factor, targets[…], characteristics[{name, value, tolerance, uncertainty, conformity}], …};
+/// values in um (linear) or arcsec (rotary), as `unit` says. tool.
+nlohmann::ordered_json positioning_json(const PositioningResult& result, const PositioningFile& file,
+                                        const PositioningWords& words);
+
+/// The page of it, for improvement_report_html. tool.
+nlohmann::ordered_json positioning_page(const nlohmann::ordered_json& json, const PositioningWords& words);
+
+}  // namespace vernier

@@ -1,0 +1,469 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/import/sheet_columns.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "tools/sheet/sheet_number.h"
+#include "tools/text/numbers.h"
+#include "tools/text/units.h"
+#include "tools/text/words.h"
+
+namespace vernier {
+namespace {
+
+using Words = std::set<std::string>;
+
+std::string lower(std::string_view text) {
+  std::string result(text);
+  std::transform(result.begin(), result.end(), result.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return result;
+}
+
+/// The words of a heading; X_ist and X-ist are two.
+std::vector<std::string> words_of(const std::string& name) { return words_in(name, " \t_-./:;,()[]#+"); }
+
+// What headings say in the languages of shop floors.
+const Words kTarget = {"soll",    "sollwert",     "target",       "nominal",    "cmd",
+                       "command", "commanded",    "position",     "pos",        "set",
+                       "ziel",    "achse",        "axis",         "machine",    "maschine",
+                       "nom",     "sollposition", "zielposition", "istposition"};
+const Words kMeasured = {"ist",      "istwert",  "measured", "actual",  "act",   "meas", "mess",
+                         "messwert", "gemessen", "reading",  "tracker", "laser", "read", "mes"};
+const Words kDeviation = {"abweichung", "deviation", "dev", "error",     "fehler",     "err",
+                          "delta",      "diff",      "abw", "differenz", "difference", "ecart"};
+const Words kForth = {"1",        "+1",      "+",   "forward",  "fwd", "forth", "up",   "pos",
+                      "positive", "positiv", "vor", "vorwärts", "hin", "auf",   "plus", "cw"};
+const Words kBack = {"-1",
+                     "-",
+                     "backward",
+                     "backwards",
+                     "bwd",
+                     "back",
+                     "reverse",
+                     "rev",
+                     "down",
+                     "neg",
+                     "negative",
+                     "negativ",
+                     "zurück",
+                     "rück",
+                     "rückwärts",
+                     "her",
+                     "ab",
+                     "minus",
+                     "ccw",
+                     "\u2212",
+                     "\u2212"
+                     "1"};
+
+/// Names of the measurement file that are taken as they are written.
+bool is_known_name(const std::string& name) {
+  static const Words kNames = {"x",  "y",  "z",   "rx",   "ry",   "rz",   "length", "d",
+                               "cx", "cy", "cz",  "px",   "py",   "pz",   "nx",     "ny",
+                               "nz", "u",  "run", "role", "feed", "curv", "t",      "corrected"};
+  return kNames.contains(name);
+}
+bool is_label(const std::string& name) { return name == "run" || name == "role" || name == "corrected"; }
+bool is_pure(const std::string& name) {
+  return name == "nx" || name == "ny" || name == "nz" || name == "curv" || name.starts_with("dir");
+}
+
+class Guess {
+ public:
+  explicit Guess(const SheetWishes& wishes) : wishes_(wishes) {}
+
+  bool is_axis(const std::string& word) const {
+    if (!wishes_.axes.empty())
+      return std::find(wishes_.axes.begin(), wishes_.axes.end(), word) != wishes_.axes.end();
+    if (word.size() == 1) return std::string("XYZABCUVW").find(word) != std::string::npos;
+    return word.size() == 2 && (word[0] == 'J' || word[0] == 'A') &&
+           std::isdigit(static_cast<unsigned char>(word[1])) != 0;
+  }
+
+  SheetColumn column(const Heading& heading) const {
+    SheetColumn column{SheetColumn::Use::kColumn, heading.name, heading.unit, "by its heading"};
+    if (is_axis(heading.name) || is_known_name(heading.name) || is_motion(heading.name)) return column;
+    std::string axis;
+    bool target = false, measured = false, deviation = false;
+    const std::vector<std::string> words = words_of(heading.name);
+    for (const std::string& word : words) {
+      const std::string small = lower(word);
+      target |= kTarget.contains(small);
+      measured |= kMeasured.contains(small);
+      deviation |= kDeviation.contains(small);
+      // dX, ΔX: a deviation in one word.
+      const std::string tail = word.starts_with("d")        ? word.substr(1)
+                               : word.starts_with("\u0394") ? word.substr(2)
+                                                            : "";
+      if (is_axis(tail)) {
+        axis = tail;
+        deviation = true;
+      }
+      if (axis.empty() && is_axis(word)) axis = word;
+    }
+    if (deviation) return {SheetColumn::Use::kDeviation, axis, heading.unit, "by its heading"};
+    if (!axis.empty() && measured) {
+      column.name = lower(axis);
+      return column;
+    }
+    if (!axis.empty() && (target || words.size() == 1)) {
+      column.name = axis;
+      return column;
+    }
+    column.name = other(heading);
+    return column;
+  }
+
+ private:
+  bool is_motion(const std::string& name) const {
+    for (const char* prefix : {"dir", "since", "v", "a", "correction"})
+      if (name.starts_with(prefix) && is_axis(name.substr(std::string(prefix).size()))) return true;
+    return false;
+  }
+
+  static std::string other(const Heading& heading) {
+    static const std::map<std::string, std::string> kNames = {
+        {"zeit", "t"},         {"time", "t"},        {"vorschub", "feed"}, {"feedrate", "feed"},
+        {"feed rate", "feed"}, {"lauf", "run"},      {"pass", "run"},      {"durchgang", "run"},
+        {"messreihe", "run"},  {"run", "run"},       {"cycle", "run"},     {"zyklus", "run"},
+        {"unsicherheit", "u"}, {"uncertainty", "u"}, {"rolle", "role"},    {"richtung", "dir"},
+        {"direction", "dir"},  {"sense", "dir"},     {"länge", "length"},  {"laenge", "length"}};
+    const auto found = kNames.find(lower(heading.name));
+    return found == kNames.end() ? name_from_words(heading.name) : found->second;
+  }
+
+  const SheetWishes& wishes_;
+};
+
+/// Index of the column that a person names; none: npos.
+std::size_t find_heading(const SheetTable& table, const std::string& words) {
+  for (const bool by_text : {true, false})
+    for (std::size_t k = 0; k < table.headings.size(); ++k)
+      if ((by_text ? table.headings[k].text : table.headings[k].name) == words) return k;
+  const auto number = parse_number(words);
+  if (number && *number >= 1 && *number <= static_cast<double>(table.headings.size()) &&
+      *number == std::floor(*number))
+    return static_cast<std::size_t>(*number) - 1;
+  return std::string::npos;
+}
+
+/// "x[mm]" as name and unit.
+SheetColumn target_of(const std::string& words, const Place& place) {
+  SheetColumn column;
+  const auto open = words.find('[');
+  column.name = trimmed(words.substr(0, open));
+  if (open != std::string::npos) {
+    const std::string unit = words.substr(open);
+    if (!unit.ends_with(']') || !unit_meant(unit))
+      throw InputError(place, unit, "unknown unit; known are " + known_units());
+    column.unit = *unit_meant(unit);
+  }
+  if (!is_name(column.name)) throw InputError(place, column.name, "a column name is letters, digits and _");
+  return column;
+}
+
+std::pair<std::string, std::string> halves(const std::string& words, bool last, const Place& place,
+                                           const char* form) {
+  const auto at = last ? words.rfind('=') : words.find('=');
+  std::pair<std::string, std::string> two;
+  if (at != std::string::npos) two = {trimmed(words.substr(0, at)), trimmed(words.substr(at + 1))};
+  if (two.first.empty() || two.second.empty())
+    throw InputError(place, words, std::string("not of the form ") + form);
+  return two;
+}
+
+bool is_text_column(const Sheet& sheet, const SheetTable& table, std::size_t column) {
+  std::size_t words = 0, filled = 0;
+  for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
+    const std::string& cell = sheet.rows[row][column];
+    filled += cell.empty() ? 0 : 1;
+    words += !cell.empty() && !plain_number(cell, sheet.decimal_comma) ? 1 : 0;
+  }
+  return filled == 0 || 2 * words > filled;
+}
+
+void leave(SheetColumn& column, const std::string& why) {
+  column.use = SheetColumn::Use::kLeft;
+  column.why = why;
+}
+
+/// Deviations and senses that name no axis belong to the only one; what stays open is left out and said.
+void settle(const Sheet& sheet, const SheetTable& table, std::vector<SheetColumn>& columns,
+            const Guess& guess) {
+  std::set<std::string> axes, measured;
+  for (const SheetColumn& column : columns)
+    if (column.use == SheetColumn::Use::kColumn)
+      (guess.is_axis(column.name) ? axes : measured).insert(column.name);
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    SheetColumn& column = columns[k];
+    if (column.why != "by its heading") continue;
+    const bool deviation = column.use == SheetColumn::Use::kDeviation;
+    if (deviation && column.name.empty() && axes.size() == 1) column.name = *axes.begin();
+    if (deviation && (column.name.empty() || !axes.contains(column.name)))
+      leave(column, "a deviation of which axis? Say it: --deviation \"X=" + table.headings[k].text + "\"");
+    else if (deviation && measured.contains(lower(column.name)))
+      leave(column, "the measured position is there as " + lower(column.name));
+    else if (column.name == "dir" && axes.size() == 1)
+      column.name = "dir" + *axes.begin();
+    else if (column.name == "dir")
+      leave(column, "the sense of which axis? Say it: --column \"dirX=" + table.headings[k].text + "\"");
+    else if (!is_label(column.name) && !column.name.starts_with("dir") && is_text_column(sheet, table, k))
+      leave(column, "no numbers");
+  }
+}
+
+/// The same name twice: an index column or a remark that reads like another.
+void keep_names_apart(const SheetTable& table, std::vector<SheetColumn>& columns) {
+  std::map<std::string, std::size_t> seen;
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    SheetColumn& column = columns[k];
+    if (column.use != SheetColumn::Use::kColumn) continue;
+    const auto [first, fresh] = seen.emplace(column.name, k);
+    if (fresh) continue;
+    const bool plain = column.why == "by its heading";
+    SheetColumn& one = plain ? column : columns[first->second];
+    if (!plain) first->second = k;
+    leave(one, "column " + std::to_string(first->second + 1) + " (\"" + table.headings[first->second].text +
+                   "\") is " + column.name + " already");
+  }
+}
+
+bool wants_unit(const SheetColumn& column) {
+  return column.use != SheetColumn::Use::kLeft && !is_label(column.name) && !is_pure(column.name);
+}
+
+std::string direction_word(const std::string& cell) {
+  const std::string small = lower(cell);
+  return kForth.contains(small) ? "1" : kBack.contains(small) ? "-1" : "";
+}
+
+/// One cell as the measurement file writes it.
+std::string cell_text(const Sheet& sheet, const SheetColumn& column, const std::string& cell,
+                      std::size_t row) {
+  const Place place{sheet.file, sheet.line[row]};
+  if (is_label(column.name)) {
+    const std::string small = lower(cell);
+    if (column.name != "role") return cell;
+    if (small == "check" || small == "kontrolle" || small == "prüfen") return "check";
+    if (small == "fit" || small.empty()) return small;
+    throw InputError(place, cell, "a role is fit or check");
+  }
+  if (cell.empty() || cell == "-" || cell == "--" || cell == "n/a" || cell == "#NV" || cell == "#N/A") {
+    if (!column.name.starts_with("dir")) return "";
+  }
+  if (column.name.starts_with("dir"))
+    if (const std::string sense = direction_word(cell); !sense.empty()) return sense;
+  if (const auto number = plain_number(cell, sheet.decimal_comma)) return *number;
+  const bool other_sign = plain_number(cell, !sheet.decimal_comma).has_value();
+  throw InputError(place, cell,
+                   "not a number, for " + column.name +
+                       (other_sign ? std::string("; a decimal ") + (sheet.decimal_comma ? "point" : "comma") +
+                                         "? (--decimal point or comma says which is meant)"
+                                   : std::string()));
+}
+
+}  // namespace
+
+void assign_column(SheetWishes& wishes, const SheetTable& table, const std::string& words) {
+  // A heading may hold the sign itself: the split that makes a heading of one side is the one that was meant.
+  for (const bool last : {false, true}) {
+    const auto [left, right] = halves(words, last, {}, "name[unit]=HEADING");
+    if (find_heading(table, right) != std::string::npos && is_name(left.substr(0, left.find('[')))) {
+      wishes.assignments.push_back({right, target_of(left, {}), {}});
+      return;
+    }
+    if (find_heading(table, left) != std::string::npos) {
+      wishes.assignments.push_back({left, target_of(right, {}), {}});
+      return;
+    }
+  }
+  std::string known;
+  for (const Heading& heading : table.headings) known += (known.empty() ? "" : ", ") + heading.text;
+  throw InputError("--column \"" + words + "\": no such heading; there are " + known);
+}
+
+void assign_deviation(SheetWishes& wishes, const std::string& words, const Place& place) {
+  const auto [left, right] = halves(words, false, place, "AXIS[unit]=HEADING");
+  SheetColumn column = target_of(left, place);
+  column.use = SheetColumn::Use::kDeviation;
+  wishes.assignments.push_back({right, column, place});
+}
+
+void read_sheet_profile(SheetWishes& wishes, const std::string& text, const std::string& file) {
+  std::size_t number = 0;
+  for (const std::string& raw : parts_of(text, '\n')) {
+    const Place place{file, ++number};
+    const std::string line = trimmed(raw);
+    if (line.empty() || line.front() == '#') continue;
+    const std::string key = line.substr(0, line.find(' '));
+    const std::string rest = trimmed(line.substr(key.size()));
+    if (key == "column" || key == "deviation") {
+      const auto [heading, target] = halves(rest, true, place, "HEADING = name[unit]");
+      SheetColumn column = target_of(target, place);
+      if (key == "deviation") column.use = SheetColumn::Use::kDeviation;
+      wishes.assignments.push_back({heading, column, place});
+    } else if (key == "leave") {
+      SheetColumn column;
+      column.use = SheetColumn::Use::kLeft;
+      wishes.assignments.push_back({rest, column, place});
+    } else if (key == "set") {
+      ColumnMap map;
+      add_constant(map, rest, place);
+      wishes.constants.push_back(map.columns.front());
+    } else {
+      const auto [name, value] = halves(line, false, place, "STATEMENT = VALUE");
+      const auto skip = parse_number(value);
+      if (name == "separator")
+        wishes.format.separator = separator_of(value);
+      else if (name == "decimal" && (value == "comma" || value == "point"))
+        wishes.format.decimal_comma = value == "comma";
+      else if (name == "skip" && skip && *skip >= 0)
+        wishes.format.skip = static_cast<std::size_t>(*skip);
+      else if (name == "sheet")
+        wishes.format.sheet = value;
+      else if (name == "comment")
+        wishes.format.comment = value == "none" ? "" : value;
+      else if (name == "unit" && unit_meant(value))
+        wishes.unit = *unit_meant(value);
+      else
+        throw InputError(
+            place, name,
+            "not understood; known are column, deviation, leave, set, separator, decimal, skip, sheet, "
+            "comment, unit");
+    }
+  }
+}
+
+std::string sheet_profile(const Sheet& sheet, const SheetTable& table,
+                          const std::vector<SheetColumn>& columns, const SheetWishes& wishes) {
+  std::string text =
+      "# How tables like " + sheet.file + " are read: vernier import table FILE --profile THIS -o MEAS\n";
+  if (sheet.workbook && !wishes.format.sheet.empty()) text += "sheet = " + wishes.format.sheet + "\n";
+  if (!sheet.workbook)
+    text += std::string("separator = ") +
+            (sheet.separator == ' ' ? "space" : separator_word(sheet.separator)) + "\n";
+  text += std::string("decimal = ") + (sheet.decimal_comma ? "comma" : "point") + "\n";
+  if (wishes.format.skip > 0) text += "skip = " + std::to_string(wishes.format.skip) + "\n";
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    const SheetColumn& column = columns[k];
+    const std::string& heading = table.headings[k].text;
+    const std::string unit = column.unit.empty() ? "" : "[" + column.unit + "]";
+    if (column.use == SheetColumn::Use::kLeft)
+      text += "leave " + heading + "\n";
+    else
+      text += (column.use == SheetColumn::Use::kDeviation ? "deviation " : "column ") + heading + " = " +
+              column.name + unit + "\n";
+  }
+  for (const MappedColumn& constant : wishes.constants)
+    text += "set " + constant.name + (constant.unit.empty() ? "" : "[" + constant.unit + "]") + " = " +
+            constant.constant + "\n";
+  return text;
+}
+
+std::vector<SheetColumn> columns_of_sheet(const Sheet& sheet, const SheetTable& table,
+                                          const SheetWishes& wishes) {
+  const Guess guess(wishes);
+  std::vector<SheetColumn> columns;
+  for (const Heading& heading : table.headings) columns.push_back(guess.column(heading));
+  for (const SheetWishes::Assignment& wish : wishes.assignments) {
+    const std::size_t at = find_heading(table, wish.heading);
+    if (at == std::string::npos) {
+      if (wish.column.use == SheetColumn::Use::kLeft) continue;  // one that this file does not have
+      throw InputError(wish.place, wish.heading, "no column of " + sheet.file + " has this heading");
+    }
+    columns[at] = wish.column;
+    if (columns[at].unit.empty()) columns[at].unit = table.headings[at].unit;
+    columns[at].why = wish.place.file.empty() ? "as said" : "by the profile";
+  }
+  settle(sheet, table, columns, guess);
+  keep_names_apart(table, columns);
+  for (SheetColumn& column : columns) {
+    if (!column.unit.empty() || wishes.unit.empty() || !wants_unit(column)) continue;
+    // A unit for all headings without one is for lengths or angles, not for temperatures and loads.
+    const std::string& name = column.name;
+    const bool length = guess.is_axis(name) || column.use == SheetColumn::Use::kDeviation ||
+                        (name.size() <= 2 && name != "t") || name == "length";
+    if (length) column.unit = wishes.unit;
+  }
+  return columns;
+}
+
+ImportTable table_of_sheet(const Sheet& sheet, const SheetTable& table,
+                           const std::vector<SheetColumn>& columns, const SheetWishes& wishes) {
+  ImportTable result{sheet.file, {}, {}};
+  const Guess guess(wishes);
+  std::string without;
+  bool measured = false;
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    const SheetColumn& column = columns[k];
+    const bool geometry = guess.is_axis(column.name) || (is_known_name(column.name) && wants_unit(column));
+    if (wants_unit(column) && column.unit.empty() && geometry)
+      without += fmt::format(" --column \"{}[mm]={}\"", column.name, table.headings[k].text);
+    if (column.use == SheetColumn::Use::kLeft) continue;
+    static const Words kReadings = {"x", "y", "z", "rx", "ry", "rz", "length", "d"};
+    measured |= column.use == SheetColumn::Use::kDeviation || kReadings.contains(column.name);
+  }
+  const Place heading{sheet.file, sheet.line[table.heading_row]};
+  if (!without.empty())
+    throw InputError(heading, "", "no unit: say it for all (--unit mm) or for each, such as" + without);
+  if (!measured)
+    throw InputError(
+        heading, "",
+        "nothing measured among the columns (x y z rx ry rz length d, or a deviation of an axis): say which "
+        "it is, such as --column \"x[mm]=HEADING\" or --deviation \"X[um]=HEADING\"; --preview shows what "
+        "was understood");
+  for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
+    const auto& cells = sheet.rows[row];
+    if (std::all_of(cells.begin(), cells.end(), [](const std::string& cell) { return cell.empty(); }))
+      continue;
+    result.line.push_back(sheet.line[row]);
+  }
+  std::map<std::string, std::size_t> axis_column;
+  for (std::size_t k = 0; k < columns.size(); ++k)
+    if (columns[k].use == SheetColumn::Use::kColumn) axis_column.emplace(columns[k].name, k);
+  const auto mm = [](const std::string& text, const std::string& unit) {
+    const Unit found = *find_unit(unit);
+    return *parse_number(text) * found.factor;
+  };
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    const SheetColumn& column = columns[k];
+    if (column.use == SheetColumn::Use::kLeft) continue;
+    const bool deviation = column.use == SheetColumn::Use::kDeviation;
+    ImportTable::Column made{
+        deviation ? lower(column.name) : column.name, deviation ? "mm" : column.unit, {}};
+    const std::size_t base =
+        deviation && axis_column.contains(column.name) ? axis_column[column.name] : columns.size();
+    if (deviation && base == columns.size())
+      throw InputError(heading, column.name, "this axis has no column");
+    if (result.find(made.name) != nullptr)
+      throw InputError(heading, table.headings[k].text, "this would be " + made.name + " a second time");
+    for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
+      const auto& cells = sheet.rows[row];
+      if (std::all_of(cells.begin(), cells.end(), [](const std::string& cell) { return cell.empty(); }))
+        continue;
+      std::string text = cell_text(sheet, column, cells[k], row);
+      if (deviation && !text.empty()) {
+        const std::string at = cell_text(sheet, columns[base], cells[base], row);
+        if (at.empty())
+          throw InputError({sheet.file, sheet.line[row]}, column.name, "a deviation without its position");
+        // Nine decimals are below every instrument: adding leaves no tail of binary digits.
+        text = number_text(std::round((mm(at, columns[base].unit) + mm(text, column.unit)) * 1e9) / 1e9);
+      }
+      made.cells.push_back(std::move(text));
+    }
+    result.columns.push_back(std::move(made));
+  }
+  for (const MappedColumn& constant : wishes.constants)
+    result.columns.push_back(
+        {constant.name, constant.unit, std::vector<std::string>(result.line.size(), constant.constant)});
+  return result;
+}
+
+}  // namespace vernier

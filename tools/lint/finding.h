@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace vernier {
+
+/// How much a finding weighs.
+enum class LintWeight {
+  kError,    // the file cannot be used
+  kWarning,  // it can, and probably says something else than was meant
+  kRemark,   // good to know
+};
+
+/// "error", "warning", "remark".
+const char* weight_name(LintWeight weight);
+
+/// One thing that is wrong or odd.
+struct LintFinding {
+  std::string file;
+  std::size_t line = 0;  // 0: the file as a whole
+  LintWeight weight = LintWeight::kError;
+  std::string word;     // the offending one, or empty
+  std::string what;     // what is the matter
+  std::string meaning;  // what was probably meant, and what to do; may be empty
+};
+
+/// "file:12: error: "word": what (meaning)". tool.
+std::string in_one_line(const LintFinding& finding);
+
+/// LintFindings in the order of files and lines; of the same thing in many rows the first, with their number.
+class LintFindings {
+ public:
+  explicit LintFindings(std::string file) : file_(std::move(file)) {}
+  void add(LintWeight weight, std::size_t line, const std::string& word, const std::string& what,
+           const std::string& meaning = "");
+  /// As add; a further one with the same `kind` is only counted.
+  void add_of_kind(const std::string& kind, LintWeight weight, std::size_t line, const std::string& word,
+                   const std::string& what, const std::string& meaning = "");
+  bool any(LintWeight weight) const;
+  std::vector<LintFinding> take();
+
+ private:
+  struct Entry {
+    LintFinding finding;
+    std::string kind;
+    std::size_t more = 0, last_line = 0;
+  };
+  std::string file_;
+  std::vector<Entry> entries_;
+};
+
+}  // namespace vernier

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/lint/lint.h"
+
+#include <algorithm>
+
+#include "tools/lint/machine_lint.h"
+#include "tools/lint/measurement_lint.h"
+#include "tools/sheet/encoding.h"
+#include "tools/sheet/sheet.h"
+#include "tools/text/files.h"
+#include "tools/text/words.h"
+
+namespace vernier {
+
+LintedKind linted_kind_of(const std::string& bytes, const std::string& file) {
+  if (is_workbook(bytes)) return LintedKind::kSpreadsheet;
+  const std::string text = utf8_of(bytes, encoding_of(bytes));
+  const std::string head = trimmed(std::string_view(text).substr(0, 4096));
+  if (head.starts_with('<') || file.ends_with(".xml")) return LintedKind::kMachine;
+  if (head.empty() || text.find('\0') != std::string::npos) return LintedKind::kOther;
+  return import_command_for(bytes, file).empty() ? LintedKind::kMeasurement : LintedKind::kSpreadsheet;
+}
+
+const char* linted_kind_name(LintedKind kind) {
+  switch (kind) {
+    case LintedKind::kMachine:
+      return "machine";
+    case LintedKind::kMeasurement:
+      return "measurement";
+    case LintedKind::kSpreadsheet:
+      return "spreadsheet";
+    case LintedKind::kOther:
+      return "other";
+  }
+  return "";
+}
+
+std::vector<LintedFile> lint_files(const std::vector<std::string>& paths) {
+  std::vector<LintedFile> list;
+  std::vector<std::string> bytes;
+  std::optional<Machine> machine;
+  for (const std::string& path : paths) {
+    bytes.push_back(read_file(path));
+    list.push_back({path, linted_kind_of(bytes.back(), path), true, {}});
+    if (list.back().kind != LintedKind::kMachine) continue;
+    MachineLint result = lint_machine(bytes.back(), path);
+    list.back().findings = std::move(result.findings);
+    if (!machine) machine = std::move(result.machine);
+  }
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    LintedFile& one = list[i];
+    if (one.kind != LintedKind::kMachine)
+      one.findings = lint_measurement(bytes[i], one.file, machine ? &*machine : nullptr);
+    one.usable = std::none_of(one.findings.begin(), one.findings.end(), [](const LintFinding& finding) {
+      return finding.weight == LintWeight::kError;
+    });
+  }
+  return list;
+}
+
+}  // namespace vernier

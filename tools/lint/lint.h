@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <string>
+#include <vector>
+
+#include "tools/lint/finding.h"
+
+namespace vernier {
+
+/// What a file is by its looks.
+enum class LintedKind { kMachine, kMeasurement, kSpreadsheet, kOther };
+LintedKind linted_kind_of(const std::string& bytes, const std::string& file);
+/// "machine", "measurement", "spreadsheet", "other".
+const char* linted_kind_name(LintedKind kind);
+
+struct LintedFile {
+  std::string file;
+  LintedKind kind = LintedKind::kOther;
+  bool usable = false;
+  std::vector<LintFinding> findings;
+};
+
+/// Machine and measurement files in any mix and order: machines first, then each measurement against the
+/// first machine that could be read. Throws InputError for a file that cannot be opened. tool.
+std::vector<LintedFile> lint_files(const std::vector<std::string>& paths);
+
+}  // namespace vernier

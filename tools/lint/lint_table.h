@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <cstddef>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "tools/model/machine.h"
+
+namespace vernier {
+
+/// A column of a measurement file, whatever is wrong with it.
+struct LintColumn {
+  std::string name, unit;
+  bool label = false;         // words, not numbers
+  std::vector<double> value;  // in its base unit; NaN for an empty cell or a word
+  std::vector<std::string> cell;
+};
+
+/// A line that counts, as its fields.
+struct LintRow {
+  std::vector<std::string> cells;
+  std::size_t line = 0;
+};
+
+/// A measurement file as far as it can be read.
+struct LintTable {
+  std::size_t header_line = 0;
+  std::vector<LintColumn> columns;
+  std::vector<LintRow> rows;
+  const LintColumn* find(const std::string& name) const;
+};
+
+/// What names mean in a measurement file: of a machine, or of any where none is given (X Y Z A B C U V W J1
+/// …).
+class LintNames {
+ public:
+  explicit LintNames(const Machine* machine) : machine_(machine) {}
+  bool is_axis(const std::string& name) const;
+  /// Of a name that is an axis.
+  bool is_rotary(const std::string& name) const;
+  /// The axis behind a prefix ("dirX"); empty where it is none.
+  std::string axis_of(const std::string& name, const std::string& prefix) const;
+  /// The unit that a column of this name needs, as a base unit; "" none; "?" any.
+  std::string needed_unit(const std::string& name) const;
+  /// All names that mean something.
+  std::vector<std::string> known() const;
+
+ private:
+  const Machine* machine_;
+};
+
+/// x y z rx ry rz length d.
+const std::set<std::string>& reading_names();
+
+/// A file's name as it may stand in a command.
+std::string quoted_for_shell(const std::string& file);
+
+}  // namespace vernier

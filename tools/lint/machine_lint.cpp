@@ -1,0 +1,433 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/lint/machine_lint.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <set>
+
+#include "tools/model/machine_reader.h"
+#include "tools/text/numbers.h"
+#include "tools/text/similar.h"
+#include "tools/text/units.h"
+
+namespace vernier {
+namespace {
+
+/// A message of InputError in its parts.
+struct Problem {
+  std::size_t line = 0;
+  std::string word, what;
+  bool operator==(const Problem&) const = default;
+};
+
+Problem problem_of(const std::string& message, const std::string& file) {
+  Problem problem;
+  std::string rest = message.starts_with(file + ":") ? message.substr(file.size() + 1) : message;
+  std::size_t digits = 0;
+  while (digits < rest.size() && std::isdigit(static_cast<unsigned char>(rest[digits])) != 0) ++digits;
+  if (digits > 0 && rest.compare(digits, 2, ": ") == 0) {
+    problem.line = static_cast<std::size_t>(*parse_number(rest.substr(0, digits)));
+    rest = rest.substr(digits + 2);
+  }
+  const auto close = rest.find("\": ", 1);
+  if (rest.starts_with('"') && close != std::string::npos) {
+    problem.word = rest.substr(1, close - 1);
+    rest = rest.substr(close + 3);
+  }
+  problem.what = rest;
+  return problem;
+}
+
+bool has(const std::string& text, std::string_view part) { return text.find(part) != std::string::npos; }
+
+/// Takes one broken word out of a machine file so that the rest can be read.
+class Mend {
+ public:
+  Mend(std::string& text, const Problem& problem) : text_(text), problem_(problem) {
+    std::size_t line = 1;
+    while (line < problem.line && (begin_ = text.find('\n', begin_)) != std::string::npos) {
+      ++begin_;
+      ++line;
+    }
+    end_ = begin_ == std::string::npos ? begin_ : std::min(text.find('\n', begin_), text.size());
+  }
+
+  bool done() {
+    if (problem_.line == 0 || begin_ == std::string::npos) return false;
+    if (has(problem_.what, "needs a value")) return insert_value();
+    if (has(problem_.what, "attribute")) return remove_attribute(problem_.word);
+    if (has(problem_.what, "stations must increase")) return remove_station();
+    if (mend_value()) return true;
+    return remove_element(problem_.word);
+  }
+
+ private:
+  struct Attribute {
+    std::size_t begin = 0, value = 0, end = 0;  // of its name, its value, behind its closing quote
+    std::string name, text;
+  };
+
+  std::vector<Attribute> attributes() const {
+    std::vector<Attribute> list;
+    for (std::size_t at = begin_; at < end_; ++at) {
+      if (text_[at] != '=') continue;
+      const std::size_t open = text_.find_first_not_of(" \t", at + 1);
+      if (open == std::string::npos || (text_[open] != '"' && text_[open] != '\'')) continue;
+      const std::size_t close = text_.find(text_[open], open + 1);
+      const std::size_t last = text_.find_last_not_of(" \t", at - 1);
+      const std::size_t blank = text_.find_last_of(" \t\n<", last);
+      if (close == std::string::npos || blank == std::string::npos) continue;
+      list.push_back({blank + 1, open + 1, close + 1, text_.substr(blank + 1, last - blank),
+                      text_.substr(open + 1, close - open - 1)});
+      at = close;
+    }
+    return list;
+  }
+
+  bool remove_attribute(const std::string& name) {
+    std::vector<Attribute> list = attributes();
+    std::reverse(list.begin(), list.end());  // of two the second
+    for (const Attribute& one : list)
+      if (one.name == name) {
+        text_.erase(one.begin, one.end - one.begin);
+        return true;
+      }
+    return false;
+  }
+
+  bool mend_value() {
+    for (const Attribute& one : attributes()) {
+      if (problem_.word.empty() ? !one.text.empty() : !has(one.text, problem_.word)) continue;
+      static const std::set<std::string> kDroppable = {
+          "min",  "max",           "maxcorrection", "maxslew", "n",    "scale",    "nominal", "name",
+          "note", "interpolation", "rotary",        "fit",     "Hide", "rollover", "gravity"};
+      if (one.name == "axis" || one.name == "loc")
+        return remove_element(one.name == "axis" ? "table" : "station");
+      if (one.name == "branch" || one.name == "run") return false;
+      if (kDroppable.contains(one.name))
+        text_.erase(one.begin, one.end - one.begin);
+      else
+        text_.replace(one.value, one.end - 1 - one.value, "0");
+      return true;
+    }
+    return false;
+  }
+
+  /// Of several stations in one line the one at this position.
+  bool remove_station() {
+    const std::size_t at = text_.find("\"" + problem_.word + "\"", begin_);
+    if (at == std::string::npos || at >= end_) return false;
+    begin_ = text_.rfind('<', at);
+    return remove_element("station");
+  }
+
+  bool insert_value() {
+    const std::size_t at = text_.find("<" + problem_.word, begin_);
+    if (at == std::string::npos || at >= end_) return false;
+    text_.insert(at + 1 + problem_.word.size(), " value=\"0\"");
+    return true;
+  }
+
+  /// The element that begins in this line, with all that is in it; its lines stay, so that numbers stay
+  /// right.
+  bool remove_element(const std::string& name) {
+    const std::size_t at = name.empty() ? std::string::npos : text_.find("<" + name, begin_);
+    if (at == std::string::npos || at >= end_) return false;
+    const std::size_t tag_end = text_.find('>', at);
+    if (tag_end == std::string::npos) return false;
+    std::size_t last = tag_end + 1;
+    if (text_[tag_end - 1] != '/') {
+      const std::string closing = "</" + name + ">";
+      const std::size_t close = text_.find(closing, tag_end);
+      if (close == std::string::npos) return false;
+      last = close + closing.size();
+    }
+    for (std::size_t i = at; i < last; ++i)
+      if (text_[i] != '\n') text_[i] = ' ';
+    return true;
+  }
+
+  std::string& text_;
+  const Problem& problem_;
+  std::size_t begin_ = 0, end_ = 0;
+};
+
+/// Names that a file declares, for "did you mean".
+std::vector<std::string> names_in(const std::string& text) {
+  std::vector<std::string> names = {"sin", "cos",  "tan", "atan2", "sqrt", "abs",  "exp",
+                                    "log", "sign", "min", "max",   "lag",  "feed", "curv",
+                                    "nx",  "ny",   "nz",  "visit", "run",  "t"};
+  for (std::size_t at = 0; (at = text.find('<', at)) != std::string::npos;) {
+    std::size_t end = ++at;
+    while (end < text.size() &&
+           (std::isalnum(static_cast<unsigned char>(text[end])) != 0 || text[end] == '_'))
+      ++end;
+    if (end > at) names.push_back(text.substr(at, end - at));
+  }
+  return names;
+}
+
+std::string meaning_of(const Problem& problem, const std::string& text) {
+  const bool number = has(problem.what, "must be a number");
+  if (number && has(problem.word, ",")) return "decimal comma? Machine files have a decimal point";
+  if (number && !problem.word.empty()) {
+    std::size_t end = problem.word.find_first_not_of("0123456789.+-eE");
+    if (end != std::string::npos && end > 0 && parse_number(problem.word.substr(0, end)))
+      return "a unit stands in unit=\"…\", not behind the number; values are in mm and deg";
+  }
+  if (has(problem.what, "unknown name") || has(problem.what, "no such axis"))
+    if (const auto meant = word_meant(problem.word, names_in(text))) return "did you mean " + *meant + "?";
+  if (has(problem.what, "unknown attribute")) {
+    static const std::vector<std::string> kAttributes = {
+        "value", "nominal",       "unit",          "note",    "Hide",     "scale",       "rotary",
+        "min",   "max",           "maxcorrection", "maxslew", "rollover", "scalefactor", "reference",
+        "axis",  "interpolation", "fit",           "loc",     "branch",   "theta",       "alpha"};
+    if (const auto meant = word_meant(problem.word, kAttributes)) return "did you mean " + *meant + "?";
+  }
+  if (has(problem.what, "unknown element")) {
+    static const std::vector<std::string> kElements = {
+        "variables",  "static", "machineaxes", "inputs",    "comptables", "table", "station",
+        "transforms", "sixdof", "DH",          "BaseShift", "tools",      "volume"};
+    if (const auto meant = word_meant(problem.word, kElements)) return "did you mean " + *meant + "?";
+  }
+  if (has(problem.what, "stations must increase"))
+    return "stations stand in the order of their positions, each once";
+  return "";
+}
+
+/// What the transforms use.
+struct Used {
+  std::set<std::size_t> statics, axes, inputs, table_values;  // table_values: axis * 6 + column
+  bool feed = false;
+};
+
+Used used_by(const Machine& machine) {
+  Used used;
+  for (const auto* branch : {&machine.tool, &machine.workpiece})
+    for (const Transform& transform : *branch)
+      for (std::size_t i = 0; i < transform.dof_count(); ++i)
+        walk(*transform.dof[i], [&](const Expr& node) {
+          if (node.op != Op::kSymbol) return;
+          const auto [kind, index] = node.symbol;
+          if (kind == SymbolKind::kStatic) used.statics.insert(index);
+          if (kind == SymbolKind::kAxis) used.axes.insert(index);
+          if (kind == SymbolKind::kInput) used.inputs.insert(index);
+          if (kind == SymbolKind::kTableValue) used.table_values.insert(index);
+        });
+  return used;
+}
+
+/// What a broken term would have used: names in the text of the transforms.
+void add_words(Used& used, const Machine& machine, const std::string& text) {
+  std::string word;
+  for (std::size_t at = std::min(text.find("<transforms"), text.size()); at <= text.size(); ++at) {
+    const bool letter =
+        at < text.size() && (std::isalnum(static_cast<unsigned char>(text[at])) != 0 || text[at] == '_');
+    if (letter) {
+      word += text[at];
+      continue;
+    }
+    if (const auto found = machine.find_static(word)) used.statics.insert(*found);
+    if (const auto found = machine.find_input(word)) used.inputs.insert(*found);
+    // The axis X is a word of every sixdof too: its attribute.
+    if (const auto found = machine.find_axis(word); found && (at >= text.size() || text[at] != '='))
+      used.axes.insert(*found);
+    for (std::size_t axis = 0; axis < machine.axes.size(); ++axis)
+      for (std::size_t c = 0; c < 6; ++c)
+        if (word == fmt::format("{}{}{}", c < 3 ? "l" : "r", machine.axes[axis].name, "xyz"[c % 3]))
+          used.table_values.insert(axis * 6 + c);
+    word.clear();
+  }
+}
+
+class Oddities {
+ public:
+  Oddities(const Machine& machine, const std::string& text, bool broken_terms, LintFindings& findings)
+      : m_(machine), findings_(findings), used_(used_by(machine)) {
+    if (broken_terms) add_words(used_, machine, text);
+  }
+
+  void look() {
+    for (std::size_t i = 0; i < m_.statics.size(); ++i) look_at(m_.statics[i], i);
+    for (std::size_t i = 0; i < m_.axes.size(); ++i) look_at(m_.axes[i], i);
+    for (std::size_t i = 0; i < m_.inputs.size(); ++i) look_at(m_.inputs[i], i);
+    for (const Table& table : m_.tables) look_at(table);
+    if (m_.base_shifts.empty())
+      remark(0, "BaseShift", "there is none: the measuring frame is the machine's own",
+             "a tracker or CMM stands somewhere else; <BaseShift X=\"0\" …/> lets a fit find where");
+    std::set<std::string> runs;
+    for (const BaseShift& shift : m_.base_shifts)
+      if (shift.run && m_.base_shifts.size() == 1)
+        remark(shift.line, *shift.run, "this BaseShift is for one run only; rows of other runs have none");
+  }
+
+ private:
+  void warn(std::size_t line, const std::string& word, const std::string& what,
+            const std::string& meaning = "") {
+    findings_.add(LintWeight::kWarning, line, word, what, meaning);
+  }
+  void remark(std::size_t line, const std::string& word, const std::string& what,
+              const std::string& meaning = "") {
+    findings_.add(LintWeight::kRemark, line, word, what, meaning);
+  }
+
+  void look_at_unit(const std::string& name, const std::string& unit, std::size_t line, bool scales) {
+    if (unit.empty()) return;
+    const auto known = find_unit(unit);
+    if (!known) {
+      std::vector<std::string> units;
+      const std::string all = known_units();
+      for (std::size_t at = 0; at < all.size();) {
+        const std::size_t end = std::min(all.find(' ', at), all.size());
+        units.push_back(all.substr(at, end - at));
+        at = end + 1;
+      }
+      const bool inch = unit == "inch" || unit == "inches" || unit == "\"";
+      const auto meant = inch ? std::optional<std::string>("in") : word_meant(unit, units);
+      // "1/K", "mm/degC": units of coefficients are made of the known ones.
+      const bool composed = unit.find_first_of("/*^") != std::string::npos;
+      if (!composed)
+        warn(line, unit, "nobody knows this unit, of " + name, meant ? "did you mean " + *meant + "?" : "");
+      return;
+    }
+    const bool base = known->factor == 1 && known->offset == 0;
+    if (scales || base || unit == "rad" || unit == "um/m" || unit == "%") return;
+    if (known->dimension == Dimension::kLength || known->dimension == Dimension::kAngle)
+      warn(line, unit,
+           "a unit never scales the value of " + name + ": the chain takes it as " +
+               base_unit(known->dimension),
+           std::string("write the value in ") + base_unit(known->dimension) + ", or the factor in the term");
+  }
+
+  void look_at(const Static& item, std::size_t index) {
+    look_at_unit(item.name, item.unit, item.line, false);
+    if (!used_.statics.contains(index) && item.hidden)
+      findings_.add_of_kind("unused constant", LintWeight::kRemark, item.line, item.name,
+                            "no transform uses this constant", "one of several tools, or left over");
+    else if (!used_.statics.contains(index))
+      warn(item.line, item.name, "no transform uses this static", "forgotten in a term, or left over");
+    else if (!item.hidden && !item.nominal)
+      findings_.add_of_kind(
+          "nominal", LintWeight::kRemark, item.line, item.name,
+          "free, without nominal: fit takes its value for nominal and writes it, compile wants it",
+          "nominal is what the control believes, mostly 0 for an error");
+    if (!item.hidden && item.nominal && item.unit == "mm" && std::abs(item.value - *item.nominal) > 50)
+      warn(item.line, item.name,
+           fmt::format("{} mm off its nominal", number_text(item.value - *item.nominal)),
+           "µm written as mm?");
+  }
+
+  void look_at(const Axis& axis, std::size_t index) {
+    bool by_table = false;
+    for (std::size_t c = 0; c < 6; ++c) by_table |= used_.table_values.contains(index * 6 + c);
+    if (!used_.axes.contains(index))
+      warn(axis.line, axis.name,
+           by_table ? "no transform moves by this axis, though its table is used"
+                    : "no transform uses this axis",
+           "X=\"" + axis.name + "\" is missing in some sixdof, or the name differs");
+    if (!axis.min || !axis.max)
+      findings_.add_of_kind("travel", LintWeight::kRemark, axis.line, axis.name,
+                            "no min and max: compile and plan want the travel");
+    const bool turns = axis.name.size() == 1 && std::string("ABC").find(axis.name) != std::string::npos;
+    if (turns && !axis.rotary)
+      warn(axis.line, axis.name, "not marked as rotary: its positions are read as mm", "rotary=\"true\"?");
+    if (axis.min && axis.max && !axis.rotary) {
+      const double travel = *axis.max - *axis.min;
+      if (travel < 5)
+        warn(axis.line, axis.name, fmt::format("a travel of {} mm", number_text(travel)),
+             "metres or inches? Axes are in mm");
+      if (travel > 1e5)
+        warn(axis.line, axis.name, fmt::format("a travel of {} mm", number_text(travel)),
+             "µm? Axes are in mm");
+    }
+    if (axis.min && axis.max && axis.rotary && *axis.max - *axis.min < 7)
+      warn(axis.line, axis.name, fmt::format("turns by {} deg only", number_text(*axis.max - *axis.min)),
+           "radians? Angles are in deg");
+    if (axis.max_correction && *axis.max_correction > (axis.rotary ? 10 : 5))
+      warn(axis.line, axis.name,
+           fmt::format("maxcorrection of {} {}", number_text(*axis.max_correction),
+                       axis.rotary ? "deg" : "mm"),
+           "µm? It is in the axis' unit");
+    if (!axis.max_correction)
+      findings_.add_of_kind("maxcorrection", LintWeight::kRemark, axis.line, axis.name,
+                            "no maxcorrection: a board may add any amount to this axis");
+  }
+
+  void look_at(const Input& input, std::size_t index) {
+    look_at_unit(input.name, input.unit, input.line, true);
+    if (!used_.inputs.contains(index))
+      warn(input.line, input.name, "no transform uses this input", "a term is missing, or it may go");
+  }
+
+  void look_at(const Table& table) {
+    const Axis& axis = m_.axes[table.axis];
+    bool any = false;
+    for (std::size_t c = 0; c < 6; ++c) {
+      const bool used = used_.table_values.contains(table.axis * 6 + c);
+      any |= used;
+      if (!used && table.free[c])
+        warn(table.line, axis.name,
+             fmt::format("fit frees column {}, which no transform uses", kSixDofNames[c]),
+             fmt::format("{}{}{} is missing in some transform", c < 3 ? "l" : "r", axis.name, "xyz"[c % 3]));
+    }
+    if (!any)
+      warn(table.line, axis.name, "no transform uses this table",
+           fmt::format("l{0}x … r{0}z are its values", axis.name));
+    if (table.stations.empty() || !axis.min || !axis.max) return;
+    const double slack = 1e-6 * (*axis.max - *axis.min);
+    if (table.stations.front().loc > *axis.min + slack || table.stations.back().loc < *axis.max - slack)
+      remark(table.line, axis.name,
+             fmt::format("stations from {} to {}, travel from {} to {}: beyond its ends a table holds",
+                         number_text(table.stations.front().loc), number_text(table.stations.back().loc),
+                         number_text(*axis.min), number_text(*axis.max)));
+    if (table.stations.front().loc < *axis.min - slack || table.stations.back().loc > *axis.max + slack)
+      warn(table.line, axis.name, "stations outside the travel of the axis",
+           "another unit, or another axis?");
+  }
+
+  const Machine& m_;
+  LintFindings& findings_;
+  Used used_;
+};
+
+}  // namespace
+
+MachineLint lint_machine(const std::string& text, const std::string& file) {
+  constexpr std::size_t kMostProblems = 200;
+  MachineLint result;
+  LintFindings findings(file);
+  std::string mended = text;
+  std::vector<Problem> seen;
+  std::optional<Machine> machine;
+  bool broken_terms = false, all_read = false;
+  while (!all_read && seen.size() < kMostProblems) {
+    try {
+      machine = parse_machine(mended, file);
+      all_read = true;
+    } catch (const InputError& error) {
+      const Problem problem = problem_of(error.what(), file);
+      if (std::find(seen.begin(), seen.end(), problem) != seen.end()) break;
+      seen.push_back(problem);
+      findings.add(LintWeight::kError, problem.line, problem.word, problem.what, meaning_of(problem, text));
+      broken_terms |= has(problem.what, "=\"");
+      if (!Mend(mended, problem).done()) break;
+    }
+  }
+  if (!all_read)
+    findings.add(LintWeight::kRemark, 0, "", "what stands behind the last error was not looked at",
+                 "mend it and ask again");
+  if (machine) {
+    for (const std::string& note : machine->notes)
+      findings.add(LintWeight::kRemark, 0, "",
+                   note.starts_with(file + ":") ? "line " + note.substr(file.size() + 1) : note);
+    Oddities(*machine, text, broken_terms, findings).look();
+    if (seen.empty()) result.machine = std::move(machine);
+  }
+  result.findings = findings.take();
+  return result;
+}
+
+}  // namespace vernier

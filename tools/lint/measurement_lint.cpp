@@ -1,0 +1,413 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/lint/measurement_lint.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+
+#include "tools/lint/lint_table.h"
+#include "tools/lint/measurement_meaning.h"
+#include "tools/model/measurement.h"
+#include "tools/sheet/encoding.h"
+#include "tools/sheet/heading.h"
+#include "tools/sheet/sheet.h"
+#include "tools/sheet/sheet_number.h"
+#include "tools/text/csv.h"
+#include "tools/text/numbers.h"
+#include "tools/text/similar.h"
+#include "tools/text/units.h"
+#include "tools/text/words.h"
+
+namespace vernier {
+namespace {
+
+constexpr double kAbsent = std::numeric_limits<double>::quiet_NaN();
+
+std::string command(const std::string& file) {
+  const auto slash = file.rfind('/'), dot = file.rfind('.');
+  const std::string stem = file.substr(
+      0, dot == std::string::npos || (slash != std::string::npos && dot < slash) ? file.size() : dot);
+  return "vernier import table " + quoted_for_shell(file) + " -o " + quoted_for_shell(stem + "_read.csv");
+}
+
+class Look {
+ public:
+  Look(std::string bytes, const std::string& file, const Machine* machine)
+      : bytes_(std::move(bytes)),
+        text_(bytes_),
+        file_(file),
+        machine_(machine),
+        findings_(file),
+        names_(machine) {}
+
+  std::vector<LintFinding> all() {
+    if (look_at_bytes() && split() && look_at_header()) {
+      look_at_rows();
+      if (!table_.rows.empty()) look_at_meaning(table_, file_, machine_, findings_);
+    }
+    confirm();
+    return findings_.take();
+  }
+
+ private:
+  void error(std::size_t line, const std::string& word, const std::string& what,
+             const std::string& meaning = "") {
+    findings_.add(LintWeight::kError, line, word, what, meaning);
+  }
+  void warn(std::size_t line, const std::string& word, const std::string& what,
+            const std::string& meaning = "") {
+    findings_.add(LintWeight::kWarning, line, word, what, meaning);
+  }
+  void remark(std::size_t line, const std::string& word, const std::string& what,
+              const std::string& meaning = "") {
+    findings_.add(LintWeight::kRemark, line, word, what, meaning);
+  }
+
+  // ---- how it is written
+
+  bool look_at_bytes() {
+    if (is_workbook(text_))
+      return error(0, "", "a workbook (.xlsx), no measurement file", "read it: " + command(file_)), false;
+    if (text_.starts_with("\xD0\xCF\x11\xE0"))
+      return error(0, "", "a workbook of the old kind (.xls)",
+                   "save it as .xlsx or CSV, then vernier import table"),
+             false;
+    const Encoding encoding = encoding_of(text_);
+    if (encoding == Encoding::kUtf16Le || encoding == Encoding::kUtf16Be)
+      return error(0, "", std::string("written in ") + encoding_name(encoding), "read it: " + command(file_)),
+             false;
+    if (encoding == Encoding::kUtf8Bom) {
+      remark(1, "", "begins with a byte order mark", "it is read over");
+      text_ = text_.substr(3);
+    }
+    if (encoding == Encoding::kWindows1252) {
+      if (text_.find('\0') != std::string::npos) return error(0, "", "zero bytes: no text file"), false;
+      warn(0, "", "not UTF-8: letters beyond ASCII are of some other code page",
+           "µ and ° in units will not be understood; " + command(file_) + " reads it");
+      text_ = utf8_of(bytes_, encoding);
+    }
+    if (text_.find('\0') != std::string::npos) return error(0, "", "zero bytes: no text file"), false;
+    return true;
+  }
+
+  bool split() {
+    std::size_t number = 0;
+    std::vector<std::string> lines;
+    std::vector<std::size_t> numbers;
+    for (std::size_t at = 0; at < text_.size();) {
+      const std::size_t end = std::min(text_.find('\n', at), text_.size());
+      const std::string line = trimmed(text_.substr(at, end - at));
+      at = end + 1;
+      ++number;
+      if (line.empty() || line.front() == '#') continue;
+      lines.push_back(line);
+      numbers.push_back(number);
+    }
+    if (lines.empty()) return error(0, "", "nothing but remarks and empty lines"), false;
+    std::string joined_lines;
+    for (std::size_t i = 0; i < std::min<std::size_t>(lines.size(), 200); ++i)
+      joined_lines += lines[i] + "\n";
+    const char separator = guess_separator(joined_lines, "");
+    if (separator != ',' && lines.front().find(separator) != std::string::npos &&
+        lines.front().find(',') == std::string::npos && (separator != ' ' || lines.size() > 1)) {
+      error(numbers.front(), lines.front().substr(0, 30),
+            std::string("columns parted by ") + separator_word(separator) + ", not by comma",
+            "a spreadsheet or an instrument's table; read it: " + command(file_));
+      for (std::size_t i = 1; i < lines.size(); ++i)
+        for (const std::string& cell : parts_of(lines[i], separator == ' ' ? ' ' : separator))
+          if (decimal_sign_in(cell) == DecimalSign::kComma) {
+            error(numbers[i], cell, "a decimal comma", "that import reads it too");
+            return false;
+          }
+      return false;
+    }
+    for (std::size_t i = 0; i < lines.size(); ++i) try {
+        table_.rows.push_back({fields_of(lines[i], {}, {file_, numbers[i]}), numbers[i]});
+      } catch (const InputError& problem) {
+        error(numbers[i], lines[i].substr(0, 30), "a quote without its fellow",
+              "quotes go around a whole field, doubled inside");
+      }
+    if (table_.rows.empty()) return false;
+    header_ = table_.rows.front().cells;
+    table_.header_line = table_.rows.front().line;
+    table_.rows.erase(table_.rows.begin());
+    return true;
+  }
+
+  bool look_at_header() {
+    while (!header_.empty() && header_.back().empty()) {
+      header_.pop_back();
+      trailing_ = true;
+    }
+    if (trailing_)
+      error(table_.header_line, "", "commas at the end of the header",
+            "empty columns of a spreadsheet; read it: " + command(file_));
+    std::size_t numbers = 0;
+    for (const std::string& cell : header_) numbers += plain_number(cell, false).has_value() ? 1 : 0;
+    if (numbers * 2 > header_.size())
+      return error(table_.header_line, header_.front(), "a row of numbers where the header should be",
+                   "the first line names the columns: X[mm],x[mm],…"),
+             false;
+    std::set<std::string> seen;
+    std::vector<std::string> own;
+    const std::vector<std::string> known = names_.known();
+    for (const std::string& cell : header_) {
+      LintColumn column;
+      const auto open = cell.find('[');
+      column.name = trimmed(cell.substr(0, open));
+      const bool bracket = open != std::string::npos && cell.ends_with(']');
+      if (bracket) column.unit = trimmed(cell.substr(open + 1, cell.size() - open - 2));
+      if (!is_name(column.name) || (open != std::string::npos && !bracket)) {
+        const Heading heading = parse_heading(cell);
+        error(table_.header_line, cell,
+              cell.empty() ? "a column without a name"
+                           : "a column is name[unit], its name of letters, digits and _",
+              heading.unit.empty() ? ""
+                                   : "meant is " + name_from_words(heading.name) + "[" + heading.unit +
+                                         "]? " + command(file_) + " reads it so");
+        column.name = name_from_words(heading.name);
+        column.unit = heading.unit;
+      } else if (!column.unit.empty() && !find_unit(column.unit)) {
+        const auto meant = unit_meant(column.unit);
+        error(table_.header_line, column.unit, "nobody knows this unit",
+              meant ? "meant is " + *meant + "? " + command(file_) + " reads it so"
+                    : "known are " + known_units());
+        column.unit = meant.value_or("");
+      } else if (!bracket && !names_.needed_unit(column.name).empty() &&
+                 names_.needed_unit(column.name) != "?") {
+        error(
+            table_.header_line, column.name, "no unit",
+            "write " + column.name + "[" + names_.needed_unit(column.name) + "], or [um], [in], … as it is");
+        column.unit = names_.needed_unit(column.name);
+      } else if (!column.unit.empty() && names_.needed_unit(column.name) != "?") {
+        const std::string needs = names_.needed_unit(column.name);
+        if (needs.empty())
+          error(table_.header_line, cell, "a pure number or a word: it has no unit");
+        else if (find_unit(needs)->dimension != find_unit(column.unit)->dimension)
+          error(table_.header_line, cell, "this column needs a unit like " + needs);
+      }
+      if (!seen.insert(column.name).second)
+        error(table_.header_line, column.name, "this column stands twice");
+      column.label = column.name == "run" || column.name == "role" || column.name == "corrected";
+      if (names_.needed_unit(column.name) == "?" && column.name != "u" &&
+          std::find(known.begin(), known.end(), column.name) == known.end()) {
+        const auto meant = word_meant(column.name, known);
+        const bool nearly = meant && column.name.size() > 2 && letters_apart(column.name, *meant) <= 1;
+        if (nearly)
+          warn(table_.header_line, column.name, "a column that the machine does not know",
+               "did you mean " + *meant + "?");
+        else
+          own.push_back(column.name);
+      }
+      table_.columns.push_back(std::move(column));
+    }
+    if (!own.empty())
+      remark(table_.header_line, joined(own, ", "),
+             machine_ != nullptr ? "columns that the machine does not know: kept as candidates for diagnose"
+                                 : "columns of one's own: kept as candidates for diagnose");
+    look_for_columns();
+    return true;
+  }
+
+  /// What the header lacks.
+  void look_for_columns() {
+    const bool any = std::any_of(table_.columns.begin(), table_.columns.end(),
+                                 [](const LintColumn& c) { return reading_names().contains(c.name); });
+    if (!any)
+      error(table_.header_line, "", "no measured column (x y z rx ry rz length d)",
+            "small letters are what was measured, capitals where the machine was sent");
+    for (const char* name : {"length", "d"}) {
+      if (table_.find(name) == nullptr) continue;
+      for (const char* beside : name[0] == 'l' ? std::array{"cx", "cy", "cz", "cz", "cz", "cz"}
+                                               : std::array{"nx", "ny", "nz", "px", "py", "pz"})
+        if (table_.find(beside) == nullptr) {
+          findings_.add_of_kind(std::string("beside ") + beside, LintWeight::kError, table_.header_line, name,
+                                std::string("this column needs ") + beside + " beside it");
+        }
+    }
+    if (machine_ == nullptr) return;
+    for (const Axis& axis : machine_->axes)
+      if (table_.find(axis.name) == nullptr) {
+        std::vector<std::string> names;
+        for (const LintColumn& column : table_.columns) names.push_back(column.name);
+        const auto meant = word_meant(axis.name, names);
+        error(table_.header_line, axis.name, "the column of this axis is missing",
+              meant && letters_apart(axis.name, *meant) == 0
+                  ? "there is " + *meant + ": names have capitals where the machine file has them"
+                  : "");
+      }
+    look_for_motion();
+  }
+
+  /// Motion that the machine's terms live on and that no column gives: it is then 0 in all rows.
+  void look_for_motion() {
+    std::set<std::string> wanted;
+    bool lag = false;
+    for (const auto* branch : {&machine_->tool, &machine_->workpiece})
+      for (const Transform& transform : *branch)
+        for (std::size_t i = 0; i < transform.dof_count(); ++i)
+          walk(*transform.dof[i], [&](const Expr& node) {
+            lag |= node.op == Op::kLag;
+            if (node.op != Op::kSymbol) return;
+            switch (node.symbol.kind) {
+              case SymbolKind::kVelocity:
+              case SymbolKind::kAcceleration:
+              case SymbolKind::kDirection:
+              case SymbolKind::kSince:
+              case SymbolKind::kFeed:
+              case SymbolKind::kCurvature:
+              case SymbolKind::kNormal:
+              case SymbolKind::kTime:
+                wanted.insert(node.name);
+                break;
+              default:
+                break;
+            }
+          });
+    if (lag) wanted.insert("t");
+    for (const std::string& name : wanted)
+      if (table_.find(name) == nullptr)
+        warn(table_.header_line, name,
+             "a term of the machine file needs this column; without it it is 0 in all rows and the term "
+             "cannot be seen",
+             "log it, or hold the term in the fit");
+    for (const Input& input : machine_->inputs)
+      if (table_.find(input.name) == nullptr)
+        warn(table_.header_line, input.name,
+             fmt::format("no column for this input: it is {} in all rows", number_text(input.reference)));
+  }
+
+  // ---- its rows
+
+  void look_at_rows() {
+    std::vector<LintRow> kept;
+    for (LintRow& row : table_.rows) {
+      const std::size_t width = table_.columns.size();
+      const bool tail = row.cells.size() > width &&
+                        std::all_of(row.cells.begin() + static_cast<std::ptrdiff_t>(width), row.cells.end(),
+                                    [](const std::string& cell) { return cell.empty(); });
+      if (tail && !trailing_)
+        findings_.add_of_kind("trailing", LintWeight::kError, row.line, "", "commas at the end of the row",
+                              "empty columns of a spreadsheet; read it: " + command(file_));
+      if (tail) row.cells.resize(width);
+      if (std::all_of(row.cells.begin(), row.cells.end(),
+                      [](const std::string& cell) { return cell.empty(); })) {
+        findings_.add_of_kind("hollow", LintWeight::kError, row.line, "", "a row of nothing but commas",
+                              "take it away; " + command(file_) + " does");
+        continue;
+      }
+      if (row.cells.size() != width) {
+        const bool more = row.cells.size() > width;
+        findings_.add_of_kind(more ? "wide" : "narrow", LintWeight::kError, row.line,
+                              joined(row.cells, ",").substr(0, 30),
+                              fmt::format("{} fields where the header has {}", row.cells.size(), width),
+                              more ? "decimal commas? Numbers have a decimal point here"
+                                   : "a line that was cut, or a field without its comma");
+        continue;
+      }
+      kept.push_back(std::move(row));
+    }
+    table_.rows = std::move(kept);
+    if (table_.rows.empty()) return error(table_.header_line, "", "no row below the header that can be read");
+    for (std::size_t k = 0; k < table_.columns.size(); ++k) read_column(k);
+  }
+
+  void read_column(std::size_t k) {
+    LintColumn& column = table_.columns[k];
+    const auto unit = find_unit(column.unit);
+    std::size_t words = 0;
+    for (const LintRow& row : table_.rows)
+      words += !row.cells[k].empty() && !parse_number(row.cells[k]) ? 1 : 0;
+    // Words in most rows of a column of one's own: labels, not numbers gone wrong.
+    const bool own = names_.needed_unit(column.name) == "?" && column.name != "u";
+    if (own && 2 * words > table_.rows.size()) {
+      column.label = true;
+      remark(table_.header_line, column.name, "a column of words",
+             "numbers can explain an error, words only tell rows apart");
+    }
+    for (const LintRow& row : table_.rows) {
+      const std::string& cell = row.cells[k];
+      column.cell.push_back(cell);
+      column.value.push_back(kAbsent);
+      if (column.label || cell.empty()) continue;
+      const auto number = parse_number(cell);
+      if (number) {
+        column.value.back() = (unit ? unit->factor : 1) * *number + (unit ? unit->offset : 0);
+        continue;
+      }
+      std::string meaning = "an empty cell is a reading that is missing";
+      if (plain_number(cell, true))
+        meaning = "decimal comma? " + command(file_) + " reads it";
+      else if (plain_number(cell, false))
+        meaning = "a sign between thousands? Write the number without";
+      else if (!names_.axis_of(column.name, "dir").empty())
+        meaning = "a direction is 1, -1 or 0";
+      findings_.add_of_kind("number " + column.name, LintWeight::kError, row.line, cell,
+                            "not a number, in column " + column.name, meaning);
+    }
+  }
+
+  /// What a fit says of the file, where nothing above has said it.
+  void confirm() {
+    if (machine_ == nullptr || findings_.any(LintWeight::kError)) return;
+    try {
+      parse_measurement(bytes_, file_, *machine_, [](Measurement&, const Machine&, const std::string&) {});
+    } catch (const InputError& problem) {
+      const std::string message = problem.what();
+      error(0, "", message.starts_with(file_ + ":") ? "line " + message.substr(file_.size() + 1) : message);
+    }
+  }
+
+  const std::string bytes_;  // as a fit would read them
+  std::string text_;         // without mark, in UTF-8
+  const std::string& file_;
+  const Machine* machine_;
+  LintFindings findings_;
+  LintNames names_;
+  std::vector<std::string> header_;  // its fields
+  LintTable table_;
+  bool trailing_ = false;
+};
+
+}  // namespace
+
+std::vector<LintFinding> lint_measurement(const std::string& bytes, const std::string& file,
+                                          const Machine* machine) {
+  return Look(bytes, file, machine).all();
+}
+
+std::string import_command_for(const std::string& bytes, const std::string& file) {
+  if (is_workbook(bytes)) return command(file);
+  const Encoding encoding = encoding_of(bytes);
+  if (encoding == Encoding::kUtf16Le || encoding == Encoding::kUtf16Be) return command(file);
+  try {
+    const Sheet sheet = read_sheet(bytes, file);
+    const SheetTable table = parts_of_sheet(sheet);
+    if (!table.has_headings) return "";
+    bool odd = sheet.separator != ',' || sheet.decimal_comma || table.units_row > 0 ||
+               encoding == Encoding::kWindows1252;
+    for (const std::string& cell : sheet.rows[table.heading_row]) {
+      const auto open = cell.find('[');
+      const std::string name = trimmed(cell.substr(0, open));
+      odd |= !is_name(name) || (open != std::string::npos &&
+                                !find_unit(trimmed(cell.substr(open + 1, cell.size() - open - 2))));
+      odd |= open == std::string::npos && !parse_heading(cell).unit.empty();
+    }
+    // Trailing separators leave columns that a sheet has dropped already.
+    const auto heading = static_cast<std::ptrdiff_t>(sheet.line[table.heading_row]);
+    std::size_t at = 0;
+    for (std::ptrdiff_t line = 1; line < heading && at != std::string::npos; ++line)
+      at = bytes.find('\n', at) + 1;
+    odd |= trimmed(bytes.substr(at, bytes.find('\n', at) - at)).ends_with(',');
+    return odd ? command(file) : "";
+  } catch (const InputError&) {
+    return "";
+  }
+}
+
+}  // namespace vernier

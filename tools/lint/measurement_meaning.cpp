@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/lint/measurement_meaning.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "tools/text/numbers.h"
+#include "tools/text/similar.h"
+#include "tools/text/units.h"
+
+namespace vernier {
+namespace {
+
+class Meaning {
+ public:
+  Meaning(const LintTable& table, const std::string& file, const Machine* machine, LintFindings& findings)
+      : table_(table), file_(file), machine_(machine), names_(machine), findings_(findings) {}
+
+  void look() {
+    for (const LintColumn& column : table_.columns) look_at_column(column);
+    look_at_labels();
+    look_at_time();
+    look_at_normals();
+    look_at_repeats();
+    look_at_scale();
+  }
+
+ private:
+  void look_at_column(const LintColumn& column) {
+    if (column.label) return;
+    const bool reading = reading_names().contains(column.name);
+    double least = std::numeric_limits<double>::infinity(), most = -least;
+    std::size_t filled = 0;
+    for (std::size_t row = 0; row < table_.rows.size(); ++row) {
+      const double value = column.value[row];
+      if (column.cell[row].empty() && names_.is_axis(column.name))
+        findings_.add_of_kind("empty " + column.name, LintWeight::kError, line(row), column.name,
+                              "an axis position may not be empty");
+      if (column.cell[row].empty() && (column.name == "u" || column.name == "t"))
+        findings_.add_of_kind("empty " + column.name, LintWeight::kError, line(row), column.name,
+                              "this column may not have empty cells");
+      if (std::isnan(value)) continue;
+      ++filled;
+      least = std::min(least, value);
+      most = std::max(most, value);
+      if (!names_.axis_of(column.name, "dir").empty() && value != -1 && value != 0 && value != 1)
+        findings_.add_of_kind("dir " + column.name, LintWeight::kError, line(row), column.cell[row],
+                              "a direction is 1, -1 or 0");
+      if (column.name == "u" && value <= 0)
+        findings_.add_of_kind("u", LintWeight::kError, line(row), column.cell[row],
+                              "an uncertainty is greater than 0");
+      if (column.name == "length" && value < 0)
+        findings_.add_of_kind("length", LintWeight::kError, line(row), column.cell[row],
+                              "a length is not negative");
+    }
+    if (filled == 0) {
+      const bool template_cells = reading;
+      findings_.add(LintWeight::kWarning, table_.header_line, column.name, "all cells are empty",
+                    template_cells ? "a template that is still to be filled in?" : "");
+      return;
+    }
+    if (reading) any_reading_ = true;
+    if (names_.is_axis(column.name)) look_at_axis(column, least, most);
+    if (column.name == "feed" && most <= 0)
+      warn(table_.header_line, "feed", "the feed is 0 in all rows",
+           "lag and dynamic effects show only while the machine moves");
+    if (column.name == "u" && most > 1)
+      warn(table_.header_line, "u", fmt::format("an uncertainty of {} mm", number_text(most)),
+           "µm? Write u[um]");
+    if (find_unit(column.unit) && find_unit(column.unit)->dimension == Dimension::kTemperature &&
+        (least < -40 || most > 120))
+      warn(table_.header_line, column.name, fmt::format("from {:.4g} to {:.4g} degC", least, most),
+           "K or another unit?");
+  }
+
+  void look_at_axis(const LintColumn& column, double least, double most) {
+    const bool turns = names_.is_rotary(column.name);
+    const char* const unit = turns ? "deg" : "mm";
+    if (most - least < 1e-9)
+      warn(table_.header_line, column.name,
+           fmt::format("axis {} never moves: it stands at {} {} in all rows", column.name, number_text(least),
+                       unit),
+           "its errors cannot be told from the set-up's");
+    if (machine_ == nullptr) return;
+    const Axis& axis = machine_->axes[*machine_->find_axis(column.name)];
+    if (!axis.min || !axis.max) return;
+    const double travel = *axis.max - *axis.min, slack = 0.01 * travel;
+    std::size_t outside = 0, first = 0;
+    for (std::size_t row = 0; row < table_.rows.size(); ++row)
+      if (column.value[row] < *axis.min - slack || column.value[row] > *axis.max + slack)
+        if (outside++ == 0) first = row;
+    const auto close = [&](double factor) {
+      return least * factor >= *axis.min - slack && most * factor <= *axis.max + slack &&
+             (most - least) * factor > 0.2 * travel;
+    };
+    if (outside > 0) {
+      std::string meaning = "another machine, or another zero?";
+      if (close(1e-3)) meaning = "µm read as mm?";
+      if (close(1 / 25.4)) meaning = "";
+      if (turns && close(1.0 / 3600)) meaning = "arcsec read as deg?";
+      warn(line(first), column.cell[first],
+           fmt::format("{} is outside the travel of {} to {} {} in {} of {} rows", column.name,
+                       number_text(*axis.min), number_text(*axis.max), unit, outside, table_.rows.size()),
+           meaning);
+    } else if (most - least > 1e-9 && most - least < 0.05 * travel) {
+      std::string meaning;
+      if (!turns && close(25.4)) meaning = "inch read as mm?";
+      if (!turns && close(1e3)) meaning = "m read as mm?";
+      if (turns && close(180 / std::acos(-1.0))) meaning = "rad read as deg?";
+      findings_.add(meaning.empty() ? LintWeight::kRemark : LintWeight::kWarning, table_.header_line,
+                    column.name,
+                    fmt::format("moves over {:.3g} of {:.4g} {} only", most - least, travel, unit), meaning);
+    }
+  }
+
+  void look_at_labels() {
+    std::size_t check = 0;
+    if (const LintColumn* role = table_.find("role"))
+      for (std::size_t row = 0; row < table_.rows.size(); ++row) {
+        const std::string& word = role->cell[row];
+        if (word != "fit" && word != "check" && !word.empty()) {
+          const auto meant = word_meant(word, {"fit", "check"});
+          findings_.add_of_kind("role", LintWeight::kError, line(row), word, "a role is fit or check",
+                                meant ? "did you mean " + *meant + "?" : "");
+        }
+        check += word == "check" ? 1 : 0;
+      }
+    if (check == table_.rows.size())
+      warn(table_.header_line, "role", "all rows are check rows: nothing is left for a fit");
+    if (check == 0)
+      remark(table_.header_line, "role", "no check rows: nothing will judge the fit",
+             "give some rows the role check, spread over the volume");
+    if (table_.find("u") == nullptr)
+      remark(table_.header_line, "u",
+             "no standard uncertainty: the noise is taken from repeats, else from the residual",
+             "a column u[um], the instrument's");
+    if (!any_reading_)
+      error(table_.header_line, "", "no reading in any row", "a template that is still to be filled in?");
+  }
+
+  void look_at_time() {
+    const LintColumn *time = table_.find("t"), *run = table_.find("run");
+    if (time == nullptr) return;
+    std::map<std::string, std::size_t> last;
+    for (std::size_t row = 0; row < table_.rows.size(); ++row) {
+      if (std::isnan(time->value[row])) continue;
+      const std::string label = run == nullptr ? "" : run->cell[row];
+      const auto before = last.find(label);
+      if (before != last.end() && time->value[row] < time->value[before->second])
+        findings_.add_of_kind(
+            "time " + label, LintWeight::kWarning, line(row), time->cell[row],
+            fmt::format("t falls in {}: {} s after {} s",
+                        label.empty() ? std::string("this file") : "run " + label,
+                        number_text(time->value[row]), number_text(time->value[before->second])),
+            "rows are in the order of time; a new set-up or clock is a new run");
+      last[label] = row;
+    }
+  }
+
+  void look_at_normals() {
+    const LintColumn *nx = table_.find("nx"), *ny = table_.find("ny"), *nz = table_.find("nz"),
+                     *d = table_.find("d");
+    if (nx == nullptr || ny == nullptr || nz == nullptr) return;
+    for (std::size_t row = 0; row < table_.rows.size(); ++row) {
+      if (d != nullptr && std::isnan(d->value[row])) continue;
+      const double size = std::hypot(nx->value[row], ny->value[row], nz->value[row]);
+      if (std::isnan(size) || std::abs(size - 1) <= 0.01) continue;
+      findings_.add_of_kind("normal", d != nullptr ? LintWeight::kError : LintWeight::kWarning, line(row),
+                            nx->cell[row],
+                            fmt::format("nx ny nz is no unit vector: its length is {:.4g}", size));
+    }
+  }
+
+  void look_at_repeats() {
+    std::map<std::vector<std::string>, std::size_t> seen;
+    for (std::size_t row = 0; row < table_.rows.size(); ++row) {
+      const auto [first, fresh] = seen.emplace(table_.rows[row].cells, row);
+      if (!fresh)
+        findings_.add_of_kind("twice", LintWeight::kWarning, line(row), "",
+                              fmt::format("the same row as line {}, to the last digit", line(first->second)),
+                              "copied twice? It would count as two readings");
+    }
+  }
+
+  /// Are measured points as far apart as the machine was sent? A factor of 1000 or 25.4 is a unit.
+  void look_at_scale() {
+    double measured = 0, sent = 0;
+    std::size_t used = 0;
+    for (const char letter : {'x', 'y', 'z'}) {
+      const LintColumn* point = table_.find(std::string(1, letter));
+      const LintColumn* position = table_.find(std::string(1, static_cast<char>(std::toupper(letter))));
+      if (point == nullptr || position == nullptr) continue;
+      double mean_p = 0, mean_q = 0, count = 0;
+      for (std::size_t row = 0; row < table_.rows.size(); ++row)
+        if (!std::isnan(point->value[row]) && !std::isnan(position->value[row])) {
+          mean_p += point->value[row];
+          mean_q += position->value[row];
+          count += 1;
+        }
+      if (count < 3) continue;
+      for (std::size_t row = 0; row < table_.rows.size(); ++row)
+        if (!std::isnan(point->value[row]) && !std::isnan(position->value[row])) {
+          measured += std::pow(point->value[row] - mean_p / count, 2);
+          sent += std::pow(position->value[row] - mean_q / count, 2);
+        }
+      ++used;
+    }
+    // Where turning axes swing the tool, travel of the slides says nothing about the points.
+    for (const LintColumn& column : table_.columns)
+      if (names_.is_axis(column.name) && names_.is_rotary(column.name)) return;
+    if (used == 0 || sent < 1 || measured <= 0) return;
+    const double ratio = std::sqrt(measured / sent);
+    const auto near = [&](double factor) { return std::abs(ratio / factor - 1) < 0.15; };
+    std::string meaning;
+    if (near(1e3)) meaning = "the readings are in µm, or the positions in m?";
+    if (near(1e-3)) meaning = "the readings are in m, or the positions in µm?";
+    if (near(25.4)) meaning = "the positions are in inch?";
+    if (near(1 / 25.4)) meaning = "the readings are in inch?";
+    if (meaning.empty() && ratio < 0.02)
+      meaning = "deviations instead of positions? vernier import table " + quoted_for_shell(file_) +
+                " --deviation \"X[mm]=x\" … adds them to the positions";
+    if (!meaning.empty())
+      warn(table_.header_line, "x",
+           fmt::format("what was measured spreads over {:.4g} of what the machine was sent", ratio), meaning);
+  }
+
+  void error(std::size_t line, const std::string& word, const std::string& what,
+             const std::string& meaning = "") {
+    findings_.add(LintWeight::kError, line, word, what, meaning);
+  }
+  void warn(std::size_t line, const std::string& word, const std::string& what,
+            const std::string& meaning = "") {
+    findings_.add(LintWeight::kWarning, line, word, what, meaning);
+  }
+  void remark(std::size_t line, const std::string& word, const std::string& what,
+              const std::string& meaning = "") {
+    findings_.add(LintWeight::kRemark, line, word, what, meaning);
+  }
+  std::size_t line(std::size_t row) const { return table_.rows[row].line; }
+
+  const LintTable& table_;
+  const std::string& file_;
+  const Machine* machine_;
+  LintNames names_;
+  LintFindings& findings_;
+  bool any_reading_ = false;
+};
+
+}  // namespace
+
+void look_at_meaning(const LintTable& table, const std::string& file, const Machine* machine,
+                     LintFindings& findings) {
+  Meaning(table, file, machine, findings).look();
+}
+
+}  // namespace vernier

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <string>
+
+#include "tools/lint/finding.h"
+#include "tools/lint/lint_table.h"
+
+namespace vernier {
+
+/// What the numbers of a measurement file say, where its form can be read: axes that never move or leave
+/// their travel, units that do not go together, time that falls, rows twice, roles, normals. machine may be
+/// null. tool.
+void look_at_meaning(const LintTable& table, const std::string& file, const Machine* machine,
+                     LintFindings& findings);
+
+}  // namespace vernier

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/plan/advice.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "tools/plan/plan.h"
+#include "tools/plan/uneven.h"
+#include "tools/text/error.h"
+
+namespace vernier {
+
+std::vector<std::string> advice_for(const std::string& text, const Machine& machine, const Measurement& m,
+                                    const Diagnosis& d, const std::vector<Effect>& effects) {
+  if (d.verdict != Verdict::kAmbiguous || d.candidates.empty()) return {};
+  const CandidateFinding& first = d.candidates.front();
+  const std::string& id = first.candidate.choice.effect->id;
+  // A finding is not lost because no advice can be made of it.
+  const auto advice = [&](const std::string& a, const std::string& b) -> std::vector<std::string> {
+    try {
+      return next_measurement(text, machine, m, a, b, effects);
+    } catch (const InputError& error) {
+      return {fmt::format("no advice on {} against {}: {}", a, b, error.what())};
+    }
+  };
+  std::vector<std::string> uneven;
+  for (const CandidateFinding& one : d.candidates)
+    if (!one.aliases.empty()) uneven.push_back(uneven_sentence(machine, m, one));
+  if (!uneven.empty()) return uneven;
+  for (const CandidateFinding& other : d.candidates) {
+    const auto& names = other.confounded_with;
+    if (&other == &first || std::find(names.begin(), names.end(), id) == names.end()) continue;
+    return advice(first.add, other.add);
+  }
+  if (first.confounded_with.empty()) return {};
+  return advice(first.add, first.confounded_with.front());
+}
+
+}  // namespace vernier

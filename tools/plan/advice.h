@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <string>
+#include <vector>
+
+#include "tools/diagnose/diagnosis.h"
+#include "tools/effects/catalogue.h"
+#include "tools/model/measurement.h"
+
+namespace vernier {
+
+/// What to measure next where the first candidate of an ambiguous diagnosis and one that it is confounded
+/// with explain the rows alike; empty where nothing is to be told apart. text: the machine file's. tool.
+std::vector<std::string> advice_for(const std::string& text, const Machine& machine,
+                                    const Measurement& measurement, const Diagnosis& diagnosis,
+                                    const std::vector<Effect>& effects);
+
+}  // namespace vernier

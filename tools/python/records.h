@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <pybind11/pybind11.h>
+
+#include <nlohmann/json.hpp>
+
+namespace vernier {
+
+/// JSON as Python has it: null None, lists, numbers, text; an object is a dict whose keys are attributes too
+/// (class `Record` of the module). tool.
+pybind11::object python_of(const nlohmann::ordered_json& json, const pybind11::object& record_class);
+
+/// Makes that class. tool.
+pybind11::object make_record_class();
+
+}  // namespace vernier

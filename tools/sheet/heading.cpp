@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/sheet/heading.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <utility>
+
+#include "tools/sheet/sheet_number.h"
+#include "tools/text/error.h"
+#include "tools/text/units.h"
+#include "tools/text/words.h"
+
+namespace vernier {
+namespace {
+
+std::string lower(std::string_view text) {
+  std::string result(text);
+  std::transform(result.begin(), result.end(), result.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return result;
+}
+
+/// Words for units in the languages of shop floors, in small letters, after the signs are spelled out.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 52> kUnitWords = {{
+    {"millimeter", "mm"},
+    {"millimetre", "mm"},
+    {"millimeters", "mm"},
+    {"millimetres", "mm"},
+    {"micron", "um"},
+    {"microns", "um"},
+    {"micrometer", "um"},
+    {"micrometre", "um"},
+    {"mikrometer", "um"},
+    {"mikron", "um"},
+    {"my", "um"},
+    {"meter", "m"},
+    {"metre", "m"},
+    {"inch", "in"},
+    {"inches", "in"},
+    {"zoll", "in"},
+    {"\"", "in"},
+    {"degree", "deg"},
+    {"degrees", "deg"},
+    {"grad", "deg"},
+    {"radian", "rad"},
+    {"radians", "rad"},
+    {"arc sec", "arcsec"},
+    {"arcseconds", "arcsec"},
+    {"arcsecond", "arcsec"},
+    {"winkelsekunden", "arcsec"},
+    {"as", "arcsec"},
+    {"celsius", "degC"},
+    {"deg c", "degC"},
+    {"grad c", "degC"},
+    {"grad celsius", "degC"},
+    {"c", "degC"},
+    {"kelvin", "K"},
+    {"sec", "s"},
+    {"second", "s"},
+    {"seconds", "s"},
+    {"sek", "s"},
+    {"sekunden", "s"},
+    {"msec", "ms"},
+    {"minutes", "min"},
+    {"minuten", "min"},
+    {"mm/sec", "mm/s"},
+    {"mm/minute", "mm/min"},
+    {"mmpm", "mm/min"},
+    {"u/min", "rpm"},
+    {"1/min", "rpm"},
+    {"min-1", "rpm"},
+    {"percent", "%"},
+    {"prozent", "%"},
+    {"ampere", "A"},
+    {"ppm", "um/m"},
+    {"volt", "V"},
+}};
+
+std::string without_brackets(std::string text) {
+  text = trimmed(text);
+  const std::string open = "[(<{", close = "])>}";
+  if (text.size() >= 2 && open.find(text.front()) != std::string::npos &&
+      open.find(text.front()) == close.find(text.back()))
+    return trimmed(text.substr(1, text.size() - 2));
+  return text;
+}
+
+bool is_numeric(const std::string& cell, const Sheet& sheet) {
+  return plain_number(cell, sheet.decimal_comma).has_value();
+}
+
+/// A row of data: as many numbers as words, and at least one.
+bool is_data(const Sheet& sheet, std::size_t row) {
+  std::size_t numbers = 0, filled = 0;
+  for (const std::string& cell : sheet.rows[row]) {
+    filled += cell.empty() ? 0 : 1;
+    numbers += !cell.empty() && is_numeric(cell, sheet) ? 1 : 0;
+  }
+  return numbers > 0 && 2 * numbers >= filled && (numbers > 1 || filled == 1 || sheet.rows[row].size() <= 2);
+}
+
+/// A row of nothing but units, at least two of them (or all of a narrow table).
+bool is_units(const std::vector<std::string>& row) {
+  std::size_t units = 0;
+  for (const std::string& cell : row) {
+    if (cell.empty() || cell == "-" || cell == "[-]") continue;
+    if (!unit_meant(cell)) return false;
+    ++units;
+  }
+  return units >= std::min<std::size_t>(2, row.size());
+}
+
+}  // namespace
+
+std::optional<std::string> unit_meant(std::string_view word) {
+  const std::string bare = without_brackets(usual_spelling(word));
+  if (bare.empty()) return std::nullopt;
+  if (const auto unit = find_unit(bare)) return std::string(unit->name);
+  std::string small = lower(bare);
+  if (small.ends_with('.')) small.pop_back();
+  for (const auto& [text, unit] : kUnitWords)
+    if (small == text) return std::string(unit);
+  // Capital letters where none belong: MM, Sec. Not for a single one: A is no a, M no m.
+  if (bare.size() > 1)
+    if (const auto unit = find_unit(small)) return std::string(unit->name);
+  return std::nullopt;
+}
+
+Heading parse_heading(std::string_view cell) {
+  Heading heading;
+  heading.text = trimmed(cell);
+  heading.name = heading.text;
+  const std::string& text = heading.text;
+  const auto take = [&](std::size_t begin, std::size_t end, std::size_t name_end) {
+    const std::string word = trimmed(text.substr(begin, end - begin));
+    if (const auto unit = unit_meant(word))
+      heading.unit = *unit;
+    else
+      return false;
+    heading.name = trimmed(text.substr(0, name_end));
+    while (!heading.name.empty() && std::string("/,;:-").find(heading.name.back()) != std::string::npos)
+      heading.name = trimmed(heading.name.substr(0, heading.name.size() - 1));
+    return !heading.name.empty();
+  };
+  for (const auto& [open, close] : {std::pair('[', ']'), std::pair('(', ')'), std::pair('<', '>')}) {
+    const auto begin = text.rfind(open), end = text.rfind(close);
+    if (begin == std::string::npos || end == std::string::npos || end < begin || begin == 0) continue;
+    if (take(begin + 1, end, begin)) {
+      heading.name = trimmed(heading.name + " " + text.substr(end + 1));
+      return heading;
+    }
+    if (open == '[') {
+      heading.unknown_unit = trimmed(text.substr(begin + 1, end - begin - 1));
+      heading.name = trimmed(text.substr(0, begin));
+    }
+  }
+  for (const std::string_view between : {" in ", " ", "/", ",", "_"}) {
+    const auto at = text.rfind(between);
+    // Behind a blank or _ stands a name's own word more often than a unit: only what no name would end in.
+    const std::string rest = at == std::string::npos ? "" : trimmed(text.substr(at + between.size()));
+    const bool weak = between == " " || between == "_";
+    if (rest.empty() || at == 0 || (weak && (rest.size() < 2 || lower(rest) == "min"))) continue;
+    if (take(at + between.size(), text.size(), at)) return heading;
+  }
+  return heading;
+}
+
+SheetTable parts_of_sheet(const Sheet& sheet) {
+  SheetTable table;
+  std::size_t first = 0;
+  while (first < sheet.rows.size() && !is_data(sheet, first)) ++first;
+  if (first == sheet.rows.size())
+    throw InputError({sheet.file, sheet.line.front()}, "", "no row of this table holds numbers");
+  table.first_data = first;
+  std::size_t heading = first;
+  if (heading > 0 && is_units(sheet.rows[heading - 1])) table.units_row = --heading;
+  if (heading > 0) {
+    table.has_headings = true;
+    table.heading_row = heading - 1;
+  } else {
+    table.units_row = 0;
+  }
+  if (table.has_headings && sheet.separator == ',' && !sheet.workbook) {
+    const auto filled = [&](std::size_t row) {
+      return std::count_if(sheet.rows[row].begin(), sheet.rows[row].end(),
+                           [](const auto& cell) { return !cell.empty(); });
+    };
+    if (filled(first) > filled(table.heading_row))
+      throw InputError(
+          {sheet.file, sheet.line[first]}, joined(sheet.rows[first], ",").substr(0, 30),
+          "more fields than headings: decimal commas in a table that commas part? Save it with semicolons");
+  }
+  for (std::size_t k = 0; k < sheet.rows.front().size(); ++k) {
+    const std::string& cell = table.has_headings ? sheet.rows[table.heading_row][k] : "";
+    Heading one = parse_heading(cell);
+    if (one.text.empty()) one.text = one.name = std::to_string(k + 1);
+    if (table.units_row != 0)
+      if (const auto unit = unit_meant(sheet.rows[table.units_row][k])) one.unit = *unit;
+    table.headings.push_back(std::move(one));
+  }
+  return table;
+}
+
+std::string name_from_words(std::string_view words) {
+  static const std::vector<std::pair<std::string, std::string>> kLetters = {
+      {"ä", "ae"}, {"ö", "oe"}, {"ü", "ue"}, {"Ä", "Ae"}, {"Ö", "Oe"}, {"Ü", "Ue"}, {"ß", "ss"},
+      {"é", "e"},  {"è", "e"},  {"Δ", "d"},  {"µ", "u"},  {"μ", "u"},  {"°", "deg"}};
+  std::string text(words);
+  for (const auto& [letter, spelled] : kLetters)
+    for (std::size_t at = 0; (at = text.find(letter, at)) != std::string::npos;)
+      text.replace(at, letter.size(), spelled);
+  std::string name;
+  for (const char c : text) {
+    const bool good =
+        std::isalnum(static_cast<unsigned char>(c)) != 0 && static_cast<unsigned char>(c) < 0x80;
+    if (good)
+      name += c;
+    else if (!name.empty() && name.back() != '_')
+      name += '_';
+  }
+  while (!name.empty() && name.back() == '_') name.pop_back();
+  if (name.empty() || std::isdigit(static_cast<unsigned char>(name.front())) != 0) name = "column_" + name;
+  return name;
+}
+
+}  // namespace vernier

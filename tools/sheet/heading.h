@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tools/sheet/sheet.h"
+
+namespace vernier {
+
+/// The unit of the formats that a word means in any usual spelling: "µm", "micron", "(°C)", "Grad", "inch",
+/// "mm/Min.", "U/min"; brackets around it do not count. Nothing where it is no unit. tool.
+std::optional<std::string> unit_meant(std::string_view word);
+
+/// A heading: its words without the unit, and the unit that stands in it: "X [mm]", "X(mm)", "X / mm", "Temp.
+/// in °C".
+struct Heading {
+  std::string text;          // as written
+  std::string name;          // without unit
+  std::string unit;          // of the formats; empty: none written
+  std::string unknown_unit;  // what stands where a unit should and is none
+};
+Heading parse_heading(std::string_view cell);
+
+/// A sheet by its parts: title lines, headings (from one line, or one with a line of units below), data.
+struct SheetTable {
+  std::vector<Heading> headings;  // one a column; named "1", "2" … where the sheet has no heading
+  bool has_headings = false;
+  std::size_t heading_row = 0;  // index into the sheet's rows, where has_headings
+  std::size_t first_data = 0;
+  std::size_t units_row = 0;  // index, 0: none
+};
+
+/// Finds the parts: the first row that is mostly numbers begins the data. Throws InputError where none does.
+/// tool.
+SheetTable parts_of_sheet(const Sheet& sheet);
+
+/// "X ist" → "X_ist": a name of the formats from any words, umlauts and signs spelled out. tool.
+std::string name_from_words(std::string_view words);
+
+}  // namespace vernier

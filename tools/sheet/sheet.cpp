@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/sheet/sheet.h"
+
+#include <algorithm>
+#include <map>
+
+#include "tools/sheet/sheet_number.h"
+#include "tools/sheet/workbook.h"
+#include "tools/text/csv.h"
+#include "tools/text/error.h"
+#include "tools/text/words.h"
+
+namespace vernier {
+namespace {
+
+struct Line {
+  std::string text;
+  std::size_t number = 0;
+};
+
+std::vector<Line> lines_of(const std::string& text, std::size_t skip, const std::string& comment) {
+  std::vector<Line> lines;
+  std::size_t number = 0;
+  for (std::size_t at = 0; at < text.size();) {
+    // Old Macintosh files end their lines by a carriage return alone.
+    const std::size_t end = std::min(text.find_first_of("\r\n", at), text.size());
+    const std::string line = text.substr(at, end - at);
+    at = end + (text.compare(end, 2, "\r\n") == 0 ? 2 : 1);
+    ++number;
+    const std::string bare = trimmed(line);
+    if (number <= skip || bare.empty() || (!comment.empty() && bare.starts_with(comment))) continue;
+    lines.push_back({line, number});
+  }
+  return lines;
+}
+
+/// How many separators stand outside quotes.
+std::size_t count_outside_quotes(const std::string& line, char separator) {
+  std::size_t count = 0;
+  bool quoted = false;
+  for (const char c : line) {
+    if (c == '"') quoted = !quoted;
+    if (!quoted && c == separator) ++count;
+  }
+  return count;
+}
+
+/// The first line of a file from a spreadsheet may say it: sep=;
+char said_separator(std::vector<Line>& lines) {
+  if (lines.empty() || !trimmed(lines.front().text).starts_with("sep=") ||
+      trimmed(lines.front().text).size() > 5)
+    return 0;
+  const std::string line = lines.front().text;
+  lines.erase(lines.begin());
+  return line[line.find('=') + 1];
+}
+
+/// Part of the lines that have the commonest number of separators, where that is not none.
+double agreement(const std::vector<Line>& lines, char separator) {
+  std::map<std::size_t, std::size_t> counts;
+  for (const Line& line : lines) ++counts[count_outside_quotes(line.text, separator)];
+  std::size_t best = 0;
+  for (const auto& [count, times] : counts)
+    if (count > 0) best = std::max(best, times);
+  return lines.empty() ? 0 : static_cast<double>(best) / static_cast<double>(lines.size());
+}
+
+char separator_of_lines(const std::vector<Line>& lines) {
+  constexpr double kMostAgree = 0.6;  // titles and remarks above a table are lines too
+  char best = ' ';
+  double most = 0;
+  for (const char separator : {'\t', ';', ',', '|'}) {
+    const double agree = agreement(lines, separator);
+    if (agree >= kMostAgree) return separator;
+    if (agree > most) {
+      most = agree;
+      best = separator;
+    }
+  }
+  return most > 0.3 ? best : ' ';
+}
+
+void split(Sheet& sheet, const std::vector<Line>& lines) {
+  std::size_t width = 0;
+  for (const Line& line : lines) {
+    std::vector<std::string> cells = fields_of(line.text, {sheet.separator, true}, {sheet.file, line.number});
+    if (std::all_of(cells.begin(), cells.end(), [](const std::string& cell) { return cell.empty(); }))
+      continue;
+    width = std::max(width, cells.size());
+    sheet.rows.push_back(std::move(cells));
+    sheet.line.push_back(line.number);
+  }
+  for (auto& row : sheet.rows) row.resize(width);
+}
+
+/// Columns at the right that no row fills: what a spreadsheet's trailing separators leave.
+void drop_empty_columns(Sheet& sheet) {
+  while (
+      !sheet.rows.empty() && !sheet.rows.front().empty() &&
+      std::all_of(sheet.rows.begin(), sheet.rows.end(), [](const auto& row) { return row.back().empty(); }))
+    for (auto& row : sheet.rows) row.pop_back();
+}
+
+void guess_decimal(Sheet& sheet) {
+  std::size_t point = 0, comma = 0, either_point = 0, either_comma = 0;
+  Place at_point, at_comma;
+  std::string point_word, comma_word;
+  for (std::size_t row = 0; row < sheet.rows.size(); ++row)
+    for (const std::string& cell : sheet.rows[row]) switch (decimal_sign_in(cell)) {
+        case DecimalSign::kPoint:
+          if (++point == 1) at_point = {sheet.file, sheet.line[row]}, point_word = cell;
+          break;
+        case DecimalSign::kComma:
+          if (++comma == 1) at_comma = {sheet.file, sheet.line[row]}, comma_word = cell;
+          break;
+        case DecimalSign::kEither:
+          ++(cell.find(',') != std::string::npos ? either_comma : either_point);
+          break;
+        case DecimalSign::kNeither:
+          break;
+      }
+  if (point > 0 && comma > 0)
+    throw InputError(
+        comma < point ? at_comma : at_point, comma < point ? comma_word : point_word,
+        std::string("a decimal ") + (comma < point ? "comma" : "point") + " here, a decimal " +
+            (comma < point ? "point" : "comma") + " in line " +
+            std::to_string((comma < point ? at_point : at_comma).line) + " (" +
+            (comma < point ? point_word : comma_word) +
+            "): say which one is meant (--decimal comma or point), the other cells are then refused");
+  // Where each sign could part thousands as well ("1,234") the one that is there is taken for the decimal
+  // sign.
+  sheet.decimal_comma = comma > 0 || (point == 0 && either_comma > either_point);
+  sheet.decimal_doubtful = point == 0 && comma == 0 && either_comma + either_point > 0;
+  // Where a comma parts the columns it is no decimal sign of an unquoted cell.
+  if (sheet.separator == ',' && comma == 0) sheet.decimal_comma = false;
+}
+
+}  // namespace
+
+bool is_workbook(std::string_view bytes) { return bytes.starts_with("PK\x03\x04"); }
+
+char guess_separator(const std::string& text, const std::string& comment) {
+  std::vector<Line> lines = lines_of(text, 0, comment);
+  const char said = said_separator(lines);
+  return said != 0 ? said : separator_of_lines(lines);
+}
+
+const char* separator_word(char separator) {
+  switch (separator) {
+    case ',':
+      return "comma";
+    case ';':
+      return "semicolon";
+    case '\t':
+      return "tab";
+    case '|':
+      return "bar";
+    default:
+      return "blanks";
+  }
+}
+
+Sheet read_sheet(const std::string& bytes, const std::string& file, const SheetFormat& format) {
+  Sheet sheet;
+  sheet.file = file;
+  if (bytes.starts_with("\xD0\xCF\x11\xE0"))
+    throw InputError({file, 0}, "", "a workbook of the old kind (.xls): save it as .xlsx or as CSV");
+  if (is_workbook(bytes)) {
+    WorkbookSheet read = read_workbook(bytes, file, format.sheet);
+    sheet.workbook = true;
+    sheet.sheet = read.name;
+    std::size_t width = 0;
+    for (const auto& row : read.rows) width = std::max(width, row.size());
+    for (std::size_t i = 0; i < read.rows.size(); ++i) {
+      if (read.line[i] <= format.skip) continue;
+      read.rows[i].resize(width);
+      if (!format.comment.empty() && read.rows[i].front().starts_with(format.comment)) continue;
+      sheet.rows.push_back(std::move(read.rows[i]));
+      sheet.line.push_back(read.line[i]);
+    }
+    // Its numbers are numbers; only cells that are text may have a decimal comma.
+    sheet.decimal_comma = format.decimal_comma.value_or(false);
+  } else {
+    sheet.encoding = encoding_of(bytes);
+    const std::string text = utf8_of(bytes, sheet.encoding);
+    if (text.find('\0') != std::string::npos)
+      throw InputError({file, 0}, "", "zero bytes: neither a text nor a workbook (.xlsx)");
+    std::vector<Line> lines = lines_of(text, format.skip, format.comment);
+    const char said = said_separator(lines);
+    sheet.separator = format.separator != 0 ? format.separator : said != 0 ? said : separator_of_lines(lines);
+    split(sheet, lines);
+    drop_empty_columns(sheet);
+    if (format.decimal_comma)
+      sheet.decimal_comma = *format.decimal_comma;
+    else
+      guess_decimal(sheet);
+  }
+  if (sheet.rows.empty()) throw InputError({file, 0}, "", "no rows");
+  return sheet;
+}
+
+}  // namespace vernier

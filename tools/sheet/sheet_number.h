@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace vernier {
+
+/// A cell as number text with a point and nothing else ("-1234.5"): thousands ("1.234,5", "1'234.5", "1
+/// 234,5") and the long minus sign are understood. Nothing where it is no number of this decimal sign. tool.
+std::optional<std::string> plain_number(std::string_view cell, bool decimal_comma);
+
+/// How a cell's signs speak: for a comma or for a point as the decimal sign. "1,234" may be either.
+enum class DecimalSign { kNeither, kPoint, kComma, kEither };
+DecimalSign decimal_sign_in(std::string_view cell);
+
+}  // namespace vernier

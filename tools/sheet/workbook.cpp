@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/sheet/workbook.h"
+
+#include <fmt/format.h>
+#include <zip.h>
+
+#include <memory>
+#include <optional>
+#include <pugixml.hpp>
+
+#include "tools/text/error.h"
+#include "tools/text/numbers.h"
+#include "tools/text/words.h"
+
+namespace vernier {
+namespace {
+
+/// A part that unpacks to more is no survey but a bomb.
+constexpr zip_uint64_t kMostBytes = 256u << 20;
+constexpr std::size_t kMostRows = 1048576, kMostColumns = 16384;  // of the format itself
+
+class Package {
+ public:
+  Package(const std::string& bytes, const std::string& file) : file_(file) {
+    zip_error_t error;
+    zip_error_init(&error);
+    zip_source_t* const source = zip_source_buffer_create(bytes.data(), bytes.size(), 0, &error);
+    zip_ = zip_open_from_source(source, ZIP_RDONLY, &error);
+    if (zip_ == nullptr) {
+      zip_source_free(source);
+      throw InputError({file, 0}, "", std::string("not a workbook: ") + zip_error_strerror(&error));
+    }
+  }
+  ~Package() { zip_discard(zip_); }
+  Package(const Package&) = delete;
+  Package& operator=(const Package&) = delete;
+
+  std::optional<std::string> part(const std::string& name) const {
+    zip_stat_t status;
+    if (zip_stat(zip_, name.c_str(), ZIP_FL_NOCASE, &status) != 0) return std::nullopt;
+    if (status.size > kMostBytes)
+      throw InputError({file_, 0}, name, "this part of the workbook is too large");
+    const std::unique_ptr<zip_file_t, int (*)(zip_file_t*)> open(zip_fopen_index(zip_, status.index, 0),
+                                                                 zip_fclose);
+    std::string text(status.size, '\0');
+    if (!open || zip_fread(open.get(), text.data(), text.size()) != static_cast<zip_int64_t>(text.size()))
+      throw InputError({file_, 0}, name, "this part of the workbook cannot be read");
+    return text;
+  }
+
+ private:
+  std::string file_;
+  zip_t* zip_ = nullptr;
+};
+
+/// The name without its prefix: x:row and row are the same.
+std::string_view local(const pugi::xml_node& node) {
+  const std::string_view name = node.name();
+  const auto colon = name.find(':');
+  return colon == std::string_view::npos ? name : name.substr(colon + 1);
+}
+
+pugi::xml_node child(const pugi::xml_node& node, std::string_view name) {
+  for (const pugi::xml_node one : node.children())
+    if (local(one) == name) return one;
+  return {};
+}
+
+/// All text of a string: of runs with their own formatting too, not of phonetic hints.
+std::string text_of(const pugi::xml_node& node) {
+  std::string text;
+  for (const pugi::xml_node one : node.children()) {
+    if (local(one) == "t") text += one.text().get();
+    if (local(one) == "r") text += text_of(one);
+  }
+  return text;
+}
+
+class Reader {
+ public:
+  Reader(const std::string& bytes, const std::string& file) : file_(file), package_(bytes, file) {
+    read_part("xl/workbook.xml", workbook_);
+    if (const auto strings = package_.part("xl/sharedStrings.xml")) {
+      pugi::xml_document document;
+      load(document, *strings, "xl/sharedStrings.xml");
+      for (const pugi::xml_node item : document.document_element().children())
+        if (local(item) == "si") strings_.push_back(text_of(item));
+    }
+  }
+
+  WorkbookSheet read(const std::string& wanted) {
+    std::string names;
+    std::size_t number = 0;
+    for (const pugi::xml_node entry : child(workbook_.document_element(), "sheets").children()) {
+      const std::string name = entry.attribute("name").value();
+      names += (names.empty() ? "" : ", ") + name;
+      ++number;
+      if (!wanted.empty() && wanted != name && wanted != std::to_string(number)) continue;
+      WorkbookSheet sheet = cells_of(entry);
+      if (!wanted.empty() || !sheet.rows.empty()) return sheet;
+    }
+    if (wanted.empty()) throw InputError({file_, 0}, "", "no sheet of this workbook holds a cell");
+    throw InputError({file_, 0}, wanted, "no sheet of this name; there are " + names);
+  }
+
+ private:
+  void load(pugi::xml_document& document, const std::string& text, const std::string& name) const {
+    const auto result =
+        document.load_buffer(text.data(), text.size(), pugi::parse_default | pugi::parse_ws_pcdata);
+    if (!result) throw InputError({file_, 0}, name, std::string("broken: ") + result.description());
+  }
+  void read_part(const std::string& name, pugi::xml_document& document) const {
+    const auto text = package_.part(name);
+    if (!text) throw InputError({file_, 0}, name, "this zip is no workbook: a part is missing");
+    load(document, *text, name);
+  }
+
+  /// A sheet names its part by a relation.
+  std::string part_of(const pugi::xml_node& entry) const {
+    std::string id;
+    for (const pugi::xml_attribute attribute : entry.attributes())
+      if (std::string_view(attribute.name()).ends_with(":id")) id = attribute.value();
+    pugi::xml_document relations;
+    read_part("xl/_rels/workbook.xml.rels", relations);
+    for (const pugi::xml_node relation : relations.document_element().children()) {
+      if (relation.attribute("Id").value() != id) continue;
+      const std::string target = relation.attribute("Target").value();
+      return target.starts_with("/") ? target.substr(1) : "xl/" + target;
+    }
+    throw InputError({file_, 0}, entry.attribute("name").value(),
+                     "the workbook does not say where this sheet is");
+  }
+
+  WorkbookSheet cells_of(const pugi::xml_node& entry) const {
+    WorkbookSheet sheet{entry.attribute("name").value(), {}, {}};
+    pugi::xml_document document;
+    read_part(part_of(entry), document);
+    std::size_t row_number = 0;
+    for (const pugi::xml_node row : child(document.document_element(), "sheetData").children()) {
+      row_number = row.attribute("r") ? row.attribute("r").as_uint() : row_number + 1;
+      if (row_number > kMostRows)
+        throw InputError({file_, 0}, sheet.name, "a row beyond the last of the format");
+      std::vector<std::string> cells;
+      bool any = false;
+      for (const pugi::xml_node cell : row.children()) {
+        const std::size_t column = column_of(cell, cells.size());
+        if (column >= kMostColumns)
+          throw InputError({file_, row_number}, "", "a column beyond the last of the format");
+        const std::string value = trimmed(value_of(cell, row_number));
+        if (value.empty()) continue;
+        if (cells.size() <= column) cells.resize(column + 1);
+        cells[column] = value;
+        any = true;
+      }
+      if (!any) continue;
+      sheet.rows.push_back(std::move(cells));
+      sheet.line.push_back(row_number);
+    }
+    return sheet;
+  }
+
+  /// "AB12" is column 27; without a reference it is the next.
+  static std::size_t column_of(const pugi::xml_node& cell, std::size_t next) {
+    const std::string_view reference = cell.attribute("r").value();
+    std::size_t column = 0;
+    for (const char c : reference) {
+      if (c < 'A' || c > 'Z' || column > kMostColumns) break;
+      column = 26 * column + static_cast<std::size_t>(c - 'A') + 1;
+    }
+    return column == 0 ? next : column - 1;
+  }
+
+  std::string value_of(const pugi::xml_node& cell, std::size_t row) const {
+    const std::string_view type = cell.attribute("t").value();
+    if (type == "inlineStr") return text_of(child(cell, "is"));
+    const std::string value = child(cell, "v").text().get();
+    if (type == "s") {
+      const auto index = parse_number(value);
+      if (!index || *index < 0 || *index >= static_cast<double>(strings_.size()))
+        throw InputError({file_, row}, value, "the workbook has no text of this number");
+      return strings_[static_cast<std::size_t>(*index)];
+    }
+    // Stored with 17 digits, shown and meant with the 15 that a spreadsheet has: 200.00509999999997 is
+    // 200.0051.
+    const auto number = type.empty() || type == "n" ? parse_number(value) : std::nullopt;
+    return number ? number_text(*parse_number(fmt::format("{:.15g}", *number))) : value;
+  }
+
+  std::string file_;
+  Package package_;
+  pugi::xml_document workbook_;
+  std::vector<std::string> strings_;
+};
+
+}  // namespace
+
+WorkbookSheet read_workbook(const std::string& bytes, const std::string& file, const std::string& sheet) {
+  return Reader(bytes, file).read(sheet);
+}
+
+}  // namespace vernier

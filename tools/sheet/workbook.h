@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <string>
+#include <vector>
+
+namespace vernier {
+
+/// A sheet of an Office Open XML workbook (ECMA-376 part 1, SpreadsheetML) as text: numbers with a decimal
+/// point as stored, formulas by their last value.
+struct WorkbookSheet {
+  std::string name;
+  std::vector<std::vector<std::string>> rows;  // of different lengths; empty cells are empty
+  std::vector<std::size_t> line;               // row number in the sheet
+};
+
+/// Reads the sheet of that name or number from 1 (empty: the first that holds cells). Throws InputError: no
+/// workbook, no such sheet (the others are named), a part of more than 256 MB. tool.
+WorkbookSheet read_workbook(const std::string& bytes, const std::string& file, const std::string& sheet);
+
+}  // namespace vernier
