@@ -12,6 +12,7 @@ namespace {
 
 constexpr TimeUs kKeeperWait(5'000);  // between two rounds of the guardian
 constexpr TimeUs kStoreWait(10'000);  // between two looks at what the store is asked
+constexpr std::int64_t kSettleTicks = 5;
 constexpr std::uint32_t kMostImage = 1u << 26;
 constexpr int kError = 1, kNote = 3;
 
@@ -211,6 +212,8 @@ std::unique_ptr<Service> Component::make_service(const Introduction& introductio
   for (std::uint32_t i = 0; i < introduction.keys; ++i)
     options.upload.identity.keys.push_back({introduction.key[i], "public-key"});
   options.nonce = introduction.nonce;
+  // The pin is looked at once a tick: what lets go for a few of them bounces.
+  options.probe.settle = instant_ns(TimeUs(kSettleTicks * tick.count));
   options.store_beside = true;
   options.activate = options.clear_on_enable = options.in_controller = true;
   probe_ = std::make_unique<PinProbe>(pins_, tick);

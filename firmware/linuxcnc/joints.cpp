@@ -13,6 +13,11 @@ constexpr double kMostCounts = 1e15;
 // A turning point smaller than a count is none: inverse kinematics round.
 constexpr double kTurnsAt = 1;
 
+// Outward share of the way to a limit: 1 m/s changes a correction by 8 um a tick at most.
+constexpr double kShareOfWay = 1.0 / 128;
+// What a held correction moves by in a tick when a limit is changed under it, counts.
+constexpr double kLetGo = 100;
+
 std::int64_t whole(double counts) noexcept {
   return std::llround(std::clamp(counts, -kMostCounts, kMostCounts));
 }
@@ -30,7 +35,7 @@ Joints::Joints(const Pins& pins, const Wiring& wiring) noexcept
 // Another zero than before: how it got there is no motion.
 void Joints::start(Joint& joint, double position) noexcept {
   joint.position = position;
-  joint.velocity = joint.acceleration = joint.back = joint.since = 0;
+  joint.velocity = joint.acceleration = joint.back = joint.since = joint.travel = 0;
   joint.sense = 0;
   joint.reading = {};
   joint.reading.restarted = true;
@@ -56,6 +61,7 @@ void Joints::move(Joint& joint, double position, double per_second) noexcept {
   joint.acceleration = (velocity - joint.velocity) * per_second;
   joint.velocity = velocity;
   joint.position = position;
+  joint.travel = travel * joint.counts;
   turn(joint, travel);
   AxisReading& reading = joint.reading;
   reading.restarted = false;
@@ -108,13 +114,33 @@ HalFault Joints::write_correction(std::uint32_t axis, AxisTravel correction) noe
 }
 
 // A command that is beyond a limit already is the controller's: the correction then takes it no further.
+// Counts.
+double Joints::room_below(const Joint& joint) noexcept {
+  return std::min(0.0, (*joint.pins->min_limit - joint.position) * joint.counts);
+}
+double Joints::room_above(const Joint& joint) noexcept {
+  return std::max(0.0, (*joint.pins->max_limit - joint.position) * joint.counts);
+}
+
 AxisTravel Joints::within_range(std::uint32_t axis, AxisTravel correction) const noexcept {
   if (axis >= count_) return AxisTravel{};
   const Joint& joint = joints_[axis];
-  const auto room = [&](double limit) { return (limit - joint.position) * joint.counts; };
-  const double low = std::min(0.0, std::ceil(room(*joint.pins->min_limit))),
-               high = std::max(0.0, std::floor(room(*joint.pins->max_limit)));
+  const double low = std::ceil(kShareOfWay * room_below(joint)),
+               high = std::floor(kShareOfWay * room_above(joint));
   return AxisTravel(whole(std::clamp(static_cast<double>(correction.count), low, high)));
+}
+
+// What is asked for changes within the slew limit, and the way to a limit no faster than the joint; a limit
+// that is set anew may not make a step either.
+void Joints::hold(Joint& joint, std::uint32_t i) noexcept {
+  const AxisTravel target = within_range(i, joint.correction);
+  const auto asked = static_cast<double>(joint.correction.count - joint.asked.count);
+  const double most = std::max(std::abs(asked), kLetGo + std::ceil(kShareOfWay * std::abs(joint.travel)));
+  const auto way = static_cast<double>(target.count - joint.given_out.count);
+  joint.given_out.count += whole(std::clamp(way, -most, most));
+  joint.asked = joint.correction;
+  const auto full = static_cast<double>(joint.correction.count);
+  joint.at_limit = full < room_below(joint) || full > room_above(joint);
 }
 
 // The feedback answers the command of the tick before, which had that tick's correction. Where it is the
@@ -122,9 +148,8 @@ AxisTravel Joints::within_range(std::uint32_t axis, AxisTravel correction) const
 void Joints::write() noexcept {
   for (std::uint32_t i = 0; i < count_; ++i) {
     Joint& joint = joints_[i];
-    const AxisTravel correction = within_range(i, joint.correction);
-    joint.at_limit = correction != joint.correction;
-    const double added = static_cast<double>(correction.count) / joint.counts;
+    hold(joint, i);
+    const double added = static_cast<double>(joint.given_out.count) / joint.counts;
     const double commanded = *joint.pins->cmd_in, sent = commanded + added;
     *joint.pins->cmd_out = sent;
     const double feedback = *joint.pins->fb_in;

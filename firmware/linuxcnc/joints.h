@@ -10,6 +10,10 @@ namespace vernier {
 /// commands has no noise: speed and acceleration are differences of this tick and the ones before, not
 /// smoothed.
 ///
+/// A correction that would take a joint past its limit fades out before: outward no more than a share of the
+/// way that the command has left, so that the drive comes to the limit with the command and not faster than
+/// it.
+///
 /// A joint that is not homed counts from nowhere: its reading stays where it was, and goes on from its new
 /// zero when it is homed.
 class Joints : public AxisReader, public CorrectionWriter {
@@ -22,7 +26,7 @@ class Joints : public AxisReader, public CorrectionWriter {
   /// Corrections to the commands, and off the feedback as they were added. realtime.
   void write() noexcept;
   bool all_homed() const noexcept { return all_homed_; }
-  /// Is the correction of a joint, or of any, held at the joint's limit? realtime.
+  /// Would the correction take a joint, or any, past its limit? It is held then. realtime.
   bool at_limit(std::uint32_t joint) const noexcept { return joints_[joint].at_limit; }
   bool any_at_limit() const noexcept;
   /// Where a joint stands, in its counts: feedback without the correction; kNoReading without feedback.
@@ -43,10 +47,14 @@ class Joints : public AxisReader, public CorrectionWriter {
     double position = 0, velocity = 0, acceleration = 0;  // units, s
     double back = 0, since = 0;
     int sense = 0;
-    double added = 0;  // to the command of the tick before
-    AxisTravel correction;
+    double added = 0;                         // to the command of the tick before
+    double travel = 0;                        // of this tick, counts
+    AxisTravel correction, asked, given_out;  // of this tick; of the one before; after the limit
     AxisReading reading;
   };
+  static double room_below(const Joint& joint) noexcept;
+  static double room_above(const Joint& joint) noexcept;
+  void hold(Joint& joint, std::uint32_t i) noexcept;
   static void start(Joint& joint, double position) noexcept;
   static void move(Joint& joint, double position, double per_second) noexcept;
   static void turn(Joint& joint, double travel) noexcept;

@@ -39,7 +39,10 @@ static_assert(std::atomic<bool>::is_always_lock_free);
 /// This process as HAL knows it.
 class HalMember {
  public:
-  HalMember() : id_(hal_init("vernier-hal")) {}
+  // One that was killed has left its name behind, which HAL keeps until it ends itself.
+  HalMember() : id_(hal_init("vernier-hal")) {
+    if (id_ < 0) id_ = hal_init(("vernier-hal." + std::to_string(::getpid())).c_str());
+  }
   ~HalMember() {
     if (memory_ >= 0) rtapi_shmem_delete(memory_, id_);
     if (id_ >= 0) hal_exit(id_);
@@ -154,12 +157,13 @@ int run(const HelperArguments& arguments) {
     if (!link) return refuse("--listen", error);
   }
   HalMember hal;
-  if (!hal.good()) return refuse("HAL", "is not running, or has a vernier-hal already");
+  if (!hal.good()) return refuse("HAL", "is not running");
   Hatch* const hatch = hal.hatch();
   if (hatch == nullptr) {
     std::fputs("vernier-hal: the component is not loaded: loadrt vernier axes=... comes first\n", stderr);
     return kAnswerIsNo;
   }
+  if (process_lives(hatch->helper.load())) return refuse("HAL", "has a vernier-hal already");
   hal.ready();
   return serve(arguments, *hatch, given, link.get());
 }
