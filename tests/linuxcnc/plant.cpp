@@ -22,7 +22,7 @@ struct Pins {
   hal_float_t* zero[kMostJoints];  // what the drive reads where the joint is at zero
   hal_bit_t* stuck[kMostJoints];   // the drive answers no more
   hal_bit_t *home[kMostJoints], *probe, *estop_in, *estop_out;
-  hal_float_t *tool[3], *surface;
+  hal_float_t *tool[3], *surface, *column;
   hal_s32_t *late, *bounces;  // of the probe: ticks, and times that it lets go again after a touch
 };
 struct Point {
@@ -100,6 +100,7 @@ bool make_pins() {
   constexpr const char* kTool[] = {"tool-x", "tool-y", "tool-z"};
   for (int i = 0; i < 3; ++i)
     bad |= hal_pin_float_newf(HAL_OUT, &pins->tool[i], component_id, "vernier-plant.0.%s", kTool[i]);
+  bad |= hal_pin_float_newf(HAL_OUT, &pins->column, component_id, "vernier-plant.0.column");
   bad |= hal_pin_float_newf(HAL_IN, &pins->surface, component_id, "vernier-plant.0.surface");
   bad |= hal_pin_s32_newf(HAL_IN, &pins->late, component_id, "vernier-plant.0.late");
   bad |= hal_pin_s32_newf(HAL_IN, &pins->bounces, component_id, "vernier-plant.0.bounces");
@@ -123,6 +124,7 @@ extern "C" int rtapi_app_main() {
     return -EINVAL;
   }
   *pins->surface = -1e9;
+  *pins->column = 22;
   return hal_ready(component_id);
 }
 extern "C" void rtapi_app_exit() { hal_exit(component_id); }
