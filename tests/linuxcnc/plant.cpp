@@ -23,7 +23,8 @@ struct Pins {
   hal_bit_t* stuck[kMostJoints];   // the drive answers no more
   hal_bit_t *home[kMostJoints], *probe, *estop_in, *estop_out;
   hal_float_t *tool[3], *surface, *column;
-  hal_s32_t *late, *bounces;  // of the probe: ticks, and times that it lets go again after a touch
+  hal_float_t *ball[3], *radius;  // where a sphere stands
+  hal_s32_t *late, *bounces;      // of the probe: ticks, and times that it lets go again after a touch
 };
 struct Point {
   double x, y, z;
@@ -63,8 +64,8 @@ Point five_axes(const double* q) {
   return turned(t, 0, 0, -c);
 }
 
-// A plate at `surface` is touched from above; the probe says so `late` ticks later, and lets go for a tick a
-// few times.
+// A plate at `surface` is touched from above, a sphere anywhere; the probe says so `late` ticks later, and
+// lets go for a tick a few times.
 bool late_and_bouncing(bool touches) {
   static int since = 0;
   since = touches ? (since < 1000 ? since + 1 : since) : 0;
@@ -84,7 +85,9 @@ void run(void*, long) {
   *pins->tool[0] = tool.x;
   *pins->tool[1] = tool.y;
   *pins->tool[2] = tool.z;
-  *pins->probe = late_and_bouncing(tool.z <= *pins->surface);
+  const double x = tool.x - *pins->ball[0], y = tool.y - *pins->ball[1], z = tool.z - *pins->ball[2];
+  const double radius = *pins->radius;
+  *pins->probe = late_and_bouncing(tool.z <= *pins->surface || x * x + y * y + z * z < radius * radius);
   *pins->estop_out = *pins->estop_in;
 }
 
@@ -98,6 +101,10 @@ bool make_pins() {
     bad |= hal_pin_bit_newf(HAL_OUT, &pins->home[i], component_id, "vernier-plant.0.joint.%d.home", i);
   }
   constexpr const char* kTool[] = {"tool-x", "tool-y", "tool-z"};
+  constexpr const char* kBall[] = {"ball-x", "ball-y", "ball-z"};
+  for (int i = 0; i < 3; ++i)
+    bad |= hal_pin_float_newf(HAL_IN, &pins->ball[i], component_id, "vernier-plant.0.%s", kBall[i]);
+  bad |= hal_pin_float_newf(HAL_IN, &pins->radius, component_id, "vernier-plant.0.radius");
   for (int i = 0; i < 3; ++i)
     bad |= hal_pin_float_newf(HAL_OUT, &pins->tool[i], component_id, "vernier-plant.0.%s", kTool[i]);
   bad |= hal_pin_float_newf(HAL_OUT, &pins->column, component_id, "vernier-plant.0.column");
