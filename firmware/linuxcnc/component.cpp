@@ -52,12 +52,12 @@ bool same(const Introduction& a, const Introduction& b) noexcept {
 
 }  // namespace
 
-Component::Component(const Pins& pins, Hatch& hatch, const Wiring& wiring, Say say)
+Component::Component(const Pins& pins, Hatch& hatch, const Wiring& wiring, double mm_per_unit, Say say)
     : pins_(pins),
       hatch_(hatch),
       wiring_(wiring),
       say_(say),
-      joints_(pins, wiring_),
+      joints_(pins, wiring_, mm_per_unit),
       standing_(joints_),
       inputs_(pins, static_cast<std::uint32_t>(wiring_.inputs.size())),
       enable_(pins, joints_),
@@ -69,12 +69,14 @@ bool Component::start() noexcept {
   return keeps_ && stores_;
 }
 
-Component::~Component() {
-  stop_ = true;
+void Component::stop() noexcept {
+  if (stop_.exchange(true)) return;
   hatch_.magic.store(0);
   if (keeps_) pthread_join(keeper_, nullptr);
   if (stores_) pthread_join(store_thread_, nullptr);
 }
+
+Component::~Component() { stop(); }
 
 void Component::tick(long period_ns) noexcept {
   const double seconds = static_cast<double>(period_ns) * 1e-9;

@@ -23,14 +23,16 @@ class Component {
   /// Says on LinuxCNC's log what changes. level: as of rtapi_print_msg, 1: an error, 3: a note.
   using Say = void (*)(int level, const char* text);
 
-  /// pins, hatch: outlive this. setup.
-  Component(const Pins& pins, Hatch& hatch, const Wiring& wiring, Say say);
-  /// The thread's function has been taken out by then. setup.
+  /// pins, hatch: outlive this. mm_per_unit: of the machine's lengths. setup.
+  Component(const Pins& pins, Hatch& hatch, const Wiring& wiring, double mm_per_unit, Say say);
+  /// No tick runs any more. setup.
   ~Component();
   Component(const Component&) = delete;
   Component& operator=(const Component&) = delete;
   /// Starts the two threads; false where the system refuses them. setup.
   bool start() noexcept;
+  /// Ends them; the hatch is not touched any more, and ticks may still run. setup.
+  void stop() noexcept;
 
   /// A cycle of the servo thread. period_ns: of the thread. realtime.
   void tick(long period_ns) noexcept;

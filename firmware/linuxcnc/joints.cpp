@@ -24,11 +24,11 @@ std::int64_t whole(double counts) noexcept {
 
 }  // namespace
 
-Joints::Joints(const Pins& pins, const Wiring& wiring) noexcept
-    : pins_(pins), count_(static_cast<std::uint32_t>(wiring.axes.size())) {
+Joints::Joints(const Pins& pins, const Wiring& wiring, double mm_per_unit) noexcept
+    : pins_(pins), count_(static_cast<std::uint32_t>(wiring.axes.size())), mm_per_unit_(mm_per_unit) {
   for (std::uint32_t i = 0; i < count_; ++i) {
     joints_[i].pins = &pins.joint[i];
-    joints_[i].counts = wiring.axes[i].rotary ? kCountsPerDeg : kCountsPerMm;
+    joints_[i].counts = wiring.axes[i].rotary ? kCountsPerDeg : kCountsPerMm * mm_per_unit;
   }
 }
 
@@ -101,7 +101,7 @@ HalFault Joints::read_axis(std::uint32_t axis, AxisReading& reading) noexcept {
 }
 
 HalFault Joints::read_path(PathReading& reading) noexcept {
-  const double mm_per_min = *pins_.current_vel * 60;
+  const double mm_per_min = *pins_.current_vel * mm_per_unit_ * 60;
   if (!std::isfinite(mm_per_min)) return HalFault::kNoReading;
   reading.feed = FeedNmPerMin(whole(mm_per_min * kCountsPerMm));
   return HalFault::kNone;
@@ -153,12 +153,8 @@ void Joints::write() noexcept {
     const double commanded = *joint.pins->cmd_in, sent = commanded + added;
     *joint.pins->cmd_out = sent;
     const double feedback = *joint.pins->fb_in;
-    if (std::isnan(feedback))
-      *joint.pins->fb_out = commanded;
-    else if (feedback == sent)
-      *joint.pins->fb_out = commanded;
-    else
-      *joint.pins->fb_out = feedback - joint.added;
+    const bool is_the_command = std::isnan(feedback) || feedback == sent;
+    *joint.pins->fb_out = is_the_command ? commanded : feedback - joint.added;
     *joint.pins->correction = added;
     *joint.pins->at_limit = joint.at_limit;
     joint.added = added;

@@ -18,8 +18,8 @@ namespace vernier {
 /// zero when it is homed.
 class Joints : public AxisReader, public CorrectionWriter {
  public:
-  /// pins: outlive this. setup.
-  Joints(const Pins& pins, const Wiring& wiring) noexcept;
+  /// pins: outlive this. mm_per_unit: of the machine's lengths. setup.
+  Joints(const Pins& pins, const Wiring& wiring, double mm_per_unit = 1) noexcept;
 
   /// Reads the joints' pins. seconds: of the thread's period. realtime.
   void read(double seconds) noexcept;
@@ -61,6 +61,7 @@ class Joints : public AxisReader, public CorrectionWriter {
 
   const Pins& pins_;
   std::uint32_t count_;
+  double mm_per_unit_;
   bool all_homed_ = false;
   Joint joints_[kMaxAxes];
 };

@@ -20,6 +20,8 @@ static char* inputs[vernier::kMaxInputs];
 RTAPI_MP_ARRAY_STRING(inputs, 24, "names of measured inputs: a pin each")
 static char* rotary[vernier::kMaxAxes];
 RTAPI_MP_ARRAY_STRING(rotary, 8, "axes that turn (default: A, B and C)")
+static char* units;
+RTAPI_MP_STRING(units, "of lengths, as [TRAJ]LINEAR_UNITS: mm (default) or inch")
 MODULE_LICENSE("GPL");
 MODULE_DESCRIPTION("Correction of a machine's geometric errors in the servo thread");
 
@@ -67,6 +69,12 @@ bool wire(Wiring& wiring) {
   return !wiring.axes.empty();
 }
 
+// 0: no unit of lengths that there is.
+double mm_per_unit() {
+  const std::string_view text(units == nullptr ? "mm" : units);
+  return text == "mm" ? 1 : text == "inch" || text == "in" ? 25.4 : 0;
+}
+
 void run(void*, long period_ns) { component->tick(period_ns); }
 
 Hatch* open_hatch() {
@@ -78,12 +86,17 @@ Hatch* open_hatch() {
   return hatch;
 }
 
+// The memory goes while HAL still knows the component, then its function out of the threads; a tick that is
+// under way ends long before the component goes.
 int leave(int result) {
-  delete component;
-  component = nullptr;
+  constexpr unsigned kLongestTick_us = 50'000;
+  if (component != nullptr) component->stop();
   if (memory_id >= 0) rtapi_shmem_delete(memory_id, component_id);
   if (component_id >= 0) hal_exit(component_id);
   memory_id = component_id = -1;
+  if (component != nullptr) ::usleep(kLongestTick_us);
+  delete component;
+  component = nullptr;
   return result;
 }
 
@@ -91,6 +104,10 @@ int enter() {
   Wiring wiring;
   if (!wire(wiring)) {
     say(RTAPI_MSG_ERR, "vernier: axes=X,Y,... is missing, or a name is empty, too long or there twice\n");
+    return -EINVAL;
+  }
+  if (mm_per_unit() == 0) {
+    say(RTAPI_MSG_ERR, "vernier: units are mm or inch\n");
     return -EINVAL;
   }
   component_id = hal_init("vernier");
@@ -102,7 +119,7 @@ int enter() {
   }
   const Pins* const pins = make_pins(component_id, wiring);
   if (pins == nullptr) return leave(-EINVAL);
-  component = new Component(*pins, *hatch, wiring, say);
+  component = new Component(*pins, *hatch, wiring, mm_per_unit(), say);
   if (!component->start()) return leave(-EAGAIN);
   // It computes in floating point, and there is one of it.
   if (const int result = hal_export_funct("vernier.0", run, nullptr, 1, 0, component_id); result < 0)

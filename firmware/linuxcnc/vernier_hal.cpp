@@ -116,11 +116,10 @@ bool introduce(Hatch& hatch, const Introduction& introduction) {
   return false;
 }
 
-int serve(const HelperArguments& arguments, Hatch& hatch, const std::vector<std::uint8_t>& given,
-          ModbusServer* link) {
+int serve(const HelperArguments& arguments, const Introduction& introduction, Hatch& hatch,
+          const std::vector<std::uint8_t>& given, ModbusServer* link) {
   FileSlotStore slots(arguments.store, kSlotBytes);
   StoreServer store(hatch.store, slots, given);
-  const Introduction introduction = introduction_of(arguments, given.size());
   std::thread store_thread([&] {
     while (!stop_asked) store.serve(kWait);
   });
@@ -156,6 +155,7 @@ int run(const HelperArguments& arguments) {
                              {kMailboxRegister, kMailboxRegisters, kLiveRegisters}, error);
     if (!link) return refuse("--listen", error);
   }
+  const Introduction introduction = introduction_of(arguments, given.size());
   HalMember hal;
   if (!hal.good()) return refuse("HAL", "is not running");
   Hatch* const hatch = hal.hatch();
@@ -165,7 +165,7 @@ int run(const HelperArguments& arguments) {
   }
   if (process_lives(hatch->helper.load())) return refuse("HAL", "has a vernier-hal already");
   hal.ready();
-  return serve(arguments, *hatch, given, link.get());
+  return serve(arguments, introduction, *hatch, given, link.get());
 }
 
 }  // namespace

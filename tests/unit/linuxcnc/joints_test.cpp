@@ -80,6 +80,23 @@ TEST(Joints, FeedbackThatIsTheCommandItselfIsOfTheSameTick) {
   EXPECT_EQ(bench.fb_out, 100.1);
 }
 
+TEST(Joints, MayCountInInches) {
+  Bench bench;
+  Joints joints(bench.pins, Wiring{{{"X"}}, {}}, 25.4);
+  bench.cmd_in = 2;
+  bench.feed = 1;
+  joints.read(kPeriod);
+  AxisReading reading;
+  PathReading path;
+  joints.read_axis(0, reading);
+  joints.read_path(path);
+  EXPECT_EQ(reading.position, AxisPosition(50'800'000));
+  EXPECT_EQ(path.feed, FeedNmPerMin(1'524'000'000));
+  joints.write_correction(0, AxisTravel(25'400));
+  joints.write();
+  EXPECT_NEAR(bench.cmd_out, 2.001, 1e-12) << "a double's last digit";
+}
+
 TEST(Joints, WithoutFeedbackTheCommandStandsForIt) {
   Bench bench;
   bench.tick(7, 500);
