@@ -104,6 +104,23 @@ std::string hal_file(const Machine& machine) {
          "setp vernier.0.enable 1\n";
 }
 
+// What the controller itself refuses needs no holding.
+std::string narrower_limits(const Machine& machine) {
+  std::string text;
+  for (std::size_t n = 0; n < machine.axes.size(); ++n) {
+    const Axis& axis = machine.axes[n];
+    if (axis.min && axis.max && axis.max_correction)
+      text += fmt::format("#   [JOINT_{}] MIN_LIMIT = {:.6g}, MAX_LIMIT = {:.6g}\n", n,
+                          *axis.min + *axis.max_correction, *axis.max - *axis.max_correction);
+  }
+  return text.empty() ? text
+                      : "# Held at its limit is a joint whose correction would pass it (vernier.hal). With "
+                        "soft limits that are narrower by\n"
+                        "# the largest correction LinuxCNC refuses such a program before it starts; for the "
+                        "ranges of the machine file:\n" +
+                            text;
+}
+
 std::string ini_lines(const Machine& machine, const std::string& folder) {
   std::string text = fmt::format(
       "# Into your INI file: this line as the last HALFILE of its section [HAL],\n"
@@ -123,7 +140,7 @@ std::string ini_lines(const Machine& machine, const std::string& folder) {
       folder);
   for (std::size_t n = 0; n < machine.axes.size(); ++n)
     text += fmt::format("CMD_{0} = {1}-pos-cmd\nFB_{0} = {1}-pos-fb\n", n, lower(machine.axes[n].name));
-  return text;
+  return text + narrower_limits(machine);
 }
 
 std::string readme(const Machine& machine, const std::string& folder) {

@@ -38,6 +38,15 @@ TEST(LinuxcncFolder, LoadsTheAxesAsJointsAndTheInputsAsPins) {
   EXPECT_TRUE(holds(text_of(files, "README.md"), "joint 0 = X, joint 1 = A"));
 }
 
+TEST(LinuxcncFolder, NamesLimitsThatRefuseBeforeTheStart) {
+  const auto ini = [](const std::string& axes) {
+    return text_of(linuxcnc_folder(machine_with(axes), "v"), "vernier.ini");
+  };
+  EXPECT_TRUE(holds(ini("<X min=\"-1\" max=\"400\" maxcorrection=\"0.3\"/>"),
+                    "#   [JOINT_0] MIN_LIMIT = -0.7, MAX_LIMIT = 399.7\n"));
+  EXPECT_FALSE(holds(ini("<X min=\"0\" max=\"400\"/>"), "narrower")) << "any correction";
+}
+
 TEST(LinuxcncFolder, SaysWhichAxesTurnWhereTheirNamesDoNot) {
   const auto hal = [](const std::string& axes) {
     return text_of(linuxcnc_folder(machine_with(axes), "v"), "vernier.hal");
