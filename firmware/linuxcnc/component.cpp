@@ -110,12 +110,15 @@ void Component::show(const TickReport& report) noexcept {
   *pins_.saturated = any;
   *pins_.active = report.mode == Mode::kActive;
   *pins_.mode = static_cast<std::int32_t>(report.mode);
-  *pins_.fault = report.latched != Fault::kNone;
-  *pins_.fault_code = static_cast<std::int32_t>(report.latched);
+  // Nothing latches while it checks; what it waits for is shown all the same, once it is to correct.
+  const bool waits = report.mode == Mode::kChecking && *pins_.enable;
+  const Fault fault = waits ? cycle.found() : report.latched;
+  *pins_.fault = fault != Fault::kNone;
+  *pins_.fault_code = static_cast<std::int32_t>(fault);
   const Histogram& execution = made_->runner().times().execution;
   *pins_.execution = static_cast<std::uint32_t>(std::min<std::int64_t>(execution.last_ns(), UINT32_MAX));
   *pins_.execution_max = static_cast<std::uint32_t>(std::min<std::int64_t>(execution.max_ns(), UINT32_MAX));
-  fault_.store(static_cast<std::uint32_t>(report.latched), std::memory_order_relaxed);
+  fault_.store(static_cast<std::uint32_t>(fault), std::memory_order_relaxed);
   limits_.store(limits, std::memory_order_relaxed);
 }
 
@@ -143,7 +146,7 @@ void Component::tell() noexcept {
   char text[120];
   const std::uint32_t fault = fault_.load(std::memory_order_relaxed);
   if (fault != told_fault_ && fault != 0) {
-    std::snprintf(text, sizeof(text), "vernier: fault: %s: the correction is taken out\n",
+    std::snprintf(text, sizeof(text), "vernier: fault: %s: no correction\n",
                   name_of(static_cast<Fault>(fault)));
     say_(kError, text);
   }

@@ -89,6 +89,28 @@ TEST_F(InController, WeightOfAllStandsOnTopOfTheAxes) {
   EXPECT_LE(worst_, kSmallSlewY);
 }
 
+TEST(InControllerChecking, SaysWhatItWaitsFor) {
+  SimClock clock;
+  SimSlotStore store{1 << 16};
+  Roaming motion{{{0, 600'000'000}, {0, 200'000'000}}, {InputMicro(21'000'000)}, TimeUs(1000), 0.1, 1};
+  SimPlant plant{motion, 2, 1, {.faults = {{PlantFaultKind::kSensorLost, 0, 0, 1000}}}};
+  ServiceOptions options;
+  options.wiring = {{{"X"}, {"Y"}}, {"T"}};
+  options.in_controller = true;
+  Service service(options, Board{clock, plant, plant, plant}, store);
+  ASSERT_EQ(service.boot_with(small_image_bytes(2e-5)).fault, UploadFault::kNone);
+  const auto run = [&](int ticks) {
+    for (int i = 0; i < ticks; ++i) plant.advance(), service.tick();
+  };
+  run(500);
+  EXPECT_EQ(service.cycle().mode(), Mode::kChecking);
+  EXPECT_EQ(service.cycle().latched(), Fault::kNone);
+  EXPECT_EQ(service.cycle().found(), Fault::kInputMissing);
+  run(1000);
+  EXPECT_EQ(service.cycle().mode(), Mode::kReady);
+  EXPECT_EQ(service.cycle().found(), Fault::kNone);
+}
+
 TEST(GivenImage, OfAnotherMachineIsAFaultAndNothingRuns) {
   SimClock clock;
   SimSlotStore store{1 << 16};
