@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Debian packages: `cpack --config build/PRESET/CPackConfig.cmake`. vernier-tools holds the tool (host builds); vernierd the
+# Debian packages: `cpack --config build/PRESET/CPackConfig.cmake`. vernier-tools holds the tool (host builds); vernier-linuxcnc
+# the component and its helper, where LinuxCNC's headers are; vernierd the
 # daemon with its systemd unit, started by whoever has written /etc/vernier/board.toml.
 include(GNUInstallDirs)
 set(CPACK_GENERATOR DEB)
@@ -33,6 +34,20 @@ if(TARGET vernierd)
   set(CPACK_DEBIAN_VERNIERD_PACKAGE_DEPENDS "libc6, libstdc++6, libmodbus5, libsodium23, ${vernier_gpiod_package}, adduser")
   set(CPACK_DEBIAN_VERNIERD_PACKAGE_CONTROL_EXTRA
     "${CMAKE_SOURCE_DIR}/firmware/package/postinst;${CMAKE_SOURCE_DIR}/firmware/package/prerm;${CMAKE_SOURCE_DIR}/firmware/package/postrm")
+endif()
+if(TARGET vernier_linuxcnc)
+  set(vernier_linuxcnc_doc share/doc/vernier-linuxcnc)
+  # Where rtapi_app looks, which knows one place.
+  install(TARGETS vernier_linuxcnc LIBRARY DESTINATION lib/linuxcnc/modules COMPONENT linuxcnc)
+  install(TARGETS vernier-hal RUNTIME DESTINATION bin COMPONENT linuxcnc)
+  install(FILES ${CMAKE_SOURCE_DIR}/firmware/linuxcnc/vernier.9 DESTINATION share/man/man9 COMPONENT linuxcnc)
+  install(FILES ${CMAKE_SOURCE_DIR}/tools/docs/linuxcnc.md ${vernier_licences} ${CMAKE_SOURCE_DIR}/LICENSE-GPL-3.0
+    ${CMAKE_SOURCE_DIR}/firmware/linuxcnc/package/copyright DESTINATION ${vernier_linuxcnc_doc} COMPONENT linuxcnc)
+  list(APPEND CPACK_COMPONENTS_ALL linuxcnc)
+  set(CPACK_DEBIAN_LINUXCNC_PACKAGE_NAME vernier-linuxcnc)
+  set(CPACK_COMPONENT_LINUXCNC_DESCRIPTION "Correction of a machine's axes in LinuxCNC's servo thread")
+  set(CPACK_DEBIAN_LINUXCNC_PACKAGE_DEPENDS "linuxcnc-uspace, libc6, libstdc++6, libmodbus5, libsodium23")
+  set(CPACK_DEBIAN_LINUXCNC_PACKAGE_SUGGESTS "vernier-tools")
 endif()
 if(TARGET vernier)
   install(TARGETS vernier RUNTIME DESTINATION bin COMPONENT tools)

@@ -13,6 +13,7 @@ struct AxisReading {
   AxisTravel since{INT64_MAX};  // travel since the last reversal; a long way where unknown
   std::int8_t sense = 0;        // -1, 0, +1: sense of the last motion
   bool referenced = true;       // the controller knows where its zero is
+  bool restarted = false;  // counts from another zero than the reading before: the difference is no travel
 };
 
 /// What a controller says about the path as a whole.

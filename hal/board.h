@@ -17,8 +17,9 @@ struct Board {
   InputReader& inputs;
   CorrectionWriter& corrections;
   ProbeLine* probe = nullptr;
-  TickSync* sync = nullptr;          // starts the ticks; null: the clock does
-  DigitalInput* enable = nullptr;    // off: no correction is let in
+  AxisReader* actual = nullptr;    // where the axes stand, for touches, where `axes` says where they are sent
+  TickSync* sync = nullptr;        // starts the ticks; null: the clock does
+  DigitalInput* enable = nullptr;  // off: no correction is let in
   DigitalOutput* healthy = nullptr;  // on: devices answer and no fault is latched
 };
 

@@ -96,7 +96,7 @@ Fault AxisMonitor::take(bool present, const AxisReading& reading, Health& health
     missing_ = missing_ < UINT32_MAX ? missing_ + 1 : missing_;
     return missing_ > limits_.missing_ticks ? Fault::kPositionMissing : Fault::kNone;
   }
-  if (!known_) state_.position = reading.position;
+  if (!known_ || reading.restarted) state_.position = reading.position;
   const std::int64_t travel = travel_to(reading.position);
   const Fault fault = check(travel, gives_motion_ ? reading.velocity : AxisSpeed{}, health);
   if (gives_motion_) {

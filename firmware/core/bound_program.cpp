@@ -54,7 +54,8 @@ BindFault bind(const ImageView& view, const Wiring& wiring, TimeUs tick, BoundPr
     const auto found = std::find_if(wiring.axes.begin(), wiring.axes.end(),
                                     [&](const Wiring::Axis& other) { return other.name == axis.name; });
     if (found == wiring.axes.end()) return BindFault::kUnknownAxis;
-    if (found->rotary != axis.rotary || found->rollover != axis.rollover) return BindFault::kAxisKind;
+    const bool same_turns = found->rollover == axis.rollover || found->continuous;
+    if (found->rotary != axis.rotary || !same_turns) return BindFault::kAxisKind;
     bound.axis[i] = static_cast<std::uint32_t>(found - wiring.axes.begin());
   }
   for (std::uint32_t i = 0; i < wanted.inputs.size(); ++i) {

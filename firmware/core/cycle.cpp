@@ -209,7 +209,8 @@ void Cycle::count(const CycleOutput& output) noexcept {
 
 TickReport Cycle::tick(TimeUs time, Command command, Fault outer, TicksQ8 elapsed) noexcept {
   const Fault axes = read_axes(elapsed), inputs = read_inputs();
-  mode_.before(command, first_of(outer, first_of(axes, inputs)), complete(), health_);
+  found_ = first_of(outer, first_of(axes, inputs));
+  mode_.before(command, found_, complete(), health_);
   const bool ramping_out_fault = mode_.latched() != Fault::kNone && mode_.mode() == Mode::kRampOut;
   if (!ramping_out_fault) fill_input(time);
   const CycleOutput output = now_->compensator.step(input_, mode_.weight());

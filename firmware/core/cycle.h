@@ -73,6 +73,8 @@ class Cycle {
   Mode mode() const noexcept { return mode_.mode(); }
   bool holding() const noexcept { return mode_.holding(); }
   Fault latched() const noexcept { return mode_.latched(); }
+  /// What the last tick found, latched or not: while checking, what it waits for.
+  Fault found() const noexcept { return found_; }
   /// Share of the correction that is in.
   WeightQ16 weight() const noexcept { return mode_.weight(); }
   Health& health() noexcept { return health_; }
@@ -122,6 +124,7 @@ class Cycle {
   std::unique_ptr<BoundProgram> own_;
   BoundProgram* now_;
   ModeControl mode_;
+  Fault found_ = Fault::kNone;
   Health health_, idle_health_;                     // of what a program needs; of the rest
   std::uint32_t axis_count_ = 0, input_count_ = 0;  // of the board
   bool uses_axis_[kMaxAxes] = {}, uses_input_[kMaxInputs] = {};

@@ -16,10 +16,12 @@ class HistogramOf {
     std::uint32_t& bin = bins_[bin_of(value < kLimit ? value : kLimit - 1)];
     if (bin < UINT32_MAX) ++bin;
     ++count_;
+    last_ = ns;
     if (ns > max_) max_ = ns;
   }
   std::uint64_t count() const noexcept { return count_; }
   std::int64_t max_ns() const noexcept { return max_; }
+  std::int64_t last_ns() const noexcept { return last_; }
 
   /// Upper edge of the bin that holds the given share of all, at most the largest value seen; 0 when empty.
   /// per_million: 990000 for p99. realtime, one pass over the bins.
@@ -55,7 +57,7 @@ class HistogramOf {
 
   std::uint32_t bins_[kBins] = {};
   std::uint64_t count_ = 0;
-  std::int64_t max_ = 0;
+  std::int64_t max_ = 0, last_ = 0;
 };
 
 /// Bins an octave as a power of two: 6 are 64 (1.6 %) and 9 KB each; a small target sets it to less.

@@ -20,16 +20,21 @@ InstantNs ProbeSettings::time_uncertainty(InstantNs resolution) const noexcept {
   return InstantNs(static_cast<std::int64_t>(root));
 }
 
-Probing::Probing(ProbeLine& line, const ProbeSettings& settings) noexcept
+Probing::Probing(ProbeLine& line, const ProbeSettings& settings, AxisReader* actual) noexcept
     : line_(line),
       settings_(settings),
+      actual_(actual),
       time_uncertainty_(settings.time_uncertainty(line.resolution())),
       filter_(settings.settle) {}
 
 void Probing::sample(const Cycle& cycle, const TickReport& report, InstantNs woke) noexcept {
   LatchSample now;
   now.at = woke - settings_.position_age;
-  for (std::uint32_t i = 0; i < settings_.axes; ++i) now.position[i] = cycle.axis_state(i).position;
+  for (std::uint32_t i = 0; i < settings_.axes; ++i) {
+    AxisReading stands;
+    const bool known = actual_ != nullptr && actual_->read_axis(i, stands) == HalFault::kNone;
+    now.position[i] = known ? stands.position : cycle.axis_state(i).position;
+  }
   const BoundProgram& program = cycle.program();
   for (const Output& out : program.program.outputs) {
     const std::uint32_t axis = program.axis[out.axis];

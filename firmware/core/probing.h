@@ -34,8 +34,12 @@ class Probing {
   static constexpr std::uint32_t kMostEdges = 16;  // taken in one tick
   static constexpr std::uint32_t kMostWaiting = 8;
 
-  /// line: outlives this. setup.
-  Probing(ProbeLine& line, const ProbeSettings& settings) noexcept;
+  /// line: outlives this, as does `actual`, which says where the axes stand in a tick; null: where the cycle
+  /// read them. setup.
+  Probing(ProbeLine& line, const ProbeSettings& settings, AxisReader* actual = nullptr) noexcept;
+
+  /// From contact to edge, 0 .. 50 ms, of the edges that come from now on. realtime.
+  void set_delay(InstantNs delay) noexcept { settings_.delay = delay; }
 
   /// A tick has read its axes at `woke` and written its corrections. time: the tick's t of the machine file.
   /// realtime.
@@ -50,6 +54,7 @@ class Probing {
 
   ProbeLine& line_;
   ProbeSettings settings_;
+  AxisReader* actual_;
   InstantNs time_uncertainty_;
   LatchRing ring_;
   TouchFilter filter_;

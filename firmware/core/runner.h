@@ -35,6 +35,9 @@ class Runner {
   Runner(Cycle& cycle, Clock& clock, TimeUs period, TickSync* sync, TimeUs patience,
          const OverrunLimits& overruns = {}) noexcept;
 
+  /// From now on step() is called in the controller's own cycle: it waits for nothing, each call is one tick
+  /// of the time that the controller counts, however late its thread woke, and none is left out. setup.
+  void follow_caller() noexcept { follows_ = true; }
   /// Sleeps, then one tick; found: a fault from outside of the tick. Its time is counted from the
   /// construction or set_time(). realtime.
   TickReport step(Command command, Fault found = Fault::kNone) noexcept;
@@ -53,6 +56,7 @@ class Runner {
   InstantNs due() const noexcept { return due_; }
 
  private:
+  TickReport step_of_caller(Command command, Fault found) noexcept;
   void schedule(InstantNs ended) noexcept;
   void count_lost(std::uint32_t ticks) noexcept;
   bool overran_too_often() const noexcept {
@@ -66,7 +70,7 @@ class Runner {
   TimeUs period_;
   TickSync* sync_ = nullptr;
   TimeUs patience_;
-  bool in_step_ = false;
+  bool in_step_ = false, follows_ = false;
   std::uint64_t lost_syncs_ = 0;
   InstantNs last_;  // wake-up before
   InstantNs due_;

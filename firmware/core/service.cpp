@@ -35,7 +35,8 @@ Service::Service(ServiceOptions options, const Board& board, SlotStore& store)
               options_.overruns),
       link_(exchange_, uploader_, options_.wiring, options_.upload.tick, options_.upload.identity),
       gate_(options_.upload.identity, options_.nonce) {
-  if (board_.probe != nullptr) probing_.emplace(*board_.probe, probe_settings(options_));
+  if (board_.probe != nullptr) probing_.emplace(*board_.probe, probe_settings(options_), board_.actual);
+  if (options_.in_controller) runner_.follow_caller();
 }
 
 void Service::take_over() noexcept {
@@ -51,7 +52,7 @@ void Service::read_enable() noexcept {
   bool on = false;
   const bool before = enabled_;
   enabled_ = board_.enable->read_line(on) == HalFault::kNone && on;
-  if (enabled_ && !before) activated_ = false;
+  if (enabled_ && !before) activated_ = false, to_clear_ = options_.clear_on_enable;
 }
 
 void Service::tell_health(const TickReport& report) noexcept {
@@ -82,6 +83,10 @@ Command Service::next_command() noexcept {
     if (in) return Command::kDeactivate;
     return asked == Command::kClearFault && !ending_ ? asked : Command::kNone;
   }
+  // A fault that is still ramped out is cleared when it is out.
+  if (to_clear_ && asked == Command::kNone && cycle_.latched() != Fault::kNone)
+    return cycle_.mode() == Mode::kFaulted ? Command::kClearFault : Command::kNone;
+  to_clear_ = false;
   if (asked != Command::kNone || !options_.activate || activated_) return asked;
   if (cycle_.mode() != Mode::kReady) return Command::kNone;
   activated_ = true;
@@ -92,7 +97,9 @@ TickReport Service::tick() noexcept {
   take_over();
   read_enable();
   for (std::uint32_t i = 0; i < kMaxAxes; ++i)
-    cycle_.set_axis_weight(i, WeightQ16(exchange_.axis_weight[i].load(std::memory_order_relaxed)));
+    cycle_.set_axis_weight(
+        i, WeightQ16(static_cast<std::int32_t>(
+               multiply(exchange_.axis_weight[i].load(std::memory_order_relaxed), weight_.count, 16))));
   const TimeUs time = runner_.time();
   const TickReport report =
       runner_.step(next_command(), uploader_.image_lost() ? Fault::kImageLost : Fault::kNone);
@@ -173,6 +180,12 @@ void Service::publish_health() noexcept {
 
 UploadResult Service::boot() {
   const UploadResult result = uploader_.boot();
+  guard();
+  return result;
+}
+
+UploadResult Service::boot_with(std::span<const std::uint8_t> image) {
+  const UploadResult result = uploader_.boot_with(image);
   guard();
   return result;
 }

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 
 #include "firmware/core/cycle.h"
 #include "firmware/core/exchange.h"
@@ -30,8 +31,10 @@ struct ServiceOptions {
   bool store_beside =
       false;  // look_after_store() has a context of its own, so that links never wait for the medium
   std::uint32_t healthy_toggle =
-      0;                  // ticks between two edges of the healthy line while all is well; 0: it is on
-  bool activate = false;  // bring the correction in when the board becomes ready, once for each enable
+      0;                         // ticks between two edges of the healthy line while all is well; 0: it is on
+  bool activate = false;         // bring the correction in when the board becomes ready, once for each enable
+  bool clear_on_enable = false;  // switching the enable line on clears a fault that is latched
+  bool in_controller = false;    // tick() is called in the controller's own cycle (Runner::follow_caller)
   std::uint32_t ticks_kept = Exchange::kHistory;  // for readers of the history; powers of two
   std::uint32_t touches_kept = Exchange::kTouches;
 };
@@ -53,12 +56,28 @@ class Service : private CommandHandler {
 
   /// Checks what the store holds and offers it to the first tick. setup.
   UploadResult boot();
+  /// As boot(), but what runs is an image of whoever starts the board, unsigned; the store keeps what it has.
+  /// setup.
+  UploadResult boot_with(std::span<const std::uint8_t> image);
 
   /// Sleeps until the next tick is due and runs it. realtime.
   TickReport tick() noexcept;
 
   /// From the next tick on the correction is taken out and nothing brings it in again. realtime.
   void end() noexcept { ending_ = true; }
+
+  /// Share of all corrections, on top of those that the links give to axes. realtime.
+  void set_weight(WeightQ16 weight) noexcept { weight_ = weight; }
+
+  /// How late the probe is (ProbeSettings), from now on. realtime.
+  void set_probe_delay(InstantNs delay) noexcept {
+    if (probing_) probing_->set_delay(delay);
+  }
+  /// A command of the board itself, as if a link had given it; one that waits already is kept. realtime.
+  void order(Command command) noexcept {
+    Command none = Command::kNone;
+    exchange_.command.compare_exchange_strong(none, command);
+  }
 
   /// The guardian: hands programs over to the tick, ends trials. Never waits. setup.
   void guard() noexcept { uploader_.programs().guard(now()); }
@@ -122,7 +141,8 @@ class Service : private CommandHandler {
   TickRecord record_;
   StateRecord state_;
   EquationRecord equation_;
-  bool activated_ = false, ending_ = false, enabled_ = true;
+  WeightQ16 weight_ = kFullWeight;
+  bool activated_ = false, ending_ = false, enabled_ = true, to_clear_ = false;
   std::uint32_t until_edge_ = 0;
   bool line_ = false;
   enum class Told : std::uint8_t { kNothing, kUnwell, kWell } told_ = Told::kNothing;

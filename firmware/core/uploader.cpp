@@ -178,11 +178,35 @@ UploadResult Uploader::load_v1(std::uint8_t slot, LoadedProgram& loaded) {
   return check_image(loaded);
 }
 
-UploadResult Uploader::boot() {
+// A reset ends a trial. Where even that cannot be stored, the state on the medium says the same next time.
+void Uploader::read_slots() {
   slots_ = Slots::load(read_record(store_, 0), read_record(store_, 1));
-  // A reset ends a trial. Where even that cannot be stored, the state on the medium says the same next time.
   if (slots_.trial() != kNoSlot) store(slots_.revert());
   publish();
+}
+
+UploadResult Uploader::boot_with(std::span<const std::uint8_t> image) {
+  read_slots();
+  image_lost_ = true;
+  ProgramRef loaded = programs_.take();
+  if (loaded == nullptr || image.size() > programs_.image_bytes()) return refused(UploadFault::kTooLarge);
+  std::copy(image.begin(), image.end(), loaded->image());
+  ImageHeader header{};
+  std::memcpy(&header, image.data(), std::min(sizeof(header), image.size()));
+  loaded->header = {};
+  loaded->header.image_bytes = static_cast<std::uint32_t>(image.size());
+  loaded->header.fingerprint = header.fingerprint;
+  const UploadResult result = check_image(*loaded);
+  if (result.fault != UploadFault::kNone) return result;
+  record_.confirmed_fingerprint = header.fingerprint;
+  publish();
+  programs_.run_confirmed(std::move(loaded));
+  image_lost_ = false;
+  return result;
+}
+
+UploadResult Uploader::boot() {
+  read_slots();
   if (slots_.confirmed() == kNoSlot) return {};
   image_lost_ = true;
   ProgramRef loaded = programs_.take();

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 
 #include "firmware/core/identity.h"
 #include "firmware/core/programs.h"
@@ -58,6 +59,9 @@ class Uploader {
   /// After power-on: gives up an image that was on trial, checks the confirmed one, and has it run. The
   /// result says why there is none, kNone also where none was ever confirmed. setup.
   UploadResult boot();
+  /// As boot(), but what runs is an image that whoever starts the board gives: nobody signed it, and the
+  /// medium keeps what it has. setup.
+  UploadResult boot_with(std::span<const std::uint8_t> image);
   /// Writes what came in to the medium, checks what is there and has it tried. setup.
   UploadResult finish();
   /// Keeps the image on trial. setup.
@@ -95,6 +99,7 @@ class Uploader {
   enum class Origin : std::uint8_t { kStored, kNew };
   UploadResult load(std::uint8_t slot, LoadedProgram& loaded, Origin origin);
   UploadResult load_v1(std::uint8_t slot, LoadedProgram& loaded);
+  void read_slots();
   UploadResult check_signature(const LoadedProgram& loaded, Origin origin) const;
   UploadResult check_image(LoadedProgram& loaded);
   bool within_budget(const ImageView& view) const noexcept;

@@ -67,6 +67,9 @@ struct Wiring {
   struct Axis {
     Name name;
     bool rotary = false, rollover = false;
+    // The controller counts whole turns on: an image in which the axis rolls over fits as one in which it
+    // does not.
+    bool continuous = false;
   };
   FixedList<Axis, kMaxAxes> axes;
   FixedList<Name, kMaxInputs> inputs;

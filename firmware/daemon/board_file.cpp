@@ -454,19 +454,4 @@ BoardFile read_board_file(const std::string& path) {
   return board;
 }
 
-PublicKey read_public_key(const std::string& path) {
-  std::ifstream file(path);
-  std::string title, text;
-  if (!std::getline(file, title) || !std::getline(file, text))
-    throw BoardError{path + ": cannot be read as a public key"};
-  PublicKey key{};
-  std::size_t size = 0;
-  if (title != "vernier board public key" ||
-      sodium_base642bin(key.data(), key.size(), text.c_str(), text.size(), nullptr, &size, nullptr,
-                        sodium_base64_VARIANT_ORIGINAL) != 0 ||
-      size != key.size())
-    throw BoardError{path + ": not a public key of vernier keys"};
-  return key;
-}
-
 }  // namespace vernier

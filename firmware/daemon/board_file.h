@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "firmware/core/service.h"
+#include "firmware/daemon/key_file.h"
 
 namespace vernier {
 
@@ -65,15 +66,7 @@ struct BoardFile {
   std::string watchdog;          // device of a hardware watchdog; empty: none
 };
 
-/// What is wrong with a board file: "board.toml:12: axis.X: kind: 'lineal' is neither linear nor rotary".
-struct BoardError {
-  std::string what;
-};
-
 /// Reads and checks a board file; key files are read too. Throws BoardError. setup.
 BoardFile read_board_file(const std::string& path);
-
-/// The 32 bytes of a public key file (base64 after a first line that says so). Throws BoardError. setup.
-PublicKey read_public_key(const std::string& path);
 
 }  // namespace vernier

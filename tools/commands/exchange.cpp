@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <memory>
 
 #include "tools/commands/command.h"
+#include "tools/compile/compile.h"
 #include "tools/exchange/component_csv.h"
 #include "tools/exchange/left_out.h"
+#include "tools/exchange/linuxcnc_folder.h"
 #include "tools/exchange/screw_comp.h"
 #include "tools/exchange/table_text.h"
 #include "tools/kinematics/at.h"
@@ -22,7 +25,7 @@ struct ExchangeArguments {
   std::vector<std::string> accept;
   int type = 1;
   double tolerance_um = 0.1;
-  bool leave_out = false;
+  bool leave_out = false, component = false;
 };
 
 std::size_t axis_named(const Machine& machine, const std::string& name) {
@@ -57,7 +60,49 @@ States state_of(const Machine& machine, const ExchangeArguments& arguments) {
   return state_at(machine, words);
 }
 
+/// A file and its text, not written yet.
+struct Output {
+  std::string path;
+  std::string text;
+};
+
+/// The folder that brings the component into a configuration: HAL file, INI lines, README, image.
+std::vector<Output> configuration(const Machine& machine, const ExchangeArguments& arguments) {
+  const std::string text = read_file(arguments.machine);
+  CompileOptions options;
+  options.accepted_rules = safety_sheet(machine, rules_named(arguments.accept)).accepted_mask();
+  const CompiledMachine compiled = compile_machine(machine, text, options);
+  const std::string folder =
+      std::filesystem::absolute(arguments.output).lexically_normal().filename().string();
+  std::vector<Output> outputs;
+  for (const ConfigurationFile& file : linuxcnc_folder(machine, folder.empty() ? "vernier" : folder))
+    outputs.push_back({arguments.output + "/" + file.name, file.text});
+  outputs.push_back(
+      {arguments.output + "/image/machine.vimg", {compiled.image.begin(), compiled.image.end()}});
+  outputs.push_back({arguments.output + "/image/machine.xml", text});
+  return outputs;
+}
+
+void write_configuration(const std::vector<Output>& outputs, const ExchangeArguments& arguments,
+                         Json& files) {
+  make_folder(arguments.output + "/image");
+  for (const Output& output : outputs) {
+    write_file(output.path, output.text);
+    files.push_back(output.path);
+  }
+}
+
+void export_component(const ExchangeArguments& arguments) {
+  const Machine machine = read_machine(arguments.machine);
+  require_safe(machine, arguments);
+  const std::vector<Output> outputs = configuration(machine, arguments);
+  Json files = Json::array();
+  write_configuration(outputs, arguments, files);
+  finish(arguments, "linuxcnc", {}, files);
+}
+
 void export_screw(const ExchangeArguments& arguments) {
+  if (arguments.component) return export_component(arguments);
   const Machine machine = read_machine(arguments.machine);
   const States at = state_of(machine, arguments);
   const auto type = static_cast<ScrewType>(arguments.type);
@@ -81,7 +126,16 @@ void export_screw(const ExchangeArguments& arguments) {
     for (const std::size_t axis : axes)
       files.push_back(arguments.output + "/" + machine.axes[axis].name + ".comp");
   }
+  std::vector<Output> outputs;
+  std::string without;
+  try {
+    if (arguments.axis.empty()) outputs = configuration(machine, arguments);
+  } catch (const InputError& error) {
+    without = error.what();  // the tables can do with less than an image
+  }
   for (std::size_t i = 0; i < axes.size(); ++i) write_file(files[i].get<std::string>(), texts[i]);
+  if (!outputs.empty()) write_configuration(outputs, arguments, files);
+  if (!without.empty()) fmt::print(stderr, "note: no configuration of the component: {}\n", without);
   finish(arguments, "linuxcnc", left_out, files);
 }
 
@@ -169,8 +223,12 @@ void register_export(CLI::App& vernier) {
   parent->require_subcommand(1);
   parent->footer("What a format cannot express is refused with the reason; --leave-out writes the rest.");
   auto screw = std::make_shared<ExchangeArguments>();
-  CLI::App* linuxcnc = add_export(parent, "linuxcnc", "LinuxCNC screw compensation (COMP_FILE)",
-                                  "directory for one file an axis; with --axis the file", screw);
+  CLI::App* linuxcnc = add_export(
+      parent, "linuxcnc", "LinuxCNC: screw compensation (COMP_FILE), and a configuration of its component",
+      "directory for one file an axis and the configuration; with --axis the file", screw);
+  linuxcnc->add_flag("--component", screw->component,
+                     "the configuration of the component `vernier` alone, which expresses every machine "
+                     "(tools/docs/linuxcnc.md)");
   linuxcnc->add_option("--axis", screw->axis, "this axis only");
   linuxcnc->add_option("--tolerance", screw->tolerance_um, "what may be lost between lines, um")
       ->check(CLI::PositiveNumber)

@@ -33,6 +33,17 @@ TEST(AxisMonitor, ToleratesAFewMissingReadingsAndHoldsTheLast) {
   EXPECT_EQ(bench.take(5001), Fault::kNone);
 }
 
+TEST(AxisMonitor, AnotherZeroIsNoJumpAndNoMotion) {
+  Bench bench(true);
+  bench.take(0);
+  AxisReading reading;
+  reading.position = AxisPosition(300'000'000);
+  reading.restarted = true;
+  EXPECT_EQ(bench.monitor.take(true, reading, *bench.health), Fault::kNone);
+  EXPECT_EQ(bench.health->jumps, 0u);
+  EXPECT_EQ(bench.take(300'000'500), Fault::kNone);
+}
+
 TEST(AxisMonitor, JumpIsAFaultOnceAndTheStepLimitIsNotOne) {
   Bench bench(true);
   bench.take(0);

@@ -48,6 +48,19 @@ TEST(Runner, MeasuresHowLateItWoke) {
   EXPECT_EQ(bench.health().overruns, 0u);
 }
 
+TEST(Runner, FollowingItsCallerItCountsCallsAndNotTheClock) {
+  RunnerBench bench;
+  bench.runner.follow_caller();
+  bench.step();
+  const InstantNs first = bench.runner.woke();
+  bench.clock.late = InstantNs(70'000'000);  // no sleep takes it up
+  for (int i = 0; i < 9; ++i) bench.step();
+  EXPECT_EQ(bench.runner.woke(), first + InstantNs(9'000'000));
+  EXPECT_EQ(bench.runner.time(), TimeUs(10'000));
+  EXPECT_EQ(bench.runner.times().execution.count(), 10u);
+  EXPECT_EQ(bench.health().overruns + bench.health().skipped, 0u);
+}
+
 TEST(Runner, LateTickIsAnOverrunAndTheScheduleIsKept) {
   RunnerBench bench;
   bench.step();

@@ -130,6 +130,13 @@ std::string firmware_may_include(std::string_view path, std::string_view target)
   if (top == "comp" || top == "tables" || is_hal_port(target) || starts_with(target, "firmware/core/"))
     return {};
   if (starts_with(path, "firmware/core/")) return "firmware/core may include comp, tables and hal ports";
+  if (starts_with(path, "firmware/linuxcnc/")) {
+    static const std::set<std::string_view> kComposes = {"firmware/linuxcnc/component.h",
+                                                         "firmware/linuxcnc/vernier_hal.cpp"};
+    if (starts_with(target, "firmware/") || (kComposes.contains(path) && top == "hal")) return {};
+    return "firmware/linuxcnc may include firmware, comp, tables and hal ports; only its composition roots "
+           "(component, vernier_hal) name a backend";
+  }
   if (!starts_with(path, "firmware/daemon/")) return "a folder of firmware that has no place";
   if (starts_with(target, "firmware/daemon/") || is_hal_support(target)) return {};
   static const std::set<std::string_view> kRoot = {"firmware/daemon/main.cpp", "firmware/daemon/devices.cpp",

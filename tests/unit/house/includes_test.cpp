@@ -54,6 +54,11 @@ TEST(Includes, EveryAllowedDirectionPasses) {
   EXPECT_EQ(wrong("firmware/daemon/report.cpp", "#include \"hal/support/output_file.h\"\n"), 0u);
   EXPECT_EQ(wrong("tools/model/a.cpp", "#include \"hal/support/output_file.h\"\n"), 0u);
   EXPECT_EQ(wrong("firmware/daemon/main.cpp", "#include \"hal/linux/board.h\"\n"), 0u);
+  EXPECT_EQ(wrong("firmware/linuxcnc/vernier_hal.cpp",
+                  "#include \"hal/linux/file_lock.h\"\n#include \"firmware/daemon/key_file.h\"\n"),
+            0u);
+  EXPECT_EQ(wrong("firmware/linuxcnc/joints.cpp", "#include \"hal/linux/file_lock.h\"\n"), 1u);
+  EXPECT_EQ(wrong("firmware/core/a.cpp", "#include \"firmware/linuxcnc/joints.h\"\n"), 1u);
   EXPECT_EQ(
       wrong("tools/simulate/a.cpp", "#include \"firmware/core/cycle.h\"\n#include \"hal/sim/plant.h\"\n"),
       0u);

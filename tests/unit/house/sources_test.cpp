@@ -68,8 +68,9 @@ bool wants_licence(std::string_view path, std::string_view text) {
                            ".sh", ".awk", ".dtsi", ".service"});
 }
 
-// As LICENSE has it: what runs beside a machine, and the rest.
+// As LICENSE has it: what runs beside a machine, and the rest; what LinuxCNC loads is made with its headers.
 std::string_view licence_of(std::string_view path) {
+  if (path.starts_with("firmware/linuxcnc/")) return "GPL-3.0-or-later";
   static const std::set<std::string_view> kBesideAMachine = {"comp", "tables", "hal", "firmware"};
   return kBesideAMachine.contains(path.substr(0, path.find('/'))) ? "Apache-2.0" : "GPL-3.0-or-later";
 }
@@ -87,6 +88,7 @@ TEST(Sources, MissingOrWrongLicenceIsDetected) {
   EXPECT_TRUE(says_its_licence("tools/a.cpp", gpl));
   EXPECT_TRUE(says_its_licence("tools/build", "#!/bin/sh\n" + gpl));
   EXPECT_FALSE(says_its_licence("comp/a.cpp", gpl));
+  EXPECT_TRUE(says_its_licence("firmware/linuxcnc/a.cpp", gpl));
   EXPECT_FALSE(says_its_licence("tools/a.cpp", "int a;\nint b;\n" + gpl));
   EXPECT_TRUE(wants_licence("tests/run", "#!/usr/bin/env bash\n"));
   EXPECT_FALSE(wants_licence("README.md", "# Vernier"));

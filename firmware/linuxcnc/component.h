@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <pthread.h>
+
+#include <atomic>
+#include <memory>
+
+#include "firmware/core/service.h"
+#include "firmware/linuxcnc/hatch.h"
+#include "firmware/linuxcnc/hatch_link.h"
+#include "firmware/linuxcnc/joints.h"
+#include "firmware/linuxcnc/remote_store.h"
+#include "firmware/linuxcnc/signals.h"
+#include "hal/linux/monotonic_clock.h"
+
+namespace vernier {
+
+/// The board that stands in LinuxCNC's servo thread: firmware/core's service on HAL pins. Beside the thread's
+/// tick it has two threads of its own, which are not realtime: the keeper (guardian and links), and the
+/// store, which waits for vernier-hal. Until vernier-hal has come the joints are passed through.
+class Component {
+ public:
+  /// Says on LinuxCNC's log what changes. level: as of rtapi_print_msg, 1: an error, 3: a note.
+  using Say = void (*)(int level, const char* text);
+
+  /// pins, hatch: outlive this. mm_per_unit: of the machine's lengths. setup.
+  Component(const Pins& pins, Hatch& hatch, const Wiring& wiring, double mm_per_unit, Say say);
+  /// No tick runs any more. setup.
+  ~Component();
+  Component(const Component&) = delete;
+  Component& operator=(const Component&) = delete;
+  /// Starts the two threads; false where the system refuses them. setup.
+  bool start() noexcept;
+  /// Ends them; the hatch is not touched any more, and ticks may still run. setup.
+  void stop() noexcept;
+
+  /// A cycle of the servo thread. period_ns: of the thread. realtime.
+  void tick(long period_ns) noexcept;
+
+ private:
+  static void* keep(void* component);
+  static void* look_after_store(void* component);
+  void attach() noexcept;
+  Attached meet(const Introduction& introduction, char* text, std::uint32_t room) noexcept;
+  std::unique_ptr<Service> make_service(const Introduction& introduction) noexcept;
+  UploadResult boot(const Introduction& introduction) noexcept;
+  void tell() noexcept;
+  void show(const TickReport& report) noexcept;
+
+  const Pins& pins_;
+  Hatch& hatch_;
+  Wiring wiring_;
+  Say say_;
+  MonotonicClock clock_;
+  Joints joints_;
+  StandingJoints standing_;
+  PinInputs inputs_;
+  EnablePin enable_;
+  HatchLink link_;
+  std::atomic<bool> stop_{false};
+  pthread_t keeper_{}, store_thread_{};
+  bool keeps_ = false, stores_ = false;
+  std::atomic<std::uint32_t> tick_us_{0};  // of the thread; 0: it has not run yet
+  // Made when vernier-hal comes for the first time.
+  std::unique_ptr<RemoteStore> store_;
+  std::unique_ptr<PinProbe> probe_;
+  std::unique_ptr<Service> made_;
+  std::atomic<Service*> service_{nullptr};
+  Introduction met_;
+  // The tick's.
+  bool cleared_ = false, held_ = false;
+  // What was told last, the keeper's.
+  std::atomic<std::uint32_t> fault_{0}, limits_{0};
+  std::uint32_t told_fault_ = 0, told_limits_ = 0;
+};
+
+}  // namespace vernier

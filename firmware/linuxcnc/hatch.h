@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "firmware/core/gate.h"
+
+namespace vernier {
+
+/// One request at a time from one process to another, in memory that both have: who asks fills it in, makes
+/// the turn odd and waits for the next even one. Whoever dies in between has changed nothing but the request.
+struct Call {
+  static constexpr std::uint32_t kMostBytes = 4096;
+  std::atomic<std::uint32_t> turn{0};
+  std::uint32_t op = 0, place = 0, offset = 0, size = 0;
+  std::int32_t result = 0;
+  std::uint8_t bytes[kMostBytes] = {};
+};
+
+/// Is a process there, and not only waiting for its parent? setup.
+bool process_lives(std::int32_t pid) noexcept;
+/// Waits at most `wait` for a request. setup.
+bool wait_for_call(Call& call, TimeUs wait) noexcept;
+inline bool is_asked(const Call& call) noexcept {
+  return (call.turn.load(std::memory_order_acquire) & 1) != 0;
+}
+/// What was asked is answered: result, size and bytes stand in the call. setup.
+void answer_call(Call& call) noexcept;
+/// Waits until the call is answered; false, and the call withdrawn, where `peer` is gone or `stop` is set.
+/// setup.
+bool make_call(Call& call, std::int32_t peer, const std::atomic<bool>& stop) noexcept;
+
+/// What the component's store is asked, which vernier-hal keeps (hal/slot_store.h).
+enum class StoreOp : std::uint32_t {
+  kReadRecord,
+  kWriteRecord,
+  kReadImage,
+  kWriteImage,
+  kFinishImage,
+  kReadGiven
+};
+/// What the component is asked by vernier-hal's links (hal/command_link.h). place: the link's access.
+enum class LinkCall : std::uint32_t { kAnswer, kLater, kRegisters, kCommand };
+
+/// What vernier-hal says of itself when it comes.
+struct Introduction {
+  std::int32_t pid = 0;
+  std::uint32_t capacity = 0;     // of a slot
+  std::uint32_t given_bytes = 0;  // of an image to start with; 0: what the store holds
+  std::uint32_t keys = 0;
+  PublicKey key[BoardIdentity::kMostKeys] = {};
+  Name board, board_class;
+  Nonce nonce{};
+  char store[512] = {};
+};
+static_assert(sizeof(Introduction) <= Call::kMostBytes);
+
+/// What the component makes of it.
+enum class Attached : std::int32_t {
+  kStarted = 0,       // the image runs, or none was ever confirmed
+  kResumed = 1,       // it goes on with what it runs
+  kImageRefused = 2,  // bytes: why
+  kOtherStore = 3,    // it has been started with another store or other keys, and keeps them
+};
+
+/// The memory that component and vernier-hal share. Neither waits for the other in a tick: the component has
+/// all that it runs in memory of its own.
+struct Hatch {
+  static constexpr int kKey = 0x5645524e;              // "VERN", as HAL's keys are: one component a machine
+  static constexpr std::uint32_t kMagic = 0x31544148;  // "HAT1", written when the rest is there
+  std::atomic<std::uint32_t> magic{0};
+  std::int32_t component = 0;  // process
+  std::atomic<std::int32_t> helper{0};
+  Call attach;  // vernier-hal to component: an Introduction
+  Call link;    // vernier-hal to component: LinkCall
+  Call store;   // component to vernier-hal: StoreOp
+};
+
+}  // namespace vernier

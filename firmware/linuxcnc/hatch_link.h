@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include "firmware/linuxcnc/hatch.h"
+#include "hal/command_link.h"
+
+namespace vernier {
+
+/// The component's side of the links that vernier-hal serves.
+class HatchLink : public CommandLink {
+ public:
+  /// call: outlives the link. setup.
+  explicit HatchLink(Call& call) noexcept : call_(call) {}
+  HalFault serve(CommandHandler& handler, TimeUs wait) noexcept override;
+  /// The link's access, of the request that waits; LinkAccess::kRead where none does. setup.
+  LinkAccess access() const noexcept;
+
+ private:
+  Call& call_;
+};
+
+/// vernier-hal's side: hands what a link asks on to the component.
+class HatchHandler : public CommandHandler {
+ public:
+  /// hatch, stop: outlive the handler. setup.
+  HatchHandler(Hatch& hatch, LinkAccess access, const std::atomic<bool>& stop) noexcept
+      : hatch_(hatch), access_(access), stop_(stop) {}
+  std::uint32_t answer(const std::uint8_t* request, std::uint32_t size, std::uint8_t* reply) override;
+  std::uint32_t ticket() const override { return ticket_; }
+  std::uint32_t later(std::uint32_t ticket, std::uint8_t* reply) override;
+  void fill_registers(std::uint16_t* values) override;
+  bool give(std::uint16_t command) override;
+
+ private:
+  bool ask(LinkCall op, std::uint32_t offset, const std::uint8_t* bytes, std::uint32_t size);
+
+  Hatch& hatch_;
+  LinkAccess access_;
+  const std::atomic<bool>& stop_;
+  std::uint32_t ticket_ = 0;
+};
+
+}  // namespace vernier

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <string>
+#include <vector>
+
+#include "tables/link_format.h"
+
+namespace vernier {
+
+/// What vernier-hal was called with.
+struct HelperArguments {
+  std::string store, image, board, board_class;
+  std::vector<std::string> public_keys;
+  std::string address;  // to listen on; empty: no link
+  int port = 0;
+  LinkAccess access = LinkAccess::kUpload;
+  bool help = false, version = false;
+};
+
+extern const char* const kHelperUsage;
+extern const char* const kHelperVersion;
+
+/// False: not understood, kHelperUsage tells why. setup.
+bool parse_helper_arguments(int argc, char** argv, HelperArguments& arguments);
+
+}  // namespace vernier

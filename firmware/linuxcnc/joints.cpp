@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "firmware/linuxcnc/joints.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace vernier {
+namespace {
+
+constexpr double kCountsPerMm = 1e6, kCountsPerDeg = static_cast<double>(kTurnCounts) / 360;
+// Far beyond every machine, and within what converts to counts.
+constexpr double kMostCounts = 1e15;
+// A turning point smaller than a count is none: inverse kinematics round.
+constexpr double kTurnsAt = 1;
+
+// Outward share of the way to a limit: 1 m/s changes a correction by 8 um a tick at most.
+constexpr double kShareOfWay = 1.0 / 128;
+// What a held correction moves by in a tick when a limit is changed under it, counts.
+constexpr double kLetGo = 100;
+
+std::int64_t whole(double counts) noexcept {
+  return std::llround(std::clamp(counts, -kMostCounts, kMostCounts));
+}
+
+}  // namespace
+
+Joints::Joints(const Pins& pins, const Wiring& wiring, double mm_per_unit) noexcept
+    : pins_(pins), count_(static_cast<std::uint32_t>(wiring.axes.size())), mm_per_unit_(mm_per_unit) {
+  for (std::uint32_t i = 0; i < count_; ++i) {
+    joints_[i].pins = &pins.joint[i];
+    joints_[i].counts = wiring.axes[i].rotary ? kCountsPerDeg : kCountsPerMm * mm_per_unit;
+  }
+}
+
+// Another zero than before: how it got there is no motion.
+void Joints::start(Joint& joint, double position) noexcept {
+  joint.position = position;
+  joint.velocity = joint.acceleration = joint.back = joint.since = joint.travel = 0;
+  joint.sense = 0;
+  joint.reading = {};
+  joint.reading.restarted = true;
+}
+
+void Joints::turn(Joint& joint, double travel) noexcept {
+  if (joint.sense == 0) {
+    joint.sense = travel > 0 ? 1 : travel < 0 ? -1 : 0;
+    return;
+  }
+  joint.back = std::max(0.0, joint.back - travel * joint.sense);
+  joint.since += std::abs(travel);
+  if (joint.back * joint.counts <= kTurnsAt) return;
+  joint.sense = -joint.sense;
+  joint.since = joint.back;
+  joint.back = 0;
+  joint.reading.since = {};
+}
+
+void Joints::move(Joint& joint, double position, double per_second) noexcept {
+  const double travel = position - joint.position;
+  const double velocity = travel * per_second;
+  joint.acceleration = (velocity - joint.velocity) * per_second;
+  joint.velocity = velocity;
+  joint.position = position;
+  joint.travel = travel * joint.counts;
+  turn(joint, travel);
+  AxisReading& reading = joint.reading;
+  reading.restarted = false;
+  // Before the first reversal the way since the last one is not known.
+  const bool turned = reading.since.count != INT64_MAX;
+  if (turned) reading.since = AxisTravel(whole(joint.since * joint.counts));
+  reading.sense = static_cast<std::int8_t>(joint.sense);
+}
+
+void Joints::read(double seconds) noexcept {
+  all_homed_ = true;
+  for (std::uint32_t i = 0; i < count_; ++i) {
+    Joint& joint = joints_[i];
+    const double given = *joint.pins->pos_in, commanded = *joint.pins->cmd_in;
+    const double position = std::isnan(given) ? commanded : given;
+    const bool homed = *joint.pins->homed;
+    joint.given = std::isfinite(position) && std::abs(position) * joint.counts < kMostCounts;
+    all_homed_ = all_homed_ && homed;
+    if (!joint.given) continue;
+    if (!joint.known || (homed && !joint.homed))
+      start(joint, position);
+    else
+      move(joint, homed ? position : joint.position, 1 / seconds);
+    joint.known = true;
+    joint.homed = homed;
+    joint.reading.position = AxisPosition(whole(joint.position * joint.counts));
+    joint.reading.velocity = AxisSpeed(whole(joint.velocity * joint.counts));
+    joint.reading.acceleration = AxisAcceleration(whole(joint.acceleration * joint.counts));
+  }
+}
+
+HalFault Joints::read_axis(std::uint32_t axis, AxisReading& reading) noexcept {
+  if (axis >= count_) return HalFault::kNoDevice;
+  if (!joints_[axis].given) return HalFault::kNoReading;
+  reading = joints_[axis].reading;
+  return HalFault::kNone;
+}
+
+HalFault Joints::read_path(PathReading& reading) noexcept {
+  const double mm_per_min = *pins_.current_vel * mm_per_unit_ * 60;
+  if (!std::isfinite(mm_per_min)) return HalFault::kNoReading;
+  reading.feed = FeedNmPerMin(whole(mm_per_min * kCountsPerMm));
+  return HalFault::kNone;
+}
+
+HalFault Joints::write_correction(std::uint32_t axis, AxisTravel correction) noexcept {
+  if (axis >= count_) return HalFault::kNoDevice;
+  joints_[axis].correction = correction;
+  return HalFault::kNone;
+}
+
+// A command that is beyond a limit already is the controller's: the correction then takes it no further.
+// Counts.
+double Joints::room_below(const Joint& joint) noexcept {
+  return std::min(0.0, (*joint.pins->min_limit - joint.position) * joint.counts);
+}
+double Joints::room_above(const Joint& joint) noexcept {
+  return std::max(0.0, (*joint.pins->max_limit - joint.position) * joint.counts);
+}
+
+AxisTravel Joints::within_range(std::uint32_t axis, AxisTravel correction) const noexcept {
+  if (axis >= count_) return AxisTravel{};
+  const Joint& joint = joints_[axis];
+  const double low = std::ceil(kShareOfWay * room_below(joint)),
+               high = std::floor(kShareOfWay * room_above(joint));
+  return AxisTravel(whole(std::clamp(static_cast<double>(correction.count), low, high)));
+}
+
+// What is asked for changes within the slew limit, and the way to a limit no faster than the joint; a limit
+// that is set anew may not make a step either.
+void Joints::hold(Joint& joint, std::uint32_t i) noexcept {
+  const AxisTravel target = within_range(i, joint.correction);
+  const auto asked = static_cast<double>(joint.correction.count - joint.asked.count);
+  const double most = std::max(std::abs(asked), kLetGo + std::ceil(kShareOfWay * std::abs(joint.travel)));
+  const auto way = static_cast<double>(target.count - joint.given_out.count);
+  joint.given_out.count += whole(std::clamp(way, -most, most));
+  joint.asked = joint.correction;
+  const auto full = static_cast<double>(joint.correction.count);
+  joint.at_limit = full < room_below(joint) || full > room_above(joint);
+}
+
+// The feedback answers the command of the tick before, which had that tick's correction. Where it is the
+// command's own signal, it has just become this tick's.
+void Joints::write() noexcept {
+  for (std::uint32_t i = 0; i < count_; ++i) {
+    Joint& joint = joints_[i];
+    hold(joint, i);
+    const double added = static_cast<double>(joint.given_out.count) / joint.counts;
+    const double commanded = *joint.pins->cmd_in, sent = commanded + added;
+    *joint.pins->cmd_out = sent;
+    const double feedback = *joint.pins->fb_in;
+    const bool is_the_command = std::isnan(feedback) || feedback == sent;
+    *joint.pins->fb_out = is_the_command ? commanded : feedback - joint.added;
+    *joint.pins->correction = added;
+    *joint.pins->at_limit = joint.at_limit;
+    joint.added = added;
+  }
+}
+
+bool Joints::any_at_limit() const noexcept {
+  for (std::uint32_t i = 0; i < count_; ++i)
+    if (joints_[i].at_limit) return true;
+  return false;
+}
+
+HalFault Joints::stands(std::uint32_t joint, AxisPosition& position) const noexcept {
+  if (joint >= count_ || !joints_[joint].given) return HalFault::kNoReading;
+  const Joint& now = joints_[joint];
+  const double feedback = *now.pins->fb_in;
+  // From the motor's count to the joint's, which homing shifts.
+  const double shift = now.position - *now.pins->cmd_in;
+  if (!std::isfinite(feedback)) return HalFault::kNoReading;
+  position = AxisPosition(whole((feedback - now.added + shift) * now.counts));
+  return HalFault::kNone;
+}
+
+}  // namespace vernier

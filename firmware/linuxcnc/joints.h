@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include "firmware/linuxcnc/pins.h"
+#include "hal/axis_reader.h"
+#include "hal/correction_writer.h"
+
+namespace vernier {
+
+/// The joints as LinuxCNC commands them, and the correction on its way to their drives. What the controller
+/// commands has no noise: speed and acceleration are differences of this tick and the ones before, not
+/// smoothed.
+///
+/// A correction that would take a joint past its limit fades out before: outward no more than a share of the
+/// way that the command has left, so that the drive comes to the limit with the command and not faster than
+/// it.
+///
+/// A joint that is not homed counts from nowhere: its reading stays where it was, and goes on from its new
+/// zero when it is homed.
+class Joints : public AxisReader, public CorrectionWriter {
+ public:
+  /// pins: outlive this. mm_per_unit: of the machine's lengths. setup.
+  Joints(const Pins& pins, const Wiring& wiring, double mm_per_unit = 1) noexcept;
+
+  /// Reads the joints' pins. seconds: of the thread's period. realtime.
+  void read(double seconds) noexcept;
+  /// Corrections to the commands, and off the feedback as they were added. realtime.
+  void write() noexcept;
+  bool all_homed() const noexcept { return all_homed_; }
+  /// Would the correction take a joint, or any, past its limit? It is held then. realtime.
+  bool at_limit(std::uint32_t joint) const noexcept { return joints_[joint].at_limit; }
+  bool any_at_limit() const noexcept;
+  /// Where a joint stands, in its counts: feedback without the correction; kNoReading without feedback.
+  /// realtime.
+  HalFault stands(std::uint32_t joint, AxisPosition& position) const noexcept;
+
+  HalFault read_axis(std::uint32_t axis, AxisReading& reading) noexcept override;
+  HalFault read_path(PathReading& reading) noexcept override;
+  bool gives_motion() const noexcept override { return true; }
+  HalFault write_correction(std::uint32_t axis, AxisTravel correction) noexcept override;
+  AxisTravel within_range(std::uint32_t axis, AxisTravel correction) const noexcept override;
+
+ private:
+  struct Joint {
+    const JointPins* pins = nullptr;
+    double counts = 1;  // in a unit of the machine
+    bool known = false, homed = false, given = false, at_limit = false;
+    double position = 0, velocity = 0, acceleration = 0;  // units, s
+    double back = 0, since = 0;
+    int sense = 0;
+    double added = 0;                         // to the command of the tick before
+    double travel = 0;                        // of this tick, counts
+    AxisTravel correction, asked, given_out;  // of this tick; of the one before; after the limit
+    AxisReading reading;
+  };
+  static double room_below(const Joint& joint) noexcept;
+  static double room_above(const Joint& joint) noexcept;
+  void hold(Joint& joint, std::uint32_t i) noexcept;
+  static void start(Joint& joint, double position) noexcept;
+  static void move(Joint& joint, double position, double per_second) noexcept;
+  static void turn(Joint& joint, double travel) noexcept;
+
+  const Pins& pins_;
+  std::uint32_t count_;
+  double mm_per_unit_;
+  bool all_homed_ = false;
+  Joint joints_[kMaxAxes];
+};
+
+/// Where the joints stand, for touches.
+class StandingJoints : public AxisReader {
+ public:
+  /// joints: outlive this. setup.
+  explicit StandingJoints(const Joints& joints) noexcept : joints_(joints) {}
+  HalFault read_axis(std::uint32_t axis, AxisReading& reading) noexcept override {
+    return joints_.stands(axis, reading.position);
+  }
+  HalFault read_path(PathReading&) noexcept override { return HalFault::kNoDevice; }
+  bool gives_motion() const noexcept override { return false; }
+
+ private:
+  const Joints& joints_;
+};
+
+}  // namespace vernier

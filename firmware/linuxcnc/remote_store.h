@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include "firmware/linuxcnc/hatch.h"
+#include "hal/slot_store.h"
+
+namespace vernier {
+
+/// The component's side of a store that vernier-hal keeps. Where vernier-hal is gone every access is refused,
+/// as by a broken medium; what runs goes on running.
+class RemoteStore : public SlotStore {
+ public:
+  /// hatch, stop: outlive the store. setup.
+  RemoteStore(Hatch& hatch, std::uint32_t capacity, const std::atomic<bool>& stop) noexcept
+      : hatch_(hatch), stop_(stop), capacity_(capacity) {}
+
+  std::uint32_t capacity() const noexcept override { return capacity_; }
+  HalFault read_record(std::uint32_t place, std::uint8_t* bytes, std::uint32_t size) noexcept override;
+  HalFault write_record(std::uint32_t place, const std::uint8_t* bytes, std::uint32_t size) noexcept override;
+  HalFault read_image(std::uint32_t slot, std::uint32_t offset, std::uint8_t* bytes,
+                      std::uint32_t size) noexcept override;
+  HalFault write_image(std::uint32_t slot, std::uint32_t offset, const std::uint8_t* bytes,
+                       std::uint32_t size) noexcept override;
+  HalFault finish_image(std::uint32_t slot, std::uint32_t size) noexcept override;
+  /// Bytes of the image that vernier-hal was started with. setup.
+  HalFault read_given(std::uint32_t offset, std::uint8_t* bytes, std::uint32_t size) noexcept;
+
+ private:
+  HalFault call(StoreOp op, std::uint32_t place, std::uint32_t offset, std::uint32_t size) noexcept;
+  HalFault read(StoreOp op, std::uint32_t place, std::uint32_t offset, std::uint8_t* bytes,
+                std::uint32_t size) noexcept;
+  HalFault write(StoreOp op, std::uint32_t place, std::uint32_t offset, const std::uint8_t* bytes,
+                 std::uint32_t size) noexcept;
+
+  Hatch& hatch_;
+  const std::atomic<bool>& stop_;
+  std::uint32_t capacity_;
+};
+
+}  // namespace vernier

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include "firmware/core/runner.h"
+#include "firmware/linuxcnc/joints.h"
+#include "hal/digital_line.h"
+#include "hal/input_reader.h"
+#include "hal/probe_line.h"
+
+namespace vernier {
+
+/// Sensors as pins. One that is not a finite number is a sensor that is silent.
+class PinInputs : public InputReader {
+ public:
+  PinInputs(const Pins& pins, std::uint32_t count) noexcept : pins_(pins), count_(count) {}
+  HalFault read_input(std::uint32_t input, InputMicro& value) noexcept override;
+
+ private:
+  const Pins& pins_;
+  std::uint32_t count_;
+};
+
+/// On where the pin `enable` is and every joint knows its zero.
+class EnablePin : public DigitalInput {
+ public:
+  EnablePin(const Pins& pins, const Joints& joints) noexcept : pins_(pins), joints_(joints) {}
+  HalFault read_line(bool& on) noexcept override {
+    on = *pins_.enable && joints_.all_homed();
+    return HalFault::kNone;
+  }
+
+ private:
+  const Pins& pins_;
+  const Joints& joints_;
+};
+
+/// The pin `probe-in`, looked at once a tick: an edge is half a tick old on average.
+class PinProbe : public ProbeLine {
+ public:
+  PinProbe(const Pins& pins, TimeUs tick) noexcept : pins_(pins), tick_(instant_ns(tick)) {}
+  /// Whose ticks the edges are of. setup.
+  void follow(const Runner& runner) noexcept { runner_ = &runner; }
+  HalFault read_edge(ProbeEdge& edge) noexcept override;
+  InstantNs resolution() const noexcept override { return tick_; }
+
+ private:
+  const Pins& pins_;
+  InstantNs tick_;
+  const Runner* runner_ = nullptr;
+  bool made_ = false;
+};
+
+}  // namespace vernier

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <cstdint>
+#include <span>
+
+#include "firmware/linuxcnc/hatch.h"
+#include "hal/slot_store.h"
+
+namespace vernier {
+
+/// vernier-hal's side of the component's store: does what the component asks, one request at a time.
+class StoreServer {
+ public:
+  /// call, store, given (the image to start with): outlive this. setup.
+  StoreServer(Call& call, SlotStore& store, std::span<const std::uint8_t> given) noexcept
+      : call_(call), store_(store), given_(given) {}
+  /// Waits at most `wait` for a request and answers it. setup.
+  void serve(TimeUs wait) noexcept;
+
+ private:
+  HalFault run() noexcept;
+  HalFault read_given() noexcept;
+
+  Call& call_;
+  SlotStore& store_;
+  std::span<const std::uint8_t> given_;
+};
+
+}  // namespace vernier

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A service whose ticks are the controller's own cycle, as in LinuxCNC's servo thread.
+#include <gtest/gtest.h>
+
+#include "tests/unit/firmware/upload_rig.h"
+
+namespace vernier::in_controller_test {
+namespace {
+
+struct Switch : DigitalInput {
+  HalFault read_line(bool& value) noexcept override {
+    value = on;
+    return HalFault::kNone;
+  }
+  bool on = true;
+};
+
+class InController : public testing::Test {
+ protected:
+  InController() {
+    ServiceOptions options;
+    options.wiring = {{{"X"}, {"Y"}}, {"T"}};
+    options.activate = options.clear_on_enable = options.in_controller = true;
+    const Board board{
+        .clock = clock_, .axes = plant_, .inputs = plant_, .corrections = plant_, .enable = &enable_};
+    service_ = std::make_unique<Service>(options, board, store_);
+    boot_ = service_->boot_with(small_image_bytes(2e-5));
+    plant_.release();
+  }
+  void run(int ticks) {
+    for (int i = 0; i < ticks; ++i) {
+      plant_.advance();
+      service_->look_after_programs();
+      const AxisTravel before = plant_.written(1);
+      service_->tick();
+      worst_ = std::max(worst_, std::abs((plant_.written(1) - before).count));
+    }
+  }
+  Cycle& cycle() { return service_->cycle(); }
+
+  SimClock clock_;
+  SimSlotStore store_{1 << 16};
+  Switch enable_;
+  Roaming motion_{{{0, 600'000'000}, {0, 200'000'000}}, {InputMicro(21'000'000)}, TimeUs(1000), 0.1, 1};
+  SimPlant plant_{motion_, 2, 1, {.faults = {{PlantFaultKind::kSensorLost, 0, 5000, 500}}}};
+  std::unique_ptr<Service> service_;
+  UploadResult boot_;
+  std::int64_t worst_ = 0;
+};
+
+TEST_F(InController, GivenImageRunsUnsignedAndTheStoreKeepsWhatItHas) {
+  EXPECT_EQ(boot_.fault, UploadFault::kNone);
+  run(2000);
+  EXPECT_EQ(cycle().mode(), Mode::kActive);
+  EXPECT_EQ(service_->uploader().record().confirmed, kNoSlot);
+  EXPECT_NE(service_->uploader().record().confirmed_fingerprint, 0u);
+}
+
+TEST_F(InController, ClockThatStandsStillIsNoFault) {
+  run(3000);
+  EXPECT_EQ(cycle().latched(), Fault::kNone);
+  EXPECT_EQ(service_->runner().time(), TimeUs(3'000'000));
+  EXPECT_EQ(cycle().health().skipped, 0u);
+}
+
+TEST_F(InController, EnableSwitchedOnClearsTheFaultAndBringsTheCorrectionIn) {
+  run(5400);
+  EXPECT_EQ(cycle().latched(), Fault::kInputMissing);
+  run(2000);
+  EXPECT_EQ(cycle().mode(), Mode::kFaulted) << "not by itself, though the sensor is back";
+  enable_.on = false;
+  run(10);
+  EXPECT_EQ(cycle().mode(), Mode::kFaulted);
+  enable_.on = true;
+  run(3000);
+  EXPECT_EQ(cycle().latched(), Fault::kNone);
+  EXPECT_EQ(cycle().mode(), Mode::kActive);
+  EXPECT_LE(worst_, kSmallSlewY);
+}
+
+TEST_F(InController, WeightOfAllStandsOnTopOfTheAxes) {
+  run(2000);
+  service_->set_weight(WeightQ16(kFullWeight.count / 2));
+  run(2000);
+  EXPECT_EQ(cycle().axis_weight(1), WeightQ16(kFullWeight.count / 2));
+  EXPECT_NEAR(static_cast<double>(plant_.written(1).count), static_cast<double>(cycle().wanted(1).count) / 2,
+              1)
+      << "a rounding";
+  EXPECT_LE(worst_, kSmallSlewY);
+}
+
+TEST(InControllerChecking, SaysWhatItWaitsFor) {
+  SimClock clock;
+  SimSlotStore store{1 << 16};
+  Roaming motion{{{0, 600'000'000}, {0, 200'000'000}}, {InputMicro(21'000'000)}, TimeUs(1000), 0.1, 1};
+  SimPlant plant{motion, 2, 1, {.faults = {{PlantFaultKind::kSensorLost, 0, 0, 1000}}}};
+  ServiceOptions options;
+  options.wiring = {{{"X"}, {"Y"}}, {"T"}};
+  options.in_controller = true;
+  Service service(options, Board{clock, plant, plant, plant}, store);
+  ASSERT_EQ(service.boot_with(small_image_bytes(2e-5)).fault, UploadFault::kNone);
+  const auto run = [&](int ticks) {
+    for (int i = 0; i < ticks; ++i) plant.advance(), service.tick();
+  };
+  run(500);
+  EXPECT_EQ(service.cycle().mode(), Mode::kChecking);
+  EXPECT_EQ(service.cycle().latched(), Fault::kNone);
+  EXPECT_EQ(service.cycle().found(), Fault::kInputMissing);
+  run(1000);
+  EXPECT_EQ(service.cycle().mode(), Mode::kReady);
+  EXPECT_EQ(service.cycle().found(), Fault::kNone);
+}
+
+TEST(GivenImage, OfAnotherMachineIsAFaultAndNothingRuns) {
+  SimClock clock;
+  SimSlotStore store{1 << 16};
+  Roaming motion{{{0, 600'000'000}}, {}, TimeUs(1000), 0.1, 1};
+  SimPlant plant{motion, 1, 0, {}};
+  ServiceOptions options;
+  options.wiring = {{{"X"}}, {}};
+  options.in_controller = true;
+  Service service(options, Board{clock, plant, plant, plant}, store);
+  const UploadResult result = service.boot_with(small_image_bytes(2e-5));
+  EXPECT_EQ(result.bind, BindFault::kUnknownAxis);
+  EXPECT_EQ(result.offender, "Y");
+  for (int i = 0; i < 300; ++i) service.tick();
+  EXPECT_EQ(service.cycle().latched(), Fault::kImageLost);
+}
+
+TEST(ContinuousAxis, TakesAnImageInWhichItRollsOver) {
+  const std::string text =
+      R"(<machine name="turn"><variables><static><k value="0.01" nominal="0" unit="deg"/></static>
+    <machineaxes><X min="0" max="1"/><C rotary="true" rollover="true" min="0" max="360" maxcorrection="1" maxslew="1"/></machineaxes></variables>
+    <transforms branch="tool"><sixdof n="1" X="X" Y="0" Z="0" rX="0" rY="0" rZ="C+k"/></transforms></machine>)";
+  const Machine machine = parse_machine(text, "turn.xml");
+  const auto image = load_image(compile_machine(machine, text, {}).image, machine);
+  Wiring wiring{{{"X"}, {.name = "C", .rotary = true}}, {}};
+  BoundProgram bound(image->view);
+  Name offender;
+  EXPECT_EQ(bind(image->view, wiring, TimeUs(1000), bound, offender), BindFault::kAxisKind);
+  wiring.axes = {{"X"}, {.name = "C", .rotary = true, .rollover = false, .continuous = true}};
+  EXPECT_EQ(bind(image->view, wiring, TimeUs(1000), bound, offender), BindFault::kNone);
+}
+
+}  // namespace
+}  // namespace vernier::in_controller_test

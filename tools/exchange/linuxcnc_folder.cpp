@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/exchange/linuxcnc_folder.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+
+#include "tools/model/machine_reader.h"
+
+namespace vernier {
+namespace {
+
+// What the component can take (comp/equation.h), and a pin's name (HAL_NAME_LEN less "vernier.0.input.").
+constexpr std::size_t kMostJoints = 8, kMostInputs = 24, kLongestName = 23;
+
+std::vector<const Input*> sensors(const Machine& machine) {
+  std::vector<const Input*> result;
+  for (const Input& input : machine.inputs) result.push_back(&input);
+  return result;
+}
+
+void check_names(const Machine& machine) {
+  const auto check = [&](const std::string& name, std::size_t line) {
+    const bool good =
+        name.size() <= kLongestName && std::all_of(name.begin(), name.end(), [](unsigned char c) {
+          return std::isalnum(c) != 0 || c == '_' || c == '-';
+        });
+    if (!good) throw InputError({machine.file, line}, name, "a name that no HAL pin can have");
+  };
+  if (machine.axes.size() > kMostJoints)
+    throw InputError({machine.file, 0}, machine.axes[kMostJoints].name,
+                     "more axes than the component has joints");
+  if (machine.inputs.size() > kMostInputs)
+    throw InputError({machine.file, 0}, machine.inputs[kMostInputs].name,
+                     "more inputs than the component has");
+  for (const Axis& axis : machine.axes) check(axis.name, axis.line);
+  for (const Input* input : sensors(machine)) check(input->name, input->line);
+}
+
+std::string lower(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
+// Only where the component would take another kind from the name.
+std::string rotary_argument(const Machine& machine) {
+  std::string names;
+  bool by_name = true;
+  for (const Axis& axis : machine.axes) {
+    const bool usual = axis.name == "A" || axis.name == "B" || axis.name == "C";
+    by_name = by_name && axis.rotary == usual;
+    if (axis.rotary) names += (names.empty() ? "" : ",") + axis.name;
+  }
+  return by_name ? "" : " rotary=" + (names.empty() ? std::string("none") : names);
+}
+
+std::string load_line(const Machine& machine) {
+  std::string axes, inputs;
+  for (const Axis& axis : machine.axes) axes += (axes.empty() ? "" : ",") + axis.name;
+  for (const Input* input : sensors(machine)) inputs += (inputs.empty() ? "" : ",") + input->name;
+  return "loadrt vernier axes=" + axes + (inputs.empty() ? "" : " inputs=" + inputs) +
+         rotary_argument(machine);
+}
+
+std::string joint_lines(std::size_t n) {
+  return fmt::format(
+      "unlinkp joint.{0}.motor-pos-cmd\n"
+      "unlinkp joint.{0}.motor-pos-fb\n"
+      "net vernier-cmd-{0} joint.{0}.motor-pos-cmd => vernier.0.joint.{0}.cmd-in\n"
+      "net [VERNIER]CMD_{0} vernier.0.joint.{0}.cmd-out\n"
+      "net [VERNIER]FB_{0} vernier.0.joint.{0}.fb-in\n"
+      "net vernier-fb-{0} vernier.0.joint.{0}.fb-out => joint.{0}.motor-pos-fb\n"
+      "net vernier-pos-{0} joint.{0}.pos-cmd => vernier.0.joint.{0}.pos-in\n"
+      "net vernier-homed-{0} joint.{0}.homed => vernier.0.joint.{0}.homed\n"
+      "setp vernier.0.joint.{0}.min-limit [JOINT_{0}]MIN_LIMIT\n"
+      "setp vernier.0.joint.{0}.max-limit [JOINT_{0}]MAX_LIMIT\n",
+      n);
+}
+
+std::string hal_file(const Machine& machine) {
+  std::string text = fmt::format(
+      "# {}: the correction between the joints and their drives. Loaded after the files that connect the "
+      "drives.\n"
+      "# A joint without MIN_LIMIT or MAX_LIMIT in the INI file goes without its setp lines.\n"
+      "{}\naddf vernier.0 servo-thread [VERNIER]POSITION\n",
+      machine.name, load_line(machine));
+  for (std::size_t n = 0; n < machine.axes.size(); ++n)
+    text += fmt::format("\n# joint {}: {}\n", n, machine.axes[n].name) + joint_lines(n);
+  text += "\nnet vernier-vel motion.current-vel => vernier.0.current-vel\n";
+  if (!machine.inputs.empty())
+    text += "\n# Sensors: until one is connected there is no correction. Put your pins here.\n";
+  for (const Input* input : sensors(machine))
+    text += fmt::format("# net {} YOUR-SENSOR.PIN => vernier.0.input.{}   # {}, reference {:g}\n",
+                        lower(input->name), input->name, input->unit.empty() ? "no unit" : input->unit,
+                        input->reference);
+  return text +
+         "\n# 0 holds the correction at a joint's limit; 1 ends the program too: net vernier-abort "
+         "vernier.0.abort halui.abort\n"
+         "setp vernier.0.limit-mode 0\n"
+         "loadusr -W vernier-hal --store [VERNIER]STORE --public-key [VERNIER]PUBLIC_KEY --listen "
+         "[VERNIER]LISTEN --image "
+         "[VERNIER]IMAGE\n"
+         "setp vernier.0.enable 1\n";
+}
+
+// What the controller itself refuses needs no holding.
+std::string narrower_limits(const Machine& machine) {
+  std::string text;
+  for (std::size_t n = 0; n < machine.axes.size(); ++n) {
+    const Axis& axis = machine.axes[n];
+    if (axis.min && axis.max && axis.max_correction)
+      text += fmt::format("#   [JOINT_{}] MIN_LIMIT = {:.6g}, MAX_LIMIT = {:.6g}\n", n,
+                          *axis.min + *axis.max_correction, *axis.max - *axis.max_correction);
+  }
+  return text.empty() ? text
+                      : "# Held at its limit is a joint whose correction would pass it (vernier.hal). With "
+                        "soft limits that are narrower by\n"
+                        "# the largest correction LinuxCNC refuses such a program before it starts; for the "
+                        "ranges of the machine file:\n" +
+                            text;
+}
+
+std::string ini_lines(const Machine& machine, const std::string& folder) {
+  std::string text = fmt::format(
+      "# Into your INI file: this line as the last HALFILE of its section [HAL],\n"
+      "#   HALFILE = {0}/vernier.hal\n"
+      "# and the section below.\n"
+      "[VERNIER]\n"
+      "# Where the component runs in the servo thread: right after motion-controller, which `halcmd show "
+      "thread` numbers\n"
+      "# from 1; 3 where only motion-command-handler stands before that.\n"
+      "POSITION = 3\n"
+      "STORE = {0}/store\n"
+      "PUBLIC_KEY = {0}/vernier.pub\n"
+      "IMAGE = {0}/image\n"
+      "LISTEN = 127.0.0.1:1502\n"
+      "# Signals that take a joint's command to its drive and its feedback back, as your HAL files call "
+      "them.\n",
+      folder);
+  for (std::size_t n = 0; n < machine.axes.size(); ++n)
+    text += fmt::format("CMD_{0} = {1}-pos-cmd\nFB_{0} = {1}-pos-fb\n", n, lower(machine.axes[n].name));
+  return text + narrower_limits(machine);
+}
+
+std::string readme(const Machine& machine, const std::string& folder) {
+  std::string joints;
+  for (std::size_t n = 0; n < machine.axes.size(); ++n)
+    joints += fmt::format("{}joint {} = {}", n == 0 ? "" : ", ", n, machine.axes[n].name);
+  return fmt::format(
+      "# {0} in LinuxCNC\n\n"
+      "{1}.\n\n"
+      "1. Install the package `vernier-linuxcnc` and put this folder, `{2}`, beside your INI file.\n"
+      "2. `vernier keys -o {2}`: whose images the machine takes. Keep `vernier.key` elsewhere.\n"
+      "3. Put the lines of `vernier.ini` into your INI file: `HALFILE = {2}/vernier.hal` last in `[HAL]`, "
+      "and `[VERNIER]`.\n"
+      "4. Set `CMD_n` and `FB_n` to the signals of your HAL files, and `POSITION` (see there).\n"
+      "5. Connect the sensors in `vernier.hal`, where the machine has some.\n"
+      "6. Start LinuxCNC and home. `halcmd getp vernier.0.active` says TRUE when the whole correction is "
+      "in.\n"
+      "7. A better image: `vernier upload DIR --to tcp://127.0.0.1:1502 --key vernier.key --confirm`, while "
+      "LinuxCNC runs; then\n"
+      "   take `--image [VERNIER]IMAGE` out of `vernier.hal`, so that LinuxCNC starts with what is in the "
+      "store.\n\n"
+      "To take it out: delete the HALFILE line. Nothing else was changed.\n\n"
+      "Pins: `man 9 vernier`. More: `tools/docs/linuxcnc.md` (/usr/share/doc/vernier-linuxcnc).\n",
+      machine.name, joints, folder);
+}
+
+}  // namespace
+
+std::vector<ConfigurationFile> linuxcnc_folder(const Machine& machine, const std::string& folder) {
+  check_names(machine);
+  return {{"vernier.hal", hal_file(machine)},
+          {"vernier.ini", ini_lines(machine, folder)},
+          {"README.md", readme(machine, folder)}};
+}
+
+}  // namespace vernier
