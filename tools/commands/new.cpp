@@ -96,6 +96,8 @@ void run_new(const NewArguments& arguments, const CLI::App& command) {
   fmt::print(out, "{}\n", drawing(plan));
   fmt::print(out, "{}: {} axes, {} tables, tool {} {} {} mm\n", arguments.output, machine.axes.size(),
              machine.tables.size(), plan.tool[0], plan.tool[1], plan.tool[2]);
+  if (plan.arm == default_arm())
+    fmt::print(out, "the arm has the lengths of a UR10e: give those of yours with --dh FILE or --joint\n");
   const std::string meas = arguments.measurements.empty() ? "MEAS.csv" : arguments.measurements;
   if (!arguments.measurements.empty())
     fmt::print(out, "{}: rows to be measured, with empty cells for the readings\n", meas);

@@ -12,6 +12,7 @@ struct DhRow {
   bool prismatic = false;
   /// Is the next joint's axis parallel to this one's?
   bool parallel() const;
+  bool operator==(const DhRow&) const = default;
 };
 
 /// The arm that is written where none is given: six joints, published lengths of the UR10e.

@@ -36,12 +36,12 @@ struct Unit {
   double factor, offset;
 };
 
-/// The unit of that name (case-sensitive), with the signs that people type for it (µ, °, ²: `usual_spelling`);
-/// nothing for an unknown one. "" is the pure number.
+/// The unit of that name (case-sensitive), with the signs that people type for it (µ, °, ²:
+/// `usual_spelling`); nothing for an unknown one. "" is the pure number.
 std::optional<Unit> find_unit(std::string_view name);
 
-/// The text with signs of the keyboard: µ (both of Unicode's) as u, °C as degC, ° as deg, ″ as arcsec, ² as ^2,
-/// a middle dot left out. tool.
+/// The text with signs of the keyboard: µ (both of Unicode's) as u, °C as degC, ° as deg, ″ as arcsec, ² as
+/// ^2, a middle dot left out. tool.
 std::string usual_spelling(std::string_view unit);
 
 /// The name that find_unit has for it; the text itself where it has none. tool.

@@ -93,9 +93,12 @@ TEST(MachinePlan, RobotIsItsTable) {
   // position).
   EXPECT_TRUE(point(made, {0, 0, 0, 0, 0, 0}).isApprox(Eigen::Vector3d(-1184.25, -290.7, 60.85), 1e-9))
       << point(made, {0, 0, 0, 0, 0, 0});
+  EXPECT_NE(machine_file(made).find("the lengths are those of a UR10e"), std::string::npos)
+      << "nobody asked for them";
   const std::vector<DhRow> scara = parse_dh_table(
       "joint,type,d[mm],a[m],alpha[deg]\n1,R,400,0.3,0\n2,R,0,0.25,180\n3,P,0,0,0\n", "dh.csv");
   const MachinePlan slides = plan_robot({}, scara);
+  EXPECT_EQ(machine_file(slides).find("UR10e"), std::string::npos);
   EXPECT_EQ(slides.axes[2].name, "J3");
   EXPECT_TRUE(point(slides, {90, -90, 120}).isApprox(Eigen::Vector3d(250, 300, 280), 1e-9));
 }

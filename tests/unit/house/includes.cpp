@@ -64,8 +64,7 @@ const std::vector<Room>& rooms_of_tools() {
       {"results",
        {"diagnose", "effects", "fit", "import", "kinematics", "map", "maths", "model", "residual", "safety",
         "simulate", "text"}},
-      {"python",
-       {"diagnose", "effects", "fit", "model", "plan", "residual", "results", "text"}},
+      {"python", {"diagnose", "effects", "fit", "model", "plan", "residual", "results", "text"}},
       {"workbench", {"diagnose", "effects", "fit", "maths", "model", "results", "text", "upload"}},
   };
   return kRooms;
