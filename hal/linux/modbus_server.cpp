@@ -93,18 +93,19 @@ std::unique_ptr<ModbusServer> ModbusServer::rtu(const std::string& device, int b
 
 // Who does not take his reply gives way, then who has been quiet for longest; who is being served does not.
 // So neither a tool that died without a word, nor many that come only to stay, lock out one that works.
-bool ModbusServer::make_room(InstantNs now) {
-  const auto first = std::min_element(clients_.begin(), clients_.end(), [](const Client& a, const Client& b) {
-    return a.talk.worth() < b.talk.worth();
-  });
-  if (first->talk.worth() > (now - kIdle).count) return false;
-  ::close(first->fd);
-  clients_.erase(first);
-  return true;
+std::vector<ModbusServer::Client>::const_iterator ModbusServer::first_to_go() const noexcept {
+  return std::min_element(clients_.begin(), clients_.end(),
+                          [](const Client& a, const Client& b) { return a.talk.worth() < b.talk.worth(); });
+}
+
+// Where nobody gives way just now, who knocks waits at the door: he is not turned away, since a client that
+// says nothing soon gives way.
+bool ModbusServer::has_room(InstantNs now) const noexcept {
+  return clients_.size() < kMostClients || first_to_go()->talk.worth() <= (now - kIdle).count;
 }
 
 void ModbusServer::accept_clients(InstantNs now) {
-  for (int i = 0; i < kMostAccepted; ++i) {
+  for (int i = 0; i < kMostAccepted && has_room(now); ++i) {
     const int fd = ::accept4(listening_, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
     if (fd < 0) return;
     const int yes = 1;
@@ -112,9 +113,10 @@ void ModbusServer::accept_clients(InstantNs now) {
     const int buffer = 4096;
     ::setsockopt(fd, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof(yes));
     ::setsockopt(fd, SOL_SOCKET, SO_SNDBUF, &buffer, sizeof(buffer));
-    if (clients_.size() >= kMostClients && !make_room(now)) {
-      ::close(fd);
-      continue;
+    if (clients_.size() >= kMostClients) {
+      const auto first = first_to_go();
+      ::close(first->fd);
+      clients_.erase(first);
     }
     clients_.push_back({fd, ModbusConversation(layout_, unit_, frame_time_)});
     clients_.back().talk.begin(now - kIdle + kIntroduction);
@@ -152,7 +154,7 @@ bool ModbusServer::serve_client(Client& client, CommandHandler& handler, Instant
 
 std::uint32_t ModbusServer::handles(int* handles, std::uint32_t room) const noexcept {
   std::uint32_t count = 0;
-  if (listening_ >= 0 && room > 0) handles[count++] = listening_;
+  if (listening_ >= 0 && room > 0 && has_room(now_ns())) handles[count++] = listening_;
   // Who is not listened to does not wake anybody.
   for (const Client& client : clients_)
     if (count < room && client.talk.room() > 0) handles[count++] = client.fd;

@@ -42,7 +42,8 @@ class ModbusServer : public CommandLink {
   ModbusServer(const ModbusLayout& layout, int unit, InstantNs frame_time)
       : layout_(layout), unit_(unit), frame_time_(frame_time) {}
   void accept_clients(InstantNs now);
-  bool make_room(InstantNs now);
+  std::vector<Client>::const_iterator first_to_go() const noexcept;
+  bool has_room(InstantNs now) const noexcept;
   bool serve_client(Client& client, CommandHandler& handler, InstantNs now) noexcept;
   bool receive(Client& client, InstantNs now) noexcept;
   bool send(Client& client) noexcept;

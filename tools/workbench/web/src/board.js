@@ -146,16 +146,13 @@ export function boardView(root) {
     async () => showSlots(await run({ command: 'upload', image: image.value, to: url.value, key: key.value })),
     { id: 'upload' },
   );
-  const confirm = step(
-    'Confirm',
-    async () => showSlots(await run({ command: 'upload', confirm: true, to: url.value, ...signed() })),
-    { id: 'confirm' },
-  );
-  const revert = step(
-    'Revert',
-    async () => showSlots(await run({ command: 'upload', revert: true, to: url.value, ...signed() })),
-    { class: 'quiet', id: 'revert' },
-  );
+  const confirm = step('Confirm', async () => showSlots(await run({ command: 'upload', confirm: true, to: url.value, ...signed() })), {
+    id: 'confirm',
+  });
+  const revert = step('Revert', async () => showSlots(await run({ command: 'upload', revert: true, to: url.value, ...signed() })), {
+    class: 'quiet',
+    id: 'revert',
+  });
   const tell = (what) =>
     step(what, () => run({ command: 'board', what, to: url.value, ...signed() }), {
       class: 'quiet',
