@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 
@@ -8,6 +9,7 @@
 #include "tools/effects/catalogue.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/measurement.h"
+#include "tools/plan/first_plan.h"
 #include "tools/plan/plan.h"
 #include "tools/plan/sheets.h"
 #include "tools/simulate/corrected.h"
@@ -23,6 +25,8 @@ struct PlanArguments {
   std::vector<std::string> measurements, separate, effects;
   std::size_t points = 0;
   double confidence = 0.95;
+  FirstPlanOptions first;
+  double accuracy_um = 0;
 };
 
 Json row_json(const Plan& plan, std::size_t row) {
@@ -74,7 +78,51 @@ Json plan_json(const Plan& plan, double confidence) {
   return json;
 }
 
+/// Without measurements: where to measure a machine for the first time.
+void run_first_plan(const PlanArguments& arguments) {
+  if (!arguments.separate.empty())
+    throw InputError({}, "MEAS", "telling two effects apart builds on measurements: name their files");
+  if (!arguments.gcode.empty())
+    throw InputError({}, "--gcode", "goes with measurements, whose way of approach it follows");
+  const Machine machine = parse_machine(read_file(arguments.machine), arguments.machine);
+  FirstPlanOptions options = arguments.first;
+  if (arguments.accuracy_um > 0) options.accuracy_um = arguments.accuracy_um;
+  if (arguments.points > 0) options.most = arguments.points;
+  const FirstPlan plan = first_plan(machine, options);
+  const auto count = static_cast<std::size_t>(std::count(plan.check.begin(), plan.check.end(), 0));
+  Json json = {{"machine", machine.name},       {"points", plan.check.size()},
+               {"fit_points", count},           {"check_points", plan.check.size() - count},
+               {"references", plan.references}, {"u95_before_um", plan.before_um},
+               {"u95_um", plan.after_um},       {"u95_random_um", plan.random_um},
+               {"u95_least_um", plan.least_um}, {"reached", plan.reached},
+               {"rows", Json::array()}};
+  for (std::size_t row = 0; row < plan.check.size(); ++row) {
+    Json one = {{"role", plan.check[row] != 0 ? "check" : "fit"}};
+    for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+      one["axes"][machine.axes[i].name] = plan.states.axis[i][static_cast<Eigen::Index>(row)];
+      one["dir"][machine.axes[i].name] = plan.states.direction[i][static_cast<Eigen::Index>(row)];
+    }
+    json["rows"].push_back(std::move(one));
+  }
+  if (!plan.reached)
+    throw LimitNotMet(fmt::format(
+        "{:g} um cannot be reached: {} poses lead to {:.3g} um, all that were looked at to {:.3g} um",
+        arguments.accuracy_um, count, plan.after_um, plan.least_um));
+  if (!arguments.output.empty())
+    write_file(arguments.output, first_plan_csv(machine, plan, options.reading_um));
+  write_json(arguments.json, json);
+  fmt::print(human_stream(arguments.json),
+             "{} poses to fit, {} of them the first one again, and {} to check: tool point known to {:.3g} "
+             "um (k = 2, mean over "
+             "the volume) where now it is {:.3g} um; as many poses at random: {:.3g} um\n",
+             count, plan.references, plan.check.size() - count, plan.after_um, plan.before_um,
+             plan.random_um);
+}
+
 void run_plan(const PlanArguments& arguments) {
+  if (arguments.measurements.empty()) return run_first_plan(arguments);
+  if (arguments.separate.empty())
+    throw InputError({}, "--separate", "with measurements: which two effects are to be told apart");
   const std::string text = read_file(arguments.machine);
   const Machine machine = parse_machine(text, arguments.machine);
   const Measurement m =
@@ -104,14 +152,13 @@ void run_plan(const PlanArguments& arguments) {
 void register_plan(CLI::App& vernier) {
   auto arguments = std::make_shared<PlanArguments>();
   CLI::App* command =
-      vernier.add_subcommand("plan", "Propose the next measurement that tells two effects apart");
+      vernier.add_subcommand("plan", "Where to measure first; or the next rows that tell two effects apart");
   command->add_option("MACHINE", arguments->machine, "machine file (XML)")->required();
-  command->add_option("MEAS", arguments->measurements, "measurement files (CSV)")->required();
+  command->add_option("MEAS", arguments->measurements, "measurement files (CSV); none: the first plan");
   // One value each time: what follows it may be a measurement file.
   command
       ->add_option("--separate", arguments->separate,
                    "A,B: effect ids or `add` strings; or twice, once for each")
-      ->required()
       ->expected(1)
       ->allow_extra_args(false)
       ->take_all();
@@ -123,6 +170,18 @@ void register_plan(CLI::App& vernier) {
       ->check(CLI::Range(0.5001, 0.9999))
       ->capture_default_str();
   command->add_option("--effects", arguments->effects, "files with effects of your own; may be repeated");
+  command
+      ->add_option("--accuracy", arguments->accuracy_um,
+                   "first plan: U95 of the tool point to reach, mean over the volume, um")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--reading", arguments->first.reading_um, "first plan: u of a coordinate, um")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command
+      ->add_option("--expected", arguments->first.expected_um,
+                   "first plan: what a parameter may move the tool by, um")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
   command->add_option("--images", arguments->images, kImagesHelp);
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->footer(

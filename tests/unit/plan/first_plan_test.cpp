@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/plan/first_plan.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "tools/fit/fit.h"
+#include "tools/model/chain.h"
+#include "tools/model/machine_reader.h"
+#include "tools/model/prediction.h"
+#include "tools/model/work_poses.h"
+#include "tools/text/error.h"
+
+namespace vernier::first_plan_test {
+namespace {
+
+const char* const kBridge = R"XML(<machine name="bridge"><variables><static><sxy value="0" nominal="0"/>
+    <szx value="0" nominal="0"/><kx value="0" nominal="0"/><play value="0" nominal="0" unit="mm"/><BaseShift/></static>
+    <machineaxes><X min="0" max="600"/><Y min="0" max="400"/><Z min="-300" max="0"/></machineaxes>
+    <comptables><table axis="Y" fit="X Z rZ"><station loc="0"/><station loc="200"/><station loc="400"/></table>
+    </comptables></variables>
+    <transforms branch="tool"><sixdof n="1" X="X+kx*X+play*dirX"/><sixdof n="2" Y="Y" X="sxy*Y+lYx" Z="lYz" rZ="rYz"/>
+    <sixdof n="3" Z="Z" X="szx*Z"/></transforms></machine>)XML";
+
+Machine bridge() { return parse_machine(kBridge, "m.xml"); }
+
+TEST(FirstPlan, NeedsFewerPosesThanChance) {
+  const Machine machine = bridge();
+  FirstPlanOptions options;
+  options.reading_um = 3;
+  options.accuracy_um = 6;
+  const FirstPlan plan = first_plan(machine, options);
+  EXPECT_TRUE(plan.reached);
+  EXPECT_LE(plan.after_um, 6);
+  EXPECT_GT(plan.before_um, 50);
+  EXPECT_LT(plan.after_um, 0.95 * plan.random_um);
+  EXPECT_GE(plan.references, 1U);
+  EXPECT_GT(std::count(plan.check.begin(), plan.check.end(), 1), 0);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    EXPECT_GE(plan.states.axis[axis].minCoeff(), *machine.axes[axis].min);
+    EXPECT_LE(plan.states.axis[axis].maxCoeff(), *machine.axes[axis].max);
+  }
+}
+
+TEST(FirstPlan, PromisesWhatAFitThenKeeps) {
+  // Machines drawn from what was expected, measured as planned: the tool point's error beside what was
+  // promised.
+  const Machine machine = bridge();
+  FirstPlanOptions options;
+  options.reading_um = 3;
+  options.accuracy_um = 6;
+  const FirstPlan plan = first_plan(machine, options);
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> normal(0, 1);
+  double squares = 0, count = 0;
+  for (int trial = 0; trial < 20; ++trial) {
+    Machine truth = machine;
+    const ParameterSet parameters(truth, {"first"});
+    Eigen::VectorXd values = parameters.get(truth);
+    for (std::size_t i = 0; i < parameters.size(); ++i) {
+      const std::string& unit = parameters[i].unit;
+      values[static_cast<Eigen::Index>(i)] = normal(random) * (unit == "mm"    ? 0.05
+                                                               : unit == "deg" ? 0.005
+                                                                               : 1e-4);
+    }
+    parameters.set(truth, values);
+    Measurement rows = parse_measurement(
+        [&] {
+          std::string text = first_plan_csv(machine, plan, options.reading_um);
+          for (std::size_t at = text.find(",,,"); at != std::string::npos; at = text.find(",,,", at))
+            text.replace(at, 3, ",0,0,0");
+          return text;
+        }(),
+        "plan.csv", machine);
+    const Eigen::VectorXd ideal = predict(truth, rows);
+    for (std::size_t i = 0; i < rows.observations.size(); ++i)
+      rows.observations[i].value =
+          ideal[static_cast<Eigen::Index>(i)] + 1e-3 * options.reading_um * normal(random);
+    const FitResult fitted = fit(machine, rows);
+    const States fresh = work_poses(machine).states;
+    Eigen::Matrix3Xd off = forward(fitted.machine, fresh).position - forward(truth, fresh).position;
+    off.colwise() -= off.rowwise().mean().eval();
+    squares += off.colwise().squaredNorm().sum();
+    count += static_cast<double>(off.cols());
+  }
+  const double realised_um = 2000 * std::sqrt(squares / count);
+  EXPECT_LT(realised_um, 1.4 * plan.after_um);
+  EXPECT_GT(realised_um, 0.5 * plan.after_um);
+}
+
+TEST(FirstPlan, SaysWhatCannotBeReached) {
+  FirstPlanOptions options;
+  options.accuracy_um = 1e-3;
+  options.most = 30;
+  const FirstPlan plan = first_plan(bridge(), options);
+  EXPECT_FALSE(plan.reached);
+  EXPECT_GT(plan.least_um, 1e-3);
+  EXPECT_THROW(first_plan(parse_machine(
+                   "<machine><variables><static><a value=\"0\" nominal=\"0\"/></static><machineaxes><X/>"
+                   "</machineaxes></variables><transforms><sixdof X=\"X+a\"/></transforms></machine>",
+                   "m.xml")),
+               InputError);
+}
+
+}  // namespace
+}  // namespace vernier::first_plan_test

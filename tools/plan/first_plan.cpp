@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/plan/first_plan.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "tools/maths/factors.h"
+#include "tools/maths/orthonormal.h"
+#include "tools/model/measurement.h"
+#include "tools/model/prediction.h"
+#include "tools/model/work_poses.h"
+#include "tools/text/error.h"
+
+namespace vernier {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+
+/// Poses that may be chosen, and poses that uncertainty is looked at.
+constexpr std::size_t kOffered = 800, kJudged = 150;
+/// Halton sequence, radical inverse of i in a base.
+double halton(std::size_t i, std::size_t base) {
+  double result = 0, part = 1;
+  for (; i > 0; i /= base) {
+    part /= static_cast<double>(base);
+    result += part * static_cast<double>(i % base);
+  }
+  return result;
+}
+
+/// Poses over the ranges in which the machine works: corners and stations of tables count double, errors show
+/// most there.
+States offered_poses(const Machine& machine, std::size_t count, std::size_t from) {
+  constexpr std::size_t kPrimes[] = {2, 3, 5, 7, 11, 13, 17, 19, 23, 29};
+  std::vector<double> references;
+  for (const Input& input : machine.inputs) references.push_back(input.reference);
+  States states = make_states(count, machine.axes.size(), references);
+  for (std::size_t axis = 0; axis < machine.axes.size(); ++axis) {
+    const auto range = work_range(machine, axis);
+    if (!range)
+      throw InputError({machine.file, machine.axes[axis].line}, machine.axes[axis].name,
+                       "a plan needs min and max of every axis");
+    for (std::size_t i = 0; i < count; ++i) {
+      double share = halton(from + i + 1, kPrimes[axis % std::size(kPrimes)]);
+      // A third of the poses lie at the ends of an axis, drawn by another sequence.
+      const double end = halton(from + i + 1, kPrimes[(axis + 4) % std::size(kPrimes)]);
+      if (end < 1.0 / 6) share = 0;
+      if (end > 5.0 / 6) share = 1;
+      const double value = (*range)[0] + share * ((*range)[1] - (*range)[0]);
+      const double digit = std::pow(10, std::floor(std::log10(((*range)[1] - (*range)[0]) / 500)));
+      states.axis[axis][static_cast<Index>(i)] =
+          std::clamp(std::round(value / digit) * digit, (*range)[0], (*range)[1]);
+      states.direction[axis][static_cast<Index>(i)] =
+          halton(from + i + 1, kPrimes[(axis + 2) % std::size(kPrimes)]) < 0.5 ? -1 : 1;
+    }
+  }
+  return states;
+}
+
+/// Readings x y z at states, for linearising.
+Measurement readings_at(const States& states) {
+  Measurement m;
+  m.files = {"plan"};
+  m.states = states;
+  const auto rows = static_cast<Index>(states.count);
+  m.uncertainty = Column::Zero(rows);
+  m.check.assign(states.count, 0);
+  m.file.assign(states.count, 0);
+  m.line.assign(states.count, 0);
+  m.centre = m.nominal_point = Eigen::Matrix3Xd::Zero(3, rows);
+  for (std::size_t row = 0; row < states.count; ++row)
+    for (const ObservationKind kind : {ObservationKind::kX, ObservationKind::kY, ObservationKind::kZ})
+      m.observations.push_back({kind, row, 0});
+  return m;
+}
+
+class FirstPlanner {
+ public:
+  FirstPlanner(const Machine& machine, const FirstPlanOptions& options)
+      : machine_(machine), options_(options), offered_(offered_poses(machine, kOffered, 0)) {
+    const Measurement rows = readings_at(offered_);
+    const ParameterSet parameters(machine, {""});
+    for (std::size_t i = 0; i < parameters.size(); ++i)
+      (parameters[i].kind == ParameterKind::kBaseShift ? shifts_ : own_).push_back(static_cast<Index>(i));
+    if (own_.empty())
+      throw InputError({machine.file, 0}, machine.name,
+                       "the machine file frees nothing that could be measured");
+    const MatrixXd all(linearise(machine, rows, parameters).jacobian);
+    // In units of what each parameter may plausibly be: what moves the tool point by so much, rms.
+    scale_ = Eigen::VectorXd::Ones(all.cols());
+    for (Index j = 0; j < all.cols(); ++j) {
+      const double size = all.col(j).norm() / std::sqrt(static_cast<double>(kOffered));
+      constexpr double kFree = 1e4;  // a set-up may be anything
+      const bool shift = std::find(shifts_.begin(), shifts_.end(), j) != shifts_.end();
+      if (size > 0) scale_[j] = (shift ? kFree : 1) * 1e-3 * options.expected_um / size;
+    }
+    jacobian_ = all * scale_.asDiagonal();
+    judge(parameters);
+  }
+
+  FirstPlan plan() {
+    FirstPlan plan;
+    covariance_ = MatrixXd::Identity(jacobian_.cols(), jacobian_.cols());
+    plan.before_um = expanded_um(covariance_);
+    plan.least_um = expanded_um(after_all());
+    const std::vector<std::size_t> chosen = choose(plan);
+    plan.after_um = expanded_um(covariance_);
+    plan.random_um = expanded_um(after_random(chosen.size()));
+    plan.reached = !options_.accuracy_um || plan.after_um <= *options_.accuracy_um;
+    order(chosen, plan);
+    return plan;
+  }
+
+ private:
+  /// How the parameters move the tool point over the volume, every tool of the file, but for a rigid motion.
+  void judge(const ParameterSet& parameters) {
+    std::vector<Machine> tooled = {machine_};
+    for (const Tool& tool : machine_.tools) tooled.push_back(with_tool(machine_, tool.point));
+    const Measurement rows = readings_at(offered_poses(machine_, kJudged, 7919));
+    weight_ = MatrixXd::Zero(jacobian_.cols(), jacobian_.cols());
+    for (const Machine& one : tooled) {
+      const MatrixXd all = MatrixXd(linearise(one, rows, parameters).jacobian) * scale_.asDiagonal();
+      MatrixXd own = MatrixXd::Zero(all.rows(), all.cols());
+      own(Eigen::all, own_) = all(Eigen::all, own_);
+      MatrixXd rigid(all.rows(), 6);
+      const Eigen::Matrix3Xd at = forward_points(one, rows);
+      for (Index i = 0; i < at.cols(); ++i) {
+        rigid.block<3, 3>(3 * i, 0).setIdentity();
+        const Eigen::Vector3d p = at.col(i);
+        rigid.block<3, 3>(3 * i, 3) << 0, p.z(), -p.y(), -p.z(), 0, p.x(), p.y(), -p.x(), 0;
+      }
+      const MatrixXd basis = orthonormal(rigid, 1e-9, nullptr);
+      own -= basis * (basis.transpose() * own);
+      weight_ += own.transpose() * own / static_cast<double>(kJudged * tooled.size());
+    }
+  }
+
+  static Eigen::Matrix3Xd forward_points(const Machine& machine, const Measurement& rows) {
+    const Eigen::VectorXd predicted = predict(machine, rows);
+    return Eigen::Map<const Eigen::Matrix3Xd>(predicted.data(), 3, predicted.size() / 3);
+  }
+
+  double expanded_um(const MatrixXd& covariance) const {
+    return 2 * kUmPerMm * std::sqrt(std::max(0.0, covariance.cwiseProduct(weight_).sum()));
+  }
+
+  double variance() const { return std::pow(1e-3 * options_.reading_um, 2); }
+  auto row(std::size_t pose) const { return jacobian_.middleRows(3 * static_cast<Index>(pose), 3); }
+
+  static void update(MatrixXd& covariance, const MatrixXd& row, double variance) {
+    const MatrixXd gain = covariance * row.transpose();
+    const Eigen::Matrix3d inner = row * gain + variance * Eigen::Matrix3d::Identity();
+    covariance -= gain * inner.llt().solve(gain.transpose());
+  }
+
+  MatrixXd after_all() const {
+    const MatrixXd information = MatrixXd::Identity(jacobian_.cols(), jacobian_.cols()) +
+                                 jacobian_.transpose() * jacobian_ / variance();
+    return information.llt().solve(MatrixXd::Identity(jacobian_.cols(), jacobian_.cols()));
+  }
+
+  MatrixXd after_random(std::size_t count) const {
+    MatrixXd covariance = MatrixXd::Identity(jacobian_.cols(), jacobian_.cols());
+    for (std::size_t i = 0; i < count; ++i) update(covariance, row((i * 383 + 11) % kOffered), variance());
+    return covariance;
+  }
+
+  std::vector<std::size_t> choose(const FirstPlan& plan) {
+    std::vector<std::size_t> chosen;
+    double now = plan.before_um;
+    const double enough = options_.accuracy_um.value_or(2 * options_.reading_um);
+    std::vector<char> taken(kOffered, 0);
+    while (chosen.size() < std::min(options_.most, kOffered) && now > enough) {
+      const MatrixXd in_volume = covariance_ * weight_ * covariance_;
+      double most = -1;
+      std::size_t best = 0;
+      for (std::size_t i = 0; i < kOffered; ++i) {
+        if (taken[i] != 0) continue;
+        const MatrixXd one = row(i);
+        const Eigen::Matrix3d inner =
+            one * covariance_ * one.transpose() + variance() * Eigen::Matrix3d::Identity();
+        const double fall = inner.llt().solve(one * in_volume * one.transpose()).trace();
+        if (fall > most) {
+          most = fall;
+          best = i;
+        }
+      }
+      chosen.push_back(best);
+      taken[best] = 1;
+      update(covariance_, row(best), variance());
+      now = expanded_um(covariance_);
+    }
+    return chosen;
+  }
+
+  /// A way through the poses, always to the nearest that is left; check poses and the first one in between.
+  void order(const std::vector<std::size_t>& chosen, FirstPlan& plan) const {
+    std::vector<std::size_t> rest = chosen, way;
+    const auto far = [&](std::size_t a, std::size_t b) {
+      double squares = 0;
+      for (std::size_t axis = 0; axis < machine_.axes.size(); ++axis) {
+        const auto range = work_range(machine_, axis);
+        const double step =
+            (offered_.axis[axis][static_cast<Index>(a)] - offered_.axis[axis][static_cast<Index>(b)]) /
+            std::max((*range)[1] - (*range)[0], 1e-9);
+        squares += step * step;
+      }
+      return squares;
+    };
+    while (!rest.empty()) {
+      const auto next = way.empty()
+                            ? rest.begin()
+                            : std::min_element(rest.begin(), rest.end(), [&](std::size_t a, std::size_t b) {
+                                return far(way.back(), a) < far(way.back(), b);
+                              });
+      way.push_back(*next);
+      rest.erase(next);
+    }
+    const auto checks =
+        static_cast<std::size_t>(std::ceil(options_.check_share * static_cast<double>(way.size())));
+    const States extra = offered_poses(machine_, std::max<std::size_t>(1, checks), 104729);
+    constexpr std::size_t kReferenceEvery = 25;
+    std::vector<std::pair<const States*, std::size_t>> rows;
+    const auto take = [&](const States& from, std::size_t at, bool check) {
+      rows.emplace_back(&from, at);
+      plan.check.push_back(check ? 1 : 0);
+    };
+    std::size_t next_check = 0;
+    for (std::size_t i = 0; i < way.size(); ++i) {
+      if (i > 0 && i % kReferenceEvery == 0) {
+        take(offered_, way.front(), false);
+        ++plan.references;
+      }
+      take(offered_, way[i], false);
+      if ((i + 1) * checks / way.size() > next_check) take(extra, next_check++, true);
+    }
+    if (way.size() > 1) {
+      take(offered_, way.front(), false);
+      ++plan.references;
+    }
+    plan.states = select_states(offered_, std::vector<std::size_t>(rows.size(), 0));
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      for (auto list : {&States::axis, &States::direction})
+        for (std::size_t axis = 0; axis < machine_.axes.size(); ++axis)
+          (plan.states.*list)[axis][static_cast<Index>(i)] =
+              (rows[i].first->*list)[axis][static_cast<Index>(rows[i].second)];
+  }
+
+  const Machine& machine_;
+  const FirstPlanOptions& options_;
+  States offered_;
+  std::vector<Index> shifts_, own_;
+  Eigen::VectorXd scale_;
+  MatrixXd jacobian_;    // of the poses offered, three rows each, in units of the scales
+  MatrixXd weight_;      // what a covariance of the parameters makes of the tool point, mm^2
+  MatrixXd covariance_;  // of the parameters, after what was chosen
+};
+
+}  // namespace
+
+FirstPlan first_plan(const Machine& machine, const FirstPlanOptions& options) {
+  return FirstPlanner(machine, options).plan();
+}
+
+std::string first_plan_csv(const Machine& machine, const FirstPlan& plan, double reading_um) {
+  std::string text =
+      "# Approach every pose in the sense that dir tells. The first pose comes again: a drift shows there.\n"
+      "# Fill in x, y, z as they are read; rows with the role check judge the fit and never enter it.\n";
+  for (const Axis& axis : machine.axes)
+    text += fmt::format("{0}[{1}],dir{0},", axis.name, axis.rotary ? "deg" : "mm");
+  for (const Input& input : machine.inputs)
+    text += input.unit.empty() ? input.name + "," : fmt::format("{}[{}],", input.name, input.unit);
+  text += "x[mm],y[mm],z[mm],u[mm],run,role\n";
+  for (std::size_t row = 0; row < plan.check.size(); ++row) {
+    const auto at = static_cast<Index>(row);
+    for (std::size_t i = 0; i < machine.axes.size(); ++i)
+      text += fmt::format("{:.6g},{:g},", plan.states.axis[i][at], plan.states.direction[i][at]);
+    for (const Input& input : machine.inputs) text += fmt::format("{:g},", input.reference);
+    text += fmt::format(",,,{:g},first,{}\n", 1e-3 * reading_um, plan.check[row] != 0 ? "check" : "fit");
+  }
+  return text;
+}
+
+}  // namespace vernier

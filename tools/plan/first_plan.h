@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <optional>
+#include <string>
+
+#include "tools/model/machine.h"
+#include "tools/model/states.h"
+
+namespace vernier {
+
+struct FirstPlanOptions {
+  /// Expanded uncertainty (k = 2) of the tool point over the work volume at which the plan is long enough,
+  /// um; none: that of one reading.
+  std::optional<double> accuracy_um;
+  double reading_um = 5;     // standard uncertainty of a coordinate that will be read
+  double expected_um = 100;  // by how much a parameter may plausibly move the tool point, rms over the volume
+  std::size_t most = 400;    // poses
+  double check_share = 0.15;  // poses beside them that only judge
+};
+
+/// Poses to measure a machine at for the first time.
+struct FirstPlan {
+  States states;                       // in the order in which they are measured
+  std::vector<char> check;             // role of each
+  std::size_t references = 0;          // of them: the first pose again, that a drift shows
+  double before_um = 0, after_um = 0;  // expanded uncertainty over the volume, without and with the fit poses
+  double random_um = 0;                // the same from as many poses at random
+  double least_um = 0;  // from all poses that could be chosen: what the readings cannot go below
+  bool reached = true;  // the accuracy that was asked for
+};
+
+/// The poses, one by one, that lower the expected uncertainty of the tool point over the work volume and all
+/// its tools most (I-optimal, exchange of none: Fedorov 1972, 2.5), for the parameters that the machine file
+/// frees. What moves the whole is the set-up's and counts for nothing. Measured in the order of a way through
+/// the axes' travels, the first pose repeated, check poses in between. Throws InputError for an axis without
+/// a range, or nothing free. tool.
+FirstPlan first_plan(const Machine& machine, const FirstPlanOptions& options = {});
+
+/// A measurement file with these rows, readings to be filled in.
+std::string first_plan_csv(const Machine& machine, const FirstPlan& plan, double reading_um);
+
+}  // namespace vernier
