@@ -122,12 +122,14 @@ TEST_F(Pages, ExamplesOfTheFormatsAreGoodFiles) {
                 "vernier lint m.xml --json machine.json\nvernier lint b.xml meas.csv --json meas.json\n"),
             0)
       << said_;
-  for (const char* result : {"/machine.json", "/meas.json"})
-    for (const auto& finding : nlohmann::json::parse(read_file(folder_ + result))["findings"])
+  for (const char* result : {"/machine.json", "/meas.json"}) {
+    const nlohmann::json json = nlohmann::json::parse(read_file(folder_ + result));
+    for (const auto& finding : json["findings"])
       // Two rows cannot move all axes; nothing else may be odd about an example.
       EXPECT_TRUE(finding["weight"] == "remark" ||
                   finding["what"].get<std::string>().find("never moves") != std::string::npos)
           << finding.dump();
+  }
 }
 
 TEST(Links, OfTheFirstPagesLeadSomewhere) {
