@@ -37,18 +37,18 @@ Interval axis_range(const Machine& machine, std::size_t axis) {
   return {*a.min, *a.max};
 }
 
-Interval input_range(const Machine& machine, std::size_t index) {
-  const Input& input = machine.inputs[index];
-  const double width = half_width_of(input.unit);
-  Interval range{input.reference - width, input.reference + width};
+Interval input_range(const Machine& machine, std::size_t input) {
+  const Input& one = machine.inputs[input];
+  const double width = half_width_of(one.unit);
+  Interval range{one.reference - width, one.reference + width};
   constexpr double kBeyond = 0.1;  // of what was measured: a day a little warmer than that of the survey
   if (machine.fitted)
     for (const FitRecord::Range& measured : machine.fitted->measured)
-      if (measured.name == input.name) {
+      if (measured.name == one.name) {
         const double more = kBeyond * (measured.max - measured.min);
         range = {std::min(range.low, measured.min - more), std::max(range.high, measured.max + more)};
       }
-  return {input.min.value_or(range.low), input.max.value_or(range.high)};
+  return {one.min.value_or(range.low), one.max.value_or(range.high)};
 }
 
 Interval channel_range(const Machine& machine, ChannelKind kind, std::size_t index) {

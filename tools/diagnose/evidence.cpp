@@ -87,12 +87,12 @@ void Evidence::take_inputs() {
   measurement_.candidates.clear();
 }
 
-double Evidence::reference_of(std::size_t index) const {
-  const Input& input = machine_.inputs[index];
-  if (index < declared_) return input.reference;
-  if (class_of_input(input) == InputClass::kTemperature) return standard_reference(input.unit);
+double Evidence::reference_of(std::size_t input) const {
+  const Input& one = machine_.inputs[input];
+  if (input < declared_) return one.reference;
+  if (class_of_input(one) == InputClass::kTemperature) return standard_reference(one.unit);
   double sum = 0;
-  for (const std::size_t row : rows_) sum += measurement_.states.input[index][static_cast<Eigen::Index>(row)];
+  for (const std::size_t row : rows_) sum += measurement_.states.input[input][static_cast<Eigen::Index>(row)];
   const double mean = rows_.empty() ? 0 : sum / static_cast<double>(rows_.size());
   if (std::abs(mean) < 1e-9) return 0;
   const double digit = std::pow(10, std::floor(std::log10(std::abs(mean))) - 1);

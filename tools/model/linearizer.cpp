@@ -90,7 +90,7 @@ bool Linearizer::Pass::next() {
   return true;
 }
 
-void Linearizer::Pass::join_other_end(std::size_t i, std::size_t other) {
+void Linearizer::Pass::join_other_end(std::size_t row, std::size_t other) {
   // By parameter: what the row's own pose does, then what the other end's does.
   std::map<Index, Eigen::VectorXd> by_parameter;
   const auto add = [&] {
@@ -102,11 +102,11 @@ void Linearizer::Pass::join_other_end(std::size_t i, std::size_t other) {
           sum += weight * row_.gradient.row(group.slot + k).transpose();
         }
   };
-  fill(i, i, point_at(other));
+  fill(row, row, point_at(other));
   add();
   joined_.first_observation = row_.first_observation;
   joined_.predicted = row_.predicted;
-  fill(i, other, point_at(i));
+  fill(row, other, point_at(row));
   add();
   joined_.groups.clear();
   joined_.gradient.resize(static_cast<Index>(by_parameter.size()), joined_.predicted.size());
@@ -122,10 +122,10 @@ Eigen::Vector3d Linearizer::Pass::point_at(std::size_t row) const {
   return ObservationModel(all_.measurement_, machine_.gravity, shift_of(row), pose).point();
 }
 
-void Linearizer::Pass::fill(std::size_t row, std::size_t i, const Eigen::Vector3d& other_end) {
+void Linearizer::Pass::fill(std::size_t row, std::size_t at, const Eigen::Vector3d& other_end) {
   const Measurement& m = all_.measurement_;
-  const BaseShift* shift = shift_of(i);
-  const Frame pose = chain_.pose(i, twists_);
+  const BaseShift* shift = shift_of(at);
+  const Frame pose = chain_.pose(at, twists_);
   ObservationModel model(m, machine_.gravity, shift, pose);
   model.set_other_end(other_end);
   const std::size_t first = all_.start_[row], count = all_.start_[row + 1] - first;
@@ -137,7 +137,7 @@ void Linearizer::Pass::fill(std::size_t row, std::size_t i, const Eigen::Vector3
   for (std::size_t k = 0; k < count; ++k) {
     const auto o = static_cast<Index>(k);
     const Observation& observation = m.observations[first + k];
-    if (row != i && observation.kind != ObservationKind::kDistance) continue;  // of its own pose only
+    if (row != at && observation.kind != ObservationKind::kDistance) continue;  // of its own pose only
     row_.predicted[o] = model.predicted(observation);
     const Twist g = model.gradient(observation);
     const Twist in_workpiece{model.base_rotation().transpose() * g.point,
@@ -154,8 +154,8 @@ void Linearizer::Pass::fill(std::size_t row, std::size_t i, const Eigen::Vector3
   for (std::size_t t = 0; t < all_.tables_.size(); ++t) {
     const TableGroup& table = all_.tables_[t];
     row_.groups[statics + t].first_weight.assign(
-        table.weights.begin() + static_cast<std::ptrdiff_t>(table.start[i]),
-        table.weights.begin() + static_cast<std::ptrdiff_t>(table.start[i + 1]));
+        table.weights.begin() + static_cast<std::ptrdiff_t>(table.start[at]),
+        table.weights.begin() + static_cast<std::ptrdiff_t>(table.start[at + 1]));
   }
   // The BaseShift of this row's run, component by component where some are held.
   row_.groups.resize(statics + all_.tables_.size());
