@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tests/support/machines.h"
-#include "tools/model/machine_reader.h"
 
 #include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "tools/model/machine_reader.h"
+#include "tools/model/prediction.h"
 
 namespace vernier::support {
 
@@ -79,6 +82,29 @@ std::string bridge_text(std::size_t stations) {
          "<sixdof n=\"2\" X=\"X+lXx\" Y=\"lXy-alpha*X\" Z=\"lXz\" rX=\"rXx\" rY=\"rXy\" rZ=\"rXz\"/>"
          "<sixdof n=\"3\" X=\"lZx-beta1*Z\" Y=\"lZy-beta2*Z\" Z=\"Z+lZz\" rX=\"rZx\" rY=\"rZy\" rZ=\"rZz\"/>"
          "<sixdof n=\"4\" X=\"20\" Y=\"-30\" Z=\"-120\"/></transforms></machine>";
+}
+
+void expect_derivatives(const Machine& machine, const Measurement& m, const ParameterSet& parameters) {
+  const Linearisation linear = linearise(machine, m, parameters);
+  const Eigen::MatrixXd analytic = linear.jacobian;
+  const Eigen::VectorXd point = parameters.get(machine);
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    const auto at = static_cast<Eigen::Index>(p);
+    constexpr double kStep = 1e-4;
+    const auto moved = [&](double by) {
+      Eigen::VectorXd next = point;
+      next[at] += by;
+      Machine other = machine;
+      parameters.set(other, next);
+      return predict(other, m);
+    };
+    const Eigen::VectorXd difference = (moved(kStep) - moved(-kStep)) / (2 * kStep);
+    // Third derivatives over a step of 1e-4 and six digits lost to rounding of values near 1e3.
+    EXPECT_LT((difference - analytic.col(at)).cwiseAbs().maxCoeff(),
+              2e-6 * (1 + difference.cwiseAbs().maxCoeff()))
+        << parameters[p].name;
+  }
+  EXPECT_LT((linear.predicted - predict(machine, m)).cwiseAbs().maxCoeff(), 1e-12);
 }
 
 }  // namespace vernier::support

@@ -5,6 +5,7 @@
 
 #include "tools/model/machine.h"
 #include "tools/model/measurement.h"
+#include "tools/model/parameters.h"
 
 namespace vernier::support {
 
@@ -15,6 +16,11 @@ Machine full_machine();
 /// A measurement of `rows` random poses of full_machine() with every kind of observation; readings are 0 and
 /// u is 1 um.
 Measurement full_measurement(const Machine& machine, std::size_t rows, std::mt19937_64& random);
+
+/// Expects that the derivatives of all predictions by the free parameters agree with differences, and that
+/// linearising predicts what predicting does.
+void expect_derivatives(const Machine& machine, const Measurement& measurement,
+                        const ParameterSet& parameters);
 
 /// Three-axis bridge, tables of `stations` stations on every axis with all columns free, squareness, three
 /// set-ups.

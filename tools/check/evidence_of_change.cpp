@@ -89,12 +89,7 @@ class Collector {
       record_.suspects.push_back({p.name, p.unit, false});
     }
     record_.parameters = columns_.size();
-    for (std::size_t i = 0; i < columns_.size(); ++i) note(columns_[i]);
-  }
-
-  /// Adds a column to what is known already.
-  void note(const VectorXd& column) {
-    known_.push_back(column.norm() > 0 ? VectorXd(column.normalized()) : column);
+    for (const VectorXd& column : columns_) known_.push_back(column.normalized());
   }
 
   void offer(Suspect suspect, const VectorXd& raw) {
@@ -231,14 +226,21 @@ class Judge {
     VectorXd moment;
   };
 
+  VectorXd parameters_of(const MatrixXd& gram, Index suspect) const {
+    return gram.col(suspect).head(static_cast<Index>(last_.parameters));
+  }
+
+  /// Information on a suspect beside parameters that are uncertain by `doubt`.
+  double amount_beside(const MatrixXd& gram, Index suspect, const MatrixXd& doubt) const {
+    const VectorXd with = parameters_of(gram, suspect);
+    return gram(suspect, suspect) - with.dot(doubt * with);
+  }
+
   Information information(std::size_t since, Index suspect) const {
-    const auto p = static_cast<Index>(last_.parameters);
-    const VectorXd with_parameters = from_[since].gram.col(suspect).head(p);
-    Information one;
     const MatrixXd& doubt = doubt_after_.back();
-    one.amount = from_[since].gram(suspect, suspect) - with_parameters.dot(doubt * with_parameters);
-    one.score = from_[since].moment[suspect] - with_parameters.dot(doubt * from_[0].moment.head(p));
-    return one;
+    const VectorXd through = doubt * parameters_of(from_[since].gram, suspect);
+    return {amount_beside(from_[since].gram, suspect, doubt),
+            from_[since].moment[suspect] - through.dot(from_[0].moment.head(through.size()))};
   }
 
   bool is_seen(std::size_t since, Index suspect, const Information& one) const {
@@ -295,11 +297,9 @@ class Judge {
   /// Information of the first check alone that could show a change since then: what is known before its
   /// readings are, as the size of a change that is looked for must be.
   double first_amount(std::size_t since, Index suspect) const {
-    const auto p = static_cast<Index>(last_.parameters);
     const MatrixXd& gram = checks_[since].gram;
-    const VectorXd with_parameters = gram.col(suspect).head(p);
-    const double amount = gram(suspect, suspect) - with_parameters.dot(doubt_after_[since] * with_parameters);
-    return std::max(amount, kSeen * gram(suspect, suspect) + 1e-300);
+    return std::max(amount_beside(gram, suspect, doubt_after_[since]),
+                    kSeen * gram(suspect, suspect) + 1e-300);
   }
 
   void look_at_noise() {

@@ -82,6 +82,20 @@ bool Scanner::score(const Eigen::MatrixXd& raw, const Eigen::MatrixXd& projected
   return true;
 }
 
+Eigen::VectorXd Scanner::residual_beside(const Eigen::MatrixXd& beside) const {
+  Eigen::VectorXd residual = evidence_.residual();
+  if (beside.cols() > 0) residual -= beside * (beside.transpose() * residual);
+  return residual;
+}
+
+double Scanner::gain_at(ColumnMaker& maker, const Scored& scored, const std::vector<double>& scanned,
+                        const Eigen::MatrixXd& beside, const Eigen::VectorXd& residual) const {
+  const Eigen::MatrixXd& q = evidence_.absorbed();
+  const Eigen::MatrixXd raw = maker.columns(candidates_[scored.candidate].candidate, scanned);
+  Scored trial = scored;
+  return score(raw, raw - q * (q.transpose() * raw), beside, residual, trial) ? trial.gain : 0.0;
+}
+
 void Scanner::scan_part(std::size_t first, std::size_t step, const Eigen::MatrixXd& beside,
                         const Eigen::VectorXd& residual, std::vector<Scored>& best,
                         const std::function<void(double)>& progress) const {
@@ -128,8 +142,7 @@ void Scanner::scan_part(std::size_t first, std::size_t step, const Eigen::Matrix
 
 std::vector<Scored> Scanner::scan(const Eigen::MatrixXd& beside, const std::function<void(double)>& progress,
                                   std::size_t first_candidate) {
-  Eigen::VectorXd residual = evidence_.residual();
-  if (beside.cols() > 0) residual -= beside * (beside.transpose() * residual);
+  const Eigen::VectorXd residual = residual_beside(beside);
   std::vector<Scored> best(candidates_.size());
   // Each thread writes the entries of its own candidates only.
   const std::size_t threads = std::max(1U, std::min(4U, std::thread::hardware_concurrency()));
@@ -166,8 +179,7 @@ Scored Scanner::best_period(std::size_t candidate, const std::vector<double>& pe
 }
 
 std::vector<Scored> Scanner::scan_fine(const Eigen::MatrixXd& beside, std::size_t first_candidate) const {
-  Eigen::VectorXd residual = evidence_.residual();
-  if (beside.cols() > 0) residual -= beside * (beside.transpose() * residual);
+  const Eigen::VectorXd residual = residual_beside(beside);
   std::map<std::size_t, std::vector<std::size_t>> of_axis;
   for (std::size_t c = first_candidate; c < candidates_.size(); ++c)
     if (candidates_[c].fine.any()) of_axis[candidates_[c].fine.axis].push_back(c);
@@ -187,16 +199,8 @@ std::vector<Scored> Scanner::scan_fine(const Eigen::MatrixXd& beside, std::size_
 void Scanner::refine(Scored& scored, const Eigen::MatrixXd& beside) const {
   const ScannedCandidate& item = candidates_[scored.candidate];
   if (item.grid.empty()) return;
-  Eigen::VectorXd residual = evidence_.residual();
-  if (beside.cols() > 0) residual -= beside * (beside.transpose() * residual);
-  const Eigen::MatrixXd& q = evidence_.absorbed();
+  const Eigen::VectorXd residual = residual_beside(beside);
   ColumnMaker maker(evidence_);
-  const auto gain_at = [&](const std::vector<double>& scanned) {
-    const Eigen::MatrixXd raw = maker.columns(item.candidate, scanned);
-    Scored trial = scored;
-    const Eigen::MatrixXd projected = raw - q * (q.transpose() * raw);
-    return score(raw, projected, beside, residual, trial) ? trial.gain : 0.0;
-  };
   for (std::size_t i = 0; i < item.grid.size(); ++i) {
     // In 1/value between the neighbours: phases of a period move evenly there.
     const auto [low, high] = neighbours(item, i, scored.scanned[i]);
@@ -205,7 +209,7 @@ void Scanner::refine(Scored& scored, const Eigen::MatrixXd& beside) const {
     const Peak best = golden_peak(
         [&](double inverse) {
           point[i] = 1 / inverse;
-          return gain_at(point);
+          return gain_at(maker, scored, point, beside, residual);
         },
         low, high, kSections);
     if (best.value > scored.gain) {
@@ -229,19 +233,15 @@ std::vector<double> Scanner::aliases(const Scored& scored, const Eigen::MatrixXd
   const FinePeriodThresholds& limits = evidence_.thresholds().fine;
   const double most = limits.most_periods / length;
 
-  Eigen::VectorXd residual = evidence_.residual();
-  if (beside.cols() > 0) residual -= beside * (beside.transpose() * residual);
-  const Eigen::MatrixXd& q = evidence_.absorbed();
+  const Eigen::VectorXd residual = residual_beside(beside);
   ColumnMaker maker(evidence_);
-  const auto gain_at = [&](double frequency) {
-    const Eigen::MatrixXd raw = maker.columns(candidate, {1 / frequency});
-    Scored trial = scored;
-    return score(raw, raw - q * (q.transpose() * raw), beside, residual, trial) ? trial.gain : 0.0;
+  const auto gain_of = [&](double frequency) {
+    return gain_at(maker, scored, {1 / frequency}, beside, residual);
   };
-  const double mine = gain_at(own), left = residual.squaredNorm() - mine;
-  const double unit = evidence_.noise_known() ? 1 : left / std::max(1.0, evidence_.freedom());
+  const double mine = gain_of(own), left = residual.squaredNorm() - mine;
   // Readings that leave more than their noise tell apart by that.
-  const double near = mine - limits.told_apart * std::max(unit, left / std::max(1.0, evidence_.freedom()));
+  const double spread = left / std::max(1.0, evidence_.freedom());
+  const double near = mine - limits.told_apart * (evidence_.noise_known() ? std::max(1.0, spread) : spread);
   const auto known = [&](const std::vector<double>& list, double frequency) {
     return std::any_of(list.begin(), list.end(),
                        [&](double other) { return std::abs(other - frequency) * length < 0.5; });
@@ -254,9 +254,9 @@ std::vector<double> Scanner::aliases(const Scored& scored, const Eigen::MatrixXd
       constexpr int kSections = 10;
       const double width = 0.25 / length;
       // The middle itself is right where positions are even to the last digit.
-      const double there = gain_at(frequency);
+      const double there = gain_of(frequency);
       if (there < mine / 2) continue;
-      const Peak best = golden_peak(gain_at, frequency - width, frequency + width, kSections);
+      const Peak best = golden_peak(gain_of, frequency - width, frequency + width, kSections);
       if (std::max(there, best.value) >= near)
         frequencies.push_back(there >= best.value ? frequency : best.at);
     }

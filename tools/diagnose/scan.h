@@ -61,6 +61,11 @@ class Scanner {
   /// Best of a candidate's periods, by what they explain in full.
   Scored best_period(std::size_t candidate, const std::vector<double>& periods, const Eigen::MatrixXd& beside,
                      const Eigen::VectorXd& residual) const;
+  /// What candidates have to explain beside those columns.
+  Eigen::VectorXd residual_beside(const Eigen::MatrixXd& beside) const;
+  /// Gain of a scored candidate at other scanned values; 0 where the data cannot see it there.
+  double gain_at(ColumnMaker& maker, const Scored& scored, const std::vector<double>& scanned,
+                 const Eigen::MatrixXd& beside, const Eigen::VectorXd& residual) const;
   bool score(const Eigen::MatrixXd& raw, const Eigen::MatrixXd& projected, const Eigen::MatrixXd& beside,
              const Eigen::VectorXd& residual, Scored& scored) const;
 

@@ -18,29 +18,6 @@ namespace {
 /// A file keeps 17 digits: a value that differs by more was changed.
 bool changed(double now, double fitted) { return std::abs(now - fitted) > 1e-9 * std::abs(fitted); }
 
-/// Readings x, y, z in workpiece coordinates at every state.
-Measurement readings_at(const States& states) {
-  Measurement m;
-  m.states = states;
-  m.uncertainty = Column::Zero(static_cast<Eigen::Index>(states.count));
-  m.check.assign(states.count, 0);
-  for (std::size_t row = 0; row < states.count; ++row)
-    for (const ObservationKind kind : {ObservationKind::kX, ObservationKind::kY, ObservationKind::kZ})
-      m.observations.push_back({kind, row, 0});
-  return m;
-}
-
-/// Velocity of each point under the six rigid motions about the origin, 3 N x 6.
-Eigen::MatrixXd rigid_motions(const Eigen::Matrix3Xd& points) {
-  Eigen::MatrixXd motions = Eigen::MatrixXd::Zero(3 * points.cols(), 6);
-  for (Eigen::Index i = 0; i < points.cols(); ++i) {
-    motions.block<3, 3>(3 * i, 0).setIdentity();
-    const Eigen::Vector3d p = points.col(i);
-    motions.block<3, 3>(3 * i, 3) << 0, p.z(), -p.y(), -p.z(), 0, p.x(), p.y(), -p.x(), 0;
-  }
-  return motions;
-}
-
 /// Where a fit measured: its ranges, else what the file says of an axis, else where it stands.
 std::vector<std::array<double, 2>> measured_ranges(const Machine& machine) {
   std::vector<std::array<double, 2>> ranges;
@@ -65,6 +42,27 @@ Machine without_set_up(const Machine& machine) {
 }
 
 }  // namespace
+
+Measurement point_readings(const States& states) {
+  Measurement m;
+  m.states = states;
+  m.uncertainty = Column::Zero(static_cast<Eigen::Index>(states.count));
+  m.check.assign(states.count, 0);
+  for (std::size_t row = 0; row < states.count; ++row)
+    for (const ObservationKind kind : {ObservationKind::kX, ObservationKind::kY, ObservationKind::kZ})
+      m.observations.push_back({kind, row, 0});
+  return m;
+}
+
+Eigen::MatrixXd rigid_motions(const Eigen::Matrix3Xd& points) {
+  Eigen::MatrixXd motions = Eigen::MatrixXd::Zero(3 * points.cols(), 6);
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    motions.block<3, 3>(3 * i, 0).setIdentity();
+    const Eigen::Vector3d p = points.col(i);
+    motions.block<3, 3>(3 * i, 3) << 0, p.z(), -p.y(), -p.z(), 0, p.x(), p.y(), -p.x(), 0;
+  }
+  return motions;
+}
 
 Reach::Reach(const Machine& machine) : machine_(without_set_up(machine)), known_(machine.fitted != nullptr) {
   if (!known_) return;
@@ -108,7 +106,7 @@ Eigen::MatrixXd Reach::rigid_part(const States& like, Eigen::Index row) const {
 }
 
 Eigen::MatrixXd Reach::spread_at(const States& states) const {
-  return linearise(machine_, readings_at(states), parameters_).jacobian * factor_;  // 3 N x k
+  return linearise(machine_, point_readings(states), parameters_).jacobian * factor_;  // 3 N x k
 }
 
 std::vector<Eigen::Matrix3d> Reach::covariance(const States& states) const {

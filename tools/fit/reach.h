@@ -5,10 +5,18 @@
 #include <vector>
 
 #include "tools/model/machine.h"
+#include "tools/model/measurement.h"
 #include "tools/model/parameters.h"
 #include "tools/model/states.h"
 
 namespace vernier {
+
+/// Readings x, y, z of the tool point at every state, of value 0: for what a machine makes of them, not for a
+/// fit.
+Measurement point_readings(const States& states);
+
+/// Velocity of each point under the six rigid motions about the origin, 3 N x 6.
+Eigen::MatrixXd rigid_motions(const Eigen::Matrix3Xd& points);
 
 /// How well the last fit of a machine knows where its tool is: anywhere, with any tool and input, whether it
 /// was measured there or not. From the covariance that the machine file keeps (`<fitted>`), in which what the

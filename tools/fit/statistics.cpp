@@ -116,8 +116,7 @@ std::optional<double> noise_um(const Measurement& m) {
   if (!has_uncertainty(m)) return repeat_noise_um(m);
   RepeatPool pool;
   for (const Observation& o : m.observations)
-    if (m.check[o.row] == 0 && !is_rotation(o.kind))
-      pool.add(uncertainty_of(m, o) * kUmPerMm);
+    if (m.check[o.row] == 0 && !is_rotation(o.kind)) pool.add(uncertainty_of(m, o) * kUmPerMm);
   return pool.rms();
 }
 

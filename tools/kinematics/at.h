@@ -13,8 +13,8 @@ namespace vernier {
 /// inputs are at their reference. Throws InputError with the word. tool.
 States state_at(const Machine& machine, const std::string& words);
 
-/// The machine with one of its tools by name, or with a tool given as "X,Y,Z" (mm, beyond the end of the chain);
-/// empty: as it is. Throws InputError. tool.
+/// The machine with one of its tools by name, or with a tool given as "X,Y,Z" (mm, beyond the end of the
+/// chain); empty: as it is. Throws InputError. tool.
 Machine tooled(const Machine& machine, const std::string& tool);
 
 /// Numbers separated by commas; `counts` says how many there may be. Throws InputError. tool.

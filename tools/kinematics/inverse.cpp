@@ -9,6 +9,7 @@
 
 #include "tools/kinematics/jacobian.h"
 #include "tools/maths/factors.h"
+#include "tools/maths/halton.h"
 #include "tools/model/evaluate.h"
 
 namespace vernier {
@@ -182,16 +183,6 @@ class InverseSolver {
   std::vector<Inverse> proofs_;
 };
 
-/// The `index`-th number of the Halton sequence of a base: spread evenly over 0..1.
-double halton(int index, int base) {
-  double result = 0, fraction = 1;
-  for (; index > 0; index /= base) {
-    fraction /= base;
-    result += fraction * (index % base);
-  }
-  return result;
-}
-
 /// Ordering of failures: the one that came nearest is worth showing.
 bool better(const Inverse& a, const Inverse& b) {
   if (a.converged != b.converged) return a.converged;
@@ -221,7 +212,7 @@ InverseResult solve(const Machine& machine, const Poses& target, const States& s
 
 InverseResult solve_anywhere(const Machine& machine, const Poses& target, const States& start,
                              const InverseOptions& options, int restarts) {
-  constexpr std::array<int, 12> kPrimes = {2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37};
+  constexpr std::array<std::size_t, 12> kPrimes = {2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37};
   InverseResult best = solve(machine, target, start, options);
   const std::vector<std::size_t> axes = axes_of(machine, options);
   for (int i = 1; i <= restarts && !best.each[0].converged; ++i) {
@@ -229,7 +220,9 @@ InverseResult solve_anywhere(const Machine& machine, const Poses& target, const 
     for (std::size_t k = 0; k < axes.size(); ++k) {
       const Axis& axis = machine.axes[axes[k]];
       if (axis.min && axis.max)
-        other.axis[axes[k]][0] = *axis.min + (*axis.max - *axis.min) * halton(i, kPrimes[k % kPrimes.size()]);
+        other.axis[axes[k]][0] =
+            *axis.min + (*axis.max - *axis.min) *
+                            radical_inverse(static_cast<std::size_t>(i), kPrimes[k % kPrimes.size()]);
     }
     InverseResult next = solve(machine, target, other, options);
     if (better(next.each[0], best.each[0])) best = std::move(next);

@@ -35,6 +35,18 @@ class LintFindings {
   explicit LintFindings(std::string file) : file_(std::move(file)) {}
   void add(LintWeight weight, std::size_t line, const std::string& word, const std::string& what,
            const std::string& meaning = "");
+  void error(std::size_t line, const std::string& word, const std::string& what,
+             const std::string& meaning = "") {
+    add(LintWeight::kError, line, word, what, meaning);
+  }
+  void warn(std::size_t line, const std::string& word, const std::string& what,
+            const std::string& meaning = "") {
+    add(LintWeight::kWarning, line, word, what, meaning);
+  }
+  void remark(std::size_t line, const std::string& word, const std::string& what,
+              const std::string& meaning = "") {
+    add(LintWeight::kRemark, line, word, what, meaning);
+  }
   /// As add; a further one with the same `kind` is only counted.
   void add_of_kind(const std::string& kind, LintWeight weight, std::size_t line, const std::string& word,
                    const std::string& what, const std::string& meaning = "");

@@ -256,24 +256,17 @@ class Oddities {
     for (std::size_t i = 0; i < m_.inputs.size(); ++i) look_at(m_.inputs[i], i);
     for (const Table& table : m_.tables) look_at(table);
     if (m_.base_shifts.empty())
-      remark(0, "BaseShift", "there is none: the measuring frame is the machine's own",
-             "a tracker or CMM stands somewhere else; <BaseShift X=\"0\" …/> lets a fit find where");
+      findings_.remark(
+          0, "BaseShift", "there is none: the measuring frame is the machine's own",
+          "a tracker or CMM stands somewhere else; <BaseShift X=\"0\" …/> lets a fit find where");
     std::set<std::string> runs;
     for (const BaseShift& shift : m_.base_shifts)
       if (shift.run && m_.base_shifts.size() == 1)
-        remark(shift.line, *shift.run, "this BaseShift is for one run only; rows of other runs have none");
+        findings_.remark(shift.line, *shift.run,
+                         "this BaseShift is for one run only; rows of other runs have none");
   }
 
  private:
-  void warn(std::size_t line, const std::string& word, const std::string& what,
-            const std::string& meaning = "") {
-    findings_.add(LintWeight::kWarning, line, word, what, meaning);
-  }
-  void remark(std::size_t line, const std::string& word, const std::string& what,
-              const std::string& meaning = "") {
-    findings_.add(LintWeight::kRemark, line, word, what, meaning);
-  }
-
   void look_at_unit(const std::string& name, const std::string& unit, std::size_t line, bool scales) {
     if (unit.empty()) return;
     const auto known = find_unit(unit);
@@ -290,16 +283,18 @@ class Oddities {
       // "1/K", "mm/degC": units of coefficients are made of the known ones.
       const bool composed = unit.find_first_of("/*^") != std::string::npos;
       if (!composed)
-        warn(line, unit, "nobody knows this unit, of " + name, meant ? "did you mean " + *meant + "?" : "");
+        findings_.warn(line, unit, "nobody knows this unit, of " + name,
+                       meant ? "did you mean " + *meant + "?" : "");
       return;
     }
     const bool base = known->factor == 1 && known->offset == 0;
     if (scales || base || unit == "rad" || unit == "um/m" || unit == "%") return;
     if (known->dimension == Dimension::kLength || known->dimension == Dimension::kAngle)
-      warn(line, unit,
-           "a unit never scales the value of " + name + ": the chain takes it as " +
-               base_unit(known->dimension),
-           std::string("write the value in ") + base_unit(known->dimension) + ", or the factor in the term");
+      findings_.warn(
+          line, unit,
+          "a unit never scales the value of " + name + ": the chain takes it as " +
+              base_unit(known->dimension),
+          std::string("write the value in ") + base_unit(known->dimension) + ", or the factor in the term");
   }
 
   void look_at(const Static& item, std::size_t index) {
@@ -308,49 +303,52 @@ class Oddities {
       findings_.add_of_kind("unused constant", LintWeight::kRemark, item.line, item.name,
                             "no transform uses this constant", "one of several tools, or left over");
     else if (!used_.statics.contains(index))
-      warn(item.line, item.name, "no transform uses this static", "forgotten in a term, or left over");
+      findings_.warn(item.line, item.name, "no transform uses this static",
+                     "forgotten in a term, or left over");
     else if (!item.hidden && !item.nominal)
       findings_.add_of_kind(
           "nominal", LintWeight::kRemark, item.line, item.name,
           "free, without nominal: fit takes its value for nominal and writes it, compile wants it",
           "nominal is what the control believes, mostly 0 for an error");
     if (!item.hidden && item.nominal && item.unit == "mm" && std::abs(item.value - *item.nominal) > 50)
-      warn(item.line, item.name,
-           fmt::format("{} mm off its nominal", number_text(item.value - *item.nominal)),
-           "µm written as mm?");
+      findings_.warn(item.line, item.name,
+                     fmt::format("{} mm off its nominal", number_text(item.value - *item.nominal)),
+                     "µm written as mm?");
   }
 
   void look_at(const Axis& axis, std::size_t index) {
     bool by_table = false;
     for (std::size_t c = 0; c < 6; ++c) by_table |= used_.table_values.contains(index * 6 + c);
     if (!used_.axes.contains(index))
-      warn(axis.line, axis.name,
-           by_table ? "no transform moves by this axis, though its table is used"
-                    : "no transform uses this axis",
-           "X=\"" + axis.name + "\" is missing in some sixdof, or the name differs");
+      findings_.warn(axis.line, axis.name,
+                     by_table ? "no transform moves by this axis, though its table is used"
+                              : "no transform uses this axis",
+                     "X=\"" + axis.name + "\" is missing in some sixdof, or the name differs");
     if (!axis.min || !axis.max)
       findings_.add_of_kind("travel", LintWeight::kRemark, axis.line, axis.name,
                             "no min and max: compile and plan want the travel");
     const bool turns = axis.name.size() == 1 && std::string("ABC").find(axis.name) != std::string::npos;
     if (turns && !axis.rotary)
-      warn(axis.line, axis.name, "not marked as rotary: its positions are read as mm", "rotary=\"true\"?");
+      findings_.warn(axis.line, axis.name, "not marked as rotary: its positions are read as mm",
+                     "rotary=\"true\"?");
     if (axis.min && axis.max && !axis.rotary) {
       const double travel = *axis.max - *axis.min;
       if (travel < 5)
-        warn(axis.line, axis.name, fmt::format("a travel of {} mm", number_text(travel)),
-             "metres or inches? Axes are in mm");
+        findings_.warn(axis.line, axis.name, fmt::format("a travel of {} mm", number_text(travel)),
+                       "metres or inches? Axes are in mm");
       if (travel > 1e5)
-        warn(axis.line, axis.name, fmt::format("a travel of {} mm", number_text(travel)),
-             "µm? Axes are in mm");
+        findings_.warn(axis.line, axis.name, fmt::format("a travel of {} mm", number_text(travel)),
+                       "µm? Axes are in mm");
     }
     if (axis.min && axis.max && axis.rotary && *axis.max - *axis.min < 7)
-      warn(axis.line, axis.name, fmt::format("turns by {} deg only", number_text(*axis.max - *axis.min)),
-           "radians? Angles are in deg");
+      findings_.warn(axis.line, axis.name,
+                     fmt::format("turns by {} deg only", number_text(*axis.max - *axis.min)),
+                     "radians? Angles are in deg");
     if (axis.max_correction && *axis.max_correction > (axis.rotary ? 10 : 5))
-      warn(axis.line, axis.name,
-           fmt::format("maxcorrection of {} {}", number_text(*axis.max_correction),
-                       axis.rotary ? "deg" : "mm"),
-           "µm? It is in the axis' unit");
+      findings_.warn(axis.line, axis.name,
+                     fmt::format("maxcorrection of {} {}", number_text(*axis.max_correction),
+                                 axis.rotary ? "deg" : "mm"),
+                     "µm? It is in the axis' unit");
     if (!axis.max_correction)
       findings_.add_of_kind("maxcorrection", LintWeight::kRemark, axis.line, axis.name,
                             "no maxcorrection: a board may add any amount to this axis");
@@ -359,7 +357,8 @@ class Oddities {
   void look_at(const Input& input, std::size_t index) {
     look_at_unit(input.name, input.unit, input.line, true);
     if (!used_.inputs.contains(index))
-      warn(input.line, input.name, "no transform uses this input", "a term is missing, or it may go");
+      findings_.warn(input.line, input.name, "no transform uses this input",
+                     "a term is missing, or it may go");
   }
 
   void look_at(const Table& table) {
@@ -369,23 +368,25 @@ class Oddities {
       const bool used = used_.table_values.contains(table.axis * 6 + c);
       any |= used;
       if (!used && table.free[c])
-        warn(table.line, axis.name,
-             fmt::format("fit frees column {}, which no transform uses", kSixDofNames[c]),
-             fmt::format("{}{}{} is missing in some transform", c < 3 ? "l" : "r", axis.name, "xyz"[c % 3]));
+        findings_.warn(
+            table.line, axis.name,
+            fmt::format("fit frees column {}, which no transform uses", kSixDofNames[c]),
+            fmt::format("{}{}{} is missing in some transform", c < 3 ? "l" : "r", axis.name, "xyz"[c % 3]));
     }
     if (!any)
-      warn(table.line, axis.name, "no transform uses this table",
-           fmt::format("l{0}x … r{0}z are its values", axis.name));
+      findings_.warn(table.line, axis.name, "no transform uses this table",
+                     fmt::format("l{0}x … r{0}z are its values", axis.name));
     if (table.stations.empty() || !axis.min || !axis.max) return;
     const double slack = 1e-6 * (*axis.max - *axis.min);
     if (table.stations.front().loc > *axis.min + slack || table.stations.back().loc < *axis.max - slack)
-      remark(table.line, axis.name,
-             fmt::format("stations from {} to {}, travel from {} to {}: beyond its ends a table holds",
-                         number_text(table.stations.front().loc), number_text(table.stations.back().loc),
-                         number_text(*axis.min), number_text(*axis.max)));
+      findings_.remark(
+          table.line, axis.name,
+          fmt::format("stations from {} to {}, travel from {} to {}: beyond its ends a table holds",
+                      number_text(table.stations.front().loc), number_text(table.stations.back().loc),
+                      number_text(*axis.min), number_text(*axis.max)));
     if (table.stations.front().loc < *axis.min - slack || table.stations.back().loc > *axis.max + slack)
-      warn(table.line, axis.name, "stations outside the travel of the axis",
-           "another unit, or another axis?");
+      findings_.warn(table.line, axis.name, "stations outside the travel of the axis",
+                     "another unit, or another axis?");
   }
 
   const Machine& m_;

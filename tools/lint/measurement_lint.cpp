@@ -55,43 +55,34 @@ class Look {
   }
 
  private:
-  void error(std::size_t line, const std::string& word, const std::string& what,
-             const std::string& meaning = "") {
-    findings_.add(LintWeight::kError, line, word, what, meaning);
-  }
-  void warn(std::size_t line, const std::string& word, const std::string& what,
-            const std::string& meaning = "") {
-    findings_.add(LintWeight::kWarning, line, word, what, meaning);
-  }
-  void remark(std::size_t line, const std::string& word, const std::string& what,
-              const std::string& meaning = "") {
-    findings_.add(LintWeight::kRemark, line, word, what, meaning);
-  }
-
   // ---- how it is written
 
   bool look_at_bytes() {
     if (is_workbook(text_))
-      return error(0, "", "a workbook (.xlsx), no measurement file", "read it: " + command(file_)), false;
+      return findings_.error(0, "", "a workbook (.xlsx), no measurement file", "read it: " + command(file_)),
+             false;
     if (text_.starts_with("\xD0\xCF\x11\xE0"))
-      return error(0, "", "a workbook of the old kind (.xls)",
-                   "save it as .xlsx or CSV, then vernier import table"),
+      return findings_.error(0, "", "a workbook of the old kind (.xls)",
+                             "save it as .xlsx or CSV, then vernier import table"),
              false;
     const Encoding encoding = encoding_of(text_);
     if (encoding == Encoding::kUtf16Le || encoding == Encoding::kUtf16Be)
-      return error(0, "", std::string("written in ") + encoding_name(encoding), "read it: " + command(file_)),
+      return findings_.error(0, "", std::string("written in ") + encoding_name(encoding),
+                             "read it: " + command(file_)),
              false;
     if (encoding == Encoding::kUtf8Bom) {
-      remark(1, "", "begins with a byte order mark", "it is read over");
+      findings_.remark(1, "", "begins with a byte order mark", "it is read over");
       text_ = text_.substr(3);
     }
     if (encoding == Encoding::kWindows1252) {
-      if (text_.find('\0') != std::string::npos) return error(0, "", "zero bytes: no text file"), false;
-      warn(0, "", "not UTF-8: letters beyond ASCII are of some other code page",
-           "µ and ° in units will not be understood; " + command(file_) + " reads it");
+      if (text_.find('\0') != std::string::npos)
+        return findings_.error(0, "", "zero bytes: no text file"), false;
+      findings_.warn(0, "", "not UTF-8: letters beyond ASCII are of some other code page",
+                     "µ and ° in units will not be understood; " + command(file_) + " reads it");
       text_ = utf8_of(bytes_, encoding);
     }
-    if (text_.find('\0') != std::string::npos) return error(0, "", "zero bytes: no text file"), false;
+    if (text_.find('\0') != std::string::npos)
+      return findings_.error(0, "", "zero bytes: no text file"), false;
     return true;
   }
 
@@ -108,20 +99,20 @@ class Look {
       lines.push_back(line);
       numbers.push_back(number);
     }
-    if (lines.empty()) return error(0, "", "nothing but remarks and empty lines"), false;
+    if (lines.empty()) return findings_.error(0, "", "nothing but remarks and empty lines"), false;
     std::string joined_lines;
     for (std::size_t i = 0; i < std::min<std::size_t>(lines.size(), 200); ++i)
       joined_lines += lines[i] + "\n";
     const char separator = guess_separator(joined_lines, "");
     if (separator != ',' && lines.front().find(separator) != std::string::npos &&
         lines.front().find(',') == std::string::npos && (separator != ' ' || lines.size() > 1)) {
-      error(numbers.front(), lines.front().substr(0, 30),
-            std::string("columns parted by ") + separator_word(separator) + ", not by comma",
-            "a spreadsheet or an instrument's table; read it: " + command(file_));
+      findings_.error(numbers.front(), lines.front().substr(0, 30),
+                      std::string("columns parted by ") + separator_word(separator) + ", not by comma",
+                      "a spreadsheet or an instrument's table; read it: " + command(file_));
       for (std::size_t i = 1; i < lines.size(); ++i)
         for (const std::string& cell : parts_of(lines[i], separator == ' ' ? ' ' : separator))
           if (decimal_sign_in(cell) == DecimalSign::kComma) {
-            error(numbers[i], cell, "a decimal comma", "that import reads it too");
+            findings_.error(numbers[i], cell, "a decimal comma", "that import reads it too");
             return false;
           }
       return false;
@@ -129,8 +120,8 @@ class Look {
     for (std::size_t i = 0; i < lines.size(); ++i) try {
         table_.rows.push_back({fields_of(lines[i], {}, {file_, numbers[i]}), numbers[i]});
       } catch (const InputError& problem) {
-        error(numbers[i], lines[i].substr(0, 30), "a quote without its fellow",
-              "quotes go around a whole field, doubled inside");
+        findings_.error(numbers[i], lines[i].substr(0, 30), "a quote without its fellow",
+                        "quotes go around a whole field, doubled inside");
       }
     if (table_.rows.empty()) return false;
     header_ = table_.rows.front().cells;
@@ -145,13 +136,14 @@ class Look {
       trailing_ = true;
     }
     if (trailing_)
-      error(table_.header_line, "", "commas at the end of the header",
-            "empty columns of a spreadsheet; read it: " + command(file_));
+      findings_.error(table_.header_line, "", "commas at the end of the header",
+                      "empty columns of a spreadsheet; read it: " + command(file_));
     std::size_t numbers = 0;
     for (const std::string& cell : header_) numbers += plain_number(cell, false).has_value() ? 1 : 0;
     if (numbers * 2 > header_.size())
-      return error(table_.header_line, header_.front(), "a row of numbers where the header should be",
-                   "the first line names the columns: X[mm],x[mm],…"),
+      return findings_.error(table_.header_line, header_.front(),
+                             "a row of numbers where the header should be",
+                             "the first line names the columns: X[mm],x[mm],…"),
              false;
     std::set<std::string> seen;
     std::vector<std::string> own;
@@ -164,52 +156,53 @@ class Look {
       if (bracket) column.unit = trimmed(cell.substr(open + 1, cell.size() - open - 2));
       if (!is_name(column.name) || (open != std::string::npos && !bracket)) {
         const Heading heading = parse_heading(cell);
-        error(table_.header_line, cell,
-              cell.empty() ? "a column without a name"
-                           : "a column is name[unit], its name of letters, digits and _",
-              heading.unit.empty() ? ""
-                                   : "meant is " + name_from_words(heading.name) + "[" + heading.unit +
-                                         "]? " + command(file_) + " reads it so");
+        findings_.error(table_.header_line, cell,
+                        cell.empty() ? "a column without a name"
+                                     : "a column is name[unit], its name of letters, digits and _",
+                        heading.unit.empty() ? ""
+                                             : "meant is " + name_from_words(heading.name) + "[" +
+                                                   heading.unit + "]? " + command(file_) + " reads it so");
         column.name = name_from_words(heading.name);
         column.unit = heading.unit;
       } else if (!column.unit.empty() && !find_unit(column.unit)) {
         const auto meant = unit_meant(column.unit);
-        error(table_.header_line, column.unit, "nobody knows this unit",
-              meant ? "meant is " + *meant + "? " + command(file_) + " reads it so"
-                    : "known are " + known_units());
+        findings_.error(table_.header_line, column.unit, "nobody knows this unit",
+                        meant ? "meant is " + *meant + "? " + command(file_) + " reads it so"
+                              : "known are " + known_units());
         column.unit = meant.value_or("");
       } else if (!bracket && !names_.needed_unit(column.name).empty() &&
                  names_.needed_unit(column.name) != "?") {
-        error(
+        findings_.error(
             table_.header_line, column.name, "no unit",
             "write " + column.name + "[" + names_.needed_unit(column.name) + "], or [um], [in], … as it is");
         column.unit = names_.needed_unit(column.name);
       } else if (!column.unit.empty() && names_.needed_unit(column.name) != "?") {
         const std::string needs = names_.needed_unit(column.name);
         if (needs.empty())
-          error(table_.header_line, cell, "a pure number or a word: it has no unit");
+          findings_.error(table_.header_line, cell, "a pure number or a word: it has no unit");
         else if (find_unit(needs)->dimension != find_unit(column.unit)->dimension)
-          error(table_.header_line, cell, "this column needs a unit like " + needs);
+          findings_.error(table_.header_line, cell, "this column needs a unit like " + needs);
       }
       if (!seen.insert(column.name).second)
-        error(table_.header_line, column.name, "this column stands twice");
+        findings_.error(table_.header_line, column.name, "this column stands twice");
       column.label = column.name == "run" || column.name == "role" || column.name == "corrected";
       if (names_.needed_unit(column.name) == "?" && column.name != "u" &&
           std::find(known.begin(), known.end(), column.name) == known.end()) {
         const auto meant = word_meant(column.name, known);
         const bool nearly = meant && column.name.size() > 2 && letters_apart(column.name, *meant) <= 1;
         if (nearly)
-          warn(table_.header_line, column.name, "a column that the machine does not know",
-               "did you mean " + *meant + "?");
+          findings_.warn(table_.header_line, column.name, "a column that the machine does not know",
+                         "did you mean " + *meant + "?");
         else
           own.push_back(column.name);
       }
       table_.columns.push_back(std::move(column));
     }
     if (!own.empty())
-      remark(table_.header_line, joined(own, ", "),
-             machine_ != nullptr ? "columns that the machine does not know: kept as candidates for diagnose"
-                                 : "columns of one's own: kept as candidates for diagnose");
+      findings_.remark(table_.header_line, joined(own, ", "),
+                       machine_ != nullptr
+                           ? "columns that the machine does not know: kept as candidates for diagnose"
+                           : "columns of one's own: kept as candidates for diagnose");
     look_for_columns();
     return true;
   }
@@ -219,8 +212,8 @@ class Look {
     const bool any = std::any_of(table_.columns.begin(), table_.columns.end(),
                                  [](const LintColumn& c) { return reading_names().contains(c.name); });
     if (!any)
-      error(table_.header_line, "", "no measured column (x y z rx ry rz length d)",
-            "small letters are what was measured, capitals where the machine was sent");
+      findings_.error(table_.header_line, "", "no measured column (x y z rx ry rz length d)",
+                      "small letters are what was measured, capitals where the machine was sent");
     for (const char* name : {"length", "d"}) {
       if (table_.find(name) == nullptr) continue;
       for (const char* beside : name[0] == 'l' ? std::array{"cx", "cy", "cz", "cz", "cz", "cz"}
@@ -236,10 +229,10 @@ class Look {
         std::vector<std::string> names;
         for (const LintColumn& column : table_.columns) names.push_back(column.name);
         const auto meant = word_meant(axis.name, names);
-        error(table_.header_line, axis.name, "the column of this axis is missing",
-              meant && letters_apart(axis.name, *meant) == 0
-                  ? "there is " + *meant + ": names have capitals where the machine file has them"
-                  : "");
+        findings_.error(table_.header_line, axis.name, "the column of this axis is missing",
+                        meant && letters_apart(axis.name, *meant) == 0
+                            ? "there is " + *meant + ": names have capitals where the machine file has them"
+                            : "");
       }
     look_for_motion();
   }
@@ -272,14 +265,16 @@ class Look {
     if (lag) wanted.insert("t");
     for (const std::string& name : wanted)
       if (table_.find(name) == nullptr)
-        warn(table_.header_line, name,
-             "a term of the machine file needs this column; without it it is 0 in all rows and the term "
-             "cannot be seen",
-             "log it, or hold the term in the fit");
+        findings_.warn(
+            table_.header_line, name,
+            "a term of the machine file needs this column; without it it is 0 in all rows and the term "
+            "cannot be seen",
+            "log it, or hold the term in the fit");
     for (const Input& input : machine_->inputs)
       if (table_.find(input.name) == nullptr)
-        warn(table_.header_line, input.name,
-             fmt::format("no column for this input: it is {} in all rows", number_text(input.reference)));
+        findings_.warn(
+            table_.header_line, input.name,
+            fmt::format("no column for this input: it is {} in all rows", number_text(input.reference)));
   }
 
   // ---- its rows
@@ -313,7 +308,8 @@ class Look {
       kept.push_back(std::move(row));
     }
     table_.rows = std::move(kept);
-    if (table_.rows.empty()) return error(table_.header_line, "", "no row below the header that can be read");
+    if (table_.rows.empty())
+      return findings_.error(table_.header_line, "", "no row below the header that can be read");
     for (std::size_t k = 0; k < table_.columns.size(); ++k) read_column(k);
   }
 
@@ -327,8 +323,8 @@ class Look {
     const bool own = names_.needed_unit(column.name) == "?" && column.name != "u";
     if (own && 2 * words > table_.rows.size()) {
       column.label = true;
-      remark(table_.header_line, column.name, "a column of words",
-             "numbers can explain an error, words only tell rows apart");
+      findings_.remark(table_.header_line, column.name, "a column of words",
+                       "numbers can explain an error, words only tell rows apart");
     }
     for (const LintRow& row : table_.rows) {
       const std::string& cell = row.cells[k];
@@ -359,7 +355,8 @@ class Look {
       parse_measurement(bytes_, file_, *machine_, [](Measurement&, const Machine&, const std::string&) {});
     } catch (const InputError& problem) {
       const std::string message = problem.what();
-      error(0, "", message.starts_with(file_ + ":") ? "line " + message.substr(file_.size() + 1) : message);
+      findings_.error(
+          0, "", message.starts_with(file_ + ":") ? "line " + message.substr(file_.size() + 1) : message);
     }
   }
 

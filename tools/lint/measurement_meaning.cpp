@@ -67,25 +67,25 @@ class Meaning {
     if (reading) any_reading_ = true;
     if (names_.is_axis(column.name)) look_at_axis(column, least, most);
     if (column.name == "feed" && most <= 0)
-      warn(table_.header_line, "feed", "the feed is 0 in all rows",
-           "lag and dynamic effects show only while the machine moves");
+      findings_.warn(table_.header_line, "feed", "the feed is 0 in all rows",
+                     "lag and dynamic effects show only while the machine moves");
     if (column.name == "u" && most > 1)
-      warn(table_.header_line, "u", fmt::format("an uncertainty of {} mm", number_text(most)),
-           "µm? Write u[um]");
+      findings_.warn(table_.header_line, "u", fmt::format("an uncertainty of {} mm", number_text(most)),
+                     "µm? Write u[um]");
     if (find_unit(column.unit) && find_unit(column.unit)->dimension == Dimension::kTemperature &&
         (least < -40 || most > 120))
-      warn(table_.header_line, column.name, fmt::format("from {:.4g} to {:.4g} degC", least, most),
-           "K or another unit?");
+      findings_.warn(table_.header_line, column.name, fmt::format("from {:.4g} to {:.4g} degC", least, most),
+                     "K or another unit?");
   }
 
   void look_at_axis(const LintColumn& column, double least, double most) {
     const bool turns = names_.is_rotary(column.name);
     const char* const unit = turns ? "deg" : "mm";
     if (most - least < 1e-9)
-      warn(table_.header_line, column.name,
-           fmt::format("axis {} never moves: it stands at {} {} in all rows", column.name, number_text(least),
-                       unit),
-           "its errors cannot be told from the set-up's");
+      findings_.warn(table_.header_line, column.name,
+                     fmt::format("axis {} never moves: it stands at {} {} in all rows", column.name,
+                                 number_text(least), unit),
+                     "its errors cannot be told from the set-up's");
     if (machine_ == nullptr) return;
     const Axis& axis = machine_->axes[*machine_->find_axis(column.name)];
     if (!axis.min || !axis.max) return;
@@ -103,10 +103,11 @@ class Meaning {
       if (close(1e-3)) meaning = "µm read as mm?";
       if (close(1 / 25.4)) meaning = "";
       if (turns && close(1.0 / 3600)) meaning = "arcsec read as deg?";
-      warn(line(first), column.cell[first],
-           fmt::format("{} is outside the travel of {} to {} {} in {} of {} rows", column.name,
-                       number_text(*axis.min), number_text(*axis.max), unit, outside, table_.rows.size()),
-           meaning);
+      findings_.warn(
+          line(first), column.cell[first],
+          fmt::format("{} is outside the travel of {} to {} {} in {} of {} rows", column.name,
+                      number_text(*axis.min), number_text(*axis.max), unit, outside, table_.rows.size()),
+          meaning);
     } else if (most - least > 1e-9 && most - least < 0.05 * travel) {
       std::string meaning;
       if (!turns && close(25.4)) meaning = "inch read as mm?";
@@ -131,16 +132,17 @@ class Meaning {
         check += word == "check" ? 1 : 0;
       }
     if (check == table_.rows.size())
-      warn(table_.header_line, "role", "all rows are check rows: nothing is left for a fit");
+      findings_.warn(table_.header_line, "role", "all rows are check rows: nothing is left for a fit");
     if (check == 0)
-      remark(table_.header_line, "role", "no check rows: nothing will judge the fit",
-             "give some rows the role check, spread over the volume");
+      findings_.remark(table_.header_line, "role", "no check rows: nothing will judge the fit",
+                       "give some rows the role check, spread over the volume");
     if (table_.find("u") == nullptr)
-      remark(table_.header_line, "u",
-             "no standard uncertainty: the noise is taken from repeats, else from the residual",
-             "a column u[um], the instrument's");
+      findings_.remark(table_.header_line, "u",
+                       "no standard uncertainty: the noise is taken from repeats, else from the residual",
+                       "a column u[um], the instrument's");
     if (!any_reading_)
-      error(table_.header_line, "", "no reading in any row", "a template that is still to be filled in?");
+      findings_.error(table_.header_line, "", "no reading in any row",
+                      "a template that is still to be filled in?");
   }
 
   void look_at_time() {
@@ -225,22 +227,11 @@ class Meaning {
       meaning = "deviations instead of positions? vernier import table " + quoted_for_shell(file_) +
                 " --deviation \"X[mm]=x\" … adds them to the positions";
     if (!meaning.empty())
-      warn(table_.header_line, "x",
-           fmt::format("what was measured spreads over {:.4g} of what the machine was sent", ratio), meaning);
+      findings_.warn(table_.header_line, "x",
+                     fmt::format("what was measured spreads over {:.4g} of what the machine was sent", ratio),
+                     meaning);
   }
 
-  void error(std::size_t line, const std::string& word, const std::string& what,
-             const std::string& meaning = "") {
-    findings_.add(LintWeight::kError, line, word, what, meaning);
-  }
-  void warn(std::size_t line, const std::string& word, const std::string& what,
-            const std::string& meaning = "") {
-    findings_.add(LintWeight::kWarning, line, word, what, meaning);
-  }
-  void remark(std::size_t line, const std::string& word, const std::string& what,
-              const std::string& meaning = "") {
-    findings_.add(LintWeight::kRemark, line, word, what, meaning);
-  }
   std::size_t line(std::size_t row) const { return table_.rows[row].line; }
 
   const LintTable& table_;

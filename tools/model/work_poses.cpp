@@ -4,22 +4,13 @@
 #include <algorithm>
 #include <array>
 
+#include "tools/maths/halton.h"
 #include "tools/model/chain.h"
 
 namespace vernier {
 namespace {
 
 constexpr std::size_t kPoses = 500;
-
-/// Element of van der Corput's sequence in a prime base (Halton 1960): 0..1.
-double radical_inverse(std::size_t index, std::size_t base) {
-  double result = 0, digit = 1;
-  for (; index > 0; index /= base) {
-    digit /= static_cast<double>(base);
-    result += digit * static_cast<double>(index % base);
-  }
-  return result;
-}
 
 }  // namespace
 

@@ -6,9 +6,10 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
+#include "tools/fit/reach.h"
 #include "tools/maths/factors.h"
+#include "tools/maths/halton.h"
 #include "tools/maths/orthonormal.h"
 #include "tools/model/measurement.h"
 #include "tools/model/prediction.h"
@@ -23,16 +24,6 @@ using Eigen::MatrixXd;
 
 /// Poses that may be chosen, and poses that uncertainty is looked at.
 constexpr std::size_t kOffered = 800, kJudged = 150;
-/// Halton sequence, radical inverse of i in a base.
-double halton(std::size_t i, std::size_t base) {
-  double result = 0, part = 1;
-  for (; i > 0; i /= base) {
-    part /= static_cast<double>(base);
-    result += part * static_cast<double>(i % base);
-  }
-  return result;
-}
-
 /// Poses over the ranges in which the machine works: corners and stations of tables count double, errors show
 /// most there.
 States offered_poses(const Machine& machine, std::size_t count, std::size_t from) {
@@ -46,9 +37,9 @@ States offered_poses(const Machine& machine, std::size_t count, std::size_t from
       throw InputError({machine.file, machine.axes[axis].line}, machine.axes[axis].name,
                        "a plan needs min and max of every axis");
     for (std::size_t i = 0; i < count; ++i) {
-      double share = halton(from + i + 1, kPrimes[axis % std::size(kPrimes)]);
+      double share = radical_inverse(from + i + 1, kPrimes[axis % std::size(kPrimes)]);
       // A third of the poses lie at the ends of an axis, drawn by another sequence.
-      const double end = halton(from + i + 1, kPrimes[(axis + 4) % std::size(kPrimes)]);
+      const double end = radical_inverse(from + i + 1, kPrimes[(axis + 4) % std::size(kPrimes)]);
       if (end < 1.0 / 6) share = 0;
       if (end > 5.0 / 6) share = 1;
       const double value = (*range)[0] + share * ((*range)[1] - (*range)[0]);
@@ -56,34 +47,17 @@ States offered_poses(const Machine& machine, std::size_t count, std::size_t from
       states.axis[axis][static_cast<Index>(i)] =
           std::clamp(std::round(value / digit) * digit, (*range)[0], (*range)[1]);
       states.direction[axis][static_cast<Index>(i)] =
-          halton(from + i + 1, kPrimes[(axis + 2) % std::size(kPrimes)]) < 0.5 ? -1 : 1;
+          radical_inverse(from + i + 1, kPrimes[(axis + 2) % std::size(kPrimes)]) < 0.5 ? -1 : 1;
     }
   }
   return states;
-}
-
-/// Readings x y z at states, for linearising.
-Measurement readings_at(const States& states) {
-  Measurement m;
-  m.files = {"plan"};
-  m.states = states;
-  const auto rows = static_cast<Index>(states.count);
-  m.uncertainty = Column::Zero(rows);
-  m.check.assign(states.count, 0);
-  m.file.assign(states.count, 0);
-  m.line.assign(states.count, 0);
-  m.centre = m.nominal_point = Eigen::Matrix3Xd::Zero(3, rows);
-  for (std::size_t row = 0; row < states.count; ++row)
-    for (const ObservationKind kind : {ObservationKind::kX, ObservationKind::kY, ObservationKind::kZ})
-      m.observations.push_back({kind, row, 0});
-  return m;
 }
 
 class FirstPlanner {
  public:
   FirstPlanner(const Machine& machine, const FirstPlanOptions& options)
       : machine_(machine), options_(options), offered_(offered_poses(machine, kOffered, 0)) {
-    const Measurement rows = readings_at(offered_);
+    const Measurement rows = point_readings(offered_);
     const ParameterSet parameters(machine, {""});
     for (std::size_t i = 0; i < parameters.size(); ++i)
       (parameters[i].kind == ParameterKind::kBaseShift ? shifts_ : own_).push_back(static_cast<Index>(i));
@@ -121,26 +95,20 @@ class FirstPlanner {
   void judge(const ParameterSet& parameters) {
     std::vector<Machine> tooled = {machine_};
     for (const Tool& tool : machine_.tools) tooled.push_back(with_tool(machine_, tool.point));
-    const Measurement rows = readings_at(offered_poses(machine_, kJudged, 7919));
+    const Measurement rows = point_readings(offered_poses(machine_, kJudged, 7919));
     weight_ = MatrixXd::Zero(jacobian_.cols(), jacobian_.cols());
     for (const Machine& one : tooled) {
       const MatrixXd all = MatrixXd(linearise(one, rows, parameters).jacobian) * scale_.asDiagonal();
       MatrixXd own = MatrixXd::Zero(all.rows(), all.cols());
       own(Eigen::all, own_) = all(Eigen::all, own_);
-      MatrixXd rigid(all.rows(), 6);
-      const Eigen::Matrix3Xd at = forward_points(one, rows);
-      for (Index i = 0; i < at.cols(); ++i) {
-        rigid.block<3, 3>(3 * i, 0).setIdentity();
-        const Eigen::Vector3d p = at.col(i);
-        rigid.block<3, 3>(3 * i, 3) << 0, p.z(), -p.y(), -p.z(), 0, p.x(), p.y(), -p.x(), 0;
-      }
-      const MatrixXd basis = orthonormal(rigid, 1e-9, nullptr);
+      const MatrixXd basis = orthonormal(rigid_motions(points_of(one, rows)), 1e-9, nullptr);
       own -= basis * (basis.transpose() * own);
       weight_ += own.transpose() * own / static_cast<double>(kJudged * tooled.size());
     }
   }
 
-  static Eigen::Matrix3Xd forward_points(const Machine& machine, const Measurement& rows) {
+  /// In the measuring frame, as the columns are.
+  static Eigen::Matrix3Xd points_of(const Machine& machine, const Measurement& rows) {
     const Eigen::VectorXd predicted = predict(machine, rows);
     return Eigen::Map<const Eigen::Matrix3Xd>(predicted.data(), 3, predicted.size() / 3);
   }

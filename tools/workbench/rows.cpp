@@ -173,8 +173,7 @@ std::string explanation_blob(const LoadedRows& rows, const std::string& add) {
 }
 
 nlohmann::ordered_json parameters_json(const LoadedRows& rows) {
-  const ParameterSet parameters(rows.machine,
-                               rows.measurement.states.names(rows.measurement.states.setup));
+  const ParameterSet parameters(rows.machine, rows.measurement.states.names(rows.measurement.states.setup));
   const Eigen::VectorXd values = parameters.get(rows.machine);
   Json list = Json::array();
   for (std::size_t i = 0; i < parameters.size(); ++i)

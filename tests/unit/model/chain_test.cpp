@@ -53,26 +53,7 @@ TEST(Chain, DerivativesOfEveryObservationAgreeWithDifferences) {
   const Measurement m = support::full_measurement(machine, 40, random);
   const ParameterSet parameters(machine, {"a", "b"});
   ASSERT_EQ(parameters.size(), 5U + 18 + 8 + 6 + 12);
-  const Linearisation linear = linearise(machine, m, parameters);
-  const Eigen::MatrixXd analytic = linear.jacobian;
-  const Eigen::VectorXd point = parameters.get(machine);
-  for (std::size_t p = 0; p < parameters.size(); ++p) {
-    const auto at = static_cast<Eigen::Index>(p);
-    const double step = 1e-4;
-    const auto moved = [&](double by) {
-      Eigen::VectorXd next = point;
-      next[at] += by;
-      Machine other = machine;
-      parameters.set(other, next);
-      return predict(other, m);
-    };
-    const Eigen::VectorXd difference = (moved(step) - moved(-step)) / (2 * step);
-    // Third derivatives over a step of 1e-4 and six digits lost to rounding of values near 1e3.
-    EXPECT_LT((difference - analytic.col(at)).cwiseAbs().maxCoeff(),
-              2e-6 * (1 + difference.cwiseAbs().maxCoeff()))
-        << parameters[p].name;
-  }
-  EXPECT_LT((linear.predicted - predict(machine, m)).cwiseAbs().maxCoeff(), 1e-12);
+  support::expect_derivatives(machine, m, parameters);
 }
 
 TEST(Chain, RotationVectorFollowsTheMeasuredBranchAcrossHalfATurn) {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <random>
 
+#include "tests/support/machines.h"
 #include "tools/model/chain.h"
 #include "tools/model/evaluate.h"
 #include "tools/model/machine_reader.h"
@@ -53,26 +54,7 @@ std::string rows(const std::string& header, int count, const Cells& cells) {
 
 void expect_derivatives(const Measurement& m) {
   const Machine machine = readings_test::machine();
-  const ParameterSet parameters(machine, m.states.names(m.states.setup));
-  const Linearisation linear = linearise(machine, m, parameters);
-  const Eigen::MatrixXd analytic = linear.jacobian;
-  const Eigen::VectorXd point = parameters.get(machine);
-  EXPECT_LT((linear.predicted - predict(machine, m)).cwiseAbs().maxCoeff(), 1e-12);
-  for (std::size_t p = 0; p < parameters.size(); ++p) {
-    const auto at = static_cast<Index>(p);
-    constexpr double kStep = 1e-4;
-    const auto moved = [&](double by) {
-      Eigen::VectorXd next = point;
-      next[at] += by;
-      Machine other = machine;
-      parameters.set(other, next);
-      return predict(other, m);
-    };
-    const Eigen::VectorXd difference = (moved(kStep) - moved(-kStep)) / (2 * kStep);
-    EXPECT_LT((difference - analytic.col(at)).cwiseAbs().maxCoeff(),
-              2e-6 * (1 + difference.cwiseAbs().maxCoeff()))
-        << parameters[p].name;
-  }
+  support::expect_derivatives(machine, m, ParameterSet(machine, m.states.names(m.states.setup)));
 }
 
 TEST(Directions, WeighAsTwoAnglesAgainstTheToolAxis) {

@@ -4,7 +4,7 @@ import { choice, el } from './dom.js';
 import { number } from './data.js';
 
 // Dark to light through green, readable on light and dark paper alike.
-const kStops = [
+export const kStops = [
   [59, 82, 139],
   [33, 145, 140],
   [94, 201, 98],

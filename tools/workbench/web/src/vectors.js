@@ -1,19 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { el, choice } from '../../../report/web/src/dom.js';
 import { number } from '../../../report/web/src/data.js';
+import { kStops } from '../../../report/web/src/volume.js';
 import { Plot, redrawAll } from './plot.js';
 import { kNone } from './scatter.js';
 import { selection, store } from './store.js';
 import { twinOf } from './overlay.js';
 
 const kShades = 32;
-const kStops = [
-  [59, 82, 139],
-  [33, 145, 140],
-  [94, 201, 98],
-  [243, 176, 26],
-  [220, 68, 44],
-];
 const kBoth = [
   [44, 103, 201],
   [140, 160, 190],
