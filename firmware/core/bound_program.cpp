@@ -24,6 +24,8 @@ BoundProgram::BoundProgram(const ImageView& view) noexcept
   for (std::uint32_t i = 0; i < kMaxInputs; ++i) input[i] = i;
   for (std::uint32_t i = 0; i < view.inputs().size; ++i)
     reference[i] = InputMicro(view.inputs()[i].reference);
+  for (const Channel& channel : program.channels)
+    if (channel.kind == ChannelKind::kInput) reads_input[channel.index] = true;
   const PrintedModel printed = printed_model();
   if (printed.equation != nullptr && printed.fingerprint == view.header().fingerprint)
     compensator.use_printed(printed.equation);

@@ -29,6 +29,7 @@ struct BoundProgram {
   View<ShareName> share_names;           // one per share
   std::uint32_t axis[kMaxAxes] = {};     // board's axis for each of the image
   std::uint32_t input[kMaxInputs] = {};  // board's input for each of the image
+  bool reads_input[kMaxInputs] = {};     // per input of the image: whether its equation reads it at all
   InputMicro reference[kMaxInputs];      // per input of the image: what it reads before the sensor has spoken
 };
 

@@ -49,7 +49,8 @@ BoundProgram* Cycle::use(BoundProgram& next) noexcept {
   for (bool& used : uses_axis_) used = false;
   for (bool& used : uses_input_) used = false;
   for (std::uint32_t i = 0; i < next.program.axis_count; ++i) uses_axis_[next.axis[i]] = true;
-  for (std::uint32_t i = 0; i < next.program.input_count; ++i) uses_input_[next.input[i]] = true;
+  for (std::uint32_t i = 0; i < next.program.input_count; ++i)
+    uses_input_[next.input[i]] = next.reads_input[i];
   for (std::uint32_t i = 0; i < next.program.input_count; ++i)
     if (!heard_[next.input[i]]) inputs_[next.input[i]] = next.reference[i];
   ++health_.programs;
@@ -100,6 +101,7 @@ Fault Cycle::read_inputs() noexcept {
   board_.inputs.begin_tick();
   for (std::uint32_t i = 0; i < now_->program.input_count; ++i) {
     const std::uint32_t input = now_->input[i];
+    if (!now_->reads_input[i]) continue;
     InputMicro value;
     if (board_.inputs.read_input(input, value) == HalFault::kNone) {
       fault = first_of(fault, take_input(input, value));
@@ -122,7 +124,7 @@ bool Cycle::complete() const noexcept {
   for (std::uint32_t i = 0; i < now_->program.axis_count; ++i)
     if (!axes_[now_->axis[i]].known()) return false;
   for (std::uint32_t i = 0; i < now_->program.input_count; ++i)
-    if (!heard_[now_->input[i]]) return false;
+    if (now_->reads_input[i] && !heard_[now_->input[i]]) return false;
   return true;
 }
 

@@ -111,6 +111,24 @@ TEST(InControllerChecking, SaysWhatItWaitsFor) {
   EXPECT_EQ(service.cycle().found(), Fault::kNone);
 }
 
+TEST(InControllerChecking, DoesNotWaitForASensorThatNoTermReads) {
+  SimClock clock;
+  SimSlotStore store{1 << 16};
+  Roaming motion{{{0, 600'000'000}, {0, 200'000'000}}, {InputMicro(21'000'000)}, TimeUs(1000), 0.1, 1};
+  SimPlant plant{motion, 2, 1, {.faults = {{PlantFaultKind::kSensorLost, 0, 0, 100'000}}}};
+  ServiceOptions options;
+  options.wiring = {{{"X"}, {"Y"}}, {"T"}};
+  options.in_controller = true;
+  Service service(options, Board{clock, plant, plant, plant}, store);
+  std::string unread = kSmallMachine;
+  for (std::size_t at; (at = unread.find("(T-20)")) != std::string::npos;) unread.replace(at, 6, "1");
+  ASSERT_NE(unread, kSmallMachine);
+  ASSERT_EQ(service.boot_with(small_image_bytes(2e-5, unread)).fault, UploadFault::kNone);
+  for (int i = 0; i < 500; ++i) plant.advance(), service.tick();
+  EXPECT_EQ(service.cycle().found(), Fault::kNone);
+  EXPECT_EQ(service.cycle().mode(), Mode::kReady);
+}
+
 TEST(GivenImage, OfAnotherMachineIsAFaultAndNothingRuns) {
   SimClock clock;
   SimSlotStore store{1 << 16};
