@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 
@@ -20,6 +21,17 @@ struct MapArguments {
   std::vector<std::string> over;
   std::size_t grid = 7;
 };
+
+constexpr const char* kNotMeasured =
+    "no lengths, diagonals, circles or squares are simulated: they need one to three linear axes with min "
+    "and max";
+
+bool can_be_measured(const Machine& machine) {
+  const std::vector<std::size_t> axes = linear_axes(machine);
+  return !axes.empty() && axes.size() <= 3 && std::all_of(axes.begin(), axes.end(), [&](std::size_t axis) {
+    return machine.axes[axis].min && machine.axes[axis].max;
+  });
+}
 
 void add_measurements(Json& json, const Machine& machine, const States& at, const std::string& lines) {
   const Bench bench(machine, at);
@@ -150,15 +162,13 @@ void run_map(const MapArguments& arguments) {
     throw InputError({machine.file, 0}, "", "no linear axis: say over which axes, --over J1,J2,J3");
   Json json = {{"machine", machine.name}, {"files", {arguments.machine}}, {"notes", Json::array()}};
   json["field"] = field_json(machine, error_field(machine, at, axes, arguments.grid));
-  const bool closed = closed_solution(nominal_machine(machine), at).has_value();
-  if (closed)
+  const bool measured = can_be_measured(machine);
+  if (measured)
     add_measurements(json, machine, at, arguments.lines);
   else if (!arguments.lines.empty())
-    throw InputError({machine.file, 0}, "",
-                     "no closed back solution of its linear axes: no measurement is simulated");
+    throw InputError({machine.file, 0}, "", kNotMeasured);
   else
-    json["notes"].push_back(
-        "No measurements are simulated: the chain has no closed back solution of its linear axes.");
+    json["notes"].push_back(kNotMeasured);
   if (!arguments.output.empty()) write_file(arguments.output, improvement_report_html(page_of(json)));
   write_json(arguments.json, json);
   std::FILE* out = human_stream(arguments.json);
@@ -169,7 +179,8 @@ void run_map(const MapArguments& arguments) {
     fmt::print(out,
                "known to {:.4g} um on average, {:.4g} um at worst (standard uncertainty, measured or not)\n",
                json["field"]["rms_std_um"].get<double>(), json["field"]["max_std_um"].get<double>());
-  if (!closed) return;
+  if (!measured) fmt::print(out, "{}\n", kNotMeasured);
+  if (!measured) return;
   for (const Json& line : json["diagonals"])
     fmt::print(out, "diagonal {:<9} E {:.4g} um  M {:.4g} um  B {:.4g} um\n", line["name"].get<std::string>(),
                line["E_um"].get<double>(), line["M_um"].get<double>(), line["B_um"].get<double>());

@@ -8,20 +8,14 @@ namespace {
 
 using Eigen::Index;
 
+/// Of what counts as reached.
+constexpr double kSlack_mm = 1e-6;
+
 const Axis& ranged(const Machine& machine, std::size_t axis) {
   const Axis& one = machine.axes[axis];
   if (!one.min || !one.max)
     throw InputError({machine.file, one.line}, one.name, "this axis needs min and max");
   return one;
-}
-
-ClosedSolution closed_of(const Machine& machine, const States& at) {
-  const auto closed = closed_solution(nominal_machine(machine), at);
-  if (!closed)
-    throw InputError({machine.file, 0}, "",
-                     "no closed back solution of its linear axes: no measurement is simulated");
-  for (const std::size_t axis : closed->axes) ranged(machine, axis);
-  return *closed;
 }
 
 }  // namespace
@@ -51,24 +45,65 @@ ErrorField error_field(const Machine& machine, const States& at, const std::vect
 }
 
 Bench::Bench(const Machine& machine, const States& at)
-    : machine_(machine), at_(at), closed_(closed_of(machine, at)) {}
+    : machine_(machine),
+      nominal_(nominal_machine(machine)),
+      at_(at),
+      axes_(linear_axes(machine)),
+      closed_(closed_solution(nominal_, at)) {
+  if (axes_.empty() || axes_.size() > 3)
+    throw InputError({machine.file, 0}, "", "no measurement is simulated: it needs one to three linear axes");
+  for (const std::size_t axis : axes_) ranged(machine, axis);
+}
 
 Eigen::Vector3d Bench::point_at(const Eigen::VectorXd& fraction) const {
   Eigen::VectorXd q(fraction.size());
   for (Index k = 0; k < q.size(); ++k) {
-    const Axis& axis = machine_.axes[closed_.axes[static_cast<std::size_t>(k)]];
+    const Axis& axis = machine_.axes[axes_[static_cast<std::size_t>(k)]];
     q[k] = *axis.min + fraction[k] * (*axis.max - *axis.min);
   }
-  return closed_.origin + closed_.jacobian * q;
+  return forward(nominal_, standing_at(q)).position.col(0);
 }
 
+States Bench::standing_at(const Eigen::MatrixXd& positions) const {
+  States states = select_states(at_, std::vector<std::size_t>(static_cast<std::size_t>(positions.cols()), 0));
+  for (Index k = 0; k < positions.rows(); ++k)
+    states.axis[axes_[static_cast<std::size_t>(k)]] = positions.row(k).transpose().array();
+  return states;
+}
+
+Eigen::MatrixXd Bench::positions_of(const Eigen::Matrix3Xd& points) const {
+  if (closed_) return solve_closed(*closed_, points);
+  Eigen::MatrixXd middle(axes_.size(), points.cols());
+  for (std::size_t k = 0; k < axes_.size(); ++k)
+    middle.row(static_cast<Index>(k))
+        .setConstant((*machine_.axes[axes_[k]].min + *machine_.axes[axes_[k]].max) / 2);
+  Poses target;
+  target.position = points;
+  target.rotation.assign(static_cast<std::size_t>(points.cols()), Eigen::Matrix3d::Identity());
+  InverseOptions options;
+  options.match = Match::kPosition;
+  options.axes = axes_;
+  options.keep_ranges = false;
+  options.only_reachable = axes_.size() < 3;
+  const States solved = solve(nominal_, target, standing_at(middle), options).states;
+  Eigen::MatrixXd positions(axes_.size(), points.cols());
+  for (std::size_t k = 0; k < axes_.size(); ++k)
+    positions.row(static_cast<Index>(k)) = solved.axis[axes_[k]].matrix().transpose();
+  return positions;
+}
+
+bool Bench::comes_to(const Eigen::MatrixXd& positions, const Eigen::Matrix3Xd& points) const {
+  const Eigen::Matrix3Xd there = forward(nominal_, standing_at(positions)).position;
+  return (there - points).colwise().norm().maxCoeff() <= kSlack_mm;
+}
+
+bool Bench::meets(const Eigen::Matrix3Xd& points) const { return comes_to(positions_of(points), points); }
+
 bool Bench::reaches(const Eigen::Matrix3Xd& points) const {
-  const Eigen::MatrixXd q = solve_closed(closed_, points);
-  const Eigen::Matrix3Xd back = (closed_.jacobian * q).colwise() + closed_.origin;
-  constexpr double kSlack_mm = 1e-6;
-  if ((back - points).colwise().norm().maxCoeff() > kSlack_mm) return false;
+  const Eigen::MatrixXd q = positions_of(points);
+  if (!comes_to(q, points)) return false;
   for (Index k = 0; k < q.rows(); ++k) {
-    const Axis& axis = machine_.axes[closed_.axes[static_cast<std::size_t>(k)]];
+    const Axis& axis = machine_.axes[axes_[static_cast<std::size_t>(k)]];
     if (q.row(k).minCoeff() < *axis.min - kSlack_mm || q.row(k).maxCoeff() > *axis.max + kSlack_mm)
       return false;
   }
@@ -76,16 +111,15 @@ bool Bench::reaches(const Eigen::Matrix3Xd& points) const {
 }
 
 Eigen::Matrix3Xd Bench::measure(const Eigen::Matrix3Xd& points) const {
-  return forward(machine_, states_of(solve_closed(closed_, points))).position;
+  return forward(machine_, states_of(positions_of(points))).position;
 }
 
 States Bench::states_of(const Eigen::MatrixXd& positions) const {
   const Index count = positions.cols();
-  States states = select_states(at_, std::vector<std::size_t>(static_cast<std::size_t>(count), 0));
+  States states = standing_at(positions);
   constexpr double kStill_mm = 1e-9;  // less is rounding of the back solution, no motion
   for (Index k = 0; k < positions.rows(); ++k) {
-    const std::size_t axis = closed_.axes[static_cast<std::size_t>(k)];
-    states.axis[axis] = positions.row(k).transpose().array();
+    const std::size_t axis = axes_[static_cast<std::size_t>(k)];
     double sense = 0, since = kLongWay;
     for (Index i = 1; i < count && sense == 0; ++i) {
       const double step = positions(k, i) - positions(k, i - 1);

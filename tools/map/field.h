@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,16 +24,19 @@ ErrorField error_field(const Machine& machine, const States& at, const std::vect
                        std::size_t count);
 
 /// A machine on which measurements are simulated: its nominal chain is what was commanded, the machine itself
-/// what happens. Only for chains with a closed back solution of their linear axes.
+/// what happens. Its linear axes are found by the closed back solution where the nominal chain has one, else
+/// by iteration.
 class Bench {
  public:
-  /// Throws InputError where the nominal chain has no closed solution, or an axis no range.
+  /// Throws InputError where the chain has no linear axis or more than three, or one without a range.
   Bench(const Machine& machine, const States& at);
 
-  const std::vector<std::size_t>& axes() const { return closed_.axes; }
+  const std::vector<std::size_t>& axes() const { return axes_; }
   /// Nominal tool point (mm) where the linear axes stand at these fractions (0..1) of their ranges.
   Eigen::Vector3d point_at(const Eigen::VectorXd& fraction) const;
-  /// Can the linear axes bring the nominal tool point to all of these (3 x N, mm)?
+  /// Can the linear axes bring the nominal tool point to all of these (3 x N, mm), ranges aside?
+  bool meets(const Eigen::Matrix3Xd& points) const;
+  /// The same within their ranges.
   bool reaches(const Eigen::Matrix3Xd& points) const;
   /// Where the tool point really is when these are commanded one after the other, at rest at each. Senses of
   /// motion and travel since reversal are those of the way there; the first point is come to as its second
@@ -40,11 +44,16 @@ class Bench {
   Eigen::Matrix3Xd measure(const Eigen::Matrix3Xd& points) const;
 
  private:
+  bool comes_to(const Eigen::MatrixXd& positions, const Eigen::Matrix3Xd& points) const;
+  States standing_at(const Eigen::MatrixXd& positions) const;
+  Eigen::MatrixXd positions_of(const Eigen::Matrix3Xd& points) const;
   States states_of(const Eigen::MatrixXd& positions) const;
 
   const Machine& machine_;
+  Machine nominal_;
   States at_;
-  ClosedSolution closed_;
+  std::vector<std::size_t> axes_;
+  std::optional<ClosedSolution> closed_;
 };
 
 }  // namespace vernier

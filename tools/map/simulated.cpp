@@ -105,8 +105,16 @@ CircularPass measured_circle(const Bench& bench, const Vector3d& centre, double 
   return pass;
 }
 
-LineResult between_corners(const Machine& machine, const Bench& bench, const std::vector<Index>& moving,
-                           unsigned signs) {
+/// Adds the line if the nominal chain can follow it: where axes turn the tool point it need not.
+void add_line(const Bench& bench, const std::string& name, const Eigen::VectorXd& from,
+              const Eigen::VectorXd& to, std::vector<LineResult>& lines) {
+  const Vector3d first = bench.point_at(from), last = bench.point_at(to);
+  if (bench.meets(points_between(first, last, kLinePositions)))
+    lines.push_back(measure_line(bench, name, first, last));
+}
+
+void add_diagonal(const Machine& machine, const Bench& bench, const std::vector<Index>& moving,
+                  unsigned signs, std::vector<LineResult>& lines) {
   const auto count = static_cast<Index>(bench.axes().size());
   // Faces at the low end of the axes that stay.
   Eigen::VectorXd from = Eigen::VectorXd::Zero(count), to = from;
@@ -116,7 +124,7 @@ LineResult between_corners(const Machine& machine, const Bench& bench, const std
     (up ? to : from)[moving[i]] = 1;
     name += (up ? "+" : "-") + machine.axes[bench.axes()[static_cast<std::size_t>(moving[i])]].name;
   }
-  return measure_line(bench, name, bench.point_at(from), bench.point_at(to));
+  add_line(bench, name, from, to, lines);
 }
 
 }  // namespace
@@ -157,8 +165,7 @@ std::vector<LineResult> axis_lines(const Machine& machine, const Bench& bench) {
     Eigen::VectorXd from = Eigen::VectorXd::Constant(static_cast<Index>(bench.axes().size()), 0.5), to = from;
     from[static_cast<Index>(k)] = 0;
     to[static_cast<Index>(k)] = 1;
-    lines.push_back(
-        measure_line(bench, machine.axes[bench.axes()[k]].name, bench.point_at(from), bench.point_at(to)));
+    add_line(bench, machine.axes[bench.axes()[k]].name, from, to, lines);
   }
   return lines;
 }
@@ -167,11 +174,10 @@ std::vector<LineResult> diagonals(const Machine& machine, const Bench& bench) {
   std::vector<LineResult> lines;
   const auto count = static_cast<Index>(bench.axes().size());
   if (count == 3)
-    for (unsigned signs : {0u, 1u, 2u, 4u})
-      lines.push_back(between_corners(machine, bench, {0, 1, 2}, signs));
+    for (unsigned signs : {0u, 1u, 2u, 4u}) add_diagonal(machine, bench, {0, 1, 2}, signs, lines);
   for (Index a = 0; a < count; ++a)
     for (Index b = a + 1; b < count; ++b)
-      for (unsigned signs : {0u, 2u}) lines.push_back(between_corners(machine, bench, {a, b}, signs));
+      for (unsigned signs : {0u, 2u}) add_diagonal(machine, bench, {a, b}, signs, lines);
   return lines;
 }
 

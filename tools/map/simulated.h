@@ -21,13 +21,16 @@ struct LineResult {
       0;  // range across the line about its least-squares line, the worse of two directions
 };
 
+constexpr int kLinePositions = 21;
+
 /// A line of `positions` points between two nominal points, forward then back. Source of E, M, B: ISO 230-6
 /// (diagonals), ISO 230-2 (single axes), here of one run a sense and so without repeatability. tool.
 LineResult measure_line(const Bench& bench, const std::string& name, const Eigen::Vector3d& from,
-                        const Eigen::Vector3d& to, int positions = 21);
+                        const Eigen::Vector3d& to, int positions = kLinePositions);
 
 /// Each linear axis through the middle of the volume; body diagonals (four) and face diagonals (two in each
 /// face at the low end of the third axis; with two axes the two of the plane). Names: "X", "+X+Y-Z", "+X-Y".
+/// A line that the nominal chain cannot follow is left out.
 std::vector<LineResult> axis_lines(const Machine& machine, const Bench& bench);
 std::vector<LineResult> diagonals(const Machine& machine, const Bench& bench);
 

@@ -20,12 +20,15 @@ struct Errors {
 };
 
 /// Tool-side X, table-side Y, so that a wrong sign of a table axis cannot hide.
-Machine machine(const Errors& e) {
+/// `more` stands behind the terms of X.
+Machine machine(const Errors& e, const std::string& more = "") {
   Machine m = parse_machine(R"XML(<machine><variables><static>
     <k value="0" nominal="0"/><a value="0" nominal="0"/><b value="0" nominal="0"/><r value="0" nominal="0"/></static>
     <machineaxes><X min="0" max="600"/><Y min="0" max="400"/><Z min="-300" max="0"/></machineaxes></variables>
     <transforms branch="workpiece"><sixdof n="1" Y="Y"/></transforms>
-    <transforms branch="tool"><sixdof n="1" X="X*(1+k)+r*dirX" Y="-a*X"/><sixdof n="2" X="b*Z" Z="Z"/></transforms>
+    <transforms branch="tool"><sixdof n="1" X="X*(1+k)+r*dirX)XML" +
+                                more +
+                                R"XML(" Y="-a*X"/><sixdof n="2" X="b*Z" Z="Z"/></transforms>
     </machine>)XML",
                             "m.xml");
   const double value[] = {e.scale, e.squareness, e.lean, e.reversal};
@@ -139,12 +142,34 @@ TEST(Measured, FreeLinesStayInTheVolume) {
   EXPECT_THROW(free_lines_json(bench, path), InputError);
 }
 
-TEST(Measured, ChainsWithoutAClosedSolutionAreRefused) {
+TEST(Measured, ATermThatIsNotAffineTakesNoResultAway) {
+  const Machine plain = machine({.scale = 1e-4, .reversal = 2e-3});
+  const Machine coupled = machine({.scale = 1e-4, .reversal = 2e-3}, "+0*Y*Z");
+  ASSERT_FALSE(closed_solution(nominal_machine(coupled), at()));
+  const Bench exact(plain, at()), iterated(coupled, at());
+  const auto lengths = axis_lines(plain, exact), same = axis_lines(coupled, iterated);
+  ASSERT_EQ(lengths.size(), same.size());
+  const auto wanted = diagonals(plain, exact), got = diagonals(coupled, iterated);
+  ASSERT_EQ(wanted.size(), 10u);
+  ASSERT_EQ(got.size(), wanted.size());
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    EXPECT_EQ(got[i].name, wanted[i].name);
+    EXPECT_NEAR(got[i].error_um, wanted[i].error_um, 1e-3);
+    EXPECT_NEAR(got[i].reversal_um, wanted[i].reversal_um, 1e-3);
+  }
+  EXPECT_EQ(circles_json(iterated).size(), circles_json(exact).size());
+}
+
+TEST(Measured, LinesThatTheChainCannotFollowAreLeftOut) {
   const Machine bending = parse_machine(
-      R"XML(<machine><variables><machineaxes><X min="0" max="1"/></machineaxes></variables>
-      <transforms><sixdof n="1" X="X" rZ="0.01*X"/></transforms></machine>)XML",
+      R"XML(<machine><variables><machineaxes><X min="0" max="100"/></machineaxes></variables>
+      <transforms><sixdof n="1" rZ="X"/><sixdof n="2" X="X+100"/></transforms></machine>)XML",
       "bending.xml");
-  EXPECT_THROW(Bench(bending, make_states(1, 1, {})), InputError);
+  const Bench bench(bending, make_states(1, 1, {}));
+  EXPECT_TRUE(axis_lines(bending, bench).empty());
+}
+
+TEST(Measured, AxesWithoutRangesAreRefused) {
   Machine endless = machine({});
   endless.axes[1].max.reset();
   EXPECT_THROW(Bench(endless, at()), InputError);
