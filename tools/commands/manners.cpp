@@ -148,7 +148,9 @@ void warn_of_machine(const CLI::App& vernier) {
 }
 
 std::string import_hint(const std::string& message, const std::vector<std::string>& arguments) {
-  if (!arguments.empty() && arguments.front() == "import") return "";  // who reads it already knows how
+  // Who reads it already knows how; tables of touches are read in any form.
+  static const std::set<std::string> kAnyForm = {"import", "probe-cal", "fit-feature"};
+  if (!arguments.empty() && kAnyForm.contains(arguments.front())) return "";
   for (const std::string& path : arguments) {
     if (path.empty() || !(message.starts_with(path + ":"))) continue;
     const std::string bytes = head_of(path, kMostRead);

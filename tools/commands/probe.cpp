@@ -36,6 +36,17 @@ void add_table(CLI::App& command, TableArguments& arguments) {
   command.add_option("--json", arguments.json, "result for programs; - is standard output");
 }
 
+void add_conditions(CLI::App& command, TouchConditions& conditions) {
+  command
+      .add_option(
+          "--gain", conditions.gain_per_s,
+          "of the position loop, 1/s: following error = speed / gain; default: 1.78 mm at 2540 mm/min")
+      ->check(CLI::PositiveNumber);
+  command.add_option("--stylus", conditions.stylus_mm, "deflection that the stylus bears, mm")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+}
+
 TouchTable read_table(const TableArguments& arguments) {
   return {read_file(arguments.file), arguments.file, arguments.columns, arguments.where};
 }
@@ -70,14 +81,35 @@ void print(std::FILE* out, const std::vector<Calibrated>& parameters,
 struct CalArguments : TableArguments {
   std::string artefact, output;
   CalibrationSetup setup;
-  double ball_radius = 0;
+  double ball_radius = 0, clearance = 0, overtravel = 0;
+  std::string group;
 };
+
+Json json_of(const GroupComparison& groups, const std::string& column) {
+  Json list = Json::array();
+  for (const GroupComparison::Group& group : groups.groups)
+    list.push_back(
+        {{"value", group.value}, {"n_touches", group.touches}, {"parameters", json_of(group.parameters)}});
+  return {{"column", column}, {"differ_p", groups.chance}, {"each", list}};
+}
+
+void print(std::FILE* out, const GroupComparison& groups, const std::string& column) {
+  for (const GroupComparison::Group& group : groups.groups) {
+    fmt::print(out, "  {} {} ({} touches):", column, group.value, group.touches);
+    for (const Calibrated& p : group.parameters)
+      if (p.name == "delay" || p.name == "effective_tip_radius")
+        fmt::print(out, "  {} {:.6f} +- {:.2g} {}", p.name, p.value, p.std, p.unit);
+    fmt::print(out, "\n");
+  }
+  fmt::print(out, "- {}\n", groups.words);
+}
 
 std::string board_lines(const ProbeCalibration& result) {
   const Calibrated* const delay = result.find("delay");
   std::string text = "# for the [probe] section of a board file\n";
   text += fmt::format("delay_us = {:.2f}\n", delay->value * 1e3);
-  text += fmt::format("delay_spread_us = {:.2f}\n", delay->std * 1e3);
+  if (const Calibrated* const spread = result.find("delay_spread"))
+    text += fmt::format("delay_spread_us = {:.2f}\n", spread->value * 1e3);
   return text;
 }
 
@@ -87,8 +119,12 @@ void run_cal(CalArguments& arguments) {
   arguments.setup.artefact = kArtefacts.at(arguments.artefact);
   arguments.setup.outlier_level = arguments.outlier_level;
   if (arguments.ball_radius > 0) arguments.setup.ball_radius_mm = arguments.ball_radius;
+  if (arguments.clearance > 0) arguments.setup.clearance_mm = arguments.clearance;
+  if (arguments.overtravel > 0) arguments.setup.overtravel_mm = arguments.overtravel;
   TouchTable table = read_table(arguments);
   const ProbeCalibration result = calibrate_probe(table, arguments.setup);
+  std::optional<GroupComparison> groups;
+  if (!arguments.group.empty()) groups = compare_groups(table, arguments.setup, arguments.group, result);
   if (!arguments.output.empty()) {
     if (!result.delay_found)
       throw LimitNotMet("no delay was found, so there is nothing to write: " + result.findings.front());
@@ -107,6 +143,7 @@ void run_cal(CalArguments& arguments) {
                     {"slope_std", *result.line_slope_std}};
   json["outliers"] = json_of(result.fit, table);
   json["findings"] = result.findings;
+  if (groups) json["groups"] = json_of(*groups, arguments.group);
   write_json(arguments.json, json);
   std::FILE* const out = human_stream(arguments.json);
   fmt::print(out, "{} touches of a {}, {} left out, rms {:.2f} um\n", table.rows(), arguments.artefact,
@@ -115,6 +152,7 @@ void run_cal(CalArguments& arguments) {
     fmt::print(out, "  difference = {:.3f} {:+.5f} F um (F in mm/min)\n", *result.line_intercept_um,
                *result.line_slope_um_per_mm_min);
   print(out, result.parameters, result.findings);
+  if (groups) print(out, *groups, arguments.group);
 }
 
 // ---- probe-path
@@ -192,6 +230,13 @@ void register_probe_cal(CLI::App& vernier) {
   command->add_option("--size", arguments->setup.size_mm, "mm; block: length; ring, sphere: diameter")
       ->required();
   command->add_option("--ball-radius", arguments->ball_radius, "nominal radius of the stylus ball, mm");
+  command->add_option(
+      "--group", arguments->group,
+      "column by which touches are compared, such as the probe's angle: each group by itself");
+  command->add_option("--clearance", arguments->clearance,
+                      "approach of the touches, mm: says which of them came before constant speed");
+  command->add_option("--overtravel", arguments->overtravel, "end of the approach beyond the surface, mm");
+  add_conditions(*command, arguments->setup.conditions);
   command->add_option("-o", arguments->output, "delay as lines of a board file");
   command->footer(
       "Columns: feed[mm/min]; block: upper, lower; ring, sphere: x, y, z, and a[mm/s^2] where an approach\n"
@@ -227,6 +272,8 @@ void register_probe_path(CLI::App& vernier) {
   command->add_option("--unit", arguments->unit, "of the program")
       ->check(CLI::IsMember({"mm", "in"}))
       ->capture_default_str();
+  add_conditions(*command, path.conditions);
+  command->add_flag("--unchecked", path.unchecked, "write it even where a touch would not be a valid one");
   command->add_option("--name", path.name, "of the program")->capture_default_str();
   command->add_option("--title", path.title, "")->capture_default_str();
   command
@@ -236,6 +283,10 @@ void register_probe_path(CLI::App& vernier) {
   command->add_option("--comment", path.comments, "a line at the top; again for each")
       ->allow_extra_args(false);
   command->add_option("-o", arguments->output, "program")->required();
+  command->footer(
+      "Exit status: 0 written, 1 bad input, 2 touches at this feed, approach or overtravel would not be "
+      "valid "
+      "(nothing written).");
   command->callback([arguments] { run_path(*arguments); });
 }
 

@@ -21,7 +21,7 @@ constexpr double kLeastFeedSpread = 0.05;
 /// A gap in the azimuths, or a span of the threefold angle, from which lobes cannot be told from an eccentric
 /// centre.
 constexpr double kLargestGapDeg = 100;
-constexpr double kLobeChance = 0.01;
+constexpr double kLobeChance = 0.01, kGroupChance = 0.01;
 
 bool varies(const VectorXd& values) {
   const double high = values.maxCoeff(), low = values.minCoeff();
@@ -63,6 +63,39 @@ bool explains(const TouchFit& with, const TouchFit& without, double level) {
          level;
 }
 
+/// Adds the standard deviation of the delay from touch to touch: the part of the residuals' variance that
+/// grows with the square of the speed (mm/s). `touches`: how many are in one observation.
+void add_spread(ProbeCalibration& result, const VectorXd& speed, double touches) {
+  if (!result.delay_found) return;
+  // Squares of residuals against 1 and speed^2, weighted by what each scatters (2 variance^2); parameters
+  // took some.
+  const double lost = static_cast<double>(speed.size()) / std::max(1, result.fit.dof);
+  Eigen::Vector2d variance(result.fit.sigma * result.fit.sigma, 0);
+  Eigen::Matrix2d inverse = Eigen::Matrix2d::Zero();
+  constexpr int kRounds = 20;
+  for (int round = 0; round < kRounds; ++round) {
+    Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
+    Eigen::Vector2d right = Eigen::Vector2d::Zero();
+    for (Index i = 0; i < speed.size(); ++i) {
+      if (!result.fit.kept[static_cast<std::size_t>(i)]) continue;
+      const Eigen::Vector2d row(1, speed(i) * speed(i));
+      const double here = std::max(row.dot(variance), 1e-3 * result.fit.sigma * result.fit.sigma);
+      const double weight = 1 / (2 * here * here);
+      normal += weight * row * row.transpose();
+      right += weight * lost * result.fit.residual(i) * result.fit.residual(i) * row;
+    }
+    inverse = normal.inverse();
+    variance = (inverse * right).cwiseMax(0);
+  }
+  constexpr double kSeen = 1;  // standard deviations above 0
+  if (!(variance(1) > kSeen * std::sqrt(inverse(1, 1)))) return;
+  const double spread = std::sqrt(variance(1) / touches);
+  const double std = spread * std::sqrt(inverse(1, 1)) / variance(1) / 2;
+  const auto delay = std::find_if(result.parameters.begin(), result.parameters.end(),
+                                  [](const Calibrated& c) { return c.name == "delay"; });
+  result.parameters.insert(delay + 1, {"delay_spread", "ms", spread * 1e3, std * 1e3});
+}
+
 // ---- gauge block: both faces in turn
 
 ProbeCalibration calibrate_block(TouchTable& table, const CalibrationSetup& setup) {
@@ -95,6 +128,7 @@ ProbeCalibration calibrate_block(TouchTable& table, const CalibrationSetup& setu
   add(result, "effective_tip_radius", "mm", 0.5, 0, *setup.ball_radius_mm);
   add(result, "pretravel", "um", -0.5 * kUmPerMm, 0);
   say_feeds(feed, result.delay_found, result.findings);
+  add_spread(result, feed / kSecondsPerMinute, 2);
   result.findings.push_back(
       "Both faces lie along one line: lobes of the pretravel and its direction are not seen.");
   return result;
@@ -154,15 +188,32 @@ struct RoundTouches {
 
 RoundTouches round_touches(TouchTable& table, const CalibrationSetup& setup) {
   RoundTouches touches;
-  touches.sphere = setup.artefact == Artefact::kSphere;
   touches.sign = setup.artefact == Artefact::kRing ? -1 : 1;
   touches.x = table.need({"x", "X"}, "recorded position");
-  touches.y = table.need({"y", "Y"}, "recorded position");
-  if (touches.sphere) touches.z = table.need({"z", "Z"}, "recorded position");
+  const auto y = table.find({"y", "Y"}), z = table.find({"z", "Z"});
+  const auto stays = [&](const VectorXd& values) {
+    constexpr double kPlane = 0.01;  // of the diameter
+    return values.maxCoeff() - values.minCoeff() < kPlane * setup.size_mm;
+  };
+  // A machine of two axes, a lathe's X and Z too, touches a sphere in a plane.
+  touches.sphere = setup.artefact == Artefact::kSphere && y && z && !stays(*y) && !stays(*z);
+  const bool in_xz = setup.artefact == Artefact::kSphere && z && (!y || stays(*y));
+  touches.y = in_xz ? *z : y ? *y : table.need({"y", "Y"}, "recorded position");
+  if (touches.sphere) touches.z = *z;
   touches.speed = table.need({"feed", "F"}, "feed along the approach") / kSecondsPerMinute;
   touches.braking = VectorXd::Zero(touches.x.size());
   if (const auto a = table.find({"a", "acceleration"})) touches.braking = *a;
   return touches;
+}
+
+void say_plane(const RoundTouches& touches, const CalibrationSetup& setup,
+               std::vector<std::string>& findings) {
+  if (setup.artefact != Artefact::kSphere || touches.sphere) return;
+  constexpr double kOff_mm = 0.5;
+  findings.push_back(
+      fmt::format("The sphere was touched in one plane, taken to go through its centre: {} mm beside it "
+                  "would make the effective tip radius {:.1f} um too small.",
+                  kOff_mm, kOff_mm * kOff_mm / setup.size_mm * kUmPerMm));
 }
 
 void say_round(const RoundTouches& touches, const LeverReach& reach, double gap,
@@ -241,6 +292,8 @@ ProbeCalibration calibrate_round(TouchTable& table, const CalibrationSetup& setu
   const char* const axes[] = {"centre_x", "centre_y", "centre_z"};
   for (Index i = 0; i < extra - 1; ++i) add(result, axes[i], "mm", 1, i);
   say_round(touches, reach, gap, result.findings);
+  say_plane(touches, setup, result.findings);
+  add_spread(result, touches.speed, 1);
   return result;
 }
 
@@ -260,12 +313,76 @@ void say_outliers(const TouchFit& fit, const TouchTable& table, std::vector<std:
                     outlier.p_value));
 }
 
+namespace {
+
+// What no probe has comes from a column in another unit, from wrong rows or from another artefact.
+void refuse_absurd(const ProbeCalibration& result, const CalibrationSetup& setup, const TouchTable& table) {
+  constexpr double kLeastDelay_ms = -1, kMostDelay_ms = 100;
+  const char* const kHint =
+      "look at units and columns (--column \"name=meaning[unit]\"), at --size and --artefact";
+  if (const Calibrated* const delay = result.find("delay");
+      delay &&
+      (delay->value - 3 * delay->std > kMostDelay_ms || delay->value + 3 * delay->std < kLeastDelay_ms))
+    throw InputError(fmt::format("{}: the touches give a delay of {:.4g} ms, which no probe has: {}",
+                                 table.file(), delay->value, kHint));
+  const Calibrated* const tip = result.find("effective_tip_radius");
+  if (tip && std::abs(tip->value) - 3 * tip->std > setup.size_mm)
+    throw InputError(fmt::format(
+        "{}: the touches give an effective tip radius of {:.4g} mm beside an artefact of {:.4g} mm: {}",
+        table.file(), tip->value, setup.size_mm, kHint));
+}
+
+// How the touches were made, where that is told.
+void say_conditions(TouchTable& table, const CalibrationSetup& setup, std::vector<std::string>& findings) {
+  if (!setup.clearance_mm && !setup.overtravel_mm) return;
+  const VectorXd feed = table.need({"feed", "F"}, "feed along the approach");
+  std::vector<double> feeds(feed.begin(), feed.end());
+  std::sort(feeds.begin(), feeds.end());
+  feeds.erase(std::unique(feeds.begin(), feeds.end()), feeds.end());
+  for (const double one : feeds)
+    for (const std::string& reason :
+         broken_conditions(setup.conditions, one, setup.clearance_mm.value_or(1e9), setup.overtravel_mm))
+      findings.push_back("Not valid touches: " + reason + ".");
+}
+
+}  // namespace
+
 ProbeCalibration calibrate_probe(TouchTable& table, const CalibrationSetup& setup) {
   if (!(setup.size_mm > 0)) throw InputError("the size of the artefact is not above 0 (--size)");
   ProbeCalibration result =
       setup.artefact == Artefact::kBlock ? calibrate_block(table, setup) : calibrate_round(table, setup);
+  refuse_absurd(result, setup, table);
+  say_conditions(table, setup, result.findings);
   say_outliers(result.fit, table, result.findings);
   for (const std::string& note : table.notes()) result.findings.push_back(note);
+  return result;
+}
+
+GroupComparison compare_groups(const TouchTable& table, const CalibrationSetup& setup,
+                               const std::string& column, const ProbeCalibration& all) {
+  const std::vector<std::string> values = table.values_of(column);
+  if (values.size() < 2) throw InputError({table.file(), table.csv().header_line}, column, "one group only");
+  GroupComparison result;
+  double within = 0;
+  int dof = 0;
+  for (const std::string& value : values) {
+    TouchTable part = table.only(column, value);
+    const ProbeCalibration one = calibrate_probe(part, setup);
+    result.groups.push_back({value, part.rows(), one.parameters});
+    within += one.fit.sigma * one.fit.sigma * one.fit.dof;
+    dof += one.fit.dof;
+  }
+  const double together = all.fit.sigma * all.fit.sigma * all.fit.dof;
+  const int extra = all.fit.dof - dof;
+  if (extra > 0 && dof > 0 && within > 0)
+    result.chance =
+        std::exp(log_f_tail(std::max(0.0, together - within) / extra / (within / dof), extra, dof));
+  result.words =
+      result.chance < kGroupChance
+          ? fmt::format("The groups differ (chance {:.1g} if they were alike): calibrate each by itself.",
+                        result.chance)
+          : fmt::format("The groups do not differ by more than their scatter (chance {:.2g}).",
+                        result.chance);
   return result;
 }
 

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/probe/conditions.h"
 #include "tools/probe/touch_fit.h"
 #include "tools/probe/touch_table.h"
 
@@ -17,6 +18,9 @@ struct CalibrationSetup {
   double size_mm = 0;  // block: distance of its faces; ring, sphere: diameter
   std::optional<double> ball_radius_mm = std::nullopt;  // nominal, of the stylus ball
   double outlier_level = 0.01;
+  /// How the touches were made, where it is told: what was not a valid touch is said.
+  std::optional<double> clearance_mm = std::nullopt, overtravel_mm = std::nullopt;
+  TouchConditions conditions = {};
 };
 
 /// A parameter of the calibration with its standard uncertainty.
@@ -39,7 +43,9 @@ void say_outliers(const TouchFit& fit, const TouchTable& table, std::vector<std:
 /// effective tip radius.
 struct ProbeCalibration {
   TouchFit fit;
-  std::vector<Calibrated> parameters;  // delay_ms first, where it can be found; then what the artefact gives
+  /// delay_ms first, where it can be found, with delay_spread (its standard deviation from touch to touch,
+  /// where the scatter grows with the feed); then what the artefact gives
+  std::vector<Calibrated> parameters;
   std::optional<double> line_intercept_um, line_slope_um_per_mm_min;  // block: difference against feed
   std::optional<double> line_intercept_std_um, line_slope_std;
   bool delay_found = false, lobes_found = false;
@@ -50,9 +56,29 @@ struct ProbeCalibration {
 
 /// Reads touches and finds what they determine. Columns: feed[mm/min]; block: upper, lower (mm: recorded
 /// position of the stylus at the upper and the lower face), angle[deg] (of the probe about its axis,
-/// optional); ring, sphere: x, y, z (z not for a ring), a[mm/s^2] along the approach (optional, negative
+/// optional); ring, sphere: x, y, z (z not for a ring; a sphere without z was
+/// touched in the plane through its centre), a[mm/s^2] along the approach (optional, negative
 /// while braking), u (optional). Throws InputError. tool. Source of the block's form: NISTIR 6415, 1999,
 /// equations 1 and 2.
+/// A result that no probe can have (a delay outside -1..100 ms, a tip larger than the artefact) is an
+/// InputError too.
 ProbeCalibration calibrate_probe(TouchTable& table, const CalibrationSetup& setup);
+
+/// The same touches by groups.
+struct GroupComparison {
+  struct Group {
+    std::string value;  // of the column
+    std::size_t touches = 0;
+    std::vector<Calibrated> parameters;
+  };
+  std::vector<Group> groups;  // in the order of the file
+  double chance = 1;          // that groups which are alike differ as much (F test)
+  std::string words;
+};
+
+/// Calibrates the touches of each value of a column by themselves and compares with all in one. Throws
+/// InputError: no such column, one group only, or a group too small. tool.
+GroupComparison compare_groups(const TouchTable& table, const CalibrationSetup& setup,
+                               const std::string& column, const ProbeCalibration& all);
 
 }  // namespace vernier

@@ -2,10 +2,12 @@
 #include "tools/probe/path.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 #include <cstdlib>
 #include <iterator>
+#include <optional>
 
 #include "tools/maths/factors.h"
 #include "tools/text/error.h"
@@ -34,6 +36,19 @@ void check(const ProbePath& path) {
   if (path.feeds.empty()) throw InputError("no feed is given");
   for (const double feed : path.feeds)
     if (!(feed > 0)) throw InputError(fmt::format("feed {}: not above 0", feed));
+}
+
+void check_touches(const ProbePath& path, Dialect dialect) {
+  std::optional<double> overtravel;
+  // The turning dialect aims at the artefact's own surface; the stylus ball is what reaches beyond it.
+  if (dialect != Dialect::kTurning) overtravel = path.overtravel;
+  std::vector<std::string> broken;
+  for (const double feed : path.feeds)
+    for (std::string& reason :
+         broken_conditions(path.conditions, path.inch ? feed * kMmPerInch : feed, path.clearance, overtravel))
+      broken.push_back(std::move(reason));
+  if (broken.empty()) return;
+  throw LimitNotMet(fmt::format("no valid touches: {}", fmt::join(broken, "; ")));
 }
 
 // ---- the turning dialect
@@ -223,6 +238,7 @@ std::string three_axis_program(const ProbePath& path, Dialect dialect) {
 
 std::string probe_program(const ProbePath& path, Dialect dialect) {
   check(path);
+  if (!path.unchecked) check_touches(path, dialect);
   return dialect == Dialect::kTurning ? turning_program(path) : three_axis_program(path, dialect);
 }
 

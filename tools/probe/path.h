@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "tools/probe/conditions.h"
+
 namespace vernier {
 
 /// Controllers that a probing program can be written for.
@@ -29,12 +31,15 @@ struct ProbePath {
   double centre_offset = 1.25;  // turning: from the coordinate's zero to the sphere's axis, program units
   std::string name = "PROBE", title = "PROBE CALIBRATION";
   std::vector<std::string> comments;  // at the top, one line each
+  TouchConditions conditions;
+  bool unchecked = false;  // written even where a touch would not be a valid one
 };
 
 /// The program. Throws InputError where the path makes no sense (no step, no feed, elevations in two axes).
-/// tool. Turning dialect: blocks 210, 215, 225, 240, then 50 more for each point, coordinates in single
-/// precision from points of six decimals, as the published program was made: its 324 blocks come out equal
-/// (NISTIR 6415, appendices A1, B).
+/// LimitNotMet where a touch would not be a valid one (broken_conditions), each reason on a line. tool.
+/// Turning dialect: blocks 210, 215, 225, 240, then 50 more for each point, coordinates in single precision
+/// from points of six decimals, as the published program was made: its 324 blocks come out equal (NISTIR
+/// 6415, appendices A1, B).
 std::string probe_program(const ProbePath& path, Dialect dialect);
 
 }  // namespace vernier

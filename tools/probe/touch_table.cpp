@@ -25,6 +25,14 @@ bool take_suffix(std::string& name, std::string_view suffix) {
   return true;
 }
 
+/// Unit that a name ends with, a word behind it aside; none: empty.
+std::string unit_in_name(std::string name) {
+  take_suffix(name, kPrinted);
+  for (const auto& [suffix, unit] : kSuffixes)
+    if (take_suffix(name, suffix)) return unit;
+  return "";
+}
+
 std::pair<std::string, std::string> split(const std::string& words, const char* option) {
   const auto at = words.find('=');
   if (at == 0 || at == std::string::npos || at + 1 == words.size())
@@ -43,18 +51,23 @@ void rename(CsvFile& csv, const std::string& words) {
     to.resize(bracket);
     if (!find_unit(found->unit)) throw InputError({csv.file, csv.header_line}, found->unit, "unknown unit");
   }
+  // "mean_lp_um=lower" stays a column in um.
+  if (found->unit.empty()) found->unit = unit_in_name(from);
   // A column that had the name already steps back.
   for (CsvColumn& column : csv.columns)
     if (column.name == to && &column != &*found) column.name += "_before";
   found->name = to;
 }
 
-void keep_rows(CsvFile& csv, const std::string& words) {
-  const auto [name, value] = split(words, "--where");
+std::size_t column_of(const CsvFile& csv, const std::string& name) {
   const auto found = std::find_if(csv.columns.begin(), csv.columns.end(),
-                                  [&, n = name](const CsvColumn& c) { return c.name == n; });
+                                  [&](const CsvColumn& c) { return c.name == name; });
   if (found == csv.columns.end()) throw InputError({csv.file, csv.header_line}, name, "no such column");
-  const auto index = static_cast<std::size_t>(found - csv.columns.begin());
+  return static_cast<std::size_t>(found - csv.columns.begin());
+}
+
+void keep_rows(CsvFile& csv, const std::string& name, const std::string& value) {
+  const std::size_t index = column_of(csv, name);
   CsvFile kept = csv;
   kept.rows.clear(), kept.line.clear();
   for (std::size_t i = 0; i < csv.rows.size(); ++i) {
@@ -72,7 +85,10 @@ TouchTable::TouchTable(const std::string& text, const std::string& file,
                        const std::vector<std::string>& renames, const std::vector<std::string>& where)
     : csv_(parse_csv(text, file)) {
   for (const std::string& words : renames) rename(csv_, words);
-  for (const std::string& words : where) keep_rows(csv_, words);
+  for (const std::string& words : where) {
+    const auto [name, value] = split(words, "--where");
+    keep_rows(csv_, name, value);
+  }
   for (std::size_t i = 0; i < csv_.columns.size(); ++i) {
     Column column{csv_.columns[i].name, csv_.columns[i].unit, false, i};
     column.printed = take_suffix(column.name, kPrinted);
@@ -80,6 +96,21 @@ TouchTable::TouchTable(const std::string& text, const std::string& file,
       if (column.unit.empty() && take_suffix(column.name, suffix)) column.unit = unit;
     columns_.push_back(column);
   }
+}
+
+TouchTable TouchTable::only(const std::string& column, const std::string& value) const {
+  TouchTable part = *this;
+  keep_rows(part.csv_, column, value);
+  part.notes_.clear();
+  return part;
+}
+
+std::vector<std::string> TouchTable::values_of(const std::string& column) const {
+  const std::size_t index = column_of(csv_, column);
+  std::vector<std::string> values;
+  for (const auto& row : csv_.rows)
+    if (std::find(values.begin(), values.end(), row[index]) == values.end()) values.push_back(row[index]);
+  return values;
 }
 
 std::optional<Eigen::VectorXd> TouchTable::find(const std::vector<std::string>& names) {

@@ -17,6 +17,11 @@ class TouchTable {
   TouchTable(const std::string& text, const std::string& file, const std::vector<std::string>& renames,
              const std::vector<std::string>& where);
 
+  /// The rows that have this in that column (as the file calls it). Throws InputError.
+  TouchTable only(const std::string& column, const std::string& value) const;
+  /// What stands in a column, in the order of the file. Throws InputError: no such column.
+  std::vector<std::string> values_of(const std::string& column) const;
+
   std::size_t rows() const { return csv_.rows.size(); }
   const std::string& file() const { return csv_.file; }
   std::size_t line(std::size_t row) const { return csv_.line[row]; }

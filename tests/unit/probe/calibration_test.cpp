@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/probe/calibration.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -39,6 +41,42 @@ TEST(ProbeCal, FindsTheMisprintedRowByItself) {
   const ProbeCalibration repaired = published({"mean_lp_um=lower[um]"}, {});
   EXPECT_TRUE(repaired.fit.outliers.empty());
   EXPECT_NEAR(repaired.find("delay")->value, 6.1593, 0.0001);
+}
+
+TEST(ProbeCal, ARenamedColumnKeepsTheUnitInItsNameAndNonsenseIsRefused) {
+  EXPECT_NEAR(published({"mean_lp_um=lower"}, {}).find("delay")->value, 6.1593, 0.0001);
+  try {
+    published({"mean_lp_um=lower[mm]"}, {});
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("which no probe has"), std::string::npos) << error.what();
+  }
+}
+
+TEST(ProbeCal, ComparesGroupsByTheProbesAngle) {
+  const std::string file = VERNIER_SOURCE_DIR "/tests/data/probing/table1.csv";
+  TouchTable table(read_file(file), file, {"mean_lp_um=lower"}, {});
+  const CalibrationSetup setup{.artefact = Artefact::kBlock, .size_mm = 50.8, .ball_radius_mm = 2.5019};
+  const GroupComparison groups = compare_groups(table, setup, "group", calibrate_probe(table, setup));
+  ASSERT_EQ(groups.groups.size(), 7u);
+  EXPECT_EQ(groups.groups[0].touches, 7u);
+  EXPECT_NEAR(find_calibrated(groups.groups[0].parameters, "delay")->value, 6.163, 0.0005);
+  EXPECT_LT(groups.chance, 0.01);  // the report's figure 10: up to 4.5 um between angles
+  EXPECT_THROW(compare_groups(table, setup, "colour", calibrate_probe(table, setup)), InputError);
+}
+
+TEST(ProbeCal, SaysWhichTouchesCameBeforeConstantSpeed) {
+  const std::string file = VERNIER_SOURCE_DIR "/tests/data/probing/table1.csv";
+  const auto not_valid = [&](double clearance) {
+    TouchTable table(read_file(file), file, {}, {"group=A"});
+    const ProbeCalibration result = calibrate_probe(
+        table,
+        {.artefact = Artefact::kBlock, .size_mm = 50.8, .ball_radius_mm = 2.5019, .clearance_mm = clearance});
+    return std::count_if(result.findings.begin(), result.findings.end(),
+                         [](const std::string& finding) { return finding.starts_with("Not valid touches"); });
+  };
+  EXPECT_EQ(not_valid(5.1), 0);
+  EXPECT_EQ(not_valid(3), 1);  // at 2540 mm/min alone
 }
 
 TEST(ProbeCal, SaysThatOneFeedCannotTellDelayFromPretravel) {
@@ -108,6 +146,52 @@ TEST(ProbeCal, HoldsWhereTheProbeTouchedWhileAccelerating) {
   Truth truth;
   truth.acceleration = 500;  // 9 um of 120 at 1200 mm/min
   expect_near(calibrated(truth, 4, {60, 300, 1200}), "delay", 6);
+}
+
+// Touches all round in one plane; the delay differs from touch to touch by `spread`.
+std::string plane_touches(const std::string& header, const char* row, double spread_s, unsigned seed) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal;
+  std::string text = header + "\n";
+  for (const double feed : {100.0, 500.0, 1500.0})
+    for (int i = 0; i < 24; ++i) {
+      const double phi = kPi * i / 12,
+                   r = 15 - feed / 60 * (6e-3 + spread_s * normal(random)) + 2e-4 * normal(random);
+      text += fmt::format(fmt::runtime(row), feed, r * std::cos(phi), r * std::sin(phi));
+    }
+  return text;
+}
+
+ProbeCalibration of_a_ball(const std::string& text) {
+  TouchTable table(text, "plane.csv", {}, {});
+  return calibrate_probe(table, {.artefact = Artefact::kSphere, .size_mm = 25});
+}
+
+TEST(ProbeCal, ASphereTouchedInOnePlaneIsOneThroughItsCentre) {
+  for (const auto& [header, row] : {std::pair{"feed[mm/min],x[mm],y[mm]", "{},{},{}\n"},
+                                    {"feed[mm/min],x[mm],z[mm]", "{},{},{}\n"},
+                                    {"feed[mm/min],x[mm],y[mm],z[mm]", "{},{},{},7\n"}}) {
+    const ProbeCalibration result = of_a_ball(plane_touches(header, row, 0, 1));
+    EXPECT_NEAR(result.find("effective_tip_radius")->value, 2.5, 0.001) << header;
+    EXPECT_NEAR(result.find("delay")->value, 6, 0.02) << header;
+    EXPECT_EQ(result.find("centre_z"), nullptr);
+    EXPECT_TRUE(std::any_of(result.findings.begin(), result.findings.end(), [](const std::string& f) {
+      return f.find("in one plane") != std::string::npos;
+    }));
+  }
+}
+
+TEST(ProbeCal, TellsTheSpreadOfTheDelayFromTouchToTouch) {
+  constexpr double kSpread_s = 60e-6;
+  int near = 0;
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    const ProbeCalibration result =
+        of_a_ball(plane_touches("feed[mm/min],x[mm],y[mm]", "{},{},{}\n", kSpread_s, seed));
+    const Calibrated* const spread = result.find("delay_spread");
+    ASSERT_NE(spread, nullptr) << seed;
+    near += std::abs(spread->value - kSpread_s * 1e3) < 2.5 * spread->std ? 1 : 0;
+  }
+  EXPECT_GE(near, 17);
 }
 
 TEST(ProbeCal, SaysThatAnArcCannotShowLobes) {

@@ -55,6 +55,39 @@ TEST(ProbePath, TouchesEveryDirectionAtEveryFeedInEveryDialect) {
             std::string::npos);
 }
 
+std::string refusal(const ProbePath& path, Dialect dialect) {
+  try {
+    probe_program(path, dialect);
+  } catch (const LimitNotMet& error) {
+    return error.what();
+  }
+  return "";
+}
+
+// NISTIR 6415, 1999: at 2540 mm/min an approach of 5.1 mm, 2.5 mm beyond the surface.
+TEST(ProbePath, IsRefusedWhereATouchWouldNotBeValid) {
+  ProbePath path;
+  path.radius = 12.5, path.clearance = 5.1, path.overtravel = 2.5, path.feeds = {2540};
+  EXPECT_EQ(refusal(path, Dialect::kLinuxcnc), "");
+  path.clearance = 5.0;
+  EXPECT_NE(refusal(path, Dialect::kLinuxcnc).find("before the speed is constant"), std::string::npos);
+  path.feeds = {200};
+  EXPECT_EQ(refusal(path, Dialect::kLinuxcnc), "");
+  path.clearance = 0.05;
+  EXPECT_NE(refusal(path, Dialect::kFanuc), "");
+  path.clearance = 5.1, path.overtravel = 50;
+  EXPECT_NE(refusal(path, Dialect::kLinuxcnc).find("bends the stylus"), std::string::npos);
+  path.feeds = {2540}, path.overtravel = 1;
+  EXPECT_NE(refusal(path, Dialect::kLinuxcnc).find("has stopped before the contact"), std::string::npos);
+  path.conditions.gain_per_s = 100;  // a stiffer loop follows closer
+  EXPECT_EQ(refusal(path, Dialect::kLinuxcnc), "");
+  path.overtravel = 50, path.unchecked = true;
+  EXPECT_EQ(refusal(path, Dialect::kLinuxcnc), "");
+  path = published();
+  path.feeds = {100};  // in/min
+  EXPECT_EQ(refusal(path, Dialect::kTurning), "");
+}
+
 TEST(ProbePath, RefusesAPathWithoutSense) {
   ProbePath path = published();
   path.step_deg = 0;
