@@ -19,6 +19,7 @@ struct AxisReading {
 /// What a controller says about the path as a whole.
 struct PathReading {
   FeedNmPerMin feed;
+  bool tells_feed = false;  // else the firmware takes the speed of the linear axes together
   CurvatureNanoPerMm curvature;
   VisitCount visit;
 };
@@ -32,7 +33,7 @@ class AxisReader {
   virtual void begin_tick() noexcept {}
   /// Newest reading of an axis. kNoReading: none since the last tick. realtime.
   virtual HalFault read_axis(std::uint32_t axis, AxisReading& reading) noexcept = 0;
-  /// Feed and curvature; zero where the controller does not know them. realtime.
+  /// Feed and curvature, as far as the controller knows them. realtime.
   virtual HalFault read_path(PathReading& reading) noexcept = 0;
   /// Does the controller itself give velocity, acceleration, sense and since? If not, only position is filled
   /// and the firmware derives the rest. setup.

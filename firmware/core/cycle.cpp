@@ -28,6 +28,7 @@ void Cycle::set_up(const Wiring& wiring, TimeUs tick) noexcept {
     AxisLimits axis = setting.own ? setting.limits : wiring.axes[i].rotary ? limits_.rotary : limits_.linear;
     axis.rollover = wiring.axes[i].rollover;
     axes_[i] = AxisMonitor(axis, tick, board_.axes.gives_motion());
+    linear_[i] = !wiring.axes[i].rotary;
   }
   for (WeightQ16& weight : axis_weight_) weight = kFullWeight;
   axis_count_ = static_cast<std::uint32_t>(wiring.axes.size());
@@ -76,7 +77,26 @@ Fault Cycle::read_axes(TicksQ8 elapsed) noexcept {
   // Feed and curvature of a silent controller are held; its axes are silent too and raise the fault.
   PathReading path;
   if (board_.axes.read_path(path) == HalFault::kNone) path_ = path;
+  if (!path_.tells_feed) path_.feed = feed_of_axes();
   return fault;
+}
+
+// Speed of the linear axes together: the path's on a machine whose axes stand square to each other.
+FeedNmPerMin Cycle::feed_of_axes() const noexcept {
+  constexpr std::int64_t kMost = 1'000'000'000;  // 1 m/s: squares of all axes fit into 64 bits
+  static_assert(kMaxAxes <= 18);
+  std::uint64_t squares = 0;
+  for (std::uint32_t axis = 0; axis < axis_count_; ++axis) {
+    if (!linear_[axis]) continue;
+    const std::int64_t speed = clamp(axes_[axis].state().velocity.count, -kMost, kMost);
+    squares += static_cast<std::uint64_t>(speed * speed);
+  }
+  // Integer square root, bit by bit.
+  std::uint64_t root = 0;
+  for (std::uint64_t bit = std::uint64_t{1} << 31; bit > 0; bit >>= 1)
+    if ((root | bit) * (root | bit) <= squares) root |= bit;
+  constexpr std::int64_t kSecondsPerMinute = 60;
+  return FeedNmPerMin(static_cast<std::int64_t>(root) * kSecondsPerMinute);
 }
 
 Fault Cycle::take_input(std::uint32_t input, InputMicro value) noexcept {

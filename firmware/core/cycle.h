@@ -99,6 +99,7 @@ class Cycle {
   Fault read_axes(TicksQ8 elapsed) noexcept;
   Fault read_inputs() noexcept;
   Fault take_input(std::uint32_t input, InputMicro value) noexcept;
+  FeedNmPerMin feed_of_axes() const noexcept;
   bool complete() const noexcept;
   void fill_input(TimeUs time) noexcept;
   void collect_wishes(const CycleOutput& output) noexcept;
@@ -127,7 +128,7 @@ class Cycle {
   Fault found_ = Fault::kNone;
   Health health_, idle_health_;                     // of what a program needs; of the rest
   std::uint32_t axis_count_ = 0, input_count_ = 0;  // of the board
-  bool uses_axis_[kMaxAxes] = {}, uses_input_[kMaxInputs] = {};
+  bool uses_axis_[kMaxAxes] = {}, uses_input_[kMaxInputs] = {}, linear_[kMaxAxes] = {};
   AxisMonitor axes_[kMaxAxes];
   InputMicro inputs_[kMaxInputs];
   std::uint32_t silent_[kMaxInputs] = {};  // ticks since the last reading

@@ -104,6 +104,7 @@ HalFault Joints::read_path(PathReading& reading) noexcept {
   const double mm_per_min = *pins_.current_vel * mm_per_unit_ * 60;
   if (!std::isfinite(mm_per_min)) return HalFault::kNoReading;
   reading.feed = FeedNmPerMin(whole(mm_per_min * kCountsPerMm));
+  reading.tells_feed = true;
   return HalFault::kNone;
 }
 

@@ -38,6 +38,7 @@ class PathTrajectory : public Trajectory {
     for (std::size_t i = 0; i < machine_.inputs.size(); ++i)
       state.input[i] = InputMicro(counts(1e6 * states_.input[i][k]));
     state.path.feed = FeedNmPerMin(counts(1e6 * states_.feed[k]));
+    state.path.tells_feed = true;
     state.path.curvature = CurvatureNanoPerMm(counts(1e9 * states_.curvature[k]));
     state.path.visit = VisitCount(counts(states_.visit[k]));
   }

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "tables/link_format.h"
 #include "tests/unit/firmware/rig.h"
@@ -37,6 +38,16 @@ TEST(Cycle, ActiveCorrectionIsMinusTheDeviation) {
   }
   EXPECT_GT(compared, 15000);
   EXPECT_GT(rig.cycle().health().saturated, 100u) << "the range goes beyond the limit of X";
+}
+
+TEST(Cycle, FeedIsTheSpeedOfTheLinearAxesWhereTheControllerTellsNone) {
+  Rig rig;
+  for (int i = 0; i < 500; ++i) rig.tick();
+  AxisReading x, y;
+  rig.plant().read_axis(0, x), rig.plant().read_axis(1, y);
+  const double speed = std::hypot(static_cast<double>(x.velocity.count), static_cast<double>(y.velocity.count));
+  ASSERT_GT(speed, 1e6);
+  EXPECT_NEAR(static_cast<double>(rig.cycle().path().feed.count), 60 * speed, 61);
 }
 
 TEST(Cycle, ActiveBeginsWithTheWholeCorrection) {

@@ -33,6 +33,7 @@ class HostileDevices : public AxisReader, public InputReader, public CorrectionW
   }
   HalFault read_path(PathReading& reading) noexcept override {
     reading.feed = FeedNmPerMin(anything());
+    reading.tells_feed = true;
     reading.curvature = CurvatureNanoPerMm(anything());
     return one_in(silence_) ? HalFault::kNoReading : HalFault::kNone;
   }
