@@ -51,13 +51,14 @@ bool agreed(const ImproveArguments& arguments, const LadderStep& step, std::FILE
 
 /// What the measurement would have read with the correction of a machine running, or why that is unknown.
 Json replayed(const Rung& rung, const Measurement& rows, const Machine& from) {
-  // Forty million ticks are half a day of a machine and about a minute of ours.
-  constexpr double kMostTicks = 4e7;
+  // Four days of a machine and a minute or two of ours.
+  constexpr double kMostTicks = 4e8;
   try {
     const Machine machine = parse_machine(rung.text, rung.file);
     const Measurement m = rebind(rows, from, machine);
     if (m.rows() > 0 && (m.states.time.maxCoeff() - m.states.time.minCoeff()) * 1000 > kMostTicks)
-      return {{"label", rung.label}, {"why_not", "the measurement is longer than forty million ticks"}};
+      return {{"label", rung.label},
+              {"why_not", "the measurement is longer than four hundred million ticks"}};
     const CompiledMachine compiled = compile_machine(machine, rung.text, {});
     const auto image = load_image(compiled.image, machine);
     const ReplayResult r = replay(*image, m, {});

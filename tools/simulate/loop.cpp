@@ -18,34 +18,38 @@ namespace {
 /// Half an hour at 1 kHz: a correction that takes longer to come in has a slew limit that is a mistake.
 constexpr std::size_t kMostPreRoll = 1'800'000;
 
-/// The path as the controller of the simulated machine knows it.
-class PathTrajectory : public Trajectory {
- public:
-  PathTrajectory(const Machine& machine, const States& states) : machine_(machine), states_(states) {}
+TimeUs time_of(const States& states, std::size_t tick) {
+  return TimeUs(counts(1e6 * states.time[static_cast<Eigen::Index>(tick)]));
+}
 
-  void at(std::int64_t tick, PlantState& state) noexcept override {
-    const Eigen::Index k = std::clamp<Eigen::Index>(tick, 0, static_cast<Eigen::Index>(states_.count) - 1);
-    for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
-      const double scale = machine_.axes[i].rotary ? kCountsPerDeg : kCountsPerMm;
-      AxisReading& axis = state.axis[i];
-      axis.position = AxisPosition(counts(scale * states_.axis[i][k]));
-      axis.velocity = AxisSpeed(counts(scale * states_.velocity[i][k]));
-      axis.acceleration = AxisAcceleration(counts(scale * states_.acceleration[i][k]));
-      axis.since = states_.since[i][k] >= kLongWay ? AxisTravel(INT64_MAX)
-                                                   : AxisTravel(counts(scale * states_.since[i][k]));
-      axis.sense = static_cast<std::int8_t>(states_.direction[i][k]);
-    }
-    for (std::size_t i = 0; i < machine_.inputs.size(); ++i)
-      state.input[i] = InputMicro(counts(1e6 * states_.input[i][k]));
-    state.path.feed = FeedNmPerMin(counts(1e6 * states_.feed[k]));
-    state.path.tells_feed = true;
-    state.path.curvature = CurvatureNanoPerMm(counts(1e9 * states_.curvature[k]));
-    state.path.visit = VisitCount(counts(states_.visit[k]));
+/// States that stand for a tick each.
+class StatesPath : public TickPath {
+ public:
+  StatesPath(const Machine& machine, const States& states) : machine_(machine), states_(states) {}
+  std::size_t count() const noexcept override { return states_.count; }
+  void at(std::size_t tick, PlantState& state) const noexcept override {
+    tell_state(machine_, states_, static_cast<Eigen::Index>(tick), state);
   }
+  TimeUs time(std::size_t tick) const noexcept override { return time_of(states_, tick); }
+  bool kept(std::size_t) const noexcept override { return true; }
 
  private:
   const Machine& machine_;
   const States& states_;
+};
+
+/// The path as the plant asks for it: before its begin and after its end the machine stands there.
+class PathTrajectory : public Trajectory {
+ public:
+  explicit PathTrajectory(const TickPath& path) : path_(path) {}
+  void at(std::int64_t tick, PlantState& state) noexcept override {
+    path_.at(static_cast<std::size_t>(
+                 std::clamp<std::int64_t>(tick, 0, static_cast<std::int64_t>(path_.count()) - 1)),
+             state);
+  }
+
+ private:
+  const TickPath& path_;
 };
 
 CycleLimits limits_off() {
@@ -65,29 +69,26 @@ PlantOptions plant_options(const LoopOptions& options) {
   return plant;
 }
 
-TimeUs time_of(const States& states, std::size_t tick) {
-  return TimeUs(counts(1e6 * states.time[static_cast<Eigen::Index>(tick)]));
-}
-
 /// One run; the parts of the board live here.
 class Loop {
  public:
-  Loop(const ImageView& image, const Machine& machine, const States& states, const LoopOptions& options)
+  Loop(const ImageView& image, const Machine& machine, const TickPath& path, const LoopOptions& options)
       : machine_(machine),
-        states_(states),
-        trajectory_(machine, states),
+        path_(path),
+        trajectory_(path),
         plant_(trajectory_, image.axes().size, image.inputs().size, plant_options(options)),
         cycle_(image, Board{clock_, plant_, plant_, plant_}, limits_off()),
         runner_(cycle_, clock_, TimeUs(image.header().tick_us)) {
     if (options.dac_bits) chain_.emplace(*options.dac_bits);
-    const auto count = static_cast<Eigen::Index>(states.count);
-    result_.correction.assign(machine.axes.size(), Column::Zero(count));
+    Eigen::Index kept = 0;
+    for (std::size_t tick = 0; tick < path.count(); ++tick) kept += path.kept(tick) ? 1 : 0;
+    result_.correction.assign(machine.axes.size(), Column::Zero(kept));
   }
 
   LoopResult run() {
     bring_in();
     plant_.release();
-    for (std::size_t tick = 0; tick < states_.count; ++tick) follow(tick);
+    for (std::size_t tick = 0; tick < path_.count(); ++tick) follow(tick);
     result_.mode = cycle_.mode();
     result_.fault = cycle_.latched();
     result_.health = cycle_.health();
@@ -101,7 +102,7 @@ class Loop {
         throw LimitNotMet(std::string("the firmware did not become active, it is in mode ") +
                           name_of(cycle_.mode()) + "; is maxslew too low to bring the correction in?");
       plant_.advance();
-      runner_.set_time(time_of(states_, 0));
+      runner_.set_time(path_.time(0));
       const bool ask = cycle_.mode() == Mode::kReady && !asked;
       asked = asked || ask;
       runner_.step(ask ? Command::kActivate : Command::kNone);
@@ -111,14 +112,18 @@ class Loop {
   void follow(std::size_t tick) {
     using std::chrono::steady_clock;
     plant_.advance();
-    runner_.set_time(time_of(states_, tick));
+    runner_.set_time(path_.time(tick));
     const auto begin = steady_clock::now();
     const TickReport report = runner_.step(Command::kNone);
     result_.execution.add(
         std::chrono::duration_cast<std::chrono::nanoseconds>(steady_clock::now() - begin).count());
     bool saturated = (report.output.flags & kSaturated) != 0;
-    for (std::size_t i = 0; i < machine_.axes.size(); ++i)
-      result_.correction[i][static_cast<Eigen::Index>(tick)] = applied(i, saturated);
+    const bool kept = path_.kept(tick);
+    for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
+      const double moved = applied(i, saturated);
+      if (kept) result_.correction[i][kept_] = moved;
+    }
+    kept_ += kept ? 1 : 0;
     result_.saturated += saturated ? 1 : 0;
     result_.slewing += (report.output.flags & kSlewing) != 0 ? 1 : 0;
     result_.beyond_range += (report.output.flags & kBeyondRange) != 0 ? 1 : 0;
@@ -135,7 +140,7 @@ class Loop {
   }
 
   const Machine& machine_;
-  const States& states_;
+  const TickPath& path_;
   PathTrajectory trajectory_;
   SimClock clock_;
   SimPlant plant_;
@@ -143,13 +148,38 @@ class Loop {
   Runner runner_;
   std::optional<AnalogueChain> chain_;
   LoopResult result_;
+  Eigen::Index kept_ = 0;
 };
 
 }  // namespace
 
+void tell_state(const Machine& machine, const States& states, Eigen::Index k, PlantState& state) noexcept {
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    const double scale = machine.axes[i].rotary ? kCountsPerDeg : kCountsPerMm;
+    AxisReading& axis = state.axis[i];
+    axis.position = AxisPosition(counts(scale * states.axis[i][k]));
+    axis.velocity = AxisSpeed(counts(scale * states.velocity[i][k]));
+    axis.acceleration = AxisAcceleration(counts(scale * states.acceleration[i][k]));
+    axis.since = states.since[i][k] >= kLongWay ? AxisTravel(INT64_MAX)
+                                                : AxisTravel(counts(scale * states.since[i][k]));
+    axis.sense = static_cast<std::int8_t>(states.direction[i][k]);
+  }
+  for (std::size_t i = 0; i < machine.inputs.size(); ++i)
+    state.input[i] = InputMicro(counts(1e6 * states.input[i][k]));
+  state.path.feed = FeedNmPerMin(counts(1e6 * states.feed[k]));
+  state.path.tells_feed = true;
+  state.path.curvature = CurvatureNanoPerMm(counts(1e9 * states.curvature[k]));
+  state.path.visit = VisitCount(counts(states.visit[k]));
+}
+
 LoopResult run_loop(const ImageView& image, const Machine& machine, const States& states,
                     const LoopOptions& options) {
-  return std::make_unique<Loop>(image, machine, states, options)->run();
+  return run_loop(image, machine, StatesPath(machine, states), options);
+}
+
+LoopResult run_loop(const ImageView& image, const Machine& machine, const TickPath& path,
+                    const LoopOptions& options) {
+  return std::make_unique<Loop>(image, machine, path, options)->run();
 }
 
 }  // namespace vernier

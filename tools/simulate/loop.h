@@ -6,6 +6,7 @@
 
 #include "firmware/core/histogram.h"
 #include "firmware/core/mode.h"
+#include "hal/sim/trajectory.h"
 #include "tables/image_view.h"
 #include "tools/model/machine.h"
 #include "tools/model/states.h"
@@ -20,10 +21,24 @@ struct LoopOptions {
   std::uint64_t seed = 1;            // of the noise
 };
 
+/// A path of the machine's axes, a state a tick.
+class TickPath {
+ public:
+  virtual ~TickPath() = default;
+  virtual std::size_t count() const noexcept = 0;
+  virtual void at(std::size_t tick, PlantState& state) const noexcept = 0;
+  virtual TimeUs time(std::size_t tick) const noexcept = 0;
+  /// Is the correction of this tick wanted in LoopResult::correction?
+  virtual bool kept(std::size_t tick) const noexcept = 0;
+};
+
+/// Row `k` of states as the controller of the simulated machine tells it.
+void tell_state(const Machine& machine, const States& states, Eigen::Index k, PlantState& state) noexcept;
+
 /// What the firmware did along a path.
 struct LoopResult {
-  std::vector<Column>
-      correction;               // as the machine moves by it; per axis of the image, mm or deg, a tick each
+  /// As the machine moves by it; per axis of the image, mm or deg, of each tick that is kept.
+  std::vector<Column> correction;
   std::size_t pre_roll = 0;     // ticks that the machine stood until the firmware was Active
   std::uint64_t saturated = 0;  // ticks of the path with a correction at a limit, or beyond the converter
   std::uint64_t slewing = 0, beyond_range = 0, not_active = 0;  // ticks of the path
@@ -39,6 +54,9 @@ struct LoopResult {
 /// the path: a path cut out of a longer motion starts without a transient. Plausibility limits of readings
 /// are off: the path is what happened. Throws LimitNotMet where the firmware never becomes Active. tool.
 LoopResult run_loop(const ImageView& image, const Machine& machine, const States& states,
+                    const LoopOptions& options);
+/// The same along a path that is made as it goes.
+LoopResult run_loop(const ImageView& image, const Machine& machine, const TickPath& path,
                     const LoopOptions& options);
 
 }  // namespace vernier

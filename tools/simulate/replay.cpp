@@ -1,103 +1,145 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/simulate/replay.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "tools/model/prediction.h"
+#include "tools/simulate/counts.h"
 
 namespace vernier {
 namespace {
 
-/// Rows of one run and where its ticks fall between them.
-struct RunTicks {
-  std::vector<std::size_t> rows;
-  std::vector<std::size_t> before;  // per tick: position in `rows` of the row at or before it
-  std::vector<double> fraction;     // per tick
+/// Rows of one run, and the ticks between them: values linear, senses held. A tick is made when it is asked
+/// for: a record of hours has ten million.
+class BetweenRows : public TickPath {
+ public:
+  BetweenRows(const Machine& machine, const Measurement& m, std::size_t run, double period_s)
+      : machine_(machine), m_(m), period_s_(period_s) {
+    for (std::size_t row = 0; row < m.rows(); ++row)
+      if (m.states.run[row] == run) rows_.push_back(row);
+    for (std::size_t i = 1; i < rows_.size(); ++i)
+      if (time_at(i) <= time_at(i - 1))
+        throw InputError({m.files[m.file[rows_[i]]], m.line[rows_[i]]}, "t",
+                         "replay needs a time that increases within each run");
+    count_ =
+        1 + static_cast<std::size_t>(std::floor((time_at(rows_.size() - 1) - time_at(0)) / period_s + 1e-6));
+    for (std::size_t i = 0; i < rows_.size(); ++i)
+      tick_of_row_.push_back(
+          std::min(count_ - 1, static_cast<std::size_t>(std::lround((time_at(i) - time_at(0)) / period_s))));
+    one_ = select_states(m.states, {rows_.front()});
+  }
+
+  const std::vector<std::size_t>& rows() const { return rows_; }
+  /// Place of a row's correction among those that are kept.
+  std::vector<Eigen::Index> kept_of_rows() const {
+    std::vector<Eigen::Index> kept;
+    Eigen::Index next = -1;
+    for (std::size_t i = 0; i < tick_of_row_.size(); ++i) {
+      if (i == 0 || tick_of_row_[i] != tick_of_row_[i - 1]) ++next;
+      kept.push_back(next);
+    }
+    return kept;
+  }
+
+  std::size_t count() const noexcept override { return count_; }
+  bool kept(std::size_t tick) const noexcept override {
+    return std::binary_search(tick_of_row_.begin(), tick_of_row_.end(), tick);
+  }
+  TimeUs time(std::size_t tick) const noexcept override {
+    place(tick);
+    return TimeUs(counts(1e6 * between(m_.states.time)));
+  }
+  void at(std::size_t tick, PlantState& state) const noexcept override {
+    place(tick);
+    const States& rows = m_.states;
+    for (std::size_t i = 0; i < rows.axis.size(); ++i) {
+      one_.axis[i][0] = between(rows.axis[i]);
+      one_.velocity[i][0] = between(rows.velocity[i]);
+      one_.acceleration[i][0] = between(rows.acceleration[i]);
+      one_.direction[i][0] = held(rows.direction[i]);
+      one_.since[i][0] = held(rows.since[i]);
+    }
+    for (std::size_t i = 0; i < rows.input.size(); ++i) one_.input[i][0] = between(rows.input[i]);
+    one_.feed[0] = between(rows.feed);
+    one_.curvature[0] = between(rows.curvature);
+    one_.visit[0] = held(rows.visit);
+    tell_state(machine_, one_, 0, state);
+  }
+
+ private:
+  double time_at(std::size_t i) const { return m_.states.time[static_cast<Eigen::Index>(rows_[i])]; }
+
+  /// Which rows a tick lies between. Ticks are asked for one after the other, or anew from the begin.
+  void place(std::size_t tick) const noexcept {
+    const double t = time_at(0) + static_cast<double>(tick) * period_s_;
+    if (tick < tick_) before_ = 0;
+    tick_ = tick;
+    while (before_ + 2 < rows_.size() && time_at(before_ + 1) <= t + 1e-9) ++before_;
+    fraction_ = rows_.size() < 2
+                    ? 0
+                    : std::min(1.0, (t - time_at(before_)) / (time_at(before_ + 1) - time_at(before_)));
+  }
+  double value(const Column& rows, std::size_t i) const noexcept {
+    return rows[static_cast<Eigen::Index>(rows_[std::min(i, rows_.size() - 1)])];
+  }
+  double between(const Column& rows) const noexcept {
+    const double low = value(rows, before_);
+    return low + fraction_ * (value(rows, before_ + 1) - low);
+  }
+  double held(const Column& rows) const noexcept {
+    return value(rows, fraction_ < 1 - 1e-6 ? before_ : before_ + 1);
+  }
+
+  const Machine& machine_;
+  const Measurement& m_;
+  double period_s_;
+  std::vector<std::size_t> rows_, tick_of_row_;
+  std::size_t count_ = 0;
+  mutable std::size_t tick_ = 0, before_ = 0;
+  mutable double fraction_ = 0;
+  mutable States one_;
 };
 
-RunTicks ticks_of_run(const Measurement& m, std::size_t run, double period_s) {
-  RunTicks ticks;
-  for (std::size_t row = 0; row < m.rows(); ++row)
-    if (m.states.run[row] == run) ticks.rows.push_back(row);
-  const auto time = [&](std::size_t i) { return m.states.time[static_cast<Eigen::Index>(ticks.rows[i])]; };
-  for (std::size_t i = 1; i < ticks.rows.size(); ++i)
-    if (time(i) <= time(i - 1)) {
-      const std::size_t row = ticks.rows[i];
-      throw InputError({m.files[m.file[row]], m.line[row]}, "t",
-                       "replay needs a time that increases within each run");
-    }
-  std::size_t at = 0;
-  const auto count =
-      1 + static_cast<std::size_t>(std::floor((time(ticks.rows.size() - 1) - time(0)) / period_s + 1e-6));
-  for (std::size_t k = 0; k < count; ++k) {
-    const double t = time(0) + static_cast<double>(k) * period_s;
-    while (at + 2 < ticks.rows.size() && time(at + 1) <= t + 1e-9) ++at;
-    ticks.before.push_back(at);
-    ticks.fraction.push_back(
-        ticks.rows.size() < 2 ? 0 : std::min(1.0, (t - time(at)) / (time(at + 1) - time(at))));
-  }
-  return ticks;
+bool needs_time(const ImageView& image) {
+  const Program program = image.program();
+  return program.equation.lag_count > 0 ||
+         std::any_of(program.channels.begin(), program.channels.end(),
+                     [](const Channel& channel) { return channel.kind == ChannelKind::kTime; });
 }
 
-Column between_rows(const Column& rows, const RunTicks& ticks, bool held) {
-  Column result(static_cast<Eigen::Index>(ticks.before.size()));
-  for (std::size_t k = 0; k < ticks.before.size(); ++k) {
-    const double low = rows[static_cast<Eigen::Index>(ticks.rows[ticks.before[k]])];
-    const std::size_t after = std::min(ticks.before[k] + 1, ticks.rows.size() - 1);
-    const double high = rows[static_cast<Eigen::Index>(ticks.rows[after])];
-    const double f = ticks.fraction[k];
-    result[static_cast<Eigen::Index>(k)] = held ? (f < 1 - 1e-6 ? low : high) : low + f * (high - low);
-  }
-  return result;
-}
-
-States states_at_ticks(const States& rows, const RunTicks& ticks, std::size_t run) {
-  States states;
-  states.count = ticks.before.size();
-  const auto all = [&](const std::vector<Column>& columns, bool held) {
-    std::vector<Column> result;
-    for (const Column& column : columns) result.push_back(between_rows(column, ticks, held));
-    return result;
-  };
-  states.axis = all(rows.axis, false);
-  states.velocity = all(rows.velocity, false);
-  states.acceleration = all(rows.acceleration, false);
-  states.direction = all(rows.direction, true);
-  states.since = all(rows.since, true);
-  states.input = all(rows.input, false);
-  states.feed = between_rows(rows.feed, ticks, false);
-  states.curvature = between_rows(rows.curvature, ticks, false);
-  states.time = between_rows(rows.time, ticks, false);
-  states.visit = between_rows(rows.visit, ticks, true);
-  for (std::size_t k = 0; k < 3; ++k) states.normal[k] = between_rows(rows.normal[k], ticks, true);
-  make_one_run(states, rows.run_names[run]);
-  return states;
+void add_loop(const LoopResult& loop, std::size_t ticks, ReplayResult& result) {
+  result.ticks += ticks;
+  result.saturated += loop.saturated;
+  result.slewing += loop.slewing;
+  result.not_active += loop.not_active;
 }
 
 }  // namespace
 
 ReplayResult replay(const LoadedImage& image, const Measurement& m, const LoopOptions& options) {
-  if (!m.has_recorded("t")) throw InputError({m.files.front(), 0}, "t", "replay needs this column");
+  const bool timed = m.has_recorded("t");
+  if (!timed && needs_time(image.view))
+    throw InputError({m.files.front(), 0}, "t",
+                     "replay needs this column: a term of the machine goes with time");
   const double period_s = 1e-6 * image.view.header().tick_us;
   Measurement corrected = m;
   ReplayResult result;
-  for (std::size_t run = 0; run < m.states.run_names.size(); ++run) {
-    const RunTicks ticks = ticks_of_run(m, run, period_s);
-    const LoopResult loop =
-        run_loop(image.view, image.machine, states_at_ticks(m.states, ticks, run), options);
-    result.ticks += ticks.before.size();
-    result.saturated += loop.saturated;
-    result.slewing += loop.slewing;
-    result.not_active += loop.not_active;
-    for (const std::size_t row : ticks.rows) {
-      const auto at = static_cast<Eigen::Index>(row);
-      const double since_start =
-          m.states.time[at] - m.states.time[static_cast<Eigen::Index>(ticks.rows.front())];
-      const auto tick = std::min(static_cast<Eigen::Index>(std::lround(since_start / period_s)),
-                                 static_cast<Eigen::Index>(ticks.before.size()) - 1);
+  for (std::size_t row = 0; !timed && row < m.rows(); ++row) {
+    const LoopResult loop = run_loop(image.view, image.machine, select_states(m.states, {row}), options);
+    add_loop(loop, 1, result);
+    for (std::size_t axis = 0; axis < image.machine.axes.size(); ++axis)
+      corrected.states.axis[axis][static_cast<Eigen::Index>(row)] += loop.correction[axis][0];
+  }
+  for (std::size_t run = 0; timed && run < m.states.run_names.size(); ++run) {
+    const BetweenRows path(image.machine, m, run, period_s);
+    const LoopResult loop = run_loop(image.view, image.machine, path, options);
+    add_loop(loop, path.count(), result);
+    const std::vector<Eigen::Index> kept = path.kept_of_rows();
+    for (std::size_t i = 0; i < kept.size(); ++i)
       for (std::size_t axis = 0; axis < image.machine.axes.size(); ++axis)
-        corrected.states.axis[axis][at] += loop.correction[axis][tick];
-    }
+        corrected.states.axis[axis][static_cast<Eigen::Index>(path.rows()[i])] +=
+            loop.correction[axis][kept[i]];
   }
   Machine nominal = nominal_machine(image.machine);
   nominal.base_shifts = image.machine.base_shifts;
