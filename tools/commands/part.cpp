@@ -26,7 +26,7 @@ struct Arguments {
   double tool_diameter_mm = 20, tool_length_mm = 35, feed_mm_min = 1000, step_mm = 0.5;
   DefectReading reading = DefectReading::kContact;
   RotarySolution solution = RotarySolution::kContinuous;
-  bool aligned = false;
+  bool aligned = false, tool_radius = false;
 };
 
 struct GaugeArguments {
@@ -67,7 +67,8 @@ PartJob make_job(const Arguments& arguments, const std::string& machine_text) {
     job.measured = read_measured_part(read_file(arguments.identify), arguments.identify);
     job.points.clear();
     for (const MeasuredPoint& point : job.measured->points) job.points.push_back(point.at);
-    job.identified = identify(job.machine, *job.measured, {job.options, arguments.aligned});
+    job.identified =
+        identify(job.machine, *job.measured, {job.options, arguments.aligned, arguments.tool_radius});
     job.machine.machine = job.identified->machine;
   }
   job.defect = part_defect(job.machine, job.points, job.options);
@@ -94,7 +95,7 @@ void print_summary(std::FILE* out, const nlohmann::ordered_json& result) {
   fmt::print(out, "rms {:.4g} -> {:.4g} um\n", result["rms_before_um"].get<double>(),
              result["rms_um"].get<double>());
   for (const auto& p : result["parameters"])
-    fmt::print(out, "  {:6} {:12.5g} +- {:9} {}\n", p["name"].get<std::string>(), p["value"].get<double>(),
+    fmt::print(out, "  {:11} {:12.5g} +- {:9} {}\n", p["name"].get<std::string>(), p["value"].get<double>(),
                p["std"].is_null() ? "-" : fmt::format("{:.2g}", p["std"].get<double>()),
                p["unit"].get<std::string>());
 }
@@ -124,6 +125,9 @@ void run_s_shape(const Arguments& arguments) {
     write_file((std::filesystem::path(arguments.output) / name).string(), text);
   write_json(arguments.json, result);
   print_summary(human_stream(arguments.json), result);
+  if (!job.identified) return;
+  for (const std::string& warning : job.identified->warnings)
+    fmt::print(stderr, "vernier: warning: {}\n", warning);
 }
 
 /// Columns C[deg] and y[mm]; one row each for 0, 90, 180 and 270 deg.
@@ -203,6 +207,8 @@ void add_s_shape(CLI::App& part) {
       "--identify", a->identify, "measured part (CSV: sx sy sz defect, u): fit the errors to it");
   command->add_option("--free", a->free, "only these statics are fitted, e.g. EA0B,EX0B");
   command->add_flag("--aligned", a->aligned, "the measured part was best-fitted: fit a rigid motion too")
+      ->needs(identify_option);
+  command->add_flag("--tool-radius", a->tool_radius, "fit what the tool's radius is off by, too")
       ->needs(identify_option);
   command->add_option("-o,--output", a->output, "directory for paths (CSV, G-code), defect, machine, report")
       ->required();

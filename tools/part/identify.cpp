@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/part/identify.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
 #include "tools/maths/factors.h"
 #include "tools/part/measured_part.h"
+#include "tools/part/s_part.h"
 
 namespace vernier {
 namespace {
@@ -24,6 +27,19 @@ Eigen::MatrixXd alignment_columns(const PartDefect& defect) {
     columns.row(i).tail<3>() = kRadPerDeg * position.cross(normal);
   }
   return columns;
+}
+
+/// Defect that a cutter larger by 1 mm makes: it takes away that much along the normal, and a profile at
+/// constant height shows it as wide as the wall leans.
+Eigen::VectorXd radius_column(const PartDefect& defect, const std::vector<PartPoint>& points,
+                              DefectReading reading) {
+  Eigen::VectorXd column = Eigen::VectorXd::Constant(defect.position.cols(), -1);
+  if (reading != DefectReading::kInPlane) return column;
+  for (Eigen::Index i = 0; i < column.size(); ++i) {
+    const PartPoint& at = points[static_cast<std::size_t>(i)];
+    column[i] = -1 / surface_point(s_part()[at.flank], at.u, at.v).normal.head<2>().norm();
+  }
+  return column;
 }
 
 /// The measured part as a least-squares problem in the units of the statics (and mm, deg of the alignment).
@@ -44,7 +60,10 @@ class PartProblem {
   }
 
   const std::vector<std::size_t>& free() const { return free_; }
-  Eigen::Index size() const { return static_cast<Eigen::Index>(free_.size()) + (options_.aligned ? 6 : 0); }
+  Eigen::Index size() const {
+    return static_cast<Eigen::Index>(free_.size()) + (options_.aligned ? 6 : 0) +
+           (options_.tool_radius ? 1 : 0);
+  }
   Eigen::VectorXd start() const {
     Eigen::VectorXd point = Eigen::VectorXd::Zero(size());
     for (std::size_t i = 0; i < free_.size(); ++i)
@@ -63,11 +82,12 @@ class PartProblem {
     const PartDefect defect = part_defect(at(point), points_, options_.defect);
     Eigen::VectorXd left = measured_ - defect.defect_mm;
     Eigen::MatrixXd all(left.size(), size());
-    all.leftCols(defect.jacobian.cols()) = defect.jacobian;
-    if (options_.aligned) {
-      all.rightCols<6>() = alignment_columns(defect);
-      left -= all.rightCols<6>() * point.tail<6>();
-    }
+    const Eigen::Index statics = defect.jacobian.cols();
+    all.leftCols(statics) = defect.jacobian;
+    if (options_.aligned) all.middleCols<6>(statics) = alignment_columns(defect);
+    if (options_.tool_radius) all.rightCols<1>() = radius_column(defect, points_, options_.defect.reading);
+    const Eigen::Index more = size() - statics;
+    left -= all.rightCols(more) * point.tail(more);
     if (jacobian != nullptr) *jacobian = all;
     return left;
   }
@@ -151,6 +171,33 @@ void fill_statistics(Identification& result, const Solution& solved, bool with_u
   }
 }
 
+/// A rest that the points' uncertainty does not explain, and what would.
+void warn_of_rest(const BHeadMachine& machine, const MeasuredPart& part, const IdentifyOptions& options,
+                  Identification& result) {
+  constexpr double kLoud = 2;      // times u
+  constexpr double kExplains = 2;  // times less chi^2
+  const bool with_uncertainty = part.points.front().uncertainty_mm > 0;
+  const double over =
+      std::sqrt(result.chi_square / static_cast<double>(std::max<Eigen::Index>(1, result.freedom)));
+  const bool loud = with_uncertainty && over > kLoud;
+  if (loud)
+    result.warnings.push_back(
+        fmt::format("the rest is {:.2g} times the points' uncertainty: these errors do not explain the part, "
+                    "and their values "
+                    "may be off by far more than their standard uncertainties",
+                    over));
+  if (options.tool_radius || result.freedom < 2 || (with_uncertainty && !loud)) return;
+  IdentifyOptions more = options;
+  more.tool_radius = true;
+  const Identification with = identify(machine, part, more);
+  if (result.chi_square < kExplains * with.chi_square || !with.errors.back().std) return;
+  result.warnings.push_back(
+      fmt::format("a tool whose radius is off by {:+.4f} +- {:.2g} mm would explain it (chi^2 {:.3g} -> "
+                  "{:.3g}): --tool-radius "
+                  "fits it too",
+                  with.errors.back().value, *with.errors.back().std, result.chi_square, with.chi_square));
+}
+
 }  // namespace
 
 Identification identify(const BHeadMachine& machine, const MeasuredPart& part,
@@ -176,11 +223,14 @@ Identification identify(const BHeadMachine& machine, const MeasuredPart& part,
                              k < 3 ? "mm" : "deg",
                              solved.point[static_cast<Eigen::Index>(problem.free().size() + k)],
                              {}});
+  if (options.tool_radius)
+    result.errors.push_back({"tool.radius", "mm", solved.point[problem.size() - 1], {}});
   result.before_mm = problem.residual(problem.start(), nullptr);
   result.residual_mm = problem.residual(solved.point, nullptr);
   result.iterations = solved.iterations;
   result.converged = solved.converged;
   fill_statistics(result, solved, with_uncertainty);
+  warn_of_rest(machine, part, options, result);
   return result;
 }
 
@@ -188,7 +238,7 @@ Observability part_observability(const BHeadMachine& machine, const std::vector<
                                  const DefectOptions& options) {
   MeasuredPart part;
   for (const PartPoint& point : points) part.points.push_back({point, 0, 1, 0});
-  const IdentifyOptions asked{options, false};
+  const IdentifyOptions asked{options};
   const PartProblem problem(machine, part, asked);
   return problem.seen_at_nominal();
 }

@@ -15,6 +15,9 @@ struct IdentifyOptions {
   /// The part was aligned to its model by best fit: six numbers of a rigid motion are fitted beside the
   /// errors (`part.X` ... `part.rZ`; mm and deg about the work origin).
   bool aligned = false;
+  /// The cutter's radius is fitted too (`tool.radius`: actual - programmed, mm): one too small leaves
+  /// material on both flanks.
+  bool tool_radius = false;
 };
 
 struct IdentifiedError {
@@ -25,7 +28,7 @@ struct IdentifiedError {
 
 struct Identification {
   Machine machine;                         // with the identified values
-  std::vector<IdentifiedError> errors;     // free statics, then the alignment
+  std::vector<IdentifiedError> errors;     // free statics, then the alignment, then the tool's radius
   Observability observability;             // over `errors`
   Eigen::MatrixXd correlation;             // over `errors`; 0 for those not determined
   Eigen::VectorXd before_mm, residual_mm;  // measured - model at the start, at the end
@@ -33,6 +36,8 @@ struct Identification {
   Eigen::Index freedom = 0;
   int iterations = 0;
   bool converged = false;
+  /// Sentences: a rest far above the points' uncertainty, and whether a tool of another radius explains it.
+  std::vector<std::string> warnings;
 };
 
 /// Weighted least squares of the free statics of the machine against the measured defects. Errors that the

@@ -165,6 +165,9 @@ void add_identification(ordered_json& result, const Identification& found) {
   result["rank"] = found.observability.rank;
   result["correlated"] = correlated_json(found);
   result["converged"] = found.converged;
+  result["chi_square"] = found.chi_square;
+  result["dof"] = found.freedom;
+  result["warnings"] = found.warnings;
 }
 
 }  // namespace

@@ -170,6 +170,8 @@ ordered_json identification_section(const PartJob& job, const ordered_json& resu
     index.push_back(static_cast<double>(i + 1));
     measured[static_cast<Eigen::Index>(i)] = job.measured->points[i].defect_mm;
   }
+  ordered_json notes = {"Cannot be told apart: " + joined_groups(result["unidentifiable"])};
+  for (const std::string& warning : found.warnings) notes.push_back("Warning: " + warning + ".");
   return {{"title", "Errors from the measured part"},
           {"numbers",
            {{{"label", "rms before"}, {"value", result["rms_before_um"]}, {"unit", "µm"}},
@@ -182,7 +184,7 @@ ordered_json identification_section(const PartJob& job, const ordered_json& resu
               {column("measured", measured), column("model", measured - found.residual_mm),
                column("residual", found.residual_mm)}},
              {"caption", "In the order of the file."}}}},
-          {"notes", {"Cannot be told apart: " + joined_groups(result["unidentifiable"])}}};
+          {"notes", notes}};
 }
 
 }  // namespace

@@ -164,6 +164,37 @@ TEST(Identify, AlignedPartNeedsItsRigidMotionFitted) {
   }
 }
 
+TEST(Identify, AToolOfAnotherRadiusIsToldAndFitted) {
+  constexpr double kRadius = -0.02;  // the tool is smaller: material is left
+  for (const DefectReading reading : {DefectReading::kContact, DefectReading::kInPlane}) {
+    const BHeadMachine truth = part_data::machine("EX0B=0.03,EA0B=0.0186");
+    MeasuredPart part = measure(truth, reading, 0.003, 31);
+    for (MeasuredPoint& point : part.points) point.defect_mm -= kRadius;
+    IdentifyOptions options{{{}, reading}};
+    const Identification plain = identify(part_data::machine(), part, options);
+    ASSERT_EQ(plain.warnings.size(), 2u);
+    EXPECT_NE(plain.warnings[0].find("times the points' uncertainty"), std::string::npos)
+        << plain.warnings[0];
+    EXPECT_NE(plain.warnings[1].find("--tool-radius"), std::string::npos) << plain.warnings[1];
+    options.tool_radius = true;
+    const Identification with = identify(part_data::machine(), part, options);
+    EXPECT_TRUE(with.warnings.empty());
+    EXPECT_LT(with.variance_factor, 1.6);
+    EXPECT_EQ(with.errors.back().name, "tool.radius");
+    // A wall that leans shows the radius 1 to 4 % wider in the plane.
+    EXPECT_NEAR(with.errors.back().value, kRadius,
+                4.5 * *with.errors.back().std + (reading == DefectReading::kInPlane ? 0.0008 : 0));
+    for (const IdentifiedError& error : with.errors) {
+      if (!error.std || error.name == "tool.radius") continue;
+      EXPECT_NEAR(error.value, truth.machine.statics[*truth.machine.find_static(error.name)].value,
+                  4.5 * *error.std)
+          << error.name;
+    }
+  }
+  EXPECT_TRUE(identify(part_data::machine(), measure(part_data::machine(), DefectReading::kContact, 0.003, 5))
+                  .warnings.empty());
+}
+
 TEST(Identify, RefusesTooFewPointsAndNothingFree) {
   BHeadMachine machine = part_data::machine();
   MeasuredPart part = measure(machine, DefectReading::kContact, 0.001, 1);
