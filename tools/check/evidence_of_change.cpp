@@ -49,9 +49,7 @@ class Collector {
   CheckRecord collect(std::string label) {
     record_.label = std::move(label);
     record_.readings = m_.observations.size();
-    take_parameters();
-    take_places();
-    take_drifts();
+    take_all();
     const Index count = static_cast<Index>(columns_.size());
     MatrixXd x(weight_.size(), count);
     for (Index j = 0; j < count; ++j) x.col(j) = columns_[static_cast<std::size_t>(j)];
@@ -64,7 +62,21 @@ class Collector {
     return std::move(record_);
   }
 
+  SuspectColumns raw() {
+    take_all();
+    SuspectColumns result{record_.suspects, record_.parameters, {}, raw_set_up_};
+    result.columns.resize(weight_.size(), static_cast<Index>(raw_.size()));
+    for (std::size_t j = 0; j < raw_.size(); ++j) result.columns.col(static_cast<Index>(j)) = raw_[j];
+    return result;
+  }
+
  private:
+  void take_all() {
+    take_parameters();
+    take_places();
+    take_drifts();
+  }
+
   VectorXd beside_set_up(const VectorXd& column) const {
     VectorXd own = weight_.cwiseProduct(column);
     if (set_up_.cols() > 0) own -= set_up_ * (set_up_.transpose() * own);
@@ -78,7 +90,8 @@ class Collector {
     std::vector<Index> shifts, others;
     for (std::size_t i = 0; i < parameters.size(); ++i)
       (parameters[i].kind == ParameterKind::kBaseShift ? shifts : others).push_back(static_cast<Index>(i));
-    set_up_ = orthonormal(weight_.asDiagonal() * jacobian(Eigen::all, shifts), 1e-9, nullptr);
+    raw_set_up_ = weight_.asDiagonal() * jacobian(Eigen::all, shifts);
+    set_up_ = orthonormal(raw_set_up_, 1e-9, nullptr);
     VectorXd left(weight_.size());
     for (std::size_t i = 0; i < m_.observations.size(); ++i)
       left[static_cast<Index>(i)] = m_.observations[i].value - linear.predicted[static_cast<Index>(i)];
@@ -86,6 +99,7 @@ class Collector {
     for (const Index i : others) {
       const Parameter& p = parameters[static_cast<std::size_t>(i)];
       columns_.push_back(beside_set_up(jacobian.col(i)));
+      raw_.push_back(weight_.cwiseProduct(VectorXd(jacobian.col(i))));
       record_.suspects.push_back({p.name, p.unit, false});
     }
     record_.parameters = columns_.size();
@@ -101,6 +115,7 @@ class Collector {
       if (1 - std::abs(unit.dot(other)) < kOwn) return;
     known_.push_back(unit);
     columns_.push_back(column);
+    raw_.push_back(weight_.cwiseProduct(raw));
     record_.suspects.push_back(std::move(suspect));
   }
 
@@ -154,21 +169,15 @@ class Collector {
   const Machine& machine_;
   const Measurement& m_;
   VectorXd weight_, residual_;
-  MatrixXd set_up_;
-  std::vector<VectorXd> columns_, known_;
+  MatrixXd set_up_, raw_set_up_;
+  std::vector<VectorXd> columns_, known_, raw_;
   CheckRecord record_;
 };
 
-/// The fit's covariance of the parameters as L L^T: rows of the record's factor; 0 for what it does not name.
-MatrixXd spread_of_fit(const Machine& machine, const CheckRecord& record) {
-  const FitRecord& fitted = *machine.fitted;
-  MatrixXd spread = MatrixXd::Zero(static_cast<Index>(record.parameters), fitted.factor.cols());
-  for (std::size_t i = 0; i < record.parameters; ++i) {
-    const auto found = std::find(fitted.parameters.begin(), fitted.parameters.end(), record.suspects[i].name);
-    if (found != fitted.parameters.end())
-      spread.row(static_cast<Index>(i)) = fitted.factor.row(found - fitted.parameters.begin());
-  }
-  return spread;
+void require_fit(const Machine& machine) {
+  if (!machine.fitted)
+    throw InputError({machine.file, 0}, machine.name,
+                     "was never fitted (no <fitted>): a check needs to know how well the machine is known");
 }
 
 /// What the checks from some check on say of one suspect.
@@ -193,7 +202,7 @@ class Judge {
   Judge(const Machine& machine, const std::vector<CheckRecord>& checks, double false_alarms)
       : checks_(checks), last_(checks.back()), false_alarms_(false_alarms) {
     answer_.alarm = 1 / false_alarms;
-    const MatrixXd spread = spread_of_fit(machine, last_);
+    const MatrixXd spread = spread_of_fit(machine, last_.suspects, last_.parameters);
     const auto p = static_cast<Index>(last_.parameters);
     from_.resize(checks.size());
     for (std::size_t k = checks.size(); k-- > 0;) {
@@ -375,10 +384,24 @@ const char* verdict_name(CheckVerdict verdict) {
   return kNames[static_cast<std::size_t>(verdict)];
 }
 
+SuspectColumns suspect_columns(const Machine& machine, const Measurement& measurement) {
+  require_fit(machine);
+  return Collector(machine, measurement).raw();
+}
+
+MatrixXd spread_of_fit(const Machine& machine, const std::vector<Suspect>& suspects, std::size_t parameters) {
+  const FitRecord& fitted = *machine.fitted;
+  MatrixXd spread = MatrixXd::Zero(static_cast<Index>(parameters), fitted.factor.cols());
+  for (std::size_t i = 0; i < parameters; ++i) {
+    const auto found = std::find(fitted.parameters.begin(), fitted.parameters.end(), suspects[i].name);
+    if (found != fitted.parameters.end())
+      spread.row(static_cast<Index>(i)) = fitted.factor.row(found - fitted.parameters.begin());
+  }
+  return spread;
+}
+
 CheckRecord record_of(const Machine& machine, const Measurement& measurement, std::string label) {
-  if (!machine.fitted)
-    throw InputError({machine.file, 0}, machine.name,
-                     "was never fitted (no <fitted>): a check needs to know how well the machine is known");
+  require_fit(machine);
   return Collector(machine, measurement).collect(std::move(label));
 }
 

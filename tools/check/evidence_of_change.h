@@ -35,6 +35,18 @@ struct CheckRecord {
 /// Throws InputError where the machine was never fitted. tool.
 CheckRecord record_of(const Machine& machine, const Measurement& measurement, std::string label);
 
+/// The same suspects as columns: what a change by 1 does to each reading, over its uncertainty.
+struct SuspectColumns {
+  std::vector<Suspect> suspects;
+  std::size_t parameters = 0;
+  Eigen::MatrixXd columns, set_up;  // readings x suspects, readings x numbers of the set-ups
+};
+SuspectColumns suspect_columns(const Machine& machine, const Measurement& measurement);
+
+/// The fit's covariance of a record's parameters as L L^T: rows of L, 0 for what the fit does not name.
+Eigen::MatrixXd spread_of_fit(const Machine& machine, const std::vector<Suspect>& suspects,
+                              std::size_t parameters);
+
 enum class CheckVerdict : std::uint8_t { kValid, kChanged, kInstrument, kTooLittle };
 const char* verdict_name(CheckVerdict verdict);
 

@@ -9,11 +9,13 @@
 #include "tools/effects/catalogue.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/measurement.h"
+#include "tools/plan/check_plan.h"
 #include "tools/plan/first_plan.h"
 #include "tools/plan/plan.h"
 #include "tools/plan/sheets.h"
 #include "tools/simulate/corrected.h"
 #include "tools/text/files.h"
+#include "tools/text/words.h"
 
 namespace vernier::plan_cli {
 namespace {
@@ -26,7 +28,8 @@ struct PlanArguments {
   std::size_t points = 0;
   double confidence = 0.95;
   FirstPlanOptions first;
-  double accuracy_um = 0;
+  double accuracy_um = 0, expected_um = 0;
+  bool check = false;
 };
 
 Json row_json(const Plan& plan, std::size_t row) {
@@ -48,6 +51,15 @@ Json row_json(const Plan& plan, std::size_t row) {
   const Drivers drivers = drivers_of(std::vector<const FittedRival*>{&plan.a, &plan.b});
   for (const CandidateInput& candidate : plan.rows.candidates)
     if (drivers.inputs.contains(candidate.name)) json["inputs"][candidate.name] = candidate.value[at];
+  return json;
+}
+
+Json pose_json(const Machine& machine, const States& states, std::size_t row) {
+  Json json = Json::object();
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    json["axes"][machine.axes[i].name] = states.axis[i][static_cast<Eigen::Index>(row)];
+    json["dir"][machine.axes[i].name] = states.direction[i][static_cast<Eigen::Index>(row)];
+  }
   return json;
 }
 
@@ -78,6 +90,42 @@ Json plan_json(const Plan& plan, double confidence) {
   return json;
 }
 
+/// A short measurement that sees the likeliest changes.
+void run_check_plan(const PlanArguments& arguments) {
+  const Machine machine = read_machine(arguments.machine);
+  CheckPlanOptions options;
+  options.reading_um = arguments.first.reading_um;
+  if (arguments.expected_um > 0) options.expected_um = arguments.expected_um;
+  if (arguments.points > 0) options.points = arguments.points;
+  const CheckPlan plan = check_plan(machine, options);
+  Json json = {{"machine", machine.name},   {"points", plan.states.count},      {"shows", Json::array()},
+               {"not_seen", plan.not_seen}, {"tool_random_um", plan.random_um}, {"rows", Json::array()}};
+  for (const Shown& one : plan.shows)
+    json["shows"].push_back({{"name", one.suspect.name},
+                             {"change", one.change},
+                             {"unit", one.suspect.unit},
+                             {"tool_um", one.tool_um}});
+  for (std::size_t row = 0; row < plan.states.count; ++row)
+    json["rows"].push_back(pose_json(machine, plan.states, row));
+  const double worst = plan.shows.empty() ? 0 : plan.shows.front().tool_um;
+  if (arguments.accuracy_um > 0 && (worst > arguments.accuracy_um || plan.shows.empty()))
+    throw LimitNotMet(
+        fmt::format("{} poses show {} only where it moves the tool by {:.3g} um: more --points, or readings "
+                    "surer than {:g} um",
+                    plan.states.count, plan.shows.empty() ? "nothing" : plan.shows.front().suspect.name,
+                    worst, options.reading_um));
+  if (!arguments.output.empty())
+    write_file(arguments.output, check_plan_csv(machine, plan, options.reading_um));
+  write_json(arguments.json, json);
+  std::FILE* out = human_stream(arguments.json);
+  fmt::print(out, "{} poses of {:g} um show from which change on:\n", plan.states.count, options.reading_um);
+  for (const Shown& one : plan.shows)
+    fmt::print(out, "  {:<36} {:>10.3g} {:<4} ({:.3g} um at the tool)\n", one.suspect.name, one.change,
+               one.suspect.unit, one.tool_um);
+  if (!plan.not_seen.empty()) fmt::print(out, "not seen at all: {}\n", joined(plan.not_seen, ", "));
+  fmt::print(out, "as many poses at random: {:.3g} um where these show {:.3g}\n", plan.random_um, worst);
+}
+
 /// Without measurements: where to measure a machine for the first time.
 void run_first_plan(const PlanArguments& arguments) {
   if (!arguments.separate.empty())
@@ -88,6 +136,7 @@ void run_first_plan(const PlanArguments& arguments) {
   FirstPlanOptions options = arguments.first;
   if (arguments.accuracy_um > 0) options.accuracy_um = arguments.accuracy_um;
   if (arguments.points > 0) options.most = arguments.points;
+  if (arguments.expected_um > 0) options.expected_um = arguments.expected_um;
   const FirstPlan plan = first_plan(machine, options);
   const auto count = static_cast<std::size_t>(std::count(plan.check.begin(), plan.check.end(), 0));
   Json json = {{"machine", machine.name},       {"points", plan.check.size()},
@@ -98,10 +147,7 @@ void run_first_plan(const PlanArguments& arguments) {
                {"rows", Json::array()}};
   for (std::size_t row = 0; row < plan.check.size(); ++row) {
     Json one = {{"role", plan.check[row] != 0 ? "check" : "fit"}};
-    for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-      one["axes"][machine.axes[i].name] = plan.states.axis[i][static_cast<Eigen::Index>(row)];
-      one["dir"][machine.axes[i].name] = plan.states.direction[i][static_cast<Eigen::Index>(row)];
-    }
+    one.update(pose_json(machine, plan.states, row));
     json["rows"].push_back(std::move(one));
   }
   if (!plan.reached)
@@ -120,6 +166,9 @@ void run_first_plan(const PlanArguments& arguments) {
 }
 
 void run_plan(const PlanArguments& arguments) {
+  if (arguments.check && !(arguments.measurements.empty() && arguments.separate.empty()))
+    throw InputError({}, "--check", "goes with the fitted machine alone");
+  if (arguments.check) return run_check_plan(arguments);
   if (arguments.measurements.empty()) return run_first_plan(arguments);
   if (arguments.separate.empty())
     throw InputError({}, "--separate", "with measurements: which two effects are to be told apart");
@@ -172,16 +221,22 @@ void register_plan(CLI::App& vernier) {
   command->add_option("--effects", arguments->effects, "files with effects of your own; may be repeated");
   command
       ->add_option("--accuracy", arguments->accuracy_um,
-                   "first plan: U95 of the tool point to reach, mean over the volume, um")
+                   "first plan: U95 of the tool point to reach, mean over the volume, um; --check: largest "
+                   "change of the "
+                   "tool that may go unseen, um")
       ->check(CLI::PositiveNumber);
-  command->add_option("--reading", arguments->first.reading_um, "first plan: u of a coordinate, um")
+  command
+      ->add_option("--reading", arguments->first.reading_um, "first plan and --check: u of a coordinate, um")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   command
-      ->add_option("--expected", arguments->first.expected_um,
-                   "first plan: what a parameter may move the tool by, um")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
+      ->add_option(
+          "--expected", arguments->expected_um,
+          "first plan: what a parameter may move the tool by, um (default 100); --check: change of the "
+          "tool from which one wants to know, um (default 20)")
+      ->check(CLI::PositiveNumber);
+  command->add_flag("--check", arguments->check,
+                    "the few poses of a `vernier check` of a fitted machine (default: 10 points)");
   command->add_option("--images", arguments->images, kImagesHelp);
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->footer(

@@ -1,19 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/plan/first_plan.h"
 
-#include <fmt/format.h>
-
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
 #include "tools/fit/reach.h"
 #include "tools/maths/factors.h"
-#include "tools/maths/halton.h"
 #include "tools/maths/orthonormal.h"
 #include "tools/model/measurement.h"
 #include "tools/model/prediction.h"
-#include "tools/model/work_poses.h"
+#include "tools/plan/offered_poses.h"
 #include "tools/text/error.h"
 
 namespace vernier {
@@ -24,35 +21,6 @@ using Eigen::MatrixXd;
 
 /// Poses that may be chosen, and poses that uncertainty is looked at.
 constexpr std::size_t kOffered = 800, kJudged = 150;
-/// Poses over the ranges in which the machine works: corners and stations of tables count double, errors show
-/// most there.
-States offered_poses(const Machine& machine, std::size_t count, std::size_t from) {
-  constexpr std::size_t kPrimes[] = {2, 3, 5, 7, 11, 13, 17, 19, 23, 29};
-  std::vector<double> references;
-  for (const Input& input : machine.inputs) references.push_back(input.reference);
-  States states = make_states(count, machine.axes.size(), references);
-  for (std::size_t axis = 0; axis < machine.axes.size(); ++axis) {
-    const auto range = work_range(machine, axis);
-    if (!range)
-      throw InputError({machine.file, machine.axes[axis].line}, machine.axes[axis].name,
-                       "a plan needs min and max of every axis");
-    for (std::size_t i = 0; i < count; ++i) {
-      double share = radical_inverse(from + i + 1, kPrimes[axis % std::size(kPrimes)]);
-      // A third of the poses lie at the ends of an axis, drawn by another sequence.
-      const double end = radical_inverse(from + i + 1, kPrimes[(axis + 4) % std::size(kPrimes)]);
-      if (end < 1.0 / 6) share = 0;
-      if (end > 5.0 / 6) share = 1;
-      const double value = (*range)[0] + share * ((*range)[1] - (*range)[0]);
-      const double digit = std::pow(10, std::floor(std::log10(((*range)[1] - (*range)[0]) / 500)));
-      states.axis[axis][static_cast<Index>(i)] =
-          std::clamp(std::round(value / digit) * digit, (*range)[0], (*range)[1]);
-      states.direction[axis][static_cast<Index>(i)] =
-          radical_inverse(from + i + 1, kPrimes[(axis + 2) % std::size(kPrimes)]) < 0.5 ? -1 : 1;
-    }
-  }
-  return states;
-}
-
 class FirstPlanner {
  public:
   FirstPlanner(const Machine& machine, const FirstPlanOptions& options)
@@ -168,27 +136,7 @@ class FirstPlanner {
 
   /// A way through the poses, always to the nearest that is left; check poses and the first one in between.
   void order(const std::vector<std::size_t>& chosen, FirstPlan& plan) const {
-    std::vector<std::size_t> rest = chosen, way;
-    const auto far = [&](std::size_t a, std::size_t b) {
-      double squares = 0;
-      for (std::size_t axis = 0; axis < machine_.axes.size(); ++axis) {
-        const auto range = work_range(machine_, axis);
-        const double step =
-            (offered_.axis[axis][static_cast<Index>(a)] - offered_.axis[axis][static_cast<Index>(b)]) /
-            std::max((*range)[1] - (*range)[0], 1e-9);
-        squares += step * step;
-      }
-      return squares;
-    };
-    while (!rest.empty()) {
-      const auto next = way.empty()
-                            ? rest.begin()
-                            : std::min_element(rest.begin(), rest.end(), [&](std::size_t a, std::size_t b) {
-                                return far(way.back(), a) < far(way.back(), b);
-                              });
-      way.push_back(*next);
-      rest.erase(next);
-    }
+    const std::vector<std::size_t> way = nearest_way(machine_, offered_, chosen);
     const auto checks =
         static_cast<std::size_t>(std::ceil(options_.check_share * static_cast<double>(way.size())));
     const States extra = offered_poses(machine_, std::max<std::size_t>(1, checks), 104729);
@@ -236,22 +184,10 @@ FirstPlan first_plan(const Machine& machine, const FirstPlanOptions& options) {
 }
 
 std::string first_plan_csv(const Machine& machine, const FirstPlan& plan, double reading_um) {
-  std::string text =
-      "# Approach every pose in the sense that dir tells. The first pose comes again: a drift shows there.\n"
-      "# Fill in x, y, z as they are read; rows with the role check judge the fit and never enter it.\n";
-  for (const Axis& axis : machine.axes)
-    text += fmt::format("{0}[{1}],dir{0},", axis.name, axis.rotary ? "deg" : "mm");
-  for (const Input& input : machine.inputs)
-    text += input.unit.empty() ? input.name + "," : fmt::format("{}[{}],", input.name, input.unit);
-  text += "x[mm],y[mm],z[mm],u[mm],run,role\n";
-  for (std::size_t row = 0; row < plan.check.size(); ++row) {
-    const auto at = static_cast<Index>(row);
-    for (std::size_t i = 0; i < machine.axes.size(); ++i)
-      text += fmt::format("{:.6g},{:g},", plan.states.axis[i][at], plan.states.direction[i][at]);
-    for (const Input& input : machine.inputs) text += fmt::format("{:g},", input.reference);
-    text += fmt::format(",,,{:g},first,{}\n", 1e-3 * reading_um, plan.check[row] != 0 ? "check" : "fit");
-  }
-  return text;
+  return "# Approach every pose in the sense that dir tells. The first pose comes again: a drift shows "
+         "there.\n"
+         "# Fill in x, y, z as they are read; rows with the role check judge the fit and never enter it.\n" +
+         pose_rows_csv(machine, plan.states, plan.check, reading_um, "first");
 }
 
 }  // namespace vernier

@@ -60,7 +60,7 @@ const std::vector<Room>& rooms_of_tools() {
       {"map", {"import", "kinematics", "maths", "model", "text"}},
       {"check", {"effects", "fit", "maths", "model", "text"}},
       {"offline", {"kinematics", "maths", "model", "text"}},
-      {"plan", {"diagnose", "effects", "fit", "maths", "model", "text"}},
+      {"plan", {"check", "diagnose", "effects", "fit", "maths", "model", "text"}},
       {"results",
        {"diagnose", "effects", "fit", "import", "kinematics", "map", "maths", "model", "residual", "safety",
         "simulate", "text"}},
