@@ -117,6 +117,7 @@ ceres::LossFunction* loss_of(Loss loss, double scale) {
 CeresOutcome solve_once(const FitProblem& problem, const Eigen::VectorXd& start, const FitOptions& options,
                         double scale) {
   CeresOutcome outcome;
+  outcome.scale = scale;
   outcome.point = start;
   if (start.size() == 0) {
     outcome.converged = true;
@@ -149,7 +150,8 @@ CeresOutcome solve_once(const FitProblem& problem, const Eigen::VectorXd& start,
   solver.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
   solver.initial_trust_region_radius = 1e8;
   solver.max_num_iterations = options.max_iterations;
-  solver.function_tolerance = 1e-14;
+  // A reading far off makes a cost of which the others' last digits are a millionth and less.
+  solver.function_tolerance = options.loss == Loss::kSquared ? 1e-14 : 1e-11;
   solver.parameter_tolerance = 1e-14;
   solver.gradient_tolerance = 1e-16;
   solver.logging_type = ceres::SILENT;
@@ -161,6 +163,16 @@ CeresOutcome solve_once(const FitProblem& problem, const Eigen::VectorXd& start,
 }
 
 }  // namespace
+
+Eigen::VectorXd robust_shares(const Eigen::VectorXd& residual, Loss loss, double scale) {
+  Eigen::VectorXd shares = Eigen::VectorXd::Ones(residual.size());
+  for (Eigen::Index i = 0; i < residual.size(); ++i) {
+    const double size = std::abs(residual[i]) / scale;
+    if (loss == Loss::kHuber) shares[i] = size > 1 ? 1 / size : 1;
+    if (loss == Loss::kCauchy) shares[i] = 1 / (1 + size * size);
+  }
+  return shares;
+}
 
 CeresOutcome solve_with_ceres(const FitProblem& problem, const Eigen::VectorXd& start,
                               const FitOptions& options) {

@@ -252,6 +252,7 @@ Convention convention_of(const Machine& machine, const Measurement& rows, const 
   result.scale.resize(n);
   result.declared.assign(parameters.size(), 0);
   result.kind.assign(parameters.size(), 0);
+  result.table.assign(parameters.size(), -1);
   result.shape.assign(parameters.size(), 0);
   correlate(machine, parameters, result);
   const std::set<std::size_t> shapes = shape_statics(machine);
@@ -269,6 +270,7 @@ Convention convention_of(const Machine& machine, const Measurement& rows, const 
     }
     if (p.kind == ParameterKind::kStation) {
       const Table& table = machine.tables[p.item];
+      result.table[i] = static_cast<int>(p.item);
       scale = p.column < 3 ? length_mm : angle_deg;
       result.kind[i] = 1 + (p.column < 3 ? 0 : 1) + (machine.axes[table.axis].rotary ? 2 : 0);
       if (table.scale[p.column]) {

@@ -26,9 +26,10 @@ struct Convention {
   Eigen::SparseMatrix<double> correlation, precision;
   std::vector<char> declared;  // the scale is the machine file's own
   std::vector<char> shape;     // a period, a time constant: what stands in a divisor, exponent or lag
-  /// Parameters of one kind share one scale, which the fit lowers to what it sees of those that the data
-  /// determine: 0 none, else the kind.
+  /// Parameters of one kind share what is known of their size, which the fit lowers to what it sees of those
+  /// that the data determine: 0 none, else the kind.
   std::vector<int> kind;
+  std::vector<int> table;  // which table an entry belongs to; -1: none
 };
 
 /// precision for these scales: (scale_i scale_j)^-1 precision_ij.

@@ -129,17 +129,42 @@ void judge(FitResult& result, const Machine& machine, const Measurement& measure
   if (!mistake.empty()) result.absurd += ": " + mistake;
 }
 
+/// What moved during the survey that is none of the machine's: the largest step or drift of the instrument,
+/// or a rest far above its noise, over what the nominal machine leaves.
+void find_disturbance(const FitResult& result, const Measurement& rows, bool robust, FitRecord& record) {
+  const auto offer = [&](double mm, std::string words) {
+    if (!(mm / result.misfit_mm > record.disturbed)) return;
+    record.disturbed = mm / result.misfit_mm;
+    record.disturbance = std::move(words);
+  };
+  const double unit_um = noise_unit_um(rows);
+  for (const NoiseStep& step : result.noise.steps) {
+    const auto kind = static_cast<ObservationKind>(step.kind);
+    if (is_rotation(kind)) continue;
+    offer(1e-3 * std::abs(step.height) * unit_um,
+          fmt::format("a step of {:.3g} um in {} from row {} on", std::abs(step.height) * unit_um,
+                      kObservationNames[static_cast<std::size_t>(step.kind)], step.row + 1));
+  }
+  offer(1e-3 * result.noise.drift * unit_um,
+        fmt::format("a drift of {:.3g} um", result.noise.drift * unit_um));
+  constexpr double kFarAbove = 5;  // times the noise
+  if (!robust && result.noise_um && 1e3 * left_mm(result) > kFarAbove * *result.noise_um)
+    offer(left_mm(result), fmt::format("{:.3g} um are left of the readings, whose noise is {:.3g} um",
+                                       1e3 * left_mm(result), *result.noise_um));
+}
+
 /// What the machine file keeps of the fit.
-void remember(FitResult& result, const Measurement& rows) {
+void remember(FitResult& result, const Measurement& rows, bool robust) {
   auto record = std::make_shared<FitRecord>();
   record->converged = result.converged;
   record->rms_mm = left_mm(result);
   record->reach_mm = result.reach_mm;
-  record->worst = result.worst.ratio;
+  record->worst = robust ? 0 : result.worst.ratio;  // a robust loss lets it go
   record->worst_reading = result.worst.reading;
   record->culprit = result.absurd;
   record->check_ratio = result.check_ratio.value_or(0);
   record->worst_check = result.check_ratio ? result.worst_check.reading : "";
+  find_disturbance(result, rows, robust, *record);
   record->values.resize(static_cast<Eigen::Index>(result.estimates.size()));
   for (std::size_t i = 0; i < result.estimates.size(); ++i) {
     record->parameters.push_back(result.estimates[i].name);
@@ -258,7 +283,7 @@ FitResult fit(const Machine& machine, const Measurement& measurement, const FitO
   estimate(result, end);
   judge(result, machine, measurement);
   result.check_ratio = check_ratio(result, convention.centre, measurement);
-  remember(result, rows);
+  remember(result, rows, options.loss != Loss::kSquared);
   result.correlations = strong_correlations(result.observability);
   result.normalised_check = normalised_error(result, measurement);
   return result;

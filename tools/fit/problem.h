@@ -38,6 +38,9 @@ class FitProblem {
   const Eigen::SparseMatrix<double>& prior_precision() const { return prior_precision_; }
   const Eigen::VectorXd& prior_centre() const { return prior_centre_; }  // empty: no priors
   const Measurement& measurement() const { return measurement_; }
+  const Eigen::VectorXd& weights() const { return weights_; }  // of the readings
+  /// Every reading counts by so much less from now on.
+  void weigh(const Eigen::VectorXd& shares) { weights_ = weights_.cwiseProduct(shares); }
 
  private:
   Machine at(const Eigen::VectorXd& point) const;

@@ -162,6 +162,8 @@ Eigen::VectorXd solve(FitProblem& problem, const Machine& machine, const Convent
     iterations = outcome.iterations;
     result.converged = outcome.converged;
     point = std::move(outcome.point);
+    if (options.loss != Loss::kSquared)
+      problem.weigh(robust_shares(problem.weighted_residuals(point, nullptr), options.loss, outcome.scale));
   } else {
     LevenbergResult outcome = solve_all(problem, point, options, result.before.count);
     // A period or a time constant has more than one valley: the file's own start is tried beside the nominal

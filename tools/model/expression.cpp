@@ -229,7 +229,9 @@ class Parser {
       while (end < text_.size() && (is_letter(text_[end]) || is_digit(text_[end]) || text_[end] == '.'))
         ++end;
     } else if (end < text_.size()) {
-      ++end;
+      // A letter of another alphabet is several bytes.
+      do ++end;
+      while (end < text_.size() && (static_cast<unsigned char>(text_[end]) & 0xC0U) == 0x80U);
     }
     const std::string_view word = at_ < text_.size() ? text_.substr(at_, end - at_) : text_;
     fail_at(at_, std::string(word), what);

@@ -89,6 +89,9 @@ std::string fit_record_xml(const FitRecord& record) {
   if (record.check_ratio > 0)
     text += " check=\"" + number_text(record.check_ratio) + "\" check-reading=\"" +
             escape_attribute(record.worst_check) + "\"";
+  if (record.disturbed > 0)
+    text += " disturbed=\"" + number_text(record.disturbed) + "\" disturbance=\"" +
+            escape_attribute(record.disturbance) + "\"";
   text += ">\n    <measured>";
   for (const FitRecord::Range& range : record.measured)
     text +=

@@ -30,6 +30,10 @@ struct FitRecord {
   /// too few of them to tell.
   double check_ratio = 0;
   std::string worst_check;  // the check reading that is left furthest off
+  /// What the instrument did by itself (a step, a drift), or what is left far above its noise, over what the
+  /// nominal machine leaves of the readings; 0: nothing of the kind.
+  double disturbed = 0;
+  std::string disturbance;
   std::size_t line = 0;
 };
 

@@ -89,6 +89,8 @@ class Reader {
     record->culprit = attribute(fitted, "culprit").value_or("");
     record->check_ratio = number(fitted, "check", 0);
     record->worst_check = attribute(fitted, "check-reading").value_or("");
+    record->disturbed = number(fitted, "disturbed", 0);
+    record->disturbance = attribute(fitted, "disturbance").value_or("");
     for (const pugi::xml_node node : children(fitted)) {
       if (is(node, "measured")) {
         for (const pugi::xml_node range : children(node))

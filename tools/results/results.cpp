@@ -98,9 +98,10 @@ ordered_json fit_json(const FitResult& result, const Measurement& m) {
                               {"iterations", stage.iterations},
                               {"rms_um", or_null(stage.fit.rms_um)},
                               {"check_rms_um", or_null(stage.check.rms_um)}});
-  json["noise_model"] = {{"kind", has_uncertainty(m) ? "white, u given" : "white, from the residual"},
-                         {"scale_of_u", has_uncertainty(m) ? ordered_json(std::sqrt(result.variance_factor))
-                                                           : ordered_json(nullptr)}};
+  json["noise_model"]["kind"] = std::string(result.noise.independent() ? "white" : "correlated") +
+                                (has_uncertainty(m) ? ", u given" : ", from the residual");
+  json["noise_model"]["scale_of_u"] =
+      has_uncertainty(m) ? ordered_json(std::sqrt(result.variance_factor)) : ordered_json(nullptr);
   json["misfit_um"] = 1000 * result.misfit_mm;
   json["reach_mm"] = result.reach_mm;
   json["weakest"] = ordered_json::array();
@@ -207,7 +208,14 @@ std::string number_or_dash(const std::optional<double>& value, const char* unit)
 }
 
 ordered_json noise_json(const NoiseModel& noise, double unit_um) {
-  return {{"own_um", noise.own * unit_um},
+  ordered_json steps = ordered_json::array();
+  for (const NoiseStep& step : noise.steps)
+    steps.push_back({{"row", step.row + 1},
+                     {"observation", kObservationNames[static_cast<std::size_t>(step.kind)]},
+                     {"height_um", step.height * unit_um},
+                     {"std_um", step.std * unit_um}});
+  return {{"steps", steps},
+          {"own_um", noise.own * unit_um},
           {"pose_um", noise.pose * unit_um},
           {"run_um", noise.run * unit_um},
           {"drift_um", noise.drift * unit_um},

@@ -47,6 +47,8 @@ const RuleText& text_of(SafetyRule rule) {
        "one reading that stands so far from all others has bent the fit", 20},
       {"check-rows", "times the nominal machine's",
        "rows that the fit has not seen are further off than without any correction", 1.25},
+      {"disturbed", "of what the machine shows",
+       "what is no error of this machine, and as large as its errors are, has bent the fit", 0.75},
   }};
   return kTexts[static_cast<std::size_t>(rule)];
 }
@@ -236,6 +238,7 @@ class Judge {
     const bool checked = record != nullptr && record->check_ratio > 0;
     add(SafetyRule::kCheckRows, checked ? std::optional(record->check_ratio) : std::nullopt,
         checked ? record->worst_check : "");
+    add(SafetyRule::kDisturbed, known(record ? record->disturbed : 0), record ? record->disturbance : "");
   }
 
   const Machine& machine_;

@@ -22,8 +22,9 @@ enum class SafetyRule : std::uint8_t {
   kResidual = 8,       // what the fit left of the readings
   kOutlier = 9,        // one reading against all the others
   kCheckRows = 10,     // rows that the fit has not seen, against the nominal machine
+  kDisturbed = 11,     // what the instrument did by itself, or is left far above its noise
 };
-inline constexpr std::size_t kSafetyRuleCount = 11;
+inline constexpr std::size_t kSafetyRuleCount = 12;
 const char* rule_name(SafetyRule rule);
 std::optional<SafetyRule> rule_named(const std::string& name);
 

@@ -15,7 +15,9 @@ std::optional<double> parse_number(std::string_view text) {
   }
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
+  constexpr double kMost = 1e150;
+  if (error != std::errc() || end != text.data() + text.size() || !(std::abs(value) <= kMost))
+    return std::nullopt;
   return value;
 }
 

@@ -7,7 +7,8 @@
 namespace vernier {
 
 /// A finite decimal number that fills the whole of `text` ("1", "-2.5e-3", "+4"); nothing for anything else
-/// (empty, blanks, hex, inf, nan). Independent of the locale.
+/// (empty, blanks, hex, inf, nan) and for what is so large that its square is none (beyond 1e150).
+/// Independent of the locale.
 std::optional<double> parse_number(std::string_view text);
 
 /// Is this a name of the formats: letters, digits and _, beginning with a letter or _ (ASCII)?

@@ -198,6 +198,28 @@ TEST(Fit, RobustLossIsNotPulledByAnOutlier) {
   }
 }
 
+// A reading that a robust loss lets go makes nothing less certain either.
+TEST(Fit, RobustLossKeepsItsUncertaintyBesideAnOutlier) {
+  const Machine machine = line_machine("<a value=\"0\"/>", "X+a");
+  std::mt19937_64 random(4);
+  std::normal_distribution<double> noise(0, 0.01);
+  const auto rows = [&](double off) {
+    std::string text = "X[mm],x[mm],u[mm]\n";
+    for (int i = 0; i < 100; ++i)
+      text +=
+          std::to_string(i) + "," + std::to_string(i + 1 + noise(random) + (i == 40 ? off : 0)) + ",0.01\n";
+    return parse_measurement(text, "m.csv", machine);
+  };
+  for (const Loss loss : {Loss::kHuber, Loss::kCauchy}) {
+    FitOptions options;
+    options.loss = loss;
+    const FitResult clean = fit(machine, rows(0), options), outlier = fit(machine, rows(30), options);
+    EXPECT_TRUE(outlier.converged);
+    EXPECT_LT(outlier.estimates[0].std, 1.5 * clean.estimates[0].std);
+    EXPECT_LT(std::abs(outlier.estimates[0].value - 1), 4 * outlier.estimates[0].std);
+  }
+}
+
 struct RealCase {
   const char* name;
   double fit_um, check_um;  // published with the data, rounded there

@@ -79,6 +79,8 @@ TEST(Expression, NamesTheOffendingWord) {
   EXPECT_EQ(word("sin"), "sin");
   EXPECT_EQ(word("(X"), "(X");
   EXPECT_EQ(word("X)"), ")");
+  EXPECT_EQ(word("X+\u00b5"), "\u00b5");
+  EXPECT_EQ(word("X+1e308"), "1e308");
   EXPECT_EQ(word(""), "");
   EXPECT_NE(word(std::string(100000, '(')), "accepted");
 }

@@ -166,11 +166,26 @@ TEST(SafetySheet, RefusesAFitThatUnseenRowsDoNotBearOut) {
   EXPECT_TRUE(safety_sheet(fitted, {SafetyRule::kCheckRows}).ok());
 }
 
+TEST(SafetySheet, RefusesASurveyInWhichSomethingElseMoved) {
+  const Machine model = small_machine("<alpha value=\"0\" nominal=\"0\" unit=\"rad\"/>");
+  Machine truth = model;
+  truth.statics[0].value = 1e-4;
+  Measurement m = survey(truth, model, 1e-3);
+  EXPECT_TRUE(safety_sheet(fit(model, m).machine).ok()) << safety_sheet(fit(model, m).machine).refusal();
+  // From the 60th row on a tool that is 0.3 mm longer.
+  for (Observation& o : m.observations)
+    if (o.kind == ObservationKind::kZ && o.row >= 60) o.value += 0.3;
+  const SafetySheet sheet = safety_sheet(fit(model, m).machine);
+  EXPECT_GT(*finding(sheet, SafetyRule::kDisturbed).value, 0.75);
+  EXPECT_NE(sheet.refusal().find("a step of 3"), std::string::npos) << sheet.refusal();
+  EXPECT_NE(sheet.refusal().find("in z from row 61 on"), std::string::npos) << sheet.refusal();
+}
+
 TEST(SafetySheet, RulesHaveTheirNamesAndNumbers) {
   // These numbers stand in images: they stay.
   const char* const kNames[] = {"correction",     "max-correction", "cancellation", "uncertainty",
                                 "measured-range", "input-range",    "set-up",       "converged",
-                                "residual",       "outlier",        "check-rows"};
+                                "residual",       "outlier",        "check-rows",   "disturbed"};
   for (std::size_t i = 0; i < kSafetyRuleCount; ++i) {
     EXPECT_STREQ(rule_name(static_cast<SafetyRule>(i)), kNames[i]);
     EXPECT_EQ(rule_named(kNames[i]), static_cast<SafetyRule>(i));
