@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/plan/check_plan.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "tools/fit/fit.h"
+#include "tools/model/machine_reader.h"
+#include "tools/model/prediction.h"
+#include "tools/plan/offered_poses.h"
+#include "tools/text/error.h"
+
+namespace vernier::check_plan_test {
+namespace {
+
+constexpr double kU_mm = 0.002;
+
+Machine model() {
+  return parse_machine(R"XML(<machine name="bridge"><variables><static>
+    <sxy value="0" nominal="0" unit="rad"/><szx value="0" nominal="0" unit="rad"/><kx value="0" nominal="0"/>
+    <bl value="0" nominal="0" unit="mm"/><BaseShift X="0" Y="0" Z="0" rX="0" rY="0" rZ="0"/></static>
+    <machineaxes><X min="0" max="600"/><Y min="0" max="400"/><Z min="-300" max="0"/></machineaxes></variables>
+    <transforms branch="tool"><sixdof n="1" X="X+kx*X+bl*dirX"/><sixdof n="2" Y="Y" X="sxy*Y"/>
+    <sixdof n="3" Z="Z" X="szx*Z"/></transforms></machine>)XML",
+                       "bridge.xml");
+}
+
+/// Readings of a machine at these poses, in a set-up of their own.
+Measurement measured(const Machine& truth, const States& states, std::mt19937_64& random) {
+  std::string text = pose_rows_csv(truth, states, std::vector<char>(states.count, 0), 1e3 * kU_mm, "a");
+  for (std::size_t at = 0; (at = text.find(",,,", at)) != std::string::npos;) text.replace(at, 3, ",0,0,0");
+  Measurement m = parse_measurement(text, "rows.csv", truth);
+  std::normal_distribution<double> normal;
+  const Eigen::Vector3d shift(normal(random), normal(random), normal(random));
+  const Eigen::VectorXd exact = predict(truth, m);
+  for (std::size_t i = 0; i < m.observations.size(); ++i)
+    m.observations[i].value = exact[static_cast<Eigen::Index>(i)] + shift[static_cast<Eigen::Index>(i % 3)] +
+                              kU_mm * normal(random);
+  return m;
+}
+
+Machine fitted(std::mt19937_64& random) {
+  return fit(model(), measured(model(), offered_poses(model(), 60, 5000), random)).machine;
+}
+
+CheckPlanOptions options(std::size_t points = 8) { return {points, 1e3 * kU_mm, 20}; }
+
+TEST(CheckPlan, ShowsTheChangesThatItSays) {
+  std::mt19937_64 random(3);
+  int told = 0, named = 0, asked = 0;
+  for (int k = 0; k < 20; ++k) {
+    const Machine machine = fitted(random);
+    const CheckPlan plan = check_plan(machine, options());
+    ASSERT_EQ(plan.states.count, 8U);
+    for (const Shown& one : plan.shows) {
+      const auto index = machine.find_static(one.suspect.name);
+      if (!index) continue;
+      Machine changed = model();
+      // Five standard deviations show in half of the cases, a third more in nearly all.
+      changed.statics[*index].value += 1.33 * one.change;
+      const CheckAnswer answer =
+          judge(machine, {record_of(machine, measured(changed, plan.states, random), "now")}, 0.01);
+      told += answer.verdict == CheckVerdict::kChanged ? 1 : 0;
+      named += !answer.changed.empty() && answer.changed.front().suspect.name == one.suspect.name ? 1 : 0;
+      ++asked;
+    }
+  }
+  EXPECT_EQ(asked, 20 * 4);
+  EXPECT_GE(told, asked * 9 / 10);
+  EXPECT_GE(named, asked * 8 / 10);
+}
+
+TEST(CheckPlan, SeesMoreThanAsManyPosesAtRandom) {
+  std::mt19937_64 random(4);
+  for (int k = 0; k < 5; ++k) {
+    const CheckPlan plan = check_plan(fitted(random), options());
+    ASSERT_FALSE(plan.shows.empty());
+    EXPECT_LT(plan.shows.front().tool_um, plan.random_um);
+  }
+}
+
+TEST(CheckPlan, MorePosesSeeSmallerChanges) {
+  std::mt19937_64 random(5);
+  const Machine machine = fitted(random);
+  EXPECT_LT(check_plan(machine, options(16)).shows.front().tool_um,
+            check_plan(machine, options(8)).shows.front().tool_um);
+}
+
+TEST(CheckPlan, NeedsAFittedMachine) { EXPECT_THROW(check_plan(model()), InputError); }
+
+}  // namespace
+}  // namespace vernier::check_plan_test
