@@ -48,7 +48,8 @@ const RuleText& text_of(SafetyRule rule) {
       {"check-rows", "times the nominal machine's",
        "rows that the fit has not seen are further off than without any correction", 1.25},
       {"disturbed", "of what the machine shows",
-       "what is no error of this machine, and as large as its errors are, has bent the fit", 0.75},
+       "something that the model does not hold, as large as the errors of the machine, has bent the fit",
+       0.75},
   }};
   return kTexts[static_cast<std::size_t>(rule)];
 }

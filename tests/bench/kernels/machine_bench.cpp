@@ -141,10 +141,16 @@ void print_equation(Bench& b, std::size_t i, std::int32_t* deviation) {
                       deviation);
 }
 
-/// Printed against executed, bit for bit, and against the same equation in double.
-int check(Bench& b) {
+/// Printed against executed, bit for bit, and against the same equation in double: within the proved bound
+/// (nm; of a turning axis at a metre from it).
+int check(Bench& b, const std::string& directory) {
+  std::ifstream bounds(directory + "/bounds.txt");
+  double bound_nm[kMaxAxes];
+  std::fill(bound_nm, bound_nm + kMaxAxes, INFINITY);
+  for (std::uint32_t k = 0; k < b.program().outputs.size && bounds >> bound_nm[k]; ++k) continue;
   LagState lags[kMaxLags] = {};
   double worst_nm = 0;
+  bool known = false;
   for (std::size_t i = 0; i < kPoses; ++i) {
     run_equation(b.program().equation, b.registers[i].data(), lags, i == 0);
     std::int32_t printed[kMaxAxes] = {};
@@ -166,13 +172,25 @@ int check(Bench& b) {
       const std::int32_t executed = b.registers[i][out.source];
       if (executed != printed[k])
         return std::fprintf(stderr, "printed and executed form differ at pose %zu\n", i), 1;
-      const double nm =
+      const double counts =
           std::ldexp(static_cast<double>(executed) * out.multiplier, -static_cast<int>(out.shift));
-      worst_nm = std::isnan(flat[k]) ? NAN : std::max(worst_nm, std::abs(nm - flat[k] * 1e6));
+      const bool rotary = (b.view.axes()[out.axis].flags & kRotary) != 0;
+      // Counts are nm, or 2^-32 turns; the equation is in mm, or deg.
+      constexpr double kNmPerCountAtMetre = 2 * 3.14159265358979323846 * 1e9 / 4294967296.0;
+      const double per_unit = rotary ? 4294967296.0 / 360 : 1e6,
+                   nm_per_count = rotary ? kNmPerCountAtMetre : 1;
+      if (std::isnan(flat[k])) continue;
+      const double off_nm = nm_per_count * std::abs(counts - flat[k] * per_unit);
+      known = true;
+      worst_nm = std::max(worst_nm, off_nm);
+      if (!rotary && off_nm > bound_nm[k] + 1)
+        return std::fprintf(stderr, "pose %zu: %.3f nm from the equation in double, proved %.3f\n", i, off_nm,
+                            bound_nm[k]),
+               1;
     }
   }
-  std::printf("operations %u\nimage_bytes %u\nnm_from_double %.3f\n", b.program().equation.instructions.size,
-              b.bytes, worst_nm);
+  std::printf("operations %u\nimage_bytes %u\nnm_from_double %s\n", b.program().equation.instructions.size,
+              b.bytes, known ? std::to_string(worst_nm).c_str() : "absent");
   return 0;
 }
 
@@ -241,6 +259,6 @@ int main(int argc, char** argv) {
   read_image(argv[1], bench);
   make_poses(bench);
   bench.chains = read_chains(std::string(argv[1]) + "/chain.txt");
-  if (std::string(argv[2]) == "check") return check(bench);
+  if (std::string(argv[2]) == "check") return check(bench, argv[1]);
   return measure(cases_of(bench), argc - 1, argv + 1);
 }

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <set>
+#include <utility>
 
 namespace vernier::bench {
 namespace {
@@ -73,11 +74,11 @@ class Printer {
         const std::string& axis = machine_.axes[n.index[0]].name;
         if (machine_.table_of(n.index[0])->interpolation == Interpolation::kCubic)
           throw InputError("a cubic table, which the double equation of the bench has not");
-        if (spots_.insert(n.index[0]).second) {
-          const std::string position = a(0);
-          body += fmt::format("  const Spot spot_{0} = find(at_{0}, {1});\n", axis, position);
-        }
-        return fmt::format("between(v_{0}, spot_{0}, {1})", axis, n.index[1]);
+        // The deviation may be evaluated again at the corrected position: a spot a position.
+        const std::string position = a(0);
+        if (spots_.insert({n.index[0], n.args[0]}).second)
+          body += fmt::format("  const Spot spot_{0}_{2} = find(at_{0}, {1});\n", axis, position, n.args[0]);
+        return fmt::format("between(v_{0}, spot_{0}_{2}, {1})", axis, n.index[1], n.args[0]);
       }
       case NodeKind::kFunction:
         return function(n.function, a(0));
@@ -128,7 +129,7 @@ class Printer {
   const Graph& g_;
   const std::vector<Channel>& channels_;
   std::set<NodeId> done_;
-  std::set<std::uint32_t> spots_;
+  std::set<std::pair<std::size_t, NodeId>> spots_;
 };
 
 }  // namespace

@@ -98,10 +98,14 @@ void generate(const std::string& name, const std::string& directory) {
   write_file(directory + "/equation.cpp", c.source);
   write_file(directory + "/given.cpp", print_source(reference.machine, with_sines_given(c.program), 0));
   write_file(directory + "/machine.vimg", {c.image.begin(), c.image.end()});
+  // What the image may be off by from the equation in double: its proved bound, in the order of the outputs.
+  std::string bounds;
+  for (const OutputBound& bound : c.bounds) bounds += fmt::format("{:.17g}\n", 1e3 * bound.total_um);
+  write_file(directory + "/bounds.txt", bounds);
   const auto loaded = load_image(c.image, reference.machine);
   write_file(directory + "/chain.txt", print_chain(reference.machine, loaded->view));
   try {
-    const Derivation d = derive(reference.machine, 5e-6);
+    const Derivation d = derive(reference.machine, 5e-6, c.evaluations);
     write_file(directory + "/flat.cpp",
                print_flat_double(reference.machine, d, c.program.channels, "flat_" + name));
   } catch (const InputError& e) {
