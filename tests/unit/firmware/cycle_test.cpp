@@ -45,7 +45,8 @@ TEST(Cycle, FeedIsTheSpeedOfTheLinearAxesWhereTheControllerTellsNone) {
   for (int i = 0; i < 500; ++i) rig.tick();
   AxisReading x, y;
   rig.plant().read_axis(0, x), rig.plant().read_axis(1, y);
-  const double speed = std::hypot(static_cast<double>(x.velocity.count), static_cast<double>(y.velocity.count));
+  const double speed =
+      std::hypot(static_cast<double>(x.velocity.count), static_cast<double>(y.velocity.count));
   ASSERT_GT(speed, 1e6);
   EXPECT_NEAR(static_cast<double>(rig.cycle().path().feed.count), 60 * speed, 61);
 }

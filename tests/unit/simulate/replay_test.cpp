@@ -15,11 +15,12 @@ namespace {
 
 /// 0.1 mm/m of scale and, where asked for, growth with a temperature that lags.
 std::string machine_text(const std::string& more) {
-  return fmt::format(R"xml(<machine><variables><static><k value="1e-4" nominal="0"/><c value="0.01" nominal="0"/></static>
+  return fmt::format(
+      R"xml(<machine><variables><static><k value="1e-4" nominal="0"/><c value="0.01" nominal="0"/></static>
   <machineaxes><X min="0" max="600"/><Y min="0" max="400"/></machineaxes>
   <inputs><T unit="degC" reference="20" min="10" max="40"/></inputs></variables>
   <transforms><sixdof n="1" X="X+k*X{}" Y="Y"/></transforms></machine>)xml",
-                     more);
+      more);
 }
 
 /// Readings of the machine itself, with times `step` seconds apart where step is above 0.
