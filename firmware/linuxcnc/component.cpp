@@ -90,6 +90,7 @@ void Component::tick(long period_ns) noexcept {
     if (hold != held_) service->order(hold ? Command::kHold : Command::kRelease);
     cleared_ = clear, held_ = hold;
     show(service->tick());
+    for (std::uint32_t i = 0; i < wiring_.axes.size(); ++i) joints_.set_slew(i, made_->cycle().slew(i));
   }
   joints_.write();
   const bool at_limit = joints_.any_at_limit();

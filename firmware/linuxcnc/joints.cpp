@@ -13,10 +13,8 @@ constexpr double kMostCounts = 1e15;
 // A turning point smaller than a count is none: inverse kinematics round.
 constexpr double kTurnsAt = 1;
 
-// Outward share of the way to a limit: 1 m/s changes a correction by 8 um a tick at most.
+// Largest outward share of the way to a limit, where the slew limit would let more.
 constexpr double kShareOfWay = 1.0 / 128;
-// What a held correction moves by in a tick when a limit is changed under it, counts.
-constexpr double kLetGo = 100;
 
 std::int64_t whole(double counts) noexcept {
   return std::llround(std::clamp(counts, -kMostCounts, kMostCounts));
@@ -35,7 +33,7 @@ Joints::Joints(const Pins& pins, const Wiring& wiring, double mm_per_unit) noexc
 // Another zero than before: how it got there is no motion.
 void Joints::start(Joint& joint, double position) noexcept {
   joint.position = position;
-  joint.velocity = joint.acceleration = joint.back = joint.since = joint.travel = 0;
+  joint.velocity = joint.acceleration = joint.back = joint.since = 0;
   joint.sense = 0;
   joint.reading = {};
   joint.reading.restarted = true;
@@ -61,7 +59,7 @@ void Joints::move(Joint& joint, double position, double per_second) noexcept {
   joint.acceleration = (velocity - joint.velocity) * per_second;
   joint.velocity = velocity;
   joint.position = position;
-  joint.travel = travel * joint.counts;
+  joint.fastest = std::max(joint.fastest, std::abs(velocity));
   turn(joint, travel);
   AxisReading& reading = joint.reading;
   reading.restarted = false;
@@ -72,6 +70,7 @@ void Joints::move(Joint& joint, double position, double per_second) noexcept {
 }
 
 void Joints::read(double seconds) noexcept {
+  seconds_ = seconds;
   all_homed_ = true;
   for (std::uint32_t i = 0; i < count_; ++i) {
     Joint& joint = joints_[i];
@@ -123,23 +122,29 @@ double Joints::room_above(const Joint& joint) noexcept {
   return std::max(0.0, (*joint.pins->max_limit - joint.position) * joint.counts);
 }
 
+// At the joint's greatest speed V the way to a limit shrinks by V a tick, so that the share S / V of it
+// shrinks by the slew limit S; a count less, since it is rounded to whole ones.
+double Joints::share_of_way(const Joint& joint) const noexcept {
+  const double told = *joint.pins->max_velocity;
+  const double fastest = std::max(std::isfinite(told) ? told : 0.0, joint.fastest) * joint.counts * seconds_;
+  const auto slew = static_cast<double>(joint.slew);
+  const double fades = std::max(slew - 1, slew / 2);
+  return fades < kShareOfWay * fastest ? fades / fastest : kShareOfWay;
+}
+
 AxisTravel Joints::within_range(std::uint32_t axis, AxisTravel correction) const noexcept {
   if (axis >= count_) return AxisTravel{};
   const Joint& joint = joints_[axis];
-  const double low = std::ceil(kShareOfWay * room_below(joint)),
-               high = std::floor(kShareOfWay * room_above(joint));
+  const double share = share_of_way(joint);
+  const double low = std::ceil(share * room_below(joint)), high = std::floor(share * room_above(joint));
   return AxisTravel(whole(std::clamp(static_cast<double>(correction.count), low, high)));
 }
 
-// What is asked for changes within the slew limit, and the way to a limit no faster than the joint; a limit
-// that is set anew may not make a step either.
+// Whatever the joint, its limits or the share of the way do, the slew limit comes first: a joint that is
+// faster than it ever was, or a limit that is set under a correction, may find it beyond for that long.
 void Joints::hold(Joint& joint, std::uint32_t i) noexcept {
   const AxisTravel target = within_range(i, joint.correction);
-  const auto asked = static_cast<double>(joint.correction.count - joint.asked.count);
-  const double most = std::max(std::abs(asked), kLetGo + std::ceil(kShareOfWay * std::abs(joint.travel)));
-  const auto way = static_cast<double>(target.count - joint.given_out.count);
-  joint.given_out.count += whole(std::clamp(way, -most, most));
-  joint.asked = joint.correction;
+  joint.given_out.count += std::clamp(target.count - joint.given_out.count, -joint.slew, joint.slew);
   const auto full = static_cast<double>(joint.correction.count);
   joint.at_limit = full < room_below(joint) || full > room_above(joint);
 }

@@ -32,6 +32,7 @@ TEST(LinuxcncFolder, LoadsTheAxesAsJointsAndTheInputsAsPins) {
   EXPECT_TRUE(holds(hal, "\nloadrt vernier axes=X,A inputs=T_column\n"));
   EXPECT_TRUE(holds(hal, "net vernier-cmd-1 joint.1.motor-pos-cmd => vernier.0.joint.1.cmd-in\n"));
   EXPECT_TRUE(holds(hal, "vernier.0.input.T_column   # degC, reference 20\n")) << hal;
+  EXPECT_TRUE(holds(hal, "setp vernier.0.joint.1.max-velocity [JOINT_1]MAX_VELOCITY\n"));
   EXPECT_FALSE(holds(hal, "joint.2")) << "no third joint";
   EXPECT_TRUE(holds(text_of(files, "vernier.ini"), "CMD_1 = a-pos-cmd\nFB_1 = a-pos-fb\n"));
   EXPECT_TRUE(holds(text_of(files, "vernier.ini"), "IMAGE = vernier/image\n"));

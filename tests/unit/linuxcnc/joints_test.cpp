@@ -10,18 +10,20 @@ namespace vernier::joints_test {
 namespace {
 
 constexpr double kPeriod = 0.001;
+constexpr std::int64_t kAnySlew = 1'000'000'000;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// Pins of one joint, X, without HAL.
 struct Bench {
   Bench() {
     JointPins& joint = pins.joint[0];
-    joint = {&cmd_in, &cmd_out, &fb_in, &fb_out,   &correction, &pos_in,
-             &low,    &high,    &homed, &at_limit, &saturated};
+    joint = {&cmd_in, &cmd_out, &fb_in, &fb_out, &correction, &pos_in,
+             &low,    &high,    &fast,  &homed,  &at_limit,   &saturated};
     pins.current_vel = &feed;
+    joints.set_slew(0, kAnySlew);
   }
   hal_float_t cmd_in = 0, cmd_out = 0, fb_in = kNaN, fb_out = 0, correction = 0, pos_in = kNaN;
-  hal_float_t low = -1e99, high = 1e99, feed = 0;
+  hal_float_t low = -1e99, high = 1e99, fast = 0, feed = 0;
   hal_bit_t homed = true, at_limit = false, saturated = false;
   Pins pins{};
   Joints joints{pins, Wiring{{{"X"}}, {}}};
@@ -92,6 +94,7 @@ TEST(Joints, MayCountInInches) {
   joints.read_path(path);
   EXPECT_EQ(reading.position, AxisPosition(50'800'000));
   EXPECT_EQ(path.feed, FeedNmPerMin(1'524'000'000));
+  joints.set_slew(0, kAnySlew);
   joints.write_correction(0, AxisTravel(25'400));
   joints.write();
   EXPECT_NEAR(bench.cmd_out, 2.001, 1e-12) << "a double's last digit";
@@ -132,32 +135,80 @@ TEST(Joints, CommandThatIsNoNumberIsNoReading) {
   EXPECT_EQ(bench.joints.read_axis(0, reading), HalFault::kNoReading);
 }
 
-TEST(Joints, DriveNeverPassesALimitAndComesToItWithoutAStep) {
-  // GIVEN a correction of 20 um outward and a joint that runs into its limit at 100 mm/s, and out again
+/// A joint that runs into its limit at mm/s and out again, under a correction of so many counts outward.
+struct RunToTheLimit {
   Bench bench;
-  bench.high = 50;
-  for (int k = 0; k < 300; ++k) bench.tick(40, 20'000);
-  double before = bench.correction, worst = 0;
+  double worst = 0, beyond = 0;  // largest change of the correction, way past the limit; mm
   bool told = false;
-  for (int k = 0; k <= 200; ++k) {
-    const double commanded = 40 + (k <= 100 ? k : 200 - k) * 0.1;
-    bench.tick(commanded, 20'000);
-    // THEN the drive stays within it, and its correction changes by no more than the way over 128 and a count
-    EXPECT_LE(bench.cmd_out, 50 + 1e-9);
-    worst = std::max(worst, std::abs(bench.correction - before));
-    before = bench.correction;
-    told = told || bench.at_limit;
-    EXPECT_TRUE(k != 100 || bench.cmd_out == 50.0);
+
+  void go(double mm_per_s, std::int64_t counts, std::int64_t slew, double ramp_mm_per_s2 = 1e9) {
+    bench.high = 50;
+    bench.joints.set_slew(0, slew);
+    // Far enough out that all of it is in: at least the way in which it fades.
+    const double share = std::min(1.0 / 128, (static_cast<double>(slew) - 1) / (mm_per_s * 1e3));
+    const double start = 50 - 1.5 * static_cast<double>(counts) * 1e-6 / share;
+    double position = start, velocity = 0;
+    for (int k = 0; k < 2 * counts / slew + 10; ++k) bench.tick(position, counts);
+    double before = bench.correction;
+    const auto step = [&] {
+      bench.tick(position, counts);
+      worst = std::max(worst, std::abs(bench.correction - before));
+      beyond = std::max(beyond, bench.cmd_out - 50);
+      before = bench.correction;
+      told = told || bench.at_limit;
+    };
+    // Up to speed, and to a stop at the limit as a controller brakes.
+    while (position < 50) {
+      const double brakes = std::sqrt(2 * ramp_mm_per_s2 * (50 - position));
+      velocity = std::min({mm_per_s, velocity + ramp_mm_per_s2 * kPeriod, brakes});
+      position = std::min(50.0, position + std::max(velocity, 0.01) * kPeriod);
+      step();
+    }
+    EXPECT_TRUE(bench.at_limit);
+    for (int k = 0; k < 100; ++k) step();
+    EXPECT_EQ(bench.cmd_out, 50.0);
+    for (; position > start; position -= mm_per_s * kPeriod) step();
+    for (int k = 0; k < 2 * counts / slew + 10; ++k) step();
+    EXPECT_DOUBLE_EQ(bench.correction, static_cast<double>(counts) * 1e-6) << "all of it again";
+    EXPECT_FALSE(bench.at_limit);
   }
-  EXPECT_LE(worst, 883e-6) << "0.1 mm / 128, and 0.1 um";
-  EXPECT_TRUE(told);
-  EXPECT_FALSE(bench.at_limit);
-  EXPECT_DOUBLE_EQ(bench.correction, 0.02) << "all of it again";
+};
+
+class JointsAtALimit : public testing::TestWithParam<std::tuple<double, std::int64_t, std::int64_t>> {};
+
+TEST_P(JointsAtALimit, KeepTheSlewLimitAndTheLimitAtTheSpeedThatTheyAreTold) {
+  const auto [speed, counts, slew] = GetParam();
+  for (const double ramp : {1e9, 1200.0}) {
+    RunToTheLimit run;
+    run.bench.fast = speed;
+    run.go(speed, counts, slew, ramp);
+    EXPECT_LE(run.worst, static_cast<double>(slew) * 1e-6 + 1e-12) << "a double's last digits";
+    EXPECT_LE(run.beyond, 1e-9) << "a double's last digits";
+    EXPECT_TRUE(run.told);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(SpeedsCorrectionsAndSlewLimits, JointsAtALimit,
+                         testing::Combine(testing::Values(7.0, 120.0, 500.0),
+                                          testing::Values(20'000, 300'001),
+                                          testing::Values(1'000, 200, 2'500)));
+
+TEST(Joints, FasterThanTheyWereToldKeepTheSlewLimitAndLearnTheSpeed) {
+  RunToTheLimit first;
+  first.go(120, 20'000, 200);
+  EXPECT_LE(first.worst, 200e-6 + 1e-12) << "always";
+  // The same joint once more: now it knows.
+  first.worst = first.beyond = 0;
+  first.go(120, 20'000, 200);
+  EXPECT_LE(first.worst, 200e-6 + 1e-12);
+  EXPECT_LE(first.beyond, 1e-9);
 }
 
 TEST(Joints, LimitThatIsSetUnderACorrectionMakesNoStep) {
   Bench bench;
-  for (int k = 0; k < 3; ++k) bench.tick(50, 20'000);
+  bench.joints.set_slew(0, 100);
+  for (int k = 0; k < 300; ++k) bench.tick(50, 20'000);
+  ASSERT_DOUBLE_EQ(bench.correction, 0.02);
   bench.high = 50;
   double before = bench.correction;
   for (int k = 0; k < 300; ++k) {
