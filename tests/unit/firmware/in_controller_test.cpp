@@ -78,6 +78,39 @@ TEST_F(InController, EnableSwitchedOnClearsTheFaultAndBringsTheCorrectionIn) {
   EXPECT_LE(worst_, kSmallSlewY);
 }
 
+TEST_F(InController, ClearBringsTheCorrectionInAgainWhereItWasIn) {
+  run(5400);
+  ASSERT_EQ(cycle().latched(), Fault::kInputMissing);
+  run(2000);
+  ASSERT_EQ(cycle().mode(), Mode::kFaulted);
+  service_->order(Command::kClearFault);
+  run(3000);
+  EXPECT_EQ(cycle().latched(), Fault::kNone);
+  EXPECT_EQ(cycle().mode(), Mode::kActive);
+  EXPECT_LE(worst_, kSmallSlewY);
+}
+
+TEST_F(InController, ClearWhileTheFaultIsStillRampedOutIsKeptUntilItIsOut) {
+  for (int i = 0; i < 6000 && cycle().mode() != Mode::kRampOut; ++i) run(1);
+  ASSERT_EQ(cycle().latched(), Fault::kInputMissing);
+  ASSERT_EQ(cycle().mode(), Mode::kRampOut);
+  service_->order(Command::kClearFault);
+  run(3000);
+  EXPECT_EQ(cycle().latched(), Fault::kNone);
+  EXPECT_EQ(cycle().mode(), Mode::kActive) << "the sensor is back";
+}
+
+TEST_F(InController, ClearDoesNotBringInWhatWasTakenOut) {
+  run(4000);
+  service_->order(Command::kDeactivate);
+  run(3400);
+  ASSERT_EQ(cycle().latched(), Fault::kInputMissing);
+  service_->order(Command::kClearFault);
+  run(3000);
+  EXPECT_EQ(cycle().latched(), Fault::kNone);
+  EXPECT_EQ(cycle().mode(), Mode::kReady);
+}
+
 TEST_F(InController, WeightOfAllStandsOnTopOfTheAxes) {
   run(2000);
   service_->set_weight(WeightQ16(kFullWeight.count / 2));
