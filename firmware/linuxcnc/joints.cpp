@@ -16,6 +16,9 @@ constexpr double kTurnsAt = 1;
 // Largest outward share of the way to a limit, where the slew limit would let more.
 constexpr double kShareOfWay = 1.0 / 128;
 
+// Is it connected to nothing: HAL points such a pin at a place of its own.
+bool is_loose(const hal_float_t* pin, const hal_float_t* loose) noexcept { return pin == loose; }
+
 std::int64_t whole(double counts) noexcept {
   return std::llround(std::clamp(counts, -kMostCounts, kMostCounts));
 }
@@ -74,10 +77,13 @@ void Joints::read(double seconds) noexcept {
   all_homed_ = true;
   for (std::uint32_t i = 0; i < count_; ++i) {
     Joint& joint = joints_[i];
-    const double given = *joint.pins->pos_in, commanded = *joint.pins->cmd_in;
-    const double position = std::isnan(given) ? commanded : given;
+    const double given = *joint.pins->pos_in, commanded = *joint.pins->cmd_in, feedback = *joint.pins->fb_in;
+    const double position =
+        std::isnan(given) && is_loose(joint.pins->pos_in, joint.pins->pos_loose) ? commanded : given;
     const bool homed = *joint.pins->homed;
-    joint.given = std::isfinite(position) && std::abs(position) * joint.counts < kMostCounts;
+    const bool answers = std::isfinite(feedback) || is_loose(joint.pins->fb_in, joint.pins->fb_loose);
+    joint.given = std::isfinite(commanded) && std::isfinite(position) && answers &&
+                  std::abs(position) * joint.counts < kMostCounts;
     all_homed_ = all_homed_ && homed;
     if (!joint.given) continue;
     if (!joint.known || (homed && !joint.homed))
@@ -150,17 +156,23 @@ void Joints::hold(Joint& joint, std::uint32_t i) noexcept {
 }
 
 // The feedback answers the command of the tick before, which had that tick's correction. Where it is the
-// command's own signal, it has just become this tick's.
+// command's own signal, it has just become this tick's. What is no number stays where it was: the drive
+// stands, and a feedback that stands is a following error to the controller as soon as the joint is to move.
 void Joints::write() noexcept {
   for (std::uint32_t i = 0; i < count_; ++i) {
     Joint& joint = joints_[i];
     hold(joint, i);
     const double added = static_cast<double>(joint.given_out.count) / joint.counts;
-    const double commanded = *joint.pins->cmd_in, sent = commanded + added;
+    joint.commanded = std::isfinite(*joint.pins->cmd_in) ? *joint.pins->cmd_in : joint.commanded;
+    const double sent = joint.commanded + added;
     *joint.pins->cmd_out = sent;
     const double feedback = *joint.pins->fb_in;
-    const bool is_the_command = std::isnan(feedback) || feedback == sent;
-    *joint.pins->fb_out = is_the_command ? commanded : feedback - joint.added;
+    const bool is_the_command =
+        feedback == sent || (std::isnan(feedback) && is_loose(joint.pins->fb_in, joint.pins->fb_loose));
+    if (is_the_command)
+      *joint.pins->fb_out = joint.commanded;
+    else if (std::isfinite(feedback))
+      *joint.pins->fb_out = feedback - joint.added;
     *joint.pins->correction = added;
     *joint.pins->at_limit = joint.at_limit;
     joint.added = added;

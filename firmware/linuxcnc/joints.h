@@ -16,6 +16,9 @@ namespace vernier {
 /// given out is within the slew limit always; the drive stays within the joint's limits where the joint is no
 /// faster than that.
 ///
+/// A connected pin that is no number is no reading of its joint: command, position and feedback alike. The
+/// drive's command and the controller's feedback then stay where they were.
+///
 /// A joint that is not homed counts from nowhere: its reading stays where it was, and goes on from its new
 /// zero when it is homed.
 class Joints : public AxisReader, public CorrectionWriter {
@@ -51,6 +54,7 @@ class Joints : public AxisReader, public CorrectionWriter {
     double position = 0, velocity = 0, acceleration = 0;  // units, s
     double back = 0, since = 0;
     int sense = 0;
+    double commanded = 0;              // the last command that was a number
     double added = 0;                  // to the command of the tick before
     double fastest = 0;                // that it has been commanded, units/s
     std::int64_t slew = 0;             // counts a tick

@@ -17,8 +17,8 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 struct Bench {
   Bench() {
     JointPins& joint = pins.joint[0];
-    joint = {&cmd_in, &cmd_out, &fb_in, &fb_out, &correction, &pos_in,
-             &low,    &high,    &fast,  &homed,  &at_limit,   &saturated};
+    joint = {&cmd_in, &cmd_out, &fb_in, &fb_out,   &correction, &pos_in, &low,
+             &high,   &fast,    &homed, &at_limit, &saturated,  &pos_in, &fb_in};
     pins.current_vel = &feed;
     joints.set_slew(0, kAnySlew);
   }
@@ -126,13 +126,54 @@ TEST(Joints, HomingIsNoMotion) {
   EXPECT_FALSE(bench.tick(60.1).restarted);
 }
 
-TEST(Joints, CommandThatIsNoNumberIsNoReading) {
-  Bench bench;
-  bench.tick(1);
-  bench.cmd_in = kNaN;
-  bench.joints.read(kPeriod);
-  AxisReading reading;
-  EXPECT_EQ(bench.joints.read_axis(0, reading), HalFault::kNoReading);
+/// A bench whose feedback and position come by signals.
+struct ConnectedBench : Bench {
+  ConnectedBench() {
+    pins.joint[0].pos_in = &position;
+    pins.joint[0].fb_in = &feedback;
+    for (int k = 0; k < 3; ++k) go(1);
+  }
+  HalFault go(double commanded) {
+    cmd_in = commanded;
+    joints.read(kPeriod);
+    AxisReading reading;
+    const HalFault fault = joints.read_axis(0, reading);
+    joints.write_correction(0, AxisTravel(500));
+    joints.write();
+    return fault;
+  }
+  hal_float_t position = 1, feedback = 1.0004;
+};
+
+TEST(Joints, CommandThatIsNoNumberIsNoReadingAndLeavesTheDriveWhereItIs) {
+  for (const double none : {kNaN, std::numeric_limits<double>::infinity()}) {
+    ConnectedBench bench;
+    EXPECT_EQ(bench.go(none), HalFault::kNoReading) << "though the position is one";
+    EXPECT_DOUBLE_EQ(bench.cmd_out, 1.0005);
+    EXPECT_DOUBLE_EQ(bench.fb_out, 1.0004 - 0.0005);
+    EXPECT_EQ(bench.go(1.1), HalFault::kNone);
+    EXPECT_DOUBLE_EQ(bench.cmd_out, 1.1005);
+  }
+}
+
+TEST(Joints, ConnectedPositionThatIsNoNumberIsNoReading) {
+  ConnectedBench bench;
+  bench.position = kNaN;
+  EXPECT_EQ(bench.go(1), HalFault::kNoReading) << "the command does not stand for it";
+  bench.pins.joint[0].pos_in = &bench.pos_in;  // unlinkp
+  EXPECT_EQ(bench.go(1), HalFault::kNone);
+}
+
+TEST(Joints, ConnectedFeedbackThatIsNoNumberIsNoReadingAndNoPerfectFeedback) {
+  for (const double none : {kNaN, std::numeric_limits<double>::infinity()}) {
+    ConnectedBench bench;
+    bench.feedback = none;
+    EXPECT_EQ(bench.go(5), HalFault::kNoReading);
+    EXPECT_DOUBLE_EQ(bench.fb_out, 1.0004 - 0.0005) << "where it was: LinuxCNC sees a following error";
+    bench.feedback = 5.0004;
+    EXPECT_EQ(bench.go(5), HalFault::kNone);
+    EXPECT_DOUBLE_EQ(bench.fb_out, 5.0004 - 0.0005);
+  }
 }
 
 /// A joint that runs into its limit at mm/s and out again, under a correction of so many counts outward.
