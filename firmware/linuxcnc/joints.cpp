@@ -19,6 +19,9 @@ constexpr double kShareOfWay = 1.0 / 128;
 // Is it connected to nothing: HAL points such a pin at a place of its own.
 bool is_loose(const hal_float_t* pin, const hal_float_t* loose) noexcept { return pin == loose; }
 
+// Part of a jump by which it may miss the feedback that it goes to.
+constexpr double kOfAJump = 1.0 / 8;
+
 std::int64_t whole(double counts) noexcept {
   return std::llround(std::clamp(counts, -kMostCounts, kMostCounts));
 }
@@ -30,6 +33,9 @@ Joints::Joints(const Pins& pins, const Wiring& wiring, double mm_per_unit) noexc
   for (std::uint32_t i = 0; i < count_; ++i) {
     joints_[i].pins = &pins.joint[i];
     joints_[i].counts = wiring.axes[i].rotary ? kCountsPerDeg : kCountsPerMm * mm_per_unit;
+    const CycleLimits limits;
+    const AxisLimits& axis = wiring.axes[i].rotary ? limits.rotary : limits.linear;
+    joints_[i].jump = static_cast<double>(axis.step);
   }
 }
 
@@ -39,6 +45,21 @@ void Joints::start(Joint& joint, double position) noexcept {
   joint.velocity = joint.acceleration = joint.back = joint.since = 0;
   joint.sense = 0;
   joint.reading = {};
+  joint.reading.restarted = true;
+}
+
+// LinuxCNC lays a joint that it does not enable onto its feedback: after a following error at once, by as
+// much as that was. That is no motion of the axis, whose sense stays what it was; what the controller itself
+// commands leaves the feedback behind. Backlash on its way makes the two differ a little.
+bool Joints::laid_on_feedback(const Joint& joint, double position) noexcept {
+  const double jump = std::abs(position - joint.position);
+  const double off = std::abs(*joint.pins->cmd_in - *joint.pins->fb_out);
+  return jump * joint.counts > joint.jump && off < kOfAJump * jump;
+}
+
+void Joints::lay(Joint& joint, double position) noexcept {
+  joint.position = position;
+  joint.velocity = joint.acceleration = 0;
   joint.reading.restarted = true;
 }
 
@@ -88,6 +109,8 @@ void Joints::read(double seconds) noexcept {
     if (!joint.given) continue;
     if (!joint.known || (homed && !joint.homed))
       start(joint, position);
+    else if (homed && laid_on_feedback(joint, position))
+      lay(joint, position);
     else
       move(joint, homed ? position : joint.position, 1 / seconds);
     joint.known = true;

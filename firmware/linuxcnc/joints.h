@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
+#include "firmware/core/cycle.h"
 #include "firmware/linuxcnc/pins.h"
 #include "hal/axis_reader.h"
 #include "hal/correction_writer.h"
@@ -18,6 +19,9 @@ namespace vernier {
 ///
 /// A connected pin that is no number is no reading of its joint: command, position and feedback alike. The
 /// drive's command and the controller's feedback then stay where they were.
+///
+/// A command that jumps onto the feedback (LinuxCNC does that with a joint that it no longer enables) is no
+/// jump of the axis: the reading goes on from there.
 ///
 /// A joint that is not homed counts from nowhere: its reading stays where it was, and goes on from its new
 /// zero when it is homed.
@@ -50,6 +54,7 @@ class Joints : public AxisReader, public CorrectionWriter {
   struct Joint {
     const JointPins* pins = nullptr;
     double counts = 1;  // in a unit of the machine
+    double jump = 0;    // counts in a tick that no axis travels
     bool known = false, homed = false, given = false, at_limit = false;
     double position = 0, velocity = 0, acceleration = 0;  // units, s
     double back = 0, since = 0;
@@ -67,6 +72,8 @@ class Joints : public AxisReader, public CorrectionWriter {
   void hold(Joint& joint, std::uint32_t i) noexcept;
   static void start(Joint& joint, double position) noexcept;
   static void move(Joint& joint, double position, double per_second) noexcept;
+  static bool laid_on_feedback(const Joint& joint, double position) noexcept;
+  static void lay(Joint& joint, double position) noexcept;
   static void turn(Joint& joint, double travel) noexcept;
 
   const Pins& pins_;

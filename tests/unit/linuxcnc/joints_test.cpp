@@ -145,6 +145,42 @@ struct ConnectedBench : Bench {
   hal_float_t position = 1, feedback = 1.0004;
 };
 
+/// What the cycle finds in a bench's reading.
+struct Watched : ConnectedBench {
+  Fault watch(double commanded, double stands) {
+    position = commanded;
+    feedback = stands;
+    go(commanded);
+    AxisReading reading;
+    joints.read_axis(0, reading);
+    return monitor.take(true, reading, health);
+  }
+  Health health;
+  AxisMonitor monitor{{}, TimeUs(1000), true};
+};
+
+TEST(Joints, CommandThatIsLaidOnTheFeedbackIsNoJump) {
+  // GIVEN an axis that stands at 10.0005 while its command runs on to 17, the correction in
+  Watched bench;
+  bench.position = 10, bench.go(10);
+  for (int k = 0; k <= 700; ++k) EXPECT_EQ(bench.watch(10 + 0.01 * k, 10.0005), Fault::kNone);
+  // WHEN LinuxCNC gives up: its command is what it read last
+  EXPECT_EQ(bench.watch(bench.fb_out, 10.0005), Fault::kNone);
+  // THEN the axis is there, without a speed, and the sense is what it was
+  EXPECT_EQ(bench.monitor.state().position, AxisPosition(10'000'000));
+  EXPECT_EQ(bench.monitor.state().velocity, AxisSpeed(0));
+  EXPECT_EQ(bench.monitor.state().sense, 1);
+  EXPECT_EQ(bench.watch(bench.fb_out, 10.0005), Fault::kNone);
+}
+
+TEST(Joints, JumpToAnywhereElseIsOne) {
+  Watched bench;
+  bench.watch(10, 10);
+  EXPECT_EQ(bench.watch(11.9, 10), Fault::kNone) << "2 mm a tick are 2 m/s";
+  EXPECT_EQ(bench.watch(14, 11.9), Fault::kPositionJump);
+  EXPECT_EQ(bench.watch(9, 14), Fault::kPositionJump);
+}
+
 TEST(Joints, CommandThatIsNoNumberIsNoReadingAndLeavesTheDriveWhereItIs) {
   for (const double none : {kNaN, std::numeric_limits<double>::infinity()}) {
     ConnectedBench bench;
