@@ -202,7 +202,8 @@ Attached Component::meet(const Introduction& introduction, char* text, std::uint
   probe_->follow(made_->runner());
   const UploadResult result = boot(introduction);
   service_.store(made_.get(), std::memory_order_release);
-  if (result.fault == UploadFault::kNone) return Attached::kStarted;
+  if (result.fault == UploadFault::kNone)
+    return made_->uploader().record().confirmed_fingerprint == 0 ? Attached::kEmpty : Attached::kStarted;
   std::snprintf(text, room, "%s", describe(result).c_str());
   return Attached::kImageRefused;
 }
