@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/unit/firmware/upload_rig.h"
+#include "tools/upload/live.h"
 
 namespace vernier::in_controller_test {
 namespace {
@@ -54,6 +55,28 @@ TEST_F(InController, GivenImageRunsUnsignedAndTheStoreKeepsWhatItHas) {
   EXPECT_EQ(cycle().mode(), Mode::kActive);
   EXPECT_EQ(service_->uploader().record().confirmed, kNoSlot);
   EXPECT_NE(service_->uploader().record().confirmed_fingerprint, 0u);
+}
+
+TEST_F(InController, AnswersAgreeOnAGivenImage) {
+  run(1);
+  const SlotsRecord record = service_->uploader().record();
+  SlotsReply slots{};
+  slots.confirmed = record.confirmed, slots.trial = record.trial;
+  slots.confirmed_fingerprint = record.confirmed_fingerprint;
+  BoardState state{};
+  state.image = ImageState::kConfirmed, state.fingerprint = record.confirmed_fingerprint;
+  const std::string text = live_text({}, {}, {}, slots, {}, state);
+  EXPECT_NE(text.find(" confirmed (given at the start, not in the store)\n"), std::string::npos) << text;
+  EXPECT_EQ(text.find("image none"), std::string::npos) << text;
+  EXPECT_NE(confirmed_text(slots).find(" is confirmed (given at the start, not in the store)"),
+            std::string::npos);
+  EXPECT_EQ(confirmed_json(slots), live_json({}, {}, {}, slots, {}, state)["running"]);
+  SlotsReply none{};
+  none.confirmed = none.trial = kNoSlot;
+  EXPECT_EQ(confirmed_text(none), "the board has no confirmed image");
+  EXPECT_EQ(confirmed_json(none), nullptr);
+  none.confirmed = 1, none.confirmed_fingerprint = 0xab;
+  EXPECT_EQ(confirmed_text(none), "00000000000000ab is confirmed");
 }
 
 TEST_F(InController, ClockThatStandsStillIsNoFault) {
