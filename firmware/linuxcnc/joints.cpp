@@ -48,13 +48,18 @@ void Joints::start(Joint& joint, double position) noexcept {
   joint.reading.restarted = true;
 }
 
+double Joints::greatest_speed(const Joint& joint) noexcept {
+  const double told = *joint.pins->max_velocity;
+  return std::max(std::isfinite(told) ? told : 0.0, joint.fastest);
+}
+
 // LinuxCNC lays a joint that it does not enable onto its feedback: after a following error at once, by as
 // much as that was. That is no motion of the axis, whose sense stays what it was; what the controller itself
 // commands leaves the feedback behind. Backlash on its way makes the two differ a little.
-bool Joints::laid_on_feedback(const Joint& joint, double position) noexcept {
+bool Joints::laid_on_feedback(const Joint& joint, double position, double seconds) noexcept {
   const double jump = std::abs(position - joint.position);
   const double off = std::abs(*joint.pins->cmd_in - *joint.pins->fb_out);
-  return jump * joint.counts > joint.jump && off < kOfAJump * jump;
+  return jump > greatest_speed(joint) * seconds && off < kOfAJump * jump;
 }
 
 void Joints::lay(Joint& joint, double position) noexcept {
@@ -83,7 +88,9 @@ void Joints::move(Joint& joint, double position, double per_second) noexcept {
   joint.acceleration = (velocity - joint.velocity) * per_second;
   joint.velocity = velocity;
   joint.position = position;
-  joint.fastest = std::max(joint.fastest, std::abs(velocity));
+  // What is a fault is no speed of the joint.
+  if (std::abs(travel) * joint.counts <= joint.jump)
+    joint.fastest = std::max(joint.fastest, std::abs(velocity));
   turn(joint, travel);
   AxisReading& reading = joint.reading;
   reading.restarted = false;
@@ -106,13 +113,17 @@ void Joints::read(double seconds) noexcept {
     joint.given = std::isfinite(commanded) && std::isfinite(position) && answers &&
                   std::abs(position) * joint.counts < kMostCounts;
     all_homed_ = all_homed_ && homed;
+    ++joint.ticks;
     if (!joint.given) continue;
+    // Since the reading before: one that was missing made the way no faster.
+    const double elapsed = joint.ticks * seconds;
+    joint.ticks = 0;
     if (!joint.known || (homed && !joint.homed))
       start(joint, position);
-    else if (homed && laid_on_feedback(joint, position))
+    else if (homed && laid_on_feedback(joint, position, elapsed))
       lay(joint, position);
     else
-      move(joint, homed ? position : joint.position, 1 / seconds);
+      move(joint, homed ? position : joint.position, 1 / elapsed);
     joint.known = true;
     joint.homed = homed;
     joint.reading.position = AxisPosition(whole(joint.position * joint.counts));
@@ -154,8 +165,7 @@ double Joints::room_above(const Joint& joint) noexcept {
 // At the joint's greatest speed V the way to a limit shrinks by V a tick, so that the share S / V of it
 // shrinks by the slew limit S; a count less, since it is rounded to whole ones.
 double Joints::share_of_way(const Joint& joint) const noexcept {
-  const double told = *joint.pins->max_velocity;
-  const double fastest = std::max(std::isfinite(told) ? told : 0.0, joint.fastest) * joint.counts * seconds_;
+  const double fastest = greatest_speed(joint) * joint.counts * seconds_;
   const auto slew = static_cast<double>(joint.slew);
   const double fades = std::max(slew - 1, slew / 2);
   return fades < kShareOfWay * fastest ? fades / fastest : kShareOfWay;

@@ -62,6 +62,7 @@ class Joints : public AxisReader, public CorrectionWriter {
     double commanded = 0;              // the last command that was a number
     double added = 0;                  // to the command of the tick before
     double fastest = 0;                // that it has been commanded, units/s
+    double ticks = 0;                  // since the last reading
     std::int64_t slew = 0;             // counts a tick
     AxisTravel correction, given_out;  // of this tick; after the limit
     AxisReading reading;
@@ -72,7 +73,8 @@ class Joints : public AxisReader, public CorrectionWriter {
   void hold(Joint& joint, std::uint32_t i) noexcept;
   static void start(Joint& joint, double position) noexcept;
   static void move(Joint& joint, double position, double per_second) noexcept;
-  static bool laid_on_feedback(const Joint& joint, double position) noexcept;
+  static double greatest_speed(const Joint& joint) noexcept;
+  static bool laid_on_feedback(const Joint& joint, double position, double seconds) noexcept;
   static void lay(Joint& joint, double position) noexcept;
   static void turn(Joint& joint, double travel) noexcept;
 

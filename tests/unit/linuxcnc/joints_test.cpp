@@ -173,6 +173,32 @@ TEST(Joints, CommandThatIsLaidOnTheFeedbackIsNoJump) {
   EXPECT_EQ(bench.watch(bench.fb_out, 10.0005), Fault::kNone);
 }
 
+TEST(Joints, SpeedOfAFollowingErrorIsNoSpeedOfTheJoint) {
+  // GIVEN a joint that goes 10 mm/s and is laid on its feedback by 1.9 mm, no jump to the cycle
+  Watched bench;
+  bench.position = 10, bench.go(10);
+  for (int k = 0; k <= 190; ++k) bench.watch(10 + 0.01 * k, 10.0005);
+  EXPECT_EQ(bench.watch(bench.fb_out, 10.0005), Fault::kNone);
+  EXPECT_EQ(bench.monitor.state().velocity, AxisSpeed(0));
+  // THEN a limit at 1 mm lets what 1/128 of the way is, as before: not that of a joint of 1900 mm/s
+  bench.joints.set_slew(0, 200);
+  bench.high = 11;
+  EXPECT_EQ(bench.joints.within_range(0, AxisTravel(20'000)), AxisTravel(1'000'000 / 128));
+}
+
+TEST(Joints, ReadingThatWasMissingMakesTheWayNoFaster) {
+  ConnectedBench bench;
+  bench.position = 1.01;
+  bench.go(1.01);
+  bench.position = kNaN;
+  bench.go(1.02);
+  bench.position = 1.03;
+  bench.go(1.03);
+  AxisReading reading;
+  bench.joints.read_axis(0, reading);
+  EXPECT_NEAR(static_cast<double>(reading.velocity.count), 10e6, 1) << "a rounding";
+}
+
 TEST(Joints, JumpToAnywhereElseIsOne) {
   Watched bench;
   bench.watch(10, 10);
