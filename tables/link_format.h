@@ -66,6 +66,7 @@ enum class LinkAccess : std::uint8_t {
 };
 
 struct SlotsReply {
+  // Of an image that was given at the start (vernier-hal --image) too, though no slot holds it.
   std::uint64_t confirmed_fingerprint, trial_fingerprint;
   std::uint64_t issued;           // of the confirmed image
   std::uint64_t newest_issued;    // the newest that was ever tried

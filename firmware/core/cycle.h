@@ -84,6 +84,8 @@ class Cycle {
   AxisTravel wanted(std::uint32_t axis) const noexcept { return AxisTravel(drive_[axis].whole); }
   AxisTravel achieved(std::uint32_t axis) const noexcept { return drive_[axis].achieved; }
   std::uint8_t limits(std::uint32_t axis) const noexcept { return drive_[axis].limits; }
+  /// Most that the correction of a board's axis changes by in a tick, counts; 0 while nothing has moved it.
+  std::int64_t slew(std::uint32_t axis) const noexcept { return drive_[axis].slew; }
   /// The correction that a board's axis was given last.
   AxisTravel written(std::uint32_t axis) const noexcept { return written_[axis]; }
   /// Newest good state of a board's axis, and value of a board's input.

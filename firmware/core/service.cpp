@@ -52,7 +52,7 @@ void Service::read_enable() noexcept {
   bool on = false;
   const bool before = enabled_;
   enabled_ = board_.enable->read_line(on) == HalFault::kNone && on;
-  if (enabled_ && !before) activated_ = false, to_clear_ = options_.clear_on_enable;
+  if (enabled_ && !before) activated_ = taken_out_ = false, to_clear_ = options_.clear_on_enable;
 }
 
 void Service::tell_health(const TickReport& report) noexcept {
@@ -76,12 +76,20 @@ void Service::pump() noexcept {
 }
 
 Command Service::next_command() noexcept {
-  const Command asked = exchange_.command.exchange(Command::kNone, std::memory_order_acq_rel);
+  Command asked = exchange_.command.exchange(Command::kNone, std::memory_order_acq_rel);
+  if (asked == Command::kActivate) taken_out_ = false;
+  if (asked == Command::kDeactivate) taken_out_ = true;
   if (ending_ || !enabled_) {
     const bool in =
         cycle_.mode() == Mode::kActive || (cycle_.mode() == Mode::kReady && cycle_.weight() != WeightQ16{});
     if (in) return Command::kDeactivate;
     return asked == Command::kClearFault && !ending_ ? asked : Command::kNone;
+  }
+  // As switching it on does: what the fault took out comes in again.
+  if (asked == Command::kClearFault && options_.clear_on_enable && cycle_.latched() != Fault::kNone) {
+    asked = Command::kNone;
+    to_clear_ = true;
+    activated_ = taken_out_;
   }
   // A fault that is still ramped out is cleared when it is out.
   if (to_clear_ && asked == Command::kNone && cycle_.latched() != Fault::kNone)

@@ -33,7 +33,8 @@ struct ServiceOptions {
   std::uint32_t healthy_toggle =
       0;                         // ticks between two edges of the healthy line while all is well; 0: it is on
   bool activate = false;         // bring the correction in when the board becomes ready, once for each enable
-  bool clear_on_enable = false;  // switching the enable line on clears a fault that is latched
+  bool clear_on_enable = false;  // switching the enable line on clears a fault that is latched; with
+                                 // `activate` the correction then comes in, as after every clearing
   bool in_controller = false;    // tick() is called in the controller's own cycle (Runner::follow_caller)
   std::uint32_t ticks_kept = Exchange::kHistory;  // for readers of the history; powers of two
   std::uint32_t touches_kept = Exchange::kTouches;
@@ -143,6 +144,7 @@ class Service : private CommandHandler {
   EquationRecord equation_;
   WeightQ16 weight_ = kFullWeight;
   bool activated_ = false, ending_ = false, enabled_ = true, to_clear_ = false;
+  bool taken_out_ = false;  // by a command, since the line was switched on
   std::uint32_t until_edge_ = 0;
   bool line_ = false;
   enum class Told : std::uint8_t { kNothing, kUnwell, kWell } told_ = Told::kNothing;

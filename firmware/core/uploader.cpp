@@ -28,6 +28,12 @@ SlotRecord read_record(SlotStore& store, std::uint32_t place) {
   return old.magic == kSlotMagicV1 ? upgraded(old) : record;
 }
 
+// A place in which something stands, be it no record.
+bool is_written(SlotStore& store, std::uint32_t place) {
+  std::uint8_t byte = 0;
+  return store.read_record(place, &byte, 1) != HalFault::kNoReading;
+}
+
 bool names(const char (&board)[kBoardNameBytes], const Name& name) {
   char wanted[kBoardNameBytes] = {};
   std::memcpy(wanted, name.c_str(), name.size());
@@ -180,7 +186,10 @@ UploadResult Uploader::load_v1(std::uint8_t slot, LoadedProgram& loaded) {
 
 // A reset ends a trial. Where even that cannot be stored, the state on the medium says the same next time.
 void Uploader::read_slots() {
-  slots_ = Slots::load(read_record(store_, 0), read_record(store_, 1));
+  const SlotRecord first = read_record(store_, 0), second = read_record(store_, 1);
+  // The first record that was ever written may have been cut by the power; nothing was confirmed by then.
+  records_lost_ = !is_valid(first) && !is_valid(second) && is_written(store_, 0) && is_written(store_, 1);
+  slots_ = Slots::load(first, second);
   if (slots_.trial() != kNoSlot) store(slots_.revert());
   publish();
 }
@@ -207,6 +216,12 @@ UploadResult Uploader::boot_with(std::span<const std::uint8_t> image) {
 
 UploadResult Uploader::boot() {
   read_slots();
+  image_lost_ = records_lost_;
+  if (records_lost_) {
+    UploadResult lost = refused(UploadFault::kStore);
+    lost.offender = "both records";
+    return lost;
+  }
   if (slots_.confirmed() == kNoSlot) return {};
   image_lost_ = true;
   ProgramRef loaded = programs_.take();

@@ -57,7 +57,8 @@ class Uploader {
 
   // ---- the store
   /// After power-on: gives up an image that was on trial, checks the confirmed one, and has it run. The
-  /// result says why there is none, kNone also where none was ever confirmed. setup.
+  /// result says why there is none, kNone also where none was ever confirmed; kStore where neither record
+  /// of the store can be read any more, so that nobody knows. setup.
   UploadResult boot();
   /// As boot(), but what runs is an image that whoever starts the board gives: nobody signed it, and the
   /// medium keeps what it has. setup.
@@ -117,6 +118,7 @@ class Uploader {
   Published<SlotsRecord> published_;
   SlotsRecord record_;
   std::atomic<bool> image_lost_{false};
+  bool records_lost_ = false;
   // The links', until finish().
   ProgramRef coming_;
   bool receiving_ = false;

@@ -90,6 +90,7 @@ void Component::tick(long period_ns) noexcept {
     if (hold != held_) service->order(hold ? Command::kHold : Command::kRelease);
     cleared_ = clear, held_ = hold;
     show(service->tick());
+    for (std::uint32_t i = 0; i < wiring_.axes.size(); ++i) joints_.set_slew(i, made_->cycle().slew(i));
   }
   joints_.write();
   const bool at_limit = joints_.any_at_limit();
@@ -201,7 +202,8 @@ Attached Component::meet(const Introduction& introduction, char* text, std::uint
   probe_->follow(made_->runner());
   const UploadResult result = boot(introduction);
   service_.store(made_.get(), std::memory_order_release);
-  if (result.fault == UploadFault::kNone) return Attached::kStarted;
+  if (result.fault == UploadFault::kNone)
+    return made_->uploader().record().confirmed_fingerprint == 0 ? Attached::kEmpty : Attached::kStarted;
   std::snprintf(text, room, "%s", describe(result).c_str());
   return Attached::kImageRefused;
 }

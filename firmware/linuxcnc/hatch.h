@@ -59,10 +59,11 @@ static_assert(sizeof(Introduction) <= Call::kMostBytes);
 
 /// What the component makes of it.
 enum class Attached : std::int32_t {
-  kStarted = 0,       // the image runs, or none was ever confirmed
+  kStarted = 0,       // the image runs
   kResumed = 1,       // it goes on with what it runs
   kImageRefused = 2,  // bytes: why
   kOtherStore = 3,    // it has been started with another store or other keys, and keeps them
+  kEmpty = 4,         // the store has no image, and none was given
 };
 
 /// The memory that component and vernier-hal share. Neither waits for the other in a tick: the component has

@@ -41,7 +41,8 @@ const char* const kHelperUsage =
     "one\n"
     "  --board NAME           what an image may be signed for; --class NAME: the board's class\n"
     "  -V, --version          print the version and end\n"
-    "Exit status: 0 ended, 1 bad input or usage, 2 the component is not there or has another store.\n";
+    "Exit status: 0 ended, 1 bad input or usage, 2 the component is not there, or was started with another\n"
+    "store, other keys or another name of the board.\n";
 
 const char* const kHelperVersion = "vernier-hal " VERNIER_VERSION " (" VERNIER_COMMIT ")\n";
 

@@ -13,10 +13,14 @@ constexpr double kMostCounts = 1e15;
 // A turning point smaller than a count is none: inverse kinematics round.
 constexpr double kTurnsAt = 1;
 
-// Outward share of the way to a limit: 1 m/s changes a correction by 8 um a tick at most.
+// Largest outward share of the way to a limit, where the slew limit would let more.
 constexpr double kShareOfWay = 1.0 / 128;
-// What a held correction moves by in a tick when a limit is changed under it, counts.
-constexpr double kLetGo = 100;
+
+// Is it connected to nothing: HAL points such a pin at a place of its own.
+bool is_loose(const hal_float_t* pin, const hal_float_t* loose) noexcept { return pin == loose; }
+
+// Part of a jump by which it may miss the feedback that it goes to.
+constexpr double kOfAJump = 1.0 / 8;
 
 std::int64_t whole(double counts) noexcept {
   return std::llround(std::clamp(counts, -kMostCounts, kMostCounts));
@@ -29,15 +33,38 @@ Joints::Joints(const Pins& pins, const Wiring& wiring, double mm_per_unit) noexc
   for (std::uint32_t i = 0; i < count_; ++i) {
     joints_[i].pins = &pins.joint[i];
     joints_[i].counts = wiring.axes[i].rotary ? kCountsPerDeg : kCountsPerMm * mm_per_unit;
+    const CycleLimits limits;
+    const AxisLimits& axis = wiring.axes[i].rotary ? limits.rotary : limits.linear;
+    joints_[i].jump = static_cast<double>(axis.step);
   }
 }
 
 // Another zero than before: how it got there is no motion.
 void Joints::start(Joint& joint, double position) noexcept {
   joint.position = position;
-  joint.velocity = joint.acceleration = joint.back = joint.since = joint.travel = 0;
+  joint.velocity = joint.acceleration = joint.back = joint.since = 0;
   joint.sense = 0;
   joint.reading = {};
+  joint.reading.restarted = true;
+}
+
+double Joints::greatest_speed(const Joint& joint) noexcept {
+  const double told = *joint.pins->max_velocity;
+  return std::max(std::isfinite(told) ? told : 0.0, joint.fastest);
+}
+
+// LinuxCNC lays a joint that it does not enable onto its feedback: after a following error at once, by as
+// much as that was. That is no motion of the axis, whose sense stays what it was; what the controller itself
+// commands leaves the feedback behind. Backlash on its way makes the two differ a little.
+bool Joints::laid_on_feedback(const Joint& joint, double position, double seconds) noexcept {
+  const double jump = std::abs(position - joint.position);
+  const double off = std::abs(*joint.pins->cmd_in - *joint.pins->fb_out);
+  return jump > greatest_speed(joint) * seconds && off < kOfAJump * jump;
+}
+
+void Joints::lay(Joint& joint, double position) noexcept {
+  joint.position = position;
+  joint.velocity = joint.acceleration = 0;
   joint.reading.restarted = true;
 }
 
@@ -61,7 +88,9 @@ void Joints::move(Joint& joint, double position, double per_second) noexcept {
   joint.acceleration = (velocity - joint.velocity) * per_second;
   joint.velocity = velocity;
   joint.position = position;
-  joint.travel = travel * joint.counts;
+  // What is a fault is no speed of the joint.
+  if (std::abs(travel) * joint.counts <= joint.jump)
+    joint.fastest = std::max(joint.fastest, std::abs(velocity));
   turn(joint, travel);
   AxisReading& reading = joint.reading;
   reading.restarted = false;
@@ -72,19 +101,29 @@ void Joints::move(Joint& joint, double position, double per_second) noexcept {
 }
 
 void Joints::read(double seconds) noexcept {
+  seconds_ = seconds;
   all_homed_ = true;
   for (std::uint32_t i = 0; i < count_; ++i) {
     Joint& joint = joints_[i];
-    const double given = *joint.pins->pos_in, commanded = *joint.pins->cmd_in;
-    const double position = std::isnan(given) ? commanded : given;
+    const double given = *joint.pins->pos_in, commanded = *joint.pins->cmd_in, feedback = *joint.pins->fb_in;
+    const double position =
+        std::isnan(given) && is_loose(joint.pins->pos_in, joint.pins->pos_loose) ? commanded : given;
     const bool homed = *joint.pins->homed;
-    joint.given = std::isfinite(position) && std::abs(position) * joint.counts < kMostCounts;
+    const bool answers = std::isfinite(feedback) || is_loose(joint.pins->fb_in, joint.pins->fb_loose);
+    joint.given = std::isfinite(commanded) && std::isfinite(position) && answers &&
+                  std::abs(position) * joint.counts < kMostCounts;
     all_homed_ = all_homed_ && homed;
+    ++joint.ticks;
     if (!joint.given) continue;
+    // Since the reading before: one that was missing made the way no faster.
+    const double elapsed = joint.ticks * seconds;
+    joint.ticks = 0;
     if (!joint.known || (homed && !joint.homed))
       start(joint, position);
+    else if (homed && laid_on_feedback(joint, position, elapsed))
+      lay(joint, position);
     else
-      move(joint, homed ? position : joint.position, 1 / seconds);
+      move(joint, homed ? position : joint.position, 1 / elapsed);
     joint.known = true;
     joint.homed = homed;
     joint.reading.position = AxisPosition(whole(joint.position * joint.counts));
@@ -123,39 +162,50 @@ double Joints::room_above(const Joint& joint) noexcept {
   return std::max(0.0, (*joint.pins->max_limit - joint.position) * joint.counts);
 }
 
+// At the joint's greatest speed V the way to a limit shrinks by V a tick, so that the share S / V of it
+// shrinks by the slew limit S; a count less, since it is rounded to whole ones.
+double Joints::share_of_way(const Joint& joint) const noexcept {
+  const double fastest = greatest_speed(joint) * joint.counts * seconds_;
+  const auto slew = static_cast<double>(joint.slew);
+  const double fades = std::max(slew - 1, slew / 2);
+  return fades < kShareOfWay * fastest ? fades / fastest : kShareOfWay;
+}
+
 AxisTravel Joints::within_range(std::uint32_t axis, AxisTravel correction) const noexcept {
   if (axis >= count_) return AxisTravel{};
   const Joint& joint = joints_[axis];
-  const double low = std::ceil(kShareOfWay * room_below(joint)),
-               high = std::floor(kShareOfWay * room_above(joint));
+  const double share = share_of_way(joint);
+  const double low = std::ceil(share * room_below(joint)), high = std::floor(share * room_above(joint));
   return AxisTravel(whole(std::clamp(static_cast<double>(correction.count), low, high)));
 }
 
-// What is asked for changes within the slew limit, and the way to a limit no faster than the joint; a limit
-// that is set anew may not make a step either.
+// Whatever the joint, its limits or the share of the way do, the slew limit comes first: a joint that is
+// faster than it ever was, or a limit that is set under a correction, may find it beyond for that long.
 void Joints::hold(Joint& joint, std::uint32_t i) noexcept {
   const AxisTravel target = within_range(i, joint.correction);
-  const auto asked = static_cast<double>(joint.correction.count - joint.asked.count);
-  const double most = std::max(std::abs(asked), kLetGo + std::ceil(kShareOfWay * std::abs(joint.travel)));
-  const auto way = static_cast<double>(target.count - joint.given_out.count);
-  joint.given_out.count += whole(std::clamp(way, -most, most));
-  joint.asked = joint.correction;
+  joint.given_out.count += std::clamp(target.count - joint.given_out.count, -joint.slew, joint.slew);
   const auto full = static_cast<double>(joint.correction.count);
   joint.at_limit = full < room_below(joint) || full > room_above(joint);
 }
 
 // The feedback answers the command of the tick before, which had that tick's correction. Where it is the
-// command's own signal, it has just become this tick's.
+// command's own signal, it has just become this tick's. What is no number stays where it was: the drive
+// stands, and a feedback that stands is a following error to the controller as soon as the joint is to move.
 void Joints::write() noexcept {
   for (std::uint32_t i = 0; i < count_; ++i) {
     Joint& joint = joints_[i];
     hold(joint, i);
     const double added = static_cast<double>(joint.given_out.count) / joint.counts;
-    const double commanded = *joint.pins->cmd_in, sent = commanded + added;
+    joint.commanded = std::isfinite(*joint.pins->cmd_in) ? *joint.pins->cmd_in : joint.commanded;
+    const double sent = joint.commanded + added;
     *joint.pins->cmd_out = sent;
     const double feedback = *joint.pins->fb_in;
-    const bool is_the_command = std::isnan(feedback) || feedback == sent;
-    *joint.pins->fb_out = is_the_command ? commanded : feedback - joint.added;
+    const bool is_the_command =
+        feedback == sent || (std::isnan(feedback) && is_loose(joint.pins->fb_in, joint.pins->fb_loose));
+    if (is_the_command)
+      *joint.pins->fb_out = joint.commanded;
+    else if (std::isfinite(feedback))
+      *joint.pins->fb_out = feedback - joint.added;
     *joint.pins->correction = added;
     *joint.pins->at_limit = joint.at_limit;
     joint.added = added;

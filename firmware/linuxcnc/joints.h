@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
+#include "firmware/core/cycle.h"
 #include "firmware/linuxcnc/pins.h"
 #include "hal/axis_reader.h"
 #include "hal/correction_writer.h"
@@ -11,8 +12,16 @@ namespace vernier {
 /// smoothed.
 ///
 /// A correction that would take a joint past its limit fades out before: outward no more than a share of the
-/// way that the command has left, so that the drive comes to the limit with the command and not faster than
-/// it.
+/// way that the command has left, and that so small that at the joint's greatest speed (the pin max-velocity,
+/// or what it was seen to reach, where that is more) it fades within the slew limit. A change of what is
+/// given out is within the slew limit always; the drive stays within the joint's limits where the joint is no
+/// faster than that.
+///
+/// A connected pin that is no number is no reading of its joint: command, position and feedback alike. The
+/// drive's command and the controller's feedback then stay where they were.
+///
+/// A command that jumps onto the feedback (LinuxCNC does that with a joint that it no longer enables) is no
+/// jump of the axis: the reading goes on from there.
 ///
 /// A joint that is not homed counts from nowhere: its reading stays where it was, and goes on from its new
 /// zero when it is homed.
@@ -25,6 +34,8 @@ class Joints : public AxisReader, public CorrectionWriter {
   void read(double seconds) noexcept;
   /// Corrections to the commands, and off the feedback as they were added. realtime.
   void write() noexcept;
+  /// Most that a joint's correction may change by in a tick, counts; 0: not at all. realtime.
+  void set_slew(std::uint32_t joint, std::int64_t counts) noexcept { joints_[joint].slew = counts; }
   bool all_homed() const noexcept { return all_homed_; }
   /// Would the correction take a joint, or any, past its limit? It is held then. realtime.
   bool at_limit(std::uint32_t joint) const noexcept { return joints_[joint].at_limit; }
@@ -43,25 +54,34 @@ class Joints : public AxisReader, public CorrectionWriter {
   struct Joint {
     const JointPins* pins = nullptr;
     double counts = 1;  // in a unit of the machine
+    double jump = 0;    // counts in a tick that no axis travels
     bool known = false, homed = false, given = false, at_limit = false;
     double position = 0, velocity = 0, acceleration = 0;  // units, s
     double back = 0, since = 0;
     int sense = 0;
-    double added = 0;                         // to the command of the tick before
-    double travel = 0;                        // of this tick, counts
-    AxisTravel correction, asked, given_out;  // of this tick; of the one before; after the limit
+    double commanded = 0;              // the last command that was a number
+    double added = 0;                  // to the command of the tick before
+    double fastest = 0;                // that it has been commanded, units/s
+    double ticks = 0;                  // since the last reading
+    std::int64_t slew = 0;             // counts a tick
+    AxisTravel correction, given_out;  // of this tick; after the limit
     AxisReading reading;
   };
+  double share_of_way(const Joint& joint) const noexcept;
   static double room_below(const Joint& joint) noexcept;
   static double room_above(const Joint& joint) noexcept;
   void hold(Joint& joint, std::uint32_t i) noexcept;
   static void start(Joint& joint, double position) noexcept;
   static void move(Joint& joint, double position, double per_second) noexcept;
+  static double greatest_speed(const Joint& joint) noexcept;
+  static bool laid_on_feedback(const Joint& joint, double position, double seconds) noexcept;
+  static void lay(Joint& joint, double position) noexcept;
   static void turn(Joint& joint, double travel) noexcept;
 
   const Pins& pins_;
   std::uint32_t count_;
   double mm_per_unit_;
+  double seconds_ = 0.001;  // of a tick
   bool all_homed_ = false;
   Joint joints_[kMaxAxes];
 };

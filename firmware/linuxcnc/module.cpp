@@ -7,11 +7,11 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstring>
+#include <cstdio>
 #include <new>
-#include <string_view>
 
 #include "firmware/linuxcnc/component.h"
+#include "firmware/linuxcnc/load_arguments.h"
 
 // Arguments of `loadrt vernier`: filled in by rtapi_app, which finds them by the names that the macros make.
 static char* axes[vernier::kMaxAxes];
@@ -19,7 +19,7 @@ RTAPI_MP_ARRAY_STRING(axes, 8, "names of the machine's axes, those of the joints
 static char* inputs[vernier::kMaxInputs];
 RTAPI_MP_ARRAY_STRING(inputs, 24, "names of measured inputs: a pin each")
 static char* rotary[vernier::kMaxAxes];
-RTAPI_MP_ARRAY_STRING(rotary, 8, "axes that turn (default: A, B and C)")
+RTAPI_MP_ARRAY_STRING(rotary, 8, "axes that turn (default: A, B and C; none: none of them)")
 static char* units;
 RTAPI_MP_STRING(units, "of lengths, as [TRAJ]LINEAR_UNITS: mm (default) or inch")
 MODULE_LICENSE("GPL");
@@ -35,45 +35,6 @@ int component_id = -1, memory_id = -1;
 Component* component = nullptr;
 
 void say(int level, const char* text) { rtapi_print_msg(static_cast<msg_level_t>(level), "%s", text); }
-
-// The array ends where rtapi_app has filled nothing in.
-template <std::size_t kSize>
-bool names(char* const (&list)[kSize], std::string_view name) {
-  for (const char* const one : list)
-    if (one != nullptr && name == one) return true;
-  return false;
-}
-
-bool fits(const char* name) {
-  const std::size_t length = std::strlen(name);
-  return length > 0 && length < kImageNameBytes;
-}
-
-bool wire(Wiring& wiring) {
-  const bool by_name = rotary[0] == nullptr;
-  for (const char* const name : axes) {
-    if (name == nullptr) continue;
-    if (!fits(name)) return false;
-    const std::string_view text(name);
-    const bool turns = by_name ? text == "A" || text == "B" || text == "C" : names(rotary, text);
-    for (const Wiring::Axis& other : wiring.axes)
-      if (other.name == Name(name)) return false;
-    // The controller never takes a whole turn back.
-    wiring.axes.push_back({.name = name, .rotary = turns, .rollover = false, .continuous = turns});
-  }
-  for (const char* const name : inputs) {
-    if (name == nullptr) continue;
-    if (!fits(name)) return false;
-    wiring.inputs.push_back(name);
-  }
-  return !wiring.axes.empty();
-}
-
-// 0: no unit of lengths that there is.
-double mm_per_unit() {
-  const std::string_view text(units == nullptr ? "mm" : units);
-  return text == "mm" ? 1 : text == "inch" || text == "in" ? 25.4 : 0;
-}
 
 void run(void*, long period_ns) { component->tick(period_ns); }
 
@@ -101,13 +62,11 @@ int leave(int result) {
 }
 
 int enter() {
-  Wiring wiring;
-  if (!wire(wiring)) {
-    say(RTAPI_MSG_ERR, "vernier: axes=X,Y,... is missing, or a name is empty, too long or there twice\n");
-    return -EINVAL;
-  }
-  if (mm_per_unit() == 0) {
-    say(RTAPI_MSG_ERR, "vernier: units are mm or inch\n");
+  LoadedWiring loaded;
+  char why[120], text[140];
+  if (!read_load_arguments({axes, inputs, rotary, units}, loaded, why)) {
+    std::snprintf(text, sizeof(text), "vernier: %s\n", why);
+    say(RTAPI_MSG_ERR, text);
     return -EINVAL;
   }
   component_id = hal_init("vernier");
@@ -117,9 +76,9 @@ int enter() {
     say(RTAPI_MSG_ERR, "vernier: no memory to share with vernier-hal\n");
     return leave(-ENOMEM);
   }
-  const Pins* const pins = make_pins(component_id, wiring);
+  const Pins* const pins = make_pins(component_id, loaded.wiring);
   if (pins == nullptr) return leave(-EINVAL);
-  component = new Component(*pins, *hatch, wiring, mm_per_unit(), say);
+  component = new Component(*pins, *hatch, loaded.wiring, loaded.mm_per_unit, say);
   if (!component->start()) return leave(-EAGAIN);
   // It computes in floating point, and there is one of it.
   if (const int result = hal_export_funct("vernier.0", run, nullptr, 1, 0, component_id); result < 0)

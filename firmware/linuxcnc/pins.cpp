@@ -53,8 +53,10 @@ void make_joint(Exporter& pins, JointPins& joint, unsigned n) noexcept {
   pins.joint(&joint.fb_out, HAL_OUT, 0, n, "fb-out");
   pins.joint(&joint.correction, HAL_OUT, 0, n, "correction");
   pins.joint(&joint.pos_in, HAL_IN, kUnknown, n, "pos-in");
+  joint.fb_loose = joint.fb_in, joint.pos_loose = joint.pos_in;
   pins.joint(&joint.min_limit, HAL_IN, -kNoLimit, n, "min-limit");
   pins.joint(&joint.max_limit, HAL_IN, kNoLimit, n, "max-limit");
+  pins.joint(&joint.max_velocity, HAL_IN, 0, n, "max-velocity");
   pins.joint(&joint.homed, HAL_IN, true, n, "homed");
   pins.joint(&joint.at_limit, HAL_OUT, false, n, "at-limit");
   pins.joint(&joint.saturated, HAL_OUT, false, n, "saturated");

@@ -9,10 +9,12 @@ namespace vernier {
 /// Pins of one joint, `vernier.0.joint.N.`: mm or deg, in the units of the machine.
 struct JointPins {
   hal_float_t *cmd_in, *cmd_out, *fb_in, *fb_out, *correction;
-  hal_float_t* pos_in;                 // the joint's position; not a number (not connected): cmd-in
+  hal_float_t* pos_in;                 // the joint's position; not connected: cmd-in
   hal_float_t *min_limit, *max_limit;  // that command and correction together keep
+  hal_float_t* max_velocity;           // of the joint; 0: what it was seen to reach
   hal_bit_t* homed;                    // on where it is not connected
   hal_bit_t *at_limit, *saturated;
+  const hal_float_t *pos_loose, *fb_loose;  // where HAL points them while they are not connected
 };
 
 /// All pins of the component, in HAL's memory.

@@ -101,6 +101,12 @@ bool introduce(Hatch& hatch, const Introduction& introduction) {
     case Attached::kStarted:
       std::fputs("vernier-hal: the component has its image\n", stderr);
       return true;
+    case Attached::kEmpty:
+      std::fputs(
+          "vernier-hal: the store has no image: nothing is corrected until one is uploaded or given with "
+          "--image\n",
+          stderr);
+      return true;
     case Attached::kResumed:
       std::fputs("vernier-hal: the component goes on with what it runs\n", stderr);
       return true;

@@ -10,6 +10,7 @@
 #include "tools/safety/safety_sheet.h"
 #include "tools/text/error.h"
 #include "tools/upload/client.h"
+#include "tools/upload/live.h"
 #include "tools/upload/signing.h"
 
 namespace vernier::upload_cli {
@@ -45,7 +46,7 @@ nlohmann::ordered_json slots_json(const SlotsReply& slots) {
     if (slot == kNoSlot) return nullptr;
     return fmt::format("{:016x}", fingerprint);
   };
-  return {{"confirmed", hex(slots.confirmed, slots.confirmed_fingerprint)},
+  return {{"confirmed", confirmed_json(slots)},
           {"trial", hex(slots.trial, slots.trial_fingerprint)},
           {"trial_left_s", slots.trial_left_ms * 1e-3}};
 }
@@ -115,10 +116,8 @@ void run(const Arguments& arguments) {
                "{:016x} runs on trial for {:.0f} s more, then the board goes back to what it ran before\n"
                "keep it: vernier upload --confirm --to {}\n",
                slots.trial_fingerprint, slots.trial_left_ms * 1e-3, arguments.url);
-  else if (slots.confirmed != kNoSlot)
-    fmt::print(people, "{:016x} is confirmed\n", slots.confirmed_fingerprint);
   else
-    fmt::print(people, "the board has no confirmed image\n");
+    fmt::print(people, "{}\n", confirmed_text(slots));
   write_json(arguments.json, slots_json(slots));
 }
 

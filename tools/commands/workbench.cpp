@@ -82,7 +82,7 @@ std::vector<std::uint8_t> board_image(const std::string& url, const std::string&
   Progress progress("image-diff");
   auto upload =
       client.confirmed([&](double share) { progress.update(share, "reading what the board runs"); });
-  if (!upload) throw LimitNotMet("the board has no confirmed image");
+  if (!upload) throw LimitNotMet("the board's store has no confirmed image");
   return image_in(*upload);
 }
 
@@ -137,7 +137,7 @@ void register_image_diff(CLI::App& vernier) {
       "--key", arguments->key,
       "secret key of `vernier keys` (or VERNIER_KEY): a board with keys gives its image to nobody else");
   command->add_option("--json", arguments->json, "result for programs; - is standard output");
-  command->footer("Exit status 0 done, 1 bad input or no board, 2 the board has no confirmed image.");
+  command->footer("Exit status 0 done, 1 bad input or no board, 2 the board's store has no confirmed image.");
   command->callback([arguments] { run_diff(*arguments); });
 }
 

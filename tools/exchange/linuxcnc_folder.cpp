@@ -60,7 +60,7 @@ std::string load_line(const Machine& machine) {
   for (const Axis& axis : machine.axes) axes += (axes.empty() ? "" : ",") + axis.name;
   for (const Input* input : sensors(machine)) inputs += (inputs.empty() ? "" : ",") + input->name;
   return "loadrt vernier axes=" + axes + (inputs.empty() ? "" : " inputs=" + inputs) +
-         rotary_argument(machine);
+         rotary_argument(machine) + " units=[TRAJ]LINEAR_UNITS";
 }
 
 std::string joint_lines(std::size_t n) {
@@ -74,7 +74,8 @@ std::string joint_lines(std::size_t n) {
       "net vernier-pos-{0} joint.{0}.pos-cmd => vernier.0.joint.{0}.pos-in\n"
       "net vernier-homed-{0} joint.{0}.homed => vernier.0.joint.{0}.homed\n"
       "setp vernier.0.joint.{0}.min-limit [JOINT_{0}]MIN_LIMIT\n"
-      "setp vernier.0.joint.{0}.max-limit [JOINT_{0}]MAX_LIMIT\n",
+      "setp vernier.0.joint.{0}.max-limit [JOINT_{0}]MAX_LIMIT\n"
+      "setp vernier.0.joint.{0}.max-velocity [JOINT_{0}]MAX_VELOCITY\n",
       n);
 }
 
@@ -82,7 +83,10 @@ std::string hal_file(const Machine& machine) {
   std::string text = fmt::format(
       "# {}: the correction between the joints and their drives. Loaded after the files that connect the "
       "drives.\n"
-      "# A joint without MIN_LIMIT or MAX_LIMIT in the INI file goes without its setp lines.\n"
+      "# A joint without MIN_LIMIT, MAX_LIMIT or MAX_VELOCITY in the INI file goes without that setp line.\n"
+      "# Positions, limits and corrections here are in [TRAJ]LINEAR_UNITS, mm or inch; the machine file's "
+      "are "
+      "mm.\n"
       "{}\naddf vernier.0 servo-thread [VERNIER]POSITION\n",
       machine.name, load_line(machine));
   for (std::size_t n = 0; n < machine.axes.size(); ++n)
@@ -117,7 +121,7 @@ std::string narrower_limits(const Machine& machine) {
                       : "# Held at its limit is a joint whose correction would pass it (vernier.hal). With "
                         "soft limits that are narrower by\n"
                         "# the largest correction LinuxCNC refuses such a program before it starts; for the "
-                        "ranges of the machine file:\n" +
+                        "ranges of the machine file, mm and deg:\n" +
                             text;
 }
 

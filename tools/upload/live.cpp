@@ -43,6 +43,11 @@ nlohmann::ordered_json image_json(std::uint8_t slot, std::uint64_t fingerprint) 
   return fmt::format("{:016x}", fingerprint);
 }
 
+// One that was given at the start is confirmed, and no slot holds it.
+const char* whence(const SlotsReply& slots) {
+  return slots.confirmed == kNoSlot ? " (given at the start, not in the store)" : "";
+}
+
 std::string times_text(const char* name, const std::int64_t (&ns)[4]) {
   const auto us = [&](int i) { return static_cast<double>(ns[i]) * 1e-3; };
   return fmt::format("{:<20} p50 {:8.2f}  p99 {:8.2f}  p99.9 {:8.2f}  max {:9.2f} us\n", name, us(0), us(1),
@@ -76,6 +81,21 @@ std::string running_text(const BoardTick& tick, const BoardState& state) {
 
 }  // namespace
 
+bool has_confirmed(const SlotsReply& slots) {
+  return slots.confirmed != kNoSlot || slots.confirmed_fingerprint != 0;
+}
+
+std::string confirmed_text(const SlotsReply& slots) {
+  return has_confirmed(slots)
+             ? fmt::format("{:016x} is confirmed{}", slots.confirmed_fingerprint, whence(slots))
+             : "the board has no confirmed image";
+}
+
+nlohmann::ordered_json confirmed_json(const SlotsReply& slots) {
+  if (!has_confirmed(slots)) return nullptr;
+  return fmt::format("{:016x}", slots.confirmed_fingerprint);
+}
+
 nlohmann::ordered_json live_json(const BoardInfo& info, const BoardTick& tick, const HealthRecord& health,
                                  const SlotsReply& slots, const std::vector<BoardShare>& shares,
                                  const BoardState& state) {
@@ -85,7 +105,7 @@ nlohmann::ordered_json live_json(const BoardInfo& info, const BoardTick& tick, c
       {"mode", name_of(tick.mode)},
       {"fault", name_of(tick.fault)},
       {"holding", tick.holding},
-      {"confirmed", image_json(slots.confirmed, slots.confirmed_fingerprint)},
+      {"confirmed", confirmed_json(slots)},
       {"trial", image_json(slots.trial, slots.trial_fingerprint)},
       {"trial_left_s", slots.trial_left_ms * 1e-3},
       {"image", name_of(state.image)},
@@ -121,9 +141,9 @@ std::string live_text(const BoardInfo& info, const BoardTick& tick, const Health
   std::string text = fmt::format("t {:.3f} s  mode {}{}  fault {}\n", tick.time_s, name_of(tick.mode),
                                  tick.holding ? " (held)" : "", name_of(tick.fault));
   auto out = std::back_inserter(text);
-  if (slots.confirmed == kNoSlot && slots.trial == kNoSlot) fmt::format_to(out, "image none\n");
-  if (slots.confirmed != kNoSlot)
-    fmt::format_to(out, "image {:016x} confirmed\n", slots.confirmed_fingerprint);
+  if (!has_confirmed(slots) && slots.trial == kNoSlot) fmt::format_to(out, "image none\n");
+  if (has_confirmed(slots))
+    fmt::format_to(out, "image {:016x} confirmed{}\n", slots.confirmed_fingerprint, whence(slots));
   if (slots.trial != kNoSlot)
     fmt::format_to(out, "image {:016x} on trial, {:.0f} s left\n", slots.trial_fingerprint,
                    slots.trial_left_ms * 1e-3);

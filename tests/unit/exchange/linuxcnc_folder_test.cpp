@@ -29,9 +29,10 @@ TEST(LinuxcncFolder, LoadsTheAxesAsJointsAndTheInputsAsPins) {
                                    "<T_column unit=\"degC\" reference=\"20\"/>"),
                       "vernier");
   const std::string hal = text_of(files, "vernier.hal");
-  EXPECT_TRUE(holds(hal, "\nloadrt vernier axes=X,A inputs=T_column\n"));
+  EXPECT_TRUE(holds(hal, "\nloadrt vernier axes=X,A inputs=T_column units=[TRAJ]LINEAR_UNITS\n"));
   EXPECT_TRUE(holds(hal, "net vernier-cmd-1 joint.1.motor-pos-cmd => vernier.0.joint.1.cmd-in\n"));
   EXPECT_TRUE(holds(hal, "vernier.0.input.T_column   # degC, reference 20\n")) << hal;
+  EXPECT_TRUE(holds(hal, "setp vernier.0.joint.1.max-velocity [JOINT_1]MAX_VELOCITY\n"));
   EXPECT_FALSE(holds(hal, "joint.2")) << "no third joint";
   EXPECT_TRUE(holds(text_of(files, "vernier.ini"), "CMD_1 = a-pos-cmd\nFB_1 = a-pos-fb\n"));
   EXPECT_TRUE(holds(text_of(files, "vernier.ini"), "IMAGE = vernier/image\n"));
@@ -52,8 +53,8 @@ TEST(LinuxcncFolder, SaysWhichAxesTurnWhereTheirNamesDoNot) {
     return text_of(linuxcnc_folder(machine_with(axes), "v"), "vernier.hal");
   };
   EXPECT_TRUE(holds(hal("<J1 rotary=\"true\" min=\"0\" max=\"1\"/><C rotary=\"true\" min=\"0\" max=\"1\"/>"),
-                    "axes=J1,C rotary=J1,C\n"));
-  EXPECT_TRUE(holds(hal("<X min=\"0\" max=\"1\"/><A min=\"0\" max=\"1\"/>"), "axes=X,A rotary=none\n"));
+                    "axes=J1,C rotary=J1,C units="));
+  EXPECT_TRUE(holds(hal("<X min=\"0\" max=\"1\"/><A min=\"0\" max=\"1\"/>"), "axes=X,A rotary=none units="));
 }
 
 TEST(LinuxcncFolder, RefusesWhatTheComponentCannotTake) {

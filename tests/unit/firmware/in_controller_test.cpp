@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/unit/firmware/upload_rig.h"
+#include "tools/upload/live.h"
 
 namespace vernier::in_controller_test {
 namespace {
@@ -56,6 +57,28 @@ TEST_F(InController, GivenImageRunsUnsignedAndTheStoreKeepsWhatItHas) {
   EXPECT_NE(service_->uploader().record().confirmed_fingerprint, 0u);
 }
 
+TEST_F(InController, AnswersAgreeOnAGivenImage) {
+  run(1);
+  const SlotsRecord record = service_->uploader().record();
+  SlotsReply slots{};
+  slots.confirmed = record.confirmed, slots.trial = record.trial;
+  slots.confirmed_fingerprint = record.confirmed_fingerprint;
+  BoardState state{};
+  state.image = ImageState::kConfirmed, state.fingerprint = record.confirmed_fingerprint;
+  const std::string text = live_text({}, {}, {}, slots, {}, state);
+  EXPECT_NE(text.find(" confirmed (given at the start, not in the store)\n"), std::string::npos) << text;
+  EXPECT_EQ(text.find("image none"), std::string::npos) << text;
+  EXPECT_NE(confirmed_text(slots).find(" is confirmed (given at the start, not in the store)"),
+            std::string::npos);
+  EXPECT_EQ(confirmed_json(slots), live_json({}, {}, {}, slots, {}, state)["running"]);
+  SlotsReply none{};
+  none.confirmed = none.trial = kNoSlot;
+  EXPECT_EQ(confirmed_text(none), "the board has no confirmed image");
+  EXPECT_EQ(confirmed_json(none), nullptr);
+  none.confirmed = 1, none.confirmed_fingerprint = 0xab;
+  EXPECT_EQ(confirmed_text(none), "00000000000000ab is confirmed");
+}
+
 TEST_F(InController, ClockThatStandsStillIsNoFault) {
   run(3000);
   EXPECT_EQ(cycle().latched(), Fault::kNone);
@@ -76,6 +99,39 @@ TEST_F(InController, EnableSwitchedOnClearsTheFaultAndBringsTheCorrectionIn) {
   EXPECT_EQ(cycle().latched(), Fault::kNone);
   EXPECT_EQ(cycle().mode(), Mode::kActive);
   EXPECT_LE(worst_, kSmallSlewY);
+}
+
+TEST_F(InController, ClearBringsTheCorrectionInAgainWhereItWasIn) {
+  run(5400);
+  ASSERT_EQ(cycle().latched(), Fault::kInputMissing);
+  run(2000);
+  ASSERT_EQ(cycle().mode(), Mode::kFaulted);
+  service_->order(Command::kClearFault);
+  run(3000);
+  EXPECT_EQ(cycle().latched(), Fault::kNone);
+  EXPECT_EQ(cycle().mode(), Mode::kActive);
+  EXPECT_LE(worst_, kSmallSlewY);
+}
+
+TEST_F(InController, ClearWhileTheFaultIsStillRampedOutIsKeptUntilItIsOut) {
+  for (int i = 0; i < 6000 && cycle().mode() != Mode::kRampOut; ++i) run(1);
+  ASSERT_EQ(cycle().latched(), Fault::kInputMissing);
+  ASSERT_EQ(cycle().mode(), Mode::kRampOut);
+  service_->order(Command::kClearFault);
+  run(3000);
+  EXPECT_EQ(cycle().latched(), Fault::kNone);
+  EXPECT_EQ(cycle().mode(), Mode::kActive) << "the sensor is back";
+}
+
+TEST_F(InController, ClearDoesNotBringInWhatWasTakenOut) {
+  run(4000);
+  service_->order(Command::kDeactivate);
+  run(3400);
+  ASSERT_EQ(cycle().latched(), Fault::kInputMissing);
+  service_->order(Command::kClearFault);
+  run(3000);
+  EXPECT_EQ(cycle().latched(), Fault::kNone);
+  EXPECT_EQ(cycle().mode(), Mode::kReady);
 }
 
 TEST_F(InController, WeightOfAllStandsOnTopOfTheAxes) {

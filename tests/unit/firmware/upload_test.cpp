@@ -431,6 +431,31 @@ TEST_F(Upload, PiecesOutOfOrderAreRefusedAndARepeatedOneIsNot) {
 }
 
 // The power fails after every single byte that an upload, its trial and its confirmation write.
+TEST_F(Upload, StoreWhoseRecordsAreBothSpoiledHasLostItsImage) {
+  {
+    UploadRig rig(store_, key_);
+    ASSERT_EQ(rig.send(upload(2e-5)).fault, UploadFault::kNone);
+    ASSERT_EQ(rig.uploader().confirm().fault, UploadFault::kNone);
+  }
+  for (std::uint32_t place = 0; place < 2; ++place) {
+    std::uint8_t record[sizeof(SlotRecord)];
+    ASSERT_EQ(store_.read_record(place, record, sizeof(record)), HalFault::kNone);
+    record[5] ^= 0x40;
+    ASSERT_EQ(store_.write_record(place, record, sizeof(record)), HalFault::kNone);
+    UploadRig rig(store_, key_);
+    rig.run(500);
+    // One of them is enough; without both nothing is made up, and it is said.
+    EXPECT_EQ(rig.boot_result().fault, place == 0 ? UploadFault::kNone : UploadFault::kStore);
+    EXPECT_EQ(rig.service().cycle().latched(), place == 0 ? Fault::kNone : Fault::kImageLost);
+    if (place == 0) continue;
+    EXPECT_STREQ(describe(rig.boot_result()), "the board's store is full or broken: both records");
+    // and an image that is confirmed ends it
+    ASSERT_EQ(rig.send(upload(3e-5, kIssued + 1)).fault, UploadFault::kNone);
+    ASSERT_EQ(rig.uploader().confirm().fault, UploadFault::kNone);
+    EXPECT_FALSE(rig.uploader().image_lost());
+  }
+}
+
 TEST_F(Upload, PowerLostAtAnyWriteLeavesOldOrNewTable) {
   SimSlotStore blank = store_;
   {

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <cstddef>
+#include <span>
+
+#include "firmware/core/wiring.h"
+
+namespace vernier {
+
+/// What `loadrt vernier` was given, as rtapi_app fills it in: null where there is nothing.
+struct LoadArguments {
+  std::span<char*const> axes, inputs, rotary;
+  const char* units = nullptr;
+};
+
+/// What the component makes of it.
+struct LoadedWiring {
+  Wiring wiring;
+  double mm_per_unit = 1;
+};
+
+/// Checks every argument before anything is made. Returns true, or false with `why`, one line that names the
+/// argument and what is wrong with it. setup.
+bool read_load_arguments(const LoadArguments& arguments, LoadedWiring& loaded, std::span<char> why);
+
+}  // namespace vernier
