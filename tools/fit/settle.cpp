@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 
+#include "tools/fit/seen_errors.h"
 #include "tools/fit/statistics.h"
 
 namespace vernier {
@@ -18,10 +18,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using Sparse = Eigen::SparseMatrix<double>;
 
-/// Scales follow the machine's own errors within these shares of the convention's.
-constexpr double kLeastShare = 1e-3;
-/// Entries that the data determine (in sum of shares) before their kind's scale follows them.
-constexpr double kLeastDetermined = 4;
 constexpr int kRounds = 6, kRoundsOfMany = 2;
 constexpr Index kMany = 400;  // above it an inverse takes a tenth of a second and more
 constexpr int kMostSteps = 12;
@@ -141,81 +137,14 @@ class Settler {
       const double reduced = chi_square / freedom;
       result_.variance = with_u_ ? std::max(1.0, reduced) : std::max(reduced, 1e-300);
     }
-    follow_errors(squares, from_data);
-  }
-
-  /// What is seen of entries that may be expected to be of one size, in units of their first scales.
-  struct Seen {
-    double squares = 0, determined = 0, entries = 0;
-    bool mostly() const { return determined >= std::max(kLeastDetermined, entries / 2); }
-    double variance() const { return squares / std::max(determined, 1e-9); }
-    Seen without(const Seen& other) const {
-      return {squares - other.squares, determined - other.determined, entries - other.entries};
-    }
-  };
-
-  /// Scales follow what the data show of the machine's own errors: a kind as a whole, and each table beside
-  /// the others. A table of which lengths are seen that are larger than the others' may have angles as much
-  /// larger: a one-tool survey sees only their sum, and what is seen of the good axes says nothing of a bad
-  /// one's.
-  void follow_errors(const VectorXd& squares, const VectorXd& from_data) {
-    std::map<int, Seen> kinds;
-    std::map<std::pair<int, int>, Seen> tables;
-    for (Index i = 0; i < squares.size(); ++i) {
+    const VectorXd shares = scale_.cwiseQuotient(convention_.scale).cwiseAbs2();
+    const SeenErrors sizes(convention_, shares.cwiseProduct(squares), from_data,
+                           readings_.diagonal().cwiseProduct(convention_.scale.cwiseAbs2()));
+    for (Index i = 0; i < value.size(); ++i) {
       const auto at = static_cast<std::size_t>(i);
-      const double share = scale_[i] / convention_.scale[i];
-      for (Seen* seen :
-           {&kinds[convention_.kind[at]], &tables[{convention_.kind[at], convention_.table[at]}]}) {
-        seen->squares += share * share * squares[i];
-        seen->determined += from_data[i];
-        seen->entries += 1;
-      }
-    }
-    const auto of_table = [&](int kind, int table) {
-      constexpr double kWorth = 4;  // of the others' word, in determined entries
-      const Seen &all = kinds[kind], &own = tables[{kind, table}];
-      const Seen others = all.without(own);
-      const double expected = others.determined >= kLeastDetermined ? others.variance() : all.variance();
-      return (own.squares + kWorth * expected) / (std::max(0.0, own.determined) + kWorth);
-    };
-    /// How much larger this table's entries of a kind are than those of the others; 1 where that is not seen.
-    const auto larger = [&](int kind, int table) {
-      constexpr double kChance = 2;  // times in variance that are not taken for more than chance
-      const Seen& own = tables[{kind, table}];
-      const Seen others = kinds[kind].without(own);
-      constexpr double kLeast = 2;  // determined entries
-      if (own.determined < kLeast || others.determined < kLeast) return 1.0;
-      return std::max(1.0, own.variance() / std::max(others.variance(), 1e-300) / kChance);
-    };
-    /// Variance at which entries of a kind move the readings as much as those of the other kind of this table
-    /// do at 1.
-    const auto exchange = [&](int kind, int table) {
-      double by_kind = 0, by_other = 0;
-      for (Index i = 0; i < squares.size(); ++i) {
-        const auto at = static_cast<std::size_t>(i);
-        if (convention_.table[at] != table) continue;
-        const double moved = readings_(i, i) * convention_.scale[i] * convention_.scale[i];
-        (convention_.kind[at] == kind ? by_kind : by_other) += moved;
-      }
-      return by_kind > 0 ? by_other / by_kind : 0.0;
-    };
-    for (Index i = 0; i < squares.size(); ++i) {
-      const auto at = static_cast<std::size_t>(i);
-      const int kind = convention_.kind[at], table = convention_.table[at];
-      if (kind == 0 || kinds[kind].determined < kLeastDetermined) continue;
-      double variance = kinds[kind].variance(), most = 1;
-      if (table >= 0) {
-        variance = of_table(kind, table);
-        // 1 and 2: lengths and angles of linear axes; 3 and 4: of rotary ones.
-        const int other = kind % 2 == 1 ? kind + 1 : kind - 1;
-        const double times = larger(other, table);
-        if (!tables[{kind, table}].mostly() && times > 1) {
-          const double rate = exchange(kind, table);
-          variance = std::max(variance * times, tables[{other, table}].variance() * rate);
-          most = std::max(1.0, rate);
-        }
-      }
-      scale_[i] = convention_.scale[i] * std::sqrt(std::clamp(variance, kLeastShare * kLeastShare, most));
+      if (sizes.seen(convention_.kind[at]))
+        scale_[i] =
+            convention_.scale[i] * std::sqrt(sizes.variance(convention_.kind[at], convention_.table[at]));
     }
   }
 

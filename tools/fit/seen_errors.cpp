@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/fit/seen_errors.h"
+
+#include <algorithm>
+
+namespace vernier {
+namespace {
+
+/// Scales follow the machine's own errors within this share of the convention's, and the whole of it.
+constexpr double kLeastShare = 1e-3;
+/// Entries that the data determine (in sum of shares) before their kind's scale follows them.
+constexpr double kLeastDetermined = 4;
+
+/// Lengths and angles of linear axes are the kinds 1 and 2, those of rotary ones 3 and 4.
+int other_of(int kind) { return kind % 2 == 1 ? kind + 1 : kind - 1; }
+
+}  // namespace
+
+bool SeenErrors::Seen::mostly() const { return determined >= std::max(kLeastDetermined, entries / 2); }
+
+double SeenErrors::Seen::variance() const { return squares / std::max(determined, 1e-9); }
+
+SeenErrors::Seen SeenErrors::Seen::without(const Seen& other) const {
+  return {squares - other.squares, determined - other.determined, entries - other.entries,
+          moved - other.moved};
+}
+
+SeenErrors::SeenErrors(const Convention& convention, const Eigen::VectorXd& squares,
+                       const Eigen::VectorXd& from_data, const Eigen::VectorXd& moved) {
+  for (Eigen::Index i = 0; i < squares.size(); ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    const int kind = convention.kind[at];
+    for (Seen* seen : {&kinds_[kind], &tables_[{kind, convention.table[at]}]}) {
+      seen->squares += squares[i];
+      seen->determined += from_data[i];
+      seen->entries += 1;
+      seen->moved += moved[i];
+    }
+  }
+}
+
+const SeenErrors::Seen& SeenErrors::of(int kind, int table) const {
+  static const Seen kNothing;
+  const auto found = tables_.find({kind, table});
+  return found == tables_.end() ? kNothing : found->second;
+}
+
+bool SeenErrors::seen(int kind) const {
+  const auto found = kinds_.find(kind);
+  return kind != 0 && found != kinds_.end() && found->second.determined >= kLeastDetermined;
+}
+
+/// What is seen of the table, and what the others let expect.
+double SeenErrors::beside_others(int kind, int table) const {
+  constexpr double kWorth = 4;  // of the others' word, in determined entries
+  const Seen &all = kinds_.at(kind), &own = of(kind, table);
+  const Seen others = all.without(own);
+  const double expected = others.determined >= kLeastDetermined ? others.variance() : all.variance();
+  return (own.squares + kWorth * expected) / (std::max(0.0, own.determined) + kWorth);
+}
+
+/// How much larger (squared) this table's entries of a kind are than those of the others; 1 where that is not
+/// seen.
+double SeenErrors::times_larger(int kind, int table) const {
+  constexpr double kChance = 2, kLeast = 2;  // times that may be chance; determined entries
+  const Seen& own = of(kind, table);
+  const auto all = kinds_.find(kind);
+  if (all == kinds_.end()) return 1;
+  const Seen others = all->second.without(own);
+  if (own.determined < kLeast || others.determined < kLeast) return 1;
+  return std::max(1.0, own.variance() / std::max(others.variance(), 1e-300) / kChance);
+}
+
+double SeenErrors::variance(int kind, int table) const {
+  double variance = table < 0 ? kinds_.at(kind).variance() : beside_others(kind, table), most = 1;
+  if (table >= 0 && !of(kind, table).mostly()) {
+    const Seen &own = of(kind, table), &other = of(other_of(kind), table);
+    const double times = times_larger(other_of(kind), table);
+    // At this variance the unseen kind moves the readings as much as the seen one does at 1.
+    const double exchange = own.moved > 0 ? other.moved / own.moved : 0;
+    if (times > 1) {
+      variance = std::max(variance * times, other.variance() * exchange);
+      most = std::max(1.0, exchange);
+    }
+  }
+  return std::clamp(variance, kLeastShare * kLeastShare, most);
+}
+
+}  // namespace vernier
