@@ -12,6 +12,7 @@
 #include "comp/compensator.h"
 #include "tools/compile/compile.h"
 #include "tools/simulate/counts.h"
+#include "tools/simulate/loop.h"
 #include "tools/text/files.h"
 
 namespace vernier {
@@ -70,23 +71,22 @@ class ImageFolder {
 
 /// What the board reads in a row of states bound to the image's machine.
 CycleInput cycle_input(const Machine& machine, const States& s, Index row) {
+  PlantState told;
+  tell_state(machine, s, row, told);
   CycleInput input;
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-    const double scale = machine.axes[i].rotary ? kCountsPerDeg : kCountsPerMm;
-    AxisInput& axis = input.axis[i];
-    axis.position = AxisPosition(counts(scale * s.axis[i][row]));
-    axis.velocity = AxisSpeed(counts(scale * s.velocity[i][row]));
-    axis.acceleration = AxisAcceleration(counts(scale * s.acceleration[i][row]));
-    axis.since =
-        s.since[i][row] >= kLongWay ? AxisTravel(INT64_MAX) : AxisTravel(counts(scale * s.since[i][row]));
-    axis.sense = static_cast<std::int8_t>(s.direction[i][row]);
+    const AxisReading& from = told.axis[i];
+    input.axis[i] = {.position = from.position,
+                     .velocity = from.velocity,
+                     .acceleration = from.acceleration,
+                     .since = from.since,
+                     .sense = from.sense};
   }
-  for (std::size_t i = 0; i < machine.inputs.size(); ++i)
-    input.input[i] = InputMicro(counts(1e6 * s.input[i][row]));
-  input.feed = FeedNmPerMin(counts(1e6 * s.feed[row]));
-  input.curvature = CurvatureNanoPerMm(counts(1e9 * s.curvature[row]));
+  for (std::size_t i = 0; i < machine.inputs.size(); ++i) input.input[i] = told.input[i];
+  input.feed = told.path.feed;
+  input.curvature = told.path.curvature;
   input.time = TimeUs(counts(1e6 * s.time[row]));
-  input.visit = VisitCount(counts(s.visit[row]));
+  input.visit = told.path.visit;
   return input;
 }
 

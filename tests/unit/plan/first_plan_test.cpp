@@ -23,14 +23,13 @@ const char* const kBridge = R"XML(<machine name="bridge"><variables><static><sxy
     <transforms branch="tool"><sixdof n="1" X="X+kx*X+play*dirX"/><sixdof n="2" Y="Y" X="sxy*Y+lYx" Z="lYz" rZ="rYz"/>
     <sixdof n="3" Z="Z" X="szx*Z"/></transforms></machine>)XML";
 
+const FirstPlanOptions kAsked = {.accuracy_um = 6, .reading_um = 3};
+
 Machine bridge() { return parse_machine(kBridge, "m.xml"); }
 
 TEST(FirstPlan, NeedsFewerPosesThanChance) {
   const Machine machine = bridge();
-  FirstPlanOptions options;
-  options.reading_um = 3;
-  options.accuracy_um = 6;
-  const FirstPlan plan = first_plan(machine, options);
+  const FirstPlan plan = first_plan(machine, kAsked);
   EXPECT_TRUE(plan.reached);
   EXPECT_LE(plan.after_um, 6);
   EXPECT_GT(plan.before_um, 50);
@@ -47,10 +46,7 @@ TEST(FirstPlan, PromisesWhatAFitThenKeeps) {
   // Machines drawn from what was expected, measured as planned: the tool point's error beside what was
   // promised.
   const Machine machine = bridge();
-  FirstPlanOptions options;
-  options.reading_um = 3;
-  options.accuracy_um = 6;
-  const FirstPlan plan = first_plan(machine, options);
+  const FirstPlan plan = first_plan(machine, kAsked);
   std::mt19937_64 random(3);
   std::normal_distribution<double> normal(0, 1);
   double squares = 0, count = 0;
@@ -67,7 +63,7 @@ TEST(FirstPlan, PromisesWhatAFitThenKeeps) {
     parameters.set(truth, values);
     Measurement rows = parse_measurement(
         [&] {
-          std::string text = first_plan_csv(machine, plan, options.reading_um);
+          std::string text = first_plan_csv(machine, plan, kAsked.reading_um);
           for (std::size_t at = text.find(",,,"); at != std::string::npos; at = text.find(",,,", at))
             text.replace(at, 3, ",0,0,0");
           return text;
@@ -76,7 +72,7 @@ TEST(FirstPlan, PromisesWhatAFitThenKeeps) {
     const Eigen::VectorXd ideal = predict(truth, rows);
     for (std::size_t i = 0; i < rows.observations.size(); ++i)
       rows.observations[i].value =
-          ideal[static_cast<Eigen::Index>(i)] + 1e-3 * options.reading_um * normal(random);
+          ideal[static_cast<Eigen::Index>(i)] + 1e-3 * kAsked.reading_um * normal(random);
     const FitResult fitted = fit(machine, rows);
     const States fresh = work_poses(machine).states;
     Eigen::Matrix3Xd off = forward(fitted.machine, fresh).position - forward(truth, fresh).position;
