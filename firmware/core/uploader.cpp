@@ -28,10 +28,12 @@ SlotRecord read_record(SlotStore& store, std::uint32_t place) {
   return old.magic == kSlotMagicV1 ? upgraded(old) : record;
 }
 
-// A place in which something stands, be it no record.
+// A place in which something stands, be it no record. Erased flash reads as ones.
 bool is_written(SlotStore& store, std::uint32_t place) {
-  std::uint8_t byte = 0;
-  return store.read_record(place, &byte, 1) != HalFault::kNoReading;
+  std::uint8_t bytes[sizeof(SlotRecord)];
+  if (store.read_record(place, bytes, 1) == HalFault::kNoReading) return false;
+  if (store.read_record(place, bytes, sizeof(bytes)) != HalFault::kNone) return true;
+  return std::any_of(std::begin(bytes), std::end(bytes), [](std::uint8_t byte) { return byte != 0xff; });
 }
 
 bool names(const char (&board)[kBoardNameBytes], const Name& name) {

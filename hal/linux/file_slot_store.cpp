@@ -71,7 +71,11 @@ FileSlotStore::FileSlotStore(std::string directory, std::uint32_t capacity)
 }
 
 HalFault FileSlotStore::read_record(std::uint32_t place, std::uint8_t* bytes, std::uint32_t size) noexcept {
-  return place < 2 ? read_at(records_[place], 0, bytes, size) : HalFault::kNoDevice;
+  if (place >= 2) return HalFault::kNoDevice;
+  const HalFault fault = read_at(records_[place], 0, bytes, size);
+  // A file that is there and too short was written once.
+  return fault == HalFault::kNoReading && ::access(records_[place].c_str(), F_OK) == 0 ? HalFault::kRefused
+                                                                                       : fault;
 }
 
 HalFault FileSlotStore::write_record(std::uint32_t place, const std::uint8_t* bytes,

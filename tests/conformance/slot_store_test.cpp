@@ -35,6 +35,19 @@ TEST_P(SlotStoreConformance, NothingIsReadBeforeItWasWritten) {
   EXPECT_EQ(store_->read_image(1, 0, bytes, sizeof(bytes)), HalFault::kNoReading);
 }
 
+TEST_P(SlotStoreConformance, CutRecordIsNoBlankOne) {
+  std::uint8_t bytes[32] = {};
+  ASSERT_EQ(store_->write_record(0, bytes, 8), HalFault::kNone);
+  if (std::filesystem::exists(directory_ + "/record0")) {  // and of a file not even one byte is left
+    EXPECT_EQ(store_->read_record(0, bytes, sizeof(bytes)), HalFault::kRefused);
+    std::filesystem::resize_file(directory_ + "/record0", 0);
+    EXPECT_EQ(store_->read_record(0, bytes, 1), HalFault::kRefused);
+    return;
+  }
+  EXPECT_NE(store_->read_record(0, bytes, sizeof(bytes)), HalFault::kNone);
+  EXPECT_EQ(store_->read_record(0, bytes, 8), HalFault::kNone);
+}
+
 TEST_P(SlotStoreConformance, GivesBackWhatWasWritten) {
   std::uint8_t record[32], image[3000], back[3000] = {};
   for (std::size_t i = 0; i < sizeof(record); ++i) record[i] = static_cast<std::uint8_t>(i);

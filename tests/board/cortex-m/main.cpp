@@ -44,9 +44,13 @@ void copy(std::uint8_t* to, const std::uint8_t* from, std::uint32_t size) {
   for (std::uint32_t i = 0; i < size; ++i) to[i] = from[i];
 }
 
-/// Slots and records in RAM, in the place of a flash.
+/// Slots and records in RAM, in the place of a flash: erased, it holds ones.
 class RamStore : public SlotStore {
  public:
+  RamStore() {
+    for (auto& record : records_)
+      for (std::uint8_t& byte : record) byte = 0xff;
+  }
   std::uint32_t capacity() const noexcept override { return kSlotBytes; }
   HalFault read_record(std::uint32_t place, std::uint8_t* bytes, std::uint32_t size) noexcept override {
     if (place >= kSlotRecordCount || size > sizeof(records_[0])) return HalFault::kNoDevice;

@@ -430,7 +430,6 @@ TEST_F(Upload, PiecesOutOfOrderAreRefusedAndARepeatedOneIsNot) {
   EXPECT_EQ(uploader.finish().fault, UploadFault::kNone);
 }
 
-// The power fails after every single byte that an upload, its trial and its confirmation write.
 TEST_F(Upload, StoreWhoseRecordsAreBothSpoiledHasLostItsImage) {
   {
     UploadRig rig(store_, key_);
@@ -456,6 +455,20 @@ TEST_F(Upload, StoreWhoseRecordsAreBothSpoiledHasLostItsImage) {
   }
 }
 
+TEST_F(Upload, ErasedFlashIsAnEmptyStore) {
+  std::uint8_t ones[sizeof(SlotRecord)];
+  std::fill(std::begin(ones), std::end(ones), std::uint8_t{0xff});
+  for (std::uint32_t place = 0; place < 2; ++place)
+    ASSERT_EQ(store_.write_record(place, ones, sizeof(ones)), HalFault::kNone);
+  UploadRig rig(store_, key_);
+  rig.run(500);
+  EXPECT_EQ(rig.boot_result().fault, UploadFault::kNone);
+  EXPECT_EQ(rig.service().cycle().latched(), Fault::kNone);
+  ASSERT_EQ(rig.send(upload(2e-5)).fault, UploadFault::kNone);
+  ASSERT_EQ(rig.uploader().confirm().fault, UploadFault::kNone);
+}
+
+// The power fails after every single byte that an upload, its trial and its confirmation write.
 TEST_F(Upload, PowerLostAtAnyWriteLeavesOldOrNewTable) {
   SimSlotStore blank = store_;
   {
