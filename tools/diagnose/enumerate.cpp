@@ -8,6 +8,7 @@
 #include <set>
 
 #include "tools/effects/probe.h"
+#include "tools/model/chain.h"
 #include "tools/model/chain_rows.h"
 #include "tools/vibration/signal_features.h"
 
@@ -37,6 +38,13 @@ bool is_bent_or_mixed(const Expr& node) {
   if (node.op == Op::kPower) return grows_with_axis(*node.args[0]);
   const auto is_sum = [](const ExprPtr& one) { return one->op == Op::kAdd || one->op == Op::kSubtract; };
   return node.op == Op::kMultiply && (is_sum(node.args[0]) || is_sum(node.args[1])) && grows_with_axis(node);
+}
+
+/// A sign that a wave sets: one value only where the wave never crosses zero.
+bool is_switched_by_wave(const Expr& node) {
+  return (node.op == Op::kSign && is_wave(*node.args[0])) ||
+         std::any_of(node.args.begin(), node.args.end(),
+                     [](const ExprPtr& arg) { return is_switched_by_wave(*arg); });
 }
 
 bool any_tree(const EffectForm& form, bool (*is)(const Expr&)) {
@@ -466,12 +474,25 @@ class Enumerator {
       choice.start[rule.name] = grid[grid.size() / 2];
     }
     item.candidate = make_candidate(machine_, axes_, choice);
+    if (any_tree(*choice.form, is_switched_by_wave) && never_changes(item.candidate)) return;
     for (const CandidateUnknown& unknown : scanned_unknowns(item.candidate))
       item.grid.push_back(grid_of(choice, *choice.effect->find_unknown(unknown.rule)));
     item.most_driven = thresholds_.driven_out;
     item.may_lose_columns = choice.form->asks_for("hats") || choice.runs.size() > 1;
     add_fine_periods(item);
     list_.push_back(std::move(item));
+  }
+
+  /// Is the candidate's first term one value in all rows?
+  bool never_changes(const Candidate& candidate) const {
+    Machine scratch = machine_;
+    for (const std::size_t unknown : add_unknowns(scratch, candidate, {})) scratch.statics[unknown].value = 1;
+    const Column column = evaluate(scratch, *parse_expression_for(scratch, candidate.terms.front().text),
+                                   evidence_.measurement().states);
+    const auto& rows = evidence_.rows();
+    return std::all_of(rows.begin(), rows.end(), [&](std::size_t row) {
+      return column[static_cast<Eigen::Index>(row)] == column[static_cast<Eigen::Index>(rows.front())];
+    });
   }
 
   /// A wave by itself is looked for below the grid too.

@@ -281,6 +281,15 @@ double Evidence::left_in_full(const Eigen::MatrixXd& raw) const {
   return (raw_residual_ - fitted * (fitted.transpose() * raw_residual_)).squaredNorm();
 }
 
+Eigen::MatrixXd Evidence::offset_columns() const {
+  Eigen::MatrixXd columns =
+      Eigen::MatrixXd::Zero(raw_residual_.size(), static_cast<Eigen::Index>(layout_.series.size()));
+  for (std::size_t kind = 0; kind < layout_.series.size(); ++kind)
+    for (const Eigen::Index reading : layout_.series[kind].reading)
+      columns(reading, static_cast<Eigen::Index>(kind)) = weight_[reading];
+  return columns;
+}
+
 NoiseModel Evidence::noise_of_file() const {
   NoiseModel noise = noise_;
   if (!noise.in_time) noise.time_constant *= stride_;

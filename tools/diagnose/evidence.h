@@ -79,6 +79,8 @@ class Evidence {
   double left_in_full(const Eigen::MatrixXd& raw) const;
   /// Columns of a candidate before any whitening.
   Eigen::MatrixXd raw_columns(const Candidate& candidate, const std::vector<double>& scanned) const;
+  /// Before any whitening: a column for each kind of reading, what the same offset in all of them does.
+  Eigen::MatrixXd offset_columns() const;
   /// The noise model for the rows of the file where every k-th one was enough here.
   NoiseModel noise_of_file() const;
   /// That weighing, of columns over the fit observations.

@@ -292,7 +292,7 @@ void Finder::weigh_correlation() {
   for (const NoiseModel& start : starts) {
     if (hangs_alike(start, white, same)) continue;
     double value = settle_noise_from(start);
-    if (chosen_.empty()) value -= thresholds_.instrument_distance;
+    if (chosen_.empty() && !is_one_offset(start)) value -= thresholds_.instrument_distance;
     is_current = value < best;
     if (!is_current) continue;
     best = value;
@@ -304,6 +304,10 @@ void Finder::weigh_correlation() {
     search_products();
     accept();
   }
+}
+
+bool Finder::is_one_offset(const NoiseModel& noise) const {
+  return noise.run > 0 && evidence_.estimate(evidence_.offset_columns()).run <= 0;
 }
 
 std::vector<std::size_t> Finder::without(std::size_t item) const {

@@ -96,6 +96,9 @@ class Finder {
   void search_under(const NoiseModel& noise);
   /// Search and noise in turn until both stand still. Returns the criterion with the noise model's own price.
   double settle_noise_from(NoiseModel noise);
+  /// Does what a run shares under this model come to the same in all runs? A common cause does that, and no
+  /// instrument that is set up anew each time.
+  bool is_one_offset(const NoiseModel& noise) const;
   /// Unwhitened columns of several items side by side.
   Eigen::MatrixXd raw_columns(const std::vector<std::size_t>& items) const;
   std::vector<std::size_t> without(std::size_t item) const;

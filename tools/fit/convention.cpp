@@ -30,7 +30,7 @@ constexpr double kLeastReach_mm = 10;
 constexpr double kAnywhere_mm = 1e5, kAnyTurn_deg = 360;
 
 /// Kinds beside those of the tables (1 to 4).
-constexpr int kLengthStatics = 5, kAngleStatics = 6, kOtherStatics = 7;
+constexpr int kLengthStatics = Convention::kFirstOfStatics, kAngleStatics = 6, kOtherStatics = 7;
 
 /// Statics that shape a term rather than scale it: in a divisor, an exponent, or a time constant.
 void collect_shapes(const Expr& expr, bool inside, std::set<std::size_t>& shapes) {

@@ -15,6 +15,8 @@ namespace vernier {
 /// is the convention that makes a fit's answer unique: of all machines that the data cannot tell apart, the
 /// one nearest to nominal in these units.
 struct Convention {
+  /// Kinds below it are of tables; from it on, of statics.
+  static constexpr int kFirstOfStatics = 5;
   /// What the nominal machine, set up as well as it can be, leaves of the readings: rms, mm. A machine whose
   /// errors are larger than what was seen of them altogether is not plausible.
   double misfit_mm = 0;

@@ -145,7 +145,20 @@ class Settler {
       if (sizes.seen(convention_.kind[at]))
         scale_[i] =
             convention_.scale[i] * std::sqrt(sizes.variance(convention_.kind[at], convention_.table[at]));
+      if (convention_.kind[at] >= Convention::kFirstOfStatics)
+        scale_[i] =
+            std::max(scale_[i], beyond(convention_.scale[i], value[i] - convention_.centre[i], from_data[i]));
     }
+  }
+
+  /// Scale of a static that the readings put beyond the convention's by three standard deviations of both,
+  /// else 0: an error that set-ups hide nearly whole is larger than what the nominal machine leaves. `off`:
+  /// from the centre.
+  static double beyond(double scale, double off, double from_data) {
+    constexpr double kTimes = 3, kUnseen = 1e-6;  // below that share `off` is rounding
+    if (from_data < kUnseen) return 0;
+    const double expected = std::abs(off) / std::sqrt(from_data);  // evidence, MacKay 1992
+    return expected > kTimes * scale ? expected : 0;
   }
 
   MatrixXd normal_with_priors() const {
