@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <set>
 
 #include "tools/fit/convention.h"
 #include "tools/fit/statistics.h"
@@ -28,37 +29,57 @@ void swap_kinds(Measurement& m, ObservationKind a, ObservationKind b) {
   for (Observation& o : m.observations) o.kind = o.kind == a ? b : o.kind == b ? a : o.kind;
 }
 
-void scale_readings(Measurement& m, bool rotations, double factor) {
+void scale_rotations(Measurement& m, double factor) {
   for (Observation& o : m.observations)
-    if (is_rotation(o.kind) == rotations) o.value *= factor;
+    if (is_rotation(o.kind)) o.value *= factor;
 }
 
-std::vector<Mistake> mistakes_of(const Machine& machine) {
-  std::vector<Mistake> list;
+/// What a length was written in where mm were meant, and the factor that mends it.
+constexpr std::array<std::pair<const char*, double>, 6> kLengthUnits = {
+    {{"in inches", 25.4},
+     {"in centimetres", 10},
+     {"a thousand times too small (metres, or mm called um)", 1000},
+     {"a thousand times too large (um called mm)", 1e-3},
+     {"millimetres taken for centimetres", 0.1},
+     {"millimetres taken for inches", 1 / 25.4}}};
+
+void add_mistakes_of_readings(const Measurement& rows, std::vector<Mistake>& list) {
   constexpr std::array kKinds = {ObservationKind::kX, ObservationKind::kY, ObservationKind::kZ};
+  const auto name = [](ObservationKind kind) { return kObservationNames[static_cast<std::size_t>(kind)]; };
   for (std::size_t a = 0; a < 3; ++a)
     for (std::size_t b = a + 1; b < 3; ++b)
-      list.push_back(
-          {fmt::format("the columns {} and {} look swapped", kObservationNames[a], kObservationNames[b]),
-           [=](Measurement& rows) { swap_kinds(rows, kKinds[a], kKinds[b]); }});
-  for (std::size_t a = 0; a < 3; ++a)
-    list.push_back({fmt::format("the column {} looks as if its sign were turned", kObservationNames[a]),
-                    [=](Measurement& rows) {
-                      for (Observation& o : rows.observations)
-                        if (o.kind == kKinds[a]) o.value = -o.value;
-                    }});
-  constexpr std::array<std::pair<const char*, double>, 4> kUnits = {
-      {{"in inches", 25.4},
-       {"a thousand times too small (metres, or mm called um)", 1000},
-       {"a thousand times too large (um called mm)", 1e-3},
-       {"millimetres taken for inches", 1 / 25.4}}};
-  for (const auto& [unit, factor] : kUnits)
-    list.push_back({fmt::format("the readings look as if they were {}", unit),
-                    [factor = factor](Measurement& rows) { scale_readings(rows, false, factor); }});
+      list.push_back({fmt::format("the columns {} and {} look swapped", name(kKinds[a]), name(kKinds[b])),
+                      [=](Measurement& mended) { swap_kinds(mended, kKinds[a], kKinds[b]); }});
+  for (const ObservationKind kind : kKinds)
+    list.push_back(
+        {fmt::format("the column {} looks as if its sign were turned", name(kind)), [=](Measurement& mended) {
+           for (Observation& o : mended.observations)
+             if (o.kind == kind) o.value = -o.value;
+         }});
+  std::set<ObservationKind> lengths;
+  for (const Observation& o : rows.observations)
+    if (!is_rotation(o.kind)) lengths.insert(o.kind);
+  for (const auto& [unit, factor] : kLengthUnits) {
+    list.push_back(
+        {fmt::format("the readings look as if they were {}", unit), [factor = factor](Measurement& mended) {
+           for (Observation& o : mended.observations)
+             if (!is_rotation(o.kind)) o.value *= factor;
+         }});
+    if (lengths.size() < 2) continue;
+    for (const ObservationKind kind : lengths)
+      list.push_back({fmt::format("the column {} looks as if it were {}", name(kind), unit),
+                      [=, factor = factor](Measurement& mended) {
+                        for (Observation& o : mended.observations)
+                          if (o.kind == kind) o.value *= factor;
+                      }});
+  }
   list.push_back({"the rotations look as if they were in radians",
-                  [](Measurement& rows) { scale_readings(rows, true, kDegPerRad); }});
+                  [](Measurement& mended) { scale_rotations(mended, kDegPerRad); }});
   list.push_back({"the rotations look as if radians had been written and degrees meant",
-                  [](Measurement& rows) { scale_readings(rows, true, 1 / kDegPerRad); }});
+                  [](Measurement& mended) { scale_rotations(mended, 1 / kDegPerRad); }});
+}
+
+void add_mistakes_of_positions(const Machine& machine, std::vector<Mistake>& list) {
   for (std::size_t a = 0; a < machine.axes.size(); ++a) {
     const std::string& name = machine.axes[a].name;
     for (std::size_t b = a + 1; b < machine.axes.size(); ++b)
@@ -74,11 +95,15 @@ std::vector<Mistake> mistakes_of(const Machine& machine) {
       scaled("in radians", kDegPerRad);
       scaled("degrees taken for radians", 1 / kDegPerRad);
     } else {
-      scaled("in inches", 25.4);
-      scaled("a thousand times too small (metres, or mm called um)", 1000);
-      scaled("a thousand times too large (um called mm)", 1e-3);
+      for (const auto& [unit, factor] : kLengthUnits) scaled(unit, factor);
     }
   }
+}
+
+std::vector<Mistake> mistakes_of(const Machine& machine, const Measurement& rows) {
+  std::vector<Mistake> list;
+  add_mistakes_of_readings(rows, list);
+  add_mistakes_of_positions(machine, list);
   return list;
 }
 
@@ -149,7 +174,7 @@ std::string likely_mistake(const Machine& machine, const Measurement& rows, cons
     std::string sentence;
   };
   std::vector<Found> found;
-  for (const Mistake& mistake : mistakes_of(machine)) {
+  for (const Mistake& mistake : mistakes_of(machine, rows)) {
     Measurement mended = rows;
     mistake.undo(mended);
     const double left_mm = convention_of(machine, mended, none).misfit_mm;

@@ -275,6 +275,19 @@ TEST(Sanity, NamesTheMistakeInTheReadings) {
   Measurement inches = bridge.rows;
   for (Observation& o : inches.observations) o.value /= 25.4;
   EXPECT_NE(absurd(inches).find("inches"), std::string::npos) << absurd(inches);
+  Measurement centimetres = bridge.rows;
+  for (Observation& o : centimetres.observations) o.value /= 10;
+  EXPECT_NE(absurd(centimetres).find("the readings look as if they were in centimetres"), std::string::npos)
+      << absurd(centimetres);
+  Measurement one_column = bridge.rows;
+  for (Observation& o : one_column.observations)
+    if (o.kind == ObservationKind::kY) o.value /= 25.4;
+  EXPECT_NE(absurd(one_column).find("the column y looks as if it were in inches"), std::string::npos)
+      << absurd(one_column);
+  Measurement position = bridge.rows;
+  position.states.axis[2] /= 25.4;
+  EXPECT_NE(absurd(position).find("the column Z looks as if it were in inches"), std::string::npos)
+      << absurd(position);
   Measurement typed = bridge.rows;
   typed.observations[40].value = 999876;
   EXPECT_NE(absurd(typed).find("bridge.csv:"), std::string::npos) << absurd(typed);
