@@ -6,6 +6,7 @@
 #include "tools/commands/command.h"
 #include "tools/create/machine_file.h"
 #include "tools/create/survey_template.h"
+#include "tools/create/urdf.h"
 #include "tools/model/machine_reader.h"
 #include "tools/text/numbers.h"
 #include "tools/text/words.h"
@@ -14,7 +15,7 @@ namespace vernier::new_cli {
 namespace {
 
 struct NewArguments {
-  std::string type, output, measurements, json, name, tool, dh, reading = "point";
+  std::string type, output, measurements, json, name, tool, dh, urdf, tip, reading = "point";
   std::string tool_side, work_side;
   std::vector<std::string> axes, centres, joints;
 };
@@ -41,9 +42,27 @@ std::vector<DhRow> arm_of(const NewArguments& arguments) {
   return rows.empty() ? default_arm() : rows;
 }
 
-MachinePlan plan_of(const NewArguments& arguments, const CLI::App& command) {
+std::vector<PlannedAxis> axes_of(const NewArguments& arguments) {
   std::vector<PlannedAxis> axes;
   for (const std::string& words : arguments.axes) axes.push_back(parse_planned_axis(words));
+  return axes;
+}
+
+MachinePlan plan_of_urdf(const NewArguments& arguments, const CLI::App& command) {
+  if (arguments.type != "robot") throw InputError("--urdf: only a robot has one");
+  for (const char* option : {"--dh", "--joint", "--axis"})
+    if (command.count(option) > 0) throw InputError(std::string(option) + ": the arm stands in the URDF");
+  const UrdfArm arm = parse_urdf(read_file(arguments.urdf), arguments.urdf, arguments.tip);
+  MachinePlan plan = plan_robot(arm.axes, arm.rows);
+  plan.name = arm.name;
+  plan.base = arm.base;
+  plan.tool =
+      arm.tool(arguments.tool.empty() ? std::array<double, 3>{} : point_of(arguments.tool, ',', "--tool"));
+  return plan;
+}
+
+MachinePlan plan_of_words(const NewArguments& arguments, const CLI::App& command) {
+  std::vector<PlannedAxis> axes = axes_of(arguments);
   const auto order = [&](const char* option, const std::string& names) {
     return command.count(option) > 0 ? std::optional(parts_of(names, ',')) : std::nullopt;
   };
@@ -63,7 +82,6 @@ MachinePlan plan_of(const NewArguments& arguments, const CLI::App& command) {
   // A tool of some length in the usual direction: without one, angles of the last axis would do nothing.
   plan.tool = {0, 0, plan.arm.empty() ? -100.0 : 100.0};
   if (!arguments.tool.empty()) plan.tool = point_of(arguments.tool, ',', "--tool");
-  if (!arguments.name.empty()) plan.name = arguments.name;
   for (const std::string& words : arguments.centres) {
     const auto colon = words.find(':');
     const std::string name = words.substr(0, colon);
@@ -75,6 +93,14 @@ MachinePlan plan_of(const NewArguments& arguments, const CLI::App& command) {
       }
     if (!found) throw InputError("--centre " + words + ": NAME:X:Y:Z of a turning axis");
   }
+  return plan;
+}
+
+MachinePlan plan_of(const NewArguments& arguments, const CLI::App& command) {
+  if (arguments.urdf.empty() && !arguments.tip.empty()) throw InputError("--tip: a link of --urdf");
+  MachinePlan plan =
+      arguments.urdf.empty() ? plan_of_words(arguments, command) : plan_of_urdf(arguments, command);
+  if (!arguments.name.empty()) plan.name = arguments.name;
   return plan;
 }
 
@@ -143,6 +169,10 @@ void register_new(CLI::App& vernier) {
       ->add_option("--joint", arguments->joints,
                    "robot: a row, theta,d,a,alpha (P, before it where it slides); again for each")
       ->allow_extra_args(false);
+  command->add_option("--urdf", arguments->urdf,
+                      "robot: its description (URDF); rows, names and limits of the joints come from it");
+  command->add_option("--tip", arguments->tip,
+                      "the URDF's link that ends the arm (default: the only one); --tool is in its frame");
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->footer(
       "Which side carries which axis is the type's habit, printed as a line; --tool-side and\n"

@@ -45,7 +45,7 @@ bool is_prismatic(const std::string& word, const Place& place) {
 
 }  // namespace
 
-bool DhRow::parallel() const { return std::abs(std::sin(alpha * std::acos(-1.0) / 180)) < 1e-9; }
+bool DhRow::parallel() const { return beta != 0 || std::abs(std::sin(alpha * std::acos(-1.0) / 180)) < 1e-9; }
 
 const std::vector<DhRow>& default_arm() {
   // Universal Robots, "DH parameters for calculations of kinematics and dynamics", UR10e.

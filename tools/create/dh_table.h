@@ -5,12 +5,14 @@
 
 namespace vernier {
 
-/// One joint of an arm: Tz(d)·Rz(theta)·Tx(a)·Rx(alpha), the row of Denavit and Hartenberg. The joint's
-/// position is added to theta, or to d where it is prismatic.
+/// One joint of an arm: Tz(d)·Rz(theta)·Tx(a)·Rx(alpha), the row of Denavit and Hartenberg, and behind it
+/// Ry(beta) where the next axis is nearly parallel (Hayati 1983). The joint's position is added to theta, or
+/// to d where it is prismatic.
 struct DhRow {
   double theta = 0, d = 0, a = 0, alpha = 0;  // deg, mm, mm, deg
   bool prismatic = false;
-  /// Is the next joint's axis parallel to this one's?
+  double beta = 0;  // deg
+  /// Is the next joint's axis parallel to this one's, or nearly so?
   bool parallel() const;
   bool operator==(const DhRow&) const = default;
 };

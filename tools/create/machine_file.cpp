@@ -222,7 +222,7 @@ std::string arm_rows(const MachinePlan& plan) {
     text += fmt::format("    <DH n=\"{}\" theta=\"{}\" d=\"{}\" a=\"{}\" alpha=\"{}\"/>\n", n++, theta, d,
                         last ? number_text(row.a) : "a" + j,
                         last ? number_text(row.alpha) : plus(row.alpha, "al" + j));
-    if (parallel) text += fmt::format("    <sixdof n=\"{}\" rY=\"be{}\"/>\n", n++, j);
+    if (parallel) text += fmt::format("    <sixdof n=\"{}\" rY=\"{}\"/>\n", n++, plus(row.beta, "be" + j));
   }
   return text + fmt::format("    <sixdof n=\"{}\" X=\"TPX\" Y=\"TPY\" Z=\"TPZ\"/>\n  </transforms>\n", n);
 }
@@ -289,6 +289,14 @@ std::string head(const MachinePlan& plan) {
          "     nominal what its control believes. tools/docs/machine_file.md defines every element. -->\n";
 }
 
+std::string base_attributes(const MachinePlan& plan) {
+  constexpr std::array kNames = {"X", "Y", "Z", "rX", "rY", "rZ"};
+  std::string text;
+  for (std::size_t k = 0; k < kNames.size(); ++k)
+    text += fmt::format(" {}=\"{}\"", kNames[k], number_text(plan.base[k]));
+  return text;
+}
+
 }  // namespace
 
 std::string drawing(const MachinePlan& plan) {
@@ -307,7 +315,8 @@ std::string machine_file(const MachinePlan& plan) {
       "      <!-- How the measuring instrument stood: chain base to measuring frame, found by the fit. One "
       "for all rows, or\n"
       "           a further one for the rows of a run, written with run=\"its label\". -->\n"
-      "      <BaseShift X=\"0\" Y=\"0\" Z=\"0\" rX=\"0\" rY=\"0\" rZ=\"0\"/>\n    </static>\n";
+      "      <BaseShift" +
+      base_attributes(plan) + "/>\n    </static>\n";
   text += axes_text(plan);
   if (!robot) text += tables_text(plan);
   text += "  </variables>\n";

@@ -29,6 +29,7 @@ struct MachinePlan {
   std::vector<std::size_t> tool_side, work_side;  // indices of axes
   std::array<double, 3> tool{};                   // its point in the frame of the last axis of its side, mm
   std::vector<DhRow> arm;                         // of a robot, a row a joint; else empty
+  std::array<double, 6> base{};                   // BaseShift: chain base in the measuring frame, mm, deg
 };
 
 /// A kind of machine that can be begun from.

@@ -1,0 +1,357 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/create/urdf.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <pugixml.hpp>
+#include <regex>
+#include <set>
+
+#include "tools/model/expression.h"
+#include "tools/text/error.h"
+#include "tools/text/numbers.h"
+#include "tools/text/words.h"
+#include "tools/text/xml_text.h"
+
+namespace vernier {
+namespace {
+
+using Eigen::Isometry3d;
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+constexpr double kDegPerRad = 180 / 3.14159265358979323846, kMmPerM = 1000;
+
+struct Joint {
+  std::string name, type, parent, child;
+  Isometry3d origin = Isometry3d::Identity();  // mm
+  Vector3d axis = Vector3d::UnitX();
+  std::optional<double> lower, upper;  // rad or m, as in the file
+  bool mimic = false;
+  std::size_t line = 0;
+  bool moves() const { return type != "fixed"; }
+  bool slides() const { return type == "prismatic"; }
+};
+
+class Reader {
+ public:
+  Reader(const std::string& text, const std::string& file) : text_(text), file_(file) {
+    const pugi::xml_parse_result parsed = document_.load_buffer(text.data(), text.size());
+    if (!parsed)
+      throw InputError({file, line_of(text, static_cast<std::size_t>(parsed.offset))}, "",
+                       parsed.description());
+    robot_ = document_.child("robot");
+    if (!robot_) throw InputError({file, 1}, document_.first_child().name(), "no URDF: its root is <robot>");
+    for (const pugi::xml_node& node : robot_.children())
+      if (std::string_view(node.name()).starts_with("xacro:")) fail(node, node.name(), kExpand);
+  }
+
+  std::string name() const { return robot_.attribute("name").as_string("robot"); }
+
+  std::vector<Joint> joints() const {
+    std::vector<Joint> list;
+    for (const pugi::xml_node& node : robot_.children("joint")) list.push_back(joint(node));
+    return list;
+  }
+
+  std::set<std::string> links() const {
+    std::set<std::string> names;
+    for (const pugi::xml_node& node : robot_.children("link"))
+      names.insert(node.attribute("name").as_string());
+    return names;
+  }
+
+ private:
+  static constexpr const char* kExpand = "this is xacro: expand it first (xacro FILE > robot.urdf)";
+
+  [[noreturn]] void fail(const pugi::xml_node& node, const std::string& word, const std::string& why) const {
+    throw InputError({file_, line_of(text_, static_cast<std::size_t>(node.offset_debug()))}, word, why);
+  }
+
+  double number(const pugi::xml_node& node, const std::string& word) const {
+    const auto value = parse_number(word);
+    if (!value) fail(node, word, "not a number");
+    return *value;
+  }
+
+  Vector3d triple(const pugi::xml_node& node, const char* attribute, const Vector3d& absent) const {
+    const pugi::xml_attribute given = node.attribute(attribute);
+    if (!given) return absent;
+    if (std::string_view(given.as_string()).find("${") != std::string_view::npos)
+      fail(node, given.as_string(), kExpand);
+    const std::vector<std::string> words = words_in(given.as_string(), " \t\r\n");
+    if (words.size() != 3) fail(node, given.as_string(), std::string(attribute) + " is three numbers");
+    return {number(node, words[0]), number(node, words[1]), number(node, words[2])};
+  }
+
+  std::optional<double> limit(const pugi::xml_node& node, const char* attribute) const {
+    const pugi::xml_attribute given = node.attribute(attribute);
+    if (!given) return std::nullopt;
+    return number(node, given.as_string());
+  }
+
+  Joint joint(const pugi::xml_node& node) const {
+    Joint one;
+    one.line = line_of(text_, static_cast<std::size_t>(node.offset_debug()));
+    one.name = node.attribute("name").as_string();
+    one.type = node.attribute("type").as_string();
+    one.parent = node.child("parent").attribute("link").as_string();
+    one.child = node.child("child").attribute("link").as_string();
+    if (one.parent.empty() || one.child.empty()) fail(node, one.name, "a joint has a parent and a child");
+    one.mimic = static_cast<bool>(node.child("mimic"));
+    const pugi::xml_node origin = node.child("origin");
+    const Vector3d turn = triple(origin, "rpy", Vector3d::Zero());
+    one.origin.linear() =
+        (Eigen::AngleAxisd(turn[2], Vector3d::UnitZ()) * Eigen::AngleAxisd(turn[1], Vector3d::UnitY()) *
+         Eigen::AngleAxisd(turn[0], Vector3d::UnitX()))
+            .toRotationMatrix();
+    one.origin.translation() = kMmPerM * triple(origin, "xyz", Vector3d::Zero());
+    one.axis = triple(node.child("axis"), "xyz", Vector3d::UnitX());
+    if (one.moves() && !(one.axis.norm() > 0)) fail(node, one.name, "its axis has no direction");
+    one.axis.normalize();
+    one.lower = limit(node.child("limit"), "lower");
+    one.upper = limit(node.child("limit"), "upper");
+    return one;
+  }
+
+  const std::string &text_, &file_;
+  pugi::xml_document document_;
+  pugi::xml_node robot_;
+};
+
+/// The joints from the root to each link.
+class Tree {
+ public:
+  Tree(std::vector<Joint> joints, std::set<std::string> links, const std::string& file)
+      : joints_(std::move(joints)), links_(std::move(links)), file_(file) {
+    for (const Joint& one : joints_) {
+      for (const std::string* end : {&one.parent, &one.child})
+        if (!links_.contains(*end)) throw InputError({file, one.line}, *end, "no link has this name");
+      if (!above_.emplace(one.child, &one).second)
+        throw InputError({file, one.line}, one.child, "this link hangs on two joints: no arm");
+    }
+    for (const std::string& link : links_) way_to(link);  // refuses a loop
+  }
+
+  /// From the root; empty for the root itself.
+  std::vector<Joint> way_to(const std::string& link) const {
+    std::vector<Joint> way;
+    for (std::string at = link; above_.contains(at); at = way.back().parent) {
+      way.push_back(*above_.at(at));
+      if (way.size() > joints_.size())
+        throw InputError({file_, way.back().line}, link, "the joints close a loop: no arm");
+    }
+    std::reverse(way.begin(), way.end());
+    return way;
+  }
+
+  std::string only_end() const {
+    std::vector<std::string> ends;
+    std::ptrdiff_t most = 1;
+    for (const std::string& link : links_) {
+      if (std::any_of(joints_.begin(), joints_.end(), [&](const Joint& one) { return one.parent == link; }))
+        continue;
+      const std::vector<Joint> way = way_to(link);
+      const auto moving = std::count_if(way.begin(), way.end(), [](const Joint& one) { return one.moves(); });
+      if (moving > most) ends.clear();
+      if (moving < most) continue;
+      most = moving;
+      ends.push_back(link);
+    }
+    if (ends.empty()) throw InputError({file_, 1}, "robot", "no joint of it moves");
+    if (ends.size() > 1)
+      throw InputError(
+          fmt::format("{}: several links end the arm, say which with --tip: {}", file_, joined(ends, ", ")));
+    return ends.front();
+  }
+
+  void require_link(const std::string& name) const {
+    if (!links_.contains(name)) throw InputError({file_, 1}, name, "no link has this name");
+  }
+
+ private:
+  std::vector<Joint> joints_;
+  std::set<std::string> links_;
+  const std::string& file_;
+  std::map<std::string, const Joint*> above_;
+};
+
+struct Line {
+  Vector3d point, direction;
+};
+
+/// What is left of `v` across the unit vector `along`.
+Vector3d across(const Vector3d& v, const Vector3d& along) { return v - v.dot(along) * along; }
+
+double angle_deg(const Vector3d& from, const Vector3d& to, const Vector3d& about) {
+  return kDegPerRad * std::atan2(from.cross(to).dot(about), from.dot(to));
+}
+
+/// z along the line; x as near to `x` as it can be, else to `y`.
+Isometry3d frame_on(const Line& line, const Vector3d& origin, const Vector3d& x, const Vector3d& y) {
+  Vector3d side = across(x, line.direction);
+  if (side.norm() < 1e-6) side = across(y, line.direction);
+  Isometry3d frame = Isometry3d::Identity();
+  frame.linear().col(0) = side.normalized();
+  frame.linear().col(2) = line.direction;
+  frame.linear().col(1) = line.direction.cross(frame.linear().col(0));
+  frame.translation() = origin;
+  return frame;
+}
+
+/// The first row's frame: on the first joint's axis, at the root's origin where the axis goes through it.
+Isometry3d first_frame(const Line& axis) {
+  const Vector3d nearest = across(axis.point, axis.direction);
+  return frame_on(axis, nearest.norm() < 1e-9 ? Vector3d::Zero() : nearest, Vector3d::UnitX(),
+                  Vector3d::UnitY());
+}
+
+/// Clears what rounding left of a zero, in mm or deg.
+double clean(double value) { return std::abs(value) < 1e-10 ? 0 : value; }
+
+Isometry3d moved(const DhRow& row) {
+  const auto turn = [](double deg, const Vector3d& axis) {
+    return Eigen::AngleAxisd(deg / kDegPerRad, axis);
+  };
+  return Isometry3d(Eigen::Translation3d(0, 0, row.d) * turn(row.theta, Vector3d::UnitZ()) *
+                    Eigen::Translation3d(row.a, 0, 0) * turn(row.alpha, Vector3d::UnitX()) *
+                    turn(row.beta, Vector3d::UnitY()));
+}
+
+/// Hayati's row: to where the next axis meets this frame's own plane.
+DhRow row_to_parallel(const Line& next) {
+  DhRow row;
+  const Vector3d at = next.point - next.point.z() / next.direction.z() * next.direction;
+  row.a = clean(at.norm());
+  double theta = row.a > 0 ? std::atan2(at.y(), at.x()) : 0;
+  if (std::abs(theta) > std::acos(0.0) + 1e-12) {  // the other way round is the smaller turn
+    theta -= std::copysign(std::acos(-1.0), theta);
+    row.a = -row.a;
+  }
+  row.theta = clean(theta * kDegPerRad);
+  const Vector3d z = Eigen::AngleAxisd(-row.theta / kDegPerRad, Vector3d::UnitZ()) * next.direction;
+  row.beta = clean(std::asin(std::clamp(z.x(), -1.0, 1.0)) * kDegPerRad);
+  row.alpha = clean(std::atan2(-z.y(), z.z()) * kDegPerRad);
+  return row;
+}
+
+/// Along the common normal.
+DhRow row_along_normal(const Line& next) {
+  const Vector3d z = Vector3d::UnitZ();
+  Vector3d x = z.cross(next.direction).normalized();
+  if (x.x() < -1e-12) x = -x;  // the smaller turn
+  DhRow row;
+  row.theta = clean(angle_deg(Vector3d::UnitX(), x, z));
+  row.alpha = clean(angle_deg(z, next.direction, x));
+  // The line's point where it is nearest to z: its part across x vanishes in the plane of z and x.
+  row.a = clean(next.point.dot(x));
+  const Vector3d y = z.cross(x);
+  const double along = -next.point.dot(y) / next.direction.dot(y);
+  row.d = clean(next.point.z() + along * next.direction.z());
+  return row;
+}
+
+DhRow row_to(const Isometry3d& frame, const Line& next) {
+  constexpr double kNearlyParallel = 0.05;  // rad
+  const Line seen{frame.inverse() * next.point, frame.linear().transpose() * next.direction};
+  const double sine = Vector3d::UnitZ().cross(seen.direction).norm();
+  return sine < kNearlyParallel ? row_to_parallel(seen) : row_along_normal(seen);
+}
+
+/// The last row: up to the tip's height, turned so that x is the tip's where that can be.
+DhRow row_to_tip(const Isometry3d& tip) {
+  DhRow row;
+  row.d = clean(tip.translation().z());
+  const Vector3d side = across(tip.linear().col(0), Vector3d::UnitZ());
+  if (side.norm() > 1e-6) row.theta = clean(angle_deg(Vector3d::UnitX(), side, Vector3d::UnitZ()));
+  return row;
+}
+
+/// The joint's name as an axis of a machine file may have it: letters, digits, and none of the names that the
+/// arm's own statics take (a1, th2).
+std::string axis_name(const std::string& joint) {
+  static const std::regex kTaken("(th|d|a|al|be)[0-9]+|TP[XYZ]");
+  std::string name = joint;
+  for (char& c : name)
+    if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '_';
+  const bool is_name = !name.empty() && std::isdigit(static_cast<unsigned char>(name.front())) == 0;
+  return !is_name || is_reserved_word(name) || std::regex_match(name, kTaken) ? "J" + name : name;
+}
+
+PlannedAxis axis_of(const Joint& joint, const std::string& file) {
+  const double unit = joint.slides() ? kMmPerM : kDegPerRad;
+  PlannedAxis axis{axis_name(joint.name),      -180, 180, joint.slides() ? 'Z' : 'C',
+                   joint.type == "continuous", {}};
+  if (axis.rollover) return axis;
+  if (!joint.lower || !joint.upper || !(*joint.lower < *joint.upper))
+    throw InputError({file, joint.line}, joint.name, "a joint of this type has a lower and an upper limit");
+  axis.min = clean(std::round(*joint.lower * unit * 1e6) / 1e6);
+  axis.max = clean(std::round(*joint.upper * unit * 1e6) / 1e6);
+  return axis;
+}
+
+void require_arm(const std::vector<Joint>& way, const std::string& file) {
+  for (const Joint& one : way) {
+    if (one.type != "fixed" && one.type != "revolute" && one.type != "continuous" && one.type != "prismatic")
+      throw InputError({file, one.line}, one.type,
+                       "a joint of an arm is revolute, continuous, prismatic or fixed");
+    if (one.mimic)
+      throw InputError({file, one.line}, one.name, "it follows another joint: such a chain is no arm");
+  }
+}
+
+std::array<double, 6> base_of(const Isometry3d& frame) {
+  const Vector3d at = frame.translation();
+  const Vector3d turn = frame.linear().eulerAngles(0, 1, 2) * kDegPerRad;
+  return {clean(at.x()), clean(at.y()), clean(at.z()), clean(turn.x()), clean(turn.y()), clean(turn.z())};
+}
+
+}  // namespace
+
+std::array<double, 3> UrdfArm::tool(const std::array<double, 3>& in_tip) const {
+  const Vector3d at = tip_at + tip_rotation * Vector3d(in_tip[0], in_tip[1], in_tip[2]);
+  const auto rounded = [](double mm) { return clean(std::round(mm * 1e9) / 1e9); };
+  return {rounded(at.x()), rounded(at.y()), rounded(at.z())};
+}
+
+UrdfArm parse_urdf(const std::string& text, const std::string& file, const std::string& tip) {
+  const Reader reader(text, file);
+  const Tree tree(reader.joints(), reader.links(), file);
+  UrdfArm arm;
+  arm.name = reader.name();
+  if (!tip.empty()) tree.require_link(tip);
+  arm.tip = tip.empty() ? tree.only_end() : tip;
+  const std::vector<Joint> way = tree.way_to(arm.tip);
+  require_arm(way, file);
+  arm.root = way.empty() ? arm.tip : way.front().parent;
+  Isometry3d at = Isometry3d::Identity();
+  std::vector<Line> lines;
+  for (const Joint& joint : way) {
+    at = at * joint.origin;
+    if (!joint.moves()) continue;
+    arm.axes.push_back(axis_of(joint, file));
+    lines.push_back({at.translation(), at.linear() * joint.axis});
+    arm.rows.emplace_back().prismatic = joint.slides();
+  }
+  if (lines.empty()) throw InputError({file, 1}, arm.tip, "no joint before this link moves");
+  Isometry3d frame = first_frame(lines.front());
+  arm.base = base_of(frame);
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const bool prismatic = arm.rows[i].prismatic;
+    arm.rows[i] = i + 1 < lines.size() ? row_to(frame, lines[i + 1]) : row_to_tip(frame.inverse() * at);
+    arm.rows[i].prismatic = prismatic;
+    frame = frame * moved(arm.rows[i]);
+  }
+  const Isometry3d rest = frame.inverse() * at;
+  arm.tip_rotation = rest.linear();
+  arm.tip_at = rest.translation().unaryExpr(&clean);
+  return arm;
+}
+
+}  // namespace vernier

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <Eigen/Core>
+#include <array>
+#include <string>
+#include <vector>
+
+#include "tools/create/machine_plan.h"
+
+namespace vernier {
+
+/// An arm as a URDF describes it (Unified Robot Description Format, wiki.ros.org/urdf/XML), from its root
+/// link to one of the links at its end, in rows of Denavit and Hartenberg. Where the axes of two joints are
+/// parallel to 0.05 rad or better the row is Hayati's.
+struct UrdfArm {
+  std::string name, root, tip;
+  std::vector<DhRow> rows;
+  std::vector<PlannedAxis> axes;  // names and limits of the joints; deg, mm
+  std::array<double, 6> base{};   // of the first row's frame in the root's, T(X,Y,Z)·Rx·Ry·Rz: mm, deg
+  // The tip's frame in the last row's, mm.
+  Eigen::Matrix3d tip_rotation;
+  Eigen::Vector3d tip_at;
+  /// Where a point of the tip's frame is in the last row's, to 1e-9 mm.
+  std::array<double, 3> tool(const std::array<double, 3>& in_tip) const;
+};
+
+/// tip: name of a link; empty: the only one behind the most moving joints. Joints that do not move
+/// (`fixed`) become part of the links. Throws InputError with file, line and word: no URDF, xacro that
+/// nobody expanded, a joint that is none of an arm (floating, planar, mimic), no such link, several ends.
+/// tool.
+UrdfArm parse_urdf(const std::string& text, const std::string& file, const std::string& tip);
+
+}  // namespace vernier
