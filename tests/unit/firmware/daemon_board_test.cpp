@@ -77,6 +77,21 @@ TEST_F(DaemonBoard, TellsTheServiceManagerThatItIsReadyAliveAndStopping) {
   EXPECT_TRUE(wait_for([&] { return manager.hears("STOPPING=1"); })) << manager.heard();
 }
 
+// A file stands for the kernel's device: fed with line ends, disarmed by the letter V (watchdog-api.rst).
+TEST_F(DaemonBoard, HardwareWatchdogIsFedWhileTicksRunAndDisarmedAtAnOrderlyEndOnly) {
+  const std::string device = directory_ + "/watchdog";
+  replace_in_board("store = ", "watchdog = \"" + device + "\"\nstore = ");
+  for (const int signal : {SIGTERM, SIGKILL}) {
+    write_file(device, "");
+    Daemon daemon(directory_);
+    EXPECT_TRUE(wait_for([&] { return read_file(device).size() > 2; })) << "not fed";
+    daemon.end(signal);
+    const std::string written = read_file(device);
+    EXPECT_EQ(written.find('V'), signal == SIGTERM ? written.size() - 1 : std::string::npos)
+        << "signal " << signal;
+  }
+}
+
 TEST_F(DaemonBoard, TwoDaemonsDoNotShareAStore) {
   Daemon daemon(directory_);
   const std::string command = std::string(VERNIER_BIN_DIR) + "/vernierd --seconds 1 --no-realtime --board " +
