@@ -160,6 +160,7 @@ INSTANTIATE_TEST_SUITE_P(
     Kinds, BoardFileError,
     testing::Values(
         BadBoard{"Syntax", "[board]", "[board", "board.toml:1: "},
+        BadBoard{"NameOfATable", "[axis.X]", "[`xis.X]", "board.toml:8: "},
         BadBoard{"UnknownSetting", "trial_s", "trail_s", "board.toml:5: board: unknown setting trail_s"},
         BadBoard{"UnknownSection", "[[link]]", "[[lnik]]", "unknown section lnik"},
         BadBoard{"NoKeyFile", "key.pub", "none.pub", "none.pub: cannot be read as a public key"},
