@@ -101,7 +101,7 @@ TEST_F(DaemonBoard, TwoDaemonsDoNotShareAStore) {
   for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe)) out.push_back(static_cast<char>(c));
   EXPECT_EQ(WEXITSTATUS(pclose(pipe)), 2);
   EXPECT_NE(out.find("store: in use by another process"), std::string::npos) << out;
-  EXPECT_GT(daemon.client(key_).newest().number, 0u);
+  EXPECT_TRUE(wait_for([&] { return daemon.client(key_).newest().number > 0; }));
 }
 
 TEST_F(DaemonBoard, StatusSaysWhatRunsSinceWhenAndHowMuchOfItArrives) {
