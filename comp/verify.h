@@ -34,7 +34,7 @@ ProgramFault verify_program(const Program& program, ValueRange* ranges) noexcept
 
 /// How much a tick of a verified program, or one evaluation of its shares, does: about one for each product
 /// of a sum. Instructions, terms, steps of searches, columns, sines and lags are counted with the weights
-/// that they were measured to have against each other (tests/bench/kernels). setup.
+/// that they were measured to have against each other (tests/bench/weights). setup.
 std::uint64_t work_of(const Equation& equation, std::uint32_t channels) noexcept;
 
 /// Whether grid_piece finds every piece from one count after its start to one before its end; at a station

@@ -3,12 +3,20 @@
 
 #include <sodium.h>
 
+// The library takes for granted what it has not looked at yet ("[`a]" for the name of a table): an assertion
+// would end the daemon, an assumption leave it undefined. With neither it goes on to its own error.
+#undef NDEBUG
+#define TOML_ASSERT(expr) static_assert(true)
 #include <toml++/toml.h>
+
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <set>
+
+#include "firmware/daemon/toml_text.h"
 
 namespace vernier {
 namespace {
@@ -18,6 +26,19 @@ constexpr double kMostCounts = 1e15;
 constexpr double kMostDelayUs = 40'000;  // of a probe: what the latch remembers at 1 kHz, less its settling
 
 const std::set<std::string_view> kSections = {"board", "axis", "input", "probe", "digital", "link", "key"};
+
+toml::table read_toml(const std::string& path) {
+  try {
+    std::ifstream file(path, std::ios::binary);
+    if (!file || std::filesystem::is_directory(path)) return toml::parse_file(path);  // it says why not
+    const std::string text((std::istreambuf_iterator<char>(file)), {});
+    refuse_letters_outside_strings(text, path);
+    return toml::parse(text, path);
+  } catch (const toml::parse_error& error) {
+    throw BoardError{path + ":" + std::to_string(error.source().begin.line) + ": " +
+                     std::string(error.description())};
+  }
+}
 
 /// Reads the settings of one table and knows which of them nobody asked for.
 class Table {
@@ -129,14 +150,8 @@ void apply_calibration(const std::string& board_path, SignalSource& output) {
   const std::string path = output.text("calibration", "");
   if (path.empty()) return;
   output.texts["calibration"] = beside(board_path, path);
-  toml::table table;
-  try {
-    if (!std::filesystem::exists(output.texts["calibration"])) return;
-    table = toml::parse_file(output.texts["calibration"]);
-  } catch (const toml::parse_error& error) {
-    throw BoardError{output.texts["calibration"] + ":" + std::to_string(error.source().begin.line) + ": " +
-                     std::string(error.description())};
-  }
+  if (!std::filesystem::exists(output.texts["calibration"])) return;
+  const toml::table table = read_toml(output.texts["calibration"]);
   Table settings(table, output.texts["calibration"], "calibration");
   output.numbers["span"] = settings.number("span", 0, 1e-9, 1e4);
   output.numbers[output.kind == "pwm" ? "zero_ns" : "zero"] = settings.number("zero", 0, 0, 1e9);
@@ -423,13 +438,7 @@ BoardFile read_board_file(const std::string& path) {
   BoardFile board;
   board.path = path;
   board.service.store_beside = true;
-  toml::table file;
-  try {
-    file = toml::parse_file(path);
-  } catch (const toml::parse_error& error) {
-    throw BoardError{path + ":" + std::to_string(error.source().begin.line) + ": " +
-                     std::string(error.description())};
-  }
+  const toml::table file = read_toml(path);
   Table settings(file, path, "board file");
   const toml::table* const general = settings.table("board");
   if (general == nullptr) settings.fail("[board] is missing");

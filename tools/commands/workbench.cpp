@@ -10,7 +10,10 @@
 
 #include "tables/upload_format.h"
 #include "tools/commands/command.h"
+#include "tools/text/error.h"
+#include "tools/text/files.h"
 #include "tools/upload/client.h"
+#include "tools/workbench/file_reader.h"
 #include "tools/workbench/image_diff.h"
 #include "tools/workbench/process.h"
 #include "tools/workbench/server.h"
@@ -21,7 +24,7 @@ namespace {
 struct WorkbenchArguments {
   std::string directory = ".", json;
   std::uint16_t port = 0;
-  bool no_browser = false;
+  bool no_browser = false, reader = false;
 };
 
 /// The signals that end the command are waited for by a thread, so that they are blocked in all others.
@@ -46,6 +49,7 @@ void open_browser(const std::string& url) {
 }
 
 void run_workbench(const WorkbenchArguments& arguments) {
+  if (arguments.reader) return serve_files(Project(arguments.directory), STDIN_FILENO);
   Api api(arguments.directory, std::filesystem::read_symlink("/proc/self/exe").string(),
           VERNIER_VERSION " (" VERNIER_COMMIT ")");
   WorkbenchServer server(api, arguments.port);
@@ -118,6 +122,7 @@ void register_workbench(CLI::App& vernier) {
       ->capture_default_str();
   command->add_option("--port", arguments->port, "of 127.0.0.1 (0: any free one)")->capture_default_str();
   command->add_flag("--no-browser", arguments->no_browser, "only print the address");
+  command->add_flag("--reader", arguments->reader, "")->group("");  // what the server starts to read files
   command->add_option("--json", arguments->json, "{url, port} once it serves; - for standard output");
   command->footer(
       "Serves until interrupted. The address holds the token of the session; the page reads and writes\n"

@@ -2,7 +2,6 @@
 #include "tools/import/column_map.h"
 
 #include <algorithm>
-#include <charconv>
 #include <optional>
 
 #include "tools/text/csv.h"
@@ -14,13 +13,6 @@ namespace vernier {
 namespace {
 
 bool is_word(const std::string& name) { return name == "run" || name == "role"; }
-
-std::optional<std::size_t> index_number(const std::string& text) {
-  std::size_t value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return value;
-}
 
 /// "left = right", both trimmed; split at the last sign where the right side is a column, at the first else.
 std::pair<std::string, std::string> sides(const std::string& words, bool last, const Place& place,
@@ -57,15 +49,15 @@ void set_option(ColumnMap& map, const std::string& key, const std::string& value
     return value == yes;
   };
   if (key == "separator")
-    map.format.separator = separator_of(value);
+    map.format.separator = separator_of(value, place);
   else if (key == "decimal")
     map.format.decimal_comma = one_of("comma", "point");
   else if (key == "header")
     map.format.header = one_of("yes", "no");
   else if (key == "comment")
     map.format.comment = value == "none" ? "" : value;
-  else if (key == "skip" && index_number(value))
-    map.format.skip = *index_number(value);
+  else if (key == "skip" && parse_count(value))
+    map.format.skip = *parse_count(value);
   else
     throw InputError(place, key,
                      "unknown statement; known are column, set, separator, decimal, header, comment, skip");
@@ -79,7 +71,7 @@ std::optional<std::string> number_cell(std::string text, bool decimal_comma) {
 }
 
 std::size_t source_index(const DelimitedFile& file, const MappedColumn& column) {
-  if (const auto number = index_number(column.source)) {
+  if (const auto number = parse_count(column.source)) {
     const std::size_t width = file.rows.front().size();
     if (*number >= 1 && *number <= width) return *number - 1;
     throw InputError(column.place.file.empty() ? Place{file.file, file.line.front()} : column.place,
@@ -169,7 +161,7 @@ void ImportTable::add(const std::string& name, const std::string& unit, const st
 ImportTable mapped_table(const std::string& text, const std::string& file, const ColumnMap& map) {
   DelimitedFormat format = map.format;
   for (const MappedColumn& column : map.columns)
-    if (!column.source.empty() && !index_number(column.source)) format.header = true;
+    if (!column.source.empty() && !parse_count(column.source)) format.header = true;
   const DelimitedFile read = parse_delimited(text, file, format);
   ImportTable table{file, {}, read.line};
   for (const MappedColumn& column : map.columns) {

@@ -42,13 +42,13 @@ class Lines {
 
 }  // namespace
 
-char separator_of(const std::string& name) {
+char separator_of(const std::string& name, const Place& place) {
   if (name == "auto") return 0;
   if (name == "comma") return ',';
   if (name == "semicolon") return ';';
   if (name == "tab") return '\t';
   if (name == "space") return ' ';
-  throw InputError({}, name, "a separator is comma, semicolon, tab, space or auto");
+  throw InputError(place, name, "a separator is comma, semicolon, tab, space or auto");
 }
 
 DelimitedFile parse_delimited(const std::string& text, const std::string& file,

@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "tools/text/error.h"
+
 namespace vernier {
 
 /// How a table of an instrument is written.
@@ -28,7 +30,8 @@ struct DelimitedFile {
 DelimitedFile parse_delimited(const std::string& text, const std::string& file,
                               const DelimitedFormat& format);
 
-/// The separator that a name means: comma, semicolon, tab, space, auto. Throws InputError.
-char separator_of(const std::string& name);
+/// The separator that a name means: comma, semicolon, tab, space, auto. place: of the name, where it is not
+/// an argument. Throws InputError.
+char separator_of(const std::string& name, const Place& place = {});
 
 }  // namespace vernier

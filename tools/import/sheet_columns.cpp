@@ -319,13 +319,13 @@ void read_sheet_profile(SheetWishes& wishes, const std::string& text, const std:
       wishes.constants.push_back(map.columns.front());
     } else {
       const auto [name, value] = halves(line, false, place, "STATEMENT = VALUE");
-      const auto skip = parse_number(value);
+      const auto skip = parse_count(value);
       if (name == "separator")
-        wishes.format.separator = separator_of(value);
+        wishes.format.separator = separator_of(value, place);
       else if (name == "decimal" && (value == "comma" || value == "point"))
         wishes.format.decimal_comma = value == "comma";
-      else if (name == "skip" && skip && *skip >= 0)
-        wishes.format.skip = static_cast<std::size_t>(*skip);
+      else if (name == "skip" && skip)
+        wishes.format.skip = *skip;
       else if (name == "sheet")
         wishes.format.sheet = value;
       else if (name == "comment")

@@ -19,6 +19,17 @@ namespace {
 
 using Words = std::initializer_list<const char*>;
 
+/// Finds an element deeper than any of the format: who edits the text walks down its elements.
+struct TooDeep : pugi::xml_tree_walker {
+  static constexpr int kMostDepth = 16;
+  bool for_each(pugi::xml_node& node) override {
+    if (depth() < kMostDepth) return true;
+    found = node;
+    return false;
+  }
+  pugi::xml_node found;
+};
+
 /// Walks the elements of one machine file. Every element and attribute is either read, ignored with a note,
 /// or an error.
 class Reader {
@@ -37,6 +48,8 @@ class Reader {
       const auto at = static_cast<std::size_t>(std::max<std::ptrdiff_t>(result.offset, 0));
       throw InputError({machine_.file, line_at(at)}, word_at(at), result.description());
     }
+    TooDeep too_deep;
+    if (!document_.traverse(too_deep)) fail(too_deep.found, too_deep.found.name(), "nested too deeply");
     pugi::xml_node root;
     for (const pugi::xml_node node : document_.children()) {
       if (node.type() == pugi::node_doctype)
@@ -93,9 +106,12 @@ class Reader {
     record->disturbance = attribute(fitted, "disturbance").value_or("");
     for (const pugi::xml_node node : children(fitted)) {
       if (is(node, "measured")) {
-        for (const pugi::xml_node range : children(node))
+        for (const pugi::xml_node range : children(node)) {
+          no_children(range);
           record->measured.push_back({range.name(), number(range, "min", 0), number(range, "max", 0)});
+        }
       } else if (is(node, "covariance")) {
+        no_children(node);
         std::istringstream words(attribute(node, "parameters").value_or(""));
         for (std::string name; std::getline(words, name, '|');) record->parameters.push_back(name);
         if (!read_fit_numbers(attribute(node, "numbers").value_or(""), record->parameters.size(), *record))

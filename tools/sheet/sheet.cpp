@@ -80,17 +80,32 @@ char separator_of_lines(const std::vector<Line>& lines) {
   return most > 0.3 ? best : ' ';
 }
 
+/// As many cells in each row. One row far wider than the others would make a small file a large table.
+void make_even(Sheet& sheet) {
+  constexpr std::size_t kMostEmpty = 4u << 20, kMostEmptyForOne = 2;
+  std::size_t cells = 0, widest = 0;
+  for (std::size_t i = 0; i < sheet.rows.size(); ++i) {
+    cells += sheet.rows[i].size();
+    if (sheet.rows[i].size() > sheet.rows[widest].size()) widest = i;
+  }
+  if (sheet.rows.empty()) return;
+  const std::size_t width = sheet.rows[widest].size();
+  if (width > (kMostEmpty + (1 + kMostEmptyForOne) * cells) / sheet.rows.size())
+    throw InputError({sheet.file, sheet.line[widest]}, "",
+                     std::to_string(width) + " cells here, where the rows have " +
+                         std::to_string(cells / sheet.rows.size()) + ": no table");
+  for (auto& row : sheet.rows) row.resize(width);
+}
+
 void split(Sheet& sheet, const std::vector<Line>& lines) {
-  std::size_t width = 0;
   for (const Line& line : lines) {
     std::vector<std::string> cells = fields_of(line.text, {sheet.separator, true}, {sheet.file, line.number});
     if (std::all_of(cells.begin(), cells.end(), [](const std::string& cell) { return cell.empty(); }))
       continue;
-    width = std::max(width, cells.size());
     sheet.rows.push_back(std::move(cells));
     sheet.line.push_back(line.number);
   }
-  for (auto& row : sheet.rows) row.resize(width);
+  make_even(sheet);
 }
 
 /// Columns at the right that no row fills: what a spreadsheet's trailing separators leave.
@@ -169,15 +184,13 @@ Sheet read_sheet(const std::string& bytes, const std::string& file, const SheetF
     WorkbookSheet read = read_workbook(bytes, file, format.sheet);
     sheet.workbook = true;
     sheet.sheet = read.name;
-    std::size_t width = 0;
-    for (const auto& row : read.rows) width = std::max(width, row.size());
     for (std::size_t i = 0; i < read.rows.size(); ++i) {
       if (read.line[i] <= format.skip) continue;
-      read.rows[i].resize(width);
       if (!format.comment.empty() && read.rows[i].front().starts_with(format.comment)) continue;
       sheet.rows.push_back(std::move(read.rows[i]));
       sheet.line.push_back(read.line[i]);
     }
+    make_even(sheet);
     // Its numbers are numbers; only cells that are text may have a decimal comma.
     sheet.decimal_comma = format.decimal_comma.value_or(false);
   } else {

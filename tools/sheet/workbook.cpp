@@ -17,6 +17,9 @@ namespace {
 
 /// A part that unpacks to more is no survey but a bomb.
 constexpr zip_uint64_t kMostBytes = 256u << 20;
+/// A row's cells up to its last one are there: rows of one cell far to the right would make a small file
+/// large.
+constexpr std::size_t kMostEmpty = 4u << 20, kMostEmptyForOne = 2;
 constexpr std::size_t kMostRows = 1048576, kMostColumns = 16384;  // of the format itself
 
 class Package {
@@ -71,7 +74,9 @@ std::string text_of(const pugi::xml_node& node) {
   std::string text;
   for (const pugi::xml_node one : node.children()) {
     if (local(one) == "t") text += one.text().get();
-    if (local(one) == "r") text += text_of(one);
+    if (local(one) != "r") continue;
+    for (const pugi::xml_node run : one.children())
+      if (local(run) == "t") text += run.text().get();
   }
   return text;
 }
@@ -135,7 +140,7 @@ class Reader {
     WorkbookSheet sheet{entry.attribute("name").value(), {}, {}};
     pugi::xml_document document;
     read_part(part_of(entry), document);
-    std::size_t row_number = 0;
+    std::size_t row_number = 0, filled = 0, empty = 0;
     for (const pugi::xml_node row : child(document.document_element(), "sheetData").children()) {
       row_number = row.attribute("r") ? row.attribute("r").as_uint() : row_number + 1;
       if (row_number > kMostRows)
@@ -148,7 +153,14 @@ class Reader {
           throw InputError({file_, row_number}, "", "a column beyond the last of the format");
         const std::string value = trimmed(value_of(cell, row_number));
         if (value.empty()) continue;
-        if (cells.size() <= column) cells.resize(column + 1);
+        if (cells.size() <= column) {
+          empty += column - cells.size();
+          if (empty > kMostEmpty + kMostEmptyForOne * filled)
+            throw InputError({file_, row_number}, cell.attribute("r").value(),
+                             "nearly all cells up to here are empty: no table");
+          cells.resize(column + 1);
+        }
+        ++filled;
         cells[column] = value;
         any = true;
       }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -10,6 +11,10 @@ namespace vernier {
 /// (empty, blanks, hex, inf, nan) and for what is so large that its square is none (beyond 1e150).
 /// Independent of the locale.
 std::optional<double> parse_number(std::string_view text);
+
+/// A count ("0", "12") that fills the whole of `text`; nothing for anything else and for what is too large
+/// for one.
+std::optional<std::size_t> parse_count(std::string_view text);
 
 /// Is this a name of the formats: letters, digits and _, beginning with a letter or _ (ASCII)?
 bool is_name(std::string_view text);

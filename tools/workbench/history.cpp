@@ -5,6 +5,7 @@
 
 #include "tools/text/error.h"
 #include "tools/text/files.h"
+#include "tools/text/words.h"
 #include "tools/workbench/now.h"
 
 namespace vernier {
@@ -41,7 +42,9 @@ bool is_entry(const nlohmann::ordered_json& entry) {
 CommandHistory::CommandHistory(const Project& project) : project_(project) {
   const fs::path path = list_of_entries(project);
   if (std::error_code failed; !fs::exists(path, failed)) return;
-  const auto read = nlohmann::ordered_json::parse(read_file(path.string()), nullptr, false);
+  const std::string text = read_file(path.string());
+  if (nests_deeper_than(text, kMostJsonDepth)) throw InputError(path.string() + ": nests too deeply");
+  const auto read = nlohmann::ordered_json::parse(text, nullptr, false);
   if (!read.is_array()) throw InputError(path.string() + ": no list of commands");
   for (const auto& entry : read)
     if (!is_entry(entry)) throw InputError(path.string() + ": an entry that is no command");

@@ -6,6 +6,7 @@
 #include <chrono>
 
 #include "tools/text/error.h"
+#include "tools/text/words.h"
 #include "tools/workbench/now.h"
 #include "tools/workbench/process.h"
 
@@ -90,7 +91,8 @@ void Jobs::run(Job& job) {
 }
 
 void Jobs::finish(Job& job, int exit, const std::string& out, const std::string& err) {
-  nlohmann::ordered_json result = nlohmann::ordered_json::parse(out, nullptr, false);
+  nlohmann::ordered_json result;
+  if (!nests_deeper_than(out, kMostJsonDepth)) result = nlohmann::ordered_json::parse(out, nullptr, false);
   if (result.is_discarded()) result = nullptr;
   const std::scoped_lock lock(guard_);
   job.exit = exit;

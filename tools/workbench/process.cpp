@@ -40,11 +40,11 @@ struct Pipe {
 
 /// Between fork and exec only calls that are safe there: everything was prepared by the parent.
 [[noreturn]] void become(const char* program, char* const* arguments, char* const* environment,
-                         const char* directory, int out, int err) {
+                         const char* directory, const StandardStreams& streams) {
   ::setpgid(0, 0);
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  const int nothing = ::open("/dev/null", O_RDONLY);
-  if (nothing < 0 || ::dup2(nothing, 0) < 0 || ::dup2(out, 1) < 0 || ::dup2(err, 2) < 0) ::_exit(kNotStarted);
+  if (::dup2(streams.in, 0) < 0 || ::dup2(streams.out, 1) < 0 || ::dup2(streams.error, 2) < 0)
+    ::_exit(kNotStarted);
   // Connections of the server are no business of a command.
   ::close_range(3, ~0U, 0);
   if (::chdir(directory) != 0) ::_exit(kNotStarted);
@@ -111,19 +111,27 @@ std::vector<char*> pointers(std::vector<std::string>& texts) {
 
 }  // namespace
 
-ProcessResult run_process(const std::string& program, const std::vector<std::string>& arguments,
-                          const std::string& directory, std::size_t most_bytes,
-                          const std::function<void(std::string_view)>& on_line, RunningProcess& running) {
-  Pipe out, err;
+pid_t start_process(const std::string& program, const std::vector<std::string>& arguments,
+                    const std::string& directory, const StandardStreams& streams) {
   std::vector<std::string> words = {program}, environment = {"VERNIER_PROGRESS=lines"};
   words.insert(words.end(), arguments.begin(), arguments.end());
   for (char** entry = ::environ; *entry != nullptr; ++entry) environment.emplace_back(*entry);
   const std::vector<char*> argv = pointers(words), envp = pointers(environment);
   const pid_t child = ::fork();
-  if (child < 0) throw InputError(std::string("a command cannot be started: ") + std::strerror(errno));
-  if (child == 0)
-    become(program.c_str(), argv.data(), envp.data(), directory.c_str(), out.end[1], err.end[1]);
-  ::setpgid(child, child);  // whoever of the two comes first
+  if (child == 0) become(program.c_str(), argv.data(), envp.data(), directory.c_str(), streams);
+  if (child > 0) ::setpgid(child, child);  // whoever of the two comes first
+  return child;
+}
+
+ProcessResult run_process(const std::string& program, const std::vector<std::string>& arguments,
+                          const std::string& directory, std::size_t most_bytes,
+                          const std::function<void(std::string_view)>& on_line, RunningProcess& running) {
+  Pipe out, err;
+  const int nothing = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
+  const pid_t child = start_process(program, arguments, directory, {nothing, out.end[1], err.end[1]});
+  const int failed = errno;
+  ::close(nothing);
+  if (child < 0) throw InputError(std::string("a command cannot be started: ") + std::strerror(failed));
   running.group = child;
   if (running.cancelled) running.cancel();
   out.close_end(1);

@@ -31,6 +31,15 @@ ProcessResult run_process(const std::string& program, const std::vector<std::str
                           const std::string& directory, std::size_t most_bytes,
                           const std::function<void(std::string_view)>& on_line, RunningProcess& running);
 
+/// What becomes a program's standard input, output and error.
+struct StandardStreams {
+  int in, out, error;
+};
+/// Starts a program in a process group of its own that dies with this one's thread. Its number; -1 with errno
+/// set. All but `streams` is closed in it. tool.
+pid_t start_process(const std::string& program, const std::vector<std::string>& arguments,
+                    const std::string& directory, const StandardStreams& streams);
+
 /// A command as a shell takes it: words quoted where they must be.
 std::string shell_text(const std::string& program, const std::vector<std::string>& arguments);
 

@@ -77,6 +77,21 @@ TEST_F(DaemonBoard, TellsTheServiceManagerThatItIsReadyAliveAndStopping) {
   EXPECT_TRUE(wait_for([&] { return manager.hears("STOPPING=1"); })) << manager.heard();
 }
 
+// A file stands for the kernel's device: fed with line ends, disarmed by the letter V (watchdog-api.rst).
+TEST_F(DaemonBoard, HardwareWatchdogIsFedWhileTicksRunAndDisarmedAtAnOrderlyEndOnly) {
+  const std::string device = directory_ + "/watchdog";
+  replace_in_board("store = ", "watchdog = \"" + device + "\"\nstore = ");
+  for (const int signal : {SIGTERM, SIGKILL}) {
+    write_file(device, "");
+    Daemon daemon(directory_);
+    EXPECT_TRUE(wait_for([&] { return read_file(device).size() > 2; })) << "not fed";
+    daemon.end(signal);
+    const std::string written = read_file(device);
+    EXPECT_EQ(written.find('V'), signal == SIGTERM ? written.size() - 1 : std::string::npos)
+        << "signal " << signal;
+  }
+}
+
 TEST_F(DaemonBoard, TwoDaemonsDoNotShareAStore) {
   Daemon daemon(directory_);
   const std::string command = std::string(VERNIER_BIN_DIR) + "/vernierd --seconds 1 --no-realtime --board " +
@@ -86,7 +101,7 @@ TEST_F(DaemonBoard, TwoDaemonsDoNotShareAStore) {
   for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe)) out.push_back(static_cast<char>(c));
   EXPECT_EQ(WEXITSTATUS(pclose(pipe)), 2);
   EXPECT_NE(out.find("store: in use by another process"), std::string::npos) << out;
-  EXPECT_GT(daemon.client(key_).newest().number, 0u);
+  EXPECT_TRUE(wait_for([&] { return daemon.client(key_).newest().number > 0; }));
 }
 
 TEST_F(DaemonBoard, StatusSaysWhatRunsSinceWhenAndHowMuchOfItArrives) {
@@ -145,6 +160,11 @@ INSTANTIATE_TEST_SUITE_P(
     Kinds, BoardFileError,
     testing::Values(
         BadBoard{"Syntax", "[board]", "[board", "board.toml:1: "},
+        BadBoard{"NameOfATable", "[axis.X]", "[`xis.X]", "board.toml:8: "},
+        BadBoard{"LetterOfAnotherAlphabet", "unit = \"degC\"", "unit = °C",
+                 "\"°C\": letters beyond ASCII stand in quotes, on one line"},
+        BadBoard{"LetterAsAName", "high = 600", "hïgh = 600", "board.toml:9: \"hïgh\": "},
+        BadBoard{"LetterBehindABackslash", "name = \"test\"", "name = \"\\ä\"", "board.toml:2: "},
         BadBoard{"UnknownSetting", "trial_s", "trail_s", "board.toml:5: board: unknown setting trail_s"},
         BadBoard{"UnknownSection", "[[link]]", "[[lnik]]", "unknown section lnik"},
         BadBoard{"NoKeyFile", "key.pub", "none.pub", "none.pub: cannot be read as a public key"},

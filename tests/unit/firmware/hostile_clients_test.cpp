@@ -169,6 +169,10 @@ TEST_F(HostileClients, SlowMediumDelaysWhoAskedForItAndNobodyElse) {
 
 TEST_F(HostileClients, TickThatStandsStillGivesNoSignOfLife) {
   NotifySocket manager(directory_ + "/notify");
+  // A file stands for the device of a hardware watchdog.
+  const std::string device = directory_ + "/watchdog";
+  write_file(device, "");
+  replace_in_board("store = ", "watchdog = \"" + device + "\"\nstore = ");
   Daemon daemon(directory_, environment(manager));
   ASSERT_TRUE(wait_for([&] { return manager.hears("WATCHDOG=1"); }));
   // A tracer stops the main thread, which is the tick, and no other.
@@ -178,9 +182,11 @@ TEST_F(HostileClients, TickThatStandsStillGivesNoSignOfLife) {
   ASSERT_EQ(::waitpid(daemon.pid(), &status, __WALL), daemon.pid());
   manager.hears("");
   const int signs = manager.signs();
+  const std::size_t fed = read_file(device).size();
   std::this_thread::sleep_for(std::chrono::milliseconds(1500));
   manager.hears("");
   EXPECT_LE(manager.signs(), signs + 1) << "the tick stands still, all other threads run";
+  EXPECT_LE(read_file(device).size(), fed + 1) << "nor is a hardware watchdog fed";
   EXPECT_NO_THROW(daemon.client(key_).slots()) << "links are served all the same";
   ASSERT_EQ(::ptrace(PTRACE_DETACH, daemon.pid(), nullptr, nullptr), 0);
   EXPECT_TRUE(wait_for([&] { return manager.hears("") || manager.signs() > signs + 2; }));

@@ -140,5 +140,27 @@ TEST(SheetProfile, ReadsTheNextFileAsThisOne) {
   EXPECT_THROW(read_sheet_profile(bad, "colunm X = x[mm]\n", "p.txt"), InputError);
 }
 
+TEST(SheetProfile, WhatIsNoCountOfLinesIsRefusedWithItsPlace) {
+  for (const char* skip : {"1e100", "1.5", "-1", "99999999999999999999"}) {
+    SheetWishes wishes;
+    try {
+      read_sheet_profile(wishes, std::string("# a profile\nskip = ") + skip + "\n", "p.txt");
+      ADD_FAILURE() << skip;
+    } catch (const InputError& error) {
+      EXPECT_EQ(std::string(error.what()).find("p.txt:2: \"skip\": "), 0u) << error.what();
+    }
+  }
+}
+
+TEST(SheetProfile, AnUnknownSeparatorIsNamedWithItsPlace) {
+  SheetWishes wishes;
+  try {
+    read_sheet_profile(wishes, "separator = colon\n", "p.txt");
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    EXPECT_EQ(std::string(error.what()).find("p.txt:1: \"colon\": "), 0u) << error.what();
+  }
+}
+
 }  // namespace
 }  // namespace vernier::sheet_columns_test

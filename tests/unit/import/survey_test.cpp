@@ -39,6 +39,10 @@ std::string message_of(const std::string& map, const std::string& text) {
   return "";
 }
 
+TEST(Tracker, AMapsUnknownSeparatorIsNamedWithItsPlace) {
+  EXPECT_EQ(message_of("# a map\nseparator = colon\n", "1,2\n").find("map.txt:2: \"colon\": "), 0u);
+}
+
 TEST(Tracker, ReadsEveryWayOfWritingATable) {
   const std::string map =
       "column 1 = X[mm]\ncolumn 2=Y[mm]\ncolumn 3 = x[m]\n# a comment\n\ncolumn 4 = y[mm]\ncolumn 5 = "

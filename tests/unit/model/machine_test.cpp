@@ -169,5 +169,27 @@ TEST(MachineFile, WritesValuesBackAndKeepsEverythingElse) {
   EXPECT_NE(written.find("<!-- my note --><k  value='0.1'"), std::string::npos);
 }
 
+// Whoever edits a machine's text walks down its elements: half a million of them, one in the other, ended the
+// program that wrote a fit back.
+TEST(Machine, ElementsWithoutEndInsideOneAnotherAreRefusedWithTheirLine) {
+  std::string nested;
+  for (int i = 0; i < 500'000; ++i) nested += "<a>";
+  for (int i = 0; i < 500'000; ++i) nested += "</a>";
+  const std::string head =
+      "<machine name=\"m\"><variables><machineaxes><X/></machineaxes></variables>"
+      "<transforms><sixdof n=\"1\" X=\"X\"/></transforms>\n<fitted rms=\"0\" worst=\"1\"><measured>\n"
+      "<X min=\"0\" max=\"1\"";
+  const std::string tail = "</measured></fitted></machine>";
+  EXPECT_NO_THROW(parse_machine(head + "/>" + tail, "m.xml"));
+  for (const std::string& inside : {nested, std::string("<a/>")}) {
+    try {
+      parse_machine(head + ">" + inside + "</X>" + tail, "m.xml");
+      ADD_FAILURE() << "accepted";
+    } catch (const InputError& error) {
+      EXPECT_EQ(std::string(error.what()).find("m.xml:3: \"a\": "), 0u) << error.what();
+    }
+  }
+}
+
 }  // namespace
 }  // namespace vernier::machine_test

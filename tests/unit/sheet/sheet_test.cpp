@@ -137,5 +137,21 @@ TEST(Sheet, PartsAreTitleHeadingsUnitsAndData) {
   EXPECT_EQ(sheet.line[table.first_data], 5u);
 }
 
+// A line of many separators over many short lines: as many cells in each would be 10^10.
+TEST(Sheet, OneRowFarWiderThanTheOthersIsNoTable) {
+  std::string text = "a,b" + std::string(100'000, ',') + "c\n";
+  for (int i = 0; i < 100'000; ++i) text += "1,2\n";
+  try {
+    read_sheet(text, "s.csv", {});
+    ADD_FAILURE() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_EQ(std::string(error.what()).find("s.csv:1: 100002 cells here"), 0u) << error.what();
+  }
+  // A wide title over a table is one.
+  text = "title" + std::string(200, ',') + "x\n";
+  for (int i = 0; i < 1000; ++i) text += "1,2\n";
+  EXPECT_EQ(read_sheet(text, "s.csv", {}).rows.size(), 1001u);
+}
+
 }  // namespace
 }  // namespace vernier::sheet_test

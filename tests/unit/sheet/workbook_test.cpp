@@ -2,6 +2,9 @@
 #include "tools/sheet/workbook.h"
 
 #include <gtest/gtest.h>
+#include <zip.h>
+
+#include <map>
 
 #include "tools/text/error.h"
 #include "tools/text/files.h"
@@ -19,6 +22,33 @@ std::string refusal(const std::string& bytes, const std::string& sheet) {
     return error.what();
   }
   return "accepted";
+}
+
+/// A workbook of one sheet with these texts and rows.
+std::string workbook_of(const std::string& strings, const std::string& rows) {
+  const std::map<std::string, std::string> parts = {
+      {"xl/workbook.xml",
+       "<workbook><sheets><sheet name=\"S\" sheetId=\"1\" r:id=\"rId1\"/></sheets></workbook>"},
+      {"xl/_rels/workbook.xml.rels",
+       "<Relationships><Relationship Id=\"rId1\" Target=\"worksheets/sheet1.xml\"/></Relationships>"},
+      {"xl/sharedStrings.xml", "<sst>" + strings + "</sst>"},
+      {"xl/worksheets/sheet1.xml", "<worksheet><sheetData>" + rows + "</sheetData></worksheet>"}};
+  zip_error_t error;
+  zip_error_init(&error);
+  zip_source_t* const medium = zip_source_buffer_create(nullptr, 0, 0, &error);
+  zip_source_keep(medium);
+  zip_t* const zip = zip_open_from_source(medium, ZIP_CREATE | ZIP_TRUNCATE, &error);
+  for (const auto& [name, text] : parts)
+    zip_file_add(zip, name.c_str(), zip_source_buffer(zip, text.data(), text.size(), 0), ZIP_FL_OVERWRITE);
+  EXPECT_EQ(zip_close(zip), 0);
+  zip_stat_t status;
+  EXPECT_EQ(zip_source_stat(medium, &status), 0);
+  std::string bytes(status.size, '\0');
+  zip_source_open(medium);
+  EXPECT_EQ(zip_source_read(medium, bytes.data(), bytes.size()), static_cast<zip_int64_t>(bytes.size()));
+  zip_source_close(medium);
+  zip_source_free(medium);
+  return bytes;
 }
 
 TEST(Workbook, CellsOfTheFirstSheetThatHasSome) {
@@ -60,6 +90,23 @@ TEST(Workbook, BrokenFilesAreRefused) {
     changed[at] = static_cast<char>(~changed[at]);
     refusal(changed, "");
   }
+}
+
+// Packed they are some kilobytes: runs inside runs ended the program by its stack, cells at the far right by
+// its memory.
+TEST(Workbook, SmallFilesThatUnpackToAnythingLargeAreRefusedOrRead) {
+  std::string nested = "<si>";
+  for (int i = 0; i < 500'000; ++i) nested += "<r>";
+  nested += "<t>deep</t>";
+  for (int i = 0; i < 500'000; ++i) nested += "</r>";
+  const std::string one = "<row r=\"1\"><c t=\"s\"><v>1</v></c></row>";
+  const WorkbookSheet sheet =
+      read_workbook(workbook_of(nested + "</si><si><r><t>a</t></r><t>b</t></si>", one), "b.xlsx", "");
+  EXPECT_EQ(sheet.rows[0][0], "ab");
+  std::string far;
+  for (int i = 1; i <= 2000; ++i) far += "<row><c r=\"XFD" + std::to_string(i) + "\"><v>1</v></c></row>";
+  EXPECT_EQ(refusal(workbook_of("", far), ""),
+            "b.xlsx:257: \"XFD257\": nearly all cells up to here are empty: no table");
 }
 
 }  // namespace

@@ -138,7 +138,18 @@ async function bringToBoard(page, axes) {
   await picture(page, 'board', '#slots');
   await picture(page, 'live', '#watch');
   await picture(page, 'compile', '#compile');
-  await page.click('#watch');
+  await goesStale(page, started.at(-1));
+}
+
+/** A board that falls silent is not shown as if it were well. */
+async function goesStale(page, silent) {
+  assert.ok(!(await page.evaluate("document.querySelector('.stale')")), 'a board that speaks is not stale');
+  silent.kill('SIGSTOP');
+  await page.until("document.querySelector('.stale') && document.querySelector('#live-state.error')", 'the live view to turn red', 20);
+  assert.ok((await text(page, '#live-state')).includes('what is shown is old'), 'it says so');
+  silent.kill('SIGCONT');
+  await page.until("document.getElementById('watch').textContent === 'Watch' || !document.querySelector('.stale')", 'an end or news', 20);
+  if ((await text(page, '#watch')) === 'Stop') await page.click('#watch');
 }
 
 /** The chosen rows are the same in all views, and can be left out with a reason and put back. */

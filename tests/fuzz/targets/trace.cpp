@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/import/trace_reader.h"
+
+#include "tests/fuzz/target.h"
+#include "tools/import/ballbar_csv.h"
+#include "tools/text/csv.h"
+
+namespace vernier::fuzz {
+namespace {
+
+void take(Bytes bytes) {
+  const MemoryFile file(bytes);
+  try {
+    TraceSetup setup;
+    setup.feed_mm_min = 1000;
+    parse_csv(ballbar_csv({read_ballbar_trace(file.path(), setup)}, {}).text, file.path());
+  } catch (const InputError& error) {
+    expect_place(error.what(), file.path());
+  }
+}
+
+const Registered kTarget("trace", take);
+
+}  // namespace
+}  // namespace vernier::fuzz

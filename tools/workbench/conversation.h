@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <sys/types.h>
+
+#include <string>
+#include <vector>
+
+namespace vernier {
+
+/// Texts as one message between two processes.
+using Message = std::vector<std::string>;
+
+/// The next message of a stream; false at its end, after `patience_s` without a byte (0: waits for ever), and
+/// where more comes than any message has. tool.
+bool read_message(int stream, double patience_s, Message& message);
+/// False where nobody takes it. tool.
+bool write_message(int stream, double patience_s, const Message& message);
+
+/// A program that is asked and answers, message by message, on its standard input and output, which are one
+/// stream. It has its own process group and dies with this. tool.
+class Conversation {
+ public:
+  /// Throws InputError where it cannot be started.
+  Conversation(const std::string& program, const std::vector<std::string>& arguments,
+               const std::string& directory);
+  /// Ends it at once.
+  ~Conversation();
+  Conversation(const Conversation&) = delete;
+  Conversation& operator=(const Conversation&) = delete;
+
+  /// False where it ended, or said nothing for patience_s: it is of no use any more.
+  bool ask(const Message& question, double patience_s, Message& answer);
+  /// Ends it and says how it had ended: "exit status 70", "signal 11", or "no answer" where it had not.
+  std::string end();
+
+ private:
+  pid_t child_ = -1;
+  int stream_ = -1;
+};
+
+}  // namespace vernier

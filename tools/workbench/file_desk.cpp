@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/workbench/file_desk.h"
+
+#include <cmath>
+
+#include "tools/model/machine.h"
+#include "tools/model/machine_reader.h"
+#include "tools/text/csv.h"
+#include "tools/text/error.h"
+#include "tools/text/files.h"
+#include "tools/workbench/excluded.h"
+#include "tools/workbench/terms.h"
+
+namespace vernier {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+}  // namespace
+
+struct FileDesk::Route {
+  const char *method, *path;
+  ApiReply (FileDesk::*answer)(const ApiRequest&);
+};
+
+const FileDesk::Route* FileDesk::find(const ApiRequest& request) {
+  static constexpr Route kRoutes[] = {
+      {"PUT", "/api/file", &FileDesk::check},       {"GET", "/api/excluded", &FileDesk::excluded},
+      {"GET", "/api/rows", &FileDesk::rows},        {"GET", "/api/parameters", &FileDesk::parameters},
+      {"POST", "/api/predict", &FileDesk::predict}, {"POST", "/api/explain", &FileDesk::explain},
+      {"GET", "/api/names", &FileDesk::names},      {"POST", "/api/term", &FileDesk::term}};
+  for (const Route& route : kRoutes)
+    if (request.method == route.method && request.path == route.path) return &route;
+  return nullptr;
+}
+
+bool FileDesk::answers(const ApiRequest& request) { return find(request) != nullptr; }
+
+ApiReply FileDesk::reply(const ApiRequest& request) {
+  return reply_of(project_, [&] { return answer(request); });
+}
+
+ApiReply FileDesk::answer(const ApiRequest& request) {
+  const Route* const route = find(request);
+  if (route == nullptr) return json_reply({{"message", "nothing here"}}, 404);
+  return (this->*route->answer)(request);
+}
+
+/// Machines and measurements are read before they are kept, so that an error shows where it was dropped.
+ApiReply FileDesk::check(const ApiRequest& request) {
+  const std::string name = request.word("name");
+  if (name.ends_with(".xml")) parse_machine(request.body, name);
+  if (name.ends_with(".csv")) parse_csv(request.body, name);
+  return json_reply({{"name", name}});
+}
+
+ApiReply FileDesk::excluded(const ApiRequest& request) {
+  Json list = Json::array();
+  for (const ExcludedRow& row : excluded_rows(read_file(project_.existing(request.word("name")).string())))
+    list.push_back({{"line", row.line}, {"reason", row.reason}, {"row", row.row}});
+  return json_reply({{"excluded", list}});
+}
+
+ApiReply FileDesk::rows(const ApiRequest& request) {
+  return blob_reply(rows_blob(*cache_.get(request.word("machine"), request.words("measurement"))));
+}
+
+ApiReply FileDesk::parameters(const ApiRequest& request) {
+  return json_reply(parameters_json(*cache_.get(request.word("machine"), request.words("measurement"))));
+}
+
+ApiReply FileDesk::predict(const ApiRequest& request) {
+  const auto json = body_json(request);
+  const auto rows = cache_.get(text_at(json, "machine"), texts_at(json, "measurements"));
+  std::map<std::string, double> values;
+  if (!json.contains("values") || !json["values"].is_object()) throw InputError("\"values\" is missing");
+  for (const auto& [name, value] : json["values"].items()) {
+    if (!value.is_number() || !std::isfinite(value.get<double>()))
+      throw InputError("\"" + name + "\": no number");
+    values[name] = value.get<double>();
+  }
+  return blob_reply(prediction_blob(*rows, values));
+}
+
+ApiReply FileDesk::explain(const ApiRequest& request) {
+  const auto json = body_json(request);
+  const auto rows = cache_.get(text_at(json, "machine"), texts_at(json, "measurements"));
+  return blob_reply(explanation_blob(*rows, text_at(json, "add")));
+}
+
+ApiReply FileDesk::names(const ApiRequest& request) {
+  const std::string name = request.word("machine");
+  const Machine machine = parse_machine(read_file(project_.existing(name).string()), name);
+  Json transforms = Json::array();
+  for (const auto* branch : {&machine.tool, &machine.workpiece})
+    for (const Transform& transform : *branch) {
+      Json dofs = Json::array();
+      for (std::size_t i = 0; i < transform.dof_count(); ++i)
+        dofs.push_back({{"dof", transform.dof_name(i)}, {"text", transform.text[i]}});
+      transforms.push_back(
+          {{"branch", branch == &machine.tool ? "tool" : "workpiece"}, {"n", transform.n}, {"dofs", dofs}});
+    }
+  return json_reply({{"names", expression_names(machine)}, {"transforms", transforms}});
+}
+
+ApiReply FileDesk::term(const ApiRequest& request) {
+  const auto json = body_json(request);
+  const std::string name = text_at(json, "machine");
+  Machine machine = parse_machine(read_file(project_.existing(name).string()), name);
+  // Columns of the measurement that the machine does not know: `add` declares what a term uses of them.
+  if (json.contains("columns") && json["columns"].is_array()) {
+    for (const auto& column : json["columns"]) {
+      Input input;
+      input.name = text_at(column, "name");
+      input.unit = text_at(column, "unit");
+      if (resolve_name(machine, input.name).kind == SymbolKind::kUnresolved) machine.inputs.push_back(input);
+    }
+  }
+  return json_reply(check_term(machine, text_at(json, "term"), text_at(json, "unit")));
+}
+
+}  // namespace vernier

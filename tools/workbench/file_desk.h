@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <string>
+
+#include "tools/workbench/project.h"
+#include "tools/workbench/request.h"
+#include "tools/workbench/rows.h"
+
+namespace vernier {
+
+/// All that takes reading a machine, a measurement or a term: it runs in a process of its own, so that a file
+/// that means harm ends that and not the server. tool.
+class FileDesk {
+ public:
+  explicit FileDesk(const Project& project) : project_(project), cache_(project) {}
+
+  /// Is it for this desk? What is to be kept (PUT) is only looked at here.
+  static bool answers(const ApiRequest& request);
+  /// Never throws; as Api::reply.
+  ApiReply reply(const ApiRequest& request);
+
+ private:
+  ApiReply answer(const ApiRequest& request);
+  ApiReply check(const ApiRequest& request);
+  ApiReply excluded(const ApiRequest& request);
+  ApiReply rows(const ApiRequest& request);
+  ApiReply parameters(const ApiRequest& request);
+  ApiReply predict(const ApiRequest& request);
+  ApiReply explain(const ApiRequest& request);
+  ApiReply names(const ApiRequest& request);
+  ApiReply term(const ApiRequest& request);
+
+  struct Route;
+  static const Route* find(const ApiRequest& request);
+
+  const Project& project_;
+  RowCache cache_;
+};
+
+}  // namespace vernier

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "tools/workbench/conversation.h"
+#include "tools/workbench/project.h"
+#include "tools/workbench/request.h"
+
+namespace vernier {
+
+/// The server's side of a FileDesk in a process of its own (`vernier workbench DIR --reader`): it starts it
+/// when it is needed, hands requests over one by one, and starts another after one that ended. May be called
+/// from several threads. tool.
+class FileReader {
+ public:
+  /// patience_s: without an answer for so long it is ended.
+  FileReader(std::string program, const Project& project, double patience_s = 300)
+      : program_(std::move(program)), project_(project), patience_s_(patience_s) {}
+
+  /// As FileDesk::reply; 422 where the process that reads ended over it.
+  ApiReply reply(const ApiRequest& request);
+
+ private:
+  std::string program_;
+  const Project& project_;
+  double patience_s_;
+  std::mutex guard_;
+  std::unique_ptr<Conversation> reader_;
+};
+
+/// The other side: answers on `stream` until it ends. tool.
+void serve_files(const Project& project, int stream);
+
+}  // namespace vernier
