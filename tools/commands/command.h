@@ -13,6 +13,9 @@ namespace vernier {
 /// function a command, listed in the order of the journey in tools/commands/vernier.cpp.
 using RegisterCommand = void (*)(CLI::App& vernier);
 
+namespace ballbar_path_cli {
+void register_ballbar_path(CLI::App& vernier);
+}  // namespace ballbar_path_cli
 namespace board_cli {
 void register_board(CLI::App& vernier);
 }  // namespace board_cli

@@ -13,17 +13,20 @@
 #include "tools/results/before_after_result.h"
 #include "tools/results/detail.h"
 #include "tools/results/field_json.h"
+#include "tools/results/group_table.h"
+#include "tools/results/limit.h"
 #include "tools/results/residual_csv.h"
 #include "tools/results/results.h"
 #include "tools/results/structure_json.h"
 #include "tools/simulate/corrected.h"
+#include "tools/text/error.h"
 
 namespace vernier::compare_cli {
 namespace {
 
 struct CompareArguments {
-  std::string machine, output, json, images, residuals;
-  std::vector<std::string> measurements, before, after;
+  std::string machine, output, json, images, residuals, limit;
+  std::vector<std::string> measurements, before, after, by;
 };
 
 std::optional<double> value_of(const nlohmann::ordered_json& json, const char* key) {
@@ -125,6 +128,36 @@ void print_result(std::FILE* out, const nlohmann::ordered_json& json) {
   print_failure(out, json);
 }
 
+void print_groups(std::FILE* out, const nlohmann::ordered_json& groups) {
+  for (const auto& column : groups) {
+    const auto& chance = column["differ_p"];
+    fmt::print(out, "by {}: {}\n", column["column"].get<std::string>(),
+               chance.is_null()
+                   ? "too few readings to tell whether the groups differ"
+                   : fmt::format("chance that they differ so much by accident {:.2g}", chance.get<double>()));
+    for (const auto& group : column["each"])
+      for (const auto& one : group["readings"])
+        fmt::print(out, "  {:<16} {:<7} {:>6} readings  mean {:>9.4g}  rms {:>9.4g} {}\n",
+                   group["value"].get<std::string>(), one["reading"].get<std::string>(),
+                   one["n"].get<std::size_t>(), one["mean"].get<double>(), one["rms"].get<double>(),
+                   one["unit"].get<std::string>());
+  }
+}
+
+/// Accept, or requalify: the exit status says it too.
+void judge(std::FILE* out, const nlohmann::ordered_json& limit) {
+  const auto& worst = limit["worst"];
+  const std::string words = fmt::format(
+      "limit {} on the {}: {} of {} {} readings beyond it, the worst {:.4g} of {:.4g} {} ({}:{})",
+      limit["limit"].get<std::string>(), limit["of"].get<std::string>(), limit["beyond"].get<std::size_t>(),
+      limit["rows"].get<std::size_t>(), limit["role"].get<std::string>(), worst["value"].get<double>(),
+      worst["limit"].get<double>(), limit["unit"].get<std::string>(), worst["file"].get<std::string>(),
+      worst["line"].get<std::size_t>());
+  if (!limit["pass"].get<bool>())
+    throw LimitNotMet(words + ": not accepted, the machine is to be qualified again");
+  fmt::print(out, "{}: accepted\n", words);
+}
+
 /// The model's own deviations over the working volume, for the report.
 void add_field(nlohmann::ordered_json& json, const Machine& machine) {
   constexpr std::size_t kNodes = 7;  // along each axis
@@ -142,6 +175,8 @@ void run_before_after(const CompareArguments& arguments) {
   if (!arguments.measurements.empty())
     throw InputError("\"" + arguments.measurements.front() +
                      "\": with --before and --after there are no other measurement files");
+  if (!arguments.limit.empty()) throw InputError("--limit: of MEAS, not of --before and --after");
+  if (!arguments.by.empty()) throw InputError("--by: of MEAS, not of --before and --after");
   if (!arguments.residuals.empty()) throw InputError("--residuals: of MEAS, not of --before and --after");
   const Machine machine = read_machine(arguments.machine);
   const ImageCorrection images = corrections_of_images(arguments.images);
@@ -168,6 +203,8 @@ void run_compare(const CompareArguments& arguments) {
   const Eigen::VectorXd residual = residuals(machine, m);
   nlohmann::ordered_json json = compare_json(machine, m, residual);
   add_failure(json, failure_picture(machine, m, residual));
+  if (!arguments.limit.empty()) json["limit"] = judge_residuals(m, residual, residual_limit(arguments.limit));
+  if (!arguments.by.empty()) json["groups"] = group_table(m, residual, arguments.by);
   if (!arguments.output.empty()) {
     nlohmann::ordered_json with_detail = json;
     add_detail(with_detail, machine, m, residual);
@@ -179,6 +216,8 @@ void run_compare(const CompareArguments& arguments) {
   for (const std::string& note : machine.notes) fmt::print(stderr, "note: {}\n", note);
   print_result(human_stream(arguments.json), json);
   print_domains(human_stream(arguments.json), json["domains"]);
+  if (!arguments.by.empty()) print_groups(human_stream(arguments.json), json["groups"]);
+  if (!arguments.limit.empty()) judge(human_stream(arguments.json), json["limit"]);
 }
 
 }  // namespace
@@ -195,6 +234,12 @@ void register_compare(CLI::App& vernier) {
   };
   files("--before", arguments->before, "did it help? measured without the correction (CSV); may be repeated");
   files("--after", arguments->after, "the same with it; may be repeated; MEAS is not given then");
+  files("--by", arguments->by,
+        "take the rows apart by this column (operator, coolant, tool …); may be repeated");
+  command->add_option(
+      "--limit", arguments->limit,
+      "accept or requalify: check rows (else fit rows) must stay within 2u, 25um, 0.025deg; rms=1.5u "
+      "judges the rms; exit status 2 where not");
   command->add_option("--images", arguments->images, kImagesHelp);
   command->add_option("-o,--output", arguments->output, "the report, one HTML file that opens offline");
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
@@ -208,7 +253,7 @@ void register_compare(CLI::App& vernier) {
       "With --before and --after: the error against the nominal machine in the best set-up of each, how "
       "much\n"
       "smaller it became, in all, by reading and feed, and between which limits (tools/docs/compare.md).\n"
-      "Exit status 0 done, 1 bad input.");
+      "Exit status 0 done, 1 bad input, 2 --limit is not kept.");
   command->callback([arguments] { run_compare(*arguments); });
 }
 

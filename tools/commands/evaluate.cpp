@@ -7,11 +7,11 @@
 #include <memory>
 
 #include "tools/commands/command.h"
+#include "tools/commands/evaluate_kinds.h"
+#include "tools/evaluate/limits.h"
 #include "tools/evaluate/positioning_page.h"
 #include "tools/report/report.h"
 #include "tools/text/error.h"
-#include "tools/text/numbers.h"
-#include "tools/text/units.h"
 
 namespace vernier::evaluate_cli {
 namespace {
@@ -21,21 +21,7 @@ struct PositioningArguments {
   std::string reading, output, json;
 };
 
-/// "A=10um" as a letter and a value in mm or deg.
-std::pair<std::string, double> limit_of(const std::string& words, const char* option) {
-  const auto at = words.find('=');
-  const std::string name = words.substr(0, at);
-  const std::string rest = at == std::string::npos ? "" : words.substr(at + 1);
-  std::size_t end = 0;
-  while (end < rest.size() && (std::isdigit(static_cast<unsigned char>(rest[end])) != 0 || rest[end] == '.'))
-    ++end;
-  const auto number = parse_number(rest.substr(0, end));
-  const auto unit = find_unit(rest.substr(end));
-  const bool fits = unit && (unit->dimension == Dimension::kLength || unit->dimension == Dimension::kAngle);
-  if (!number || !fits || (name != "A" && name != "E" && name != "M" && name != "R" && name != "B"))
-    throw InputError(std::string(option) + " " + words + ": of the form A=10um, for one of A E M R B");
-  return {name, *number * unit->factor};
-}
+const std::vector<std::string> kCharacteristics = {"A", "E", "M", "R", "B"};
 
 void print_result(std::FILE* out, const nlohmann::ordered_json& json) {
   fmt::print(out, "axis {}: {} targets, {} readings, sense {}\n", json["axis"].get<std::string>(),
@@ -59,9 +45,10 @@ void run_positioning(const PositioningArguments& arguments) {
   PositioningWords words;
   words.axis = arguments.axes.front();
   words.files = arguments.measurements;
-  for (const std::string& one : arguments.tolerances) words.tolerance.insert(limit_of(one, "--tolerance"));
+  for (const std::string& one : arguments.tolerances)
+    words.tolerance.insert(limit_of(one, "--tolerance", kCharacteristics));
   for (const std::string& one : arguments.uncertainties)
-    words.uncertainty.insert(limit_of(one, "--uncertainty"));
+    words.uncertainty.insert(limit_of(one, "--uncertainty", kCharacteristics));
   for (const std::string& one : arguments.header) {
     const auto at = one.find('=');
     if (at == std::string::npos) throw InputError("--header " + one + ": of the form \"serial number=4711\"");
@@ -103,8 +90,8 @@ void run_positioning(const PositioningArguments& arguments) {
 }  // namespace
 
 void register_evaluate(CLI::App& vernier) {
-  CLI::App* evaluate =
-      vernier.add_subcommand("evaluate", "Judge a measurement by a standard: positioning (ISO 230-2)");
+  CLI::App* evaluate = vernier.add_subcommand(
+      "evaluate", "Judge a measurement by a standard: positioning (ISO 230-2), robots (ISO 9283)");
   evaluate->require_subcommand(1);
   auto arguments = std::make_shared<PositioningArguments>();
   CLI::App* kind =
@@ -128,6 +115,7 @@ void register_evaluate(CLI::App& vernier) {
       "of the rows. Exit status 0 "
       "done, 1 bad input, 2 a tolerance is not met (ISO 14253-1: beyond it by more than the uncertainty).");
   kind->callback([arguments] { run_positioning(*arguments); });
+  add_robot_kind(*evaluate);
 }
 
 }  // namespace vernier::evaluate_cli

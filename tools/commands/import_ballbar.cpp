@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <map>
 #include <memory>
 
 #include "tools/commands/command.h"
@@ -46,7 +47,9 @@ Json circle_json(const BallbarFile& file, const CircularResult& circle) {
           {"nominal_radius_mm", circle.nominal_radius_mm},
           {"runs", runs},
           {"bidirectional_um", or_null(circle.bidirectional_um)},
-          {"non_roundness_um", or_null(circle.non_roundness_um)},
+          {"non_roundness_um",
+           circle.about_mean ? Json(circle.about_mean->max_um - circle.about_mean->min_um) : Json(nullptr)},
+          {"mean_bidirectional_radial_um", or_null(circle.mean_bidirectional_radial_um)},
           {"hysteresis", hysteresis_json(circle.hysteresis)},
           {"hysteresis_by_angle", hysteresis_json(circle.hysteresis_by_angle)}};
 }
@@ -58,10 +61,37 @@ Json printed_json(const std::vector<PrintedResult>& results) {
                     {"name", result.name},
                     {"unit", result.unit},
                     {"printed", result.printed},
-                    {"computed", result.computed},
-                    {"equal", result.equal}});
+                    {"computed", or_null(result.computed)},
+                    {"equal", result.equal},
+                    {"from", result.from.empty() ? Json(nullptr) : Json(result.from)},
+                    {"why", result.why.empty() ? Json(nullptr) : Json(result.why)}});
   }
   return list;
+}
+
+// How many of the printed results are computed here to their last digit, from what, and which are not and
+// why.
+void print_printed(std::FILE* out, const std::vector<PrintedResult>& results) {
+  if (results.empty()) return;
+  std::map<std::string, std::size_t> equal;
+  std::map<std::string, std::string> others;
+  std::size_t all = 0;
+  for (const auto& result : results) {
+    if (result.equal) {
+      ++all, ++equal[result.from];
+      continue;
+    }
+    std::string& names = others[result.why];
+    names += (names.empty() ? "" : ", ") + result.name;
+    if (result.computed)
+      names += fmt::format(" (printed {}, computed {:.4g})", result.printed, *result.computed);
+  }
+  std::string from;
+  for (const auto& [what, count] : equal)
+    from += fmt::format("{}{} from {}", from.empty() ? "" : ", ", count, what);
+  fmt::print(out, "{} of the {} results that the files print are recomputed to the last digit: {}\n", all,
+             results.size(), from);
+  for (const auto& [why, names] : others) fmt::print(out, "  not {}: {}\n", names, why);
 }
 
 void print_circle(std::FILE* out, const BallbarFile& file, const CircularResult& circle) {
@@ -133,9 +163,7 @@ void write_import(const std::string& kind, const std::vector<BallbarFile>& files
     if (spans_a_circle(file)) print_circle(out, file, analyse_circle(file.radius_mm, circular_passes(file)));
   }
   for (const auto& one : repairs) print_repair(out, one);
-  if (!printed.empty())
-    fmt::print(out, "{} of the {} results that the files print are recomputed to the last digit\n", equal,
-               printed.size());
+  print_printed(out, printed);
   for (const auto& note : notes) fmt::print(out, "note: {}\n", note.get<std::string>());
   fmt::print(out, "{}: {} rows ({} fit, {} check)\n", output.csv_path, csv.rows, csv.fit_rows,
              csv.check_rows);

@@ -6,9 +6,11 @@
 
 #include "tools/commands/command.h"
 #include "tools/commands/import_kinds.h"
+#include "tools/import/machine_log.h"
 #include "tools/import/survey.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/measurement.h"
+#include "tools/text/optional_json.h"
 
 namespace vernier::import_cli {
 namespace {
@@ -20,6 +22,8 @@ struct SurveyArguments {
   std::vector<std::string> columns, constants;
   std::size_t skip = 0, check_every = 0;
   double radius_mm = 0;
+  std::string log;  // of the machine, tracker only
+  LogOptions log_options;
   bool header = false;
   ImportOutput output;
 };
@@ -53,9 +57,44 @@ Json summary(const std::string& kind, const ImportTable& table) {
       {"runs", runs}, {"columns", columns}};
 }
 
-void write_survey(const std::string& kind, const SurveyArguments& arguments, const ImportTable& table) {
+Json pairing_json(const LoggedTable& logged) {
+  const Pairing& pairing = logged.pairing;
+  Json unused = Json::array();
+  for (const std::size_t j : pairing.unused)
+    unused.push_back({{"begin_s", logged.dwells[j].begin_s}, {"end_s", logged.dwells[j].end_s}});
+  return {{"dwells", logged.dwells.size()},
+          {"paired", logged.table.line.size()},
+          {"unmatched_lines", logged.unmatched_line},
+          {"unused_dwells", unused},
+          {"clock_offset_s", or_null(pairing.offset_s)},
+          {"clock_offset_std_s", or_null(pairing.offset_std_s)},
+          {"clock_drift", or_null(pairing.drift)},
+          {"clock_drift_std", or_null(pairing.drift_std)},
+          {"rms_mm", or_null(pairing.rms_mm)}};
+}
+
+void print_pairing(std::FILE* out, const LoggedTable& logged, const std::string& file) {
+  const Pairing& pairing = logged.pairing;
+  fmt::print(out, "{} of {} points paired with {} dwells", logged.table.line.size(), pairing.dwell.size(),
+             logged.dwells.size());
+  if (pairing.rms_mm)
+    fmt::print(out, "; {:.3g} mm rms from where the nominal machine stood", *pairing.rms_mm);
+  fmt::print(out, "\n");
+  if (pairing.offset_s)
+    fmt::print(out, "clock of the log = {:.3f} +- {:.2g} s + (1 {:+.2g} +- {:.1g}) x the tracker's\n",
+               *pairing.offset_s, *pairing.offset_std_s, *pairing.drift, *pairing.drift_std);
+  for (const std::size_t line : logged.unmatched_line)
+    fmt::print(out, "not paired: {}:{}, which fits no dwell\n", file, line);
+  for (const std::size_t j : pairing.unused)
+    fmt::print(out, "no point for the dwell from {:.2f} to {:.2f} s\n", logged.dwells[j].begin_s,
+               logged.dwells[j].end_s);
+}
+
+void write_survey(const std::string& kind, const SurveyArguments& arguments, const ImportTable& table,
+                  const std::optional<LoggedTable>& logged) {
   const std::string text = measurement_csv(table);
   Json result = summary(kind, table);
+  if (logged) result["pairing"] = pairing_json(*logged);
   if (!arguments.machine.empty()) {
     // The same reading that a fit will do, with the machine's axes and inputs.
     const Measurement read =
@@ -65,6 +104,7 @@ void write_survey(const std::string& kind, const SurveyArguments& arguments, con
   }
   write_file(arguments.output.csv_path, text);
   write_json(arguments.output.json_path, result);
+  if (logged) print_pairing(human_stream(arguments.output.json_path), *logged, arguments.file);
   fmt::print(human_stream(arguments.output.json_path), "{}: {} rows ({} fit, {} check)\n",
              arguments.output.csv_path, table.line.size(), result["n_fit"].get<std::size_t>(),
              result["n_check"].get<std::size_t>());
@@ -76,8 +116,16 @@ void run_survey(const std::string& kind_name, const SurveyArguments& arguments, 
     finish_tracker(table);
   else
     finish_probe(table, arguments.radius_mm);
+  std::optional<LoggedTable> logged;
+  if (!arguments.log.empty()) {
+    if (arguments.machine.empty())
+      throw InputError({}, "--log", "needs --machine: which columns are axes, and where it stood");
+    logged = with_log(table, read_file(arguments.log), arguments.log, read_machine(arguments.machine),
+                      arguments.log_options);
+    table = logged->table;
+  }
   if (arguments.check_every > 0) set_roles(table, arguments.check_every);
-  write_survey(kind_name, arguments, table);
+  write_survey(kind_name, arguments, table, logged);
 }
 
 CLI::App* add_survey_kind(CLI::App& import, const std::string& name, const std::string& what,
@@ -110,13 +158,29 @@ CLI::App* add_survey_kind(CLI::App& import, const std::string& name, const std::
 
 void add_tracker_kind(CLI::App& import) {
   const auto arguments = std::make_shared<SurveyArguments>();
-  add_survey_kind(import, "tracker", "Laser tracker or photogrammetry: points, with orientation or without",
-                  arguments)
-      ->footer(
-          "Columns by the names of the measurement file, with the unit that the table has: axes, inputs, x y "
-          "z,\n"
-          "u, run, role … Orientation: rx ry rz (rotation vector), or rX rY rZ (angles of Rx*Ry*Rz), or\n"
-          "qw qx qy qz (quaternion); the latter two become rx ry rz.");
+  CLI::App* kind = add_survey_kind(
+      import, "tracker", "Laser tracker or photogrammetry: points, with orientation or without", arguments);
+  LogOptions& log = arguments->log_options;
+  kind->add_option(
+          "--log", arguments->log,
+          "log of the machine (CSV: t and its axes): points are paired with its dwells, by order, ways and "
+          "time; with --machine")
+      ->type_name("FILE");
+  kind->add_option("--dwell", log.dwell_s, "--log: least standstill, s")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  kind->add_option("--still", log.still, "--log: an axis stands that stays within, mm or deg")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  kind->add_option("--tolerance", log.tolerance_mm,
+                   "--log: ways of machine and nominal machine differ by, mm")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  kind->footer(
+      "Columns by the names of the measurement file, with the unit that the table has: axes, inputs, x y "
+      "z,\n"
+      "u, run, role … Orientation: rx ry rz (rotation vector), or rX rY rZ (angles of Rx*Ry*Rz), or\n"
+      "qw qx qy qz (quaternion); the latter two become rx ry rz.");
 }
 
 void add_probe_kind(CLI::App& import) {

@@ -68,7 +68,7 @@ std::string becomes(const SheetColumn& column) {
   const std::string unit = column.unit.empty() ? "" : "[" + column.unit + "]";
   switch (column.use) {
     case SheetColumn::Use::kColumn:
-      return column.name + unit;
+      return column.name + unit + (column.words ? " (words)" : "");
     case SheetColumn::Use::kDeviation:
       return fmt::format("position of {} + this, {}", column.name, unit);
     case SheetColumn::Use::kLeft:

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <set>
 
 #include "tools/commands/command.h"
+#include "tools/evaluate/positioning.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/machine_writer.h"
 #include "tools/part/gauge_block.h"
@@ -15,6 +18,7 @@
 #include "tools/part/s_part.h"
 #include "tools/report/report.h"
 #include "tools/text/csv.h"
+#include "tools/text/error.h"
 #include "tools/text/numbers.h"
 #include "tools/text/words.h"
 
@@ -27,6 +31,7 @@ struct Arguments {
   DefectReading reading = DefectReading::kContact;
   RotarySolution solution = RotarySolution::kContinuous;
   bool aligned = false, tool_radius = false;
+  double tolerance_mm = 0, u95_mm = 0;  // width of the zone; of the machine that measured the part
 };
 
 struct GaugeArguments {
@@ -100,11 +105,51 @@ void print_summary(std::FILE* out, const nlohmann::ordered_json& result) {
                p["unit"].get<std::string>());
 }
 
+/// A profile tolerance is a zone about the true surface, half of it on either side (ISO 1101); it is met, not
+/// met or not decided by ISO 14253-1 with what the measuring machine is worth. Of measured points, else of
+/// the predicted ones.
+nlohmann::ordered_json judged(const Arguments& arguments, const PartJob& job,
+                              const nlohmann::ordered_json& defect) {
+  Conformity worst = Conformity::kMet;
+  double farthest = 0, u95 = 0;
+  std::size_t line = 0;
+  const auto take = [&](double defect_mm, double point_u95_mm, std::size_t at) {
+    const Conformity one = conformity(2 * std::abs(defect_mm), arguments.tolerance_mm, 2 * point_u95_mm);
+    if (one == Conformity::kNotMet || worst == Conformity::kMet) worst = one;
+    u95 = std::max(u95, point_u95_mm);
+    if (std::abs(defect_mm) <= std::abs(farthest)) return;
+    farthest = defect_mm, line = at;
+  };
+  if (job.measured) {
+    for (const MeasuredPoint& point : job.measured->points)
+      take(point.defect_mm, std::max(arguments.u95_mm, 2 * point.uncertainty_mm), point.line);
+  } else {
+    for (const char* end : {"min_mm", "max_mm"}) take(defect[end].get<double>(), arguments.u95_mm, 0);
+  }
+  return {{"zone_mm", arguments.tolerance_mm},
+          {"of", job.measured ? "measured" : "predicted"},
+          {"farthest_mm", farthest},
+          {"line", job.measured ? nlohmann::ordered_json(line) : nlohmann::ordered_json(nullptr)},
+          {"u95_mm", u95},
+          {"conformity", conformity_text(worst)}};
+}
+
+void say_judged(std::FILE* out, const nlohmann::ordered_json& tolerance) {
+  const std::string words =
+      fmt::format("tolerance zone of {:g} mm, farthest {} point {:+.4f} mm, U {:.2g} mm: {}",
+                  tolerance["zone_mm"].get<double>(), tolerance["of"].get<std::string>(),
+                  tolerance["farthest_mm"].get<double>(), tolerance["u95_mm"].get<double>(),
+                  tolerance["conformity"].get<std::string>());
+  if (tolerance["conformity"] == conformity_text(Conformity::kNotMet)) throw LimitNotMet(words);
+  fmt::print(out, "{}\n", words);
+}
+
 void run_s_shape(const Arguments& arguments) {
   const std::string machine_text =
       arguments.machine.empty() ? default_b_head_text() : read_file(arguments.machine);
   const PartJob job = make_job(arguments, machine_text);
-  const nlohmann::ordered_json result = part_json(job);
+  nlohmann::ordered_json result = part_json(job);
+  if (arguments.tolerance_mm > 0) result["tolerance"] = judged(arguments, job, result["defect"]);
   const PathOptions path{job.options.cutter, arguments.step_mm, arguments.feed_mm_min, arguments.solution};
   // What is not free in this run is free in the file all the same.
   Machine written = parse_machine(machine_text, arguments.machine);
@@ -125,9 +170,10 @@ void run_s_shape(const Arguments& arguments) {
     write_file((std::filesystem::path(arguments.output) / name).string(), text);
   write_json(arguments.json, result);
   print_summary(human_stream(arguments.json), result);
-  if (!job.identified) return;
-  for (const std::string& warning : job.identified->warnings)
-    fmt::print(stderr, "vernier: warning: {}\n", warning);
+  if (job.identified)
+    for (const std::string& warning : job.identified->warnings)
+      fmt::print(stderr, "vernier: warning: {}\n", warning);
+  if (arguments.tolerance_mm > 0) say_judged(human_stream(arguments.json), result["tolerance"]);
 }
 
 /// Columns C[deg] and y[mm]; one row each for 0, 90, 180 and 270 deg.
@@ -210,6 +256,15 @@ void add_s_shape(CLI::App& part) {
       ->needs(identify_option);
   command->add_flag("--tool-radius", a->tool_radius, "fit what the tool's radius is off by, too")
       ->needs(identify_option);
+  command
+      ->add_option(
+          "--tolerance", a->tolerance_mm,
+          "width of the zone that the part's surface must lie in, mm (0.12); exit status 2 where not")
+      ->check(CLI::PositiveNumber);
+  command
+      ->add_option("--uncertainty", a->u95_mm,
+                   "expanded uncertainty (k = 2) of the machine that measured it, mm")
+      ->check(CLI::NonNegativeNumber);
   command->add_option("-o,--output", a->output, "directory for paths (CSV, G-code), defect, machine, report")
       ->required();
   command->add_option("--json", a->json, "result for programs; - for standard output");

@@ -116,6 +116,8 @@ void run_check_plan(const PlanArguments& arguments) {
                     worst, options.reading_um));
   if (!arguments.output.empty())
     write_file(arguments.output, check_plan_csv(machine, plan, options.reading_um));
+  if (!arguments.gcode.empty())
+    write_file(arguments.gcode, poses_gcode(machine, plan.states, "check of " + machine.name));
   write_json(arguments.json, json);
   std::FILE* out = human_stream(arguments.json);
   fmt::print(out, "{} poses of {:g} um show from which change on:\n", plan.states.count, options.reading_um);
@@ -130,8 +132,6 @@ void run_check_plan(const PlanArguments& arguments) {
 void run_first_plan(const PlanArguments& arguments) {
   if (!arguments.separate.empty())
     throw InputError({}, "MEAS", "telling two effects apart builds on measurements: name their files");
-  if (!arguments.gcode.empty())
-    throw InputError({}, "--gcode", "goes with measurements, whose way of approach it follows");
   const Machine machine = parse_machine(read_file(arguments.machine), arguments.machine);
   FirstPlanOptions options = arguments.first;
   if (arguments.accuracy_um > 0) options.accuracy_um = arguments.accuracy_um;
@@ -156,6 +156,8 @@ void run_first_plan(const PlanArguments& arguments) {
         arguments.accuracy_um, count, plan.after_um, plan.least_um));
   if (!arguments.output.empty())
     write_file(arguments.output, first_plan_csv(machine, plan, options.reading_um));
+  if (!arguments.gcode.empty())
+    write_file(arguments.gcode, poses_gcode(machine, plan.states, "first measurement of " + machine.name));
   write_json(arguments.json, json);
   fmt::print(human_stream(arguments.json),
              "{} poses to fit, {} of them the first one again, and {} to check: tool point known to {:.3g} "

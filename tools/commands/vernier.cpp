@@ -29,6 +29,7 @@ constexpr vernier::RegisterCommand kCommands[] = {
     vernier::effects_cli::register_add,
     vernier::effects_cli::register_effects,
     vernier::plan_cli::register_plan,
+    vernier::ballbar_path_cli::register_ballbar_path,
     vernier::improve_cli::register_improve,
     vernier::derive_cli::register_derive,
     vernier::compile_cli::register_compile,

@@ -122,15 +122,37 @@ std::optional<Hysteresis> hysteresis_by_angle(const CircularPass& ccw, const Cir
   return worst;
 }
 
-double non_roundness_um(const CircularPass& ccw, const CircularPass& cw, const FittedCircle& mean) {
-  double low = centred(ccw, mean, 0), high = low;
+AboutMean about_mean(const CircularPass& ccw, const CircularPass& cw, const FittedCircle& mean) {
+  AboutMean result{-HUGE_VAL, HUGE_VAL, 0, 0};
   for (const CircularPass* pass : {&ccw, &cw}) {
     for (std::size_t i = 0; i < pass->angle_deg.size(); ++i) {
-      low = std::min(low, centred(*pass, mean, i));
-      high = std::max(high, centred(*pass, mean, i));
+      const double um = (centred(*pass, mean, i) - mean.offset) * kUmPerMm;
+      if (um > result.max_um) result.max_um = um, result.max_deg = pass->angle_deg[i];
+      if (um < result.min_um) result.min_um = um, result.min_deg = pass->angle_deg[i];
     }
   }
-  return (high - low) * kUmPerMm;
+  return result;
+}
+
+// Radius minus nominal of the circle whose true distances from the points are least, mm: Gauss-Newton from
+// the linearised circle.
+double true_radius_offset(double nominal_radius_mm, const CircularPass& pass, FittedCircle circle) {
+  const auto count = static_cast<Eigen::Index>(pass.angle_deg.size());
+  const Eigen::ArrayXd angle = Eigen::Map<const Eigen::ArrayXd>(pass.angle_deg.data(), count) * kRadPerDeg;
+  const Eigen::ArrayXd length =
+      nominal_radius_mm + Eigen::Map<const Eigen::ArrayXd>(pass.deviation_mm.data(), count);
+  // An eccentricity of a thousandth of the radius shrinks a thousandfold in each step.
+  constexpr int kSteps = 6;
+  for (int step = 0; step < kSteps; ++step) {
+    const Eigen::ArrayXd a = length * angle.cos() - circle.a, b = length * angle.sin() - circle.b;
+    const Eigen::ArrayXd radius = (a.square() + b.square()).sqrt();
+    Eigen::MatrixXd basis(count, 3);
+    basis << Eigen::VectorXd::Ones(count), (a / radius).matrix(), (b / radius).matrix();
+    const Eigen::Vector3d change =
+        basis.colPivHouseholderQr().solve((radius - nominal_radius_mm - circle.offset).matrix());
+    circle.offset += change[0], circle.a += change[1], circle.b += change[2];
+  }
+  return circle.offset;
 }
 
 }  // namespace
@@ -155,7 +177,11 @@ CircularResult analyse_circle(double nominal_radius_mm, const std::vector<Circul
   result.mean_centre_a_mm = mean.a;
   result.mean_centre_b_mm = mean.b;
   result.mean_radius_mm = nominal_radius_mm + mean.offset;
-  result.non_roundness_um = non_roundness_um(passes[*first_ccw], passes[*first_cw], mean);
+  result.about_mean = about_mean(passes[*first_ccw], passes[*first_cw], mean);
+  result.mean_bidirectional_radial_um = kUmPerMm *
+                                        (true_radius_offset(nominal_radius_mm, passes[*first_ccw], ca) +
+                                         true_radius_offset(nominal_radius_mm, passes[*first_cw], cb)) /
+                                        2;
   result.hysteresis = hysteresis_by_index(passes[*first_ccw], passes[*first_cw], mean);
   result.hysteresis_by_angle = hysteresis_by_angle(passes[*first_ccw], passes[*first_cw], mean);
   return result;

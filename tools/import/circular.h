@@ -36,14 +36,23 @@ struct Hysteresis {
   double deg = 0;
 };
 
+/// Both senses about their mean centre and mean radius (ANSI/ASME B5.54), and where the extremes lie.
+struct AboutMean {
+  double max_um = 0, min_um = 0;
+  double max_deg = 0, min_deg = 0;
+};
+
 struct CircularResult {
   double nominal_radius_mm = 0;
   std::vector<CircularPassResult> passes;
   /// The rest is of the first pass of each sense, absent where one sense is missing.
   std::optional<double> bidirectional_um;
   std::optional<double> mean_centre_a_mm, mean_centre_b_mm, mean_radius_mm;
-  std::optional<double> non_roundness_um;  // both passes about the mean centre and radius (ANSI/ASME B5.54)
-  std::optional<Hysteresis> hysteresis;    // sample i of one sense with sample i from the end of the other
+  std::optional<AboutMean> about_mean;
+  /// Mean of both senses' radii, each of the circle least in its true distances, minus the nominal radius
+  /// (ISO 230-4:2005). The linearised circle of the rest lacks the eccentricity squared over four radii.
+  std::optional<double> mean_bidirectional_radial_um;
+  std::optional<Hysteresis> hysteresis;  // sample i of one sense with sample i from the end of the other
   std::optional<Hysteresis> hysteresis_by_angle;  // at the same angle, linear between samples
 };
 

@@ -2,8 +2,10 @@
 #include "tools/import/diagnostics.h"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <stdexcept>
 
 #include "tools/maths/factors.h"
@@ -67,6 +69,20 @@ Eigen::MatrixXd design(const std::vector<DiagnosticsSample>& samples, const Diag
   return rows;
 }
 
+// Over all samples, those at the reversals too.
+CyclicEffect cyclic_effect(const std::vector<DiagnosticsSample>& samples, const DiagnosticsSetup& setup,
+                           char axis, int direction, const double* amplitudes) {
+  double low = HUGE_VAL, high = -HUGE_VAL;
+  for (const auto& sample : samples) {
+    if (sample.direction != direction) continue;
+    std::array<double, kCyclicPerAxis> columns{};
+    cyclic_columns(sample, axis, setup, columns.data());
+    const double um = std::inner_product(columns.begin(), columns.end(), amplitudes, 0.0);
+    low = std::min(low, um), high = std::max(high, um);
+  }
+  return {axis, direction, std::max(high - low, 0.0)};
+}
+
 }  // namespace
 
 std::array<double, kDiagnosticsCount> diagnostics_basis(double angle_deg, int direction,
@@ -124,6 +140,10 @@ DiagnosticsResult fit_diagnostics(const std::vector<DiagnosticsSample>& samples,
     result.cyclic.push_back(
         {axes[i / 4], block % 2 == 0, block < 2 ? +1 : -1, 2 * std::hypot(solution[at], solution[at + 1])});
   }
+  for (std::size_t i = 0; i < axes.size(); ++i)
+    for (const int direction : {+1, -1})
+      result.cyclic_effect.push_back(cyclic_effect(samples, setup, axes[i], direction,
+                                                   solution.data() + kDiagnosticsCount + i * kCyclicPerAxis));
   result.samples = used.size();
   result.rank = static_cast<std::size_t>(solver.rank());
   result.columns = static_cast<std::size_t>(basis.cols());

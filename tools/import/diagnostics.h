@@ -64,9 +64,17 @@ struct CyclicAmplitude {
   double peak_to_peak_um = 0;
 };
 
+/// What the cyclic terms of one axis do to the radius in one sense of the circle: largest minus smallest.
+struct CyclicEffect {
+  char axis = 'A';
+  int direction = +1;
+  double um = 0;
+};
+
 struct DiagnosticsResult {
   std::array<double, kDiagnosticsCount> value{};
   std::vector<CyclicAmplitude> cyclic;
+  std::vector<CyclicEffect> cyclic_effect;
   std::size_t samples = 0, rank = 0, columns = 0;  // rank < columns: the data cannot separate the terms
   double rms_um = 0, max_um = 0;                   // of the residual
 };

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,13 +13,18 @@ namespace vernier {
 struct PrintedResult {
   std::string place;  // "CCW", "ISO230_4 1996" …
   std::string name, unit;
-  double printed = 0, computed = 0;
+  double printed = 0;
+  std::optional<double> computed;
   bool equal = false;  // to the last digit that the file prints
+  /// What it was computed from: "readings"; "model curve", the file's own SIMULATION, for how its software
+  /// fits that curve to the readings is not published; "printed results". Without `computed`: empty.
+  std::string from;
+  std::string why;  // why it was not computed, or what may make it differ
 };
 
-/// All results of a file that this analysis computes too: those of the runs, of ISO 230-4 and of ANSI/ASME
-/// B5.54. That they agree proves that the file's indices and angles are read as its software meant them.
-/// tool.
+/// All results that a file prints: of its runs, ISO 230-4, ANSI/ASME B5.54 and B5.57, and its software's
+/// diagnostics with their ranking. That they agree proves that the file's indices, angles and definitions are
+/// read as its software meant them. tool.
 std::vector<PrintedResult> printed_results(const BallbarFile& file, const CircularResult& circle);
 
 }  // namespace vernier

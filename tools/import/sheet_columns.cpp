@@ -87,6 +87,12 @@ class Guess {
            std::isdigit(static_cast<unsigned char>(word[1])) != 0;
   }
 
+  bool is_motion(const std::string& name) const {
+    for (const char* prefix : {"dir", "since", "v", "a", "correction"})
+      if (name.starts_with(prefix) && is_axis(name.substr(std::string(prefix).size()))) return true;
+    return false;
+  }
+
   SheetColumn column(const Heading& heading) const {
     SheetColumn column{SheetColumn::Use::kColumn, heading.name, heading.unit, "by its heading"};
     if (is_axis(heading.name) || is_known_name(heading.name) || is_motion(heading.name)) return column;
@@ -122,12 +128,6 @@ class Guess {
   }
 
  private:
-  bool is_motion(const std::string& name) const {
-    for (const char* prefix : {"dir", "since", "v", "a", "correction"})
-      if (name.starts_with(prefix) && is_axis(name.substr(std::string(prefix).size()))) return true;
-    return false;
-  }
-
   static std::string other(const Heading& heading) {
     static const std::map<std::string, std::string> kNames = {
         {"zeit", "t"},         {"time", "t"},        {"vorschub", "feed"}, {"feedrate", "feed"},
@@ -179,14 +179,23 @@ std::pair<std::string, std::string> halves(const std::string& words, bool last, 
   return two;
 }
 
-bool is_text_column(const Sheet& sheet, const SheetTable& table, std::size_t column) {
+enum class Holds { kNothing, kNumbers, kWords };  // words: in most of the cells that are filled
+
+Holds holds(const Sheet& sheet, const SheetTable& table, std::size_t column) {
   std::size_t words = 0, filled = 0;
   for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
     const std::string& cell = sheet.rows[row][column];
     filled += cell.empty() ? 0 : 1;
     words += !cell.empty() && !plain_number(cell, sheet.decimal_comma) ? 1 : 0;
   }
-  return filled == 0 || 2 * words > filled;
+  if (filled == 0) return Holds::kNothing;
+  return 2 * words > filled ? Holds::kWords : Holds::kNumbers;
+}
+
+/// A column of words that no known name claims labels its rows.
+bool keeps_words(const SheetColumn& column, const Guess& guess) {
+  return column.use == SheetColumn::Use::kColumn && !is_known_name(column.name) &&
+         !column.name.starts_with("dir") && !guess.is_axis(column.name) && !guess.is_motion(column.name);
 }
 
 void leave(SheetColumn& column, const std::string& why) {
@@ -203,6 +212,11 @@ void settle(const Sheet& sheet, const SheetTable& table, std::vector<SheetColumn
       (guess.is_axis(column.name) ? axes : measured).insert(column.name);
   for (std::size_t k = 0; k < columns.size(); ++k) {
     SheetColumn& column = columns[k];
+    const Holds content = holds(sheet, table, k);
+    if (content == Holds::kWords && keeps_words(column, guess)) {
+      column.words = true;
+      column.unit.clear();
+    }
     if (column.why != "by its heading") continue;
     const bool deviation = column.use == SheetColumn::Use::kDeviation;
     if (deviation && column.name.empty() && axes.size() == 1) column.name = *axes.begin();
@@ -214,8 +228,9 @@ void settle(const Sheet& sheet, const SheetTable& table, std::vector<SheetColumn
       column.name = "dir" + *axes.begin();
     else if (column.name == "dir")
       leave(column, "the sense of which axis? Say it: --column \"dirX=" + table.headings[k].text + "\"");
-    else if (!is_label(column.name) && !column.name.starts_with("dir") && is_text_column(sheet, table, k))
-      leave(column, "no numbers");
+    else if (!column.words && !is_label(column.name) && !column.name.starts_with("dir") &&
+             content != Holds::kNumbers)
+      leave(column, content == Holds::kNothing ? "empty" : "no numbers");
   }
 }
 
@@ -236,7 +251,8 @@ void keep_names_apart(const SheetTable& table, std::vector<SheetColumn>& columns
 }
 
 bool wants_unit(const SheetColumn& column) {
-  return column.use != SheetColumn::Use::kLeft && !is_label(column.name) && !is_pure(column.name);
+  return column.use != SheetColumn::Use::kLeft && !column.words && !is_label(column.name) &&
+         !is_pure(column.name);
 }
 
 std::string direction_word(const std::string& cell) {
@@ -248,6 +264,7 @@ std::string direction_word(const std::string& cell) {
 std::string cell_text(const Sheet& sheet, const SheetColumn& column, const std::string& cell,
                       std::size_t row) {
   const Place place{sheet.file, sheet.line[row]};
+  if (column.words) return cell;
   if (is_label(column.name)) {
     const std::string small = lower(cell);
     if (column.name != "role") return cell;

@@ -16,6 +16,7 @@ struct SheetColumn {
   Use use = Use::kColumn;
   std::string name, unit;  // of the measurement file; of a deviation its axis
   std::string why;         // "by its heading", "--column", "the profile"; of one left out the reason
+  bool words = false;      // kept as it stands, a label of its rows
 };
 
 /// What a person says of the columns: assignments by heading or number, constants, and the unit of headings

@@ -44,16 +44,16 @@ class FileReader {
     return read(column, unit.factor, unit.offset, required);
   }
 
-  /// Does a column hold words, and no number at all?
+  /// Does a column hold words in most of its filled cells? Fewer are numbers gone wrong.
   bool is_text(const std::string& name) const {
     const std::size_t column = index_.at(name);
-    bool any = false;
+    std::size_t words = 0, filled = 0;
     for (const auto& row : csv_.rows) {
       if (row[column].empty()) continue;
-      if (parse_number(row[column])) return false;
-      any = true;
+      ++filled;
+      if (!parse_number(row[column])) ++words;
     }
-    return any && csv_.columns[column].unit.empty();
+    return 2 * words > filled && csv_.columns[column].unit.empty();
   }
 
   Dimension dimension(const std::string& name) const { return find_unit(unit(name))->dimension; }

@@ -45,6 +45,16 @@ class FirstPlanner {
     judge(parameters);
   }
 
+  /// Of any poses.
+  double uncertainty_um(const States& poses) const {
+    const Measurement rows = point_readings(poses);
+    const ParameterSet parameters(machine_, {""});
+    const MatrixXd columns = MatrixXd(linearise(machine_, rows, parameters).jacobian) * scale_.asDiagonal();
+    const MatrixXd information =
+        MatrixXd::Identity(columns.cols(), columns.cols()) + columns.transpose() * columns / variance();
+    return expanded_um(information.llt().solve(MatrixXd::Identity(columns.cols(), columns.cols())));
+  }
+
   FirstPlan plan() {
     FirstPlan plan;
     covariance_ = MatrixXd::Identity(jacobian_.cols(), jacobian_.cols());
@@ -181,6 +191,10 @@ class FirstPlanner {
 
 FirstPlan first_plan(const Machine& machine, const FirstPlanOptions& options) {
   return FirstPlanner(machine, options).plan();
+}
+
+double planned_uncertainty_um(const Machine& machine, const States& poses, const FirstPlanOptions& options) {
+  return FirstPlanner(machine, options).uncertainty_um(poses);
 }
 
 std::string first_plan_csv(const Machine& machine, const FirstPlan& plan, double reading_um) {

@@ -36,6 +36,11 @@ struct FirstPlan {
 /// a range, or nothing free. tool.
 FirstPlan first_plan(const Machine& machine, const FirstPlanOptions& options = {});
 
+/// Expanded uncertainty (k = 2) of the tool point over the work volume, um, after readings at any poses, in
+/// the same terms as `after_um`. tool.
+double planned_uncertainty_um(const Machine& machine, const States& poses,
+                              const FirstPlanOptions& options = {});
+
 /// A measurement file with these rows, readings to be filled in.
 std::string first_plan_csv(const Machine& machine, const FirstPlan& plan, double reading_um);
 

@@ -100,14 +100,15 @@ class Sheet {
 /// Writes one row's moves.
 class MoveWriter {
  public:
-  MoveWriter(const Plan& plan, std::string& out) : plan_(plan), out_(out) {}
+  MoveWriter(const Machine& machine, const States& states, std::string& out)
+      : machine_(machine), states_(states), out_(out) {}
 
   void write(std::size_t row) {
     const auto at = static_cast<Eigen::Index>(row);
-    const States& s = plan_.rows.states;
+    const States& s = states_;
     std::vector<double> from, to, through;
     double speed = 0;
-    for (std::size_t a = 0; a < plan_.machine.axes.size(); ++a) {
+    for (std::size_t a = 0; a < machine_.axes.size(); ++a) {
       const double q = s.axis[a][at], way = way_of(a, at);
       const double v = s.velocity[a][at];
       speed += v * v;
@@ -139,44 +140,45 @@ class MoveWriter {
 
  private:
   double inside(std::size_t a, double q) const {
-    const Axis& axis = plan_.machine.axes[a];
+    const Axis& axis = machine_.axes[a];
     if (axis.rollover) return q;
     return std::clamp(q, axis.min.value_or(-1e300), axis.max.value_or(1e300));
   }
 
   double span(std::size_t a) const {
-    const Axis& axis = plan_.machine.axes[a];
-    const Column& q = plan_.rows.states.axis[a];
+    const Axis& axis = machine_.axes[a];
+    const Column& q = states_.axis[a];
     return axis.min && axis.max ? *axis.max - *axis.min : q.maxCoeff() - q.minCoeff();
   }
 
   double way_of(std::size_t a, Eigen::Index at) const {
-    const double since = plan_.rows.states.since[a][at];
+    const double since = states_.since[a][at];
     return since < kLongWay ? since : kApproachShare * span(a);
   }
 
   /// Way before and behind a point that is passed: the least that any moving axis is given.
   double run_up(Eigen::Index at) const {
     double way = 1e300;
-    for (std::size_t a = 0; a < plan_.machine.axes.size(); ++a)
-      if (plan_.rows.states.velocity[a][at] != 0) way = std::min(way, way_of(a, at));
+    for (std::size_t a = 0; a < machine_.axes.size(); ++a)
+      if (states_.velocity[a][at] != 0) way = std::min(way, way_of(a, at));
     return way;
   }
 
   bool turned(const std::vector<double>& from, const std::vector<double>& to, Eigen::Index at) const {
     for (std::size_t a = 0; a < to.size(); ++a)
-      if (plan_.rows.states.velocity[a][at] == 0 && from[a] != to[a]) return true;
+      if (states_.velocity[a][at] == 0 && from[a] != to[a]) return true;
     return false;
   }
 
   std::string words(const std::vector<double>& q) const {
     std::string text;
     for (std::size_t a = 0; a < q.size(); ++a)
-      text += " " + plan_.machine.axes[a].name + fmt::format("{:.4f}", q[a]);
+      text += " " + machine_.axes[a].name + fmt::format("{:.4f}", q[a]);
     return text;
   }
 
-  const Plan& plan_;
+  const Machine& machine_;
+  const States& states_;
   std::string& out_;
 };
 
@@ -219,7 +221,7 @@ std::string plan_gcode(const Plan& plan) {
   std::string text = "; " + plan.sentence + "\n; check clearances before running\nG21 G90 G94\n";
   const Drivers drivers = drivers_of(std::vector<const FittedRival*>{&plan.a, &plan.b});
   const bool timed = drivers.kinds.contains(SymbolKind::kTime);
-  MoveWriter writer(plan, text);
+  MoveWriter writer(plan.machine, plan.rows.states, text);
   const bool tethered = std::any_of(plan.rows.observations.begin(), plan.rows.observations.end(),
                                     [](const Observation& o) { return o.kind == ObservationKind::kLength; });
   std::string before;
@@ -238,6 +240,13 @@ std::string plan_gcode(const Plan& plan) {
     if (tethered) text += "M0 ; take the bar off before this move, put it on again at its end\n";
     writer.write(row);
   }
+  return text + "M30\n";
+}
+
+std::string poses_gcode(const Machine& machine, const States& states, const std::string& remark) {
+  std::string text = "; " + remark + "\n; check clearances before running\nG21 G90 G94\n";
+  MoveWriter writer(machine, states, text);
+  for (std::size_t row = 0; row < states.count; ++row) writer.write(row);
   return text + "M30\n";
 }
 

@@ -15,6 +15,9 @@ std::string plan_csv(const Plan& plan);
 /// degrees, mm/min; axes are called as in the machine file. Approaches end within the declared ranges. tool.
 std::string plan_gcode(const Plan& plan);
 
+/// Poses to stand at one after the other, as G-code in the same way: `remark` is its first line. tool.
+std::string poses_gcode(const Machine& machine, const States& states, const std::string& remark);
+
 /// The same rows as a table for people.
 std::string plan_table(const Plan& plan);
 

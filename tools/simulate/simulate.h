@@ -4,7 +4,7 @@
 #include <string>
 
 #include "tools/compile/compile.h"
-#include "tools/simulate/alignment.h"
+#include "tools/maths/alignment.h"
 #include "tools/simulate/loop.h"
 #include "tools/simulate/path.h"
 

@@ -44,7 +44,7 @@ const std::vector<Room>& rooms_of_tools() {
       {"probe", {"maths", "model", "text"}},
       {"timebase", {"maths", "model", "text"}},
       {"create", {"model", "text"}},
-      {"evaluate", {"text"}},
+      {"evaluate", {"maths", "text"}},
       {"import", {"maths", "model", "sheet", "text", "timebase"}},
       {"exchange", {"kinematics", "maths", "model", "text"}},
       {"lint", {"model", "sheet", "text"}},

@@ -8,6 +8,7 @@
 #include "tools/import/b5r_reader.h"
 #include "tools/import/ballbar_file.h"
 #include "tools/import/diagnostics.h"
+#include "tools/import/printed_diagnostics.h"
 
 namespace vernier::diagnostics_test {
 namespace {
@@ -24,22 +25,9 @@ DiagnosticsSetup setup_of(const BallbarFile& file) {
   return setup;
 }
 
-std::vector<DiagnosticsSample> simulation_of(const BallbarFile& file) {
-  std::vector<DiagnosticsSample> samples;
-  for (const auto& series : file.simulations) {
-    const double count = static_cast<double>(series.reading_mm.size());
-    for (std::size_t k = 0; k < series.reading_mm.size(); ++k) {
-      const double turned = (static_cast<double>(k) + 0.5) * 360 / count;
-      const bool ccw = series.label == "CCW";
-      samples.push_back({ccw ? turned : 360 - turned, ccw ? +1 : -1, series.reading_mm[k] * 1000});
-    }
-  }
-  return samples;
-}
-
 TEST(Diagnostics, FilesOwnSimulationGivesAllTwentyPrintedValues) {
   const BallbarFile file = read_b5r(ballbar_data("ur10e_xy_100mm.b5r"));
-  const DiagnosticsResult result = fit_diagnostics(simulation_of(file), setup_of(file));
+  const DiagnosticsResult result = fit_diagnostics(model_curve(file), setup_of(file));
   EXPECT_EQ(result.rank, result.columns);
   // The series is printed to 0.01 um; a uniform rounding error of that width has 0.003 um rms.
   EXPECT_LT(result.rms_um, 0.01);
@@ -57,7 +45,7 @@ TEST(Diagnostics, FilesOwnSimulationGivesAllTwentyPrintedValues) {
 
 TEST(Diagnostics, CyclicAmplitudesOfTheClockwiseSimulationAreThePrintedOnes) {
   const BallbarFile file = read_b5r(ballbar_data("ur10e_xy_100mm.b5r"));
-  const DiagnosticsResult result = fit_diagnostics(simulation_of(file), setup_of(file));
+  const DiagnosticsResult result = fit_diagnostics(model_curve(file), setup_of(file));
   std::size_t compared = 0;
   for (const auto& cyclic : result.cyclic) {
     if (cyclic.direction > 0) continue;

@@ -65,7 +65,11 @@ const Case kCases[] = {
     {"TargetAndDeviation", "X target (mm);Deviation (µm)\n100;-1.5\n", "X[mm],x[mm]\n100,99.9985\n"},
     {"SensesInWords", "X[mm];x[mm];Richtung;Lauf\n1;2;hin;1\n1;2;zurück;1\n",
      "X[mm],x[mm],dirX,run\n1,2,1,1\n1,2,-1,1\n"},
-    {"RemarksAreLeftOut", "X[mm];x[mm];Bemerkung\n1;2;gut\n3;4;\n", "X[mm],x[mm]\n1,2\n3,4\n"},
+    {"WordsAreKeptAsLabels", "X[mm];x[mm];Bemerkung\n1;2;gut\n3;4;\n",
+     "X[mm],x[mm],Bemerkung\n1,2,gut\n3,4,\n"},
+    {"WordsWithANumberAmongThem", "X[mm];x[mm];tool\n1;2;T1\n3;4;7\n5;6;a,b\n",
+     "X[mm],x[mm],tool\n1,2,T1\n3,4,7\n5,6,\"a,b\"\n"},
+    {"EmptyColumnIsLeftOut", "X[mm];x[mm];spare\n1;2;\n3;4;\n", "X[mm],x[mm]\n1,2\n3,4\n"},
     {"MissingReadings", "X[mm];x[mm]\n1;-\n2;3\n", "X[mm],x[mm]\n1,\n2,3\n"},
     {"QuotedCommas", "X[mm],x[mm]\n\"1,5\",\"2,5\"\n", "X[mm],x[mm]\n1.5,2.5\n"},
     {"Inches", "X (inch);x (inch)\n1;1.0001\n", "X[in],x[in]\n1,1.0001\n"},
@@ -95,7 +99,7 @@ INSTANTIATE_TEST_SUITE_P(AsPeopleSendThem, Spreadsheet, testing::ValuesIn(kCases
 const std::string kOdd = "Pos;Anzeige [µm];Stift\n100;1,5;a\n200;2,5;b\n";
 
 TEST(SheetWish, ColumnsAreAssignedInEitherOrder) {
-  const char* const wanted = "Z[mm],x[um]\n100,1.5\n200,2.5\n";
+  const char* const wanted = "Z[mm],x[um],Stift\n100,1.5,a\n200,2.5,b\n";
   EXPECT_EQ(import(kOdd, {},
                    [](SheetWishes& wishes, const SheetTable& table) {
                      assign_column(wishes, table, "Z[mm]=Pos");
@@ -116,7 +120,7 @@ TEST(SheetWish, DeviationIsAddedToThePosition) {
                      assign_column(wishes, table, "X[mm]=Pos");
                      assign_deviation(wishes, "X=Anzeige");
                    }),
-            "X[mm],x[mm]\n100,100.0015\n200,200.0025\n");
+            "X[mm],x[mm],Stift\n100,100.0015,a\n200,200.0025,b\n");
 }
 
 TEST(SheetWish, UnknownHeadingIsNamedWithThoseThatAreThere) {
@@ -135,7 +139,7 @@ TEST(SheetProfile, ReadsTheNextFileAsThisOne) {
   SheetWishes again;
   read_sheet_profile(again, profile, "p.txt");
   EXPECT_TRUE(again.format.decimal_comma.value());
-  EXPECT_EQ(import(kOdd, again), "X[mm],x[mm]\n100,100.0015\n200,200.0025\n") << profile;
+  EXPECT_EQ(import(kOdd, again), "X[mm],x[mm],Stift\n100,100.0015,a\n200,200.0025,b\n") << profile;
   SheetWishes bad;
   EXPECT_THROW(read_sheet_profile(bad, "colunm X = x[mm]\n", "p.txt"), InputError);
 }

@@ -104,6 +104,28 @@ TEST_F(PartCommand, GaugeBlock) {
   EXPECT_EQ(part("gauge-block " + part_data::path("gauge_block.csv") + " --pivot-length 0"), 1);
 }
 
+TEST_F(PartCommand, ToleranceIsJudgedWithTheUncertaintyOfTheMeasuringMachine) {
+  // GIVEN a part that errors of table 4 leave 0.19 mm off at most: a zone of 0.12 mm is not met, one of 0.4
+  // mm is, and one of 0.39 mm is undecided for a machine that measures with U = 0.01 mm
+  const std::string errors = " --errors EA0B=3.2419e-4rad,EX0B=0.0294mm";
+  EXPECT_EQ(part("s-shape -o " + out() + errors + " --tolerance 0.12 --uncertainty 0.01"), 2);
+  EXPECT_EQ(json()["tolerance"]["conformity"], "not met");
+  ASSERT_EQ(part("s-shape -o " + out() + errors + " --tolerance 0.5 --uncertainty 0.01"), 0);
+  EXPECT_EQ(json()["tolerance"]["conformity"], "met");
+  const double farthest = std::abs(json()["tolerance"]["farthest_mm"].get<double>());
+  const std::string close = " --tolerance " + std::to_string(2 * farthest + 0.01);
+  ASSERT_EQ(part("s-shape -o " + out() + errors + close + " --uncertainty 0.01"), 0);
+  EXPECT_EQ(json()["tolerance"]["conformity"], "not decided (within the uncertainty)");
+  ASSERT_EQ(part("s-shape -o " + out() + errors + close + " --uncertainty 0.004"), 0);
+  EXPECT_EQ(json()["tolerance"]["conformity"], "met");
+  // The same points as a measured part.
+  ASSERT_EQ(
+      part("s-shape -o " + out() + "2 --identify " + out() + "/defect.csv" + close + " --uncertainty 0.004"),
+      0);
+  EXPECT_EQ(json()["tolerance"]["of"], "measured");
+  EXPECT_NEAR(std::abs(json()["tolerance"]["farthest_mm"].get<double>()), farthest, 1e-6);
+}
+
 TEST_F(PartCommand, BadInputIsStatusOneAndWritesNothing) {
   const auto refused = [&](const std::string& arguments) {
     EXPECT_EQ(part("s-shape -o " + out() + " " + arguments), 1) << arguments;

@@ -10,6 +10,7 @@
 #include "tools/model/machine_reader.h"
 #include "tools/model/prediction.h"
 #include "tools/model/work_poses.h"
+#include "tools/plan/sheets.h"
 #include "tools/text/error.h"
 
 namespace vernier::first_plan_test {
@@ -83,6 +84,29 @@ TEST(FirstPlan, PromisesWhatAFitThenKeeps) {
   const double realised_um = 2000 * std::sqrt(squares / count);
   EXPECT_LT(realised_um, 1.4 * plan.after_um);
   EXPECT_GT(realised_um, 0.5 * plan.after_um);
+}
+
+TEST(FirstPlan, UncertaintyOfItsOwnPosesIsWhatItSays) {
+  const Machine machine = bridge();
+  const FirstPlan plan = first_plan(machine, kAsked);
+  std::vector<std::size_t> fit;
+  for (std::size_t i = 0; i < plan.check.size(); ++i)
+    if (plan.check[i] == 0) fit.push_back(i);
+  // The first pose comes again, which the plan's own figure does not count.
+  const double um = planned_uncertainty_um(machine, select_states(plan.states, fit), kAsked);
+  EXPECT_LE(um, plan.after_um * (1 + 1e-9));
+  EXPECT_GT(um, 0.9 * plan.after_um);
+}
+
+TEST(FirstPlan, GcodeStandsAtEveryPoseFromItsSide) {
+  const Machine machine = bridge();
+  const FirstPlan plan = first_plan(machine, kAsked);
+  const std::string text = poses_gcode(machine, plan.states, "first measurement of bridge");
+  std::size_t reads = 0;
+  for (std::size_t at = text.find("; read"); at != std::string::npos; at = text.find("; read", at + 1))
+    ++reads;
+  EXPECT_EQ(reads, plan.check.size());
+  EXPECT_NE(text.find("first measurement of bridge"), std::string::npos);
 }
 
 TEST(FirstPlan, SaysWhatCannotBeReached) {

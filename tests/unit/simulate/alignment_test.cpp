@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/simulate/alignment.h"
+#include "tools/maths/alignment.h"
 
 #include <gtest/gtest.h>
 

@@ -16,6 +16,10 @@ struct RigidMotion {
 /// (1991) 376, equations 40-43, without scale. tool.
 RigidMotion align(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to);
 
+/// Do points (3 x N) fix a rigid motion: are there three that do not lie on one line (to 1e-9 of their
+/// extent)?
+bool fixes_motion(const Eigen::Matrix3Xd& points);
+
 /// motion applied to `from`, minus `to`.
 Eigen::Matrix3Xd aligned_error(const RigidMotion& motion, const Eigen::Matrix3Xd& from,
                                const Eigen::Matrix3Xd& to);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/simulate/alignment.h"
+#include "tools/maths/alignment.h"
 
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
@@ -32,6 +32,15 @@ RigidMotion align(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to) {
   motion.rotation = rotation_of(b * a.transpose(), extent);
   motion.translation = to_mean - motion.rotation * from_mean;
   return motion;
+}
+
+bool fixes_motion(const Eigen::Matrix3Xd& points) {
+  if (points.cols() < 3) return false;
+  const Eigen::Matrix3Xd centred = points.colwise() - points.rowwise().mean();
+  const Eigen::Vector3d extent =
+      Eigen::JacobiSVD<Eigen::Matrix3d>(centred * centred.transpose()).singularValues();
+  constexpr double kOnOneLine = 1e-12;  // of squares, above what rounding makes of a line
+  return extent[1] > kOnOneLine * extent[0];
 }
 
 Eigen::Matrix3Xd aligned_error(const RigidMotion& motion, const Eigen::Matrix3Xd& from,

@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <CLI/CLI.hpp>
+
+namespace vernier::evaluate_cli {
+
+/// Adds `evaluate iso9283`.
+void add_robot_kind(CLI::App& evaluate);
+
+}  // namespace vernier::evaluate_cli

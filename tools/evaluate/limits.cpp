@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/evaluate/limits.h"
+
+#include <algorithm>
+#include <cctype>
+
+#include "tools/text/error.h"
+#include "tools/text/numbers.h"
+#include "tools/text/units.h"
+#include "tools/text/words.h"
+
+namespace vernier {
+
+std::pair<std::string, double> limit_of(const std::string& words, const std::string& option,
+                                        const std::vector<std::string>& names) {
+  const auto at = words.find('=');
+  const std::string name = words.substr(0, at);
+  const std::string rest = at == std::string::npos ? "" : words.substr(at + 1);
+  std::size_t end = 0;
+  while (end < rest.size() && (std::isdigit(static_cast<unsigned char>(rest[end])) != 0 || rest[end] == '.'))
+    ++end;
+  const auto number = parse_number(rest.substr(0, end));
+  const auto unit = find_unit(rest.substr(end));
+  const bool fits = unit && (unit->dimension == Dimension::kLength || unit->dimension == Dimension::kAngle);
+  if (!number || !fits || std::find(names.begin(), names.end(), name) == names.end())
+    throw InputError(option + " " + words + ": of the form " + names.front() + "=10um, for one of " +
+                     joined(names, " "));
+  return {name, *number * unit->factor};
+}
+
+}  // namespace vernier

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <Eigen/Core>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace vernier {
+
+/// One visit of a pose, or one sample of a path: where the robot was told to be and where it was found. mm;
+/// rotations as rotation vectors, deg.
+struct PoseReading {
+  std::string run;  // the cycle that it belongs to
+  Eigen::Vector3d commanded_mm, measured_mm;
+  std::optional<Eigen::Vector3d> commanded_deg, measured_deg;
+  double u_mm = 0;  // standard uncertainty of a measured coordinate; 0: not known
+};
+
+/// What ISO 9283:1998, 7.2 computes at one pose. mm, deg.
+struct PoseResult {
+  Eigen::Vector3d commanded_mm;
+  std::size_t count = 0;
+  Eigen::Vector3d deviation_mm;    // AP_x AP_y AP_z: barycentre - commanded
+  double accuracy_mm = 0;          // AP_P: its length
+  double accuracy_std_mm = 0;      // of it: scatter of the mean along it, and u of the instrument
+  double mean_distance_mm = 0;     // of the readings from their barycentre
+  double distance_spread_mm = 0;   // S_l, n - 1
+  double repeatability_mm = 0;     // RP_l: mean distance + 3 S_l
+  double low_mm = 0, high_mm = 0;  // 95 % interval of RP_l
+  double freedom = 0;              // of the chi square that it is from
+  std::optional<Eigen::Vector3d> accuracy_deg, repeatability_deg;  // AP_a b c; RP_a b c: 3 S of each
+};
+
+/// The poses of a test in the order of their first visit: readings with one commanded pose (within 1 nm and 1
+/// nrad) belong together. Throws InputError: a pose with fewer than two readings. The interval takes the
+/// scatter as normal with the covariance that is seen; its degrees of freedom are those at which chi square
+/// varies as RP_l then does. tool. Source: ISO 9283:1998, 7.2.1, 7.2.2; the interval by the delta method.
+std::vector<PoseResult> evaluate_poses(const std::vector<PoseReading>& readings);
+
+/// Turns and shifts what was measured so that the barycentres of the commanded poses come nearest to them
+/// (least squares, Kabsch 1976): for an instrument whose frame is not the robot's. Throws InputError where
+/// the poses do not fix a frame (fewer than three, on one line). tool.
+void align_to_commanded(std::vector<PoseReading>& readings);
+
+}  // namespace vernier

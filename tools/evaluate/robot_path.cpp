@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/evaluate/robot_path.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "tools/text/csv.h"
+#include "tools/text/error.h"
+#include "tools/text/numbers.h"
+#include "tools/text/units.h"
+
+namespace vernier {
+namespace {
+
+using Eigen::Vector3d;
+using Cycle = std::vector<PoseReading>;
+
+std::vector<Cycle> cycles_of(const std::vector<PoseReading>& readings) {
+  std::vector<Cycle> cycles;
+  std::map<std::string, std::size_t> place;
+  for (const PoseReading& reading : readings) {
+    const auto [found, fresh] = place.emplace(reading.run, cycles.size());
+    if (fresh) cycles.emplace_back();
+    cycles[found->second].push_back(reading);
+  }
+  return cycles;
+}
+
+/// Way along the commanded path at each sample, mm.
+std::vector<double> ways(const Cycle& cycle) {
+  std::vector<double> way = {0};
+  for (std::size_t i = 1; i < cycle.size(); ++i)
+    way.push_back(way.back() + (cycle[i].commanded_mm - cycle[i - 1].commanded_mm).norm());
+  return way;
+}
+
+struct Crossing {
+  Vector3d at, tangent;  // of the commanded path
+  double way = 0;
+};
+
+std::vector<Crossing> stations_of(const Cycle& cycle, std::size_t count) {
+  const std::vector<double> way = ways(cycle);
+  if (!(way.back() > 0))
+    throw InputError("the commanded path of run \"" + cycle.front().run + "\" has no length");
+  std::vector<Crossing> stations;
+  std::size_t i = 1;
+  for (std::size_t k = 0; k < count; ++k) {
+    const double at = way.back() * static_cast<double>(k + 1) / static_cast<double>(count + 1);
+    while (way[i] < at || way[i] == way[i - 1]) ++i;
+    const Vector3d step = cycle[i].commanded_mm - cycle[i - 1].commanded_mm;
+    stations.push_back({cycle[i - 1].commanded_mm + step * (at - way[i - 1]) / (way[i] - way[i - 1]),
+                        step.normalized(), at});
+  }
+  return stations;
+}
+
+/// Where a cycle's measured path crosses the plane across the commanded one at a station: of all crossings
+/// the one whose own commanded way is nearest (a closed path crosses each plane twice).
+std::optional<PoseReading> crossing(const Cycle& cycle, const std::vector<double>& way,
+                                    const Crossing& station) {
+  std::optional<PoseReading> best;
+  double least = 0;
+  for (std::size_t i = 1; i < cycle.size(); ++i) {
+    const double before = (cycle[i - 1].measured_mm - station.at).dot(station.tangent),
+                 after = (cycle[i].measured_mm - station.at).dot(station.tangent);
+    if (before > 0 || after <= 0) continue;
+    const double share = before / (before - after);
+    const double off = std::abs(way[i - 1] + share * (way[i] - way[i - 1]) - station.way);
+    if (best && off >= least) continue;
+    least = off;
+    best = cycle[i];
+    best->commanded_mm = station.at;
+    best->commanded_deg = std::nullopt;
+    best->measured_deg = std::nullopt;
+    best->measured_mm = cycle[i - 1].measured_mm + share * (cycle[i].measured_mm - cycle[i - 1].measured_mm);
+    best->u_mm = std::max(cycle[i - 1].u_mm, cycle[i].u_mm);
+  }
+  return best;
+}
+
+}  // namespace
+
+PathResult evaluate_path(const std::vector<PoseReading>& readings, std::size_t stations) {
+  const std::vector<Cycle> cycles = cycles_of(readings);
+  if (cycles.size() < 2)
+    throw InputError("one cycle (run) of the path: repeatability needs two, ISO 9283 asks for ten");
+  std::vector<std::vector<double>> way;
+  for (const Cycle& cycle : cycles) way.push_back(ways(cycle));
+  PathResult result;
+  for (const Crossing& station : stations_of(cycles.front(), stations)) {
+    std::vector<PoseReading> here;
+    for (std::size_t i = 0; i < cycles.size(); ++i) {
+      const auto found = crossing(cycles[i], way[i], station);
+      if (!found)
+        throw InputError(
+            fmt::format("run \"{}\" does not pass the commanded path at {:.3f} mm from its beginning",
+                        cycles[i].front().run, station.way));
+      here.push_back(*found);
+    }
+    result.stations.push_back(evaluate_poses(here).front());
+    const PoseResult& last = result.stations.back();
+    if (last.accuracy_mm > result.stations[result.accuracy_at].accuracy_mm)
+      result.accuracy_at = result.stations.size() - 1;
+    if (last.repeatability_mm > result.stations[result.repeatability_at].repeatability_mm)
+      result.repeatability_at = result.stations.size() - 1;
+  }
+  return result;
+}
+
+std::vector<PoseReading> read_pose_readings(const std::string& text, const std::string& file) {
+  const CsvFile csv = parse_csv(text, file);
+  std::map<std::string, std::size_t> place;
+  for (std::size_t k = 0; k < csv.columns.size(); ++k) place[csv.columns[k].name] = k;
+  const Place header{file, csv.header_line};
+  for (const char* name : {"px", "py", "pz", "x", "y", "z"}) {
+    if (!place.contains(name))
+      throw InputError(header, name,
+                       "this column is missing: px py pz commanded, x y z measured (or give --machine)");
+    if (find_unit(csv.columns[place[name]].unit)->dimension != Dimension::kLength)
+      throw InputError(header, name, "this column needs a unit like mm");
+  }
+  const auto number = [&](std::size_t row, const std::string& name) -> std::optional<double> {
+    const std::string& cell = csv.rows[row][place[name]];
+    if (cell.empty()) return std::nullopt;
+    const auto value = parse_number(cell);
+    if (!value) throw InputError({file, csv.line[row]}, cell, "not a number");
+    return *value * find_unit(csv.columns[place[name]].unit)->factor;
+  };
+  std::vector<PoseReading> readings;
+  for (std::size_t row = 0; row < csv.rows.size(); ++row) {
+    PoseReading one;
+    bool read = true;
+    const std::string commanded[] = {"px", "py", "pz"}, measured[] = {"x", "y", "z"};
+    for (int k = 0; k < 3; ++k) {
+      const auto value = number(row, commanded[k]), found = number(row, measured[k]);
+      if (!value) throw InputError({file, csv.line[row]}, commanded[k], "this column may not be empty");
+      read = read && found;
+      one.commanded_mm[k] = *value;
+      one.measured_mm[k] = found.value_or(0);
+    }
+    if (place.contains("run")) one.run = csv.rows[row][place["run"]];
+    if (place.contains("u")) one.u_mm = number(row, "u").value_or(0);
+    if (read) readings.push_back(one);
+  }
+  if (readings.empty()) throw InputError(header, "x", "no row has a reading");
+  return readings;
+}
+
+}  // namespace vernier

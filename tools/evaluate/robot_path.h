@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "tools/evaluate/robot.h"
+
+namespace vernier {
+
+/// ISO 9283:1998, 8.2 and 8.3: AT_P and RT_P, the largest at the stations.
+struct PathResult {
+  std::vector<PoseResult> stations;
+  std::size_t accuracy_at = 0, repeatability_at = 0;  // the station of the largest
+};
+
+/// The same path followed in several cycles (runs), samples in time order, not at the same places. Stations
+/// lie equally spaced along the commanded path of the first cycle; each cycle counts where its measured path
+/// crosses the plane across the commanded path there, linear between samples. Ends are left out: no sample
+/// lies beyond them. Throws InputError: fewer than two cycles, a path without length, a station that a cycle
+/// does not cross. tool.
+PathResult evaluate_path(const std::vector<PoseReading>& readings, std::size_t stations);
+
+/// Rows of a measurement file with columns px py pz (commanded) and x y z (measured), mm; run, u where they
+/// are there. check rows count too; a row without a reading is left out. Throws InputError. tool.
+std::vector<PoseReading> read_pose_readings(const std::string& text, const std::string& file);
+
+}  // namespace vernier

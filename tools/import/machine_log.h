@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <string>
+#include <vector>
+
+#include "tools/import/column_map.h"
+#include "tools/import/pairing.h"
+#include "tools/model/machine.h"
+
+namespace vernier {
+
+struct LogOptions {
+  double dwell_s = 0.5;     // shorter standstills are none
+  double still = 0.01;      // mm or deg: an axis that stays within stands still
+  double tolerance_mm = 2;  // ways of machine and nominal machine between two points
+};
+
+/// What became of a tracker's table and a machine's log.
+struct LoggedTable {
+  ImportTable table;  // the points that were paired, with the log's columns at their dwell
+  Pairing pairing;
+  std::vector<Dwell> dwells;
+  std::vector<std::size_t> unmatched_line;  // of points in the tracker's file
+};
+
+/// Gives the points of a tracker's table (x y z, and t where its clock is known) the axis positions and
+/// inputs that a machine's log has in the dwell in which each was measured: means of numbers, the first of
+/// words, `t` by the log's clock. log: a CSV of measurement columns with `t` and every axis of the machine,
+/// in time order. Throws InputError with file, line and word. tool.
+LoggedTable with_log(const ImportTable& tracker, const std::string& log, const std::string& log_file,
+                     const Machine& machine, const LogOptions& options);
+
+}  // namespace vernier

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <Eigen/Core>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace vernier {
+
+/// A stretch of a machine's log in which no axis moved.
+struct Dwell {
+  std::size_t first = 0, last = 0;  // rows of the log, inclusive
+  double begin_s = 0, end_s = 0;
+  double middle_s() const { return (begin_s + end_s) / 2; }
+};
+
+/// Stretches of at least `least_s` in which every axis stays within its tolerance of where it stood at their
+/// beginning. time: s, rising; axes: rows x axes; tolerance: one an axis, same unit. tool.
+std::vector<Dwell> find_dwells(const Eigen::VectorXd& time, const Eigen::MatrixXd& axes,
+                               const Eigen::VectorXd& tolerance, double least_s);
+
+struct PairingInput {
+  std::vector<Dwell> dwells;
+  /// Where the nominal machine stands in each dwell, mm (3 x dwells); empty: distances tell nothing.
+  Eigen::Matrix3Xd stand;
+  Eigen::Matrix3Xd point;  // what the instrument measured, mm, in its own frame (3 x points), in its order
+  std::optional<Eigen::VectorXd> time;  // of each point by the instrument's clock, s
+  double distance_tolerance_mm = 2;  // by how much machine and nominal machine may differ between two points
+};
+
+struct Pairing {
+  std::vector<std::optional<std::size_t>> dwell;  // of each point
+  std::vector<std::size_t> unused;                // dwells without a point
+  /// Clock of the log = offset + (1 + drift) x clock of the instrument; with their standard uncertainties.
+  std::optional<double> offset_s, offset_std_s, drift, drift_std;
+  std::optional<double> rms_mm;  // of the paired points after the best rigid motion
+};
+
+/// Which dwell each point was measured in, where the trigger is missing or points were lost: the alignment of
+/// both sequences whose ways between neighbours (which no frame changes) and times agree best, dwells and
+/// points left out where nothing fits. Order is kept. Then one clock and one rigid motion for all: pairs that
+/// do not obey them are taken apart again. Throws InputError where neither times nor stands are given and the
+/// numbers differ. tool.
+Pairing pair_points(const PairingInput& input);
+
+}  // namespace vernier

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/results/group_table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "tools/maths/chance.h"
+#include "tools/maths/factors.h"
+#include "tools/text/error.h"
+#include "tools/text/words.h"
+
+namespace vernier {
+namespace {
+
+using nlohmann::ordered_json;
+
+/// Number, sum and sum of squares of readings of one kind, um or urad.
+struct Sums {
+  double count = 0, sum = 0, squares = 0;
+  void take(double value) { count += 1, sum += value, squares += value * value; }
+};
+using Groups = std::map<std::string, Sums>;
+
+std::vector<std::string> known_columns(const Measurement& m) {
+  std::vector<std::string> names = {"run"};
+  for (const LabelColumn& label : m.labels) names.push_back(label.name);
+  for (const CandidateInput& candidate : m.candidates) names.push_back(candidate.name);
+  return names;
+}
+
+/// The group of every row.
+std::vector<std::string> values_of(const Measurement& m, const std::string& column) {
+  for (const LabelColumn& label : m.labels)
+    if (label.name == column) return label.value;
+  std::vector<std::string> values(m.rows());
+  if (column == "run") {
+    for (std::size_t row = 0; row < m.rows(); ++row) values[row] = m.states.run_names[m.states.run[row]];
+    return values;
+  }
+  for (const CandidateInput& candidate : m.candidates) {
+    if (candidate.name != column) continue;
+    for (std::size_t row = 0; row < m.rows(); ++row) {
+      const double value = candidate.value[static_cast<Eigen::Index>(row)];
+      if (!std::isnan(value)) values[row] = fmt::format("{:g}", value);
+    }
+    return values;
+  }
+  throw InputError({}, column, "no such column to group by; there are " + joined(known_columns(m), ", "));
+}
+
+/// log of the chance that means of groups of one spread differ so much; 0 where there is none to tell from.
+double log_chance(const Groups& groups) {
+  double count = 0, sum = 0, squares = 0, between = 0;
+  for (const auto& [value, group] : groups) {
+    count += group.count, sum += group.sum, squares += group.squares;
+    between += group.sum * group.sum / group.count;
+  }
+  const double d1 = static_cast<double>(groups.size()) - 1, d2 = count - static_cast<double>(groups.size());
+  if (d1 < 1 || d2 < 1) return 0;
+  const double within = squares - between;
+  between -= sum * sum / count;
+  if (!(within > 0)) return between > 0 ? -HUGE_VAL : 0;
+  return log_f_tail((between / d1) / (within / d2), d1, d2);
+}
+
+ordered_json one_column(const Measurement& m, const Eigen::VectorXd& residual, const std::string& column) {
+  const std::vector<std::string> values = values_of(m, column);
+  std::map<ObservationKind, Groups> kinds;
+  std::map<std::string, bool> seen;
+  for (std::size_t i = 0; i < m.observations.size(); ++i) {
+    const Observation& o = m.observations[i];
+    if (m.check[o.row] != 0) continue;
+    const double unit = is_rotation(o.kind) ? kUradPerDeg : kUmPerMm;
+    kinds[o.kind][values[o.row]].take(unit * residual[static_cast<Eigen::Index>(i)]);
+    seen[values[o.row]] = true;
+  }
+  constexpr std::size_t kMostGroups = 50;
+  if (seen.size() > kMostGroups)
+    throw InputError({}, column,
+                     fmt::format("{} different values: too many groups to be told apart", seen.size()));
+  double least = 0;
+  for (const auto& [kind, groups] : kinds) least = std::min(least, log_chance(groups));
+  ordered_json each = ordered_json::array();
+  for (const auto& [value, any] : seen) {
+    ordered_json readings = ordered_json::array();
+    for (const auto& [kind, groups] : kinds) {
+      const auto group = groups.find(value);
+      if (group == groups.end()) continue;
+      const Sums& sums = group->second;
+      readings.push_back({{"reading", kObservationNames[static_cast<std::size_t>(kind)]},
+                          {"unit", is_rotation(kind) ? "urad" : "um"},
+                          {"n", static_cast<std::size_t>(sums.count)},
+                          {"mean", sums.sum / sums.count},
+                          {"rms", std::sqrt(sums.squares / sums.count)}});
+    }
+    each.push_back({{"value", value.empty() ? "(empty)" : value}, {"readings", readings}});
+  }
+  const double p = std::min(1.0, std::exp(least) * static_cast<double>(kinds.size()));
+  return {
+      {"column", column}, {"differ_p", least < 0 ? ordered_json(p) : ordered_json(nullptr)}, {"each", each}};
+}
+
+}  // namespace
+
+ordered_json group_table(const Measurement& m, const Eigen::VectorXd& residual,
+                         const std::vector<std::string>& columns) {
+  ordered_json table = ordered_json::array();
+  for (const std::string& column : columns) table.push_back(one_column(m, residual, column));
+  return table;
+}
+
+}  // namespace vernier

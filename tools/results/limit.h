@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <Eigen/Core>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tools/model/measurement.h"
+
+namespace vernier {
+
+/// A limit that residuals must keep: "2u" (so many times the u of each row), "0.2mm", "25um", "0.025deg"
+/// (readings of orientation); "rms=1.5u" judges their rms, without it each row counts.
+struct ResidualLimit {
+  std::string words;
+  bool rms = false, of_u = false, rotation = false;
+  double value = 0;  // mm, deg, or times u
+};
+
+/// Throws InputError for words of another form. tool.
+ResidualLimit residual_limit(const std::string& words);
+
+/// Is it kept? {limit, of (largest or rms), role (check rows where there are any), rows, beyond, worst:
+/// {file, line, value, limit} in um or mdeg as `unit` says, pass}. Of a row counts the distance in space of
+/// its x y z (a rotation likewise), each other reading by itself. residual: mm or deg, one per observation.
+/// Throws InputError where no reading of that kind is there, or no u. tool.
+nlohmann::ordered_json judge_residuals(const Measurement& measurement, const Eigen::VectorXd& residual,
+                                       const ResidualLimit& limit);
+
+}  // namespace vernier
