@@ -116,14 +116,20 @@ class Diagnoser {
     return proof_on_check_rows(measurement_, before.residual, after.residual, noise, variance);
   }
 
+  /// The fitted machine as a file, with what its own rest says of the readings: the search began from
+  /// independent ones, and who would run this machine must know of a step or drift.
+  std::string first_rung() const {
+    return update_machine_text(text_, fit(base_.machine, measurement_).machine, true);
+  }
+
   void walk_ladder() {
     LadderStep start;
     start.rms_um = base_.after.rms_um;
     start.check_rms_um = base_.check.rms_um;
     start.chi_square_per_freedom = base_.chi_square / std::max(1.0, base_.freedom);
-    start.text = text_;
+    start.text = first_rung();
     result_.ladder.push_back(start);
-    result_.machine_text = text_;
+    result_.machine_text = start.text;
     result_.end = base_;
     const std::size_t found = chosen_.size();
     for (std::size_t count = 1; count <= chosen_.size();) {

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "tools/fit/convention.h"
+#include "tools/fit/moved.h"
 #include "tools/fit/problem.h"
 #include "tools/fit/settle.h"
 #include "tools/fit/solve.h"
@@ -131,7 +132,8 @@ void judge(FitResult& result, const Machine& machine, const Measurement& measure
 
 /// What moved during the survey that is none of the machine's: the largest step or drift of the instrument,
 /// or a rest far above its noise, over what the nominal machine leaves.
-void find_disturbance(const FitResult& result, const Measurement& rows, bool robust, FitRecord& record) {
+void find_disturbance(const FitResult& result, const Measurement& rows, const Convention& convention,
+                      bool robust, FitRecord& record) {
   const auto offer = [&](double mm, std::string words) {
     if (!(mm / result.misfit_mm > record.disturbed)) return;
     record.disturbed = mm / result.misfit_mm;
@@ -151,10 +153,23 @@ void find_disturbance(const FitResult& result, const Measurement& rows, bool rob
   if (!robust && result.noise_um && 1e3 * left_mm(result) > kFarAbove * *result.noise_um)
     offer(left_mm(result), fmt::format("{:.3g} um are left of the readings, whose noise is {:.3g} um",
                                        1e3 * left_mm(result), *result.noise_um));
+  // A shift that the pose turns about is no step of any reading, and what it does to the nominal machine
+  // would hide it in a share of that.
+  constexpr double kAbove = 2;  // times the noise
+  if (robust || result.parameters.size() == 0 ||
+      (result.noise_um && 1e3 * left_mm(result) < kAbove * *result.noise_um))
+    return;
+  Machine nominal = result.machine;
+  result.parameters.set(nominal, convention.centre);
+  const auto move = find_move(result.machine, rows, result.parameters, convention.centre, convention.scale,
+                              residuals(nominal, rows));
+  if (!move || move->share <= record.disturbed) return;
+  record.disturbed = move->share;
+  record.disturbance = move->words;
 }
 
 /// What the machine file keeps of the fit.
-void remember(FitResult& result, const Measurement& rows, bool robust) {
+void remember(FitResult& result, const Measurement& rows, const Convention& convention, bool robust) {
   auto record = std::make_shared<FitRecord>();
   record->converged = result.converged;
   record->rms_mm = left_mm(result);
@@ -164,7 +179,7 @@ void remember(FitResult& result, const Measurement& rows, bool robust) {
   record->culprit = result.absurd;
   record->check_ratio = result.check_ratio.value_or(0);
   record->worst_check = result.check_ratio ? result.worst_check.reading : "";
-  find_disturbance(result, rows, robust, *record);
+  find_disturbance(result, rows, convention, robust, *record);
   record->values.resize(static_cast<Eigen::Index>(result.estimates.size()));
   for (std::size_t i = 0; i < result.estimates.size(); ++i) {
     record->parameters.push_back(result.estimates[i].name);
@@ -283,7 +298,7 @@ FitResult fit(const Machine& machine, const Measurement& measurement, const FitO
   estimate(result, end);
   judge(result, machine, measurement);
   result.check_ratio = check_ratio(result, convention.centre, measurement);
-  remember(result, rows, options.loss != Loss::kSquared);
+  remember(result, rows, convention, options.loss != Loss::kSquared);
   result.correlations = strong_correlations(result.observability);
   result.normalised_check = normalised_error(result, measurement);
   return result;

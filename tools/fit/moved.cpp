@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/fit/moved.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "tools/fit/statistics.h"
+#include "tools/maths/chance.h"
+#include "tools/maths/orthonormal.h"
+#include "tools/model/prediction.h"
+
+namespace vernier {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// Rows that are tried at first; then as many between the neighbours of the best one, and once more.
+constexpr std::size_t kSplits = 16;
+constexpr int kNarrowings = 3;
+/// Readings times parameters squared: of more rows every k-th is asked.
+constexpr double kMostProducts = 4e8;
+/// Rows on either side of a split, so that nine shifts are seen.
+constexpr std::size_t kLeastApart = 8;
+/// Share of the rest that a move must take away, and logarithm of the chance that it does so by luck.
+constexpr double kMostOfTheRest = 0.5, kLogChance = -20;
+/// Share of what both together take away that one alone must reach to be blamed.
+constexpr double kAlone = 0.9;
+constexpr Index kToolShifts = 3, kSetUpShifts = 6;
+
+void append_probe(Machine& machine, std::vector<Transform>& branch, std::size_t count) {
+  Transform transform;
+  transform.n = branch.empty() ? 1 : branch.back().n + 1;
+  for (std::size_t d = 0; d < 6; ++d) {
+    Expr expr;
+    if (d < count) {
+      Static probe;
+      probe.name = "move " + std::to_string(machine.statics.size());
+      expr.op = Op::kSymbol;
+      expr.name = probe.name;
+      expr.symbol = {SymbolKind::kStatic, machine.statics.size()};
+      machine.statics.push_back(probe);
+    }
+    transform.dof[d] = std::make_shared<const Expr>(expr);
+  }
+  branch.push_back(transform);
+}
+
+/// What the tool point's shift and the workpiece's shift and turn do to each reading.
+MatrixXd motion_columns(const Machine& fitted, const Measurement& rows) {
+  Machine probed = fitted;
+  for (Freedom& one : freedoms_of(probed)) one.set_free(false);
+  append_probe(probed, probed.tool, kToolShifts);
+  append_probe(probed, probed.workpiece, kSetUpShifts);
+  const ParameterSet probes(probed, {});
+  return MatrixXd(linearise(probed, rows, probes).jacobian);
+}
+
+class MoveSearch {
+ public:
+  MoveSearch(const Machine& fitted, const Measurement& rows, const ParameterSet& parameters,
+             const VectorXd& centre, const VectorXd& scale, const VectorXd& nominal)
+      : measurement_(rows) {
+    const VectorXd weights = fit_weights(rows);
+    const auto p = static_cast<double>(parameters.size());
+    std::vector<std::size_t> all;
+    for (std::size_t i = 0; i < rows.observations.size(); ++i)
+      if (weights[static_cast<Index>(i)] > 0) all.push_back(i);
+    const auto stride = static_cast<std::size_t>(
+        std::max(1.0, std::ceil(static_cast<double>(all.size()) * (p + 60) * (p + 60) / kMostProducts)));
+    for (std::size_t i = 0; i < all.size(); i += stride) kept_.push_back(all[i]);
+    std::vector<Index> kept(kept_.begin(), kept_.end());
+    const Linearisation linear = linearise(fitted, rows, parameters);
+    const VectorXd w = weights(kept);
+    motion_ = w.asDiagonal() * motion_columns(fitted, rows)(kept, Eigen::all);
+    nominal_ = w.cwiseProduct(nominal(kept));
+    VectorXd rest(w.size());
+    for (Index i = 0; i < w.size(); ++i) {
+      const std::size_t at = kept_[static_cast<std::size_t>(i)];
+      rest[i] = w[i] * (rows.observations[at].value - linear.predicted[static_cast<Index>(at)]);
+    }
+    make_basis(w.asDiagonal() * MatrixXd(linear.jacobian)(kept, Eigen::all),
+               (centre - parameters.get(fitted)).cwiseQuotient(scale), scale, rest);
+  }
+
+  std::optional<Move> run() {
+    const std::size_t n = kept_.size();
+    if (static_cast<double>(n) < static_cast<double>(basis_.cols()) / 2 + 60) return std::nullopt;
+    std::size_t low = 0, high = n;
+    for (int round = 0; round < kNarrowings && high - low > 1; ++round) {
+      try_between(low, high);
+      if (!best_.row) return std::nullopt;
+      const std::size_t step = (high - low) / kSplits + 1;
+      low = best_.at - std::min(best_.at, step);
+      high = std::min(n, best_.at + step);
+    }
+    return believed();
+  }
+
+ private:
+  struct Split {
+    std::optional<std::size_t> row;
+    std::size_t at = 0;
+    double gain = 0;
+  };
+
+  /// Readings and, below them, what holds each parameter near its centre, as one least-squares problem.
+  void make_basis(const MatrixXd& jacobian, const VectorXd& off, const VectorXd& scale,
+                  const VectorXd& rest) {
+    const Index n = jacobian.rows(), p = jacobian.cols();
+    const double spread =
+        std::max(1e-12, has_uncertainty(measurement_) ? 1 : rest.norm() / std::sqrt(static_cast<double>(n)));
+    MatrixXd all(n + p, p);
+    all.topRows(n) = jacobian * scale.asDiagonal();
+    all.bottomRows(p) = spread * MatrixXd::Identity(p, p);
+    rest_.resize(n + p);
+    rest_ << rest, spread * off;
+    const Eigen::HouseholderQR<MatrixXd> qr(all);
+    basis_ = qr.householderQ() * MatrixXd::Identity(n + p, p);
+    rest_ -= basis_ * (basis_.transpose() * rest_);
+  }
+
+  std::size_t row_at(std::size_t at) const { return measurement_.observations[kept_[at]].row; }
+
+  MatrixXd from(std::size_t at, Index first, Index count) const {
+    MatrixXd columns = MatrixXd::Zero(rest_.size(), count);
+    const auto top = static_cast<Index>(at), n = static_cast<Index>(kept_.size());
+    columns.middleRows(top, n - top) = motion_.block(top, first, n - top, count);
+    return columns;
+  }
+
+  double gain_of(std::size_t at, Index first, Index count) const {
+    MatrixXd columns = from(at, first, count);
+    columns -= basis_ * (basis_.transpose() * columns);
+    const MatrixXd own = orthonormal(columns, 1e-6, nullptr);
+    return (own.transpose() * rest_).squaredNorm();
+  }
+
+  void try_between(std::size_t low, std::size_t high) {
+    for (std::size_t k = 1; k < kSplits; ++k) {
+      std::size_t at = low + (high - low) * k / kSplits;
+      while (at > 0 && row_at(at - 1) == row_at(at)) --at;  // a row is not cut
+      if (at == 0 || row_at(at) < kLeastApart + row_at(0) ||
+          row_at(kept_.size() - 1) < kLeastApart + row_at(at))
+        continue;
+      if (best_.row == row_at(at)) continue;
+      const double gain = gain_of(at, 0, kToolShifts + kSetUpShifts);
+      if (!best_.row || gain > best_.gain) best_ = {row_at(at), at, gain};
+    }
+  }
+
+  std::optional<Move> believed() const {
+    const double all = rest_.squaredNorm();
+    constexpr double kShifts = kToolShifts + kSetUpShifts;
+    const double freedom = static_cast<double>(kept_.size()) - kShifts;
+    const double left = std::max(all - best_.gain, 1e-300);
+    if (best_.gain < kMostOfTheRest * all) return std::nullopt;
+    if (log_f_tail((best_.gain / kShifts) / (left / freedom), kShifts, freedom) > kLogChance)
+      return std::nullopt;
+    // Of the nominal machine: what is left beside the move and the set-up of all rows.
+    const MatrixXd moved = orthonormal(beside_set_up(), 1e-9, nullptr);
+    const MatrixXd still = orthonormal(MatrixXd(motion_.rightCols(kSetUpShifts)), 1e-9, nullptr);
+    const double with = (nominal_ - moved * (moved.transpose() * nominal_)).squaredNorm();
+    const double without = (nominal_ - still * (still.transpose() * nominal_)).squaredNorm();
+    Move move;
+    move.share = std::sqrt(std::max(0.0, without - with) / std::max(with, 1e-300));
+    const double tool = gain_of(best_.at, 0, kToolShifts),
+                 set_up = gain_of(best_.at, kToolShifts, kSetUpShifts);
+    const bool of_tool = tool > kAlone * best_.gain, of_set_up = set_up > kAlone * best_.gain;
+    move.words = fmt::format("{} moved before {}",
+                             of_tool == of_set_up ? "tool or set-up"
+                             : of_tool            ? "the tool"
+                                                  : "the set-up",
+                             place_of(*best_.row));
+    return move;
+  }
+
+  std::string place_of(std::size_t row) const {
+    if (row >= measurement_.line.size()) return fmt::format("row {}", row + 1);
+    return fmt::format("{}:{}", measurement_.files[measurement_.file[row]], measurement_.line[row]);
+  }
+
+  MatrixXd beside_set_up() const {
+    const Index n = motion_.rows();
+    MatrixXd columns(n, kToolShifts + 2 * kSetUpShifts);
+    columns << motion_.rightCols(kSetUpShifts), from(best_.at, 0, kToolShifts + kSetUpShifts).topRows(n);
+    return columns;
+  }
+
+  const Measurement& measurement_;
+  std::vector<std::size_t> kept_;  // observations
+  MatrixXd motion_, basis_;
+  VectorXd rest_, nominal_;
+  Split best_;
+};
+
+}  // namespace
+
+std::optional<Move> find_move(const Machine& fitted, const Measurement& rows, const ParameterSet& parameters,
+                              const VectorXd& centre, const VectorXd& scale, const VectorXd& nominal) {
+  return MoveSearch(fitted, rows, parameters, centre, scale, nominal).run();
+}
+
+}  // namespace vernier
