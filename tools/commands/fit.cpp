@@ -10,6 +10,8 @@
 #include "tools/fit/fit.h"
 #include "tools/fit/freedom.h"
 #include "tools/fit/statistics.h"
+#include "tools/lint/measurement_meaning.h"
+#include "tools/model/fit_record.h"
 #include "tools/model/machine.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/machine_writer.h"
@@ -18,6 +20,7 @@
 #include "tools/results/results.h"
 #include "tools/simulate/corrected.h"
 #include "tools/text/numbers.h"
+#include "tools/text/units.h"
 #include "tools/text/words.h"
 
 namespace vernier::fit_cli {
@@ -75,6 +78,21 @@ void print_verdict(std::FILE* out, const FitResult& result) {
                std::sqrt(reduced));
 }
 
+/// Thermometers whose readings are none of a workshop.
+void print_odd_inputs(std::FILE* out, const Machine& machine) {
+  for (const FitRecord::Range& range : machine.fitted->measured) {
+    const auto input = machine.find_input(range.name);
+    if (!input) continue;
+    const auto unit = find_unit(machine.inputs[*input].unit);
+    if (!unit || unit->dimension != Dimension::kTemperature) continue;
+    const auto degC = [&](double value) { return value * unit->factor + unit->offset; };
+    const std::string doubt = temperature_doubt(degC(range.min), degC(range.max));
+    if (!doubt.empty())
+      fmt::print(out, "{} reads {:.4g} to {:.4g} {}: {}\n", range.name, range.min, range.max, unit->name,
+                 doubt);
+  }
+}
+
 void print_result(std::FILE* out, const FitResult& result, const Measurement& m) {
   print_stages(out, result);
   fmt::print(out, "{:<24} {:>15} {:>12}  {:<6} {}\n", "parameter", "value", "std", "unit", "from");
@@ -82,6 +100,7 @@ void print_result(std::FILE* out, const FitResult& result, const Measurement& m)
     fmt::print(out, "{:<24} {:>15.6g} {:>12.2g}  {:<6} {}\n", item.name, item.value, item.std, item.unit,
                item.from == Origin::kPrior ? "not measured: only the prior" : origin_name(item.from));
   print_decisions(out, result);
+  print_odd_inputs(out, result.machine);
   for (const auto& [name, std] : result.priors)
     fmt::print(out, "held near nominal as if measured there: {} with std {:g}\n", name, std);
   print_weakest(out, result);

@@ -22,6 +22,7 @@ constexpr double kVisits = 1e6;
 
 double half_width_of(const std::string& unit) {
   if (unit == "degC" || unit == "K") return 50;
+  if (unit == "degF") return 90;
   if (unit == "mm" || unit == "V" || unit == "deg") return 10;
   if (unit == "um" || unit == "N" || unit == "mV") return 10000;
   if (unit == "kg") return 1000;

@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <string>
 
 #include "tools/maths/factors.h"
+#include "tools/text/units.h"
 #include "tools/vibration/signal_features.h"
 
 namespace vernier {
@@ -31,7 +33,8 @@ InputClass class_of_input(const Input& input) {
   std::string lower;
   for (const char c : input.name) lower += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   if (is_setpoint(lower)) return InputClass::kSetpoint;
-  if (unit == "degC" || unit == "K") return InputClass::kTemperature;
+  if (const auto known = find_unit(unit); known && known->dimension == Dimension::kTemperature)
+    return InputClass::kTemperature;
   if (unit == "N" || unit == "kg") return InputClass::kLoad;
   if (unit == "mm/s^2" || unit == "m/s^2" || unit == "deg/s^2" || unit == "g") return InputClass::kFeature;
   if (!unit.empty() && unit != "V" && unit != "mV") return InputClass::kOther;
@@ -45,8 +48,9 @@ InputClass class_of_input(const Input& input) {
 }
 
 double standard_reference(std::string_view unit) {
-  constexpr double kZeroCelsius_K = 273.15;
-  return unit == "K" ? kZeroCelsius_K + kReferenceDegC : kReferenceDegC;
+  const auto known = find_unit(unit);
+  if (!known || known->dimension != Dimension::kTemperature) return kReferenceDegC;
+  return std::round(1e6 * (kReferenceDegC - known->offset) / known->factor) / 1e6;
 }
 
 }  // namespace vernier

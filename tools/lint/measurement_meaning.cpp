@@ -72,10 +72,10 @@ class Meaning {
     if (column.name == "u" && most > 1)
       findings_.warn(table_.header_line, "u", fmt::format("an uncertainty of {} mm", number_text(most)),
                      "µm? Write u[um]");
-    if (find_unit(column.unit) && find_unit(column.unit)->dimension == Dimension::kTemperature &&
-        (least < -40 || most > 120))
-      findings_.warn(table_.header_line, column.name, fmt::format("from {:.4g} to {:.4g} degC", least, most),
-                     "K or another unit?");
+    if (find_unit(column.unit) && find_unit(column.unit)->dimension == Dimension::kTemperature)
+      if (const std::string doubt = temperature_doubt(least, most); !doubt.empty())
+        findings_.warn(table_.header_line, column.name,
+                       fmt::format("from {:.4g} to {:.4g} degC", least, most), doubt);
   }
 
   void look_at_axis(const LintColumn& column, double least, double most) {
@@ -247,6 +247,14 @@ class Meaning {
 void look_at_meaning(const LintTable& table, const std::string& file, const Machine* machine,
                      LintFindings& findings) {
   Meaning(table, file, machine, findings).look();
+}
+
+std::string temperature_doubt(double least_degC, double most_degC) {
+  // 7 to 43 degC, read as Fahrenheit; all of a survey so warm is rare, and a spindle's housing may be.
+  constexpr double kLeast_degF = 45, kMost_degF = 110;
+  if (least_degC < -40 || most_degC > 120) return "K or another unit?";
+  if (least_degC >= kLeast_degF && most_degC <= kMost_degF) return "degF?";
+  return {};
 }
 
 }  // namespace vernier

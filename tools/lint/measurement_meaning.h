@@ -13,4 +13,8 @@ namespace vernier {
 void look_at_meaning(const LintTable& table, const std::string& file, const Machine* machine,
                      LintFindings& findings);
 
+/// A temperature input whose readings, from least to most degC, are none of a workshop: what else they may
+/// be ("degF?"); empty: no doubt. tool.
+std::string temperature_doubt(double least_degC, double most_degC);
+
 }  // namespace vernier

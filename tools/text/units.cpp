@@ -12,7 +12,7 @@ namespace {
 /// Standard gravity, mm/s^2 (ISO 80000-3).
 constexpr double kStandardGravity = 9806.65;
 
-constexpr std::array<Unit, 34> kUnits = {{
+constexpr std::array<Unit, 35> kUnits = {{
     {"", Dimension::kNone, 1, 0},
     {"mm", Dimension::kLength, 1, 0},
     {"um", Dimension::kLength, 1e-3, 0},
@@ -23,6 +23,7 @@ constexpr std::array<Unit, 34> kUnits = {{
     {"arcsec", Dimension::kAngle, 1.0 / 3600, 0},
     {"degC", Dimension::kTemperature, 1, 0},
     {"K", Dimension::kTemperature, 1, -273.15},
+    {"degF", Dimension::kTemperature, 5.0 / 9, -160.0 / 9},
     {"s", Dimension::kTime, 1, 0},
     {"ms", Dimension::kTime, 1e-3, 0},
     {"min", Dimension::kTime, 60, 0},
@@ -51,7 +52,7 @@ constexpr std::array<Unit, 34> kUnits = {{
 constexpr Unit kPerMm = {"1/mm", Dimension::kCurvature, 1, 0};
 
 /// Signs in UTF-8 and what the formats write for them; a longer sign before one that begins it.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 12> kSigns = {{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 15> kSigns = {{
     {"\u00b5", "u"},      // micro sign
     {"\u03bc", "u"},      // Greek small mu
     {"\u00b0C", "degC"},  // degree sign
@@ -59,6 +60,11 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 12> kSigns =
      "C",
      "degC"},            // masculine ordinal, which stands for it on many keyboards
     {"\u2103", "degC"},  // degree Celsius in one sign
+    {"\u00b0F", "degF"},
+    {"\u00ba"
+     "F",
+     "degF"},
+    {"\u2109", "degF"},  // degree Fahrenheit in one sign
     {"\u00b0", "deg"},
     {"\u00ba", "deg"},
     {"\u2033", "arcsec"},  // double prime

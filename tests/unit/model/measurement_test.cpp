@@ -62,6 +62,13 @@ TEST(MeasurementFile, UnitsOfAShopFloorAreRead) {
   EXPECT_EQ(units, (std::vector<std::string>{"A", "rpm", "%", "Hz", "bar", "Pa", "Nm", "Nm", "W", "um/m"}));
 }
 
+TEST(MeasurementFile, FahrenheitIsATemperature) {
+  const Measurement m = read("X[mm],T[degF],x[mm]\n1,68,2\n2,77,3\n");
+  EXPECT_NEAR(m.states.input[0][0], 20, 1e-12);
+  EXPECT_NEAR(m.states.input[0][1], 25, 1e-12);
+  EXPECT_NEAR(read("X[mm],T[°F],x[mm]\n1,50,2\n").states.input[0][0], 10, 1e-12);
+}
+
 TEST(MeasurementFile, UnknownUnitIsNamedAsWritten) {
   EXPECT_EQ(error_of("X[mm],B[deg],x[furlong]\n1,2,3\n").substr(0, 32), "m.csv:1: \"furlong\": unknown unit");
 }
