@@ -15,11 +15,12 @@ constexpr std::array<const char*, kFeatures> kNames = {
     "SKEWNESS", "FREQUENCY", "BANDPOWER", "PEAK",  "PEAKIMPACT", "PEAKCREST"};
 constexpr std::int64_t kMostMicro = std::int64_t{1} << 60;  // of a signal; a difference of two fits int64
 constexpr std::int64_t kMostLsb = std::int64_t{1} << 30;
-constexpr std::int64_t kMicroHzTimesUs = 1'000'000'000'000;
+constexpr std::int64_t kMicroHzTimesUs = 1'000'000'000'000, kMilliHzTimesUs = 1'000'000'000;
+constexpr std::int64_t kSettlingPeriods = 3, kMicroUmPerNm = 1000;
 
 bool same_signal(const FeatureRequest& a, const FeatureRequest& b) noexcept {
   return a.of == b.of && a.minus == b.minus && a.window == b.window && a.every == b.every && a.lsb == b.lsb &&
-         a.bridged == b.bridged;
+         a.bridged == b.bridged && a.corner_mHz == b.corner_mHz && a.lsb_nm_s2 == b.lsb_nm_s2;
 }
 
 // Nearest multiple of lsb to value, ties away from zero; held just beyond the window's own limit, which then
@@ -73,25 +74,44 @@ const SpectralWeights* FeatureInputs::weights_of(std::uint32_t window) {
   return weights_[weight_count_++].get();
 }
 
+bool FeatureInputs::start_window(const FeatureRequest& request, TimeUs tick, Signal& signal) {
+  const SpectralWeights* const weights = weights_of(request.window);
+  if (weights == nullptr) return false;
+  signal.full = request.window;
+  const InputMicro rate(kMicroHzTimesUs / (tick.count * std::int64_t{request.every}));
+  return signal.window.start({request.lsb, rate}, *weights);
+}
+
+bool FeatureInputs::start_filter(const FeatureRequest& request, TimeUs tick, Signal& signal) {
+  const std::int64_t rate_mHz = kMilliHzTimesUs / (tick.count * std::int64_t{request.every});
+  if (!signal.at_rest.start({request.lsb_nm_s2, rate_mHz, request.corner_mHz, rate_mHz * 18 / 100}))
+    return false;
+  signal.filter = signal.at_rest;
+  signal.full =
+      static_cast<std::uint32_t>((kSettlingPeriods * rate_mHz + request.corner_mHz - 1) / request.corner_mHz);
+  return true;
+}
+
 FeatureInputs::Signal* FeatureInputs::signal_of(const FeatureRequest& request, TimeUs tick) {
   for (const auto& signal : windows_in_use())
     if (same_signal(signal->from, request)) return signal.get();
-  const SpectralWeights* const weights = weights_of(request.window);
-  if (weights == nullptr || request.every == 0 || tick.count < 1 || request.lsb.count < 1 ||
-      request.lsb.count > kMostLsb || window_count_ == kMaxInputs)
+  if (request.every == 0 || tick.count < 1 || request.lsb.count < 1 || request.lsb.count > kMostLsb ||
+      window_count_ == kMaxInputs)
     return nullptr;
   auto signal = std::make_unique<Signal>();
   signal->from = request;
   signal->inverse = (std::uint64_t{1} << 63) / static_cast<std::uint64_t>(request.lsb.count);
-  const InputMicro rate(kMicroHzTimesUs / (tick.count * std::int64_t{request.every}));
-  if (!signal->window.start({request.lsb, rate}, *weights)) return nullptr;
+  const bool started =
+      request.corner_mHz == 0 ? start_window(request, tick, *signal) : start_filter(request, tick, *signal);
+  if (!started) return nullptr;
   windows_[window_count_] = std::move(signal);
   return windows_[window_count_++].get();
 }
 
 std::uint64_t FeatureInputs::held() const noexcept {
   std::uint64_t held = 0;
-  for (const auto& signal : windows_in_use()) held += signal->window.held();
+  for (const auto& signal : windows_in_use())
+    held += signal->window.held() + signal->held_before + signal->filter.held();
   return held;
 }
 
@@ -119,9 +139,22 @@ void FeatureInputs::take(Signal& signal) noexcept {
     signal.ready = false;
     return;
   }
+  use_sample(signal);
+}
+
+void FeatureInputs::use_sample(Signal& signal) noexcept {
+  const bool displaced = signal.from.corner_mHz != 0;
+  if (displaced && signal.in_a_row == 0) {
+    signal.held_before += signal.filter.held();
+    signal.filter = signal.at_rest;
+  }
+  signal.in_a_row = lower(signal.in_a_row + 1, signal.full);
+  signal.ready = signal.in_a_row == signal.full;
+  if (displaced) {
+    signal.displacement = signal.filter.step(signal.last);
+    return;
+  }
   signal.window.push(signal.last);
-  signal.in_a_row = lower(signal.in_a_row + 1, signal.from.window);
-  signal.ready = signal.in_a_row == signal.from.window;
   if (signal.ready) signal.values = signal.window.features();
 }
 
@@ -139,8 +172,13 @@ HalFault FeatureInputs::read_input(std::uint32_t input, InputMicro& value) noexc
     if (reading_[input].fault == HalFault::kNone) value = reading_[input].value;
     return reading_[input].fault;
   }
+  if (!signal->ready) return HalFault::kNoReading;
+  if (signal->from.corner_mHz != 0) {
+    value = InputMicro(kMicroUmPerNm * signal->displacement.count);
+    return HalFault::kNone;
+  }
   const auto which = static_cast<unsigned>(which_[input]);
-  if (!signal->ready || (signal->values.undefined >> which & 1) != 0) return HalFault::kNoReading;
+  if ((signal->values.undefined >> which & 1) != 0) return HalFault::kNoReading;
   value = signal->values.value[which];
   return HalFault::kNone;
 }

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "comp/equation.h"
+#include "comp/vibration/displacement.h"
 #include "comp/vibration/feature_window.h"
 #include "hal/clock.h"
 #include "hal/input_reader.h"
@@ -25,19 +26,27 @@ struct FeatureRequest {
   std::uint32_t every = 1;      // ticks from sample to sample
   InputMicro lsb{10};           // resolution of a sample, 1e-6 of the unit of `of`; 1..2^30
   std::uint32_t bridged = 3;    // missing samples in a row that the last one stands for
+  /// Not 0: the input is no feature of a window but the displacement (um) of an accelerometer, cut off below
+  /// this corner, mHz: rate/2^17 .. rate/64. A sample's lsb is then lsb_nm_s2 too, nm/s^2.
+  std::int64_t corner_mHz = 0;
+  std::int64_t lsb_nm_s2 = 98067;
 };
 
 /// The feature of a name as `vernier features` writes it ("RMS"); false where there is none. setup.
 bool feature_of(std::string_view name, Feature& feature) noexcept;
 
-/// The board's inputs with features of some of them among them. In each tick the other inputs are read once;
-/// on a sampling tick each window takes its sample and works its features out. Features of the same signal,
-/// window and resolution share one window. A tick costs, for each window, one FeatureWindow::push and one
-/// features(): 5500 instructions of x86-64 at 800 samples, 8900 at 2048 (tools/docs/vibration.md).
+/// The board's inputs with features and displacements of some of them among them. In each tick the other
+/// inputs are read once; on a sampling tick each window takes its sample and works its features out. Features
+/// of the same signal, window and resolution share one window. A tick costs, for each window, one
+/// FeatureWindow::push and one features(): 5500 instructions of x86-64 at 800 samples, 8900 at 2048
+/// (tools/docs/vibration.md).
 ///
 /// Samples: round(signal / lsb), ties away from zero, exact; held at +-524287 lsb and counted. A feature is
 /// silent (kNoReading) until its window is full, where it is 0/0 (FeatureValues::undefined), and, after
-/// more missing samples than are bridged, until that many have come again: no window has a gap in it.
+/// more missing samples than are bridged, until that many have come again: no window has a gap in it. A
+/// displacement has a filter (comp/vibration/displacement.h, exact at 0.18 of the rate) in a window's place,
+/// which starts from rest, is silent for three periods of its corner and starts again after a gap; its value
+/// is of the latest sample, to 1 nm. Its tick costs 200 instructions of x86-64.
 class FeatureInputs : public InputReader {
  public:
   /// source: of all inputs that are no feature, outlives this. inputs: of the board, at most kMaxInputs.
@@ -52,7 +61,8 @@ class FeatureInputs : public InputReader {
   /// Index of the first request that cannot be served, or kNoInput. setup.
   std::uint32_t refused() const noexcept { return refused_; }
   std::size_t windows() const noexcept { return window_count_; }
-  /// Samples so far that were beyond the range of a window. realtime.
+  /// Samples so far that were beyond the range of a window or filter, and displacements beyond +-2.1 m.
+  /// realtime.
   std::uint64_t held() const noexcept;
 
   void begin_tick() noexcept override;
@@ -65,6 +75,10 @@ class FeatureInputs : public InputReader {
     std::uint64_t inverse = 0;  // 2^63 / lsb, cut
     FeatureWindow window;
     FeatureValues values;
+    Displacement at_rest, filter;  // a displacement's, in place of the window
+    LengthNm displacement;
+    std::uint32_t full = 0;         // samples in a row that it takes to be ready
+    std::uint64_t held_before = 0;  // by filters that a gap has ended
     std::uint32_t until_sample = 1, in_a_row = 0, missing = 0;
     std::int32_t last = 0;
     bool ready = false;
@@ -79,7 +93,10 @@ class FeatureInputs : public InputReader {
   }
   Signal* signal_of(const FeatureRequest& request, TimeUs tick);
   const SpectralWeights* weights_of(std::uint32_t window);
+  bool start_window(const FeatureRequest& request, TimeUs tick, Signal& signal);
+  static bool start_filter(const FeatureRequest& request, TimeUs tick, Signal& signal);
   void take(Signal& signal) noexcept;
+  static void use_sample(Signal& signal) noexcept;
   bool sample_of(const Signal& signal, std::int32_t& sample) const noexcept;
 
   InputReader& source_;

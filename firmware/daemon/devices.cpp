@@ -217,7 +217,8 @@ void Devices::Parts::make_features() {
   features = std::make_unique<FeatureInputs>(*inputs, static_cast<std::uint32_t>(file.inputs.size()),
                                              requests, file.service.upload.tick);
   if (features->refused() != kNoInput)
-    file.inputs[requests[features->refused()].input].source.fail("no window can be made of it");
+    file.inputs[requests[features->refused()].input].source.fail(
+        "no window or filter can be made of it: see the limits of window and corner_Hz");
   for (const FeatureRequest& request : requests) {
     const InputEntry& input = file.inputs[request.input];
     note("input." + input.name + "  " + input.source.text("feature") + " of " + input.source.text("of"), "");

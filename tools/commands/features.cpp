@@ -7,6 +7,7 @@
 #include "tools/commands/command.h"
 #include "tools/text/error.h"
 #include "tools/text/numbers.h"
+#include "tools/vibration/displacement_column.h"
 #include "tools/vibration/feature_rows.h"
 
 namespace vernier::features_cli {
@@ -21,9 +22,16 @@ struct FeaturesArguments {
   std::optional<double> rate_Hz;
   double offset_s = 0, clock_rate = 1, reach_mm = 20;
   bool centred = false;
+  std::string corner, cutoff;
+  double resolution = 1e-5;
+  std::vector<std::string> against;
 };
 
 using Ends = std::vector<std::optional<std::size_t>>;
+
+bool wants_displacement(const FeaturesArguments& arguments) {
+  return std::count(arguments.features.begin(), arguments.features.end(), kDisplacementName) != 0;
+}
 
 FeatureChoice choice_of(const FeaturesArguments& arguments) {
   FeatureChoice choice;
@@ -35,9 +43,89 @@ FeatureChoice choice_of(const FeaturesArguments& arguments) {
         std::count(arguments.features.begin(), arguments.features.end(), kFeatureNames[i]) != 0;
     if (arguments.features.empty() ? i < 11 : named) choice.features.push_back(i);
   }
-  if (!arguments.features.empty() && choice.features.size() != arguments.features.size())
-    throw InputError(fmt::format("--features: one of {}", fmt::join(kFeatureNames, " ")));
+  const std::size_t named = choice.features.size() + (wants_displacement(arguments) ? 1 : 0);
+  if (!arguments.features.empty() && named != arguments.features.size())
+    throw InputError(
+        fmt::format("--features: one of {} {}", fmt::join(kFeatureNames, " "), kDisplacementName));
   return choice;
+}
+
+constexpr const char* kBestAgreement = "fit";
+
+/// How the displacement is cut off; without --corner the power of lines decides, from the noise floor.
+DisplacementChoice displacement_choice_of(const FeaturesArguments& arguments) {
+  const bool by_corner = !arguments.corner.empty();
+  const std::string& word = by_corner ? arguments.corner : arguments.cutoff;
+  const bool asked = by_corner || !arguments.cutoff.empty() || !arguments.against.empty();
+  if (asked && !wants_displacement(arguments))
+    throw InputError(
+        fmt::format("--corner, --cutoff and --against go with --features {}", kDisplacementName));
+  DisplacementChoice choice;
+  choice.cut = by_corner ? Cut::kCorner : Cut::kPower;
+  choice.resolution = arguments.resolution;
+  if ((word == kBestAgreement) == arguments.against.empty())
+    throw InputError(fmt::format("\"{}\" and --against SIGNAL=COLUMN go together", kBestAgreement));
+  if (word == kBestAgreement || word.empty() || (!by_corner && word == "noise")) return choice;
+  choice.value = parse_number(word);
+  if (!choice.value || !(*choice.value > 0))
+    throw InputError(fmt::format("{} {}: no number above 0, nor {}", by_corner ? "--corner" : "--cutoff",
+                                 word, by_corner ? "fit" : "fit or noise"));
+  return choice;
+}
+
+/// Displacements that were measured in the rows; an empty cell is none.
+std::vector<KnownDisplacement> known_displacements(const FeaturesArguments& arguments, const CsvFile& rows) {
+  std::vector<KnownDisplacement> known;
+  for (const std::string& pair : arguments.against) {
+    const auto equals = pair.find('=');
+    if (equals == std::string::npos) throw InputError("--against: not of the form SIGNAL=COLUMN: " + pair);
+    known.push_back({pair.substr(0, equals), measured_lengths_um(rows, pair.substr(equals + 1))});
+  }
+  return known;
+}
+
+/// Appends the column of every acceleration; the cut-off by name of signal goes to the result.
+void add_displacements(const FeaturesArguments& arguments, const VibrationRecord& record, const CsvFile& rows,
+                       const Ends& ends, FeatureColumns& columns, Json& json) {
+  DisplacementChoice choice = displacement_choice_of(arguments);
+  Json result = {{"cut", choice.cut == Cut::kCorner ? "corner" : "power"},
+                 {"unit", choice.cut == Cut::kCorner ? "Hz" : "(mm/s^2)^2"}};
+  if (!arguments.against.empty()) {
+    const AgreedCut agreed = agreed_cut(record, known_displacements(arguments, rows), ends, choice);
+    choice.value = agreed.value;
+    result["agreement"] = {{"rms_um", agreed.rms_um}, {"measured_rms_um", agreed.measured_rms_um}};
+  }
+  for (const Signal& signal : record.signals) {
+    if (!is_acceleration(signal)) continue;
+    const DisplacementSeries series = displacement_of(signal, record.rate_Hz, choice);
+    columns.header.push_back(fmt::format("{}_{}[um]", signal.name, kDisplacementName));
+    std::size_t empty = 0;
+    for (std::size_t row = 0; row < ends.size(); ++row) {
+      const bool known = ends[row] && *ends[row] < series.um.size() && std::isfinite(series.um[*ends[row]]);
+      columns.cells[row].push_back(known ? number_text(series.um[*ends[row]]) : "");
+      empty += known ? 0 : 1;
+    }
+    result["signals"].push_back({{"name", signal.name},
+                                 {"value", series.cut},
+                                 {"lines_kept", series.kept},
+                                 {"samples_held", series.held},
+                                 {"rows_without", empty}});
+  }
+  if (!result.contains("signals"))
+    throw InputError({arguments.record, 0}, kDisplacementName,
+                     "no signal of the record is an acceleration (unit g, m/s^2 or mm/s^2)");
+  json["displacement"] = result;
+}
+
+void print_displacements(std::FILE* out, const Json& displacement) {
+  for (const Json& signal : displacement["signals"])
+    fmt::print(out, "{}: displacement cut off at {:.4g} {}, {} rows without\n",
+               signal["name"].get<std::string>(), signal["value"].get<double>(),
+               displacement["unit"].get<std::string>(), signal["rows_without"].get<std::size_t>());
+  if (displacement.contains("agreement"))
+    fmt::print(out, "found by agreement with the rows: {:.4g} um rms are left of {:.4g}\n",
+               displacement["agreement"]["rms_um"].get<double>(),
+               displacement["agreement"]["measured_rms_um"].get<double>());
 }
 
 /// The clock of the record against the rows' t: given, or found from the motion of an axis.
@@ -61,7 +149,10 @@ ClockFit clock_of(const FeaturesArguments& arguments, const VibrationRecord& rec
 Ends ends_by_time(const VibrationRecord& record, const CsvFile& rows, const ClockFit& clock) {
   Ends ends;
   for (const double t : numeric_column(rows, "t")) {
-    const double sample = ((t - clock.offset_s) / clock.rate - record.start_s) * record.rate_Hz;
+    // A time written in decimals is that sample's own, not one just before it.
+    constexpr double kSameInstant = 1e-6;
+    const double sample =
+        ((t - clock.offset_s) / clock.rate - record.start_s) * record.rate_Hz + kSameInstant;
     const bool inside = sample >= 0 && sample < static_cast<double>(record.samples);
     ends.push_back(inside ? std::optional(static_cast<std::size_t>(sample)) : std::nullopt);
   }
@@ -144,7 +235,13 @@ void run_features(const FeaturesArguments& arguments) {
       ends = ends_by_position(arguments, record, rows, json);
     }
   }
-  const FeatureColumns columns = feature_columns(record, choice, ends);
+  FeatureColumns columns = feature_columns(record, choice, ends);
+  const bool displaced = wants_displacement(arguments);
+  if (displaced) {
+    add_displacements(arguments, record, rows, ends, columns, json);
+  } else {
+    displacement_choice_of(arguments);  // refuses what goes with a displacement only
+  }
   json["rows"] = rows.rows.size();
   json["rows_without_window"] = columns.empty_rows;
   json["columns"] = columns.header;
@@ -153,6 +250,7 @@ void run_features(const FeaturesArguments& arguments) {
   std::FILE* out = human_stream(arguments.json);
   fmt::print(out, "{} rows, {} of them without a full window of {} samples at {:.6g} Hz\n", rows.rows.size(),
              columns.empty_rows, choice.window, record.rate_Hz);
+  if (displaced) print_displacements(out, json["displacement"]);
   if (!arguments.align.empty())
     fmt::print(out, "clock: t = {:.6g} s + {:.8f} t_record, correlation {:.3f} (next best lag {:.3f})\n",
                json["clock"]["offset_s"].get<double>(), json["clock"]["rate"].get<double>(),
@@ -181,8 +279,25 @@ void register_features(CLI::App& vernier) {
       ->check(CLI::PositiveNumber);
   command
       ->add_option("--features", arguments->features,
-                   "which (all, as in the literature: MAV .. BANDPOWER, PEAK)")
+                   "which (all, as in the literature: MAV .. BANDPOWER, PEAK); DISPLACEMENT: by double "
+                   "integration, at the row's instant, of accelerations")
       ->delimiter(',');
+  command->add_option("--corner", arguments->corner,
+                      "DISPLACEMENT as a board has it: its filter's corner, Hz, or fit");
+  command
+      ->add_option("--cutoff", arguments->cutoff,
+                   "DISPLACEMENT of the whole record: spectral lines above this |F|^2/N, (mm/s^2)^2; noise "
+                   "(from the floor of each signal, the default) or fit")
+      ->excludes("--corner");
+  command
+      ->add_option(
+          "--against", arguments->against,
+          "SIGNAL=COLUMN: displacement that the rows have of it; fit finds the cut-off that agrees best")
+      ->delimiter(',');
+  command
+      ->add_option("--resolution", arguments->resolution,
+                   "with --corner: of a sample, in the signal's unit (1e-5), as on the board")
+      ->check(CLI::PositiveNumber);
   command->add_option("--difference", arguments->differences, "one more signal, NAME=A-B (table minus base)");
   command->add_flag("--centre", arguments->centred, "take the record's mean off each signal");
   command->add_option("--align", arguments->align,

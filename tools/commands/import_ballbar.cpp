@@ -15,6 +15,7 @@
 #include "tools/import/printed_results.h"
 #include "tools/import/repair_report.h"
 #include "tools/import/trace_reader.h"
+#include "tools/text/error.h"
 #include "tools/text/optional_json.h"
 
 namespace vernier::import_cli {
@@ -136,7 +137,8 @@ void write_import(const std::string& kind, const std::vector<BallbarFile>& files
   for (const auto& file : files) {
     for (const auto& note : file.notes) notes.push_back(file.path + ": " + note);
     if (!spans_a_circle(file)) {
-      notes.push_back(file.path + ": the arc is too short for a centre and a radius; no circular numbers");
+      notes.push_back(file.path + ", " + file.axis_a + file.axis_b +
+                      ": the arc is too short for a centre and a radius; no circular numbers");
       continue;
     }
     const CircularResult circle = analyse_circle(file.radius_mm, circular_passes(file));
@@ -174,7 +176,9 @@ struct BallbarArguments {
   BallbarCsvOptions options;
   ImportOutput output;
   TraceSetup setup;  // ballbar-trace only
-  std::string plane = "XY", direction_of_zero = "ccw";
+  std::vector<std::string> planes = {"XY"};
+  std::vector<double> starts_deg = {180};
+  std::string direction_of_zero = "ccw";
   bool repair = false;  // ballbar only
 };
 
@@ -186,6 +190,23 @@ std::shared_ptr<BallbarArguments> add_common(CLI::App& kind) {
       ->check(CLI::Range(0.0, 1e6));
   add_import_output(kind, arguments->output);
   return arguments;
+}
+
+std::vector<TraceCircle> circles_of(const BallbarArguments& arguments) {
+  const std::vector<std::string>& planes = arguments.planes;
+  const std::vector<double>& starts_deg = arguments.starts_deg;
+  if (starts_deg.size() != 1 && starts_deg.size() != planes.size())
+    throw InputError(fmt::format("--start-angle: {} angles for {} planes", starts_deg.size(), planes.size()));
+  std::vector<TraceCircle> circles;
+  for (std::size_t i = 0; i < planes.size(); ++i) {
+    // XY and YX are one circle.
+    for (std::size_t j = 0; j < i; ++j)
+      if (planes[j].find(planes[i][0]) != std::string::npos &&
+          planes[j].find(planes[i][1]) != std::string::npos)
+        throw InputError(fmt::format("--plane: {} and {} are the same plane", planes[j], planes[i]));
+    circles.push_back({planes[i], starts_deg[starts_deg.size() == 1 ? 0 : i]});
+  }
+  return circles;
 }
 
 }  // namespace
@@ -224,12 +245,15 @@ void add_ballbar_trace_kind(CLI::App& import) {
   kind->add_option("--radius", setup.radius_mm,
                    "Radius of the programmed circle (mm); default: the bar's length")
       ->check(positive);
-  kind->add_option("--plane", arguments->plane, "Plane, first axis first")
-      ->capture_default_str()
+  kind->add_option("--plane", arguments->planes,
+                   "Plane, first axis first (XY); of a path of several circles all, as they were run: "
+                   "XY,YZ,ZX. The runs of all files go to them in that order, as many to each")
+      ->delimiter(',')
       ->check(CLI::IsMember({"XY", "YZ", "ZX", "YX", "ZY", "XZ"}));
-  kind->add_option("--start-angle", setup.start_deg,
-                   "Angle of the first reading, from the first axis to the second (deg)")
-      ->capture_default_str();
+  kind->add_option("--start-angle", arguments->starts_deg,
+                   "Angle of the first reading, from the first axis to the second (deg, 180): one, or one a "
+                   "plane")
+      ->delimiter(',');
   kind->add_option("--rate", setup.sample_rate_hz, "Readings per second")
       ->capture_default_str()
       ->check(positive);
@@ -239,12 +263,9 @@ void add_ballbar_trace_kind(CLI::App& import) {
   kind->callback([arguments, kind] {
     TraceSetup trace = arguments->setup;
     if (kind->count("--radius") == 0) trace.radius_mm = trace.length_mm;
-    trace.axis_a = arguments->plane.substr(0, 1);
-    trace.axis_b = arguments->plane.substr(1, 1);
     trace.direction_of_zero = arguments->direction_of_zero == "ccw" ? +1 : -1;
-    std::vector<BallbarFile> files;
-    for (const auto& path : arguments->files) files.push_back(read_ballbar_trace(path, trace));
-    write_import("ballbar-trace", files, arguments->options, arguments->output);
+    write_import("ballbar-trace", read_trace_circles(arguments->files, trace, circles_of(*arguments)),
+                 arguments->options, arguments->output);
   });
 }
 

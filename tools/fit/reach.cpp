@@ -48,6 +48,10 @@ Measurement point_readings(const States& states) {
   m.states = states;
   m.uncertainty = Column::Zero(static_cast<Eigen::Index>(states.count));
   m.check.assign(states.count, 0);
+  m.centre = m.nominal_point = Eigen::Matrix3Xd::Zero(3, static_cast<Eigen::Index>(states.count));
+  m.files = {"point"};
+  m.file.assign(states.count, 0);
+  for (std::size_t row = 0; row < states.count; ++row) m.line.push_back(row + 1);
   for (std::size_t row = 0; row < states.count; ++row)
     for (const ObservationKind kind : {ObservationKind::kX, ObservationKind::kY, ObservationKind::kZ})
       m.observations.push_back({kind, row, 0});

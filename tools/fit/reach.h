@@ -12,7 +12,7 @@
 namespace vernier {
 
 /// Readings x, y, z of the tool point at every state, of value 0: for what a machine makes of them, not for a
-/// fit.
+/// fit. In messages a row is "point:N", N from 1.
 Measurement point_readings(const States& states);
 
 /// Velocity of each point under the six rigid motions about the origin, 3 N x 6.

@@ -58,8 +58,12 @@ double length_s(const BallbarRun& run) {
 class Writer {
  public:
   Writer(const std::vector<BallbarFile>& files, const BallbarCsvOptions& options) : axes_(axes_of(files)) {
-    for (const auto& file : files)
-      csv_.text += "# ball bar: " + field(std::filesystem::path(file.path).filename().string()) + "\n";
+    // Circles of one path share their file.
+    std::set<std::string> paths;
+    for (const auto& file : files) {
+      if (paths.insert(file.path).second)
+        csv_.text += "# ball bar: " + field(std::filesystem::path(file.path).filename().string()) + "\n";
+    }
     for (const auto& file : files) {
       for (const auto& run : file.runs) repaired_ = repaired_ || run.clock.has_value();
     }
@@ -80,7 +84,9 @@ class Writer {
   std::string label_of(const std::vector<BallbarFile>& files, const BallbarFile& file,
                        const BallbarRun& run) {
     std::string label = run.label;
-    if (files.size() > 1) label = field(std::filesystem::path(file.path).stem().string()) + " " + label;
+    const bool several = std::any_of(files.begin(), files.end(),
+                                     [&](const BallbarFile& other) { return other.path != file.path; });
+    if (several) label = field(std::filesystem::path(file.path).stem().string()) + " " + label;
     const std::string wanted = label;
     for (int n = 2; !labels_.insert(label).second; ++n) label = wanted + "-" + std::to_string(n);
     return label;

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/import/trace_reader.h"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "tools/import/ballbar_file.h"
 #include "tools/import/json_place.h"
@@ -101,6 +103,45 @@ class TraceReader {
 };
 
 }  // namespace
+
+std::vector<BallbarFile> read_trace_circles(const std::vector<std::string>& paths, const TraceSetup& setup,
+                                            const std::vector<TraceCircle>& circles) {
+  const auto of_circle = [&](const TraceCircle& circle) {
+    TraceSetup one = setup;
+    one.axis_a = circle.plane.substr(0, 1);
+    one.axis_b = circle.plane.substr(1, 1);
+    one.start_deg = circle.start_deg;
+    return one;
+  };
+  std::vector<BallbarFile> files;
+  if (circles.size() == 1) {
+    for (const std::string& path : paths) files.push_back(read_ballbar_trace(path, of_circle(circles[0])));
+    return files;
+  }
+  std::size_t runs = 0;
+  for (const std::string& path : paths) runs += read_ballbar_trace(path, of_circle(circles[0])).runs.size();
+  if (runs % circles.size() != 0)
+    throw InputError({paths.front(), 0}, std::to_string(runs) + " runs",
+                     "do not divide evenly among " + std::to_string(circles.size()) + " planes");
+  const std::size_t each = runs / circles.size();
+  std::size_t next = 0;  // run of the whole path
+  for (const std::string& path : paths) {
+    // Angles depend on the circle: the file is read anew for each that has a run in it.
+    const std::size_t first = next, count = read_ballbar_trace(path, of_circle(circles[0])).runs.size();
+    for (std::size_t c = first / each; c < circles.size() && c * each < first + count; ++c) {
+      BallbarFile file = read_ballbar_trace(path, of_circle(circles[c]));
+      std::vector<BallbarRun> own;
+      for (; next < std::min((c + 1) * each, first + count); ++next) {
+        own.push_back(std::move(file.runs[next - first]));
+        own.back().label = circles[c].plane + " " + own.back().label;
+      }
+      file.runs = std::move(own);
+      if (c * each > first) file.notes.clear();  // they are of the file, not of the circle
+      files.push_back(std::move(file));
+    }
+  }
+  return files;
+}
 
 BallbarFile read_ballbar_trace(const std::string& path, const TraceSetup& setup) {
   return TraceReader(path, setup).read();

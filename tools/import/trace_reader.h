@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 #include <string>
+#include <vector>
 
 #include "tools/import/ballbar_file.h"
 
@@ -16,6 +17,20 @@ struct TraceSetup {
   double sample_rate_hz = 200;
   int direction_of_zero = +1;  // sense of "Direction": 0
 };
+
+/// A circle of a path: its plane, first axis first ("YZ"), and where its first reading lies.
+struct TraceCircle {
+  std::string plane;
+  double start_deg = 180;
+};
+
+/// The files of a test whose path has several circles about one centre (XY, YZ, ZX), one after the other: a
+/// BallbarFile a circle. The runs of all files, in their order, are dealt to the circles in theirs: as many
+/// to each (two where both senses of a circle follow each other), labelled with their plane. With one circle
+/// it takes all runs of each file, a BallbarFile each. Throws InputError where the runs do not divide evenly,
+/// and as read_ballbar_trace. tool.
+std::vector<BallbarFile> read_trace_circles(const std::vector<std::string>& paths, const TraceSetup& setup,
+                                            const std::vector<TraceCircle>& circles);
 
 /// Reads a file of Renishaw Ballbar Trace (JSON: Runs[].Direction 0 or 1, Runs[].Readings, ErrorUnits). All
 /// readings lie in the arc, none is overshoot. Throws InputError with file, line and word. tool.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <span>
 
@@ -66,6 +67,22 @@ std::vector<double> numeric_column(const CsvFile& file, const std::string& name)
   return values;
 }
 
+std::vector<double> measured_lengths_um(const CsvFile& file, const std::string& name) {
+  const auto column = column_named(file, name);
+  if (!column) throw InputError({file.file, file.header_line}, name, "the file has no such column");
+  const auto unit = find_unit(file.columns[*column].unit);
+  if (!unit || unit->dimension != Dimension::kLength)
+    throw InputError({file.file, file.header_line}, name, "is no length (unit mm, um, m or in)");
+  std::vector<double> lengths_um;
+  for (std::size_t row = 0; row < file.rows.size(); ++row) {
+    const std::string& cell = file.rows[row][*column];
+    const auto value = parse_number(cell);
+    if (!value && !cell.empty()) throw InputError({file.file, file.line[row]}, cell, "no number");
+    lengths_um.push_back(value ? 1e3 * unit->factor * *value : std::numeric_limits<double>::quiet_NaN());
+  }
+  return lengths_um;
+}
+
 VibrationRecord read_vibration(const CsvFile& file, std::optional<double> rate_Hz,
                                const std::vector<std::string>& positions) {
   if (file.rows.size() < 2)
@@ -121,7 +138,7 @@ FeatureColumns feature_columns(const VibrationRecord& record, const FeatureChoic
       const bool full = ends[row] && *ends[row] + 1 >= choice.window && *ends[row] < x.size();
       SignalFeatures values;
       values.fill(NAN);
-      if (full)
+      if (full && !choice.features.empty())
         values = signal_features(std::span(x).subspan(*ends[row] + 1 - choice.window, choice.window),
                                  record.rate_Hz, fourier);
       if (!full && &signal == &record.signals.front()) ++columns.empty_rows;

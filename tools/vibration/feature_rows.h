@@ -55,6 +55,10 @@ FeatureColumns feature_columns(const VibrationRecord& record, const FeatureChoic
 /// absent or a cell is no number. tool.
 std::vector<double> numeric_column(const CsvFile& file, const std::string& name);
 
+/// Column `name` as lengths in um, NaN for an empty cell; throws InputError where it is absent, no length, or
+/// a cell is no number. tool.
+std::vector<double> measured_lengths_um(const CsvFile& file, const std::string& name);
+
 /// Second derivative of a position over (uneven) times, as a record: one value less at each end. tool.
 Series acceleration_of(const std::vector<double>& t_s, const std::vector<double>& position);
 

@@ -3,23 +3,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
+#include <functional>
+#include <numbers>
 #include <numeric>
+#include <utility>
 
 #include "tools/text/error.h"
 #include "tools/vibration/fourier.h"
 
 namespace vernier {
 namespace {
-
-/// |F|^2/N of the lines above the mean value.
-std::vector<double> line_powers(std::span<const double> x) {
-  Fourier fourier(x.size());
-  const auto lines = fourier.forward(x);
-  std::vector<double> powers;
-  for (std::size_t k = 1; k < lines.size(); ++k)
-    powers.push_back(std::norm(lines[k]) / static_cast<double>(x.size()));
-  return powers;
-}
 
 std::vector<double> cumulated(std::span<const double> x, double step) {
   std::vector<double> sum(x.size(), 0);
@@ -37,10 +31,9 @@ void check(const AcceleratedPass& pass) {
     throw InputError("a circular pass needs accelerations of two axes and an angle for each of its samples");
 }
 
-}  // namespace
-
-std::vector<double> kept_lines(std::span<const double> x, double cutoff, SpectralCut* cut) {
-  Fourier fourier(x.size());
+/// The spectrum of x with 0 for its mean and for lines at or below the cut-off.
+std::vector<std::complex<double>> kept_spectrum(Fourier& fourier, std::span<const double> x, double cutoff,
+                                                SpectralCut* cut) {
   const auto lines = fourier.forward(x);
   std::vector<std::complex<double>> kept(lines.begin(), lines.end());
   kept[0] = 0;
@@ -53,8 +46,51 @@ std::vector<double> kept_lines(std::span<const double> x, double cutoff, Spectra
     }
   }
   if (cut != nullptr) *cut = {cutoff, count, kept.size() - 1};
-  const auto series = fourier.backward(kept);
+  return kept;
+}
+
+}  // namespace
+
+std::vector<double> line_powers(std::span<const double> x) {
+  Fourier fourier(x.size());
+  const auto lines = fourier.forward(x);
+  std::vector<double> powers;
+  for (std::size_t k = 1; k < lines.size(); ++k)
+    powers.push_back(std::norm(lines[k]) / static_cast<double>(x.size()));
+  return powers;
+}
+
+std::vector<double> kept_lines(std::span<const double> x, double cutoff, SpectralCut* cut) {
+  Fourier fourier(x.size());
+  const auto series = fourier.backward(kept_spectrum(fourier, x, cutoff, cut));
   return {series.begin(), series.end()};
+}
+
+std::vector<double> integrate_lines(std::span<const double> x, double rate_Hz, double cutoff,
+                                    SpectralCut* cut) {
+  Fourier fourier(x.size());
+  std::vector<std::complex<double>> lines = kept_spectrum(fourier, x, cutoff, cut);
+  const double step_rad_s = 2 * std::numbers::pi * rate_Hz / static_cast<double>(x.size());
+  for (std::size_t k = 1; k < lines.size(); ++k) {
+    const double omega = step_rad_s * static_cast<double>(k);
+    lines[k] /= -omega * omega;
+  }
+  const auto series = fourier.backward(lines);
+  return {series.begin(), series.end()};
+}
+
+std::vector<double> cuts_between_lines(std::vector<double> powers, std::size_t steps) {
+  std::sort(powers.begin(), powers.end(), std::greater<>());
+  std::vector<double> cuts;
+  std::size_t last = 0;
+  for (std::size_t step = 0; powers.size() > 1 && step < steps; ++step) {
+    const double share = static_cast<double>(step) / static_cast<double>(std::max<std::size_t>(steps - 1, 1));
+    const auto kept = static_cast<std::size_t>(std::pow(static_cast<double>(powers.size() - 1), share));
+    if (kept == last) continue;
+    last = kept;
+    cuts.push_back((powers[kept - 1] + powers[kept]) / 2);
+  }
+  return cuts;
 }
 
 std::vector<double> integrate_twice(std::span<const double> x, double rate_Hz, Constants constants) {
@@ -92,16 +128,9 @@ FittedCut fitted_cutoff(const std::vector<AcceleratedPass>& passes, Constants co
       powers.insert(powers.end(), more.begin(), more.end());
     }
   }
-  std::sort(powers.begin(), powers.end(), std::greater<>());
   FittedCut best{0, HUGE_VAL};
-  std::size_t last = powers.size();
-  for (std::size_t step = 0; step < steps; ++step) {
-    // Even steps of the logarithm of how many lines are kept: the strong ones decide.
-    const double share = static_cast<double>(step) / static_cast<double>(std::max<std::size_t>(steps - 1, 1));
-    const auto kept = static_cast<std::size_t>(std::pow(static_cast<double>(powers.size() - 1), share));
-    if (kept == last) continue;
-    last = kept;
-    const double cutoff = (powers[kept - 1] + powers[kept]) / 2;
+  // Even steps of the logarithm of how many lines are kept: the strong ones decide.
+  for (const double cutoff : cuts_between_lines(std::move(powers), steps)) {
     double objective = 0;
     for (const AcceleratedPass& pass : passes)
       objective += std::fabs(pass.mean_ballbar_um - mean_radial_um(pass, cutoff, constants));

@@ -166,9 +166,6 @@ double realised(const Machine& machine, const FirstPlan& plan, const FirstPlanOp
   for (std::size_t i = 0; i < plan.check.size(); ++i)
     if (plan.check[i] == 0) fit_rows.push_back(i);
   Measurement rows = point_readings(select_states(plan.states, fit_rows));
-  rows.files = {"plan.csv"};
-  rows.file.assign(fit_rows.size(), 0);
-  rows.line.assign(fit_rows.size(), 1);
   rows.uncertainty = Column::Constant(static_cast<Eigen::Index>(fit_rows.size()), 1e-3 * kReadingUm);
   const Eigen::VectorXd ideal = predict(truth, rows);
   for (std::size_t i = 0; i < rows.observations.size(); ++i)

@@ -191,6 +191,29 @@ INSTANTIATE_TEST_SUITE_P(
                  "source = { kind = \"feature\", of = \"A\", feature = \"RMS\", resolution = 1.5e-6 }\n"
                  "[input.A]\nsource = { kind = \"sim\" }",
                  "resolution must be a whole number of millionths"},
+        BadBoard{"DisplacementOfDegrees", "source = { kind = \"sim\" }",
+                 "source = { kind = \"sim\" }\n[input.D]\nunit = \"um\"\nsource = { kind = \"feature\", of = "
+                 "\"T\", feature = \"DISPLACEMENT\", corner_Hz = 0.5 }",
+                 "input.D.source: T is in \"degC\": a displacement is made of g"},
+        BadBoard{"DisplacementUnit", "source = { kind = \"sim\" }",
+                 "source = { kind = \"feature\", of = \"A\", feature = \"DISPLACEMENT\", corner_Hz = 0.5 }\n"
+                 "[input.A]\nunit = \"g\"\nsource = { kind = \"sim\" }",
+                 "a displacement is in um"},
+        BadBoard{"DisplacementWithoutCorner", "source = { kind = \"sim\" }",
+                 "source = { kind = \"sim\" }\n[input.D]\nunit = \"um\"\nsource = { kind = \"feature\", of = "
+                 "\"A\", feature = \"DISPLACEMENT\" }\n[input.A]\nunit = \"g\"\nsource = { kind = \"sim\" }",
+                 "corner_Hz must be between 0.001 and 1000"},
+        BadBoard{
+            "DisplacementCorner", "source = { kind = \"sim\" }",
+            "source = { kind = \"sim\" }\n[input.D]\nunit = \"um\"\nsource = { kind = \"feature\", of = "
+            "\"A\", feature = \"DISPLACEMENT\", corner_Hz = 20 }\n[input.A]\nunit = \"g\"\nsource = { kind "
+            "= \"sim\" }",
+            "input.D.source: no window or filter can be made of it"},
+        BadBoard{"DisplacementWindow", "source = { kind = \"sim\" }",
+                 "source = { kind = \"sim\" }\n[input.D]\nunit = \"um\"\nsource = { kind = \"feature\", of = "
+                 "\"A\", feature = \"DISPLACEMENT\", corner_Hz = 1, window = 800 }\n[input.A]\nunit = "
+                 "\"g\"\nsource = { kind = \"sim\" }",
+                 "unknown setting window"},
         BadBoard{"NoName", "name = \"test\"\n", "",
                  "board.toml:1: board: name is missing: images are signed for a board"},
         BadBoard{"Role", "[[link]]", "[[key]]\nname = \"a\"\nfile = \"key.pub\"\nrole = \"boss\"\n[[link]]",

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
+#include <iterator>
 #include <vector>
 
 #include "firmware/core/service.h"
@@ -208,6 +210,92 @@ TEST(FeatureInputs, RefuseWhatCannotBeServed) {
   EXPECT_TRUE(refused({.input = 2, .of = 0, .window = 2050}));
   EXPECT_TRUE(refused({.input = 2, .of = 0, .every = 0}));
   EXPECT_TRUE(refused({.input = 2, .of = 0, .lsb = InputMicro(0)}));
+}
+
+// GIVEN a simulated machine whose accelerometer swings with 0.05 g at ten tones at once, on 10 mg of bias
+// THEN the board's input is its motion: 50 mm at 0.5 Hz to 0.3 um at 200 Hz.
+TEST(FeatureInputs, DisplacementIsTheMotionOfASimulatedMachine) {
+  constexpr double kTones_Hz[] = {0.5, 1, 2, 5, 10, 20, 50, 100, 150, 200}, kTone_g = 0.05, kCorner_Hz = 0.05;
+  constexpr int kSettled = 60'000, kFirst = 80'000, kCount = 20'000;
+  Roaming motion({{0, 600'000'000}}, {InputMicro(10'000), InputMicro(0)}, TimeUs(1000), 0.01, 1);
+  for (const double tone : kTones_Hz) motion.vibrate(0, 1e6 * kTone_g, tone);
+  SimPlant plant(motion, 1, 2);
+  plant.release();
+  FeatureInputs inputs(plant, 2, {{.input = 1, .of = 0, .corner_mHz = 50}}, TimeUs(1000));
+  ASSERT_EQ(inputs.refused(), kNoInput);
+  std::complex<double> sums[std::size(kTones_Hz)] = {};
+  for (int tick = 1; tick < kFirst + kCount; ++tick) {
+    plant.advance();
+    inputs.begin_tick();
+    InputMicro value;
+    ASSERT_EQ(inputs.read_input(1, value), tick < kSettled ? HalFault::kNoReading : HalFault::kNone) << tick;
+    if (tick < kFirst) continue;
+    // Half a cosine to either side: what drifts by micrometres must not count as a tone of 0.3 um.
+    const double weight = 1 - std::cos(2 * kPi * (tick - kFirst + 0.5) / kCount);
+    const double t_s = 1e-3 * static_cast<double>(plant.tick());
+    for (std::size_t i = 0; i < std::size(kTones_Hz); ++i)
+      sums[i] +=
+          weight * 1e-6 * static_cast<double>(value.count) * std::polar(1.0, -2 * kPi * kTones_Hz[i] * t_s);
+  }
+  EXPECT_EQ(inputs.held(), 0u);
+  std::printf("the board's input at 1 kHz, corner %.2f Hz\n", kCorner_Hz);
+  for (std::size_t i = 0; i < std::size(kTones_Hz); ++i) {
+    const double tone = kTones_Hz[i], r = kCorner_Hz / tone;
+    const double true_um = -kTone_g * 9806650 / std::pow(2 * kPi * tone, 2);
+    const std::complex<double> got = sums[i] * std::complex<double>(0, 2) / double{kCount} / true_um;
+    const double phase_deg = std::arg(got) * 180 / kPi;
+    const double lead_deg = 2 * std::atan2(std::sqrt(2) * r, 1 - r * r) * 180 / kPi;
+    std::printf("  %6.1f Hz  amplitude %+7.3f %%  phase %+7.3f deg (the corner alone %+.3f)\n", tone,
+                100 * (std::abs(got) - 1), phase_deg, lead_deg);
+    EXPECT_NEAR(std::abs(got), 1 / (1 + std::pow(r, 4)), 0.003) << tone;  // the filter's own at 1 kHz
+    EXPECT_NEAR(phase_deg, lead_deg, 0.05) << tone;
+  }
+}
+
+TEST(FeatureInputs, DisplacementStartsFromRestAfterAGap) {
+  SetInputs source;
+  const FeatureRequest request{.input = 1, .of = 0, .bridged = 3, .corner_mHz = 5000};
+  FeatureInputs inputs(source, 2, {request}, TimeUs(1000));
+  ASSERT_EQ(inputs.refused(), kNoInput);
+  InputMicro value;
+  std::vector<std::int64_t> first, second;
+  const auto fill = [&](int ticks, std::vector<std::int64_t>& values) {
+    for (int tick = 0; tick < ticks; ++tick) {
+      source.values[0] = InputMicro(std::llround(1e5 * std::sin(0.2 * tick)));
+      inputs.begin_tick();
+      if (inputs.read_input(1, value) == HalFault::kNone) values.push_back(value.count);
+    }
+  };
+  fill(1000, first);
+  ASSERT_EQ(first.size(), 401u) << "three periods of 5 Hz are 600 samples";
+  source.silent[0] = true;
+  for (int tick = 0; tick < 3; ++tick) {
+    inputs.begin_tick();
+    EXPECT_EQ(inputs.read_input(1, value), HalFault::kNone) << "bridged";
+  }
+  inputs.begin_tick();
+  EXPECT_EQ(inputs.read_input(1, value), HalFault::kNoReading);
+  source.silent[0] = false;
+  fill(1000, second);
+  EXPECT_EQ(first, second);
+  source.values[0] = InputMicro(INT64_MAX);
+  inputs.begin_tick();
+  EXPECT_EQ(inputs.held(), 1u) << "of the sample";
+}
+
+TEST(FeatureInputs, RefuseADisplacementThatItsFilterCannotKeep) {
+  SetInputs source;
+  const auto refused = [&](FeatureRequest bad) {
+    return FeatureInputs(source, 3, {bad}, TimeUs(1000)).refused() == 0;
+  };
+  EXPECT_FALSE(refused({.input = 2, .of = 0, .corner_mHz = 15'625}));
+  EXPECT_TRUE(refused({.input = 2, .of = 0, .corner_mHz = 15'626})) << "rate / 64";
+  EXPECT_FALSE(refused({.input = 2, .of = 0, .corner_mHz = 8}));
+  EXPECT_TRUE(refused({.input = 2, .of = 0, .corner_mHz = 7})) << "rate / 2^17";
+  EXPECT_TRUE(refused({.input = 2, .of = 0, .every = 10, .corner_mHz = 1'563})) << "of the samples";
+  EXPECT_TRUE(refused({.input = 2, .of = 0, .corner_mHz = -1}));
+  EXPECT_TRUE(refused({.input = 2, .of = 0, .corner_mHz = 500, .lsb_nm_s2 = 0}));
+  EXPECT_TRUE(refused({.input = 2, .of = 2, .corner_mHz = 500})) << "of itself";
 }
 
 // A learned term: 1 mm per g of the accelerometer's RMS in X, within 0.05..0.5 g and faded out beyond.

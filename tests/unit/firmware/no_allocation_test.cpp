@@ -66,11 +66,13 @@ TEST(Tick, TouchesNoHeapWhileImagesComeInAndFaultsHappen) {
   options.faults = {{PlantFaultKind::kJump, 0, 12000, 1, 5'000'000}};
   options.faults.push_back({PlantFaultKind::kSensorLost, 1, 9000, 2000});
   SimPlant plant(motion, 2, 2, options);
-  FeatureInputs features(plant, 3, {{.input = 2, .of = 1, .window = 800}}, TimeUs(1000));
+  FeatureInputs features(plant, 4,
+                         {{.input = 2, .of = 1, .window = 800}, {.input = 3, .of = 1, .corner_mHz = 5000}},
+                         TimeUs(1000));
   ASSERT_EQ(features.refused(), kNoInput);
   SimClock clock;
   ServiceOptions service_options;
-  service_options.wiring = {{{"X"}, {"Y"}}, {"T", "acc", "acc_RMS"}};
+  service_options.wiring = {{{"X"}, {"Y"}}, {"T", "acc", "acc_RMS", "acc_travel"}};
   service_options.upload.identity = key.public_part();
   service_options.activate = true;
   Service service(service_options, Board{clock, plant, features, plant}, store);
@@ -97,6 +99,7 @@ TEST(Tick, TouchesNoHeapWhileImagesComeInAndFaultsHappen) {
   EXPECT_EQ(service.cycle().health().programs, 10u);
   EXPECT_EQ(service.cycle().health().faults, 1u);
   EXPECT_GT(service.cycle().input_value(2).count, 500'000) << "the features were worked out";
+  EXPECT_NE(service.cycle().input_value(3).count, 0) << "the displacement too";
   // The count counts: an allocation inside a tick would be seen.
   in_tick = true;
   void* volatile block = std::malloc(10);

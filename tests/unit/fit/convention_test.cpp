@@ -294,6 +294,18 @@ TEST(Sanity, NamesTheMistakeInTheReadings) {
   EXPECT_NE(absurd(typed).find("stands alone"), std::string::npos) << absurd(typed);
 }
 
+// point_readings() has no file: a fit of what a machine makes of them names rows all the same.
+TEST(Sanity, NamesReadingsThatComeFromNoFile) {
+  const Bridge bridge;
+  Measurement rows = point_readings(bridge.rows.states);
+  const Eigen::VectorXd exact = predict(bridge.model, rows);
+  for (std::size_t i = 0; i < rows.observations.size(); ++i)
+    rows.observations[i].value = exact[static_cast<Eigen::Index>(i)];
+  rows.observations[3 * 6 + 2].value += 50;
+  const FitResult result = fit(bridge.model, rows);
+  EXPECT_EQ(result.worst.reading, "point:7 z");
+}
+
 // A bend by heat that the set-ups take nearly whole: two runs, each at nearly one temperature. What the
 // nominal machine leaves of it says nothing of its size; the readings do.
 TEST(Convention, ErrorThatSetUpsHideIsAsLargeAsTheReadingsSay) {

@@ -48,6 +48,66 @@ TEST(TraceReader, FragmentBecomesRows) {
   EXPECT_EQ(csv.check_rows, 0u);
 }
 
+/// A trace of full circles, one a deviation (mm): 1257 readings at 6000 mm/min on 100 mm.
+std::string circles_text(const std::vector<double>& deviations_mm) {
+  std::string text = "{\"ErrorUnits\": \"millimetres\", \"AxisUnderTest\": \"XYZ\", \"Runs\": [";
+  for (std::size_t run = 0; run < deviations_mm.size(); ++run) {
+    text += std::string(run == 0 ? "" : ",") + "\n{\"Direction\": " + std::to_string(run % 2) +
+            ", \"Readings\": [";
+    for (int i = 0; i < 1257; ++i) text += (i == 0 ? "" : ",") + std::to_string(deviations_mm[run]);
+    text += "]}";
+  }
+  return text + "]}";
+}
+
+const std::vector<TraceCircle> kThreeCircles = {{"XY", 0}, {"YZ", 0}, {"ZX", 90}};
+
+TEST(TraceReader, ThreeCirclesOfAPathAreThreeRunsInTheirPlanes) {
+  const ScratchFile file("three.json", circles_text({0.001, 0.002, 0.003}));
+  const std::vector<BallbarFile> files = read_trace_circles({file.path()}, setup_6000(), kThreeCircles);
+  ASSERT_EQ(files.size(), 3u);
+  EXPECT_EQ(files[1].axis_a + files[1].axis_b, "YZ");
+  EXPECT_EQ(files[2].runs[0].reading_mm[0], 0.003);
+  EXPECT_EQ(files[2].runs[0].first_deg, 90);
+  EXPECT_EQ(files[1].runs[0].direction, -1);
+  EXPECT_EQ(files[0].notes.size() + files[1].notes.size() + files[2].notes.size(), 2u);
+  const BallbarCsv csv = ballbar_csv(files, {});
+  EXPECT_EQ(csv.run_labels, (std::vector<std::string>{"XY CCW", "YZ CW", "ZX CCW"}));
+  EXPECT_EQ(csv.fit_rows, 3u * 1257);
+  EXPECT_NE(csv.text.find("X[mm],Y[mm],Z[mm],vX"), std::string::npos);
+  EXPECT_EQ(csv.text.find("# ball bar: "), csv.text.rfind("# ball bar: ")) << "one file";
+}
+
+TEST(TraceReader, CirclesMayComeInSeveralFilesAndInBothSenses) {
+  const ScratchFile first("first.json", circles_text({0.001, 0.002, 0.003})),
+      second("second.json", circles_text({0.004, 0.005, 0.006}));
+  const std::vector<BallbarFile> files =
+      read_trace_circles({first.path(), second.path()}, setup_6000(), kThreeCircles);
+  // XY: two runs of the first file; YZ: its last and the first of the second; ZX: the other two.
+  ASSERT_EQ(files.size(), 4u);
+  EXPECT_EQ(files[0].runs.size(), 2u);
+  EXPECT_EQ(files[1].axis_a, "Y");
+  EXPECT_EQ(files[2].axis_a, "Y");
+  EXPECT_EQ(files[2].runs[0].reading_mm[0], 0.004);
+  EXPECT_EQ(files[3].axis_a, "Z");
+  EXPECT_EQ(files[3].runs.size(), 2u);
+  const std::vector<std::string> labels = ballbar_csv(files, {}).run_labels;
+  ASSERT_EQ(labels.size(), 6u);
+  EXPECT_NE(labels[3].find("second YZ CCW"), std::string::npos) << labels[3];
+}
+
+TEST(TraceReader, RunsThatDoNotDivideAmongThePlanesAreRefused) {
+  const ScratchFile file("four.json", circles_text({0, 0, 0, 0}));
+  try {
+    read_trace_circles({file.path()}, setup_6000(), kThreeCircles);
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("\"4 runs\": do not divide evenly among 3 planes"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
 struct Damage {
   const char *from, *to;
   const char* message;
