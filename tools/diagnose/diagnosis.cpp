@@ -238,13 +238,18 @@ class Diagnoser {
       if (weights[static_cast<Eigen::Index>(i)] > 0) fitted.push_back(i);
     Eigen::MatrixXd left = weights(fitted).cwiseProduct(residual(fitted));
     const NoiseLayout layout = noise_layout(rows, fitted);
+    whiten(layout, noise, left);
     if (!noise.steps.empty()) {
+      // The fit knew nothing of the steps and gave way to them: what it did is taken out with them.
+      const Eigen::MatrixXd &seen = finder_.evidence().absorbed(), named = pool_.columns(chosen_);
       Eigen::MatrixXd columns = step_columns(layout, noise.steps, left.rows());
-      whiten(layout, noise, left);
       whiten(layout, noise, columns);
+      if (seen.rows() == left.rows()) {  // else the search looked at every k-th row only
+        const Eigen::Index steps = columns.cols();
+        columns.conservativeResize(Eigen::NoChange, steps + seen.cols() + named.cols());
+        columns.rightCols(seen.cols() + named.cols()) << seen, named;
+      }
       left -= columns * columns.completeOrthogonalDecomposition().solve(left);
-    } else {
-      whiten(layout, noise, left);
     }
     residual(fitted) = left.col(0).cwiseQuotient(weights(fitted));
     return residual;

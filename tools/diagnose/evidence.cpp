@@ -264,14 +264,26 @@ void Evidence::assume(const NoiseModel& noise) {
   absorb();
 }
 
-NoiseModel Evidence::estimate(const Eigen::MatrixXd& raw) const {
-  Eigen::MatrixXd residual = raw_residual_, fitted(raw_absorbed_.rows(), raw_absorbed_.cols() + raw.cols());
-  fitted << raw_absorbed_, raw;
+NoiseModel Evidence::estimate(const Eigen::MatrixXd& raw, std::vector<NoiseStep> given) const {
+  const auto steps = static_cast<Eigen::Index>(given.size());
+  Eigen::MatrixXd residual = raw_residual_;
+  Eigen::MatrixXd fitted(raw_absorbed_.rows(), steps + raw_absorbed_.cols() + raw.cols());
+  fitted << step_columns(layout_, given, raw_residual_.size()), raw_absorbed_, raw;
   share_poses(residual);
   share_poses(fitted);
+  if (steps > 0) {
+    const Eigen::VectorXd heights = fitted.completeOrthogonalDecomposition().solve(Eigen::VectorXd(residual));
+    for (std::size_t k = 0; k < given.size(); ++k) given[k].height = heights[static_cast<Eigen::Index>(k)];
+  }
   fitted = orthonormal(fitted, 1e-6, nullptr);
   residual -= fitted * (fitted.transpose() * residual);
-  return estimate_noise(layout_, residual, fitted, with_u_);
+  NoiseModel noise = estimate_noise(layout_, residual, fitted, with_u_);
+  if (steps == 0) return noise;
+  noise.steps.insert(noise.steps.begin(), given.begin(), given.end());
+  Eigen::MatrixXd all(raw.rows(), raw.cols() + steps);
+  all << raw, step_columns(layout_, given, raw.rows());
+  noise.support += (left_in_full(raw) - left_in_full(all)) / (noise.own * noise.own);
+  return noise;
 }
 
 double Evidence::left_in_full(const Eigen::MatrixXd& raw) const {

@@ -74,7 +74,9 @@ class Evidence {
   /// log det of the covariance of the readings under that model.
   double log_determinant() const { return log_determinant_; }
   /// How the readings' errors hang together beside the model and columns that `raw_columns` gave.
-  NoiseModel estimate(const Eigen::MatrixXd& raw) const;
+  /// `given`: steps that are taken to be there, with the heights that they have beside all that.
+  NoiseModel estimate(const Eigen::MatrixXd& raw, std::vector<NoiseStep> given = {}) const;
+  const NoiseLayout& layout() const { return layout_; }
   /// Sum of squares of the weighted residual that the model and such columns leave, nothing whitened.
   double left_in_full(const Eigen::MatrixXd& raw) const;
   /// Columns of a candidate before any whitening.

@@ -23,6 +23,12 @@ bool is_alike(const NoiseModel& a, const NoiseModel& b, double share) {
          std::abs(a.run - b.run) < same && std::abs(a.drift - b.drift) < same && a.steps == b.steps;
 }
 
+std::vector<NoiseStep> set_ups_in(const NoiseModel& noise) {
+  std::vector<NoiseStep> steps = noise.steps;
+  std::erase_if(steps, [](const NoiseStep& step) { return !step.of_set_up(); });
+  return steps;
+}
+
 /// The same but for the readings' own noise.
 bool hangs_alike(NoiseModel a, const NoiseModel& b, double share) {
   const double scale = b.own / a.own;
@@ -246,7 +252,7 @@ double Finder::settle_noise_from(NoiseModel noise) {
   constexpr int kMostRounds = 4;
   for (int round = 0; round < kMostRounds; ++round) {
     search_under(noise);
-    const NoiseModel next = evidence_.estimate(raw_columns(chosen_));
+    const NoiseModel next = evidence_.estimate(raw_columns(chosen_), set_ups_in(noise));
     if (is_alike(next, noise, thresholds_.same_noise)) return priced_criterion();
     noise = next;
   }
@@ -283,12 +289,14 @@ void Finder::weigh_correlation() {
   // A set of effects stands only with the noise that it leaves.
   const double same = thresholds_.same_noise;
   const bool stands = hangs_alike(after_all, white, same);
-  if (stands && hangs_alike(after_none, white, same)) return;
+  const std::optional<NoiseModel> set_ups = touched_anew(after_all);
+  if (stands && !set_ups && hangs_alike(after_none, white, same)) return;
   double best = stands ? priced_criterion() : std::numeric_limits<double>::infinity();
   NoiseModel kept = white;
   bool is_current = true;  // do search and evidence stand as `kept` has them?
   std::vector<NoiseModel> starts = {after_all};
   if (!is_alike(after_none, after_all, same)) starts.push_back(after_none);
+  if (set_ups) starts.push_back(*set_ups);
   for (const NoiseModel& start : starts) {
     if (hangs_alike(start, white, same)) continue;
     double value = settle_noise_from(start);
@@ -306,8 +314,25 @@ void Finder::weigh_correlation() {
   }
 }
 
+std::optional<NoiseModel> Finder::touched_anew(const NoiseModel& explained) const {
+  std::vector<NoiseStep> steps = set_up_steps(evidence_.layout());
+  if (steps.empty()) return std::nullopt;
+  const Eigen::MatrixXd none(evidence_.residual().size(), 0);
+  const Eigen::MatrixXd columns = step_columns(evidence_.layout(), steps, none.rows());
+  const double fall = evidence_.left_in_full(none) - evidence_.left_in_full(columns);
+  const double price = static_cast<double>(steps.size()) * std::log(static_cast<double>(none.rows()));
+  if (fall < (price + thresholds_.instrument_distance) * explained.own * explained.own) return std::nullopt;
+  // From independent readings: what else hangs together may be a cause that is still to be found.
+  NoiseModel start = evidence_.estimate(none, std::move(steps));
+  start.own = explained.own;
+  start.pose = start.run = start.drift = 0;
+  return start;
+}
+
 bool Finder::is_one_offset(const NoiseModel& noise) const {
-  return noise.run > 0 && evidence_.estimate(evidence_.offset_columns()).run <= 0;
+  if (noise.run <= 0 && noise.drift <= 0) return false;
+  const NoiseModel beside = evidence_.estimate(evidence_.offset_columns());
+  return beside.run <= 0 && beside.drift <= 0;
 }
 
 std::vector<std::size_t> Finder::without(std::size_t item) const {

@@ -96,8 +96,12 @@ class Finder {
   void search_under(const NoiseModel& noise);
   /// Search and noise in turn until both stand still. Returns the criterion with the noise model's own price.
   double settle_noise_from(NoiseModel noise);
-  /// Does what a run shares under this model come to the same in all runs? A common cause does that, and no
-  /// instrument that is set up anew each time.
+  /// What is touched may stand elsewhere in each set-up, which no reading along a normal is free of: that as
+  /// the instrument's part of a rival, where it takes more away than it costs. explained: what is left beside
+  /// all that was chosen.
+  std::optional<NoiseModel> touched_anew(const NoiseModel& explained) const;
+  /// Does what hangs together by run or in time under this model come to one offset of all readings? A common
+  /// cause does that, and no instrument that is set up anew or drifts.
   bool is_one_offset(const NoiseModel& noise) const;
   /// Unwhitened columns of several items side by side.
   Eigen::MatrixXd raw_columns(const std::vector<std::size_t>& items) const;

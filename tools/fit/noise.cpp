@@ -350,8 +350,9 @@ NoiseModel estimate_components(const NoiseLayout& layout, const Eigen::VectorXd&
 double NoiseModel::shared() const { return std::sqrt(pose * pose + run * run + drift * drift); }
 
 double NoiseModel::price() const {
-  const double parameters = (pose > 0 ? 1 : 0) + (run > 0 ? 1 : 0) + (drift > 0 ? 2 : 0);
-  return parameters + kPriceOfStep * static_cast<double>(steps.size());
+  double parameters = (pose > 0 ? 1 : 0) + (run > 0 ? 1 : 0) + (drift > 0 ? 2 : 0);
+  for (const NoiseStep& step : steps) parameters += step.of_set_up() ? 1 : kPriceOfStep;  // its row is told
+  return parameters;
 }
 
 double NoiseModel::total() const { return std::hypot(own, shared()); }
@@ -385,6 +386,10 @@ NoiseLayout noise_layout(const Measurement& measurement, const std::vector<std::
     series.setup.push_back(static_cast<int>(states.of(states.setup, o.row)));
     series.clock.push_back(static_cast<int>(states.of(states.clock, o.row)));
     series.pose.push_back(pose[o.row]);
+    if (o.kind == ObservationKind::kD) {
+      const auto at = static_cast<Eigen::Index>(o.row);
+      series.normal.emplace_back(states.normal[0][at], states.normal[1][at], states.normal[2][at]);
+    }
   }
   std::vector<double> gaps;
   for (auto& [kind, series] : of_kind) {
@@ -413,9 +418,24 @@ Eigen::MatrixXd step_columns(const NoiseLayout& layout, const std::vector<NoiseS
     for (const NoiseSeries& series : layout.series) {
       if (series.kind != steps[k].kind) continue;
       for (std::size_t i = 0; i < series.reading.size(); ++i)
-        if (series.row[i] >= steps[k].row) columns(series.reading[i], static_cast<Eigen::Index>(k)) = 1;
+        if (series.row[i] >= steps[k].row)
+          columns(series.reading[i], static_cast<Eigen::Index>(k)) =
+              steps[k].of_set_up() ? series.normal[i][steps[k].component] : 1;
     }
   return columns;
+}
+
+std::vector<NoiseStep> set_up_steps(const NoiseLayout& layout) {
+  std::vector<NoiseStep> steps;
+  for (const NoiseSeries& series : layout.series) {
+    if (series.kind != static_cast<int>(ObservationKind::kD)) continue;
+    for (std::size_t i = 0; i < series.reading.size(); ++i)
+      if (i == 0 || series.setup[i] != series.setup[i - 1])
+        for (int component = 0; component < 3; ++component)
+          steps.push_back({series.kind, series.row[i], 0, 0, component});
+  }
+  constexpr std::size_t kOneSetUp = 3;
+  return steps.size() > kOneSetUp ? steps : std::vector<NoiseStep>();
 }
 
 double whiten(const NoiseLayout& layout, const NoiseModel& model, Eigen::MatrixXd& columns) {
@@ -522,10 +542,20 @@ std::string in_words(const NoiseModel& model, double unit_um) {
   if (model.drift > 0)
     text += fmt::format(", a drift of {:.3g} um that lasts {:.3g} {}", model.drift * unit_um,
                         model.time_constant, model.in_time ? "s" : "rows");
+  double set_ups = 0, count = 0;
+  for (const NoiseStep& step : model.steps) {
+    if (!step.of_set_up()) continue;
+    set_ups += step.height * step.height;
+    count += 1.0 / 3;
+  }
+  if (count > 0)
+    text += fmt::format(", what is touched shifts by {:.3g} um from set-up to set-up",
+                        std::sqrt(set_ups / count) * unit_um);
   for (const NoiseStep& step : model.steps)
-    text +=
-        fmt::format(", a step of {:.3g} +- {:.2g} um in {} from row {} on", step.height * unit_um,
-                    step.std * unit_um, kObservationNames[static_cast<std::size_t>(step.kind)], step.row + 1);
+    if (!step.of_set_up())
+      text += fmt::format(", a step of {:.3g} +- {:.2g} um in {} from row {} on", step.height * unit_um,
+                          step.std * unit_um, kObservationNames[static_cast<std::size_t>(step.kind)],
+                          step.row + 1);
   return text;
 }
 

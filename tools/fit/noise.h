@@ -17,6 +17,7 @@ struct NoiseSeries {
   int kind = 0;              // of ObservationKind
   std::vector<std::size_t> row;
   std::vector<int> setup, clock, pose;  // an index each; a pose: rows that follow one another at one place
+  std::vector<Eigen::Vector3d> normal;  // of readings along one
 };
 
 /// The readings of a list of observations, as a noise model sees them.
@@ -32,12 +33,17 @@ struct NoiseLayout {
 /// they differ by less than a tolerance that the gap between small and large steps gives. tool.
 NoiseLayout noise_layout(const Measurement& measurement, const std::vector<std::size_t>& observations);
 
-/// From this row on all readings of one kind are off by the same.
+/// From this row on all readings of one kind are off by the same; or, where what is touched was set up anew,
+/// by that component of a shift along each reading's normal.
 struct NoiseStep {
   int kind = 0;
   std::size_t row = 0;
   double height = 0, std = 0;  // weighted readings
-  bool operator==(const NoiseStep& other) const { return kind == other.kind && row == other.row; }
+  int component = -1;          // 0 1 2: of the normal
+  bool of_set_up() const { return component >= 0; }
+  bool operator==(const NoiseStep& other) const {
+    return kind == other.kind && row == other.row && component == other.component;
+  }
 };
 
 /// How the errors of readings hang together: each reading's own, one that the readings of a pose share, one
@@ -64,6 +70,10 @@ struct NoiseModel {
 /// Columns of the steps, an entry a reading: 1 from the step on. tool.
 Eigen::MatrixXd step_columns(const NoiseLayout& layout, const std::vector<NoiseStep>& steps,
                              Eigen::Index readings);
+
+/// A shift of what is touched at each set-up, three components each; none where there is but one set-up or no
+/// reading along a normal. Heights are 0.
+std::vector<NoiseStep> set_up_steps(const NoiseLayout& layout);
 
 /// Rows of `columns` (weighted readings) made independent with variance 1, by a Kalman filter along each
 /// series; its cost grows with rows times columns. Returns log det of the covariance. tool.

@@ -209,11 +209,14 @@ std::string number_or_dash(const std::optional<double>& value, const char* unit)
 
 ordered_json noise_json(const NoiseModel& noise, double unit_um) {
   ordered_json steps = ordered_json::array();
-  for (const NoiseStep& step : noise.steps)
+  for (const NoiseStep& step : noise.steps) {
     steps.push_back({{"row", step.row + 1},
                      {"observation", kObservationNames[static_cast<std::size_t>(step.kind)]},
                      {"height_um", step.height * unit_um},
                      {"std_um", step.std * unit_um}});
+    if (step.of_set_up())
+      steps.back()["along"] = std::array{"x", "y", "z"}[static_cast<std::size_t>(step.component)];
+  }
   return {{"steps", steps},
           {"own_um", noise.own * unit_um},
           {"pose_um", noise.pose * unit_um},

@@ -4,13 +4,20 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <array>
 #include <filesystem>
+#include <map>
+#include <random>
+#include <sstream>
 
 #include "tests/bench/diagnose/answer.h"
 #include "tests/bench/diagnose/process.h"
 #include "tests/support/hidden_survey_key.h"
 #include "tools/text/files.h"
+#include "tools/text/words.h"
 
 namespace vernier::hidden_survey_test {
 namespace {
@@ -130,6 +137,45 @@ TEST(HiddenEffect, OnceMisjudgedIsNamed) {
     EXPECT_EQ(judgement.outcome, Outcome::kRight)
         << once.effect << ": " << bench::outcome_name(judgement.outcome) << "\n  said " << judgement.said;
   }
+}
+
+/// The survey with what is touched shifted by another 10 um or so in each run.
+HiddenSurvey touched_anew(HiddenSurvey survey) {
+  std::mt19937_64 random(21);
+  std::normal_distribution<double> normal;
+  std::istringstream lines(survey.csv);
+  std::string text, line;
+  std::getline(lines, text);
+  const std::vector<std::string> names = parts_of(text, ',');
+  const auto at = [&](std::string_view name) {
+    return static_cast<std::size_t>(
+        std::find_if(names.begin(), names.end(), [&](const auto& one) { return one.starts_with(name); }) -
+        names.begin());
+  };
+  std::map<std::string, std::array<double, 3>> shift;
+  text += '\n';
+  while (std::getline(lines, line)) {
+    std::vector<std::string> cells = parts_of(line, ',');
+    const auto [of_run, is_new] = shift.try_emplace(cells[at("run")]);
+    if (is_new)
+      for (double& one : of_run->second) one = 0.01 * normal(random);
+    double d = std::stod(cells[at("d[mm]")]);
+    for (std::size_t k = 0; k < 3; ++k) d += of_run->second[k] * std::stod(cells[at("nx") + k]);
+    cells[at("d[mm]")] = fmt::format("{:.7f}", d);
+    text += joined(cells, ",") + '\n';
+  }
+  survey.csv = text;
+  return survey;
+}
+
+// A stranger's surveys: named thermal-bend, base-drift and others before, with 56 to the next best.
+TEST(HiddenEffect, WhatIsTouchedSetUpAnewIsNoCauseOfTheMachine) {
+  SurveySpec spec = spec_of(SurveyClass::kSingle, Family::kBridge, 5773457321600, "tool-radius");
+  spec.rows = 400;
+  const HiddenSurvey survey = make_survey(spec);
+  const bench::Judgement judgement = diagnosed(touched_anew(survey));
+  EXPECT_EQ(judgement.outcome, Outcome::kRight)
+      << bench::outcome_name(judgement.outcome) << "\n  said " << judgement.said;
 }
 
 class Seeded : public testing::TestWithParam<std::uint64_t> {
