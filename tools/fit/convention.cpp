@@ -126,6 +126,40 @@ Eigen::VectorXd scales_by_place(const Machine& machine, const Measurement& m, do
   return scale;
 }
 
+/// Statics that lean a travel: what they do to a length is in proportion to the position of one linear axis
+/// that has a table.
+void find_slopes(const Machine& machine, const Measurement& m, const ParameterSet& parameters,
+                 Convention& convention) {
+  convention.slope_of.assign(parameters.size(), -1);
+  convention.slope_mm = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(parameters.size()));
+  std::map<std::size_t, std::size_t> parameter_of;  // a static's
+  for (std::size_t i = 0; i < parameters.size(); ++i)
+    if (parameters[i].kind == ParameterKind::kStatic) parameter_of[parameters[i].item] = i;
+  if (parameter_of.empty()) return;
+  std::vector<char> active(machine.statics.size(), 0);
+  for (const auto& [item, parameter] : parameter_of) active[item] = 1;
+  Evaluator evaluate(machine, m.states, active);
+  const auto take = [&](std::size_t parameter, const Column& slope) {
+    for (std::size_t table = 0; table < machine.tables.size(); ++table) {
+      const Column& position = m.states.axis[machine.tables[table].axis];
+      if (machine.axes[machine.tables[table].axis].rotary || position.size() == 0) continue;
+      const double size = position.abs().maxCoeff();
+      if (size <= 0 || ((slope - position).abs().maxCoeff() > 1e-9 * size &&
+                        (slope + position).abs().maxCoeff() > 1e-9 * size))
+        continue;
+      convention.slope_of[parameter] = static_cast<int>(table);
+      convention.slope_mm[static_cast<Eigen::Index>(parameter)] =
+          0.5 * (position.maxCoeff() - position.minCoeff());
+    }
+  };
+  for (const auto* branch : {&machine.tool, &machine.workpiece})
+    for (const Transform& transform : *branch)
+      for (std::size_t d = 0; d < 3 && transform.kind == TransformKind::kSixDof; ++d)
+        for (const auto& [key, slope] : evaluate(*transform.dof[d]).by)
+          if (const auto found = parameter_of.find(key); found != parameter_of.end())
+            take(found->second, slope.column(m.states.count));
+}
+
 /// A static's scale by its unit: as a length or an angle; nothing for any other.
 double scale_by_unit(const std::string& unit, double length_mm, double reach_mm) {
   if (unit == "urad") return length_mm / reach_mm * 1e6;
@@ -255,6 +289,7 @@ Convention convention_of(const Machine& machine, const Measurement& rows, const 
   result.table.assign(parameters.size(), -1);
   result.shape.assign(parameters.size(), 0);
   correlate(machine, parameters, result);
+  find_slopes(centre, rows, parameters, result);
   const std::set<std::size_t> shapes = shape_statics(machine);
   Eigen::VectorXd by_place;
   for (std::size_t i = 0; i < parameters.size(); ++i) {

@@ -32,6 +32,10 @@ struct Convention {
   /// that the data determine: 0 none, else the kind.
   std::vector<int> kind;
   std::vector<int> table;  // which table an entry belongs to; -1: none
+  /// Statics that are a slope of an axis' straightness (squareness: k*Z in X): that axis' table, else -1, and
+  /// the length at half its travel for one unit, mm.
+  std::vector<int> slope_of;
+  Eigen::VectorXd slope_mm;
 };
 
 /// precision for these scales: (scale_i scale_j)^-1 precision_ij.

@@ -11,6 +11,17 @@ constexpr double kLeastShare = 1e-3;
 /// Entries that the data determine (in sum of shares) before their kind's scale follows them.
 constexpr double kLeastDetermined = 4;
 
+/// Of the lengths of linear axes.
+constexpr int kLengths = 1;
+
+/// The convention's scale of that table's lengths, mm; 0 where it has none.
+double length_scale_mm(const Convention& convention, int table) {
+  for (std::size_t i = 0; i < convention.kind.size(); ++i)
+    if (convention.kind[i] == kLengths && convention.table[i] == table)
+      return convention.scale[static_cast<Eigen::Index>(i)];
+  return 0;
+}
+
 /// Lengths and angles of linear axes are the kinds 1 and 2, those of rotary ones 3 and 4.
 int other_of(int kind) { return kind % 2 == 1 ? kind + 1 : kind - 1; }
 
@@ -37,12 +48,26 @@ SeenErrors::SeenErrors(const Convention& convention, const Eigen::VectorXd& squa
       seen->moved += moved[i];
     }
   }
+  leaning_kinds_ = kinds_;
+  leaning_tables_ = tables_;
+  for (Eigen::Index i = 0; i < squares.size(); ++i) {
+    const int table = convention.slope_of[static_cast<std::size_t>(i)];
+    const double length_mm = table < 0 ? 0 : length_scale_mm(convention, table);
+    if (length_mm <= 0) continue;
+    const double share = convention.slope_mm[i] * convention.scale[i] / length_mm;
+    for (Seen* seen : {&leaning_kinds_[kLengths], &leaning_tables_[{kLengths, table}]}) {
+      seen->squares += share * share * squares[i];
+      seen->determined += from_data[i];
+      seen->entries += 1;
+    }
+  }
 }
 
-const SeenErrors::Seen& SeenErrors::of(int kind, int table) const {
+const SeenErrors::Seen& SeenErrors::of(const std::map<std::pair<int, int>, Seen>& tables, int kind,
+                                       int table) {
   static const Seen kNothing;
-  const auto found = tables_.find({kind, table});
-  return found == tables_.end() ? kNothing : found->second;
+  const auto found = tables.find({kind, table});
+  return found == tables.end() ? kNothing : found->second;
 }
 
 bool SeenErrors::seen(int kind) const {
@@ -53,7 +78,7 @@ bool SeenErrors::seen(int kind) const {
 /// What is seen of the table, and what the others let expect.
 double SeenErrors::beside_others(int kind, int table) const {
   constexpr double kWorth = 4;  // of the others' word, in determined entries
-  const Seen &all = kinds_.at(kind), &own = of(kind, table);
+  const Seen &all = kinds_.at(kind), &own = of(tables_, kind, table);
   const Seen others = all.without(own);
   const double expected = others.determined >= kLeastDetermined ? others.variance() : all.variance();
   return (own.squares + kWorth * expected) / (std::max(0.0, own.determined) + kWorth);
@@ -63,9 +88,9 @@ double SeenErrors::beside_others(int kind, int table) const {
 /// seen.
 double SeenErrors::times_larger(int kind, int table) const {
   constexpr double kChance = 2, kLeast = 2;  // times that may be chance; determined entries
-  const Seen& own = of(kind, table);
-  const auto all = kinds_.find(kind);
-  if (all == kinds_.end()) return 1;
+  const Seen& own = of(leaning_tables_, kind, table);
+  const auto all = leaning_kinds_.find(kind);
+  if (all == leaning_kinds_.end()) return 1;
   const Seen others = all->second.without(own);
   if (own.determined < kLeast || others.determined < kLeast) return 1;
   return std::max(1.0, own.variance() / std::max(others.variance(), 1e-300) / kChance);
@@ -73,8 +98,8 @@ double SeenErrors::times_larger(int kind, int table) const {
 
 double SeenErrors::variance(int kind, int table) const {
   double variance = table < 0 ? kinds_.at(kind).variance() : beside_others(kind, table), most = 1;
-  if (table >= 0 && !of(kind, table).mostly()) {
-    const Seen &own = of(kind, table), &other = of(other_of(kind), table);
+  if (table >= 0 && !of(tables_, kind, table).mostly()) {
+    const Seen &own = of(tables_, kind, table), &other = of(leaning_tables_, other_of(kind), table);
     const double times = times_larger(other_of(kind), table);
     // At this variance the unseen kind moves the readings as much as the seen one does at 1.
     const double exchange = own.moved > 0 ? other.moved / own.moved : 0;

@@ -11,8 +11,9 @@ namespace vernier {
 /// How large a machine's errors are, as far as its readings show them: a kind as a whole (lengths or angles,
 /// of linear or rotary axes), and each table beside the others. All in units of the convention's scales.
 ///
-/// A table whose lengths are larger than the others' may have angles as much larger: a survey with one tool
-/// sees only their sum, and what is seen of the good axes says nothing of a bad one's.
+/// A table whose lengths, its squareness with them, are larger than the others' may have angles as much
+/// larger: a survey with one tool sees only their sum, and what is seen of the good axes says nothing of a
+/// bad one's.
 class SeenErrors {
  public:
   /// squares: of each value as expected beside its neighbours; from_data: share of each that the readings
@@ -32,12 +33,15 @@ class SeenErrors {
     double variance() const;
     Seen without(const Seen& other) const;
   };
-  const Seen& of(int kind, int table) const;
+  static const Seen& of(const std::map<std::pair<int, int>, Seen>& tables, int kind, int table);
   double beside_others(int kind, int table) const;
   double times_larger(int kind, int table) const;
 
   std::map<int, Seen> kinds_;
   std::map<std::pair<int, int>, Seen> tables_;
+  // The same with slopes that stand in statics (squareness): where an angle's may hide.
+  std::map<int, Seen> leaning_kinds_;
+  std::map<std::pair<int, int>, Seen> leaning_tables_;
 };
 
 }  // namespace vernier
