@@ -63,10 +63,10 @@ TEST(MeasurementFile, UnitsOfAShopFloorAreRead) {
 }
 
 TEST(MeasurementFile, FahrenheitIsATemperature) {
-  const Measurement m = read("X[mm],T[degF],x[mm]\n1,68,2\n2,77,3\n");
+  const Measurement m = read("X[mm],B[deg],T[degF],x[mm]\n1,0,68,2\n2,0,77,3\n");
   EXPECT_NEAR(m.states.input[0][0], 20, 1e-12);
   EXPECT_NEAR(m.states.input[0][1], 25, 1e-12);
-  EXPECT_NEAR(read("X[mm],T[°F],x[mm]\n1,50,2\n").states.input[0][0], 10, 1e-12);
+  EXPECT_NEAR(read("X[mm],B[deg],T[°F],x[mm]\n1,0,50,2\n").states.input[0][0], 10, 1e-12);
 }
 
 TEST(MeasurementFile, UnknownUnitIsNamedAsWritten) {

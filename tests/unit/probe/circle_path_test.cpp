@@ -48,8 +48,9 @@ TEST(CirclePath, RobotRunsHalfTurnsThroughTheirMiddle) {
   EXPECT_EQ(count_of(text, "r=0, mode=1"), 2u);
   EXPECT_NE(text.find("vel = 0.083333"), std::string::npos);
   // From -A by -B to +A, counter-clockwise.
-  EXPECT_NE(text.find("movec(p[0.0000000, -0.1000000, 0.0000000, 0.000000, 0.000000, 0.000000], p[0.1000000, "),
-            std::string::npos)
+  EXPECT_NE(
+      text.find("movec(p[0.0000000, -0.1000000, 0.0000000, 0.000000, 0.000000, 0.000000], p[0.1000000, "),
+      std::string::npos)
       << text;
 }
 
