@@ -10,7 +10,6 @@
 #include <map>
 #include <optional>
 #include <pugixml.hpp>
-#include <regex>
 #include <set>
 
 #include "tools/model/expression.h"
@@ -273,15 +272,23 @@ DhRow row_to_tip(const Isometry3d& tip) {
   return row;
 }
 
+bool is_static_of_arm(const std::string& name) {
+  const std::size_t letters = std::min(name.find_first_of("0123456789"), name.size());
+  const std::string kind = name.substr(0, letters);
+  const bool numbered =
+      letters < name.size() && name.find_first_not_of("0123456789", letters) == std::string::npos;
+  return numbered ? kind == "th" || kind == "d" || kind == "a" || kind == "al" || kind == "be"
+                  : kind == "TPX" || kind == "TPY" || kind == "TPZ";
+}
+
 /// The joint's name as an axis of a machine file may have it: letters, digits, and none of the names that the
 /// arm's own statics take (a1, th2).
 std::string axis_name(const std::string& joint) {
-  static const std::regex kTaken("(th|d|a|al|be)[0-9]+|TP[XYZ]");
   std::string name = joint;
   for (char& c : name)
     if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '_';
   const bool is_name = !name.empty() && std::isdigit(static_cast<unsigned char>(name.front())) == 0;
-  return !is_name || is_reserved_word(name) || std::regex_match(name, kTaken) ? "J" + name : name;
+  return !is_name || is_reserved_word(name) || is_static_of_arm(name) ? "J" + name : name;
 }
 
 PlannedAxis axis_of(const Joint& joint, const std::string& file) {
