@@ -49,6 +49,7 @@ void estimate(FitResult& result, const Settled& end) {
   result.observability = observe(end.normal);
   result.observability.covariance = end.covariance / end.variance;
   result.covariance = end.covariance;
+  result.open = end.open;
   result.chi_square = end.chi_square;
   result.freedom = end.freedom;
   result.variance_factor = end.variance;
@@ -186,6 +187,8 @@ void remember(FitResult& result, const Measurement& rows, const Convention& conv
     record->values[static_cast<Eigen::Index>(i)] = result.estimates[i].value;
   }
   record->factor = covariance_factor(result.covariance);
+  record->open = open_factor(result.open, result.covariance);
+  record->open_known = true;
   const auto add = [&](const std::string& name, const Column& column) {
     FitRecord::Range range{name, std::numeric_limits<double>::infinity(),
                            -std::numeric_limits<double>::infinity()};

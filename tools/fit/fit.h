@@ -90,6 +90,7 @@ struct FitResult {
   NoiseModel noise;  // how the errors of the readings hang together, as the covariance has it
   double misfit_mm = 0, reach_mm = 0;     // what the scales were made from (tools/fit/convention.h)
   Eigen::MatrixXd covariance;             // of all parameters, convention included
+  Eigen::MatrixXd open;                   // part of it: what no reading bears on
   double chi_square = 0;                  // weighted sum of squares at the end
   double freedom = 0;                     // observations less what was fitted of them
   double variance_factor = 1;             // what the covariance was multiplied by

@@ -79,11 +79,14 @@ Reach::Reach(const Machine& machine) : machine_(without_set_up(machine)), known_
   const Eigen::VectorXd values = parameters_.get(machine_),
                         nominal = parameters_.get(nominal_machine(machine_));
   factor_ = Eigen::MatrixXd::Zero(values.size(), record.factor.cols());
+  open_ = Eigen::MatrixXd::Zero(values.size(), record.open_known ? record.open.cols() : 0);
+  open_known_ = record.open_known;
   std::vector<std::pair<Eigen::Index, double>> hand_set;
   for (std::size_t i = 0; i < parameters_.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
     const auto found = place.find(parameters_[i].name);
     if (found != place.end()) factor_.row(at) = record.factor.row(found->second);
+    if (found != place.end() && open_.cols() > 0) open_.row(at) = record.open.row(found->second);
     const double moved = values[at] - (found == place.end() ? nominal[at] : record.values[found->second]);
     const bool stale = found == place.end() ? moved != 0 : changed(values[at], record.values[found->second]);
     if (!stale) continue;
@@ -91,33 +94,35 @@ Reach::Reach(const Machine& machine) : machine_(without_set_up(machine)), known_
     hand_set.emplace_back(at, moved);
   }
   // What was set by hand is as uncertain as it was moved.
-  const Eigen::Index known = factor_.cols();
-  factor_.conservativeResize(Eigen::NoChange, known + static_cast<Eigen::Index>(hand_set.size()));
-  factor_.rightCols(static_cast<Eigen::Index>(hand_set.size())).setZero();
-  for (std::size_t k = 0; k < hand_set.size(); ++k)
-    factor_(hand_set[k].first, known + static_cast<Eigen::Index>(k)) = hand_set[k].second;
+  for (Eigen::MatrixXd* all : {&factor_, &open_}) {
+    const Eigen::Index known = all->cols();
+    all->conservativeResize(Eigen::NoChange, known + static_cast<Eigen::Index>(hand_set.size()));
+    all->rightCols(static_cast<Eigen::Index>(hand_set.size())).setZero();
+    for (std::size_t k = 0; k < hand_set.size(); ++k)
+      (*all)(hand_set[k].first, known + static_cast<Eigen::Index>(k)) = hand_set[k].second;
+  }
   if (parameters_.size() == 0) return;
   measured_ = poses_over(machine_, measured_ranges(machine)).states;
 }
 
-Eigen::MatrixXd Reach::rigid_part(const States& like, Eigen::Index row) const {
+Eigen::MatrixXd Reach::rigid_part(const States& like, Eigen::Index row, const Eigen::MatrixXd& change) const {
   States over = measured_;
   for (std::size_t i = 0; i < machine_.inputs.size(); ++i)
     if (machine_.inputs[i].hidden_axis) over.input[i].setConstant(like.input[i][row]);
   return rigid_motions(forward(machine_, over).position)
       .completeOrthogonalDecomposition()
-      .solve(spread_at(over));
+      .solve(moved_at(over, change));
 }
 
-Eigen::MatrixXd Reach::spread_at(const States& states) const {
-  return linearise(machine_, point_readings(states), parameters_).jacobian * factor_;  // 3 N x k
+Eigen::MatrixXd Reach::moved_at(const States& states, const Eigen::MatrixXd& change) const {
+  return linearise(machine_, point_readings(states), parameters_).jacobian * change;  // 3 N x k
 }
 
-std::vector<Eigen::Matrix3d> Reach::covariance(const States& states) const {
-  std::vector<Eigen::Matrix3d> result(states.count, Eigen::Matrix3d::Zero());
+Eigen::MatrixXd Reach::moved(const States& states, const Eigen::MatrixXd& change) const {
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(3 * static_cast<Eigen::Index>(states.count), change.cols());
   if (!known_ || parameters_.size() == 0) return result;
-  const Eigen::MatrixXd spread = spread_at(states),
-                        motions = rigid_motions(forward(machine_, states).position);
+  result = moved_at(states, change);
+  const Eigen::MatrixXd motions = rigid_motions(forward(machine_, states).position);
   std::map<std::vector<double>, Eigen::MatrixXd> rigid;
   for (std::size_t i = 0; i < states.count; ++i) {
     const auto row = static_cast<Eigen::Index>(i);
@@ -125,9 +130,18 @@ std::vector<Eigen::Matrix3d> Reach::covariance(const States& states) const {
     for (std::size_t k = 0; k < machine_.inputs.size(); ++k)
       if (machine_.inputs[k].hidden_axis) tool.push_back(states.input[k][row]);
     auto found = rigid.find(tool);
-    if (found == rigid.end()) found = rigid.emplace(tool, rigid_part(states, row)).first;
-    const Eigen::MatrixXd rows =
-        spread.middleRows(3 * row, 3) - motions.middleRows(3 * row, 3) * found->second;
+    if (found == rigid.end()) found = rigid.emplace(tool, rigid_part(states, row, change)).first;
+    result.middleRows(3 * row, 3) -= motions.middleRows(3 * row, 3) * found->second;
+  }
+  return result;
+}
+
+std::vector<Eigen::Matrix3d> Reach::covariance(const States& states) const {
+  std::vector<Eigen::Matrix3d> result(states.count, Eigen::Matrix3d::Zero());
+  if (!known_ || parameters_.size() == 0) return result;
+  const Eigen::MatrixXd spread = moved(states, factor_);
+  for (std::size_t i = 0; i < states.count; ++i) {
+    const auto rows = spread.middleRows(3 * static_cast<Eigen::Index>(i), 3);
     result[i] = rows * rows.transpose();
   }
   return result;

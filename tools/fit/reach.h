@@ -40,17 +40,33 @@ class Reach {
   /// Root of the trace, um.
   Eigen::VectorXd std_um(const States& states) const;
 
+  /// The machine in workpiece coordinates alone, and its free parameters: what the factors below go with.
+  const Machine& machine() const { return machine_; }
+  const ParameterSet& parameters() const { return parameters_; }
+  /// n x k, covariance = F F^T of the parameters, in their units.
+  const Eigen::MatrixXd& factor() const { return factor_; }
+  /// n x m, part O O^T of the covariance: what no reading bears on, and what was set by hand.
+  const Eigen::MatrixXd& open() const { return open_; }
+  /// False where the file does not say what its readings left open.
+  bool open_known() const { return open_known_; }
+
+  /// What a change of the parameters by each column of `change` (n x k) moves the tool point by at each
+  /// state, but for the rigid motion of the whole as above: 3 N x k, mm. With `factor` its covariance is the
+  /// product with its own transpose.
+  Eigen::MatrixXd moved(const States& states, const Eigen::MatrixXd& change) const;
+
  private:
-  Eigen::MatrixXd spread_at(const States& states) const;
-  /// The motion of the whole that each column of the factor is (6 x k), with hidden axes (a choice of tool)
-  /// as in `like` at `row`, other inputs at their reference.
-  Eigen::MatrixXd rigid_part(const States& like, Eigen::Index row) const;
+  Eigen::MatrixXd moved_at(const States& states, const Eigen::MatrixXd& change) const;
+  /// The motion of the whole that each column is (6 x k), with hidden axes (a choice of tool) as in `like` at
+  /// `row`, other inputs at their reference.
+  Eigen::MatrixXd rigid_part(const States& like, Eigen::Index row, const Eigen::MatrixXd& change) const;
 
   Machine machine_;
   bool known_ = false;
   ParameterSet parameters_;
-  Eigen::MatrixXd factor_;  // n x k: rows of the record's factor, by parameter
-  States measured_;         // poses over the measured ranges
+  Eigen::MatrixXd factor_, open_;  // n x k, n x m: rows of the record's factors, by parameter
+  bool open_known_ = false;
+  States measured_;  // poses over the measured ranges
   std::vector<std::string> stale_;
 };
 

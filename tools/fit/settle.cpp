@@ -235,6 +235,7 @@ class Settler {
     const MatrixXd bias = left * spread * left.transpose();
     result_.bias = bias.diagonal().cwiseMax(0).cwiseSqrt();
     result_.covariance = gain * readings_covariance(data) * gain.transpose() + bias;
+    result_.open = bias;
     result_.normal = std::move(data);
   }
 

@@ -21,6 +21,7 @@ struct Settled {
   Eigen::VectorXd scale;       // as used: the convention's, lowered to what the machine's own errors are
   Eigen::VectorXd bias;        // what the convention may have moved each parameter by, standard deviation
   Eigen::MatrixXd covariance;  // of data, stated priors and convention, all parameters, times `variance`
+  Eigen::MatrixXd open;        // part of it: what no reading bears on, the spread of the scales
   double variance = 1;         // of a weighted reading: chi^2 / freedom, not below 1 where u is given
   double chi_square = 0;       // of the readings alone
   double freedom = 0;          // readings less what was fitted: trace of F (2 - F), F the share from data

@@ -10,6 +10,7 @@
 #include <pugixml.hpp>
 
 #include "tools/text/numbers.h"
+#include "tools/text/words.h"
 #include "tools/text/xml_text.h"
 
 namespace vernier {
@@ -63,7 +64,39 @@ Word take(const std::vector<std::uint8_t>& bytes, std::size_t& at) {
   return word;
 }
 
+void put_float(std::vector<std::uint8_t>& bytes, double number) {
+  const auto value = static_cast<float>(number);
+  std::uint32_t word = 0;
+  std::memcpy(&word, &value, sizeof word);
+  put(bytes, word);
+}
+
+double take_float(const std::vector<std::uint8_t>& bytes, std::size_t& at) {
+  const auto word = take<std::uint32_t>(bytes, at);
+  float value = 0;
+  std::memcpy(&value, &word, sizeof value);
+  return static_cast<double>(value);
+}
+
 }  // namespace
+
+Eigen::MatrixXd open_factor(const Eigen::MatrixXd& part, const Eigen::MatrixXd& covariance) {
+  constexpr double kLeast = 1e-3;  // of the covariance's squares
+  const Eigen::VectorXd std = covariance.diagonal().cwiseMax(0).cwiseSqrt();
+  const Eigen::VectorXd shrink = std.unaryExpr([](double s) { return s > 0 ? 1 / s : 0.0; });
+  Eigen::MatrixXd left = shrink.asDiagonal() * part * shrink.asDiagonal();
+  Eigen::MatrixXd factor(part.rows(), 0);
+  while (factor.cols() < part.rows()) {
+    Eigen::Index pivot = 0;
+    const double most = left.diagonal().size() > 0 ? left.diagonal().maxCoeff(&pivot) : 0;
+    if (!(most > kLeast)) break;
+    const Eigen::VectorXd column = left.col(pivot) / std::sqrt(most);
+    left.noalias() -= column * column.transpose();
+    factor.conservativeResize(Eigen::NoChange, factor.cols() + 1);
+    factor.rightCols(1) = std.cwiseProduct(column);
+  }
+  return factor.cast<float>().cast<double>();
+}
 
 Eigen::MatrixXd covariance_factor(const Eigen::MatrixXd& covariance) {
   const Eigen::VectorXd std = covariance.diagonal().cwiseMax(0).cwiseSqrt();
@@ -107,13 +140,26 @@ std::string fit_record_xml(const FitRecord& record) {
     put(bytes, word);
   }
   for (Eigen::Index row = 0; row < record.factor.rows(); ++row)
-    for (Eigen::Index column = 0; column <= row; ++column) {
-      const auto value = static_cast<float>(record.factor(row, column));
-      std::uint32_t word = 0;
-      std::memcpy(&word, &value, sizeof word);
-      put(bytes, word);
-    }
-  return text + "\" numbers=\"" + to_base64(bytes) + "\"/>\n  </fitted>\n";
+    for (Eigen::Index column = 0; column <= row; ++column) put_float(bytes, record.factor(row, column));
+  text += "\" numbers=\"" + to_base64(bytes) + "\"/>\n";
+  if (record.open_known) {
+    bytes.clear();
+    for (const double value : record.open.reshaped()) put_float(bytes, value);
+    text += "    <open numbers=\"" + to_base64(bytes) + "\"/>\n";
+  }
+  return text + "  </fitted>\n";
+}
+
+bool read_open_numbers(std::string_view text, std::size_t n, FitRecord& record) {
+  const std::vector<std::uint8_t> bytes = from_base64(text);
+  const bool whole = n > 0 ? bytes.size() % (4 * n) == 0 : bytes.empty();
+  if (!whole || (bytes.empty() && !trimmed(text).empty())) return false;
+  record.open = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(n),
+                                      static_cast<Eigen::Index>(n > 0 ? bytes.size() / (4 * n) : 0));
+  std::size_t at = 0;
+  for (double& value : record.open.reshaped()) value = take_float(bytes, at);
+  record.open_known = true;
+  return record.open.allFinite();
 }
 
 bool read_fit_numbers(std::string_view text, std::size_t n, FitRecord& record) {
@@ -128,12 +174,7 @@ bool read_fit_numbers(std::string_view text, std::size_t n, FitRecord& record) {
     std::memcpy(&value, &word, sizeof value);
   }
   for (Eigen::Index row = 0; row < size; ++row)
-    for (Eigen::Index column = 0; column <= row; ++column) {
-      const auto word = take<std::uint32_t>(bytes, at);
-      float value = 0;
-      std::memcpy(&value, &word, sizeof value);
-      record.factor(row, column) = static_cast<double>(value);
-    }
+    for (Eigen::Index column = 0; column <= row; ++column) record.factor(row, column) = take_float(bytes, at);
   return record.values.allFinite() && record.factor.allFinite();
 }
 

@@ -20,6 +20,10 @@ struct FitRecord {
   /// n x n lower triangle L, covariance = L L^T in the parameters' units: of data and of what stands in where
   /// they say nothing.
   Eigen::MatrixXd factor;
+  /// n x m, the part O O^T of the covariance that no reading bears on: the spread of the scales where they
+  /// stand in. m = 0: the readings determine everything.
+  Eigen::MatrixXd open;
+  bool open_known = false;      // a file that was written before this was kept does not say
   std::vector<Range> measured;  // of the fit rows
   bool converged = true;
   double rms_mm = 0, reach_mm = 0;  // what was left of the readings; half the diagonal of the measured box
@@ -42,6 +46,13 @@ Eigen::MatrixXd covariance_factor(const Eigen::MatrixXd& covariance);
 
 /// The element, indented by two, with its line end.
 std::string fit_record_xml(const FitRecord& record);
+
+/// O of a part of a covariance, m columns for its m directions (pivoted Cholesky, those that are more than
+/// 1e-3 of the covariance's own squares), rounded as the machine file keeps it. tool.
+Eigen::MatrixXd open_factor(const Eigen::MatrixXd& part, const Eigen::MatrixXd& covariance);
+
+/// Numbers of an `open` element: n x columns of them. False where the text is not that.
+bool read_open_numbers(std::string_view text, std::size_t n, FitRecord& record);
 
 /// Numbers of a covariance element: `values` and L, n and n (n + 1) / 2 of them. False where the text is not
 /// that.

@@ -116,6 +116,10 @@ class Reader {
         for (std::string name; std::getline(words, name, '|');) record->parameters.push_back(name);
         if (!read_fit_numbers(attribute(node, "numbers").value_or(""), record->parameters.size(), *record))
           fail_attribute(node, "numbers", "numbers", "these are not the numbers of the parameters named");
+      } else if (is(node, "open")) {
+        no_children(node);
+        if (!read_open_numbers(attribute(node, "numbers").value_or(""), record->parameters.size(), *record))
+          fail_attribute(node, "numbers", "numbers", "these are not numbers of the covariance's parameters");
       } else {
         unknown(node);
       }
