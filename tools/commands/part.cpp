@@ -8,6 +8,7 @@
 #include <set>
 
 #include "tools/commands/command.h"
+#include "tools/commands/part_kinds.h"
 #include "tools/evaluate/positioning.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/machine_writer.h"
@@ -287,10 +288,12 @@ void add_gauge_block(CLI::App& part) {
 
 void register_part(CLI::App& vernier) {
   CLI::App* part = vernier.add_subcommand(
-      "part", "Test parts: what a machine's errors cut, and the errors from the cut part");
+      "part",
+      "Parts: will one be in tolerance; test parts: what errors cut, and the errors from the cut part");
   part->require_subcommand(1);
   add_s_shape(*part);
   add_gauge_block(*part);
+  add_conformity(*part);
 }
 
 }  // namespace vernier::part_cli

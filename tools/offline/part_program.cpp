@@ -388,6 +388,8 @@ class Translator {
       const VectorXd begin = curve(from), end = curve(to);
       note_senses(begin, curve((from + to) / 2));
       const States states = along(curve, shares, false);
+      if (options_.watch)
+        options_.watch({place_.line, false, arc && (curve(1) - curve(0)).norm() < 1e-6, states});
       const Eigen::MatrixXd there = corrector_.commands(states);
       std::vector<Index> kept;
       const VectorXd& last = list.empty() ? command_ : list.back().command;
@@ -418,6 +420,7 @@ class Translator {
     if (rapid || !start_known) {
       // A rapid move is no path, and what comes from a place that is not known is none that could be cut.
       if (start_known) note_senses(curve(0), curve(1));
+      if (options_.watch) options_.watch({place_.line, true, false, {}});
       const States end = along(curve, {1}, rapid);
       const Eigen::MatrixXd there = corrector_.commands(end);
       corrector_.count(end, there);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -7,12 +8,21 @@
 
 namespace vernier {
 
+/// Part of a cutting move in which no axis turns round; of a rapid move nothing.
+struct ProgramStretch {
+  std::size_t line = 0;
+  bool rapid = false;
+  bool whole_circle = false;  // of the move that it belongs to
+  States states;              // as if the machine were ideal, a millimetre or a tenth of a degree apart
+};
+
 struct PartProgramOptions {
   /// How far the written path may leave the one that a correction at every moment would make, mm.
   double deviation_mm = 0.0005;
   /// Machine position of the program's zero, by axis: 0 where the program's coordinates are the machine's.
   std::vector<double> zero;
-  int digits = 5;  // behind the point
+  int digits = 5;                                    // behind the point
+  std::function<void(const ProgramStretch&)> watch;  // is told every move in the order of the program
 };
 
 struct PartProgram {

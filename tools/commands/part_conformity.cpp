@@ -1,0 +1,312 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "tools/commands/command.h"
+#include "tools/commands/part_kinds.h"
+#include "tools/fit/fit.h"
+#include "tools/kinematics/at.h"
+#include "tools/model/machine_reader.h"
+#include "tools/model/measurement.h"
+#include "tools/report/report.h"
+#include "tools/simulate/corrected.h"
+#include "tools/text/error.h"
+#include "tools/text/optional_json.h"
+#include "tools/text/words.h"
+#include "tools/tolerance/conformity.h"
+#include "tools/tolerance/program_features.h"
+
+namespace vernier::part_cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct ConformityArguments {
+  std::string machine, part, at, zero, place, tool, frame = "part", images, output, json;
+  std::vector<std::string> measurements, effects;
+  double position_mm = 0, size_mm = 0, form_mm = 0, process_um = 0;
+  std::uint64_t seed = 1;
+  bool with_rotary = false, uncorrected = false;
+};
+
+constexpr double kUm = 1000;  // per mm
+
+Json expectation_json(const Expectation& e) {
+  return {{"value_um", kUm * e.value},
+          {"mean_um", kUm * e.mean},
+          {"std_um", kUm * e.std},
+          {"interval_um", {kUm * e.low, kUm * e.high}},
+          {"u95_um", kUm * e.u95},
+          {"probability", or_null(e.probability)},
+          {"verdict", e.verdict ? Json(verdict_words(*e.verdict)) : Json(nullptr)}};
+}
+
+Json characteristic_json(const CharacteristicResult& one, const PlacedPart& part) {
+  const Feature& feature = part.features[one.feature].feature;
+  Json json = {{"feature", feature.name},
+               {"kind", kind_name(feature.kind)},
+               {"line", feature.line},
+               {"characteristic", characteristic_name(one.what)},
+               {"limits_um", nullptr},
+               {"uncorrected", expectation_json(one.off)},
+               {"corrected", expectation_json(one.on)},
+               {"dominant", one.dominant},
+               {"never_measured", one.open},
+               {"process", one.process},
+               {"sources", Json::array()}};
+  if (one.limits_mm) json["limits_um"] = {kUm * (*one.limits_mm)[0], kUm * (*one.limits_mm)[1]};
+  for (const SourceShare& source : one.sources)
+    json["sources"].push_back({{"name", source.name},
+                               {"effect", source.effect},
+                               {"fall_um", kUm * source.fall_mm},
+                               {"largest", source.largest},
+                               {"share_of_variance", source.variance},
+                               {"never_measured", source.open}});
+  return json;
+}
+
+Json conformity_json(const Machine& machine, const ConformityArguments& arguments, const PlacedPart& part,
+                     const PartConformity& result) {
+  Json json = {{"machine", machine.name},
+               {"part", arguments.part},
+               {"trials", result.trials},
+               {"seed", result.seed},
+               {"settled", result.settled},
+               {"trials_through", result.exact ? "chain" : "linear"},
+               {"linear_error_um", kUm * result.linear_mm},
+               {"never_measured_known", result.open_known},
+               {"stale", result.stale},
+               {"outside_measured", result.outside},
+               {"characteristics", Json::array()}};
+  for (const CharacteristicResult& one : result.characteristics)
+    json["characteristics"].push_back(characteristic_json(one, part));
+  return json;
+}
+
+std::string words_of(const Expectation& e) {
+  std::string text =
+      fmt::format("{:.2f} um (95 %: {:.2f} to {:.2f})", kUm * e.value, kUm * e.low, kUm * e.high);
+  if (e.probability) text += fmt::format(", {:.1f} % {}", 100 * *e.probability, verdict_words(*e.verdict));
+  return text;
+}
+
+/// What would help: to correct where a source is told, to measure where nobody did.
+std::string why(const CharacteristicResult& one) {
+  if (one.dominant.empty()) return "";
+  if (one.dominant.size() == 1) return one.dominant[0];
+  constexpr std::size_t kMost = 3;
+  std::vector<std::string> names(
+      one.dominant.begin(),
+      one.dominant.begin() + static_cast<std::ptrdiff_t>(std::min(kMost, one.dominant.size())));
+  return "not told apart: " + joined(names, ", ") +
+         (one.dominant.size() > kMost ? fmt::format(" and {} more", one.dominant.size() - kMost) : "");
+}
+
+/// The source that the uncertainty comes from most.
+std::string least_known(const CharacteristicResult& one) {
+  const auto most = std::max_element(one.sources.begin(), one.sources.end(),
+                                     [](const auto& a, const auto& b) { return a.variance < b.variance; });
+  if (most == one.sources.end() || most->variance <= 0) return one.process > 0 ? "process" : "";
+  if (one.process > most->variance) return fmt::format("process ({:.0f} %)", 100 * one.process);
+  return fmt::format("{} ({:.0f} %)", most->name, 100 * most->variance);
+}
+
+void print_conformity(std::FILE* out, const PlacedPart& part, const PartConformity& result) {
+  fmt::print(out, "{} trials, seed {}, {}\n", result.trials, result.seed,
+             result.exact ? "each through the whole chain" : "linear in what is not known of the machine");
+  if (!result.settled) fmt::print(out, "stopped before the ends of the intervals had settled\n");
+  for (const std::string& name : result.stale) fmt::print(out, "set by hand since the fit: {}\n", name);
+  for (const std::string& range : result.outside)
+    fmt::print(out, "the part is where nobody measured: {}\n", range);
+  for (const CharacteristicResult& one : result.characteristics) {
+    const Feature& feature = part.features[one.feature].feature;
+    fmt::print(out, "\n{}: {}", feature.name, characteristic_name(one.what));
+    if (one.limits_mm && one.what == Characteristic::kSize)
+      fmt::print(out, ", allowed {:+.4g} to {:+.4g} um", kUm * (*one.limits_mm)[0],
+                 kUm * (*one.limits_mm)[1]);
+    else if (one.limits_mm)
+      fmt::print(out, ", zone of {:.4g} um", kUm * (*one.limits_mm)[1]);
+    fmt::print(out, "\n  without correction {}\n  with correction    {}\n", words_of(one.off),
+               words_of(one.on));
+    if (!one.dominant.empty()) fmt::print(out, "  dominant: {}\n", why(one));
+    if (const std::string source = least_known(one); !source.empty())
+      fmt::print(out, "  least known: {}\n", source);
+    if (result.open_known && one.open > 0.005)
+      fmt::print(out, "  never measured: {:.0f} % of the variance\n", 100 * one.open);
+  }
+}
+
+std::string conformity_page(const Machine& machine, const ConformityArguments& arguments,
+                            const PlacedPart& part, const PartConformity& result) {
+  Json table = {{"caption", "95 % intervals over what the fit does not know; um"},
+                {"columns",
+                 {"feature", "characteristic", "allowed", "without correction", "with correction", "dominant",
+                  "least known", "never measured"}},
+                {"rows", Json::array()}};
+  for (const CharacteristicResult& one : result.characteristics)
+    table["rows"].push_back(
+        {part.features[one.feature].feature.name, characteristic_name(one.what),
+         one.limits_mm ? fmt::format("{:.4g} to {:.4g}", kUm * (*one.limits_mm)[0], kUm * (*one.limits_mm)[1])
+                       : "-",
+         words_of(one.off), words_of(one.on), why(one), least_known(one),
+         fmt::format("{:.0f} %", 100 * one.open)});
+  Json notes = Json::array();
+  for (const std::string& range : result.outside)
+    notes.push_back("the part is where nobody measured: " + range);
+  return improvement_report_html(
+      {{"title", "Will the part be in tolerance?"},
+       {"machine", machine.name},
+       {"files", {arguments.machine, arguments.part}},
+       {"sections",
+        {{{"title", "Features"},
+          {"prose",
+           {fmt::format("{} trials (seed {}) over the covariance of the last fit, GUM supplement 1.",
+                        result.trials, result.seed)}},
+          {"tables", {table}},
+          {"notes", notes}}}}});
+}
+
+/// A list of features has a header with its columns; a part program has blocks.
+bool is_list(const std::string& path, const std::string& text) {
+  if (path.ends_with(".csv")) return true;
+  for (const std::string& line : parts_of(text, '\n'))
+    if (const std::string words = trimmed(line); !words.empty() && words[0] != '#')
+      return words.find("feature") != std::string::npos && words.find(',') != std::string::npos;
+  return false;
+}
+
+Machine machine_of(const ConformityArguments& arguments) {
+  Machine machine = read_machine(arguments.machine);
+  if (!arguments.measurements.empty()) {
+    const Measurement rows =
+        read_measurement(arguments.measurements, machine, corrections_of_images(arguments.images));
+    FitResult fitted = fit(machine, rows);
+    if (!fitted.absurd.empty()) throw LimitNotMet(fitted.absurd);
+    if (!fitted.converged) throw LimitNotMet("the fit did not converge");
+    machine = std::move(fitted.machine);
+  }
+  return arguments.tool.empty() ? machine : tooled(machine, arguments.tool);
+}
+
+PlacedPart part_of(const ConformityArguments& arguments, const Machine& machine) {
+  const std::string text = read_file(arguments.part);
+  const States at = state_at(machine, arguments.at);
+  if (is_list(arguments.part, text)) {
+    if (!arguments.zero.empty())
+      throw InputError({}, "--zero", "goes with a part program; --place moves a list");
+    for (const auto& [value, name] :
+         {std::pair(arguments.position_mm, "--position"), std::pair(arguments.size_mm, "--size"),
+          std::pair(arguments.form_mm, "--form")})
+      if (value > 0) throw InputError({}, name, "goes with a part program; a list has columns for it");
+    Part part = parse_part(text, arguments.part);
+    if (!arguments.place.empty()) {
+      const std::vector<double> place = number_list(arguments.place, {3, 4}, "--place");
+      part = placed_at(part, {place[0], place[1], place[2]}, place.size() > 3 ? place[3] : 0);
+    }
+    return place_part(machine, part, at);
+  }
+  if (!arguments.place.empty())
+    throw InputError({}, "--place", "goes with a list of features; --zero moves a part program");
+  ProgramOptions options;
+  const States zero = state_at(machine, arguments.zero);
+  std::vector<char> known;
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    options.zero.push_back(zero.axis[i][0]);
+    known.push_back(("," + arguments.at).find("," + machine.axes[i].name + "=") != std::string::npos ? 1 : 0);
+  }
+  if (arguments.position_mm > 0) options.position_mm = arguments.position_mm;
+  if (arguments.form_mm > 0) options.form_mm = arguments.form_mm;
+  if (arguments.size_mm > 0) options.size_mm = {-arguments.size_mm, arguments.size_mm};
+  return program_part(machine, text, arguments.part, at, known, options);
+}
+
+/// The worst of the verdicts that the user asked about.
+void judge(const PlacedPart& part, const PartConformity& result, bool uncorrected) {
+  std::vector<std::string> failing;
+  for (const CharacteristicResult& one : result.characteristics) {
+    const auto& verdict = uncorrected ? one.off.verdict : one.on.verdict;
+    if (verdict && *verdict == PartVerdict::kDoesNotConform)
+      failing.push_back(
+          fmt::format("{} of {}", characteristic_name(one.what), part.features[one.feature].feature.name));
+  }
+  if (!failing.empty())
+    throw LimitNotMet(fmt::format("out of tolerance{}: {}", uncorrected ? "" : " with the correction too",
+                                  joined(failing, ", ")));
+}
+
+void run_conformity(const ConformityArguments& arguments) {
+  const Machine machine = machine_of(arguments);
+  const PlacedPart part = part_of(arguments, machine);
+  Progress progress("trials");
+  ConformityOptions options;
+  options.frame = arguments.frame == "machine" ? PartFrame::kMachine : PartFrame::kPart;
+  options.seed = arguments.seed;
+  options.process_mm = arguments.process_um / kUm;
+  options.with_rotary = arguments.with_rotary || machine.correct_orientation;
+  options.progress = [&](double share) { progress.update(share); };
+  const PartConformity result =
+      part_conformity(machine, part, arguments.part, effect_catalogue(arguments.effects), options);
+  if (!arguments.output.empty())
+    write_file(arguments.output, conformity_page(machine, arguments, part, result));
+  write_json(arguments.json, conformity_json(machine, arguments, part, result));
+  print_conformity(human_stream(arguments.json), part, result);
+  judge(part, result, arguments.uncorrected);
+}
+
+}  // namespace
+
+void add_conformity(CLI::App& part) {
+  auto a = std::make_shared<ConformityArguments>();
+  CLI::App* command = part.add_subcommand(
+      "conformity", "Will a part be in tolerance, how sure is that, and what is to blame?");
+  command->add_option("MACHINE", a->machine, "machine file (XML), fitted")->required();
+  command->add_option("PART", a->part, "features with tolerances (CSV), or a part program (RS-274)")
+      ->required();
+  command->add_option("MEAS", a->measurements,
+                      "measurement files (CSV) to fit the machine to first; none: as its file has it");
+  command->add_option(
+      "--place", a->place,
+      "where the list's zero stands in workpiece coordinates: \"X,Y,Z\" or \"X,Y,Z,TURN\" (mm, deg)");
+  command->add_option("--zero", a->zero,
+                      "machine position of the program's zero, tool length included: \"X=120,Y=80,Z=-40\"");
+  command->add_option("--at", a->at, "inputs, and where axes stand that the part does not ask for: \"T=25\"");
+  command->add_option("--tool", a->tool,
+                      "a tool of the file's <tools>, or \"X,Y,Z\" in mm from the end of the chain");
+  command
+      ->add_option("--frame", a->frame,
+                   "part: places count from the datums, else from all features; machine: from the machine")
+      ->check(CLI::IsMember({"part", "machine"}))
+      ->capture_default_str();
+  command->add_option("--position", a->position_mm, "of a program's features: width of the zone, mm")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--size", a->size_mm, "of a program's circles: diameter, plus and minus, mm")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--form", a->form_mm, "of a program's circles: width of the zone, mm")
+      ->check(CLI::PositiveNumber);
+  command
+      ->add_option("--process", a->process_um,
+                   "standard deviation of each point's own error, um: repeatability, tool, cutting")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command->add_option("--seed", a->seed, "of the trials")->capture_default_str();
+  command->add_option("--effects", a->effects,
+                      "files with effects of your own, for the names; may be repeated");
+  command->add_flag("--rotary", a->with_rotary, "correct with all axes; default: as the machine file says");
+  command->add_flag("--uncorrected", a->uncorrected,
+                    "the machine runs without its correction: that decides the exit status");
+  command->add_option("--images", a->images, kImagesHelp);
+  command->add_option("-o,--output", a->output, "the same as a page (HTML)");
+  command->add_option("--json", a->json, "result for programs; - for standard output");
+  command->footer(
+      "Monte Carlo over the covariance of the last fit (JCGM 101). A tolerance is kept, or not, from a\n"
+      "probability of 95 % on (ISO 14253-1:2017), else it cannot be said. Columns of a list: feature, kind\n"
+      "(point plane cylinder), x y z, nx ny nz, i j k, diameter, length, width, position, size or size_low\n"
+      "and size_high, form, datum (yes). Exit status 0 done (also where it cannot be said), 1 bad input\n"
+      "(nothing written), 2 something does not conform or is out of reach. See tools/docs/conformity.md.");
+  command->callback([a] { run_conformity(*a); });
+}
+
+}  // namespace vernier::part_cli

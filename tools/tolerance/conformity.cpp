@@ -1,0 +1,400 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/tolerance/conformity.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <random>
+
+#include "tools/fit/reach.h"
+#include "tools/model/chain.h"
+#include "tools/model/fit_record.h"
+#include "tools/model/prediction.h"
+#include "tools/model/work_poses.h"
+#include "tools/offline/corrector.h"
+#include "tools/text/error.h"
+#include "tools/tolerance/machine_sources.h"
+
+namespace vernier {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// JCGM 101:2008, 7.2.2 and 7.9.2: trials of a block; drawn a thousand at a time.
+constexpr Index kBlock = 10000, kAtOnce = 1000;
+/// Trials through the whole chain that the linear ones are held against.
+constexpr int kTried = 12;
+/// A linear trial may be off by this share of the standard deviation.
+constexpr double kLinearEnough = 0.05;
+
+/// Normal numbers that are the same everywhere for a seed.
+class Normals {
+ public:
+  explicit Normals(std::uint64_t seed) : engine_(seed) {}
+  MatrixXd draw(Index rows, Index columns) {
+    return MatrixXd::NullaryExpr(rows, columns, [this]() { return next(); });
+  }
+
+ private:
+  double uniform() { return (static_cast<double>(engine_() >> 11U) + 0.5) * 0x1p-53; }
+  double next() {
+    const double radius = std::sqrt(-2 * std::log(uniform()));
+    return radius * std::cos(2 * std::numbers::pi * uniform());
+  }
+  std::mt19937_64 engine_;
+};
+
+/// Blocks of trials of one value, summed up.
+struct Tally {
+  double sum = 0, squares = 0;
+  std::vector<double> low, high;  // of each block
+  std::size_t conforming = 0, trials = 0;
+
+  void take(std::vector<double>& block, const std::optional<std::array<double, 2>>& limits) {
+    std::sort(block.begin(), block.end());
+    const auto at = [&](double share) {
+      return block[static_cast<std::size_t>(share * static_cast<double>(block.size() - 1) + 0.5)];
+    };
+    low.push_back(at(0.025));
+    high.push_back(at(0.975));
+    for (const double value : block) {
+      sum += value;
+      squares += value * value;
+      if (limits && value >= (*limits)[0] && value <= (*limits)[1]) ++conforming;
+    }
+    trials += block.size();
+  }
+
+  double mean() const { return sum / static_cast<double>(trials); }
+  double std() const {
+    return std::sqrt(std::max(0.0, squares / static_cast<double>(trials) - mean() * mean()));
+  }
+  static double average(const std::vector<double>& list) {
+    return std::accumulate(list.begin(), list.end(), 0.0) / static_cast<double>(list.size());
+  }
+  /// Twice the standard deviation of the averages of both ends, the larger one.
+  double doubt() const {
+    double worst = 0;
+    for (const auto* list : {&low, &high}) {
+      double rest = 0;
+      for (const double one : *list) rest += std::pow(one - average(*list), 2);
+      const auto h = static_cast<double>(list->size());
+      worst = std::max(worst, 2 * std::sqrt(rest / (h * (h - 1))));
+    }
+    return worst;
+  }
+};
+
+class ConformityRunner {
+ public:
+  ConformityRunner(const Machine& machine, const PlacedPart& part, const std::string& file,
+                   const std::vector<Effect>& catalogue, const ConformityOptions& options)
+      : part_(part),
+        options_(options),
+        reach_(known(machine)),
+        values_(part_values(part, options.frame, file)) {
+    sources_ = machine_sources(reach_.machine(), reach_.parameters(), catalogue);
+    find_columns();
+    find_means(machine);
+    result_.seed = options.seed;
+    result_.stale = reach_.stale();
+    result_.open_known = reach_.open_known();
+    result_.outside = outside(machine);
+  }
+
+  PartConformity run() {
+    Normals normals(options_.seed);
+    try_chain(normals);
+    for (const Value& value : values_.values) {
+      CharacteristicResult one{value.feature, value.what, value.limits_mm, {}, {}, {}, {}, 0, 0};
+      result_.characteristics.push_back(std::move(one));
+    }
+    share_out(normals);
+    simulate(normals);
+    return std::move(result_);
+  }
+
+ private:
+  static const Machine& known(const Machine& machine) {
+    if (!machine.fitted)
+      throw InputError({machine.file, 0}, machine.name,
+                       "was never fitted (no <fitted>): how well it is known is not; give measurements, or "
+                       "what `vernier fit` wrote");
+    return machine;
+  }
+
+  void find_columns() {
+    const auto n = static_cast<Index>(reach_.parameters().size());
+    raw_ = MatrixXd(linearise(reach_.machine(), point_readings(part_.states), reach_.parameters()).jacobian);
+    const MatrixXd columns =
+        options_.frame == PartFrame::kMachine ? reach_.moved(part_.states, MatrixXd::Identity(n, n)) : raw_;
+    columns_ = values_.map * columns;
+    rigid_ = values_.map * (raw_ - columns);  // what the machine's frame takes out of each
+    spread_ = columns_ * reach_.factor();
+  }
+
+  /// Deviations of the points as the fitted machine makes them.
+  void find_means(const Machine& machine) {
+    Eigen::Matrix3Xd off = forward(reach_.machine(), part_.states).position - part_.point;
+    if (options_.frame == PartFrame::kMachine) take_rigid_out(off);
+    off_ = values_.map * off.reshaped();
+    Corrector corrector(machine, {.with_rotary = options_.with_rotary, .back = false});
+    const MatrixXd commands = corrector.commands(part_.states);
+    corrected_ = part_.states;
+    for (std::size_t a = 0; a < machine.axes.size(); ++a)
+      corrected_.axis[a] = commands.row(static_cast<Index>(a)).transpose().array();
+    const Eigen::Matrix3Xd on = forward(reach_.machine(), corrected_).position - part_.point;
+    on_ = values_.map * on.reshaped();
+    for (const MachineSource& source : sources_) {
+      Eigen::Matrix3Xd without =
+          forward(without_source(reach_.machine(), source), part_.states).position - part_.point;
+      if (options_.frame == PartFrame::kMachine) take_rigid_out(without, &source);
+      alone_.emplace_back(off_ - values_.map * without.reshaped());
+    }
+  }
+
+  /// The motion of the whole that fits the machine's deviations best over its work volume.
+  void take_rigid_out(Eigen::Matrix3Xd& deviations, const MachineSource* without = nullptr) const {
+    const WorkPoses poses = work_poses(reach_.machine());
+    const Machine machine =
+        without != nullptr ? without_source(reach_.machine(), *without) : reach_.machine();
+    const Eigen::Matrix3Xd at = forward(nominal_machine(machine), poses.states).position;
+    const Eigen::Matrix3Xd off = forward(machine, poses.states).position - at;
+    const VectorXd motion =
+        rigid_motions(at).completeOrthogonalDecomposition().solve(VectorXd(off.reshaped()));
+    const VectorXd moved = rigid_motions(part_.point) * motion;
+    deviations -= moved.reshaped(3, deviations.cols());
+  }
+
+  std::vector<std::string> outside(const Machine& machine) const {
+    std::vector<std::string> list;
+    for (const FitRecord::Range& range : machine.fitted->measured) {
+      const auto axis = machine.find_axis(range.name);
+      if (!axis) continue;
+      const double slack = 0.01 * (range.max - range.min);
+      const double least = part_.states.axis[*axis].minCoeff(), most = part_.states.axis[*axis].maxCoeff();
+      if (least < range.min - slack)
+        list.push_back(fmt::format("{} {:g} to {:g}", range.name, least, range.min));
+      if (most > range.max + slack)
+        list.push_back(fmt::format("{} {:g} to {:g}", range.name, range.max, most));
+    }
+    return list;
+  }
+
+  /// Rows of one draw of the parameters, through the whole chain, without and with the correction.
+  std::pair<VectorXd, VectorXd> through_chain(const VectorXd& z) {
+    const VectorXd change = reach_.factor() * z;
+    Machine drawn = reach_.machine();
+    reach_.parameters().set(drawn, reach_.parameters().get(drawn) + change);
+    const VectorXd rigid = rigid_ * change;
+    const auto rows = [&](const States& states) {
+      const Eigen::Matrix3Xd off = forward(drawn, states).position - part_.point;
+      return VectorXd(values_.map * off.reshaped() - rigid);
+    };
+    // The mean without its rigid part is what find_means() has: only changes are taken from the chain.
+    if (base_.size() == 0) {
+      const Eigen::Matrix3Xd off = forward(reach_.machine(), part_.states).position - part_.point;
+      base_ = values_.map * off.reshaped();
+    }
+    return {off_ + rows(part_.states) - base_, rows(corrected_)};
+  }
+
+  /// A few trials both ways: is the machine linear in what is not known of it?
+  void try_chain(Normals& normals) {
+    const MatrixXd z = normals.draw(spread_.cols(), kTried);
+    const MatrixXd many = spread_ * normals.draw(spread_.cols(), kAtOnce);
+    for (int trial = 0; trial < kTried && spread_.cols() > 0; ++trial) {
+      const auto [off, on] = through_chain(z.col(trial));
+      const VectorXd linear = off_ + spread_ * z.col(trial);
+      for (const Value& value : values_.values) {
+        const double wrong = std::abs(value.of(off) - value.of(linear));
+        VectorXd list(many.cols());
+        if (trial == 0) {
+          for (Index k = 0; k < many.cols(); ++k) list[k] = value.of(off_ + many.col(k));
+          std_.push_back(std::sqrt((list.array() - list.mean()).square().mean()));
+        }
+        result_.linear_mm = std::max(result_.linear_mm, wrong);
+        constexpr double kNothing_mm = 1e-6;
+        const auto at = static_cast<std::size_t>(&value - values_.values.data());
+        if (wrong > kNothing_mm + kLinearEnough * std_[at]) result_.exact = true;
+      }
+    }
+  }
+
+  /// Who moves what: exact at the fitted machine, linear in what is not known of it.
+  void share_out(Normals& normals) {
+    constexpr Index kDraws = 1000;
+    const MatrixXd z = normals.draw(spread_.cols(), kDraws);
+    std::vector<MatrixXd> part(sources_.size()), open_part(sources_.size());
+    for (std::size_t s = 0; s < sources_.size(); ++s) {
+      part[s] = MatrixXd::Zero(spread_.rows(), spread_.cols());
+      open_part[s] = MatrixXd::Zero(spread_.rows(), reach_.open().cols());
+      for (const std::size_t p : sources_[s].parameters) {
+        const auto column = columns_.col(static_cast<Index>(p));
+        part[s] += column * reach_.factor().row(static_cast<Index>(p));
+        open_part[s] += column * reach_.open().row(static_cast<Index>(p));
+      }
+    }
+    const MatrixXd open = columns_ * reach_.open(), drawn = (spread_ * z).colwise() + off_;
+    for (std::size_t v = 0; v < values_.values.size(); ++v) {
+      const Value& value = values_.values[v];
+      CharacteristicResult& one = result_.characteristics[v];
+      const auto own = [&](const MatrixXd& all) { return all.middleRows(value.first, value.count); };
+      const double process = std::pow(options_.process_mm, 2) * own(values_.map).squaredNorm();
+      const double total = std::max(own(spread_).squaredNorm() + process, 1e-300);
+      one.process = process / total;
+      one.open = own(open).squaredNorm() / total;
+      std::vector<std::size_t> won(sources_.size(), 0);
+      for (Index k = 0; k < kDraws; ++k) ++won[first_of(value, drawn.col(k), part, z.col(k))];
+      for (std::size_t s = 0; s < sources_.size(); ++s)
+        one.sources.push_back({sources_[s].name, sources_[s].effect, fall(value, off_, alone_[s]),
+                               static_cast<double>(won[s]) / static_cast<double>(kDraws),
+                               own(spread_).cwiseProduct(own(part[s])).sum() / total,
+                               own(open).cwiseProduct(own(open_part[s])).sum() / total});
+      name_dominant(one);
+    }
+  }
+
+  static double fall(const Value& value, const VectorXd& all, const VectorXd& of_source) {
+    return std::abs(value.of(all)) - std::abs(value.of(all - of_source));
+  }
+
+  std::size_t first_of(const Value& value, const VectorXd& all, const std::vector<MatrixXd>& part,
+                       const VectorXd& z) const {
+    std::size_t best = 0;
+    double most = -1e300;
+    for (std::size_t s = 0; s < sources_.size(); ++s) {
+      VectorXd of_source = alone_[s];
+      of_source.segment(value.first, value.count) += part[s].middleRows(value.first, value.count) * z;
+      const double now = fall(value, all, of_source);
+      if (now > most) most = now, best = s;
+    }
+    return best;
+  }
+
+  void name_dominant(CharacteristicResult& one) const {
+    std::vector<SourceShare> by_chance = one.sources;
+    std::stable_sort(by_chance.begin(), by_chance.end(),
+                     [](const auto& a, const auto& b) { return a.largest > b.largest; });
+    double sum = 0;
+    for (const SourceShare& source : by_chance) {
+      if (sum >= options_.confidence) break;
+      sum += source.largest;
+      one.dominant.push_back(source.name);
+    }
+    std::stable_sort(one.sources.begin(), one.sources.end(),
+                     [](const auto& a, const auto& b) { return a.fall_mm > b.fall_mm; });
+  }
+
+  void simulate(Normals& normals) {
+    std::vector<Tally> off(values_.values.size()), on(values_.values.size());
+    const std::size_t least = 2 * static_cast<std::size_t>(kBlock);
+    while (true) {
+      block(normals, off, on);
+      result_.trials = off.empty() ? 0 : off.front().trials;
+      if (off.empty() || result_.trials >= options_.most_trials) break;
+      if (result_.trials >= least && settled(off) && settled(on)) break;
+    }
+    result_.settled = off.empty() || (settled(off) && settled(on));
+    for (std::size_t v = 0; v < values_.values.size(); ++v) {
+      const Value& value = values_.values[v];
+      result_.characteristics[v].off = expectation(off[v], value, off_);
+      result_.characteristics[v].on = expectation(on[v], value, on_);
+    }
+  }
+
+  void block(Normals& normals, std::vector<Tally>& off, std::vector<Tally>& on) {
+    std::vector<std::vector<double>> off_values(off.size()), on_values(on.size());
+    for (Index done = 0; done < kBlock; done += kAtOnce) {
+      const MatrixXd z = normals.draw(spread_.cols(), kAtOnce);
+      MatrixXd own = MatrixXd::Zero(values_.map.rows(), kAtOnce);
+      if (options_.process_mm > 0)
+        own = options_.process_mm * (values_.map * normals.draw(values_.map.cols(), kAtOnce));
+      const MatrixXd change = result_.exact ? own : MatrixXd(own + spread_ * z);
+      for (Index k = 0; k < kAtOnce; ++k) {
+        VectorXd without = off_ + change.col(k), with = on_ + change.col(k);
+        if (result_.exact) {
+          const auto [chain_off, chain_on] = through_chain(z.col(k));
+          without = chain_off + own.col(k);
+          with = chain_on + own.col(k);
+        }
+        for (std::size_t v = 0; v < off.size(); ++v) {
+          off_values[v].push_back(values_.values[v].of(without));
+          on_values[v].push_back(values_.values[v].of(with));
+        }
+      }
+      if (options_.progress)
+        options_.progress(static_cast<double>(result_.trials + static_cast<std::size_t>(done)) /
+                          static_cast<double>(options_.most_trials));
+    }
+    for (std::size_t v = 0; v < off.size(); ++v) {
+      off[v].take(off_values[v], values_.values[v].limits_mm);
+      on[v].take(on_values[v], values_.values[v].limits_mm);
+    }
+  }
+
+  bool settled(const std::vector<Tally>& tallies) const {
+    constexpr double kNothing_mm = 1e-7;
+    return std::all_of(tallies.begin(), tallies.end(), [&](const Tally& one) {
+      return one.doubt() <= options_.tolerance * one.std() + kNothing_mm;
+    });
+  }
+
+  Expectation expectation(const Tally& tally, const Value& value, const VectorXd& mean) const {
+    Expectation e{value.of(mean),
+                  tally.mean(),
+                  tally.std(),
+                  Tally::average(tally.low),
+                  Tally::average(tally.high),
+                  0,
+                  {},
+                  {}};
+    e.u95 = (e.high - e.low) / 2;
+    if (!value.limits_mm) return e;
+    e.probability = static_cast<double>(tally.conforming) / static_cast<double>(tally.trials);
+    e.verdict = *e.probability >= options_.confidence       ? PartVerdict::kConforms
+                : *e.probability <= 1 - options_.confidence ? PartVerdict::kDoesNotConform
+                                                            : PartVerdict::kCannotBeSaid;
+    return e;
+  }
+
+  const PlacedPart& part_;
+  const ConformityOptions& options_;
+  Reach reach_;
+  PartValues values_;
+  std::vector<MachineSource> sources_;
+  MatrixXd raw_;                       // 3 N x p: of the points, by parameter
+  MatrixXd columns_, rigid_, spread_;  // of the map's rows, by parameter; by column of the factor
+  States corrected_;
+  VectorXd off_, on_, base_;     // rows of the map at the fitted machine, without and with its correction
+  std::vector<VectorXd> alone_;  // of each source
+  std::vector<double> std_;      // of each value, from linear trials
+  PartConformity result_;
+};
+
+}  // namespace
+
+const char* verdict_words(PartVerdict verdict) {
+  switch (verdict) {
+    case PartVerdict::kConforms:
+      return "conforms";
+    case PartVerdict::kDoesNotConform:
+      return "does not conform";
+    case PartVerdict::kCannotBeSaid:
+      return "cannot be said";
+  }
+  return "";
+}
+
+PartConformity part_conformity(const Machine& machine, const PlacedPart& part, const std::string& file,
+                               const std::vector<Effect>& catalogue, const ConformityOptions& options) {
+  return ConformityRunner(machine, part, file, catalogue, options).run();
+}
+
+}  // namespace vernier

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/effects/catalogue.h"
+#include "tools/model/machine.h"
+#include "tools/tolerance/feature_values.h"
+
+namespace vernier {
+
+struct ConformityOptions {
+  PartFrame frame = PartFrame::kPart;
+  std::uint64_t seed = 1;
+  /// Trials go on, ten thousand at a time, until twice the standard deviation of their averages of an
+  /// interval's ends is below this share of its standard uncertainty: one digit of two (JCGM 101:2008, 7.9).
+  double tolerance = 0.05;
+  std::size_t most_trials = 500000;
+  /// Probability from which a tolerance counts as kept, or as not kept: the default conformance probability
+  /// limit of ISO 14253-1:2017.
+  double confidence = 0.95;
+  /// Standard deviation of each point's own error, mm: repeatability, tool, cutting. The machine file knows
+  /// nothing of it.
+  double process_mm = 0;
+  bool with_rotary = false;              // the correction moves all axes
+  std::function<void(double)> progress;  // share done
+};
+
+enum class PartVerdict : std::uint8_t { kConforms, kDoesNotConform, kCannotBeSaid };
+const char* verdict_words(PartVerdict verdict);
+
+/// What is expected of one characteristic, mm.
+struct Expectation {
+  double value = 0;                   // of the machine as it was fitted
+  double mean = 0, std = 0;           // over the trials
+  double low = 0, high = 0;           // 95 % of the trials lie within, as many below as above
+  double u95 = 0;                     // half of that interval
+  std::optional<double> probability;  // of conformity
+  std::optional<PartVerdict> verdict;
+};
+
+/// What a source has to do with a characteristic.
+struct SourceShare {
+  std::string name, effect;
+  /// By how much the uncorrected value falls when the source is switched off, mm; and the probability that no
+  /// other source's fall is larger.
+  double fall_mm = 0, largest = 0;
+  /// Part of the variance: of the source's own contribution with the whole. Below 0 where it and others lean
+  /// on one another.
+  double variance = 0;
+  double open = 0;  // part of the variance that is this source's and that no reading bears on
+};
+
+struct CharacteristicResult {
+  std::size_t feature = 0;
+  Characteristic what = Characteristic::kPosition;
+  std::optional<std::array<double, 2>> limits_mm;
+  Expectation off, on;               // without and with the correction
+  std::vector<SourceShare> sources;  // largest fall first
+  /// The sources of which one falls most with the confidence asked for: one where it is told.
+  std::vector<std::string> dominant;
+  double open = 0;     // part of the variance that no reading bears on
+  double process = 0;  // part of the points' own errors
+};
+
+struct PartConformity {
+  std::vector<CharacteristicResult> characteristics;
+  std::size_t trials = 0;
+  std::uint64_t seed = 0;
+  bool settled = true;     // the numerical tolerance was reached
+  bool exact = false;      // every trial through the whole chain; else linear in the parameters
+  double linear_mm = 0;    // by how much the linear trials were off in those that were tried with the chain
+  bool open_known = true;  // the machine file says what its readings left open
+  std::vector<std::string> stale;    // parameters that were changed since the fit
+  std::vector<std::string> outside;  // "Z -350..-300": where the part is and nobody measured
+};
+
+/// Monte Carlo over the covariance that the last fit left in the machine file (JCGM 101:2008): what every
+/// characteristic of the part will be, with and without the machine's correction. Throws InputError where the
+/// machine was never fitted. tool.
+PartConformity part_conformity(const Machine& machine, const PlacedPart& part, const std::string& file,
+                               const std::vector<Effect>& catalogue, const ConformityOptions& options = {});
+
+}  // namespace vernier

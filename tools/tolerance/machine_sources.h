@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tools/effects/catalogue.h"
+#include "tools/model/machine.h"
+#include "tools/model/parameters.h"
+
+namespace vernier {
+
+/// One cause of deviations, by the name that the catalogue of effects has for it: `squareness of Y in X`.
+/// Statics and table columns that are the same effect of the same axis at the same place are one.
+struct MachineSource {
+  std::string name;
+  std::string effect;                   // id of the catalogue; "custom": a term that it does not hold
+  std::vector<std::size_t> parameters;  // indices into the set that it was made with
+  std::vector<std::size_t> statics;
+  std::vector<std::pair<std::size_t, std::size_t>> columns;  // of tables: table, column
+  std::vector<std::size_t> scales;                           // axes with a scale factor
+};
+
+/// What is free in a machine, or is away from nominal. A static is named by the term that it stands in: its
+/// quantities and functions, and the degree of freedom that it acts on, are looked for among the forms of the
+/// catalogue, in its order. tool.
+std::vector<MachineSource> machine_sources(const Machine& machine, const ParameterSet& parameters,
+                                           const std::vector<Effect>& catalogue);
+
+/// The machine with this source at nominal. tool.
+Machine without_source(const Machine& machine, const MachineSource& source);
+
+}  // namespace vernier

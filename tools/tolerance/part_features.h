@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace vernier {
+
+enum class FeatureKind : std::uint8_t {
+  kPoint,
+  kPlane,
+  kCylinder,  // hole or boss; without length a circle
+  kPath,      // what a program cuts between two rapid moves
+};
+const char* kind_name(FeatureKind kind);
+
+/// What of a feature may be out of tolerance.
+enum class Characteristic : std::uint8_t {
+  kPosition,  // width or diameter of the zone about its true place that it takes up, ISO 1101
+  kSize,      // actual - nominal diameter
+  kForm,      // width of the zone about its own least-squares plane or cylinder
+};
+const char* characteristic_name(Characteristic characteristic);
+
+/// A feature of a part with its tolerances. Workpiece coordinates, mm.
+struct Feature {
+  std::string name;
+  FeatureKind kind = FeatureKind::kPoint;
+  Eigen::Vector3d at = Eigen::Vector3d::Zero();  // the point; the middle of the others
+  /// Unit normal of a point or plane, axis of a cylinder; 0: a point that is judged in every direction.
+  Eigen::Vector3d direction = Eigen::Vector3d::Zero();
+  std::optional<Eigen::Vector3d> tool;  // direction of the tool there; none: the rotary axes stay
+  double diameter_mm = 0, length_mm = 0, width_mm = 0;
+  std::optional<double> position_mm, form_mm;    // zones
+  std::optional<std::array<double, 2>> size_mm;  // limits of actual - nominal diameter
+  bool datum = false;                            // it is what the others are measured from
+  std::size_t line = 0;
+};
+
+/// A part as its drawing has it.
+struct Part {
+  std::string file;
+  std::vector<Feature> features;
+};
+
+/// Reads a part from CSV: feature, kind (point plane cylinder), x y z, and where they say something nx ny nz,
+/// i j k (direction of the tool), diameter, length, width, position, size (plus and minus) or size_low and
+/// size_high, form, datum (yes). A unit stands in the header, mm where there is none. Throws InputError with
+/// file, line and word. tool.
+Part parse_part(const std::string& text, const std::string& file);
+
+/// The part moved: turned about the workpiece's z by `turn_deg`, then shifted, mm. tool.
+Part placed_at(const Part& part, const Eigen::Vector3d& shift_mm, double turn_deg);
+
+}  // namespace vernier

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/tolerance/placed_part.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "tools/kinematics/inverse.h"
+#include "tools/text/error.h"
+
+namespace vernier {
+namespace {
+
+using Eigen::Index;
+using Eigen::Vector3d;
+
+/// Points of a feature: on each circle, circles of a cylinder, points along an edge of a plane. Twelve tell
+/// the first three waves of a circle, five a curve of fourth degree.
+constexpr int kOnCircle = 12, kCircles = 3, kOnEdge = 5;
+
+struct Sample {
+  Vector3d point, direction;
+};
+
+/// Two unit vectors across `axis`, the first one as near to X (else Y) as can be.
+std::array<Vector3d, 2> across(const Vector3d& axis) {
+  const Vector3d like = std::abs(axis.x()) < 0.9 ? Vector3d::UnitX() : Vector3d::UnitY();
+  const Vector3d first = (like - like.dot(axis) * axis).normalized();
+  return {first, axis.cross(first)};
+}
+
+std::vector<Sample> samples_of(const Feature& feature) {
+  std::vector<Sample> samples;
+  if (feature.kind == FeatureKind::kPoint) return {{feature.at, feature.direction}};
+  const auto [u, v] = across(feature.direction);
+  if (feature.kind == FeatureKind::kPlane) {
+    for (int row = 0; row < kOnEdge; ++row)
+      for (int k = 0; k < kOnEdge; ++k) {
+        const int column = row % 2 == 0 ? k : kOnEdge - 1 - k;  // there and back
+        const double a = column / (kOnEdge - 1.0) - 0.5, b = row / (kOnEdge - 1.0) - 0.5;
+        samples.push_back(
+            {feature.at + a * feature.length_mm * u + b * feature.width_mm * v, feature.direction});
+      }
+    return samples;
+  }
+  const int circles = feature.length_mm > 0 ? kCircles : 1;
+  for (int circle = 0; circle < circles; ++circle)
+    for (int k = 0; k < kOnCircle; ++k) {
+      const double height = circles > 1 ? circle / (circles - 1.0) - 0.5 : 0;
+      const double angle = 2 * std::numbers::pi * k / kOnCircle;
+      const Vector3d out = std::cos(angle) * u + std::sin(angle) * v;
+      samples.push_back(
+          {feature.at + height * feature.length_mm * feature.direction + 0.5 * feature.diameter_mm * out,
+           out});
+    }
+  return samples;
+}
+
+/// Axis positions of one feature's points, each found from the one before.
+class PointSolver {
+ public:
+  PointSolver(const Machine& machine, const std::string& file)
+      : nominal_(nominal_machine(machine)), file_(file), linear_(linear_axes(machine)) {}
+
+  States solve_all(const Feature& feature, const std::vector<Sample>& samples, const States& start) const {
+    InverseOptions options;
+    options.match = feature.tool ? Match::kDirection : Match::kPosition;
+    if (!feature.tool && !linear_.empty()) options.axes = linear_;
+    Poses target;
+    target.position.resize(3, static_cast<Index>(samples.size()));
+    for (std::size_t i = 0; i < samples.size(); ++i)
+      target.position.col(static_cast<Index>(i)) = samples[i].point;
+    const Eigen::Matrix3d turn =
+        feature.tool ? Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), *feature.tool).toRotationMatrix()
+                     : Eigen::Matrix3d::Identity();
+    target.rotation.assign(samples.size(), turn);
+    States states = select_states(start, std::vector<std::size_t>(samples.size(), 0));
+    InverseResult all = solve(nominal_, target, states, options);
+    for (std::size_t i = 0; i < samples.size(); ++i)
+      if (!all.each[i].converged) again(feature, target, i, options, all);
+    return all.states;
+  }
+
+ private:
+  void again(const Feature& feature, const Poses& target, std::size_t i, const InverseOptions& options,
+             InverseResult& all) const {
+    constexpr int kRestarts = 48;
+    const auto at = static_cast<Index>(i);
+    const Poses one{target.position.col(at), {target.rotation[i]}};
+    const States from = select_states(all.states, {i > 0 ? i - 1 : i});
+    const InverseResult result = solve_anywhere(nominal_, one, from, options, kRestarts);
+    const Inverse& proof = result.each[0];
+    if (!proof.converged)
+      throw LimitNotMet(fmt::format("{}:{}: \"{}\": the machine does not get to {:.6g} {:.6g} {:.6g}: {}",
+                                    file_, feature.line, feature.name, target.position(0, at),
+                                    target.position(1, at), target.position(2, at), name_of(proof.fault)));
+    for (std::size_t a = 0; a < nominal_.axes.size(); ++a) all.states.axis[a][at] = result.states.axis[a][0];
+  }
+
+  Machine nominal_;
+  const std::string& file_;
+  std::vector<std::size_t> linear_;
+};
+
+/// Where axes have ranges their middle is the safest place to begin a search.
+States start_of(const Machine& machine, const States& at) {
+  States start = at;
+  for (std::size_t a = 0; a < machine.axes.size(); ++a)
+    if (const auto range = work_range(machine, a); range && !machine.axes[a].rotary && at.axis[a][0] == 0)
+      start.axis[a][0] = 0.5 * ((*range)[0] + (*range)[1]);
+  return start;
+}
+
+/// Senses of the axes as points follow one another; an axis that stays keeps its last sense, and begins
+/// coming from below.
+void set_senses(const Machine& machine, std::size_t first, std::size_t count, States& states) {
+  constexpr double kStill = 1e-6;  // mm or deg
+  for (std::size_t a = 0; a < machine.axes.size(); ++a) {
+    double sense = 1;
+    const auto way = [&](std::size_t from, std::size_t to) {
+      return states.axis[a][static_cast<Index>(to)] - states.axis[a][static_cast<Index>(from)];
+    };
+    for (std::size_t i = 1; i < count; ++i)
+      if (const double step = way(first + i - 1, first + i); std::abs(step) > kStill) {
+        sense = step > 0 ? 1 : -1;
+        break;
+      }
+    for (std::size_t i = 0; i < count; ++i) {
+      if (i > 0)
+        if (const double step = way(first + i - 1, first + i); std::abs(step) > kStill)
+          sense = step > 0 ? 1 : -1;
+      states.direction[a][static_cast<Index>(first + i)] = sense;
+    }
+  }
+}
+
+}  // namespace
+
+PlacedPart place_part(const Machine& machine, const Part& part, const States& at) {
+  PlacedPart placed;
+  const PointSolver solver(machine, part.file);
+  const States start = start_of(machine, at);
+  std::vector<States> parts;
+  std::size_t count = 0;
+  for (const Feature& feature : part.features) {
+    const std::vector<Sample> samples = samples_of(feature);
+    PlacedFeature one{feature, count, samples.size(), {}};
+    one.direction.resize(3, static_cast<Index>(samples.size()));
+    for (std::size_t i = 0; i < samples.size(); ++i)
+      one.direction.col(static_cast<Index>(i)) = samples[i].direction;
+    parts.push_back(solver.solve_all(feature, samples, start));
+    count += samples.size();
+    placed.features.push_back(std::move(one));
+  }
+  placed.states = select_states(at, std::vector<std::size_t>(count, 0));
+  for (std::size_t f = 0; f < parts.size(); ++f) {
+    const PlacedFeature& one = placed.features[f];
+    for (std::size_t a = 0; a < machine.axes.size(); ++a)
+      placed.states.axis[a].segment(static_cast<Index>(one.first), static_cast<Index>(one.count)) =
+          parts[f].axis[a];
+    set_senses(machine, one.first, one.count, placed.states);
+  }
+  placed.point = forward(nominal_machine(machine), placed.states).position;
+  return placed;
+}
+
+}  // namespace vernier

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <Eigen/Core>
+#include <vector>
+
+#include "tools/model/machine.h"
+#include "tools/model/states.h"
+#include "tools/tolerance/part_features.h"
+
+namespace vernier {
+
+/// A feature as the machine cuts or touches it.
+struct PlacedFeature {
+  Feature feature;
+  std::size_t first = 0, count = 0;  // its states
+  /// The direction that counts at each: surface normals; of a path its tangent, along which nothing does; 0:
+  /// every direction.
+  Eigen::Matrix3Xd direction;
+};
+
+/// Where the machine stands for every point of every feature.
+struct PlacedPart {
+  std::vector<PlacedFeature> features;
+  States states;
+  Eigen::Matrix3Xd point;  // nominal, workpiece coordinates, mm
+};
+
+/// Points spread over every feature (a cylinder's 12 on each of three circles, a plane's 5 x 5) and the axis
+/// positions at which the nominal chain has its tool there; senses of motion as they follow one another, a
+/// circle counter-clockwise about its axis. `at`: inputs, and where the axes stand that are not needed.
+/// Throws LimitNotMet where a point is out of reach, naming the line. tool.
+PlacedPart place_part(const Machine& machine, const Part& part, const States& at);
+
+}  // namespace vernier

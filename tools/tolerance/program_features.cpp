@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/tolerance/program_features.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "tools/model/chain.h"
+#include "tools/offline/part_program.h"
+#include "tools/text/error.h"
+
+namespace vernier {
+namespace {
+
+using Eigen::Index;
+
+/// Points that are looked at on a stretch of a path; on a circle.
+constexpr std::size_t kOnStretch = 12, kOnWhole = 24;
+
+/// Moves that make one feature.
+struct Cut {
+  std::size_t first_line = 0, last_line = 0;
+  bool circle = false;
+  std::vector<States> stretches;
+};
+
+class CutCollector {
+ public:
+  explicit CutCollector(std::size_t axes) : axes_(axes) {}
+
+  void take(const ProgramStretch& stretch) {
+    if (stretch.rapid) {
+      open_ = false;
+      return;
+    }
+    const bool same_circle =
+        open_ && stretch.whole_circle && cuts.back().circle && cuts.back().last_line == stretch.line;
+    if (stretch.whole_circle ? !same_circle : (!open_ || cuts.back().circle)) {
+      cuts.push_back({stretch.line, stretch.line, stretch.whole_circle, {}});
+      open_ = true;
+    }
+    Cut& cut = cuts.back();
+    cut.last_line = stretch.line;
+    cut.stretches.push_back(stretch.states);
+  }
+
+  /// All stretches of a cut in one, `most` points of each, evenly.
+  States points_of(const Cut& cut, std::size_t most) const {
+    std::vector<std::pair<const States*, std::size_t>> rows;
+    for (const States& states : cut.stretches) {
+      const std::size_t count = std::min(most, states.count);
+      // The last point of a stretch is the first of the next one.
+      for (std::size_t k = 0; k < count; ++k) rows.emplace_back(&states, k * states.count / count);
+    }
+    States all = select_states(cut.stretches.front(), std::vector<std::size_t>(rows.size(), 0));
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const auto to = static_cast<Index>(i), from = static_cast<Index>(rows[i].second);
+      for (const auto list :
+           {&States::axis, &States::direction, &States::velocity, &States::acceleration, &States::since})
+        for (std::size_t a = 0; a < axes_; ++a) (all.*list)[a][to] = (rows[i].first->*list)[a][from];
+      all.feed[to] = rows[i].first->feed[from];
+    }
+    return all;
+  }
+
+  std::vector<Cut> cuts;
+
+ private:
+  std::size_t axes_;
+  bool open_ = false;
+};
+
+Eigen::Matrix3Xd tangents_of(const Eigen::Matrix3Xd& points) {
+  Eigen::Matrix3Xd tangents = Eigen::Matrix3Xd::Zero(3, points.cols());
+  for (Index i = 0; i < points.cols(); ++i) {
+    const Eigen::Vector3d way =
+        points.col(std::min(i + 1, points.cols() - 1)) - points.col(std::max<Index>(i - 1, 0));
+    if (way.norm() > 1e-9) tangents.col(i) = way.normalized();
+  }
+  return tangents;
+}
+
+/// Centre, axis and diameter of a circle from points even all round it.
+void make_circle(const Eigen::Matrix3Xd& points, Feature& feature, Eigen::Matrix3Xd& direction) {
+  feature.at = points.rowwise().mean();
+  const Eigen::Matrix3Xd from = points.colwise() - feature.at;
+  Eigen::Vector3d axis = Eigen::Vector3d::Zero();
+  for (Index i = 0; i + 1 < from.cols(); ++i) axis += from.col(i).cross(Eigen::Vector3d(from.col(i + 1)));
+  feature.direction = axis.normalized();
+  feature.diameter_mm = 2 * from.colwise().norm().mean();
+  direction = from.colwise().normalized();
+}
+
+}  // namespace
+
+PlacedPart program_part(const Machine& machine, const std::string& text, const std::string& file,
+                        const States& at, const std::vector<char>& known, const ProgramOptions& options) {
+  CutCollector collector(machine.axes.size());
+  PartProgramOptions reading;
+  reading.zero = options.zero;
+  reading.watch = [&](const ProgramStretch& stretch) { collector.take(stretch); };
+  Corrector corrector(machine);
+  corrected_program(text, file, at, known, reading, corrector);
+  if (collector.cuts.empty()) throw InputError({file, 0}, file, "no cutting move (G1, G2, G3)");
+  PlacedPart part;
+  std::vector<States> all;
+  std::size_t count = 0;
+  const Machine nominal = nominal_machine(machine);
+  for (const Cut& cut : collector.cuts) {
+    const States states = collector.points_of(
+        cut, cut.circle ? std::max(kOnStretch, kOnWhole / cut.stretches.size()) : kOnStretch);
+    const Eigen::Matrix3Xd points = forward(nominal, states).position;
+    PlacedFeature one;
+    one.first = count;
+    one.count = states.count;
+    one.feature.kind = cut.circle ? FeatureKind::kCylinder : FeatureKind::kPath;
+    one.feature.name = cut.first_line == cut.last_line
+                           ? fmt::format("{} of line {}", cut.circle ? "circle" : "path", cut.first_line)
+                           : fmt::format("path of lines {} to {}", cut.first_line, cut.last_line);
+    one.feature.line = cut.first_line;
+    one.feature.position_mm = options.position_mm;
+    if (cut.circle) {
+      one.feature.size_mm = options.size_mm;
+      one.feature.form_mm = options.form_mm;
+      make_circle(points, one.feature, one.direction);
+    } else {
+      one.feature.at = points.rowwise().mean();
+      one.direction = tangents_of(points);
+    }
+    all.push_back(states);
+    count += states.count;
+    part.features.push_back(std::move(one));
+  }
+  part.states = select_states(at, std::vector<std::size_t>(count, 0));
+  part.point.resize(3, static_cast<Index>(count));
+  for (std::size_t f = 0; f < all.size(); ++f) {
+    const auto first = static_cast<Index>(part.features[f].first), n = static_cast<Index>(all[f].count);
+    for (const auto list :
+         {&States::axis, &States::direction, &States::velocity, &States::acceleration, &States::since})
+      for (std::size_t a = 0; a < machine.axes.size(); ++a)
+        (part.states.*list)[a].segment(first, n) = (all[f].*list)[a];
+    part.states.feed.segment(first, n) = all[f].feed;
+  }
+  part.point = forward(nominal, part.states).position;
+  return part;
+}
+
+}  // namespace vernier

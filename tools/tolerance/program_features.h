@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <string>
+#include <vector>
+
+#include "tools/model/machine.h"
+#include "tools/model/states.h"
+#include "tools/tolerance/placed_part.h"
+
+namespace vernier {
+
+struct ProgramOptions {
+  std::vector<double> zero;  // machine position of the program's zero, by axis
+  /// For every feature that the program cuts.
+  std::optional<double> position_mm, form_mm;
+  std::optional<std::array<double, 2>> size_mm;
+};
+
+/// What a part program cuts (RS-274, as tools/offline reads it): whole circles as circles, everything else
+/// between two rapid moves as a path, of which nothing counts along itself. `at`, `known`: where the axes
+/// stand before the first block. Throws InputError with file, line and word. tool.
+PlacedPart program_part(const Machine& machine, const std::string& text, const std::string& file,
+                        const States& at, const std::vector<char>& known, const ProgramOptions& options);
+
+}  // namespace vernier
