@@ -11,6 +11,7 @@
 #include <random>
 
 #include "tools/fit/reach.h"
+#include "tools/kinematics/inverse.h"
 #include "tools/model/chain.h"
 #include "tools/model/fit_record.h"
 #include "tools/model/prediction.h"
@@ -30,6 +31,8 @@ using Eigen::VectorXd;
 constexpr Index kBlock = 10000, kAtOnce = 1000;
 /// Trials through the whole chain that the linear ones are held against.
 constexpr int kTried = 12;
+/// What is smaller is nobody's concern: a nanometre.
+constexpr double kNothing_mm = 1e-6;
 /// A linear trial may be off by this share of the standard deviation.
 constexpr double kLinearEnough = 0.05;
 
@@ -144,7 +147,8 @@ class ConformityRunner {
     Eigen::Matrix3Xd off = forward(reach_.machine(), part_.states).position - part_.point;
     if (options_.frame == PartFrame::kMachine) take_rigid_out(off);
     off_ = values_.map * off.reshaped();
-    Corrector corrector(machine, {.with_rotary = options_.with_rotary, .back = false});
+    const bool rotary = options_.with_rotary || linear_axes(machine).empty();
+    Corrector corrector(machine, {.with_rotary = rotary, .back = false});
     const MatrixXd commands = corrector.commands(part_.states);
     corrected_ = part_.states;
     for (std::size_t a = 0; a < machine.axes.size(); ++a)
@@ -220,7 +224,6 @@ class ConformityRunner {
           std_.push_back(std::sqrt((list.array() - list.mean()).square().mean()));
         }
         result_.linear_mm = std::max(result_.linear_mm, wrong);
-        constexpr double kNothing_mm = 1e-6;
         const auto at = static_cast<std::size_t>(&value - values_.values.data());
         if (wrong > kNothing_mm + kLinearEnough * std_[at]) result_.exact = true;
       }
@@ -279,12 +282,14 @@ class ConformityRunner {
   }
 
   void name_dominant(CharacteristicResult& one) const {
+    const auto falls = [](const SourceShare& source) { return source.fall_mm > kNothing_mm; };
+    const bool any = std::any_of(one.sources.begin(), one.sources.end(), falls);
     std::vector<SourceShare> by_chance = one.sources;
     std::stable_sort(by_chance.begin(), by_chance.end(),
                      [](const auto& a, const auto& b) { return a.largest > b.largest; });
     double sum = 0;
     for (const SourceShare& source : by_chance) {
-      if (sum >= options_.confidence) break;
+      if (!any || sum >= options_.confidence) break;
       sum += source.largest;
       one.dominant.push_back(source.name);
     }
@@ -340,7 +345,6 @@ class ConformityRunner {
   }
 
   bool settled(const std::vector<Tally>& tallies) const {
-    constexpr double kNothing_mm = 1e-7;
     return std::all_of(tallies.begin(), tallies.end(), [&](const Tally& one) {
       return one.doubt() <= options_.tolerance * one.std() + kNothing_mm;
     });

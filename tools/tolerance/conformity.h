@@ -60,7 +60,8 @@ struct CharacteristicResult {
   std::optional<std::array<double, 2>> limits_mm;
   Expectation off, on;               // without and with the correction
   std::vector<SourceShare> sources;  // largest fall first
-  /// The sources of which one falls most with the confidence asked for: one where it is told.
+  /// The sources of which one falls most with the confidence asked for: one where it is told, none where no
+  /// fall is above a nanometre.
   std::vector<std::string> dominant;
   double open = 0;     // part of the variance that no reading bears on
   double process = 0;  // part of the points' own errors

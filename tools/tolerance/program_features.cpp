@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tools/kinematics/inverse.h"
 #include "tools/model/chain.h"
 #include "tools/offline/part_program.h"
 #include "tools/text/error.h"
@@ -101,7 +102,7 @@ PlacedPart program_part(const Machine& machine, const std::string& text, const s
   PartProgramOptions reading;
   reading.zero = options.zero;
   reading.watch = [&](const ProgramStretch& stretch) { collector.take(stretch); };
-  Corrector corrector(machine);
+  Corrector corrector(machine, {.with_rotary = linear_axes(machine).empty(), .back = false});
   corrected_program(text, file, at, known, reading, corrector);
   if (collector.cuts.empty()) throw InputError({file, 0}, file, "no cutting move (G1, G2, G3)");
   PlacedPart part;

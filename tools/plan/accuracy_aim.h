@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "tools/plan/accuracy_plan.h"
+
+namespace vernier {
+
+/// The aim as numbers that are linear in the parameters: U95 = 2 sqrt(trace(rows C rows^T)), mm.
+struct AimRows {
+  Eigen::MatrixXd rows;  // by the machine's own parameters, in the order of `own`
+  /// Of a part's characteristics: which rows, and what they were divided by.
+  struct Piece {
+    std::string name;
+    Eigen::Index first = 0, count = 0;
+    double scale = 1;  // U95 of the piece = 2 sqrt(trace of its rows) / scale
+  };
+  std::vector<Piece> pieces;
+};
+
+/// own: indices of the parameters that are the machine's, no set-up's. tool.
+AimRows aim_rows(const Knowledge& knowledge, const AccuracyAim& aim, const std::vector<Eigen::Index>& own);
+
+/// The machine with the aim's region as its `<volume>`.
+Machine with_region(const Machine& machine, const std::vector<WorkRange>& region);
+
+}  // namespace vernier
