@@ -17,7 +17,6 @@
 #include "tools/text/optional_json.h"
 #include "tools/text/words.h"
 #include "tools/tolerance/conformity.h"
-#include "tools/tolerance/program_features.h"
 
 namespace vernier::part_cli {
 namespace {
@@ -25,9 +24,10 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct ConformityArguments {
-  std::string machine, part, at, zero, place, tool, frame = "part", images, output, json;
+  std::string machine, tool, frame = "part", images, output, json;
+  PartSource part;
   std::vector<std::string> measurements, effects;
-  double position_mm = 0, size_mm = 0, form_mm = 0, process_um = 0;
+  double process_um = 0;
   std::uint64_t seed = 1;
   bool with_rotary = false, uncorrected = false;
 };
@@ -45,7 +45,7 @@ Json expectation_json(const Expectation& e) {
 }
 
 Json characteristic_json(const CharacteristicResult& one, const PlacedPart& part) {
-  const Feature& feature = part.features[one.feature].feature;
+  const PartFeature& feature = part.features[one.feature].feature;
   Json json = {{"feature", feature.name},
                {"kind", kind_name(feature.kind)},
                {"line", feature.line},
@@ -71,7 +71,7 @@ Json characteristic_json(const CharacteristicResult& one, const PlacedPart& part
 Json conformity_json(const Machine& machine, const ConformityArguments& arguments, const PlacedPart& part,
                      const PartConformity& result) {
   Json json = {{"machine", machine.name},
-               {"part", arguments.part},
+               {"part", arguments.part.path},
                {"trials", result.trials},
                {"seed", result.seed},
                {"settled", result.settled},
@@ -122,9 +122,9 @@ void print_conformity(std::FILE* out, const PlacedPart& part, const PartConformi
   for (const std::string& range : result.outside)
     fmt::print(out, "the part is where nobody measured: {}\n", range);
   for (const CharacteristicResult& one : result.characteristics) {
-    const Feature& feature = part.features[one.feature].feature;
+    const PartFeature& feature = part.features[one.feature].feature;
     fmt::print(out, "\n{}: {}", feature.name, characteristic_name(one.what));
-    if (one.limits_mm && one.what == Characteristic::kSize)
+    if (one.limits_mm && one.what == PartCharacteristic::kSize)
       fmt::print(out, ", allowed {:+.4g} to {:+.4g} um", kUm * (*one.limits_mm)[0],
                  kUm * (*one.limits_mm)[1]);
     else if (one.limits_mm)
@@ -159,7 +159,7 @@ std::string conformity_page(const Machine& machine, const ConformityArguments& a
   return improvement_report_html(
       {{"title", "Will the part be in tolerance?"},
        {"machine", machine.name},
-       {"files", {arguments.machine, arguments.part}},
+       {"files", {arguments.machine, arguments.part.path}},
        {"sections",
         {{{"title", "Features"},
           {"prose",
@@ -167,15 +167,6 @@ std::string conformity_page(const Machine& machine, const ConformityArguments& a
                         result.trials, result.seed)}},
           {"tables", {table}},
           {"notes", notes}}}}});
-}
-
-/// A list of features has a header with its columns; a part program has blocks.
-bool is_list(const std::string& path, const std::string& text) {
-  if (path.ends_with(".csv")) return true;
-  for (const std::string& line : parts_of(text, '\n'))
-    if (const std::string words = trimmed(line); !words.empty() && words[0] != '#')
-      return words.find("feature") != std::string::npos && words.find(',') != std::string::npos;
-  return false;
 }
 
 Machine machine_of(const ConformityArguments& arguments) {
@@ -189,38 +180,6 @@ Machine machine_of(const ConformityArguments& arguments) {
     machine = std::move(fitted.machine);
   }
   return arguments.tool.empty() ? machine : tooled(machine, arguments.tool);
-}
-
-PlacedPart part_of(const ConformityArguments& arguments, const Machine& machine) {
-  const std::string text = read_file(arguments.part);
-  const States at = state_at(machine, arguments.at);
-  if (is_list(arguments.part, text)) {
-    if (!arguments.zero.empty())
-      throw InputError({}, "--zero", "goes with a part program; --place moves a list");
-    for (const auto& [value, name] :
-         {std::pair(arguments.position_mm, "--position"), std::pair(arguments.size_mm, "--size"),
-          std::pair(arguments.form_mm, "--form")})
-      if (value > 0) throw InputError({}, name, "goes with a part program; a list has columns for it");
-    Part part = parse_part(text, arguments.part);
-    if (!arguments.place.empty()) {
-      const std::vector<double> place = number_list(arguments.place, {3, 4}, "--place");
-      part = placed_at(part, {place[0], place[1], place[2]}, place.size() > 3 ? place[3] : 0);
-    }
-    return place_part(machine, part, at);
-  }
-  if (!arguments.place.empty())
-    throw InputError({}, "--place", "goes with a list of features; --zero moves a part program");
-  ProgramOptions options;
-  const States zero = state_at(machine, arguments.zero);
-  std::vector<char> known;
-  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-    options.zero.push_back(zero.axis[i][0]);
-    known.push_back(("," + arguments.at).find("," + machine.axes[i].name + "=") != std::string::npos ? 1 : 0);
-  }
-  if (arguments.position_mm > 0) options.position_mm = arguments.position_mm;
-  if (arguments.form_mm > 0) options.form_mm = arguments.form_mm;
-  if (arguments.size_mm > 0) options.size_mm = {-arguments.size_mm, arguments.size_mm};
-  return program_part(machine, text, arguments.part, at, known, options);
 }
 
 /// The worst of the verdicts that the user asked about.
@@ -239,7 +198,7 @@ void judge(const PlacedPart& part, const PartConformity& result, bool uncorrecte
 
 void run_conformity(const ConformityArguments& arguments) {
   const Machine machine = machine_of(arguments);
-  const PlacedPart part = part_of(arguments, machine);
+  const PlacedPart part = placed_part(arguments.part, machine);
   Progress progress("trials");
   ConformityOptions options;
   options.frame = arguments.frame == "machine" ? PartFrame::kMachine : PartFrame::kPart;
@@ -248,7 +207,7 @@ void run_conformity(const ConformityArguments& arguments) {
   options.with_rotary = arguments.with_rotary || machine.correct_orientation;
   options.progress = [&](double share) { progress.update(share); };
   const PartConformity result =
-      part_conformity(machine, part, arguments.part, effect_catalogue(arguments.effects), options);
+      part_conformity(machine, part, arguments.part.path, effect_catalogue(arguments.effects), options);
   if (!arguments.output.empty())
     write_file(arguments.output, conformity_page(machine, arguments, part, result));
   write_json(arguments.json, conformity_json(machine, arguments, part, result));
@@ -263,16 +222,17 @@ void add_conformity(CLI::App& part) {
   CLI::App* command = part.add_subcommand(
       "conformity", "Will a part be in tolerance, how sure is that, and what is to blame?");
   command->add_option("MACHINE", a->machine, "machine file (XML), fitted")->required();
-  command->add_option("PART", a->part, "features with tolerances (CSV), or a part program (RS-274)")
+  command->add_option("PART", a->part.path, "features with tolerances (CSV), or a part program (RS-274)")
       ->required();
   command->add_option("MEAS", a->measurements,
                       "measurement files (CSV) to fit the machine to first; none: as its file has it");
   command->add_option(
-      "--place", a->place,
+      "--place", a->part.place,
       "where the list's zero stands in workpiece coordinates: \"X,Y,Z\" or \"X,Y,Z,TURN\" (mm, deg)");
-  command->add_option("--zero", a->zero,
+  command->add_option("--zero", a->part.zero,
                       "machine position of the program's zero, tool length included: \"X=120,Y=80,Z=-40\"");
-  command->add_option("--at", a->at, "inputs, and where axes stand that the part does not ask for: \"T=25\"");
+  command->add_option("--at", a->part.at,
+                      "inputs, and where axes stand that the part does not ask for: \"T=25\"");
   command->add_option("--tool", a->tool,
                       "a tool of the file's <tools>, or \"X,Y,Z\" in mm from the end of the chain");
   command
@@ -280,11 +240,11 @@ void add_conformity(CLI::App& part) {
                    "part: places count from the datums, else from all features; machine: from the machine")
       ->check(CLI::IsMember({"part", "machine"}))
       ->capture_default_str();
-  command->add_option("--position", a->position_mm, "of a program's features: width of the zone, mm")
+  command->add_option("--position", a->part.position_mm, "of a program's features: width of the zone, mm")
       ->check(CLI::PositiveNumber);
-  command->add_option("--size", a->size_mm, "of a program's circles: diameter, plus and minus, mm")
+  command->add_option("--size", a->part.size_mm, "of a program's circles: diameter, plus and minus, mm")
       ->check(CLI::PositiveNumber);
-  command->add_option("--form", a->form_mm, "of a program's circles: width of the zone, mm")
+  command->add_option("--form", a->part.form_mm, "of a program's circles: width of the zone, mm")
       ->check(CLI::PositiveNumber);
   command
       ->add_option("--process", a->process_um,

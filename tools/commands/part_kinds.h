@@ -1,8 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 #include <CLI/CLI.hpp>
+#include <string>
+
+#include "tools/model/machine.h"
+#include "tools/tolerance/placed_part.h"
 
 namespace vernier::part_cli {
+
+/// A part as a command line names it.
+struct PartSource {
+  std::string path, at, zero, place;
+  double position_mm = 0, size_mm = 0, form_mm = 0;  // for all that a program cuts
+};
+
+/// The part where the machine cuts it, from a list of features or a part program. Throws InputError, and
+/// LimitNotMet where a point is out of reach. tool.
+PlacedPart placed_part(const PartSource& source, const Machine& machine);
 
 /// Adds `vernier part conformity`. tool.
 void add_conformity(CLI::App& part);

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "tools/commands/command.h"
+#include "tools/commands/plan_kinds.h"
 #include "tools/effects/catalogue.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/measurement.h"
@@ -21,16 +22,6 @@ namespace vernier::plan_cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-struct PlanArguments {
-  std::string machine, output, gcode, json, images;
-  std::vector<std::string> measurements, separate, effects;
-  std::size_t points = 0;
-  double confidence = 0.95;
-  FirstPlanOptions first;
-  double accuracy_um = 0, expected_um = 0;
-  bool check = false;
-};
 
 Json row_json(const Plan& plan, std::size_t row) {
   const auto at = static_cast<Eigen::Index>(row);
@@ -51,15 +42,6 @@ Json row_json(const Plan& plan, std::size_t row) {
   const Drivers drivers = drivers_of(std::vector<const FittedRival*>{&plan.a, &plan.b});
   for (const CandidateInput& candidate : plan.rows.candidates)
     if (drivers.inputs.contains(candidate.name)) json["inputs"][candidate.name] = candidate.value[at];
-  return json;
-}
-
-Json pose_json(const Machine& machine, const States& states, std::size_t row) {
-  Json json = Json::object();
-  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-    json["axes"][machine.axes[i].name] = states.axis[i][static_cast<Eigen::Index>(row)];
-    json["dir"][machine.axes[i].name] = states.direction[i][static_cast<Eigen::Index>(row)];
-  }
   return json;
 }
 
@@ -94,7 +76,7 @@ Json plan_json(const Plan& plan, double confidence) {
 void run_check_plan(const PlanArguments& arguments) {
   const Machine machine = read_machine(arguments.machine);
   CheckPlanOptions options;
-  options.reading_um = arguments.first.reading_um;
+  options.reading_um = arguments.reading_um.value_or(options.reading_um);
   if (arguments.expected_um > 0) options.expected_um = arguments.expected_um;
   if (arguments.points > 0) options.points = arguments.points;
   const CheckPlan plan = check_plan(machine, options);
@@ -133,7 +115,8 @@ void run_first_plan(const PlanArguments& arguments) {
   if (!arguments.separate.empty())
     throw InputError({}, "MEAS", "telling two effects apart builds on measurements: name their files");
   const Machine machine = parse_machine(read_file(arguments.machine), arguments.machine);
-  FirstPlanOptions options = arguments.first;
+  FirstPlanOptions options;
+  options.reading_um = arguments.reading_um.value_or(options.reading_um);
   if (arguments.accuracy_um > 0) options.accuracy_um = arguments.accuracy_um;
   if (arguments.points > 0) options.most = arguments.points;
   if (arguments.expected_um > 0) options.expected_um = arguments.expected_um;
@@ -171,9 +154,12 @@ void run_plan(const PlanArguments& arguments) {
   if (arguments.check && !(arguments.measurements.empty() && arguments.separate.empty()))
     throw InputError({}, "--check", "goes with the fitted machine alone");
   if (arguments.check) return run_check_plan(arguments);
-  if (arguments.measurements.empty()) return run_first_plan(arguments);
-  if (arguments.separate.empty())
-    throw InputError({}, "--separate", "with measurements: which two effects are to be told apart");
+  const bool aimed = !arguments.part.path.empty() || !arguments.region.empty();
+  if (aimed && !arguments.separate.empty())
+    throw InputError({}, "--separate",
+                     "tells two effects apart; --part and --region say where accuracy matters");
+  if (arguments.measurements.empty() && !aimed) return run_first_plan(arguments);
+  if (arguments.separate.empty()) return run_accuracy_plan(arguments);
   const std::string text = read_file(arguments.machine);
   const Machine machine = parse_machine(text, arguments.machine);
   const Measurement m =
@@ -200,10 +186,20 @@ void run_plan(const PlanArguments& arguments) {
 
 }  // namespace
 
+nlohmann::ordered_json pose_json(const Machine& machine, const States& states, std::size_t row) {
+  Json json = Json::object();
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    json["axes"][machine.axes[i].name] = states.axis[i][static_cast<Eigen::Index>(row)];
+    json["dir"][machine.axes[i].name] = states.direction[i][static_cast<Eigen::Index>(row)];
+  }
+  return json;
+}
+
 void register_plan(CLI::App& vernier) {
   auto arguments = std::make_shared<PlanArguments>();
-  CLI::App* command =
-      vernier.add_subcommand("plan", "Where to measure first; or the next rows that tell two effects apart");
+  CLI::App* command = vernier.add_subcommand(
+      "plan",
+      "Where to measure first; the next poses for accuracy where it matters, or to tell two effects apart");
   command->add_option("MACHINE", arguments->machine, "machine file (XML)")->required();
   command->add_option("MEAS", arguments->measurements, "measurement files (CSV); none: the first plan");
   // One value each time: what follows it may be a measurement file.
@@ -215,7 +211,9 @@ void register_plan(CLI::App& vernier) {
       ->take_all();
   command->add_option("-o,--output", arguments->output, "the rows, readings to be filled in (CSV)");
   command->add_option("--gcode", arguments->gcode, "the rows as G-code");
-  command->add_option("--points", arguments->points, "exactly so many points (default: as few as needed)")
+  command
+      ->add_option("--points", arguments->points,
+                   "exactly so many points (default: as few as needed; accuracy: 200 at most)")
       ->check(CLI::Range(1, 500));
   command->add_option("--confidence", arguments->confidence, "that the measurement will name the right one")
       ->check(CLI::Range(0.5001, 0.9999))
@@ -223,14 +221,13 @@ void register_plan(CLI::App& vernier) {
   command->add_option("--effects", arguments->effects, "files with effects of your own; may be repeated");
   command
       ->add_option("--accuracy", arguments->accuracy_um,
-                   "first plan: U95 of the tool point to reach, mean over the volume, um; --check: largest "
-                   "change of the "
-                   "tool that may go unseen, um")
+                   "U95 to reach, um: of the tool point over the volume, or where --part and --region say; "
+                   "--check: largest change of the tool that may go unseen")
       ->check(CLI::PositiveNumber);
   command
-      ->add_option("--reading", arguments->first.reading_um, "first plan and --check: u of a coordinate, um")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
+      ->add_option("--reading", arguments->reading_um,
+                   "u of a coordinate that will be read, um (default 5; with MEAS: as it was there)")
+      ->check(CLI::PositiveNumber);
   command
       ->add_option(
           "--expected", arguments->expected_um,
@@ -239,14 +236,34 @@ void register_plan(CLI::App& vernier) {
       ->check(CLI::PositiveNumber);
   command->add_flag("--check", arguments->check,
                     "the few poses of a `vernier check` of a fitted machine (default: 10 points)");
+  command->add_option("--part", arguments->part.path,
+                      "accuracy for the features of this part (CSV, or a part program)");
+  command->add_option("--place", arguments->part.place,
+                      "where the part's zero stands in workpiece coordinates: \"X,Y,Z\" or \"X,Y,Z,TURN\"");
+  command->add_option("--zero", arguments->part.zero, "machine position of a part program's zero");
+  command->add_option("--at", arguments->part.at,
+                      "inputs, and where axes stand that the part does not ask for");
+  command->add_option("--region", arguments->region,
+                      "accuracy for this part of the volume: \"X=100:200,Y=0:50\"");
+  command->add_option("--feed", arguments->feed_mm_min, "from pose to pose, mm/min: for the minutes")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command->add_option("--dwell", arguments->dwell_s, "to settle and read one pose, s: for the minutes")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
   command->add_option("--images", arguments->images, kImagesHelp);
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->footer(
-      "Fits the model with either effect, then chooses the rows whose readings differ most after the wrong\n"
+      "With MEAS and --accuracy: fits, then chooses the next poses one by one that lower U95 (k = 2) over "
+      "the\n"
+      "volume, a region or a part's features most, until it is reached; exit status 2 where it cannot be.\n"
+      "--separate: fits the model with either effect, then chooses the rows whose readings differ most after "
+      "the wrong\n"
       "one and all free parameters were fitted again (T-optimal, the worse of both directions). Points: as\n"
       "many as bring the non-centrality to (z + sqrt(z^2 + 6))^2, z the normal quantile of the confidence.\n"
       "Exit status 0 done (also where nothing separates them: the sentence says so), 1 bad input or usage\n"
-      "(nothing written), 70 internal error. See tools/docs/plan.md.");
+      "(nothing written), 2 the accuracy asked for cannot be reached (nothing written), 70 internal error. "
+      "See tools/docs/plan.md.");
   command->callback([arguments] { run_plan(*arguments); });
 }
 

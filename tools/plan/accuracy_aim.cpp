@@ -64,7 +64,7 @@ AimRows rows_of_part(const Knowledge& knowledge, const PlacedPart& part, const s
   const MatrixXd columns =
       values.map * own_columns_at(knowledge.machine, part.states, knowledge.parameters, own);
   AimRows result{columns, {}};
-  for (const Value& value : values.values) {
+  for (const CharacteristicValue& value : values.values) {
     // The mean square of the vectors that a characteristic is made from, and the mean of all of those.
     const double share = std::sqrt(static_cast<double>(value.group) / static_cast<double>(value.count) /
                                    static_cast<double>(values.values.size()));

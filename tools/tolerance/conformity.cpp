@@ -54,7 +54,7 @@ class Normals {
 };
 
 /// Blocks of trials of one value, summed up.
-struct Tally {
+struct TrialTally {
   double sum = 0, squares = 0;
   std::vector<double> low, high;  // of each block
   std::size_t conforming = 0, trials = 0;
@@ -114,7 +114,7 @@ class ConformityRunner {
   PartConformity run() {
     Normals normals(options_.seed);
     try_chain(normals);
-    for (const Value& value : values_.values) {
+    for (const CharacteristicValue& value : values_.values) {
       CharacteristicResult one{value.feature, value.what, value.limits_mm, {}, {}, {}, {}, 0, 0};
       result_.characteristics.push_back(std::move(one));
     }
@@ -216,7 +216,7 @@ class ConformityRunner {
     for (int trial = 0; trial < kTried && spread_.cols() > 0; ++trial) {
       const auto [off, on] = through_chain(z.col(trial));
       const VectorXd linear = off_ + spread_ * z.col(trial);
-      for (const Value& value : values_.values) {
+      for (const CharacteristicValue& value : values_.values) {
         const double wrong = std::abs(value.of(off) - value.of(linear));
         VectorXd list(many.cols());
         if (trial == 0) {
@@ -246,7 +246,7 @@ class ConformityRunner {
     }
     const MatrixXd open = columns_ * reach_.open(), drawn = (spread_ * z).colwise() + off_;
     for (std::size_t v = 0; v < values_.values.size(); ++v) {
-      const Value& value = values_.values[v];
+      const CharacteristicValue& value = values_.values[v];
       CharacteristicResult& one = result_.characteristics[v];
       const auto own = [&](const MatrixXd& all) { return all.middleRows(value.first, value.count); };
       const double process = std::pow(options_.process_mm, 2) * own(values_.map).squaredNorm();
@@ -264,12 +264,12 @@ class ConformityRunner {
     }
   }
 
-  static double fall(const Value& value, const VectorXd& all, const VectorXd& of_source) {
+  static double fall(const CharacteristicValue& value, const VectorXd& all, const VectorXd& of_source) {
     return std::abs(value.of(all)) - std::abs(value.of(all - of_source));
   }
 
-  std::size_t first_of(const Value& value, const VectorXd& all, const std::vector<MatrixXd>& part,
-                       const VectorXd& z) const {
+  std::size_t first_of(const CharacteristicValue& value, const VectorXd& all,
+                       const std::vector<MatrixXd>& part, const VectorXd& z) const {
     std::size_t best = 0;
     double most = -1e300;
     for (std::size_t s = 0; s < sources_.size(); ++s) {
@@ -298,7 +298,7 @@ class ConformityRunner {
   }
 
   void simulate(Normals& normals) {
-    std::vector<Tally> off(values_.values.size()), on(values_.values.size());
+    std::vector<TrialTally> off(values_.values.size()), on(values_.values.size());
     const std::size_t least = 2 * static_cast<std::size_t>(kBlock);
     while (true) {
       block(normals, off, on);
@@ -308,13 +308,13 @@ class ConformityRunner {
     }
     result_.settled = off.empty() || (settled(off) && settled(on));
     for (std::size_t v = 0; v < values_.values.size(); ++v) {
-      const Value& value = values_.values[v];
+      const CharacteristicValue& value = values_.values[v];
       result_.characteristics[v].off = expectation(off[v], value, off_);
       result_.characteristics[v].on = expectation(on[v], value, on_);
     }
   }
 
-  void block(Normals& normals, std::vector<Tally>& off, std::vector<Tally>& on) {
+  void block(Normals& normals, std::vector<TrialTally>& off, std::vector<TrialTally>& on) {
     std::vector<std::vector<double>> off_values(off.size()), on_values(on.size());
     for (Index done = 0; done < kBlock; done += kAtOnce) {
       const MatrixXd z = normals.draw(spread_.cols(), kAtOnce);
@@ -344,18 +344,19 @@ class ConformityRunner {
     }
   }
 
-  bool settled(const std::vector<Tally>& tallies) const {
-    return std::all_of(tallies.begin(), tallies.end(), [&](const Tally& one) {
+  bool settled(const std::vector<TrialTally>& tallies) const {
+    return std::all_of(tallies.begin(), tallies.end(), [&](const TrialTally& one) {
       return one.doubt() <= options_.tolerance * one.std() + kNothing_mm;
     });
   }
 
-  Expectation expectation(const Tally& tally, const Value& value, const VectorXd& mean) const {
+  Expectation expectation(const TrialTally& tally, const CharacteristicValue& value,
+                          const VectorXd& mean) const {
     Expectation e{value.of(mean),
                   tally.mean(),
                   tally.std(),
-                  Tally::average(tally.low),
-                  Tally::average(tally.high),
+                  TrialTally::average(tally.low),
+                  TrialTally::average(tally.high),
                   0,
                   {},
                   {}};

@@ -48,15 +48,15 @@ struct SourceShare {
   /// By how much the uncorrected value falls when the source is switched off, mm; and the probability that no
   /// other source's fall is larger.
   double fall_mm = 0, largest = 0;
-  /// Part of the variance: of the source's own contribution with the whole. Below 0 where it and others lean
-  /// on one another.
+  /// PartDrawing of the variance: of the source's own contribution with the whole. Below 0 where it and
+  /// others lean on one another.
   double variance = 0;
   double open = 0;  // part of the variance that is this source's and that no reading bears on
 };
 
 struct CharacteristicResult {
   std::size_t feature = 0;
-  Characteristic what = Characteristic::kPosition;
+  PartCharacteristic what = PartCharacteristic::kPosition;
   std::optional<std::array<double, 2>> limits_mm;
   Expectation off, on;               // without and with the correction
   std::vector<SourceShare> sources;  // largest fall first

@@ -21,7 +21,7 @@ constexpr double kLeft = 1e-9;
 
 /// Rows that pick the deviations along the directions of a feature's points (all three where there is none).
 MatrixXd along_directions(const PlacedFeature& feature, Index points) {
-  const bool every = feature.direction.squaredNorm() == 0 || feature.feature.kind == FeatureKind::kPath;
+  const bool every = feature.direction.squaredNorm() == 0 || feature.feature.kind == PartFeatureKind::kPath;
   const auto count = static_cast<Index>(feature.count), first = static_cast<Index>(feature.first);
   MatrixXd rows = MatrixXd::Zero((every ? 3 : 1) * count, 3 * points);
   for (Index i = 0; i < count; ++i) {
@@ -39,7 +39,7 @@ MatrixXd along_directions(const PlacedFeature& feature, Index points) {
 /// What a plane's or cylinder's own place, tilt and size do to the deviations along its normals.
 MatrixXd own_columns(const PlacedFeature& feature, const PlacedPart& part) {
   const auto count = static_cast<Index>(feature.count), first = static_cast<Index>(feature.first);
-  const bool plane = feature.feature.kind == FeatureKind::kPlane;
+  const bool plane = feature.feature.kind == PartFeatureKind::kPlane;
   const bool flat = !plane && feature.feature.length_mm <= 0;  // a circle
   const Eigen::Vector3d axis = feature.feature.direction;
   const Eigen::Vector3d like = std::abs(axis.x()) < 0.9 ? Eigen::Vector3d::UnitX() : Eigen::Vector3d::UnitY();
@@ -73,7 +73,7 @@ class ValueMaker {
 
  private:
   /// Rows of the features that are asked for, below one another.
-  MatrixXd rows_of(const std::function<bool(const Feature&)>& asked) const {
+  MatrixXd rows_of(const std::function<bool(const PartFeature&)>& asked) const {
     MatrixXd all(0, 3 * points_);
     for (const PlacedFeature& one : part_.features) {
       if (!asked(one.feature)) continue;
@@ -94,7 +94,7 @@ class ValueMaker {
     MatrixXd free = MatrixXd::Identity(6, 6);
     back_ = MatrixXd::Zero(6, 3 * points_);
     for (const bool datums : {true, false}) {
-      const MatrixXd pick = rows_of([&](const Feature& one) { return !datums || one.datum; });
+      const MatrixXd pick = rows_of([&](const PartFeature& one) { return !datums || one.datum; });
       if (pick.rows() == 0 || free.cols() == 0) continue;
       Eigen::JacobiSVD<MatrixXd> svd(pick * motions_ * free, Eigen::ComputeThinU | Eigen::ComputeFullV);
       svd.setThreshold(1e-6);  // freedoms that a part fixes by a millionth of its size it does not fix
@@ -103,7 +103,7 @@ class ValueMaker {
     }
   }
 
-  void add(std::size_t f, Characteristic what, const MatrixXd& rows, Index group,
+  void add(std::size_t f, PartCharacteristic what, const MatrixXd& rows, Index group,
            const std::optional<std::array<double, 2>>& limits) {
     MatrixXd map = rows;
     if (back_.size() > 0) map -= rows * motions_ * back_;
@@ -127,18 +127,18 @@ class ValueMaker {
 
   void take(std::size_t f) {
     const PlacedFeature& one = part_.features[f];
-    const Feature& feature = one.feature;
+    const PartFeature& feature = one.feature;
     const MatrixXd along = along_directions(one, points_);
-    if (feature.kind == FeatureKind::kPoint || feature.kind == FeatureKind::kPath) {
+    if (feature.kind == PartFeatureKind::kPoint || feature.kind == PartFeatureKind::kPath) {
       const Index group = along.rows() == static_cast<Index>(one.count) ? 1 : 3;
-      add(f, Characteristic::kPosition, along, group, zone(feature.position_mm));
+      add(f, PartCharacteristic::kPosition, along, group, zone(feature.position_mm));
       return;
     }
     const MatrixXd own = own_columns(one, part_);
     const MatrixXd fit = own.completeOrthogonalDecomposition().solve(along);
     const MatrixXd rest = along - own * fit;
-    if (feature.kind == FeatureKind::kPlane) {
-      add(f, Characteristic::kPosition, along, 1, zone(feature.position_mm));
+    if (feature.kind == PartFeatureKind::kPlane) {
+      add(f, PartCharacteristic::kPosition, along, 1, zone(feature.position_mm));
     } else {
       // The axis at both ends, two components each.
       MatrixXd ends(own.cols() > 3 ? 4 : 2, fit.cols());
@@ -148,10 +148,10 @@ class ValueMaker {
         ends.bottomRows(2) = fit.topRows(2) - half * fit.bottomRows(2);
         ends.topRows(2) += half * fit.bottomRows(2);
       }
-      add(f, Characteristic::kPosition, ends, 2, zone(feature.position_mm));
-      add(f, Characteristic::kSize, 2 * fit.row(2), 1, feature.size_mm);
+      add(f, PartCharacteristic::kPosition, ends, 2, zone(feature.position_mm));
+      add(f, PartCharacteristic::kSize, 2 * fit.row(2), 1, feature.size_mm);
     }
-    add(f, Characteristic::kForm, rest, 1, zone(feature.form_mm));
+    add(f, PartCharacteristic::kForm, rest, 1, zone(feature.form_mm));
   }
 
   const PlacedPart& part_;
@@ -163,10 +163,10 @@ class ValueMaker {
 
 }  // namespace
 
-double Value::of(const Eigen::Ref<const Eigen::VectorXd>& rows) const {
-  if (what == Characteristic::kSize) return rows[first];
+double CharacteristicValue::of(const Eigen::Ref<const Eigen::VectorXd>& rows) const {
+  if (what == PartCharacteristic::kSize) return rows[first];
   const auto own = rows.segment(first, count);
-  if (what == Characteristic::kForm) return own.maxCoeff() - own.minCoeff();
+  if (what == PartCharacteristic::kForm) return own.maxCoeff() - own.minCoeff();
   double longest = 0;
   for (Index i = 0; i < count; i += group) longest = std::max(longest, own.segment(i, group).squaredNorm());
   return 2 * std::sqrt(longest);

@@ -16,9 +16,9 @@ enum class PartFrame : std::uint8_t {
 };
 
 /// How a characteristic follows from numbers that are linear in the deviations of the part's points.
-struct Value {
+struct CharacteristicValue {
   std::size_t feature = 0;
-  Characteristic what = Characteristic::kPosition;
+  PartCharacteristic what = PartCharacteristic::kPosition;
   std::optional<std::array<double, 2>> limits_mm;  // of its tolerance
   Eigen::Index first = 0, count = 0;               // rows of the map
   Eigen::Index group = 1;                          // rows that are components of one vector
@@ -29,7 +29,7 @@ struct Value {
 
 /// All characteristics of a part as numbers of its points' deviations.
 struct PartValues {
-  std::vector<Value> values;
+  std::vector<CharacteristicValue> values;
   Eigen::MatrixXd map;  // rows x 3 N: of deviations of the tool point, workpiece coordinates, mm
 };
 

@@ -91,7 +91,7 @@ class PartSheet {
   CsvFile csv_;
 };
 
-void read_size(const PartSheet& sheet, std::size_t row, Feature& feature) {
+void read_size(const PartSheet& sheet, std::size_t row, PartFeature& feature) {
   const auto size = sheet.positive(row, "size"), low = sheet.number(row, "size_low"),
              high = sheet.number(row, "size_high");
   if (size && (low || high))
@@ -102,12 +102,12 @@ void read_size(const PartSheet& sheet, std::size_t row, Feature& feature) {
   if (low && !(*low < *high))
     throw InputError(sheet.place(row), sheet.word(row, "size_low"), "size_low must be below size_high");
   if (low) feature.size_mm = {*low, *high};
-  if (feature.size_mm && feature.kind != FeatureKind::kCylinder)
+  if (feature.size_mm && feature.kind != PartFeatureKind::kCylinder)
     throw InputError(sheet.place(row), "size", "only a cylinder has a size");
 }
 
-Feature read_feature(const PartSheet& sheet, std::size_t row) {
-  Feature feature;
+PartFeature read_feature(const PartSheet& sheet, std::size_t row) {
+  PartFeature feature;
   feature.line = sheet.place(row).line;
   feature.name = sheet.word(row, "feature");
   if (feature.name.empty()) throw InputError(sheet.place(row), "feature", "a feature needs a name");
@@ -115,19 +115,19 @@ Feature read_feature(const PartSheet& sheet, std::size_t row) {
   const auto found = std::find(kKindNames.begin(), kKindNames.begin() + 3, kind);
   if (found == kKindNames.begin() + 3)
     throw InputError(sheet.place(row), kind, "a feature is a point, a plane or a cylinder");
-  feature.kind = static_cast<FeatureKind>(found - kKindNames.begin());
+  feature.kind = static_cast<PartFeatureKind>(found - kKindNames.begin());
   const auto at = sheet.vector(row, {"x", "y", "z"});
   if (!at) throw InputError(sheet.place(row), "x", "where the feature stands is missing");
   feature.at = *at;
-  const bool point = feature.kind == FeatureKind::kPoint;
+  const bool point = feature.kind == PartFeatureKind::kPoint;
   feature.direction = sheet.direction(row, {"nx", "ny", "nz"}).value_or(Eigen::Vector3d(0, 0, point ? 0 : 1));
   feature.tool = sheet.direction(row, {"i", "j", "k"});
   feature.diameter_mm = sheet.positive(row, "diameter").value_or(0);
   feature.length_mm = sheet.number(row, "length").value_or(0);
   feature.width_mm = sheet.number(row, "width").value_or(0);
-  if (feature.kind == FeatureKind::kCylinder && feature.diameter_mm <= 0)
+  if (feature.kind == PartFeatureKind::kCylinder && feature.diameter_mm <= 0)
     throw InputError(sheet.place(row), "diameter", "a cylinder needs one");
-  if (feature.kind == FeatureKind::kPlane && !(feature.length_mm > 0 && feature.width_mm > 0))
+  if (feature.kind == PartFeatureKind::kPlane && !(feature.length_mm > 0 && feature.width_mm > 0))
     throw InputError(sheet.place(row), "length", "a plane needs length and width");
   feature.position_mm = sheet.positive(row, "position");
   feature.form_mm = sheet.positive(row, "form");
@@ -142,15 +142,15 @@ Feature read_feature(const PartSheet& sheet, std::size_t row) {
 
 }  // namespace
 
-const char* kind_name(FeatureKind kind) { return kKindNames.at(static_cast<std::size_t>(kind)); }
+const char* kind_name(PartFeatureKind kind) { return kKindNames.at(static_cast<std::size_t>(kind)); }
 
-const char* characteristic_name(Characteristic characteristic) {
+const char* characteristic_name(PartCharacteristic characteristic) {
   return kCharacteristicNames.at(static_cast<std::size_t>(characteristic));
 }
 
-Part parse_part(const std::string& text, const std::string& file) {
+PartDrawing parse_part(const std::string& text, const std::string& file) {
   const PartSheet sheet(text, file);
-  Part part{file, {}};
+  PartDrawing part{file, {}};
   std::set<std::string> names;
   for (std::size_t row = 0; row < sheet.rows(); ++row) {
     part.features.push_back(read_feature(sheet, row));
@@ -161,11 +161,11 @@ Part parse_part(const std::string& text, const std::string& file) {
   return part;
 }
 
-Part placed_at(const Part& part, const Eigen::Vector3d& shift_mm, double turn_deg) {
+PartDrawing placed_at(const PartDrawing& part, const Eigen::Vector3d& shift_mm, double turn_deg) {
   const Eigen::Matrix3d turn =
       Eigen::AngleAxisd(turn_deg * std::numbers::pi / 180, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-  Part placed = part;
-  for (Feature& feature : placed.features) {
+  PartDrawing placed = part;
+  for (PartFeature& feature : placed.features) {
     feature.at = turn * feature.at + shift_mm;
     feature.direction = turn * feature.direction;
     if (feature.tool) feature.tool = turn * *feature.tool;

@@ -9,26 +9,26 @@
 
 namespace vernier {
 
-enum class FeatureKind : std::uint8_t {
+enum class PartFeatureKind : std::uint8_t {
   kPoint,
   kPlane,
   kCylinder,  // hole or boss; without length a circle
   kPath,      // what a program cuts between two rapid moves
 };
-const char* kind_name(FeatureKind kind);
+const char* kind_name(PartFeatureKind kind);
 
 /// What of a feature may be out of tolerance.
-enum class Characteristic : std::uint8_t {
+enum class PartCharacteristic : std::uint8_t {
   kPosition,  // width or diameter of the zone about its true place that it takes up, ISO 1101
   kSize,      // actual - nominal diameter
   kForm,      // width of the zone about its own least-squares plane or cylinder
 };
-const char* characteristic_name(Characteristic characteristic);
+const char* characteristic_name(PartCharacteristic characteristic);
 
 /// A feature of a part with its tolerances. Workpiece coordinates, mm.
-struct Feature {
+struct PartFeature {
   std::string name;
-  FeatureKind kind = FeatureKind::kPoint;
+  PartFeatureKind kind = PartFeatureKind::kPoint;
   Eigen::Vector3d at = Eigen::Vector3d::Zero();  // the point; the middle of the others
   /// Unit normal of a point or plane, axis of a cylinder; 0: a point that is judged in every direction.
   Eigen::Vector3d direction = Eigen::Vector3d::Zero();
@@ -41,18 +41,18 @@ struct Feature {
 };
 
 /// A part as its drawing has it.
-struct Part {
+struct PartDrawing {
   std::string file;
-  std::vector<Feature> features;
+  std::vector<PartFeature> features;
 };
 
 /// Reads a part from CSV: feature, kind (point plane cylinder), x y z, and where they say something nx ny nz,
 /// i j k (direction of the tool), diameter, length, width, position, size (plus and minus) or size_low and
 /// size_high, form, datum (yes). A unit stands in the header, mm where there is none. Throws InputError with
 /// file, line and word. tool.
-Part parse_part(const std::string& text, const std::string& file);
+PartDrawing parse_part(const std::string& text, const std::string& file);
 
 /// The part moved: turned about the workpiece's z by `turn_deg`, then shifted, mm. tool.
-Part placed_at(const Part& part, const Eigen::Vector3d& shift_mm, double turn_deg);
+PartDrawing placed_at(const PartDrawing& part, const Eigen::Vector3d& shift_mm, double turn_deg);
 
 }  // namespace vernier

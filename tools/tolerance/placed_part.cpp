@@ -21,7 +21,7 @@ using Eigen::Vector3d;
 /// the first three waves of a circle, five a curve of fourth degree.
 constexpr int kOnCircle = 12, kCircles = 3, kOnEdge = 5;
 
-struct Sample {
+struct SurfaceSample {
   Vector3d point, direction;
 };
 
@@ -32,11 +32,11 @@ std::array<Vector3d, 2> across(const Vector3d& axis) {
   return {first, axis.cross(first)};
 }
 
-std::vector<Sample> samples_of(const Feature& feature) {
-  std::vector<Sample> samples;
-  if (feature.kind == FeatureKind::kPoint) return {{feature.at, feature.direction}};
+std::vector<SurfaceSample> samples_of(const PartFeature& feature) {
+  std::vector<SurfaceSample> samples;
+  if (feature.kind == PartFeatureKind::kPoint) return {{feature.at, feature.direction}};
   const auto [u, v] = across(feature.direction);
-  if (feature.kind == FeatureKind::kPlane) {
+  if (feature.kind == PartFeatureKind::kPlane) {
     for (int row = 0; row < kOnEdge; ++row)
       for (int k = 0; k < kOnEdge; ++k) {
         const int column = row % 2 == 0 ? k : kOnEdge - 1 - k;  // there and back
@@ -65,7 +65,8 @@ class PointSolver {
   PointSolver(const Machine& machine, const std::string& file)
       : nominal_(nominal_machine(machine)), file_(file), linear_(linear_axes(machine)) {}
 
-  States solve_all(const Feature& feature, const std::vector<Sample>& samples, const States& start) const {
+  States solve_all(const PartFeature& feature, const std::vector<SurfaceSample>& samples,
+                   const States& start) const {
     InverseOptions options;
     options.match = feature.tool ? Match::kDirection : Match::kPosition;
     if (!feature.tool && !linear_.empty()) options.axes = linear_;
@@ -85,7 +86,7 @@ class PointSolver {
   }
 
  private:
-  void again(const Feature& feature, const Poses& target, std::size_t i, const InverseOptions& options,
+  void again(const PartFeature& feature, const Poses& target, std::size_t i, const InverseOptions& options,
              InverseResult& all) const {
     constexpr int kRestarts = 48;
     const auto at = static_cast<Index>(i);
@@ -139,14 +140,14 @@ void set_senses(const Machine& machine, std::size_t first, std::size_t count, St
 
 }  // namespace
 
-PlacedPart place_part(const Machine& machine, const Part& part, const States& at) {
+PlacedPart place_part(const Machine& machine, const PartDrawing& part, const States& at) {
   PlacedPart placed;
   const PointSolver solver(machine, part.file);
   const States start = start_of(machine, at);
   std::vector<States> parts;
   std::size_t count = 0;
-  for (const Feature& feature : part.features) {
-    const std::vector<Sample> samples = samples_of(feature);
+  for (const PartFeature& feature : part.features) {
+    const std::vector<SurfaceSample> samples = samples_of(feature);
     PlacedFeature one{feature, count, samples.size(), {}};
     one.direction.resize(3, static_cast<Index>(samples.size()));
     for (std::size_t i = 0; i < samples.size(); ++i)

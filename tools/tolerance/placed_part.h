@@ -11,7 +11,7 @@ namespace vernier {
 
 /// A feature as the machine cuts or touches it.
 struct PlacedFeature {
-  Feature feature;
+  PartFeature feature;
   std::size_t first = 0, count = 0;  // its states
   /// The direction that counts at each: surface normals; of a path its tangent, along which nothing does; 0:
   /// every direction.
@@ -29,6 +29,6 @@ struct PlacedPart {
 /// positions at which the nominal chain has its tool there; senses of motion as they follow one another, a
 /// circle counter-clockwise about its axis. `at`: inputs, and where the axes stand that are not needed.
 /// Throws LimitNotMet where a point is out of reach, naming the line. tool.
-PlacedPart place_part(const Machine& machine, const Part& part, const States& at);
+PlacedPart place_part(const Machine& machine, const PartDrawing& part, const States& at);
 
 }  // namespace vernier

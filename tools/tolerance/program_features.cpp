@@ -21,7 +21,7 @@ using Eigen::Index;
 constexpr std::size_t kOnStretch = 12, kOnWhole = 24;
 
 /// Moves that make one feature.
-struct Cut {
+struct ProgramCut {
   std::size_t first_line = 0, last_line = 0;
   bool circle = false;
   std::vector<States> stretches;
@@ -42,13 +42,13 @@ class CutCollector {
       cuts.push_back({stretch.line, stretch.line, stretch.whole_circle, {}});
       open_ = true;
     }
-    Cut& cut = cuts.back();
+    ProgramCut& cut = cuts.back();
     cut.last_line = stretch.line;
     cut.stretches.push_back(stretch.states);
   }
 
   /// All stretches of a cut in one, `most` points of each, evenly.
-  States points_of(const Cut& cut, std::size_t most) const {
+  States points_of(const ProgramCut& cut, std::size_t most) const {
     std::vector<std::pair<const States*, std::size_t>> rows;
     for (const States& states : cut.stretches) {
       const std::size_t count = std::min(most, states.count);
@@ -66,7 +66,7 @@ class CutCollector {
     return all;
   }
 
-  std::vector<Cut> cuts;
+  std::vector<ProgramCut> cuts;
 
  private:
   std::size_t axes_;
@@ -84,7 +84,7 @@ Eigen::Matrix3Xd tangents_of(const Eigen::Matrix3Xd& points) {
 }
 
 /// Centre, axis and diameter of a circle from points even all round it.
-void make_circle(const Eigen::Matrix3Xd& points, Feature& feature, Eigen::Matrix3Xd& direction) {
+void make_circle(const Eigen::Matrix3Xd& points, PartFeature& feature, Eigen::Matrix3Xd& direction) {
   feature.at = points.rowwise().mean();
   const Eigen::Matrix3Xd from = points.colwise() - feature.at;
   Eigen::Vector3d axis = Eigen::Vector3d::Zero();
@@ -109,14 +109,14 @@ PlacedPart program_part(const Machine& machine, const std::string& text, const s
   std::vector<States> all;
   std::size_t count = 0;
   const Machine nominal = nominal_machine(machine);
-  for (const Cut& cut : collector.cuts) {
+  for (const ProgramCut& cut : collector.cuts) {
     const States states = collector.points_of(
         cut, cut.circle ? std::max(kOnStretch, kOnWhole / cut.stretches.size()) : kOnStretch);
     const Eigen::Matrix3Xd points = forward(nominal, states).position;
     PlacedFeature one;
     one.first = count;
     one.count = states.count;
-    one.feature.kind = cut.circle ? FeatureKind::kCylinder : FeatureKind::kPath;
+    one.feature.kind = cut.circle ? PartFeatureKind::kCylinder : PartFeatureKind::kPath;
     one.feature.name = cut.first_line == cut.last_line
                            ? fmt::format("{} of line {}", cut.circle ? "circle" : "path", cut.first_line)
                            : fmt::format("path of lines {} to {}", cut.first_line, cut.last_line);

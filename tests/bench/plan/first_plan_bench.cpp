@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/bench/plan/drawn_machine.h"
 #include "tools/fit/fit.h"
 #include "tools/fit/reach.h"
 #include "tools/model/chain.h"
@@ -29,131 +30,13 @@ using Random = std::mt19937_64;
 
 constexpr double kReadingUm = 3;
 
-double between(double low, double high, Random& random) {
-  return low + (high - low) * std::uniform_real_distribution<double>(0, 1)(random);
-}
-
-Machine drawn_machine(Random& random) {
-  std::array<char, 3> order = {'X', 'Y', 'Z'};
-  std::shuffle(order.begin(), order.end(), random);
-  std::string axes, tables, chain;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const char axis = order[i];
-    const double travel = std::round(between(200, 1200, random));
-    axes += fmt::format("<{} min=\"0\" max=\"{}\"/>", axis, travel);
-    std::string columns;
-    for (const char* column : {"X", "Y", "Z", "rX", "rY", "rZ"})
-      if (between(0, 1, random) < 0.6) columns += (columns.empty() ? "" : " ") + std::string(column);
-    const int stations = static_cast<int>(between(3, 6.99, random));
-    tables += fmt::format("<table axis=\"{}\" fit=\"{}\">", axis, columns);
-    for (int k = 0; k < stations; ++k)
-      tables += fmt::format("<station loc=\"{}\"/>", travel * k / (stations - 1));
-    tables += "</table>";
-    chain += "<sixdof";
-    for (const char direction : {'X', 'Y', 'Z'})
-      chain += fmt::format(" {}=\"l{}{}{}{}\"", direction, axis, static_cast<char>(direction + 32),
-                           direction == axis ? "+" : "", direction == axis ? std::string(1, axis) : "");
-    for (const char turn : {'X', 'Y', 'Z'})
-      chain += fmt::format(" r{}=\"r{}{}{}\"", turn, axis, static_cast<char>(turn + 32),
-                           i == 0 ? "" : fmt::format("+s{}{}", axis, turn));
-    chain += "/>";
-  }
-  std::string statics;
-  for (std::size_t i = 1; i < 3; ++i)
-    for (const char turn : {'X', 'Y', 'Z'})
-      statics += fmt::format("<s{}{} value=\"0\" nominal=\"0\" unit=\"deg\"/>", order[i], turn);
-  return parse_machine("<machine name=\"drawn\"><variables><static>" + statics +
-                           "<BaseShift/></static><machineaxes>" + axes + "</machineaxes><comptables>" +
-                           tables + "</comptables></variables><transforms branch=\"tool\">" + chain +
-                           "<sixdof Z=\"-150\"/></transforms></machine>",
-                       "drawn.xml");
-}
-
-States first_of(const States& states, std::size_t count) {
-  std::vector<std::size_t> which(count);
-  for (std::size_t i = 0; i < count; ++i) which[i] = i;
-  return select_states(states, which);
-}
-
-/// Lines along every axis through the middle, and the four body diagonals, there and back, `each` places on
-/// each.
-States lines(const Machine& machine, std::size_t each) {
-  std::vector<std::array<double, 3>> places;
-  std::vector<double> senses;
-  const auto walk = [&](const std::array<double, 3>& from, const std::array<double, 3>& to) {
-    for (const double sense : {1.0, -1.0})
-      for (std::size_t k = 0; k < each; ++k) {
-        const double s = each == 1 ? 0.5 : static_cast<double>(k) / static_cast<double>(each - 1);
-        std::array<double, 3> at{};
-        for (std::size_t a = 0; a < 3; ++a) at[a] = from[a] + s * (to[a] - from[a]);
-        places.push_back(at);
-        senses.push_back(sense);
-      }
-  };
-  for (std::size_t a = 0; a < 3; ++a) {
-    std::array<double, 3> from{0.5, 0.5, 0.5}, to = from;
-    from[a] = 0, to[a] = 1;
-    walk(from, to);
-  }
-  for (int diagonal = 0; diagonal < 4; ++diagonal) {
-    const double y = diagonal & 1, z = diagonal >> 1;
-    walk({0, y, z}, {1, 1 - y, 1 - z});
-  }
-  States states = make_states(places.size(), 3, {});
-  make_one_run(states, "");
-  for (std::size_t i = 0; i < places.size(); ++i)
-    for (std::size_t a = 0; a < 3; ++a) {
-      const auto at = static_cast<Eigen::Index>(i);
-      states.axis[a][at] =
-          *machine.axes[a].min + places[i][a] * (*machine.axes[a].max - *machine.axes[a].min);
-      states.direction[a][at] = senses[i];
-    }
-  return states;
-}
-
-/// Evenly drawn over the axes' ranges, either sense.
-States anywhere(const Machine& machine, std::size_t count, Random& random) {
-  States states = make_states(count, machine.axes.size(), {});
-  make_one_run(states, "");
-  for (std::size_t i = 0; i < count; ++i)
-    for (std::size_t a = 0; a < machine.axes.size(); ++a) {
-      const auto at = static_cast<Eigen::Index>(i);
-      states.axis[a][at] = between(*machine.axes[a].min, *machine.axes[a].max, random);
-      states.direction[a][at] = between(-1, 1, random) < 0 ? -1 : 1;
-    }
-  return states;
-}
-
 constexpr std::size_t kMost = 4000;
 
-/// Fewest poses, of a family that grows, that reach an uncertainty: bisection, since more poses never know
-/// less.
+/// Fewest poses of a family that grows that reach an uncertainty.
 template <typename Poses>
 std::size_t needed(const Machine& machine, double um, const FirstPlanOptions& options, const Poses& poses) {
-  std::size_t low = 1, high = 1;
-  while (high < kMost && planned_uncertainty_um(machine, poses(high), options) > um) low = high, high *= 2;
-  if (high >= kMost) return kMost;
-  while (high - low > 1) {
-    const std::size_t middle = (low + high) / 2;
-    (planned_uncertainty_um(machine, poses(middle), options) > um ? low : high) = middle;
-  }
-  return high;
-}
-
-/// A machine as far off as the plan expects: every parameter moves the tool point by 100 um rms, drawn.
-Machine true_machine(const Machine& machine, const FirstPlanOptions& options, Random& random) {
-  std::normal_distribution<double> normal(0, 1);
-  Machine truth = machine;
-  const Measurement rows = point_readings(offered_poses(machine, 400, 5000));
-  const ParameterSet parameters(truth, {""});
-  const Eigen::MatrixXd all(linearise(machine, rows, parameters).jacobian);
-  Eigen::VectorXd values = parameters.get(truth);
-  for (Eigen::Index j = 0; j < all.cols(); ++j) {
-    const double size = all.col(j).norm() / std::sqrt(400.0);
-    if (size > 0) values[j] = 1e-3 * options.expected_um / size * normal(random);
-  }
-  parameters.set(truth, values);
-  return truth;
+  return bench::fewest(
+      kMost, um, [&](std::size_t count) { return planned_uncertainty_um(machine, poses(count), options); });
 }
 
 /// Squares of the tool point's error over the volume after a fit to the plan's poses, um^2; rigid motion
@@ -161,7 +44,7 @@ Machine true_machine(const Machine& machine, const FirstPlanOptions& options, Ra
 double realised(const Machine& machine, const FirstPlan& plan, const FirstPlanOptions& options,
                 Random& random) {
   std::normal_distribution<double> normal(0, 1e-3 * kReadingUm);
-  const Machine truth = true_machine(machine, options, random);
+  const Machine truth = bench::true_machine(machine, options.expected_um, random);
   std::vector<std::size_t> fit_rows;
   for (std::size_t i = 0; i < plan.check.size(); ++i)
     if (plan.check[i] == 0) fit_rows.push_back(i);
@@ -193,7 +76,7 @@ int main(int argc, char** argv) {
   double promised = 0, kept = 0;
   for (int i = 0; i < machines; ++i) {
     Random random(seed * 1000003 + static_cast<std::uint64_t>(i));
-    const Machine machine = drawn_machine(random);
+    const Machine machine = bench::drawn_machine(random);
     FirstPlanOptions options;
     options.reading_um = kReadingUm;
     options.accuracy_um = 2 * kReadingUm;
@@ -203,13 +86,13 @@ int main(int argc, char** argv) {
     for (std::size_t k = 0; k < kMost; ++k) shuffled[k] = k;
     std::shuffle(shuffled.begin(), shuffled.end(), random);
     const States offered = select_states(offered_poses(machine, kMost, 0), shuffled),
-                 even = anywhere(machine, kMost, random);
+                 even = bench::anywhere(machine, kMost, random);
     const std::size_t by_pool =
-        needed(machine, plan.after_um, options, [&](std::size_t n) { return first_of(offered, n); });
+        needed(machine, plan.after_um, options, [&](std::size_t n) { return bench::first_of(offered, n); });
     const std::size_t by_chance =
-        needed(machine, plan.after_um, options, [&](std::size_t n) { return first_of(even, n); });
+        needed(machine, plan.after_um, options, [&](std::size_t n) { return bench::first_of(even, n); });
     const std::size_t places =
-        needed(machine, plan.after_um, options, [&](std::size_t n) { return lines(machine, n); });
+        needed(machine, plan.after_um, options, [&](std::size_t n) { return bench::iso_lines(machine, n); });
     const std::size_t by_lines = std::min(kMost, 14 * places);
     const double square = realised(machine, plan, options, random);
     // The first pose comes again, which the plan's own figure does not count.

@@ -86,16 +86,16 @@ States resting(const Machine& machine, const support::Geometry& g, Random& rando
 
 /// A plate with a datum plane, three bores (one or two of them datums), two points. A tolerance is about as
 /// wide as the machine is off, so that verdicts are not foregone.
-Part drawn_part(const Eigen::Vector3d& at, double size_mm, double off_mm, Random& random) {
-  Part part{"drawn", {}};
+PartDrawing drawn_part(const Eigen::Vector3d& at, double size_mm, double off_mm, Random& random) {
+  PartDrawing part{"drawn", {}};
   const auto place = [&](double height) {
     return Eigen::Vector3d(at + Eigen::Vector3d(between(-1, 1, random) * size_mm / 2,
                                                 between(-1, 1, random) * size_mm / 2, height * size_mm));
   };
-  const auto zone = [&]() { return off_mm * std::exp(between(-1, 1.5, random)); };
-  Feature plane;
+  const auto zone = [&]() { return off_mm * std::exp(between(-3.5, 0, random)); };
+  PartFeature plane;
   plane.name = "plane";
-  plane.kind = FeatureKind::kPlane;
+  plane.kind = PartFeatureKind::kPlane;
   plane.at = at;
   plane.direction = Eigen::Vector3d::UnitZ();
   plane.length_mm = size_mm;
@@ -104,9 +104,9 @@ Part drawn_part(const Eigen::Vector3d& at, double size_mm, double off_mm, Random
   plane.datum = true;
   part.features.push_back(plane);
   for (int i = 0; i < 3; ++i) {
-    Feature bore;
+    PartFeature bore;
     bore.name = fmt::format("bore {}", i + 1);
-    bore.kind = FeatureKind::kCylinder;
+    bore.kind = PartFeatureKind::kCylinder;
     bore.at = place(-0.05);
     bore.direction = i < 2 ? Eigen::Vector3d::UnitZ() : Eigen::Vector3d::UnitX();
     bore.diameter_mm = between(0.05, 0.3, random) * size_mm;
@@ -119,7 +119,7 @@ Part drawn_part(const Eigen::Vector3d& at, double size_mm, double off_mm, Random
     part.features.push_back(bore);
   }
   for (int i = 0; i < 2; ++i) {
-    Feature point;
+    PartFeature point;
     point.name = fmt::format("point {}", i + 1);
     point.at = place(i == 0 ? 0.1 : -0.1);
     if (i == 1) point.direction = Eigen::Vector3d::UnitY();
@@ -152,7 +152,7 @@ std::vector<std::string> true_dominant(const Machine& truth, const PlacedPart& p
   return best;
 }
 
-Figures judge(const Machine& truth, const Machine& fitted, const PlacedPart& part, const Part& drawn,
+Figures judge(const Machine& truth, const Machine& fitted, const PlacedPart& part, const PartDrawing& drawn,
               const std::vector<Effect>& catalogue, std::uint64_t seed) {
   Figures figures;
   figures.parts = 1;
@@ -170,7 +170,7 @@ Figures judge(const Machine& truth, const Machine& fitted, const PlacedPart& par
                         on = rows_of(truth, corrected, part, values);
   const std::vector<std::string> dominant = true_dominant(truth, part, values, catalogue);
   for (std::size_t v = 0; v < values.values.size(); ++v) {
-    const Value& value = values.values[v];
+    const CharacteristicValue& value = values.values[v];
     const CharacteristicResult& one = said.characteristics[v];
     const auto covered = [&](const Expectation& e, double real) {
       return real >= e.low - kNothing_mm && real <= e.high + kNothing_mm;
@@ -262,7 +262,7 @@ int main(int argc, char** argv) {
         if (size > 1e6) size = 150;
         const Eigen::Matrix3Xd centre = forward(nominal_machine(fitted), at).position;
         const double off_mm = std::max(1e-4, deviation(truth, at).norm() / 2);
-        const Part part = drawn_part(centre.col(0), size, off_mm, random);
+        const PartDrawing part = drawn_part(centre.col(0), size, off_mm, random);
         try {
           const PlacedPart placed = place_part(fitted, part, at);
           add(figures, judge(truth, fitted, placed, part, catalogue, random()));
