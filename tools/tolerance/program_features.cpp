@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "tools/kinematics/inverse.h"
 #include "tools/model/chain.h"
@@ -17,8 +19,8 @@ namespace {
 
 using Eigen::Index;
 
-/// Points that are looked at on a stretch of a path; on a circle.
-constexpr std::size_t kOnStretch = 12, kOnWhole = 24;
+/// Points that are looked at for each stretch of a path, but no more than so many on all; on a circle.
+constexpr std::size_t kOnStretch = 12, kMostOfPath = 400, kOnWhole = 24;
 
 /// Moves that make one feature.
 struct ProgramCut {
@@ -47,28 +49,47 @@ class CutCollector {
     cut.stretches.push_back(stretch.states);
   }
 
-  /// All stretches of a cut in one, `most` points of each, evenly.
-  States points_of(const ProgramCut& cut, std::size_t most) const {
-    std::vector<std::pair<const States*, std::size_t>> rows;
+  /// All stretches of a cut in one, points evenly along the way.
+  States points_of(const ProgramCut& cut, const Machine& nominal) const {
+    std::vector<std::pair<const States*, std::size_t>> all;
+    std::vector<double> way;
+    Eigen::Vector3d last = Eigen::Vector3d::Zero();
     for (const States& states : cut.stretches) {
-      const std::size_t count = std::min(most, states.count);
-      // The last point of a stretch is the first of the next one.
-      for (std::size_t k = 0; k < count; ++k) rows.emplace_back(&states, k * states.count / count);
+      const Eigen::Matrix3Xd points = forward(nominal, states).position;
+      for (std::size_t k = 0; k < states.count; ++k) {
+        const Eigen::Vector3d point = points.col(static_cast<Index>(k));
+        way.push_back(way.empty() ? 0 : way.back() + (point - last).norm());
+        all.emplace_back(&states, k);
+        last = point;
+      }
     }
-    States all = select_states(cut.stretches.front(), std::vector<std::size_t>(rows.size(), 0));
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      const auto to = static_cast<Index>(i), from = static_cast<Index>(rows[i].second);
-      for (const auto list :
-           {&States::axis, &States::direction, &States::velocity, &States::acceleration, &States::since})
-        for (std::size_t a = 0; a < axes_; ++a) (all.*list)[a][to] = (rows[i].first->*list)[a][from];
-      all.feed[to] = rows[i].first->feed[from];
+    // A circle's last point is its first one again.
+    const std::size_t count =
+        cut.circle ? kOnWhole
+                   : std::min(kMostOfPath, std::max<std::size_t>(2, kOnStretch * cut.stretches.size()));
+    const double steps = static_cast<double>(cut.circle ? count : count - 1);
+    States picked = select_states(cut.stretches.front(), std::vector<std::size_t>(count, 0));
+    for (std::size_t i = 0; i < count; ++i) {
+      const double target = way.back() * static_cast<double>(i) / steps;
+      auto at = std::lower_bound(way.begin(), way.end(), target);
+      if (at == way.end() || (at != way.begin() && target - *std::prev(at) < *at - target)) --at;
+      take_row(*all[static_cast<std::size_t>(at - way.begin())].first,
+               all[static_cast<std::size_t>(at - way.begin())].second, i, picked);
     }
-    return all;
+    return picked;
   }
 
   std::vector<ProgramCut> cuts;
 
  private:
+  void take_row(const States& from, std::size_t row, std::size_t to, States& all) const {
+    const auto source = static_cast<Index>(row), target = static_cast<Index>(to);
+    for (const auto list :
+         {&States::axis, &States::direction, &States::velocity, &States::acceleration, &States::since})
+      for (std::size_t a = 0; a < axes_; ++a) (all.*list)[a][target] = (from.*list)[a][source];
+    all.feed[target] = from.feed[source];
+  }
+
   std::size_t axes_;
   bool open_ = false;
 };
@@ -83,13 +104,21 @@ Eigen::Matrix3Xd tangents_of(const Eigen::Matrix3Xd& points) {
   return tangents;
 }
 
-/// Centre, axis and diameter of a circle from points even all round it.
+/// Centre, axis and diameter of a circle from points all round it: the least-squares one (Kasa 1976).
 void make_circle(const Eigen::Matrix3Xd& points, PartFeature& feature, Eigen::Matrix3Xd& direction) {
-  feature.at = points.rowwise().mean();
-  const Eigen::Matrix3Xd from = points.colwise() - feature.at;
+  const Eigen::Vector3d middle = points.rowwise().mean();
+  Eigen::Matrix3Xd from = points.colwise() - middle;
   Eigen::Vector3d axis = Eigen::Vector3d::Zero();
   for (Index i = 0; i + 1 < from.cols(); ++i) axis += from.col(i).cross(Eigen::Vector3d(from.col(i + 1)));
   feature.direction = axis.normalized();
+  Eigen::MatrixXd design(from.cols() + 1, 4);
+  Eigen::VectorXd squares(from.cols() + 1);
+  design.topRows(from.cols()) << 2 * from.transpose(), Eigen::VectorXd::Ones(from.cols());
+  design.bottomRows(1) << feature.direction.transpose(), 0;  // in the plane of the points
+  squares << from.colwise().squaredNorm().transpose(), 0;
+  const Eigen::Vector4d found = design.colPivHouseholderQr().solve(squares);
+  feature.at = middle + found.head<3>();
+  from = points.colwise() - feature.at;
   feature.diameter_mm = 2 * from.colwise().norm().mean();
   direction = from.colwise().normalized();
 }
@@ -110,8 +139,7 @@ PlacedPart program_part(const Machine& machine, const std::string& text, const s
   std::size_t count = 0;
   const Machine nominal = nominal_machine(machine);
   for (const ProgramCut& cut : collector.cuts) {
-    const States states = collector.points_of(
-        cut, cut.circle ? std::max(kOnStretch, kOnWhole / cut.stretches.size()) : kOnStretch);
+    const States states = collector.points_of(cut, nominal);
     const Eigen::Matrix3Xd points = forward(nominal, states).position;
     PlacedFeature one;
     one.first = count;
@@ -135,7 +163,6 @@ PlacedPart program_part(const Machine& machine, const std::string& text, const s
     part.features.push_back(std::move(one));
   }
   part.states = select_states(at, std::vector<std::size_t>(count, 0));
-  part.point.resize(3, static_cast<Index>(count));
   for (std::size_t f = 0; f < all.size(); ++f) {
     const auto first = static_cast<Index>(part.features[f].first), n = static_cast<Index>(all[f].count);
     for (const auto list :

@@ -93,6 +93,20 @@ TEST_F(Pages, TutorialRunsAsPrinted) {
     EXPECT_TRUE(fs::exists(std::string(VERNIER_SOURCE_DIR) + "/tools/docs/img/" + picture)) << picture;
 }
 
+TEST_F(Pages, ConformityAndPlanRunAsPrinted) {
+  const std::string text = page("tools/docs/conformity.md");
+  std::string script;
+  for (const std::string& block : blocks(text, "sh")) script += block;
+  EXPECT_EQ(run(script), 0) << said_;
+  const auto printed = blocks(text, "text");
+  ASSERT_EQ(printed.size(), 1u);
+  EXPECT_NE(said_.find(printed[0]), std::string::npos) << printed[0] << "is not in\n" << said_;
+  script.clear();
+  for (const std::string& block : blocks(page("tools/docs/plan.md"), "sh")) script += block;
+  EXPECT_EQ(run(script), 0) << said_;
+  EXPECT_NE(said_.find("what is left comes from"), std::string::npos) << said_;
+}
+
 TEST_F(Pages, ReadmeRunsAsPrinted) {
   std::string script;
   for (const std::string& block : blocks(page("README.md"), "sh")) {

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/plan/accuracy_plan.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "tools/fit/reach.h"
+#include "tools/model/chain.h"
+#include "tools/model/machine_reader.h"
+#include "tools/model/prediction.h"
+#include "tools/plan/accuracy_aim.h"
+#include "tools/plan/offered_poses.h"
+#include "tools/text/error.h"
+
+namespace vernier::accuracy_plan_test {
+namespace {
+
+const char* const kBridge = R"XML(<machine name="bridge"><variables><static><sxy value="0" nominal="0"/>
+    <szx value="0" nominal="0"/><kx value="0" nominal="0"/><play value="0" nominal="0" unit="mm"/><BaseShift/></static>
+    <machineaxes><X min="0" max="600"/><Y min="0" max="400"/><Z min="-300" max="0"/></machineaxes>
+    <comptables><table axis="Y" fit="X Z rZ"><station loc="0"/><station loc="200"/><station loc="400"/></table>
+    </comptables></variables>
+    <transforms branch="tool"><sixdof n="1" X="X+kx*X+play*dirX"/><sixdof n="2" Y="Y" X="sxy*Y+lYx" Z="lYz" rZ="rYz"/>
+    <sixdof n="3" Z="Z" X="szx*Z"/></transforms></machine>)XML";
+constexpr double kU_mm = 0.003;
+
+Machine bridge() { return parse_machine(kBridge, "m.xml"); }
+
+Machine drawn(std::mt19937_64& random) {
+  std::normal_distribution<double> normal(0, 1);
+  Machine truth = bridge();
+  const ParameterSet parameters(truth, {});
+  Eigen::VectorXd values = parameters.get(truth);
+  for (std::size_t i = 0; i < parameters.size(); ++i)
+    values[static_cast<Eigen::Index>(i)] = normal(random) * (parameters[i].unit == "mm"    ? 0.03
+                                                             : parameters[i].unit == "deg" ? 0.003
+                                                                                           : 5e-5);
+  parameters.set(truth, values);
+  return truth;
+}
+
+Measurement read_at(const Machine& truth, const States& poses, std::mt19937_64& random) {
+  std::normal_distribution<double> normal(0, kU_mm);
+  Measurement rows = point_readings(poses);
+  rows.uncertainty = Column::Constant(static_cast<Eigen::Index>(poses.count), kU_mm);
+  const Eigen::VectorXd ideal = predict(truth, rows);
+  for (std::size_t i = 0; i < rows.observations.size(); ++i)
+    rows.observations[i].value = ideal[static_cast<Eigen::Index>(i)] + normal(random);
+  return rows;
+}
+
+/// A machine of which thirty poses were measured.
+struct AtHand {
+  explicit AtHand(std::uint64_t seed) : random(seed) {
+    truth = drawn(random);
+    rows = read_at(truth, offered_poses(bridge(), 30, 300), random);
+    knowledge = knowledge_of(fit(bridge(), rows), rows);
+  }
+  std::mt19937_64 random;
+  Machine truth;
+  Measurement rows;
+  Knowledge knowledge;
+};
+
+AccuracyAim corner() { return {"a corner", {}, {{0, 0, 200}, {1, 0, 150}, {2, -100, 0}}}; }
+
+AccuracyPlan halved(const Knowledge& knowledge, const AccuracyAim& aim) {
+  AccuracyOptions options;
+  options.accuracy_um = 0.5 * expected_accuracy_um(knowledge, aim, offered_poses(knowledge.machine, 1, 0));
+  return accuracy_plan(knowledge, aim, options);
+}
+
+TEST(AccuracyPlan, StopsWhereTheAccuracyIsReachedAndNotBefore) {
+  const AtHand at_hand(1);
+  const AccuracyPlan plan = halved(at_hand.knowledge, corner());
+  ASSERT_TRUE(plan.reached);
+  ASSERT_GT(plan.steps.size(), 2u);
+  EXPECT_EQ(plan.steps.front().points, 0u);
+  EXPECT_EQ(plan.steps.back().points, plan.states.count);
+  EXPECT_DOUBLE_EQ(plan.steps.back().u95_um, plan.after_um);
+  AccuracyOptions fewer;
+  fewer.accuracy_um = plan.after_um;
+  fewer.most = plan.states.count - 1;
+  EXPECT_FALSE(accuracy_plan(at_hand.knowledge, corner(), fewer).reached);
+  for (std::size_t i = 1; i < plan.steps.size(); ++i) {
+    EXPECT_LT(plan.steps[i].u95_um, plan.steps[i - 1].u95_um);
+    EXPECT_GT(plan.steps[i].minutes, plan.steps[i - 1].minutes);
+  }
+}
+
+TEST(AccuracyPlan, NeedsHalfThePosesOfChance) {
+  const AtHand at_hand(2);
+  const AccuracyPlan plan = halved(at_hand.knowledge, corner());
+  const States anywhere = offered_poses(at_hand.knowledge.machine, 2 * plan.states.count, 50000);
+  EXPECT_GT(expected_accuracy_um(at_hand.knowledge, corner(), anywhere), plan.after_um);
+  EXPECT_GT(plan.random_um, plan.after_um);
+}
+
+TEST(AccuracyPlan, SaysOfItsOwnPosesWhatItSaidBefore) {
+  const AtHand at_hand(3);
+  const AccuracyPlan plan = halved(at_hand.knowledge, corner());
+  // One by one and all at once are the same but for rounding.
+  EXPECT_NEAR(expected_accuracy_um(at_hand.knowledge, corner(), plan.states), plan.after_um,
+              1e-6 * plan.after_um);
+}
+
+TEST(AccuracyPlan, IsKeptByAFitOfAllRows) {
+  double promised = 0, kept = 0;
+  for (std::uint64_t seed = 10; seed < 30; ++seed) {
+    AtHand at_hand(seed);
+    const AccuracyPlan plan = halved(at_hand.knowledge, corner());
+    Measurement all = at_hand.rows;
+    append_measurement(all, read_at(at_hand.truth, plan.states, at_hand.random));
+    const Machine fitted = fit(bridge(), all).machine;
+    const States fresh = offered_poses(with_region(bridge(), corner().region), 100, 900);
+    const Eigen::Matrix3Xd off = forward(fitted, fresh).position - forward(at_hand.truth, fresh).position;
+    const Eigen::MatrixXd motions = rigid_motions(forward(fitted, fresh).position);
+    Eigen::VectorXd rest = off.reshaped();
+    rest -= motions * motions.colPivHouseholderQr().solve(rest);
+    promised += plan.after_um * plan.after_um;
+    kept += 4e6 * rest.squaredNorm() / static_cast<double>(off.cols());
+  }
+  // Twenty machines of some six parameters that count: their rms is told to a sixth.
+  EXPECT_NEAR(std::sqrt(promised / kept), 1, 0.25);
+}
+
+TEST(AccuracyPlan, SaysWhatSuchReadingsCannotTell) {
+  AtHand at_hand(4);
+  // As if nothing were known of two parameters, and X were read alone.
+  for (const char* name : {"table.Y[200].Z", "kx"})
+    for (std::size_t i = 0; i < at_hand.knowledge.parameters.size(); ++i)
+      if (at_hand.knowledge.parameters[i].name == name) {
+        const auto at = static_cast<Eigen::Index>(i);
+        at_hand.knowledge.covariance.row(at).setZero();
+        at_hand.knowledge.covariance.col(at).setZero();
+        at_hand.knowledge.covariance(at, at) = std::string(name) == "kx" ? 1e-8 : 1e-2;
+      }
+  at_hand.knowledge.reads = {true, false, false};
+  AccuracyOptions options;
+  options.accuracy_um = 5;
+  const AccuracyPlan plan = accuracy_plan(at_hand.knowledge, {"the volume", {}, {}}, options);
+  EXPECT_FALSE(plan.reached);
+  EXPECT_GT(plan.floor_um, 5);
+  ASSERT_FALSE(plan.unseen.empty());
+  EXPECT_EQ(plan.unseen[0].name, "straightness of Y in Z");
+}
+
+TEST(AccuracyPlan, OfAPartIsForItsFeatures) {
+  const AtHand at_hand(5);
+  const PartDrawing drawing = parse_part(
+      "feature,kind,x,y,z,diameter,position,datum\na,cylinder,50,50,-50,20,,yes\nb,cylinder,200,50,-50,20,,"
+      "yes\n"
+      "c,cylinder,100,150,-50,20,0.01,\n",
+      "p.csv");
+  AccuracyAim aim;
+  aim.part = place_part(at_hand.knowledge.machine, drawing,
+                        make_states(1, at_hand.knowledge.machine.axes.size(), {}));
+  const AccuracyPlan plan = halved(at_hand.knowledge, aim);
+  ASSERT_TRUE(plan.reached);
+  std::vector<std::string> names;
+  for (const AccuracyOf& one : plan.parts) {
+    names.push_back(one.name);
+    EXPECT_LE(one.after_um, one.now_um);
+  }
+  EXPECT_THAT(names, testing::Contains("position of c"));
+}
+
+TEST(AccuracyPlan, KnowsAFittedFileAsItsFitDoes) {
+  AtHand at_hand(6);
+  const FitResult fitted = fit(bridge(), at_hand.rows);
+  const Knowledge file = knowledge_of(fitted.machine);
+  EXPECT_TRUE(file.new_set_up);
+  const States none = select_states(offered_poses(bridge(), 1, 0), {});
+  // The file keeps seven digits of the covariance.
+  EXPECT_NEAR(expected_accuracy_um(file, corner(), none),
+              expected_accuracy_um(knowledge_of(fitted, at_hand.rows), corner(), none), 1e-3);
+  EXPECT_THROW(knowledge_of(bridge()), InputError);
+}
+
+}  // namespace
+}  // namespace vernier::accuracy_plan_test
