@@ -179,6 +179,9 @@ Machine machine_of(const ConformityArguments& arguments) {
     if (!fitted.converged) throw LimitNotMet("the fit did not converge");
     machine = std::move(fitted.machine);
   }
+  if (!machine.fitted)
+    throw InputError({machine.file, 0}, machine.name,
+                     "was never fitted (no <fitted>): give measurements, or what `vernier fit` wrote");
   return arguments.tool.empty() ? machine : tooled(machine, arguments.tool);
 }
 

@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -72,7 +73,7 @@ TEST_F(PartCommands, WhatDoesNotConformIsExitTwo) {
              "b,cylinder,500,100,-300,20,,yes\nc,cylinder,300,350,-300,20,0.00001,\n");
   EXPECT_EQ(run("part conformity fitted.xml tight.csv"), 2);
   EXPECT_THAT(said_, HasSubstr("position of c"));
-  write_file(folder_ + "/far.csv", "feature,kind,x,y,z\na,point,100,100,-100\nb,point,5000,0,0\n");
+  write_file(folder_ + "/far.csv", "feature,kind,x,y,z\na,point,100,100,-250\nb,point,5000,0,-250\n");
   EXPECT_EQ(run("part conformity fitted.xml far.csv"), 2);
   EXPECT_THAT(said_, HasSubstr("far.csv:3"));
 }
@@ -114,8 +115,10 @@ TEST_F(PartCommands, PlanForAccuracyIsMeasuredByAFit) {
   EXPECT_GT(r["u95_random_um"], r["u95_um"]);
   EXPECT_EQ(r["rows"].size(), r["points"]);
   EXPECT_EQ(r["table"].back()["points"], r["points"]);
-  // Its file is one that this machine's other commands read.
-  EXPECT_EQ(run("lint " + kSurvey + "model.xml next.csv"), 0) << said_;
+  const std::string rows = read_file(folder_ + "/next.csv");
+  EXPECT_THAT(rows, HasSubstr("X[mm],dirX,Y[mm],dirY,Z[mm],dirZ,"));
+  EXPECT_EQ(static_cast<std::size_t>(std::count(rows.begin(), rows.end(), '\n')),
+            2 + r["points"].get<std::size_t>());
   EXPECT_THAT(read_file(folder_ + "/next.nc"), HasSubstr("; read"));
   EXPECT_EQ(run(plan + "0.01 --points 5 -o none.csv"), 2);
   EXPECT_THAT(said_, HasSubstr("limited by"));
