@@ -13,7 +13,7 @@
 #include "tools/report/report.h"
 #include "tools/text/error.h"
 
-namespace vernier::evaluate_cli {
+namespace vernier::commands::evaluate_cli {
 namespace {
 
 struct PositioningArguments {
@@ -41,31 +41,33 @@ void print_result(std::FILE* out, const nlohmann::ordered_json& json) {
 }
 
 void run_positioning(const PositioningArguments& arguments) {
-  if (arguments.axes.size() != 1) throw InputError("--axis: one axis a call");
-  PositioningWords words;
+  if (arguments.axes.size() != 1) throw text::InputError("--axis: one axis a call");
+  evaluate::PositioningWords words;
   words.axis = arguments.axes.front();
   words.files = arguments.measurements;
   for (const std::string& one : arguments.tolerances)
-    words.tolerance.insert(limit_of(one, "--tolerance", kCharacteristics));
+    words.tolerance.insert(evaluate::limit_of(one, "--tolerance", kCharacteristics));
   for (const std::string& one : arguments.uncertainties)
-    words.uncertainty.insert(limit_of(one, "--uncertainty", kCharacteristics));
+    words.uncertainty.insert(evaluate::limit_of(one, "--uncertainty", kCharacteristics));
   for (const std::string& one : arguments.header) {
     const auto at = one.find('=');
-    if (at == std::string::npos) throw InputError("--header " + one + ": of the form \"serial number=4711\"");
+    if (at == std::string::npos)
+      throw text::InputError("--header " + one + ": of the form \"serial number=4711\"");
     words.header.emplace_back(one.substr(0, at), one.substr(at + 1));
   }
   std::string reading = arguments.reading;
   if (reading.empty())
     for (const char c : words.axis) reading += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  PositioningFile all;
+  evaluate::PositioningFile all;
   for (const std::string& path : arguments.measurements) {
-    PositioningFile one = read_positioning(read_file(path), path, words.axis, reading);
+    evaluate::PositioningFile one =
+        evaluate::read_positioning(text::read_file(path), path, words.axis, reading);
     all.unit = one.unit;
     all.rows += one.rows;
     all.sense_from_order |= one.sense_from_order;
-    for (TargetReadings& target : one.readings) {
+    for (evaluate::TargetReadings& target : one.readings) {
       bool known = false;
-      for (TargetReadings& other : all.readings)
+      for (evaluate::TargetReadings& other : all.readings)
         if (std::abs(other.target - target.target) < 1e-6) {
           known = true;
           for (std::size_t sense = 0; sense < 2; ++sense)
@@ -77,14 +79,16 @@ void run_positioning(const PositioningArguments& arguments) {
   }
   std::sort(all.readings.begin(), all.readings.end(),
             [](const auto& a, const auto& b) { return a.target < b.target; });
-  const nlohmann::ordered_json json = positioning_json(evaluate_positioning(all.readings), all, words);
+  const nlohmann::ordered_json json =
+      evaluate::positioning_json(evaluate::evaluate_positioning(all.readings), all, words);
   if (!arguments.output.empty())
-    write_file(arguments.output, improvement_report_html(positioning_page(json, words)));
+    text::write_file(arguments.output,
+                     report::improvement_report_html(evaluate::positioning_page(json, words)));
   write_json(arguments.json, json);
   print_result(human_stream(arguments.json), json);
   for (const auto& one : json["characteristics"])
     if (one.contains("conformity") && one["conformity"] == "not met")
-      throw LimitNotMet("the tolerance of " + one["name"].get<std::string>() + " is not met");
+      throw text::LimitNotMet("the tolerance of " + one["name"].get<std::string>() + " is not met");
 }
 
 }  // namespace
@@ -118,4 +122,4 @@ void register_evaluate(CLI::App& vernier) {
   add_robot_kind(*evaluate);
 }
 
-}  // namespace vernier::evaluate_cli
+}  // namespace vernier::commands::evaluate_cli

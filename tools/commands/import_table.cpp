@@ -12,7 +12,7 @@
 #include "tools/model/measurement.h"
 #include "tools/text/error.h"
 
-namespace vernier::import_cli {
+namespace vernier::commands::import_cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -24,61 +24,63 @@ struct TableArguments {
   bool preview = false;
 };
 
-SheetWishes wishes_of(const TableArguments& arguments, const CLI::App& kind) {
-  SheetWishes wishes;
-  if (!arguments.profile.empty()) read_sheet_profile(wishes, read_file(arguments.profile), arguments.profile);
-  if (kind.count("--separator") > 0) wishes.format.separator = separator_of(arguments.separator);
+importer::SheetWishes wishes_of(const TableArguments& arguments, const CLI::App& kind) {
+  importer::SheetWishes wishes;
+  if (!arguments.profile.empty())
+    importer::read_sheet_profile(wishes, text::read_file(arguments.profile), arguments.profile);
+  if (kind.count("--separator") > 0) wishes.format.separator = importer::separator_of(arguments.separator);
   if (kind.count("--decimal") > 0) wishes.format.decimal_comma = arguments.decimal == "comma";
   if (kind.count("--comment") > 0)
     wishes.format.comment = arguments.comment == "none" ? "" : arguments.comment;
   if (kind.count("--skip") > 0) wishes.format.skip = arguments.skip;
   if (kind.count("--sheet") > 0) wishes.format.sheet = arguments.sheet;
   if (!arguments.unit.empty()) {
-    const auto unit = unit_meant(arguments.unit);
-    if (!unit) throw InputError("--unit " + arguments.unit + ": unknown unit");
+    const auto unit = sheet::unit_meant(arguments.unit);
+    if (!unit) throw text::InputError("--unit " + arguments.unit + ": unknown unit");
     wishes.unit = *unit;
   }
   for (const std::string& words : arguments.constants) {
-    ColumnMap map;
-    add_constant(map, words);
+    importer::ColumnMap map;
+    importer::add_constant(map, words);
     wishes.constants.push_back(map.columns.front());
   }
   return wishes;
 }
 
-void add_said_columns(SheetWishes& wishes, const TableArguments& arguments, const SheetTable& table) {
-  for (const std::string& words : arguments.columns) assign_column(wishes, table, words);
-  for (const std::string& words : arguments.deviations) assign_deviation(wishes, words);
+void add_said_columns(importer::SheetWishes& wishes, const TableArguments& arguments,
+                      const sheet::SheetTable& table) {
+  for (const std::string& words : arguments.columns) importer::assign_column(wishes, table, words);
+  for (const std::string& words : arguments.deviations) importer::assign_deviation(wishes, words);
   for (const std::string& heading : arguments.left) {
-    SheetColumn column;
-    column.use = SheetColumn::Use::kLeft;
+    importer::SheetColumn column;
+    column.use = importer::SheetColumn::Use::kLeft;
     wishes.assignments.push_back({heading, column, {}});
   }
 }
 
-std::string how_read(const Sheet& sheet) {
+std::string how_read(const sheet::Sheet& sheet) {
   if (sheet.workbook) return "workbook, sheet \"" + sheet.sheet + "\"";
   return fmt::format(
-      "{}, columns parted by {}, decimal {}{}", encoding_name(sheet.encoding),
-      separator_word(sheet.separator), sheet.decimal_comma ? "comma" : "point",
+      "{}, columns parted by {}, decimal {}{}", sheet::encoding_name(sheet.encoding),
+      sheet::separator_word(sheet.separator), sheet.decimal_comma ? "comma" : "point",
       sheet.decimal_doubtful ? " (it could part thousands as well: --decimal says which)" : "");
 }
 
-std::string becomes(const SheetColumn& column) {
+std::string becomes(const importer::SheetColumn& column) {
   const std::string unit = column.unit.empty() ? "" : "[" + column.unit + "]";
   switch (column.use) {
-    case SheetColumn::Use::kColumn:
+    case importer::SheetColumn::Use::kColumn:
       return column.name + unit + (column.words ? " (words)" : "");
-    case SheetColumn::Use::kDeviation:
+    case importer::SheetColumn::Use::kDeviation:
       return fmt::format("position of {} + this, {}", column.name, unit);
-    case SheetColumn::Use::kLeft:
+    case importer::SheetColumn::Use::kLeft:
       return "left out";
   }
   return "";
 }
 
-void print_columns(std::FILE* out, const Sheet& sheet, const SheetTable& table,
-                   const std::vector<SheetColumn>& columns) {
+void print_columns(std::FILE* out, const sheet::Sheet& sheet, const sheet::SheetTable& table,
+                   const std::vector<importer::SheetColumn>& columns) {
   fmt::print(out, "{}: {}\n", sheet.file, how_read(sheet));
   if (table.has_headings)
     fmt::print(out, "headings in line {}{}, data from line {}\n", sheet.line[table.heading_row],
@@ -99,12 +101,12 @@ void print_rows(std::FILE* out, const std::string& csv) {
   }
 }
 
-Json columns_json(const SheetTable& table, const std::vector<SheetColumn>& columns) {
+Json columns_json(const sheet::SheetTable& table, const std::vector<importer::SheetColumn>& columns) {
   Json list = Json::array();
   for (std::size_t k = 0; k < columns.size(); ++k) {
-    const char* use = columns[k].use == SheetColumn::Use::kColumn      ? "column"
-                      : columns[k].use == SheetColumn::Use::kDeviation ? "deviation"
-                                                                       : "left";
+    const char* use = columns[k].use == importer::SheetColumn::Use::kColumn      ? "column"
+                      : columns[k].use == importer::SheetColumn::Use::kDeviation ? "deviation"
+                                                                                 : "left";
     list.push_back({{"heading", table.headings[k].text},
                     {"use", use},
                     {"name", columns[k].name},
@@ -115,34 +117,37 @@ Json columns_json(const SheetTable& table, const std::vector<SheetColumn>& colum
 }
 
 void run_table(const TableArguments& arguments, const CLI::App& kind) {
-  SheetWishes wishes = wishes_of(arguments, kind);
+  importer::SheetWishes wishes = wishes_of(arguments, kind);
   if (!arguments.machine.empty())
-    for (const Axis& axis : read_machine(arguments.machine).axes) wishes.axes.push_back(axis.name);
-  const Sheet sheet = read_sheet(read_file(arguments.file), arguments.file, wishes.format);
-  const SheetTable table = parts_of_sheet(sheet);
+    for (const model::Axis& axis : model::read_machine(arguments.machine).axes)
+      wishes.axes.push_back(axis.name);
+  const sheet::Sheet sheet =
+      sheet::read_sheet(text::read_file(arguments.file), arguments.file, wishes.format);
+  const sheet::SheetTable table = sheet::parts_of_sheet(sheet);
   add_said_columns(wishes, arguments, table);
-  const std::vector<SheetColumn> columns = columns_of_sheet(sheet, table, wishes);
+  const std::vector<importer::SheetColumn> columns = importer::columns_of_sheet(sheet, table, wishes);
   std::FILE* out = human_stream(arguments.json);
   if (arguments.preview) print_columns(out, sheet, table, columns);
-  ImportTable read = [&] {
+  importer::ImportTable read = [&] {
     try {
-      return table_of_sheet(sheet, table, columns, wishes);
-    } catch (const InputError&) {
+      return importer::table_of_sheet(sheet, table, columns, wishes);
+    } catch (const text::InputError&) {
       // What was understood is where the mend begins.
       if (!arguments.preview) print_columns(stderr, sheet, table, columns);
       throw;
     }
   }();
-  if (arguments.check_every > 0) set_roles(read, arguments.check_every);
-  const std::string csv = measurement_csv(read);
+  if (arguments.check_every > 0) importer::set_roles(read, arguments.check_every);
+  const std::string csv = importer::measurement_csv(read);
   Json result = {{"kind", "table"},
-                 {"encoding", sheet.workbook ? "workbook" : encoding_name(sheet.encoding)},
-                 {"separator", sheet.workbook ? Json(nullptr) : Json(separator_word(sheet.separator))},
+                 {"encoding", sheet.workbook ? "workbook" : sheet::encoding_name(sheet.encoding)},
+                 {"separator", sheet.workbook ? Json(nullptr) : Json(sheet::separator_word(sheet.separator))},
                  {"decimal", sheet.decimal_comma ? "comma" : "point"},
                  {"n_rows", read.line.size()},
                  {"columns", columns_json(table, columns)}};
   if (!arguments.machine.empty()) {
-    const Measurement m = parse_measurement(csv, arguments.file, read_machine(arguments.machine));
+    const model::Measurement m =
+        model::parse_measurement(csv, arguments.file, model::read_machine(arguments.machine));
     result["n_obs"] = m.observations.size();
     result["n_excluded"] = m.excluded;
   }
@@ -152,10 +157,10 @@ void run_table(const TableArguments& arguments, const CLI::App& kind) {
     fmt::print(out, "preview of {} rows: nothing is written\n", read.line.size());
     return;
   }
-  if (arguments.output.empty()) throw InputError("where to? -o MEAS.csv (or --preview)");
-  write_file(arguments.output, csv);
+  if (arguments.output.empty()) throw text::InputError("where to? -o MEAS.csv (or --preview)");
+  text::write_file(arguments.output, csv);
   if (!arguments.save_profile.empty())
-    write_file(arguments.save_profile, sheet_profile(sheet, table, columns, wishes));
+    text::write_file(arguments.save_profile, importer::sheet_profile(sheet, table, columns, wishes));
   write_json(arguments.json, result);
   print_columns(out, sheet, table, columns);
   fmt::print(out, "{}: {} rows\n", arguments.output, read.line.size());
@@ -206,4 +211,4 @@ void add_table_kind(CLI::App& import) {
   kind->callback([arguments, kind] { run_table(*arguments, *kind); });
 }
 
-}  // namespace vernier::import_cli
+}  // namespace vernier::commands::import_cli

@@ -18,7 +18,7 @@
 #include "tools/text/words.h"
 #include "tools/tolerance/conformity.h"
 
-namespace vernier::part_cli {
+namespace vernier::commands::part_cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -34,22 +34,22 @@ struct ConformityArguments {
 
 constexpr double kUm = 1000;  // per mm
 
-Json expectation_json(const Expectation& e) {
+Json expectation_json(const tolerance::Expectation& e) {
   return {{"value_um", kUm * e.value},
           {"mean_um", kUm * e.mean},
           {"std_um", kUm * e.std},
           {"interval_um", {kUm * e.low, kUm * e.high}},
           {"u95_um", kUm * e.u95},
-          {"probability", or_null(e.probability)},
-          {"verdict", e.verdict ? Json(verdict_words(*e.verdict)) : Json(nullptr)}};
+          {"probability", text::or_null(e.probability)},
+          {"verdict", e.verdict ? Json(tolerance::verdict_words(*e.verdict)) : Json(nullptr)}};
 }
 
-Json characteristic_json(const CharacteristicResult& one, const PlacedPart& part) {
-  const PartFeature& feature = part.features[one.feature].feature;
+Json characteristic_json(const tolerance::CharacteristicResult& one, const tolerance::PlacedPart& part) {
+  const tolerance::PartFeature& feature = part.features[one.feature].feature;
   Json json = {{"feature", feature.name},
-               {"kind", kind_name(feature.kind)},
+               {"kind", tolerance::kind_name(feature.kind)},
                {"line", feature.line},
-               {"characteristic", characteristic_name(one.what)},
+               {"characteristic", tolerance::characteristic_name(one.what)},
                {"limits_um", nullptr},
                {"uncorrected", expectation_json(one.off)},
                {"corrected", expectation_json(one.on)},
@@ -58,7 +58,7 @@ Json characteristic_json(const CharacteristicResult& one, const PlacedPart& part
                {"process", one.process},
                {"sources", Json::array()}};
   if (one.limits_mm) json["limits_um"] = {kUm * (*one.limits_mm)[0], kUm * (*one.limits_mm)[1]};
-  for (const SourceShare& source : one.sources)
+  for (const tolerance::SourceShare& source : one.sources)
     json["sources"].push_back({{"name", source.name},
                                {"effect", source.effect},
                                {"fall_um", kUm * source.fall_mm},
@@ -68,8 +68,8 @@ Json characteristic_json(const CharacteristicResult& one, const PlacedPart& part
   return json;
 }
 
-Json conformity_json(const Machine& machine, const ConformityArguments& arguments, const PlacedPart& part,
-                     const PartConformity& result) {
+Json conformity_json(const model::Machine& machine, const ConformityArguments& arguments,
+                     const tolerance::PlacedPart& part, const tolerance::PartConformity& result) {
   Json json = {{"machine", machine.name},
                {"part", arguments.part.path},
                {"trials", result.trials},
@@ -81,32 +81,33 @@ Json conformity_json(const Machine& machine, const ConformityArguments& argument
                {"stale", result.stale},
                {"outside_measured", result.outside},
                {"characteristics", Json::array()}};
-  for (const CharacteristicResult& one : result.characteristics)
+  for (const tolerance::CharacteristicResult& one : result.characteristics)
     json["characteristics"].push_back(characteristic_json(one, part));
   return json;
 }
 
-std::string words_of(const Expectation& e) {
+std::string words_of(const tolerance::Expectation& e) {
   std::string text =
       fmt::format("{:.2f} um (95 %: {:.2f} to {:.2f})", kUm * e.value, kUm * e.low, kUm * e.high);
-  if (e.probability) text += fmt::format(", {:.1f} % {}", 100 * *e.probability, verdict_words(*e.verdict));
+  if (e.probability)
+    text += fmt::format(", {:.1f} % {}", 100 * *e.probability, tolerance::verdict_words(*e.verdict));
   return text;
 }
 
 /// What would help: to correct where a source is told, to measure where nobody did.
-std::string why(const CharacteristicResult& one) {
+std::string why(const tolerance::CharacteristicResult& one) {
   if (one.dominant.empty()) return "";
   if (one.dominant.size() == 1) return one.dominant[0];
   constexpr std::size_t kMost = 3;
   std::vector<std::string> names(
       one.dominant.begin(),
       one.dominant.begin() + static_cast<std::ptrdiff_t>(std::min(kMost, one.dominant.size())));
-  return "not told apart: " + joined(names, ", ") +
+  return "not told apart: " + text::joined(names, ", ") +
          (one.dominant.size() > kMost ? fmt::format(" and {} more", one.dominant.size() - kMost) : "");
 }
 
 /// The source that the uncertainty comes from most.
-std::string least_known(const CharacteristicResult& one) {
+std::string least_known(const tolerance::CharacteristicResult& one) {
   const auto most = std::max_element(one.sources.begin(), one.sources.end(),
                                      [](const auto& a, const auto& b) { return a.variance < b.variance; });
   if (most == one.sources.end() || most->variance <= 0) return one.process > 0 ? "process" : "";
@@ -114,17 +115,18 @@ std::string least_known(const CharacteristicResult& one) {
   return fmt::format("{} ({:.0f} %)", most->name, 100 * most->variance);
 }
 
-void print_conformity(std::FILE* out, const PlacedPart& part, const PartConformity& result) {
+void print_conformity(std::FILE* out, const tolerance::PlacedPart& part,
+                      const tolerance::PartConformity& result) {
   fmt::print(out, "{} trials, seed {}, {}\n", result.trials, result.seed,
              result.exact ? "each through the whole chain" : "linear in what is not known of the machine");
   if (!result.settled) fmt::print(out, "stopped before the ends of the intervals had settled\n");
   for (const std::string& name : result.stale) fmt::print(out, "set by hand since the fit: {}\n", name);
   for (const std::string& range : result.outside)
     fmt::print(out, "the part is where nobody measured: {}\n", range);
-  for (const CharacteristicResult& one : result.characteristics) {
-    const PartFeature& feature = part.features[one.feature].feature;
-    fmt::print(out, "\n{}: {}", feature.name, characteristic_name(one.what));
-    if (one.limits_mm && one.what == PartCharacteristic::kSize)
+  for (const tolerance::CharacteristicResult& one : result.characteristics) {
+    const tolerance::PartFeature& feature = part.features[one.feature].feature;
+    fmt::print(out, "\n{}: {}", feature.name, tolerance::characteristic_name(one.what));
+    if (one.limits_mm && one.what == tolerance::PartCharacteristic::kSize)
       fmt::print(out, ", allowed {:+.4g} to {:+.4g} um", kUm * (*one.limits_mm)[0],
                  kUm * (*one.limits_mm)[1]);
     else if (one.limits_mm)
@@ -139,16 +141,16 @@ void print_conformity(std::FILE* out, const PlacedPart& part, const PartConformi
   }
 }
 
-std::string conformity_page(const Machine& machine, const ConformityArguments& arguments,
-                            const PlacedPart& part, const PartConformity& result) {
+std::string conformity_page(const model::Machine& machine, const ConformityArguments& arguments,
+                            const tolerance::PlacedPart& part, const tolerance::PartConformity& result) {
   Json table = {{"caption", "95 % intervals over what the fit does not know; um"},
                 {"columns",
                  {"feature", "characteristic", "allowed", "without correction", "with correction", "dominant",
                   "least known", "never measured"}},
                 {"rows", Json::array()}};
-  for (const CharacteristicResult& one : result.characteristics)
+  for (const tolerance::CharacteristicResult& one : result.characteristics)
     table["rows"].push_back(
-        {part.features[one.feature].feature.name, characteristic_name(one.what),
+        {part.features[one.feature].feature.name, tolerance::characteristic_name(one.what),
          one.limits_mm ? fmt::format("{:.4g} to {:.4g}", kUm * (*one.limits_mm)[0], kUm * (*one.limits_mm)[1])
                        : "-",
          words_of(one.off), words_of(one.on), why(one), least_known(one),
@@ -156,7 +158,7 @@ std::string conformity_page(const Machine& machine, const ConformityArguments& a
   Json notes = Json::array();
   for (const std::string& range : result.outside)
     notes.push_back("the part is where nobody measured: " + range);
-  return improvement_report_html(
+  return report::improvement_report_html(
       {{"title", "Will the part be in tolerance?"},
        {"machine", machine.name},
        {"files", {arguments.machine, arguments.part.path}},
@@ -169,50 +171,51 @@ std::string conformity_page(const Machine& machine, const ConformityArguments& a
           {"notes", notes}}}}});
 }
 
-Machine machine_of(const ConformityArguments& arguments) {
-  Machine machine = read_machine(arguments.machine);
+model::Machine machine_of(const ConformityArguments& arguments) {
+  model::Machine machine = model::read_machine(arguments.machine);
   if (!arguments.measurements.empty()) {
-    const Measurement rows =
-        read_measurement(arguments.measurements, machine, corrections_of_images(arguments.images));
-    FitResult fitted = fit(machine, rows);
-    if (!fitted.absurd.empty()) throw LimitNotMet(fitted.absurd);
-    if (!fitted.converged) throw LimitNotMet("the fit did not converge");
+    const model::Measurement rows = model::read_measurement(
+        arguments.measurements, machine, simulate::corrections_of_images(arguments.images));
+    fit::FitResult fitted = fit::fit(machine, rows);
+    if (!fitted.absurd.empty()) throw text::LimitNotMet(fitted.absurd);
+    if (!fitted.converged) throw text::LimitNotMet("the fit did not converge");
     machine = std::move(fitted.machine);
   }
   if (!machine.fitted)
-    throw InputError({machine.file, 0}, machine.name,
-                     "was never fitted (no <fitted>): give measurements, or what `vernier fit` wrote");
-  return arguments.tool.empty() ? machine : tooled(machine, arguments.tool);
+    throw text::InputError({machine.file, 0}, machine.name,
+                           "was never fitted (no <fitted>): give measurements, or what `vernier fit` wrote");
+  return arguments.tool.empty() ? machine : kinematics::tooled(machine, arguments.tool);
 }
 
 /// The worst of the verdicts that the user asked about.
-void judge(const PlacedPart& part, const PartConformity& result, bool uncorrected) {
+void judge(const tolerance::PlacedPart& part, const tolerance::PartConformity& result, bool uncorrected) {
   std::vector<std::string> failing;
-  for (const CharacteristicResult& one : result.characteristics) {
+  for (const tolerance::CharacteristicResult& one : result.characteristics) {
     const auto& verdict = uncorrected ? one.off.verdict : one.on.verdict;
-    if (verdict && *verdict == PartVerdict::kDoesNotConform)
-      failing.push_back(
-          fmt::format("{} of {}", characteristic_name(one.what), part.features[one.feature].feature.name));
+    if (verdict && *verdict == tolerance::PartVerdict::kDoesNotConform)
+      failing.push_back(fmt::format("{} of {}", tolerance::characteristic_name(one.what),
+                                    part.features[one.feature].feature.name));
   }
   if (!failing.empty())
-    throw LimitNotMet(fmt::format("out of tolerance{}: {}", uncorrected ? "" : " with the correction too",
-                                  joined(failing, ", ")));
+    throw text::LimitNotMet(fmt::format("out of tolerance{}: {}",
+                                        uncorrected ? "" : " with the correction too",
+                                        text::joined(failing, ", ")));
 }
 
 void run_conformity(const ConformityArguments& arguments) {
-  const Machine machine = machine_of(arguments);
-  const PlacedPart part = placed_part(arguments.part, machine);
+  const model::Machine machine = machine_of(arguments);
+  const tolerance::PlacedPart part = placed_part(arguments.part, machine);
   Progress progress("trials");
-  ConformityOptions options;
-  options.frame = arguments.frame == "machine" ? PartFrame::kMachine : PartFrame::kPart;
+  tolerance::ConformityOptions options;
+  options.frame = arguments.frame == "machine" ? tolerance::PartFrame::kMachine : tolerance::PartFrame::kPart;
   options.seed = arguments.seed;
   options.process_mm = arguments.process_um / kUm;
   options.with_rotary = arguments.with_rotary || machine.correct_orientation;
   options.progress = [&](double share) { progress.update(share); };
-  const PartConformity result =
-      part_conformity(machine, part, arguments.part.path, effect_catalogue(arguments.effects), options);
+  const tolerance::PartConformity result = tolerance::part_conformity(
+      machine, part, arguments.part.path, effects::effect_catalogue(arguments.effects), options);
   if (!arguments.output.empty())
-    write_file(arguments.output, conformity_page(machine, arguments, part, result));
+    text::write_file(arguments.output, conformity_page(machine, arguments, part, result));
   write_json(arguments.json, conformity_json(machine, arguments, part, result));
   print_conformity(human_stream(arguments.json), part, result);
   judge(part, result, arguments.uncorrected);
@@ -260,7 +263,7 @@ void add_conformity(CLI::App& part) {
   command->add_flag("--rotary", a->with_rotary, "correct with all axes; default: as the machine file says");
   command->add_flag("--uncorrected", a->uncorrected,
                     "the machine runs without its correction: that decides the exit status");
-  command->add_option("--images", a->images, kImagesHelp);
+  command->add_option("--images", a->images, simulate::kImagesHelp);
   command->add_option("-o,--output", a->output, "the same as a page (HTML)");
   command->add_option("--json", a->json, "result for programs; - for standard output");
   command->footer(
@@ -272,4 +275,4 @@ void add_conformity(CLI::App& part) {
   command->callback([a] { run_conformity(*a); });
 }
 
-}  // namespace vernier::part_cli
+}  // namespace vernier::commands::part_cli

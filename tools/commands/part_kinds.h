@@ -6,7 +6,7 @@
 #include "tools/model/machine.h"
 #include "tools/tolerance/placed_part.h"
 
-namespace vernier::part_cli {
+namespace vernier::commands::part_cli {
 
 /// A part as a command line names it.
 struct PartSource {
@@ -16,9 +16,9 @@ struct PartSource {
 
 /// The part where the machine cuts it, from a list of features or a part program. Throws InputError, and
 /// LimitNotMet where a point is out of reach. tool.
-PlacedPart placed_part(const PartSource& source, const Machine& machine);
+tolerance::PlacedPart placed_part(const PartSource& source, const model::Machine& machine);
 
 /// Adds `vernier part conformity`. tool.
 void add_conformity(CLI::App& part);
 
-}  // namespace vernier::part_cli
+}  // namespace vernier::commands::part_cli

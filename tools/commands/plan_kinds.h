@@ -9,7 +9,7 @@
 #include "tools/model/machine.h"
 #include "tools/model/states.h"
 
-namespace vernier::plan_cli {
+namespace vernier::commands::plan_cli {
 
 struct PlanArguments {
   std::string machine, output, gcode, json, images, region;
@@ -24,9 +24,9 @@ struct PlanArguments {
 };
 
 /// One pose of a plan: axes and senses.
-nlohmann::ordered_json pose_json(const Machine& machine, const States& states, std::size_t row);
+nlohmann::ordered_json pose_json(const model::Machine& machine, const model::States& states, std::size_t row);
 
 /// The next poses for accuracy where it matters. Throws LimitNotMet where it cannot be reached.
 void run_accuracy_plan(const PlanArguments& arguments);
 
-}  // namespace vernier::plan_cli
+}  // namespace vernier::commands::plan_cli

@@ -6,14 +6,14 @@
 
 #include "tools/offline/corrector.h"
 
-namespace vernier {
+namespace vernier::offline {
 
 /// Part of a cutting move in which no axis turns round; of a rapid move nothing.
 struct ProgramStretch {
   std::size_t line = 0;
   bool rapid = false;
   bool whole_circle = false;  // of the move that it belongs to
-  States states;              // as if the machine were ideal, a millimetre or a tenth of a degree apart
+  model::States states;       // as if the machine were ideal, a millimetre or a tenth of a degree apart
 };
 
 struct PartProgramOptions {
@@ -37,8 +37,8 @@ struct PartProgram {
 /// the first block, and inputs. Throws InputError with file, line and word for what would be wrong if it were
 /// passed on: cycles, compensation of the cutter, other zeros and rotations, parameters, loops, an axis that
 /// was never commanded and that `at` does not name. tool.
-PartProgram corrected_program(const std::string& text, const std::string& file, const States& at,
+PartProgram corrected_program(const std::string& text, const std::string& file, const model::States& at,
                               const std::vector<char>& known, const PartProgramOptions& options,
                               Corrector& corrector);
 
-}  // namespace vernier
+}  // namespace vernier::offline

@@ -13,7 +13,7 @@
 #include "tools/plan/offered_poses.h"
 #include "tools/tolerance/feature_values.h"
 
-namespace vernier {
+namespace vernier::plan {
 namespace {
 
 using Eigen::Index;
@@ -22,17 +22,17 @@ using Eigen::MatrixXd;
 /// Poses that a volume is looked at, far behind those that are offered in Halton's sequence.
 constexpr std::size_t kLookedAt = 150, kFrom = 7919;
 
-Machine bare(Machine machine) {
+model::Machine bare(model::Machine machine) {
   machine.base_shifts.clear();
   return machine;
 }
 
 /// How the machine's own parameters move the tool point in workpiece coordinates.
-MatrixXd own_columns_at(const Machine& machine, const States& states, const ParameterSet& all,
-                        const std::vector<Index>& own) {
-  const Machine without = bare(machine);
-  const ParameterSet parameters(without, {});
-  const MatrixXd columns(linearise(without, point_readings(states), parameters).jacobian);
+MatrixXd own_columns_at(const model::Machine& machine, const model::States& states,
+                        const model::ParameterSet& all, const std::vector<Index>& own) {
+  const model::Machine without = bare(machine);
+  const model::ParameterSet parameters(without, {});
+  const MatrixXd columns(model::linearise(without, fit::point_readings(states), parameters).jacobian);
   MatrixXd result(columns.rows(), static_cast<Index>(own.size()));
   for (std::size_t j = 0; j < own.size(); ++j)
     for (std::size_t i = 0; i < parameters.size(); ++i)
@@ -42,46 +42,48 @@ MatrixXd own_columns_at(const Machine& machine, const States& states, const Para
 }
 
 AimRows rows_of_volume(const Knowledge& knowledge, const AccuracyAim& aim, const std::vector<Index>& own) {
-  const Machine machine = with_region(knowledge.machine, aim.region);
-  const States states = offered_poses(machine, kLookedAt, kFrom);
-  std::vector<Machine> tooled = {machine};
-  for (const Tool& tool : machine.tools) tooled.push_back(with_tool(machine, tool.point));
+  const model::Machine machine = with_region(knowledge.machine, aim.region);
+  const model::States states = offered_poses(machine, kLookedAt, kFrom);
+  std::vector<model::Machine> tooled = {machine};
+  for (const model::Tool& tool : machine.tools) tooled.push_back(model::with_tool(machine, tool.point));
   const double share = std::sqrt(static_cast<double>(kLookedAt * tooled.size()));
   AimRows result;
   result.rows.resize(static_cast<Index>(3 * kLookedAt * tooled.size()), static_cast<Index>(own.size()));
   for (std::size_t t = 0; t < tooled.size(); ++t) {
     MatrixXd columns = own_columns_at(tooled[t], states, knowledge.parameters, own);
-    const MatrixXd basis =
-        orthonormal(rigid_motions(forward(bare(tooled[t]), states).position), 1e-9, nullptr);
+    const MatrixXd basis = maths::orthonormal(
+        fit::rigid_motions(model::forward(bare(tooled[t]), states).position), 1e-9, nullptr);
     columns -= basis * (basis.transpose() * columns);
     result.rows.middleRows(static_cast<Index>(3 * kLookedAt * t), columns.rows()) = columns / share;
   }
   return result;
 }
 
-AimRows rows_of_part(const Knowledge& knowledge, const PlacedPart& part, const std::vector<Index>& own) {
-  const PartValues values = part_values(part, PartFrame::kPart, "");
+AimRows rows_of_part(const Knowledge& knowledge, const tolerance::PlacedPart& part,
+                     const std::vector<Index>& own) {
+  const tolerance::PartValues values = tolerance::part_values(part, tolerance::PartFrame::kPart, "");
   const MatrixXd columns =
       values.map * own_columns_at(knowledge.machine, part.states, knowledge.parameters, own);
   AimRows result{columns, {}};
-  for (const CharacteristicValue& value : values.values) {
+  for (const tolerance::CharacteristicValue& value : values.values) {
     // The mean square of the vectors that a characteristic is made from, and the mean of all of those.
     const double share = std::sqrt(static_cast<double>(value.group) / static_cast<double>(value.count) /
                                    static_cast<double>(values.values.size()));
     result.rows.middleRows(value.first, value.count) *= share;
-    result.pieces.push_back(
-        {fmt::format("{} of {}", characteristic_name(value.what), part.features[value.feature].feature.name),
-         value.first, value.count, 1 / std::sqrt(static_cast<double>(values.values.size()))});
+    result.pieces.push_back({fmt::format("{} of {}", tolerance::characteristic_name(value.what),
+                                         part.features[value.feature].feature.name),
+                             value.first, value.count,
+                             1 / std::sqrt(static_cast<double>(values.values.size()))});
   }
   return result;
 }
 
 }  // namespace
 
-Machine with_region(const Machine& machine, const std::vector<WorkRange>& region) {
-  Machine result = machine;
-  for (const WorkRange& range : region) {
-    std::erase_if(result.volume, [&](const WorkRange& one) { return one.axis == range.axis; });
+model::Machine with_region(const model::Machine& machine, const std::vector<model::WorkRange>& region) {
+  model::Machine result = machine;
+  for (const model::WorkRange& range : region) {
+    std::erase_if(result.volume, [&](const model::WorkRange& one) { return one.axis == range.axis; });
     result.volume.push_back(range);
   }
   return result;
@@ -91,4 +93,4 @@ AimRows aim_rows(const Knowledge& knowledge, const AccuracyAim& aim, const std::
   return aim.part ? rows_of_part(knowledge, *aim.part, own) : rows_of_volume(knowledge, aim, own);
 }
 
-}  // namespace vernier
+}  // namespace vernier::plan

@@ -6,7 +6,7 @@
 
 #include "tools/plan/accuracy_plan.h"
 
-namespace vernier {
+namespace vernier::plan {
 
 /// The aim as numbers that are linear in the parameters: U95 = 2 sqrt(trace(rows C rows^T)), mm.
 struct AimRows {
@@ -24,6 +24,6 @@ struct AimRows {
 AimRows aim_rows(const Knowledge& knowledge, const AccuracyAim& aim, const std::vector<Eigen::Index>& own);
 
 /// The machine with the aim's region as its `<volume>`.
-Machine with_region(const Machine& machine, const std::vector<WorkRange>& region);
+model::Machine with_region(const model::Machine& machine, const std::vector<model::WorkRange>& region);
 
-}  // namespace vernier
+}  // namespace vernier::plan

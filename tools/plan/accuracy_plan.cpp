@@ -16,7 +16,7 @@
 #include "tools/text/error.h"
 #include "tools/tolerance/machine_sources.h"
 
-namespace vernier {
+namespace vernier::plan {
 namespace {
 
 using Eigen::Index;
@@ -30,32 +30,33 @@ constexpr double kAnywhere = 10;
 constexpr double kFarBetter = 1e-3;
 
 /// Poses one after the other; both of the same machine.
-States joined_states(const States& a, const States& b) {
+model::States joined_states(const model::States& a, const model::States& b) {
   std::vector<std::size_t> rows(a.count + b.count, 0);
   for (std::size_t i = 0; i < a.count; ++i) rows[i] = i;
-  States all = select_states(a, rows);
-  for (const auto list : {&States::axis, &States::direction, &States::input})
+  model::States all = model::select_states(a, rows);
+  for (const auto list : {&model::States::axis, &model::States::direction, &model::States::input})
     for (std::size_t k = 0; k < (all.*list).size(); ++k)
       (all.*list)[k].tail(static_cast<Index>(b.count)) = (b.*list)[k];
   return all;
 }
 
 /// The first `most` of poses, evenly picked.
-States thinned(const States& states, std::size_t most) {
+model::States thinned(const model::States& states, std::size_t most) {
   if (states.count <= most) return states;
   std::vector<std::size_t> rows(most);
   for (std::size_t i = 0; i < most; ++i) rows[i] = i * states.count / most;
-  return select_states(states, rows);
+  return model::select_states(states, rows);
 }
 
 class AccuracyPlanner {
  public:
   AccuracyPlanner(const Knowledge& knowledge, const AccuracyAim& aim) : knowledge_(knowledge) {
     for (std::size_t i = 0; i < knowledge.parameters.size(); ++i)
-      if (knowledge.parameters[i].kind != ParameterKind::kBaseShift) own_.push_back(static_cast<Index>(i));
+      if (knowledge.parameters[i].kind != model::ParameterKind::kBaseShift)
+        own_.push_back(static_cast<Index>(i));
     if (own_.empty())
-      throw InputError({knowledge.machine.file, 0}, knowledge.machine.name,
-                       "the machine file frees nothing that could be measured");
+      throw text::InputError({knowledge.machine.file, 0}, knowledge.machine.name,
+                             "the machine file frees nothing that could be measured");
     aim_ = aim_rows(knowledge, aim, own_);
     size_ = static_cast<Index>(knowledge.parameters.size()) + 9;
     weight_ = MatrixXd::Zero(size_, size_);
@@ -64,10 +65,10 @@ class AccuracyPlanner {
     prior_.topLeftCorner(size_ - 9, size_ - 9) = knowledge.covariance;
     if (knowledge.new_set_up) prior_.diagonal().segment(size_ - 9, 6).setConstant(kAnywhere * kAnywhere);
     prior_.diagonal().tail(3).setConstant(knowledge.run_mm * knowledge.run_mm);
-    const States over = offered_poses(knowledge.machine, kOverVolume, 0);
-    const States at = aim.part
-                          ? thinned(with_senses(aim.part->states), kAtAim)
-                          : offered_poses(with_region(knowledge.machine, aim.region), kAtAim, kOverVolume);
+    const model::States over = offered_poses(knowledge.machine, kOverVolume, 0);
+    const model::States at =
+        aim.part ? thinned(with_senses(aim.part->states), kAtAim)
+                 : offered_poses(with_region(knowledge.machine, aim.region), kAtAim, kOverVolume);
     offered_ = joined_states(over, at);
   }
 
@@ -97,44 +98,46 @@ class AccuracyPlanner {
     plan.random_um = random_um(chosen.size());
     for (const AimRows::Piece& piece : aim_.pieces)
       plan.parts.push_back({piece.name, piece_um(piece, prior_), piece_um(piece, covariance_)});
-    plan.states = select_states(offered_, nearest_way(knowledge_.machine, offered_, chosen));
+    plan.states = model::select_states(offered_, nearest_way(knowledge_.machine, offered_, chosen));
     return plan;
   }
 
-  double uncertainty_um(const States& poses) const { return expanded_um(after(rows_at(poses), 1)); }
+  double uncertainty_um(const model::States& poses) const { return expanded_um(after(rows_at(poses), 1)); }
 
  private:
   /// Every pose is come to from either side, and no speed is left of a part's cut.
-  States with_senses(const States& states) const {
-    States all = states;
+  model::States with_senses(const model::States& states) const {
+    model::States all = states;
     for (std::size_t a = 0; a < knowledge_.machine.axes.size(); ++a) {
-      for (const auto list : {&States::velocity, &States::acceleration}) (all.*list)[a].setZero();
-      all.since[a].setConstant(kLongWay);
+      for (const auto list : {&model::States::velocity, &model::States::acceleration})
+        (all.*list)[a].setZero();
+      all.since[a].setConstant(model::kLongWay);
       for (Index i = 0; i < all.direction[a].size(); ++i)
-        all.direction[a][i] = radical_inverse(static_cast<std::size_t>(i) + 1, 2 + a % 2) < 0.5 ? -1 : 1;
+        all.direction[a][i] =
+            maths::radical_inverse(static_cast<std::size_t>(i) + 1, 2 + a % 2) < 0.5 ? -1 : 1;
     }
     all.feed.setZero();
     return all;
   }
 
   /// What each coordinate that is read there says of parameters, set-up and run: three rows a pose.
-  MatrixXd rows_at(const States& poses) const {
+  MatrixXd rows_at(const model::States& poses) const {
     MatrixXd rows = MatrixXd::Zero(3 * static_cast<Index>(poses.count), size_);
-    const ParameterSet& parameters = knowledge_.parameters;
-    Machine machine = knowledge_.machine;
+    const model::ParameterSet& parameters = knowledge_.parameters;
+    model::Machine machine = knowledge_.machine;
     if (knowledge_.new_set_up) machine.base_shifts.clear();
-    const ParameterSet here(machine, {""});
-    const Measurement readings = point_readings(poses);
-    const MatrixXd columns(linearise(machine, readings, here).jacobian);
+    const model::ParameterSet here(machine, {""});
+    const model::Measurement readings = fit::point_readings(poses);
+    const MatrixXd columns(model::linearise(machine, readings, here).jacobian);
     for (std::size_t i = 0; i < here.size(); ++i)
       for (std::size_t k = 0; k < parameters.size(); ++k)
         if (here[i].name == parameters[k].name)
           rows.col(static_cast<Index>(k)) = columns.col(static_cast<Index>(i));
     if (knowledge_.new_set_up) {
-      Eigen::Matrix3Xd points = forward(machine, poses).position;
+      Eigen::Matrix3Xd points = model::forward(machine, poses).position;
       const Eigen::Vector3d middle = points.rowwise().mean();
       points.colwise() -= middle;
-      rows.middleCols(size_ - 9, 6) = rigid_motions(points);
+      rows.middleCols(size_ - 9, 6) = fit::rigid_motions(points);
     }
     for (Index i = 0; i < rows.rows(); ++i) {
       rows(i, size_ - 3 + i % 3) = 1;
@@ -146,13 +149,13 @@ class AccuracyPlanner {
   double variance() const { return knowledge_.reading_mm * knowledge_.reading_mm; }
 
   double expanded_um(const MatrixXd& covariance) const {
-    return 2 * kUmPerMm * std::sqrt(std::max(0.0, covariance.cwiseProduct(weight_).sum()));
+    return 2 * maths::kUmPerMm * std::sqrt(std::max(0.0, covariance.cwiseProduct(weight_).sum()));
   }
 
   double piece_um(const AimRows::Piece& piece, const MatrixXd& covariance) const {
     const MatrixXd rows = aim_.rows.middleRows(piece.first, piece.count);
     const double square = (rows * MatrixXd(covariance(own_, own_))).cwiseProduct(rows).sum();
-    return 2 * kUmPerMm * std::sqrt(std::max(0.0, square)) / piece.scale;
+    return 2 * maths::kUmPerMm * std::sqrt(std::max(0.0, square)) / piece.scale;
   }
 
   /// C - C J^T (J C J^T + s^2)^-1 J C, block by block: of any number of rows.
@@ -229,14 +232,14 @@ class AccuracyPlanner {
     for (std::size_t draw = 0; draw < kDraws; ++draw) {
       std::vector<std::size_t> rows(count);
       for (std::size_t i = 0; i < count; ++i) rows[i] = i;
-      States poses = select_states(offered_, std::vector<std::size_t>(count, 0));
+      model::States poses = model::select_states(offered_, std::vector<std::size_t>(count, 0));
       for (std::size_t a = 0; a < knowledge_.machine.axes.size(); ++a) {
-        const auto range = work_range(knowledge_.machine, a);
+        const auto range = model::work_range(knowledge_.machine, a);
         constexpr std::array<std::size_t, 10> kPrimes = {2, 3, 5, 7, 11, 13, 17, 19, 23, 29};
         for (std::size_t i = 0; i < count; ++i)
           poses.axis[a][static_cast<Index>(i)] =
               (*range)[0] + ((*range)[1] - (*range)[0]) *
-                                radical_inverse(10000 + 997 * draw + i, kPrimes[a % kPrimes.size()]);
+                                maths::radical_inverse(10000 + 997 * draw + i, kPrimes[a % kPrimes.size()]);
       }
       squares += std::pow(uncertainty_um(poses), 2);
     }
@@ -248,8 +251,8 @@ class AccuracyPlanner {
     const MatrixXd product = covariance * weight_;
     const double total = std::max(product.trace(), 1e-300);
     std::vector<AccuracyLimit> limits;
-    for (const MachineSource& source :
-         machine_sources(knowledge_.machine, knowledge_.parameters, built_in_effects())) {
+    for (const tolerance::MachineSource& source :
+         tolerance::machine_sources(knowledge_.machine, knowledge_.parameters, effects::built_in_effects())) {
       double share = 0;
       for (const std::size_t p : source.parameters)
         share += product(static_cast<Index>(p), static_cast<Index>(p));
@@ -264,46 +267,46 @@ class AccuracyPlanner {
   AimRows aim_;
   Index size_ = 0;           // parameters, six of a new set-up, three of the run
   MatrixXd weight_, prior_;  // what a covariance does at the aim; before the first reading
-  States offered_;
+  model::States offered_;
   MatrixXd jacobian_, covariance_;
 };
 
 /// Median u of the coordinates, 1 mm where none is given: what a weight stands for.
-double usual_reading_mm(const Measurement& m) {
+double usual_reading_mm(const model::Measurement& m) {
   std::vector<double> all;
-  for (const Observation& o : m.observations)
-    if (o.kind <= ObservationKind::kZ) all.push_back(uncertainty_of(m, o));
-  if (all.empty() || !has_uncertainty(m)) return 1;
+  for (const model::Observation& o : m.observations)
+    if (o.kind <= model::ObservationKind::kZ) all.push_back(model::uncertainty_of(m, o));
+  if (all.empty() || !fit::has_uncertainty(m)) return 1;
   std::nth_element(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2), all.end());
   return all[all.size() / 2];
 }
 
 }  // namespace
 
-Knowledge knowledge_of(const FitResult& fitted, const Measurement& measurement) {
+Knowledge knowledge_of(const fit::FitResult& fitted, const model::Measurement& measurement) {
   Knowledge knowledge{fitted.machine, fitted.parameters, fitted.covariance, 0, 0, true, {}};
-  for (const Observation& o : measurement.observations)
-    if (o.kind <= ObservationKind::kZ) knowledge.reads[static_cast<std::size_t>(o.kind)] = true;
+  for (const model::Observation& o : measurement.observations)
+    if (o.kind <= model::ObservationKind::kZ) knowledge.reads[static_cast<std::size_t>(o.kind)] = true;
   if (!knowledge.reads[0] && !knowledge.reads[1] && !knowledge.reads[2])
-    throw InputError({measurement.files.empty() ? "" : measurement.files[0], 0}, "x, y, z",
-                     "a plan for accuracy is one of readings of the tool point; this has none");
-  const NoiseModel& noise = fitted.noise;
+    throw text::InputError({measurement.files.empty() ? "" : measurement.files[0], 0}, "x, y, z",
+                           "a plan for accuracy is one of readings of the tool point; this has none");
+  const fit::NoiseModel& noise = fitted.noise;
   const double unit_mm = usual_reading_mm(measurement);
   const double own = std::sqrt(noise.own * noise.own + noise.pose * noise.pose + noise.drift * noise.drift);
   knowledge.reading_mm = unit_mm * std::max(std::sqrt(fitted.variance_factor), noise.independent() ? 0 : own);
   knowledge.run_mm = unit_mm * noise.run;
   knowledge.new_set_up =
-      std::none_of(fitted.parameters.begin(), fitted.parameters.end(), [](const Parameter& p) {
-        return p.kind == ParameterKind::kBaseShift && p.name.rfind("BaseShift.", 0) == 0;
+      std::none_of(fitted.parameters.begin(), fitted.parameters.end(), [](const model::Parameter& p) {
+        return p.kind == model::ParameterKind::kBaseShift && p.name.rfind("BaseShift.", 0) == 0;
       });
   return knowledge;
 }
 
-Knowledge knowledge_of(const Machine& fitted) {
-  const Reach reach(fitted);
+Knowledge knowledge_of(const model::Machine& fitted) {
+  const fit::Reach reach(fitted);
   if (!reach.known())
-    throw InputError({fitted.file, 0}, fitted.name,
-                     "was never fitted (no <fitted>): what is to be told from here on is not known");
+    throw text::InputError({fitted.file, 0}, fitted.name,
+                           "was never fitted (no <fitted>): what is to be told from here on is not known");
   Knowledge knowledge;
   knowledge.machine = reach.machine();
   knowledge.parameters = reach.parameters();
@@ -316,7 +319,7 @@ AccuracyPlan accuracy_plan(const Knowledge& knowledge, const AccuracyAim& aim,
   return AccuracyPlanner(knowledge, aim).plan(options);
 }
 
-double expected_accuracy_um(const Knowledge& knowledge, const AccuracyAim& aim, const States& poses) {
+double expected_accuracy_um(const Knowledge& knowledge, const AccuracyAim& aim, const model::States& poses) {
   return AccuracyPlanner(knowledge, aim).uncertainty_um(poses);
 }
 
@@ -325,7 +328,7 @@ std::string accuracy_plan_csv(const Knowledge& knowledge, const AccuracyPlan& pl
          "these "
          "rows together with the others.\n" +
          pose_rows_csv(knowledge.machine, plan.states, std::vector<char>(plan.states.count, 0),
-                       kUmPerMm * knowledge.reading_mm, kAccuracyRun);
+                       maths::kUmPerMm * knowledge.reading_mm, kAccuracyRun);
 }
 
-}  // namespace vernier
+}  // namespace vernier::plan

@@ -13,12 +13,12 @@
 #include "tools/model/parameters.h"
 #include "tools/tolerance/placed_part.h"
 
-namespace vernier {
+namespace vernier::plan {
 
 /// What is known of a machine before the next reading.
 struct Knowledge {
-  Machine machine;
-  ParameterSet parameters;
+  model::Machine machine;
+  model::ParameterSet parameters;
   Eigen::MatrixXd covariance;  // of them, convention included
   double reading_mm = 0.005;   // standard deviation of a coordinate that will be read, all that is its own
   double run_mm = 0;           // ... of what all readings of a run share
@@ -29,16 +29,16 @@ struct Knowledge {
 /// From measurements at hand: the fit's covariance, the noise that it found. The next readings stand in the
 /// set-up of the plain BaseShift where the file has a free one, else in a new one. Throws InputError where
 /// the measurement has no x, y or z. tool.
-Knowledge knowledge_of(const FitResult& fitted, const Measurement& measurement);
+Knowledge knowledge_of(const fit::FitResult& fitted, const model::Measurement& measurement);
 /// From the machine file alone, a new set-up. Throws InputError where it was never fitted. tool.
-Knowledge knowledge_of(const Machine& fitted);
+Knowledge knowledge_of(const model::Machine& fitted);
 
 /// Where the machine has to be accurate: a part's features, else where its axes work (`<volume>`), with all
 /// tools of the file.
 struct AccuracyAim {
   std::string words;  // "the volume"
-  std::optional<PlacedPart> part;
-  std::vector<WorkRange> region;  // in place of the volume; an axis that is not named keeps its own
+  std::optional<tolerance::PlacedPart> part;
+  std::vector<model::WorkRange> region;  // in place of the volume; an axis that is not named keeps its own
 };
 
 struct AccuracyOptions {
@@ -68,7 +68,7 @@ struct AccuracyOf {
 };
 
 struct AccuracyPlan {
-  States states;                    // in the order in which they are measured
+  model::States states;             // in the order in which they are measured
   double now_um = 0, after_um = 0;  // U95, rms over the aim
   double floor_um = 0;              // what no number of such readings goes below
   double random_um = 0;  // after as many poses drawn evenly over the volume (rms over several draws)
@@ -87,7 +87,7 @@ AccuracyPlan accuracy_plan(const Knowledge& knowledge, const AccuracyAim& aim,
                            const AccuracyOptions& options);
 
 /// U95 over the aim after readings at any poses, um, in the same terms. tool.
-double expected_accuracy_um(const Knowledge& knowledge, const AccuracyAim& aim, const States& poses);
+double expected_accuracy_um(const Knowledge& knowledge, const AccuracyAim& aim, const model::States& poses);
 
 /// A measurement file with these rows, readings to be filled in.
 std::string accuracy_plan_csv(const Knowledge& knowledge, const AccuracyPlan& plan);
@@ -95,4 +95,4 @@ std::string accuracy_plan_csv(const Knowledge& knowledge, const AccuracyPlan& pl
 /// Label of the planned rows.
 inline constexpr const char* kAccuracyRun = "accuracy";
 
-}  // namespace vernier
+}  // namespace vernier::plan

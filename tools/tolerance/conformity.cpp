@@ -20,7 +20,7 @@
 #include "tools/text/error.h"
 #include "tools/tolerance/machine_sources.h"
 
-namespace vernier {
+namespace vernier::tolerance {
 namespace {
 
 using Eigen::Index;
@@ -96,8 +96,8 @@ struct TrialTally {
 
 class ConformityRunner {
  public:
-  ConformityRunner(const Machine& machine, const PlacedPart& part, const std::string& file,
-                   const std::vector<Effect>& catalogue, const ConformityOptions& options)
+  ConformityRunner(const model::Machine& machine, const PlacedPart& part, const std::string& file,
+                   const std::vector<effects::Effect>& catalogue, const ConformityOptions& options)
       : part_(part),
         options_(options),
         reach_(known(machine)),
@@ -124,17 +124,19 @@ class ConformityRunner {
   }
 
  private:
-  static const Machine& known(const Machine& machine) {
+  static const model::Machine& known(const model::Machine& machine) {
     if (!machine.fitted)
-      throw InputError({machine.file, 0}, machine.name,
-                       "was never fitted (no <fitted>): how well it is known is not; give measurements, or "
-                       "what `vernier fit` wrote");
+      throw text::InputError(
+          {machine.file, 0}, machine.name,
+          "was never fitted (no <fitted>): how well it is known is not; give measurements, or "
+          "what `vernier fit` wrote");
     return machine;
   }
 
   void find_columns() {
     const auto n = static_cast<Index>(reach_.parameters().size());
-    raw_ = MatrixXd(linearise(reach_.machine(), point_readings(part_.states), reach_.parameters()).jacobian);
+    raw_ = MatrixXd(
+        model::linearise(reach_.machine(), fit::point_readings(part_.states), reach_.parameters()).jacobian);
     const MatrixXd columns =
         options_.frame == PartFrame::kMachine ? reach_.moved(part_.states, MatrixXd::Identity(n, n)) : raw_;
     columns_ = values_.map * columns;
@@ -143,21 +145,21 @@ class ConformityRunner {
   }
 
   /// Deviations of the points as the fitted machine makes them.
-  void find_means(const Machine& machine) {
-    Eigen::Matrix3Xd off = forward(reach_.machine(), part_.states).position - part_.point;
+  void find_means(const model::Machine& machine) {
+    Eigen::Matrix3Xd off = model::forward(reach_.machine(), part_.states).position - part_.point;
     if (options_.frame == PartFrame::kMachine) take_rigid_out(off);
     off_ = values_.map * off.reshaped();
-    const bool rotary = options_.with_rotary || linear_axes(machine).empty();
-    Corrector corrector(machine, {.with_rotary = rotary, .back = false});
+    const bool rotary = options_.with_rotary || kinematics::linear_axes(machine).empty();
+    offline::Corrector corrector(machine, {.with_rotary = rotary, .back = false});
     const MatrixXd commands = corrector.commands(part_.states);
     corrected_ = part_.states;
     for (std::size_t a = 0; a < machine.axes.size(); ++a)
       corrected_.axis[a] = commands.row(static_cast<Index>(a)).transpose().array();
-    const Eigen::Matrix3Xd on = forward(reach_.machine(), corrected_).position - part_.point;
+    const Eigen::Matrix3Xd on = model::forward(reach_.machine(), corrected_).position - part_.point;
     on_ = values_.map * on.reshaped();
     for (const MachineSource& source : sources_) {
       Eigen::Matrix3Xd without =
-          forward(without_source(reach_.machine(), source), part_.states).position - part_.point;
+          model::forward(without_source(reach_.machine(), source), part_.states).position - part_.point;
       if (options_.frame == PartFrame::kMachine) take_rigid_out(without, &source);
       alone_.emplace_back(off_ - values_.map * without.reshaped());
     }
@@ -165,20 +167,20 @@ class ConformityRunner {
 
   /// The motion of the whole that fits the machine's deviations best over its work volume.
   void take_rigid_out(Eigen::Matrix3Xd& deviations, const MachineSource* without = nullptr) const {
-    const WorkPoses poses = work_poses(reach_.machine());
-    const Machine machine =
+    const model::WorkPoses poses = model::work_poses(reach_.machine());
+    const model::Machine machine =
         without != nullptr ? without_source(reach_.machine(), *without) : reach_.machine();
-    const Eigen::Matrix3Xd at = forward(nominal_machine(machine), poses.states).position;
-    const Eigen::Matrix3Xd off = forward(machine, poses.states).position - at;
+    const Eigen::Matrix3Xd at = model::forward(model::nominal_machine(machine), poses.states).position;
+    const Eigen::Matrix3Xd off = model::forward(machine, poses.states).position - at;
     const VectorXd motion =
-        rigid_motions(at).completeOrthogonalDecomposition().solve(VectorXd(off.reshaped()));
-    const VectorXd moved = rigid_motions(part_.point) * motion;
+        fit::rigid_motions(at).completeOrthogonalDecomposition().solve(VectorXd(off.reshaped()));
+    const VectorXd moved = fit::rigid_motions(part_.point) * motion;
     deviations -= moved.reshaped(3, deviations.cols());
   }
 
-  std::vector<std::string> outside(const Machine& machine) const {
+  std::vector<std::string> outside(const model::Machine& machine) const {
     std::vector<std::string> list;
-    for (const FitRecord::Range& range : machine.fitted->measured) {
+    for (const model::FitRecord::Range& range : machine.fitted->measured) {
       const auto axis = machine.find_axis(range.name);
       if (!axis) continue;
       const double slack = 0.01 * (range.max - range.min);
@@ -194,16 +196,16 @@ class ConformityRunner {
   /// Rows of one draw of the parameters, through the whole chain, without and with the correction.
   std::pair<VectorXd, VectorXd> through_chain(const VectorXd& z) {
     const VectorXd change = reach_.factor() * z;
-    Machine drawn = reach_.machine();
+    model::Machine drawn = reach_.machine();
     reach_.parameters().set(drawn, reach_.parameters().get(drawn) + change);
     const VectorXd rigid = rigid_ * change;
-    const auto rows = [&](const States& states) {
-      const Eigen::Matrix3Xd off = forward(drawn, states).position - part_.point;
+    const auto rows = [&](const model::States& states) {
+      const Eigen::Matrix3Xd off = model::forward(drawn, states).position - part_.point;
       return VectorXd(values_.map * off.reshaped() - rigid);
     };
     // The mean without its rigid part is what find_means() has: only changes are taken from the chain.
     if (base_.size() == 0) {
-      const Eigen::Matrix3Xd off = forward(reach_.machine(), part_.states).position - part_.point;
+      const Eigen::Matrix3Xd off = model::forward(reach_.machine(), part_.states).position - part_.point;
       base_ = values_.map * off.reshaped();
     }
     return {off_ + rows(part_.states) - base_, rows(corrected_)};
@@ -371,12 +373,12 @@ class ConformityRunner {
 
   const PlacedPart& part_;
   const ConformityOptions& options_;
-  Reach reach_;
+  fit::Reach reach_;
   PartValues values_;
   std::vector<MachineSource> sources_;
   MatrixXd raw_;                       // 3 N x p: of the points, by parameter
   MatrixXd columns_, rigid_, spread_;  // of the map's rows, by parameter; by column of the factor
-  States corrected_;
+  model::States corrected_;
   VectorXd off_, on_, base_;     // rows of the map at the fitted machine, without and with its correction
   std::vector<VectorXd> alone_;  // of each source
   std::vector<double> std_;      // of each value, from linear trials
@@ -397,9 +399,10 @@ const char* verdict_words(PartVerdict verdict) {
   return "";
 }
 
-PartConformity part_conformity(const Machine& machine, const PlacedPart& part, const std::string& file,
-                               const std::vector<Effect>& catalogue, const ConformityOptions& options) {
+PartConformity part_conformity(const model::Machine& machine, const PlacedPart& part, const std::string& file,
+                               const std::vector<effects::Effect>& catalogue,
+                               const ConformityOptions& options) {
   return ConformityRunner(machine, part, file, catalogue, options).run();
 }
 
-}  // namespace vernier
+}  // namespace vernier::tolerance

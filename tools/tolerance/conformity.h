@@ -10,7 +10,7 @@
 #include "tools/model/machine.h"
 #include "tools/tolerance/feature_values.h"
 
-namespace vernier {
+namespace vernier::tolerance {
 
 struct ConformityOptions {
   PartFrame frame = PartFrame::kPart;
@@ -82,7 +82,8 @@ struct PartConformity {
 /// Monte Carlo over the covariance that the last fit left in the machine file (JCGM 101:2008): what every
 /// characteristic of the part will be, with and without the machine's correction. Throws InputError where the
 /// machine was never fitted. tool.
-PartConformity part_conformity(const Machine& machine, const PlacedPart& part, const std::string& file,
-                               const std::vector<Effect>& catalogue, const ConformityOptions& options = {});
+PartConformity part_conformity(const model::Machine& machine, const PlacedPart& part, const std::string& file,
+                               const std::vector<effects::Effect>& catalogue,
+                               const ConformityOptions& options = {});
 
-}  // namespace vernier
+}  // namespace vernier::tolerance

@@ -10,7 +10,7 @@
 #include "tools/fit/reach.h"
 #include "tools/text/error.h"
 
-namespace vernier {
+namespace vernier::tolerance {
 namespace {
 
 using Eigen::Index;
@@ -88,7 +88,7 @@ class ValueMaker {
   void align() {
     Eigen::Matrix3Xd centred = part_.point;
     centred.colwise() -= part_.point.rowwise().mean().eval();
-    motions_ = rigid_motions(centred);
+    motions_ = fit::rigid_motions(centred);
     // A turn by 1 moves the outermost point by 1: all six of like size.
     motions_.rightCols(3) /= std::max(1.0, centred.colwise().norm().maxCoeff());
     MatrixXd free = MatrixXd::Identity(6, 6);
@@ -110,9 +110,9 @@ class ValueMaker {
     const bool nothing = map.norm() < kLeft * rows.norm();
     if (nothing && !limits) return;
     if (nothing)
-      throw InputError({file_, part_.features[f].feature.line}, part_.features[f].feature.name,
-                       "its place is what the part is measured from: mark other features as datum, or "
-                       "--frame machine");
+      throw text::InputError({file_, part_.features[f].feature.line}, part_.features[f].feature.name,
+                             "its place is what the part is measured from: mark other features as datum, or "
+                             "--frame machine");
     result_.values.push_back({f, what, limits, result_.map.rows(), map.rows(), group});
     MatrixXd all(result_.map.rows() + map.rows(), 3 * points_);
     if (result_.map.rows() > 0) all.topRows(result_.map.rows()) = result_.map;
@@ -176,4 +176,4 @@ PartValues part_values(const PlacedPart& part, PartFrame frame, const std::strin
   return ValueMaker(part, frame, file).make();
 }
 
-}  // namespace vernier
+}  // namespace vernier::tolerance

@@ -7,7 +7,7 @@
 
 #include "tools/tolerance/placed_part.h"
 
-namespace vernier {
+namespace vernier::tolerance {
 
 /// What the deviations of a part's points are taken from.
 enum class PartFrame : std::uint8_t {
@@ -36,4 +36,4 @@ struct PartValues {
 /// Throws InputError where the frame takes up all that a position could be judged by. tool.
 PartValues part_values(const PlacedPart& part, PartFrame frame, const std::string& file);
 
-}  // namespace vernier
+}  // namespace vernier::tolerance

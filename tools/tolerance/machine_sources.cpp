@@ -11,50 +11,50 @@
 #include "tools/effects/candidate.h"
 #include "tools/effects/input_class.h"
 
-namespace vernier {
+namespace vernier::tolerance {
 namespace {
 
 /// The quantities and functions of a term, written as the catalogue writes them: {q} dir{q} {T} wave exp.
 using Tokens = std::set<std::string>;
 
-const char* token_of(Op op) {
+const char* token_of(model::Op op) {
   switch (op) {
-    case Op::kSin:
-    case Op::kCos:
+    case model::Op::kSin:
+    case model::Op::kCos:
       return "wave";
-    case Op::kPower:
+    case model::Op::kPower:
       return "power";
-    case Op::kNumber:
-    case Op::kSymbol:
-    case Op::kNegate:
-    case Op::kAdd:
-    case Op::kSubtract:
-    case Op::kMultiply:
-    case Op::kDivide:
+    case model::Op::kNumber:
+    case model::Op::kSymbol:
+    case model::Op::kNegate:
+    case model::Op::kAdd:
+    case model::Op::kSubtract:
+    case model::Op::kMultiply:
+    case model::Op::kDivide:
       return nullptr;
-    case Op::kRunIs:
+    case model::Op::kRunIs:
       return "runs";
     default:
-      return function_name(op);
+      return model::function_name(op);
   }
 }
 
 /// The driven quantity of a name: what stands before the first brace, and the placeholder's class.
 std::optional<std::string> token_of_placeholder(const std::string& name) {
-  const std::vector<std::string> marks = marks_in(name);
-  if (marks.empty()) return is_reserved_word(name) ? std::optional(name) : std::nullopt;
+  const std::vector<std::string> marks = effects::marks_in(name);
+  if (marks.empty()) return model::is_reserved_word(name) ? std::optional(name) : std::nullopt;
   const std::string mark = marks[0].substr(0, marks[0].find(' '));
   if (mark == "ref" || mark == "mid" || mark == "from" || mark == "to" || mark == "span") return std::nullopt;
   if (mark == "hats" || mark == "runs") return mark;
   return name.substr(0, name.find('{')) + (mark == "S" ? "T" : mark == "sum" ? "q" : mark);
 }
 
-Tokens tokens_of_form(const EffectForm& form) {
+Tokens tokens_of_form(const effects::EffectForm& form) {
   Tokens tokens;
-  for (const ExprPtr& tree : form.trees)
-    walk(*tree, [&](const Expr& node) {
+  for (const model::ExprPtr& tree : form.trees)
+    walk(*tree, [&](const model::Expr& node) {
       if (const char* function = token_of(node.op)) tokens.insert(function);
-      if (node.op != Op::kSymbol) return;
+      if (node.op != model::Op::kSymbol) return;
       if (const auto token = token_of_placeholder(node.name)) tokens.insert(*token);
     });
   return tokens;
@@ -62,49 +62,50 @@ Tokens tokens_of_form(const EffectForm& form) {
 
 /// A term of the chain in which something stands whose name is looked for.
 struct PlacedTerm {
-  DofPlace place;
+  effects::DofPlace place;
   Tokens tokens;
   std::optional<std::size_t> axis;  // the first that drives it
 };
 
 class Namer {
  public:
-  Namer(const Machine& machine, const std::vector<Effect>& catalogue)
-      : machine_(machine), catalogue_(catalogue), axes_(machine), base_(base_places(machine)) {
-    for (const Effect& effect : catalogue)
-      for (const EffectForm& form : effect.forms) forms_.push_back({&effect, &form, tokens_of_form(form)});
+  Namer(const model::Machine& machine, const std::vector<effects::Effect>& catalogue)
+      : machine_(machine), catalogue_(catalogue), axes_(machine), base_(effects::base_places(machine)) {
+    for (const effects::Effect& effect : catalogue)
+      for (const effects::EffectForm& form : effect.forms)
+        forms_.push_back({&effect, &form, tokens_of_form(form)});
   }
 
   /// Id and label of what acts as `is` says.
-  std::pair<std::string, std::string> name(const std::function<bool(const Expr&)>& is, bool hats,
+  std::pair<std::string, std::string> name(const std::function<bool(const model::Expr&)>& is, bool hats,
                                            std::optional<std::size_t> axis) const {
     const std::optional<PlacedTerm> term = find_term(is, hats, axis);
-    if (!term) return {custom_effect().id, "what no term uses"};
-    const Effect* effect = effect_of(*term);
-    const std::string id = effect != nullptr ? effect->id : custom_effect().id;
+    if (!term) return {effects::custom_effect().id, "what no term uses"};
+    const effects::Effect* effect = effect_of(*term);
+    const std::string id = effect != nullptr ? effect->id : effects::custom_effect().id;
     return {id, label(id, *term)};
   }
 
   /// A reading times (1 + s) is k*q on the axis' own degree of freedom.
   std::pair<std::string, std::string> name_of_scale(std::size_t axis) const {
-    if (!axes_.own(axis)) return {custom_effect().id, "scale factor of " + machine_.axes[axis].name};
+    if (!axes_.own(axis)) return {effects::custom_effect().id, "scale factor of " + machine_.axes[axis].name};
     const PlacedTerm term{*axes_.own(axis), {"q"}, axis};
-    const Effect* effect = effect_of(term);
-    const std::string id = effect != nullptr ? effect->id : custom_effect().id;
+    const effects::Effect* effect = effect_of(term);
+    const std::string id = effect != nullptr ? effect->id : effects::custom_effect().id;
     return {id, label(id, term)};
   }
 
  private:
   struct KnownForm {
-    const Effect* effect;
-    const EffectForm* form;
+    const effects::Effect* effect;
+    const effects::EffectForm* form;
     Tokens tokens;
   };
 
-  std::optional<PlacedTerm> find_term(const std::function<bool(const Expr&)>& is, bool hats,
+  std::optional<PlacedTerm> find_term(const std::function<bool(const model::Expr&)>& is, bool hats,
                                       std::optional<std::size_t> axis) const {
-    for (const DofPlace& place : all_places(machine_)) {
-      const Expr& whole = *transform_at(machine_, place).dof[place.dof];
+    for (const effects::DofPlace& place : effects::all_places(machine_)) {
+      const model::Expr& whole = *effects::transform_at(machine_, place).dof[place.dof];
       if (!any_node(whole, is)) continue;
       PlacedTerm term{place, {}, axis};
       if (hats)
@@ -122,115 +123,117 @@ class Namer {
   }
 
   /// The quantities of the summands in which it stands.
-  void collect(const Expr& expr, const std::function<bool(const Expr&)>& is, PlacedTerm& term) const {
-    if (expr.op == Op::kAdd || expr.op == Op::kSubtract || expr.op == Op::kNegate) {
-      for (const ExprPtr& part : expr.args)
+  void collect(const model::Expr& expr, const std::function<bool(const model::Expr&)>& is,
+               PlacedTerm& term) const {
+    if (expr.op == model::Op::kAdd || expr.op == model::Op::kSubtract || expr.op == model::Op::kNegate) {
+      for (const model::ExprPtr& part : expr.args)
         if (any_node(*part, is)) collect(*part, is, term);
       return;
     }
-    walk(expr, [&](const Expr& node) { take(node, term); });
+    walk(expr, [&](const model::Expr& node) { take(node, term); });
   }
 
-  void take(const Expr& node, PlacedTerm& term) const {
+  void take(const model::Expr& node, PlacedTerm& term) const {
     if (const char* function = token_of(node.op)) term.tokens.insert(function);
-    if (node.op != Op::kSymbol) return;
-    const Symbol& symbol = node.symbol;
+    if (node.op != model::Op::kSymbol) return;
+    const model::Symbol& symbol = node.symbol;
     const auto driven = [&](const char* token) {
       term.tokens.insert(token);
       if (!term.axis) term.axis = symbol.index;
     };
     switch (symbol.kind) {
-      case SymbolKind::kAxis:
+      case model::SymbolKind::kAxis:
         return driven("q");
-      case SymbolKind::kDirection:
+      case model::SymbolKind::kDirection:
         return driven("dirq");
-      case SymbolKind::kVelocity:
+      case model::SymbolKind::kVelocity:
         return driven("vq");
-      case SymbolKind::kAcceleration:
+      case model::SymbolKind::kAcceleration:
         return driven("aq");
-      case SymbolKind::kSince:
+      case model::SymbolKind::kSince:
         return driven("sinceq");
-      case SymbolKind::kTableValue:
+      case model::SymbolKind::kTableValue:
         if (!term.axis) term.axis = symbol.index / 6;
         term.tokens.insert("hats");
         return;
-      case SymbolKind::kInput:
+      case model::SymbolKind::kInput:
         term.tokens.insert(token_of_input(symbol.index));
         return;
-      case SymbolKind::kNormal:
+      case model::SymbolKind::kNormal:
         term.tokens.insert("n");
         return;
-      case SymbolKind::kFeed:
+      case model::SymbolKind::kFeed:
         term.tokens.insert("feed");
         return;
-      case SymbolKind::kCurvature:
+      case model::SymbolKind::kCurvature:
         term.tokens.insert("curv");
         return;
-      case SymbolKind::kTime:
+      case model::SymbolKind::kTime:
         term.tokens.insert("t");
         return;
-      case SymbolKind::kVisit:
+      case model::SymbolKind::kVisit:
         term.tokens.insert("visit");
         return;
-      case SymbolKind::kStatic:
-      case SymbolKind::kUnresolved:
+      case model::SymbolKind::kStatic:
+      case model::SymbolKind::kUnresolved:
         return;
     }
   }
 
   std::string token_of_input(std::size_t input) const {
-    switch (class_of_input(machine_.inputs[input])) {
-      case InputClass::kTemperature:
+    switch (effects::class_of_input(machine_.inputs[input])) {
+      case effects::InputClass::kTemperature:
         return "T";
-      case InputClass::kLoad:
+      case effects::InputClass::kLoad:
         return "L";
-      case InputClass::kFeature:
+      case effects::InputClass::kFeature:
         return "F";
       default:
         return "V";
     }
   }
 
-  bool fits(PlaceRule rule, const PlacedTerm& term) const {
-    const bool angle = is_angle(machine_, term.place);
+  bool fits(effects::PlaceRule rule, const PlacedTerm& term) const {
+    const bool angle = effects::is_angle(machine_, term.place);
     const auto axis = term.axis ? term.axis : axes_.axis_of(term.place);
     const bool own = axis && axes_.is_own(*axis, term.place);
     const bool same = axis && axes_.own(*axis) && axes_.own(*axis)->workpiece == term.place.workpiece &&
                       axes_.own(*axis)->transform == term.place.transform;
     switch (rule) {
-      case PlaceRule::kOwn:
-      case PlaceRule::kEachAxis:
-      case PlaceRule::kPair:
+      case effects::PlaceRule::kOwn:
+      case effects::PlaceRule::kEachAxis:
+      case effects::PlaceRule::kPair:
         return own;
-      case PlaceRule::kCross:
+      case effects::PlaceRule::kCross:
         return same && !own && !angle;
-      case PlaceRule::kTurn:
+      case effects::PlaceRule::kTurn:
         return same && !own && angle;
-      case PlaceRule::kLength:
+      case effects::PlaceRule::kLength:
         return !angle;
-      case PlaceRule::kAngle:
+      case effects::PlaceRule::kAngle:
         return angle;
-      case PlaceRule::kBase:
-      case PlaceRule::kBaseTurn:
-        return angle == (rule == PlaceRule::kBaseTurn) &&
+      case effects::PlaceRule::kBase:
+      case effects::PlaceRule::kBaseTurn:
+        return angle == (rule == effects::PlaceRule::kBaseTurn) &&
                std::find(base_.begin(), base_.end(), term.place) != base_.end();
-      case PlaceRule::kSag:
+      case effects::PlaceRule::kSag:
         return true;
-      case PlaceRule::kJoint:
+      case effects::PlaceRule::kJoint:
         return own && machine_.axes[*axis].rotary;
-      case PlaceRule::kNormal:
+      case effects::PlaceRule::kNormal:
         return !angle;
     }
     return false;
   }
 
   /// Where no form acts at such a place: one that does the same somewhere else, of the same kind of freedom.
-  bool is_like(PlaceRule rule, const PlacedTerm& term) const {
-    return is_angle(machine_, term.place) == (rule == PlaceRule::kTurn || rule == PlaceRule::kAngle) &&
-           rule != PlaceRule::kOwn;
+  bool is_like(effects::PlaceRule rule, const PlacedTerm& term) const {
+    return effects::is_angle(machine_, term.place) ==
+               (rule == effects::PlaceRule::kTurn || rule == effects::PlaceRule::kAngle) &&
+           rule != effects::PlaceRule::kOwn;
   }
 
-  const Effect* effect_of(const PlacedTerm& term) const {
+  const effects::Effect* effect_of(const PlacedTerm& term) const {
     for (const KnownForm& known : forms_)
       if (known.tokens == term.tokens && fits(known.form->place, term)) return known.effect;
     for (const KnownForm& known : forms_)
@@ -239,9 +242,9 @@ class Namer {
   }
 
   std::string label(const std::string& id, const PlacedTerm& term) const {
-    const std::string place = dof_name(machine_, term.place);
+    const std::string place = effects::dof_name(machine_, term.place);
     if (term.axis) return fmt::format("{} of {} in {}", id, machine_.axes[*term.axis].name, place);
-    const Transform& transform = transform_at(machine_, term.place);
+    const model::Transform& transform = effects::transform_at(machine_, term.place);
     const auto carriage = axes_.axis_of(term.place);
     return fmt::format("{} in {} of {}", id, place,
                        carriage ? "the carriage of " + machine_.axes[*carriage].name
@@ -249,22 +252,23 @@ class Namer {
            (term.place.workpiece && !carriage ? " (workpiece)" : "");
   }
 
-  const Machine& machine_;
-  const std::vector<Effect>& catalogue_;
-  AxisPlaces axes_;
-  std::vector<DofPlace> base_;
+  const model::Machine& machine_;
+  const std::vector<effects::Effect>& catalogue_;
+  effects::AxisPlaces axes_;
+  std::vector<effects::DofPlace> base_;
   std::vector<KnownForm> forms_;
 };
 
 class SourceList {
  public:
-  SourceList(const Machine& machine, const std::vector<Effect>& catalogue)
-      : machine_(machine), nominal_(nominal_machine(machine)), namer_(machine, catalogue) {}
+  SourceList(const model::Machine& machine, const std::vector<effects::Effect>& catalogue)
+      : machine_(machine), nominal_(model::nominal_machine(machine)), namer_(machine, catalogue) {}
 
   void take_static(std::size_t index, std::optional<std::size_t> parameter) {
     MachineSource& source = of(namer_.name(
-        [&](const Expr& node) {
-          return node.op == Op::kSymbol && node.symbol == Symbol{SymbolKind::kStatic, index};
+        [&](const model::Expr& node) {
+          return node.op == model::Op::kSymbol &&
+                 node.symbol == model::Symbol{model::SymbolKind::kStatic, index};
         },
         false, std::nullopt));
     add(source.statics, index);
@@ -274,8 +278,9 @@ class SourceList {
   void take_column(std::size_t table, std::size_t column, std::optional<std::size_t> parameter) {
     const std::size_t axis = machine_.tables[table].axis;
     MachineSource& source = of(namer_.name(
-        [&](const Expr& node) {
-          return node.op == Op::kSymbol && node.symbol == Symbol{SymbolKind::kTableValue, axis * 6 + column};
+        [&](const model::Expr& node) {
+          return node.op == model::Op::kSymbol &&
+                 node.symbol == model::Symbol{model::SymbolKind::kTableValue, axis * 6 + column};
         },
         true, axis));
     add(source.columns, std::pair(table, column));
@@ -295,7 +300,7 @@ class SourceList {
     for (std::size_t t = 0; t < machine_.tables.size(); ++t)
       for (std::size_t c = 0; c < 6; ++c)
         if (std::any_of(machine_.tables[t].stations.begin(), machine_.tables[t].stations.end(),
-                        [&](const Station& station) { return station.value[c] != 0; }))
+                        [&](const model::Station& station) { return station.value[c] != 0; }))
           take_column(t, c, std::nullopt);
     for (std::size_t a = 0; a < machine_.axes.size(); ++a)
       if (machine_.axes[a].scale_factor != 0) take_scale(a, std::nullopt);
@@ -316,34 +321,35 @@ class SourceList {
     return list.back();
   }
 
-  const Machine& machine_;
-  Machine nominal_;
+  const model::Machine& machine_;
+  model::Machine nominal_;
   Namer namer_;
 };
 
 }  // namespace
 
-std::vector<MachineSource> machine_sources(const Machine& machine, const ParameterSet& parameters,
-                                           const std::vector<Effect>& catalogue) {
+std::vector<MachineSource> machine_sources(const model::Machine& machine,
+                                           const model::ParameterSet& parameters,
+                                           const std::vector<effects::Effect>& catalogue) {
   SourceList sources(machine, catalogue);
   for (std::size_t p = 0; p < parameters.size(); ++p) {
-    const Parameter& one = parameters[p];
-    if (one.kind == ParameterKind::kStatic) sources.take_static(one.item, p);
-    if (one.kind == ParameterKind::kStation) sources.take_column(one.item, one.column, p);
-    if (one.kind == ParameterKind::kScaleFactor) sources.take_scale(one.item, p);
+    const model::Parameter& one = parameters[p];
+    if (one.kind == model::ParameterKind::kStatic) sources.take_static(one.item, p);
+    if (one.kind == model::ParameterKind::kStation) sources.take_column(one.item, one.column, p);
+    if (one.kind == model::ParameterKind::kScaleFactor) sources.take_scale(one.item, p);
   }
   sources.take_fixed();
   return sources.list;
 }
 
-Machine without_source(const Machine& machine, const MachineSource& source) {
-  const Machine nominal = nominal_machine(machine);
-  Machine without = machine;
+model::Machine without_source(const model::Machine& machine, const MachineSource& source) {
+  const model::Machine nominal = model::nominal_machine(machine);
+  model::Machine without = machine;
   for (const std::size_t i : source.statics) without.statics[i].value = nominal.statics[i].value;
   for (const auto& [table, column] : source.columns)
-    for (Station& station : without.tables[table].stations) station.value[column] = 0;
+    for (model::Station& station : without.tables[table].stations) station.value[column] = 0;
   for (const std::size_t axis : source.scales) without.axes[axis].scale_factor = 0;
   return without;
 }
 
-}  // namespace vernier
+}  // namespace vernier::tolerance

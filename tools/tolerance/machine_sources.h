@@ -8,7 +8,7 @@
 #include "tools/model/machine.h"
 #include "tools/model/parameters.h"
 
-namespace vernier {
+namespace vernier::tolerance {
 
 /// One cause of deviations, by the name that the catalogue of effects has for it: `squareness of Y in X`.
 /// Statics and table columns that are the same effect of the same axis at the same place are one.
@@ -24,10 +24,11 @@ struct MachineSource {
 /// What is free in a machine, or is away from nominal. A static is named by the term that it stands in: its
 /// quantities and functions, and the degree of freedom that it acts on, are looked for among the forms of the
 /// catalogue, in its order. tool.
-std::vector<MachineSource> machine_sources(const Machine& machine, const ParameterSet& parameters,
-                                           const std::vector<Effect>& catalogue);
+std::vector<MachineSource> machine_sources(const model::Machine& machine,
+                                           const model::ParameterSet& parameters,
+                                           const std::vector<effects::Effect>& catalogue);
 
 /// The machine with this source at nominal. tool.
-Machine without_source(const Machine& machine, const MachineSource& source);
+model::Machine without_source(const model::Machine& machine, const MachineSource& source);
 
-}  // namespace vernier
+}  // namespace vernier::tolerance

@@ -12,7 +12,7 @@
 #include "tools/text/numbers.h"
 #include "tools/text/units.h"
 
-namespace vernier {
+namespace vernier::tolerance {
 namespace {
 
 constexpr std::array<const char*, 4> kKindNames = {"point", "plane", "cylinder", "path"};
@@ -21,25 +21,26 @@ constexpr std::array<const char*, 3> kCharacteristicNames = {"position", "size",
 /// The cells of a part's file by column name.
 class PartSheet {
  public:
-  PartSheet(const std::string& text, const std::string& file) : csv_(parse_csv(text, file)) {
+  PartSheet(const std::string& text, const std::string& file) : csv_(text::parse_csv(text, file)) {
     static const std::set<std::string> kKnown = {
         "feature",  "kind",   "x",     "y",        "z",    "nx",       "ny",        "nz",   "i",    "j", "k",
         "diameter", "length", "width", "position", "size", "size_low", "size_high", "form", "datum"};
-    for (const CsvColumn& column : csv_.columns) {
-      const auto unit = find_unit(column.unit);
+    for (const text::CsvColumn& column : csv_.columns) {
+      const auto unit = text::find_unit(column.unit);
       const bool number = column.name != "feature" && column.name != "kind" && column.name != "datum";
       if (!kKnown.contains(column.name))
-        throw InputError(head(), column.name, "not a column of a part: see `vernier part conformity --help`");
-      if (!column.unit.empty() && (!number || !unit || unit->dimension != Dimension::kLength))
-        throw InputError(head(), column.unit, "a part's numbers are lengths");
+        throw text::InputError(head(), column.name,
+                               "not a column of a part: see `vernier part conformity --help`");
+      if (!column.unit.empty() && (!number || !unit || unit->dimension != text::Dimension::kLength))
+        throw text::InputError(head(), column.unit, "a part's numbers are lengths");
     }
     for (const char* name : {"feature", "kind", "x", "y", "z"})
-      if (!find(name)) throw InputError(head(), name, "this column is missing");
+      if (!find(name)) throw text::InputError(head(), name, "this column is missing");
   }
 
   std::size_t rows() const { return csv_.rows.size(); }
-  Place head() const { return {csv_.file, csv_.header_line}; }
-  Place place(std::size_t row) const { return {csv_.file, csv_.line[row]}; }
+  text::Place head() const { return {csv_.file, csv_.header_line}; }
+  text::Place place(std::size_t row) const { return {csv_.file, csv_.line[row]}; }
 
   std::string word(std::size_t row, const std::string& name) const {
     const auto column = find(name);
@@ -49,9 +50,9 @@ class PartSheet {
   std::optional<double> number(std::size_t row, const std::string& name) const {
     const std::string text = word(row, name);
     if (text.empty()) return std::nullopt;
-    const auto value = parse_number(text);
-    if (!value) throw InputError(place(row), text, name + ": not a number");
-    const auto unit = find_unit(csv_.columns[*find(name)].unit);
+    const auto value = text::parse_number(text);
+    if (!value) throw text::InputError(place(row), text, name + ": not a number");
+    const auto unit = text::find_unit(csv_.columns[*find(name)].unit);
     return *value * (csv_.columns[*find(name)].unit.empty() ? 1 : unit->factor);
   }
 
@@ -64,20 +65,21 @@ class PartSheet {
       values[static_cast<Eigen::Index>(i)] = one.value_or(0);
     }
     if (given == 0) return std::nullopt;
-    if (given < 3) throw InputError(place(row), names[0], "all three of them, or none");
+    if (given < 3) throw text::InputError(place(row), names[0], "all three of them, or none");
     return values;
   }
 
   std::optional<Eigen::Vector3d> direction(std::size_t row, const std::array<const char*, 3>& names) const {
     const auto values = vector(row, names);
     if (!values) return std::nullopt;
-    if (!(values->norm() > 1e-9)) throw InputError(place(row), names[0], "a direction of length 0");
+    if (!(values->norm() > 1e-9)) throw text::InputError(place(row), names[0], "a direction of length 0");
     return values->normalized();
   }
 
   std::optional<double> positive(std::size_t row, const std::string& name) const {
     const auto value = number(row, name);
-    if (value && !(*value > 0)) throw InputError(place(row), word(row, name), name + " must be above 0");
+    if (value && !(*value > 0))
+      throw text::InputError(place(row), word(row, name), name + " must be above 0");
     return value;
   }
 
@@ -88,36 +90,37 @@ class PartSheet {
     return std::nullopt;
   }
 
-  CsvFile csv_;
+  text::CsvFile csv_;
 };
 
 void read_size(const PartSheet& sheet, std::size_t row, PartFeature& feature) {
   const auto size = sheet.positive(row, "size"), low = sheet.number(row, "size_low"),
              high = sheet.number(row, "size_high");
   if (size && (low || high))
-    throw InputError(sheet.place(row), sheet.word(row, "size"), "either size, or size_low and size_high");
+    throw text::InputError(sheet.place(row), sheet.word(row, "size"),
+                           "either size, or size_low and size_high");
   if (size) feature.size_mm = {-*size, *size};
   if (low.has_value() != high.has_value())
-    throw InputError(sheet.place(row), low ? "size_high" : "size_low", "a size has two limits");
+    throw text::InputError(sheet.place(row), low ? "size_high" : "size_low", "a size has two limits");
   if (low && !(*low < *high))
-    throw InputError(sheet.place(row), sheet.word(row, "size_low"), "size_low must be below size_high");
+    throw text::InputError(sheet.place(row), sheet.word(row, "size_low"), "size_low must be below size_high");
   if (low) feature.size_mm = {*low, *high};
   if (feature.size_mm && feature.kind != PartFeatureKind::kCylinder)
-    throw InputError(sheet.place(row), "size", "only a cylinder has a size");
+    throw text::InputError(sheet.place(row), "size", "only a cylinder has a size");
 }
 
 PartFeature read_feature(const PartSheet& sheet, std::size_t row) {
   PartFeature feature;
   feature.line = sheet.place(row).line;
   feature.name = sheet.word(row, "feature");
-  if (feature.name.empty()) throw InputError(sheet.place(row), "feature", "a feature needs a name");
+  if (feature.name.empty()) throw text::InputError(sheet.place(row), "feature", "a feature needs a name");
   const std::string kind = sheet.word(row, "kind");
   const auto found = std::find(kKindNames.begin(), kKindNames.begin() + 3, kind);
   if (found == kKindNames.begin() + 3)
-    throw InputError(sheet.place(row), kind, "a feature is a point, a plane or a cylinder");
+    throw text::InputError(sheet.place(row), kind, "a feature is a point, a plane or a cylinder");
   feature.kind = static_cast<PartFeatureKind>(found - kKindNames.begin());
   const auto at = sheet.vector(row, {"x", "y", "z"});
-  if (!at) throw InputError(sheet.place(row), "x", "where the feature stands is missing");
+  if (!at) throw text::InputError(sheet.place(row), "x", "where the feature stands is missing");
   feature.at = *at;
   const bool point = feature.kind == PartFeatureKind::kPoint;
   feature.direction = sheet.direction(row, {"nx", "ny", "nz"}).value_or(Eigen::Vector3d(0, 0, point ? 0 : 1));
@@ -126,16 +129,16 @@ PartFeature read_feature(const PartSheet& sheet, std::size_t row) {
   feature.length_mm = sheet.number(row, "length").value_or(0);
   feature.width_mm = sheet.number(row, "width").value_or(0);
   if (feature.kind == PartFeatureKind::kCylinder && feature.diameter_mm <= 0)
-    throw InputError(sheet.place(row), "diameter", "a cylinder needs one");
+    throw text::InputError(sheet.place(row), "diameter", "a cylinder needs one");
   if (feature.kind == PartFeatureKind::kPlane && !(feature.length_mm > 0 && feature.width_mm > 0))
-    throw InputError(sheet.place(row), "length", "a plane needs length and width");
+    throw text::InputError(sheet.place(row), "length", "a plane needs length and width");
   feature.position_mm = sheet.positive(row, "position");
   feature.form_mm = sheet.positive(row, "form");
-  if (feature.form_mm && point) throw InputError(sheet.place(row), "form", "a point has no form");
+  if (feature.form_mm && point) throw text::InputError(sheet.place(row), "form", "a point has no form");
   read_size(sheet, row, feature);
   const std::string datum = sheet.word(row, "datum");
   if (!datum.empty() && datum != "yes" && datum != "no")
-    throw InputError(sheet.place(row), datum, "datum is yes or no");
+    throw text::InputError(sheet.place(row), datum, "datum is yes or no");
   feature.datum = datum == "yes";
   return feature;
 }
@@ -155,7 +158,7 @@ PartDrawing parse_part(const std::string& text, const std::string& file) {
   for (std::size_t row = 0; row < sheet.rows(); ++row) {
     part.features.push_back(read_feature(sheet, row));
     if (!names.insert(part.features.back().name).second)
-      throw InputError(sheet.place(row), part.features.back().name, "two features of one name");
+      throw text::InputError(sheet.place(row), part.features.back().name, "two features of one name");
   }
   return part;
 }
@@ -172,4 +175,4 @@ PartDrawing placed_at(const PartDrawing& part, const Eigen::Vector3d& shift_mm, 
   return placed;
 }
 
-}  // namespace vernier
+}  // namespace vernier::tolerance

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace vernier {
+namespace vernier::tolerance {
 
 enum class PartFeatureKind : std::uint8_t {
   kPoint,
@@ -55,4 +55,4 @@ PartDrawing parse_part(const std::string& text, const std::string& file);
 /// The part moved: turned about the workpiece's z by `turn_deg`, then shifted, mm. tool.
 PartDrawing placed_at(const PartDrawing& part, const Eigen::Vector3d& shift_mm, double turn_deg);
 
-}  // namespace vernier
+}  // namespace vernier::tolerance

@@ -11,7 +11,7 @@
 #include "tools/kinematics/inverse.h"
 #include "tools/text/error.h"
 
-namespace vernier {
+namespace vernier::tolerance {
 namespace {
 
 using Eigen::Index;
@@ -62,15 +62,15 @@ std::vector<SurfaceSample> samples_of(const PartFeature& feature) {
 /// Axis positions of one feature's points, each found from the one before.
 class PointSolver {
  public:
-  PointSolver(const Machine& machine, const std::string& file)
-      : nominal_(nominal_machine(machine)), file_(file), linear_(linear_axes(machine)) {}
+  PointSolver(const model::Machine& machine, const std::string& file)
+      : nominal_(model::nominal_machine(machine)), file_(file), linear_(kinematics::linear_axes(machine)) {}
 
-  States solve_all(const PartFeature& feature, const std::vector<SurfaceSample>& samples,
-                   const States& start) const {
-    InverseOptions options;
-    options.match = feature.tool ? Match::kDirection : Match::kPosition;
+  model::States solve_all(const PartFeature& feature, const std::vector<SurfaceSample>& samples,
+                          const model::States& start) const {
+    kinematics::InverseOptions options;
+    options.match = feature.tool ? kinematics::Match::kDirection : kinematics::Match::kPosition;
     if (!feature.tool && !linear_.empty()) options.axes = linear_;
-    Poses target;
+    model::Poses target;
     target.position.resize(3, static_cast<Index>(samples.size()));
     for (std::size_t i = 0; i < samples.size(); ++i)
       target.position.col(static_cast<Index>(i)) = samples[i].point;
@@ -78,46 +78,49 @@ class PointSolver {
         feature.tool ? Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), *feature.tool).toRotationMatrix()
                      : Eigen::Matrix3d::Identity();
     target.rotation.assign(samples.size(), turn);
-    States states = select_states(start, std::vector<std::size_t>(samples.size(), 0));
-    InverseResult all = solve(nominal_, target, states, options);
+    model::States states = model::select_states(start, std::vector<std::size_t>(samples.size(), 0));
+    kinematics::InverseResult all = kinematics::solve(nominal_, target, states, options);
     for (std::size_t i = 0; i < samples.size(); ++i)
       if (!all.each[i].converged) again(feature, target, i, options, all);
     return all.states;
   }
 
  private:
-  void again(const PartFeature& feature, const Poses& target, std::size_t i, const InverseOptions& options,
-             InverseResult& all) const {
+  void again(const PartFeature& feature, const model::Poses& target, std::size_t i,
+             const kinematics::InverseOptions& options, kinematics::InverseResult& all) const {
     constexpr int kRestarts = 48;
     const auto at = static_cast<Index>(i);
-    const Poses one{target.position.col(at), {target.rotation[i]}};
-    const States from = select_states(all.states, {i > 0 ? i - 1 : i});
-    const InverseResult result = solve_anywhere(nominal_, one, from, options, kRestarts);
-    const Inverse& proof = result.each[0];
+    const model::Poses one{target.position.col(at), {target.rotation[i]}};
+    const model::States from = model::select_states(all.states, {i > 0 ? i - 1 : i});
+    const kinematics::InverseResult result =
+        kinematics::solve_anywhere(nominal_, one, from, options, kRestarts);
+    const kinematics::Inverse& proof = result.each[0];
     if (!proof.converged)
-      throw LimitNotMet(fmt::format("{}:{}: \"{}\": the machine does not get to {:.6g} {:.6g} {:.6g}: {}",
-                                    file_, feature.line, feature.name, target.position(0, at),
-                                    target.position(1, at), target.position(2, at), name_of(proof.fault)));
+      throw text::LimitNotMet(
+          fmt::format("{}:{}: \"{}\": the machine does not get to {:.6g} {:.6g} {:.6g}: {}", file_,
+                      feature.line, feature.name, target.position(0, at), target.position(1, at),
+                      target.position(2, at), kinematics::name_of(proof.fault)));
     for (std::size_t a = 0; a < nominal_.axes.size(); ++a) all.states.axis[a][at] = result.states.axis[a][0];
   }
 
-  Machine nominal_;
+  model::Machine nominal_;
   const std::string& file_;
   std::vector<std::size_t> linear_;
 };
 
 /// Where axes have ranges their middle is the safest place to begin a search.
-States start_of(const Machine& machine, const States& at) {
-  States start = at;
+model::States start_of(const model::Machine& machine, const model::States& at) {
+  model::States start = at;
   for (std::size_t a = 0; a < machine.axes.size(); ++a)
-    if (const auto range = work_range(machine, a); range && !machine.axes[a].rotary && at.axis[a][0] == 0)
+    if (const auto range = model::work_range(machine, a);
+        range && !machine.axes[a].rotary && at.axis[a][0] == 0)
       start.axis[a][0] = 0.5 * ((*range)[0] + (*range)[1]);
   return start;
 }
 
 /// Senses of the axes as points follow one another; an axis that stays keeps its last sense, and begins
 /// coming from below.
-void set_senses(const Machine& machine, std::size_t first, std::size_t count, States& states) {
+void set_senses(const model::Machine& machine, std::size_t first, std::size_t count, model::States& states) {
   constexpr double kStill = 1e-6;  // mm or deg
   for (std::size_t a = 0; a < machine.axes.size(); ++a) {
     double sense = 1;
@@ -140,11 +143,11 @@ void set_senses(const Machine& machine, std::size_t first, std::size_t count, St
 
 }  // namespace
 
-PlacedPart place_part(const Machine& machine, const PartDrawing& part, const States& at) {
+PlacedPart place_part(const model::Machine& machine, const PartDrawing& part, const model::States& at) {
   PlacedPart placed;
   const PointSolver solver(machine, part.file);
-  const States start = start_of(machine, at);
-  std::vector<States> parts;
+  const model::States start = start_of(machine, at);
+  std::vector<model::States> parts;
   std::size_t count = 0;
   for (const PartFeature& feature : part.features) {
     const std::vector<SurfaceSample> samples = samples_of(feature);
@@ -156,7 +159,7 @@ PlacedPart place_part(const Machine& machine, const PartDrawing& part, const Sta
     count += samples.size();
     placed.features.push_back(std::move(one));
   }
-  placed.states = select_states(at, std::vector<std::size_t>(count, 0));
+  placed.states = model::select_states(at, std::vector<std::size_t>(count, 0));
   for (std::size_t f = 0; f < parts.size(); ++f) {
     const PlacedFeature& one = placed.features[f];
     for (std::size_t a = 0; a < machine.axes.size(); ++a)
@@ -164,8 +167,8 @@ PlacedPart place_part(const Machine& machine, const PartDrawing& part, const Sta
           parts[f].axis[a];
     set_senses(machine, one.first, one.count, placed.states);
   }
-  placed.point = forward(nominal_machine(machine), placed.states).position;
+  placed.point = model::forward(model::nominal_machine(machine), placed.states).position;
   return placed;
 }
 
-}  // namespace vernier
+}  // namespace vernier::tolerance

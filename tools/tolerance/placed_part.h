@@ -7,7 +7,7 @@
 #include "tools/model/states.h"
 #include "tools/tolerance/part_features.h"
 
-namespace vernier {
+namespace vernier::tolerance {
 
 /// A feature as the machine cuts or touches it.
 struct PlacedFeature {
@@ -21,7 +21,7 @@ struct PlacedFeature {
 /// Where the machine stands for every point of every feature.
 struct PlacedPart {
   std::vector<PlacedFeature> features;
-  States states;
+  model::States states;
   Eigen::Matrix3Xd point;  // nominal, workpiece coordinates, mm
 };
 
@@ -29,6 +29,6 @@ struct PlacedPart {
 /// positions at which the nominal chain has its tool there; senses of motion as they follow one another, a
 /// circle counter-clockwise about its axis. `at`: inputs, and where the axes stand that are not needed.
 /// Throws LimitNotMet where a point is out of reach, naming the line. tool.
-PlacedPart place_part(const Machine& machine, const PartDrawing& part, const States& at);
+PlacedPart place_part(const model::Machine& machine, const PartDrawing& part, const model::States& at);
 
-}  // namespace vernier
+}  // namespace vernier::tolerance

@@ -14,7 +14,7 @@
 #include "tools/offline/part_program.h"
 #include "tools/text/error.h"
 
-namespace vernier {
+namespace vernier::tolerance {
 namespace {
 
 using Eigen::Index;
@@ -26,14 +26,14 @@ constexpr std::size_t kOnStretch = 12, kMostOfPath = 400, kOnWhole = 24;
 struct ProgramCut {
   std::size_t first_line = 0, last_line = 0;
   bool circle = false;
-  std::vector<States> stretches;
+  std::vector<model::States> stretches;
 };
 
 class CutCollector {
  public:
   explicit CutCollector(std::size_t axes) : axes_(axes) {}
 
-  void take(const ProgramStretch& stretch) {
+  void take(const offline::ProgramStretch& stretch) {
     if (stretch.rapid) {
       open_ = false;
       return;
@@ -50,12 +50,12 @@ class CutCollector {
   }
 
   /// All stretches of a cut in one, points evenly along the way.
-  States points_of(const ProgramCut& cut, const Machine& nominal) const {
-    std::vector<std::pair<const States*, std::size_t>> all;
+  model::States points_of(const ProgramCut& cut, const model::Machine& nominal) const {
+    std::vector<std::pair<const model::States*, std::size_t>> all;
     std::vector<double> way;
     Eigen::Vector3d last = Eigen::Vector3d::Zero();
-    for (const States& states : cut.stretches) {
-      const Eigen::Matrix3Xd points = forward(nominal, states).position;
+    for (const model::States& states : cut.stretches) {
+      const Eigen::Matrix3Xd points = model::forward(nominal, states).position;
       for (std::size_t k = 0; k < states.count; ++k) {
         const Eigen::Vector3d point = points.col(static_cast<Index>(k));
         way.push_back(way.empty() ? 0 : way.back() + (point - last).norm());
@@ -68,7 +68,7 @@ class CutCollector {
         cut.circle ? kOnWhole
                    : std::min(kMostOfPath, std::max<std::size_t>(2, kOnStretch * cut.stretches.size()));
     const double steps = static_cast<double>(cut.circle ? count : count - 1);
-    States picked = select_states(cut.stretches.front(), std::vector<std::size_t>(count, 0));
+    model::States picked = model::select_states(cut.stretches.front(), std::vector<std::size_t>(count, 0));
     for (std::size_t i = 0; i < count; ++i) {
       const double target = way.back() * static_cast<double>(i) / steps;
       auto at = std::lower_bound(way.begin(), way.end(), target);
@@ -82,10 +82,10 @@ class CutCollector {
   std::vector<ProgramCut> cuts;
 
  private:
-  void take_row(const States& from, std::size_t row, std::size_t to, States& all) const {
+  void take_row(const model::States& from, std::size_t row, std::size_t to, model::States& all) const {
     const auto source = static_cast<Index>(row), target = static_cast<Index>(to);
-    for (const auto list :
-         {&States::axis, &States::direction, &States::velocity, &States::acceleration, &States::since})
+    for (const auto list : {&model::States::axis, &model::States::direction, &model::States::velocity,
+                            &model::States::acceleration, &model::States::since})
       for (std::size_t a = 0; a < axes_; ++a) (all.*list)[a][target] = (from.*list)[a][source];
     all.feed[target] = from.feed[source];
   }
@@ -125,22 +125,24 @@ void make_circle(const Eigen::Matrix3Xd& points, PartFeature& feature, Eigen::Ma
 
 }  // namespace
 
-PlacedPart program_part(const Machine& machine, const std::string& text, const std::string& file,
-                        const States& at, const std::vector<char>& known, const ProgramOptions& options) {
+PlacedPart program_part(const model::Machine& machine, const std::string& text, const std::string& file,
+                        const model::States& at, const std::vector<char>& known,
+                        const ProgramOptions& options) {
   CutCollector collector(machine.axes.size());
-  PartProgramOptions reading;
+  offline::PartProgramOptions reading;
   reading.zero = options.zero;
-  reading.watch = [&](const ProgramStretch& stretch) { collector.take(stretch); };
-  Corrector corrector(machine, {.with_rotary = linear_axes(machine).empty(), .back = false});
-  corrected_program(text, file, at, known, reading, corrector);
-  if (collector.cuts.empty()) throw InputError({file, 0}, file, "no cutting move (G1, G2, G3)");
+  reading.watch = [&](const offline::ProgramStretch& stretch) { collector.take(stretch); };
+  offline::Corrector corrector(machine,
+                               {.with_rotary = kinematics::linear_axes(machine).empty(), .back = false});
+  offline::corrected_program(text, file, at, known, reading, corrector);
+  if (collector.cuts.empty()) throw text::InputError({file, 0}, file, "no cutting move (G1, G2, G3)");
   PlacedPart part;
-  std::vector<States> all;
+  std::vector<model::States> all;
   std::size_t count = 0;
-  const Machine nominal = nominal_machine(machine);
+  const model::Machine nominal = model::nominal_machine(machine);
   for (const ProgramCut& cut : collector.cuts) {
-    const States states = collector.points_of(cut, nominal);
-    const Eigen::Matrix3Xd points = forward(nominal, states).position;
+    const model::States states = collector.points_of(cut, nominal);
+    const Eigen::Matrix3Xd points = model::forward(nominal, states).position;
     PlacedFeature one;
     one.first = count;
     one.count = states.count;
@@ -162,17 +164,17 @@ PlacedPart program_part(const Machine& machine, const std::string& text, const s
     count += states.count;
     part.features.push_back(std::move(one));
   }
-  part.states = select_states(at, std::vector<std::size_t>(count, 0));
+  part.states = model::select_states(at, std::vector<std::size_t>(count, 0));
   for (std::size_t f = 0; f < all.size(); ++f) {
     const auto first = static_cast<Index>(part.features[f].first), n = static_cast<Index>(all[f].count);
-    for (const auto list :
-         {&States::axis, &States::direction, &States::velocity, &States::acceleration, &States::since})
+    for (const auto list : {&model::States::axis, &model::States::direction, &model::States::velocity,
+                            &model::States::acceleration, &model::States::since})
       for (std::size_t a = 0; a < machine.axes.size(); ++a)
         (part.states.*list)[a].segment(first, n) = (all[f].*list)[a];
     part.states.feed.segment(first, n) = all[f].feed;
   }
-  part.point = forward(nominal, part.states).position;
+  part.point = model::forward(nominal, part.states).position;
   return part;
 }
 
-}  // namespace vernier
+}  // namespace vernier::tolerance

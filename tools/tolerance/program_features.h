@@ -7,7 +7,7 @@
 #include "tools/model/states.h"
 #include "tools/tolerance/placed_part.h"
 
-namespace vernier {
+namespace vernier::tolerance {
 
 struct ProgramOptions {
   std::vector<double> zero;  // machine position of the program's zero, by axis
@@ -19,7 +19,8 @@ struct ProgramOptions {
 /// What a part program cuts (RS-274, as tools/offline reads it): whole circles as circles, everything else
 /// between two rapid moves as a path, of which nothing counts along itself. `at`, `known`: where the axes
 /// stand before the first block. Throws InputError with file, line and word. tool.
-PlacedPart program_part(const Machine& machine, const std::string& text, const std::string& file,
-                        const States& at, const std::vector<char>& known, const ProgramOptions& options);
+PlacedPart program_part(const model::Machine& machine, const std::string& text, const std::string& file,
+                        const model::States& at, const std::vector<char>& known,
+                        const ProgramOptions& options);
 
-}  // namespace vernier
+}  // namespace vernier::tolerance

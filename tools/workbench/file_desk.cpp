@@ -11,7 +11,7 @@
 #include "tools/workbench/excluded.h"
 #include "tools/workbench/terms.h"
 
-namespace vernier {
+namespace vernier::workbench {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -49,14 +49,15 @@ ApiReply FileDesk::answer(const ApiRequest& request) {
 /// Machines and measurements are read before they are kept, so that an error shows where it was dropped.
 ApiReply FileDesk::check(const ApiRequest& request) {
   const std::string name = request.word("name");
-  if (name.ends_with(".xml")) parse_machine(request.body, name);
-  if (name.ends_with(".csv")) parse_csv(request.body, name);
+  if (name.ends_with(".xml")) model::parse_machine(request.body, name);
+  if (name.ends_with(".csv")) text::parse_csv(request.body, name);
   return json_reply({{"name", name}});
 }
 
 ApiReply FileDesk::excluded(const ApiRequest& request) {
   Json list = Json::array();
-  for (const ExcludedRow& row : excluded_rows(read_file(project_.existing(request.word("name")).string())))
+  for (const ExcludedRow& row :
+       excluded_rows(text::read_file(project_.existing(request.word("name")).string())))
     list.push_back({{"line", row.line}, {"reason", row.reason}, {"row", row.row}});
   return json_reply({{"excluded", list}});
 }
@@ -73,10 +74,11 @@ ApiReply FileDesk::predict(const ApiRequest& request) {
   const auto json = body_json(request);
   const auto rows = cache_.get(text_at(json, "machine"), texts_at(json, "measurements"));
   std::map<std::string, double> values;
-  if (!json.contains("values") || !json["values"].is_object()) throw InputError("\"values\" is missing");
+  if (!json.contains("values") || !json["values"].is_object())
+    throw text::InputError("\"values\" is missing");
   for (const auto& [name, value] : json["values"].items()) {
     if (!value.is_number() || !std::isfinite(value.get<double>()))
-      throw InputError("\"" + name + "\": no number");
+      throw text::InputError("\"" + name + "\": no number");
     values[name] = value.get<double>();
   }
   return blob_reply(prediction_blob(*rows, values));
@@ -90,10 +92,11 @@ ApiReply FileDesk::explain(const ApiRequest& request) {
 
 ApiReply FileDesk::names(const ApiRequest& request) {
   const std::string name = request.word("machine");
-  const Machine machine = parse_machine(read_file(project_.existing(name).string()), name);
+  const model::Machine machine =
+      model::parse_machine(text::read_file(project_.existing(name).string()), name);
   Json transforms = Json::array();
   for (const auto* branch : {&machine.tool, &machine.workpiece})
-    for (const Transform& transform : *branch) {
+    for (const model::Transform& transform : *branch) {
       Json dofs = Json::array();
       for (std::size_t i = 0; i < transform.dof_count(); ++i)
         dofs.push_back({{"dof", transform.dof_name(i)}, {"text", transform.text[i]}});
@@ -106,17 +109,18 @@ ApiReply FileDesk::names(const ApiRequest& request) {
 ApiReply FileDesk::term(const ApiRequest& request) {
   const auto json = body_json(request);
   const std::string name = text_at(json, "machine");
-  Machine machine = parse_machine(read_file(project_.existing(name).string()), name);
+  model::Machine machine = model::parse_machine(text::read_file(project_.existing(name).string()), name);
   // Columns of the measurement that the machine does not know: `add` declares what a term uses of them.
   if (json.contains("columns") && json["columns"].is_array()) {
     for (const auto& column : json["columns"]) {
-      Input input;
+      model::Input input;
       input.name = text_at(column, "name");
       input.unit = text_at(column, "unit");
-      if (resolve_name(machine, input.name).kind == SymbolKind::kUnresolved) machine.inputs.push_back(input);
+      if (model::resolve_name(machine, input.name).kind == model::SymbolKind::kUnresolved)
+        machine.inputs.push_back(input);
     }
   }
   return json_reply(check_term(machine, text_at(json, "term"), text_at(json, "unit")));
 }
 
-}  // namespace vernier
+}  // namespace vernier::workbench

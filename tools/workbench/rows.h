@@ -11,13 +11,13 @@
 #include "tools/model/measurement.h"
 #include "tools/workbench/project.h"
 
-namespace vernier {
+namespace vernier::workbench {
 
 /// A machine and rows of a project, as read.
 struct LoadedRows {
   std::string text;  // of the machine file
-  Machine machine;
-  Measurement measurement;
+  model::Machine machine;
+  model::Measurement measurement;
 };
 
 /// Reads machines with their measurements and keeps the last few, as long as their files stay as they are.
@@ -55,4 +55,4 @@ std::string explanation_blob(const LoadedRows& rows, const std::string& add);
 /// Free parameters with value and unit, as the page's sliders need them.
 nlohmann::ordered_json parameters_json(const LoadedRows& rows);
 
-}  // namespace vernier
+}  // namespace vernier::workbench

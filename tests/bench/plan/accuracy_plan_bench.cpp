@@ -25,6 +25,9 @@
 namespace {
 
 using namespace vernier;
+using namespace vernier::fit;
+using namespace vernier::model;
+using namespace vernier::plan;
 using Random = std::mt19937_64;
 
 constexpr double kReadingUm = 3, kExpectedUm = 30;
@@ -70,7 +73,7 @@ int main(int argc, char** argv) {
     const Machine machine = bench::drawn_machine(random);
     const Machine truth = bench::true_machine(machine, kExpectedUm, random);
     const Measurement first = read_at(truth, bench::anywhere(machine, kFirst, random), random);
-    const FitResult at_hand = fit(machine, first);
+    const FitResult at_hand = fit::fit(machine, first);
     const Knowledge knowledge = knowledge_of(at_hand, first);
     AccuracyAim aim;
     for (std::size_t a = 0; a < machine.axes.size(); ++a) {
@@ -103,7 +106,7 @@ int main(int argc, char** argv) {
     }
     Measurement all = first;
     append_measurement(all, read_at(truth, plan.states, random));
-    const double square = error_square(fit(machine, all).machine, truth, region);
+    const double square = error_square(fit::fit(machine, all).machine, truth, region);
     promised += plan.after_um * plan.after_um, kept += 4 * square;
     fmt::print("{:>8.2f} {:>8.2f} {:>6} {:>7} {:>7} {:>8} {:>8} {:>9.2f} {:>9.2f} {:>7.3f}\n", plan.now_um,
                plan.after_um, plan.states.count, others[0], others[1], others[2], others[3], plan.after_um,

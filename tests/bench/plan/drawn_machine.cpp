@@ -16,6 +16,10 @@
 
 namespace vernier::bench {
 
+using namespace vernier::fit;
+using namespace vernier::model;
+using namespace vernier::plan;
+
 using Random = std::mt19937_64;
 
 double between(double low, double high, Random& random) {

@@ -12,19 +12,19 @@ double between(double low, double high, std::mt19937_64& random);
 
 /// Three linear axes, drawn: their order, travels of 200 to 1200 mm, tables of 3 to 6 stations with some of
 /// their columns free, squareness.
-Machine drawn_machine(std::mt19937_64& random);
+model::Machine drawn_machine(std::mt19937_64& random);
 
 /// The machine with every parameter as far off as moves the tool point by `expected_um` rms, drawn.
-Machine true_machine(const Machine& machine, double expected_um, std::mt19937_64& random);
+model::Machine true_machine(const model::Machine& machine, double expected_um, std::mt19937_64& random);
 
-States first_of(const States& states, std::size_t count);
+model::States first_of(const model::States& states, std::size_t count);
 
 /// Lines along every axis through the middle, and the four body diagonals, there and back, `each` places on
 /// each; over the machine's work ranges.
-States iso_lines(const Machine& machine, std::size_t each);
+model::States iso_lines(const model::Machine& machine, std::size_t each);
 
 /// Evenly drawn over the machine's work ranges, either sense.
-States anywhere(const Machine& machine, std::size_t count, std::mt19937_64& random);
+model::States anywhere(const model::Machine& machine, std::size_t count, std::mt19937_64& random);
 
 /// Fewest poses, of a family that grows, after which `um_of` them is not above `um`; `most` where that does
 /// not do. Bisection, since more poses never know less.

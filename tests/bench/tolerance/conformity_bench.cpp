@@ -25,6 +25,13 @@
 namespace {
 
 using namespace vernier;
+using namespace vernier::effects;
+using namespace vernier::fit;
+using namespace vernier::kinematics;
+using namespace vernier::model;
+using namespace vernier::offline;
+using namespace vernier::text;
+using namespace vernier::tolerance;
 using Random = std::mt19937_64;
 
 constexpr double kNothing_mm = 1e-6;  // an interval's ends are told to a nanometre
@@ -252,7 +259,7 @@ int main(int argc, char** argv) {
       const support::HiddenSurvey survey = support::make_survey(spec);
       const Machine truth = parse_machine(survey.truth, "truth.xml");
       const Machine model = parse_machine(survey.model, "model.xml");
-      const Machine fitted = fit(model, parse_measurement(survey.csv, "survey.csv", model)).machine;
+      const Machine fitted = fit::fit(model, parse_measurement(survey.csv, "survey.csv", model)).machine;
       Random random(spec.seed * 7919 + 13);
       for (std::size_t p = 0, tries = 0; p < parts && tries < 20 * parts; ++tries) {
         const States at = resting(fitted, g, random);

@@ -13,6 +13,8 @@
 #include "tools/text/files.h"
 
 namespace vernier::conformity_test {
+
+using namespace vernier::text;
 namespace {
 
 namespace fs = std::filesystem;

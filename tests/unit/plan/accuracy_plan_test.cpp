@@ -16,6 +16,12 @@
 #include "tools/text/error.h"
 
 namespace vernier::accuracy_plan_test {
+
+using namespace vernier::fit;
+using namespace vernier::model;
+using namespace vernier::plan;
+using namespace vernier::text;
+using namespace vernier::tolerance;
 namespace {
 
 const char* const kBridge = R"XML(<machine name="bridge"><variables><static><sxy value="0" nominal="0"/>
@@ -57,7 +63,7 @@ struct AtHand {
   explicit AtHand(std::uint64_t seed) : random(seed) {
     truth = drawn(random);
     rows = read_at(truth, offered_poses(bridge(), 30, 300), random);
-    knowledge = knowledge_of(fit(bridge(), rows), rows);
+    knowledge = knowledge_of(fit::fit(bridge(), rows), rows);
   }
   std::mt19937_64 random;
   Machine truth;
@@ -119,7 +125,7 @@ TEST(AccuracyPlan, IsKeptByAFitOfAllRows) {
     const AccuracyPlan plan = halved(at_hand.knowledge, corner());
     Measurement all = at_hand.rows;
     append_measurement(all, read_at(at_hand.truth, plan.states, at_hand.random));
-    const Machine fitted = fit(bridge(), all).machine;
+    const Machine fitted = fit::fit(bridge(), all).machine;
     const States fresh = offered_poses(with_region(bridge(), corner().region), 100, 900);
     const Eigen::Matrix3Xd off = forward(fitted, fresh).position - forward(at_hand.truth, fresh).position;
     const Eigen::MatrixXd motions = rigid_motions(forward(fitted, fresh).position);
@@ -175,7 +181,7 @@ TEST(AccuracyPlan, OfAPartIsForItsFeatures) {
 
 TEST(AccuracyPlan, KnowsAFittedFileAsItsFitDoes) {
   AtHand at_hand(6);
-  const FitResult fitted = fit(bridge(), at_hand.rows);
+  const FitResult fitted = fit::fit(bridge(), at_hand.rows);
   const Knowledge file = knowledge_of(fitted.machine);
   EXPECT_TRUE(file.new_set_up);
   const States none = select_states(offered_poses(bridge(), 1, 0), {});

@@ -10,6 +10,11 @@
 #include "tools/text/error.h"
 
 namespace vernier::tolerance_test {
+
+using namespace vernier::effects;
+using namespace vernier::model;
+using namespace vernier::text;
+using namespace vernier::tolerance;
 namespace {
 
 constexpr double kDiameter = 40, kScale = 2e-4, kStd = 5e-5;

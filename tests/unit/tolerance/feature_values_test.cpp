@@ -9,6 +9,11 @@
 #include "tools/text/error.h"
 
 namespace vernier::tolerance_test {
+
+using namespace vernier::fit;
+using namespace vernier::model;
+using namespace vernier::text;
+using namespace vernier::tolerance;
 namespace {
 
 double value_of(const PartValues& values, std::size_t feature, PartCharacteristic what,

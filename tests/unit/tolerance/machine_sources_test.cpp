@@ -9,6 +9,11 @@
 #include "tools/model/machine_reader.h"
 
 namespace vernier::tolerance_test {
+
+using namespace vernier::effects;
+using namespace vernier::model;
+using namespace vernier::text;
+using namespace vernier::tolerance;
 namespace {
 
 const char* const kMany = R"XML(<machine name="many"><variables><static><kx value="1e-4" nominal="0"/>

@@ -9,6 +9,10 @@
 #include "tools/tolerance/placed_part.h"
 
 namespace vernier::tolerance_test {
+
+using namespace vernier::model;
+using namespace vernier::text;
+using namespace vernier::tolerance;
 namespace {
 
 using testing::HasSubstr;

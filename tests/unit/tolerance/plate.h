@@ -13,8 +13,8 @@
 namespace vernier::tolerance_test {
 
 /// Three axes with a scale error, a squareness, a reversal error and a table.
-inline Machine plate_machine(double kx, double sxy, double play = 0) {
-  Machine machine = parse_machine(
+inline model::Machine plate_machine(double kx, double sxy, double play = 0) {
+  model::Machine machine = model::parse_machine(
       R"XML(<machine name="plate"><variables><static><kx value="0" nominal="0"/><sxy value="0" nominal="0"/>
       <play value="0" nominal="0" unit="mm"/><tilt value="0" nominal="0" unit="deg"/><BaseShift/></static>
       <machineaxes><X min="0" max="600"/><Y min="0" max="400"/><Z min="-300" max="0"/></machineaxes>
@@ -30,11 +30,11 @@ inline Machine plate_machine(double kx, double sxy, double play = 0) {
 
 /// As if a fit had left it: standard uncertainty of the scale and the squareness; `open`: of the scale's
 /// variance, that no reading bore on.
-inline void set_known(Machine& machine, double std_kx, double std_sxy, double open = 0) {
-  auto record = std::make_shared<FitRecord>();
-  Machine bare = machine;
+inline void set_known(model::Machine& machine, double std_kx, double std_sxy, double open = 0) {
+  auto record = std::make_shared<model::FitRecord>();
+  model::Machine bare = machine;
   bare.base_shifts.clear();
-  const ParameterSet own(bare, {});
+  const model::ParameterSet own(bare, {});
   record->values = own.get(bare);
   const auto n = static_cast<Eigen::Index>(own.size());
   record->factor = Eigen::MatrixXd::Zero(n, n);
@@ -51,7 +51,9 @@ inline void set_known(Machine& machine, double std_kx, double std_sxy, double op
   machine.fitted = record;
 }
 
-inline States at_rest(const Machine& machine) { return make_states(1, machine.axes.size(), {}); }
+inline model::States at_rest(const model::Machine& machine) {
+  return model::make_states(1, machine.axes.size(), {});
+}
 
 inline const char* const kBores =
     "feature,kind,x,y,z,diameter,length,position,size,form,datum\n"

@@ -7,6 +7,10 @@
 #include "tools/text/error.h"
 
 namespace vernier::tolerance_test {
+
+using namespace vernier::model;
+using namespace vernier::text;
+using namespace vernier::tolerance;
 namespace {
 
 PlacedPart read(const Machine& machine, const std::string& text) {
