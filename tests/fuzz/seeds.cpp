@@ -108,6 +108,7 @@ std::map<std::string, std::vector<std::string>> text_seeds() {
       "\"gram\":[[1.0]],\"moment\":[[2.0]],\"rest\":0.5,\"freedom\":2.0}]}",
       "{\"format\":\"vernier-checks\",\"version\":2,\"machine\":\"m\",\"checks\":[]}"};
   seeds["effects"] = {head(file("tools/effects/catalogue.txt"), 30)};
+  seeds["part_features"] = {file("tests/data/part/plate.csv")};
   seeds["measured_part"] = {head(file("tests/data/spart/overcut_reference.csv"), 6),
                             "x[mm],y[mm],z[mm],defect[um],u[um]\n10,20,5,3,1\n"};
   seeds["dh_table"] = {"theta[deg],d[mm],a[mm],alpha[deg]\n0,100,0,90\n0,0,-600,0\n",

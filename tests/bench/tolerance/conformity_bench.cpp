@@ -56,6 +56,7 @@ struct Figures {
   std::map<std::string, Count> off, on;  // covered, by characteristic
   Count said_conforms, said_does_not;    // right ones of each
   std::size_t not_said = 0;
+  Count first;  // the source that the fitted value would fall by most without: right
   Count named,
       told;  // of the characteristics with one dominant source: right; of all: the true one is listed
   std::size_t asked = 0;
@@ -68,6 +69,7 @@ void add(Figures& all, const Figures& one) {
   for (const auto& [name, count] : one.on) sum(all.on[name], count);
   sum(all.said_conforms, one.said_conforms);
   sum(all.said_does_not, one.said_does_not);
+  sum(all.first, one.first);
   sum(all.named, one.named);
   sum(all.told, one.told);
   all.not_said += one.not_said;
@@ -194,6 +196,7 @@ Figures judge(const Machine& truth, const Machine& fitted, const PlacedPart& par
     if (dominant[v].empty()) continue;
     ++figures.asked;
     figures.told.take(std::find(one.dominant.begin(), one.dominant.end(), dominant[v]) != one.dominant.end());
+    figures.first.take(!one.sources.empty() && one.sources[0].name == dominant[v]);
     if (one.dominant.size() == 1) figures.named.take(one.dominant[0] == dominant[v]);
   }
   return figures;
@@ -212,7 +215,7 @@ void print(const std::string& name, const Figures& f) {
   fmt::print(
       "{:<10} {:>5} {:>6} | {:>6.2f} {:>6} {:>6} {:>6} | {:>6.2f} {:>6} {:>6} {:>6} | {:>6.1f} {:>6.1f} "
       "{:>5.1f} "
-      "| {:>6.1f} {:>6.1f} {:>6.1f}\n",
+      "| {:>6.1f} {:>6.1f} {:>6.1f} {:>6.1f}\n",
       name, f.parts, f.asked, 100 * off.share(), share(f.off, "position"), share(f.off, "size"),
       share(f.off, "form"), 100 * on.share(), share(f.on, "position"), share(f.on, "size"),
       share(f.on, "form"), 100 * f.said_conforms.share(), 100 * f.said_does_not.share(),
@@ -220,7 +223,7 @@ void print(const std::string& name, const Figures& f) {
           static_cast<double>(
               std::max<std::size_t>(1, f.not_said + f.said_conforms.tries + f.said_does_not.tries)),
       100 * f.named.share(), 100 * static_cast<double>(f.named.tries) / static_cast<double>(f.asked),
-      100 * f.told.share());
+      100 * f.told.share(), 100 * f.first.share());
   std::fflush(stdout);
 }
 
@@ -239,11 +242,12 @@ int main(int argc, char** argv) {
   CLI11_PARSE(app, argc, argv);
   fmt::print(
       "seed {}; covered of 95 % intervals without | with correction; verdicts right | not said; dominant "
-      "source right where one is named, named, listed; all in %\n{:<10} {:>5} {:>6} | {:>6} {:>6} {:>6} "
+      "source right where one is named, named, listed, first; all in %\n{:<10} {:>5} {:>6} | {:>6} {:>6} "
+      "{:>6} "
       "{:>6} | "
-      "{:>6} {:>6} {:>6} {:>6} | {:>6} {:>6} {:>5} | {:>6} {:>6} {:>6}\n",
+      "{:>6} {:>6} {:>6} {:>6} | {:>6} {:>6} {:>5} | {:>6} {:>6} {:>6} {:>6}\n",
       seed, "family", "parts", "values", "all", "posit.", "size", "form", "all", "posit.", "size", "form",
-      "yes", "no", "?", "right", "named", "listed");
+      "yes", "no", "?", "right", "named", "listed", "first");
   const std::vector<Effect>& catalogue = built_in_effects();
   Figures all;
   for (const std::string& name : families) {

@@ -17,6 +17,7 @@
 #include "tools/model/machine_reader.h"
 #include "tools/model/machine_writer.h"
 #include "tools/model/prediction.h"
+#include "tools/text/error.h"
 
 namespace vernier::convention_test {
 
@@ -273,6 +274,47 @@ TEST(FitRecord, TravelsInTheMachineFile) {
   changed.tables[0].stations[2].value[0] += 1e-3;
   EXPECT_EQ(Reach(changed).stale().size(), 1U);
   EXPECT_FALSE(Reach(bridge.model).known());
+}
+
+TEST(FitRecord, KeepsWhatNoReadingBoreOn) {
+  const Bridge bridge;
+  const FitResult result = fit::fit(bridge.model, bridge.rows);
+  const std::string file = update_machine_text(support::bridge_text(7), result.machine, true);
+  const Reach reach(parse_machine(file, "fitted.xml"));
+  ASSERT_TRUE(reach.open_known());
+  // A part of the covariance: no more of any parameter than all of it. Seven digits are kept, and what is
+  // below 1e-3 of it is left out.
+  const Eigen::VectorXd all = reach.factor().rowwise().squaredNorm(),
+                        open = reach.open().rowwise().squaredNorm();
+  EXPECT_TRUE((open.array() <= 1.000001 * all.array()).all());
+  ASSERT_EQ(static_cast<std::size_t>(all.size()), reach.parameters().size());
+  std::size_t nothing = 0, everything = 0;
+  for (std::size_t i = 0; i < reach.parameters().size(); ++i) {
+    const double share = open[static_cast<Eigen::Index>(i)] / all[static_cast<Eigen::Index>(i)];
+    for (const ParameterEstimate& one : result.estimates) {
+      if (one.name != reach.parameters()[i].name) continue;
+      if (one.from == Origin::kPrior) {
+        EXPECT_GT(share, 0.7) << one.name;
+        ++everything;
+      } else if (one.from == Origin::kData) {
+        EXPECT_LT(share, 0.01) << one.name;
+        ++nothing;
+      }
+    }
+  }
+  EXPECT_GT(nothing + everything, 0u);
+  // Numbers of another length are named by their line.
+  std::string broken = file;
+  const auto at = broken.find("<open numbers=\"") + 15;
+  broken.insert(at, "AAAA");
+  EXPECT_THROW(parse_machine(broken, "broken.xml"), text::InputError);
+  // A file of before says that it does not know.
+  std::string older = file;
+  const auto from = older.find("<open "), to = older.find("/>", from) + 2;
+  older.erase(from, to - from);
+  const Reach old(parse_machine(older, "older.xml"));
+  EXPECT_TRUE(old.known());
+  EXPECT_FALSE(old.open_known());
 }
 
 TEST(Sanity, NamesTheMistakeInTheReadings) {
