@@ -271,7 +271,8 @@ void add_conformity(CLI::App& part) {
       "probability of 95 % on (ISO 14253-1:2017), else it cannot be said. Columns of a list: feature, kind\n"
       "(point plane cylinder), x y z, nx ny nz, i j k, diameter, length, width, position, size or size_low\n"
       "and size_high, form, datum (yes). Exit status 0 done (also where it cannot be said), 1 bad input\n"
-      "(nothing written), 2 something does not conform or is out of reach. See tools/docs/conformity.md.");
+      "(nothing written), 2 something does not conform (all is written), or is out of reach (nothing is). "
+      "See tools/docs/conformity.md.");
   command->callback([a] { run_conformity(*a); });
 }
 

@@ -6,9 +6,6 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
-#include <numeric>
-#include <random>
 
 #include "tools/fit/reach.h"
 #include "tools/kinematics/inverse.h"
@@ -19,6 +16,7 @@
 #include "tools/offline/corrector.h"
 #include "tools/text/error.h"
 #include "tools/tolerance/machine_sources.h"
+#include "tools/tolerance/trials.h"
 
 namespace vernier::tolerance {
 namespace {
@@ -35,64 +33,6 @@ constexpr int kTried = 12;
 constexpr double kNothing_mm = 1e-6;
 /// A linear trial may be off by this share of the standard deviation.
 constexpr double kLinearEnough = 0.05;
-
-/// Normal numbers that are the same everywhere for a seed.
-class Normals {
- public:
-  explicit Normals(std::uint64_t seed) : engine_(seed) {}
-  MatrixXd draw(Index rows, Index columns) {
-    return MatrixXd::NullaryExpr(rows, columns, [this]() { return next(); });
-  }
-
- private:
-  double uniform() { return (static_cast<double>(engine_() >> 11U) + 0.5) * 0x1p-53; }
-  double next() {
-    const double radius = std::sqrt(-2 * std::log(uniform()));
-    return radius * std::cos(2 * std::numbers::pi * uniform());
-  }
-  std::mt19937_64 engine_;
-};
-
-/// Blocks of trials of one value, summed up.
-struct TrialTally {
-  double sum = 0, squares = 0;
-  std::vector<double> low, high;  // of each block
-  std::size_t conforming = 0, trials = 0;
-
-  void take(std::vector<double>& block, const std::optional<std::array<double, 2>>& limits) {
-    std::sort(block.begin(), block.end());
-    const auto at = [&](double share) {
-      return block[static_cast<std::size_t>(share * static_cast<double>(block.size() - 1) + 0.5)];
-    };
-    low.push_back(at(0.025));
-    high.push_back(at(0.975));
-    for (const double value : block) {
-      sum += value;
-      squares += value * value;
-      if (limits && value >= (*limits)[0] && value <= (*limits)[1]) ++conforming;
-    }
-    trials += block.size();
-  }
-
-  double mean() const { return sum / static_cast<double>(trials); }
-  double std() const {
-    return std::sqrt(std::max(0.0, squares / static_cast<double>(trials) - mean() * mean()));
-  }
-  static double average(const std::vector<double>& list) {
-    return std::accumulate(list.begin(), list.end(), 0.0) / static_cast<double>(list.size());
-  }
-  /// Twice the standard deviation of the averages of both ends, the larger one.
-  double doubt() const {
-    double worst = 0;
-    for (const auto* list : {&low, &high}) {
-      double rest = 0;
-      for (const double one : *list) rest += std::pow(one - average(*list), 2);
-      const auto h = static_cast<double>(list->size());
-      worst = std::max(worst, 2 * std::sqrt(rest / (h * (h - 1))));
-    }
-    return worst;
-  }
-};
 
 class ConformityRunner {
  public:
@@ -304,7 +244,7 @@ class ConformityRunner {
     const std::size_t least = 2 * static_cast<std::size_t>(kBlock);
     while (true) {
       block(normals, off, on);
-      result_.trials = off.empty() ? 0 : off.front().trials;
+      result_.trials = off.empty() ? 0 : off.front().trials();
       if (off.empty() || result_.trials >= options_.most_trials) break;
       if (result_.trials >= least && settled(off) && settled(on)) break;
     }
@@ -354,17 +294,10 @@ class ConformityRunner {
 
   Expectation expectation(const TrialTally& tally, const CharacteristicValue& value,
                           const VectorXd& mean) const {
-    Expectation e{value.of(mean),
-                  tally.mean(),
-                  tally.std(),
-                  TrialTally::average(tally.low),
-                  TrialTally::average(tally.high),
-                  0,
-                  {},
-                  {}};
+    Expectation e{value.of(mean), tally.mean(), tally.std(), tally.low(), tally.high(), 0, {}, {}};
     e.u95 = (e.high - e.low) / 2;
     if (!value.limits_mm) return e;
-    e.probability = static_cast<double>(tally.conforming) / static_cast<double>(tally.trials);
+    e.probability = tally.conforming();
     e.verdict = *e.probability >= options_.confidence       ? PartVerdict::kConforms
                 : *e.probability <= 1 - options_.confidence ? PartVerdict::kDoesNotConform
                                                             : PartVerdict::kCannotBeSaid;

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/tolerance/trials.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+namespace vernier::tolerance {
+
+Eigen::MatrixXd Normals::draw(Eigen::Index rows, Eigen::Index columns) {
+  return Eigen::MatrixXd::NullaryExpr(rows, columns, [this]() { return next(); });
+}
+
+double Normals::uniform() { return (static_cast<double>(engine_() >> 11U) + 0.5) * 0x1p-53; }
+
+double Normals::next() {
+  const double radius = std::sqrt(-2 * std::log(uniform()));
+  return radius * std::cos(2 * std::numbers::pi * uniform());
+}
+
+void TrialTally::take(std::vector<double>& block, const std::optional<std::array<double, 2>>& limits) {
+  std::sort(block.begin(), block.end());
+  const auto at = [&](double share) {
+    return block[static_cast<std::size_t>(share * static_cast<double>(block.size() - 1) + 0.5)];
+  };
+  low_.push_back(at(0.025));
+  high_.push_back(at(0.975));
+  for (const double value : block) {
+    sum_ += value;
+    squares_ += value * value;
+    if (limits && value >= (*limits)[0] && value <= (*limits)[1]) ++conforming_;
+  }
+  trials_ += block.size();
+}
+
+double TrialTally::mean() const { return sum_ / static_cast<double>(trials_); }
+
+double TrialTally::std() const {
+  return std::sqrt(std::max(0.0, squares_ / static_cast<double>(trials_) - mean() * mean()));
+}
+
+double TrialTally::conforming() const {
+  return static_cast<double>(conforming_) / static_cast<double>(trials_);
+}
+
+double TrialTally::average(const std::vector<double>& list) {
+  return std::accumulate(list.begin(), list.end(), 0.0) / static_cast<double>(list.size());
+}
+
+double TrialTally::doubt() const {
+  double worst = 0;
+  for (const auto* list : {&low_, &high_}) {
+    double rest = 0;
+    for (const double one : *list) rest += std::pow(one - average(*list), 2);
+    const auto h = static_cast<double>(list->size());
+    worst = std::max(worst, 2 * std::sqrt(rest / (h * (h - 1))));
+  }
+  return worst;
+}
+
+}  // namespace vernier::tolerance
