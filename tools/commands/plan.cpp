@@ -155,10 +155,10 @@ void run_plan(const PlanArguments& arguments) {
   if (arguments.check && !(arguments.measurements.empty() && arguments.separate.empty()))
     throw text::InputError({}, "--check", "goes with the fitted machine alone");
   if (arguments.check) return run_check_plan(arguments);
-  const bool aimed = !arguments.part.path.empty() || !arguments.region.empty();
+  const bool aimed = !arguments.part.path.empty() || !arguments.region.empty() || !arguments.tool.empty();
   if (aimed && !arguments.separate.empty())
     throw text::InputError({}, "--separate",
-                           "tells two effects apart; --part and --region say where accuracy matters");
+                           "tells two effects apart; --part, --region and --tool say where accuracy matters");
   if (arguments.measurements.empty() && !aimed) return run_first_plan(arguments);
   if (arguments.separate.empty()) return run_accuracy_plan(arguments);
   const std::string text = text::read_file(arguments.machine);
@@ -247,6 +247,9 @@ void register_plan(CLI::App& vernier) {
                       "inputs, and where axes stand that the part does not ask for");
   command->add_option("--region", arguments->region,
                       "accuracy for this part of the volume: \"X=100:200,Y=0:50\"");
+  command->add_option(
+      "--tool", arguments->tool,
+      "accuracy for this tool alone: one of <tools>, or \"X,Y,Z\" in mm from the end of the chain");
   command->add_option("--feed", arguments->feed_mm_min, "from pose to pose, mm/min: for the minutes")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();

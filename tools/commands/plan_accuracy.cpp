@@ -3,6 +3,7 @@
 
 #include "tools/commands/command.h"
 #include "tools/commands/plan_kinds.h"
+#include "tools/kinematics/at.h"
 #include "tools/model/machine_reader.h"
 #include "tools/plan/accuracy_plan.h"
 #include "tools/plan/sheets.h"
@@ -136,8 +137,9 @@ void run_accuracy_plan(const PlanArguments& arguments) {
     aim.words = "the region " + arguments.region;
   }
   plan::Knowledge knowledge = knowledge_from(arguments, machine);
+  if (!arguments.tool.empty()) aim.tooled = kinematics::tooled(knowledge.machine, arguments.tool);
   if (!arguments.part.path.empty()) {
-    aim.part = part_cli::placed_part(arguments.part, knowledge.machine);
+    aim.part = part_cli::placed_part(arguments.part, aim.tooled.value_or(knowledge.machine));
     aim.words = "the features of " + arguments.part.path;
   }
   if (arguments.reading_um) knowledge.reading_mm = 1e-3 * *arguments.reading_um;

@@ -42,10 +42,11 @@ MatrixXd own_columns_at(const model::Machine& machine, const model::States& stat
 }
 
 AimRows rows_of_volume(const Knowledge& knowledge, const AccuracyAim& aim, const std::vector<Index>& own) {
-  const model::Machine machine = with_region(knowledge.machine, aim.region);
+  const model::Machine machine = with_region(aim.tooled.value_or(knowledge.machine), aim.region);
   const model::States states = offered_poses(machine, kLookedAt, kFrom);
   std::vector<model::Machine> tooled = {machine};
-  for (const model::Tool& tool : machine.tools) tooled.push_back(model::with_tool(machine, tool.point));
+  if (!aim.tooled)
+    for (const model::Tool& tool : machine.tools) tooled.push_back(model::with_tool(machine, tool.point));
   const double share = std::sqrt(static_cast<double>(kLookedAt * tooled.size()));
   AimRows result;
   result.rows.resize(static_cast<Index>(3 * kLookedAt * tooled.size()), static_cast<Index>(own.size()));
@@ -59,11 +60,10 @@ AimRows rows_of_volume(const Knowledge& knowledge, const AccuracyAim& aim, const
   return result;
 }
 
-AimRows rows_of_part(const Knowledge& knowledge, const tolerance::PlacedPart& part,
-                     const std::vector<Index>& own) {
+AimRows rows_of_part(const model::Machine& machine, const Knowledge& knowledge,
+                     const tolerance::PlacedPart& part, const std::vector<Index>& own) {
   const tolerance::PartValues values = tolerance::part_values(part, tolerance::PartFrame::kPart, "");
-  const MatrixXd columns =
-      values.map * own_columns_at(knowledge.machine, part.states, knowledge.parameters, own);
+  const MatrixXd columns = values.map * own_columns_at(machine, part.states, knowledge.parameters, own);
   AimRows result{columns, {}};
   for (const tolerance::CharacteristicValue& value : values.values) {
     // The mean square of the vectors that a characteristic is made from, and the mean of all of those.
@@ -90,7 +90,8 @@ model::Machine with_region(const model::Machine& machine, const std::vector<mode
 }
 
 AimRows aim_rows(const Knowledge& knowledge, const AccuracyAim& aim, const std::vector<Index>& own) {
-  return aim.part ? rows_of_part(knowledge, *aim.part, own) : rows_of_volume(knowledge, aim, own);
+  return aim.part ? rows_of_part(aim.tooled.value_or(knowledge.machine), knowledge, *aim.part, own)
+                  : rows_of_volume(knowledge, aim, own);
 }
 
 }  // namespace vernier::plan

@@ -39,6 +39,8 @@ struct AccuracyAim {
   std::string words;  // "the volume"
   std::optional<tolerance::PlacedPart> part;
   std::vector<model::WorkRange> region;  // in place of the volume; an axis that is not named keeps its own
+  /// The machine with the one tool that counts, else that of the file and those of <tools>.
+  std::optional<model::Machine> tooled;
 };
 
 struct AccuracyOptions {

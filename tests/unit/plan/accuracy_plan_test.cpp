@@ -71,7 +71,7 @@ struct AtHand {
   Knowledge knowledge;
 };
 
-AccuracyAim corner() { return {"a corner", {}, {{0, 0, 200}, {1, 0, 150}, {2, -100, 0}}}; }
+AccuracyAim corner() { return {"a corner", {}, {{0, 0, 200}, {1, 0, 150}, {2, -100, 0}}, {}}; }
 
 AccuracyPlan halved(const Knowledge& knowledge, const AccuracyAim& aim) {
   AccuracyOptions options;
@@ -152,7 +152,7 @@ TEST(AccuracyPlan, SaysWhatSuchReadingsCannotTell) {
   at_hand.knowledge.reads = {true, false, false};
   AccuracyOptions options;
   options.accuracy_um = 5;
-  const AccuracyPlan plan = accuracy_plan(at_hand.knowledge, {"the volume", {}, {}}, options);
+  const AccuracyPlan plan = accuracy_plan(at_hand.knowledge, {"the volume", {}, {}, {}}, options);
   EXPECT_FALSE(plan.reached);
   EXPECT_GT(plan.floor_um, 5);
   ASSERT_FALSE(plan.unseen.empty());
@@ -177,6 +177,15 @@ TEST(AccuracyPlan, OfAPartIsForItsFeatures) {
     EXPECT_LE(one.after_um, one.now_um);
   }
   EXPECT_THAT(names, testing::Contains("position of c"));
+}
+
+TEST(AccuracyPlan, ForALongerToolThereIsMoreToKnow) {
+  const AtHand at_hand(7);
+  const States none = select_states(offered_poses(bridge(), 1, 0), {});
+  AccuracyAim aim = corner();
+  const double own = expected_accuracy_um(at_hand.knowledge, aim, none);
+  aim.tooled = with_tool(at_hand.knowledge.machine, {0, 400, 0});  // rZ of the Y carriage moves it
+  EXPECT_GT(expected_accuracy_um(at_hand.knowledge, aim, none), 1.05 * own);
 }
 
 TEST(AccuracyPlan, KnowsAFittedFileAsItsFitDoes) {
