@@ -22,7 +22,7 @@ double Normals::next() {
 void TrialTally::take(std::vector<double>& block, const std::optional<std::array<double, 2>>& limits) {
   std::sort(block.begin(), block.end());
   const auto at = [&](double share) {
-    return block[static_cast<std::size_t>(share * static_cast<double>(block.size() - 1) + 0.5)];
+    return block[static_cast<std::size_t>(std::lround(share * static_cast<double>(block.size() - 1)))];
   };
   low_.push_back(at(0.025));
   high_.push_back(at(0.975));
