@@ -80,6 +80,7 @@ Json conformity_json(const model::Machine& machine, const ConformityArguments& a
                {"never_measured_known", result.open_known},
                {"stale", result.stale},
                {"outside_measured", result.outside},
+               {"disturbance", machine.fitted->disturbance},
                {"characteristics", Json::array()}};
   for (const tolerance::CharacteristicResult& one : result.characteristics)
     json["characteristics"].push_back(characteristic_json(one, part));
@@ -217,7 +218,11 @@ void run_conformity(const ConformityArguments& arguments) {
   if (!arguments.output.empty())
     text::write_file(arguments.output, conformity_page(machine, arguments, part, result));
   write_json(arguments.json, conformity_json(machine, arguments, part, result));
-  print_conformity(human_stream(arguments.json), part, result);
+  std::FILE* out = human_stream(arguments.json);
+  if (!machine.fitted->disturbance.empty())
+    fmt::print(out, "what the model lacks is in none of these figures, and the fit found something: {}\n",
+               machine.fitted->disturbance);
+  print_conformity(out, part, result);
   judge(part, result, arguments.uncorrected);
 }
 
