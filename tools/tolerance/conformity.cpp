@@ -247,6 +247,7 @@ class ConformityRunner {
       result_.trials = off.empty() ? 0 : off.front().trials();
       if (off.empty() || result_.trials >= options_.most_trials) break;
       if (result_.trials >= least && settled(off) && settled(on)) break;
+      if (result_.trials >= least) expected_ = needed(off, on);
     }
     result_.settled = off.empty() || (settled(off) && settled(on));
     for (std::size_t v = 0; v < values_.values.size(); ++v) {
@@ -277,8 +278,8 @@ class ConformityRunner {
         }
       }
       if (options_.progress)
-        options_.progress(static_cast<double>(result_.trials + static_cast<std::size_t>(done)) /
-                          static_cast<double>(options_.most_trials));
+        options_.progress(
+            std::min(1.0, static_cast<double>(result_.trials + static_cast<std::size_t>(done)) / expected_));
     }
     for (std::size_t v = 0; v < off.size(); ++v) {
       off[v].take(off_values[v], values_.values[v].limits_mm);
@@ -290,6 +291,16 @@ class ConformityRunner {
     return std::all_of(tallies.begin(), tallies.end(), [&](const TrialTally& one) {
       return one.doubt() <= options_.tolerance * one.std() + kNothing_mm;
     });
+  }
+
+  /// Trials that it will take, as far as those so far tell: the doubt falls with the root of their number.
+  double needed(const std::vector<TrialTally>& off, const std::vector<TrialTally>& on) const {
+    double worst = 1;
+    for (const auto* list : {&off, &on})
+      for (const TrialTally& one : *list)
+        worst = std::max(worst, one.doubt() / (options_.tolerance * one.std() + kNothing_mm));
+    return std::min(static_cast<double>(options_.most_trials),
+                    static_cast<double>(result_.trials) * worst * worst + static_cast<double>(kBlock));
   }
 
   Expectation expectation(const TrialTally& tally, const CharacteristicValue& value,
@@ -315,6 +326,7 @@ class ConformityRunner {
   VectorXd off_, on_, base_;     // rows of the map at the fitted machine, without and with its correction
   std::vector<VectorXd> alone_;  // of each source
   std::vector<double> std_;      // of each value, from linear trials
+  double expected_ = 3.0 * static_cast<double>(kBlock);  // trials, for the progress
   PartConformity result_;
 };
 

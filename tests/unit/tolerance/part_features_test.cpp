@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/unit/tolerance/plate.h"
+#include "tools/model/chain.h"
 #include "tools/text/error.h"
 #include "tools/tolerance/placed_part.h"
 
@@ -82,6 +83,24 @@ TEST(PlacedPart, PointsStandOnTheSurface) {
   // Counter-clockwise: from the first point, at +X, X falls and Y rises.
   EXPECT_EQ(part.states.direction[0][1], -1);
   EXPECT_EQ(part.states.direction[1][1], 1);
+}
+
+TEST(PlacedPart, ATiltedToolTurnsTheRotaryAxes) {
+  const Machine machine = read_machine(VERNIER_SOURCE_DIR "/tables/machines/five_axis_bhead_ctable.xml");
+  std::vector<double> references;
+  for (const Input& input : machine.inputs) references.push_back(input.reference);
+  const States at = make_states(1, machine.axes.size(), references);
+  const Eigen::Vector3d middle = forward(nominal_machine(machine), at).position.col(0);
+  const Eigen::Vector3d tool = Eigen::Vector3d(0.3, 0.2, 1).normalized();
+  PartDrawing part =
+      parse_part("feature,kind,x,y,z,i,j,k,diameter\na,cylinder,10,20,60,0.3,0.2,1,20\n", "p.csv");
+  part = placed_at(part, middle, 0);
+  const PlacedPart placed = place_part(machine, part, at);
+  const Poses poses = forward(nominal_machine(machine), placed.states);
+  for (std::size_t i = 0; i < placed.states.count; ++i) {
+    EXPECT_NEAR((poses.rotation[i].col(2) - tool).norm(), 0, 1e-9);  // the solver's tolerance
+    EXPECT_NEAR((poses.position.col(static_cast<Eigen::Index>(i)) - part.features[0].at).norm(), 10, 1e-6);
+  }
 }
 
 TEST(PlacedPart, OutOfReachIsNamedByItsLine) {
