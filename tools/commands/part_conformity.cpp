@@ -88,8 +88,9 @@ Json conformity_json(const model::Machine& machine, const ConformityArguments& a
 }
 
 std::string words_of(const tolerance::Expectation& e) {
-  std::string text =
-      fmt::format("{:.2f} um (95 %: {:.2f} to {:.2f})", kUm * e.value, kUm * e.low, kUm * e.high);
+  // Two digits, and no minus before a zero.
+  const auto um = [](double mm) { return std::round(100 * kUm * mm) / 100 + 0.0; };
+  std::string text = fmt::format("{:.2f} um (95 %: {:.2f} to {:.2f})", um(e.value), um(e.low), um(e.high));
   if (e.probability)
     text += fmt::format(", {:.1f} % {}", 100 * *e.probability, tolerance::verdict_words(*e.verdict));
   return text;
