@@ -108,7 +108,7 @@ void Programs::free_unused() noexcept {
 
 void Programs::own(LoadedProgram* program) noexcept {
   wanted_ = program;
-  owned_[program - programs_.get()] = true;
+  owned_[static_cast<std::size_t>(program - programs_.get())] = true;
 }
 
 void Programs::guard(TimeUs now) noexcept {

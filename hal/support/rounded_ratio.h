@@ -30,7 +30,8 @@ class RoundedRatio {
 
   /// value: held at +-kMost, and so is the result. realtime.
   constexpr std::int64_t of(std::int64_t value) const noexcept {
-    const std::uint64_t size = value >= kMost || value <= -kMost ? kMost : magnitude_of(value);
+    const bool beyond = value >= kMost || value <= -kMost;
+    const auto size = static_cast<std::uint64_t>(beyond ? kMost : magnitude_of(value));
     const auto product = long_product(size, ratio_);
     std::uint64_t quotient = kMost;
     if (shift_ >= 64)

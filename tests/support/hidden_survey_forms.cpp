@@ -269,7 +269,8 @@ void Builder::warmup() {
 }
 
 void Builder::sag() {
-  for (const auto& [name, dof_that_bends] : g_.bends) {
+  for (const auto& bend : g_.bends) {
+    const std::string& name = bend.first;
     const AxisPlace& a = *g_.axis(name);
     if (a.rotary) {
       for (const char* shape : {"k1*sin({})", "k1*cos({})"}) {
@@ -283,7 +284,7 @@ void Builder::sag() {
     // What the axis carries out bends everything nearer to the base.
     for (const TransformPlace& t : g_.transforms)
       if (t.workpiece == a.workpiece && t.order < a.order)
-        add(name, {{t.workpiece, t.n, dof_that_bends, "k1*" + name}}, {some()});
+        add(name, {{t.workpiece, t.n, bend.second, "k1*" + name}}, {some()});
   }
 }
 

@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <cctype>
 #include <set>
+#include <string_view>
 
 #include "tools/compile/compile.h"
 
@@ -47,16 +49,28 @@ std::string interface_comment(const model::Machine& machine, const LoweredProgra
          fmt::format("/// lag: {} states; starting: puts them on their inputs. realtime.\n", p.lag_count);
 }
 
+/// Does the C++ name it?
+bool is_named(std::string_view text, std::string_view name) {
+  for (std::size_t at = 0; (at = text.find(name, at)) != std::string_view::npos; at += name.size()) {
+    const std::size_t end = at + name.size();
+    if (end == text.size() || !(std::isalnum(static_cast<unsigned char>(text[end])) || text[end] == '_'))
+      return true;
+  }
+  return false;
+}
+
 class Printer {
  public:
   explicit Printer(const LoweredProgram& p) : p_(p) {}
 
-  std::string stores() const {
+  /// body: what uses them; a constant that was folded into others is not printed.
+  std::string stores(const std::string& body) const {
     std::string text;
     for (std::size_t i = 0; i < p_.constants.size(); ++i)
-      text +=
-          fmt::format("constexpr std::int32_t {} = {};  // {:.12g}, {} fraction bits\n", p_.registers[i].name,
-                      number(p_.constants[i]), p_.registers[i].range.low, p_.registers[i].fraction_bits);
+      if (is_named(body, p_.registers[i].name))
+        text += fmt::format("constexpr std::int32_t {} = {};  // {:.12g}, {} fraction bits\n",
+                            p_.registers[i].name, number(p_.constants[i]), p_.registers[i].range.low,
+                            p_.registers[i].fraction_bits);
     for (const LoweredTable& t : p_.tables) text += table(t);
     for (std::size_t i = 0; i < p_.wraps.size(); ++i)
       text += fmt::format("constexpr Wrap kPeriod{} = {{{}, {}, {}, {}}};\n", i, number(p_.wraps[i].first),
@@ -64,7 +78,7 @@ class Printer {
     return text;
   }
 
-  std::string body() {
+  std::string body() const {
     std::string text;
     for (std::size_t i = 0; i < p_.channels.size(); ++i)
       text += fmt::format("  const Word {} = channel[{}];\n", p_.registers[p_.constants.size() + i].name, i);
@@ -183,12 +197,13 @@ std::string print_header(const model::Machine& machine, const LoweredProgram& pr
 
 std::string print_source(const model::Machine& machine, const LoweredProgram& program,
                          std::uint64_t source_hash) {
-  Printer printer(program);
+  const Printer printer(program);
+  const std::string body = printer.body();
   return banner(machine, program, source_hash) +
          "#include \"equation.h\"\n\n#include \"comp/error_table.h\"\n#include \"comp/fixed.h\"\n#include "
          "\"comp/sine.h\"\n\nnamespace "
          "vernier::generated {\nnamespace {\n\n" +
-         printer.stores() +
+         printer.stores(body) +
          "\n[[maybe_unused]] std::int32_t lagged(LagState& state, std::int32_t u, std::int32_t mantissa, "
          "unsigned shift,\n"
          "                                     bool starting) noexcept {\n  if (starting) start_lag(state, "
@@ -196,7 +211,7 @@ std::string print_source(const model::Machine& machine, const LoweredProgram& pr
          "  return step_lag(state, u, mantissa, shift);\n}\n\n}  // namespace\n\n"
          "void equation([[maybe_unused]] const std::int32_t* channel, [[maybe_unused]] LagState* lag,\n"
          "              [[maybe_unused]] bool starting, std::int32_t* deviation) noexcept {\n" +
-         printer.body() + "}\n\n}  // namespace vernier::generated\n";
+         body + "}\n\n}  // namespace vernier::generated\n";
 }
 
 }  // namespace vernier::compile

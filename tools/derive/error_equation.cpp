@@ -174,13 +174,3 @@ std::array<ex, 3> tool_axis_sensitivity(const ErrorEquation& equation, std::size
 }
 
 }  // namespace vernier::derive
-
-#if defined(__SANITIZE_ADDRESS__)
-/// CLN, the number library below GiNaC, keeps 26 bytes of its own start-up to the end of the program (seen
-/// with 1.3.6 in a program that does nothing): not ours to free. Everything else that leaks is still
-/// reported.
-extern "C" const char* __lsan_default_suppressions();
-extern "C" const char* __lsan_default_suppressions() { return "leak:libcln.so\n"; }
-extern "C" const char* __lsan_default_options();
-extern "C" const char* __lsan_default_options() { return "print_suppressions=0"; }
-#endif

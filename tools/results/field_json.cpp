@@ -10,9 +10,9 @@
 
 namespace vernier::results {
 
-using Json = nlohmann::ordered_json;
-
 namespace {
+
+using Json = nlohmann::ordered_json;
 
 Json vectors(const Eigen::Matrix3Xd& columns, double factor) {
   Json list = Json::array();

@@ -139,7 +139,7 @@ FeatureColumns feature_columns(const VibrationRecord& record, const FeatureChoic
     for (std::size_t row = 0; row < ends.size(); ++row) {
       const bool full = ends[row] && *ends[row] + 1 >= choice.window && *ends[row] < x.size();
       SignalFeatures values;
-      values.fill(NAN);
+      values.fill(std::numeric_limits<double>::quiet_NaN());
       if (full && !choice.features.empty())
         values = signal_features(std::span(x).subspan(*ends[row] + 1 - choice.window, choice.window),
                                  record.rate_Hz, fourier);

@@ -71,7 +71,7 @@ struct Single {
 
 // The answers are judged in the release build, all of them. The sanitizers look for other faults, in code
 // that a few surveys run through, and take ten times as long.
-#if defined(__SANITIZE_ADDRESS__)
+#ifdef VERNIER_SANITIZED
 constexpr std::size_t kEach = 5;
 constexpr std::uint64_t kSeeds = 2;
 #else
@@ -210,7 +210,7 @@ TEST_P(ConfusableByDesign, IsNotGivenAWrongName) {
   EXPECT_NE(judgement.outcome, Outcome::kWrong) << survey.effects[0].term << ": " << judgement.said;
   // Known weak spots: 3 and 5 name the cause with more confidence than the design allows, 4 is ambiguous
   // among others and misses the lag of a temperature.
-  for (const std::uint64_t weak : {3, 4, 5})
+  for (const std::uint64_t weak : {3U, 4U, 5U})
     if (GetParam() == weak) return;
   EXPECT_TRUE(judgement.outcome == Outcome::kAmbiguous || judgement.outcome == Outcome::kUnexplained)
       << survey.effects[0].term << ": " << judgement.said;

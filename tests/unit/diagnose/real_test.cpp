@@ -134,7 +134,8 @@ TEST_F(ElsewhereData, ARobotBendsAtItsSecondJoint) {
   EXPECT_EQ(effects_of_ladder(answer)[0], "joint-compliance");
   EXPECT_EQ(effects_of_ladder(answer)[1], "cyclic-error");
   // The key's own two terms: the same minimum to the last published digit.
-  for (const auto& [step, fit_um, check_um] : {std::tuple{1, 82.925, 96.504}, {2, 77.141, 75.379}}) {
+  for (const auto& [step, fit_um, check_um] :
+       {std::tuple{std::size_t{1}, 82.925, 96.504}, {std::size_t{2}, 77.141, 75.379}}) {
     EXPECT_NEAR(ladder[step].at("rms_um").get<double>(), fit_um, 0.002);
     EXPECT_NEAR(ladder[step].at("check_rms_um").get<double>(), check_um, 0.002);
   }

@@ -19,7 +19,7 @@ namespace {
 
 // The unit's WatchdogSec; told four times a second. The sanitizers stretch fifty connections a second by ten,
 // to 1.1 to 2.9 s; the fault was 22 s.
-#if defined(__SANITIZE_ADDRESS__)
+#ifdef VERNIER_SANITIZED
 constexpr double kMostSilence_s = 8.0;
 #else
 constexpr double kMostSilence_s = 2.0;

@@ -17,7 +17,7 @@ std::atomic<int> allocations{0};
 }  // namespace
 
 // Under the sanitizers the heap is theirs and cannot be taken over.
-#if defined(__SANITIZE_ADDRESS__)
+#ifdef VERNIER_SANITIZED
 constexpr bool kCountsAllocations = false;
 #else
 constexpr bool kCountsAllocations = true;

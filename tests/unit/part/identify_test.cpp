@@ -160,10 +160,11 @@ TEST(Identify, AlignedPartNeedsItsRigidMotionFitted) {
   ASSERT_EQ(aligned.errors.size(), 14u);
   EXPECT_GT(plain.variance_factor, 3);
   EXPECT_LT(aligned.variance_factor, 1.6);  // chi^2 of 86 degrees of freedom: 1 +- 0.15, four sigma
-  for (const auto& [name, wanted] :
+  for (const auto& expected :
        {std::pair{"part.X", 0.05}, std::pair{"part.rZ", 1e-4 * 180 / std::numbers::pi}}) {
+    const auto& [name, wanted] = expected;
     const auto at = std::find_if(aligned.errors.begin(), aligned.errors.end(),
-                                 [&](const IdentifiedError& e) { return e.name == name; });
+                                 [&](const IdentifiedError& e) { return e.name == expected.first; });
     ASSERT_NE(at, aligned.errors.end());
     EXPECT_NEAR(at->value, wanted, 4.5 * at->std.value()) << name;
   }

@@ -92,7 +92,7 @@ struct Planted {
 TEST(FailurePicture, WhiteResidualRaisesNoAlarm) {
   // 2000 surveys of 120 x 3 readings, 12 columns. The number of p < 0.001 is binomial with at most 0.001: 8
   // or more would have a chance of 1e-3. p < 0.05: at most 5 % + 4 standard deviations.
-#ifdef __SANITIZE_ADDRESS__
+#ifdef VERNIER_SANITIZED
   constexpr unsigned kSurveys = 200;  // the sanitizers look for other mistakes
 #else
   constexpr unsigned kSurveys = 2000;
