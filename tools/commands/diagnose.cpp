@@ -31,7 +31,7 @@ void print_ladder(std::FILE* out, const Diagnosis& d) {
   for (const LadderStep& step : d.ladder) {
     const bool rises = before != nullptr && step.check_rms_um && *step.check_rms_um > *before->check_rms_um;
     fmt::print(out, "  {:<56} {:>12} {:>12}{}\n",
-               step.effect.empty() ? "the model as given" : "+ " + step.label,
+               step.effect.empty() ? "the model as given" : "+ " + step.said,
                number_or_dash(step.rms_um, "um"), number_or_dash(step.check_rms_um, "um"),
                rises ? "  the check rows do not confirm this step" : "");
     before = &step;
@@ -44,13 +44,14 @@ void print_candidates(std::FILE* out, const Diagnosis& d) {
   fmt::print(out, "{:<58} {:>8} {:>12} {:>12} {:>9}\n", "candidates, each alone", "score", "fit rows",
              "check rows", "p");
   for (const CandidateFinding& c : d.candidates) {
-    fmt::print(out, "{} {:<56} {:>8.1f} {:>12} {:>12} {:>9.2g}\n", c.accepted ? "*" : " ", c.candidate.label,
+    fmt::print(out, "{} {:<56} {:>8.1f} {:>12} {:>12} {:>9.2g}\n", c.accepted ? "*" : " ", c.candidate.spoken,
                c.score, number_or_dash(c.rms_after_um, "um"), number_or_dash(c.check_rms_after_um, "um"),
                c.p_value);
     if (!c.why_not.empty()) fmt::print(out, "    not accepted: {}\n", c.why_not);
     if (!c.confounded_with.empty())
       fmt::print(out, "    alike in these data: {}\n", fmt::join(c.confounded_with, ", "));
     if (!c.accepted) continue;
+    fmt::print(out, "    {}; in the chain: {}\n", said_of(c), c.candidate.label);
     for (const ParameterEstimate& p : c.parameters)
       fmt::print(out, "    {} = {:.6g} +- {} {}\n", p.name, p.value, fmt::format("{:.2g}", p.std), p.unit);
     fmt::print(out, "    vernier add '{}' MACHINE -o NEW\n", c.add);

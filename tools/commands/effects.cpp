@@ -68,7 +68,8 @@ void run_add(const AddArguments& arguments) {
   const std::vector<Effect> effects = effect_catalogue(arguments.files);
   const Candidate candidate = put_in(with, parse_add_string(arguments.effect, machine, effects));
   write_file(arguments.output, with.text);
-  nlohmann::ordered_json json = {{"effect", candidate.choice.effect->id}, {"label", candidate.label}};
+  nlohmann::ordered_json json = {
+      {"effect", candidate.choice.effect->id}, {"label", candidate.label}, {"said", candidate.spoken}};
   for (const CandidateTerm& term : candidate.terms)
     json["terms"].push_back({{"branch", term.place.workpiece ? "workpiece" : "tool"},
                              {"transform", transform_at(machine, term.place).n},
@@ -78,7 +79,7 @@ void run_add(const AddArguments& arguments) {
     json["statics"].push_back({{"name", unknown.name}, {"start", unknown.start}, {"unit", unknown.unit}});
   write_json(arguments.json, json);
   std::FILE* out = human_stream(arguments.json);
-  fmt::print(out, "added {}\n", candidate.label);
+  fmt::print(out, "added {} ({})\n", candidate.spoken, candidate.label);
   for (const CandidateTerm& term : candidate.terms)
     fmt::print(out, "  {} of transform {}: + {}\n", dof_name(machine, term.place),
                transform_at(machine, term.place).n, term.text);

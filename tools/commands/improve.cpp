@@ -36,7 +36,7 @@ struct Rung {
 };
 
 bool agreed(const ImproveArguments& arguments, const LadderStep& step, std::FILE* out) {
-  fmt::print(out, "+ {}: fit rows {}, check rows {}\n", step.label, number_or_dash(step.rms_um, "um"),
+  fmt::print(out, "+ {}: fit rows {}, check rows {}\n", step.said, number_or_dash(step.rms_um, "um"),
              number_or_dash(step.check_rms_um, "um"));
   if (arguments.yes) return true;
   fmt::print(out, "  add it? [y/n] ");
@@ -121,7 +121,7 @@ class Improver {
     for (std::size_t i = 1; i < d.ladder.size(); ++i) {
       const LadderStep& step = d.ladder[i];
       if (!agreed(arguments_, step, out_)) return false;
-      take({"+ " + step.label, step.effect, step.add, "", step.text, step.rms_um, step.check_rms_um});
+      take({"+ " + step.said, step.effect, step.add, "", step.text, step.rms_um, step.check_rms_um});
     }
     const Machine before = machine_;
     text_ = rungs_.back().text;
