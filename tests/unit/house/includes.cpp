@@ -43,7 +43,7 @@ const std::vector<Room>& rooms_of_tools() {
       {"vibration", {"maths", "model", "text"}},
       {"probe", {"maths", "model", "text"}},
       {"timebase", {"maths", "model", "text"}},
-      {"create", {"model", "text"}},
+      {"create", {"model", "sheet", "text"}},
       {"evaluate", {"maths", "text"}},
       {"import", {"maths", "model", "sheet", "text", "timebase"}},
       {"exchange", {"kinematics", "maths", "model", "text"}},
