@@ -5,6 +5,8 @@
 #include <memory>
 
 #include "tools/commands/command.h"
+#include "tools/commands/report_header.h"
+#include "tools/fit/convention.h"
 #include "tools/fit/fit.h"
 #include "tools/model/machine.h"
 #include "tools/model/machine_reader.h"
@@ -27,6 +29,8 @@ namespace {
 struct CompareArguments {
   std::string machine, output, json, images, residuals, limit;
   std::vector<std::string> measurements, before, after, by;
+  bool datum = false;
+  ReportHeader header;
 };
 
 std::optional<double> value_of(const nlohmann::ordered_json& json, const char* key) {
@@ -175,6 +179,8 @@ void run_before_after(const CompareArguments& arguments) {
   if (!arguments.measurements.empty())
     throw InputError("\"" + arguments.measurements.front() +
                      "\": with --before and --after there are no other measurement files");
+  if (arguments.datum)
+    throw InputError("--datum: of MEAS; --before and --after fit the set-up of each side anyway");
   if (!arguments.limit.empty()) throw InputError("--limit: of MEAS, not of --before and --after");
   if (!arguments.by.empty()) throw InputError("--by: of MEAS, not of --before and --after");
   if (!arguments.residuals.empty()) throw InputError("--residuals: of MEAS, not of --before and --after");
@@ -186,7 +192,8 @@ void run_before_after(const CompareArguments& arguments) {
   if (!arguments.output.empty()) {
     std::vector<std::string> files = arguments.before;
     files.insert(files.end(), arguments.after.begin(), arguments.after.end());
-    write_file(arguments.output, improvement_report_html(before_after_page(result, machine.name, files)));
+    write_file(arguments.output,
+               improvement_report_html(arguments.header.on(before_after_page(result, machine.name, files))));
   }
   write_json(arguments.json, before_after_json(result));
   for (const std::string& note : machine.notes) fmt::print(stderr, "note: {}\n", note);
@@ -197,19 +204,21 @@ void run_compare(const CompareArguments& arguments) {
   if (!arguments.before.empty() || !arguments.after.empty()) return run_before_after(arguments);
   if (arguments.measurements.empty())
     throw InputError("compare needs measurement files: MEAS, or --before and --after");
-  const Machine machine = read_machine(arguments.machine);
+  const Machine as_given = read_machine(arguments.machine);
   const Measurement m =
-      read_measurement(arguments.measurements, machine, corrections_of_images(arguments.images));
+      read_measurement(arguments.measurements, as_given, corrections_of_images(arguments.images));
+  const Machine machine = arguments.datum ? set_up(as_given, m) : as_given;
   const Eigen::VectorXd residual = residuals(machine, m);
   nlohmann::ordered_json json = compare_json(machine, m, residual);
   add_failure(json, failure_picture(machine, m, residual));
+  json["datum"] = arguments.datum ? "fitted" : "as given";
   if (!arguments.limit.empty()) json["limit"] = judge_residuals(m, residual, residual_limit(arguments.limit));
   if (!arguments.by.empty()) json["groups"] = group_table(m, residual, arguments.by);
   if (!arguments.output.empty()) {
     nlohmann::ordered_json with_detail = json;
     add_detail(with_detail, machine, m, residual);
     add_field(with_detail, machine);
-    write_file(arguments.output, compare_report_html(with_detail));
+    write_file(arguments.output, compare_report_html(arguments.header.on(std::move(with_detail))));
   }
   if (!arguments.residuals.empty()) write_file(arguments.residuals, residual_csv(m, residual));
   write_json(arguments.json, json);
@@ -240,8 +249,13 @@ void register_compare(CLI::App& vernier) {
       "--limit", arguments->limit,
       "accept or requalify: check rows (else fit rows) must stay within 2u, 25um, 0.025deg; rms=1.5u "
       "judges the rms; exit status 2 where not");
+  command->add_flag(
+      "--datum", arguments->datum,
+      "fit how the instrument stood (free BaseShifts) first, nothing else: offsets and turns of "
+      "the set-up are then no failure of the model");
   command->add_option("--images", arguments->images, kImagesHelp);
   command->add_option("-o,--output", arguments->output, "the report, one HTML file that opens offline");
+  add_report_header(*command, arguments->header);
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->add_option("--residuals", arguments->residuals, kResidualsHelp);
   command->footer(

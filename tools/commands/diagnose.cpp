@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "tools/commands/command.h"
+#include "tools/commands/report_header.h"
 #include "tools/diagnose/diagnosis.h"
 #include "tools/fit/fit.h"
 #include "tools/model/machine_reader.h"
@@ -23,6 +24,7 @@ struct DiagnoseArguments {
   std::string machine, output, json, write, images, residuals;
   std::vector<std::string> measurements, effects;
   std::size_t most = 5;
+  ReportHeader header;
 };
 
 void print_ladder(std::FILE* out, const Diagnosis& d) {
@@ -83,7 +85,7 @@ void run_diagnose(const DiagnoseArguments& arguments) {
     nlohmann::ordered_json page = json;
     page["machine"] = machine.name;
     page["files"] = arguments.measurements;
-    write_file(arguments.output, diagnose_report_html(page));
+    write_file(arguments.output, diagnose_report_html(arguments.header.on(std::move(page))));
   }
   if (!arguments.write.empty()) write_file(arguments.write, diagnosis.machine_text);
   if (!arguments.residuals.empty()) write_residuals(arguments, diagnosis);
@@ -105,6 +107,7 @@ void register_diagnose(CLI::App& vernier) {
   command->add_option("MACHINE", arguments->machine, "machine file (XML)")->required();
   command->add_option("MEAS", arguments->measurements, "measurement files (CSV)")->required();
   command->add_option("-o,--output", arguments->output, "report (HTML)");
+  add_report_header(*command, arguments->header);
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->add_option("--residuals", arguments->residuals, kResidualsHelp);
   command->add_option("--machine-out", arguments->write,

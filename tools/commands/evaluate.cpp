@@ -8,6 +8,7 @@
 
 #include "tools/commands/command.h"
 #include "tools/commands/evaluate_kinds.h"
+#include "tools/commands/report_header.h"
 #include "tools/evaluate/limits.h"
 #include "tools/evaluate/positioning_page.h"
 #include "tools/report/report.h"
@@ -17,7 +18,8 @@ namespace vernier::evaluate_cli {
 namespace {
 
 struct PositioningArguments {
-  std::vector<std::string> measurements, axes, tolerances, uncertainties, header;
+  std::vector<std::string> measurements, axes, tolerances, uncertainties;
+  ReportHeader header;
   std::string reading, output, json;
 };
 
@@ -49,11 +51,7 @@ void run_positioning(const PositioningArguments& arguments) {
     words.tolerance.insert(limit_of(one, "--tolerance", kCharacteristics));
   for (const std::string& one : arguments.uncertainties)
     words.uncertainty.insert(limit_of(one, "--uncertainty", kCharacteristics));
-  for (const std::string& one : arguments.header) {
-    const auto at = one.find('=');
-    if (at == std::string::npos) throw InputError("--header " + one + ": of the form \"serial number=4711\"");
-    words.header.emplace_back(one.substr(0, at), one.substr(at + 1));
-  }
+  words.header = arguments.header.entries();
   std::string reading = arguments.reading;
   if (reading.empty())
     for (const char c : words.axis) reading += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
@@ -79,7 +77,7 @@ void run_positioning(const PositioningArguments& arguments) {
             [](const auto& a, const auto& b) { return a.target < b.target; });
   const nlohmann::ordered_json json = positioning_json(evaluate_positioning(all.readings), all, words);
   if (!arguments.output.empty())
-    write_file(arguments.output, improvement_report_html(positioning_page(json, words)));
+    write_file(arguments.output, improvement_report_html(arguments.header.on(positioning_page(json, words))));
   write_json(arguments.json, json);
   print_result(human_stream(arguments.json), json);
   for (const auto& one : json["characteristics"])
@@ -91,7 +89,8 @@ void run_positioning(const PositioningArguments& arguments) {
 
 void register_evaluate(CLI::App& vernier) {
   CLI::App* evaluate = vernier.add_subcommand(
-      "evaluate", "Judge a measurement by a standard: positioning (ISO 230-2), robots (ISO 9283)");
+      "evaluate",
+      "Judge a measurement by a standard: positioning (ISO 230-2), diagonals (ISO 230-6), robots (ISO 9283)");
   evaluate->require_subcommand(1);
   auto arguments = std::make_shared<PositioningArguments>();
   CLI::App* kind =
@@ -105,9 +104,7 @@ void register_evaluate(CLI::App& vernier) {
   kind->add_option("--uncertainty", arguments->uncertainties,
                    "expanded uncertainty (k = 2) of a characteristic: A=2um; again for each")
       ->allow_extra_args(false);
-  kind->add_option("--header", arguments->header,
-                   "an entry of the report: \"serial number=4711\", operator, date …; again for each")
-      ->allow_extra_args(false);
+  add_report_header(*kind, arguments->header);
   kind->add_option("-o,--output", arguments->output, "report (HTML)");
   kind->add_option("--json", arguments->json, "result for programs; - for standard output");
   kind->footer(
@@ -115,6 +112,7 @@ void register_evaluate(CLI::App& vernier) {
       "of the rows. Exit status 0 "
       "done, 1 bad input, 2 a tolerance is not met (ISO 14253-1: beyond it by more than the uncertainty).");
   kind->callback([arguments] { run_positioning(*arguments); });
+  add_diagonals_kind(*evaluate);
   add_robot_kind(*evaluate);
 }
 

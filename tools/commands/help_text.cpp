@@ -74,7 +74,8 @@ std::string HelpText::make_help(const CLI::App* app, std::string name, CLI::AppF
   return text.ends_with("\n\n") ? text.substr(0, text.size() - 1) : text;
 }
 
-std::string HelpText::make_option(const CLI::Option* option, bool is_positional) const {
+std::pair<std::string, std::string> HelpText::option_words(const CLI::Option* option,
+                                                           bool is_positional) const {
   std::string left = make_option_name(option, is_positional), right = make_option_desc(option);
   // What it takes, without the library's words for it; of the words of a set those that the description
   // lacks.
@@ -93,6 +94,11 @@ std::string HelpText::make_option(const CLI::Option* option, bool is_positional)
   }
   if (!option->get_default_str().empty()) right += " (default " + option->get_default_str() + ")";
   if (option->get_required() && !is_positional) right += " (required)";
+  return {left, right};
+}
+
+std::string HelpText::make_option(const CLI::Option* option, bool is_positional) const {
+  const auto [left, right] = option_words(option, is_positional);
   return beside(left, right);
 }
 

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "tools/commands/command.h"
+#include "tools/commands/report_header.h"
 #include "tools/compile/compile.h"
 #include "tools/diagnose/diagnosis.h"
 #include "tools/model/machine_reader.h"
@@ -27,6 +28,7 @@ struct ImproveArguments {
   std::string machine, output, json, images;
   std::vector<std::string> measurements, effects;
   bool yes = false;
+  ReportHeader header;
 };
 
 /// A rung of the ladder that was taken, and the machine file that stands on it.
@@ -161,7 +163,7 @@ class Improver {
     simulate(json);
     judge(json);
     const std::string page = arguments_.output + "/improve.html";
-    write_file(page, improve_report_html(json));
+    write_file(page, improve_report_html(arguments_.header.on(json)));
     write_file(arguments_.output + "/improve.json", json.dump(1) + "\n");
     write_json(arguments_.json, json);
     fmt::print(out_, "left in {}: {} machine files, improve.json, improve.html\n", arguments_.output,
@@ -225,6 +227,7 @@ void register_improve(CLI::App& vernier) {
       ->required();
   command->add_option("--effects", arguments->effects, "files with effects of your own; may be repeated");
   command->add_option("--images", arguments->images, kImagesHelp);
+  add_report_header(*command, arguments->header);
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->add_flag("--yes", arguments->yes, "add every effect that is found, without asking");
   command->footer(

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "tools/commands/command.h"
+#include "tools/commands/report_header.h"
 #include "tools/map/simulated.h"
 #include "tools/model/machine_reader.h"
 #include "tools/report/report.h"
@@ -20,6 +21,7 @@ struct MapArguments {
   std::string machine, output, json, at, lines;
   std::vector<std::string> over;
   std::size_t grid = 7;
+  ReportHeader header;
 };
 
 constexpr const char* kNotMeasured =
@@ -169,7 +171,8 @@ void run_map(const MapArguments& arguments) {
     throw InputError({machine.file, 0}, "", kNotMeasured);
   else
     json["notes"].push_back(kNotMeasured);
-  if (!arguments.output.empty()) write_file(arguments.output, improvement_report_html(page_of(json)));
+  if (!arguments.output.empty())
+    write_file(arguments.output, improvement_report_html(arguments.header.on(page_of(json))));
   write_json(arguments.json, json);
   std::FILE* out = human_stream(arguments.json);
   fmt::print(out, "largest deviation {:.4g} um, rms {:.4g} um over {} nodes\n",
@@ -194,6 +197,7 @@ void register_map(CLI::App& vernier) {
       "map", "The error field over the working volume, and what would be measured in it");
   command->add_option("MACHINE", arguments->machine, "machine file (XML)")->required();
   command->add_option("-o,--output", arguments->output, "the report, one HTML file that opens offline");
+  add_report_header(*command, arguments->header);
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->add_option("--grid", arguments->grid, "nodes along each axis")
       ->check(CLI::Range(2, 40))

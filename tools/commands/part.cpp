@@ -8,6 +8,7 @@
 #include <set>
 
 #include "tools/commands/command.h"
+#include "tools/commands/report_header.h"
 #include "tools/evaluate/positioning.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/machine_writer.h"
@@ -29,6 +30,7 @@ struct Arguments {
   std::string machine, errors, identify, free, output, json;
   double tool_diameter_mm = 20, tool_length_mm = 35, feed_mm_min = 1000, step_mm = 0.5;
   DefectReading reading = DefectReading::kContact;
+  ReportHeader header;
   RotarySolution solution = RotarySolution::kContinuous;
   bool aligned = false, tool_radius = false;
   double tolerance_mm = 0, u95_mm = 0;  // width of the zone; of the machine that measured the part
@@ -159,7 +161,7 @@ void run_s_shape(const Arguments& arguments) {
   std::vector<std::pair<std::string, std::string>> files = {
       {"defect.csv", defect_csv(job.points, job.defect)},
       {"machine.xml", update_machine_text(machine_text, written, true)},
-      {"report.html", improvement_report_html(part_report(job, result))}};
+      {"report.html", improvement_report_html(arguments.header.on(part_report(job, result)))}};
   for (const PartPath& one : job.paths) {
     const char flank = s_part()[one.flank].name;
     files.emplace_back(fmt::format("path_{}.csv", flank), path_csv(job.machine, one));
@@ -267,6 +269,7 @@ void add_s_shape(CLI::App& part) {
       ->check(CLI::NonNegativeNumber);
   command->add_option("-o,--output", a->output, "directory for paths (CSV, G-code), defect, machine, report")
       ->required();
+  add_report_header(*command, a->header);
   command->add_option("--json", a->json, "result for programs; - for standard output");
   command->callback([a] { run_s_shape(*a); });
 }

@@ -58,6 +58,7 @@ constexpr vernier::RegisterCommand kCommands[] = {
     vernier::workbench_cli::register_image_diff,
     vernier::workbench_cli::register_workbench,
     vernier::completion_cli::register_completion,
+    vernier::manual_cli::register_manual,
 };
 
 /// Before a command works: is there a place for the result that it writes last?

@@ -93,6 +93,37 @@ TEST_F(Pages, TutorialRunsAsPrinted) {
     EXPECT_TRUE(fs::exists(std::string(VERNIER_SOURCE_DIR) + "/tools/docs/img/" + picture)) << picture;
 }
 
+/// A stranger's way: from a German spreadsheet to ISO 230-2 values, a named cause and a table for the
+/// control.
+TEST_F(Pages, FirstHourRunsAsPrinted) {
+  std::string script;
+  for (const std::string& block : blocks(page("tools/docs/first_hour.md"), "sh")) script += block;
+  ASSERT_EQ(run(script), 0) << said_;
+  for (const char* figure :
+       {"Windows-1252, columns parted by semicolon, decimal comma", "92.120 um", "tolerance 50: not met",
+        "25.750 um", "31.245 um", "12.194 um", "verdict: missing-effect",
+        "X carriage: backlash -23.7 +- 0.4 um", "fit rows 6.701 um", "check rows 8.848 um",
+        "check rows 1.355 um", "verdict: consistent", "safe to run: every rule of the sheet holds"})
+    EXPECT_NE(said_.find(figure), std::string::npos) << figure << " is not what the commands print\n"
+                                                     << said_;
+  const std::string left = folder_ + "/build/first_hour/";
+  // The truth (tests/data/router/make.py): 24 um of backlash, of which the fit is sure to 0.4 um.
+  std::istringstream table(read_file(left + "linuxcnc/X.comp"));
+  std::size_t lines = 0;
+  for (double nominal = 0, forward = 0, reverse = 0; table >> nominal >> forward >> reverse; ++lines)
+    EXPECT_NEAR(forward - reverse, 0.024, 0.0012) << nominal;
+  EXPECT_GE(lines, 5u);
+  const nlohmann::json json = nlohmann::json::parse(read_file(left + "iso230-2_X.json"));
+  EXPECT_EQ(json["header"]["serial number"], "4711");
+  EXPECT_EQ(json["header"]["operator"], "K. Muster");
+  const std::string report = read_file(left + "iso230-2_X.html");
+  EXPECT_NE(report.find("<p class=\"company\">Muster Maschinenbau GmbH</p>"), std::string::npos);
+  EXPECT_NE(report.find("<dt>serial number</dt><dd>4711</dd>"), std::string::npos);
+  if (std::system("command -v chromium >/dev/null") == 0) {
+    EXPECT_EQ(read_file(left + "iso230-2_X.pdf").substr(0, 5), "%PDF-");
+  }
+}
+
 TEST_F(Pages, ReadmeRunsAsPrinted) {
   std::string script;
   for (const std::string& block : blocks(page("README.md"), "sh")) {
@@ -136,7 +167,7 @@ TEST(Links, OfTheFirstPagesLeadSomewhere) {
   for (const std::string name :
        {"README.md", "tools/docs/tutorial.md", "tools/docs/new.md", "tools/docs/lint.md",
         "tools/docs/machine_file.md", "tools/docs/measurement_file.md", "tools/docs/figures.md",
-        "tools/docs/import.md", "tools/docs/board.md"}) {
+        "tools/docs/import.md", "tools/docs/board.md", "tools/docs/first_hour.md"}) {
     const std::string text = page(name);
     const fs::path folder = (fs::path(VERNIER_SOURCE_DIR) / name).parent_path();
     for (std::size_t at = 0; (at = text.find("](", at)) != std::string::npos; ++at) {
