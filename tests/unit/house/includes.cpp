@@ -65,7 +65,9 @@ const std::vector<Room>& rooms_of_tools() {
        {"diagnose", "effects", "fit", "import", "kinematics", "map", "maths", "model", "residual", "safety",
         "simulate", "text"}},
       {"python", {"diagnose", "effects", "fit", "model", "plan", "residual", "results", "text"}},
-      {"workbench", {"diagnose", "effects", "fit", "maths", "model", "results", "text", "upload"}},
+      {"workbench",
+       {"diagnose", "effects", "fit", "import", "maths", "model", "results", "safety", "simulate", "text",
+        "upload"}},
   };
   return kRooms;
 }

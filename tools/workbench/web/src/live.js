@@ -79,7 +79,9 @@ export function livePanel(url, getJson) {
       pen.line([middle, 18, middle, pen.height], c.line);
     },
   });
+  const pictures = el('div', { class: 'live', hidden: '' }, lines.element, shares.element);
   function show(last) {
+    pictures.hidden = false;
     const rate = drawn.length > 1 ? (drawn.length - 1) / (drawn.at(-1) - drawn[0]) : 0;
     words.textContent = `mode ${last.mode}${last.holding ? ', held' : ''}, fault ${last.fault}; ${runs(last)}; ${number(rate, 3)} pictures a second`;
     words.classList.toggle('error', last.fault !== 'none' || last.image === 'lost');
@@ -140,5 +142,5 @@ export function livePanel(url, getJson) {
     },
     { id: 'watch' },
   );
-  return panel('Live', el('div', { class: 'controls' }, go, words), figures, el('div', { class: 'live' }, lines.element, shares.element));
+  return panel('Live', el('div', { class: 'controls' }, go, words), figures, pictures);
 }
