@@ -89,8 +89,11 @@ std::pair<std::string, std::string> HelpText::option_words(const CLI::Option* op
   const auto open = type.find('{'), close = type.find('}');
   if (open != std::string::npos && close != std::string::npos) {
     std::vector<std::string> words = parts_of(type.substr(open + 1, close - open - 1), ',');
+    // A word that stands for a value of ours comes as word->value.
+    for (std::string& word : words) word = word.substr(0, word.find("->"));
+    const std::string all = joined(words, " ");
     std::erase_if(words, [&](const std::string& word) { return right.find(word) != std::string::npos; });
-    if (!words.empty()) right += ": " + joined(parts_of(type.substr(open + 1, close - open - 1), ','), " ");
+    if (!words.empty()) right += ": " + all;
   }
   if (!option->get_default_str().empty()) right += " (default " + option->get_default_str() + ")";
   if (option->get_required() && !is_positional) right += " (required)";

@@ -138,7 +138,7 @@ std::string spoken_with_size(const Candidate& candidate, const std::vector<Spoke
   for (const CandidateUnknown& unknown : candidate.unknowns)
     if (unknown.kind == UnknownKind::kPeriod)
       if (const SpokenValue* const value = find_value(values, unknown.name))
-        text += fmt::format(", period {:.5g} {}", value->value, unknown.unit);
+        text += fmt::format(", period {} {}", with_std(value->value, value->std), unknown.unit);
   return text;
 }
 

@@ -23,7 +23,7 @@ struct SpokenValue {
 
 /// The spoken name with the one number that says how much, in a unit of the shop (um, arcsec, ms, um/m), and
 /// with a period where it has one: "Z carriage: lag 0.137 +- 0.007 ms", "X carriage: cyclic error 4.2 +- 0.2
-/// um, period 10 mm". Without such a number (a table, a curve) the name alone. tool.
+/// um, period 10.0 +- 0.2 mm". Without such a number (a table, a curve) the name alone. tool.
 std::string spoken_with_size(const Candidate& candidate, const std::vector<SpokenValue>& values);
 
 }  // namespace vernier
