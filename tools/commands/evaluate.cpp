@@ -9,6 +9,7 @@
 #include "tools/commands/command.h"
 #include "tools/commands/evaluate_kinds.h"
 #include "tools/commands/report_header.h"
+#include "tools/evaluate/budget.h"
 #include "tools/evaluate/limits.h"
 #include "tools/evaluate/positioning_page.h"
 #include "tools/report/report.h"
@@ -18,7 +19,7 @@ namespace vernier::evaluate_cli {
 namespace {
 
 struct PositioningArguments {
-  std::vector<std::string> measurements, axes, tolerances, uncertainties;
+  std::vector<std::string> measurements, axes, tolerances, uncertainties, budget;
   ReportHeader header;
   std::string reading, output, json;
 };
@@ -40,6 +41,26 @@ void print_result(std::FILE* out, const nlohmann::ordered_json& json) {
                  one["conformity"].get<std::string>());
     fmt::print(out, "\n");
   }
+}
+
+double length_of(const PositioningFile& file) {
+  return file.readings.back().target - file.readings.front().target;
+}
+
+/// The budget's uncertainties, where none is stated otherwise.
+PositioningBudget budget_of(const PositioningArguments& arguments, const PositioningFile& file,
+                            PositioningWords& words) {
+  PositioningBudget budget;
+  for (const std::string& one : arguments.budget) add_to_budget(budget, one);
+  if (!budget.given) return budget;
+  if (file.unit != "mm") throw InputError("--budget: of a linear axis; state --uncertainty for a rotary one");
+  std::size_t runs = file.rows;
+  for (const TargetReadings& target : file.readings)
+    for (const auto& list : target.deviation)
+      if (!list.empty()) runs = std::min(runs, list.size());
+  for (const auto& [name, value] : budget_uncertainty(budget, length_of(file), static_cast<double>(runs)))
+    words.uncertainty.try_emplace(name, value);
+  return budget;
 }
 
 void run_positioning(const PositioningArguments& arguments) {
@@ -75,7 +96,11 @@ void run_positioning(const PositioningArguments& arguments) {
   }
   std::sort(all.readings.begin(), all.readings.end(),
             [](const auto& a, const auto& b) { return a.target < b.target; });
-  const nlohmann::ordered_json json = positioning_json(evaluate_positioning(all.readings), all, words);
+  const PositioningBudget budget = budget_of(arguments, all, words);
+  nlohmann::ordered_json json = positioning_json(evaluate_positioning(all.readings), all, words);
+  if (budget.given)
+    for (const BudgetPart& part : budget_parts(budget, length_of(all)))
+      json["budget"].push_back({{"part", part.name}, {"U_um", part.expanded_um}});
   if (!arguments.output.empty())
     write_file(arguments.output, improvement_report_html(arguments.header.on(positioning_page(json, words))));
   write_json(arguments.json, json);
@@ -103,6 +128,12 @@ void register_evaluate(CLI::App& vernier) {
       ->allow_extra_args(false);
   kind->add_option("--uncertainty", arguments->uncertainties,
                    "expanded uncertainty (k = 2) of a characteristic: A=2um; again for each")
+      ->allow_extra_args(false);
+  kind->add_option(
+          "--budget", arguments->budget,
+          "a part of the uncertainty, from which that of each characteristic is worked out: device=0.8 "
+          "(um/m, k = 2), misalignment=1 (mm/m), thermometer=1 (range, K), expansion=11.5 and "
+          "expansion-range=2 (um/(m K)), away=3 (K from 20), drift=1.5 (range, um); again for each")
       ->allow_extra_args(false);
   add_report_header(*kind, arguments->header);
   kind->add_option("-o,--output", arguments->output, "report (HTML)");

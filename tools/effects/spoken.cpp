@@ -17,7 +17,7 @@ struct ShopUnit {
   double factor;
 };
 constexpr double kArcsecPerDeg = 3600, kUmPerMm = 1000, kMsPerS = 1000, kMmPerM = 1000, kUmPerM = 1e6;
-constexpr std::array<ShopUnit, 12> kShopUnits = {{
+constexpr std::array<ShopUnit, 13> kShopUnits = {{
     {"mm", "um", kUmPerMm},
     {"deg", "arcsec", kArcsecPerDeg},
     {"s", "ms", kMsPerS},
@@ -30,6 +30,7 @@ constexpr std::array<ShopUnit, 12> kShopUnits = {{
     {"mm/s", "um/s", kUmPerMm},
     {"mm/N", "um/N", kUmPerMm},
     {"mm/kg", "um/kg", kUmPerMm},
+    {"1", "ppm", kUmPerM},
 }};
 
 /// Value and uncertainty, both to the last digit that the latter leaves: one, two where it begins with 1 (GUM

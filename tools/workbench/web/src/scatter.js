@@ -49,7 +49,7 @@ export function scatter(label, { height, data, words, name, fixed = null }) {
   };
   const areaOf = (pen) => ({ x: 50, y: 18, w: Math.max(10, pen.width - 60), h: Math.max(10, pen.height - 50) });
   /** Reading ± its standard uncertainty. */
-  const bars = (pen, area, d, ky, c) => {
+  const bars = (pen, area, d, ky, ink) => {
     const points = [];
     for (let i = 0; i < d.u.length; ++i) {
       const half = d.u[i] * ky,
@@ -59,9 +59,9 @@ export function scatter(label, { height, data, words, name, fixed = null }) {
         high = Math.max(area.y, drawn.py[i] - half);
       if (low > high) points.push(x, low, x, high, NaN, NaN);
     }
-    if (points.length) pen.line(points, c.soft, 1);
+    if (points.length) pen.line(points, ink, 1);
   };
-  /** What the colours are, at the right above the frame. */
+  /** What the colours are, at the right: above the frame, or within it where a title is in the way. */
   const legend = (pen, area, d, any, c) => {
     if (area.w < kLegendFrom) return;
     const inks = palette(c);
@@ -74,11 +74,13 @@ export function scatter(label, { height, data, words, name, fixed = null }) {
       : [...(has(0) ? [['fit rows', inks[kFit]]] : []), ...(has(1) ? [['check rows', inks[kCheck]]] : [])];
     if (d.overlay) items.push(['explained', inks[kOver]]);
     if (d.u && d.u.length <= kMostBars && d.u.some((u) => u > 0)) items.push(['± u', c.soft]);
-    let x = area.x + area.w;
+    const wide = items.reduce((sum, [text]) => sum + 6 * text.length + 18, 0);
+    const y = 6.4 * (words().title ?? '').length + wide < area.w ? area.y - 9 : area.y + 9;
+    let x = area.x + area.w - (y > area.y ? 6 : 0);
     for (const [text, ink] of items.reverse()) {
-      pen.text(x, area.y - 9, text, { colour: c.soft, align: 'right', size: 10 });
+      pen.text(x, y, text, { colour: c.soft, align: 'right', size: 10 });
       x -= 6 * text.length + 6;
-      pen.rect(x - 4, area.y - 12, 6, 6, ink);
+      pen.rect(x - 4, y - 3, 6, 6, ink);
       x -= 12;
     }
   };
@@ -102,9 +104,9 @@ export function scatter(label, { height, data, words, name, fixed = null }) {
         }
       };
       place(d.y);
-      if (d.u && n <= kMostBars) bars(pen, area, d, ky, c);
-      const size = n > 20000 ? 1.5 : n > 3000 ? 2 : 3;
       const any = selection.count > 0;
+      if (d.u && n <= kMostBars) bars(pen, area, d, ky, any ? c.line : c.soft);
+      const size = n > 20000 ? 1.5 : n > 3000 ? 2 : 3;
       for (let i = 0; i < n; ++i) drawn.colour[i] = any ? kDim : d.check[d.row[i]] ? kCheck : kFit;
       pen.dots(area, drawn.px, drawn.py, drawn.colour, palette(c), size);
       if (any) {
