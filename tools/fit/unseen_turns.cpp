@@ -25,7 +25,8 @@ std::vector<bool> unseen_turns(const Machine& machine, const Measurement& rows,
     }
   if (shifts.empty()) return unseen;
   const Linearisation linear = linearise(machine, rows, parameters);
-  for (const auto& [item, columns] : shifts) {
+  for (const auto& shift : shifts) {
+    const std::array<Eigen::Index, 6>& columns = shift.second;
     Eigen::MatrixXd lengths(linear.jacobian.rows(), 3);
     const auto column = [&](std::size_t k) {
       Eigen::VectorXd unit = Eigen::VectorXd::Zero(linear.jacobian.cols());

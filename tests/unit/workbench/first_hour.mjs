@@ -114,10 +114,31 @@ async function aMachineOfOnesOwn(page) {
   ]);
 }
 
+/** A report with a head, a tolerance and its verdict; one that is not met is an answer and no error. */
+async function handOver(page) {
+  await page.until("!document.getElementById('handover-positioning').disabled", 'the reports');
+  for (const [selector, words] of [
+    ['#header-company', 'Muster & Sohn'],
+    ['#header-serial-number', '4711'],
+  ]) {
+    await page.type(selector, words);
+    await page.evaluate(`document.querySelector('${selector}').dispatchEvent(new Event('change'))`);
+  }
+  await page.type('input[aria-label="tolerance of A"]', '50');
+  await page.type('input[aria-label^="its uncertainty"]', '3');
+  await page.click('#handover-positioning');
+  await page.until("document.querySelector('#handover-links a')", 'the report');
+  const report = readFileSync(join(folder, 'iso230-2_X.html'), 'utf8');
+  assert.ok(report.includes('Muster &amp; Sohn') && report.includes('<dd>4711</dd>'), 'its head');
+  assert.ok(report.includes('not met'), 'its verdict');
+  assert.equal(await page.evaluate("document.querySelectorAll('.view:not([hidden]) .error:not(:empty)').length"), 0);
+}
+
 async function begin(page) {
   await nothingYet(page);
   await filesAsTheyCame(page);
   await aMachineOfOnesOwn(page);
+  await handOver(page);
 }
 
 /** What is shown of a model: uncertainties and what they rest on, legend and words of a point, the sheet, names of the shop. */

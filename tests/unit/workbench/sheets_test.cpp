@@ -90,6 +90,27 @@ TEST_F(Desk, DatumIsFittedBeforeRowsAreShown) {
   EXPECT_LT(largest(true), 0.003);
 }
 
+TEST_F(Desk, RowsMeasuredWithACorrectionFindItsImageInTheFolder) {
+  const std::string in = "cd '" + folder.project() + "' && '" + test::program() + "' ";
+  std::string machine = test::kSmallMachine;
+  machine.replace(machine.find("value=\"0\""), 9, "value=\"1e-4\"");
+  write_file(folder.in("run.xml"), machine);
+  ASSERT_EQ(std::system((in + "compile run.xml -o image >out.txt 2>&1").c_str()), 0)
+      << read_file(folder.in("out.txt"));
+  const std::string fingerprint = json::parse(read_file(folder.in("image/bound.json")))["fingerprint"];
+  // With the correction on X stands 1e-4 Y short of what was commanded, and the reading is right.
+  write_file(folder.in("on.csv"), "X[mm],Y[mm],x[mm],corrected\n10,100,10.0," + fingerprint +
+                                      "\n20,50,20.0," + fingerprint + "\n");
+  const Project project(folder.project());
+  RowCache rows(project);
+  const auto loaded = rows.get("run.xml", {"on.csv"}, false);
+  EXPECT_LT(residuals(loaded->machine, loaded->measurement).cwiseAbs().maxCoeff(), 1e-5);
+  const std::string blob = rows_blob(*loaded);
+  EXPECT_NE(blob.find("\"corrected\":true"), std::string::npos);
+  EXPECT_EQ(std::system((in + "compare run.xml on.csv --images=. >out.txt 2>&1").c_str()), 0)
+      << read_file(folder.in("out.txt"));
+}
+
 TEST_F(Desk, ParametersSayHowWellTheyAreKnown) {
   const Project project(folder.project());
   RowCache cache(project);

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { choice, el, tiles } from '../../../report/web/src/dom.js';
 import { number, printed } from '../../../report/web/src/data.js';
-import { fileAddress, freeName, getJson, run } from './api.js';
-import { button, guarded, needsSubject, nothingYet, panel } from './parts.js';
+import { getJson, run } from './api.js';
+import { handoverPanel } from './handover.js';
+import { button, guarded, nothingYet, panel } from './parts.js';
 import { redrawAll } from './plot.js';
 import { polarPlot } from './polar.js';
 import { along, chosenLines, compared, lineWords, loadRows } from './rows.js';
@@ -167,16 +168,6 @@ export function compareView(root) {
     where = el('div', {}),
     linked = el('div', {});
   let table = null;
-  const report = button(
-    'Report (offline HTML)',
-    () =>
-      guarded(error, async () => {
-        const output = freeName('compare', '.html');
-        await run({ command: 'compare', ...compared(), output });
-        report.after(' ', el('a', { href: fileAddress(output), target: '_blank', rel: 'noopener' }, output));
-      }),
-    { class: 'quiet', ...needsSubject },
-  );
   const datum = el('input', { type: 'checkbox', id: 'datum', checked: '' });
   datum.addEventListener('change', () => {
     store.datum = datum.checked;
@@ -191,9 +182,10 @@ export function compareView(root) {
   where.classList.add('findings-room');
   root.append(
     error,
-    panel('How well', el('div', { class: 'controls' }, report, datumWords), numbers),
+    panel('How well', el('div', { class: 'controls' }, datumWords), numbers),
     panel('Where it fails', where),
     linked,
+    handoverPanel(),
   );
   async function numbersOf() {
     numbers.replaceChildren(el('p', { class: 'note' }, 'comparing …'));

@@ -200,16 +200,6 @@ export function diagnoseView(root) {
       }),
     { id: 'run-diagnose', ...needsSubject },
   );
-  const report = button(
-    'Report (offline HTML)',
-    () =>
-      guarded(error, async () => {
-        const output = freeName('diagnose', '.html');
-        await run({ command: 'diagnose', ...measured(), output });
-        report.after(' ', el('a', { href: fileAddress(output), target: '_blank', rel: 'noopener' }, output));
-      }),
-    { class: 'quiet', ...needsSubject },
-  );
   let explained = null;
   on('overlay', () => {
     if (explained) explained.reset();
@@ -242,7 +232,7 @@ export function diagnoseView(root) {
     [explained] = plots;
     redrawAll();
   }
-  root.append(error, panel(null, el('div', { class: 'controls' }, go, report)), box);
+  root.append(error, panel(null, el('div', { class: 'controls' }, go)), box);
   on('rows', () => {
     box.replaceChildren(store.rows ? '' : nothingYet());
     store.diagnosis = explained = null;
