@@ -95,6 +95,11 @@ async function filesAsTheyCame(page) {
 async function aMachineOfOnesOwn(page) {
   await page.choose('#measurement', 'Portal_X_read.csv');
   await page.until("document.getElementById('new-machine').open", 'the form');
+  // By its picture; the axes that are usual for it stand ready.
+  await page.evaluate("document.querySelector('input[name=machine-type][value=arm]').click()");
+  assert.ok((await page.evaluate("document.getElementById('new-axes').value")).startsWith('X:0:4000'));
+  await page.evaluate("document.querySelector('input[name=machine-type][value=gantry]').click()");
+  await picture(page, 'first_machine', '#new-machine');
   await page.type('#new-axes', 'X:0:1200 Y:0:800 Z:-150:0');
   await page.type('#new-name', 'router');
   await page.click('#make-machine');

@@ -1,21 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-import { choice, el } from '../../../report/web/src/dom.js';
+import { el } from '../../../report/web/src/dom.js';
 import { freeName, run } from './api.js';
+import { kTypes, machineChoice } from './machines.js';
 import { button, guarded, panel } from './parts.js';
 import { on, store } from './store.js';
-
-/** The usual kinds of machines: who carries what, and the axes that they begin with. */
-const kTypes = [
-  ['gantry', 'Gantry, router: the bridge carries the tool along Y, the bed stands', 'X:0:600 Y:0:400 Z:-150:0'],
-  ['bridge', 'Bridge: as a gantry, usually a measuring machine', 'X:0:600 Y:0:800 Z:-400:0'],
-  ['column', 'Knee mill: the table moves along X and Y, the head along Z', 'X:0:500 Y:0:300 Z:-300:0'],
-  ['c-frame', 'C frame: table along X and Y, spindle along Z', 'X:0:500 Y:0:300 Z:-300:0'],
-  ['head-head', 'Five axes, both turning ones in the head', 'X:0:2000 Y:0:1000 Z:-500:0 C:-180:180 A:-100:100'],
-  ['head-table', 'Five axes, one turning in the head, one under the part', 'X:0:800 Y:0:600 Z:-500:0 B:-100:100 C:0:360:wrap'],
-  ['table-table', 'Five axes, both turning ones under the part', 'X:0:600 Y:0:500 Z:-450:0 A:-100:30 C:0:360:wrap'],
-  ['arm', 'Measuring arm: horizontal arm along Y', 'X:0:4000 Y:-1500:0 Z:0:2000'],
-  ['robot', 'Robot with six joints (lengths of a UR10e: yours by --dh or --urdf in the terminal)', ''],
-];
 
 /** Makes a machine file and an empty survey: `vernier new`. */
 function newMachine(choose) {
@@ -24,15 +12,10 @@ function newMachine(choose) {
   const name = el('input', { type: 'text', id: 'new-name', 'aria-label': 'name', value: 'machine', maxlength: '60' });
   const drawing = el('pre', { class: 'source', hidden: '' });
   let type = 'gantry';
-  const kind = choice(
-    'type',
-    kTypes.map(([id, words]) => [id, words]),
-    type,
-    (value) => {
-      type = value;
-      axes.value = kTypes.find(([id]) => id === value)[2];
-    },
-  );
+  const kind = machineChoice(type, (chosen, usual) => {
+    type = chosen;
+    axes.value = usual;
+  });
   const make = button(
     'Make it',
     () =>
@@ -49,7 +32,7 @@ function newMachine(choose) {
     { id: 'make-machine' },
   );
   return [
-    el('div', { class: 'controls' }, kind),
+    kind,
     el(
       'div',
       { class: 'controls' },
