@@ -211,7 +211,7 @@ void run_compare(const CompareArguments& arguments) {
   const Eigen::VectorXd residual = residuals(machine, m);
   nlohmann::ordered_json json = compare_json(machine, m, residual);
   add_failure(json, failure_picture(machine, m, residual));
-  json["datum"] = arguments.datum ? "fitted" : "as given";
+  if (arguments.datum) json["datum"] = "fitted";
   if (!arguments.limit.empty()) json["limit"] = judge_residuals(m, residual, residual_limit(arguments.limit));
   if (!arguments.by.empty()) json["groups"] = group_table(m, residual, arguments.by);
   if (!arguments.output.empty()) {
