@@ -22,6 +22,8 @@
 #include "tools/upload/transport.h"
 
 namespace vernier::link_conformance_test {
+
+using namespace vernier::upload;
 namespace {
 
 /// Answers a request with its bytes, reversed and one more; counts what it was given.

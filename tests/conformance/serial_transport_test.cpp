@@ -16,6 +16,9 @@
 #include "tools/text/error.h"
 
 namespace vernier {
+
+using namespace vernier::text;
+using namespace vernier::upload;
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;

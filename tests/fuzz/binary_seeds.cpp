@@ -11,6 +11,11 @@
 #include "tools/upload/signing.h"
 
 namespace vernier::fuzz {
+
+using namespace vernier::compile;
+using namespace vernier::model;
+using namespace vernier::text;
+using namespace vernier::upload;
 namespace {
 
 template <class T>

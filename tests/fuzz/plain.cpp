@@ -119,10 +119,10 @@ bool attack(const Target& target, std::uint64_t seed, std::size_t count) {
 
 void write_seeds(const std::string& folder) {
   for (const Target& target : vernier::fuzz::targets()) {
-    vernier::make_folder(folder + "/" + target.name);
+    vernier::text::make_folder(folder + "/" + target.name);
     std::size_t number = 0;
     for (const std::string& seed : vernier::fuzz::seeds_of(target.name))
-      vernier::write_file(folder + "/" + target.name + "/seed_" + std::to_string(number++), seed);
+      vernier::text::write_file(folder + "/" + target.name + "/seed_" + std::to_string(number++), seed);
   }
 }
 
@@ -139,7 +139,8 @@ int main(int argc, char** argv) {
   } else if (words.size() > 2 && words[0] == "--take") {
     for (std::size_t i = 2; i < words.size(); ++i)
       for (const Target& target : targets)
-        if (words[1] == target.name) good = takes(target, vernier::read_file(words[i]), words[i]) && good;
+        if (words[1] == target.name)
+          good = takes(target, vernier::text::read_file(words[i]), words[i]) && good;
   } else {
     const std::uint64_t seed = words.empty() ? 20260101 : std::strtoull(words[0].c_str(), nullptr, 10);
     const std::size_t count = words.size() > 1 ? std::strtoull(words[1].c_str(), nullptr, 10) : 200;

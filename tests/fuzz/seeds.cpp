@@ -8,6 +8,8 @@
 #include "tools/text/files.h"
 
 namespace vernier::fuzz {
+
+using namespace vernier::text;
 namespace {
 
 std::string file(const std::string& name) { return read_file(std::string(VERNIER_SOURCE_DIR) + "/" + name); }

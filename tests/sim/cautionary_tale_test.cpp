@@ -20,6 +20,8 @@
 #include "tools/text/files.h"
 
 namespace vernier::cautionary_tale_test {
+
+using namespace vernier::text;
 namespace {
 
 using Json = nlohmann::json;

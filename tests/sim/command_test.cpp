@@ -13,6 +13,8 @@
 #include "tools/text/files.h"
 
 namespace vernier::command_test {
+
+using namespace vernier::text;
 namespace {
 
 constexpr const char* kMachine = R"xml(<machine name="m"><variables>

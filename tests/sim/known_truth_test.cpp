@@ -16,6 +16,11 @@
 #include "tools/text/error.h"
 
 namespace vernier::known_truth_test {
+
+using namespace vernier::compile;
+using namespace vernier::model;
+using namespace vernier::simulate;
+using namespace vernier::text;
 namespace {
 
 /// A bridge machine with squareness (deg), backlash (mm), servo lag (s), thermal scale (1/K) and a table on
@@ -76,7 +81,7 @@ double allowed_um(const Bridge& bridge) {
 TEST(KnownTruth, WhatIsLeftIsTheBoundOfTheImage) {
   const Bridge bridge;
   const auto image = bridge.image();
-  const SimulateResult result = simulate(bridge.machine(), *image, volume_path(), {});
+  const SimulateResult result = simulate::simulate(bridge.machine(), *image, volume_path(), {});
   std::printf("before %.4f um, after %.5f um, max after %.5f um\n", result.rms_before_um, result.rms_after_um,
               result.max_after_um);
   EXPECT_EQ(result.states.count, 10001u);
@@ -94,7 +99,7 @@ TEST(KnownTruth, WhatIsLeftIsTheBoundOfTheImage) {
 TEST(KnownTruth, BacklashLeavesOnlyTheTicksOfItsSlewing) {
   Bridge bridge;
   bridge.bl = 0.004;
-  const SimulateResult result = simulate(bridge.machine(), *bridge.image(), volume_path(), {});
+  const SimulateResult result = simulate::simulate(bridge.machine(), *bridge.image(), volume_path(), {});
   // 8 um at 5 um a tick: one tick short at each of the two reversals of X.
   EXPECT_GT(result.loop.slewing, 0u);
   EXPECT_LE(result.loop.slewing, 6u);
@@ -108,7 +113,7 @@ TEST(KnownTruth, ConverterLeavesItsStepOverRootTwelve) {
   for (const unsigned bits : {8u, 16u}) {
     LoopOptions options;
     options.dac_bits = bits;
-    const SimulateResult result = simulate(bridge.machine(), *image, volume_path(), options);
+    const SimulateResult result = simulate::simulate(bridge.machine(), *image, volume_path(), options);
     const double step_um = 1e-3 * AnalogueChain(bits).step_nm(), expected = step_um / std::sqrt(12.0);
     std::printf("%u bits: %.5f um, step/sqrt(12) %.5f um\n", bits, result.rms_after_um, expected);
     // The correction crosses many codes, so its rounding is evenly spread: within 15 %, and at 16 bits the
@@ -123,13 +128,14 @@ TEST(KnownTruth, ConverterThatIsTooShortIsCounted) {
   bridge.table = 0.15;  // 150 um at X = 300, the converter reaches 124.5
   LoopOptions options;
   options.dac_bits = 8;
-  EXPECT_GT(simulate(bridge.machine(), *bridge.image(), volume_path(), options).loop.saturated, 100u);
+  EXPECT_GT(simulate::simulate(bridge.machine(), *bridge.image(), volume_path(), options).loop.saturated,
+            100u);
 }
 
 TEST(KnownTruth, MagnitudeLimitIsCounted) {
   Bridge bridge;
   bridge.limits = R"(maxcorrection="0.005" maxslew="5")";
-  const SimulateResult result = simulate(bridge.machine(), *bridge.image(), volume_path(), {});
+  const SimulateResult result = simulate::simulate(bridge.machine(), *bridge.image(), volume_path(), {});
   EXPECT_GT(result.loop.saturated, 1000u);
   for (const Column& correction : result.loop.correction)
     EXPECT_LE(correction.abs().maxCoeff(), 0.005 + 1e-12);
@@ -140,8 +146,8 @@ TEST(KnownTruth, AxesOfTheTruthMayStandInAnotherOrder) {
   truth.other_order = true;
   const Bridge compiled;
   const auto image = compiled.image();
-  const SimulateResult a = simulate(truth.machine(), *image, volume_path(), {});
-  const SimulateResult b = simulate(compiled.machine(), *image, volume_path(), {});
+  const SimulateResult a = simulate::simulate(truth.machine(), *image, volume_path(), {});
+  const SimulateResult b = simulate::simulate(compiled.machine(), *image, volume_path(), {});
   EXPECT_NEAR(a.rms_before_um, b.rms_before_um, 1e-9);
   EXPECT_NEAR(a.rms_after_um, b.rms_after_um, 1e-9);
 }
@@ -150,7 +156,7 @@ TEST(KnownTruth, ImageOfAnotherMachineDoesNotHelp) {
   // A metric that cannot fail is none: with squareness of the wrong sign the error must grow.
   Bridge truth, wrong;
   truth.cte = wrong.cte = 0, truth.lag = wrong.lag = 0, wrong.sq = -truth.sq;
-  const SimulateResult result = simulate(truth.machine(), *wrong.image(), volume_path(), {});
+  const SimulateResult result = simulate::simulate(truth.machine(), *wrong.image(), volume_path(), {});
   EXPECT_GT(result.rms_after_um, 1.1 * result.rms_before_um);
 }
 
@@ -161,8 +167,9 @@ TEST(KnownTruth, ShiftedAndTurnedDatumIsNoError) {
   const std::string first = R"(<transforms branch="tool">)";
   text.insert(text.find(first) + first.size(),
               R"(<sixdof n="0" X="12" Y="-3" Z="40" rX="0.3" rY="20" rZ="-5"/>)");
-  const SimulateResult moved = simulate(parse_machine(text, "moved.xml"), *image, volume_path(), {});
-  const SimulateResult plain = simulate(bridge.machine(), *image, volume_path(), {});
+  const SimulateResult moved =
+      simulate::simulate(parse_machine(text, "moved.xml"), *image, volume_path(), {});
+  const SimulateResult plain = simulate::simulate(bridge.machine(), *image, volume_path(), {});
   EXPECT_NEAR(moved.rms_before_um, plain.rms_before_um, 1e-6);
   EXPECT_NEAR(moved.rms_after_um, plain.rms_after_um, 1e-6);
 }
@@ -176,7 +183,7 @@ TEST(KnownTruth, LagOfTheTruthIsFollowedTickByTick) {
   const Machine machine = parse_machine(text, "lag.xml");
   const auto image = load_image(compile_machine(machine, text, {}).image, machine);
   const Path path("t[s],X[mm],T[degC]\n0,100,20\n1,100,30\n3,100,22\n", "path.csv");
-  const SimulateResult result = simulate(machine, *image, path, {});
+  const SimulateResult result = simulate::simulate(machine, *image, path, {});
   EXPECT_GT(result.rms_before_um, 2);
   EXPECT_LT(result.rms_after_um, 0.02);
 }
@@ -188,8 +195,8 @@ TEST(KnownTruth, NoiseOfTheReadingsHardlyMatters) {
   LoopOptions options;
   options.noise_um = 10;
   const auto image = bridge.image();
-  const double quiet = simulate(bridge.machine(), *image, volume_path(), {}).rms_after_um;
-  const SimulateResult noisy = simulate(bridge.machine(), *image, volume_path(), options);
+  const double quiet = simulate::simulate(bridge.machine(), *image, volume_path(), {}).rms_after_um;
+  const SimulateResult noisy = simulate::simulate(bridge.machine(), *image, volume_path(), options);
   EXPECT_GT(noisy.rms_after_um, quiet);
   EXPECT_LT(noisy.rms_after_um, 0.01);
 }
@@ -200,14 +207,14 @@ TEST(KnownTruth, AxisThatTheTruthLacksIsAnError) {
       parse_machine(R"xml(<machine name="t"><variables><machineaxes><X rotary="false"/></machineaxes>
     </variables><transforms><sixdof n="1" X="X" Y="0" Z="0" rX="0" rY="0" rZ="0"/></transforms></machine>)xml",
                     "t.xml");
-  EXPECT_THROW(simulate(truth, *bridge.image(), volume_path(), {}), InputError);
+  EXPECT_THROW(simulate::simulate(truth, *bridge.image(), volume_path(), {}), InputError);
 }
 
 TEST(KnownTruth, SlewLimitBelowACountIsRefusedAndNotWaitedFor) {
   // 0.1 nm a tick: no whole count of the image, so the correction can never come in.
   Bridge bridge;
   bridge.limits = R"(maxcorrection="0.2" maxslew="0.0001")";
-  EXPECT_THROW(simulate(bridge.machine(), *bridge.image(), volume_path(), {}), LimitNotMet);
+  EXPECT_THROW(simulate::simulate(bridge.machine(), *bridge.image(), volume_path(), {}), LimitNotMet);
 }
 
 }  // namespace

@@ -12,6 +12,8 @@
 #include "tools/text/files.h"
 
 namespace vernier::measured_on_command_test {
+
+using namespace vernier::text;
 namespace {
 
 /// A scale error of 1e-4 on X and nothing else.

@@ -15,6 +15,8 @@
 namespace {
 
 using namespace vernier;
+using namespace vernier::text;
+using namespace vernier::upload;
 using namespace vernier::simulation;
 
 class Wire : public Transport {

@@ -6,6 +6,9 @@
 #include "tests/unit/firmware/small_machine.h"
 
 namespace vernier::simulation {
+
+using namespace vernier::compile;
+using namespace vernier::model;
 namespace {
 
 // At 50 Hz the small machine's 0.5 and 2 mm/s.

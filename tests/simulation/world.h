@@ -19,6 +19,8 @@
 
 namespace vernier::simulation {
 
+using namespace vernier::upload;
+
 constexpr TimeUs kTick(20'000);
 constexpr TimeUs kTrialTime(60'000'000);
 constexpr std::int64_t kBoardLimit = 25'000;  // nm, below what the image allows

@@ -20,6 +20,9 @@
 #include "tools/model/prediction.h"
 
 namespace vernier::support {
+
+using namespace vernier::model;
+using namespace vernier::text;
 namespace {
 
 constexpr double kLeastRemaining = 0.12;  // below this the effect must be absurdly large to be seen

@@ -11,6 +11,9 @@
 #include "tools/model/prediction.h"
 
 namespace vernier::support {
+
+using namespace vernier::model;
+using namespace vernier::text;
 namespace {
 
 /// Orthonormal basis of what the scaled columns span.
@@ -133,7 +136,7 @@ const Eigen::VectorXd& FormColumns::factor(const std::string& text, std::size_t 
   if (!is_new) return found->second;
   Machine machine = machine_;
   for (std::size_t k = 0; k < 3; ++k) machine.statics[first_static_ + k].value = k == coefficient ? 1 : 0;
-  const Column rows = evaluate(machine, *parse_expression_for(machine, text), measurement_.states);
+  const Column rows = model::evaluate(machine, *parse_expression_for(machine, text), measurement_.states);
   Eigen::VectorXd each(static_cast<Eigen::Index>(measurement_.observations.size()));
   for (Eigen::Index i = 0; i < each.size(); ++i)
     each[i] = rows[static_cast<Eigen::Index>(measurement_.observations[static_cast<std::size_t>(i)].row)];

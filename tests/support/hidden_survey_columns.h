@@ -12,6 +12,9 @@
 
 namespace vernier::support {
 
+using namespace vernier::model;
+using namespace vernier::text;
+
 /// What the free parameters of a model cannot follow. Vectors are over the fit observations, weighted by 1/u.
 class Complement {
  public:

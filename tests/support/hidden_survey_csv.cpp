@@ -11,6 +11,9 @@
 #include "tools/text/numbers.h"
 
 namespace vernier::support {
+
+using namespace vernier::model;
+using namespace vernier::text;
 namespace {
 
 std::string number(double value, int decimals) {

@@ -18,6 +18,9 @@
 #include "tools/text/numbers.h"
 
 namespace vernier::support {
+
+using namespace vernier::model;
+using namespace vernier::text;
 namespace {
 
 struct Known {
@@ -141,7 +144,7 @@ void place_axis(const Machine& machine, std::size_t axis, AxisPlace& place) {
     const auto& branch = workpiece ? machine.workpiece : machine.tool;
     for (std::size_t k = 0; k < branch.size(); ++k)
       for (std::size_t d = 0; d < branch[k].dof_count(); ++d) {
-        const Column value = evaluate(machine, *branch[k].dof[d], states);
+        const Column value = model::evaluate(machine, *branch[k].dof[d], states);
         if (std::abs(std::abs(value[1] - value[0]) - 1) > 1e-6) continue;
         place.workpiece = workpiece;
         place.order = k;

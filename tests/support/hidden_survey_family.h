@@ -9,6 +9,9 @@
 
 namespace vernier::support {
 
+using namespace vernier::model;
+using namespace vernier::text;
+
 /// Where an axis acts: transform, and the degree of freedom that is its motion.
 struct AxisPlace {
   std::string name;

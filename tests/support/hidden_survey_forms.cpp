@@ -9,6 +9,8 @@
 #include <map>
 
 namespace vernier::support {
+
+using namespace vernier::text;
 namespace {
 
 /// Builds the forms of one effect.

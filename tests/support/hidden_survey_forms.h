@@ -10,6 +10,8 @@
 
 namespace vernier::support {
 
+using namespace vernier::text;
+
 /// An effect at a place: terms with their coefficients. Texts name the linear coefficients k1, k2 ...; other
 /// numbers (periods, time constants) stand in them as numbers.
 struct Form {

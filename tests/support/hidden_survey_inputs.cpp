@@ -7,6 +7,8 @@
 #include "tests/support/hidden_survey_motion.h"
 
 namespace vernier::support {
+
+using namespace vernier::model;
 namespace {
 
 double rounded(double value, double step) { return std::round(value / step) * step; }

@@ -9,6 +9,8 @@
 #include "tools/model/machine_reader.h"
 
 namespace vernier::support {
+
+using namespace vernier::model;
 namespace {
 
 double rounded(double value, double step) { return std::round(value / step) * step; }

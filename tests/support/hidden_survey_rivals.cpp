@@ -6,6 +6,8 @@
 #include <limits>
 
 namespace vernier::support {
+
+using namespace vernier::text;
 namespace {
 
 /// Share of the truth's column that the rival's columns cannot follow.

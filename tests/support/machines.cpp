@@ -9,6 +9,8 @@
 
 namespace vernier::support {
 
+using namespace vernier::model;
+
 Machine full_machine() {
   return parse_machine(R"XML(<machine name="full"><variables>
   <static>

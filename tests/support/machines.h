@@ -9,6 +9,8 @@
 
 namespace vernier::support {
 
+using namespace vernier::model;
+
 /// A machine with everything that the format offers: two branches, sixdof and DH, linear, cubic and periodic
 /// tables, two BaseShifts, an input, lag, rotary axes. All errors are non-zero.
 Machine full_machine();

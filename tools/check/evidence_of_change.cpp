@@ -18,7 +18,7 @@
 #include "tools/model/fit_record.h"
 #include "tools/model/prediction.h"
 
-namespace vernier {
+namespace vernier::check {
 namespace {
 
 using Eigen::Index;
@@ -37,11 +37,11 @@ constexpr std::array kSizes = {2.0, 4.0, 8.0, 16.0, 32.0, 64.0};
 /// Collects the columns of suspects, weighted, with the set-up projected out.
 class Collector {
  public:
-  Collector(const Machine& machine, const Measurement& m) : machine_(machine), m_(m) {
+  Collector(const model::Machine& machine, const model::Measurement& m) : machine_(machine), m_(m) {
     const double fallback = std::max(machine.fitted->rms_mm, 1e-9);
     weight_.resize(static_cast<Index>(m.observations.size()));
     for (std::size_t i = 0; i < m.observations.size(); ++i) {
-      const double u = uncertainty_of(m, m.observations[i]);
+      const double u = model::uncertainty_of(m, m.observations[i]);
       weight_[static_cast<Index>(i)] = 1 / (u > 0 ? u : fallback);
     }
   }
@@ -55,7 +55,7 @@ class Collector {
     for (Index j = 0; j < count; ++j) x.col(j) = columns_[static_cast<std::size_t>(j)];
     record_.gram = x.transpose() * x;
     record_.moment = x.transpose() * residual_;
-    const MatrixXd basis = orthonormal(x, 1e-6, nullptr);
+    const MatrixXd basis = maths::orthonormal(x, 1e-6, nullptr);
     record_.rest = (residual_ - basis * (basis.transpose() * residual_)).squaredNorm();
     record_.beyond_set_up = static_cast<double>(weight_.size() - set_up_.cols());
     record_.freedom = static_cast<double>(weight_.size() - set_up_.cols() - basis.cols());
@@ -84,20 +84,21 @@ class Collector {
   }
 
   void take_parameters() {
-    const ParameterSet parameters(machine_, m_.states.names(m_.states.setup));
-    const Linearisation linear = linearise(machine_, m_, parameters);
+    const model::ParameterSet parameters(machine_, m_.states.names(m_.states.setup));
+    const model::Linearisation linear = model::linearise(machine_, m_, parameters);
     const MatrixXd jacobian(linear.jacobian);
     std::vector<Index> shifts, others;
     for (std::size_t i = 0; i < parameters.size(); ++i)
-      (parameters[i].kind == ParameterKind::kBaseShift ? shifts : others).push_back(static_cast<Index>(i));
+      (parameters[i].kind == model::ParameterKind::kBaseShift ? shifts : others)
+          .push_back(static_cast<Index>(i));
     raw_set_up_ = weight_.asDiagonal() * jacobian(Eigen::all, shifts);
-    set_up_ = orthonormal(raw_set_up_, 1e-9, nullptr);
+    set_up_ = maths::orthonormal(raw_set_up_, 1e-9, nullptr);
     VectorXd left(weight_.size());
     for (std::size_t i = 0; i < m_.observations.size(); ++i)
       left[static_cast<Index>(i)] = m_.observations[i].value - linear.predicted[static_cast<Index>(i)];
     residual_ = beside_set_up(left);
     for (const Index i : others) {
-      const Parameter& p = parameters[static_cast<std::size_t>(i)];
+      const model::Parameter& p = parameters[static_cast<std::size_t>(i)];
       columns_.push_back(beside_set_up(jacobian.col(i)));
       raw_.push_back(weight_.cwiseProduct(VectorXd(jacobian.col(i))));
       record_.suspects.push_back({p.name, p.unit, false});
@@ -120,21 +121,21 @@ class Collector {
   }
 
   void take_places() {
-    const std::vector<DofPlace> places = all_places(machine_);
-    Machine probed = machine_;
-    for (Freedom& one : freedoms_of(probed)) one.set_free(false);
-    for (const DofPlace& place : places) add_probe(probed, place);
-    const MatrixXd response(linearise(probed, m_, ParameterSet(probed, {})).jacobian);
-    const auto of = [&](const DofPlace& place) {
+    const std::vector<effects::DofPlace> places = effects::all_places(machine_);
+    model::Machine probed = machine_;
+    for (model::Freedom& one : model::freedoms_of(probed)) one.set_free(false);
+    for (const effects::DofPlace& place : places) effects::add_probe(probed, place);
+    const MatrixXd response(model::linearise(probed, m_, model::ParameterSet(probed, {})).jacobian);
+    const auto of = [&](const effects::DofPlace& place) {
       return static_cast<Index>(std::find(places.begin(), places.end(), place) - places.begin());
     };
-    const auto times = [&](Index place, const Column& factor) {
+    const auto times = [&](Index place, const model::Column& factor) {
       VectorXd column = response.col(place);
       for (std::size_t i = 0; i < m_.observations.size(); ++i)
         column[static_cast<Index>(i)] *= factor[static_cast<Index>(m_.observations[i].row)];
       return column;
     };
-    const AxisPlaces axes(machine_);
+    const effects::AxisPlaces axes(machine_);
     for (std::size_t axis = 0; axis < machine_.axes.size(); ++axis) {
       if (!axes.own(axis)) continue;
       const std::string &name = machine_.axes[axis].name, unit = machine_.axes[axis].rotary ? "deg" : "mm";
@@ -143,9 +144,10 @@ class Collector {
         offer({"scale of " + name, "", false}, times(of(*axes.own(axis)), m_.states.axis[axis]));
     }
     for (std::size_t i = 0; i < places.size(); ++i) {
-      const bool angle = is_angle(machine_, places[i]);
-      offer({fmt::format("{} {} of transform {}{}", angle ? "tilt" : "offset", dof_name(machine_, places[i]),
-                         transform_at(machine_, places[i]).n, places[i].workpiece ? " (workpiece)" : ""),
+      const bool angle = effects::is_angle(machine_, places[i]);
+      offer({fmt::format("{} {} of transform {}{}", angle ? "tilt" : "offset",
+                         effects::dof_name(machine_, places[i]), effects::transform_at(machine_, places[i]).n,
+                         places[i].workpiece ? " (workpiece)" : ""),
              angle ? "deg" : "mm", false},
             response.col(static_cast<Index>(i)));
     }
@@ -153,7 +155,7 @@ class Collector {
 
   /// The instrument, or what it stands on, moves steadily from the first row to the last.
   void take_drifts() {
-    std::map<ObservationKind, VectorXd> of_kind;
+    std::map<model::ObservationKind, VectorXd> of_kind;
     const double last = std::max<double>(1, static_cast<double>(m_.rows()) - 1);
     for (std::size_t i = 0; i < m_.observations.size(); ++i) {
       VectorXd& column = of_kind[m_.observations[i].kind];
@@ -161,23 +163,25 @@ class Collector {
       column[static_cast<Index>(i)] = static_cast<double>(m_.observations[i].row) / last;
     }
     for (const auto& [kind, column] : of_kind)
-      offer({fmt::format("drift of the instrument in {}", kObservationNames[static_cast<std::size_t>(kind)]),
-             is_rotation(kind) ? "deg" : "mm", true},
+      offer({fmt::format("drift of the instrument in {}",
+                         model::kObservationNames[static_cast<std::size_t>(kind)]),
+             model::is_rotation(kind) ? "deg" : "mm", true},
             column);
   }
 
-  const Machine& machine_;
-  const Measurement& m_;
+  const model::Machine& machine_;
+  const model::Measurement& m_;
   VectorXd weight_, residual_;
   MatrixXd set_up_, raw_set_up_;
   std::vector<VectorXd> columns_, known_, raw_;
   CheckRecord record_;
 };
 
-void require_fit(const Machine& machine) {
+void require_fit(const model::Machine& machine) {
   if (!machine.fitted)
-    throw InputError({machine.file, 0}, machine.name,
-                     "was never fitted (no <fitted>): a check needs to know how well the machine is known");
+    throw text::InputError(
+        {machine.file, 0}, machine.name,
+        "was never fitted (no <fitted>): a check needs to know how well the machine is known");
 }
 
 /// What the checks from some check on say of one suspect.
@@ -199,7 +203,7 @@ double log_sum(const std::vector<double>& logs) {
 
 class Judge {
  public:
-  Judge(const Machine& machine, const std::vector<CheckRecord>& checks, double false_alarms)
+  Judge(const model::Machine& machine, const std::vector<CheckRecord>& checks, double false_alarms)
       : checks_(checks), last_(checks.back()), false_alarms_(false_alarms) {
     answer_.alarm = 1 / false_alarms;
     const MatrixXd spread = spread_of_fit(machine, last_.suspects, last_.parameters);
@@ -313,7 +317,7 @@ class Judge {
 
   void look_at_noise() {
     if (last_.freedom < 1) return;
-    answer_.noise_p = chi_square_tail(last_.rest, last_.freedom);
+    answer_.noise_p = maths::chi_square_tail(last_.rest, last_.freedom);
   }
 
   void decide() {
@@ -384,13 +388,14 @@ const char* verdict_name(CheckVerdict verdict) {
   return kNames[static_cast<std::size_t>(verdict)];
 }
 
-SuspectColumns suspect_columns(const Machine& machine, const Measurement& measurement) {
+SuspectColumns suspect_columns(const model::Machine& machine, const model::Measurement& measurement) {
   require_fit(machine);
   return Collector(machine, measurement).raw();
 }
 
-MatrixXd spread_of_fit(const Machine& machine, const std::vector<Suspect>& suspects, std::size_t parameters) {
-  const FitRecord& fitted = *machine.fitted;
+MatrixXd spread_of_fit(const model::Machine& machine, const std::vector<Suspect>& suspects,
+                       std::size_t parameters) {
+  const model::FitRecord& fitted = *machine.fitted;
   MatrixXd spread = MatrixXd::Zero(static_cast<Index>(parameters), fitted.factor.cols());
   for (std::size_t i = 0; i < parameters; ++i) {
     const auto found = std::find(fitted.parameters.begin(), fitted.parameters.end(), suspects[i].name);
@@ -400,7 +405,8 @@ MatrixXd spread_of_fit(const Machine& machine, const std::vector<Suspect>& suspe
   return spread;
 }
 
-CheckRecord record_of(const Machine& machine, const Measurement& measurement, std::string label) {
+CheckRecord record_of(const model::Machine& machine, const model::Measurement& measurement,
+                      std::string label) {
   require_fit(machine);
   return Collector(machine, measurement).collect(std::move(label));
 }
@@ -431,9 +437,10 @@ std::vector<CheckRecord> aligned(const std::vector<CheckRecord>& checks) {
 
 }  // namespace
 
-CheckAnswer judge(const Machine& machine, const std::vector<CheckRecord>& checks, double false_alarms) {
+CheckAnswer judge(const model::Machine& machine, const std::vector<CheckRecord>& checks,
+                  double false_alarms) {
   const std::vector<CheckRecord> all = aligned(checks);
   return Judge(machine, all, false_alarms).answer();
 }
 
-}  // namespace vernier
+}  // namespace vernier::check

@@ -7,7 +7,7 @@
 #include "tools/model/machine.h"
 #include "tools/model/measurement.h"
 
-namespace vernier {
+namespace vernier::check {
 
 /// Something that may be other than it was when the machine was fitted.
 struct Suspect {
@@ -33,7 +33,8 @@ struct CheckRecord {
 /// parameters, and where the chain has them and they are not the same: reversal and scale of every axis, a
 /// tilt and an offset of every transform, a drift of the instrument along each direction that it reads.
 /// Throws InputError where the machine was never fitted. tool.
-CheckRecord record_of(const Machine& machine, const Measurement& measurement, std::string label);
+CheckRecord record_of(const model::Machine& machine, const model::Measurement& measurement,
+                      std::string label);
 
 /// The same suspects as columns: what a change by 1 does to each reading, over its uncertainty.
 struct SuspectColumns {
@@ -41,10 +42,10 @@ struct SuspectColumns {
   std::size_t parameters = 0;
   Eigen::MatrixXd columns, set_up;  // readings x suspects, readings x numbers of the set-ups
 };
-SuspectColumns suspect_columns(const Machine& machine, const Measurement& measurement);
+SuspectColumns suspect_columns(const model::Machine& machine, const model::Measurement& measurement);
 
 /// The fit's covariance of a record's parameters as L L^T: rows of L, 0 for what the fit does not name.
-Eigen::MatrixXd spread_of_fit(const Machine& machine, const std::vector<Suspect>& suspects,
+Eigen::MatrixXd spread_of_fit(const model::Machine& machine, const std::vector<Suspect>& suspects,
                               std::size_t parameters);
 
 enum class CheckVerdict : std::uint8_t { kValid, kChanged, kInstrument, kTooLittle };
@@ -75,6 +76,6 @@ struct CheckAnswer {
 /// exceeds 1/false_alarms in the lifetime of a machine with that probability at most, however often one looks
 /// (Ville 1939), under independent normal readings of the stated uncertainty. checks: in the order of time,
 /// of one machine, at least one. tool.
-CheckAnswer judge(const Machine& machine, const std::vector<CheckRecord>& checks, double false_alarms);
+CheckAnswer judge(const model::Machine& machine, const std::vector<CheckRecord>& checks, double false_alarms);
 
-}  // namespace vernier
+}  // namespace vernier::check

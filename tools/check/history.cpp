@@ -10,7 +10,7 @@
 #include "tools/text/numbers.h"
 #include "tools/text/words.h"
 
-namespace vernier {
+namespace vernier::check {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -37,12 +37,12 @@ Eigen::MatrixXd matrix_of(const Json& list, Index rows, Index columns) {
 
 }  // namespace
 
-std::string identity_of(const Machine& machine) {
+std::string identity_of(const model::Machine& machine) {
   std::string text = machine.name;
   for (std::size_t i = 0; i < machine.fitted->parameters.size(); ++i) {
     const std::string& name = machine.fitted->parameters[i];
     if (name.starts_with("BaseShift")) continue;  // of a set-up, and none of the machine
-    text += " " + name + "=" + number_text(machine.fitted->values[static_cast<Index>(i)]);
+    text += " " + name + "=" + text::number_text(machine.fitted->values[static_cast<Index>(i)]);
   }
   return text;
 }
@@ -69,7 +69,7 @@ std::string history_text(const CheckHistory& history) {
 
 CheckHistory parse_history(const std::string& text, const std::string& file) {
   try {
-    if (nests_deeper_than(text, kMostJsonDepth)) throw std::invalid_argument("nested too deep");
+    if (text::nests_deeper_than(text, text::kMostJsonDepth)) throw std::invalid_argument("nested too deep");
     const Json json = Json::parse(text);
     if (json.at("format") != "vernier-checks") throw std::invalid_argument("no history of checks");
     if (json.at("version") != kVersion)
@@ -96,8 +96,8 @@ CheckHistory parse_history(const std::string& text, const std::string& file) {
     }
     return history;
   } catch (const std::exception& error) {
-    throw InputError({file, 0}, "", fmt::format("not a history of checks: {}", error.what()));
+    throw text::InputError({file, 0}, "", fmt::format("not a history of checks: {}", error.what()));
   }
 }
 
-}  // namespace vernier
+}  // namespace vernier::check

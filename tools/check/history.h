@@ -5,7 +5,7 @@
 
 #include "tools/check/evidence_of_change.h"
 
-namespace vernier {
+namespace vernier::check {
 
 /// The checks of one machine so far, as they are kept in a file (JSON).
 struct CheckHistory {
@@ -14,10 +14,10 @@ struct CheckHistory {
 };
 
 /// What `machine` of a history must be for a fitted machine: other numbers make another history.
-std::string identity_of(const Machine& machine);
+std::string identity_of(const model::Machine& machine);
 
 /// The file as text, and back. Throws InputError naming the file and what is wrong in it. tool.
 std::string history_text(const CheckHistory& history);
 CheckHistory parse_history(const std::string& text, const std::string& file);
 
-}  // namespace vernier
+}  // namespace vernier::check

@@ -7,25 +7,25 @@
 #include "tools/commands/command.h"
 #include "tools/probe/circle_path.h"
 
-namespace vernier::ballbar_path_cli {
+namespace vernier::commands::ballbar_path_cli {
 namespace {
 
-const std::map<std::string, CircleDialect> kDialects = {{"iso", CircleDialect::kIso},
-                                                        {"linuxcnc", CircleDialect::kLinuxcnc},
-                                                        {"urscript", CircleDialect::kUrscript}};
+const std::map<std::string, probe::CircleDialect> kDialects = {{"iso", probe::CircleDialect::kIso},
+                                                               {"linuxcnc", probe::CircleDialect::kLinuxcnc},
+                                                               {"urscript", probe::CircleDialect::kUrscript}};
 
 struct Arguments {
-  CirclePath path;
+  probe::CirclePath path;
   std::vector<double> arc = {0, 360}, centre = {0, 0, 0}, tool = {0, 0, 0};
   std::string dialect = "iso", output;
 };
 
 void run(Arguments& arguments) {
-  CirclePath& path = arguments.path;
+  probe::CirclePath& path = arguments.path;
   path.from_deg = arguments.arc[0], path.to_deg = arguments.arc[1];
   for (std::size_t k = 0; k < 3; ++k)
     path.centre_mm[k] = arguments.centre[k], path.tool_deg[k] = arguments.tool[k];
-  write_file(arguments.output, circle_program(path, kDialects.at(arguments.dialect)));
+  text::write_file(arguments.output, probe::circle_program(path, kDialects.at(arguments.dialect)));
   fmt::print("{}: {} plane, radius {:g} mm, {:g} mm/min, {:g} to {:g} deg and {:g} deg more on either side\n",
              arguments.output, path.plane, path.radius_mm, path.feed_mm_min, path.from_deg, path.to_deg,
              path.overshoot_deg);
@@ -35,7 +35,7 @@ void run(Arguments& arguments) {
 
 void register_ballbar_path(CLI::App& vernier) {
   const auto arguments = std::make_shared<Arguments>();
-  CirclePath& path = arguments->path;
+  probe::CirclePath& path = arguments->path;
   CLI::App* command =
       vernier.add_subcommand("ballbar-path", "the program of a circular test, for a machine or a robot");
   command->add_option("--plane", path.plane, "angles count from its first axis to its second")
@@ -65,4 +65,4 @@ void register_ballbar_path(CLI::App& vernier) {
   command->callback([arguments] { run(*arguments); });
 }
 
-}  // namespace vernier::ballbar_path_cli
+}  // namespace vernier::commands::ballbar_path_cli

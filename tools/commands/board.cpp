@@ -9,7 +9,7 @@
 #include "tools/text/error.h"
 #include "tools/upload/client.h"
 
-namespace vernier::board_cli {
+namespace vernier::commands::board_cli {
 namespace {
 
 struct Arguments {
@@ -29,17 +29,18 @@ constexpr Named kCommands[] = {{"activate", Command::kActivate},
 // A command is taken by the next tick; a board that has not moved on by then does not tick.
 constexpr auto kTakenAfter = std::chrono::milliseconds(50);
 
-void set_weight(const Arguments& arguments, Client& client) {
+void set_weight(const Arguments& arguments, upload::Client& client) {
   const auto& axes = client.info().axes;
-  const auto found = std::find_if(axes.begin(), axes.end(),
-                                  [&](const BoardSignal& axis) { return axis.name == arguments.axis; });
-  if (found == axes.end()) throw InputError("--axis \"" + arguments.axis + "\": the board has no such axis");
+  const auto found = std::find_if(
+      axes.begin(), axes.end(), [&](const upload::BoardSignal& axis) { return axis.name == arguments.axis; });
+  if (found == axes.end())
+    throw text::InputError("--axis \"" + arguments.axis + "\": the board has no such axis");
   client.weight(static_cast<std::uint8_t>(found - axes.begin()), arguments.weight);
 }
 
 void run(const Arguments& arguments) {
-  Client client(open_transport(parse_url(arguments.url)));
-  client.sign_with(given_key(arguments.key));
+  upload::Client client(upload::open_transport(upload::parse_url(arguments.url)));
+  client.sign_with(upload::given_key(arguments.key));
   if (arguments.what == "weight") {
     set_weight(arguments, client);
   } else {
@@ -48,10 +49,10 @@ void run(const Arguments& arguments) {
       if (arguments.what == named.name) client.command(named.command);
     std::this_thread::sleep_for(kTakenAfter);
     if (client.health().refused_commands != refused)
-      throw LimitNotMet(
+      throw text::LimitNotMet(
           fmt::format("the board refuses to {} in mode {}", arguments.what, name_of(client.newest().mode)));
   }
-  const BoardTick tick = client.newest();
+  const upload::BoardTick tick = client.newest();
   fmt::print(human_stream(arguments.json), "mode {}{}, fault {}\n", name_of(tick.mode),
              tick.holding ? " (held)" : "", name_of(tick.fault));
   write_json(arguments.json,
@@ -81,4 +82,4 @@ void register_board(CLI::App& vernier) {
   command->callback([arguments] { run(*arguments); });
 }
 
-}  // namespace vernier::board_cli
+}  // namespace vernier::commands::board_cli

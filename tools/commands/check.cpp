@@ -13,7 +13,7 @@
 #include "tools/text/error.h"
 #include "tools/text/words.h"
 
-namespace vernier::check_cli {
+namespace vernier::commands::check_cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -24,13 +24,13 @@ struct CheckArguments {
   double false_alarms = 0.01;
 };
 
-Json change_json(const Change& one) {
+Json change_json(const check::Change& one) {
   return {{"name", one.suspect.name}, {"change", one.change}, {"std", one.std},
           {"unit", one.suspect.unit}, {"weight", one.weight}, {"since", one.since + 1}};
 }
 
-Json answer_json(const CheckAnswer& answer, const CheckHistory& history) {
-  Json json = {{"verdict", verdict_name(answer.verdict)},
+Json answer_json(const check::CheckAnswer& answer, const check::CheckHistory& history) {
+  Json json = {{"verdict", check::verdict_name(answer.verdict)},
                {"explanation", answer.explanation},
                {"evidence", answer.evidence},
                {"alarm", answer.alarm},
@@ -38,59 +38,59 @@ Json answer_json(const CheckAnswer& answer, const CheckHistory& history) {
                {"checks", history.checks.size()},
                {"readings", history.checks.back().readings}};
   json["changed"] = Json::array();
-  for (const Change& one : answer.changed) json["changed"].push_back(change_json(one));
+  for (const check::Change& one : answer.changed) json["changed"].push_back(change_json(one));
   json["not_told_apart"] = answer.not_told_apart;
   json["not_seen"] = answer.not_seen;
   json["resolved"] = Json::array();
-  for (const Change& one : answer.resolved)
+  for (const check::Change& one : answer.resolved)
     json["resolved"].push_back({{"name", one.suspect.name}, {"std", one.std}, {"unit", one.suspect.unit}});
   return json;
 }
 
 /// The machine file with what has changed put right. Throws LimitNotMet where it is none of its parameters.
-std::string put_right(const CheckArguments& arguments, Machine machine, const Measurement& rows,
-                      const CheckAnswer& answer) {
-  const ParameterSet parameters(machine, rows.states.names(rows.states.setup));
+std::string put_right(const CheckArguments& arguments, model::Machine machine, const model::Measurement& rows,
+                      const check::CheckAnswer& answer) {
+  const model::ParameterSet parameters(machine, rows.states.names(rows.states.setup));
   Eigen::VectorXd values = parameters.get(machine);
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     if (parameters[i].name != answer.changed.front().suspect.name) continue;
     values[static_cast<Eigen::Index>(i)] += answer.changed.front().change;
     parameters.set(machine, values);
-    return update_machine_text(read_file(arguments.machine), machine, false);
+    return model::update_machine_text(text::read_file(arguments.machine), machine, false);
   }
-  throw LimitNotMet("\"" + answer.changed.front().suspect.name +
-                    "\" is no parameter of this machine file: diagnose a longer measurement, and fit");
+  throw text::LimitNotMet("\"" + answer.changed.front().suspect.name +
+                          "\" is no parameter of this machine file: diagnose a longer measurement, and fit");
 }
 
 void run_check(const CheckArguments& arguments) {
   if (!(arguments.false_alarms > 0 && arguments.false_alarms < 1))
-    throw InputError({}, fmt::format("{}", arguments.false_alarms),
-                     "a rate of false alarms is between 0 and 1");
-  const Machine machine = read_machine(arguments.machine);
-  const Measurement rows =
-      read_measurement(arguments.measurements, machine, corrections_of_images(arguments.images));
-  CheckRecord now = record_of(
-      machine, rows, arguments.label.empty() ? joined(arguments.measurements, " ") : arguments.label);
-  CheckHistory history{identity_of(machine), {}};
+    throw text::InputError({}, fmt::format("{}", arguments.false_alarms),
+                           "a rate of false alarms is between 0 and 1");
+  const model::Machine machine = model::read_machine(arguments.machine);
+  const model::Measurement rows = model::read_measurement(arguments.measurements, machine,
+                                                          simulate::corrections_of_images(arguments.images));
+  check::CheckRecord now = check::record_of(
+      machine, rows, arguments.label.empty() ? text::joined(arguments.measurements, " ") : arguments.label);
+  check::CheckHistory history{check::identity_of(machine), {}};
   bool anew = false;
   if (!arguments.history.empty() && std::filesystem::exists(arguments.history)) {
-    CheckHistory before = parse_history(read_file(arguments.history), arguments.history);
+    check::CheckHistory before = check::parse_history(text::read_file(arguments.history), arguments.history);
     anew = before.machine != history.machine;
     if (!anew) history = std::move(before);
   }
   history.checks.push_back(std::move(now));
-  const CheckAnswer answer = judge(machine, history.checks, arguments.false_alarms);
+  const check::CheckAnswer answer = check::judge(machine, history.checks, arguments.false_alarms);
   std::string text;
-  if (!arguments.output.empty() && answer.verdict == CheckVerdict::kChanged)
+  if (!arguments.output.empty() && answer.verdict == check::CheckVerdict::kChanged)
     text = put_right(arguments, machine, rows, answer);
-  if (!arguments.history.empty()) write_file(arguments.history, history_text(history));
-  if (!text.empty()) write_file(arguments.output, text);
+  if (!arguments.history.empty()) text::write_file(arguments.history, check::history_text(history));
+  if (!text.empty()) text::write_file(arguments.output, text);
   Json json = answer_json(answer, history);
   json["history_begun_anew"] = anew;
   write_json(arguments.json, json);
   std::FILE* out = human_stream(arguments.json);
   if (anew) fmt::print(out, "note: the history was of another fit of this machine; it begins anew\n");
-  fmt::print(out, "verdict: {}. {}\n", verdict_name(answer.verdict), answer.explanation);
+  fmt::print(out, "verdict: {}. {}\n", check::verdict_name(answer.verdict), answer.explanation);
   fmt::print(out, "evidence {:.3g} over {} check{}; a change is told from {:g}\n", answer.evidence,
              history.checks.size(), history.checks.size() == 1 ? "" : "s", answer.alarm);
 }
@@ -121,4 +121,4 @@ void register_check(CLI::App& vernier) {
   command->callback([arguments] { run_check(*arguments); });
 }
 
-}  // namespace vernier::check_cli
+}  // namespace vernier::commands::check_cli

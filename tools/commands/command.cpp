@@ -12,7 +12,7 @@
 #include "tools/commands/command.h"
 #include "tools/text/error.h"
 
-namespace vernier {
+namespace vernier::commands {
 namespace {
 
 /// Progress is shown from this moment on, and at most so often.
@@ -35,9 +35,10 @@ void write_json(const std::string& path, const nlohmann::ordered_json& result) {
   // The library writes numbers that are not finite as null.
   const std::string text =
       result.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
-  if (path != "-") return write_file(path, text);
+  if (path != "-") return text::write_file(path, text);
   if (std::fputs(text.c_str(), stdout) == EOF || std::fflush(stdout) != 0)
-    throw InputError({"standard output", 0}, "", std::string("cannot be written: ") + std::strerror(errno));
+    throw text::InputError({"standard output", 0}, "",
+                           std::string("cannot be written: ") + std::strerror(errno));
 }
 
 std::FILE* human_stream(const std::string& json_path) { return json_path == "-" ? stderr : stdout; }
@@ -62,4 +63,4 @@ void Progress::update(double fraction, const std::string& step) {
   std::fflush(stderr);
 }
 
-}  // namespace vernier
+}  // namespace vernier::commands

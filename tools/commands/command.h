@@ -6,7 +6,7 @@
 
 #include "tools/text/files.h"
 
-namespace vernier {
+namespace vernier::commands {
 
 /// Adds one subcommand to `vernier`. Its callback does the job; it throws InputError (exit 1) or LimitNotMet
 /// (exit 2) and returns normally otherwise (exit 0). Anything else that escapes is our bug (exit 70). One
@@ -152,4 +152,4 @@ class Progress {
   bool shown_ = false;
 };
 
-}  // namespace vernier
+}  // namespace vernier::commands

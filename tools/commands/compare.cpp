@@ -23,7 +23,7 @@
 #include "tools/simulate/corrected.h"
 #include "tools/text/error.h"
 
-namespace vernier::compare_cli {
+namespace vernier::commands::compare_cli {
 namespace {
 
 struct CompareArguments {
@@ -111,13 +111,14 @@ void print_failure(std::FILE* out, const nlohmann::ordered_json& json) {
 }
 
 void print_result(std::FILE* out, const nlohmann::ordered_json& json) {
-  fmt::print(out, "rms fit rows    {}   max {}\n", number_or_dash(value_of(json, "rms_um"), "um"),
-             number_or_dash(value_of(json, "max_um"), "um"));
-  fmt::print(out, "rms check rows  {}   max {}\n", number_or_dash(value_of(json, "check_rms_um"), "um"),
-             number_or_dash(value_of(json, "check_max_um"), "um"));
+  fmt::print(out, "rms fit rows    {}   max {}\n", results::number_or_dash(value_of(json, "rms_um"), "um"),
+             results::number_or_dash(value_of(json, "max_um"), "um"));
+  fmt::print(out, "rms check rows  {}   max {}\n",
+             results::number_or_dash(value_of(json, "check_rms_um"), "um"),
+             results::number_or_dash(value_of(json, "check_max_um"), "um"));
   if (const auto rotations = value_of(json, "rms_urad"))
-    fmt::print(out, "rms rotations   {}\n", number_or_dash(rotations, "urad"));
-  fmt::print(out, "noise           {}\n", number_or_dash(value_of(json, "noise_um"), "um"));
+    fmt::print(out, "rms rotations   {}\n", results::number_or_dash(rotations, "urad"));
+  fmt::print(out, "noise           {}\n", results::number_or_dash(value_of(json, "noise_um"), "um"));
   if (const auto& known = json["prediction_std_um"]; !known.is_null())
     fmt::print(out, "model known to  {:.4g} um on average over these rows, {:.4g} um at worst\n",
                known["rms"].get<double>(), known["max"].get<double>());
@@ -158,15 +159,15 @@ void judge(std::FILE* out, const nlohmann::ordered_json& limit) {
       worst["limit"].get<double>(), limit["unit"].get<std::string>(), worst["file"].get<std::string>(),
       worst["line"].get<std::size_t>());
   if (!limit["pass"].get<bool>())
-    throw LimitNotMet(words + ": not accepted, the machine is to be qualified again");
+    throw text::LimitNotMet(words + ": not accepted, the machine is to be qualified again");
   fmt::print(out, "{}: accepted\n", words);
 }
 
 /// The model's own deviations over the working volume, for the report.
-void add_field(nlohmann::ordered_json& json, const Machine& machine) {
+void add_field(nlohmann::ordered_json& json, const model::Machine& machine) {
   constexpr std::size_t kNodes = 7;  // along each axis
   std::string why_not;
-  if (auto field = volume_json(machine, kNodes, why_not))
+  if (auto field = results::volume_json(machine, kNodes, why_not))
     json["field"] = std::move(*field);
   else
     json["field_note"] = "No error field over the volume is drawn: " + why_not;
@@ -175,56 +176,59 @@ void add_field(nlohmann::ordered_json& json, const Machine& machine) {
 /// Did it help?
 void run_before_after(const CompareArguments& arguments) {
   if (arguments.before.empty() || arguments.after.empty())
-    throw InputError("--before and --after belong together");
+    throw text::InputError("--before and --after belong together");
   if (!arguments.measurements.empty())
-    throw InputError("\"" + arguments.measurements.front() +
-                     "\": with --before and --after there are no other measurement files");
+    throw text::InputError("\"" + arguments.measurements.front() +
+                           "\": with --before and --after there are no other measurement files");
   if (arguments.datum)
-    throw InputError("--datum: of MEAS; --before and --after fit the set-up of each side anyway");
-  if (!arguments.limit.empty()) throw InputError("--limit: of MEAS, not of --before and --after");
-  if (!arguments.by.empty()) throw InputError("--by: of MEAS, not of --before and --after");
-  if (!arguments.residuals.empty()) throw InputError("--residuals: of MEAS, not of --before and --after");
-  const Machine machine = read_machine(arguments.machine);
-  const ImageCorrection images = corrections_of_images(arguments.images);
-  const BeforeAfter result =
-      compare_before_after(machine, read_measurement(arguments.before, machine, images),
-                           read_measurement(arguments.after, machine, images));
+    throw text::InputError("--datum: of MEAS; --before and --after fit the set-up of each side anyway");
+  if (!arguments.limit.empty()) throw text::InputError("--limit: of MEAS, not of --before and --after");
+  if (!arguments.by.empty()) throw text::InputError("--by: of MEAS, not of --before and --after");
+  if (!arguments.residuals.empty())
+    throw text::InputError("--residuals: of MEAS, not of --before and --after");
+  const model::Machine machine = model::read_machine(arguments.machine);
+  const model::ImageCorrection images = simulate::corrections_of_images(arguments.images);
+  const residual::BeforeAfter result =
+      residual::compare_before_after(machine, model::read_measurement(arguments.before, machine, images),
+                                     model::read_measurement(arguments.after, machine, images));
   if (!arguments.output.empty()) {
     std::vector<std::string> files = arguments.before;
     files.insert(files.end(), arguments.after.begin(), arguments.after.end());
-    write_file(arguments.output,
-               improvement_report_html(arguments.header.on(before_after_page(result, machine.name, files))));
+    text::write_file(arguments.output, report::improvement_report_html(arguments.header.on(
+                                           results::before_after_page(result, machine.name, files))));
   }
-  write_json(arguments.json, before_after_json(result));
+  write_json(arguments.json, results::before_after_json(result));
   for (const std::string& note : machine.notes) fmt::print(stderr, "note: {}\n", note);
-  print_before_after(human_stream(arguments.json), result);
+  results::print_before_after(human_stream(arguments.json), result);
 }
 
 void run_compare(const CompareArguments& arguments) {
   if (!arguments.before.empty() || !arguments.after.empty()) return run_before_after(arguments);
   if (arguments.measurements.empty())
-    throw InputError("compare needs measurement files: MEAS, or --before and --after");
-  const Machine as_given = read_machine(arguments.machine);
-  const Measurement m =
-      read_measurement(arguments.measurements, as_given, corrections_of_images(arguments.images));
-  const Machine machine = arguments.datum ? set_up(as_given, m) : as_given;
-  const Eigen::VectorXd residual = residuals(machine, m);
-  nlohmann::ordered_json json = compare_json(machine, m, residual);
-  add_failure(json, failure_picture(machine, m, residual));
+    throw text::InputError("compare needs measurement files: MEAS, or --before and --after");
+  const model::Machine as_given = model::read_machine(arguments.machine);
+  const model::Measurement m = model::read_measurement(arguments.measurements, as_given,
+                                                       simulate::corrections_of_images(arguments.images));
+  const model::Machine machine = arguments.datum ? fit::set_up(as_given, m) : as_given;
+  const Eigen::VectorXd residual = fit::residuals(machine, m);
+  nlohmann::ordered_json json = results::compare_json(machine, m, residual);
+  results::add_failure(json, residual::failure_picture(machine, m, residual));
   if (arguments.datum) json["datum"] = "fitted";
-  if (!arguments.limit.empty()) json["limit"] = judge_residuals(m, residual, residual_limit(arguments.limit));
-  if (!arguments.by.empty()) json["groups"] = group_table(m, residual, arguments.by);
+  if (!arguments.limit.empty())
+    json["limit"] = results::judge_residuals(m, residual, results::residual_limit(arguments.limit));
+  if (!arguments.by.empty()) json["groups"] = results::group_table(m, residual, arguments.by);
   if (!arguments.output.empty()) {
     nlohmann::ordered_json with_detail = json;
-    add_detail(with_detail, machine, m, residual);
+    results::add_detail(with_detail, machine, m, residual);
     add_field(with_detail, machine);
-    write_file(arguments.output, compare_report_html(arguments.header.on(std::move(with_detail))));
+    text::write_file(arguments.output,
+                     report::compare_report_html(arguments.header.on(std::move(with_detail))));
   }
-  if (!arguments.residuals.empty()) write_file(arguments.residuals, residual_csv(m, residual));
+  if (!arguments.residuals.empty()) text::write_file(arguments.residuals, results::residual_csv(m, residual));
   write_json(arguments.json, json);
   for (const std::string& note : machine.notes) fmt::print(stderr, "note: {}\n", note);
   print_result(human_stream(arguments.json), json);
-  print_domains(human_stream(arguments.json), json["domains"]);
+  results::print_domains(human_stream(arguments.json), json["domains"]);
   if (!arguments.by.empty()) print_groups(human_stream(arguments.json), json["groups"]);
   if (!arguments.limit.empty()) judge(human_stream(arguments.json), json["limit"]);
 }
@@ -253,7 +257,7 @@ void register_compare(CLI::App& vernier) {
       "--datum", arguments->datum,
       "fit how the instrument stood (free BaseShifts) first, nothing else: offsets and turns of "
       "the set-up are then no failure of the model");
-  command->add_option("--images", arguments->images, kImagesHelp);
+  command->add_option("--images", arguments->images, simulate::kImagesHelp);
   command->add_option("-o,--output", arguments->output, "the report, one HTML file that opens offline");
   add_report_header(*command, arguments->header);
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
@@ -271,4 +275,4 @@ void register_compare(CLI::App& vernier) {
   command->callback([arguments] { run_compare(*arguments); });
 }
 
-}  // namespace vernier::compare_cli
+}  // namespace vernier::commands::compare_cli

@@ -8,7 +8,7 @@
 #include "tools/results/safety_json.h"
 #include "tools/text/files.h"
 
-namespace vernier::compile_cli {
+namespace vernier::commands::compile_cli {
 namespace {
 
 struct Arguments {
@@ -23,19 +23,19 @@ double parse_length_um(const std::string& text) {
   try {
     value = std::stod(text, &used);
   } catch (const std::exception&) {
-    throw InputError("--budget \"" + text + "\": not a length");
+    throw text::InputError("--budget \"" + text + "\": not a length");
   }
   const std::string unit = text.substr(used);
-  if (!(value > 0)) throw InputError("--budget \"" + text + "\": must be greater than zero");
+  if (!(value > 0)) throw text::InputError("--budget \"" + text + "\": must be greater than zero");
   if (unit.empty() || unit == "um") return value;
   if (unit == "nm") return value / 1000;
   if (unit == "mm") return value * 1000;
-  throw InputError("--budget \"" + text + "\": unit must be nm, um or mm");
+  throw text::InputError("--budget \"" + text + "\": unit must be nm, um or mm");
 }
 
-nlohmann::ordered_json to_json(const OutputBound& b) {
+nlohmann::ordered_json to_json(const compile::OutputBound& b) {
   nlohmann::ordered_json terms = nlohmann::ordered_json::array();
-  for (const Contribution& c : b.contributions)
+  for (const compile::Contribution& c : b.contributions)
     if (terms.size() < 20)
       terms.push_back({{"term", c.name}, {"source", c.source}, {"bound_um", c.bound_um}});
   if (b.deviation_deg)
@@ -53,7 +53,7 @@ nlohmann::ordered_json to_json(const OutputBound& b) {
           {"largest_terms", terms}};
 }
 
-nlohmann::ordered_json tilt_json(const CompiledMachine& c, const Machine& machine) {
+nlohmann::ordered_json tilt_json(const compile::CompiledMachine& c, const model::Machine& machine) {
   if (!c.tilt || !c.orientation) return nullptr;
   nlohmann::ordered_json axes = nlohmann::ordered_json::array();
   for (const std::size_t axis : c.orientation->axes) axes.push_back(machine.axes[axis].name);
@@ -65,10 +65,10 @@ nlohmann::ordered_json tilt_json(const CompiledMachine& c, const Machine& machin
           {"damped_share", c.orientation->damped.value_or(0)}};
 }
 
-nlohmann::ordered_json shares_json(const CompiledMachine& c, const Machine& machine) {
+nlohmann::ordered_json shares_json(const compile::CompiledMachine& c, const model::Machine& machine) {
   nlohmann::ordered_json shares = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < c.shares.shares.size(); ++i) {
-    const Axis& axis = machine.axes[c.shares.shares[i].axis];
+    const model::Axis& axis = machine.axes[c.shares.shares[i].axis];
     shares.push_back({{"effect", c.shares.names[i]},
                       {"axis", axis.name},
                       {"max", c.shares.largest[i] * (axis.rotary ? 1 : 1000)},
@@ -77,10 +77,10 @@ nlohmann::ordered_json shares_json(const CompiledMachine& c, const Machine& mach
   return shares;
 }
 
-nlohmann::ordered_json to_json(const CompiledMachine& c, const Machine& machine) {
+nlohmann::ordered_json to_json(const compile::CompiledMachine& c, const model::Machine& machine) {
   nlohmann::ordered_json bounds = nlohmann::ordered_json::array();
   double total = 0;
-  for (const OutputBound& b : c.bounds) {
+  for (const compile::OutputBound& b : c.bounds) {
     bounds.push_back(to_json(b));
     total = std::max(total, b.total_um);
   }
@@ -99,7 +99,7 @@ nlohmann::ordered_json to_json(const CompiledMachine& c, const Machine& machine)
           {"fingerprint", fmt::format("{:016x}", c.fingerprint)}};
 }
 
-void print_for_people(std::FILE* out, const CompiledMachine& c, const Machine& machine) {
+void print_for_people(std::FILE* out, const compile::CompiledMachine& c, const model::Machine& machine) {
   fmt::print(out, "{}: {} operations a tick, {} tables, {} bytes of image, {} shares of effects\n",
              machine.name, c.program.instructions.size(), c.program.tables.size(), c.image.size(),
              c.shares.shares.size());
@@ -111,7 +111,7 @@ void print_for_people(std::FILE* out, const CompiledMachine& c, const Machine& m
   fmt::print(out, "  {:<8}{:>10} ={:>12} +{:>8} +{:>10} +{:>9} +{:>8} +{:>8} +{:>11}{:>13}\n", "axis",
              "bound", "neglected", "tables", "functions", "rounding", "inputs", "lags", "2nd order",
              "deviation");
-  for (const OutputBound& b : c.bounds) {
+  for (const compile::OutputBound& b : c.bounds) {
     if (b.deviation_deg) {
       fmt::print(out, "  {:<8}corrects the direction by up to {:.4g} deg\n", b.axis, *b.deviation_deg);
       continue;
@@ -138,28 +138,28 @@ void print_for_people(std::FILE* out, const CompiledMachine& c, const Machine& m
 }
 
 void run_compile(const Arguments& arguments) {
-  const std::string text = read_file(arguments.machine);
-  CompileOptions options;
+  const std::string text = text::read_file(arguments.machine);
+  compile::CompileOptions options;
   if (!arguments.budget.empty()) options.budget_um = parse_length_um(arguments.budget);
-  const Machine machine = parse_machine(text, arguments.machine);
-  const std::vector<SafetyRule> accepted = rules_named(arguments.accept);
-  CompiledMachine compiled = compile_machine(machine, text, options);
-  const SafetySheet sheet = safety_sheet(machine, accepted);
-  if (!sheet.ok()) throw LimitNotMet(sheet.refusal());
+  const model::Machine machine = model::parse_machine(text, arguments.machine);
+  const std::vector<safety::SafetyRule> accepted = safety::rules_named(arguments.accept);
+  compile::CompiledMachine compiled = compile::compile_machine(machine, text, options);
+  const safety::SafetySheet sheet = safety::safety_sheet(machine, accepted);
+  if (!sheet.ok()) throw text::LimitNotMet(sheet.refusal());
   if (options.accepted_rules = sheet.accepted_mask(); options.accepted_rules != 0)
-    compiled = compile_machine(machine, text, options);
+    compiled = compile::compile_machine(machine, text, options);
   nlohmann::ordered_json result = to_json(compiled, machine);
-  result["safe_to_run"] = safety_json(sheet);
-  make_folder(arguments.directory);
-  write_file(arguments.directory + "/machine.xml", text);
-  write_file(arguments.directory + "/equation.h", compiled.header);
-  write_file(arguments.directory + "/equation.cpp", compiled.source);
-  write_file(arguments.directory + "/bound.json", result.dump(2) + "\n");
-  write_file(arguments.directory + "/machine.vimg", {compiled.image.begin(), compiled.image.end()});
+  result["safe_to_run"] = results::safety_json(sheet);
+  text::make_folder(arguments.directory);
+  text::write_file(arguments.directory + "/machine.xml", text);
+  text::write_file(arguments.directory + "/equation.h", compiled.header);
+  text::write_file(arguments.directory + "/equation.cpp", compiled.source);
+  text::write_file(arguments.directory + "/bound.json", result.dump(2) + "\n");
+  text::write_file(arguments.directory + "/machine.vimg", {compiled.image.begin(), compiled.image.end()});
   write_json(arguments.json, result);
   std::FILE* const out = human_stream(arguments.json);
   print_for_people(out, compiled, machine);
-  print_safety(out, sheet);
+  results::print_safety(out, sheet);
   fmt::print(out, "written to {}: machine.vimg, machine.xml, equation.h, equation.cpp, bound.json\n",
              arguments.directory);
 }
@@ -190,4 +190,4 @@ void register_compile(CLI::App& vernier) {
   command->callback([arguments] { run_compile(*arguments); });
 }
 
-}  // namespace vernier::compile_cli
+}  // namespace vernier::commands::compile_cli

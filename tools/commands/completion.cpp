@@ -7,7 +7,7 @@
 #include "tools/text/error.h"
 #include "tools/text/words.h"
 
-namespace vernier::completion_cli {
+namespace vernier::commands::completion_cli {
 namespace {
 
 /// Words behind a command: its kinds, or its options.
@@ -44,7 +44,7 @@ std::string bash(const CLI::App& vernier) {
   text +=
       "      " + known + ") place=\"${place:+$place }$word\" ;;\n    esac\n  done\n  case \"$place\" in\n";
   for (const auto& [place, words] : places_of(vernier))
-    text += "    '" + place + "') words='" + joined(words, " ") + "' ;;\n";
+    text += "    '" + place + "') words='" + text::joined(words, " ") + "' ;;\n";
   return text +
          "  esac\n  COMPREPLY=($(compgen -W \"$words\" -- \"$current\"))\n"
          "  [[ \"$current\" == -* || -z \"$place\" ]] || COMPREPLY+=($(compgen -f -- \"$current\"))\n}\n"
@@ -90,4 +90,4 @@ void register_completion(CLI::App& vernier) {
   });
 }
 
-}  // namespace vernier::completion_cli
+}  // namespace vernier::commands::completion_cli

@@ -14,7 +14,7 @@
 #include "tools/text/error.h"
 #include "tools/text/optional_json.h"
 
-namespace vernier::correct_cli {
+namespace vernier::commands::correct_cli {
 namespace {
 
 struct CorrectArguments {
@@ -39,7 +39,7 @@ bool is_table(const std::string& path, const std::string& text) {
 }
 
 /// Which axes a user's words name.
-std::vector<char> named_in(const Machine& machine, const std::string& words) {
+std::vector<char> named_in(const model::Machine& machine, const std::string& words) {
   std::vector<char> named(machine.axes.size(), 0);
   for (std::size_t i = 0; i < machine.axes.size(); ++i)
     named[i] = ("," + words).find("," + machine.axes[i].name + "=") != std::string::npos ? 1 : 0;
@@ -47,33 +47,33 @@ std::vector<char> named_in(const Machine& machine, const std::string& words) {
 }
 
 void run_correct(const CorrectArguments& arguments) {
-  const Machine read = read_machine(arguments.machine);
-  const Machine machine = arguments.tool.empty() ? read : tooled(read, arguments.tool);
-  const std::string text = read_file(arguments.path);
-  const States at = state_at(machine, arguments.at);
-  CorrectorOptions options;
+  const model::Machine read = model::read_machine(arguments.machine);
+  const model::Machine machine = arguments.tool.empty() ? read : kinematics::tooled(read, arguments.tool);
+  const std::string text = text::read_file(arguments.path);
+  const model::States at = kinematics::state_at(machine, arguments.at);
+  offline::CorrectorOptions options;
   options.back = arguments.back;
   options.with_rotary = arguments.with_rotary || machine.correct_orientation;
-  Corrector corrector(machine, options);
+  offline::Corrector corrector(machine, options);
   nlohmann::ordered_json json = {{"machine", machine.name}, {"path", arguments.path}};
   std::string result;
   if (is_table(arguments.path, text)) {
-    result = corrected_positions(text, arguments.path, at, corrector);
+    result = offline::corrected_positions(text, arguments.path, at, corrector);
   } else {
     if (arguments.back)
-      throw InputError({arguments.path, 0}, "--back",
-                       "goes with a CSV of positions, not with a part program");
-    PartProgramOptions program;
+      throw text::InputError({arguments.path, 0}, "--back",
+                             "goes with a CSV of positions, not with a part program");
+    offline::PartProgramOptions program;
     program.deviation_mm = 1e-3 * arguments.deviation_um;
-    const States zero = state_at(machine, arguments.zero);
+    const model::States zero = kinematics::state_at(machine, arguments.zero);
     for (std::size_t i = 0; i < machine.axes.size(); ++i) program.zero.push_back(zero.axis[i][0]);
-    PartProgram corrected =
-        corrected_program(text, arguments.path, at, named_in(machine, arguments.at), program, corrector);
+    offline::PartProgram corrected = offline::corrected_program(
+        text, arguments.path, at, named_in(machine, arguments.at), program, corrector);
     json["moves"] = corrected.moves;
     json["moves_written"] = corrected.written;
     result = std::move(corrected.text);
   }
-  const CorrectionSummary& summary = corrector.summary();
+  const offline::CorrectionSummary& summary = corrector.summary();
   json["positions"] = summary.positions;
   json["max_correction_um"] = summary.largest_um(machine);
   json["max_correction"] = nlohmann::ordered_json::object();
@@ -82,9 +82,9 @@ void run_correct(const CorrectArguments& arguments) {
   json["left_um"] = 1000 * summary.left_mm;
   json["not_converged"] = summary.not_converged;
   if (summary.not_converged > 0)
-    throw LimitNotMet(fmt::format("{} of {} positions cannot be corrected with these axes",
-                                  summary.not_converged, summary.positions));
-  write_file(arguments.output, result);
+    throw text::LimitNotMet(fmt::format("{} of {} positions cannot be corrected with these axes",
+                                        summary.not_converged, summary.positions));
+  text::write_file(arguments.output, result);
   write_json(arguments.json, json);
   std::FILE* out = human_stream(arguments.json);
   fmt::print(out, "{}: {} positions, corrections up to {:.4g} um", arguments.output, summary.positions,
@@ -129,4 +129,4 @@ void register_correct(CLI::App& vernier) {
   command->callback([arguments] { run_correct(*arguments); });
 }
 
-}  // namespace vernier::correct_cli
+}  // namespace vernier::commands::correct_cli

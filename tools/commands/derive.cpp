@@ -6,7 +6,7 @@
 #include "tools/derive/print_equation.h"
 #include "tools/model/machine_reader.h"
 
-namespace vernier::derive_cli {
+namespace vernier::commands::derive_cli {
 namespace {
 
 constexpr std::size_t kSamples = 200;
@@ -15,16 +15,17 @@ constexpr std::uint64_t kSeed = 20260101;
 struct Arguments {
   std::string machine, output, json;
   bool latex = false;
-  ErrorSizes sizes;
+  derive::ErrorSizes sizes;
 };
 
 void run_derive(const Arguments& arguments) {
-  DerivedMachine derived{derive(read_machine(arguments.machine), arguments.sizes), {}, {}, kSamples};
-  derived.bound = bound_second_order(derived.equation);
-  derived.sampled = sample_second_order(derived.equation, kSamples, kSeed);
-  const std::string text = arguments.latex ? print_latex(derived) : print_text(derived);
-  if (!arguments.output.empty()) write_file(arguments.output, text);
-  write_json(arguments.json, arguments.json.empty() ? nlohmann::ordered_json{} : to_json(derived));
+  derive::DerivedMachine derived{
+      derive::derive(model::read_machine(arguments.machine), arguments.sizes), {}, {}, kSamples};
+  derived.bound = derive::bound_second_order(derived.equation);
+  derived.sampled = derive::sample_second_order(derived.equation, kSamples, kSeed);
+  const std::string text = arguments.latex ? derive::print_latex(derived) : derive::print_text(derived);
+  if (!arguments.output.empty()) text::write_file(arguments.output, text);
+  write_json(arguments.json, arguments.json.empty() ? nlohmann::ordered_json{} : derive::to_json(derived));
   if (arguments.output.empty())
     fmt::print(human_stream(arguments.json), "{}", text);
   else
@@ -60,4 +61,4 @@ void register_derive(CLI::App& vernier) {
   command->callback([arguments] { run_derive(*arguments); });
 }
 
-}  // namespace vernier::derive_cli
+}  // namespace vernier::commands::derive_cli

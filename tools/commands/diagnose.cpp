@@ -17,7 +17,7 @@
 #include "tools/simulate/corrected.h"
 #include "tools/text/files.h"
 
-namespace vernier::diagnose_cli {
+namespace vernier::commands::diagnose_cli {
 namespace {
 
 struct DiagnoseArguments {
@@ -27,71 +27,71 @@ struct DiagnoseArguments {
   ReportHeader header;
 };
 
-void print_ladder(std::FILE* out, const Diagnosis& d) {
+void print_ladder(std::FILE* out, const diagnose::Diagnosis& d) {
   fmt::print(out, "{:<58} {:>12} {:>12}\n", "ladder", "fit rows", "check rows");
-  const LadderStep* before = nullptr;
-  for (const LadderStep& step : d.ladder) {
+  const diagnose::LadderStep* before = nullptr;
+  for (const diagnose::LadderStep& step : d.ladder) {
     const bool rises = before != nullptr && step.check_rms_um && *step.check_rms_um > *before->check_rms_um;
     fmt::print(out, "  {:<56} {:>12} {:>12}{}\n",
                step.effect.empty() ? "the model as given" : "+ " + step.said,
-               number_or_dash(step.rms_um, "um"), number_or_dash(step.check_rms_um, "um"),
+               results::number_or_dash(step.rms_um, "um"), results::number_or_dash(step.check_rms_um, "um"),
                rises ? "  the check rows do not confirm this step" : "");
     before = &step;
   }
-  fmt::print(out, "  {:<56} {:>12}\n", "noise", number_or_dash(d.base.noise_um, "um"));
+  fmt::print(out, "  {:<56} {:>12}\n", "noise", results::number_or_dash(d.base.noise_um, "um"));
 }
 
-void print_candidates(std::FILE* out, const Diagnosis& d) {
+void print_candidates(std::FILE* out, const diagnose::Diagnosis& d) {
   if (d.candidates.empty()) return;
   fmt::print(out, "{:<58} {:>8} {:>12} {:>12} {:>9}\n", "candidates, each alone", "score", "fit rows",
              "check rows", "p");
-  for (const CandidateFinding& c : d.candidates) {
+  for (const diagnose::CandidateFinding& c : d.candidates) {
     fmt::print(out, "{} {:<56} {:>8.1f} {:>12} {:>12} {:>9.2g}\n", c.accepted ? "*" : " ", c.candidate.spoken,
-               c.score, number_or_dash(c.rms_after_um, "um"), number_or_dash(c.check_rms_after_um, "um"),
-               c.p_value);
+               c.score, results::number_or_dash(c.rms_after_um, "um"),
+               results::number_or_dash(c.check_rms_after_um, "um"), c.p_value);
     if (!c.why_not.empty()) fmt::print(out, "    not accepted: {}\n", c.why_not);
     if (!c.confounded_with.empty())
       fmt::print(out, "    alike in these data: {}\n", fmt::join(c.confounded_with, ", "));
     if (!c.accepted) continue;
-    fmt::print(out, "    {}; in the chain: {}\n", said_of(c), c.candidate.label);
-    for (const ParameterEstimate& p : c.parameters)
+    fmt::print(out, "    {}; in the chain: {}\n", diagnose::said_of(c), c.candidate.label);
+    for (const fit::ParameterEstimate& p : c.parameters)
       fmt::print(out, "    {} = {:.6g} +- {} {}\n", p.name, p.value, fmt::format("{:.2g}", p.std), p.unit);
     fmt::print(out, "    vernier add '{}' MACHINE -o NEW\n", c.add);
   }
 }
 
 /// What the machine of the last step leaves of the readings.
-void write_residuals(const DiagnoseArguments& arguments, const Diagnosis& diagnosis) {
-  const Machine machine = parse_machine(diagnosis.machine_text, arguments.machine);
-  const Measurement m =
-      read_measurement(arguments.measurements, machine, corrections_of_images(arguments.images));
-  write_file(arguments.residuals, residual_csv(m, residuals(machine, m)));
+void write_residuals(const DiagnoseArguments& arguments, const diagnose::Diagnosis& diagnosis) {
+  const model::Machine machine = model::parse_machine(diagnosis.machine_text, arguments.machine);
+  const model::Measurement m = model::read_measurement(arguments.measurements, machine,
+                                                       simulate::corrections_of_images(arguments.images));
+  text::write_file(arguments.residuals, results::residual_csv(m, fit::residuals(machine, m)));
 }
 
 void run_diagnose(const DiagnoseArguments& arguments) {
-  const std::string text = read_file(arguments.machine);
-  const Machine machine = parse_machine(text, arguments.machine);
-  const Measurement m =
-      read_measurement(arguments.measurements, machine, corrections_of_images(arguments.images));
-  DiagnoseOptions options;
-  options.effects = effect_catalogue(arguments.effects);
+  const std::string text = text::read_file(arguments.machine);
+  const model::Machine machine = model::parse_machine(text, arguments.machine);
+  const model::Measurement m = model::read_measurement(arguments.measurements, machine,
+                                                       simulate::corrections_of_images(arguments.images));
+  diagnose::DiagnoseOptions options;
+  options.effects = effects::effect_catalogue(arguments.effects);
   options.most_effects = arguments.most;
   Progress progress("diagnose");
   options.progress = [&](double fraction, const std::string& step) { progress.update(fraction, step); };
-  Diagnosis diagnosis = diagnose(text, machine, m, options);
-  diagnosis.next_measurement = advice_for(text, machine, m, diagnosis, options.effects);
-  const nlohmann::ordered_json json = diagnosis_json(diagnosis, m);
+  diagnose::Diagnosis diagnosis = diagnose::diagnose(text, machine, m, options);
+  diagnosis.next_measurement = plan::advice_for(text, machine, m, diagnosis, options.effects);
+  const nlohmann::ordered_json json = results::diagnosis_json(diagnosis, m);
   if (!arguments.output.empty()) {
     nlohmann::ordered_json page = json;
     page["machine"] = machine.name;
     page["files"] = arguments.measurements;
-    write_file(arguments.output, diagnose_report_html(arguments.header.on(std::move(page))));
+    text::write_file(arguments.output, report::diagnose_report_html(arguments.header.on(std::move(page))));
   }
-  if (!arguments.write.empty()) write_file(arguments.write, diagnosis.machine_text);
+  if (!arguments.write.empty()) text::write_file(arguments.write, diagnosis.machine_text);
   if (!arguments.residuals.empty()) write_residuals(arguments, diagnosis);
   write_json(arguments.json, json);
   std::FILE* out = human_stream(arguments.json);
-  fmt::print(out, "verdict: {}\n{}\n\n", verdict_name(diagnosis.verdict), diagnosis.explanation);
+  fmt::print(out, "verdict: {}\n{}\n\n", diagnose::verdict_name(diagnosis.verdict), diagnosis.explanation);
   print_ladder(out, diagnosis);
   fmt::print(out, "\n");
   print_candidates(out, diagnosis);
@@ -113,7 +113,7 @@ void register_diagnose(CLI::App& vernier) {
   command->add_option("--machine-out", arguments->write,
                       "the machine file with the effects of the ladder, fitted");
   command->add_option("--effects", arguments->effects, "files with effects of your own; may be repeated");
-  command->add_option("--images", arguments->images, kImagesHelp);
+  command->add_option("--images", arguments->images, simulate::kImagesHelp);
   command->add_option("--most", arguments->most, "most effects in the ladder")
       ->check(CLI::Range(1, 10))
       ->capture_default_str();
@@ -125,4 +125,4 @@ void register_diagnose(CLI::App& vernier) {
   command->callback([arguments] { run_diagnose(*arguments); });
 }
 
-}  // namespace vernier::diagnose_cli
+}  // namespace vernier::commands::diagnose_cli

@@ -12,7 +12,7 @@
 #include "tools/workbench/excluded.h"
 #include "tools/workbench/values.h"
 
-namespace vernier::edit_cli {
+namespace vernier::commands::edit_cli {
 namespace {
 
 struct ExcludeArguments {
@@ -21,17 +21,17 @@ struct ExcludeArguments {
 };
 
 void run_exclude(const ExcludeArguments& arguments) {
-  std::string text = read_file(arguments.measurement);
+  std::string text = text::read_file(arguments.measurement);
   if (!arguments.lines.empty()) {
-    if (arguments.output.empty()) throw InputError("-o is missing: where the measurement goes");
-    const auto lines = parse_lines(arguments.lines);
-    text = arguments.restore ? restore_rows(text, arguments.measurement, lines)
-                             : exclude_rows(text, arguments.measurement, lines, arguments.reason);
-    write_file(arguments.output, text);
+    if (arguments.output.empty()) throw text::InputError("-o is missing: where the measurement goes");
+    const auto lines = workbench::parse_lines(arguments.lines);
+    text = arguments.restore ? workbench::restore_rows(text, arguments.measurement, lines)
+                             : workbench::exclude_rows(text, arguments.measurement, lines, arguments.reason);
+    text::write_file(arguments.output, text);
   }
   nlohmann::ordered_json json = {{"excluded", nlohmann::ordered_json::array()}};
   std::FILE* const out = human_stream(arguments.json);
-  for (const ExcludedRow& row : excluded_rows(text)) {
+  for (const workbench::ExcludedRow& row : workbench::excluded_rows(text)) {
     json["excluded"].push_back({{"line", row.line}, {"reason", row.reason}});
     fmt::print(out, "line {}: {}\n", row.line, row.reason);
   }
@@ -45,17 +45,17 @@ struct SetArguments {
 };
 
 void run_set(const SetArguments& arguments) {
-  const std::string text = read_file(arguments.machine);
-  Machine machine = parse_machine(text, arguments.machine);
+  const std::string text = text::read_file(arguments.machine);
+  model::Machine machine = model::parse_machine(text, arguments.machine);
   std::map<std::string, double> values;
   for (const std::string& word : arguments.values) {
     const auto at = word.rfind('=');
-    const auto value = at == std::string::npos ? std::nullopt : parse_number(word.substr(at + 1));
-    if (!value) throw InputError("\"" + word + "\": a value is NAME=NUMBER");
+    const auto value = at == std::string::npos ? std::nullopt : text::parse_number(word.substr(at + 1));
+    if (!value) throw text::InputError("\"" + word + "\": a value is NAME=NUMBER");
     values[word.substr(0, at)] = *value;
   }
-  set_values(machine, values);
-  write_file(arguments.output, update_machine_text(text, machine, true));
+  workbench::set_values(machine, values);
+  text::write_file(arguments.output, model::update_machine_text(text, machine, true));
   nlohmann::ordered_json json = {{"machine", arguments.output}, {"values", values}};
   write_json(arguments.json, json);
   for (const auto& [name, value] : values)
@@ -92,4 +92,4 @@ void register_set(CLI::App& vernier) {
   command->callback([arguments] { run_set(*arguments); });
 }
 
-}  // namespace vernier::edit_cli
+}  // namespace vernier::commands::edit_cli

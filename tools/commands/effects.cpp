@@ -10,7 +10,7 @@
 #include "tools/text/error.h"
 #include "tools/text/files.h"
 
-namespace vernier::effects_cli {
+namespace vernier::commands::effects_cli {
 namespace {
 
 struct EffectsArguments {
@@ -23,33 +23,34 @@ struct AddArguments {
   std::vector<std::string> files;
 };
 
-nlohmann::ordered_json effect_json(const Effect& effect) {
+nlohmann::ordered_json effect_json(const effects::Effect& effect) {
   nlohmann::ordered_json json = {{"id", effect.id},
                                  {"title", effect.title},
                                  {"formula", effect.formula},
                                  {"signature", effect.signature},
                                  {"exposed_by", effect.exposed_by},
                                  {"impostors", effect.impostors}};
-  for (const EffectForm& form : effect.forms)
-    json["forms"].push_back({{"label", form.label}, {"place", place_name(form.place)}, {"term", form.term}});
+  for (const effects::EffectForm& form : effect.forms)
+    json["forms"].push_back(
+        {{"label", form.label}, {"place", effects::place_name(form.place)}, {"term", form.term}});
   return json;
 }
 
-void print_effect(std::FILE* out, const Effect& effect) {
+void print_effect(std::FILE* out, const effects::Effect& effect) {
   fmt::print(out, "{}: {}\n  term         {}\n  signature    {}\n  exposed by   {}\n  confused with",
              effect.id, effect.title, effect.formula, effect.signature, effect.exposed_by);
   for (const std::string& other : effect.impostors) fmt::print(out, " {}", other);
   fmt::print(out, "\n");
-  for (const EffectForm& form : effect.forms)
-    fmt::print(out, "  form {:<12} at {:<7} {}\n", form.label, place_name(form.place), form.term);
+  for (const effects::EffectForm& form : effect.forms)
+    fmt::print(out, "  form {:<12} at {:<7} {}\n", form.label, effects::place_name(form.place), form.term);
 }
 
 void run_effects(const EffectsArguments& arguments) {
-  const std::vector<Effect> all = effect_catalogue(arguments.files);
+  const std::vector<effects::Effect> all = effects::effect_catalogue(arguments.files);
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
   std::FILE* out = human_stream(arguments.json);
   bool found = false;
-  for (const Effect& effect : all) {
+  for (const effects::Effect& effect : all) {
     if (!arguments.id.empty() && effect.id != arguments.id) continue;
     found = true;
     json.push_back(effect_json(effect));
@@ -58,31 +59,33 @@ void run_effects(const EffectsArguments& arguments) {
     else
       print_effect(out, effect);
   }
-  if (!found) throw InputError("\"" + arguments.id + "\": unknown effect (`vernier effects` lists them)");
+  if (!found)
+    throw text::InputError("\"" + arguments.id + "\": unknown effect (`vernier effects` lists them)");
   write_json(arguments.json, json);
 }
 
 void run_add(const AddArguments& arguments) {
-  MachineText with = machine_text(read_file(arguments.machine), arguments.machine);
-  const Machine machine = with.machine;
-  const std::vector<Effect> effects = effect_catalogue(arguments.files);
-  const Candidate candidate = put_in(with, parse_add_string(arguments.effect, machine, effects));
-  write_file(arguments.output, with.text);
+  effects::MachineText with = effects::machine_text(text::read_file(arguments.machine), arguments.machine);
+  const model::Machine machine = with.machine;
+  const std::vector<effects::Effect> effects = effects::effect_catalogue(arguments.files);
+  const effects::Candidate candidate =
+      effects::put_in(with, effects::parse_add_string(arguments.effect, machine, effects));
+  text::write_file(arguments.output, with.text);
   nlohmann::ordered_json json = {
       {"effect", candidate.choice.effect->id}, {"label", candidate.label}, {"said", candidate.spoken}};
-  for (const CandidateTerm& term : candidate.terms)
+  for (const effects::CandidateTerm& term : candidate.terms)
     json["terms"].push_back({{"branch", term.place.workpiece ? "workpiece" : "tool"},
-                             {"transform", transform_at(machine, term.place).n},
-                             {"dof", dof_name(machine, term.place)},
+                             {"transform", effects::transform_at(machine, term.place).n},
+                             {"dof", effects::dof_name(machine, term.place)},
                              {"term", term.text}});
-  for (const CandidateUnknown& unknown : candidate.unknowns)
+  for (const effects::CandidateUnknown& unknown : candidate.unknowns)
     json["statics"].push_back({{"name", unknown.name}, {"start", unknown.start}, {"unit", unknown.unit}});
   write_json(arguments.json, json);
   std::FILE* out = human_stream(arguments.json);
   fmt::print(out, "added {} ({})\n", candidate.spoken, candidate.label);
-  for (const CandidateTerm& term : candidate.terms)
-    fmt::print(out, "  {} of transform {}: + {}\n", dof_name(machine, term.place),
-               transform_at(machine, term.place).n, term.text);
+  for (const effects::CandidateTerm& term : candidate.terms)
+    fmt::print(out, "  {} of transform {}: + {}\n", effects::dof_name(machine, term.place),
+               effects::transform_at(machine, term.place).n, term.text);
   fmt::print(out, "not fitted yet: vernier fit {} MEAS -o FITTED\n", arguments.output);
 }
 
@@ -118,4 +121,4 @@ void register_add(CLI::App& vernier) {
   command->callback([arguments] { run_add(*arguments); });
 }
 
-}  // namespace vernier::effects_cli
+}  // namespace vernier::commands::effects_cli

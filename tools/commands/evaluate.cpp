@@ -15,7 +15,7 @@
 #include "tools/report/report.h"
 #include "tools/text/error.h"
 
-namespace vernier::evaluate_cli {
+namespace vernier::commands::evaluate_cli {
 namespace {
 
 struct PositioningArguments {
@@ -43,48 +43,52 @@ void print_result(std::FILE* out, const nlohmann::ordered_json& json) {
   }
 }
 
-double length_of(const PositioningFile& file) {
+double length_of(const evaluate::PositioningFile& file) {
   return file.readings.back().target - file.readings.front().target;
 }
 
 /// The budget's uncertainties, where none is stated otherwise.
-PositioningBudget budget_of(const PositioningArguments& arguments, const PositioningFile& file,
-                            PositioningWords& words) {
-  PositioningBudget budget;
-  for (const std::string& one : arguments.budget) add_to_budget(budget, one);
+evaluate::PositioningBudget budget_of(const PositioningArguments& arguments,
+                                      const evaluate::PositioningFile& file,
+                                      evaluate::PositioningWords& words) {
+  evaluate::PositioningBudget budget;
+  for (const std::string& one : arguments.budget) evaluate::add_to_budget(budget, one);
   if (!budget.given) return budget;
-  if (file.unit != "mm") throw InputError("--budget: of a linear axis; state --uncertainty for a rotary one");
+  if (file.unit != "mm")
+    throw text::InputError("--budget: of a linear axis; state --uncertainty for a rotary one");
   std::size_t runs = file.rows;
-  for (const TargetReadings& target : file.readings)
+  for (const evaluate::TargetReadings& target : file.readings)
     for (const auto& list : target.deviation)
       if (!list.empty()) runs = std::min(runs, list.size());
-  for (const auto& [name, value] : budget_uncertainty(budget, length_of(file), static_cast<double>(runs)))
+  for (const auto& [name, value] :
+       evaluate::budget_uncertainty(budget, length_of(file), static_cast<double>(runs)))
     words.uncertainty.try_emplace(name, value);
   return budget;
 }
 
 void run_positioning(const PositioningArguments& arguments) {
-  if (arguments.axes.size() != 1) throw InputError("--axis: one axis a call");
-  PositioningWords words;
+  if (arguments.axes.size() != 1) throw text::InputError("--axis: one axis a call");
+  evaluate::PositioningWords words;
   words.axis = arguments.axes.front();
   words.files = arguments.measurements;
   for (const std::string& one : arguments.tolerances)
-    words.tolerance.insert(limit_of(one, "--tolerance", kCharacteristics));
+    words.tolerance.insert(evaluate::limit_of(one, "--tolerance", kCharacteristics));
   for (const std::string& one : arguments.uncertainties)
-    words.uncertainty.insert(limit_of(one, "--uncertainty", kCharacteristics));
+    words.uncertainty.insert(evaluate::limit_of(one, "--uncertainty", kCharacteristics));
   words.header = arguments.header.entries();
   std::string reading = arguments.reading;
   if (reading.empty())
     for (const char c : words.axis) reading += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  PositioningFile all;
+  evaluate::PositioningFile all;
   for (const std::string& path : arguments.measurements) {
-    PositioningFile one = read_positioning(read_file(path), path, words.axis, reading);
+    evaluate::PositioningFile one =
+        evaluate::read_positioning(text::read_file(path), path, words.axis, reading);
     all.unit = one.unit;
     all.rows += one.rows;
     all.sense_from_order |= one.sense_from_order;
-    for (TargetReadings& target : one.readings) {
+    for (evaluate::TargetReadings& target : one.readings) {
       bool known = false;
-      for (TargetReadings& other : all.readings)
+      for (evaluate::TargetReadings& other : all.readings)
         if (std::abs(other.target - target.target) < 1e-6) {
           known = true;
           for (std::size_t sense = 0; sense < 2; ++sense)
@@ -96,18 +100,20 @@ void run_positioning(const PositioningArguments& arguments) {
   }
   std::sort(all.readings.begin(), all.readings.end(),
             [](const auto& a, const auto& b) { return a.target < b.target; });
-  const PositioningBudget budget = budget_of(arguments, all, words);
-  nlohmann::ordered_json json = positioning_json(evaluate_positioning(all.readings), all, words);
+  const evaluate::PositioningBudget budget = budget_of(arguments, all, words);
+  nlohmann::ordered_json json =
+      evaluate::positioning_json(evaluate::evaluate_positioning(all.readings), all, words);
   if (budget.given)
-    for (const BudgetPart& part : budget_parts(budget, length_of(all)))
+    for (const evaluate::BudgetPart& part : evaluate::budget_parts(budget, length_of(all)))
       json["budget"].push_back({{"part", part.name}, {"U_um", part.expanded_um}});
   if (!arguments.output.empty())
-    write_file(arguments.output, improvement_report_html(arguments.header.on(positioning_page(json, words))));
+    text::write_file(arguments.output, report::improvement_report_html(
+                                           arguments.header.on(evaluate::positioning_page(json, words))));
   write_json(arguments.json, json);
   print_result(human_stream(arguments.json), json);
   for (const auto& one : json["characteristics"])
     if (one.contains("conformity") && one["conformity"] == "not met")
-      throw LimitNotMet("the tolerance of " + one["name"].get<std::string>() + " is not met");
+      throw text::LimitNotMet("the tolerance of " + one["name"].get<std::string>() + " is not met");
 }
 
 }  // namespace
@@ -147,4 +153,4 @@ void register_evaluate(CLI::App& vernier) {
   add_robot_kind(*evaluate);
 }
 
-}  // namespace vernier::evaluate_cli
+}  // namespace vernier::commands::evaluate_cli

@@ -12,7 +12,7 @@
 #include "tools/report/report.h"
 #include "tools/text/error.h"
 
-namespace vernier::evaluate_cli {
+namespace vernier::commands::evaluate_cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -27,7 +27,7 @@ const std::vector<std::string> kLetters = {"E", "A", "M", "R", "B"};
 constexpr std::size_t kBody = 6;  // letters of a name of a body diagonal: "+X+Y+Z"
 
 /// The machine's values: the largest of its body diagonals, judged.
-Json machine_json(const std::map<std::string, double>& values, const PositioningWords& words) {
+Json machine_json(const std::map<std::string, double>& values, const evaluate::PositioningWords& words) {
   constexpr double kUmPerMm = 1000;
   Json list = Json::array();
   for (const std::string& letter : kLetters) {
@@ -40,7 +40,8 @@ Json machine_json(const std::map<std::string, double>& values, const Positioning
                 {"uncertainty", u == words.uncertainty.end() ? Json(nullptr) : Json(expanded * kUmPerMm)}};
     if (limit != words.tolerance.end()) {
       one["tolerance"] = limit->second * kUmPerMm;
-      one["conformity"] = conformity_text(conformity(value->second, limit->second, expanded));
+      one["conformity"] =
+          evaluate::conformity_text(evaluate::conformity(value->second, limit->second, expanded));
     }
     list.push_back(one);
   }
@@ -91,39 +92,43 @@ void print(std::FILE* out, const Json& json) {
 }
 
 void run_diagonals(const DiagonalArguments& arguments) {
-  PositioningWords words;
+  evaluate::PositioningWords words;
   for (const std::string& one : arguments.tolerances)
-    words.tolerance.insert(limit_of(one, "--tolerance", kLetters));
+    words.tolerance.insert(evaluate::limit_of(one, "--tolerance", kLetters));
   for (const std::string& one : arguments.uncertainties)
-    words.uncertainty.insert(limit_of(one, "--uncertainty", kLetters));
+    words.uncertainty.insert(evaluate::limit_of(one, "--uncertainty", kLetters));
   words.header = arguments.header.entries();
   Json json = {{"standard", "ISO 230-6"}, {"diagonals", Json::array()}};
   std::vector<Json> pages;
-  std::map<std::string, PositioningResult> body;
+  std::map<std::string, evaluate::PositioningResult> body;
   for (const std::string& path : arguments.measurements)
-    for (const DiagonalFile& one : read_diagonals(read_file(path), path, arguments.reading)) {
-      const PositioningResult result = evaluate_positioning(one.positions.readings);
-      PositioningWords along;
+    for (const evaluate::DiagonalFile& one :
+         evaluate::read_diagonals(text::read_file(path), path, arguments.reading)) {
+      const evaluate::PositioningResult result = evaluate::evaluate_positioning(one.positions.readings);
+      evaluate::PositioningWords along;
       along.axis = one.name;
       if (one.name.size() == kBody && !body.emplace(one.name, result).second)
-        throw InputError(path + ": the diagonal " + one.name + " stands in two files: put them into one");
+        throw text::InputError(path + ": the diagonal " + one.name +
+                               " stands in two files: put them into one");
       Json each = {{"diagonal", one.name}, {"length_mm", one.length}};
-      const Json evaluated = positioning_json(result, one.positions, along);
-      pages.push_back(positioning_page(evaluated, along));
+      const Json evaluated = evaluate::positioning_json(result, one.positions, along);
+      pages.push_back(evaluate::positioning_page(evaluated, along));
       pages.back()["sections"][0]["title"] = "Diagonal " + one.name;
       for (const auto& [key, value] : evaluated.items())
         if (key != "standard" && key != "axis") each[key] = value;
       json["diagonals"].push_back(each);
     }
-  json["machine"] = machine_json(machine_values(body), words);
+  json["machine"] = machine_json(evaluate::machine_values(body), words);
   if (!arguments.output.empty())
-    write_file(arguments.output,
-               improvement_report_html(arguments.header.on(page_of(json, pages, arguments.measurements))));
+    text::write_file(
+        arguments.output,
+        report::improvement_report_html(arguments.header.on(page_of(json, pages, arguments.measurements))));
   write_json(arguments.json, json);
   print(human_stream(arguments.json), json);
   for (const Json& one : json["machine"])
-    if (one.contains("conformity") && one["conformity"] == conformity_text(Conformity::kNotMet))
-      throw LimitNotMet("the tolerance of " + one["name"].get<std::string>() + " is not met");
+    if (one.contains("conformity") &&
+        one["conformity"] == evaluate::conformity_text(evaluate::Conformity::kNotMet))
+      throw text::LimitNotMet("the tolerance of " + one["name"].get<std::string>() + " is not met");
 }
 
 }  // namespace
@@ -152,4 +157,4 @@ void add_diagonals_kind(CLI::App& evaluate) {
   kind->callback([arguments] { run_diagonals(*arguments); });
 }
 
-}  // namespace vernier::evaluate_cli
+}  // namespace vernier::commands::evaluate_cli

@@ -15,7 +15,7 @@
 #include "tools/text/error.h"
 #include "tools/text/optional_json.h"
 
-namespace vernier::evaluate_cli {
+namespace vernier::commands::evaluate_cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -28,60 +28,61 @@ struct RobotArguments {
 };
 
 /// Where the robot was told to be, from the axes and the nominal chain.
-std::vector<PoseReading> readings_by_machine(const RobotArguments& arguments) {
-  const Machine machine = read_machine(arguments.machine);
-  const Measurement m = read_measurement(arguments.measurements, machine);
-  const Poses nominal = forward(nominal_machine(machine), commanded_states(m));
-  std::vector<PoseReading> rows(m.rows());
+std::vector<evaluate::PoseReading> readings_by_machine(const RobotArguments& arguments) {
+  const model::Machine machine = model::read_machine(arguments.machine);
+  const model::Measurement m = model::read_measurement(arguments.measurements, machine);
+  const model::Poses nominal = model::forward(model::nominal_machine(machine), model::commanded_states(m));
+  std::vector<evaluate::PoseReading> rows(m.rows());
   std::vector<int> seen(m.rows());
   for (std::size_t row = 0; row < m.rows(); ++row) {
     const auto at = static_cast<Eigen::Index>(row);
     rows[row].run = m.states.run_names[m.states.run[row]];
     rows[row].commanded_mm = nominal.position.col(at);
     const Eigen::AngleAxisd turned(nominal.rotation[row]);
-    rows[row].commanded_deg = kDegPerRad * turned.angle() * turned.axis();
+    rows[row].commanded_deg = maths::kDegPerRad * turned.angle() * turned.axis();
     rows[row].u_mm = m.uncertainty[at];
     rows[row].measured_mm.setZero();
     rows[row].measured_deg = Eigen::Vector3d::Zero();
   }
-  for (const Observation& o : m.observations) {
+  for (const model::Observation& o : m.observations) {
     const auto kind = static_cast<Eigen::Index>(o.kind);
-    if (kind > static_cast<Eigen::Index>(ObservationKind::kRz)) continue;
+    if (kind > static_cast<Eigen::Index>(model::ObservationKind::kRz)) continue;
     (kind < 3 ? rows[o.row].measured_mm[kind] : (*rows[o.row].measured_deg)[kind - 3]) = o.value;
     seen[o.row] |= 1 << kind;
   }
-  std::vector<PoseReading> readings;
+  std::vector<evaluate::PoseReading> readings;
   constexpr int kPosition = 7, kRotation = 56;
   for (std::size_t row = 0; row < rows.size(); ++row) {
     if ((seen[row] & kPosition) != kPosition) continue;
     if ((seen[row] & kRotation) != kRotation) rows[row].measured_deg = std::nullopt;
     readings.push_back(rows[row]);
   }
-  if (readings.empty()) throw InputError({m.files.front(), 0}, "x", "no row has x, y and z");
+  if (readings.empty()) throw text::InputError({m.files.front(), 0}, "x", "no row has x, y and z");
   return readings;
 }
 
-std::vector<PoseReading> readings_of(const RobotArguments& arguments) {
+std::vector<evaluate::PoseReading> readings_of(const RobotArguments& arguments) {
   if (!arguments.machine.empty()) return readings_by_machine(arguments);
-  std::vector<PoseReading> readings;
+  std::vector<evaluate::PoseReading> readings;
   for (const std::string& path : arguments.measurements)
-    for (PoseReading& one : read_pose_readings(read_file(path), path)) readings.push_back(std::move(one));
+    for (evaluate::PoseReading& one : evaluate::read_pose_readings(text::read_file(path), path))
+      readings.push_back(std::move(one));
   return readings;
 }
 
 Json vector_json(const Eigen::Vector3d& v, double unit) { return {v[0] * unit, v[1] * unit, v[2] * unit}; }
 
-Json pose_json(const PoseResult& pose, const char* accuracy, const char* repeatability) {
+Json pose_json(const evaluate::PoseResult& pose, const char* accuracy, const char* repeatability) {
   const std::string ap = accuracy, rp = repeatability;
   Json json = {{"commanded_mm", vector_json(pose.commanded_mm, 1)},
                {"n", pose.count},
-               {ap + "_um", pose.accuracy_mm * kUmPerMm},
-               {ap + "_xyz_um", vector_json(pose.deviation_mm, kUmPerMm)},
-               {ap + "_u95_um", 2 * pose.accuracy_std_mm * kUmPerMm},
-               {rp + "_um", pose.repeatability_mm * kUmPerMm},
-               {rp + "_interval_um", {pose.low_mm * kUmPerMm, pose.high_mm * kUmPerMm}},
-               {"mean_distance_um", pose.mean_distance_mm * kUmPerMm},
-               {"S_um", pose.distance_spread_mm * kUmPerMm},
+               {ap + "_um", pose.accuracy_mm * maths::kUmPerMm},
+               {ap + "_xyz_um", vector_json(pose.deviation_mm, maths::kUmPerMm)},
+               {ap + "_u95_um", 2 * pose.accuracy_std_mm * maths::kUmPerMm},
+               {rp + "_um", pose.repeatability_mm * maths::kUmPerMm},
+               {rp + "_interval_um", {pose.low_mm * maths::kUmPerMm, pose.high_mm * maths::kUmPerMm}},
+               {"mean_distance_um", pose.mean_distance_mm * maths::kUmPerMm},
+               {"S_um", pose.distance_spread_mm * maths::kUmPerMm},
                {"degrees_of_freedom", pose.freedom}};
   if (pose.accuracy_deg) json[ap + "_abc_deg"] = vector_json(*pose.accuracy_deg, 1);
   if (pose.repeatability_deg) json[rp + "_abc_deg"] = vector_json(*pose.repeatability_deg, 1);
@@ -104,9 +105,9 @@ struct Judged {
 };
 
 /// The largest of each characteristic, and how uncertain it is upwards.
-std::vector<Judged> largest(const std::vector<PoseResult>& poses, bool path) {
+std::vector<Judged> largest(const std::vector<evaluate::PoseResult>& poses, bool path) {
   Judged accuracy{path ? "AT" : "AP"}, repeatability{path ? "RT" : "RP"};
-  for (const PoseResult& pose : poses) {
+  for (const evaluate::PoseResult& pose : poses) {
     if (pose.accuracy_mm >= accuracy.value_mm)
       accuracy.value_mm = pose.accuracy_mm, accuracy.expanded_mm = 2 * pose.accuracy_std_mm;
     if (pose.repeatability_mm >= repeatability.value_mm)
@@ -117,16 +118,17 @@ std::vector<Judged> largest(const std::vector<PoseResult>& poses, bool path) {
 }
 
 /// What the standard asks for and this test has not.
-Json shortcomings(const std::vector<PoseReading>& readings, const std::vector<PoseResult>& poses, bool path) {
+Json shortcomings(const std::vector<evaluate::PoseReading>& readings,
+                  const std::vector<evaluate::PoseResult>& poses, bool path) {
   Json notes = Json::array();
   const std::size_t wanted = path ? 10 : 30;
   std::size_t fewest = wanted;
   double u = 0, least = HUGE_VAL;
-  for (const PoseResult& pose : poses) {
+  for (const evaluate::PoseResult& pose : poses) {
     fewest = std::min(fewest, pose.count);
     least = std::min(least, pose.repeatability_mm);
   }
-  for (const PoseReading& reading : readings) u = std::max(u, reading.u_mm);
+  for (const evaluate::PoseReading& reading : readings) u = std::max(u, reading.u_mm);
   if (fewest < wanted) notes.push_back(fmt::format("{} cycles where ISO 9283 asks for {}", fewest, wanted));
   if (u == 0)
     notes.push_back("no uncertainty of the instrument is given (u): U is that of the scatter alone");
@@ -134,7 +136,7 @@ Json shortcomings(const std::vector<PoseReading>& readings, const std::vector<Po
     notes.push_back(
         fmt::format("U of the instrument is {:.3g} um, more than a quarter of the {:.3g} um of "
                     "repeatability: it judges itself",
-                    2 * u * kUmPerMm, least * kUmPerMm));
+                    2 * u * maths::kUmPerMm, least * maths::kUmPerMm));
   return notes;
 }
 
@@ -143,30 +145,32 @@ void run_robot(const RobotArguments& arguments) {
   const std::vector<std::string> names =
       arguments.path ? std::vector<std::string>{"AT", "RT"} : std::vector<std::string>{"AP", "RP"};
   for (const std::string& words : arguments.tolerances)
-    limits.push_back(limit_of(words, "--tolerance", names));
-  std::vector<PoseReading> readings = readings_of(arguments);
-  if (arguments.align) align_to_commanded(readings);
-  const std::vector<PoseResult> poses =
-      arguments.path ? evaluate_path(readings, arguments.stations).stations : evaluate_poses(readings);
+    limits.push_back(evaluate::limit_of(words, "--tolerance", names));
+  std::vector<evaluate::PoseReading> readings = readings_of(arguments);
+  if (arguments.align) evaluate::align_to_commanded(readings);
+  const std::vector<evaluate::PoseResult> poses =
+      arguments.path ? evaluate::evaluate_path(readings, arguments.stations).stations
+                     : evaluate::evaluate_poses(readings);
   Json json = {{"standard", "ISO 9283:1998"},
                {"files", arguments.measurements},
                {"n_rows", readings.size()},
                {"characteristics", Json::array()}};
   std::string failed;
   for (const Judged& one : largest(poses, arguments.path)) {
-    Json entry = {
-        {"name", one.name}, {"value_um", one.value_mm * kUmPerMm}, {"u95_um", one.expanded_mm * kUmPerMm}};
+    Json entry = {{"name", one.name},
+                  {"value_um", one.value_mm * maths::kUmPerMm},
+                  {"u95_um", one.expanded_mm * maths::kUmPerMm}};
     for (const auto& [name, limit] : limits) {
       if (name != one.name) continue;
-      const Conformity answer = conformity(one.value_mm, limit, one.expanded_mm);
-      entry["tolerance_um"] = limit * kUmPerMm;
-      entry["conformity"] = conformity_text(answer);
-      if (answer == Conformity::kNotMet) failed += (failed.empty() ? "" : ", ") + one.name;
+      const evaluate::Conformity answer = evaluate::conformity(one.value_mm, limit, one.expanded_mm);
+      entry["tolerance_um"] = limit * maths::kUmPerMm;
+      entry["conformity"] = evaluate::conformity_text(answer);
+      if (answer == evaluate::Conformity::kNotMet) failed += (failed.empty() ? "" : ", ") + one.name;
     }
     json["characteristics"].push_back(std::move(entry));
   }
   json[arguments.path ? "stations" : "poses"] = Json::array();
-  for (const PoseResult& pose : poses)
+  for (const evaluate::PoseResult& pose : poses)
     json[arguments.path ? "stations" : "poses"].push_back(
         pose_json(pose, names[0].c_str(), names[1].c_str()));
   json["notes"] = shortcomings(readings, poses, arguments.path);
@@ -182,7 +186,7 @@ void run_robot(const RobotArguments& arguments) {
                                  one["conformity"].get<std::string>())
                    : "");
   for (const Json& note : json["notes"]) fmt::print(out, "note: {}\n", note.get<std::string>());
-  if (!failed.empty()) throw LimitNotMet("the tolerance of " + failed + " is not met");
+  if (!failed.empty()) throw text::LimitNotMet("the tolerance of " + failed + " is not met");
 }
 
 }  // namespace
@@ -212,4 +216,4 @@ void add_robot_kind(CLI::App& evaluate) {
   kind->callback([arguments] { run_robot(*arguments); });
 }
 
-}  // namespace vernier::evaluate_cli
+}  // namespace vernier::commands::evaluate_cli

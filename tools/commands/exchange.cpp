@@ -15,7 +15,7 @@
 #include "tools/model/machine_reader.h"
 #include "tools/safety/safety_sheet.h"
 
-namespace vernier::exchange_cli {
+namespace vernier::commands::exchange_cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -28,36 +28,37 @@ struct ExchangeArguments {
   bool leave_out = false, component = false;
 };
 
-std::size_t axis_named(const Machine& machine, const std::string& name) {
+std::size_t axis_named(const model::Machine& machine, const std::string& name) {
   const auto axis = machine.find_axis(name);
-  if (!axis) throw InputError({machine.file, 0}, name, "no axis of that name");
+  if (!axis) throw text::InputError({machine.file, 0}, name, "no axis of that name");
   return *axis;
 }
 
 /// What is written runs on a machine as an image does.
-void require_safe(const Machine& machine, const ExchangeArguments& arguments) {
-  const SafetySheet sheet = safety_sheet(machine, rules_named(arguments.accept));
-  if (!sheet.ok()) throw LimitNotMet(sheet.refusal());
+void require_safe(const model::Machine& machine, const ExchangeArguments& arguments) {
+  const safety::SafetySheet sheet = safety::safety_sheet(machine, safety::rules_named(arguments.accept));
+  if (!sheet.ok()) throw text::LimitNotMet(sheet.refusal());
 }
 
-void finish(const ExchangeArguments& arguments, const char* format, const std::vector<LeftOut>& left_out,
-            const Json& files) {
+void finish(const ExchangeArguments& arguments, const char* format,
+            const std::vector<exchange::LeftOut>& left_out, const Json& files) {
   Json left = Json::array();
-  for (const LeftOut& one : left_out) left.push_back({{"what", one.what}, {"um", one.um}});
+  for (const exchange::LeftOut& one : left_out) left.push_back({{"what", one.what}, {"um", one.um}});
   write_json(arguments.json, {{"format", format}, {"files", files}, {"left_out", left}});
   std::FILE* out = human_stream(arguments.json);
-  for (const LeftOut& one : left_out) fmt::print(out, "left out: {}: up to {:.4g} um\n", one.what, one.um);
+  for (const exchange::LeftOut& one : left_out)
+    fmt::print(out, "left out: {}: up to {:.4g} um\n", one.what, one.um);
   for (const Json& file : files) fmt::print(out, "{}\n", file.get<std::string>());
 }
 
 /// The state that stays: middle of the ranges, then what the user says.
-States state_of(const Machine& machine, const ExchangeArguments& arguments) {
+model::States state_of(const model::Machine& machine, const ExchangeArguments& arguments) {
   std::string words;
-  for (const Axis& axis : machine.axes)
+  for (const model::Axis& axis : machine.axes)
     if (axis.min && axis.max) words += fmt::format("{}={},", axis.name, (*axis.min + *axis.max) / 2);
   words += arguments.at;
   if (!words.empty() && words.back() == ',') words.pop_back();
-  return state_at(machine, words);
+  return kinematics::state_at(machine, words);
 }
 
 /// A file and its text, not written yet.
@@ -67,15 +68,17 @@ struct Output {
 };
 
 /// The folder that brings the component into a configuration: HAL file, INI lines, README, image.
-std::vector<Output> configuration(const Machine& machine, const ExchangeArguments& arguments) {
-  const std::string text = read_file(arguments.machine);
-  CompileOptions options;
-  options.accepted_rules = safety_sheet(machine, rules_named(arguments.accept)).accepted_mask();
-  const CompiledMachine compiled = compile_machine(machine, text, options);
+std::vector<Output> configuration(const model::Machine& machine, const ExchangeArguments& arguments) {
+  const std::string text = text::read_file(arguments.machine);
+  compile::CompileOptions options;
+  options.accepted_rules =
+      safety::safety_sheet(machine, safety::rules_named(arguments.accept)).accepted_mask();
+  const compile::CompiledMachine compiled = compile::compile_machine(machine, text, options);
   const std::string folder =
       std::filesystem::absolute(arguments.output).lexically_normal().filename().string();
   std::vector<Output> outputs;
-  for (const ConfigurationFile& file : linuxcnc_folder(machine, folder.empty() ? "vernier" : folder))
+  for (const exchange::ConfigurationFile& file :
+       exchange::linuxcnc_folder(machine, folder.empty() ? "vernier" : folder))
     outputs.push_back({arguments.output + "/" + file.name, file.text});
   outputs.push_back(
       {arguments.output + "/image/machine.vimg", {compiled.image.begin(), compiled.image.end()}});
@@ -85,15 +88,15 @@ std::vector<Output> configuration(const Machine& machine, const ExchangeArgument
 
 void write_configuration(const std::vector<Output>& outputs, const ExchangeArguments& arguments,
                          Json& files) {
-  make_folder(arguments.output + "/image");
+  text::make_folder(arguments.output + "/image");
   for (const Output& output : outputs) {
-    write_file(output.path, output.text);
+    text::write_file(output.path, output.text);
     files.push_back(output.path);
   }
 }
 
 void export_component(const ExchangeArguments& arguments) {
-  const Machine machine = read_machine(arguments.machine);
+  const model::Machine machine = model::read_machine(arguments.machine);
   require_safe(machine, arguments);
   const std::vector<Output> outputs = configuration(machine, arguments);
   Json files = Json::array();
@@ -103,26 +106,28 @@ void export_component(const ExchangeArguments& arguments) {
 
 void export_screw(const ExchangeArguments& arguments) {
   if (arguments.component) return export_component(arguments);
-  const Machine machine = read_machine(arguments.machine);
-  const States at = state_of(machine, arguments);
-  const auto type = static_cast<ScrewType>(arguments.type);
-  std::vector<std::size_t> axes = linear_axes(machine);
+  const model::Machine machine = model::read_machine(arguments.machine);
+  const model::States at = state_of(machine, arguments);
+  const auto type = static_cast<exchange::ScrewType>(arguments.type);
+  std::vector<std::size_t> axes = kinematics::linear_axes(machine);
   if (!arguments.axis.empty()) axes = {axis_named(machine, arguments.axis)};
   if (machine.axes[axes.at(0)].rotary)
-    throw InputError({machine.file, 0}, arguments.axis, "a rotary axis: only linear axes are exported");
-  std::vector<LeftOut> left_out;
+    throw text::InputError({machine.file, 0}, arguments.axis, "a rotary axis: only linear axes are exported");
+  std::vector<exchange::LeftOut> left_out;
   for (const std::size_t axis : axes)
-    for (LeftOut& one : beyond_own_axis(machine, axis, at)) left_out.push_back(std::move(one));
-  refuse(machine, "a screw-compensation file", left_out, arguments.leave_out);
+    for (exchange::LeftOut& one : exchange::beyond_own_axis(machine, axis, at))
+      left_out.push_back(std::move(one));
+  exchange::refuse(machine, "a screw-compensation file", left_out, arguments.leave_out);
   require_safe(machine, arguments);
   std::vector<std::string> texts;
   for (const std::size_t axis : axes)
-    texts.push_back(screw_text(screw_points(machine, axis, at, arguments.tolerance_um), type));
+    texts.push_back(
+        exchange::screw_text(exchange::screw_points(machine, axis, at, arguments.tolerance_um), type));
   Json files = Json::array();
   if (!arguments.axis.empty()) {
     files = {arguments.output};
   } else {
-    make_folder(arguments.output);
+    text::make_folder(arguments.output);
     for (const std::size_t axis : axes)
       files.push_back(arguments.output + "/" + machine.axes[axis].name + ".comp");
   }
@@ -130,54 +135,59 @@ void export_screw(const ExchangeArguments& arguments) {
   std::string without;
   try {
     if (arguments.axis.empty()) outputs = configuration(machine, arguments);
-  } catch (const InputError& error) {
+  } catch (const text::InputError& error) {
     without = error.what();  // the tables can do with less than an image
   }
-  for (std::size_t i = 0; i < axes.size(); ++i) write_file(files[i].get<std::string>(), texts[i]);
+  for (std::size_t i = 0; i < axes.size(); ++i) text::write_file(files[i].get<std::string>(), texts[i]);
   if (!outputs.empty()) write_configuration(outputs, arguments, files);
   if (!without.empty()) fmt::print(stderr, "note: no configuration of the component: {}\n", without);
   finish(arguments, "linuxcnc", left_out, files);
 }
 
 void export_tables(const ExchangeArguments& arguments, bool isg) {
-  const Machine machine = read_machine(arguments.machine);
-  if (machine.tables.empty()) throw InputError({machine.file, 0}, "", "this machine has no table to export");
-  const std::vector<LeftOut> left_out = beyond_tables(machine, state_of(machine, arguments));
-  refuse(machine, isg ? "a list of component errors" : "a CSV file per axis", left_out, arguments.leave_out);
+  const model::Machine machine = model::read_machine(arguments.machine);
+  if (machine.tables.empty())
+    throw text::InputError({machine.file, 0}, "", "this machine has no table to export");
+  const std::vector<exchange::LeftOut> left_out =
+      exchange::beyond_tables(machine, state_of(machine, arguments));
+  exchange::refuse(machine, isg ? "a list of component errors" : "a CSV file per axis", left_out,
+                   arguments.leave_out);
   require_safe(machine, arguments);
   Json files = Json::array();
   if (isg) {
     files.push_back(arguments.output);
-    write_file(arguments.output, isg_csv(machine));
+    text::write_file(arguments.output, exchange::isg_csv(machine));
   } else {
-    make_folder(arguments.output);
-    for (const Table& table : machine.tables) {
+    text::make_folder(arguments.output);
+    for (const model::Table& table : machine.tables) {
       files.push_back(arguments.output + "/" + machine.axes[table.axis].name + ".csv");
-      write_file(files.back().get<std::string>(), axis_csv(machine, table));
+      text::write_file(files.back().get<std::string>(), exchange::axis_csv(machine, table));
     }
   }
   finish(arguments, isg ? "isg-csv" : "axis-csv", left_out, files);
 }
 
 void import_tables(const ExchangeArguments& arguments, const std::string& kind) {
-  const std::string text = read_file(arguments.machine), source = read_file(arguments.file);
-  const Machine machine = parse_machine(text, arguments.machine);
+  const std::string text = text::read_file(arguments.machine), source = text::read_file(arguments.file);
+  const model::Machine machine = model::parse_machine(text, arguments.machine);
   std::string result = text;
   if (kind == "linuxcnc") {
     const std::size_t axis = axis_named(machine, arguments.axis);
-    result = screw_into_machine(text, machine, axis,
-                                parse_screw(source, arguments.file, static_cast<ScrewType>(arguments.type)),
-                                arguments.reversal);
+    result = exchange::screw_into_machine(
+        text, machine, axis,
+        exchange::parse_screw(source, arguments.file, static_cast<exchange::ScrewType>(arguments.type)),
+        arguments.reversal);
   } else {
-    const std::vector<Table> tables =
-        kind == "isg-csv" ? parse_isg_csv(source, arguments.file, machine)
-                          : std::vector<Table>{parse_axis_csv(source, arguments.file, machine)};
-    for (const Table& table : tables) {
-      check_used(machine, table);
-      result = set_table(result, parse_machine(result, arguments.machine), table);
+    const std::vector<model::Table> tables =
+        kind == "isg-csv"
+            ? exchange::parse_isg_csv(source, arguments.file, machine)
+            : std::vector<model::Table>{exchange::parse_axis_csv(source, arguments.file, machine)};
+    for (const model::Table& table : tables) {
+      exchange::check_used(machine, table);
+      result = exchange::set_table(result, model::parse_machine(result, arguments.machine), table);
     }
   }
-  write_file(arguments.output, result);
+  text::write_file(arguments.output, result);
   finish(arguments, kind.c_str(), {}, Json::array({arguments.output}));
 }
 
@@ -260,4 +270,4 @@ void register_import_tables(CLI::App& vernier) {
              std::make_shared<ExchangeArguments>());
 }
 
-}  // namespace vernier::exchange_cli
+}  // namespace vernier::commands::exchange_cli

@@ -10,7 +10,7 @@
 #include "tools/vibration/displacement_column.h"
 #include "tools/vibration/feature_rows.h"
 
-namespace vernier::features_cli {
+namespace vernier::commands::features_cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -30,79 +30,84 @@ struct FeaturesArguments {
 using Ends = std::vector<std::optional<std::size_t>>;
 
 bool wants_displacement(const FeaturesArguments& arguments) {
-  return std::count(arguments.features.begin(), arguments.features.end(), kDisplacementName) != 0;
+  return std::count(arguments.features.begin(), arguments.features.end(), vibration::kDisplacementName) != 0;
 }
 
-FeatureChoice choice_of(const FeaturesArguments& arguments) {
-  FeatureChoice choice;
+vibration::FeatureChoice choice_of(const FeaturesArguments& arguments) {
+  vibration::FeatureChoice choice;
   choice.window = arguments.window;
   choice.centred = arguments.centred;
-  if (choice.window < 2) throw InputError("--window: two samples at least");
-  for (std::size_t i = 0; i < kFeatureNames.size(); ++i) {
+  if (choice.window < 2) throw text::InputError("--window: two samples at least");
+  for (std::size_t i = 0; i < vibration::kFeatureNames.size(); ++i) {
     const bool named =
-        std::count(arguments.features.begin(), arguments.features.end(), kFeatureNames[i]) != 0;
+        std::count(arguments.features.begin(), arguments.features.end(), vibration::kFeatureNames[i]) != 0;
     if (arguments.features.empty() ? i < 11 : named) choice.features.push_back(i);
   }
   const std::size_t named = choice.features.size() + (wants_displacement(arguments) ? 1 : 0);
   if (!arguments.features.empty() && named != arguments.features.size())
-    throw InputError(
-        fmt::format("--features: one of {} {}", fmt::join(kFeatureNames, " "), kDisplacementName));
+    throw text::InputError(fmt::format("--features: one of {} {}", fmt::join(vibration::kFeatureNames, " "),
+                                       vibration::kDisplacementName));
   return choice;
 }
 
 constexpr const char* kBestAgreement = "fit";
 
 /// How the displacement is cut off; without --corner the power of lines decides, from the noise floor.
-DisplacementChoice displacement_choice_of(const FeaturesArguments& arguments) {
+vibration::DisplacementChoice displacement_choice_of(const FeaturesArguments& arguments) {
   const bool by_corner = !arguments.corner.empty();
   const std::string& word = by_corner ? arguments.corner : arguments.cutoff;
   const bool asked = by_corner || !arguments.cutoff.empty() || !arguments.against.empty();
   if (asked && !wants_displacement(arguments))
-    throw InputError(
-        fmt::format("--corner, --cutoff and --against go with --features {}", kDisplacementName));
-  DisplacementChoice choice;
-  choice.cut = by_corner ? Cut::kCorner : Cut::kPower;
+    throw text::InputError(
+        fmt::format("--corner, --cutoff and --against go with --features {}", vibration::kDisplacementName));
+  vibration::DisplacementChoice choice;
+  choice.cut = by_corner ? vibration::Cut::kCorner : vibration::Cut::kPower;
   choice.resolution = arguments.resolution;
   if ((word == kBestAgreement) == arguments.against.empty())
-    throw InputError(fmt::format("\"{}\" and --against SIGNAL=COLUMN go together", kBestAgreement));
+    throw text::InputError(fmt::format("\"{}\" and --against SIGNAL=COLUMN go together", kBestAgreement));
   if (word == kBestAgreement || word.empty() || (!by_corner && word == "noise")) return choice;
-  choice.value = parse_number(word);
+  choice.value = text::parse_number(word);
   if (!choice.value || !(*choice.value > 0))
-    throw InputError(fmt::format("{} {}: no number above 0, nor {}", by_corner ? "--corner" : "--cutoff",
-                                 word, by_corner ? "fit" : "fit or noise"));
+    throw text::InputError(fmt::format("{} {}: no number above 0, nor {}",
+                                       by_corner ? "--corner" : "--cutoff", word,
+                                       by_corner ? "fit" : "fit or noise"));
   return choice;
 }
 
 /// Displacements that were measured in the rows; an empty cell is none.
-std::vector<KnownDisplacement> known_displacements(const FeaturesArguments& arguments, const CsvFile& rows) {
-  std::vector<KnownDisplacement> known;
+std::vector<vibration::KnownDisplacement> known_displacements(const FeaturesArguments& arguments,
+                                                              const text::CsvFile& rows) {
+  std::vector<vibration::KnownDisplacement> known;
   for (const std::string& pair : arguments.against) {
     const auto equals = pair.find('=');
-    if (equals == std::string::npos) throw InputError("--against: not of the form SIGNAL=COLUMN: " + pair);
-    known.push_back({pair.substr(0, equals), measured_lengths_um(rows, pair.substr(equals + 1))});
+    if (equals == std::string::npos)
+      throw text::InputError("--against: not of the form SIGNAL=COLUMN: " + pair);
+    known.push_back({pair.substr(0, equals), vibration::measured_lengths_um(rows, pair.substr(equals + 1))});
   }
   return known;
 }
 
 /// Appends the column of every acceleration; the cut-off by name of signal goes to the result.
-void add_displacements(const FeaturesArguments& arguments, const VibrationRecord& record, const CsvFile& rows,
-                       const Ends& ends, FeatureColumns& columns, Json& json) {
-  DisplacementChoice choice = displacement_choice_of(arguments);
-  Json result = {{"cut", choice.cut == Cut::kCorner ? "corner" : "power"},
-                 {"unit", choice.cut == Cut::kCorner ? "Hz" : "(mm/s^2)^2"}};
+void add_displacements(const FeaturesArguments& arguments, const vibration::VibrationRecord& record,
+                       const text::CsvFile& rows, const Ends& ends, vibration::FeatureColumns& columns,
+                       Json& json) {
+  vibration::DisplacementChoice choice = displacement_choice_of(arguments);
+  Json result = {{"cut", choice.cut == vibration::Cut::kCorner ? "corner" : "power"},
+                 {"unit", choice.cut == vibration::Cut::kCorner ? "Hz" : "(mm/s^2)^2"}};
   if (!arguments.against.empty()) {
-    const AgreedCut agreed = agreed_cut(record, known_displacements(arguments, rows), ends, choice);
+    const vibration::AgreedCut agreed =
+        vibration::agreed_cut(record, known_displacements(arguments, rows), ends, choice);
     choice.value = agreed.value;
     result["agreement"] = {{"rms_um", agreed.rms_um}, {"measured_rms_um", agreed.measured_rms_um}};
   }
-  for (const Signal& signal : record.signals) {
-    if (!is_acceleration(signal)) continue;
-    const DisplacementSeries series = displacement_of(signal, record.rate_Hz, choice);
-    columns.header.push_back(fmt::format("{}_{}[um]", signal.name, kDisplacementName));
+  for (const vibration::Signal& signal : record.signals) {
+    if (!vibration::is_acceleration(signal)) continue;
+    const vibration::DisplacementSeries series = vibration::displacement_of(signal, record.rate_Hz, choice);
+    columns.header.push_back(fmt::format("{}_{}[um]", signal.name, vibration::kDisplacementName));
     std::size_t empty = 0;
     for (std::size_t row = 0; row < ends.size(); ++row) {
       const bool known = ends[row] && *ends[row] < series.um.size() && std::isfinite(series.um[*ends[row]]);
-      columns.cells[row].push_back(known ? number_text(series.um[*ends[row]]) : "");
+      columns.cells[row].push_back(known ? text::number_text(series.um[*ends[row]]) : "");
       empty += known ? 0 : 1;
     }
     result["signals"].push_back({{"name", signal.name},
@@ -112,8 +117,8 @@ void add_displacements(const FeaturesArguments& arguments, const VibrationRecord
                                  {"rows_without", empty}});
   }
   if (!result.contains("signals"))
-    throw InputError({arguments.record, 0}, kDisplacementName,
-                     "no signal of the record is an acceleration (unit g, m/s^2 or mm/s^2)");
+    throw text::InputError({arguments.record, 0}, vibration::kDisplacementName,
+                           "no signal of the record is an acceleration (unit g, m/s^2 or mm/s^2)");
   json["displacement"] = result;
 }
 
@@ -129,26 +134,30 @@ void print_displacements(std::FILE* out, const Json& displacement) {
 }
 
 /// The clock of the record against the rows' t: given, or found from the motion of an axis.
-ClockFit clock_of(const FeaturesArguments& arguments, const VibrationRecord& record, const CsvFile& rows) {
-  ClockFit clock;
+vibration::ClockFit clock_of(const FeaturesArguments& arguments, const vibration::VibrationRecord& record,
+                             const text::CsvFile& rows) {
+  vibration::ClockFit clock;
   clock.offset_s = arguments.offset_s;
   clock.rate = arguments.clock_rate;
   if (arguments.align.empty()) return clock;
   const auto equals = arguments.align.find('=');
-  if (equals == std::string::npos) throw InputError("--align: not of the form SIGNAL=AXIS");
+  if (equals == std::string::npos) throw text::InputError("--align: not of the form SIGNAL=AXIS");
   const std::string signal = arguments.align.substr(0, equals), axis = arguments.align.substr(equals + 1);
-  Series accelerometer;
-  for (const Signal& one : record.signals)
+  vibration::Series accelerometer;
+  for (const vibration::Signal& one : record.signals)
     if (one.name == signal) accelerometer.value = one.value;
-  if (accelerometer.value.empty()) throw InputError(fmt::format("--align: no signal \"{}\"", signal));
+  if (accelerometer.value.empty()) throw text::InputError(fmt::format("--align: no signal \"{}\"", signal));
   for (std::size_t i = 0; i < record.samples; ++i)
     accelerometer.t_s.push_back(record.start_s + static_cast<double>(i) / record.rate_Hz);
-  return align_clocks(acceleration_of(numeric_column(rows, "t"), numeric_column(rows, axis)), accelerometer);
+  return vibration::align_clocks(
+      vibration::acceleration_of(vibration::numeric_column(rows, "t"), vibration::numeric_column(rows, axis)),
+      accelerometer);
 }
 
-Ends ends_by_time(const VibrationRecord& record, const CsvFile& rows, const ClockFit& clock) {
+Ends ends_by_time(const vibration::VibrationRecord& record, const text::CsvFile& rows,
+                  const vibration::ClockFit& clock) {
   Ends ends;
-  for (const double t : numeric_column(rows, "t")) {
+  for (const double t : vibration::numeric_column(rows, "t")) {
     // A time written in decimals is that sample's own, not one just before it.
     constexpr double kSameInstant = 1e-6;
     const double sample =
@@ -168,16 +177,17 @@ Eigen::MatrixXd matrix_of(const std::vector<std::vector<double>>& lines) {
   return matrix;
 }
 
-Ends ends_by_position(const FeaturesArguments& arguments, const VibrationRecord& record, const CsvFile& rows,
-                      Json& json) {
+Ends ends_by_position(const FeaturesArguments& arguments, const vibration::VibrationRecord& record,
+                      const text::CsvFile& rows, Json& json) {
   std::vector<std::vector<double>> path, points;
-  for (const Signal& position : record.positions) {
+  for (const vibration::Signal& position : record.positions) {
     path.push_back(position.value);
-    points.push_back(numeric_column(rows, position.name));
+    points.push_back(vibration::numeric_column(rows, position.name));
   }
   Ends ends;
   double worst = 0;
-  for (const PathPlace& place : nearest_places(matrix_of(path), matrix_of(points), arguments.reach_mm)) {
+  for (const vibration::PathPlace& place :
+       vibration::nearest_places(matrix_of(path), matrix_of(points), arguments.reach_mm)) {
     ends.push_back(place.sample + (place.fraction > 0.5 ? 1 : 0));
     worst = std::max(worst, place.distance);
   }
@@ -186,20 +196,21 @@ Ends ends_by_position(const FeaturesArguments& arguments, const VibrationRecord&
 }
 
 /// Windows one after the other, without rows to belong to.
-CsvFile rows_of_windows(const FeaturesArguments& arguments, const VibrationRecord& record, Ends& ends) {
-  CsvFile rows;
+text::CsvFile rows_of_windows(const FeaturesArguments& arguments, const vibration::VibrationRecord& record,
+                              Ends& ends) {
+  text::CsvFile rows;
   rows.columns = {{"t", "s"}};
   const std::size_t every = arguments.every == 0 ? arguments.window : arguments.every;
   for (std::size_t end = arguments.window - 1; end < record.samples; end += every) {
     ends.push_back(end);
-    rows.rows.push_back({number_text(record.start_s + static_cast<double>(end) / record.rate_Hz)});
+    rows.rows.push_back({text::number_text(record.start_s + static_cast<double>(end) / record.rate_Hz)});
   }
   return rows;
 }
 
-std::string text_of(const CsvFile& rows, const FeatureColumns& columns) {
+std::string text_of(const text::CsvFile& rows, const vibration::FeatureColumns& columns) {
   std::vector<std::string> header;
-  for (const CsvColumn& column : rows.columns)
+  for (const text::CsvColumn& column : rows.columns)
     header.push_back(column.unit.empty() ? column.name : column.name + "[" + column.unit + "]");
   header.insert(header.end(), columns.header.begin(), columns.header.end());
   std::string text = fmt::format("{}\n", fmt::join(header, ","));
@@ -214,19 +225,20 @@ std::string text_of(const CsvFile& rows, const FeatureColumns& columns) {
 }
 
 void run_features(const FeaturesArguments& arguments) {
-  const FeatureChoice choice = choice_of(arguments);
-  VibrationRecord record = read_vibration(parse_csv(read_file(arguments.record), arguments.record),
-                                          arguments.rate_Hz, arguments.positions);
-  for (const std::string& difference : arguments.differences) add_difference(record, difference);
+  const vibration::FeatureChoice choice = choice_of(arguments);
+  vibration::VibrationRecord record =
+      vibration::read_vibration(text::parse_csv(text::read_file(arguments.record), arguments.record),
+                                arguments.rate_Hz, arguments.positions);
+  for (const std::string& difference : arguments.differences) vibration::add_difference(record, difference);
   Json json = {{"window", choice.window}, {"rate_Hz", record.rate_Hz}, {"samples", record.samples}};
   Ends ends;
-  CsvFile rows;
+  text::CsvFile rows;
   if (arguments.rows.empty()) {
     rows = rows_of_windows(arguments, record, ends);
   } else {
-    rows = parse_csv(read_file(arguments.rows), arguments.rows);
+    rows = text::parse_csv(text::read_file(arguments.rows), arguments.rows);
     if (arguments.positions.empty()) {
-      const ClockFit clock = clock_of(arguments, record, rows);
+      const vibration::ClockFit clock = clock_of(arguments, record, rows);
       ends = ends_by_time(record, rows, clock);
       json["clock"] = {{"offset_s", clock.offset_s},         {"rate", clock.rate},
                        {"offset_std_s", clock.offset_std_s}, {"rate_std", clock.rate_std},
@@ -235,7 +247,7 @@ void run_features(const FeaturesArguments& arguments) {
       ends = ends_by_position(arguments, record, rows, json);
     }
   }
-  FeatureColumns columns = feature_columns(record, choice, ends);
+  vibration::FeatureColumns columns = vibration::feature_columns(record, choice, ends);
   const bool displaced = wants_displacement(arguments);
   if (displaced) {
     add_displacements(arguments, record, rows, ends, columns, json);
@@ -245,7 +257,7 @@ void run_features(const FeaturesArguments& arguments) {
   json["rows"] = rows.rows.size();
   json["rows_without_window"] = columns.empty_rows;
   json["columns"] = columns.header;
-  write_file(arguments.output, text_of(rows, columns));
+  text::write_file(arguments.output, text_of(rows, columns));
   write_json(arguments.json, json);
   std::FILE* out = human_stream(arguments.json);
   fmt::print(out, "{} rows, {} of them without a full window of {} samples at {:.6g} Hz\n", rows.rows.size(),
@@ -318,4 +330,4 @@ void register_features(CLI::App& vernier) {
   command->callback([arguments] { run_features(*arguments); });
 }
 
-}  // namespace vernier::features_cli
+}  // namespace vernier::commands::features_cli

@@ -23,7 +23,7 @@
 #include "tools/text/units.h"
 #include "tools/text/words.h"
 
-namespace vernier::fit_cli {
+namespace vernier::commands::fit_cli {
 namespace {
 
 struct FitArguments {
@@ -35,26 +35,27 @@ struct FitArguments {
 };
 
 /// What the readings left open, largest reach first.
-void print_decisions(std::FILE* out, const FitResult& result) {
-  const std::vector<Decision> decisions = decisions_of(result);
+void print_decisions(std::FILE* out, const fit::FitResult& result) {
+  const std::vector<fit::Decision> decisions = fit::decisions_of(result);
   if (decisions.empty()) return;
   fmt::print(out, "decided by convention (nearest to nominal in units of each scale):\n");
-  for (const Decision& decision : decisions) fmt::print(out, "  {}\n", decision.sentence);
+  for (const fit::Decision& decision : decisions) fmt::print(out, "  {}\n", decision.sentence);
 }
 
-void print_stages(std::FILE* out, const FitResult& result) {
+void print_stages(std::FILE* out, const fit::FitResult& result) {
   for (std::size_t i = 0; i < result.stages.size(); ++i) {
-    const StageFigures& stage = result.stages[i];
+    const fit::StageFigures& stage = result.stages[i];
     fmt::print(out, "stage {}: {} parameters ({}), {} iterations: fit rows {}, check rows {}\n", i + 1,
-               stage.parameters, stage.patterns, stage.iterations, number_or_dash(stage.fit.rms_um, "um"),
-               number_or_dash(stage.check.rms_um, "um"));
+               stage.parameters, stage.patterns, stage.iterations,
+               results::number_or_dash(stage.fit.rms_um, "um"),
+               results::number_or_dash(stage.check.rms_um, "um"));
   }
 }
 
 /// The combination that the data see least, where it is weak enough to matter.
-void print_weakest(std::FILE* out, const FitResult& result) {
+void print_weakest(std::FILE* out, const fit::FitResult& result) {
   constexpr double kWeak = 1e-2;
-  for (const Observability::Weak& weak : result.observability.weakest) {
+  for (const fit::Observability::Weak& weak : result.observability.weakest) {
     if (weak.ratio > kWeak) continue;
     std::string names;
     for (std::size_t i = 0; i < weak.parts.size() && i < 6; ++i)
@@ -65,7 +66,7 @@ void print_weakest(std::FILE* out, const FitResult& result) {
 }
 
 /// Is what is left noise? Said only where the noise is known.
-void print_verdict(std::FILE* out, const FitResult& result) {
+void print_verdict(std::FILE* out, const fit::FitResult& result) {
   if (result.normalised_check)
     fmt::print(out, "check rows over the uncertainty of reading and model: rms {:.3f}, {:.1f} % within 3\n",
                result.normalised_check->rms, 100 * result.normalised_check->within_3);
@@ -79,43 +80,44 @@ void print_verdict(std::FILE* out, const FitResult& result) {
 }
 
 /// Thermometers whose readings are none of a workshop.
-void print_odd_inputs(std::FILE* out, const Machine& machine) {
-  for (const FitRecord::Range& range : machine.fitted->measured) {
+void print_odd_inputs(std::FILE* out, const model::Machine& machine) {
+  for (const model::FitRecord::Range& range : machine.fitted->measured) {
     const auto input = machine.find_input(range.name);
     if (!input) continue;
-    const auto unit = find_unit(machine.inputs[*input].unit);
-    if (!unit || unit->dimension != Dimension::kTemperature) continue;
+    const auto unit = text::find_unit(machine.inputs[*input].unit);
+    if (!unit || unit->dimension != text::Dimension::kTemperature) continue;
     const auto degC = [&](double value) { return value * unit->factor + unit->offset; };
-    const std::string doubt = temperature_doubt(degC(range.min), degC(range.max));
+    const std::string doubt = lint::temperature_doubt(degC(range.min), degC(range.max));
     if (!doubt.empty())
       fmt::print(out, "{} reads {:.4g} to {:.4g} {}: {}\n", range.name, range.min, range.max, unit->name,
                  doubt);
   }
 }
 
-void print_result(std::FILE* out, const FitResult& result, const Measurement& m) {
+void print_result(std::FILE* out, const fit::FitResult& result, const model::Measurement& m) {
   print_stages(out, result);
   fmt::print(out, "{:<24} {:>15} {:>12}  {:<6} {}\n", "parameter", "value", "std", "unit", "from");
-  for (const ParameterEstimate& item : result.estimates)
-    fmt::print(out, "{:<24} {:>15.6g} {:>12.2g}  {:<6} {}\n", item.name, item.value, item.std, item.unit,
-               item.from == Origin::kPrior ? "not measured: only the prior" : origin_name(item.from));
+  for (const fit::ParameterEstimate& item : result.estimates)
+    fmt::print(
+        out, "{:<24} {:>15.6g} {:>12.2g}  {:<6} {}\n", item.name, item.value, item.std, item.unit,
+        item.from == fit::Origin::kPrior ? "not measured: only the prior" : fit::origin_name(item.from));
   print_decisions(out, result);
   print_odd_inputs(out, result.machine);
   for (const auto& [name, std] : result.priors)
     fmt::print(out, "held near nominal as if measured there: {} with std {:g}\n", name, std);
   print_weakest(out, result);
-  fmt::print(out, "rms before      {}\n", number_or_dash(result.before.rms_um, "um"));
-  fmt::print(out, "rms fit rows    {}   max {}\n", number_or_dash(result.after.rms_um, "um"),
-             number_or_dash(result.after.max_um, "um"));
-  fmt::print(out, "rms check rows  {}   max {}\n", number_or_dash(result.check.rms_um, "um"),
-             number_or_dash(result.check.max_um, "um"));
+  fmt::print(out, "rms before      {}\n", results::number_or_dash(result.before.rms_um, "um"));
+  fmt::print(out, "rms fit rows    {}   max {}\n", results::number_or_dash(result.after.rms_um, "um"),
+             results::number_or_dash(result.after.max_um, "um"));
+  fmt::print(out, "rms check rows  {}   max {}\n", results::number_or_dash(result.check.rms_um, "um"),
+             results::number_or_dash(result.check.max_um, "um"));
   if (result.after.rms_urad)
-    fmt::print(out, "rms rotations   {} before {}\n", number_or_dash(result.after.rms_urad, "urad"),
-               number_or_dash(result.before.rms_urad, "urad"));
-  fmt::print(out, "noise           {}\n", number_or_dash(result.noise_um, "um"));
+    fmt::print(out, "rms rotations   {} before {}\n", results::number_or_dash(result.after.rms_urad, "urad"),
+               results::number_or_dash(result.before.rms_urad, "urad"));
+  fmt::print(out, "noise           {}\n", results::number_or_dash(result.noise_um, "um"));
   if (!result.noise.independent())
     fmt::print(out, "errors that hang together, in every uncertainty below: {}\n",
-               in_words(result.noise, noise_unit_um(m)));
+               fit::in_words(result.noise, fit::noise_unit_um(m)));
   fmt::print(out, "{} observations, {} parameters, rank {}, {} rows excluded, {} iterations{}\n",
              result.before.count, result.parameters.size(), result.observability.rank, m.excluded,
              result.iterations, result.converged ? "" : ", NOT CONVERGED");
@@ -133,47 +135,49 @@ void print_result(std::FILE* out, const FitResult& result, const Measurement& m)
 std::vector<std::string> split_all(const std::vector<std::string>& texts) {
   std::vector<std::string> all;
   for (const std::string& text : texts)
-    for (std::string& one : parts_of(text, ',')) all.push_back(std::move(one));
+    for (std::string& one : text::parts_of(text, ',')) all.push_back(std::move(one));
   return all;
 }
 
-Prior prior_of(const std::string& text) {
+fit::Prior prior_of(const std::string& text) {
   const auto at = text.rfind('=');
-  const auto std = at == std::string::npos ? std::nullopt : parse_number(text.substr(at + 1));
-  if (!std || *std <= 0) throw InputError("\"" + text + "\": a prior is NAME=STD");
+  const auto std = at == std::string::npos ? std::nullopt : text::parse_number(text.substr(at + 1));
+  if (!std || *std <= 0) throw text::InputError("\"" + text + "\": a prior is NAME=STD");
   return {text.substr(0, at), *std};
 }
 
 void run_fit(const FitArguments& arguments) {
-  const std::string text = read_file(arguments.machine);
-  const Machine machine = with_freedom(parse_machine(text, arguments.machine), split_all(arguments.free),
-                                       split_all(arguments.hold));
-  const Measurement m =
-      read_measurement(arguments.measurements, machine, corrections_of_images(arguments.images));
-  FitOptions options;
-  options.loss = arguments.loss == "huber"    ? Loss::kHuber
-                 : arguments.loss == "cauchy" ? Loss::kCauchy
-                                              : Loss::kSquared;
+  const std::string text = text::read_file(arguments.machine);
+  const model::Machine machine = fit::with_freedom(model::parse_machine(text, arguments.machine),
+                                                   split_all(arguments.free), split_all(arguments.hold));
+  const model::Measurement m = model::read_measurement(arguments.measurements, machine,
+                                                       simulate::corrections_of_images(arguments.images));
+  fit::FitOptions options;
+  options.loss = arguments.loss == "huber"    ? fit::Loss::kHuber
+                 : arguments.loss == "cauchy" ? fit::Loss::kCauchy
+                                              : fit::Loss::kSquared;
   options.loss_scale = arguments.loss_scale;
-  options.solver = arguments.solver == "ceres" ? Solver::kCeres : Solver::kNormalEquations;
-  for (const std::string& stage : arguments.stages) options.stages.push_back(parts_of(stage, ','));
+  options.solver = arguments.solver == "ceres" ? fit::Solver::kCeres : fit::Solver::kNormalEquations;
+  for (const std::string& stage : arguments.stages) options.stages.push_back(text::parts_of(stage, ','));
   for (const std::string& prior : arguments.priors) options.priors.push_back(prior_of(prior));
   Progress progress("fit");
   options.progress = [&](int iteration, double cost) {
     progress.update(iteration / 100.0,
                     fmt::format("iteration {}, weighted sum of squares {:.6g}", iteration, cost));
   };
-  const FitResult result = fit(machine, m, options);
-  if (!result.absurd.empty()) throw LimitNotMet(result.absurd + "; nothing is written");
-  const nlohmann::ordered_json json = fit_json(result, m);
+  const fit::FitResult result = fit::fit(machine, m, options);
+  if (!result.absurd.empty()) throw text::LimitNotMet(result.absurd + "; nothing is written");
+  const nlohmann::ordered_json json = results::fit_json(result, m);
   if (!arguments.output.empty())
-    write_file(arguments.output,
-               close_domains(update_machine_text(text, result.machine, true), result.machine, m));
-  if (!arguments.residuals.empty()) write_file(arguments.residuals, residual_csv(m, result.residual));
+    text::write_file(
+        arguments.output,
+        fit::close_domains(model::update_machine_text(text, result.machine, true), result.machine, m));
+  if (!arguments.residuals.empty())
+    text::write_file(arguments.residuals, results::residual_csv(m, result.residual));
   write_json(arguments.json, json);
   for (const std::string& note : machine.notes) fmt::print(stderr, "note: {}\n", note);
   print_result(human_stream(arguments.json), result, m);
-  print_domains(human_stream(arguments.json), json["domains"]);
+  results::print_domains(human_stream(arguments.json), json["domains"]);
 }
 
 }  // namespace
@@ -185,7 +189,7 @@ void register_fit(CLI::App& vernier) {
   command->add_option("MACHINE", arguments->machine, "machine file (XML)")->required();
   command->add_option("MEAS", arguments->measurements, "measurement files (CSV)")->required();
   command->add_option("-o,--output", arguments->output, "the fitted machine file");
-  command->add_option("--images", arguments->images, kImagesHelp);
+  command->add_option("--images", arguments->images, simulate::kImagesHelp);
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->add_option("--residuals", arguments->residuals, kResidualsHelp);
   command->add_option("--loss", arguments->loss, "squared, huber or cauchy")
@@ -216,4 +220,4 @@ void register_fit(CLI::App& vernier) {
   command->callback([arguments] { run_fit(*arguments); });
 }
 
-}  // namespace vernier::fit_cli
+}  // namespace vernier::commands::fit_cli

@@ -5,7 +5,7 @@
 
 #include "tools/text/words.h"
 
-namespace vernier {
+namespace vernier::commands {
 namespace {
 
 constexpr std::size_t kWidth = 80, kBeside = 26;
@@ -20,7 +20,7 @@ std::size_t columns(std::string_view text) {
 std::string wrapped(const std::string& text, std::size_t indent, std::size_t used) {
   std::string result;
   std::size_t at = used;
-  for (const std::string& word : words_in(text, " \n")) {
+  for (const std::string& word : text::words_in(text, " \n")) {
     const std::size_t size = columns(word);
     const bool begins = at <= std::max(indent, used);
     if (!begins && at + 1 + size > kWidth) {
@@ -88,10 +88,10 @@ std::pair<std::string, std::string> HelpText::option_words(const CLI::Option* op
                                               : " " + kind;
   const auto open = type.find('{'), close = type.find('}');
   if (open != std::string::npos && close != std::string::npos) {
-    std::vector<std::string> words = parts_of(type.substr(open + 1, close - open - 1), ',');
+    std::vector<std::string> words = text::parts_of(type.substr(open + 1, close - open - 1), ',');
     // A word that stands for a value of ours comes as word->value.
     for (std::string& word : words) word = word.substr(0, word.find("->"));
-    const std::string all = joined(words, " ");
+    const std::string all = text::joined(words, " ");
     std::erase_if(words, [&](const std::string& word) { return right.find(word) != std::string::npos; });
     if (!words.empty()) right += ": " + all;
   }
@@ -119,7 +119,7 @@ std::string HelpText::make_description(const CLI::App* app) const {
 }
 
 std::string HelpText::make_usage(const CLI::App* app, std::string name) const {
-  return wrapped(trimmed(CLI::Formatter::make_usage(app, std::move(name))), 4, 0) + "\n";
+  return wrapped(text::trimmed(CLI::Formatter::make_usage(app, std::move(name))), 4, 0) + "\n";
 }
 
-}  // namespace vernier
+}  // namespace vernier::commands

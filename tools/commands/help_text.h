@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-namespace vernier {
+namespace vernier::commands {
 
 /// Help in 80 columns: names on the left, descriptions wrapped beside them, paragraphs below.
 class HelpText : public CLI::Formatter {
@@ -19,4 +19,4 @@ class HelpText : public CLI::Formatter {
   std::string make_usage(const CLI::App* app, std::string name) const override;
 };
 
-}  // namespace vernier
+}  // namespace vernier::commands

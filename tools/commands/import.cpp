@@ -2,7 +2,7 @@
 #include "tools/commands/command.h"
 #include "tools/commands/import_kinds.h"
 
-namespace vernier::import_cli {
+namespace vernier::commands::import_cli {
 namespace {
 
 using AddKind = void (*)(CLI::App& import);
@@ -25,4 +25,4 @@ void register_import(CLI::App& vernier) {
   for (const AddKind add : kKinds) add(*import);
 }
 
-}  // namespace vernier::import_cli
+}  // namespace vernier::commands::import_cli

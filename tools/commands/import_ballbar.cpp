@@ -18,16 +18,16 @@
 #include "tools/text/error.h"
 #include "tools/text/optional_json.h"
 
-namespace vernier::import_cli {
+namespace vernier::commands::import_cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json hysteresis_json(const std::optional<Hysteresis>& hysteresis) {
+Json hysteresis_json(const std::optional<importer::Hysteresis>& hysteresis) {
   return hysteresis ? Json{{"um", hysteresis->um}, {"deg", hysteresis->deg}} : Json(nullptr);
 }
 
-Json circle_json(const BallbarFile& file, const CircularResult& circle) {
+Json circle_json(const importer::BallbarFile& file, const importer::CircularResult& circle) {
   Json runs = Json::array();
   for (const auto& pass : circle.passes) {
     runs.push_back({{"label", pass.label},
@@ -41,28 +41,28 @@ Json circle_json(const BallbarFile& file, const CircularResult& circle) {
                     {"max_radial_deg", pass.max_deg},
                     {"min_radial_um", pass.min_radial_um},
                     {"min_radial_deg", pass.min_deg},
-                    {"feed_mm_min", or_null(pass.feed_mm_min)}});
+                    {"feed_mm_min", text::or_null(pass.feed_mm_min)}});
   }
   return {{"file", file.path},
           {"plane", {file.axis_a, file.axis_b}},
           {"nominal_radius_mm", circle.nominal_radius_mm},
           {"runs", runs},
-          {"bidirectional_um", or_null(circle.bidirectional_um)},
+          {"bidirectional_um", text::or_null(circle.bidirectional_um)},
           {"non_roundness_um",
            circle.about_mean ? Json(circle.about_mean->max_um - circle.about_mean->min_um) : Json(nullptr)},
-          {"mean_bidirectional_radial_um", or_null(circle.mean_bidirectional_radial_um)},
+          {"mean_bidirectional_radial_um", text::or_null(circle.mean_bidirectional_radial_um)},
           {"hysteresis", hysteresis_json(circle.hysteresis)},
           {"hysteresis_by_angle", hysteresis_json(circle.hysteresis_by_angle)}};
 }
 
-Json printed_json(const std::vector<PrintedResult>& results) {
+Json printed_json(const std::vector<importer::PrintedResult>& results) {
   Json list = Json::array();
   for (const auto& result : results) {
     list.push_back({{"place", result.place},
                     {"name", result.name},
                     {"unit", result.unit},
                     {"printed", result.printed},
-                    {"computed", or_null(result.computed)},
+                    {"computed", text::or_null(result.computed)},
                     {"equal", result.equal},
                     {"from", result.from.empty() ? Json(nullptr) : Json(result.from)},
                     {"why", result.why.empty() ? Json(nullptr) : Json(result.why)}});
@@ -72,7 +72,7 @@ Json printed_json(const std::vector<PrintedResult>& results) {
 
 // How many of the printed results are computed here to their last digit, from what, and which are not and
 // why.
-void print_printed(std::FILE* out, const std::vector<PrintedResult>& results) {
+void print_printed(std::FILE* out, const std::vector<importer::PrintedResult>& results) {
   if (results.empty()) return;
   std::map<std::string, std::size_t> equal;
   std::map<std::string, std::string> others;
@@ -95,7 +95,7 @@ void print_printed(std::FILE* out, const std::vector<PrintedResult>& results) {
   for (const auto& [why, names] : others) fmt::print(out, "  not {}: {}\n", names, why);
 }
 
-void print_circle(std::FILE* out, const BallbarFile& file, const CircularResult& circle) {
+void print_circle(std::FILE* out, const importer::BallbarFile& file, const importer::CircularResult& circle) {
   fmt::print(out, "{}: {}{} plane, radius {} mm\n", file.path, file.axis_a, file.axis_b,
              circle.nominal_radius_mm);
   for (const auto& pass : circle.passes) {
@@ -112,27 +112,30 @@ void print_circle(std::FILE* out, const BallbarFile& file, const CircularResult&
 }
 
 // Shorter than a quarter, an arc fixes neither its centre nor its radius.
-bool spans_a_circle(const BallbarFile& file) {
+bool spans_a_circle(const importer::BallbarFile& file) {
   constexpr double kShortestArcDeg = 90;
-  return std::all_of(file.runs.begin(), file.runs.end(),
-                     [](const BallbarRun& run) { return run.last_deg - run.first_deg >= kShortestArcDeg; });
+  return std::all_of(file.runs.begin(), file.runs.end(), [](const importer::BallbarRun& run) {
+    return run.last_deg - run.first_deg >= kShortestArcDeg;
+  });
 }
 
-std::vector<BallbarFile> repaired_files(const std::vector<RepairReport>& repairs) {
-  std::vector<BallbarFile> files;
+std::vector<importer::BallbarFile> repaired_files(const std::vector<importer::RepairReport>& repairs) {
+  std::vector<importer::BallbarFile> files;
   for (const auto& report : repairs) files.push_back(report.repair.file);
   return files;
 }
 
 // Writes the CSV and tells what it holds: the same for both kinds of file.
-void write_import(const std::string& kind, const std::vector<BallbarFile>& files,
-                  const BallbarCsvOptions& options, const ImportOutput& output, bool repair = false) {
+void write_import(const std::string& kind, const std::vector<importer::BallbarFile>& files,
+                  const importer::BallbarCsvOptions& options, const ImportOutput& output,
+                  bool repair = false) {
   std::FILE* out = human_stream(output.json_path);
-  std::vector<RepairReport> repairs;
-  if (repair) std::transform(files.begin(), files.end(), std::back_inserter(repairs), repair_and_judge);
-  const BallbarCsv csv = ballbar_csv(repair ? repaired_files(repairs) : files, options);
+  std::vector<importer::RepairReport> repairs;
+  if (repair)
+    std::transform(files.begin(), files.end(), std::back_inserter(repairs), importer::repair_and_judge);
+  const importer::BallbarCsv csv = importer::ballbar_csv(repair ? repaired_files(repairs) : files, options);
   Json circles = Json::array(), notes = Json::array();
-  std::vector<PrintedResult> printed;
+  std::vector<importer::PrintedResult> printed;
   std::string lines;
   for (const auto& file : files) {
     for (const auto& note : file.notes) notes.push_back(file.path + ": " + note);
@@ -141,12 +144,13 @@ void write_import(const std::string& kind, const std::vector<BallbarFile>& files
                       ": the arc is too short for a centre and a radius; no circular numbers");
       continue;
     }
-    const CircularResult circle = analyse_circle(file.radius_mm, circular_passes(file));
+    const importer::CircularResult circle =
+        importer::analyse_circle(file.radius_mm, importer::circular_passes(file));
     circles.push_back(circle_json(file, circle));
-    for (const auto& result : printed_results(file, circle)) printed.push_back(result);
+    for (const auto& result : importer::printed_results(file, circle)) printed.push_back(result);
   }
-  const auto equal =
-      std::count_if(printed.begin(), printed.end(), [](const PrintedResult& result) { return result.equal; });
+  const auto equal = std::count_if(printed.begin(), printed.end(),
+                                   [](const importer::PrintedResult& result) { return result.equal; });
   Json result = {{"kind", kind},
                  {"n_rows", csv.rows},
                  {"n_fit", csv.fit_rows},
@@ -158,13 +162,14 @@ void write_import(const std::string& kind, const std::vector<BallbarFile>& files
                  {"printed", printed_json(printed)},
                  {"pause_s", options.pause_s},
                  {"notes", notes}};
-  for (const auto& one : repairs) result["time_base_repair"].push_back(repair_json(one));
-  write_file(output.csv_path, csv.text);
+  for (const auto& one : repairs) result["time_base_repair"].push_back(importer::repair_json(one));
+  text::write_file(output.csv_path, csv.text);
   write_json(output.json_path, result);
   for (const auto& file : files) {
-    if (spans_a_circle(file)) print_circle(out, file, analyse_circle(file.radius_mm, circular_passes(file)));
+    if (spans_a_circle(file))
+      print_circle(out, file, importer::analyse_circle(file.radius_mm, importer::circular_passes(file)));
   }
-  for (const auto& one : repairs) print_repair(out, one);
+  for (const auto& one : repairs) importer::print_repair(out, one);
   print_printed(out, printed);
   for (const auto& note : notes) fmt::print(out, "note: {}\n", note.get<std::string>());
   fmt::print(out, "{}: {} rows ({} fit, {} check)\n", output.csv_path, csv.rows, csv.fit_rows,
@@ -173,9 +178,9 @@ void write_import(const std::string& kind, const std::vector<BallbarFile>& files
 
 struct BallbarArguments {
   std::vector<std::string> files;
-  BallbarCsvOptions options;
+  importer::BallbarCsvOptions options;
   ImportOutput output;
-  TraceSetup setup;  // ballbar-trace only
+  importer::TraceSetup setup;  // ballbar-trace only
   std::vector<std::string> planes = {"XY"};
   std::vector<double> starts_deg = {180};
   std::string direction_of_zero = "ccw";
@@ -192,18 +197,19 @@ std::shared_ptr<BallbarArguments> add_common(CLI::App& kind) {
   return arguments;
 }
 
-std::vector<TraceCircle> circles_of(const BallbarArguments& arguments) {
+std::vector<importer::TraceCircle> circles_of(const BallbarArguments& arguments) {
   const std::vector<std::string>& planes = arguments.planes;
   const std::vector<double>& starts_deg = arguments.starts_deg;
   if (starts_deg.size() != 1 && starts_deg.size() != planes.size())
-    throw InputError(fmt::format("--start-angle: {} angles for {} planes", starts_deg.size(), planes.size()));
-  std::vector<TraceCircle> circles;
+    throw text::InputError(
+        fmt::format("--start-angle: {} angles for {} planes", starts_deg.size(), planes.size()));
+  std::vector<importer::TraceCircle> circles;
   for (std::size_t i = 0; i < planes.size(); ++i) {
     // XY and YX are one circle.
     for (std::size_t j = 0; j < i; ++j)
       if (planes[j].find(planes[i][0]) != std::string::npos &&
           planes[j].find(planes[i][1]) != std::string::npos)
-        throw InputError(fmt::format("--plane: {} and {} are the same plane", planes[j], planes[i]));
+        throw text::InputError(fmt::format("--plane: {} and {} are the same plane", planes[j], planes[i]));
     circles.push_back({planes[i], starts_deg[starts_deg.size() == 1 ? 0 : i]});
   }
   return circles;
@@ -224,8 +230,8 @@ void add_ballbar_kind(CLI::App& import) {
       "Find the samples that a turn takes and those that are missing from the record itself, and give "
       "each sample its own angle and time");
   kind->callback([arguments] {
-    std::vector<BallbarFile> files;
-    for (const auto& path : arguments->files) files.push_back(read_b5r(path));
+    std::vector<importer::BallbarFile> files;
+    for (const auto& path : arguments->files) files.push_back(importer::read_b5r(path));
     write_import("ballbar", files, arguments->options, arguments->output, arguments->repair);
   });
 }
@@ -234,7 +240,7 @@ void add_ballbar_trace_kind(CLI::App& import) {
   CLI::App* kind = import.add_subcommand("ballbar-trace", "Files (JSON) of Renishaw Ballbar Trace");
   kind->footer("Such a file holds readings only; where and how fast the circle was run must be given.");
   const auto arguments = add_common(*kind);
-  TraceSetup& setup = arguments->setup;
+  importer::TraceSetup& setup = arguments->setup;
   const CLI::Range positive(1e-6, 1e9);
   kind->add_option("--length", setup.length_mm, "Nominal length of the bar (mm)")
       ->required()
@@ -261,12 +267,13 @@ void add_ballbar_trace_kind(CLI::App& import) {
       ->capture_default_str()
       ->check(CLI::IsMember({"ccw", "cw"}));
   kind->callback([arguments, kind] {
-    TraceSetup trace = arguments->setup;
+    importer::TraceSetup trace = arguments->setup;
     if (kind->count("--radius") == 0) trace.radius_mm = trace.length_mm;
     trace.direction_of_zero = arguments->direction_of_zero == "ccw" ? +1 : -1;
-    write_import("ballbar-trace", read_trace_circles(arguments->files, trace, circles_of(*arguments)),
+    write_import("ballbar-trace",
+                 importer::read_trace_circles(arguments->files, trace, circles_of(*arguments)),
                  arguments->options, arguments->output);
   });
 }
 
-}  // namespace vernier::import_cli
+}  // namespace vernier::commands::import_cli

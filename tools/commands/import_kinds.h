@@ -3,7 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
-namespace vernier::import_cli {
+namespace vernier::commands::import_cli {
 
 /// What every kind of import writes.
 struct ImportOutput {
@@ -21,4 +21,4 @@ void add_ballbar_trace_kind(CLI::App& import);
 void add_tracker_kind(CLI::App& import);
 void add_probe_kind(CLI::App& import);
 
-}  // namespace vernier::import_cli
+}  // namespace vernier::commands::import_cli

@@ -12,7 +12,7 @@
 #include "tools/model/measurement.h"
 #include "tools/text/optional_json.h"
 
-namespace vernier::import_cli {
+namespace vernier::commands::import_cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -23,27 +23,28 @@ struct SurveyArguments {
   std::size_t skip = 0, check_every = 0;
   double radius_mm = 0;
   std::string log;  // of the machine, tracker only
-  LogOptions log_options;
+  importer::LogOptions log_options;
   bool header = false;
   ImportOutput output;
 };
 
 /// The map file first, then what the command line says over it.
-ColumnMap map_of(const SurveyArguments& arguments, const CLI::App& kind) {
-  ColumnMap map;
-  if (!arguments.map.empty()) read_column_map(map, read_file(arguments.map), arguments.map);
-  for (const std::string& words : arguments.columns) add_column(map, words);
-  for (const std::string& words : arguments.constants) add_constant(map, words);
-  if (kind.count("--separator") > 0) map.format.separator = separator_of(arguments.separator);
+importer::ColumnMap map_of(const SurveyArguments& arguments, const CLI::App& kind) {
+  importer::ColumnMap map;
+  if (!arguments.map.empty()) importer::read_column_map(map, text::read_file(arguments.map), arguments.map);
+  for (const std::string& words : arguments.columns) importer::add_column(map, words);
+  for (const std::string& words : arguments.constants) importer::add_constant(map, words);
+  if (kind.count("--separator") > 0) map.format.separator = importer::separator_of(arguments.separator);
   if (kind.count("--decimal") > 0) map.format.decimal_comma = arguments.decimal == "comma";
   if (kind.count("--comment") > 0) map.format.comment = arguments.comment == "none" ? "" : arguments.comment;
   if (kind.count("--skip") > 0) map.format.skip = arguments.skip;
   if (arguments.header) map.format.header = true;
-  if (map.columns.empty()) throw InputError("no column is mapped: give --map FILE or --column \"3=x[mm]\"");
+  if (map.columns.empty())
+    throw text::InputError("no column is mapped: give --map FILE or --column \"3=x[mm]\"");
   return map;
 }
 
-Json summary(const std::string& kind, const ImportTable& table) {
+Json summary(const std::string& kind, const importer::ImportTable& table) {
   Json columns = Json::array();
   for (const auto& column : table.columns)
     columns.push_back(column.name + (column.unit.empty() ? "" : "[" + column.unit + "]"));
@@ -57,8 +58,8 @@ Json summary(const std::string& kind, const ImportTable& table) {
       {"runs", runs}, {"columns", columns}};
 }
 
-Json pairing_json(const LoggedTable& logged) {
-  const Pairing& pairing = logged.pairing;
+Json pairing_json(const importer::LoggedTable& logged) {
+  const importer::Pairing& pairing = logged.pairing;
   Json unused = Json::array();
   for (const std::size_t j : pairing.unused)
     unused.push_back({{"begin_s", logged.dwells[j].begin_s}, {"end_s", logged.dwells[j].end_s}});
@@ -66,15 +67,15 @@ Json pairing_json(const LoggedTable& logged) {
           {"paired", logged.table.line.size()},
           {"unmatched_lines", logged.unmatched_line},
           {"unused_dwells", unused},
-          {"clock_offset_s", or_null(pairing.offset_s)},
-          {"clock_offset_std_s", or_null(pairing.offset_std_s)},
-          {"clock_drift", or_null(pairing.drift)},
-          {"clock_drift_std", or_null(pairing.drift_std)},
-          {"rms_mm", or_null(pairing.rms_mm)}};
+          {"clock_offset_s", text::or_null(pairing.offset_s)},
+          {"clock_offset_std_s", text::or_null(pairing.offset_std_s)},
+          {"clock_drift", text::or_null(pairing.drift)},
+          {"clock_drift_std", text::or_null(pairing.drift_std)},
+          {"rms_mm", text::or_null(pairing.rms_mm)}};
 }
 
-void print_pairing(std::FILE* out, const LoggedTable& logged, const std::string& file) {
-  const Pairing& pairing = logged.pairing;
+void print_pairing(std::FILE* out, const importer::LoggedTable& logged, const std::string& file) {
+  const importer::Pairing& pairing = logged.pairing;
   fmt::print(out, "{} of {} points paired with {} dwells", logged.table.line.size(), pairing.dwell.size(),
              logged.dwells.size());
   if (pairing.rms_mm)
@@ -90,19 +91,19 @@ void print_pairing(std::FILE* out, const LoggedTable& logged, const std::string&
                logged.dwells[j].end_s);
 }
 
-void write_survey(const std::string& kind, const SurveyArguments& arguments, const ImportTable& table,
-                  const std::optional<LoggedTable>& logged) {
-  const std::string text = measurement_csv(table);
+void write_survey(const std::string& kind, const SurveyArguments& arguments,
+                  const importer::ImportTable& table, const std::optional<importer::LoggedTable>& logged) {
+  const std::string text = importer::measurement_csv(table);
   Json result = summary(kind, table);
   if (logged) result["pairing"] = pairing_json(*logged);
   if (!arguments.machine.empty()) {
     // The same reading that a fit will do, with the machine's axes and inputs.
-    const Measurement read =
-        parse_measurement(text, arguments.output.csv_path, read_machine(arguments.machine));
+    const model::Measurement read =
+        model::parse_measurement(text, arguments.output.csv_path, model::read_machine(arguments.machine));
     result["n_obs"] = read.observations.size();
     result["n_excluded"] = read.excluded;
   }
-  write_file(arguments.output.csv_path, text);
+  text::write_file(arguments.output.csv_path, text);
   write_json(arguments.output.json_path, result);
   if (logged) print_pairing(human_stream(arguments.output.json_path), *logged, arguments.file);
   fmt::print(human_stream(arguments.output.json_path), "{}: {} rows ({} fit, {} check)\n",
@@ -111,20 +112,21 @@ void write_survey(const std::string& kind, const SurveyArguments& arguments, con
 }
 
 void run_survey(const std::string& kind_name, const SurveyArguments& arguments, const CLI::App& kind) {
-  ImportTable table = mapped_table(read_file(arguments.file), arguments.file, map_of(arguments, kind));
+  importer::ImportTable table =
+      importer::mapped_table(text::read_file(arguments.file), arguments.file, map_of(arguments, kind));
   if (kind_name == "tracker")
-    finish_tracker(table);
+    importer::finish_tracker(table);
   else
-    finish_probe(table, arguments.radius_mm);
-  std::optional<LoggedTable> logged;
+    importer::finish_probe(table, arguments.radius_mm);
+  std::optional<importer::LoggedTable> logged;
   if (!arguments.log.empty()) {
     if (arguments.machine.empty())
-      throw InputError({}, "--log", "needs --machine: which columns are axes, and where it stood");
-    logged = with_log(table, read_file(arguments.log), arguments.log, read_machine(arguments.machine),
-                      arguments.log_options);
+      throw text::InputError({}, "--log", "needs --machine: which columns are axes, and where it stood");
+    logged = importer::with_log(table, text::read_file(arguments.log), arguments.log,
+                                model::read_machine(arguments.machine), arguments.log_options);
     table = logged->table;
   }
-  if (arguments.check_every > 0) set_roles(table, arguments.check_every);
+  if (arguments.check_every > 0) importer::set_roles(table, arguments.check_every);
   write_survey(kind_name, arguments, table, logged);
 }
 
@@ -160,7 +162,7 @@ void add_tracker_kind(CLI::App& import) {
   const auto arguments = std::make_shared<SurveyArguments>();
   CLI::App* kind = add_survey_kind(
       import, "tracker", "Laser tracker or photogrammetry: points, with orientation or without", arguments);
-  LogOptions& log = arguments->log_options;
+  importer::LogOptions& log = arguments->log_options;
   kind->add_option(
           "--log", arguments->log,
           "log of the machine (CSV: t and its axes): points are paired with its dwells, by order, ways and "
@@ -195,4 +197,4 @@ void add_probe_kind(CLI::App& import) {
       "mx my mz (then d = n*(m - p)), workpiece coordinates; and the axes where it touched.");
 }
 
-}  // namespace vernier::import_cli
+}  // namespace vernier::commands::import_cli

@@ -12,28 +12,28 @@
 #include "tools/model/measurement.h"
 #include "tools/text/error.h"
 
-namespace vernier::import_cli {
+namespace vernier::commands::import_cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
 struct TableArguments {
   std::string file, profile, save_profile, machine, output, json;
-  SheetWords words;
+  importer::SheetWords words;
   std::size_t check_every = 0;
   bool preview = false;
 };
 
-void print_columns(std::FILE* out, const SheetReading& reading) {
+void print_columns(std::FILE* out, const importer::SheetReading& reading) {
   const auto& [wishes, sheet, table, columns] = reading;
-  fmt::print(out, "{}: {}\n", sheet.file, how_read(sheet));
+  fmt::print(out, "{}: {}\n", sheet.file, importer::how_read(sheet));
   if (table.has_headings)
     fmt::print(out, "headings in line {}{}, data from line {}\n", sheet.line[table.heading_row],
                table.units_row > 0 ? fmt::format(", units in line {}", sheet.line[table.units_row]) : "",
                sheet.line[table.first_data]);
   for (std::size_t k = 0; k < columns.size(); ++k)
-    fmt::print(out, "  {:>2}  {:<24} {:<26} {}\n", k + 1, table.headings[k].text, becomes(columns[k]),
-               columns[k].why);
+    fmt::print(out, "  {:>2}  {:<24} {:<26} {}\n", k + 1, table.headings[k].text,
+               importer::becomes(columns[k]), columns[k].why);
 }
 
 void print_rows(std::FILE* out, const std::string& csv) {
@@ -47,35 +47,38 @@ void print_rows(std::FILE* out, const std::string& csv) {
 }
 
 void run_table(const TableArguments& arguments) {
-  SheetWishes wishes;
-  if (!arguments.profile.empty()) read_sheet_profile(wishes, read_file(arguments.profile), arguments.profile);
-  SheetWords words = arguments.words;
+  importer::SheetWishes wishes;
+  if (!arguments.profile.empty())
+    importer::read_sheet_profile(wishes, text::read_file(arguments.profile), arguments.profile);
+  importer::SheetWords words = arguments.words;
   if (!arguments.machine.empty())
-    for (const Axis& axis : read_machine(arguments.machine).axes) words.axes.push_back(axis.name);
-  const SheetReading reading =
-      read_as_sheet(read_file(arguments.file), arguments.file, words, std::move(wishes));
-  const Sheet& sheet = reading.sheet;
+    for (const model::Axis& axis : model::read_machine(arguments.machine).axes)
+      words.axes.push_back(axis.name);
+  const importer::SheetReading reading =
+      importer::read_as_sheet(text::read_file(arguments.file), arguments.file, words, std::move(wishes));
+  const sheet::Sheet& sheet = reading.sheet;
   std::FILE* out = human_stream(arguments.json);
   if (arguments.preview) print_columns(out, reading);
-  ImportTable read = [&] {
+  importer::ImportTable read = [&] {
     try {
-      return table_of_sheet(sheet, reading.table, reading.columns, reading.wishes);
-    } catch (const InputError&) {
+      return importer::table_of_sheet(sheet, reading.table, reading.columns, reading.wishes);
+    } catch (const text::InputError&) {
       // What was understood is where the mend begins.
       if (!arguments.preview) print_columns(stderr, reading);
       throw;
     }
   }();
-  if (arguments.check_every > 0) set_roles(read, arguments.check_every);
-  const std::string csv = measurement_csv(read);
+  if (arguments.check_every > 0) importer::set_roles(read, arguments.check_every);
+  const std::string csv = importer::measurement_csv(read);
   Json result = {{"kind", "table"},
-                 {"encoding", sheet.workbook ? "workbook" : encoding_name(sheet.encoding)},
-                 {"separator", sheet.workbook ? Json(nullptr) : Json(separator_word(sheet.separator))},
+                 {"encoding", sheet.workbook ? "workbook" : sheet::encoding_name(sheet.encoding)},
+                 {"separator", sheet.workbook ? Json(nullptr) : Json(sheet::separator_word(sheet.separator))},
                  {"decimal", sheet.decimal_comma ? "comma" : "point"},
                  {"n_rows", read.line.size()},
-                 {"columns", columns_json(reading)}};
+                 {"columns", importer::columns_json(reading)}};
   if (!arguments.machine.empty()) {
-    const Measurement m = parse_measurement(csv, arguments.file, read_machine(arguments.machine));
+    const model::Measurement m =
+        model::parse_measurement(csv, arguments.file, model::read_machine(arguments.machine));
     result["n_obs"] = m.observations.size();
     result["n_excluded"] = m.excluded;
   }
@@ -85,10 +88,11 @@ void run_table(const TableArguments& arguments) {
     fmt::print(out, "preview of {} rows: nothing is written\n", read.line.size());
     return;
   }
-  if (arguments.output.empty()) throw InputError("where to? -o MEAS.csv (or --preview)");
-  write_file(arguments.output, csv);
+  if (arguments.output.empty()) throw text::InputError("where to? -o MEAS.csv (or --preview)");
+  text::write_file(arguments.output, csv);
   if (!arguments.save_profile.empty())
-    write_file(arguments.save_profile, sheet_profile(sheet, reading.table, reading.columns, reading.wishes));
+    text::write_file(arguments.save_profile,
+                     importer::sheet_profile(sheet, reading.table, reading.columns, reading.wishes));
   write_json(arguments.json, result);
   print_columns(out, reading);
   fmt::print(out, "{}: {} rows\n", arguments.output, read.line.size());
@@ -139,4 +143,4 @@ void add_table_kind(CLI::App& import) {
   kind->callback([arguments] { run_table(*arguments); });
 }
 
-}  // namespace vernier::import_cli
+}  // namespace vernier::commands::import_cli

@@ -19,7 +19,7 @@
 #include "tools/text/error.h"
 #include "tools/text/optional_json.h"
 
-namespace vernier::improve_cli {
+namespace vernier::commands::improve_cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -37,9 +37,9 @@ struct Rung {
   std::optional<double> rms_um, check_rms_um;
 };
 
-bool agreed(const ImproveArguments& arguments, const LadderStep& step, std::FILE* out) {
-  fmt::print(out, "+ {}: fit rows {}, check rows {}\n", step.said, number_or_dash(step.rms_um, "um"),
-             number_or_dash(step.check_rms_um, "um"));
+bool agreed(const ImproveArguments& arguments, const diagnose::LadderStep& step, std::FILE* out) {
+  fmt::print(out, "+ {}: fit rows {}, check rows {}\n", step.said, results::number_or_dash(step.rms_um, "um"),
+             results::number_or_dash(step.check_rms_um, "um"));
   if (arguments.yes) return true;
   fmt::print(out, "  add it? [y/n] ");
   std::fflush(out);
@@ -52,20 +52,20 @@ bool agreed(const ImproveArguments& arguments, const LadderStep& step, std::FILE
 }
 
 /// What the measurement would have read with the correction of a machine running, or why that is unknown.
-Json replayed(const Rung& rung, const Measurement& rows, const Machine& from) {
+Json replayed(const Rung& rung, const model::Measurement& rows, const model::Machine& from) {
   // Four days of a machine and a minute or two of ours.
   constexpr double kMostTicks = 4e8;
   try {
-    const Machine machine = parse_machine(rung.text, rung.file);
-    const Measurement m = rebind(rows, from, machine);
+    const model::Machine machine = model::parse_machine(rung.text, rung.file);
+    const model::Measurement m = model::rebind(rows, from, machine);
     if (m.rows() > 0 && (m.states.time.maxCoeff() - m.states.time.minCoeff()) * 1000 > kMostTicks)
       return {{"label", rung.label},
               {"why_not", "the measurement is longer than four hundred million ticks"}};
-    const CompiledMachine compiled = compile_machine(machine, rung.text, {});
-    const auto image = load_image(compiled.image, machine);
-    const ReplayResult r = replay(*image, m, {});
+    const compile::CompiledMachine compiled = compile::compile_machine(machine, rung.text, {});
+    const auto image = compile::load_image(compiled.image, machine);
+    const simulate::ReplayResult r = simulate::replay(*image, m, {});
     const auto rms = [&](const Eigen::VectorXd& residual, bool check) {
-      return or_null(role_statistics(m, residual, check).rms_um);
+      return text::or_null(fit::role_statistics(m, residual, check).rms_um);
     };
     return {{"label", rung.label},
             {"ticks", r.ticks},
@@ -74,9 +74,9 @@ Json replayed(const Rung& rung, const Measurement& rows, const Machine& from) {
             {"rms_after_um", rms(r.after, false)},
             {"check_rms_before_um", rms(r.before, true)},
             {"check_rms_after_um", rms(r.after, true)}};
-  } catch (const InputError& error) {
+  } catch (const text::InputError& error) {
     return {{"label", rung.label}, {"why_not", error.what()}};
-  } catch (const LimitNotMet& error) {
+  } catch (const text::LimitNotMet& error) {
     return {{"label", rung.label}, {"why_not", error.what()}};
   }
 }
@@ -87,15 +87,16 @@ class Improver {
   explicit Improver(const ImproveArguments& arguments)
       : arguments_(arguments),
         out_(human_stream(arguments.json)),
-        text_(read_file(arguments.machine)),
-        machine_(parse_machine(text_, arguments.machine)),
+        text_(text::read_file(arguments.machine)),
+        machine_(model::parse_machine(text_, arguments.machine)),
         first_(machine_),
-        rows_(read_measurement(arguments.measurements, machine_, corrections_of_images(arguments.images))),
+        rows_(model::read_measurement(arguments.measurements, machine_,
+                                      simulate::corrections_of_images(arguments.images))),
         all_rows_(rows_),
-        effects_(effect_catalogue(arguments.effects)) {}
+        effects_(effects::effect_catalogue(arguments.effects)) {}
 
   void run() {
-    make_folder(arguments_.output);
+    text::make_folder(arguments_.output);
     constexpr int kMostRounds = 4;
     for (int round = 0; round < kMostRounds; ++round)
       if (!climb(round)) break;
@@ -105,37 +106,38 @@ class Improver {
  private:
   /// Diagnoses the machine as it stands and adds what is found. False where nothing more is to be added.
   bool climb(int round) {
-    DiagnoseOptions options;
+    diagnose::DiagnoseOptions options;
     options.effects = effects_;
     Progress progress("diagnose");
     options.progress = [&](double share, const std::string& step) { progress.update(share, step); };
-    const Diagnosis d = diagnose(text_, machine_, rows_, options);
-    last_ = diagnosis_json(d, rows_);
+    const diagnose::Diagnosis d = diagnose::diagnose(text_, machine_, rows_, options);
+    last_ = results::diagnosis_json(d, rows_);
     if (round == 0) {
       first_diagnosis_ = last_;
       take({"the model as given, fitted", "", "", "", d.ladder[0].text, d.ladder[0].rms_um,
             d.ladder[0].check_rms_um});
       fmt::print(out_, "the model as given, fitted: fit rows {}, check rows {}\n",
-                 number_or_dash(d.ladder[0].rms_um, "um"), number_or_dash(d.ladder[0].check_rms_um, "um"));
+                 results::number_or_dash(d.ladder[0].rms_um, "um"),
+                 results::number_or_dash(d.ladder[0].check_rms_um, "um"));
     }
-    fmt::print(out_, "verdict: {}. {}\n", verdict_name(d.verdict), d.explanation);
-    if (d.verdict != Verdict::kMissingEffect) return false;
+    fmt::print(out_, "verdict: {}. {}\n", diagnose::verdict_name(d.verdict), d.explanation);
+    if (d.verdict != diagnose::Verdict::kMissingEffect) return false;
     for (std::size_t i = 1; i < d.ladder.size(); ++i) {
-      const LadderStep& step = d.ladder[i];
+      const diagnose::LadderStep& step = d.ladder[i];
       if (!agreed(arguments_, step, out_)) return false;
       take({"+ " + step.said, step.effect, step.add, "", step.text, step.rms_um, step.check_rms_um});
     }
-    const Machine before = machine_;
+    const model::Machine before = machine_;
     text_ = rungs_.back().text;
-    machine_ = parse_machine(text_, arguments_.machine);
-    rows_ = rebind(rows_, before, machine_);
+    machine_ = model::parse_machine(text_, arguments_.machine);
+    rows_ = model::rebind(rows_, before, machine_);
     return true;
   }
 
   void take(Rung rung) {
     rung.file = fmt::format("{}/{}{}.xml", arguments_.output, rungs_.size(),
                             rung.effect.empty() ? "_model" : "_" + rung.effect);
-    write_file(rung.file, rung.text);
+    text::write_file(rung.file, rung.text);
     rungs_.push_back(std::move(rung));
   }
 
@@ -156,15 +158,15 @@ class Improver {
                    {"add", rung.add.empty() ? Json(nullptr) : Json(rung.add)},
                    {"label", rung.label},
                    {"machine", rung.file}};
-      step["rms_um"] = or_null(rung.rms_um);
-      step["check_rms_um"] = or_null(rung.check_rms_um);
+      step["rms_um"] = text::or_null(rung.rms_um);
+      step["check_rms_um"] = text::or_null(rung.check_rms_um);
       json["ladder"].push_back(step);
     }
     simulate(json);
     judge(json);
     const std::string page = arguments_.output + "/improve.html";
-    write_file(page, improve_report_html(arguments_.header.on(json)));
-    write_file(arguments_.output + "/improve.json", json.dump(1) + "\n");
+    text::write_file(page, report::improve_report_html(arguments_.header.on(json)));
+    text::write_file(arguments_.output + "/improve.json", json.dump(1) + "\n");
     write_json(arguments_.json, json);
     fmt::print(out_, "left in {}: {} machine files, improve.json, improve.html\n", arguments_.output,
                rungs_.size());
@@ -195,10 +197,11 @@ class Improver {
   void judge(Json& json) {
     json["safe_to_run"] = nullptr;
     try {
-      const SafetySheet sheet = safety_sheet(parse_machine(rungs_.back().text, rungs_.back().file));
-      json["safe_to_run"] = safety_json(sheet);
+      const safety::SafetySheet sheet =
+          safety::safety_sheet(model::parse_machine(rungs_.back().text, rungs_.back().file));
+      json["safe_to_run"] = results::safety_json(sheet);
       fmt::print(out_, "{}\n", sheet.ok() ? "safe to run: every rule of the sheet holds" : sheet.refusal());
-    } catch (const InputError& error) {
+    } catch (const text::InputError& error) {
       fmt::print(out_, "safe to run: not judged: {}\n", error.what());
     }
   }
@@ -206,9 +209,9 @@ class Improver {
   const ImproveArguments& arguments_;
   std::FILE* out_;
   std::string text_;
-  Machine machine_, first_;
-  Measurement rows_, all_rows_;
-  std::vector<Effect> effects_;
+  model::Machine machine_, first_;
+  model::Measurement rows_, all_rows_;
+  std::vector<effects::Effect> effects_;
   std::vector<Rung> rungs_;
   Json first_diagnosis_, last_;
 };
@@ -226,7 +229,7 @@ void register_improve(CLI::App& vernier) {
                    "folder for machine files, improve.json and improve.html")
       ->required();
   command->add_option("--effects", arguments->effects, "files with effects of your own; may be repeated");
-  command->add_option("--images", arguments->images, kImagesHelp);
+  command->add_option("--images", arguments->images, simulate::kImagesHelp);
   add_report_header(*command, arguments->header);
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->add_flag("--yes", arguments->yes, "add every effect that is found, without asking");
@@ -239,4 +242,4 @@ void register_improve(CLI::App& vernier) {
   command->callback([arguments] { Improver(*arguments).run(); });
 }
 
-}  // namespace vernier::improve_cli
+}  // namespace vernier::commands::improve_cli

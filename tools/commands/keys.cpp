@@ -11,7 +11,7 @@
 #include "tools/text/error.h"
 #include "tools/upload/signing.h"
 
-namespace vernier::keys_cli {
+namespace vernier::commands::keys_cli {
 namespace {
 
 struct Arguments {
@@ -21,23 +21,23 @@ struct Arguments {
 // Created unreadable for others from its first byte on, and never over an existing key.
 void write_secret(const std::string& path, const std::string& text) {
   const int fd = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
-  if (fd < 0) throw InputError(path + ": " + std::strerror(errno));
+  if (fd < 0) throw text::InputError(path + ": " + std::strerror(errno));
   const bool written =
       ::write(fd, text.data(), text.size()) == static_cast<ssize_t>(text.size()) && ::fsync(fd) == 0;
   const bool closed = ::close(fd) == 0;
   if (written && closed) return;
   ::unlink(path.c_str());
-  throw InputError(path + ": cannot be written");
+  throw text::InputError(path + ": cannot be written");
 }
 
 void run(const Arguments& arguments) {
-  make_folder(arguments.directory);
+  text::make_folder(arguments.directory);
   const std::string secret = arguments.directory + "/vernier.key",
                     open = arguments.directory + "/vernier.pub";
-  if (std::filesystem::exists(open)) throw InputError(open + ": exists; a key is never overwritten");
-  const SigningKey key = new_key();
-  write_secret(secret, secret_key_text(key));
-  write_file(open, public_key_text(key));
+  if (std::filesystem::exists(open)) throw text::InputError(open + ": exists; a key is never overwritten");
+  const upload::SigningKey key = upload::new_key();
+  write_secret(secret, upload::secret_key_text(key));
+  text::write_file(open, upload::public_key_text(key));
   fmt::print(human_stream(arguments.json),
              "{}  signs uploads: keep it where images are made, with `vernier upload --key`\n"
              "{}  goes to the board: public_key in its board file\n",
@@ -57,4 +57,4 @@ void register_keys(CLI::App& vernier) {
   command->callback([arguments] { run(*arguments); });
 }
 
-}  // namespace vernier::keys_cli
+}  // namespace vernier::commands::keys_cli

@@ -8,7 +8,7 @@
 #include "tools/commands/command.h"
 #include "tools/text/error.h"
 
-namespace vernier::lint_cli {
+namespace vernier::commands::lint_cli {
 namespace {
 
 struct LintArguments {
@@ -16,15 +16,16 @@ struct LintArguments {
   std::string json;
 };
 
-nlohmann::ordered_json result_json(const std::vector<LintedFile>& files) {
+nlohmann::ordered_json result_json(const std::vector<lint::LintedFile>& files) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array(), findings = nlohmann::ordered_json::array();
-  for (const LintedFile& file : files) {
-    list.push_back({{"file", file.file}, {"kind", linted_kind_name(file.kind)}, {"usable", file.usable}});
-    for (const LintFinding& finding : file.findings)
+  for (const lint::LintedFile& file : files) {
+    list.push_back(
+        {{"file", file.file}, {"kind", lint::linted_kind_name(file.kind)}, {"usable", file.usable}});
+    for (const lint::LintFinding& finding : file.findings)
       findings.push_back({{"file", finding.file},
                           {"line", finding.line > 0 ? nlohmann::ordered_json(finding.line)
                                                     : nlohmann::ordered_json(nullptr)},
-                          {"weight", weight_name(finding.weight)},
+                          {"weight", lint::weight_name(finding.weight)},
                           {"word", finding.word},
                           {"what", finding.what},
                           {"meaning", finding.meaning}});
@@ -33,19 +34,20 @@ nlohmann::ordered_json result_json(const std::vector<LintedFile>& files) {
 }
 
 void run_lint(const LintArguments& arguments) {
-  const std::vector<LintedFile> files = lint_files(arguments.files);
+  const std::vector<lint::LintedFile> files = lint::lint_files(arguments.files);
   write_json(arguments.json, result_json(files));
   std::FILE* out = human_stream(arguments.json);
   std::size_t useless = 0;
-  for (const LintedFile& file : files) {
-    for (const LintFinding& finding : file.findings) fmt::print(out, "{}\n", in_one_line(finding));
+  for (const lint::LintedFile& file : files) {
+    for (const lint::LintFinding& finding : file.findings)
+      fmt::print(out, "{}\n", lint::in_one_line(finding));
     if (file.findings.empty())
-      fmt::print(out, "{}: nothing odd about this {} file\n", file.file, linted_kind_name(file.kind));
+      fmt::print(out, "{}: nothing odd about this {} file\n", file.file, lint::linted_kind_name(file.kind));
     useless += file.usable ? 0 : 1;
   }
   if (useless > 0)
-    throw InputError(useless == 1 ? std::string("one file cannot be used as it is")
-                                  : fmt::format("{} files cannot be used as they are", useless));
+    throw text::InputError(useless == 1 ? std::string("one file cannot be used as it is")
+                                        : fmt::format("{} files cannot be used as they are", useless));
 }
 
 }  // namespace
@@ -64,4 +66,4 @@ void register_lint(CLI::App& vernier) {
   command->callback([arguments] { run_lint(*arguments); });
 }
 
-}  // namespace vernier::lint_cli
+}  // namespace vernier::commands::lint_cli

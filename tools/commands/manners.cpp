@@ -12,7 +12,7 @@
 #include "tools/text/similar.h"
 #include "tools/text/words.h"
 
-namespace vernier {
+namespace vernier::commands {
 namespace {
 
 /// What a hint looks at of a file: any machine file, and more of a table than its headings.
@@ -50,14 +50,14 @@ std::string head_of(const std::string& path, std::size_t most = 4096) {
 }
 
 bool is_xml(const std::string& head) {
-  const std::string bare = trimmed(head.starts_with("\xEF\xBB\xBF") ? head.substr(3) : head);
+  const std::string bare = text::trimmed(head.starts_with("\xEF\xBB\xBF") ? head.substr(3) : head);
   return bare.starts_with('<');
 }
 
 /// A table by its looks: text, and its first line that is no remark has a separator and no angle bracket.
 bool is_table(const std::string& head) {
   if (head.empty() || is_xml(head) || head.find('\0') != std::string::npos) return false;
-  for (const std::string& line : parts_of(head, '\n'))
+  for (const std::string& line : text::parts_of(head, '\n'))
     if (!line.empty() && line.front() != '#') return line.find_first_of(",;\t") != std::string::npos;
   return false;
 }
@@ -83,10 +83,11 @@ void require_known_commands(const CLI::App& vernier, const std::vector<std::stri
     if (names_of_commands(*app).empty() || word.starts_with('-')) return;
     const CLI::App* next = command_named(*app, word);
     if (next == nullptr) {
-      const auto meant = word_meant(word, names_of_commands(*app));
+      const auto meant = text::word_meant(word, names_of_commands(*app));
       const std::string at = app == &vernier ? "" : app->get_name() + " ";
-      throw InputError("\"" + word + "\": there is no command vernier " + at + word +
-                       (meant ? "; did you mean vernier " + at + *meant + "?" : "; vernier help lists them"));
+      throw text::InputError(
+          "\"" + word + "\": there is no command vernier " + at + word +
+          (meant ? "; did you mean vernier " + at + *meant + "?" : "; vernier help lists them"));
     }
     app = next;
   }
@@ -101,7 +102,7 @@ std::string option_meant(const CLI::App& vernier, const CLI::ParseError& error) 
   for (const CLI::App* command : parsed_commands(vernier))
     for (const CLI::Option* option : command->get_options())
       for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
-  const auto meant = word_meant(word, names);
+  const auto meant = text::word_meant(word, names);
   return meant ? "\"" + word + "\": no option of this command; did you mean " + *meant + "?" : "";
 }
 
@@ -123,10 +124,10 @@ void require_files_in_their_places(const CLI::App& vernier, const std::vector<st
     meant += "?";
   }
   if (!table.empty())
-    throw InputError({table, 0}, "",
-                     "a table of measurements where the machine file (XML) is wanted" + meant);
-  throw InputError({xml, 0}, "",
-                   "a machine file where a measurement file (CSV) is wanted; the machine comes first");
+    throw text::InputError({table, 0}, "",
+                           "a table of measurements where the machine file (XML) is wanted" + meant);
+  throw text::InputError({xml, 0}, "",
+                         "a machine file where a measurement file (CSV) is wanted; the machine comes first");
 }
 
 void warn_of_machine(const CLI::App& vernier) {
@@ -139,11 +140,11 @@ void warn_of_machine(const CLI::App& vernier) {
   for (const std::string& path : paths) {
     const std::string text = head_of(path, kMostRead);
     // What cannot be read the command itself will say.
-    const MachineLint lint = lint_machine(text, path);
+    const lint::MachineLint lint = lint::lint_machine(text, path);
     if (!lint.machine) continue;
-    for (const LintFinding& finding : lint.findings)
-      if (finding.weight == LintWeight::kWarning)
-        std::fprintf(stderr, "vernier: %s\n", in_one_line(finding).c_str());
+    for (const lint::LintFinding& finding : lint.findings)
+      if (finding.weight == lint::LintWeight::kWarning)
+        std::fprintf(stderr, "vernier: %s\n", lint::in_one_line(finding).c_str());
   }
 }
 
@@ -155,10 +156,10 @@ std::string import_hint(const std::string& message, const std::vector<std::strin
     if (path.empty() || !(message.starts_with(path + ":"))) continue;
     const std::string bytes = head_of(path, kMostRead);
     if (bytes.empty() || is_xml(bytes)) continue;
-    const std::string command = import_command_for(bytes, path);
+    const std::string command = lint::import_command_for(bytes, path);
     if (!command.empty()) return path + " is a spreadsheet's table as it stands; this reads it: " + command;
   }
   return "";
 }
 
-}  // namespace vernier
+}  // namespace vernier::commands

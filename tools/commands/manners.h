@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace vernier {
+namespace vernier::commands {
 
 /// `vernier help fit` as `vernier fit --help`, `vernier help` as `vernier --help`. tool.
 std::vector<std::string> without_help_command(std::vector<std::string> arguments);
@@ -27,4 +27,4 @@ void warn_of_machine(const CLI::App& vernier);
 /// The command that reads a spreadsheet of which an error complains; empty where none does. tool.
 std::string import_hint(const std::string& message, const std::vector<std::string>& arguments);
 
-}  // namespace vernier
+}  // namespace vernier::commands

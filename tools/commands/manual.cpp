@@ -11,7 +11,7 @@
 #include "tools/commands/help_text.h"
 #include "tools/text/files.h"
 
-namespace vernier {
+namespace vernier::commands {
 namespace {
 
 std::vector<const CLI::App*> commands_of(const CLI::App& app) {
@@ -68,7 +68,7 @@ std::string items(const CLI::App& command, bool positional) {
 
 void write_pages(const CLI::App& command, const std::string& names, const std::string& directory,
                  const std::string& version, std::size_t& count) {
-  write_file(directory + "/" + hyphened(names) + ".1", manual_page(command, names, version));
+  text::write_file(directory + "/" + hyphened(names) + ".1", manual_page(command, names, version));
   ++count;
   for (const CLI::App* one : commands_of(command))
     if (one->get_name() != "help")
@@ -117,7 +117,7 @@ void register_manual(CLI::App& vernier) {
   command->add_option("-o,--output", *directory, "folder for vernier.1, vernier-fit.1 …")->required();
   command->footer("  vernier manual -o build/man && man build/man/vernier-fit.1");
   command->callback([directory, &vernier] {
-    make_folder(*directory);
+    text::make_folder(*directory);
     std::size_t count = 0;
     const std::string version = vernier.version();  // "vernier 1.2.0 (commit)"
     write_pages(vernier, "vernier", *directory, version.substr(0, version.find(" (")), count);
@@ -126,4 +126,4 @@ void register_manual(CLI::App& vernier) {
 }
 
 }  // namespace manual_cli
-}  // namespace vernier
+}  // namespace vernier::commands

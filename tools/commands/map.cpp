@@ -12,7 +12,7 @@
 #include "tools/report/report.h"
 #include "tools/results/field_json.h"
 
-namespace vernier::map_cli {
+namespace vernier::commands::map_cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -28,29 +28,31 @@ constexpr const char* kNotMeasured =
     "no lengths, diagonals, circles or squares are simulated: they need one to three linear axes with min "
     "and max";
 
-bool can_be_measured(const Machine& machine) {
-  const std::vector<std::size_t> axes = linear_axes(machine);
+bool can_be_measured(const model::Machine& machine) {
+  const std::vector<std::size_t> axes = kinematics::linear_axes(machine);
   return !axes.empty() && axes.size() <= 3 && std::all_of(axes.begin(), axes.end(), [&](std::size_t axis) {
     return machine.axes[axis].min && machine.axes[axis].max;
   });
 }
 
-void add_measurements(Json& json, const Machine& machine, const States& at, const std::string& lines) {
-  const Bench bench(machine, at);
+void add_measurements(Json& json, const model::Machine& machine, const model::States& at,
+                      const std::string& lines) {
+  const map::Bench bench(machine, at);
   json["lengths"] = json["diagonals"] = Json::array();
-  for (const LineResult& line : axis_lines(machine, bench)) json["lengths"].push_back(line_json(line));
+  for (const map::LineResult& line : map::axis_lines(machine, bench))
+    json["lengths"].push_back(map::line_json(line));
   double worst = 0, reversal = 0;
-  for (const LineResult& line : diagonals(machine, bench)) {
-    json["diagonals"].push_back(line_json(line));
+  for (const map::LineResult& line : map::diagonals(machine, bench)) {
+    json["diagonals"].push_back(map::line_json(line));
     worst = std::max(worst, line.error_um);
     reversal = std::max(reversal, line.reversal_um);
   }
   json["diagonal_deviation_um"] = worst;
   json["diagonal_reversal_um"] = reversal;
-  json["circles"] = circles_json(bench);
-  json["squares"] = squares_json(bench);
-  json["cylinder"] = cylinder_json(bench);
-  json["free_lines"] = lines.empty() ? Json::array() : free_lines_json(bench, lines);
+  json["circles"] = map::circles_json(bench);
+  json["squares"] = map::squares_json(bench);
+  json["cylinder"] = map::cylinder_json(bench);
+  json["free_lines"] = lines.empty() ? Json::array() : map::free_lines_json(bench, lines);
 }
 
 Json line_table(const char* caption, const Json& lines) {
@@ -151,28 +153,28 @@ Json page_of(const Json& json) {
 }
 
 void run_map(const MapArguments& arguments) {
-  const Machine machine = read_machine(arguments.machine);
-  const States at = middle_state(machine, arguments.at);
-  std::vector<std::size_t> axes = linear_axes(machine);
+  const model::Machine machine = model::read_machine(arguments.machine);
+  const model::States at = results::middle_state(machine, arguments.at);
+  std::vector<std::size_t> axes = kinematics::linear_axes(machine);
   if (!arguments.over.empty()) axes.clear();
   for (const std::string& name : arguments.over) {
     const auto axis = machine.find_axis(name);
-    if (!axis) throw InputError({machine.file, 0}, name, "no axis of that name");
+    if (!axis) throw text::InputError({machine.file, 0}, name, "no axis of that name");
     axes.push_back(*axis);
   }
   if (axes.empty())
-    throw InputError({machine.file, 0}, "", "no linear axis: say over which axes, --over J1,J2,J3");
+    throw text::InputError({machine.file, 0}, "", "no linear axis: say over which axes, --over J1,J2,J3");
   Json json = {{"machine", machine.name}, {"files", {arguments.machine}}, {"notes", Json::array()}};
-  json["field"] = field_json(machine, error_field(machine, at, axes, arguments.grid));
+  json["field"] = results::field_json(machine, map::error_field(machine, at, axes, arguments.grid));
   const bool measured = can_be_measured(machine);
   if (measured)
     add_measurements(json, machine, at, arguments.lines);
   else if (!arguments.lines.empty())
-    throw InputError({machine.file, 0}, "", kNotMeasured);
+    throw text::InputError({machine.file, 0}, "", kNotMeasured);
   else
     json["notes"].push_back(kNotMeasured);
   if (!arguments.output.empty())
-    write_file(arguments.output, improvement_report_html(arguments.header.on(page_of(json))));
+    text::write_file(arguments.output, report::improvement_report_html(arguments.header.on(page_of(json))));
   write_json(arguments.json, json);
   std::FILE* out = human_stream(arguments.json);
   fmt::print(out, "largest deviation {:.4g} um, rms {:.4g} um over {} nodes\n",
@@ -212,4 +214,4 @@ void register_map(CLI::App& vernier) {
   command->callback([arguments] { run_map(*arguments); });
 }
 
-}  // namespace vernier::map_cli
+}  // namespace vernier::commands::map_cli

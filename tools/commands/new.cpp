@@ -11,7 +11,7 @@
 #include "tools/text/numbers.h"
 #include "tools/text/words.h"
 
-namespace vernier::new_cli {
+namespace vernier::commands::new_cli {
 namespace {
 
 struct NewArguments {
@@ -21,39 +21,41 @@ struct NewArguments {
 };
 
 std::array<double, 3> point_of(const std::string& text, char separator, const std::string& what) {
-  const std::vector<std::string> parts = parts_of(text, separator);
+  const std::vector<std::string> parts = text::parts_of(text, separator);
   std::array<double, 3> point{};
   for (std::size_t k = 0; k < 3; ++k) {
-    const auto number = k < parts.size() ? parse_number(parts[k]) : std::nullopt;
+    const auto number = k < parts.size() ? text::parse_number(parts[k]) : std::nullopt;
     if (!number || parts.size() != 3)
-      throw InputError(what + " " + text + ": three lengths in mm, such as " +
-                       (separator == ',' ? "0,0,-120" : "C:250:200:0"));
+      throw text::InputError(what + " " + text + ": three lengths in mm, such as " +
+                             (separator == ',' ? "0,0,-120" : "C:250:200:0"));
     point[k] = *number;
   }
   return point;
 }
 
-std::vector<DhRow> arm_of(const NewArguments& arguments) {
+std::vector<create::DhRow> arm_of(const NewArguments& arguments) {
   if (!arguments.dh.empty() && !arguments.joints.empty())
-    throw InputError("the arm is given twice: --dh and --joint");
-  if (!arguments.dh.empty()) return parse_dh_table(read_file(arguments.dh), arguments.dh);
-  std::vector<DhRow> rows;
-  for (const std::string& words : arguments.joints) rows.push_back(parse_dh_row(words));
-  return rows.empty() ? default_arm() : rows;
+    throw text::InputError("the arm is given twice: --dh and --joint");
+  if (!arguments.dh.empty()) return create::parse_dh_table(text::read_file(arguments.dh), arguments.dh);
+  std::vector<create::DhRow> rows;
+  for (const std::string& words : arguments.joints) rows.push_back(create::parse_dh_row(words));
+  return rows.empty() ? create::default_arm() : rows;
 }
 
-std::vector<PlannedAxis> axes_of(const NewArguments& arguments) {
-  std::vector<PlannedAxis> axes;
-  for (const std::string& words : arguments.axes) axes.push_back(parse_planned_axis(words));
+std::vector<create::PlannedAxis> axes_of(const NewArguments& arguments) {
+  std::vector<create::PlannedAxis> axes;
+  for (const std::string& words : arguments.axes) axes.push_back(create::parse_planned_axis(words));
   return axes;
 }
 
-MachinePlan plan_of_urdf(const NewArguments& arguments, const CLI::App& command) {
-  if (arguments.type != "robot") throw InputError("--urdf: only a robot has one");
+create::MachinePlan plan_of_urdf(const NewArguments& arguments, const CLI::App& command) {
+  if (arguments.type != "robot") throw text::InputError("--urdf: only a robot has one");
   for (const char* option : {"--dh", "--joint", "--axis"})
-    if (command.count(option) > 0) throw InputError(std::string(option) + ": the arm stands in the URDF");
-  const UrdfArm arm = parse_urdf(read_file(arguments.urdf), arguments.urdf, arguments.tip);
-  MachinePlan plan = plan_robot(arm.axes, arm.rows);
+    if (command.count(option) > 0)
+      throw text::InputError(std::string(option) + ": the arm stands in the URDF");
+  const create::UrdfArm arm =
+      create::parse_urdf(text::read_file(arguments.urdf), arguments.urdf, arguments.tip);
+  create::MachinePlan plan = create::plan_robot(arm.axes, arm.rows);
   plan.name = arm.name;
   plan.base = arm.base;
   plan.tool =
@@ -61,23 +63,23 @@ MachinePlan plan_of_urdf(const NewArguments& arguments, const CLI::App& command)
   return plan;
 }
 
-MachinePlan plan_of_words(const NewArguments& arguments, const CLI::App& command) {
-  std::vector<PlannedAxis> axes = axes_of(arguments);
+create::MachinePlan plan_of_words(const NewArguments& arguments, const CLI::App& command) {
+  std::vector<create::PlannedAxis> axes = axes_of(arguments);
   const auto order = [&](const char* option, const std::string& names) {
-    return command.count(option) > 0 ? std::optional(parts_of(names, ',')) : std::nullopt;
+    return command.count(option) > 0 ? std::optional(text::parts_of(names, ',')) : std::nullopt;
   };
-  MachinePlan plan;
+  create::MachinePlan plan;
   if (arguments.type == "robot") {
     for (const char* option : {"--tool-side", "--work-side", "--centre"})
       if (command.count(option) > 0)
-        throw InputError(std::string(option) + ": a robot's chain is its table (--dh, --joint)");
-    plan = plan_robot(std::move(axes), arm_of(arguments));
+        throw text::InputError(std::string(option) + ": a robot's chain is its table (--dh, --joint)");
+    plan = create::plan_robot(std::move(axes), arm_of(arguments));
   } else {
     for (const char* option : {"--dh", "--joint"})
       if (command.count(option) > 0)
-        throw InputError(std::string(option) + ": only a robot has such a table");
-    plan = plan_machine(arguments.type, std::move(axes), order("--tool-side", arguments.tool_side),
-                        order("--work-side", arguments.work_side));
+        throw text::InputError(std::string(option) + ": only a robot has such a table");
+    plan = create::plan_machine(arguments.type, std::move(axes), order("--tool-side", arguments.tool_side),
+                                order("--work-side", arguments.work_side));
   }
   // A tool of some length in the usual direction: without one, angles of the last axis would do nothing.
   plan.tool = {0, 0, plan.arm.empty() ? -100.0 : 100.0};
@@ -86,48 +88,48 @@ MachinePlan plan_of_words(const NewArguments& arguments, const CLI::App& command
     const auto colon = words.find(':');
     const std::string name = words.substr(0, colon);
     bool found = false;
-    for (PlannedAxis& axis : plan.axes)
+    for (create::PlannedAxis& axis : plan.axes)
       if (axis.name == name && axis.rotary() && colon != std::string::npos) {
         axis.centre = point_of(words.substr(colon + 1), ':', "--centre");
         found = true;
       }
-    if (!found) throw InputError("--centre " + words + ": NAME:X:Y:Z of a turning axis");
+    if (!found) throw text::InputError("--centre " + words + ": NAME:X:Y:Z of a turning axis");
   }
   return plan;
 }
 
-MachinePlan plan_of(const NewArguments& arguments, const CLI::App& command) {
-  if (arguments.urdf.empty() && !arguments.tip.empty()) throw InputError("--tip: a link of --urdf");
-  MachinePlan plan =
+create::MachinePlan plan_of(const NewArguments& arguments, const CLI::App& command) {
+  if (arguments.urdf.empty() && !arguments.tip.empty()) throw text::InputError("--tip: a link of --urdf");
+  create::MachinePlan plan =
       arguments.urdf.empty() ? plan_of_words(arguments, command) : plan_of_urdf(arguments, command);
   if (!arguments.name.empty()) plan.name = arguments.name;
   plan.positioning_only = arguments.errors == "positioning";
   if (plan.positioning_only && !plan.arm.empty())
-    throw InputError("--errors positioning: of machines with slides; a robot's rows are all it has");
+    throw text::InputError("--errors positioning: of machines with slides; a robot's rows are all it has");
   return plan;
 }
 
 void run_new(const NewArguments& arguments, const CLI::App& command) {
-  const MachinePlan plan = plan_of(arguments, command);
-  const std::string text = machine_file(plan);
-  const Machine machine = parse_machine(text, arguments.output);
-  if (!arguments.measurements.empty()) require_place(arguments.measurements);
-  const std::string survey = survey_template(machine, reading_of(arguments.reading));
-  write_file(arguments.output, text);
+  const create::MachinePlan plan = plan_of(arguments, command);
+  const std::string text = create::machine_file(plan);
+  const model::Machine machine = model::parse_machine(text, arguments.output);
+  if (!arguments.measurements.empty()) text::require_place(arguments.measurements);
+  const std::string survey = create::survey_template(machine, create::reading_of(arguments.reading));
+  text::write_file(arguments.output, text);
   if (!arguments.measurements.empty())
-    write_file(arguments.measurements,
-               arguments.measurements.ends_with(".xlsx") ? survey_workbook(survey) : survey);
+    text::write_file(arguments.measurements,
+                     arguments.measurements.ends_with(".xlsx") ? create::survey_workbook(survey) : survey);
   nlohmann::ordered_json json = {
-      {"type", plan.type}, {"machine", arguments.output}, {"drawing", drawing(plan)}};
-  for (const Axis& axis : machine.axes) json["axes"].push_back(axis.name);
+      {"type", plan.type}, {"machine", arguments.output}, {"drawing", create::drawing(plan)}};
+  for (const model::Axis& axis : machine.axes) json["axes"].push_back(axis.name);
   json["measurements"] = arguments.measurements.empty() ? nlohmann::ordered_json(nullptr)
                                                         : nlohmann::ordered_json(arguments.measurements);
   write_json(arguments.json, json);
   std::FILE* out = human_stream(arguments.json);
-  fmt::print(out, "{}\n", drawing(plan));
+  fmt::print(out, "{}\n", create::drawing(plan));
   fmt::print(out, "{}: {} axes, {} tables, tool {} {} {} mm\n", arguments.output, machine.axes.size(),
              machine.tables.size(), plan.tool[0], plan.tool[1], plan.tool[2]);
-  if (plan.arm == default_arm())
+  if (plan.arm == create::default_arm())
     fmt::print(out, "the arm has the lengths of a UR10e: give those of yours with --dh FILE or --joint\n");
   const std::string meas = arguments.measurements.empty() ? "MEAS.csv" : arguments.measurements;
   if (!arguments.measurements.empty())
@@ -196,4 +198,4 @@ void register_new(CLI::App& vernier) {
   command->callback([arguments, command] { run_new(*arguments, *command); });
 }
 
-}  // namespace vernier::new_cli
+}  // namespace vernier::commands::new_cli

@@ -23,15 +23,15 @@
 #include "tools/text/numbers.h"
 #include "tools/text/words.h"
 
-namespace vernier::part_cli {
+namespace vernier::commands::part_cli {
 namespace {
 
 struct Arguments {
   std::string machine, errors, identify, free, output, json;
   double tool_diameter_mm = 20, tool_length_mm = 35, feed_mm_min = 1000, step_mm = 0.5;
-  DefectReading reading = DefectReading::kContact;
+  part::DefectReading reading = part::DefectReading::kContact;
   ReportHeader header;
-  RotarySolution solution = RotarySolution::kContinuous;
+  part::RotarySolution solution = part::RotarySolution::kContinuous;
   bool aligned = false, tool_radius = false;
   double tolerance_mm = 0, u95_mm = 0;  // width of the zone; of the machine that measured the part
 };
@@ -42,43 +42,44 @@ struct GaugeArguments {
 };
 
 /// Leaves only the named statics free.
-void free_only(Machine& machine, const std::string& names) {
+void free_only(model::Machine& machine, const std::string& names) {
   std::set<std::size_t> wanted;
-  for (const std::string& name : words_in(names, ", ")) {
+  for (const std::string& name : text::words_in(names, ", ")) {
     const auto index = machine.find_static(name);
-    if (!index) throw InputError({"--free", 0}, name, "no static of this name in " + machine.name);
+    if (!index) throw text::InputError({"--free", 0}, name, "no static of this name in " + machine.name);
     wanted.insert(*index);
   }
   for (std::size_t i = 0; i < machine.statics.size(); ++i) {
-    Static& item = machine.statics[i];
+    model::Static& item = machine.statics[i];
     if (!item.hidden && !item.nominal) item.nominal = item.value;
     item.hidden = !wanted.contains(i);
   }
 }
 
-PartJob make_job(const Arguments& arguments, const std::string& machine_text) {
-  PartJob job;
-  Machine machine =
-      parse_machine(machine_text, arguments.machine.empty() ? "built-in machine" : arguments.machine);
-  set_errors(machine, arguments.errors);
+part::PartJob make_job(const Arguments& arguments, const std::string& machine_text) {
+  part::PartJob job;
+  model::Machine machine =
+      model::parse_machine(machine_text, arguments.machine.empty() ? "built-in machine" : arguments.machine);
+  part::set_errors(machine, arguments.errors);
   if (!arguments.free.empty()) free_only(machine, arguments.free);
-  job.machine = b_head_machine(std::move(machine));
+  job.machine = part::b_head_machine(std::move(machine));
   job.options = {
       {arguments.tool_diameter_mm / 2, arguments.tool_length_mm}, arguments.reading, arguments.solution};
-  for (const RuledSurface& flank : s_part()) check_cutter(flank, job.options.cutter);
-  const PathOptions path{job.options.cutter, arguments.step_mm, arguments.feed_mm_min, arguments.solution};
-  for (std::size_t flank = 0; flank < s_part().size(); ++flank)
-    job.paths.push_back(part_path(job.machine, flank, path));
-  job.points = standard_points();
+  for (const part::RuledSurface& flank : part::s_part()) part::check_cutter(flank, job.options.cutter);
+  const part::PathOptions path{job.options.cutter, arguments.step_mm, arguments.feed_mm_min,
+                               arguments.solution};
+  for (std::size_t flank = 0; flank < part::s_part().size(); ++flank)
+    job.paths.push_back(part::part_path(job.machine, flank, path));
+  job.points = part::standard_points();
   if (!arguments.identify.empty()) {
-    job.measured = read_measured_part(read_file(arguments.identify), arguments.identify);
+    job.measured = part::read_measured_part(text::read_file(arguments.identify), arguments.identify);
     job.points.clear();
-    for (const MeasuredPoint& point : job.measured->points) job.points.push_back(point.at);
+    for (const part::MeasuredPoint& point : job.measured->points) job.points.push_back(point.at);
     job.identified =
-        identify(job.machine, *job.measured, {job.options, arguments.aligned, arguments.tool_radius});
+        part::identify(job.machine, *job.measured, {job.options, arguments.aligned, arguments.tool_radius});
     job.machine.machine = job.identified->machine;
   }
-  job.defect = part_defect(job.machine, job.points, job.options);
+  job.defect = part::part_defect(job.machine, job.points, job.options);
   return job;
 }
 
@@ -97,7 +98,8 @@ void print_summary(std::FILE* out, const nlohmann::ordered_json& result) {
       fmt::print(out, "flank {}: {}\n", path["flank"].get<std::string>(), beyond.get<std::string>());
   for (const auto& one : result["observability"])
     fmt::print(out, "{}: rank {} of {}, inseparable {}\n", one["reading"].get<std::string>(),
-               one["rank"].get<int>(), one["parameters"].get<int>(), joined_groups(one["unidentifiable"]));
+               one["rank"].get<int>(), one["parameters"].get<int>(),
+               part::joined_groups(one["unidentifiable"]));
   if (!result.contains("parameters")) return;
   fmt::print(out, "rms {:.4g} -> {:.4g} um\n", result["rms_before_um"].get<double>(),
              result["rms_um"].get<double>());
@@ -110,20 +112,21 @@ void print_summary(std::FILE* out, const nlohmann::ordered_json& result) {
 /// A profile tolerance is a zone about the true surface, half of it on either side (ISO 1101); it is met, not
 /// met or not decided by ISO 14253-1 with what the measuring machine is worth. Of measured points, else of
 /// the predicted ones.
-nlohmann::ordered_json judged(const Arguments& arguments, const PartJob& job,
+nlohmann::ordered_json judged(const Arguments& arguments, const part::PartJob& job,
                               const nlohmann::ordered_json& defect) {
-  Conformity worst = Conformity::kMet;
+  evaluate::Conformity worst = evaluate::Conformity::kMet;
   double farthest = 0, u95 = 0;
   std::size_t line = 0;
   const auto take = [&](double defect_mm, double point_u95_mm, std::size_t at) {
-    const Conformity one = conformity(2 * std::abs(defect_mm), arguments.tolerance_mm, 2 * point_u95_mm);
-    if (one == Conformity::kNotMet || worst == Conformity::kMet) worst = one;
+    const evaluate::Conformity one =
+        evaluate::conformity(2 * std::abs(defect_mm), arguments.tolerance_mm, 2 * point_u95_mm);
+    if (one == evaluate::Conformity::kNotMet || worst == evaluate::Conformity::kMet) worst = one;
     u95 = std::max(u95, point_u95_mm);
     if (std::abs(defect_mm) <= std::abs(farthest)) return;
     farthest = defect_mm, line = at;
   };
   if (job.measured) {
-    for (const MeasuredPoint& point : job.measured->points)
+    for (const part::MeasuredPoint& point : job.measured->points)
       take(point.defect_mm, std::max(arguments.u95_mm, 2 * point.uncertainty_mm), point.line);
   } else {
     for (const char* end : {"min_mm", "max_mm"}) take(defect[end].get<double>(), arguments.u95_mm, 0);
@@ -133,7 +136,7 @@ nlohmann::ordered_json judged(const Arguments& arguments, const PartJob& job,
           {"farthest_mm", farthest},
           {"line", job.measured ? nlohmann::ordered_json(line) : nlohmann::ordered_json(nullptr)},
           {"u95_mm", u95},
-          {"conformity", conformity_text(worst)}};
+          {"conformity", evaluate::conformity_text(worst)}};
 }
 
 void say_judged(std::FILE* out, const nlohmann::ordered_json& tolerance) {
@@ -142,34 +145,36 @@ void say_judged(std::FILE* out, const nlohmann::ordered_json& tolerance) {
                   tolerance["zone_mm"].get<double>(), tolerance["of"].get<std::string>(),
                   tolerance["farthest_mm"].get<double>(), tolerance["u95_mm"].get<double>(),
                   tolerance["conformity"].get<std::string>());
-  if (tolerance["conformity"] == conformity_text(Conformity::kNotMet)) throw LimitNotMet(words);
+  if (tolerance["conformity"] == evaluate::conformity_text(evaluate::Conformity::kNotMet))
+    throw text::LimitNotMet(words);
   fmt::print(out, "{}\n", words);
 }
 
 void run_s_shape(const Arguments& arguments) {
   const std::string machine_text =
-      arguments.machine.empty() ? default_b_head_text() : read_file(arguments.machine);
-  const PartJob job = make_job(arguments, machine_text);
-  nlohmann::ordered_json result = part_json(job);
+      arguments.machine.empty() ? part::default_b_head_text() : text::read_file(arguments.machine);
+  const part::PartJob job = make_job(arguments, machine_text);
+  nlohmann::ordered_json result = part::part_json(job);
   if (arguments.tolerance_mm > 0) result["tolerance"] = judged(arguments, job, result["defect"]);
-  const PathOptions path{job.options.cutter, arguments.step_mm, arguments.feed_mm_min, arguments.solution};
+  const part::PathOptions path{job.options.cutter, arguments.step_mm, arguments.feed_mm_min,
+                               arguments.solution};
   // What is not free in this run is free in the file all the same.
-  Machine written = parse_machine(machine_text, arguments.machine);
+  model::Machine written = model::parse_machine(machine_text, arguments.machine);
   for (std::size_t i = 0; i < written.statics.size(); ++i)
     written.statics[i].value = job.machine.machine.statics[i].value;
   // All texts first: a failure leaves nothing behind.
   std::vector<std::pair<std::string, std::string>> files = {
-      {"defect.csv", defect_csv(job.points, job.defect)},
-      {"machine.xml", update_machine_text(machine_text, written, true)},
-      {"report.html", improvement_report_html(arguments.header.on(part_report(job, result)))}};
-  for (const PartPath& one : job.paths) {
-    const char flank = s_part()[one.flank].name;
-    files.emplace_back(fmt::format("path_{}.csv", flank), path_csv(job.machine, one));
-    files.emplace_back(fmt::format("path_{}.nc", flank), path_gcode(one, path));
+      {"defect.csv", part::defect_csv(job.points, job.defect)},
+      {"machine.xml", model::update_machine_text(machine_text, written, true)},
+      {"report.html", report::improvement_report_html(arguments.header.on(part::part_report(job, result)))}};
+  for (const part::PartPath& one : job.paths) {
+    const char flank = part::s_part()[one.flank].name;
+    files.emplace_back(fmt::format("path_{}.csv", flank), part::path_csv(job.machine, one));
+    files.emplace_back(fmt::format("path_{}.nc", flank), part::path_gcode(one, path));
   }
-  make_folder(arguments.output);
+  text::make_folder(arguments.output);
   for (const auto& [name, text] : files)
-    write_file((std::filesystem::path(arguments.output) / name).string(), text);
+    text::write_file((std::filesystem::path(arguments.output) / name).string(), text);
   write_json(arguments.json, result);
   print_summary(human_stream(arguments.json), result);
   if (job.identified)
@@ -180,37 +185,38 @@ void run_s_shape(const Arguments& arguments) {
 
 /// Columns C[deg] and y[mm]; one row each for 0, 90, 180 and 270 deg.
 std::array<double, 4> read_gauge_block(const std::string& file) {
-  const CsvFile csv = parse_csv(read_file(file), file);
+  const text::CsvFile csv = text::parse_csv(text::read_file(file), file);
   const auto column = [&](const char* name, const char* unit) {
     for (std::size_t i = 0; i < csv.columns.size(); ++i)
       if (csv.columns[i].name == name && csv.columns[i].unit == unit) return i;
-    throw InputError({file, csv.header_line}, name,
-                     fmt::format("a gauge block needs the column {}[{}]", name, unit));
+    throw text::InputError({file, csv.header_line}, name,
+                           fmt::format("a gauge block needs the column {}[{}]", name, unit));
   };
   const std::size_t c = column("C", "deg"), y = column("y", "mm");
   std::array<std::optional<double>, 4> found;
   for (std::size_t row = 0; row < csv.rows.size(); ++row) {
-    const Place place{file, csv.line[row]};
-    const auto angle = parse_number(csv.rows[row][c]), reading = parse_number(csv.rows[row][y]);
+    const text::Place place{file, csv.line[row]};
+    const auto angle = text::parse_number(csv.rows[row][c]), reading = text::parse_number(csv.rows[row][y]);
     if (!angle || !reading)
-      throw InputError(place, angle ? csv.rows[row][y] : csv.rows[row][c], "not a number");
+      throw text::InputError(place, angle ? csv.rows[row][y] : csv.rows[row][c], "not a number");
     const double quarter = *angle / 90;
     if (!(quarter >= 0 && quarter <= 3) || quarter != std::floor(quarter))
-      throw InputError(place, csv.rows[row][c], "C must be 0, 90, 180 or 270");
+      throw text::InputError(place, csv.rows[row][c], "C must be 0, 90, 180 or 270");
     auto& slot = found[static_cast<std::size_t>(quarter)];
-    if (slot) throw InputError(place, csv.rows[row][c], "this position stands twice");
+    if (slot) throw text::InputError(place, csv.rows[row][c], "this position stands twice");
     slot = *reading;
   }
   std::array<double, 4> y_mm{};
   for (std::size_t i = 0; i < 4; ++i) {
-    if (!found[i]) throw InputError({file, 0}, std::to_string(90 * i), "no reading at this C");
+    if (!found[i]) throw text::InputError({file, 0}, std::to_string(90 * i), "no reading at this C");
     y_mm[i] = *found[i];
   }
   return y_mm;
 }
 
 void run_gauge_block(const GaugeArguments& arguments) {
-  const GaugeBlockEstimate found = estimate_gauge_block(read_gauge_block(arguments.file), arguments.pivot_mm);
+  const part::GaugeBlockEstimate found =
+      part::estimate_gauge_block(read_gauge_block(arguments.file), arguments.pivot_mm);
   write_json(arguments.json, {{"EA0B_rad", found.ea0b_rad},
                               {"EX0B_mm", found.ex0b_mm},
                               {"EA0B_rad_per_um", found.ea0b_per_mm / 1000},
@@ -245,12 +251,13 @@ void add_s_shape(CLI::App& part) {
       ->add_option("--reading", a->reading,
                    "contact, tip (the paper's) or in-plane: where the defect is taken")
       ->transform(CLI::CheckedTransformer(
-          std::map<std::string, DefectReading>{{"contact", DefectReading::kContact},
-                                               {"tip", DefectReading::kTip},
-                                               {"in-plane", DefectReading::kInPlane}}));
+          std::map<std::string, part::DefectReading>{{"contact", part::DefectReading::kContact},
+                                                     {"tip", part::DefectReading::kTip},
+                                                     {"in-plane", part::DefectReading::kInPlane}}));
   command->add_option("--rotary", a->solution, "continuous or positive-b: which solution of the rotary axes")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, RotarySolution>{
-          {"continuous", RotarySolution::kContinuous}, {"positive-b", RotarySolution::kPositiveB}}));
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, part::RotarySolution>{{"continuous", part::RotarySolution::kContinuous},
+                                                      {"positive-b", part::RotarySolution::kPositiveB}}));
   CLI::Option* identify_option = command->add_option(
       "--identify", a->identify, "measured part (CSV: sx sy sz defect, u): fit the errors to it");
   command->add_option("--free", a->free, "only these statics are fitted, e.g. EA0B,EX0B");
@@ -296,4 +303,4 @@ void register_part(CLI::App& vernier) {
   add_gauge_block(*part);
 }
 
-}  // namespace vernier::part_cli
+}  // namespace vernier::commands::part_cli

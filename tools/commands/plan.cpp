@@ -17,7 +17,7 @@
 #include "tools/text/files.h"
 #include "tools/text/words.h"
 
-namespace vernier::plan_cli {
+namespace vernier::commands::plan_cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -27,34 +27,34 @@ struct PlanArguments {
   std::vector<std::string> measurements, separate, effects;
   std::size_t points = 0;
   double confidence = 0.95;
-  FirstPlanOptions first;
+  plan::FirstPlanOptions first;
   double accuracy_um = 0, expected_um = 0;
   bool check = false;
 };
 
-Json row_json(const Plan& plan, std::size_t row) {
+Json row_json(const plan::Plan& plan, std::size_t row) {
   const auto at = static_cast<Eigen::Index>(row);
-  const States& s = plan.rows.states;
+  const model::States& s = plan.rows.states;
   Json json;
   for (std::size_t a = 0; a < plan.machine.axes.size(); ++a) {
     const std::string& name = plan.machine.axes[a].name;
     json["axes"][name] = s.axis[a][at];
     json["dir"][name] = s.direction[a][at];
     json["v"][name] = s.velocity[a][at];
-    if (s.since[a][at] < kLongWay) json["since"][name] = s.since[a][at];
+    if (s.since[a][at] < model::kLongWay) json["since"][name] = s.since[a][at];
   }
   json["feed"] = s.feed[at];
   json["t"] = s.time[at];
   json["inputs"] = Json::object();
   for (std::size_t i = 0; i < plan.machine.inputs.size(); ++i)
     json["inputs"][plan.machine.inputs[i].name] = s.input[i][at];
-  const Drivers drivers = drivers_of(std::vector<const FittedRival*>{&plan.a, &plan.b});
-  for (const CandidateInput& candidate : plan.rows.candidates)
+  const plan::Drivers drivers = plan::drivers_of(std::vector<const plan::FittedRival*>{&plan.a, &plan.b});
+  for (const model::CandidateInput& candidate : plan.rows.candidates)
     if (drivers.inputs.contains(candidate.name)) json["inputs"][candidate.name] = candidate.value[at];
   return json;
 }
 
-Json pose_json(const Machine& machine, const States& states, std::size_t row) {
+Json pose_json(const model::Machine& machine, const model::States& states, std::size_t row) {
   Json json = Json::object();
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
     json["axes"][machine.axes[i].name] = states.axis[i][static_cast<Eigen::Index>(row)];
@@ -63,11 +63,11 @@ Json pose_json(const Machine& machine, const States& states, std::size_t row) {
   return json;
 }
 
-Json plan_json(const Plan& plan, double confidence) {
-  const auto side = [](const Separation& s) -> Json {
+Json plan_json(const plan::Plan& plan, double confidence) {
+  const auto side = [](const plan::Separation& s) -> Json {
     return {{"now", s.now}, {"planned", s.planned}, {"needed", s.needed}};
   };
-  const Separation& worse = plan.worse();
+  const plan::Separation& worse = plan.worse();
   Json json;
   json["separate"] = {{{"effect", plan.a.candidate.choice.effect->id}, {"add", plan.a.add}},
                       {{"effect", plan.b.candidate.choice.effect->id}, {"add", plan.b.add}}};
@@ -92,15 +92,15 @@ Json plan_json(const Plan& plan, double confidence) {
 
 /// A short measurement that sees the likeliest changes.
 void run_check_plan(const PlanArguments& arguments) {
-  const Machine machine = read_machine(arguments.machine);
-  CheckPlanOptions options;
+  const model::Machine machine = model::read_machine(arguments.machine);
+  plan::CheckPlanOptions options;
   options.reading_um = arguments.first.reading_um;
   if (arguments.expected_um > 0) options.expected_um = arguments.expected_um;
   if (arguments.points > 0) options.points = arguments.points;
-  const CheckPlan plan = check_plan(machine, options);
+  const plan::CheckPlan plan = plan::check_plan(machine, options);
   Json json = {{"machine", machine.name},   {"points", plan.states.count},      {"shows", Json::array()},
                {"not_seen", plan.not_seen}, {"tool_random_um", plan.random_um}, {"rows", Json::array()}};
-  for (const Shown& one : plan.shows)
+  for (const plan::Shown& one : plan.shows)
     json["shows"].push_back({{"name", one.suspect.name},
                              {"change", one.change},
                              {"unit", one.suspect.unit},
@@ -109,35 +109,35 @@ void run_check_plan(const PlanArguments& arguments) {
     json["rows"].push_back(pose_json(machine, plan.states, row));
   const double worst = plan.shows.empty() ? 0 : plan.shows.front().tool_um;
   if (arguments.accuracy_um > 0 && (worst > arguments.accuracy_um || plan.shows.empty()))
-    throw LimitNotMet(
+    throw text::LimitNotMet(
         fmt::format("{} poses show {} only where it moves the tool by {:.3g} um: more --points, or readings "
                     "surer than {:g} um",
                     plan.states.count, plan.shows.empty() ? "nothing" : plan.shows.front().suspect.name,
                     worst, options.reading_um));
   if (!arguments.output.empty())
-    write_file(arguments.output, check_plan_csv(machine, plan, options.reading_um));
+    text::write_file(arguments.output, plan::check_plan_csv(machine, plan, options.reading_um));
   if (!arguments.gcode.empty())
-    write_file(arguments.gcode, poses_gcode(machine, plan.states, "check of " + machine.name));
+    text::write_file(arguments.gcode, plan::poses_gcode(machine, plan.states, "check of " + machine.name));
   write_json(arguments.json, json);
   std::FILE* out = human_stream(arguments.json);
   fmt::print(out, "{} poses of {:g} um show from which change on:\n", plan.states.count, options.reading_um);
-  for (const Shown& one : plan.shows)
+  for (const plan::Shown& one : plan.shows)
     fmt::print(out, "  {:<36} {:>10.3g} {:<4} ({:.3g} um at the tool)\n", one.suspect.name, one.change,
                one.suspect.unit, one.tool_um);
-  if (!plan.not_seen.empty()) fmt::print(out, "not seen at all: {}\n", joined(plan.not_seen, ", "));
+  if (!plan.not_seen.empty()) fmt::print(out, "not seen at all: {}\n", text::joined(plan.not_seen, ", "));
   fmt::print(out, "as many poses at random: {:.3g} um where these show {:.3g}\n", plan.random_um, worst);
 }
 
 /// Without measurements: where to measure a machine for the first time.
 void run_first_plan(const PlanArguments& arguments) {
   if (!arguments.separate.empty())
-    throw InputError({}, "MEAS", "telling two effects apart builds on measurements: name their files");
-  const Machine machine = parse_machine(read_file(arguments.machine), arguments.machine);
-  FirstPlanOptions options = arguments.first;
+    throw text::InputError({}, "MEAS", "telling two effects apart builds on measurements: name their files");
+  const model::Machine machine = model::parse_machine(text::read_file(arguments.machine), arguments.machine);
+  plan::FirstPlanOptions options = arguments.first;
   if (arguments.accuracy_um > 0) options.accuracy_um = arguments.accuracy_um;
   if (arguments.points > 0) options.most = arguments.points;
   if (arguments.expected_um > 0) options.expected_um = arguments.expected_um;
-  const FirstPlan plan = first_plan(machine, options);
+  const plan::FirstPlan plan = plan::first_plan(machine, options);
   const auto count = static_cast<std::size_t>(std::count(plan.check.begin(), plan.check.end(), 0));
   Json json = {{"machine", machine.name},       {"points", plan.check.size()},
                {"fit_points", count},           {"check_points", plan.check.size() - count},
@@ -151,13 +151,14 @@ void run_first_plan(const PlanArguments& arguments) {
     json["rows"].push_back(std::move(one));
   }
   if (!plan.reached)
-    throw LimitNotMet(fmt::format(
+    throw text::LimitNotMet(fmt::format(
         "{:g} um cannot be reached: {} poses lead to {:.3g} um, all that were looked at to {:.3g} um",
         arguments.accuracy_um, count, plan.after_um, plan.least_um));
   if (!arguments.output.empty())
-    write_file(arguments.output, first_plan_csv(machine, plan, options.reading_um));
+    text::write_file(arguments.output, plan::first_plan_csv(machine, plan, options.reading_um));
   if (!arguments.gcode.empty())
-    write_file(arguments.gcode, poses_gcode(machine, plan.states, "first measurement of " + machine.name));
+    text::write_file(arguments.gcode,
+                     plan::poses_gcode(machine, plan.states, "first measurement of " + machine.name));
   write_json(arguments.json, json);
   fmt::print(human_stream(arguments.json),
              "{} poses to fit, {} of them the first one again, and {} to check: tool point known to {:.3g} "
@@ -169,23 +170,23 @@ void run_first_plan(const PlanArguments& arguments) {
 
 void run_plan(const PlanArguments& arguments) {
   if (arguments.check && !(arguments.measurements.empty() && arguments.separate.empty()))
-    throw InputError({}, "--check", "goes with the fitted machine alone");
+    throw text::InputError({}, "--check", "goes with the fitted machine alone");
   if (arguments.check) return run_check_plan(arguments);
   if (arguments.measurements.empty()) return run_first_plan(arguments);
   if (arguments.separate.empty())
-    throw InputError({}, "--separate", "with measurements: which two effects are to be told apart");
-  const std::string text = read_file(arguments.machine);
-  const Machine machine = parse_machine(text, arguments.machine);
-  const Measurement m =
-      read_measurement(arguments.measurements, machine, corrections_of_images(arguments.images));
-  const std::vector<Effect> effects = effect_catalogue(arguments.effects);
-  const std::vector<std::string> rivals = split_rivals(arguments.separate, effects);
-  PlanOptions options;
+    throw text::InputError({}, "--separate", "with measurements: which two effects are to be told apart");
+  const std::string text = text::read_file(arguments.machine);
+  const model::Machine machine = model::parse_machine(text, arguments.machine);
+  const model::Measurement m = model::read_measurement(arguments.measurements, machine,
+                                                       simulate::corrections_of_images(arguments.images));
+  const std::vector<effects::Effect> effects = effects::effect_catalogue(arguments.effects);
+  const std::vector<std::string> rivals = plan::split_rivals(arguments.separate, effects);
+  plan::PlanOptions options;
   options.confidence = arguments.confidence;
   if (arguments.points > 0) options.points = arguments.points;
-  const Plan plan = plan_next(text, machine, m, rivals[0], rivals[1], effects, options);
-  if (!arguments.output.empty()) write_file(arguments.output, plan_csv(plan));
-  if (!arguments.gcode.empty()) write_file(arguments.gcode, plan_gcode(plan));
+  const plan::Plan plan = plan::plan_next(text, machine, m, rivals[0], rivals[1], effects, options);
+  if (!arguments.output.empty()) text::write_file(arguments.output, plan::plan_csv(plan));
+  if (!arguments.gcode.empty()) text::write_file(arguments.gcode, plan::plan_gcode(plan));
   write_json(arguments.json, plan_json(plan, arguments.confidence));
   std::FILE* out = human_stream(arguments.json);
   fmt::print(out, "{}\n\n", plan.sentence);
@@ -195,7 +196,7 @@ void run_plan(const PlanArguments& arguments) {
                side->needed);
   for (const std::string& other : plan.ruled_out) fmt::print(out, "rules out as well: {}\n", other);
   for (const std::string& other : plan.not_ruled_out) fmt::print(out, "does not rule out: {}\n", other);
-  if (plan.rows.rows() > 0) fmt::print(out, "\n{}", plan_table(plan));
+  if (plan.rows.rows() > 0) fmt::print(out, "\n{}", plan::plan_table(plan));
 }
 
 }  // namespace
@@ -239,7 +240,7 @@ void register_plan(CLI::App& vernier) {
       ->check(CLI::PositiveNumber);
   command->add_flag("--check", arguments->check,
                     "the few poses of a `vernier check` of a fitted machine (default: 10 points)");
-  command->add_option("--images", arguments->images, kImagesHelp);
+  command->add_option("--images", arguments->images, simulate::kImagesHelp);
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->footer(
       "Fits the model with either effect, then chooses the rows whose readings differ most after the wrong\n"
@@ -250,4 +251,4 @@ void register_plan(CLI::App& vernier) {
   command->callback([arguments] { run_plan(*arguments); });
 }
 
-}  // namespace vernier::plan_cli
+}  // namespace vernier::commands::plan_cli

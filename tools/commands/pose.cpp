@@ -10,7 +10,7 @@
 #include "tools/model/machine_reader.h"
 #include "tools/results/result_json.h"
 
-namespace vernier::pose_cli {
+namespace vernier::commands::pose_cli {
 namespace {
 
 struct PoseArguments {
@@ -19,27 +19,28 @@ struct PoseArguments {
 };
 
 void run_pose(const PoseArguments& arguments) {
-  const Machine machine = tooled(read_machine(arguments.machine), arguments.tool);
-  const States states = state_at(machine, arguments.at);
-  const Poses actual = forward(machine, states), nominal = forward(nominal_machine(machine), states);
+  const model::Machine machine = kinematics::tooled(model::read_machine(arguments.machine), arguments.tool);
+  const model::States states = kinematics::state_at(machine, arguments.at);
+  const model::Poses actual = model::forward(machine, states),
+                     nominal = model::forward(model::nominal_machine(machine), states);
   nlohmann::ordered_json json = {{"machine", machine.name},
-                                 {"axes", axes_json(machine, states)},
-                                 {"actual", pose_json(actual)},
-                                 {"nominal", pose_json(nominal)}};
+                                 {"axes", results::axes_json(machine, states)},
+                                 {"actual", results::pose_json(actual)},
+                                 {"nominal", results::pose_json(nominal)}};
   std::FILE* out = human_stream(arguments.json);
   const Eigen::Vector3d deviation = actual.position.col(0) - nominal.position.col(0);
   json["deviation_um"] = {1000 * deviation.x(), 1000 * deviation.y(), 1000 * deviation.z()};
   json["std_um"] = nullptr;
-  const Reach reach(machine);
+  const fit::Reach reach(machine);
   if (reach.known()) {
     const Eigen::Vector3d std_um = 1000 * reach.covariance(states)[0].diagonal().cwiseSqrt();
     json["std_um"] = {std_um.x(), std_um.y(), std_um.z()};
   }
-  const double tilt_deg = tilt_between(actual, nominal)[0];
+  const double tilt_deg = kinematics::tilt_between(actual, nominal)[0];
   json["tilt_deg"] = tilt_deg;
   json["correction"] = nullptr;
-  print_pose(out, "nominal", nominal);
-  print_pose(out, "actual", actual);
+  results::print_pose(out, "nominal", nominal);
+  results::print_pose(out, "actual", actual);
   fmt::print(out, "deviation  {:10.4f} {:10.4f} {:10.4f} um\n", 1000 * deviation.x(), 1000 * deviation.y(),
              1000 * deviation.z());
   if (reach.known())
@@ -48,20 +49,21 @@ void run_pose(const PoseArguments& arguments) {
         json["std_um"][0].get<double>(), json["std_um"][1].get<double>(), json["std_um"][2].get<double>());
   fmt::print(out, "tilt       {:10.6f} deg\n", tilt_deg);
   const bool with_rotary = arguments.with_rotary || machine.correct_orientation;
-  if (!with_rotary && linear_axes(machine).empty()) {
+  if (!with_rotary && kinematics::linear_axes(machine).empty()) {
     fmt::print(out, "no linear axis to correct with; --rotary corrects with all axes\n");
     write_json(arguments.json, json);
     return;
   }
-  const CorrectionResult corrected = correct(machine, states, {.with_rotary = with_rotary});
-  json["correction"] = correction_json(machine, corrected);
+  const kinematics::CorrectionResult corrected =
+      kinematics::correct(machine, states, {.with_rotary = with_rotary});
+  json["correction"] = results::correction_json(machine, corrected);
   write_json(arguments.json, json);
   for (std::size_t i = 0; i < machine.axes.size(); ++i)
     fmt::print(out, "correction {:<8} {:+.7f} {}\n", machine.axes[i].name, corrected.offset[i][0],
                machine.axes[i].rotary ? "deg" : "mm");
   fmt::print(out, "left       {:.3g} mm, {:.3g} deg tilt, after {} iterations\n",
              corrected.after.col(0).norm(), corrected.tilt_after[0], corrected.each[0].iterations);
-  if (!corrected.each[0].converged) throw LimitNotMet("the correction does not converge at this pose");
+  if (!corrected.each[0].converged) throw text::LimitNotMet("the correction does not converge at this pose");
 }
 
 }  // namespace
@@ -85,4 +87,4 @@ void register_pose(CLI::App& vernier) {
   command->callback([arguments] { run_pose(*arguments); });
 }
 
-}  // namespace vernier::pose_cli
+}  // namespace vernier::commands::pose_cli

@@ -11,7 +11,7 @@
 #include "tools/probe/path.h"
 #include "tools/text/error.h"
 
-namespace vernier::probe_cli {
+namespace vernier::commands::probe_cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -36,7 +36,7 @@ void add_table(CLI::App& command, TableArguments& arguments) {
   command.add_option("--json", arguments.json, "result for programs; - is standard output");
 }
 
-void add_conditions(CLI::App& command, TouchConditions& conditions) {
+void add_conditions(CLI::App& command, probe::TouchConditions& conditions) {
   command
       .add_option(
           "--gain", conditions.gain_per_s,
@@ -47,20 +47,20 @@ void add_conditions(CLI::App& command, TouchConditions& conditions) {
       ->capture_default_str();
 }
 
-TouchTable read_table(const TableArguments& arguments) {
-  return {read_file(arguments.file), arguments.file, arguments.columns, arguments.where};
+probe::TouchTable read_table(const TableArguments& arguments) {
+  return {text::read_file(arguments.file), arguments.file, arguments.columns, arguments.where};
 }
 
-Json json_of(const std::vector<Calibrated>& parameters) {
+Json json_of(const std::vector<probe::Calibrated>& parameters) {
   Json list = Json::array();
-  for (const Calibrated& p : parameters)
+  for (const probe::Calibrated& p : parameters)
     list.push_back({{"name", p.name}, {"value", p.value}, {"std", p.std}, {"unit", p.unit}});
   return list;
 }
 
-Json json_of(const TouchFit& fit, const TouchTable& table) {
+Json json_of(const probe::TouchFit& fit, const probe::TouchTable& table) {
   Json outliers = Json::array();
-  for (const TouchOutlier& o : fit.outliers)
+  for (const probe::TouchOutlier& o : fit.outliers)
     outliers.push_back({{"line", table.line(o.touch)},
                         {"row", o.touch + 1},
                         {"residual_um", o.residual * 1e3},
@@ -69,9 +69,9 @@ Json json_of(const TouchFit& fit, const TouchTable& table) {
   return outliers;
 }
 
-void print(std::FILE* out, const std::vector<Calibrated>& parameters,
+void print(std::FILE* out, const std::vector<probe::Calibrated>& parameters,
            const std::vector<std::string>& findings) {
-  for (const Calibrated& p : parameters)
+  for (const probe::Calibrated& p : parameters)
     fmt::print(out, "  {:<22} {:>14.6f} +- {:<10.3g} {}\n", p.name, p.value, p.std, p.unit);
   for (const std::string& finding : findings) fmt::print(out, "- {}\n", finding);
 }
@@ -80,23 +80,23 @@ void print(std::FILE* out, const std::vector<Calibrated>& parameters,
 
 struct CalArguments : TableArguments {
   std::string artefact, output;
-  CalibrationSetup setup;
+  probe::CalibrationSetup setup;
   double ball_radius = 0, clearance = 0, overtravel = 0;
   std::string group;
 };
 
-Json json_of(const GroupComparison& groups, const std::string& column) {
+Json json_of(const probe::GroupComparison& groups, const std::string& column) {
   Json list = Json::array();
-  for (const GroupComparison::Group& group : groups.groups)
+  for (const probe::GroupComparison::Group& group : groups.groups)
     list.push_back(
         {{"value", group.value}, {"n_touches", group.touches}, {"parameters", json_of(group.parameters)}});
   return {{"column", column}, {"differ_p", groups.chance}, {"each", list}};
 }
 
-void print(std::FILE* out, const GroupComparison& groups, const std::string& column) {
-  for (const GroupComparison::Group& group : groups.groups) {
+void print(std::FILE* out, const probe::GroupComparison& groups, const std::string& column) {
+  for (const probe::GroupComparison::Group& group : groups.groups) {
     fmt::print(out, "  {} {} ({} touches):", column, group.value, group.touches);
-    for (const Calibrated& p : group.parameters)
+    for (const probe::Calibrated& p : group.parameters)
       if (p.name == "delay" || p.name == "effective_tip_radius")
         fmt::print(out, "  {} {:.6f} +- {:.2g} {}", p.name, p.value, p.std, p.unit);
     fmt::print(out, "\n");
@@ -104,36 +104,38 @@ void print(std::FILE* out, const GroupComparison& groups, const std::string& col
   fmt::print(out, "- {}\n", groups.words);
 }
 
-std::string board_lines(const ProbeCalibration& result) {
-  const Calibrated* const delay = result.find("delay");
+std::string board_lines(const probe::ProbeCalibration& result) {
+  const probe::Calibrated* const delay = result.find("delay");
   std::string text = "# for the [probe] section of a board file\n";
   text += fmt::format("delay_us = {:.2f}\n", delay->value * 1e3);
-  if (const Calibrated* const spread = result.find("delay_spread"))
+  if (const probe::Calibrated* const spread = result.find("delay_spread"))
     text += fmt::format("delay_spread_us = {:.2f}\n", spread->value * 1e3);
   return text;
 }
 
 void run_cal(CalArguments& arguments) {
-  static const std::map<std::string, Artefact> kArtefacts = {
-      {"block", Artefact::kBlock}, {"ring", Artefact::kRing}, {"sphere", Artefact::kSphere}};
+  static const std::map<std::string, probe::Artefact> kArtefacts = {{"block", probe::Artefact::kBlock},
+                                                                    {"ring", probe::Artefact::kRing},
+                                                                    {"sphere", probe::Artefact::kSphere}};
   arguments.setup.artefact = kArtefacts.at(arguments.artefact);
   arguments.setup.outlier_level = arguments.outlier_level;
   if (arguments.ball_radius > 0) arguments.setup.ball_radius_mm = arguments.ball_radius;
   if (arguments.clearance > 0) arguments.setup.clearance_mm = arguments.clearance;
   if (arguments.overtravel > 0) arguments.setup.overtravel_mm = arguments.overtravel;
-  TouchTable table = read_table(arguments);
-  const ProbeCalibration result = calibrate_probe(table, arguments.setup);
-  std::optional<GroupComparison> groups;
-  if (!arguments.group.empty()) groups = compare_groups(table, arguments.setup, arguments.group, result);
+  probe::TouchTable table = read_table(arguments);
+  const probe::ProbeCalibration result = probe::calibrate_probe(table, arguments.setup);
+  std::optional<probe::GroupComparison> groups;
+  if (!arguments.group.empty())
+    groups = probe::compare_groups(table, arguments.setup, arguments.group, result);
   if (!arguments.output.empty()) {
     if (!result.delay_found)
-      throw LimitNotMet("no delay was found, so there is nothing to write: " + result.findings.front());
-    write_file(arguments.output, board_lines(result));
+      throw text::LimitNotMet("no delay was found, so there is nothing to write: " + result.findings.front());
+    text::write_file(arguments.output, board_lines(result));
   }
   Json json = {{"artefact", arguments.artefact},           {"n_touches", table.rows()},
                {"n_excluded", result.fit.outliers.size()}, {"rms_um", result.fit.rms * 1e3},
                {"delay_identified", result.delay_found},   {"parameters", json_of(result.parameters)}};
-  const Calibrated* const delay = result.find("delay");
+  const probe::Calibrated* const delay = result.find("delay");
   json["delay_ms"] = delay ? Json(delay->value) : Json();
   json["delay_std_ms"] = delay ? Json(delay->std) : Json();
   if (result.line_slope_um_per_mm_min)
@@ -159,20 +161,20 @@ void run_cal(CalArguments& arguments) {
 
 struct PathArguments {
   std::string artefact, dialect, output;
-  ProbePath path;
+  probe::ProbePath path;
   double size = 0;
   std::string unit = "mm";
 };
 
 void run_path(PathArguments& arguments) {
-  static const std::map<std::string, Dialect> kDialects = {{"turning", Dialect::kTurning},
-                                                           {"linuxcnc", Dialect::kLinuxcnc},
-                                                           {"fanuc", Dialect::kFanuc},
-                                                           {"aerobasic", Dialect::kAerobasic}};
+  static const std::map<std::string, probe::Dialect> kDialects = {{"turning", probe::Dialect::kTurning},
+                                                                  {"linuxcnc", probe::Dialect::kLinuxcnc},
+                                                                  {"fanuc", probe::Dialect::kFanuc},
+                                                                  {"aerobasic", probe::Dialect::kAerobasic}};
   arguments.path.sphere = arguments.artefact == "sphere";
   arguments.path.radius = arguments.size / 2;
   arguments.path.inch = arguments.unit == "in";
-  write_file(arguments.output, probe_program(arguments.path, kDialects.at(arguments.dialect)));
+  text::write_file(arguments.output, probe::probe_program(arguments.path, kDialects.at(arguments.dialect)));
   fmt::print("{}: {}\n", arguments.output, arguments.path.title);
 }
 
@@ -180,17 +182,17 @@ void run_path(PathArguments& arguments) {
 
 struct FeatureArguments : TableArguments {
   std::string kind, output;
-  FeatureSetup setup;
+  probe::FeatureSetup setup;
   std::vector<double> size;
   double expansion = 0, temperature = 0, expansion_std = 1, temperature_std = 0.1;
 };
 
 void run_feature(FeatureArguments& arguments, const CLI::App& command) {
-  static const std::map<std::string, FeatureKind> kKinds = {
-      {"plane", FeatureKind::kPlane},       {"line", FeatureKind::kLine},
-      {"circle", FeatureKind::kCircle},     {"sphere", FeatureKind::kSphere},
-      {"cylinder", FeatureKind::kCylinder}, {"block", FeatureKind::kBlock}};
-  FeatureSetup& setup = arguments.setup;
+  static const std::map<std::string, probe::FeatureKind> kKinds = {
+      {"plane", probe::FeatureKind::kPlane},       {"line", probe::FeatureKind::kLine},
+      {"circle", probe::FeatureKind::kCircle},     {"sphere", probe::FeatureKind::kSphere},
+      {"cylinder", probe::FeatureKind::kCylinder}, {"block", probe::FeatureKind::kBlock}};
+  probe::FeatureSetup& setup = arguments.setup;
   setup.kind = kKinds.at(arguments.kind);
   setup.outlier_level = arguments.outlier_level;
   if (arguments.size.size() == 2) setup.block_size_mm = {arguments.size[0], arguments.size[1]};
@@ -198,9 +200,9 @@ void run_feature(FeatureArguments& arguments, const CLI::App& command) {
   if (command.count("--temperature") > 0) setup.temperature_degC = arguments.temperature;
   setup.expansion_std_per_K = arguments.expansion_std * 1e-6;
   setup.temperature_std_K = arguments.temperature_std;
-  TouchTable table = read_table(arguments);
-  const MeasuredFeature feature = fit_feature(table, setup);
-  if (!arguments.output.empty()) write_file(arguments.output, feature_csv(table, feature));
+  probe::TouchTable table = read_table(arguments);
+  const probe::MeasuredFeature feature = probe::fit_feature(table, setup);
+  if (!arguments.output.empty()) text::write_file(arguments.output, probe::feature_csv(table, feature));
   write_json(arguments.json, {{"feature", arguments.kind},
                               {"n_touches", table.rows()},
                               {"n_excluded", feature.fit.outliers.size()},
@@ -247,7 +249,7 @@ void register_probe_cal(CLI::App& vernier) {
 
 void register_probe_path(CLI::App& vernier) {
   const auto arguments = std::make_shared<PathArguments>();
-  ProbePath& path = arguments->path;
+  probe::ProbePath& path = arguments->path;
   CLI::App* const command =
       vernier.add_subcommand("probe-path", "the program of such a calibration for a controller");
   command->add_option("artefact", arguments->artefact, "sphere | block")
@@ -315,4 +317,4 @@ void register_feature(CLI::App& vernier) {
   command->callback([arguments, command] { run_feature(*arguments, *command); });
 }
 
-}  // namespace vernier::probe_cli
+}  // namespace vernier::commands::probe_cli

@@ -12,7 +12,7 @@
 #include "tools/text/error.h"
 #include "tools/upload/client.h"
 
-namespace vernier::record_cli {
+namespace vernier::commands::record_cli {
 namespace {
 
 struct Arguments {
@@ -22,26 +22,26 @@ struct Arguments {
 };
 
 /// The unit of an input as the machine file declares it, in brackets: the board knows the number only.
-std::string unit_of(const std::string& input, const std::optional<Machine>& machine) {
+std::string unit_of(const std::string& input, const std::optional<model::Machine>& machine) {
   const auto found = machine ? machine->find_input(input) : std::nullopt;
   if (!found || machine->inputs[*found].unit.empty()) return "";
   return "[" + machine->inputs[*found].unit + "]";
 }
 
 // Columns of FORMATS section 2; a measured tool point is added by whoever measures.
-std::string header(const BoardInfo& info, const std::optional<Machine>& machine) {
+std::string header(const upload::BoardInfo& info, const std::optional<model::Machine>& machine) {
   std::string text = "t[s]";
-  for (const BoardSignal& axis : info.axes)
+  for (const upload::BoardSignal& axis : info.axes)
     text += fmt::format(",{}[{}]", axis.name, axis.rotary ? "deg" : "mm");
-  for (const BoardSignal& axis : info.axes) text += ",dir" + axis.name;
+  for (const upload::BoardSignal& axis : info.axes) text += ",dir" + axis.name;
   text += ",feed[mm/min]";
   for (const std::string& input : info.inputs) text += "," + input + unit_of(input, machine);
-  for (const BoardSignal& axis : info.axes)
+  for (const upload::BoardSignal& axis : info.axes)
     text += fmt::format(",correction{}[{}]", axis.name, axis.rotary ? "deg" : "mm");
   return text + ",run\n";
 }
 
-void append(std::string& text, const BoardTick& tick, const std::string& run) {
+void append(std::string& text, const upload::BoardTick& tick, const std::string& run) {
   auto out = std::back_inserter(text);
   fmt::format_to(out, "{:.6f}", tick.time_s);
   for (const double position : tick.position) fmt::format_to(out, ",{:.9g}", position);
@@ -54,9 +54,9 @@ void append(std::string& text, const BoardTick& tick, const std::string& run) {
 
 void run(const Arguments& arguments) {
   using Clock = std::chrono::steady_clock;
-  std::optional<Machine> machine;
-  if (!arguments.machine.empty()) machine = read_machine(arguments.machine);
-  Client client(open_transport(parse_url(arguments.url)));
+  std::optional<model::Machine> machine;
+  if (!arguments.machine.empty()) machine = model::read_machine(arguments.machine);
+  upload::Client client(upload::open_transport(upload::parse_url(arguments.url)));
   Progress progress("record");
   std::string text = header(client.info(), machine);
   std::uint64_t rows = 0, lost = 0;
@@ -65,9 +65,9 @@ void run(const Arguments& arguments) {
   const auto end = next + static_cast<std::uint64_t>(arguments.seconds / tick_s);
   const auto start = Clock::now();
   while (next < end) {
-    const BoardHistory history = client.history(next, static_cast<std::uint16_t>(arguments.every));
+    const upload::BoardHistory history = client.history(next, static_cast<std::uint16_t>(arguments.every));
     lost += history.lost;
-    for (const BoardTick& tick : history.ticks) {
+    for (const upload::BoardTick& tick : history.ticks) {
       if (tick.number >= end) break;
       append(text, tick, arguments.run);
       ++rows;
@@ -77,7 +77,7 @@ void run(const Arguments& arguments) {
     if (history.ticks.empty())
       std::this_thread::sleep_for(std::chrono::duration<double>(arguments.every * tick_s));
   }
-  write_file(arguments.output, text);
+  text::write_file(arguments.output, text);
   fmt::print(
       human_stream(arguments.json), "{}: {} rows{}\n", arguments.output, rows,
       lost > 0
@@ -109,4 +109,4 @@ void register_record(CLI::App& vernier) {
   command->callback([arguments] { run(*arguments); });
 }
 
-}  // namespace vernier::record_cli
+}  // namespace vernier::commands::record_cli

@@ -7,7 +7,7 @@
 #include "tools/text/files.h"
 #include "tools/text/words.h"
 
-namespace vernier {
+namespace vernier::commands {
 namespace {
 
 using Entries = std::vector<std::pair<std::string, std::string>>;
@@ -15,7 +15,7 @@ using Entries = std::vector<std::pair<std::string, std::string>>;
 bool take(Entries& entries, const std::string& words) {
   const auto at = words.find('=');
   if (at == std::string::npos) return false;
-  const std::string key = trimmed(words.substr(0, at)), value = trimmed(words.substr(at + 1));
+  const std::string key = text::trimmed(words.substr(0, at)), value = text::trimmed(words.substr(at + 1));
   if (key.empty() || value.empty()) return false;
   const auto known =
       std::find_if(entries.begin(), entries.end(), [&](const auto& one) { return one.first == key; });
@@ -32,15 +32,16 @@ Entries ReportHeader::entries() const {
   Entries entries;
   std::size_t number = 0;
   for (const std::string& line :
-       file.empty() ? std::vector<std::string>{} : parts_of(read_file(file), '\n')) {
+       file.empty() ? std::vector<std::string>{} : text::parts_of(text::read_file(file), '\n')) {
     ++number;
-    const std::string words = trimmed(line);
+    const std::string words = text::trimmed(line);
     if (words.empty() || words.front() == '#') continue;
     if (!take(entries, words))
-      throw InputError({file, number}, words, "a letterhead has lines like \"company = Muster GmbH\"");
+      throw text::InputError({file, number}, words, "a letterhead has lines like \"company = Muster GmbH\"");
   }
   for (const std::string& words : given)
-    if (!take(entries, words)) throw InputError("--header " + words + ": of the form \"serial number=4711\"");
+    if (!take(entries, words))
+      throw text::InputError("--header " + words + ": of the form \"serial number=4711\"");
   return entries;
 }
 
@@ -65,4 +66,4 @@ void add_report_header(CLI::App& command, ReportHeader& header) {
       ->type_name("FILE");
 }
 
-}  // namespace vernier
+}  // namespace vernier::commands

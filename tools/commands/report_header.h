@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-namespace vernier {
+namespace vernier::commands {
 
 /// What a report to be handed over says besides its numbers: company, machine, serial number, operator,
 /// instrument, date, temperature and whatever else is given.
@@ -24,4 +24,4 @@ struct ReportHeader {
 /// Adds --header and --letterhead to a command that writes a report.
 void add_report_header(CLI::App& command, ReportHeader& header);
 
-}  // namespace vernier
+}  // namespace vernier::commands

@@ -10,16 +10,16 @@
 #include "tools/simulate/simulate.h"
 #include "tools/text/error.h"
 
-namespace vernier::simulate_cli {
+namespace vernier::commands::simulate_cli {
 namespace {
 
 struct Arguments {
   std::string truth, image, path, json, output;
   unsigned dac = 0;
-  LoopOptions loop;
+  simulate::LoopOptions loop;
 };
 
-void print_result(std::FILE* out, const SimulateResult& r, const LoopOptions& options) {
+void print_result(std::FILE* out, const simulate::SimulateResult& r, const simulate::LoopOptions& options) {
   fmt::print(out, "{} ticks after {} ticks of pre-roll, {}\n", r.states.count, r.loop.pre_roll,
              options.dac_bits ? fmt::format("{} bit converter", *options.dac_bits) : "one image unit");
   fmt::print(out, "error before   rms {:.4g} um   max {:.4g} um\n", r.rms_before_um, r.max_before_um);
@@ -35,12 +35,13 @@ void print_result(std::FILE* out, const SimulateResult& r, const LoopOptions& op
 
 void run_simulate(Arguments arguments) {
   if (arguments.dac != 0) arguments.loop.dac_bits = arguments.dac;
-  const Machine truth = read_machine(arguments.truth);
-  const auto image = load_image_dir(arguments.image);
-  const Path path = read_path(arguments.path);
-  const SimulateResult result = simulate(truth, *image, path, arguments.loop);
-  const nlohmann::ordered_json json = simulate_json(result, image->machine, arguments.loop);
-  if (!arguments.output.empty()) write_file(arguments.output, ticks_csv(result, image->machine));
+  const model::Machine truth = model::read_machine(arguments.truth);
+  const auto image = compile::load_image_dir(arguments.image);
+  const simulate::Path path = simulate::read_path(arguments.path);
+  const simulate::SimulateResult result = simulate::simulate(truth, *image, path, arguments.loop);
+  const nlohmann::ordered_json json = simulate::simulate_json(result, image->machine, arguments.loop);
+  if (!arguments.output.empty())
+    text::write_file(arguments.output, simulate::ticks_csv(result, image->machine));
   write_json(arguments.json, json);
   print_result(human_stream(arguments.json), result, arguments.loop);
 }
@@ -75,4 +76,4 @@ void register_simulate(CLI::App& vernier) {
   command->callback([arguments] { run_simulate(*arguments); });
 }
 
-}  // namespace vernier::simulate_cli
+}  // namespace vernier::commands::simulate_cli

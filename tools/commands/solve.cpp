@@ -10,7 +10,7 @@
 #include "tools/model/machine_reader.h"
 #include "tools/results/result_json.h"
 
-namespace vernier::solve_cli {
+namespace vernier::commands::solve_cli {
 namespace {
 
 struct SolveArguments {
@@ -20,68 +20,73 @@ struct SolveArguments {
   int restarts = 48;
 };
 
-InverseOptions options_of(const SolveArguments& arguments, const Machine& machine, bool with_rotation) {
-  InverseOptions options;
-  const std::map<std::string, Match> names = {
-      {"position", Match::kPosition}, {"direction", Match::kDirection}, {"pose", Match::kPose}};
+kinematics::InverseOptions options_of(const SolveArguments& arguments, const model::Machine& machine,
+                                      bool with_rotation) {
+  kinematics::InverseOptions options;
+  const std::map<std::string, kinematics::Match> names = {{"position", kinematics::Match::kPosition},
+                                                          {"direction", kinematics::Match::kDirection},
+                                                          {"pose", kinematics::Match::kPose}};
   if (arguments.match == "auto")
-    options.match = with_rotation ? Match::kPose : Match::kPosition;
+    options.match = with_rotation ? kinematics::Match::kPose : kinematics::Match::kPosition;
   else
     options.match = names.at(arguments.match);
-  if (options.match != Match::kPosition && !with_rotation)
-    throw InputError({}, arguments.target, "a direction or a pose needs the rotation too: x,y,z,rx,ry,rz");
+  if (options.match != kinematics::Match::kPosition && !with_rotation)
+    throw text::InputError({}, arguments.target,
+                           "a direction or a pose needs the rotation too: x,y,z,rx,ry,rz");
   for (const std::string& name : arguments.axes) {
     const auto axis = machine.find_axis(name);
-    if (!axis) throw InputError({machine.file, 0}, name, "no axis of that name");
+    if (!axis) throw text::InputError({machine.file, 0}, name, "no axis of that name");
     options.axes.push_back(*axis);
   }
   return options;
 }
 
 /// What a Newton iteration found, and whether the closed form says the same.
-nlohmann::ordered_json solution_json(const Machine& machine, const InverseResult& result, const States& start,
-                                     const Poses& target, bool position_only) {
+nlohmann::ordered_json solution_json(const model::Machine& machine, const kinematics::InverseResult& result,
+                                     const model::States& start, const model::Poses& target,
+                                     bool position_only) {
   nlohmann::ordered_json json = {{"machine", machine.name},
-                                 {"axes", axes_json(machine, result.states)},
-                                 {"reached", pose_json(forward(machine, result.states))},
-                                 {"proof", inverse_json(machine, result.each[0])},
+                                 {"axes", results::axes_json(machine, result.states)},
+                                 {"reached", results::pose_json(model::forward(machine, result.states))},
+                                 {"proof", results::inverse_json(machine, result.each[0])},
                                  {"closed_form", nullptr}};
-  const auto closed = position_only ? closed_solution(machine, start) : std::nullopt;
+  const auto closed = position_only ? kinematics::closed_solution(machine, start) : std::nullopt;
   if (!closed) return json;
-  const Eigen::MatrixXd q = solve_closed(*closed, target.position);
+  const Eigen::MatrixXd q = kinematics::solve_closed(*closed, target.position);
   for (std::size_t k = 0; k < closed->axes.size(); ++k)
     json["closed_form"][machine.axes[closed->axes[k]].name] = q(static_cast<Eigen::Index>(k), 0);
   return json;
 }
 
-std::string failure_text(const Machine& machine, const Inverse& proof) {
+std::string failure_text(const model::Machine& machine, const kinematics::Inverse& proof) {
   const std::string residual =
       fmt::format("residual {:.3g} mm, {:.3g} deg after {} iterations, condition {:.3g}", proof.residual_mm,
                   proof.residual_deg, proof.iterations, proof.condition);
-  if (proof.fault == InverseFault::kSingular)
+  if (proof.fault == kinematics::InverseFault::kSingular)
     return "no solution: the axes have lost a degree of freedom there (" + residual + ")";
-  if (proof.fault == InverseFault::kBeyondRange)
+  if (proof.fault == kinematics::InverseFault::kBeyondRange)
     return "no solution: axis " + machine.axes[proof.axis].name + " would have to leave its range (" +
            residual + ")";
   return "no solution: the target is out of reach of these axes (" + residual + ")";
 }
 
 void run_solve(const SolveArguments& arguments) {
-  const Machine read = read_machine(arguments.machine);
-  const Machine machine = arguments.nominal ? nominal_machine(read) : read;
+  const model::Machine read = model::read_machine(arguments.machine);
+  const model::Machine machine = arguments.nominal ? model::nominal_machine(read) : read;
   const std::vector<double> numbers =
-      number_list(arguments.target, {3, 6}, "a target x,y,z or x,y,z,rx,ry,rz");
-  Poses target;
+      kinematics::number_list(arguments.target, {3, 6}, "a target x,y,z or x,y,z,rx,ry,rz");
+  model::Poses target;
   target.position = Eigen::Vector3d(numbers[0], numbers[1], numbers[2]);
   target.rotation = {Eigen::Matrix3d::Identity()};
-  if (numbers.size() == 6) target.rotation = {rotation_of({numbers[3], numbers[4], numbers[5]})};
-  const InverseOptions options = options_of(arguments, machine, numbers.size() == 6);
-  const States start = state_at(machine, arguments.start);
-  const InverseResult result = solve_anywhere(machine, target, start, options, arguments.restarts);
-  const Inverse& proof = result.each[0];
+  if (numbers.size() == 6) target.rotation = {kinematics::rotation_of({numbers[3], numbers[4], numbers[5]})};
+  const kinematics::InverseOptions options = options_of(arguments, machine, numbers.size() == 6);
+  const model::States start = kinematics::state_at(machine, arguments.start);
+  const kinematics::InverseResult result =
+      kinematics::solve_anywhere(machine, target, start, options, arguments.restarts);
+  const kinematics::Inverse& proof = result.each[0];
   write_json(arguments.json,
-             solution_json(machine, result, start, target, options.match == Match::kPosition));
-  if (!proof.converged) throw LimitNotMet(failure_text(machine, proof));
+             solution_json(machine, result, start, target, options.match == kinematics::Match::kPosition));
+  if (!proof.converged) throw text::LimitNotMet(failure_text(machine, proof));
   std::FILE* out = human_stream(arguments.json);
   for (std::size_t i = 0; i < machine.axes.size(); ++i)
     fmt::print(out, "{:<10} {:.9f} {}\n", machine.axes[i].name, result.states.axis[i][0],
@@ -122,4 +127,4 @@ void register_solve(CLI::App& vernier) {
   command->callback([arguments] { run_solve(*arguments); });
 }
 
-}  // namespace vernier::solve_cli
+}  // namespace vernier::commands::solve_cli

@@ -11,7 +11,7 @@
 #include "tools/text/error.h"
 #include "tools/upload/client.h"
 
-namespace vernier::touches_cli {
+namespace vernier::commands::touches_cli {
 namespace {
 
 struct Arguments {
@@ -24,22 +24,23 @@ struct Arguments {
 
 struct Lost {
   std::uint64_t overwritten = 0, without_position = 0;
-  TouchTotals board;
+  upload::TouchTotals board;
 };
 
-const char* unit_of(const BoardSignal& axis) { return axis.rotary ? "deg" : "mm"; }
+const char* unit_of(const upload::BoardSignal& axis) { return axis.rotary ? "deg" : "mm"; }
 
 // Columns of FORMATS section 2: axes as read, the tool point in workpiece coordinates, compensated axes
 // beside them.
-std::string header(const BoardInfo& info) {
+std::string header(const upload::BoardInfo& info) {
   std::string text = "touch,t[s]";
-  for (const BoardSignal& axis : info.axes) text += fmt::format(",{}[{}]", axis.name, unit_of(axis));
-  for (const BoardSignal& axis : info.axes)
+  for (const upload::BoardSignal& axis : info.axes) text += fmt::format(",{}[{}]", axis.name, unit_of(axis));
+  for (const upload::BoardSignal& axis : info.axes)
     text += fmt::format(",compensated{}[{}]", axis.name, unit_of(axis));
   return text + ",x[mm],y[mm],z[mm],u[mm],bounces,run\n";
 }
 
-void append(std::string& text, const BoardInfo& info, const BoardTouch& touch, const std::string& run) {
+void append(std::string& text, const upload::BoardInfo& info, const upload::BoardTouch& touch,
+            const std::string& run) {
   auto out = std::back_inserter(text);
   fmt::format_to(out, "{},{:.9f}", touch.number, touch.time_s);
   for (const double position : touch.position) fmt::format_to(out, ",{:.10g}", position);
@@ -68,8 +69,8 @@ std::string in_words(const Lost& lost) {
 }
 
 void run(const Arguments& arguments) {
-  Client client(open_transport(parse_url(arguments.url)));
-  client.sign_with(given_key(arguments.key));
+  upload::Client client(upload::open_transport(upload::parse_url(arguments.url)));
+  client.sign_with(upload::given_key(arguments.key));
   if (arguments.frame) {
     client.workpiece({arguments.x, arguments.y, arguments.z}, arguments.angle);
     if (arguments.output.empty()) {
@@ -81,7 +82,7 @@ void run(const Arguments& arguments) {
     }
   }
   if (arguments.output.empty())
-    throw InputError("nothing to do: give -o FILE, or --origin-x/y/z and --angle");
+    throw text::InputError("nothing to do: give -o FILE, or --origin-x/y/z and --angle");
   Progress progress("touches");
   using Clock = std::chrono::steady_clock;
   const auto start = Clock::now();
@@ -89,10 +90,10 @@ void run(const Arguments& arguments) {
   std::uint64_t next = arguments.first, rows = 0;
   Lost lost;
   for (;;) {
-    const BoardTouches touches = client.touches(next);
+    const upload::BoardTouches touches = client.touches(next);
     lost.overwritten += touches.lost;
     next = touches.next;
-    for (const BoardTouch& touch : touches.touches) {
+    for (const upload::BoardTouch& touch : touches.touches) {
       lost.board = touch.totals;
       if (rows >= arguments.count) break;
       if (!touch.has_position) {
@@ -108,7 +109,7 @@ void run(const Arguments& arguments) {
     progress.update(passed / arguments.seconds);
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
-  write_file(arguments.output, text);
+  text::write_file(arguments.output, text);
   fmt::print(human_stream(arguments.json), "{}: {} touches{}\n", arguments.output, rows, in_words(lost));
   write_json(arguments.json, {{"touches", rows},
                               {"next", next},
@@ -156,4 +157,4 @@ void register_touches(CLI::App& vernier) {
   command->callback([arguments] { run(*arguments); });
 }
 
-}  // namespace vernier::touches_cli
+}  // namespace vernier::commands::touches_cli

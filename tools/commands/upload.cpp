@@ -13,7 +13,7 @@
 #include "tools/upload/live.h"
 #include "tools/upload/signing.h"
 
-namespace vernier::upload_cli {
+namespace vernier::commands::upload_cli {
 namespace {
 
 struct Arguments {
@@ -24,7 +24,7 @@ struct Arguments {
 
 std::vector<std::uint8_t> read_image(const std::string& directory) {
   const std::string path = directory + "/machine.vimg";
-  const std::string text = read_file(path);
+  const std::string text = text::read_file(path);
   std::vector<std::uint8_t> bytes(text.begin(), text.end());
   std::vector<std::uint64_t> words((bytes.size() + 7) / 8);  // aligned
   std::memcpy(words.data(), bytes.data(), bytes.size());
@@ -32,7 +32,7 @@ std::vector<std::uint8_t> read_image(const std::string& directory) {
   const auto workspace = std::make_unique<ImageWorkspace>();
   const ImageFault fault = view.open(reinterpret_cast<const std::uint8_t*>(words.data()),
                                      static_cast<std::uint32_t>(bytes.size()), *workspace);
-  if (fault != ImageFault::kNone) throw InputError(path + ": " + describe(fault));
+  if (fault != ImageFault::kNone) throw text::InputError(path + ": " + describe(fault));
   return bytes;
 }
 
@@ -46,7 +46,7 @@ nlohmann::ordered_json slots_json(const SlotsReply& slots) {
     if (slot == kNoSlot) return nullptr;
     return fmt::format("{:016x}", fingerprint);
   };
-  return {{"confirmed", confirmed_json(slots)},
+  return {{"confirmed", upload::confirmed_json(slots)},
           {"trial", hex(slots.trial, slots.trial_fingerprint)},
           {"trial_left_s", slots.trial_left_ms * 1e-3}};
 }
@@ -54,13 +54,13 @@ nlohmann::ordered_json slots_json(const SlotsReply& slots) {
 /// The sheet once more: the machine file beside the image may have been changed, or compiled elsewhere. What
 /// was accepted at compilation stands in the image.
 void require_safe(const std::string& directory) {
-  const auto image = load_image_dir(directory);
-  std::vector<SafetyRule> accepted;
-  for (std::size_t rule = 0; rule < kSafetyRuleCount; ++rule)
+  const auto image = compile::load_image_dir(directory);
+  std::vector<safety::SafetyRule> accepted;
+  for (std::size_t rule = 0; rule < safety::kSafetyRuleCount; ++rule)
     if ((image->view.header().accepted_rules >> rule & 1U) != 0)
-      accepted.push_back(static_cast<SafetyRule>(rule));
-  const SafetySheet sheet = safety_sheet(image->machine, accepted);
-  if (!sheet.ok()) throw LimitNotMet(sheet.refusal());
+      accepted.push_back(static_cast<safety::SafetyRule>(rule));
+  const safety::SafetySheet sheet = safety::safety_sheet(image->machine, accepted);
+  if (!sheet.ok()) throw text::LimitNotMet(sheet.refusal());
 }
 
 /// An image must be newer than all that the board has ever tried. Where this computer's clock is behind them,
@@ -69,7 +69,7 @@ std::uint64_t time_of_signing(const Arguments& arguments, const SlotsReply& slot
   const std::uint64_t now = now_us();
   if (now > slots.newest_issued) return now;
   if (!arguments.force)
-    throw LimitNotMet(
+    throw text::LimitNotMet(
         "this computer's clock is behind the newest image that the board has tried: set it, or sign right "
         "after that image with --force");
   return slots.newest_issued + 1;
@@ -78,34 +78,36 @@ std::uint64_t time_of_signing(const Arguments& arguments, const SlotsReply& slot
 std::uint32_t security_of(const Arguments& arguments, const SlotsReply& slots) {
   if (arguments.security < 0) return slots.security;
   if (arguments.security < slots.security)
-    throw LimitNotMet(fmt::format("the board's security counter is {} and never falls", slots.security));
+    throw text::LimitNotMet(
+        fmt::format("the board's security counter is {} and never falls", slots.security));
   return static_cast<std::uint32_t>(arguments.security);
 }
 
-void send(const Arguments& arguments, Client& client) {
+void send(const Arguments& arguments, upload::Client& client) {
   const std::vector<std::uint8_t> image = read_image(arguments.directory);
   require_safe(arguments.directory);
-  const auto key = given_key(arguments.key);
+  const auto key = upload::given_key(arguments.key);
   if (!key)
-    throw InputError("--key is missing: the secret key that signs the image (`vernier keys` makes one)");
+    throw text::InputError(
+        "--key is missing: the secret key that signs the image (`vernier keys` makes one)");
   const std::string& board = client.info().board;
   if (!arguments.board.empty() && arguments.board != board)
-    throw LimitNotMet(
+    throw text::LimitNotMet(
         fmt::format("this board is {}, not {}", board.empty() ? "without a name" : board, arguments.board));
   const SlotsReply slots = client.slots();
-  const auto upload =
-      make_upload(image, *key, time_of_signing(arguments, slots), security_of(arguments, slots), board);
+  const auto upload = upload::make_upload(image, *key, time_of_signing(arguments, slots),
+                                          security_of(arguments, slots), board);
   Progress progress("upload");
   client.upload(upload, [&](double share) { progress.update(share); });
 }
 
 void run(const Arguments& arguments) {
   if (arguments.directory.empty() && !arguments.confirm && !arguments.revert)
-    throw InputError("nothing to do: name a compiled directory, --confirm or --revert");
+    throw text::InputError("nothing to do: name a compiled directory, --confirm or --revert");
   if (arguments.revert && (arguments.confirm || !arguments.directory.empty()))
-    throw InputError("--revert stands alone");
-  Client client(open_transport(parse_url(arguments.url)));
-  client.sign_with(given_key(arguments.key));
+    throw text::InputError("--revert stands alone");
+  upload::Client client(upload::open_transport(upload::parse_url(arguments.url)));
+  client.sign_with(upload::given_key(arguments.key));
   if (!arguments.directory.empty()) send(arguments, client);
   if (arguments.confirm) client.confirm();
   if (arguments.revert) client.revert();
@@ -117,7 +119,7 @@ void run(const Arguments& arguments) {
                "keep it: vernier upload --confirm --to {}\n",
                slots.trial_fingerprint, slots.trial_left_ms * 1e-3, arguments.url);
   else
-    fmt::print(people, "{}\n", confirmed_text(slots));
+    fmt::print(people, "{}\n", upload::confirmed_text(slots));
   write_json(arguments.json, slots_json(slots));
 }
 
@@ -150,4 +152,4 @@ void register_upload(CLI::App& vernier) {
   command->callback([arguments] { run(*arguments); });
 }
 
-}  // namespace vernier::upload_cli
+}  // namespace vernier::commands::upload_cli

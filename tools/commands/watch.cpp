@@ -9,7 +9,7 @@
 #include "tools/commands/command.h"
 #include "tools/upload/live.h"
 
-namespace vernier::watch_cli {
+namespace vernier::commands::watch_cli {
 namespace {
 
 struct Arguments {
@@ -18,24 +18,24 @@ struct Arguments {
 };
 
 struct Live {
-  BoardTick tick;
+  upload::BoardTick tick;
   HealthRecord health;
   SlotsReply slots;
-  std::vector<BoardShare> shares;
-  BoardState state;
+  std::vector<upload::BoardShare> shares;
+  upload::BoardState state;
 };
 
-Live look(Client& client) {
+Live look(upload::Client& client) {
   return {client.newest(), client.health(), client.slots(), client.shares(), client.state()};
 }
 
 void status(const Arguments& arguments) {
-  Client client(open_transport(parse_url(arguments.url)));
+  upload::Client client(upload::open_transport(upload::parse_url(arguments.url)));
   const Live live = look(client);
   fmt::print(human_stream(arguments.json), "{}",
-             live_text(client.info(), live.tick, live.health, live.slots, live.shares, live.state));
+             upload::live_text(client.info(), live.tick, live.health, live.slots, live.shares, live.state));
   write_json(arguments.json,
-             live_json(client.info(), live.tick, live.health, live.slots, live.shares, live.state));
+             upload::live_json(client.info(), live.tick, live.health, live.slots, live.shares, live.state));
 }
 
 // On a terminal the picture is drawn over the one before; into a pipe or file, one block after the other.
@@ -49,7 +49,7 @@ void draw(const std::string& text, bool terminal, std::ptrdiff_t& lines_before) 
 
 void watch(const Arguments& arguments) {
   using Clock = std::chrono::steady_clock;
-  Client client(open_transport(parse_url(arguments.url)));
+  upload::Client client(upload::open_transport(upload::parse_url(arguments.url)));
   const bool terminal = isatty(STDOUT_FILENO) != 0;
   const auto start = Clock::now();
   const auto period =
@@ -61,12 +61,12 @@ void watch(const Arguments& arguments) {
     std::this_thread::sleep_until(due);
     const Live live = look(client);
     if (arguments.json.empty()) {
-      draw(live_text(client.info(), live.tick, live.health, live.slots, live.shares, live.state), terminal,
-           lines);
+      draw(upload::live_text(client.info(), live.tick, live.health, live.slots, live.shares, live.state),
+           terminal, lines);
     } else {
-      fmt::print(
-          "{}\n",
-          live_json(client.info(), live.tick, live.health, live.slots, live.shares, live.state).dump());
+      fmt::print("{}\n",
+                 upload::live_json(client.info(), live.tick, live.health, live.slots, live.shares, live.state)
+                     .dump());
       std::fflush(stdout);
     }
     due = std::max(due, Clock::now() - period);  // a slow line gets fewer pictures, not a backlog
@@ -104,4 +104,4 @@ void register_watch(CLI::App& vernier) {
   command->callback([arguments] { watch(*arguments); });
 }
 
-}  // namespace vernier::watch_cli
+}  // namespace vernier::commands::watch_cli

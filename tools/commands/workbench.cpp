@@ -18,7 +18,7 @@
 #include "tools/workbench/process.h"
 #include "tools/workbench/server.h"
 
-namespace vernier::workbench_cli {
+namespace vernier::commands::workbench_cli {
 namespace {
 
 struct WorkbenchArguments {
@@ -38,21 +38,21 @@ sigset_t ending_signals() {
 void open_browser(const std::string& url) {
   if (std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr) return;
   std::thread([url] {
-    RunningProcess running;
+    workbench::RunningProcess running;
     try {
-      run_process(
+      workbench::run_process(
           "/usr/bin/xdg-open", {url}, "/", 1 << 20, [](std::string_view) {}, running);
-    } catch (const InputError&) {
+    } catch (const text::InputError&) {
       // The address is printed too.
     }
   }).detach();
 }
 
 void run_workbench(const WorkbenchArguments& arguments) {
-  if (arguments.reader) return serve_files(Project(arguments.directory), STDIN_FILENO);
-  Api api(arguments.directory, std::filesystem::read_symlink("/proc/self/exe").string(),
-          VERNIER_VERSION " (" VERNIER_COMMIT ")");
-  WorkbenchServer server(api, arguments.port);
+  if (arguments.reader) return workbench::serve_files(workbench::Project(arguments.directory), STDIN_FILENO);
+  workbench::Api api(arguments.directory, std::filesystem::read_symlink("/proc/self/exe").string(),
+                     VERNIER_VERSION " (" VERNIER_COMMIT ")");
+  workbench::WorkbenchServer server(api, arguments.port);
   const sigset_t ending = ending_signals();
   pthread_sigmask(SIG_BLOCK, &ending, nullptr);
   std::thread wait([&] {
@@ -76,26 +76,27 @@ struct DiffArguments {
 };
 
 std::vector<std::uint8_t> image_bytes(const std::string& directory) {
-  const std::string text = read_file(directory + "/machine.vimg");
+  const std::string text = text::read_file(directory + "/machine.vimg");
   return {text.begin(), text.end()};
 }
 
 std::vector<std::uint8_t> board_image(const std::string& url, const std::string& key) {
-  Client client(open_transport(parse_url(url)));
-  client.sign_with(given_key(key));
+  upload::Client client(upload::open_transport(upload::parse_url(url)));
+  client.sign_with(upload::given_key(key));
   Progress progress("image-diff");
   auto upload =
       client.confirmed([&](double share) { progress.update(share, "reading what the board runs"); });
-  if (!upload) throw LimitNotMet("the board's store has no confirmed image");
-  return image_in(*upload);
+  if (!upload) throw text::LimitNotMet("the board's store has no confirmed image");
+  return upload::image_in(*upload);
 }
 
 void run_diff(const DiffArguments& arguments) {
-  if (arguments.with.empty() == arguments.url.empty()) throw InputError("either --with DIR or --to URL");
+  if (arguments.with.empty() == arguments.url.empty())
+    throw text::InputError("either --with DIR or --to URL");
   const auto mine = image_bytes(arguments.directory);
   const auto other =
       arguments.url.empty() ? image_bytes(arguments.with) : board_image(arguments.url, arguments.key);
-  const nlohmann::ordered_json json = image_diff(mine, other);
+  const nlohmann::ordered_json json = workbench::image_diff(mine, other);
   write_json(arguments.json, json);
   std::FILE* const out = human_stream(arguments.json);
   fmt::print(out, "{} {} {}\n", json["a"]["fingerprint"].get<std::string>(),
@@ -146,4 +147,4 @@ void register_image_diff(CLI::App& vernier) {
   command->callback([arguments] { run_diff(*arguments); });
 }
 
-}  // namespace vernier::workbench_cli
+}  // namespace vernier::commands::workbench_cli

@@ -10,7 +10,7 @@
 #include "tools/compile/functions.h"
 #include "tools/maths/factors.h"
 
-namespace vernier {
+namespace vernier::compile {
 namespace {
 
 using Registers = std::set<std::uint32_t>;
@@ -53,13 +53,14 @@ void sort_terms(OutputBound& bound) {
                    [](const auto& a, const auto& b) { return a.bound_um > b.bound_um; });
 }
 
-OutputBound bound_of(const Machine& machine, const Derivation& d, const LoweredProgram& p, std::size_t i) {
+OutputBound bound_of(const model::Machine& machine, const Derivation& d, const LoweredProgram& p,
+                     std::size_t i) {
   const Output& out = p.outputs[i];
   const Register& result = p.registers[out.source];
   OutputBound bound;
   bound.axis = machine.axes[out.axis].name;
   const bool rotary = machine.axes[out.axis].rotary;
-  const double um_per_unit = kUmPerMm * (rotary ? d.outputs[i].lever : 1);
+  const double um_per_unit = maths::kUmPerMm * (rotary ? d.outputs[i].lever : 1);
   bound.deviation_um = (d.before.empty() ? result.range.magnitude() : d.before[0].range[i]) * um_per_unit;
   const auto blame = [&](const std::string& name, const std::string& source, double units) {
     if (units <= 0) return;
@@ -86,7 +87,7 @@ OutputBound bound_of(const Machine& machine, const Derivation& d, const LoweredP
   return bound;
 }
 
-OutputBound bound_of_direction(const Machine& machine, const Derivation& d, std::size_t i) {
+OutputBound bound_of_direction(const model::Machine& machine, const Derivation& d, std::size_t i) {
   OutputBound bound;
   bound.axis = machine.axes[d.outputs[i].axis].name;
   bound.deviation_deg = d.graph[d.outputs[i].value].range.magnitude();
@@ -125,7 +126,7 @@ class LeastSquaresBound {
     insert(pieces, least_.reciprocal);
     std::vector<Contribution> terms;
     const auto add = [&](const char* name, const char* source, double mm) {
-      if (mm > 0) terms.push_back({name, source, mm * kUmPerMm});
+      if (mm > 0) terms.push_back({name, source, mm * maths::kUmPerMm});
     };
     add_deviation(terms);
     if (const auto reciprocal = place(least_.reciprocal)) {
@@ -197,7 +198,7 @@ class LeastSquaresBound {
     for (std::size_t r = 0; r < square.size(); ++r)
       if (square[r] > 0)
         terms.push_back(
-            {p_.registers[r].name, name_of(p_.registers[r].source), std::sqrt(square[r]) * kUmPerMm});
+            {p_.registers[r].name, name_of(p_.registers[r].source), std::sqrt(square[r]) * maths::kUmPerMm});
   }
 
   const Graph& g_;
@@ -206,22 +207,23 @@ class LeastSquaresBound {
   const LoweredProgram& p_;
 };
 
-std::vector<OutputBound> least_squares_bounds(const Machine& machine, const Derivation& d,
+std::vector<OutputBound> least_squares_bounds(const model::Machine& machine, const Derivation& d,
                                               const LoweredProgram& p, double size_mm) {
   std::vector<Contribution> shared = LeastSquaresBound(d, p).terms(size_mm);
-  for (const Neglected& n : d.neglected) shared.push_back({n.what, "linearisation", n.bound_mm * kUmPerMm});
+  for (const Neglected& n : d.neglected)
+    shared.push_back({n.what, "linearisation", n.bound_mm * maths::kUmPerMm});
   double counts = 0;
   for (const AxisDeviation& out : d.outputs)
     counts +=
         0.5 * out.lever * (machine.axes[out.axis].rotary ? 360 / static_cast<double>(kTurnCounts) : 1e-6);
-  shared.push_back({"outputs in counts of the axes", "rounding", counts * kUmPerMm});
+  shared.push_back({"outputs in counts of the axes", "rounding", counts * maths::kUmPerMm});
   std::vector<OutputBound> bounds;
   for (const AxisDeviation& out : d.outputs) {
     OutputBound bound;
     bound.axis = machine.axes[out.axis].name;
     bound.contributions = shared;
     for (const Contribution& c : shared) share_of(bound, c.source) += c.bound_um;
-    bound.deviation_um = kUmPerMm * d.least_squares->spread_mm;
+    bound.deviation_um = maths::kUmPerMm * d.least_squares->spread_mm;
     sort_terms(bound);
     bounds.push_back(bound);
   }
@@ -397,11 +399,12 @@ double sum_um(const std::vector<Contribution>& terms) {
 
 }  // namespace
 
-std::vector<OutputBound> bounds_of(const Machine& machine, const Derivation& d, const LoweredProgram& p) {
+std::vector<OutputBound> bounds_of(const model::Machine& machine, const Derivation& d,
+                                   const LoweredProgram& p) {
   if (d.outputs.empty()) return {};
   double least_mm = 0;
   if (d.least_squares && !d.before.empty()) {
-    least_mm = sum_um(LeastSquaresBound(d, p).terms(d.spread_mm)) / kUmPerMm;
+    least_mm = sum_um(LeastSquaresBound(d, p).terms(d.spread_mm)) / maths::kUmPerMm;
     for (const Neglected& n : d.before.back().neglected) least_mm += n.bound_mm;
   }
   const std::vector<Remainder> remainders = remainders_of(d, p, least_mm);
@@ -418,7 +421,7 @@ std::vector<OutputBound> bounds_of(const Machine& machine, const Derivation& d, 
   const double left_mm = remainders.back().point_mm;
   for (std::size_t i = 0; i < linear_outputs(d); ++i) {
     const bool along = !machine.axes[d.outputs[i].axis].rotary && !d.least_squares;
-    const double um = kUmPerMm * left_mm * (along ? d.outputs[i].row_norm : 1);
+    const double um = maths::kUmPerMm * left_mm * (along ? d.outputs[i].row_norm : 1);
     // Of least squares near flat poses: more than the deviation itself says nothing.
     if (d.least_squares && um >= std::max(bounds[i].deviation_um, 1e-3)) continue;
     bounds[i].second_order_um = um;
@@ -431,11 +434,11 @@ std::optional<TiltBound> tilt_bound_of(const Derivation& d, const LoweredProgram
   if (!d.orientation) return std::nullopt;
   const Orientation& o = *d.orientation;
   TiltBound bound;
-  bound.deviation_deg = o.spread / kRadPerDeg;
+  bound.deviation_deg = o.spread / maths::kRadPerDeg;
   const double error = tilt_error(d, p);
-  bound.fixed_point_deg = error / kRadPerDeg;
-  bound.second_order_deg = remainders_of(d, p, 0).back().tilt / kRadPerDeg;
+  bound.fixed_point_deg = error / maths::kRadPerDeg;
+  bound.second_order_deg = remainders_of(d, p, 0).back().tilt / maths::kRadPerDeg;
   return bound;
 }
 
-}  // namespace vernier
+}  // namespace vernier::compile

@@ -6,7 +6,7 @@
 
 #include "tools/compile/lower.h"
 
-namespace vernier {
+namespace vernier::compile {
 
 /// One cause of error in an output and the most it can be.
 struct Contribution {
@@ -43,9 +43,9 @@ struct TiltBound {
 };
 
 /// The bounds of all outputs. tool.
-std::vector<OutputBound> bounds_of(const Machine& machine, const Derivation& derivation,
+std::vector<OutputBound> bounds_of(const model::Machine& machine, const Derivation& derivation,
                                    const LoweredProgram& program);
 /// The same of the tool's direction; nothing where it is not corrected. tool.
 std::optional<TiltBound> tilt_bound_of(const Derivation& derivation, const LoweredProgram& program);
 
-}  // namespace vernier
+}  // namespace vernier::compile

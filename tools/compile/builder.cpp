@@ -8,7 +8,7 @@
 #include "comp/sine.h"
 #include "tools/maths/factors.h"
 
-namespace vernier {
+namespace vernier::compile {
 namespace {
 
 constexpr std::uint32_t kFirstChannel = 512, kFirstResult = kFirstChannel + kMaxRegisters;
@@ -108,7 +108,7 @@ ProgramBuilder::Id ProgramBuilder::constant(double value, int fraction_bits) {
   const auto found = known_constants_.find({value, fraction_bits});
   if (found != known_constants_.end()) return found->second;
   const Id id = static_cast<Id>(p_.constants.size());
-  if (id >= kFirstChannel) throw InputError("cannot be compiled: more constants than a program holds");
+  if (id >= kFirstChannel) throw text::InputError("cannot be compiled: more constants than a program holds");
   Register& r = registers_[id];
   r.fraction_bits = fraction_bits;
   const auto count = std::llround(std::ldexp(value, r.fraction_bits));
@@ -124,7 +124,7 @@ ProgramBuilder::Id ProgramBuilder::constant(double value, int fraction_bits) {
 ProgramBuilder::Id ProgramBuilder::channel(Channel channel, double unit, double reach,
                                            const std::string& name) {
   const Id id = kFirstChannel + static_cast<Id>(p_.channels.size());
-  if (id >= kFirstResult) throw InputError("cannot be compiled: more channels than a program holds");
+  if (id >= kFirstResult) throw text::InputError("cannot be compiled: more channels than a program holds");
   const Interval exact{static_cast<double>(channel.low) * unit, static_cast<double>(channel.high) * unit};
   Register& r = registers_[id];
   r.fraction_bits = fraction_bits_for(std::max(exact.magnitude(), reach) * (1 + 1e-9));
@@ -159,7 +159,7 @@ ProgramBuilder::Id ProgramBuilder::channel(Channel channel, double unit, double 
 
 ProgramBuilder::Id ProgramBuilder::imported(const LoweredProgram& other, std::uint32_t source) {
   const Id id = kFirstChannel + static_cast<Id>(p_.channels.size());
-  if (id >= kFirstResult) throw InputError("cannot be compiled: more channels than a program holds");
+  if (id >= kFirstResult) throw text::InputError("cannot be compiled: more channels than a program holds");
   registers_[id] = other.registers[source];
   registers_[id].name = unique(other.registers[source].name);
   registers_[id].uses.clear();
@@ -191,8 +191,8 @@ ProgramBuilder::Id ProgramBuilder::append(const Instruction& step, std::vector<R
   ranges_.insert(ranges_.end(), ranges.begin(), ranges.end());
   p_.instructions.push_back(step);
   if (registers_.size() - kFirstResult + p_.constants.size() + p_.channels.size() > kMaxRegisters)
-    throw InputError("cannot be compiled: the equation needs more than " + std::to_string(kMaxRegisters) +
-                     " registers");
+    throw text::InputError("cannot be compiled: the equation needs more than " +
+                           std::to_string(kMaxRegisters) + " registers");
   return id;
 }
 
@@ -230,7 +230,8 @@ ProgramBuilder::Id ProgramBuilder::linear(double k, Id a, double l, Id b, const 
     const Id id = append(step, {meta}, overflow);
     if (!overflow) return id;
   }
-  throw InputError("cannot be compiled: " + name + " is too large for 32 bits over the declared ranges");
+  throw text::InputError("cannot be compiled: " + name +
+                         " is too large for 32 bits over the declared ranges");
 }
 
 ProgramBuilder::Id ProgramBuilder::product(Id a, Id b, const Interval& exact, const std::string& name) {
@@ -256,8 +257,8 @@ ProgramBuilder::Id ProgramBuilder::product(Id a, Id b, const Interval& exact, co
     const Id id = append(step, {meta}, overflow);
     if (!overflow) return id;
   }
-  throw InputError("cannot be compiled: the product " + name +
-                   " does not fit 32 bits over the declared ranges");
+  throw text::InputError("cannot be compiled: the product " + name +
+                         " does not fit 32 bits over the declared ranges");
 }
 
 double ProgramBuilder::largest_value(const Product& p) const {
@@ -332,7 +333,8 @@ ProgramBuilder::Id ProgramBuilder::dot(double constant_part, std::vector<Product
     if (!overflow) return id;
     p_.terms.resize(first_term);
   }
-  throw InputError("cannot be compiled: " + name + " is too large for 32 bits over the declared ranges");
+  throw text::InputError("cannot be compiled: " + name +
+                         " is too large for 32 bits over the declared ranges");
 }
 
 ProgramBuilder::Id ProgramBuilder::plain(Instruction step, int fraction_bits, const Interval& exact,
@@ -348,7 +350,7 @@ ProgramBuilder::Id ProgramBuilder::plain(Instruction step, int fraction_bits, co
   bool overflow = false;
   const Id id = append(step, {meta}, overflow);
   if (overflow)
-    throw InputError("cannot be compiled: " + name + " does not fit 32 bits over the declared ranges");
+    throw text::InputError("cannot be compiled: " + name + " does not fit 32 bits over the declared ranges");
   return id;
 }
 
@@ -356,8 +358,8 @@ ProgramBuilder::Id ProgramBuilder::reformat(Id a, int fraction_bits) {
   if (at(a).fraction_bits == fraction_bits) return a;
   const Factors f = factors_for(std::ldexp(1.0, fraction_bits - at(a).fraction_bits), 0);
   if (f.shift < 0 || f.first == 0)
-    throw InputError("cannot be compiled: " + at(a).name +
-                     " is compared with a value of another order of magnitude");
+    throw text::InputError("cannot be compiled: " + at(a).name +
+                           " is compared with a value of another order of magnitude");
   const Instruction step{OpCode::kLinear,
                          static_cast<std::uint8_t>(f.shift),
                          static_cast<std::uint16_t>(a),
@@ -370,7 +372,8 @@ ProgramBuilder::Id ProgramBuilder::reformat(Id a, int fraction_bits) {
 }
 
 ProgramBuilder::Id ProgramBuilder::look_up(Id position, LoweredTable table, std::vector<Register> results) {
-  if (p_.tables.size() >= kMaxTables) throw InputError("cannot be compiled: more tables than an image holds");
+  if (p_.tables.size() >= kMaxTables)
+    throw text::InputError("cannot be compiled: more tables than an image holds");
   const Instruction step{OpCode::kLookUp,
                          0,
                          static_cast<std::uint16_t>(position),
@@ -385,25 +388,25 @@ ProgramBuilder::Id ProgramBuilder::look_up(Id position, LoweredTable table, std:
   const std::string name = results[0].name;
   bool overflow = false;
   const Id id = append(step, std::move(results), overflow);
-  if (overflow) throw InputError("cannot be compiled: " + name + " rises too steeply for 32 bits");
+  if (overflow) throw text::InputError("cannot be compiled: " + name + " rises too steeply for 32 bits");
   return id;
 }
 
 ProgramBuilder::Id ProgramBuilder::sine_cosine(Id angle, const Interval& sine, const Interval& cosine) {
   const double per_count = std::ldexp(4294967296.0 / 360, -at(angle).fraction_bits);
   const int shift = std::min(30 - std::ilogb(per_count), static_cast<int>(kMaxShift));
-  if (shift < 0) throw InputError("cannot be compiled: an angle of too many turns: " + at(angle).name);
+  if (shift < 0) throw text::InputError("cannot be compiled: an angle of too many turns: " + at(angle).name);
   const double multiplier = std::round(std::ldexp(per_count, shift));
   // Where rounding reaches 2^31, one less is as good.
   const auto k = static_cast<std::int32_t>(std::min(multiplier, 2147483647.0));
-  const double turning =
-      std::abs(std::ldexp(k, -shift) / per_count - 1) * largest_count(angle) * lsb(angle) * kRadPerDeg +
-      std::ldexp(2 * 3.14159265358979323846, -32);
+  const double turning = std::abs(std::ldexp(k, -shift) / per_count - 1) * largest_count(angle) * lsb(angle) *
+                             maths::kRadPerDeg +
+                         std::ldexp(2 * 3.14159265358979323846, -32);
   Register r;
   r.fraction_bits = 30;
   r.own_error = turning + kSineErrorMilliLsb * 1e-3 * std::ldexp(1.0, -30);
   r.source = ErrorSource::kFunction;
-  r.uses = {{angle, kRadPerDeg}};
+  r.uses = {{angle, maths::kRadPerDeg}};
   std::vector<Register> results(2, r);
   const std::string name = at(angle).name.size() <= 36 ? at(angle).name : "angle";
   results[0].name = "sin_" + name;
@@ -422,7 +425,7 @@ std::uint16_t ProgramBuilder::add_wrap(const Wrap& wrap) {
 }
 
 std::uint16_t ProgramBuilder::add_lag() {
-  if (p_.lag_count >= kMaxLags) throw InputError("cannot be compiled: more lags than a program holds");
+  if (p_.lag_count >= kMaxLags) throw text::InputError("cannot be compiled: more lags than a program holds");
   return static_cast<std::uint16_t>(p_.lag_count++);
 }
 
@@ -461,4 +464,4 @@ LoweredProgram ProgramBuilder::finish(const std::vector<std::pair<Output, Id>>& 
   return std::move(p_);
 }
 
-}  // namespace vernier
+}  // namespace vernier::compile

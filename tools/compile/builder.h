@@ -8,7 +8,7 @@
 
 #include "tools/compile/lower.h"
 
-namespace vernier {
+namespace vernier::compile {
 
 /// Registers while the program grows: constants, channels and results live in three provisional stretches,
 /// because the number of constants is only known at the end. finish() closes the gaps.
@@ -90,4 +90,4 @@ class ProgramBuilder {
 /// Most fraction bits with which `magnitude` fits int32; at most 50.
 int fraction_bits_for(double magnitude);
 
-}  // namespace vernier
+}  // namespace vernier::compile

@@ -10,7 +10,7 @@
 #include "tools/compile/functions.h"
 #include "tools/maths/factors.h"
 
-namespace vernier {
+namespace vernier::compile {
 namespace {
 
 constexpr unsigned kSeed = 20260701;
@@ -18,9 +18,9 @@ constexpr unsigned kSeed = 20260701;
 NodeId slope_node(Graph& g, Function f, NodeId a) {
   switch (f) {
     case Function::kSin:
-      return g.scale(kRadPerDeg, g.function(Function::kCos, a));
+      return g.scale(maths::kRadPerDeg, g.function(Function::kCos, a));
     case Function::kCos:
-      return g.scale(-kRadPerDeg, g.function(Function::kSin, a));
+      return g.scale(-maths::kRadPerDeg, g.function(Function::kSin, a));
     case Function::kExp:
       return g.function(Function::kExp, a);
     case Function::kLog:
@@ -32,7 +32,8 @@ NodeId slope_node(Graph& g, Function f, NodeId a) {
       return g.scale(-1, g.product(r, r));
     }
     case Function::kArcTangent:
-      return g.scale(1 / kRadPerDeg, g.function(Function::kReciprocal, g.sum(1, {{1, g.product(a, a)}})));
+      return g.scale(1 / maths::kRadPerDeg,
+                     g.function(Function::kReciprocal, g.sum(1, {{1, g.product(a, a)}})));
   }
   throw std::logic_error("unknown function");
 }
@@ -234,4 +235,4 @@ Interval Slopes::slope(const Node& n) {
   }
 }
 
-}  // namespace vernier
+}  // namespace vernier::compile

@@ -7,7 +7,7 @@
 
 #include "tools/compile/graph.h"
 
-namespace vernier {
+namespace vernier::compile {
 
 /// d node / d channel as a node. Throws std::domain_error where the node has a step or a table there. tool.
 class Derivative {
@@ -78,4 +78,4 @@ class Slopes {
   std::map<NodeId, Interval> known_;
 };
 
-}  // namespace vernier
+}  // namespace vernier::compile

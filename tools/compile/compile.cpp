@@ -14,7 +14,7 @@
 #include "tools/model/machine_reader.h"
 #include "tools/text/files.h"
 
-namespace vernier {
+namespace vernier::compile {
 namespace {
 
 // What is left out at first, and the finest that is tried to meet a budget.
@@ -34,7 +34,7 @@ Contribution largest_term(const OutputBound& bound) {
   return bound.contributions.front();
 }
 
-CompiledMachine compile_once(const Machine& machine, std::uint32_t tick_us, double neglect_mm,
+CompiledMachine compile_once(const model::Machine& machine, std::uint32_t tick_us, double neglect_mm,
                              int evaluations) {
   CompiledMachine result;
   const Derivation d = derive(machine, neglect_mm, evaluations);
@@ -66,13 +66,13 @@ bool needs_another(const CompiledMachine& so_far, const CompileOptions& options)
 }
 
 /// With more evaluations; as it was, with a note, where an image has no room for them.
-CompiledMachine compile_again(const Machine& machine, std::uint32_t tick_us, double neglect_mm,
+CompiledMachine compile_again(const model::Machine& machine, std::uint32_t tick_us, double neglect_mm,
                               int evaluations, CompiledMachine before) {
   try {
     CompiledMachine again = compile_once(machine, tick_us, neglect_mm, evaluations);
     again.operations_of_one = before.operations_of_one;
     return again;
-  } catch (const InputError& reason) {
+  } catch (const text::InputError& reason) {
     before.notes.push_back(
         fmt::format("the second order of the correction stays, evaluation {} of the deviation "
                     "has no room: {}",
@@ -87,7 +87,7 @@ std::uint64_t hash_of(const std::string& text) {
   return fnv1a(reinterpret_cast<const std::uint8_t*>(text.data()), static_cast<std::uint32_t>(text.size()));
 }
 
-CompiledMachine compile_machine(const Machine& machine, const std::string& machine_text,
+CompiledMachine compile_machine(const model::Machine& machine, const std::string& machine_text,
                                 const CompileOptions& options) {
   const auto over = [&](const CompiledMachine& c) {
     return options.budget_um && worst(c.bounds).total_um > *options.budget_um;
@@ -109,7 +109,7 @@ CompiledMachine compile_machine(const Machine& machine, const std::string& machi
   if (over(result)) {
     const OutputBound& bad = worst(result.bounds);
     const Contribution blame = largest_term(bad);
-    throw LimitNotMet(fmt::format(
+    throw text::LimitNotMet(fmt::format(
         "error bound {:.4g} um on axis {} exceeds the budget of {:g} um; largest term: {} ({}), {:.4g} um",
         bad.total_um, bad.axis, *options.budget_um, blame.name, blame.source, blame.bound_um));
   }
@@ -123,24 +123,26 @@ CompiledMachine compile_machine(const Machine& machine, const std::string& machi
   return result;
 }
 
-std::unique_ptr<LoadedImage> load_image(const std::vector<std::uint8_t>& image, const Machine& machine) {
+std::unique_ptr<LoadedImage> load_image(const std::vector<std::uint8_t>& image,
+                                        const model::Machine& machine) {
   auto loaded = std::make_unique<LoadedImage>();
   loaded->machine = machine;
   loaded->words.resize((image.size() + 7) / 8);
   if (!image.empty()) std::memcpy(loaded->words.data(), image.data(), image.size());
   const ImageFault fault = loaded->view.open(reinterpret_cast<const std::uint8_t*>(loaded->words.data()),
                                              static_cast<std::uint32_t>(image.size()), loaded->workspace);
-  if (fault != ImageFault::kNone) throw InputError(std::string("image refused: ") + describe(fault));
+  if (fault != ImageFault::kNone) throw text::InputError(std::string("image refused: ") + describe(fault));
   return loaded;
 }
 
 std::unique_ptr<LoadedImage> load_image_dir(const std::string& directory) {
-  const std::string text = read_file(directory + "/machine.xml"),
-                    bytes = read_file(directory + "/machine.vimg");
-  auto loaded = load_image({bytes.begin(), bytes.end()}, parse_machine(text, directory + "/machine.xml"));
+  const std::string text = text::read_file(directory + "/machine.xml"),
+                    bytes = text::read_file(directory + "/machine.vimg");
+  auto loaded =
+      load_image({bytes.begin(), bytes.end()}, model::parse_machine(text, directory + "/machine.xml"));
   if (loaded->view.header().source_hash != hash_of(text))
-    throw InputError(directory + "/machine.vimg was not compiled from the machine.xml beside it");
+    throw text::InputError(directory + "/machine.vimg was not compiled from the machine.xml beside it");
   return loaded;
 }
 
-}  // namespace vernier
+}  // namespace vernier::compile

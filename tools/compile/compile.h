@@ -10,7 +10,7 @@
 #include "tools/compile/bound.h"
 #include "tools/model/states.h"
 
-namespace vernier {
+namespace vernier::compile {
 
 struct CompileOptions {
   std::uint32_t tick_us = 1000;      // cycle time that lags and slew limits are computed for
@@ -40,16 +40,16 @@ struct CompiledMachine {
 /// Compiles a machine (FORMATS section 1). Throws InputError in one line where it cannot, LimitNotMet where
 /// the bound exceeds the budget, naming the term to blame. machine_text: the file's bytes, for its hash.
 /// tool.
-CompiledMachine compile_machine(const Machine& machine, const std::string& machine_text,
+CompiledMachine compile_machine(const model::Machine& machine, const std::string& machine_text,
                                 const CompileOptions& options);
 
 /// Of each state: does it stand where two axes tilt the tool nearly the same way, so that the correction of
 /// its direction is damped? All false where no direction is corrected. tool.
-std::vector<bool> damped_poses(const Machine& machine, const States& states);
+std::vector<bool> damped_poses(const model::Machine& machine, const model::States& states);
 
 /// A compiled directory (`vernier compile -o DIR`) ready to run: DIR/machine.xml and DIR/machine.vimg.
 struct LoadedImage {
-  Machine machine;
+  model::Machine machine;
   std::vector<std::uint64_t> words;  // the image, aligned as ImageView wants it
   ImageView view;
   ImageWorkspace workspace;
@@ -58,9 +58,10 @@ struct LoadedImage {
 /// machine.xml. tool.
 std::unique_ptr<LoadedImage> load_image_dir(const std::string& directory);
 /// The same from bytes. Throws InputError with the cause.
-std::unique_ptr<LoadedImage> load_image(const std::vector<std::uint8_t>& image, const Machine& machine);
+std::unique_ptr<LoadedImage> load_image(const std::vector<std::uint8_t>& image,
+                                        const model::Machine& machine);
 
 /// FNV-1a of a text.
 std::uint64_t hash_of(const std::string& text);
 
-}  // namespace vernier
+}  // namespace vernier::compile

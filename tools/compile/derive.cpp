@@ -13,24 +13,24 @@
 #include "tools/compile/walk.h"
 #include "tools/maths/factors.h"
 
-namespace vernier {
+namespace vernier::compile {
 namespace {
 
-void check_machine(const Machine& machine) {
-  for (const Static& s : machine.statics)
+void check_machine(const model::Machine& machine) {
+  for (const model::Static& s : machine.statics)
     if (!s.hidden && !s.nominal)
-      throw InputError({machine.file, s.line}, s.name,
-                       "a free static without nominal cannot be compiled (fit writes it)");
+      throw text::InputError({machine.file, s.line}, s.name,
+                             "a free static without nominal cannot be compiled (fit writes it)");
   for (std::size_t i = 0; i < machine.axes.size(); ++i) axis_range(machine, i);
   if (machine.axes.size() > kMaxAxes || machine.inputs.size() > kMaxInputs)
-    throw InputError({machine.file, 0}, machine.name, "more axes or inputs than an image holds");
+    throw text::InputError({machine.file, 0}, machine.name, "more axes or inputs than an image holds");
 }
 
 /// A derivation on the way: the corrected axes are chosen between its two halves.
 class Attempt {
  public:
   /// begun: what is derived already; added: the corrections of axes that it does not choose.
-  Attempt(const Machine& machine, double neglect_mm, bool rotary_too, Derivation begun = {},
+  Attempt(const model::Machine& machine, double neglect_mm, bool rotary_too, Derivation begun = {},
           const Additions& added = {})
       : machine_(machine),
         d_(std::move(begun)),
@@ -64,7 +64,7 @@ class Attempt {
     for (std::size_t i = 0; i < steps_.size(); ++i) {
       const double speed = d_.graph[by_axis.of(steps_[i].by.nominal)].range.magnitude();
       const double reach = i < frozen_from_ ? taken_[i] : reach_mm_[i - frozen_from_];
-      length += speed * (steps_[i].turn ? kRadPerDeg * reach : 1);
+      length += speed * (steps_[i].turn ? maths::kRadPerDeg * reach : 1);
     }
     return length;
   }
@@ -107,8 +107,9 @@ class Attempt {
     try {
       return motion_of(d_.graph, channel(axis), point, last_turn);
     } catch (const std::domain_error& reason) {
-      throw InputError({machine_.file, machine_.axes[axis].line}, machine_.axes[axis].name,
-                       std::string("cannot be compiled: the nominal chain gives this axis ") + reason.what());
+      throw text::InputError(
+          {machine_.file, machine_.axes[axis].line}, machine_.axes[axis].name,
+          std::string("cannot be compiled: the nominal chain gives this axis ") + reason.what());
     }
   }
 
@@ -119,15 +120,15 @@ class Attempt {
     for (std::size_t i = 0; i < taken_.size(); ++i) {
       const Step& step = steps_[i];
       const double speed = d_.graph[by_axis.of(step.by.nominal)].range.magnitude();
-      length += speed * (step.turn ? kRadPerDeg * taken_[i] : 1);
+      length += speed * (step.turn ? maths::kRadPerDeg * taken_[i] : 1);
     }
     if (last_turn == nullptr) return length;
-    const double turning = kRadPerDeg * d_.graph[by_axis.of(last_turn->by.nominal)].range.magnitude();
+    const double turning = maths::kRadPerDeg * d_.graph[by_axis.of(last_turn->by.nominal)].range.magnitude();
     if (turning > 0) d_.turning[axis] = turning;
     return length + turning * walk_.reach_mm();
   }
 
-  const Machine& machine_;
+  const model::Machine& machine_;
   Derivation d_;
   Translator translate_;
   std::vector<Step> steps_;
@@ -146,7 +147,7 @@ bool holds(const Graph& g, const Span& span, const NodeVector& deviation) {
   return true;
 }
 
-std::string names_of(const Machine& machine, const Derivation& d) {
+std::string names_of(const model::Machine& machine, const Derivation& d) {
   std::string names;
   for (const AxisDeviation& out : d.outputs)
     names += (names.empty() ? "" : ", ") + machine.axes[out.axis].name;
@@ -161,7 +162,7 @@ struct Solution {
   std::optional<Tilting> tilting;
 };
 
-Solution solved(const Machine& machine, Attempt& attempt) {
+Solution solved(const model::Machine& machine, Attempt& attempt) {
   Solution result;
   result.frozen_from = attempt.frozen_from();
   result.derivation = attempt.finish();
@@ -180,13 +181,14 @@ bool spans(const Attempt& attempt, const Span& reach) {
   return reach.rank == 3 || (reach.rank > 0 && holds(attempt.derivation().graph, reach, attempt.deviation()));
 }
 
-Solution position_only(const Machine& machine, double neglect_mm) {
+Solution position_only(const model::Machine& machine, double neglect_mm) {
   Attempt linear(machine, neglect_mm, false);
   const Span reach = span_of(linear.derivation(), linear.columns());
   if (spans(linear, reach)) return solved(machine, linear);
   Attempt all(machine, neglect_mm, true);
   if (all.columns().empty())
-    throw InputError({machine.file, 0}, machine.name, "cannot be compiled: no axis moves the tool point");
+    throw text::InputError({machine.file, 0}, machine.name,
+                           "cannot be compiled: no axis moves the tool point");
   const Span whole = span_of(all.derivation(), all.columns());
   if (whole.rank <= reach.rank && reach.everywhere) return solved(machine, linear);
   return solved(machine, all);
@@ -218,7 +220,7 @@ Additions taken_back(Graph& g, const std::vector<std::size_t>& axes, const std::
   return added;
 }
 
-Solution position_and_direction(const Machine& machine, double neglect_mm) {
+Solution position_and_direction(const model::Machine& machine, double neglect_mm) {
   Derivation begun;
   auto tilting = solve_direction(machine, begun, neglect_mm / kLever_mm);
   if (!tilting) {
@@ -229,7 +231,7 @@ Solution position_and_direction(const Machine& machine, double neglect_mm) {
   const Additions added = taken_back(begun.graph, begun.orientation->axes, begun.orientation->values);
   Attempt linear(machine, neglect_mm, false, std::move(begun), added);
   if (!spans(linear, span_of(linear.derivation(), linear.columns())))
-    throw InputError(
+    throw text::InputError(
         {machine.file, 0}, "position orientation",
         "cannot be compiled: the direction of the tool is corrected only where linear axes alone "
         "put its point right");
@@ -271,7 +273,7 @@ Evaluation taken_as_given(Derivation& d) {
 }
 
 /// The direction again at the corrected position; `added` gets the new corrections of its axes.
-std::vector<NodeId> direction_again(const Machine& machine, Derivation& d, const Tilting& tilting,
+std::vector<NodeId> direction_again(const model::Machine& machine, Derivation& d, const Tilting& tilting,
                                     double neglect_mm, Additions& added) {
   Graph& g = d.graph;
   Orientation& o = *d.orientation;
@@ -292,7 +294,7 @@ std::vector<NodeId> direction_again(const Machine& machine, Derivation& d, const
 
 /// One more evaluation: the direction at the corrected position, then the point with the direction's new
 /// correction.
-void evaluate_again(const Machine& machine, Solution& so_far, double neglect_mm) {
+void evaluate_again(const model::Machine& machine, Solution& so_far, double neglect_mm) {
   Derivation& d = so_far.derivation;
   Graph& g = d.graph;
   d.before.push_back(taken_as_given(d));
@@ -323,7 +325,7 @@ constexpr double kCoarseNeglect_mm = 1e-4;
 
 }  // namespace
 
-Derivation derive(const Machine& machine, double neglect_mm, int evaluations) {
+Derivation derive(const model::Machine& machine, double neglect_mm, int evaluations) {
   check_machine(machine);
   const auto neglect_in = [&](int evaluation) {
     return evaluation < evaluations ? std::max(neglect_mm, kCoarseNeglect_mm) : neglect_mm;
@@ -335,4 +337,4 @@ Derivation derive(const Machine& machine, double neglect_mm, int evaluations) {
   return std::move(solution.derivation);
 }
 
-}  // namespace vernier
+}  // namespace vernier::compile

@@ -8,7 +8,7 @@
 
 #include "tools/compile/graph.h"
 
-namespace vernier {
+namespace vernier::compile {
 
 using NodeVector = std::array<NodeId, 3>;
 
@@ -113,6 +113,6 @@ struct Derivation {
 /// ones do. Throws InputError in one line where the machine cannot be compiled: a free static without
 /// nominal, an axis without range, an axis whose nominal motion has a step, an expression that the program
 /// has no operation for. tool.
-Derivation derive(const Machine& machine, double neglect_mm, int evaluations = 1);
+Derivation derive(const model::Machine& machine, double neglect_mm, int evaluations = 1);
 
-}  // namespace vernier
+}  // namespace vernier::compile

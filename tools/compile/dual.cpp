@@ -10,18 +10,18 @@
 #include "tools/compile/ranges.h"
 #include "tools/model/station_table.h"
 
-namespace vernier {
+namespace vernier::compile {
 namespace {
 
 // An interval that holds the spline, not only its stations: a cubic piece stays within its Bezier control
 // values.
-Interval column_range(const Table& table, std::size_t column) {
-  const StationTable look_up(table);
+Interval column_range(const model::Table& table, std::size_t column) {
+  const model::StationTable look_up(table);
   Interval range{table.stations[0].value[column], table.stations[0].value[column]};
   for (std::size_t i = 0; i < table.stations.size(); ++i) {
     const double value = table.stations[i].value[column];
     range = hull(range, {value, value});
-    if (table.interpolation == Interpolation::kLinear || i + 1 == table.stations.size()) continue;
+    if (table.interpolation == model::Interpolation::kLinear || i + 1 == table.stations.size()) continue;
     const double width = table.stations[i + 1].loc - table.stations[i].loc;
     const double next = table.stations[i + 1].value[column];
     const double inside = 1e-9 * width;  // slopes are zero at held ends, the piece's own just inside
@@ -34,14 +34,14 @@ Interval column_range(const Table& table, std::size_t column) {
 }
 
 // The steepest that a column gets: a cubic piece's slope stays within the control values of its derivative.
-double column_slope(const Table& table, std::size_t column) {
-  const StationTable look_up(table);
+double column_slope(const model::Table& table, std::size_t column) {
+  const model::StationTable look_up(table);
   double steepest = 0;
   for (std::size_t i = 0; i + 1 < table.stations.size(); ++i) {
     const double loc = table.stations[i].loc, width = table.stations[i + 1].loc - loc;
     const double mean = (table.stations[i + 1].value[column] - table.stations[i].value[column]) / width;
     steepest = std::max(steepest, std::abs(mean));
-    if (table.interpolation == Interpolation::kLinear) continue;
+    if (table.interpolation == model::Interpolation::kLinear) continue;
     const double near = look_up.slopes(loc + 1e-9 * width)[column],
                  far = look_up.slopes(loc + width - 1e-9 * width)[column];
     steepest = std::max({steepest, std::abs(near), std::abs(far), std::abs(3 * mean - near - far)});
@@ -57,7 +57,7 @@ NodeId Translator::channel(ChannelKind kind, std::size_t index) {
 
 NodeId Translator::table_value(std::size_t index) {
   const std::size_t axis = index / 6, column = index % 6;
-  const Table* const table = machine_.table_of(axis);
+  const model::Table* const table = machine_.table_of(axis);
   if (table == nullptr) return g_.constant(0);
   const Interval range = column_range(*table, column);
   if (range.low == range.high) return g_.constant(range.low);
@@ -70,46 +70,46 @@ NodeId Translator::table_value(std::size_t index) {
   return value;
 }
 
-Dual Translator::symbol(const Expr& expr) {
+Dual Translator::symbol(const model::Expr& expr) {
   const NodeId zero = g_.constant(0);
   const std::size_t i = expr.symbol.index;
   switch (expr.symbol.kind) {
-    case SymbolKind::kStatic: {
-      const Static& s = machine_.statics[i];
+    case model::SymbolKind::kStatic: {
+      const model::Static& s = machine_.statics[i];
       const double nominal = s.nominal.value_or(s.value);
       return constant(nominal, s.value - nominal);
     }
-    case SymbolKind::kAxis: {
+    case model::SymbolKind::kAxis: {
       const NodeId raw = channel(ChannelKind::kPosition, i);
       const double factor = machine_.axes[i].scale_factor;
       const auto added = added_.find(i);
       if (added == added_.end()) return {raw, g_.scale(factor, raw)};
       return {raw, g_.sum(0, {{factor, raw}, {1 + factor, added->second}})};
     }
-    case SymbolKind::kTableValue:
+    case model::SymbolKind::kTableValue:
       return {zero, table_value(i)};
-    case SymbolKind::kInput:
+    case model::SymbolKind::kInput:
       return {channel(ChannelKind::kInput, i), zero};
-    case SymbolKind::kVelocity:
+    case model::SymbolKind::kVelocity:
       return {channel(ChannelKind::kVelocity, i), zero};
-    case SymbolKind::kAcceleration:
+    case model::SymbolKind::kAcceleration:
       return {channel(ChannelKind::kAcceleration, i), zero};
-    case SymbolKind::kDirection:
+    case model::SymbolKind::kDirection:
       return {channel(ChannelKind::kSense, i), zero};
-    case SymbolKind::kSince:
+    case model::SymbolKind::kSince:
       return {channel(ChannelKind::kSince, i), zero};
-    case SymbolKind::kFeed:
+    case model::SymbolKind::kFeed:
       return {channel(ChannelKind::kFeed, 0), zero};
-    case SymbolKind::kCurvature:
+    case model::SymbolKind::kCurvature:
       return {channel(ChannelKind::kCurvature, 0), zero};
-    case SymbolKind::kTime:
+    case model::SymbolKind::kTime:
       return {channel(ChannelKind::kTime, 0), zero};
-    case SymbolKind::kVisit:
+    case model::SymbolKind::kVisit:
       return {channel(ChannelKind::kVisit, 0), zero};
-    case SymbolKind::kNormal:
+    case model::SymbolKind::kNormal:
       note("nx, ny and nz are 0: a running machine touches nothing");
       return {zero, zero};
-    case SymbolKind::kUnresolved:
+    case model::SymbolKind::kUnresolved:
       break;
   }
   throw std::domain_error("the name \"" + expr.name + "\", which is not resolved");
@@ -191,7 +191,7 @@ NodeId Translator::power(NodeId base, NodeId exponent) {
 // atan2 over the half plane where one of the two operands keeps its sign; elsewhere it has a step.
 NodeId Translator::angle_of(NodeId y, NodeId x) {
   const auto v = g_.constant_value(y), u = g_.constant_value(x);
-  if (v && u) return g_.constant(apply(Op::kAtan2, *v, *u));
+  if (v && u) return g_.constant(model::apply(model::Op::kAtan2, *v, *u));
   const Interval along = g_[x].range, across = g_[y].range;
   if (along.low > 0)
     return g_.function(Function::kArcTangent, g_.product(y, g_.function(Function::kReciprocal, x)));
@@ -201,84 +201,86 @@ NodeId Translator::angle_of(NodeId y, NodeId x) {
   return g_.sum(across.low > 0 ? 90 : -90, {{-1, g_.function(Function::kArcTangent, cotangent)}});
 }
 
-NodeId Translator::apply_to(Op op, NodeId a, NodeId b) {
+NodeId Translator::apply_to(model::Op op, NodeId a, NodeId b) {
   switch (op) {
-    case Op::kDivide:
+    case model::Op::kDivide:
       return g_.product(a, g_.function(Function::kReciprocal, b));
-    case Op::kPower:
+    case model::Op::kPower:
       return power(a, b);
-    case Op::kEqual:
+    case model::Op::kEqual:
       return g_.choice(NodeKind::kEqual, a, b);
-    case Op::kLess:
+    case model::Op::kLess:
       return g_.choice(NodeKind::kLess, a, b);
-    case Op::kGreater:
+    case model::Op::kGreater:
       return g_.choice(NodeKind::kLess, b, a);
-    case Op::kSin:
+    case model::Op::kSin:
       return g_.function(Function::kSin, a);
-    case Op::kCos:
+    case model::Op::kCos:
       return g_.function(Function::kCos, a);
-    case Op::kTan:
+    case model::Op::kTan:
       return g_.product(g_.function(Function::kSin, a),
                         g_.function(Function::kReciprocal, g_.function(Function::kCos, a)));
-    case Op::kAtan2:
+    case model::Op::kAtan2:
       return angle_of(a, b);
-    case Op::kSqrt:
+    case model::Op::kSqrt:
       return g_.function(Function::kSqrt, a);
-    case Op::kAbs:
+    case model::Op::kAbs:
       return g_.choice(NodeKind::kAbs, a, a);
-    case Op::kExp:
+    case model::Op::kExp:
       return g_.function(Function::kExp, a);
-    case Op::kLog:
+    case model::Op::kLog:
       return g_.function(Function::kLog, a);
-    case Op::kSign:
+    case model::Op::kSign:
       return g_.choice(NodeKind::kSign, a, a);
-    case Op::kMin:
+    case model::Op::kMin:
       return g_.choice(NodeKind::kMin, a, b);
-    case Op::kMax:
+    case model::Op::kMax:
       return g_.choice(NodeKind::kMax, a, b);
     default:
       throw std::domain_error("an operation that the program does not have");
   }
 }
 
-Dual Translator::visit(const Expr& expr) {
-  if (expr.op == Op::kNumber) return constant(expr.number, 0);
-  if (expr.op == Op::kSymbol) return symbol(expr);
-  if (expr.op == Op::kRunIs) {
+Dual Translator::visit(const model::Expr& expr) {
+  if (expr.op == model::Op::kNumber) return constant(expr.number, 0);
+  if (expr.op == model::Op::kSymbol) return symbol(expr);
+  if (expr.op == model::Op::kRunIs) {
     note("run(\"" + expr.name + "\") is 0: a running machine is in no measurement run");
     return constant(0, 0);
   }
   const Dual a = visit(*expr.args[0]);
   const Dual b = expr.args.size() > 1 ? visit(*expr.args[1]) : a;
   switch (expr.op) {
-    case Op::kNegate:
+    case model::Op::kNegate:
       return {g_.scale(-1, a.nominal), g_.scale(-1, a.delta)};
-    case Op::kAdd:
+    case model::Op::kAdd:
       return {g_.add(a.nominal, b.nominal), g_.add(a.delta, b.delta)};
-    case Op::kSubtract:
+    case model::Op::kSubtract:
       return {g_.subtract(a.nominal, b.nominal), g_.subtract(a.delta, b.delta)};
-    case Op::kMultiply:
+    case model::Op::kMultiply:
       return product(a, b);
-    case Op::kLag:
+    case model::Op::kLag:
       return lag(a, b);
     default:
       break;
   }
-  if (expr.op == Op::kEqual || expr.op == Op::kLess || expr.op == Op::kGreater || expr.op == Op::kSign)
-    note_step(to_text(expr));
+  if (expr.op == model::Op::kEqual || expr.op == model::Op::kLess || expr.op == model::Op::kGreater ||
+      expr.op == model::Op::kSign)
+    note_step(model::to_text(expr));
   const NodeId nominal = apply_to(expr.op, a.nominal, b.nominal);
   if (g_.is_zero(a.delta) && g_.is_zero(b.delta)) return {nominal, g_.constant(0)};
-  if (expr.op == Op::kDivide && g_.is_zero(b.delta))
-    return {nominal, apply_to(Op::kDivide, a.delta, b.nominal)};
+  if (expr.op == model::Op::kDivide && g_.is_zero(b.delta))
+    return {nominal, apply_to(model::Op::kDivide, a.delta, b.nominal)};
   return {nominal, g_.subtract(apply_to(expr.op, actual(a), actual(b)), nominal)};
 }
 
-Dual Translator::translate(const Expr& expr, const std::string& text, std::size_t line) {
+Dual Translator::translate(const model::Expr& expr, const std::string& text, std::size_t line) {
   try {
     return visit(expr);
   } catch (const std::domain_error& reason) {
-    throw InputError({machine_.file, line}, text, std::string("cannot be compiled: it has ") + reason.what());
+    throw text::InputError({machine_.file, line}, text,
+                           std::string("cannot be compiled: it has ") + reason.what());
   }
 }
 
-}  // namespace vernier
+}  // namespace vernier::compile

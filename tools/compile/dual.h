@@ -6,7 +6,7 @@
 
 #include "tools/compile/derive.h"
 
-namespace vernier {
+namespace vernier::compile {
 
 /// A quantity of the chain: its value in the nominal chain, and actual minus nominal, so that no big numbers
 /// are subtracted to find a small one.
@@ -22,11 +22,11 @@ using Additions = std::map<std::size_t, NodeId>;
 /// Turns expressions of the machine file into duals. tool.
 class Translator {
  public:
-  Translator(const Machine& machine, Derivation& derivation, Additions added = {})
+  Translator(const model::Machine& machine, Derivation& derivation, Additions added = {})
       : machine_(machine), d_(derivation), g_(derivation.graph), added_(std::move(added)) {}
 
   /// Throws InputError naming `text` where the expression has no fixed-point form.
-  Dual translate(const Expr& expr, const std::string& text, std::size_t line);
+  Dual translate(const model::Expr& expr, const std::string& text, std::size_t line);
   Dual constant(double nominal, double delta) { return {g_.constant(nominal), g_.constant(delta)}; }
   NodeId actual(const Dual& a);
   NodeId channel(ChannelKind kind, std::size_t index);
@@ -34,20 +34,20 @@ class Translator {
  private:
   void note(const std::string& text);
   void note_step(const std::string& text);
-  Dual visit(const Expr& expr);
-  Dual symbol(const Expr& expr);
+  Dual visit(const model::Expr& expr);
+  Dual symbol(const model::Expr& expr);
   Dual product(const Dual& a, const Dual& b);
   Dual lag(const Dual& u, const Dual& tau);
-  NodeId apply_to(Op op, NodeId a, NodeId b);
+  NodeId apply_to(model::Op op, NodeId a, NodeId b);
   NodeId power(NodeId base, NodeId exponent);
   NodeId whole_power(NodeId base, int n);
   NodeId angle_of(NodeId y, NodeId x);
   NodeId table_value(std::size_t index);
 
-  const Machine& machine_;
+  const model::Machine& machine_;
   Derivation& d_;
   Graph& g_;
   Additions added_;
 };
 
-}  // namespace vernier
+}  // namespace vernier::compile

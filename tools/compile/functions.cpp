@@ -8,7 +8,7 @@
 #include "tools/compile/graph.h"
 #include "tools/maths/factors.h"
 
-namespace vernier {
+namespace vernier::compile {
 namespace {
 
 // Sine over an interval in degrees: its ends, and the crests and troughs at 90 + 360 k and -90 + 360 k
@@ -16,8 +16,8 @@ namespace {
 Interval range_of_sine(const Interval& x) {
   if (x.high - x.low >= 360) return {-1, 1};
   constexpr double kSlack = 1e-15;  // of the library's sine
-  Interval range = hull({std::sin(x.low * kRadPerDeg), std::sin(x.low * kRadPerDeg)},
-                        {std::sin(x.high * kRadPerDeg), std::sin(x.high * kRadPerDeg)});
+  Interval range = hull({std::sin(x.low * maths::kRadPerDeg), std::sin(x.low * maths::kRadPerDeg)},
+                        {std::sin(x.high * maths::kRadPerDeg), std::sin(x.high * maths::kRadPerDeg)});
   const auto reaches = [&](double angle) {
     return std::floor((x.high - angle) / 360) >= std::ceil((x.low - angle) / 360);
   };
@@ -31,9 +31,9 @@ Interval range_of_sine(const Interval& x) {
 double value_of(Function f, double x) {
   switch (f) {
     case Function::kSin:
-      return std::sin(x * kRadPerDeg);
+      return std::sin(x * maths::kRadPerDeg);
     case Function::kCos:
-      return std::cos(x * kRadPerDeg);
+      return std::cos(x * maths::kRadPerDeg);
     case Function::kExp:
       return std::exp(x);
     case Function::kLog:
@@ -43,7 +43,7 @@ double value_of(Function f, double x) {
     case Function::kReciprocal:
       return 1 / x;
     case Function::kArcTangent:
-      return std::atan(x) / kRadPerDeg;
+      return std::atan(x) / maths::kRadPerDeg;
   }
   throw std::logic_error("unknown function");
 }
@@ -51,9 +51,9 @@ double value_of(Function f, double x) {
 double slope_of(Function f, double x) {
   switch (f) {
     case Function::kSin:
-      return kRadPerDeg * std::cos(x * kRadPerDeg);
+      return maths::kRadPerDeg * std::cos(x * maths::kRadPerDeg);
     case Function::kCos:
-      return -kRadPerDeg * std::sin(x * kRadPerDeg);
+      return -maths::kRadPerDeg * std::sin(x * maths::kRadPerDeg);
     case Function::kExp:
       return std::exp(x);
     case Function::kLog:
@@ -63,7 +63,7 @@ double slope_of(Function f, double x) {
     case Function::kReciprocal:
       return -1 / (x * x);
     case Function::kArcTangent:
-      return 1 / (1 + x * x) / kRadPerDeg;
+      return 1 / (1 + x * x) / maths::kRadPerDeg;
   }
   throw std::logic_error("unknown function");
 }
@@ -75,11 +75,11 @@ double slope_bound(Function f, const Interval& x) {
   switch (f) {
     case Function::kSin:
     case Function::kCos:
-      return kRadPerDeg;
+      return maths::kRadPerDeg;
     case Function::kExp:
       return std::exp(x.high);
     case Function::kArcTangent:
-      return 1 / kRadPerDeg;
+      return 1 / maths::kRadPerDeg;
     default:
       return std::abs(slope_of(f, nearest));
   }
@@ -90,7 +90,7 @@ double fourth_derivative_bound(Function f, const Interval& x) {
   switch (f) {
     case Function::kSin:
     case Function::kCos:
-      return kRadPerDeg * kRadPerDeg * kRadPerDeg * kRadPerDeg;
+      return maths::kRadPerDeg * maths::kRadPerDeg * maths::kRadPerDeg * maths::kRadPerDeg;
     case Function::kExp:
       return std::exp(x.high);
     case Function::kLog:
@@ -100,7 +100,7 @@ double fourth_derivative_bound(Function f, const Interval& x) {
     case Function::kReciprocal:
       return 24 / std::pow(nearest, 5);
     case Function::kArcTangent:
-      return 4.67 / kRadPerDeg;  // max of |24 x (1 - x^2) / (1 + x^2)^4| is 4.669
+      return 4.67 / maths::kRadPerDeg;  // max of |24 x (1 - x^2) / (1 + x^2)^4| is 4.669
   }
   throw std::logic_error("unknown function");
 }
@@ -138,4 +138,4 @@ Interval range_of_function(Function f, const Interval& x) {
   }
 }
 
-}  // namespace vernier
+}  // namespace vernier::compile

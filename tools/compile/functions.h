@@ -4,7 +4,7 @@
 
 #include "tools/compile/interval.h"
 
-namespace vernier {
+namespace vernier::compile {
 
 enum class Function : std::uint8_t { kSin, kCos, kExp, kLog, kSqrt, kReciprocal, kArcTangent };
 
@@ -20,4 +20,4 @@ const char* name_of(Function f);
 /// All values of a function over an interval of its domain.
 Interval range_of_function(Function f, const Interval& x);
 
-}  // namespace vernier
+}  // namespace vernier::compile

@@ -8,7 +8,7 @@
 #include "tools/compile/functions.h"
 #include "tools/maths/factors.h"
 
-namespace vernier {
+namespace vernier::compile {
 namespace {
 
 // Coefficients that only rounding of cos 90 deg and the like keeps from being zero.
@@ -224,4 +224,4 @@ std::optional<double> Graph::constant_slope(NodeId id, NodeId channel) const {
   return 0.0;
 }
 
-}  // namespace vernier
+}  // namespace vernier::compile

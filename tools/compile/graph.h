@@ -12,7 +12,7 @@
 #include "tools/compile/interval.h"
 #include "tools/model/machine.h"
 
-namespace vernier {
+namespace vernier::compile {
 
 /// A value of the error equation; index into Graph's nodes.
 using NodeId = std::uint32_t;
@@ -94,4 +94,4 @@ class Graph {
 /// All values of a choice.
 Interval range_of_choice(NodeKind kind, const Interval& a, const Interval& b);
 
-}  // namespace vernier
+}  // namespace vernier::compile

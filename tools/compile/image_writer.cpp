@@ -9,7 +9,7 @@
 #include "tools/compile/compile.h"
 #include "tools/compile/ranges.h"
 
-namespace vernier {
+namespace vernier::compile {
 namespace {
 
 class Writer {
@@ -50,15 +50,15 @@ class Writer {
   std::uint64_t fingerprint_ = kFnvSeed;
 };
 
-void copy_text(char* field, std::size_t size, const std::string& text, const Machine& machine,
+void copy_text(char* field, std::size_t size, const std::string& text, const model::Machine& machine,
                std::size_t line) {
-  if (text.size() >= size) throw InputError({machine.file, line}, text, "too long a name for an image");
+  if (text.size() >= size) throw text::InputError({machine.file, line}, text, "too long a name for an image");
   std::copy(text.begin(), text.end(), field);  // the rest of the field is zero
 }
 
-std::vector<AxisRecord> axis_records(const Machine& machine) {
+std::vector<AxisRecord> axis_records(const model::Machine& machine) {
   std::vector<AxisRecord> records;
-  for (const Axis& axis : machine.axes) {
+  for (const model::Axis& axis : machine.axes) {
     AxisRecord r{};
     copy_text(r.name, sizeof(r.name), axis.name, machine, axis.line);
     r.flags = (axis.rotary ? kRotary : 0u) | (axis.rollover ? kRollover : 0u);
@@ -70,9 +70,9 @@ std::vector<AxisRecord> axis_records(const Machine& machine) {
   return records;
 }
 
-std::vector<InputRecord> input_records(const Machine& machine) {
+std::vector<InputRecord> input_records(const model::Machine& machine) {
   std::vector<InputRecord> records;
-  for (const Input& input : machine.inputs) {
+  for (const model::Input& input : machine.inputs) {
     InputRecord r{};
     copy_text(r.name, sizeof(r.name), input.name, machine, input.line);
     copy_text(r.unit, sizeof(r.unit), input.unit, machine, input.line);
@@ -87,7 +87,7 @@ std::vector<InputRecord> input_records(const Machine& machine) {
 
 }  // namespace
 
-std::vector<std::uint8_t> write_image(const Machine& machine, const LoweredProgram& program,
+std::vector<std::uint8_t> write_image(const model::Machine& machine, const LoweredProgram& program,
                                       const LoweredShares& shares, std::uint32_t tick_us,
                                       std::uint64_t source_hash, std::uint32_t accepted_rules,
                                       std::uint64_t& fingerprint) {
@@ -130,4 +130,4 @@ std::vector<std::uint8_t> write_image(const Machine& machine, const LoweredProgr
   return writer.finish(header);
 }
 
-}  // namespace vernier
+}  // namespace vernier::compile

@@ -6,12 +6,12 @@
 #include "tools/compile/lower.h"
 #include "tools/model/machine.h"
 
-namespace vernier {
+namespace vernier::compile {
 
 /// The bytes of an image (tables/image_format.h). tool.
-std::vector<std::uint8_t> write_image(const Machine& machine, const LoweredProgram& program,
+std::vector<std::uint8_t> write_image(const model::Machine& machine, const LoweredProgram& program,
                                       const LoweredShares& shares, std::uint32_t tick_us,
                                       std::uint64_t source_hash, std::uint32_t accepted_rules,
                                       std::uint64_t& fingerprint);
 
-}  // namespace vernier
+}  // namespace vernier::compile

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vernier {
+namespace vernier::compile {
 
 /// All values that a quantity can take over the declared ranges; low <= high.
 struct Interval {
@@ -29,4 +29,4 @@ inline Interval hull(const Interval& a, const Interval& b) {
   return {std::min(a.low, b.low), std::max(a.high, b.high)};
 }
 
-}  // namespace vernier
+}  // namespace vernier::compile

@@ -11,14 +11,14 @@
 #include "tools/compile/segments.h"
 #include "tools/model/station_table.h"
 
-namespace vernier {
+namespace vernier::compile {
 namespace {
 
 constexpr int kUnitBits =
     30;  // format of -1, 0, 1: as fine as int32 allows, so that factors keep their digits
 const double kTurnUnit = 360.0 / 4294967296.0;  // deg of one count of a rotary axis
 
-double unit_of(const Machine& machine, ChannelKind kind, std::size_t index) {
+double unit_of(const model::Machine& machine, ChannelKind kind, std::size_t index) {
   switch (kind) {
     case ChannelKind::kPosition:
     case ChannelKind::kVelocity:
@@ -38,7 +38,7 @@ double unit_of(const Machine& machine, ChannelKind kind, std::size_t index) {
   return 1;
 }
 
-std::string channel_name(const Machine& machine, ChannelKind kind, std::size_t index) {
+std::string channel_name(const model::Machine& machine, ChannelKind kind, std::size_t index) {
   switch (kind) {
     case ChannelKind::kPosition:
       return machine.axes[index].name;
@@ -68,7 +68,7 @@ class Lowering {
  public:
   /// most_shared: sums whose (terms - 1) * (uses - 1) is no more are added term by term wherever they are
   /// used.
-  Lowering(const Machine& machine, const Derivation& d, std::uint32_t tick_us, std::size_t most_shared)
+  Lowering(const model::Machine& machine, const Derivation& d, std::uint32_t tick_us, std::size_t most_shared)
       : machine_(machine), d_(d), g_(d.graph), tick_us_(tick_us), most_shared_(most_shared) {}
 
   LoweredProgram run() {
@@ -101,7 +101,7 @@ class Lowering {
         if (ids.size() == most) continue;
         try {
           ids.push_back(value(part.outputs[i]));
-        } catch (const InputError&) {
+        } catch (const text::InputError&) {
           continue;
         }
         const Output out = output_of(d_.outputs[i].axis, ids.back());
@@ -125,7 +125,7 @@ class Lowering {
   using Id = ProgramBuilder::Id;
 
   Output output_of(std::size_t axis, Id id) const {
-    const Axis& a = machine_.axes[axis];
+    const model::Axis& a = machine_.axes[axis];
     const double per_unit = 1 / unit_of(machine_, ChannelKind::kPosition, axis);
     const double factor = std::ldexp(per_unit, -b_.at(id).fraction_bits);
     const int shift = std::clamp(29 - std::ilogb(factor), 0, static_cast<int>(kMaxShift));
@@ -162,7 +162,7 @@ class Lowering {
       }
       const bool looked_up = n.kind == NodeKind::kChannel || n.kind == NodeKind::kTable ||
                              n.kind == NodeKind::kFunction || n.kind == NodeKind::kLag;
-      if (looked_up) throw InputError("a share of something that the tick does not compute");
+      if (looked_up) throw text::InputError("a share of something that the tick does not compute");
     }
     switch (n.kind) {
       case NodeKind::kConstant:
@@ -201,8 +201,8 @@ class Lowering {
     c.high = std::llround(n.range.high / unit);
     double reach = 0;
     if (n.channel == ChannelKind::kPosition) {
-      const Axis& axis = machine_.axes[n.index[0]];
-      if (const Table* const t = machine_.table_of(n.index[0]))
+      const model::Axis& axis = machine_.axes[n.index[0]];
+      if (const model::Table* const t = machine_.table_of(n.index[0]))
         reach = std::max(std::abs(t->stations.front().loc), std::abs(t->stations.back().loc));
       // A whole turn at least: positions beyond come back by turns.
       if (axis.rotary && axis.rollover && c.high - c.low >= kTurnCounts) c.wrap = kTurnCounts;
@@ -350,17 +350,17 @@ class Lowering {
   }
 
   // Stations as counts of the position's register.
-  std::vector<Segment> segments_of(const Table& table, Id position) const {
+  std::vector<Segment> segments_of(const model::Table& table, Id position) const {
     std::vector<std::int64_t> stations;
-    for (const Station& s : table.stations) {
+    for (const model::Station& s : table.stations) {
       const double count = std::ldexp(s.loc, b_.at(position).fraction_bits);
       if (std::abs(count) > 2147483000.0)
-        throw InputError({machine_.file, table.line}, s.loc_text,
-                         "cannot be compiled: station out of reach of the axis format");
+        throw text::InputError({machine_.file, table.line}, s.loc_text,
+                               "cannot be compiled: station out of reach of the axis format");
       stations.push_back(std::llround(count));
       if (stations.size() > 1 && stations.back() <= stations[stations.size() - 2])
-        throw InputError({machine_.file, table.line}, s.loc_text,
-                         "cannot be compiled: stations closer than the axis format resolves");
+        throw text::InputError({machine_.file, table.line}, s.loc_text,
+                               "cannot be compiled: stations closer than the axis format resolves");
     }
     return make_segments(stations);
   }
@@ -370,7 +370,7 @@ class Lowering {
     const Place place{axis, n.args[0]};
     const auto found = looked_up_.find(place);
     if (found != looked_up_.end()) return found->second.at(n.index[1]);
-    const Table& t = *machine_.table_of(axis);
+    const model::Table& t = *machine_.table_of(axis);
     const std::string& name = machine_.axes[axis].name;
     const double first = t.stations.front().loc, last = t.stations.back().loc;
     Id position = value(n.args[0]);
@@ -382,7 +382,7 @@ class Lowering {
       position = b_.reformat(position, bits);
     if (t.periodic && (range.low < first || range.high > last))
       position = wrapped(position, first, last - first, name, 1);
-    const bool cubic = t.interpolation == Interpolation::kCubic && t.stations.size() > 2;
+    const bool cubic = t.interpolation == model::Interpolation::kCubic && t.stations.size() > 2;
     std::vector<std::vector<std::int32_t>> coefficients;
     std::vector<Register> results;
     for (const auto& [column, node] : columns_.at(place)) {
@@ -403,8 +403,8 @@ class Lowering {
   }
 
   // Coefficients of one column, and what the register that looks it up is like.
-  static std::vector<std::int32_t> linear_column(const Table& t, std::size_t column, double position_lsb,
-                                                 Register& r) {
+  static std::vector<std::int32_t> linear_column(const model::Table& t, std::size_t column,
+                                                 double position_lsb, Register& r) {
     double slope = 0, step = 0;
     for (std::size_t i = 1; i < t.stations.size(); ++i) {
       const double rise = std::abs(t.stations[i].value[column] - t.stations[i - 1].value[column]);
@@ -428,9 +428,9 @@ class Lowering {
     return values;
   }
 
-  static std::vector<std::int32_t> cubic_column(const Table& t, std::size_t column, double position_lsb,
-                                                Register& r) {
-    const StationTable exact(t);
+  static std::vector<std::int32_t> cubic_column(const model::Table& t, std::size_t column,
+                                                double position_lsb, Register& r) {
+    const model::StationTable exact(t);
     std::vector<CubicPiece> pieces;
     double size = 0, slope = 0;
     for (std::size_t i = 0; i + 1 < t.stations.size(); ++i) {
@@ -473,7 +473,7 @@ class Lowering {
       pieces = make_pieces(n.function, b_.counts(argument).low, b_.counts(argument).high,
                            b_.at(argument).fraction_bits);
     } catch (const std::domain_error& e) {
-      throw InputError("cannot be compiled: " + name + ": " + e.what());
+      throw text::InputError("cannot be compiled: " + name + ": " + e.what());
     }
     Register r;
     r.name = name;
@@ -576,7 +576,7 @@ class Lowering {
                     "lagged_" + b_.at(input).name);
   }
 
-  const Machine& machine_;
+  const model::Machine& machine_;
   const Derivation& d_;
   const Graph& g_;
   std::uint32_t tick_us_;
@@ -629,7 +629,7 @@ std::size_t cost_of(const LoweredProgram& p) {
 
 }  // namespace
 
-LoweredProgram lower(const Machine& machine, const Derivation& derivation, std::uint32_t tick_us) {
+LoweredProgram lower(const model::Machine& machine, const Derivation& derivation, std::uint32_t tick_us) {
   LoweredProgram best = Lowering(machine, derivation, tick_us, 0).run();
   for (const std::size_t most_shared : {1u, 2u, 4u}) {
     LoweredProgram other = Lowering(machine, derivation, tick_us, most_shared).run();
@@ -638,7 +638,8 @@ LoweredProgram lower(const Machine& machine, const Derivation& derivation, std::
   return best;
 }
 
-LoweredShares lower_shares(const Machine& machine, const Derivation& derivation, const LoweredProgram& tick) {
+LoweredShares lower_shares(const model::Machine& machine, const Derivation& derivation,
+                           const LoweredProgram& tick) {
   for (std::size_t most = kMaxShares;; most = most * 3 / 4) {
     std::size_t registers = 0;
     LoweredShares shares = Lowering(machine, derivation, 1000, 1).run_shares(tick, most, registers);
@@ -647,4 +648,4 @@ LoweredShares lower_shares(const Machine& machine, const Derivation& derivation,
   }
 }
 
-}  // namespace vernier
+}  // namespace vernier::compile

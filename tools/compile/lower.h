@@ -8,7 +8,7 @@
 #include "tools/compile/derive.h"
 #include "tools/compile/functions.h"
 
-namespace vernier {
+namespace vernier::compile {
 
 /// Where an error of the fixed-point program comes from.
 enum class ErrorSource : std::uint8_t { kRounding, kTable, kFunction, kChannel, kLag };
@@ -80,10 +80,11 @@ struct LoweredShares {
 /// Chooses formats by interval analysis and writes the straight-line program with a proved error bound per
 /// register. tick_us: the cycle time for lags and slew limits. Throws InputError where a format or the size
 /// does not suffice. tool.
-LoweredProgram lower(const Machine& machine, const Derivation& derivation, std::uint32_t tick_us);
+LoweredProgram lower(const model::Machine& machine, const Derivation& derivation, std::uint32_t tick_us);
 
 /// The shares of derivation.parts, computed from the registers of `tick` (the same derivation, lowered).
 /// tool.
-LoweredShares lower_shares(const Machine& machine, const Derivation& derivation, const LoweredProgram& tick);
+LoweredShares lower_shares(const model::Machine& machine, const Derivation& derivation,
+                           const LoweredProgram& tick);
 
-}  // namespace vernier
+}  // namespace vernier::compile

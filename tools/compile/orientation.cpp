@@ -14,7 +14,7 @@
 #include "tools/compile/solve.h"
 #include "tools/maths/factors.h"
 
-namespace vernier {
+namespace vernier::compile {
 namespace {
 
 /// A column this small against 1 rad per rad tilts nothing.
@@ -45,7 +45,7 @@ Eigen::ArrayXd sampled(const Graph& g, NodeId node) { return Samples(g, kSamples
 /// The chain as the direction meets it, up to its last turn by an axis.
 class DirectionChain {
  public:
-  DirectionChain(const Machine& machine, Derivation& d, double neglect)
+  DirectionChain(const model::Machine& machine, Derivation& d, double neglect)
       : machine_(machine), d_(d), translate_(machine, d), steps_(all_steps(machine, translate_, d.graph)) {
     for (std::size_t i = 0; i < steps_.size(); ++i)
       if (steps_[i].turn && turns_by_axis(i)) last_ = i;
@@ -86,7 +86,7 @@ class DirectionChain {
       Derivative by_axis(g, channel(axis));
       double speed = 0;
       for (const Step& step : steps_)
-        if (step.turn) speed += kRadPerDeg * g[by_axis.of(step.by.nominal)].range.magnitude();
+        if (step.turn) speed += maths::kRadPerDeg * g[by_axis.of(step.by.nominal)].range.magnitude();
       Eigen::ArrayXd length = Eigen::ArrayXd::Zero(kSamples);
       for (const NodeId component : direction) length += sampled(g, component).square();
       if (length.maxCoeff() < kTiltsNothing * kTiltsNothing) return std::nullopt;
@@ -94,12 +94,13 @@ class DirectionChain {
       for (NodeId& component : direction) component = simplified(g, g.scale(1 / lever, component));
       return Tilt{axis, direction, lever};
     } catch (const std::domain_error& reason) {
-      throw InputError({machine_.file, machine_.axes[axis].line}, machine_.axes[axis].name,
-                       std::string("cannot be compiled: the nominal chain gives this axis ") + reason.what());
+      throw text::InputError(
+          {machine_.file, machine_.axes[axis].line}, machine_.axes[axis].name,
+          std::string("cannot be compiled: the nominal chain gives this axis ") + reason.what());
     }
   }
 
-  const Machine& machine_;
+  const model::Machine& machine_;
   Derivation& d_;
   Translator translate_;
   std::vector<Step> steps_;
@@ -188,14 +189,14 @@ Damping damped(Graph& g, const Normal& n) {
   return result;
 }
 
-std::string list_of(const Machine& machine, const std::vector<std::size_t>& axes) {
+std::string list_of(const model::Machine& machine, const std::vector<std::size_t>& axes) {
   std::string names;
   for (const std::size_t axis : axes)
     names += (names.empty() ? "" : axis == axes.back() ? " and " : ", ") + machine.axes[axis].name;
   return names;
 }
 
-void add_notes(const Machine& machine, Derivation& d, const Orientation& o) {
+void add_notes(const model::Machine& machine, Derivation& d, const Orientation& o) {
   d.notes.push_back("the direction of the tool is corrected by " + list_of(machine, o.axes));
   if (o.axes.size() == 1)
     d.notes.push_back("one axis alone tilts the tool: its direction is corrected across that axis only");
@@ -205,7 +206,7 @@ void add_notes(const Machine& machine, Derivation& d, const Orientation& o) {
         "ranges) the correction of direction is damped",
         list_of(machine, o.axes), 100 * *o.damped));
   for (std::size_t k = 0; k < o.axes.size(); ++k) {
-    const Axis& axis = machine.axes[o.axes[k]];
+    const model::Axis& axis = machine.axes[o.axes[k]];
     if (!axis.max_correction)
       d.notes.push_back(
           fmt::format("axis {} has no maxcorrection: its correction of direction may reach {:.3g} "
@@ -225,7 +226,7 @@ NodeId held_within(Graph& g, NodeId value, double limit) {
   return range.high > limit ? g.choice(NodeKind::kMin, above, g.constant(limit)) : above;
 }
 
-std::optional<Tilting> solve_direction(const Machine& machine, Derivation& d, double neglect) {
+std::optional<Tilting> solve_direction(const model::Machine& machine, Derivation& d, double neglect) {
   Graph& g = d.graph;
   DirectionChain chain(machine, d, neglect);
   if (!chain.last_turn()) return std::nullopt;
@@ -264,7 +265,7 @@ std::optional<Tilting> solve_direction(const Machine& machine, Derivation& d, do
   o.gain = damping.gain;
   const std::vector<NodeId> x = result.solve(g, o.deviation, {});
   for (std::size_t k = 0; k < tilts.size(); ++k) {
-    const Axis& axis = machine.axes[tilts[k].axis];
+    const model::Axis& axis = machine.axes[tilts[k].axis];
     o.axes.push_back(tilts[k].axis);
     o.lever.push_back(tilts[k].lever);
     const double reach = damping.gain * o.spread / tilts[k].lever;
@@ -277,7 +278,7 @@ std::optional<Tilting> solve_direction(const Machine& machine, Derivation& d, do
   return result;
 }
 
-std::vector<bool> damped_poses(const Machine& machine, const States& states) {
+std::vector<bool> damped_poses(const model::Machine& machine, const model::States& states) {
   std::vector<bool> result(states.count, false);
   Derivation d;
   if (!machine.correct_orientation || !solve_direction(machine, d, kTiltsNothing) || !d.orientation->damped)
@@ -292,4 +293,4 @@ std::vector<bool> damped_poses(const Machine& machine, const States& states) {
   return result;
 }
 
-}  // namespace vernier
+}  // namespace vernier::compile

@@ -6,7 +6,7 @@
 
 #include "tools/compile/walk.h"
 
-namespace vernier {
+namespace vernier::compile {
 
 /// How the rotary axes turn the direction of the tool back. The graph is that of the derivation.
 struct Tilting {
@@ -22,10 +22,10 @@ struct Tilting {
 /// for them and enters derivation.orientation. Damped least squares: towards a pose in which the axes tilt
 /// the tool the same way, what they cannot reach fades, what they can reach stays (Nakamura and Hanafusa,
 /// ASME J. Dyn. Sys. 108 (1986) 163). Nothing where no rotary axis tilts the tool. neglect: rad. tool.
-std::optional<Tilting> solve_direction(const Machine& machine, Derivation& derivation, double neglect);
+std::optional<Tilting> solve_direction(const model::Machine& machine, Derivation& derivation, double neglect);
 
 /// A value as a node of its own that stays within +-limit: what is corrected elsewhere with it is corrected
 /// for what the axis does.
 NodeId held_within(Graph& graph, NodeId value, double limit);
 
-}  // namespace vernier
+}  // namespace vernier::compile

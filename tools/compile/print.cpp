@@ -7,10 +7,10 @@
 
 #include "tools/compile/compile.h"
 
-namespace vernier {
+namespace vernier::compile {
 namespace {
 
-std::string banner(const Machine& machine, const LoweredProgram& p, std::uint64_t source_hash) {
+std::string banner(const model::Machine& machine, const LoweredProgram& p, std::uint64_t source_hash) {
   std::size_t multiplications = 0, look_ups = 0, sines = 0;
   for (const Instruction& s : p.instructions) {
     multiplications += s.op == OpCode::kLinear     ? (s.l == 0 ? 1u : 2u)
@@ -29,7 +29,7 @@ std::string banner(const Machine& machine, const LoweredProgram& p, std::uint64_
       p.constants.size(), p.channels.size(), p.lag_count);
 }
 
-std::string interface_comment(const Machine& machine, const LoweredProgram& p) {
+std::string interface_comment(const model::Machine& machine, const LoweredProgram& p) {
   std::string text =
       "/// Deviation of each corrected axis, from one tick's channels. Bit-identical to the program of the "
       "image.\n";
@@ -166,8 +166,8 @@ class Printer {
 
 }  // namespace
 
-std::string print_header(const Machine& machine, const LoweredProgram& program, std::uint64_t source_hash,
-                         std::uint64_t fingerprint) {
+std::string print_header(const model::Machine& machine, const LoweredProgram& program,
+                         std::uint64_t source_hash, std::uint64_t fingerprint) {
   return banner(machine, program, source_hash) +
          "#pragma once\n#include <cstdint>\n\n#include \"comp/lag.h\"\n\nnamespace vernier::generated {\n\n" +
          fmt::format(
@@ -181,7 +181,8 @@ std::string print_header(const Machine& machine, const LoweredProgram& program, 
          "}  // namespace vernier::generated\n";
 }
 
-std::string print_source(const Machine& machine, const LoweredProgram& program, std::uint64_t source_hash) {
+std::string print_source(const model::Machine& machine, const LoweredProgram& program,
+                         std::uint64_t source_hash) {
   Printer printer(program);
   return banner(machine, program, source_hash) +
          "#include \"equation.h\"\n\n#include \"comp/error_table.h\"\n#include \"comp/fixed.h\"\n#include "
@@ -198,4 +199,4 @@ std::string print_source(const Machine& machine, const LoweredProgram& program, 
          printer.body() + "}\n\n}  // namespace vernier::generated\n";
 }
 
-}  // namespace vernier
+}  // namespace vernier::compile

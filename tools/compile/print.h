@@ -6,11 +6,12 @@
 #include "tools/compile/lower.h"
 #include "tools/model/machine.h"
 
-namespace vernier {
+namespace vernier::compile {
 
 /// The program as readable C++: equation.h and equation.cpp. Same program, same bytes. tool.
-std::string print_header(const Machine& machine, const LoweredProgram& program, std::uint64_t source_hash,
-                         std::uint64_t fingerprint);
-std::string print_source(const Machine& machine, const LoweredProgram& program, std::uint64_t source_hash);
+std::string print_header(const model::Machine& machine, const LoweredProgram& program,
+                         std::uint64_t source_hash, std::uint64_t fingerprint);
+std::string print_source(const model::Machine& machine, const LoweredProgram& program,
+                         std::uint64_t source_hash);
 
-}  // namespace vernier
+}  // namespace vernier::compile

@@ -6,7 +6,7 @@
 #include "tools/compile/derive.h"
 #include "tools/model/fit_record.h"
 
-namespace vernier {
+namespace vernier::compile {
 namespace {
 
 // Where a machine file declares no range, these hold: faster, hotter or longer is held at the edge and
@@ -31,20 +31,20 @@ double half_width_of(const std::string& unit) {
 
 }  // namespace
 
-Interval axis_range(const Machine& machine, std::size_t axis) {
-  const Axis& a = machine.axes[axis];
+Interval axis_range(const model::Machine& machine, std::size_t axis) {
+  const model::Axis& a = machine.axes[axis];
   if (!a.min || !a.max)
-    throw InputError({machine.file, a.line}, a.name, "an axis without min and max cannot be compiled");
+    throw text::InputError({machine.file, a.line}, a.name, "an axis without min and max cannot be compiled");
   return {*a.min, *a.max};
 }
 
-Interval input_range(const Machine& machine, std::size_t input) {
-  const Input& one = machine.inputs[input];
+Interval input_range(const model::Machine& machine, std::size_t input) {
+  const model::Input& one = machine.inputs[input];
   const double width = half_width_of(one.unit);
   Interval range{one.reference - width, one.reference + width};
   constexpr double kBeyond = 0.1;  // of what was measured: a day a little warmer than that of the survey
   if (machine.fitted)
-    for (const FitRecord::Range& measured : machine.fitted->measured)
+    for (const model::FitRecord::Range& measured : machine.fitted->measured)
       if (measured.name == one.name) {
         const double more = kBeyond * (measured.max - measured.min);
         range = {std::min(range.low, measured.min - more), std::max(range.high, measured.max + more)};
@@ -52,7 +52,7 @@ Interval input_range(const Machine& machine, std::size_t input) {
   return {one.min.value_or(range.low), one.max.value_or(range.high)};
 }
 
-Interval channel_range(const Machine& machine, ChannelKind kind, std::size_t index) {
+Interval channel_range(const model::Machine& machine, ChannelKind kind, std::size_t index) {
   const auto symmetric = [&](double linear, double rotary) {
     const double limit = machine.axes[index].rotary ? rotary : linear;
     return Interval{-limit, limit};
@@ -84,4 +84,4 @@ Interval channel_range(const Machine& machine, ChannelKind kind, std::size_t ind
   return {};
 }
 
-}  // namespace vernier
+}  // namespace vernier::compile

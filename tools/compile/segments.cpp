@@ -7,7 +7,7 @@
 #include "tools/compile/builder.h"
 #include "tools/compile/functions.h"
 
-namespace vernier {
+namespace vernier::compile {
 namespace {
 
 constexpr double kRelativeTolerance = 1.0 / (1 << 26);
@@ -91,7 +91,7 @@ LoweredTable make_table(const std::string& name, const std::vector<Segment>& seg
 
 Wrap make_wrap(std::int64_t first, std::int64_t period) {
   if (period < 4 || period > INT32_MAX)
-    throw InputError("cannot be compiled: a period that does not fit the format");
+    throw text::InputError("cannot be compiled: a period that does not fit the format");
   Wrap w{};
   w.first = static_cast<std::int32_t>(first);
   w.period = static_cast<std::int32_t>(period);
@@ -145,4 +145,4 @@ FunctionPieces make_pieces(Function f, std::int64_t low, std::int64_t high, int 
   return result;
 }
 
-}  // namespace vernier
+}  // namespace vernier::compile

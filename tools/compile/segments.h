@@ -8,7 +8,7 @@
 #include "tools/compile/graph.h"
 #include "tools/compile/lower.h"
 
-namespace vernier {
+namespace vernier::compile {
 
 /// A segment between two integer positions, with the reciprocal that reaches one exactly at its far end.
 Segment make_segment(std::int64_t start, std::int64_t end);
@@ -45,4 +45,4 @@ struct CubicPiece {
 };
 CubicPiece hermite(double near, double far, double near_slope, double far_slope);
 
-}  // namespace vernier
+}  // namespace vernier::compile

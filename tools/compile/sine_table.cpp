@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace vernier {
+namespace vernier::compile {
 
 std::string print_sine_table() {
   constexpr int kNodes = 512;
@@ -28,4 +28,4 @@ std::string print_sine_table() {
   return text + "};\n\n}  // namespace vernier\n";
 }
 
-}  // namespace vernier
+}  // namespace vernier::compile

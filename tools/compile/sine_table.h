@@ -2,10 +2,10 @@
 #pragma once
 #include <string>
 
-namespace vernier {
+namespace vernier::compile {
 
 /// The text of comp/generated/sine_table.h: sine and cosine at 512 nodes of a turn, rounded to 30 fraction
 /// bits. A test compares the file with it and writes it anew with VERNIER_UPDATE_GOLDEN=1. tool.
 std::string print_sine_table();
 
-}  // namespace vernier
+}  // namespace vernier::compile

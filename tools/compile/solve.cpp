@@ -9,7 +9,7 @@
 #include "tools/compile/calculus.h"
 #include "tools/compile/functions.h"
 
-namespace vernier {
+namespace vernier::compile {
 namespace {
 
 /// A singular value this small against the largest is none.
@@ -337,4 +337,4 @@ Solver solve_axes(Derivation& d) {
   return solve_least(d, algebra, columns, r);
 }
 
-}  // namespace vernier
+}  // namespace vernier::compile

@@ -5,7 +5,7 @@
 
 #include "tools/compile/walk.h"
 
-namespace vernier {
+namespace vernier::compile {
 
 /// Poses over the declared ranges at which a determinant is looked at, and boxes into which they are cut
 /// where a bound is wanted: more change the damping by less than a tenth.
@@ -37,4 +37,4 @@ using Solver = std::function<Solved(Graph&, const NodeVector& v)>;
 /// direction. The solver serves a second evaluation of the deviation. tool.
 Solver solve_axes(Derivation& derivation);
 
-}  // namespace vernier
+}  // namespace vernier::compile

@@ -7,25 +7,26 @@
 #include "tools/compile/functions.h"
 #include "tools/maths/factors.h"
 
-namespace vernier {
+namespace vernier::compile {
 namespace {
 
 /// The terms that an expression is the sum of, each with its own share of the expression's delta.
-void split(const Expr& expr, double sign, Translator& translate, Graph& g, std::size_t line,
+void split(const model::Expr& expr, double sign, Translator& translate, Graph& g, std::size_t line,
            std::vector<Step::Part>& parts) {
-  if (expr.op == Op::kAdd || expr.op == Op::kSubtract || expr.op == Op::kNegate) {
-    const double second = expr.op == Op::kAdd ? sign : -sign;
-    split(*expr.args[0], expr.op == Op::kNegate ? -sign : sign, translate, g, line, parts);
-    if (expr.op != Op::kNegate) split(*expr.args[1], second, translate, g, line, parts);
+  if (expr.op == model::Op::kAdd || expr.op == model::Op::kSubtract || expr.op == model::Op::kNegate) {
+    const double second = expr.op == model::Op::kAdd ? sign : -sign;
+    split(*expr.args[0], expr.op == model::Op::kNegate ? -sign : sign, translate, g, line, parts);
+    if (expr.op != model::Op::kNegate) split(*expr.args[1], second, translate, g, line, parts);
     return;
   }
-  const std::string text = to_text(expr);
+  const std::string text = model::to_text(expr);
   const NodeId delta = g.scale(sign, translate.translate(expr, text, line).delta);
   if (!g.is_zero(delta)) parts.push_back({(sign < 0 ? "-" : "") + text, delta});
 }
 
 /// The elementary steps of one transform in the order in which a point beyond it meets them.
-std::vector<Step> steps_of(const Transform& t, const char* branch, Translator& translate, Graph& graph) {
+std::vector<Step> steps_of(const model::Transform& t, const char* branch, Translator& translate,
+                           Graph& graph) {
   std::vector<Step> steps;
   const auto push = [&](bool turn, int axis, std::size_t dof) {
     const std::string where =
@@ -33,7 +34,7 @@ std::vector<Step> steps_of(const Transform& t, const char* branch, Translator& t
     steps.push_back({turn, axis, translate.translate(*t.dof[dof], t.text[dof], t.line), where, {}});
     split(*t.dof[dof], 1, translate, graph, t.line, steps.back().parts);
   };
-  if (t.kind == TransformKind::kSixDof) {
+  if (t.kind == model::TransformKind::kSixDof) {
     for (int axis = 2; axis >= 0; --axis) push(true, axis, static_cast<std::size_t>(axis) + 3);
     for (int axis = 0; axis < 3; ++axis) push(false, axis, static_cast<std::size_t>(axis));
   } else {
@@ -47,11 +48,11 @@ std::vector<Step> steps_of(const Transform& t, const char* branch, Translator& t
 
 }  // namespace
 
-std::vector<Step> all_steps(const Machine& machine, Translator& translate, Graph& graph) {
+std::vector<Step> all_steps(const model::Machine& machine, Translator& translate, Graph& graph) {
   std::vector<Step> steps;
   for (auto t = machine.tool.rbegin(); t != machine.tool.rend(); ++t)
     for (Step& step : steps_of(*t, "tool", translate, graph)) steps.push_back(std::move(step));
-  for (const Transform& t : machine.workpiece) {
+  for (const model::Transform& t : machine.workpiece) {
     std::vector<Step> back = steps_of(t, "workpiece", translate, graph);
     for (auto step = back.rbegin(); step != back.rend(); ++step) {
       step->by = {graph.scale(-1, step->by.nominal), graph.scale(-1, step->by.delta)};
@@ -67,7 +68,7 @@ NodeVector motion_of(Graph& g, NodeId axis, const NodeVector& point, const Step*
   Derivative by_axis(g, axis);
   for (std::size_t c = 0; c < 3; ++c) column[c] = by_axis.of(point[c]);
   if (last_turn == nullptr) return column;
-  const NodeId speed = g.scale(kRadPerDeg, by_axis.of(last_turn->by.nominal));
+  const NodeId speed = g.scale(maths::kRadPerDeg, by_axis.of(last_turn->by.nominal));
   const auto a = static_cast<std::size_t>((last_turn->axis + 1) % 3),
              b = static_cast<std::size_t>((last_turn->axis + 2) % 3);
   column[a] = g.subtract(column[a], g.product(speed, point[b]));
@@ -75,8 +76,8 @@ NodeVector motion_of(Graph& g, NodeId axis, const NodeVector& point, const Step*
   return column;
 }
 
-Walk walked(const Machine& machine, Derivation& derivation, const Additions& added, std::size_t frozen_from,
-            Walk walk) {
+Walk walked(const model::Machine& machine, Derivation& derivation, const Additions& added,
+            std::size_t frozen_from, Walk walk) {
   Translator translate(machine, derivation, added);
   const std::vector<Step> steps = all_steps(machine, translate, derivation.graph);
   for (std::size_t i = 0; i < steps.size(); ++i) {
@@ -142,7 +143,8 @@ std::pair<NodeId, NodeId> Walk::direction_of(NodeId angle_deg) {
   if (!value) return {g_.function(Function::kCos, angle_deg), g_.function(Function::kSin, angle_deg)};
   const double quarter = *value / 90;
   if (quarter != std::round(quarter))
-    return {g_.constant(std::cos(*value * kRadPerDeg)), g_.constant(std::sin(*value * kRadPerDeg))};
+    return {g_.constant(std::cos(*value * maths::kRadPerDeg)),
+            g_.constant(std::sin(*value * maths::kRadPerDeg))};
   const int q = ((static_cast<int>(std::fmod(quarter, 4)) % 4) + 4) % 4;
   constexpr std::array<double, 4> kCosine = {1, 0, -1, 0}, kSine = {0, 1, 0, -1};
   return {g_.constant(kCosine[static_cast<std::size_t>(q)]), g_.constant(kSine[static_cast<std::size_t>(q)])};
@@ -199,7 +201,7 @@ void Walk::split_turn(const Step& step, const NodeVector& point, const NodeVecto
     const auto own = g_.constant_value(part.delta);
     for (const std::size_t c : {a, b}) {
       share[c] = total && own ? g_.scale(*own / *total, all[c])
-                              : g_.scale(c == a ? -kRadPerDeg : kRadPerDeg,
+                              : g_.scale(c == a ? -maths::kRadPerDeg : maths::kRadPerDeg,
                                          g_.product(part.delta, point[c == a ? b : a]));
       rest[c] = g_.subtract(rest[c], share[c]);
     }
@@ -238,7 +240,7 @@ void Walk::deviate_by_turn(const Step& step) {
   if (g_.is_zero(step.by.delta)) return;
   const auto a = static_cast<std::size_t>((step.axis + 1) % 3),
              b = static_cast<std::size_t>((step.axis + 2) % 3);
-  const double size = g_[step.by.delta].range.magnitude() * kRadPerDeg;
+  const double size = g_[step.by.delta].range.magnitude() * maths::kRadPerDeg;
   NodeVector point = nominal_;
   const NodeVector so_far = deviation_here();
   const NodeVector across = {g_.constant(0), so_far[a], so_far[b]};
@@ -260,8 +262,9 @@ void Walk::deviate_by_turn(const Step& step) {
 }
 
 NodeId Walk::sine_of(const Step& step, double size, double reach) {
-  if (const auto angle = g_.constant_value(step.by.delta)) return g_.constant(std::sin(*angle * kRadPerDeg));
-  const NodeId angle = g_.scale(kRadPerDeg, step.by.delta);
+  if (const auto angle = g_.constant_value(step.by.delta))
+    return g_.constant(std::sin(*angle * maths::kRadPerDeg));
+  const NodeId angle = g_.scale(maths::kRadPerDeg, step.by.delta);
   if (small(std::pow(size, 3) / 6 * reach, step, "third order of ")) return angle;
   if (small(std::pow(size, 5) / 120 * reach, step, "fifth order of "))
     return g_.sum(0, {{1, angle}, {-1.0 / 6, g_.product(angle, g_.product(angle, angle))}});
@@ -270,13 +273,13 @@ NodeId Walk::sine_of(const Step& step, double size, double reach) {
 
 NodeId Walk::bend_of(const Step& step, double size, double reach) {
   if (const auto angle = g_.constant_value(step.by.delta))
-    return g_.constant(1 - std::cos(*angle * kRadPerDeg));
+    return g_.constant(1 - std::cos(*angle * maths::kRadPerDeg));
   if (small(size * size / 2 * reach, step, "second order of ")) return g_.constant(0);
-  const NodeId angle = g_.scale(kRadPerDeg, step.by.delta), square = g_.product(angle, angle);
+  const NodeId angle = g_.scale(maths::kRadPerDeg, step.by.delta), square = g_.product(angle, angle);
   if (small(std::pow(size, 4) / 24 * reach, step, "fourth order of ")) return g_.scale(0.5, square);
   if (small(std::pow(size, 6) / 720 * reach, step, "sixth order of "))
     return g_.sum(0, {{0.5, square}, {-1.0 / 24, g_.product(square, square)}});
   return g_.sum(1, {{-1, g_.function(Function::kCos, step.by.delta)}});
 }
 
-}  // namespace vernier
+}  // namespace vernier::compile

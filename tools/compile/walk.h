@@ -7,7 +7,7 @@
 
 #include "tools/compile/dual.h"
 
-namespace vernier {
+namespace vernier::compile {
 
 /// One elementary step along the chain, as the point meets it: a turn about a coordinate axis, or a shift
 /// along it.
@@ -25,7 +25,7 @@ struct Step {
 
 /// The elementary steps of the chain from the tool point through the tool branch to the base, and on through
 /// the workpiece branch, reversed, to the workpiece.
-std::vector<Step> all_steps(const Machine& machine, Translator& translate, Graph& graph);
+std::vector<Step> all_steps(const model::Machine& machine, Translator& translate, Graph& graph);
 
 /// How a point moves with an axis, mm per mm or deg, in the frame in front of `last_turn` (null: where the
 /// point is), a turn behind it that the axis may drive too. Throws std::domain_error where it has a step.
@@ -86,7 +86,7 @@ class Walk {
 
 /// A walk along the whole chain with `added` on the axes, seen from the frame that `frozen_from` steps lead
 /// to.
-Walk walked(const Machine& machine, Derivation& derivation, const Additions& added, std::size_t frozen_from,
-            Walk walk);
+Walk walked(const model::Machine& machine, Derivation& derivation, const Additions& added,
+            std::size_t frozen_from, Walk walk);
 
-}  // namespace vernier
+}  // namespace vernier::compile

@@ -9,25 +9,26 @@
 #include "tools/text/units.h"
 #include "tools/text/words.h"
 
-namespace vernier {
+namespace vernier::create {
 namespace {
 
-double number_in(const std::string& text, const Place& place, const std::string& what) {
-  const auto number = parse_number(text);
-  if (!number) throw InputError(place, text, "not a number, for " + what);
+double number_in(const std::string& text, const text::Place& place, const std::string& what) {
+  const auto number = text::parse_number(text);
+  if (!number) throw text::InputError(place, text, "not a number, for " + what);
   return *number;
 }
 
 /// The cells of one column in mm or deg; nothing where the table has no such column.
-std::optional<std::vector<double>> column(const CsvFile& csv, const std::string& name, Dimension dimension) {
+std::optional<std::vector<double>> column(const text::CsvFile& csv, const std::string& name,
+                                          text::Dimension dimension) {
   for (std::size_t k = 0; k < csv.columns.size(); ++k) {
     if (csv.columns[k].name != name) continue;
-    const Unit unit = *find_unit(csv.columns[k].unit);
+    const text::Unit unit = *text::find_unit(csv.columns[k].unit);
     // Published tables leave the units out; mm and deg are theirs.
-    const bool bare = unit.dimension == Dimension::kNone;
+    const bool bare = unit.dimension == text::Dimension::kNone;
     if (!bare && unit.dimension != dimension)
-      throw InputError({csv.file, csv.header_line}, name + "[" + unit.name + "]",
-                       std::string("this column needs a unit like ") + base_unit(dimension));
+      throw text::InputError({csv.file, csv.header_line}, name + "[" + unit.name + "]",
+                             std::string("this column needs a unit like ") + text::base_unit(dimension));
     std::vector<double> values;
     for (std::size_t row = 0; row < csv.rows.size(); ++row)
       values.push_back((bare ? 1 : unit.factor) *
@@ -37,10 +38,10 @@ std::optional<std::vector<double>> column(const CsvFile& csv, const std::string&
   return std::nullopt;
 }
 
-bool is_prismatic(const std::string& word, const Place& place) {
+bool is_prismatic(const std::string& word, const text::Place& place) {
   if (word == "P" || word == "p" || word == "prismatic") return true;
   if (word == "R" || word == "r" || word == "revolute" || word.empty()) return false;
-  throw InputError(place, word, "a joint is R (turns) or P (slides)");
+  throw text::InputError(place, word, "a joint is R (turns) or P (slides)");
 }
 
 }  // namespace
@@ -56,16 +57,18 @@ const std::vector<DhRow>& default_arm() {
 }
 
 std::vector<DhRow> parse_dh_table(const std::string& text, const std::string& file) {
-  const CsvFile csv = parse_csv(text, file);
-  for (const CsvColumn& known : csv.columns) {
+  const text::CsvFile csv = text::parse_csv(text, file);
+  for (const text::CsvColumn& known : csv.columns) {
     const std::string& name = known.name;
     if (name != "theta" && name != "d" && name != "a" && name != "alpha" && name != "type" && name != "joint")
-      throw InputError({file, csv.header_line}, name, "the columns are theta, d, a, alpha, type and joint");
+      throw text::InputError({file, csv.header_line}, name,
+                             "the columns are theta, d, a, alpha, type and joint");
   }
-  const auto theta = column(csv, "theta", Dimension::kAngle), d = column(csv, "d", Dimension::kLength),
-             a = column(csv, "a", Dimension::kLength), alpha = column(csv, "alpha", Dimension::kAngle);
+  const auto theta = column(csv, "theta", text::Dimension::kAngle),
+             d = column(csv, "d", text::Dimension::kLength), a = column(csv, "a", text::Dimension::kLength),
+             alpha = column(csv, "alpha", text::Dimension::kAngle);
   if (!d || !a || !alpha)
-    throw InputError({file, csv.header_line}, !d ? "d" : !a ? "a" : "alpha", "this column is missing");
+    throw text::InputError({file, csv.header_line}, !d ? "d" : !a ? "a" : "alpha", "this column is missing");
   std::vector<DhRow> rows;
   for (std::size_t row = 0; row < csv.rows.size(); ++row) {
     rows.push_back({theta ? (*theta)[row] : 0, (*d)[row], (*a)[row], (*alpha)[row], false});
@@ -77,16 +80,16 @@ std::vector<DhRow> parse_dh_table(const std::string& text, const std::string& fi
 }
 
 DhRow parse_dh_row(const std::string& words) {
-  std::vector<std::string> parts = parts_of(words, ',');
-  const Place place;
+  std::vector<std::string> parts = text::parts_of(words, ',');
+  const text::Place place;
   DhRow row;
   if (parts.size() == 5) {
     row.prismatic = is_prismatic(parts.front(), place);
     parts.erase(parts.begin());
   }
   if (parts.size() != 4)
-    throw InputError("\"" + words +
-                     "\": a joint is theta,d,a,alpha (deg,mm,mm,deg; P, before them where it slides)");
+    throw text::InputError("\"" + words +
+                           "\": a joint is theta,d,a,alpha (deg,mm,mm,deg; P, before them where it slides)");
   row.theta = number_in(parts[0], place, "theta");
   row.d = number_in(parts[1], place, "d");
   row.a = number_in(parts[2], place, "a");
@@ -94,4 +97,4 @@ DhRow parse_dh_row(const std::string& words) {
   return row;
 }
 
-}  // namespace vernier
+}  // namespace vernier::create

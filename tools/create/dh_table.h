@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-namespace vernier {
+namespace vernier::create {
 
 /// One joint of an arm: Tz(d)·Rz(theta)·Tx(a)·Rx(alpha), the row of Denavit and Hartenberg, and behind it
 /// Ry(beta) where the next axis is nearly parallel (Hayati 1983). The joint's position is added to theta, or
@@ -27,4 +27,4 @@ std::vector<DhRow> parse_dh_table(const std::string& text, const std::string& fi
 /// "theta,d,a,alpha" or "P,theta,d,a,alpha" of one joint. Throws InputError with the word. tool.
 DhRow parse_dh_row(const std::string& words);
 
-}  // namespace vernier
+}  // namespace vernier::create

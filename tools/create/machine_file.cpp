@@ -7,7 +7,7 @@
 #include "tools/text/numbers.h"
 #include "tools/text/xml_text.h"
 
-namespace vernier {
+namespace vernier::create {
 namespace {
 
 constexpr std::array<char, 3> kLengths = {'X', 'Y', 'Z'}, kTurns = {'A', 'B', 'C'};
@@ -45,7 +45,7 @@ std::string error_static(const MachinePlan& plan, const std::string& name, const
 }
 std::string length_static(const std::string& name, double value, const std::string& note) {
   return fmt::format("      <{0} value=\"{1}\" unit=\"mm\" Hide=\"true\" note=\"{2}\"/>\n", name,
-                     number_text(value), note);
+                     text::number_text(value), note);
 }
 
 /// An angle of a slide's travel about one axis of the machine: E + turn + 0 + the slide's name.
@@ -96,7 +96,7 @@ std::string slide_row(const MachinePlan& plan, std::size_t index, bool work, int
     dof[towards] += with_sign(side * turn, angle.name + "*" + axis.name, false);
   }
   std::string row = fmt::format("    <sixdof n=\"{}\"", n);
-  for (std::size_t k = 0; k < 6; ++k) row += fmt::format(" {}=\"{}\"", kSixDofNames[k], dof[k]);
+  for (std::size_t k = 0; k < 6; ++k) row += fmt::format(" {}=\"{}\"", model::kSixDofNames[k], dof[k]);
   return row + "/>\n";
 }
 
@@ -116,9 +116,9 @@ std::string turning_rows(const MachinePlan& plan, std::size_t index, bool work, 
     dof[3 + k] = own ? (work ? "-" : "") + angle : fmt::format("E{}0{}+{}", kTurns[k], axis.name, angle);
   }
   std::string rows = fmt::format("    <sixdof n=\"{}\"", n);
-  for (std::size_t k = 0; k < 6; ++k) rows += fmt::format(" {}=\"{}\"", kSixDofNames[k], dof[k]);
-  return rows + fmt::format("/>\n    <sixdof n=\"{}\" {}=\"{}{}\"/>\n", n + 1, kSixDofNames[3 + axis.along()],
-                            work ? "-" : "", axis.name);
+  for (std::size_t k = 0; k < 6; ++k) rows += fmt::format(" {}=\"{}\"", model::kSixDofNames[k], dof[k]);
+  return rows + fmt::format("/>\n    <sixdof n=\"{}\" {}=\"{}{}\"/>\n", n + 1,
+                            model::kSixDofNames[3 + axis.along()], work ? "-" : "", axis.name);
 }
 
 std::string branch(const MachinePlan& plan, bool work) {
@@ -195,7 +195,7 @@ std::string arm_statics(const MachinePlan& plan) {
     const bool last = i + 1 == plan.arm.size(), parallel = row.parallel() && !last;
     const auto length = [&](const std::string& name, double value) {
       text += fmt::format("      <{0} value=\"{1}\" nominal=\"{1}\" unit=\"mm\"/>\n", name + j,
-                          number_text(value));
+                          text::number_text(value));
     };
     text += error_static(plan, "th" + j, "deg", (row.prismatic ? "turn of joint " : "zero of joint ") + j);
     if (!parallel) length("d", row.d);
@@ -210,7 +210,7 @@ std::string arm_statics(const MachinePlan& plan) {
 }
 
 std::string plus(double value, const std::string& name) {
-  return value == 0 ? name : number_text(value) + "+" + name;
+  return value == 0 ? name : text::number_text(value) + "+" + name;
 }
 
 std::string arm_rows(const MachinePlan& plan) {
@@ -221,10 +221,10 @@ std::string arm_rows(const MachinePlan& plan) {
     const std::string j = std::to_string(i + 1), axis = plan.axes[i].name;
     const bool last = i + 1 == plan.arm.size(), parallel = row.parallel() && !last;
     const std::string theta = plus(row.theta, (row.prismatic ? "" : axis + "+") + "th" + j);
-    const std::string d = (row.prismatic ? axis + "+" : "") + (parallel ? number_text(row.d) : "d" + j);
+    const std::string d = (row.prismatic ? axis + "+" : "") + (parallel ? text::number_text(row.d) : "d" + j);
     text += fmt::format("    <DH n=\"{}\" theta=\"{}\" d=\"{}\" a=\"{}\" alpha=\"{}\"/>\n", n++, theta, d,
-                        last ? number_text(row.a) : "a" + j,
-                        last ? number_text(row.alpha) : plus(row.alpha, "al" + j));
+                        last ? text::number_text(row.a) : "a" + j,
+                        last ? text::number_text(row.alpha) : plus(row.alpha, "al" + j));
     if (parallel) text += fmt::format("    <sixdof n=\"{}\" rY=\"{}\"/>\n", n++, plus(row.beta, "be" + j));
   }
   return text + fmt::format("    <sixdof n=\"{}\" X=\"TPX\" Y=\"TPY\" Z=\"TPZ\"/>\n  </transforms>\n", n);
@@ -236,12 +236,12 @@ std::string axes_text(const MachinePlan& plan) {
       "deg, and that per\n"
       "         second. Set them to what your machine can take. -->\n    <machineaxes>\n";
   for (const PlannedAxis& axis : plan.axes)
-    text +=
-        fmt::format("      <{} rotary=\"{}\"{} min=\"{}\" max=\"{}\" {}/>\n", axis.name, axis.rotary(),
-                    axis.rollover ? " rollover=\"true\"" : "", number_text(axis.min), number_text(axis.max),
-                    !axis.rotary()     ? kLinearLimits
-                    : plan.arm.empty() ? kRotaryLimits
-                                       : kJointLimits);
+    text += fmt::format("      <{} rotary=\"{}\"{} min=\"{}\" max=\"{}\" {}/>\n", axis.name, axis.rotary(),
+                        axis.rollover ? " rollover=\"true\"" : "", text::number_text(axis.min),
+                        text::number_text(axis.max),
+                        !axis.rotary()     ? kLinearLimits
+                        : plan.arm.empty() ? kRotaryLimits
+                                           : kJointLimits);
   return text + "    </machineaxes>\n";
 }
 
@@ -265,7 +265,7 @@ std::string tables_text(const MachinePlan& plan) {
     for (const double loc : round_stations(axis.min, axis.max, axis.rotary()))
       text +=
           fmt::format("        <station loc=\"{}\" X=\"0\" Y=\"0\" Z=\"0\" rX=\"0\" rY=\"0\" rZ=\"0\"/>\n",
-                      number_text(loc));
+                      text::number_text(loc));
     text += "      </table>\n";
   }
   return text + "    </comptables>\n";
@@ -303,7 +303,7 @@ std::string base_attributes(const MachinePlan& plan) {
   constexpr std::array kNames = {"X", "Y", "Z", "rX", "rY", "rZ"};
   std::string text;
   for (std::size_t k = 0; k < kNames.size(); ++k)
-    text += fmt::format(" {}=\"{}\"", kNames[k], number_text(plan.base[k]));
+    text += fmt::format(" {}=\"{}\"", kNames[k], text::number_text(plan.base[k]));
   return text;
 }
 
@@ -318,7 +318,8 @@ std::string drawing(const MachinePlan& plan) {
 std::string machine_file(const MachinePlan& plan) {
   const bool robot = !plan.arm.empty();
   std::string text = head(plan);
-  text += fmt::format("<machine name=\"{}\">\n  <variables>\n    <static>\n", escape_attribute(plan.name));
+  text +=
+      fmt::format("<machine name=\"{}\">\n  <variables>\n    <static>\n", text::escape_attribute(plan.name));
   text += robot ? arm_statics(plan) : slide_statics(plan) + turning_statics(plan);
   text += tool_statics(plan);
   text +=
@@ -334,4 +335,4 @@ std::string machine_file(const MachinePlan& plan) {
   return text + "</machine>\n";
 }
 
-}  // namespace vernier
+}  // namespace vernier::create

@@ -4,7 +4,7 @@
 
 #include "tools/create/machine_plan.h"
 
-namespace vernier {
+namespace vernier::create {
 
 /// The machine file of a plan, with remarks that say what each part is for: squareness with X as datum (ISO
 /// 230-1 names), location errors of turning axes (ISO 230-7), a table of six errors an axis, all nominal 0; a
@@ -14,4 +14,4 @@ std::string machine_file(const MachinePlan& plan);
 /// Who carries whom, in one line a side: "bed > Y (beam) > X (carriage) > Z (ram) > tool". tool.
 std::string drawing(const MachinePlan& plan);
 
-}  // namespace vernier
+}  // namespace vernier::create

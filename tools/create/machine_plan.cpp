@@ -9,7 +9,7 @@
 #include "tools/text/numbers.h"
 #include "tools/text/words.h"
 
-namespace vernier {
+namespace vernier::create {
 namespace {
 
 /// No direction given and none in the name; an axis of a robot needs none.
@@ -36,27 +36,29 @@ char direction_in(const std::string& name) {
 }
 
 double end_of(const std::string& text, const std::string& words) {
-  const auto number = parse_number(text);
+  const auto number = text::parse_number(text);
   if (number) return *number;
   const bool comma = text.find(',') != std::string::npos;
-  throw InputError("--axis " + words + ": \"" + text + "\": not a number" +
-                   (comma ? "; a decimal sign is a point" : ""));
+  throw text::InputError("--axis " + words + ": \"" + text + "\": not a number" +
+                         (comma ? "; a decimal sign is a point" : ""));
 }
 
 void check_name(const std::string& name) {
   static const std::set<std::string> kMeasured = {"x",  "y",  "z",  "rx", "ry", "rz", "length", "cx",  "cy",
                                                   "cz", "px", "py", "pz", "d",  "u",  "run",    "role"};
-  if (!is_name(name))
-    throw InputError("\"" + name + "\": a name is letters, digits and _, and begins with a letter or _");
-  if (is_reserved_word(name) || kMeasured.contains(name))
-    throw InputError("\"" + name +
-                     "\": the formats use this name for something else; axes are X, Y, B, J1 …");
+  if (!text::is_name(name))
+    throw text::InputError("\"" + name +
+                           "\": a name is letters, digits and _, and begins with a letter or _");
+  if (model::is_reserved_word(name) || kMeasured.contains(name))
+    throw text::InputError("\"" + name +
+                           "\": the formats use this name for something else; axes are X, Y, B, J1 …");
 }
 
 void check_names(const std::vector<PlannedAxis>& axes) {
   std::set<std::string> seen;
   for (const PlannedAxis& axis : axes)
-    if (!seen.insert(axis.name).second) throw InputError("\"" + axis.name + "\": this axis is given twice");
+    if (!seen.insert(axis.name).second)
+      throw text::InputError("\"" + axis.name + "\": this axis is given twice");
 }
 
 const MachineType& type_of(const std::string& name) {
@@ -66,10 +68,11 @@ const MachineType& type_of(const std::string& name) {
     known += (known.empty() ? "" : " ") + std::string(type.name);
   }
   if (name == "delta" || name == "hexapod" || name == "parallel")
-    throw InputError("\"" + name +
-                     "\": the chain of a machine file is one arm from bed to tool; a parallel machine closes "
-                     "several, and such a chain cannot be written");
-  throw InputError("\"" + name + "\": unknown type of machine; known are " + known);
+    throw text::InputError(
+        "\"" + name +
+        "\": the chain of a machine file is one arm from bed to tool; a parallel machine closes "
+        "several, and such a chain cannot be written");
+  throw text::InputError("\"" + name + "\": unknown type of machine; known are " + known);
 }
 
 std::vector<std::size_t> by_names(const std::vector<PlannedAxis>& axes,
@@ -79,7 +82,7 @@ std::vector<std::size_t> by_names(const std::vector<PlannedAxis>& axes,
     if (name.empty()) continue;
     const auto found =
         std::find_if(axes.begin(), axes.end(), [&](const auto& axis) { return axis.name == name; });
-    if (found == axes.end()) throw InputError("\"" + name + "\": no --axis of this name");
+    if (found == axes.end()) throw text::InputError("\"" + name + "\": no --axis of this name");
     side.push_back(static_cast<std::size_t>(found - axes.begin()));
   }
   return side;
@@ -113,17 +116,18 @@ bool holds(const std::vector<std::size_t>& side, std::size_t axis) {
 void place_all(MachinePlan& plan, bool tool_given, bool work_given) {
   for (std::size_t i = 0; i < plan.axes.size(); ++i) {
     const bool tool = holds(plan.tool_side, i), work = holds(plan.work_side, i);
-    if (tool && work) throw InputError("\"" + plan.axes[i].name + "\": this axis is on both sides");
+    if (tool && work) throw text::InputError("\"" + plan.axes[i].name + "\": this axis is on both sides");
     if (tool || work) continue;
     if (tool_given && work_given)
-      throw InputError("\"" + plan.axes[i].name + "\": neither --tool-side nor --work-side has this axis");
+      throw text::InputError("\"" + plan.axes[i].name +
+                             "\": neither --tool-side nor --work-side has this axis");
     // What one side was not given belongs to the other; a turning axis that a type does not know is a table.
     (work_given ? plan.tool_side : plan.work_side).push_back(i);
   }
   for (const auto* side : {&plan.tool_side, &plan.work_side})
     for (std::size_t k = 0; k < side->size(); ++k)
       if (std::count(side->begin(), side->end(), (*side)[k]) > 1)
-        throw InputError("\"" + plan.axes[(*side)[k]].name + "\": this axis stands twice on its side");
+        throw text::InputError("\"" + plan.axes[(*side)[k]].name + "\": this axis stands twice on its side");
 }
 
 }  // namespace
@@ -168,16 +172,16 @@ const std::vector<MachineType>& machine_types() {
 }
 
 PlannedAxis parse_planned_axis(const std::string& words) {
-  const std::vector<std::string> parts = parts_of(words, ':');
+  const std::vector<std::string> parts = text::parts_of(words, ':');
   if (parts.size() < 3 || parts[0].empty())
-    throw InputError("--axis " + words +
-                     ": an axis is NAME:MIN:MAX, in mm or deg, such as X:0:600 or B:-90:90");
+    throw text::InputError("--axis " + words +
+                           ": an axis is NAME:MIN:MAX, in mm or deg, such as X:0:600 or B:-90:90");
   PlannedAxis axis;
   axis.name = parts[0];
   check_name(axis.name);
   axis.min = end_of(parts[1], words);
   axis.max = end_of(parts[2], words);
-  if (axis.min >= axis.max) throw InputError("--axis " + words + ": MAX must be greater than MIN");
+  if (axis.min >= axis.max) throw text::InputError("--axis " + words + ": MAX must be greater than MIN");
   axis.direction = direction_in(axis.name);
   for (std::size_t i = 3; i < parts.size(); ++i) {
     if (parts[i] == "wrap")
@@ -185,12 +189,13 @@ PlannedAxis parse_planned_axis(const std::string& words) {
     else if (parts[i].size() == 1 && std::string("XYZABC").find(parts[i]) != std::string::npos)
       axis.direction = parts[i].front();
     else
-      throw InputError("--axis " + words + ": \"" + parts[i] +
-                       "\": is neither a direction (X Y Z along it, A B C about X Y Z) nor wrap");
+      throw text::InputError("--axis " + words + ": \"" + parts[i] +
+                             "\": is neither a direction (X Y Z along it, A B C about X Y Z) nor wrap");
   }
-  if (axis.rollover && !axis.rotary()) throw InputError("--axis " + words + ": only a turning axis wraps");
+  if (axis.rollover && !axis.rotary())
+    throw text::InputError("--axis " + words + ": only a turning axis wraps");
   if (axis.rollover && std::abs(axis.max - axis.min - 360) > 1e-9)
-    throw InputError("--axis " + words + ": an axis that wraps has a range of one turn, 360 deg");
+    throw text::InputError("--axis " + words + ": an axis that wraps has a range of one turn, 360 deg");
   return axis;
 }
 
@@ -198,12 +203,13 @@ MachinePlan plan_machine(const std::string& type_name, std::vector<PlannedAxis> 
                          const std::optional<std::vector<std::string>>& tool_order,
                          const std::optional<std::vector<std::string>>& work_order) {
   const MachineType& type = type_of(type_name);
-  if (axes.empty()) throw InputError("no axis: give --axis NAME:MIN:MAX for each, such as --axis X:0:600");
+  if (axes.empty())
+    throw text::InputError("no axis: give --axis NAME:MIN:MAX for each, such as --axis X:0:600");
   check_names(axes);
   for (const PlannedAxis& axis : axes)
     if (axis.direction == kNoDirection)
-      throw InputError("\"" + axis.name + "\": which way does this axis go? Add a direction, such as " +
-                       axis.name + ":MIN:MAX:X (X Y Z along it, A B C about X Y Z)");
+      throw text::InputError("\"" + axis.name + "\": which way does this axis go? Add a direction, such as " +
+                             axis.name + ":MIN:MAX:X (X Y Z along it, A B C about X Y Z)");
   MachinePlan plan;
   plan.type = plan.name = type.name;
   plan.axes = std::move(axes);
@@ -227,7 +233,7 @@ MachinePlan plan_robot(std::vector<PlannedAxis> axes, const std::vector<DhRow>& 
     }
   check_names(axes);
   if (axes.size() != rows.size())
-    throw InputError(
+    throw text::InputError(
         std::to_string(axes.size()) + " axes, but " + std::to_string(rows.size()) +
         " rows of the arm: give a row of Denavit and Hartenberg for each joint (--dh FILE, or --joint "
         "theta,d,a,alpha for each)");
@@ -262,4 +268,4 @@ std::vector<double> round_stations(double min, double max, bool rotary) {
   return stations;
 }
 
-}  // namespace vernier
+}  // namespace vernier::create

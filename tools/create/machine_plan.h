@@ -7,7 +7,7 @@
 
 #include "tools/create/dh_table.h"
 
-namespace vernier {
+namespace vernier::create {
 
 /// An axis as its owner knows it: name, travel, and the direction that it moves along (X Y Z) or turns about
 /// (A B C).
@@ -64,4 +64,4 @@ MachinePlan plan_robot(std::vector<PlannedAxis> axes, const std::vector<DhRow>& 
 /// Positions that divide a range at round numbers into four to seven parts: stations of its table. tool.
 std::vector<double> round_stations(double min, double max, bool rotary);
 
-}  // namespace vernier
+}  // namespace vernier::create

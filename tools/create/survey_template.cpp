@@ -12,7 +12,7 @@
 #include "tools/text/numbers.h"
 #include "tools/text/words.h"
 
-namespace vernier {
+namespace vernier::create {
 namespace {
 
 struct ReadingColumns {
@@ -51,9 +51,9 @@ ReadingColumns columns_of(Reading reading) {
 /// The rows: positions of all axes, the sense of the axis that moves alone, run and role.
 class Rows {
  public:
-  Rows(const Machine& machine, const std::string& empty) : machine_(machine), empty_(empty) {
+  Rows(const model::Machine& machine, const std::string& empty) : machine_(machine), empty_(empty) {
     for (std::size_t a = 0; a < machine.axes.size(); ++a) {
-      range_.push_back(work_range(machine, a).value_or(std::array{0.0, 0.0}));
+      range_.push_back(model::work_range(machine, a).value_or(std::array{0.0, 0.0}));
       middle_.push_back(std::round((range_[a][0] + range_[a][1]) / 2 * 1000) / 1000);
     }
   }
@@ -66,14 +66,14 @@ class Rows {
 
  private:
   void row(const std::vector<double>& at, std::size_t moving, int sense, const std::string& run, bool check) {
-    for (const double position : at) text_ += number_text(position) + ",";
+    for (const double position : at) text_ += text::number_text(position) + ",";
     for (std::size_t a = 0; a < at.size(); ++a) text_ += (a == moving ? std::to_string(sense) : "0") + ",";
     text_ += empty_ + run + "," + (check ? "check" : "fit") + "\n";
   }
 
   /// One axis over its travel and back, the others in the middle.
   void alone(std::size_t axis) {
-    const Axis& moving = machine_.axes[axis];
+    const model::Axis& moving = machine_.axes[axis];
     std::vector<double> stations = round_stations(range_[axis][0], range_[axis][1], moving.rotary);
     if (moving.rollover) stations.pop_back();  // one turn further on: the first again
     for (const int sense : {1, -1}) {
@@ -89,7 +89,7 @@ class Rows {
   /// Poses all over the travel: what angles do at their levers shows only there.
   void spread() {
     const std::size_t count = 20 + 12 * machine_.axes.size();
-    const WorkPoses poses = work_poses(machine_);
+    const model::WorkPoses poses = model::work_poses(machine_);
     for (std::size_t i = 0; i < count; ++i) {
       std::vector<double> at;
       for (std::size_t a = 0; a < machine_.axes.size(); ++a)
@@ -100,16 +100,16 @@ class Rows {
     }
   }
 
-  const Machine& machine_;
+  const model::Machine& machine_;
   const std::string& empty_;
   std::vector<std::array<double, 2>> range_;
   std::vector<double> middle_;
   std::string text_;
 };
 
-std::string remarks(const Machine& machine, Reading reading) {
+std::string remarks(const model::Machine& machine, Reading reading) {
   std::string axes;
-  for (const Axis& axis : machine.axes) axes += axis.name + " ";
+  for (const model::Axis& axis : machine.axes) axes += axis.name + " ";
   axes.resize(std::max<std::size_t>(14, axes.size()), ' ');
   return "# Survey of the machine \"" + machine.name +
          "\". Fill in the empty cells; a row that you could not measure may stay empty or go.\n"
@@ -143,30 +143,30 @@ Reading reading_of(const std::string& name) {
   if (name == "length") return Reading::kLength;
   if (name == "touch") return Reading::kTouch;
   if (name == "pose") return Reading::kPose;
-  throw InputError("\"" + name + "\": a reading is point, length, touch or pose");
+  throw text::InputError("\"" + name + "\": a reading is point, length, touch or pose");
 }
 
-std::string survey_template(const Machine& machine, Reading reading) {
+std::string survey_template(const model::Machine& machine, Reading reading) {
   const std::string header = columns_of(reading).header;
   std::string text = remarks(machine, reading);
-  for (const Axis& axis : machine.axes) text += axis.name + (axis.rotary ? "[deg]," : "[mm],");
-  for (const Axis& axis : machine.axes) text += "dir" + axis.name + ",";
+  for (const model::Axis& axis : machine.axes) text += axis.name + (axis.rotary ? "[deg]," : "[mm],");
+  for (const model::Axis& axis : machine.axes) text += "dir" + axis.name + ",";
   text += header + ",run,role\n";
   const std::string empty(static_cast<std::size_t>(std::count(header.begin(), header.end(), ',')) + 1, ',');
   return text + Rows(machine, empty).text();
 }
 
 std::string survey_workbook(const std::string& survey) {
-  SheetToWrite rows{"Survey", {}}, remarks{"Read me", {{"How to fill it in"}}};
-  for (const std::string& line : parts_of(survey, '\n')) {
+  sheet::SheetToWrite rows{"Survey", {}}, remarks{"Read me", {{"How to fill it in"}}};
+  for (const std::string& line : text::parts_of(survey, '\n')) {
     // How a CSV is written concerns nobody here.
     if (line.starts_with("# Decimal point, comma")) continue;
     if (line.starts_with("#"))
       remarks.rows.push_back({line.substr(line.starts_with("# ") ? 2 : 1)});
     else if (!line.empty())
-      rows.rows.push_back(parts_of(line, ','));
+      rows.rows.push_back(text::parts_of(line, ','));
   }
-  return workbook_of({rows, remarks});
+  return sheet::workbook_of({rows, remarks});
 }
 
-}  // namespace vernier
+}  // namespace vernier::create

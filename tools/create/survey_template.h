@@ -4,7 +4,7 @@
 
 #include "tools/model/machine.h"
 
-namespace vernier {
+namespace vernier::create {
 
 /// What a reading of the survey is.
 enum class Reading {
@@ -20,9 +20,9 @@ Reading reading_of(const std::string& name);
 /// A measurement file to be filled in: remarks that explain each column, the header for this machine, and
 /// positions that see its errors (every axis alone, forth and back; then poses all over the travel, every
 /// fourth one a check row) with their measured cells empty. tool.
-std::string survey_template(const Machine& machine, Reading reading);
+std::string survey_template(const model::Machine& machine, Reading reading);
 
 /// Such a survey as a workbook (.xlsx): its rows on the first sheet, the remarks on the second. tool.
 std::string survey_workbook(const std::string& survey);
 
-}  // namespace vernier
+}  // namespace vernier::create

@@ -18,7 +18,7 @@
 #include "tools/text/words.h"
 #include "tools/text/xml_text.h"
 
-namespace vernier {
+namespace vernier::create {
 namespace {
 
 using Eigen::Isometry3d;
@@ -43,10 +43,11 @@ class Reader {
   Reader(const std::string& text, const std::string& file) : text_(text), file_(file) {
     const pugi::xml_parse_result parsed = document_.load_buffer(text.data(), text.size());
     if (!parsed)
-      throw InputError({file, line_of(text, static_cast<std::size_t>(parsed.offset))}, "",
-                       parsed.description());
+      throw text::InputError({file, text::line_of(text, static_cast<std::size_t>(parsed.offset))}, "",
+                             parsed.description());
     robot_ = document_.child("robot");
-    if (!robot_) throw InputError({file, 1}, document_.first_child().name(), "no URDF: its root is <robot>");
+    if (!robot_)
+      throw text::InputError({file, 1}, document_.first_child().name(), "no URDF: its root is <robot>");
     for (const pugi::xml_node& node : robot_.children())
       if (std::string_view(node.name()).starts_with("xacro:")) fail(node, node.name(), kExpand);
   }
@@ -70,11 +71,12 @@ class Reader {
   static constexpr const char* kExpand = "this is xacro: expand it first (xacro FILE > robot.urdf)";
 
   [[noreturn]] void fail(const pugi::xml_node& node, const std::string& word, const std::string& why) const {
-    throw InputError({file_, line_of(text_, static_cast<std::size_t>(node.offset_debug()))}, word, why);
+    throw text::InputError({file_, text::line_of(text_, static_cast<std::size_t>(node.offset_debug()))}, word,
+                           why);
   }
 
   double number(const pugi::xml_node& node, const std::string& word) const {
-    const auto value = parse_number(word);
+    const auto value = text::parse_number(word);
     if (!value) fail(node, word, "not a number");
     return *value;
   }
@@ -84,7 +86,7 @@ class Reader {
     if (!given) return absent;
     if (std::string_view(given.as_string()).find("${") != std::string_view::npos)
       fail(node, given.as_string(), kExpand);
-    const std::vector<std::string> words = words_in(given.as_string(), " \t\r\n");
+    const std::vector<std::string> words = text::words_in(given.as_string(), " \t\r\n");
     if (words.size() != 3) fail(node, given.as_string(), std::string(attribute) + " is three numbers");
     return {number(node, words[0]), number(node, words[1]), number(node, words[2])};
   }
@@ -97,7 +99,7 @@ class Reader {
 
   Joint joint(const pugi::xml_node& node) const {
     Joint one;
-    one.line = line_of(text_, static_cast<std::size_t>(node.offset_debug()));
+    one.line = text::line_of(text_, static_cast<std::size_t>(node.offset_debug()));
     one.name = node.attribute("name").as_string();
     one.type = node.attribute("type").as_string();
     one.parent = node.child("parent").attribute("link").as_string();
@@ -131,9 +133,9 @@ class Tree {
       : joints_(std::move(joints)), links_(std::move(links)), file_(file) {
     for (const Joint& one : joints_) {
       for (const std::string* end : {&one.parent, &one.child})
-        if (!links_.contains(*end)) throw InputError({file, one.line}, *end, "no link has this name");
+        if (!links_.contains(*end)) throw text::InputError({file, one.line}, *end, "no link has this name");
       if (!above_.emplace(one.child, &one).second)
-        throw InputError({file, one.line}, one.child, "this link hangs on two joints: no arm");
+        throw text::InputError({file, one.line}, one.child, "this link hangs on two joints: no arm");
     }
     for (const std::string& link : links_) way_to(link);  // refuses a loop
   }
@@ -144,7 +146,7 @@ class Tree {
     for (std::string at = link; above_.contains(at); at = way.back().parent) {
       way.push_back(*above_.at(at));
       if (way.size() > joints_.size())
-        throw InputError({file_, way.back().line}, link, "the joints close a loop: no arm");
+        throw text::InputError({file_, way.back().line}, link, "the joints close a loop: no arm");
     }
     std::reverse(way.begin(), way.end());
     return way;
@@ -163,15 +165,15 @@ class Tree {
       most = moving;
       ends.push_back(link);
     }
-    if (ends.empty()) throw InputError({file_, 1}, "robot", "no joint of it moves");
+    if (ends.empty()) throw text::InputError({file_, 1}, "robot", "no joint of it moves");
     if (ends.size() > 1)
-      throw InputError(
-          fmt::format("{}: several links end the arm, say which with --tip: {}", file_, joined(ends, ", ")));
+      throw text::InputError(fmt::format("{}: several links end the arm, say which with --tip: {}", file_,
+                                         text::joined(ends, ", ")));
     return ends.front();
   }
 
   void require_link(const std::string& name) const {
-    if (!links_.contains(name)) throw InputError({file_, 1}, name, "no link has this name");
+    if (!links_.contains(name)) throw text::InputError({file_, 1}, name, "no link has this name");
   }
 
  private:
@@ -288,7 +290,7 @@ std::string axis_name(const std::string& joint) {
   for (char& c : name)
     if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '_';
   const bool is_name = !name.empty() && std::isdigit(static_cast<unsigned char>(name.front())) == 0;
-  return !is_name || is_reserved_word(name) || is_static_of_arm(name) ? "J" + name : name;
+  return !is_name || model::is_reserved_word(name) || is_static_of_arm(name) ? "J" + name : name;
 }
 
 PlannedAxis axis_of(const Joint& joint, const std::string& file) {
@@ -297,7 +299,8 @@ PlannedAxis axis_of(const Joint& joint, const std::string& file) {
                    joint.type == "continuous", {}};
   if (axis.rollover) return axis;
   if (!joint.lower || !joint.upper || !(*joint.lower < *joint.upper))
-    throw InputError({file, joint.line}, joint.name, "a joint of this type has a lower and an upper limit");
+    throw text::InputError({file, joint.line}, joint.name,
+                           "a joint of this type has a lower and an upper limit");
   axis.min = clean(std::round(*joint.lower * unit * 1e6) / 1e6);
   axis.max = clean(std::round(*joint.upper * unit * 1e6) / 1e6);
   return axis;
@@ -306,10 +309,10 @@ PlannedAxis axis_of(const Joint& joint, const std::string& file) {
 void require_arm(const std::vector<Joint>& way, const std::string& file) {
   for (const Joint& one : way) {
     if (one.type != "fixed" && one.type != "revolute" && one.type != "continuous" && one.type != "prismatic")
-      throw InputError({file, one.line}, one.type,
-                       "a joint of an arm is revolute, continuous, prismatic or fixed");
+      throw text::InputError({file, one.line}, one.type,
+                             "a joint of an arm is revolute, continuous, prismatic or fixed");
     if (one.mimic)
-      throw InputError({file, one.line}, one.name, "it follows another joint: such a chain is no arm");
+      throw text::InputError({file, one.line}, one.name, "it follows another joint: such a chain is no arm");
   }
 }
 
@@ -346,7 +349,7 @@ UrdfArm parse_urdf(const std::string& text, const std::string& file, const std::
     lines.push_back({at.translation(), at.linear() * joint.axis});
     arm.rows.emplace_back().prismatic = joint.slides();
   }
-  if (lines.empty()) throw InputError({file, 1}, arm.tip, "no joint before this link moves");
+  if (lines.empty()) throw text::InputError({file, 1}, arm.tip, "no joint before this link moves");
   Isometry3d frame = first_frame(lines.front());
   arm.base = base_of(frame);
   for (std::size_t i = 0; i < lines.size(); ++i) {
@@ -361,4 +364,4 @@ UrdfArm parse_urdf(const std::string& text, const std::string& file, const std::
   return arm;
 }
 
-}  // namespace vernier
+}  // namespace vernier::create

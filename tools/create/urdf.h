@@ -7,7 +7,7 @@
 
 #include "tools/create/machine_plan.h"
 
-namespace vernier {
+namespace vernier::create {
 
 /// An arm as a URDF describes it (Unified Robot Description Format, wiki.ros.org/urdf/XML), from its root
 /// link to one of the links at its end, in rows of Denavit and Hartenberg. Where the axes of two joints are
@@ -30,4 +30,4 @@ struct UrdfArm {
 /// tool.
 UrdfArm parse_urdf(const std::string& text, const std::string& file, const std::string& tip);
 
-}  // namespace vernier
+}  // namespace vernier::create

@@ -9,7 +9,7 @@
 #include "tools/derive/symbol_book.h"
 #include "tools/derive/tidy.h"
 
-namespace vernier {
+namespace vernier::derive {
 namespace {
 
 using GiNaC::ex;
@@ -24,22 +24,23 @@ constexpr std::array<LinkStep, 6> kSixDofSteps = {
     {{0, false, 0}, {1, false, 1}, {2, false, 2}, {3, true, 0}, {4, true, 1}, {5, true, 2}}};
 constexpr std::array<LinkStep, 4> kDhSteps = {{{1, false, 2}, {0, true, 2}, {2, false, 0}, {3, true, 0}}};
 
-ex motion_value(const Machine& machine, const Transform& transform, const LinkStep& step, SymbolBook& book) {
+ex motion_value(const model::Machine& machine, const model::Transform& transform, const LinkStep& step,
+                SymbolBook& book) {
   try {
     const ex value = book.value(*transform.dof[step.dof]);
     return step.rotation ? expand_inside(to_rad(value)) : expand_inside(value);
   } catch (const std::exception& error) {  // a pole of GiNaC, say
-    throw InputError({machine.file, transform.line}, transform.text[step.dof],
-                     std::string("cannot be derived: ") + error.what());
+    throw text::InputError({machine.file, transform.line}, transform.text[step.dof],
+                           std::string("cannot be derived: ") + error.what());
   }
 }
 
-void append(const Machine& machine, bool workpiece, SymbolBook& book,
+void append(const model::Machine& machine, bool workpiece, SymbolBook& book,
             std::vector<ElementaryMotion>& motions) {
-  const std::vector<Transform>& branch = workpiece ? machine.workpiece : machine.tool;
+  const std::vector<model::Transform>& branch = workpiece ? machine.workpiece : machine.tool;
   for (std::size_t link = 0; link < branch.size(); ++link) {
-    const Transform& transform = branch[link];
-    const bool dh = transform.kind == TransformKind::kDh;
+    const model::Transform& transform = branch[link];
+    const bool dh = transform.kind == model::TransformKind::kDh;
     const LinkStep* const first = dh ? kDhSteps.data() : kSixDofSteps.data();
     for (const LinkStep* step = first; step != first + transform.dof_count(); ++step) {
       const ex value = motion_value(machine, transform, *step, book);
@@ -86,7 +87,7 @@ SymbolicVector RotationProduct::operator*(const SymbolicVector& v) const {
   return result;
 }
 
-std::vector<ElementaryMotion> elementary_motions(const Machine& machine, SymbolBook& book) {
+std::vector<ElementaryMotion> elementary_motions(const model::Machine& machine, SymbolBook& book) {
   std::vector<ElementaryMotion> motions;
   append(machine, true, book, motions);
   std::reverse(motions.begin(), motions.end());
@@ -95,4 +96,4 @@ std::vector<ElementaryMotion> elementary_motions(const Machine& machine, SymbolB
   return motions;
 }
 
-}  // namespace vernier
+}  // namespace vernier::derive

@@ -7,7 +7,7 @@
 
 #include "tools/derive/error_equation.h"
 
-namespace vernier {
+namespace vernier::derive {
 
 class SymbolBook;
 
@@ -40,6 +40,6 @@ SymbolicVector unit_vector(int axis);
 
 /// The chain as elementary motions from the workpiece to the tool: the workpiece branch backwards with signs
 /// changed, then the tool branch. Throws InputError naming the expression that cannot be expressed. tool.
-std::vector<ElementaryMotion> elementary_motions(const Machine& machine, SymbolBook& book);
+std::vector<ElementaryMotion> elementary_motions(const model::Machine& machine, SymbolBook& book);
 
-}  // namespace vernier
+}  // namespace vernier::derive

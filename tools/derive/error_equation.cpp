@@ -8,7 +8,7 @@
 #include "tools/derive/symbol_book.h"
 #include "tools/derive/tidy.h"
 
-namespace vernier {
+namespace vernier::derive {
 namespace {
 
 using GiNaC::ex;
@@ -72,37 +72,37 @@ class NominalChain {
 };
 
 /// Slope of a motion by an error, at errors 0. Throws where there is none.
-ex nominal_slope(const Machine& machine, const ElementaryMotion& motion, const ErrorParameter& parameter,
-                 const SymbolBook& book, const GiNaC::exmap& no_errors) {
-  const Transform& transform = transform_of(machine, motion);
+ex nominal_slope(const model::Machine& machine, const ElementaryMotion& motion,
+                 const ErrorParameter& parameter, const SymbolBook& book, const GiNaC::exmap& no_errors) {
+  const model::Transform& transform = transform_of(machine, motion);
   ex slope;
   try {
     slope = motion.value.diff(parameter.symbol).subs(no_errors, GiNaC::subs_options::no_pattern);
   } catch (const std::exception&) {
-    throw InputError({machine.file, transform.line}, transform.text[motion.dof],
-                     "has no first order in " + parameter.name);
+    throw text::InputError({machine.file, transform.line}, transform.text[motion.dof],
+                           "has no first order in " + parameter.name);
   }
   const std::string word = book.rough_word(slope);
   if (!word.empty())
-    throw InputError({machine.file, transform.line}, transform.text[motion.dof],
-                     parameter.name + " acts inside " + word + ", which has no derivative");
+    throw text::InputError({machine.file, transform.line}, transform.text[motion.dof],
+                           parameter.name + " acts inside " + word + ", which has no derivative");
   return slope;
 }
 
 /// The motions at errors 0; long lengths become abbreviations.
-std::vector<ElementaryMotion> nominal_motions(const Machine& machine,
+std::vector<ElementaryMotion> nominal_motions(const model::Machine& machine,
                                               const std::vector<ElementaryMotion>& motions,
                                               const GiNaC::exmap& no_errors, SymbolBook& book,
                                               std::vector<Abbreviation>& abbreviations) {
   constexpr std::size_t kLongSum = 3;
   std::vector<ElementaryMotion> nominal = motions;
   for (ElementaryMotion& m : nominal) {
-    const Transform& transform = transform_of(machine, m);
+    const model::Transform& transform = transform_of(machine, m);
     try {
       m.value = expand_inside(m.value.subs(no_errors, GiNaC::subs_options::no_pattern));
     } catch (const std::exception& error) {
-      throw InputError({machine.file, transform.line}, transform.text[m.dof],
-                       std::string("has no value in the nominal chain: ") + error.what());
+      throw text::InputError({machine.file, transform.line}, transform.text[m.dof],
+                             std::string("has no value in the nominal chain: ") + error.what());
     }
     if (m.rotation || term_count(m.value) < kLongSum) continue;
     const std::string name =
@@ -119,11 +119,11 @@ void add_to(Sensitivity& sum, const ex& slope, const Sensitivity& velocity) {
 
 }  // namespace
 
-const Transform& transform_of(const Machine& machine, const ElementaryMotion& motion) {
+const model::Transform& transform_of(const model::Machine& machine, const ElementaryMotion& motion) {
   return (motion.workpiece ? machine.workpiece : machine.tool)[motion.link];
 }
 
-ErrorEquation derive(const Machine& machine, const ErrorSizes& sizes) {
+ErrorEquation derive(const model::Machine& machine, const ErrorSizes& sizes) {
   ErrorEquation equation;
   equation.machine = machine;
   SymbolBook book(equation.machine);
@@ -173,7 +173,7 @@ std::array<ex, 3> tool_axis_sensitivity(const ErrorEquation& equation, std::size
   return change;
 }
 
-}  // namespace vernier
+}  // namespace vernier::derive
 
 #if defined(__SANITIZE_ADDRESS__)
 /// CLN, the number library below GiNaC, keeps 26 bytes of its own start-up to the end of the program (seen

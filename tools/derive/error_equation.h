@@ -8,7 +8,7 @@
 
 #include "tools/model/machine.h"
 
-namespace vernier {
+namespace vernier::derive {
 
 /// One error of the machine: a table value (at the pose), the deviation of a static from its nominal, or a
 /// scale factor. In the equation it stands for a number in `unit`.
@@ -16,7 +16,7 @@ struct ErrorParameter {
   GiNaC::realsymbol symbol;
   std::string name;    // ISO 230 for table values (EXX), the static's name, d_NAME where its nominal is not 0
   std::string source;  // as the machine file calls it: lXx, AL, scalefactor of X
-  Symbol key;          // kTableValue, kStatic, or kAxis for a scale factor
+  model::Symbol key;   // kTableValue, kStatic, or kAxis for a scale factor
   std::string unit;    // mm, rad, or the static's own unit
   double file_units = 1;   // machine-file units per `unit`: 180/pi for what the file holds in deg
   double magnitude = 0;    // largest absolute value assumed, in `unit`
@@ -27,7 +27,7 @@ struct ErrorParameter {
 struct NominalSymbol {
   GiNaC::realsymbol symbol;
   std::string name;
-  Symbol key;
+  model::Symbol key;
   std::string unit;
   double file_units = 1;  // machine-file units per `unit`: 180/pi for a rotary axis
 };
@@ -35,7 +35,7 @@ struct NominalSymbol {
 /// A subexpression without a derivative that stands as one symbol: a comparison, sign, abs, min, max, lag.
 struct OpaqueSymbol {
   GiNaC::realsymbol symbol;
-  ExprPtr expr;  // at nominal values
+  model::ExprPtr expr;  // at nominal values
   std::vector<GiNaC::ex> args;
 };
 
@@ -60,11 +60,11 @@ struct ElementaryMotion {
 };
 
 /// The transform that a motion is part of.
-const Transform& transform_of(const Machine& machine, const ElementaryMotion& motion);
+const model::Transform& transform_of(const model::Machine& machine, const ElementaryMotion& motion);
 
 /// The error equation of a chain to first order: deviation = sum over parameters of sensitivity * parameter.
 struct ErrorEquation {
-  Machine machine;
+  model::Machine machine;
   std::vector<ErrorParameter> parameters;
   std::vector<NominalSymbol> nominal;
   std::vector<OpaqueSymbol> opaque;
@@ -89,9 +89,9 @@ struct ErrorSizes {
 /// nominal angle is put in as a number. BaseShift is no part of it. Throws InputError in one line naming the
 /// expression that has no first order (an error inside a comparison, min, max, abs, sign, lag; a pole). tool.
 /// Source: the chain as tools/docs/formats.md defines it; every error moves the tool like a small screw.
-ErrorEquation derive(const Machine& machine, const ErrorSizes& sizes = {});
+ErrorEquation derive(const model::Machine& machine, const ErrorSizes& sizes = {});
 
 /// Deviation of the direction of the tool's z, first order: rotation vector x tool axis; by one parameter.
 std::array<GiNaC::ex, 3> tool_axis_sensitivity(const ErrorEquation& equation, std::size_t parameter);
 
-}  // namespace vernier
+}  // namespace vernier::derive

@@ -7,13 +7,13 @@
 #include <numbers>
 #include <sstream>
 
-namespace vernier {
+namespace vernier::derive {
 namespace {
 
 using GiNaC::ex;
 using std::numbers::pi;
 
-Interval widened(const Interval& a) {
+compile::Interval widened(const compile::Interval& a) {
   if (!std::isfinite(a.low) || !std::isfinite(a.high)) throw NoRange("a value without bound");
   const double by = 1e-12 * a.magnitude() + std::numeric_limits<double>::min();
   return {a.low - by, a.high + by};
@@ -25,25 +25,25 @@ std::string text_of(const ex& expr) {
   return out.str();
 }
 
-Interval reciprocal(const Interval& a, const ex& expr) {
+compile::Interval reciprocal(const compile::Interval& a, const ex& expr) {
   if (a.low <= 0 && a.high >= 0) throw NoRange(text_of(expr) + " may be zero below a fraction line");
   return widened({1 / a.high, 1 / a.low});
 }
 
-Interval integer_power(const Interval& base, int n) {
+compile::Interval integer_power(const compile::Interval& base, int n) {
   const double a = std::pow(base.low, n), b = std::pow(base.high, n);
   if (n % 2 == 0 && base.contains(0)) return widened({0, std::max(a, b)});
   return widened({std::min(a, b), std::max(a, b)});
 }
 
-Interval power_range(const ex& e, const Ranges& ranges) {
-  const Interval base = range_of(e.op(0), ranges);
+compile::Interval power_range(const ex& e, const Ranges& ranges) {
+  const compile::Interval base = range_of(e.op(0), ranges);
   if (e.op(1).info(GiNaC::info_flags::integer)) {
     const int n = GiNaC::ex_to<GiNaC::numeric>(e.op(1)).to_int();
     return n >= 0 ? integer_power(base, n) : reciprocal(integer_power(base, -n), e.op(0));
   }
   if (base.low < 0) throw NoRange(text_of(e.op(0)) + " may be negative below a root or a real power");
-  const Interval exponent = range_of(e.op(1), ranges);
+  const compile::Interval exponent = range_of(e.op(1), ranges);
   if (base.low == 0 && exponent.low < 0)
     throw NoRange(text_of(e.op(0)) + " may be zero below a fraction line");
   // Monotonic in each of the two separately: the extremes are at corners.
@@ -53,8 +53,8 @@ Interval power_range(const ex& e, const Ranges& ranges) {
   return widened({low, high});
 }
 
-Interval function_range(const ex& e, const Ranges& ranges) {
-  const Interval a = range_of(e.op(0), ranges);
+compile::Interval function_range(const ex& e, const Ranges& ranges) {
+  const compile::Interval a = range_of(e.op(0), ranges);
   if (is_call(e, "sin")) return sine_range(a);
   if (is_call(e, "cos")) return cosine_range(a);
   if (is_call(e, "tan")) {
@@ -69,7 +69,7 @@ Interval function_range(const ex& e, const Ranges& ranges) {
   }
   if (is_call(e, "atan2")) {
     if (a.low == a.high) {
-      const Interval b = range_of(e.op(1), ranges);
+      const compile::Interval b = range_of(e.op(1), ranges);
       if (b.low == b.high) return widened({std::atan2(a.low, b.low), std::atan2(a.low, b.low)});
     }
     return {-pi, pi};
@@ -79,8 +79,9 @@ Interval function_range(const ex& e, const Ranges& ranges) {
 
 }  // namespace
 
-Interval cosine_range(const Interval& a) {
-  Interval result = widened(hull({std::cos(a.low), std::cos(a.low)}, {std::cos(a.high), std::cos(a.high)}));
+compile::Interval cosine_range(const compile::Interval& a) {
+  compile::Interval result =
+      widened(compile::hull({std::cos(a.low), std::cos(a.low)}, {std::cos(a.high), std::cos(a.high)}));
   const double slack = 1e-9;  // an extreme just outside is taken in
   if (std::floor((a.high + slack) / (2 * pi)) >= std::ceil((a.low - slack) / (2 * pi))) result.high = 1;
   if (std::floor((a.high + slack) / (2 * pi) - 0.5) >= std::ceil((a.low - slack) / (2 * pi) - 0.5))
@@ -88,9 +89,11 @@ Interval cosine_range(const Interval& a) {
   return {std::max(result.low, -1.0), std::min(result.high, 1.0)};
 }
 
-Interval sine_range(const Interval& a) { return cosine_range({a.low - pi / 2, a.high - pi / 2}); }
+compile::Interval sine_range(const compile::Interval& a) {
+  return cosine_range({a.low - pi / 2, a.high - pi / 2});
+}
 
-Interval range_of(const ex& e, const Ranges& ranges) {
+compile::Interval range_of(const ex& e, const Ranges& ranges) {
   if (GiNaC::is_a<GiNaC::numeric>(e) || GiNaC::is_a<GiNaC::constant>(e)) {
     const double value = GiNaC::ex_to<GiNaC::numeric>(e.evalf()).to_double();
     return {value, value};
@@ -104,12 +107,12 @@ Interval range_of(const ex& e, const Ranges& ranges) {
   if (GiNaC::is_a<GiNaC::function>(e)) return function_range(e, ranges);
   const bool sum = GiNaC::is_a<GiNaC::add>(e);
   if (!sum && !GiNaC::is_a<GiNaC::mul>(e)) throw NoRange(text_of(e) + " has no known range");
-  Interval result = sum ? Interval{0, 0} : Interval{1, 1};
+  compile::Interval result = sum ? compile::Interval{0, 0} : compile::Interval{1, 1};
   for (std::size_t i = 0; i < e.nops(); ++i) {
-    const Interval part = range_of(e.op(i), ranges);
+    const compile::Interval part = range_of(e.op(i), ranges);
     result = widened(sum ? result + part : result * part);
   }
   return result;
 }
 
-}  // namespace vernier
+}  // namespace vernier::derive

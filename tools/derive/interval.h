@@ -7,10 +7,10 @@
 
 #include "tools/compile/interval.h"
 
-namespace vernier {
+namespace vernier::derive {
 
 /// Ranges of symbols: what each may be.
-using Ranges = std::map<GiNaC::ex, Interval, GiNaC::ex_is_less>;
+using Ranges = std::map<GiNaC::ex, compile::Interval, GiNaC::ex_is_less>;
 
 /// An expression has no finite range: a symbol without one, a division by a range with zero in it.
 class NoRange : public std::runtime_error {
@@ -20,10 +20,10 @@ class NoRange : public std::runtime_error {
 
 /// Interval that holds every value of the expression over the ranges. Every operation widens its result by
 /// 1e-12 of it, far above the rounding of a double. Throws NoRange. tool.
-Interval range_of(const GiNaC::ex& expr, const Ranges& ranges);
+compile::Interval range_of(const GiNaC::ex& expr, const Ranges& ranges);
 
 /// All values of sin and cos over an interval of angles in rad.
-Interval sine_range(const Interval& angle_rad);
-Interval cosine_range(const Interval& angle_rad);
+compile::Interval sine_range(const compile::Interval& angle_rad);
+compile::Interval cosine_range(const compile::Interval& angle_rad);
 
-}  // namespace vernier
+}  // namespace vernier::derive

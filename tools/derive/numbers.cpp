@@ -8,13 +8,13 @@
 
 #include "tools/text/numbers.h"
 
-namespace vernier {
+namespace vernier::derive {
 namespace {
 
 bool is_close(double value, double constant) { return std::abs(value - constant) <= 1e-11 * constant; }
 
 GiNaC::numeric decimal(double value) {
-  std::string text = number_text(value);
+  std::string text = text::number_text(value);
   long exponent = 0;
   if (const auto e = text.find_first_of("eE"); e != std::string::npos) {
     exponent = std::strtol(text.c_str() + e + 1, nullptr, 10);
@@ -96,4 +96,4 @@ GiNaC::ex exact_number(double value) {
 GiNaC::ex to_rad(const GiNaC::ex& angle_deg) { return (angle_deg * GiNaC::Pi / 180).expand(); }
 GiNaC::ex to_deg(const GiNaC::ex& angle_rad) { return angle_rad * 180 / GiNaC::Pi; }
 
-}  // namespace vernier
+}  // namespace vernier::derive

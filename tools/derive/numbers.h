@@ -2,7 +2,7 @@
 #pragma once
 #include <ginac/ginac.h>
 
-namespace vernier {
+namespace vernier::derive {
 
 /// The exact rational that the shortest decimal of `value` names (0.1 is 1/10); the decimals of pi, 180/pi
 /// and pi/180 to eleven digits or more become those constants. tool.
@@ -17,4 +17,4 @@ GiNaC::ex to_deg(const GiNaC::ex& angle_rad);
 GiNaC::ex sine(const GiNaC::ex& angle_rad);
 GiNaC::ex cosine(const GiNaC::ex& angle_rad);
 
-}  // namespace vernier
+}  // namespace vernier::derive

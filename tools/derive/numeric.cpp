@@ -6,26 +6,26 @@
 #include "tools/derive/interval.h"
 #include "tools/model/chain.h"
 
-namespace vernier {
+namespace vernier::derive {
 namespace {
 
 /// The machine's own name of a nominal symbol, as an expression.
-ExprPtr expression_of(const Machine& machine, const Symbol& key) {
-  Expr expr;
-  expr.op = Op::kSymbol;
-  expr.name = symbol_name(machine, key);
+model::ExprPtr expression_of(const model::Machine& machine, const model::Symbol& key) {
+  model::Expr expr;
+  expr.op = model::Op::kSymbol;
+  expr.name = model::symbol_name(machine, key);
   expr.symbol = key;
-  return std::make_shared<const Expr>(std::move(expr));
+  return std::make_shared<const model::Expr>(std::move(expr));
 }
 
 }  // namespace
 
-Eigen::MatrixXd sensitivity_at(const ErrorEquation& equation, const States& states, std::size_t row) {
-  const Machine nominal = nominal_machine(equation.machine);
+Eigen::MatrixXd sensitivity_at(const ErrorEquation& equation, const model::States& states, std::size_t row) {
+  const model::Machine nominal = model::nominal_machine(equation.machine);
   const auto at = static_cast<Eigen::Index>(row);
   Ranges point;  // every symbol at one value
-  const auto put = [&](const GiNaC::symbol& symbol, const Expr& expr, double file_units) {
-    const double value = evaluate(nominal, expr, states)[at] / file_units;
+  const auto put = [&](const GiNaC::symbol& symbol, const model::Expr& expr, double file_units) {
+    const double value = model::evaluate(nominal, expr, states)[at] / file_units;
     point[symbol] = {value, value};
   };
   for (const NominalSymbol& n : equation.nominal) put(n.symbol, *expression_of(nominal, n.key), n.file_units);
@@ -34,30 +34,30 @@ Eigen::MatrixXd sensitivity_at(const ErrorEquation& equation, const States& stat
   Eigen::MatrixXd result(6, static_cast<Eigen::Index>(equation.parameters.size()));
   for (Eigen::Index p = 0; p < result.cols(); ++p)
     for (Eigen::Index i = 0; i < 6; ++i) {
-      const Interval value =
+      const compile::Interval value =
           range_of(equation.sensitivity[static_cast<std::size_t>(p)][static_cast<std::size_t>(i)], point);
       result(i, p) = (value.low + value.high) / 2;
     }
   return result;
 }
 
-Machine with_errors(const ErrorEquation& equation, const Eigen::VectorXd& errors) {
-  Machine machine = nominal_machine(equation.machine);
+model::Machine with_errors(const ErrorEquation& equation, const Eigen::VectorXd& errors) {
+  model::Machine machine = model::nominal_machine(equation.machine);
   for (std::size_t p = 0; p < equation.parameters.size(); ++p) {
     const ErrorParameter& parameter = equation.parameters[p];
     const double value = errors[static_cast<Eigen::Index>(p)] * parameter.file_units;
     const std::size_t index = parameter.key.index;
-    if (parameter.key.kind == SymbolKind::kStatic) {
+    if (parameter.key.kind == model::SymbolKind::kStatic) {
       machine.statics[index].value += value;
-    } else if (parameter.key.kind == SymbolKind::kAxis) {
+    } else if (parameter.key.kind == model::SymbolKind::kAxis) {
       machine.axes[index].scale_factor = value;
     } else {
-      for (Table& table : machine.tables)
+      for (model::Table& table : machine.tables)
         if (table.axis == index / 6)
-          for (Station& station : table.stations) station.value[index % 6] = value;
+          for (model::Station& station : table.stations) station.value[index % 6] = value;
     }
   }
   return machine;
 }
 
-}  // namespace vernier
+}  // namespace vernier::derive

@@ -6,7 +6,7 @@
 #include <sstream>
 #include <vector>
 
-namespace vernier {
+namespace vernier::derive {
 namespace {
 
 using GiNaC::ex;
@@ -168,4 +168,4 @@ std::string latex_name(const std::string& name) {
   return "\\mathrm{" + escaped(name) + "}";
 }
 
-}  // namespace vernier
+}  // namespace vernier::derive

@@ -4,7 +4,7 @@
 
 #include <string>
 
-namespace vernier {
+namespace vernier::derive {
 
 enum class Notation { kText, kLatex };
 
@@ -15,4 +15,4 @@ std::string print(const GiNaC::ex& expr, Notation notation);
 /// A name in LaTeX: EXX is E_{XX}, d_lAx is \Delta \mathrm{lAx}.
 std::string latex_name(const std::string& name);
 
-}  // namespace vernier
+}  // namespace vernier::derive

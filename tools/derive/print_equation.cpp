@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-namespace vernier {
+namespace vernier::derive {
 namespace {
 
 using GiNaC::ex;
@@ -172,4 +172,4 @@ nlohmann::ordered_json to_json(const DerivedMachine& derived) {
   return result;
 }
 
-}  // namespace vernier
+}  // namespace vernier::derive

@@ -7,7 +7,7 @@
 #include "tools/derive/print.h"
 #include "tools/derive/second_order.h"
 
-namespace vernier {
+namespace vernier::derive {
 
 /// An equation with what is known about its remainder.
 struct DerivedMachine {
@@ -29,4 +29,4 @@ std::string print_latex(const DerivedMachine& derived);
 /// The same for programs.
 nlohmann::ordered_json to_json(const DerivedMachine& derived);
 
-}  // namespace vernier
+}  // namespace vernier::derive

@@ -11,17 +11,17 @@
 #include "tools/derive/numeric.h"
 #include "tools/model/chain.h"
 
-namespace vernier {
+namespace vernier::derive {
 namespace {
 
 using GiNaC::ex;
 
-Interval scaled(const Interval& a, double by) { return {a.low / by, a.high / by}; }
+compile::Interval scaled(const compile::Interval& a, double by) { return {a.low / by, a.high / by}; }
 
 /// A motion over the ranges: where it may be, how fast and how strongly accelerated when all errors grow from
 /// 0.
 struct Travel {
-  Interval value;
+  compile::Interval value;
   double speed = 0, acceleration = 0;
 };
 
@@ -43,25 +43,25 @@ Travel travel_of(const ErrorEquation& equation, const ElementaryMotion& motion, 
 
 /// Box of a vector and a bound of its norm.
 struct TermReach {
-  std::array<Interval, 3> box{};
+  std::array<compile::Interval, 3> box{};
   double norm = 0;
 
   void clip() {
     double sum = 0;
-    for (Interval& b : box) {
+    for (compile::Interval& b : box) {
       b = {std::max(b.low, -norm), std::min(b.high, norm)};
       sum += b.magnitude() * b.magnitude();
     }
     norm = std::min(norm, std::sqrt(sum) * (1 + 1e-12));
   }
-  void shift(std::size_t axis, const Interval& by) {
+  void shift(std::size_t axis, const compile::Interval& by) {
     box[axis] = box[axis] + by;
     norm += by.magnitude();
     clip();
   }
-  void turn(std::size_t axis, const Interval& angle_rad) {
+  void turn(std::size_t axis, const compile::Interval& angle_rad) {
     const std::size_t i = (axis + 1) % 3, j = (axis + 2) % 3;
-    const Interval c = cosine_range(angle_rad), s = sine_range(angle_rad), a = box[i], b = box[j];
+    const compile::Interval c = cosine_range(angle_rad), s = sine_range(angle_rad), a = box[i], b = box[j];
     box[i] = c * a + -1.0 * (s * b);
     box[j] = s * a + c * b;
     clip();
@@ -71,60 +71,60 @@ struct TermReach {
   }
 };
 
-Interval opaque_range(const OpaqueSymbol& o, const Ranges& ranges) {
+compile::Interval opaque_range(const OpaqueSymbol& o, const Ranges& ranges) {
   const auto arg = [&](std::size_t i) { return range_of(o.args[i], ranges); };
   switch (o.expr->op) {
-    case Op::kSign:
+    case model::Op::kSign:
       return {-1, 1};
-    case Op::kAbs:
+    case model::Op::kAbs:
       return {0, arg(0).magnitude()};
-    case Op::kMin:
-    case Op::kMax:
-      return hull(arg(0), arg(1));
-    case Op::kLag:
+    case model::Op::kMin:
+    case model::Op::kMax:
+      return compile::hull(arg(0), arg(1));
+    case model::Op::kLag:
       return arg(0);
     default:
       return {0, 1};
   }
 }
 
-std::optional<Interval> axis_symbol_range(const Machine& machine, std::size_t index) {
-  const Axis& axis = machine.axes[index];
-  if (axis.min && axis.max) return Interval{*axis.min, *axis.max};
-  if (const Table* table = machine.table_of(index); table != nullptr && !table->stations.empty())
-    return Interval{table->stations.front().loc, table->stations.back().loc};
-  if (axis.rotary) return Interval{-180, 180};
+std::optional<compile::Interval> axis_symbol_range(const model::Machine& machine, std::size_t index) {
+  const model::Axis& axis = machine.axes[index];
+  if (axis.min && axis.max) return compile::Interval{*axis.min, *axis.max};
+  if (const model::Table* table = machine.table_of(index); table != nullptr && !table->stations.empty())
+    return compile::Interval{table->stations.front().loc, table->stations.back().loc};
+  if (axis.rotary) return compile::Interval{-180, 180};
   return std::nullopt;
 }
 
-std::optional<Interval> nominal_range(const Machine& machine, const Symbol& key) {
+std::optional<compile::Interval> nominal_range(const model::Machine& machine, const model::Symbol& key) {
   const std::size_t i = key.index;
   switch (key.kind) {
-    case SymbolKind::kStatic: {
+    case model::SymbolKind::kStatic: {
       const double value = machine.statics[i].nominal.value_or(machine.statics[i].value);
-      return Interval{value, value};
+      return compile::Interval{value, value};
     }
-    case SymbolKind::kAxis:
+    case model::SymbolKind::kAxis:
       return axis_symbol_range(machine, i);
-    case SymbolKind::kInput:
-      return input_range(machine, i);
-    case SymbolKind::kVelocity:
-      return channel_range(machine, ChannelKind::kVelocity, i);
-    case SymbolKind::kAcceleration:
-      return channel_range(machine, ChannelKind::kAcceleration, i);
-    case SymbolKind::kDirection:
-    case SymbolKind::kNormal:
-      return Interval{-1, 1};
-    case SymbolKind::kSince:
-      return Interval{0, kLongWay};
-    case SymbolKind::kFeed:
-      return channel_range(machine, ChannelKind::kFeed, i);
-    case SymbolKind::kCurvature:
-      return channel_range(machine, ChannelKind::kCurvature, i);
-    case SymbolKind::kTime:
-      return channel_range(machine, ChannelKind::kTime, i);
-    case SymbolKind::kVisit:
-      return channel_range(machine, ChannelKind::kVisit, i);
+    case model::SymbolKind::kInput:
+      return compile::input_range(machine, i);
+    case model::SymbolKind::kVelocity:
+      return compile::channel_range(machine, ChannelKind::kVelocity, i);
+    case model::SymbolKind::kAcceleration:
+      return compile::channel_range(machine, ChannelKind::kAcceleration, i);
+    case model::SymbolKind::kDirection:
+    case model::SymbolKind::kNormal:
+      return compile::Interval{-1, 1};
+    case model::SymbolKind::kSince:
+      return compile::Interval{0, model::kLongWay};
+    case model::SymbolKind::kFeed:
+      return compile::channel_range(machine, ChannelKind::kFeed, i);
+    case model::SymbolKind::kCurvature:
+      return compile::channel_range(machine, ChannelKind::kCurvature, i);
+    case model::SymbolKind::kTime:
+      return compile::channel_range(machine, ChannelKind::kTime, i);
+    case model::SymbolKind::kVisit:
+      return compile::channel_range(machine, ChannelKind::kVisit, i);
     default:
       return std::nullopt;
   }
@@ -185,12 +185,12 @@ SecondOrderBound bound_second_order(const ErrorEquation& equation) {
 std::optional<SecondOrder> sample_second_order(const ErrorEquation& equation, std::size_t count,
                                                std::uint64_t seed) {
   std::mt19937_64 random(seed);
-  const Machine nominal = nominal_machine(equation.machine);
+  const model::Machine nominal = model::nominal_machine(equation.machine);
   std::vector<double> references;
-  for (const Input& input : nominal.inputs) references.push_back(input.reference);
+  for (const model::Input& input : nominal.inputs) references.push_back(input.reference);
   SecondOrder largest;
   for (std::size_t i = 0; i < count; ++i) {
-    States states = make_states(1, nominal.axes.size(), references);
+    model::States states = model::make_states(1, nominal.axes.size(), references);
     for (std::size_t a = 0; a < nominal.axes.size(); ++a) {
       const auto range = axis_symbol_range(nominal, a);
       if (!range) return std::nullopt;
@@ -199,7 +199,8 @@ std::optional<SecondOrder> sample_second_order(const ErrorEquation& equation, st
     Eigen::VectorXd errors(static_cast<Eigen::Index>(equation.parameters.size()));
     for (Eigen::Index p = 0; p < errors.size(); ++p)
       errors[p] = (random() % 2 == 0 ? 1 : -1) * equation.parameters[static_cast<std::size_t>(p)].magnitude;
-    const Poses ideal = forward(nominal, states), real = forward(with_errors(equation, errors), states);
+    const model::Poses ideal = model::forward(nominal, states),
+                       real = model::forward(with_errors(equation, errors), states);
     const Eigen::VectorXd linear = sensitivity_at(equation, states, 0) * errors;
     const Eigen::Vector3d axis = ideal.rotation[0].col(2), turn = linear.tail<3>();
     const double missing = (real.position - ideal.position - linear.head<3>()).norm();
@@ -210,4 +211,4 @@ std::optional<SecondOrder> sample_second_order(const ErrorEquation& equation, st
   return largest;
 }
 
-}  // namespace vernier
+}  // namespace vernier::derive

@@ -7,7 +7,7 @@
 #include "tools/derive/error_equation.h"
 #include "tools/derive/interval.h"
 
-namespace vernier {
+namespace vernier::derive {
 
 /// What the first order leaves out, over the declared ranges of axes and inputs and all errors up to their
 /// magnitude.
@@ -36,4 +36,4 @@ std::optional<SecondOrder> sample_second_order(const ErrorEquation& equation, st
 /// absent), statics at their nominal, inputs and motion as for compile. Linear axes without any are left out.
 Ranges nominal_ranges(const ErrorEquation& equation);
 
-}  // namespace vernier
+}  // namespace vernier::derive

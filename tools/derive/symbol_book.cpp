@@ -9,7 +9,7 @@
 #include "tools/maths/factors.h"
 #include "tools/model/chain.h"
 
-namespace vernier {
+namespace vernier::derive {
 namespace {
 
 using GiNaC::ex;
@@ -18,93 +18,94 @@ constexpr int kCubicSteps = 16;  // looks between two stations for the largest v
 /// Component errors of ISO 230-1 by the columns X Y Z rX rY rZ of a table.
 constexpr std::array<const char*, 6> kIsoPrefix = {"EX", "EY", "EZ", "EA", "EB", "EC"};
 
-ex operation(Op op, const ex& a, const ex& b) {
+ex operation(model::Op op, const ex& a, const ex& b) {
   switch (op) {
-    case Op::kNegate:
+    case model::Op::kNegate:
       return -a;
-    case Op::kAdd:
+    case model::Op::kAdd:
       return a + b;
-    case Op::kSubtract:
+    case model::Op::kSubtract:
       return a - b;
-    case Op::kMultiply:
+    case model::Op::kMultiply:
       return a * b;
-    case Op::kDivide:
+    case model::Op::kDivide:
       return a / b;
-    case Op::kPower:
+    case model::Op::kPower:
       return GiNaC::pow(a, b);
-    case Op::kSin:
+    case model::Op::kSin:
       return sine(to_rad(a));
-    case Op::kCos:
+    case model::Op::kCos:
       return cosine(to_rad(a));
-    case Op::kTan:
+    case model::Op::kTan:
       return GiNaC::tan(to_rad(a));
-    case Op::kAtan2:
+    case model::Op::kAtan2:
       return to_deg(GiNaC::atan2(a, b));
-    case Op::kSqrt:
+    case model::Op::kSqrt:
       return GiNaC::sqrt(a);
-    case Op::kExp:
+    case model::Op::kExp:
       return GiNaC::exp(a);
-    case Op::kLog:
+    case model::Op::kLog:
       return GiNaC::log(a);
     default:
       throw std::logic_error("an operation that the derivation does not know");
   }
 }
 
-bool is_opaque(Op op) {
-  return op == Op::kEqual || op == Op::kLess || op == Op::kGreater || op == Op::kAbs || op == Op::kSign ||
-         op == Op::kMin || op == Op::kMax || op == Op::kLag || op == Op::kRunIs;
+bool is_opaque(model::Op op) {
+  return op == model::Op::kEqual || op == model::Op::kLess || op == model::Op::kGreater ||
+         op == model::Op::kAbs || op == model::Op::kSign || op == model::Op::kMin || op == model::Op::kMax ||
+         op == model::Op::kLag || op == model::Op::kRunIs;
 }
 
 }  // namespace
 
-SymbolBook::SymbolBook(const Machine& machine) : machine_(machine) { find_turning_statics(); }
+SymbolBook::SymbolBook(const model::Machine& machine) : machine_(machine) { find_turning_statics(); }
 
 void SymbolBook::find_turning_statics() {
   for (const auto* branch : {&machine_.workpiece, &machine_.tool})
-    for (const Transform& transform : *branch)
+    for (const model::Transform& transform : *branch)
       for (std::size_t i = 0; i < transform.dof_count(); ++i) {
-        const bool turns = transform.kind == TransformKind::kSixDof ? i >= 3 : i == 0 || i == 3;
+        const bool turns = transform.kind == model::TransformKind::kSixDof ? i >= 3 : i == 0 || i == 3;
         if (!turns) continue;
-        walk(*transform.dof[i], [&](const Expr& node) {
-          if (node.op == Op::kSymbol && node.symbol.kind == SymbolKind::kStatic)
+        model::walk(*transform.dof[i], [&](const model::Expr& node) {
+          if (node.op == model::Op::kSymbol && node.symbol.kind == model::SymbolKind::kStatic)
             turning_.insert(node.symbol.index);
         });
       }
 }
 
-ex SymbolBook::value(const Expr& expr) {
-  if (expr.op == Op::kNumber) return exact_number(expr.number);
-  if (expr.op == Op::kSymbol) return symbol_value(expr);
+ex SymbolBook::value(const model::Expr& expr) {
+  if (expr.op == model::Op::kNumber) return exact_number(expr.number);
+  if (expr.op == model::Op::kSymbol) return symbol_value(expr);
   if (is_opaque(expr.op)) return opaque_value(expr);
   const ex first = value(*expr.args[0]);  // in order: errors are listed as they are met
   return operation(expr.op, first, expr.args.size() > 1 ? value(*expr.args[1]) : ex(0));
 }
 
-ex SymbolBook::symbol_value(const Expr& expr) {
-  const Symbol& key = expr.symbol;
-  if (key.kind == SymbolKind::kTableValue && machine_.table_of(key.index / 6) == nullptr) return 0;
+ex SymbolBook::symbol_value(const model::Expr& expr) {
+  const model::Symbol& key = expr.symbol;
+  if (key.kind == model::SymbolKind::kTableValue && machine_.table_of(key.index / 6) == nullptr) return 0;
   const auto place = std::pair(static_cast<int>(key.kind), key.index);
   if (const auto found = known_.find(place); found != known_.end()) return found->second;
   ex result;
-  if (key.kind == SymbolKind::kStatic) {
+  if (key.kind == model::SymbolKind::kStatic) {
     result = static_value(key.index);
-  } else if (key.kind == SymbolKind::kAxis) {
+  } else if (key.kind == model::SymbolKind::kAxis) {
     result = axis_value(key.index);
-  } else if (key.kind == SymbolKind::kTableValue) {
+  } else if (key.kind == model::SymbolKind::kTableValue) {
     const bool angle = key.index % 6 >= 3;
     const ex error = error_symbol(key, kIsoPrefix[key.index % 6] + machine_.axes[key.index / 6].name,
-                                  expr.name, angle ? "rad" : "mm", angle ? kDegPerRad : 1);
+                                  expr.name, angle ? "rad" : "mm", angle ? maths::kDegPerRad : 1);
     result = angle ? to_deg(error) : error;
   } else {
-    result = nominal_symbol(key, expr.name, symbol_unit(machine_, key), 1);
+    result = nominal_symbol(key, expr.name, model::symbol_unit(machine_, key), 1);
   }
   return known_.emplace(place, result).first->second;
 }
 
 ex SymbolBook::static_value(std::size_t index) {
-  const Static& s = machine_.statics[index];
-  const Symbol key{SymbolKind::kStatic, index};
+  const model::Static& s = machine_.statics[index];
+  const model::Symbol key{model::SymbolKind::kStatic, index};
   const double at = s.nominal.value_or(s.value);
   const bool error = s.nominal.has_value() || !s.hidden;
   ex at_nominal = exact_number(at);
@@ -120,19 +121,20 @@ ex SymbolBook::static_value(std::size_t index) {
 }
 
 ex SymbolBook::axis_value(std::size_t index) {
-  const Axis& axis = machine_.axes[index];
-  const Symbol key{SymbolKind::kAxis, index};
-  ex position = nominal_symbol(key, axis.name, axis.rotary ? "rad" : "mm", axis.rotary ? kDegPerRad : 1);
+  const model::Axis& axis = machine_.axes[index];
+  const model::Symbol key{model::SymbolKind::kAxis, index};
+  ex position =
+      nominal_symbol(key, axis.name, axis.rotary ? "rad" : "mm", axis.rotary ? maths::kDegPerRad : 1);
   if (axis.rotary) position = to_deg(position);
   if (axis.scale_factor == 0) return position;
   return position * (1 + error_symbol(key, "s_" + axis.name, "scalefactor of " + axis.name, "", 1));
 }
 
-ex SymbolBook::opaque_value(const Expr& expr) {
-  const std::string text = "(" + to_text(expr) + ")";
+ex SymbolBook::opaque_value(const model::Expr& expr) {
+  const std::string text = "(" + model::to_text(expr) + ")";
   if (const auto found = known_opaque_.find(text); found != known_opaque_.end()) return found->second;
   std::vector<ex> args;
-  for (const ExprPtr& arg : expr.args) args.push_back(value(*arg));
+  for (const model::ExprPtr& arg : expr.args) args.push_back(value(*arg));
   const GiNaC::realsymbol name(text);
   ex result = name;
   // Where an error acts inside, the derivative gets a symbol of its own: harmless as long as its factor is
@@ -142,7 +144,7 @@ ex SymbolBook::opaque_value(const Expr& expr) {
       rough_.emplace_back(GiNaC::realsymbol("D_" + p.name + text), text);
       result += rough_.back().first * p.symbol;
     }
-  opaque.push_back({name, std::make_shared<const Expr>(expr), std::move(args)});
+  opaque.push_back({name, std::make_shared<const model::Expr>(expr), std::move(args)});
   return known_opaque_.emplace(text, result).first->second;
 }
 
@@ -160,14 +162,14 @@ std::string SymbolBook::free_name(const std::string& wanted, const std::string& 
   return name;
 }
 
-ex SymbolBook::nominal_symbol(const Symbol& key, const std::string& name, const std::string& unit,
+ex SymbolBook::nominal_symbol(const model::Symbol& key, const std::string& name, const std::string& unit,
                               double file_units) {
   const std::string unique = free_name(name, name + "_nominal");
   nominal.push_back({GiNaC::realsymbol(unique), unique, key, unit, file_units});
   return nominal.back().symbol;
 }
 
-ex SymbolBook::error_symbol(const Symbol& key, const std::string& name, const std::string& source,
+ex SymbolBook::error_symbol(const model::Symbol& key, const std::string& name, const std::string& source,
                             const std::string& unit, double file_units) {
   ErrorParameter p;
   p.name = free_name(name, "d_" + source);
@@ -198,17 +200,17 @@ std::string SymbolBook::inferred_unit(const ErrorParameter& p,
 void SymbolBook::settle_units(std::vector<ElementaryMotion>& motions) {
   GiNaC::exmap to_radians;
   for (ErrorParameter& p : parameters) {
-    if (p.key.kind != SymbolKind::kStatic) continue;
+    if (p.key.kind != model::SymbolKind::kStatic) continue;
     if (p.unit.empty()) p.unit = inferred_unit(p, motions);
     if (p.unit != "deg") continue;
     p.unit = "rad";
-    p.file_units = kDegPerRad;
+    p.file_units = maths::kDegPerRad;
     to_radians[p.symbol] = to_deg(p.symbol);
   }
   for (NominalSymbol& n : nominal) {
-    if (n.key.kind != SymbolKind::kStatic || n.unit != "deg") continue;
+    if (n.key.kind != model::SymbolKind::kStatic || n.unit != "deg") continue;
     n.unit = "rad";
-    n.file_units = kDegPerRad;
+    n.file_units = maths::kDegPerRad;
     to_radians[n.symbol] = to_deg(n.symbol);
   }
   if (to_radians.empty()) return;
@@ -219,21 +221,21 @@ void SymbolBook::settle_units(std::vector<ElementaryMotion>& motions) {
 }
 
 double SymbolBook::file_size(const ErrorParameter& p) const {
-  if (p.key.kind == SymbolKind::kAxis) return std::abs(machine_.axes[p.key.index].scale_factor);
-  if (p.key.kind == SymbolKind::kStatic) {
-    const Static& s = machine_.statics[p.key.index];
+  if (p.key.kind == model::SymbolKind::kAxis) return std::abs(machine_.axes[p.key.index].scale_factor);
+  if (p.key.kind == model::SymbolKind::kStatic) {
+    const model::Static& s = machine_.statics[p.key.index];
     return std::abs(s.value - s.nominal.value_or(s.value)) / p.file_units;
   }
-  const Table& table = *machine_.table_of(p.key.index / 6);
+  const model::Table& table = *machine_.table_of(p.key.index / 6);
   const std::size_t column = p.key.index % 6;
   double largest = 0;
   for (std::size_t i = 0; i < table.stations.size(); ++i) {
     largest = std::max(largest, std::abs(table.stations[i].value[column]));
-    if (table.interpolation != Interpolation::kCubic || i == 0) continue;
+    if (table.interpolation != model::Interpolation::kCubic || i == 0) continue;
     const double from = table.stations[i - 1].loc, to = table.stations[i].loc;
     for (int k = 1; k < kCubicSteps; ++k)  // a spline may rise above its stations
-      largest =
-          std::max(largest, std::abs(table_values(table, from + (to - from) * k / kCubicSteps)[column]));
+      largest = std::max(largest,
+                         std::abs(model::table_values(table, from + (to - from) * k / kCubicSteps)[column]));
   }
   return largest / p.file_units;
 }
@@ -251,4 +253,4 @@ bool is_call(const GiNaC::ex& e, const char* name) {
   return GiNaC::is_a<GiNaC::function>(e) && GiNaC::ex_to<GiNaC::function>(e).get_name() == name;
 }
 
-}  // namespace vernier
+}  // namespace vernier::derive

@@ -8,16 +8,16 @@
 
 #include "tools/derive/error_equation.h"
 
-namespace vernier {
+namespace vernier::derive {
 
 /// The symbols of one derivation, and expressions of the machine in them. Values are in units of the machine
 /// file (mm, deg); the symbols behind them are rad where the file has degrees.
 class SymbolBook {
  public:
-  explicit SymbolBook(const Machine& machine);
+  explicit SymbolBook(const model::Machine& machine);
 
   /// The expression with all errors in it. Throws GiNaC's pole_error and std::logic_error where it has none.
-  GiNaC::ex value(const Expr& expr);
+  GiNaC::ex value(const model::Expr& expr);
 
   /// Statics without a unit are lengths or angles by where they act; called once all motions are known.
   /// Replaces degrees by radians in the motions.
@@ -38,20 +38,20 @@ class SymbolBook {
   std::vector<std::string> notes;
 
  private:
-  GiNaC::ex symbol_value(const Expr& expr);
+  GiNaC::ex symbol_value(const model::Expr& expr);
   GiNaC::ex static_value(std::size_t index);
   GiNaC::ex axis_value(std::size_t index);
-  GiNaC::ex opaque_value(const Expr& expr);
-  GiNaC::ex nominal_symbol(const Symbol& key, const std::string& name, const std::string& unit,
+  GiNaC::ex opaque_value(const model::Expr& expr);
+  GiNaC::ex nominal_symbol(const model::Symbol& key, const std::string& name, const std::string& unit,
                            double file_units);
-  GiNaC::ex error_symbol(const Symbol& key, const std::string& name, const std::string& source,
+  GiNaC::ex error_symbol(const model::Symbol& key, const std::string& name, const std::string& source,
                          const std::string& unit, double file_units);
   std::string inferred_unit(const ErrorParameter& parameter,
                             const std::vector<ElementaryMotion>& motions) const;
   double file_size(const ErrorParameter& parameter) const;
   void find_turning_statics();
 
-  const Machine& machine_;
+  const model::Machine& machine_;
   std::set<std::size_t> turning_;  // statics that act in a rotation
   std::map<std::pair<int, std::size_t>, GiNaC::ex> known_;
   std::map<std::string, GiNaC::ex> known_opaque_;
@@ -63,4 +63,4 @@ class SymbolBook {
 /// Is it a call of the function of this name?
 bool is_call(const GiNaC::ex& e, const char* name);
 
-}  // namespace vernier
+}  // namespace vernier::derive

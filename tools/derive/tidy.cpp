@@ -2,7 +2,7 @@
 #include "tools/derive/tidy.h"
 #include "tools/derive/symbol_book.h"
 
-namespace vernier {
+namespace vernier::derive {
 namespace {
 
 using GiNaC::ex;
@@ -72,4 +72,4 @@ ex tidy(const ex& expr) {
   return terms < 2 || terms > kFactorTerms ? shorter : factored(shorter);
 }
 
-}  // namespace vernier
+}  // namespace vernier::derive

@@ -4,7 +4,7 @@
 
 #include <cstddef>
 
-namespace vernier {
+namespace vernier::derive {
 
 /// Expanded, the arguments of functions too.
 GiNaC::ex expand_inside(const GiNaC::ex& expr);
@@ -18,4 +18,4 @@ GiNaC::ex tidy(const GiNaC::ex& expr);
 /// Number of terms of a sum, 1 for anything else, 0 for zero.
 std::size_t term_count(const GiNaC::ex& expr);
 
-}  // namespace vernier
+}  // namespace vernier::derive

@@ -8,7 +8,7 @@
 #include "tools/diagnose/enumerate.h"
 #include "tools/diagnose/scan.h"
 
-namespace vernier {
+namespace vernier::diagnose {
 namespace {
 
 /// Rows of a matrix or vector that belong to one block.
@@ -34,8 +34,8 @@ Eigen::MatrixXd fitted_to_block_alone(const Eigen::MatrixXd& model_rows, double 
   const Eigen::MatrixXd normal =
       Eigen::MatrixXd::Identity(model_rows.cols(), model_rows.cols()) - model_rows.transpose() * model_rows;
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(normal);
-  return orthonormal(model_rows * eigen.eigenvectors().leftCols(lost_directions(eigen.eigenvalues(), least)),
-                     1e-6, nullptr);
+  return maths::orthonormal(
+      model_rows * eigen.eigenvectors().leftCols(lost_directions(eigen.eigenvalues(), least)), 1e-6, nullptr);
 }
 
 /// Level of each value: levels are apart where neighbours in size are by `least_width`; where that gives one
@@ -65,7 +65,7 @@ std::vector<int> levels_of(const std::vector<double>& values, double least_width
 HeldOut leave_blocks_out(const Evidence& evidence, const Eigen::MatrixXd& columns, Eigen::Index watched_first,
                          Eigen::Index watched_count, const std::vector<int>& blocks) {
   HeldOut result;
-  const Eigen::MatrixXd own = orthonormal(columns, 1e-6, nullptr);
+  const Eigen::MatrixXd own = maths::orthonormal(columns, 1e-6, nullptr);
   const Eigen::MatrixXd& q = evidence.absorbed();
   Eigen::MatrixXd basis(q.rows(), q.cols() + own.cols());
   basis << q, own;
@@ -117,10 +117,10 @@ HeldOut leave_runs_out(const Evidence& evidence, const Eigen::MatrixXd& columns,
 }
 
 std::vector<std::vector<int>> level_blocks(const Evidence& evidence) {
-  const States& states = evidence.measurement().states;
+  const model::States& states = evidence.measurement().states;
   const AcceptanceThresholds& thresholds = evidence.thresholds().acceptance;
   std::vector<std::vector<int>> all;
-  const auto take = [&](const Column& column, double least_width) {
+  const auto take = [&](const model::Column& column, double least_width) {
     std::vector<double> values;
     for (const std::size_t row : evidence.rows()) values.push_back(column[static_cast<Eigen::Index>(row)]);
     const std::vector<int> levels = levels_of(values, least_width, thresholds);
@@ -131,9 +131,9 @@ std::vector<std::vector<int>> level_blocks(const Evidence& evidence) {
     fastest = std::max(fastest, states.feed[static_cast<Eigen::Index>(row)]);
   if (fastest > 0) take(states.feed, thresholds.same_feed * fastest);
   for (std::size_t i = 0; i < evidence.machine().inputs.size(); ++i)
-    if (class_of_input(evidence.machine().inputs[i]) == InputClass::kTemperature)
+    if (effects::class_of_input(evidence.machine().inputs[i]) == effects::InputClass::kTemperature)
       take(states.input[i], thresholds.least_warmth_degC);
   return all;
 }
 
-}  // namespace vernier
+}  // namespace vernier::diagnose

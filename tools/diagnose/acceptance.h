@@ -5,7 +5,7 @@
 
 #include "tools/diagnose/evidence.h"
 
-namespace vernier {
+namespace vernier::diagnose {
 
 /// What leaving out whole runs says of columns that a model would gain.
 struct HeldOut {
@@ -28,4 +28,4 @@ HeldOut leave_blocks_out(const Evidence& evidence, const Eigen::MatrixXd& column
 /// be proved on, for features follow both. One list for each quantity that has two levels or more.
 std::vector<std::vector<int>> level_blocks(const Evidence& evidence);
 
-}  // namespace vernier
+}  // namespace vernier::diagnose

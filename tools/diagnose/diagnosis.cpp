@@ -23,34 +23,34 @@
 #include "tools/residual/structure.h"
 #include "tools/timebase/time_base.h"
 
-namespace vernier {
+namespace vernier::diagnose {
 namespace {
 
 /// One diagnosis, step by step.
 class Diagnoser {
  public:
-  Diagnoser(const std::string& text, const Machine& machine, const Measurement& measurement,
+  Diagnoser(const std::string& text, const model::Machine& machine, const model::Measurement& measurement,
             const DiagnoseOptions& options)
       : options_(options),
         limits_(options.thresholds.verdict),
         measurement_(measurement),
         machine_(machine),
         base_(fit_first(machine, measurement)),
-        text_(update_machine_text(text, base_.machine, true)),
+        text_(model::update_machine_text(text, base_.machine, true)),
         finder_(base_.machine, measurement, options.effects, options.most_effects, options.progress,
                 options.thresholds),
         pool_(finder_.pool()) {}
 
   Diagnosis run() {
     result_.base = base_;
-    StructureOptions structure;
+    residual::StructureOptions structure;
     structure.fitted_parameters = static_cast<std::size_t>(base_.observability.rank);
-    result_.failure = failure_picture(base_.machine, measurement_, base_.residual, structure);
+    result_.failure = residual::failure_picture(base_.machine, measurement_, base_.residual, structure);
     finder_.find();
     chosen_ = finder_.chosen();
     result_.searched = finder_.candidates().size();
     result_.noise = finder_.noise();
-    result_.noise_unit_um = noise_unit_um(measurement_);
+    result_.noise_unit_um = fit::noise_unit_um(measurement_);
     walk_ladder();
     if (!chosen_.empty()) rivals_ = finder_.rivals_of(chosen_.front());
     list_candidates();
@@ -59,56 +59,56 @@ class Diagnoser {
   }
 
  private:
-  FitResult fit_first(const Machine& machine, const Measurement& m) {
+  fit::FitResult fit_first(const model::Machine& machine, const model::Measurement& m) {
     options_.progress(0, "fitting the model");
-    return fit(machine, m, independent_readings());
+    return fit::fit(machine, m, independent_readings());
   }
 
   /// What hangs together is not known before the search.
-  static FitOptions independent_readings() {
-    FitOptions options;
-    options.noise = NoiseModel{};
+  static fit::FitOptions independent_readings() {
+    fit::FitOptions options;
+    options.noise = fit::NoiseModel{};
     return options;
   }
 
   /// With the noise that the search settled on.
-  FitOptions settled_noise() const {
-    FitOptions options;
+  fit::FitOptions settled_noise() const {
+    fit::FitOptions options;
     options.noise = result_.noise;
     return options;
   }
 
   /// The machine with several items added and fitted, from the linear estimate. A period or time constant
   /// that the fit drives out of the range in which it was looked for is held at the value found there.
-  FittedEffects fit_with(const std::vector<std::size_t>& items) const {
-    std::vector<EffectToFit> effects;
+  effects::FittedEffects fit_with(const std::vector<std::size_t>& items) const {
+    std::vector<effects::EffectToFit> effects;
     for (const std::size_t item : items) {
       const Scored& scored = pool_[item].scored;
       const ScannedCandidate& found = finder_.candidates()[scored.candidate];
-      EffectToFit effect;
-      effect.choice = choice_at(pool_.candidate(item), scored.scanned);
+      effects::EffectToFit effect;
+      effect.choice = effects::choice_at(pool_.candidate(item), scored.scanned);
       effect.coefficients = finder_.coefficient_of_each_unknown(item);
       effect.is_driven_out = [&](std::size_t unknown, double value) {
         return found.is_driven_out(unknown, scored.scanned[unknown], value);
       };
       effects.push_back(std::move(effect));
     }
-    return fit_with_effects({text_, base_.machine}, measurement_, effects, settled_noise());
+    return effects::fit_with_effects({text_, base_.machine}, measurement_, effects, settled_noise());
   }
 
   std::string add_string_of(std::size_t item) const {
-    return add_string(finder_.evidence().machine(),
-                      choice_at(pool_.candidate(item), pool_[item].scored.scanned));
+    return effects::add_string(finder_.evidence().machine(),
+                               effects::choice_at(pool_.candidate(item), pool_[item].scored.scanned));
   }
 
   /// Fall of chi^2, or of what stands for it where nothing says how large the noise is.
-  double fall_of(const FitResult& before, const FitResult& after) const {
-    if (has_uncertainty(measurement_)) return before.chi_square - after.chi_square;
+  double fall_of(const fit::FitResult& before, const fit::FitResult& after) const {
+    if (fit::has_uncertainty(measurement_)) return before.chi_square - after.chi_square;
     return static_cast<double>(before.after.count) * std::log(before.chi_square / after.chi_square);
   }
 
-  Proof proof_of(const FitResult& before, const FitResult& after) const {
-    const NoiseModel noise = finder_.evidence().noise_of_file();
+  Proof proof_of(const fit::FitResult& before, const fit::FitResult& after) const {
+    const fit::NoiseModel noise = finder_.evidence().noise_of_file();
     double variance = 1;
     if (noise.independent()) {
       variance = after.chi_square / std::max(1.0, after.freedom);
@@ -120,7 +120,7 @@ class Diagnoser {
   /// The fitted machine as a file, with what its own rest says of the readings: the search began from
   /// independent ones, and who would run this machine must know of a step or drift.
   std::string first_rung() const {
-    return update_machine_text(text_, fit(base_.machine, measurement_).machine, true);
+    return model::update_machine_text(text_, fit::fit(base_.machine, measurement_).machine, true);
   }
 
   void walk_ladder() {
@@ -138,7 +138,7 @@ class Diagnoser {
                         "fitting the ladder");
       const std::vector<std::size_t> items(chosen_.begin(),
                                            chosen_.begin() + static_cast<std::ptrdiff_t>(count));
-      const FittedEffects fitted = fit_with(items);
+      const effects::FittedEffects fitted = fit_with(items);
       // What the linear estimate promised and the fit does not keep is no step.
       if (fall_of(result_.end, fitted.fit) < options_.thresholds.acceptance.evidence) {
         chosen_.erase(chosen_.begin() + static_cast<std::ptrdiff_t>(count - 1));
@@ -200,20 +200,20 @@ class Diagnoser {
 
   void list_candidates() {
     const std::vector<std::size_t> items = shown_items();
-    const AxisPlaces axes(machine_);
+    const effects::AxisPlaces axes(machine_);
     for (std::size_t i = 0; i < items.size(); ++i) {
       options_.progress(0.9 + 0.1 * static_cast<double>(i) / static_cast<double>(items.size()),
                         "fitting the candidates");
       const std::size_t item = items[i];
       CandidateFinding finding;
-      const FittedEffects fitted = fit_with({item});
+      const effects::FittedEffects fitted = fit_with({item});
       finding.candidate = fitted.effects[0];
       finding.add = add_string_of(item);
-      const Choice& choice = finding.candidate.choice;
+      const effects::Choice& choice = finding.candidate.choice;
       finding.axis = choice.axis;
       if (!finding.axis && choice.place) finding.axis = axes.axis_of(*choice.place);
-      for (const CandidateUnknown& unknown : finding.candidate.unknowns)
-        for (const ParameterEstimate& estimate : fitted.fit.estimates)
+      for (const effects::CandidateUnknown& unknown : finding.candidate.unknowns)
+        for (const fit::ParameterEstimate& estimate : fitted.fit.estimates)
           if (estimate.name == unknown.name) finding.parameters.push_back(estimate);
       finding.rms_after_um = fitted.fit.after.rms_um;
       finding.check_rms_before_um = base_.check.rms_um;
@@ -230,22 +230,22 @@ class Diagnoser {
 
   /// The residual at the end of the ladder with the errors that hang together taken out of the fit rows: what
   /// an independent reading would have left.
-  Eigen::VectorXd independent_residual(const Measurement& rows) const {
-    const NoiseModel& noise = result_.noise;
+  Eigen::VectorXd independent_residual(const model::Measurement& rows) const {
+    const fit::NoiseModel& noise = result_.noise;
     Eigen::VectorXd residual = result_.end.residual;
     if (noise.independent() && noise.own == 1) return residual;
-    const Eigen::VectorXd weights = fit_weights(rows);
+    const Eigen::VectorXd weights = fit::fit_weights(rows);
     std::vector<std::size_t> fitted;
     for (std::size_t i = 0; i < rows.observations.size(); ++i)
       if (weights[static_cast<Eigen::Index>(i)] > 0) fitted.push_back(i);
     Eigen::MatrixXd left = weights(fitted).cwiseProduct(residual(fitted));
-    const NoiseLayout layout = noise_layout(rows, fitted);
-    whiten(layout, noise, left);
+    const fit::NoiseLayout layout = fit::noise_layout(rows, fitted);
+    fit::whiten(layout, noise, left);
     if (!noise.steps.empty()) {
       // The fit knew nothing of the steps and gave way to them: what it did is taken out with them.
       const Eigen::MatrixXd &seen = finder_.evidence().absorbed(), named = pool_.columns(chosen_);
-      Eigen::MatrixXd columns = step_columns(layout, noise.steps, left.rows());
-      whiten(layout, noise, columns);
+      Eigen::MatrixXd columns = fit::step_columns(layout, noise.steps, left.rows());
+      fit::whiten(layout, noise, columns);
       if (seen.rows() == left.rows()) {  // else the search looked at every k-th row only
         const Eigen::Index steps = columns.cols();
         columns.conservativeResize(Eigen::NoChange, steps + seen.cols() + named.cols());
@@ -260,11 +260,12 @@ class Diagnoser {
   /// The instrument, where what hangs together in time or by run is as large as the readings' own noise;
   /// empty elsewhere.
   std::string drift_of_instrument() const {
-    const NoiseModel& noise = result_.noise;
+    const fit::NoiseModel& noise = result_.noise;
     double drift = std::hypot(noise.run, noise.drift);
-    for (const NoiseStep& step : noise.steps) drift = std::max(drift, std::abs(step.height));
+    for (const fit::NoiseStep& step : noise.steps) drift = std::max(drift, std::abs(step.height));
     if (drift < limits_.drift_share * noise.own || noise.support < limits_.drift_support) return {};
-    return "The instrument does not hold still: " + ::vernier::in_words(noise, result_.noise_unit_um) + ".";
+    return "The instrument does not hold still: " + ::vernier::fit::in_words(noise, result_.noise_unit_um) +
+           ".";
   }
 
   /// Is one of the candidates, whether it passed the tests or not, more than chance beside noise of the size
@@ -280,20 +281,20 @@ class Diagnoser {
   /// Does the fit at the end of the ladder leave noise? By chi^2 where the uncertainty is given; where chi^2
   /// is above it by so little that the uncertainty itself may be in doubt, and where none is given, by
   /// whether what is left has any structure. `rows`: for the machine at that end.
-  bool down_to_noise(const Measurement& rows) {
-    const Machine& machine = result_.end.machine;
-    StructureOptions structure;
+  bool down_to_noise(const model::Measurement& rows) {
+    const model::Machine& machine = result_.end.machine;
+    residual::StructureOptions structure;
     structure.fitted_parameters = static_cast<std::size_t>(result_.end.observability.rank);
     const Eigen::VectorXd left = independent_residual(rows);
-    result_.left = failure_picture(machine, rows, left, structure);
+    result_.left = residual::failure_picture(machine, rows, left, structure);
     const bool structured = result_.left.omnibus_p < limits_.structure;
     const double freedom = std::max(1.0, result_.end.freedom);
-    const Eigen::VectorXd weights = fit_weights(rows);
-    const NoiseModel& noise = result_.noise;
+    const Eigen::VectorXd weights = fit::fit_weights(rows);
+    const fit::NoiseModel& noise = result_.noise;
     const bool told = !noise.independent() || noise.own != 1;
     const double reduced =
         (told ? weights.cwiseProduct(left).squaredNorm() : result_.end.chi_square) / freedom;
-    if (!has_uncertainty(measurement_))
+    if (!fit::has_uncertainty(measurement_))
       return !structured || (!chosen_.empty() && is_mostly_explained() &&
                              finder_.growth_without(chosen_.front()) > limits_.larger_than_rest);
     // More noise than stated is believed where nothing that was looked for stands out of it, and where there
@@ -315,11 +316,11 @@ class Diagnoser {
   }
 
   void decide() {
-    const Measurement rows = rebind(measurement_, base_.machine, result_.end.machine);
-    const TimeBaseFinding clock = examine_time_base(measurement_, base_.residual);
+    const model::Measurement rows = model::rebind(measurement_, base_.machine, result_.end.machine);
+    const timebase::TimeBaseFinding clock = timebase::examine_time_base(measurement_, base_.residual);
     // What effects of the machine take away was no clock: a reading that comes late looks like one.
-    const bool explained =
-        !chosen_.empty() && is_mostly_explained() && !examine_time_base(rows, result_.end.residual).found;
+    const bool explained = !chosen_.empty() && is_mostly_explained() &&
+                           !timebase::examine_time_base(rows, result_.end.residual).found;
     if (clock.found && !explained) {
       result_.verdict = Verdict::kInstrument;
       result_.explanation = "The time base of the measurement: " + clock.why;
@@ -404,11 +405,11 @@ class Diagnoser {
   /// are two at one degree of freedom, or two that the check rows do not both bear out. 0: each stands for
   /// itself.
   std::size_t terms_without_standing() const {
-    std::vector<DofPlace> places;
+    std::vector<effects::DofPlace> places;
     bool apart = true;
     for (const std::size_t item : chosen_) {
       if (!pool_.is_custom(item)) continue;
-      const DofPlace place = pool_.candidate(item).terms.front().place;
+      const effects::DofPlace place = pool_.candidate(item).terms.front().place;
       apart =
           apart && proven_.contains(item) && std::find(places.begin(), places.end(), place) == places.end();
       places.push_back(place);
@@ -427,8 +428,8 @@ class Diagnoser {
       if (shown != shown_.end())
         result_.candidates[static_cast<std::size_t>(shown - shown_.begin())].aliases = aliases;
       if (!text.empty()) continue;
-      const Choice& choice = pool_.candidate(item).choice;
-      const Axis& axis = machine_.axes[*choice.axis];
+      const effects::Choice& choice = pool_.candidate(item).choice;
+      const model::Axis& axis = machine_.axes[*choice.axis];
       text = fmt::format("{}: {}, with any of {} periods: the positions of {} do not tell them apart. {:.5g}",
                          choice.effect->title, pool_.candidate(item).spoken, aliases.size() + 1, axis.name,
                          pool_[item].scored.scanned.front());
@@ -511,9 +512,9 @@ class Diagnoser {
 
   const DiagnoseOptions& options_;
   const VerdictThresholds& limits_;
-  const Measurement& measurement_;
-  Machine machine_;
-  FitResult base_;
+  const model::Measurement& measurement_;
+  model::Machine machine_;
+  fit::FitResult base_;
   std::string text_;  // of the machine, fitted
   Finder finder_;
   const Pool& pool_;                 // the finder's
@@ -533,9 +534,10 @@ bool is_named(Verdict verdict) {
 }  // namespace
 
 std::string said_of(const CandidateFinding& finding) {
-  std::vector<SpokenValue> values;
-  for (const ParameterEstimate& one : finding.parameters) values.push_back({one.name, one.value, one.std});
-  return spoken_with_size(finding.candidate, values);
+  std::vector<effects::SpokenValue> values;
+  for (const fit::ParameterEstimate& one : finding.parameters)
+    values.push_back({one.name, one.value, one.std});
+  return effects::spoken_with_size(finding.candidate, values);
 }
 
 const char* verdict_name(Verdict verdict) {
@@ -554,22 +556,22 @@ const char* verdict_name(Verdict verdict) {
   return "consistent";
 }
 
-Diagnosis diagnose(const std::string& text, const Machine& given, const Measurement& measurement,
-                   const DiagnoseOptions& options) {
-  require_time_order(measurement);
-  const Machine machine = with_base_row(given);
+Diagnosis diagnose(const std::string& text, const model::Machine& given,
+                   const model::Measurement& measurement, const DiagnoseOptions& options) {
+  model::require_time_order(measurement);
+  const model::Machine machine = effects::with_base_row(given);
   Diagnosis all = Diagnoser(text, machine, measurement, options).run();
   // Outliers beside effects that were found are not the whole answer either.
   const bool more_than_outliers =
       all.verdict == Verdict::kInstrument && all.ladder.size() > 1 && !all.time_base.found;
   // Without u nothing says that readings far off are too far: they are looked for whatever was found.
-  const bool by_spread = !has_uncertainty(measurement) && !all.time_base.found;
+  const bool by_spread = !fit::has_uncertainty(measurement) && !all.time_base.found;
   if (all.verdict != Verdict::kUnexplained && !more_than_outliers && !by_spread) return all;
-  const Measurement rows = rebind(measurement, all.base.machine, all.end.machine);
+  const model::Measurement rows = model::rebind(measurement, all.base.machine, all.end.machine);
   const auto rest =
       without_gross_outliers(all.end.machine, rows, all.end.residual, options.thresholds.verdict);
   if (!rest || rows.rows() != measurement.rows()) return all;
-  Diagnosis clean = Diagnoser(text, machine, select_rows(measurement, rest->kept), options).run();
+  Diagnosis clean = Diagnoser(text, machine, model::select_rows(measurement, rest->kept), options).run();
   if (by_spread && clean.verdict == Verdict::kConsistent) {
     clean.verdict = Verdict::kInstrument;
     clean.explanation = "Outliers, and noise beside them. " + rest->sentence;
@@ -583,4 +585,4 @@ Diagnosis diagnose(const std::string& text, const Machine& given, const Measurem
   return all;
 }
 
-}  // namespace vernier
+}  // namespace vernier::diagnose

@@ -14,14 +14,14 @@
 #include "tools/residual/structure.h"
 #include "tools/timebase/time_base.h"
 
-namespace vernier {
+namespace vernier::diagnose {
 
 enum class Verdict : std::uint8_t { kMissingEffect, kAmbiguous, kUnexplained, kInstrument, kConsistent };
 /// As the JSON result writes it: "missing-effect" ...
 const char* verdict_name(Verdict verdict);
 
 struct DiagnoseOptions {
-  std::vector<Effect> effects = built_in_effects();
+  std::vector<effects::Effect> effects = effects::built_in_effects();
   std::size_t most_effects = 5;  // steps of the ladder
   std::size_t shown = 8;         // candidates that are fitted and listed
   DiagnoseThresholds thresholds;
@@ -30,10 +30,10 @@ struct DiagnoseOptions {
 
 /// What one candidate would do alone, fitted in earnest.
 struct CandidateFinding {
-  Candidate candidate;
+  effects::Candidate candidate;
   std::string add;
   std::optional<std::size_t> axis;  // that drives it, else that of the receiving transform
-  std::vector<ParameterEstimate> parameters;
+  std::vector<fit::ParameterEstimate> parameters;
   std::optional<double> rms_after_um, check_rms_before_um, check_rms_after_um;
   double share = 0, p_value = 1;
   double score = 0;       // fall of the criterion (extended BIC); above 6 is evidence
@@ -62,19 +62,19 @@ struct LadderStep {
 struct Diagnosis {
   Verdict verdict = Verdict::kConsistent;
   std::string explanation;
-  FitResult base;
+  fit::FitResult base;
   std::vector<CandidateFinding> candidates;
   std::vector<LadderStep> ladder;
   std::vector<std::string> next_measurement;
   std::optional<std::size_t> runner_up;  // index into candidates
   double runner_up_distance = 0;         // by how much its criterion is worse
   std::string machine_text;              // with all effects of the ladder, fitted
-  FitResult end;                         // of that machine
-  FailurePicture failure;                // where the fitted model fails, before anything is added
-  FailurePicture left;                   // and at the end of the ladder
-  TimeBaseFinding time_base;             // `found` where the clock is the likelier cause
+  fit::FitResult end;                    // of that machine
+  residual::FailurePicture failure;      // where the fitted model fails, before anything is added
+  residual::FailurePicture left;         // and at the end of the ladder
+  timebase::TimeBaseFinding time_base;   // `found` where the clock is the likelier cause
   std::size_t searched = 0;              // candidates looked at
-  NoiseModel noise;                      // how the errors of the readings hang together
+  fit::NoiseModel noise;                 // how the errors of the readings hang together
   double noise_unit_um = 1;              // um that 1 of it stands for
 };
 
@@ -82,7 +82,7 @@ struct Diagnosis {
 /// all tests, and says which of the five answers the data give (FORMATS section 3). `text`: of the machine
 /// file. Check rows enter nothing but the figures that judge. The candidates point
 /// into options.effects, which must outlive them. Throws InputError. tool.
-Diagnosis diagnose(const std::string& text, const Machine& given, const Measurement& measurement,
-                   const DiagnoseOptions& options = {});
+Diagnosis diagnose(const std::string& text, const model::Machine& given,
+                   const model::Measurement& measurement, const DiagnoseOptions& options = {});
 
-}  // namespace vernier
+}  // namespace vernier::diagnose

@@ -12,43 +12,47 @@
 #include "tools/model/chain_rows.h"
 #include "tools/vibration/signal_features.h"
 
-namespace vernier {
+namespace vernier::diagnose {
 namespace {
 
-bool is_symbol(const Expr& node, std::string_view name) {
-  return node.op == Op::kSymbol && node.name == name;
+bool is_symbol(const model::Expr& node, std::string_view name) {
+  return node.op == model::Op::kSymbol && node.name == name;
 }
 
-bool is_wave(const Expr& node) { return node.op == Op::kSin || node.op == Op::kCos; }
+bool is_wave(const model::Expr& node) { return node.op == model::Op::kSin || node.op == model::Op::kCos; }
 
 /// Does a node of the term answer that stands within no function?
 template <class Is>
-bool any_outside_functions(const Expr& node, const Is& is) {
-  return is(node) || (function_name(node.op) == nullptr &&
+bool any_outside_functions(const model::Expr& node, const Is& is) {
+  return is(node) || (model::function_name(node.op) == nullptr &&
                       std::any_of(node.args.begin(), node.args.end(),
                                   [&](const auto& arg) { return any_outside_functions(*arg, is); }));
 }
 
-bool grows_with_axis(const Expr& node) {
-  return any_outside_functions(node, [](const Expr& one) { return is_symbol(one, "{q}"); });
+bool grows_with_axis(const model::Expr& node) {
+  return any_outside_functions(node, [](const model::Expr& one) { return is_symbol(one, "{q}"); });
 }
 
 /// Is {q} raised to a power, or multiplied by a sum?
-bool is_bent_or_mixed(const Expr& node) {
-  if (node.op == Op::kPower) return grows_with_axis(*node.args[0]);
-  const auto is_sum = [](const ExprPtr& one) { return one->op == Op::kAdd || one->op == Op::kSubtract; };
-  return node.op == Op::kMultiply && (is_sum(node.args[0]) || is_sum(node.args[1])) && grows_with_axis(node);
+bool is_bent_or_mixed(const model::Expr& node) {
+  if (node.op == model::Op::kPower) return grows_with_axis(*node.args[0]);
+  const auto is_sum = [](const model::ExprPtr& one) {
+    return one->op == model::Op::kAdd || one->op == model::Op::kSubtract;
+  };
+  return node.op == model::Op::kMultiply && (is_sum(node.args[0]) || is_sum(node.args[1])) &&
+         grows_with_axis(node);
 }
 
 /// A sign that a wave sets: one value only where the wave never crosses zero.
-bool is_switched_by_wave(const Expr& node) {
-  return (node.op == Op::kSign && is_wave(*node.args[0])) ||
+bool is_switched_by_wave(const model::Expr& node) {
+  return (node.op == model::Op::kSign && is_wave(*node.args[0])) ||
          std::any_of(node.args.begin(), node.args.end(),
-                     [](const ExprPtr& arg) { return is_switched_by_wave(*arg); });
+                     [](const model::ExprPtr& arg) { return is_switched_by_wave(*arg); });
 }
 
-bool any_tree(const EffectForm& form, bool (*is)(const Expr&)) {
-  return std::any_of(form.trees.begin(), form.trees.end(), [&](const ExprPtr& tree) { return is(*tree); });
+bool any_tree(const effects::EffectForm& form, bool (*is)(const model::Expr&)) {
+  return std::any_of(form.trees.begin(), form.trees.end(),
+                     [&](const model::ExprPtr& tree) { return is(*tree); });
 }
 
 std::vector<double> logarithmic(double low, double high, std::size_t count) {
@@ -61,7 +65,7 @@ std::vector<double> logarithmic(double low, double high, std::size_t count) {
 /// Lists the candidates of one survey.
 class Enumerator {
  public:
-  Enumerator(const Evidence& evidence, const std::vector<Effect>& effects)
+  Enumerator(const Evidence& evidence, const std::vector<effects::Effect>& effects)
       : evidence_(evidence),
         thresholds_(evidence.thresholds().candidates),
         machine_(evidence.machine()),
@@ -77,14 +81,14 @@ class Enumerator {
     find_sums();
     has_normals_ =
         std::any_of(evidence.measurement().observations.begin(), evidence.measurement().observations.end(),
-                    [](const Observation& o) { return o.kind == ObservationKind::kD; });
+                    [](const model::Observation& o) { return o.kind == model::ObservationKind::kD; });
   }
 
   std::vector<ScannedCandidate> all() {
-    for (const Effect& effect : effects_)
-      for (const EffectForm& form : effect.forms) {
+    for (const effects::Effect& effect : effects_)
+      for (const effects::EffectForm& form : effect.forms) {
         if (!goes_with_readings(effect, form)) continue;
-        Choice choice;
+        effects::Choice choice;
         choice.effect = &effect;
         choice.form = &form;
         with_inputs(choice);
@@ -94,45 +98,45 @@ class Enumerator {
 
  private:
   /// Touches are readings along a normal; readings that a trigger takes have no second clock.
-  bool goes_with_readings(const Effect& effect, const EffectForm& form) const {
+  bool goes_with_readings(const effects::Effect& effect, const effects::EffectForm& form) const {
     if (effect.needs_touches) return has_normals_;
-    return !(form.place == PlaceRule::kEachAxis && has_normals_);
+    return !(form.place == effects::PlaceRule::kEachAxis && has_normals_);
   }
 
-  bool answers(const DofPlace& place) const {
+  bool answers(const effects::DofPlace& place) const {
     return evidence_.response(evidence_.index_of(place)).squaredNorm() > 0;
   }
 
   /// The row that stands in at the base takes what no row of the file can express, and nothing that an axis
   /// drives: what moves or bends with an axis is carried by it.
-  bool is_open(const DofPlace& place, const Choice& choice) const {
-    if (!is_stand_in(machine_, place)) return true;
+  bool is_open(const effects::DofPlace& place, const effects::Choice& choice) const {
+    if (!effects::is_stand_in(machine_, place)) return true;
     return !choice.axis && std::find(distinct_.begin(), distinct_.end(), place) != distinct_.end();
   }
 
   /// Which places turn about a horizontal axis or move along gravity, on average over some rows.
   void find_sag() {
-    Machine probed = machine_;
+    model::Machine probed = machine_;
     std::vector<char> active(probed.statics.size(), 0);
-    for (const DofPlace& place : evidence_.places()) add_probe(probed, place);
+    for (const effects::DofPlace& place : evidence_.places()) effects::add_probe(probed, place);
     active.resize(probed.statics.size(), 1);
     active.resize(probed.statics.size() + 6 * probed.axes.size(), 0);
-    Machine table = machine_;
+    model::Machine table = machine_;
     table.tool.clear();  // W^-1 alone: from the base frame to the workpiece
-    const ChainRows chain(probed, evidence_.measurement().states, active);
-    const ChainRows base(table, evidence_.measurement().states);
+    const model::ChainRows chain(probed, evidence_.measurement().states, active);
+    const model::ChainRows base(table, evidence_.measurement().states);
     const Eigen::Vector3d gravity(machine_.gravity[0], machine_.gravity[1], machine_.gravity[2]);
     std::vector<double> across(evidence_.places().size(), 0), along(across.size(), 0);
     const std::size_t stride = std::max<std::size_t>(1, evidence_.measurement().rows() / 50);
     double count = 0;
-    std::vector<Twist> twists;
+    std::vector<model::Twist> twists;
     for (std::size_t row = 0; row < evidence_.measurement().rows(); row += stride) {
       chain.pose(row, twists);
       const Eigen::Vector3d down = base.pose(row).rotation * gravity;
       ++count;
       for (std::size_t k = 0; k < twists.size(); ++k) {
         const std::size_t place = chain.keys()[k] - machine_.statics.size();
-        if (is_angle(machine_, evidence_.places()[place])) {
+        if (effects::is_angle(machine_, evidence_.places()[place])) {
           if (twists[k].rotation.norm() > 0)
             across[place] +=
                 std::sqrt(1 - std::min(1.0, std::pow(twists[k].rotation.normalized().dot(down), 2)));
@@ -142,7 +146,7 @@ class Enumerator {
       }
     }
     for (std::size_t i = 0; i < across.size(); ++i) {
-      const double share = is_angle(machine_, evidence_.places()[i]) ? across[i] : along[i];
+      const double share = effects::is_angle(machine_, evidence_.places()[i]) ? across[i] : along[i];
       const bool sags = share > thresholds_.sag_share * count;
       if (sags) sag_.push_back(evidence_.places()[i]);
     }
@@ -156,18 +160,18 @@ class Enumerator {
       if (machine_.axes[axis].rotary && own_[axis] && !own_[axis]->workpiece) rotary.push_back(axis);
     std::sort(rotary.begin(), rotary.end(),
               [&](std::size_t a, std::size_t b) { return own_[a]->transform < own_[b]->transform; });
-    const Machine nominal = nominal_machine(machine_);
+    const model::Machine nominal = model::nominal_machine(machine_);
     std::vector<double> references;
-    for (const Input& input : nominal.inputs) references.push_back(input.reference);
-    const States zero = make_states(1, nominal.axes.size(), references);
-    Machine probed = nominal;
+    for (const model::Input& input : nominal.inputs) references.push_back(input.reference);
+    const model::States zero = model::make_states(1, nominal.axes.size(), references);
+    model::Machine probed = nominal;
     std::vector<char> active(probed.statics.size(), 0);
-    for (const std::size_t axis : rotary) add_probe(probed, *own_[axis]);
+    for (const std::size_t axis : rotary) effects::add_probe(probed, *own_[axis]);
     active.resize(probed.statics.size(), 1);
     active.resize(probed.statics.size() + 6 * probed.axes.size(), 0);
     std::vector<Eigen::Vector3d> direction(rotary.size(), Eigen::Vector3d::Zero());
-    const ChainRows chain(probed, zero, active);
-    std::vector<Twist> twists;
+    const model::ChainRows chain(probed, zero, active);
+    std::vector<model::Twist> twists;
     chain.pose(0, twists);
     for (std::size_t k = 0; k < twists.size(); ++k)
       direction[chain.keys()[k] - machine_.statics.size()] = twists[k].rotation.normalized();
@@ -178,27 +182,28 @@ class Enumerator {
         --first;
       for (std::size_t last = i; last < rotary.size(); ++last) {
         if (std::abs(direction[last].dot(direction[i])) < thresholds_.parallel_cosine) break;
-        ExprPtr sum = make_symbol(machine_.axes[rotary[first]].name);
+        model::ExprPtr sum = model::make_symbol(machine_.axes[rotary[first]].name);
         for (std::size_t k = first + 1; k <= last; ++k) {
-          const Op op = direction[k].dot(direction[first]) < 0 ? Op::kSubtract : Op::kAdd;
-          sum = make_node(op, {sum, make_symbol(machine_.axes[rotary[k]].name)});
+          const model::Op op =
+              direction[k].dot(direction[first]) < 0 ? model::Op::kSubtract : model::Op::kAdd;
+          sum = model::make_node(op, {sum, model::make_symbol(machine_.axes[rotary[k]].name)});
         }
-        sums_[rotary[i]].push_back(to_text(*sum));
+        sums_[rotary[i]].push_back(model::to_text(*sum));
       }
     }
   }
 
-  void with_inputs(const Choice& choice) {
-    const EffectForm& form = *choice.form;
+  void with_inputs(const effects::Choice& choice) {
+    const effects::EffectForm& form = *choice.form;
     if (!form.asks_for_input()) return with_axis(choice);
-    const InputClass wanted = form.asks_for("T")   ? InputClass::kTemperature
-                              : form.asks_for("L") ? InputClass::kLoad
-                              : form.asks_for("F") ? InputClass::kFeature
-                                                   : InputClass::kOther;
+    const effects::InputClass wanted = form.asks_for("T")   ? effects::InputClass::kTemperature
+                                       : form.asks_for("L") ? effects::InputClass::kLoad
+                                       : form.asks_for("F") ? effects::InputClass::kFeature
+                                                            : effects::InputClass::kOther;
     for (std::size_t i = 0; i < machine_.inputs.size(); ++i) {
-      if (class_of_input(machine_.inputs[i]) != wanted) continue;
-      if (wanted == InputClass::kOther && is_like_a_clock(i)) continue;
-      Choice one = choice;
+      if (effects::class_of_input(machine_.inputs[i]) != wanted) continue;
+      if (wanted == effects::InputClass::kOther && is_like_a_clock(i)) continue;
+      effects::Choice one = choice;
       one.inputs = {machine_.inputs[i].name};
       one.units = {machine_.inputs[i].unit};
       if (form.asks_for("ref")) one.reference = evidence_.reference_of(i);
@@ -207,8 +212,8 @@ class Enumerator {
         continue;
       }
       for (std::size_t k = i + 1; k < machine_.inputs.size(); ++k) {
-        if (class_of_input(machine_.inputs[k]) != wanted) continue;
-        Choice two = one;
+        if (effects::class_of_input(machine_.inputs[k]) != wanted) continue;
+        effects::Choice two = one;
         two.inputs.push_back(machine_.inputs[k].name);
         two.units.push_back(machine_.inputs[k].unit);
         with_axis(two);
@@ -232,33 +237,34 @@ class Enumerator {
     return std::abs(common) > thresholds_.like_a_clock * both.col(0).norm() * both.col(1).norm();
   }
 
-  void with_axis(Choice choice) {
-    const EffectForm& form = *choice.form;
-    const bool driven = form.asks_for("q") || form.asks_for("hats") || form.place == PlaceRule::kOwn ||
-                        form.place == PlaceRule::kCross || form.place == PlaceRule::kTurn ||
-                        form.place == PlaceRule::kJoint;
-    if (form.place == PlaceRule::kEachAxis || !driven) return with_place(choice);
+  void with_axis(effects::Choice choice) {
+    const effects::EffectForm& form = *choice.form;
+    const bool driven = form.asks_for("q") || form.asks_for("hats") ||
+                        form.place == effects::PlaceRule::kOwn || form.place == effects::PlaceRule::kCross ||
+                        form.place == effects::PlaceRule::kTurn || form.place == effects::PlaceRule::kJoint;
+    if (form.place == effects::PlaceRule::kEachAxis || !driven) return with_place(choice);
     for (std::size_t axis = 0; axis < machine_.axes.size(); ++axis) {
       if (!own_[axis]) continue;
       const bool turns =
-          form.any([](const Expr& node) { return is_wave(node) && is_symbol(*node.args[0], "{q}"); });
+          form.any([](const model::Expr& node) { return is_wave(node) && is_symbol(*node.args[0], "{q}"); });
       if (turns && !machine_.axes[axis].rotary) continue;  // degrees of a turn, not millimetres
       // Once per turn; what gravity does to an arm has that period whatever its travel.
-      const bool own_wave =
-          form.place == PlaceRule::kOwn || form.place == PlaceRule::kCross || form.place == PlaceRule::kTurn;
+      const bool own_wave = form.place == effects::PlaceRule::kOwn ||
+                            form.place == effects::PlaceRule::kCross ||
+                            form.place == effects::PlaceRule::kTurn;
       const double travel = range_[axis].high - range_[axis].low;
       if (turns && own_wave && travel < thresholds_.least_of_a_turn * 360) continue;
       if (!turns && machine_.axes[axis].rotary && !has_meaning_of_turns(form)) continue;
-      Choice one = choice;
+      effects::Choice one = choice;
       one.axis = axis;
       set_range(one, axis);
-      if (form.place != PlaceRule::kPair) {
+      if (form.place != effects::PlaceRule::kPair) {
         with_place(one);
         continue;
       }
       for (std::size_t other = axis + 1; other < machine_.axes.size(); ++other) {
         if (!own_[other] || machine_.axes[axis].rotary || machine_.axes[other].rotary) continue;
-        Choice two = one;
+        effects::Choice two = one;
         two.axis2 = other;
         with_place(two);
       }
@@ -266,113 +272,113 @@ class Enumerator {
   }
 
   /// A power of an angle says nothing: errors of a rotary axis are periodic, or a table.
-  static bool has_meaning_of_turns(const EffectForm& form) {
-    const auto bent = [](const Expr& tree) { return any_outside_functions(tree, is_bent_or_mixed); };
+  static bool has_meaning_of_turns(const effects::EffectForm& form) {
+    const auto bent = [](const model::Expr& tree) { return any_outside_functions(tree, is_bent_or_mixed); };
     if (form.asks_for("mid") || any_tree(form, bent)) return false;
-    return form.place == PlaceRule::kOwn || !any_tree(form, grows_with_axis);
+    return form.place == effects::PlaceRule::kOwn || !any_tree(form, grows_with_axis);
   }
 
   /// Hats stand on the range that was measured, waves on the declared one where that was measured too.
-  void set_range(Choice& choice, std::size_t axis) const {
+  void set_range(effects::Choice& choice, std::size_t axis) const {
     // Outwards to a thousandth of the range, so that the term can be read.
     const double span = range_[axis].high - range_[axis].low;
     const double digit = span > 0 ? std::pow(10, std::floor(std::log10(span / 1000))) : 1;
     choice.from = std::floor(range_[axis].low / digit) * digit;
     choice.to = std::ceil(range_[axis].high / digit) * digit;
-    const Axis& item = machine_.axes[axis];
+    const model::Axis& item = machine_.axes[axis];
     if (choice.form->asks_for("hats") || !item.min || !item.max) return;
     if (choice.to - choice.from < thresholds_.declared_range_share * (*item.max - *item.min)) return;
     choice.from = *item.min;
     choice.to = *item.max;
   }
 
-  void with_place(Choice& choice) {
-    const EffectForm& form = *choice.form;
-    const auto at_each = [&](const std::vector<DofPlace>& places, const auto& admitted) {
-      for (const DofPlace& place : places)
+  void with_place(effects::Choice& choice) {
+    const effects::EffectForm& form = *choice.form;
+    const auto at_each = [&](const std::vector<effects::DofPlace>& places, const auto& admitted) {
+      for (const effects::DofPlace& place : places)
         if (answers(place) && is_open(place, choice) && admitted(place)) {
-          Choice one = choice;
+          effects::Choice one = choice;
           one.place = place;
           with_sum(one);
         }
     };
     const auto own = choice.axis ? own_[*choice.axis] : std::nullopt;
-    const auto at_own_transform = [&](const DofPlace& p) {
+    const auto at_own_transform = [&](const effects::DofPlace& p) {
       return own && p.workpiece == own->workpiece && p.transform == own->transform;
     };
     const bool rotary = choice.axis && machine_.axes[*choice.axis].rotary;
     switch (form.place) {
-      case PlaceRule::kOwn:
+      case effects::PlaceRule::kOwn:
         if (needs_linear(form) && rotary) return;
-        at_each({*own}, [](const DofPlace&) { return true; });
+        at_each({*own}, [](const effects::DofPlace&) { return true; });
         break;
-      case PlaceRule::kCross:
-        at_each(evidence_.places(), [&](const DofPlace& p) {
-          return at_own_transform(p) && !(p == *own) && !is_angle(machine_, p);
+      case effects::PlaceRule::kCross:
+        at_each(evidence_.places(), [&](const effects::DofPlace& p) {
+          return at_own_transform(p) && !(p == *own) && !effects::is_angle(machine_, p);
         });
         break;
-      case PlaceRule::kTurn:
-        at_each(evidence_.places(), [&](const DofPlace& p) {
-          return at_own_transform(p) && !(p == *own) && is_angle(machine_, p);
+      case effects::PlaceRule::kTurn:
+        at_each(evidence_.places(), [&](const effects::DofPlace& p) {
+          return at_own_transform(p) && !(p == *own) && effects::is_angle(machine_, p);
         });
         break;
-      case PlaceRule::kLength:
-      case PlaceRule::kAngle:
-        at_each(distinct_, [&](const DofPlace& p) {
-          return is_angle(machine_, p) == (form.place == PlaceRule::kAngle);
+      case effects::PlaceRule::kLength:
+      case effects::PlaceRule::kAngle:
+        at_each(distinct_, [&](const effects::DofPlace& p) {
+          return effects::is_angle(machine_, p) == (form.place == effects::PlaceRule::kAngle);
         });
         break;
-      case PlaceRule::kBase:
-      case PlaceRule::kBaseTurn:
-        at_each(carrier_places(machine_), [&](const DofPlace& p) {
-          return is_angle(machine_, p) == (form.place == PlaceRule::kBaseTurn);
+      case effects::PlaceRule::kBase:
+      case effects::PlaceRule::kBaseTurn:
+        at_each(effects::carrier_places(machine_), [&](const effects::DofPlace& p) {
+          return effects::is_angle(machine_, p) == (form.place == effects::PlaceRule::kBaseTurn);
         });
         break;
-      case PlaceRule::kSag:
+      case effects::PlaceRule::kSag:
         if (rotary && !form.any(is_wave)) return;
-        at_each(distinct_, [&](const DofPlace& p) {
-          const auto sags = [&](const DofPlace& x) {
+        at_each(distinct_, [&](const effects::DofPlace& p) {
+          const auto sags = [&](const effects::DofPlace& x) {
             return std::find(sag_.begin(), sag_.end(), x) != sag_.end();
           };
           return rotary ? sags(*own) && !(p == *own) : sags(p) && !at_own_transform(p);
         });
         break;
-      case PlaceRule::kJoint:
+      case effects::PlaceRule::kJoint:
         if (!rotary || std::find(sag_.begin(), sag_.end(), *own) == sag_.end()) return;
-        at_each({*own}, [](const DofPlace&) { return true; });
+        at_each({*own}, [](const effects::DofPlace&) { return true; });
         break;
-      case PlaceRule::kNormal:
-        if (has_normals_ && !base_places(machine_).empty()) with_sum(choice);
+      case effects::PlaceRule::kNormal:
+        if (has_normals_ && !effects::base_places(machine_).empty()) with_sum(choice);
         break;
-      case PlaceRule::kEachAxis:
-      case PlaceRule::kPair:
+      case effects::PlaceRule::kEachAxis:
+      case effects::PlaceRule::kPair:
         with_sum(choice);
     }
   }
 
   /// Effects that speak of lengths (thermal growth, squareness) mean no rotary axis.
-  static bool needs_linear(const EffectForm& form) { return form.asks_for("T"); }
+  static bool needs_linear(const effects::EffectForm& form) { return form.asks_for("T"); }
 
-  void with_sum(const Choice& choice) {
+  void with_sum(const effects::Choice& choice) {
     if (!choice.form->asks_for("sum")) return with_runs(choice);
     for (const std::string& sum : sums_[*choice.axis]) {
       // The two-link forms say the same as one link where the sum is the joint itself.
       if (choice.form->asks_for("q") && sum == machine_.axes[*choice.axis].name) continue;
-      Choice one = choice;
+      effects::Choice one = choice;
       one.sum = sum;
       with_runs(one);
     }
   }
 
-  void with_runs(const Choice& choice) {
+  void with_runs(const effects::Choice& choice) {
     if (!choice.form->asks_for("runs")) return with_hats(choice);
     std::set<std::size_t> seen;
     for (const std::size_t row : evidence_.rows()) seen.insert(evidence_.measurement().states.run[row]);
     if (seen.size() < 2) return;
     const auto& names = evidence_.measurement().states.run_names;
-    Choice all = choice;
+    effects::Choice all = choice;
     for (const std::size_t run : seen) {
-      Choice one = choice;
+      effects::Choice one = choice;
       one.runs = {names[run]};
       finish(one);
       if (run != *seen.begin()) all.runs.push_back(names[run]);
@@ -380,7 +386,7 @@ class Enumerator {
     if (all.runs.size() > 1 && all.runs.size() <= thresholds_.most_steps_of_runs) finish(all);
   }
 
-  void with_hats(const Choice& choice) {
+  void with_hats(const effects::Choice& choice) {
     if (choice.form->asks_for("hats")) {
       const auto nodes = static_cast<double>(choice.form->hats);
       const Evidence::Range& range = range_[*choice.axis];
@@ -393,12 +399,12 @@ class Enumerator {
 
   /// Was the axis read near every station of a table; of one that has a sense, in both of them? An end is
   /// reached in one.
-  bool is_each_hat_read(const Choice& choice) const {
+  bool is_each_hat_read(const effects::Choice& choice) const {
     const std::size_t axis = *choice.axis;
     const double length = range_[axis].high - range_[axis].low;
     const double spacing = length / static_cast<double>(choice.form->hats - 1);
     const std::string sense = "dir{q}";
-    const bool both = choice.form->any([&](const Expr& node) { return is_symbol(node, sense); });
+    const bool both = choice.form->any([&](const model::Expr& node) { return is_symbol(node, sense); });
     for (const int one : both ? std::vector<int>{-1, 1} : std::vector<int>{0}) {
       const std::vector<double> read =
           evidence_.places_read(axis, one, evidence_.thresholds().shape.apart * length);
@@ -414,9 +420,9 @@ class Enumerator {
     return true;
   }
 
-  std::vector<double> grid_of(const Choice& choice, const UnknownRule& rule) const {
+  std::vector<double> grid_of(const effects::Choice& choice, const effects::UnknownRule& rule) const {
     switch (rule.kind) {
-      case UnknownKind::kTime: {
+      case effects::UnknownKind::kTime: {
         const Evidence::Range range = evidence_.time_range();
         const double length = range.high - range.low;
         if (length <= 0) return {};
@@ -424,16 +430,16 @@ class Enumerator {
             std::max(thresholds_.time_least_steps * range.step, length / thresholds_.time_least_part),
             thresholds_.time_most * length, thresholds_.time_values);
       }
-      case UnknownKind::kTravel: {
+      case effects::UnknownKind::kTravel: {
         const Evidence::Range& range = range_[*choice.axis];
         const double length = range.high - range.low;
         if (length <= 0) return {};
         return logarithmic(length / thresholds_.travel_least_part, length / thresholds_.travel_most_part,
                            thresholds_.travel_values);
       }
-      case UnknownKind::kPeriod:
+      case effects::UnknownKind::kPeriod:
         return periods(*choice.axis);
-      case UnknownKind::kGrid:
+      case effects::UnknownKind::kGrid:
         return logarithmic(rule.low, rule.high, rule.count);
       default:
         return {};
@@ -464,18 +470,18 @@ class Enumerator {
     return grid;
   }
 
-  void finish(Choice choice) {
+  void finish(effects::Choice choice) {
     // Starts of the scanned unknowns: any value of the grid, to make the candidate whole.
     ScannedCandidate item;
-    for (const UnknownRule& rule : choice.effect->unknowns) {
-      if (rule.kind == UnknownKind::kLinear || !uses(*choice.form, rule.name)) continue;
+    for (const effects::UnknownRule& rule : choice.effect->unknowns) {
+      if (rule.kind == effects::UnknownKind::kLinear || !uses(*choice.form, rule.name)) continue;
       const std::vector<double> grid = grid_of(choice, rule);
       if (grid.empty()) return;
       choice.start[rule.name] = grid[grid.size() / 2];
     }
-    item.candidate = make_candidate(machine_, axes_, choice);
+    item.candidate = effects::make_candidate(machine_, axes_, choice);
     if (any_tree(*choice.form, is_switched_by_wave) && never_changes(item.candidate)) return;
-    for (const CandidateUnknown& unknown : scanned_unknowns(item.candidate))
+    for (const effects::CandidateUnknown& unknown : effects::scanned_unknowns(item.candidate))
       item.grid.push_back(grid_of(choice, *choice.effect->find_unknown(unknown.rule)));
     item.most_driven = thresholds_.driven_out;
     item.may_lose_columns = choice.form->asks_for("hats") || choice.runs.size() > 1;
@@ -484,11 +490,13 @@ class Enumerator {
   }
 
   /// Is the candidate's first term one value in all rows?
-  bool never_changes(const Candidate& candidate) const {
-    Machine scratch = machine_;
-    for (const std::size_t unknown : add_unknowns(scratch, candidate, {})) scratch.statics[unknown].value = 1;
-    const Column column = evaluate(scratch, *parse_expression_for(scratch, candidate.terms.front().text),
-                                   evidence_.measurement().states);
+  bool never_changes(const effects::Candidate& candidate) const {
+    model::Machine scratch = machine_;
+    for (const std::size_t unknown : effects::add_unknowns(scratch, candidate, {}))
+      scratch.statics[unknown].value = 1;
+    const model::Column column =
+        model::evaluate(scratch, *model::parse_expression_for(scratch, candidate.terms.front().text),
+                        evidence_.measurement().states);
     const auto& rows = evidence_.rows();
     return std::all_of(rows.begin(), rows.end(), [&](std::size_t row) {
       return column[static_cast<Eigen::Index>(row)] == column[static_cast<Eigen::Index>(rows.front())];
@@ -498,8 +506,8 @@ class Enumerator {
   /// A wave by itself is looked for below the grid too.
   void add_fine_periods(ScannedCandidate& item) {
     if (item.grid.size() != 1 || !item.candidate.choice.axis) return;
-    for (const CandidateUnknown& unknown : scanned_unknowns(item.candidate))
-      if (unknown.kind != UnknownKind::kPeriod) return;
+    for (const effects::CandidateUnknown& unknown : effects::scanned_unknowns(item.candidate))
+      if (unknown.kind != effects::UnknownKind::kPeriod) return;
     const std::size_t axis = *item.candidate.choice.axis;
     const auto known = fine_.find(axis);
     FinePeriods fine = known != fine_.end()
@@ -510,20 +518,20 @@ class Enumerator {
     if (fine.carrier.size() > 0) item.fine = std::move(fine);
   }
 
-  static bool uses(const EffectForm& form, const std::string& name) {
-    return form.any([&](const Expr& node) { return is_symbol(node, name); });
+  static bool uses(const effects::EffectForm& form, const std::string& name) {
+    return form.any([&](const model::Expr& node) { return is_symbol(node, name); });
   }
 
   const Evidence& evidence_;
   const CandidateThresholds& thresholds_;
-  const Machine& machine_;
-  AxisPlaces axes_;
-  const std::vector<Effect>& effects_;
-  std::vector<std::optional<DofPlace>> own_;
+  const model::Machine& machine_;
+  effects::AxisPlaces axes_;
+  const std::vector<effects::Effect>& effects_;
+  std::vector<std::optional<effects::DofPlace>> own_;
   std::vector<Evidence::Range> range_;
   std::vector<double> shortest_;             // period that the positions of an axis tell from longer ones
   std::map<std::size_t, FinePeriods> fine_;  // of an axis, without carrier
-  std::vector<DofPlace> distinct_, sag_;
+  std::vector<effects::DofPlace> distinct_, sag_;
   std::vector<std::vector<std::string>> sums_;
   bool has_normals_ = false;
   std::vector<ScannedCandidate> list_;
@@ -538,20 +546,22 @@ bool ScannedCandidate::is_driven_out(std::size_t unknown, double found, double v
   return !(value >= range.front() / most_driven && value <= range.back() * most_driven);
 }
 
-std::vector<DofPlace> distinct_places(const Evidence& evidence, bool angles_apart) {
-  std::vector<DofPlace> places;
+std::vector<effects::DofPlace> distinct_places(const Evidence& evidence, bool angles_apart) {
+  std::vector<effects::DofPlace> places;
   std::vector<Eigen::VectorXd> seen;
   std::vector<std::size_t> order(evidence.places().size());
   std::iota(order.begin(), order.end(), 0);
   std::stable_partition(order.begin(), order.end(), [&](std::size_t i) {
-    return !is_stand_in(evidence.machine(), evidence.places()[i]);
+    return !effects::is_stand_in(evidence.machine(), evidence.places()[i]);
   });
   for (const std::size_t i : order) {
     Eigen::VectorXd column = evidence.response(i);
     const double norm = column.norm();
     if (norm == 0) continue;
     column /= norm;
-    const auto is_kind = [&](const DofPlace& place) { return is_angle(evidence.machine(), place); };
+    const auto is_kind = [&](const effects::DofPlace& place) {
+      return effects::is_angle(evidence.machine(), place);
+    };
     bool known = false;
     for (std::size_t k = 0; k < seen.size() && !known; ++k)
       known = (!angles_apart || is_kind(places[k]) == is_kind(evidence.places()[i])) &&
@@ -564,8 +574,8 @@ std::vector<DofPlace> distinct_places(const Evidence& evidence, bool angles_apar
 }
 
 std::vector<ScannedCandidate> enumerate_candidates(const Evidence& evidence,
-                                                   const std::vector<Effect>& effects) {
+                                                   const std::vector<effects::Effect>& effects) {
   return Enumerator(evidence, effects).all();
 }
 
-}  // namespace vernier
+}  // namespace vernier::diagnose

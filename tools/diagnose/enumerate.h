@@ -7,11 +7,11 @@
 #include "tools/effects/candidate.h"
 #include "tools/effects/input_class.h"
 
-namespace vernier {
+namespace vernier::diagnose {
 
 /// A candidate, and the values over which its scanned unknowns are looked for.
 struct ScannedCandidate {
-  Candidate candidate;
+  effects::Candidate candidate;
   std::vector<std::vector<double>> grid;  // one list per unknown that is no coefficient, increasing
   bool may_lose_columns = false;          // hats: the model may absorb a part of their span
   FinePeriods fine;                       // of a wave: the periods below its grid
@@ -24,12 +24,12 @@ struct ScannedCandidate {
 /// Every effect of the catalogue at every place of the machine that the rule of its form admits and that the
 /// rows can tell apart, with every logged column as input whose unit fits. tool.
 std::vector<ScannedCandidate> enumerate_candidates(const Evidence& evidence,
-                                                   const std::vector<Effect>& effects);
+                                                   const std::vector<effects::Effect>& effects);
 
 /// A product of recorded quantities at one degree of freedom: k*X*(T-20).
 struct Product {
-  DofPlace place;
-  ExprPtr term;
+  effects::DofPlace place;
+  model::ExprPtr term;
   std::vector<std::string> inputs, units;
 };
 
@@ -41,6 +41,6 @@ std::vector<ScannedCandidate> enumerate_products(const Evidence& evidence,
 /// The degrees of freedom that the observations can tell apart: of those that do the same to all observations
 /// (all but 1e-7 of the direction) the first one, rows of the file before one that stands in. `angles_apart`:
 /// the first angle and the first length. tool.
-std::vector<DofPlace> distinct_places(const Evidence& evidence, bool angles_apart);
+std::vector<effects::DofPlace> distinct_places(const Evidence& evidence, bool angles_apart);
 
-}  // namespace vernier
+}  // namespace vernier::diagnose

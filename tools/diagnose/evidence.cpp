@@ -17,48 +17,48 @@
 #include "tools/model/evaluate.h"
 #include "tools/model/prediction.h"
 
-namespace vernier {
+namespace vernier::diagnose {
 namespace {
 
 /// All free parameters held: only the probes of a machine are left free.
-void hold_all(Machine& machine) {
-  for (Freedom& one : freedoms_of(machine)) one.set_free(false);
+void hold_all(model::Machine& machine) {
+  for (model::Freedom& one : model::freedoms_of(machine)) one.set_free(false);
 }
 
 /// Every how many rows one is kept, so that the Jacobian has no more than `most` numbers.
-std::size_t stride_of(const Measurement& all, std::size_t parameters, double most) {
+std::size_t stride_of(const model::Measurement& all, std::size_t parameters, double most) {
   const double numbers = static_cast<double>(all.observations.size()) * static_cast<double>(parameters + 60);
   return numbers <= most ? 1 : static_cast<std::size_t>(std::ceil(numbers / most));
 }
 
-Measurement thinned(const Measurement& all, std::size_t stride) {
+model::Measurement thinned(const model::Measurement& all, std::size_t stride) {
   if (stride == 1) return all;
   std::vector<std::size_t> keep;
   for (std::size_t row = 0; row < all.rows(); row += stride) keep.push_back(row);
-  return select_rows(all, keep);
+  return model::select_rows(all, keep);
 }
 
 }  // namespace
 
-Evidence::Evidence(const Machine& fitted, const Measurement& measurement,
+Evidence::Evidence(const model::Machine& fitted, const model::Measurement& measurement,
                    const DiagnoseThresholds& thresholds)
     : thresholds_(thresholds), machine_(fitted) {
-  const ParameterSet parameters(fitted, setups_of_fit_rows(measurement));
+  const model::ParameterSet parameters(fitted, fit::setups_of_fit_rows(measurement));
   const std::size_t stride = stride_of(measurement, parameters.size(), thresholds.evidence.most_numbers);
   stride_ = static_cast<double>(stride);
   measurement_ = thinned(measurement, stride);
-  position_ = commanded_states(measurement_).axis;
+  position_ = model::commanded_states(measurement_).axis;
   declared_ = fitted.inputs.size();
-  noise_known_ = with_u_ = has_uncertainty(measurement_);
+  noise_known_ = with_u_ = fit::has_uncertainty(measurement_);
   take_inputs();
-  const Eigen::VectorXd weights = fit_weights(measurement_);
+  const Eigen::VectorXd weights = fit::fit_weights(measurement_);
   for (std::size_t i = 0; i < measurement_.observations.size(); ++i)
     if (weights[static_cast<Eigen::Index>(i)] > 0) {
       observation_.push_back(i);
       rows_.push_back(measurement_.observations[i].row);
     }
   weight_ = weights(observation_);
-  layout_ = noise_layout(measurement_, observation_);
+  layout_ = fit::noise_layout(measurement_, observation_);
   respond();
   raw_residual_ = residual_;
   absorb();
@@ -67,12 +67,12 @@ Evidence::Evidence(const Machine& fitted, const Measurement& measurement,
 }
 
 void Evidence::take_inputs() {
-  for (const CandidateInput& candidate : measurement_.candidates) {
-    Input input;
+  for (const model::CandidateInput& candidate : measurement_.candidates) {
+    model::Input input;
     input.name = candidate.name;
     input.unit = candidate.unit;
     machine_.inputs.push_back(input);
-    Column column = candidate.value;
+    model::Column column = candidate.value;
     // An empty cell says nothing: the column's mean makes the least of it.
     double sum = 0, count = 0;
     for (const double value : column)
@@ -88,9 +88,10 @@ void Evidence::take_inputs() {
 }
 
 double Evidence::reference_of(std::size_t input) const {
-  const Input& one = machine_.inputs[input];
+  const model::Input& one = machine_.inputs[input];
   if (input < declared_) return one.reference;
-  if (class_of_input(one) == InputClass::kTemperature) return standard_reference(one.unit);
+  if (effects::class_of_input(one) == effects::InputClass::kTemperature)
+    return effects::standard_reference(one.unit);
   double sum = 0;
   for (const std::size_t row : rows_) sum += measurement_.states.input[input][static_cast<Eigen::Index>(row)];
   const double mean = rows_.empty() ? 0 : sum / static_cast<double>(rows_.size());
@@ -100,12 +101,12 @@ double Evidence::reference_of(std::size_t input) const {
 }
 
 void Evidence::respond() {
-  places_ = all_places(machine_);
-  Machine probed = machine_;
+  places_ = effects::all_places(machine_);
+  model::Machine probed = machine_;
   hold_all(probed);
-  for (const DofPlace& place : places_) add_probe(probed, place);
-  const ParameterSet probes(probed, {});
-  const Linearisation linear = linearise(probed, measurement_, probes);
+  for (const effects::DofPlace& place : places_) effects::add_probe(probed, place);
+  const model::ParameterSet probes(probed, {});
+  const model::Linearisation linear = model::linearise(probed, measurement_, probes);
   const Eigen::MatrixXd all(linear.jacobian);
   response_.resize(static_cast<Eigen::Index>(observation_.size()), all.cols());
   residual_.resize(response_.rows());
@@ -120,7 +121,7 @@ void Evidence::respond() {
 
 void Evidence::silence_rounding() {
   double largest[2] = {0, 0};
-  const auto kind = [&](std::size_t place) { return is_angle(machine_, places_[place]) ? 1 : 0; };
+  const auto kind = [&](std::size_t place) { return effects::is_angle(machine_, places_[place]) ? 1 : 0; };
   for (std::size_t i = 0; i < places_.size(); ++i)
     largest[kind(i)] = std::max(largest[kind(i)], response(i).norm());
   for (std::size_t i = 0; i < places_.size(); ++i)
@@ -130,10 +131,10 @@ void Evidence::silence_rounding() {
 
 void Evidence::find_reach(const Eigen::VectorXd& predicted) {
   // Of each length that is read, how far the model goes; a ball bar's own length says nothing of it.
-  std::map<ObservationKind, std::pair<double, double>> ranges;
+  std::map<model::ObservationKind, std::pair<double, double>> ranges;
   for (const std::size_t i : observation_) {
-    const ObservationKind kind = measurement_.observations[i].kind;
-    if (is_rotation(kind)) continue;
+    const model::ObservationKind kind = measurement_.observations[i].kind;
+    if (model::is_rotation(kind)) continue;
     const double value = predicted[static_cast<Eigen::Index>(i)];
     auto& range = ranges.try_emplace(kind, value, value).first->second;
     range = {std::min(range.first, value), std::max(range.second, value)};
@@ -142,10 +143,10 @@ void Evidence::find_reach(const Eigen::VectorXd& predicted) {
 }
 
 void Evidence::absorb() {
-  const ParameterSet parameters(machine_, setups_of_fit_rows(measurement_));
+  const model::ParameterSet parameters(machine_, fit::setups_of_fit_rows(measurement_));
   absorbed_.resize(residual_.size(), 0);
   if (parameters.size() == 0 && noise_.steps.empty()) return;
-  const Linearisation linear = linearise(machine_, measurement_, parameters);
+  const model::Linearisation linear = model::linearise(machine_, measurement_, parameters);
   const Eigen::MatrixXd all(linear.jacobian);
   Eigen::MatrixXd jacobian(residual_.size(), all.cols());
   for (std::size_t i = 0; i < observation_.size(); ++i)
@@ -154,7 +155,7 @@ void Evidence::absorb() {
   if (!noise_.steps.empty()) {
     jacobian.conservativeResize(Eigen::NoChange, all.cols() + static_cast<Eigen::Index>(noise_.steps.size()));
     jacobian.rightCols(static_cast<Eigen::Index>(noise_.steps.size())) =
-        step_columns(layout_, noise_.steps, residual_.size());
+        fit::step_columns(layout_, noise_.steps, residual_.size());
   }
   whiten(jacobian);
   Eigen::VectorXd scale = jacobian.colwise().norm();
@@ -208,7 +209,7 @@ std::vector<std::vector<Eigen::Index>> Evidence::readings_at_one_pose() const {
   std::map<std::tuple<std::size_t, int, std::vector<double>>, std::vector<Eigen::Index>> poses;
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     std::vector<double> position;
-    for (const Column& axis : position_) position.push_back(axis[static_cast<Eigen::Index>(rows_[i])]);
+    for (const model::Column& axis : position_) position.push_back(axis[static_cast<Eigen::Index>(rows_[i])]);
     const auto kind = static_cast<int>(measurement_.observations[observation_[i]].kind);
     poses[{measurement_.states.of(measurement_.states.setup, rows_[i]), kind, position}].push_back(
         static_cast<Eigen::Index>(i));
@@ -242,7 +243,8 @@ double Evidence::shared_pose_error(const Eigen::VectorXd& residual, const Eigen:
   const double least = thresholds_.evidence.pose_freedom;
   if (freedom_between < least || freedom_within < least || within <= 0) return 0;
   const double f = (between / freedom_between) / (within / freedom_within);
-  if (log_f_tail(f, freedom_between, freedom_within) > std::log(thresholds_.evidence.pose_chance)) return 0;
+  if (maths::log_f_tail(f, freedom_between, freedom_within) > std::log(thresholds_.evidence.pose_chance))
+    return 0;
   return (f - 1) * static_cast<double>(groups.size()) / count;
 }
 
@@ -252,36 +254,36 @@ void Evidence::weigh_poses(double share) {
   assume(noise_);
 }
 
-void Evidence::assume(const NoiseModel& noise) {
+void Evidence::assume(const fit::NoiseModel& noise) {
   noise_ = noise;
   noise_known_ = with_u_ || !noise.independent();
   Eigen::MatrixXd residual = raw_residual_;
   share_poses(residual);
-  log_determinant_ = vernier::whiten(layout_, noise_, residual);
+  log_determinant_ = vernier::fit::whiten(layout_, noise_, residual);
   for (const auto& readings : poses_)
     log_determinant_ += std::log(1 + static_cast<double>(readings.size()) * pose_share_);
   residual_ = residual;
   absorb();
 }
 
-NoiseModel Evidence::estimate(const Eigen::MatrixXd& raw, std::vector<NoiseStep> given) const {
+fit::NoiseModel Evidence::estimate(const Eigen::MatrixXd& raw, std::vector<fit::NoiseStep> given) const {
   const auto steps = static_cast<Eigen::Index>(given.size());
   Eigen::MatrixXd residual = raw_residual_;
   Eigen::MatrixXd fitted(raw_absorbed_.rows(), steps + raw_absorbed_.cols() + raw.cols());
-  fitted << step_columns(layout_, given, raw_residual_.size()), raw_absorbed_, raw;
+  fitted << fit::step_columns(layout_, given, raw_residual_.size()), raw_absorbed_, raw;
   share_poses(residual);
   share_poses(fitted);
   if (steps > 0) {
     const Eigen::VectorXd heights = fitted.completeOrthogonalDecomposition().solve(Eigen::VectorXd(residual));
     for (std::size_t k = 0; k < given.size(); ++k) given[k].height = heights[static_cast<Eigen::Index>(k)];
   }
-  fitted = orthonormal(fitted, 1e-6, nullptr);
+  fitted = maths::orthonormal(fitted, 1e-6, nullptr);
   residual -= fitted * (fitted.transpose() * residual);
-  NoiseModel noise = estimate_noise(layout_, residual, fitted, with_u_);
+  fit::NoiseModel noise = fit::estimate_noise(layout_, residual, fitted, with_u_);
   if (steps == 0) return noise;
   noise.steps.insert(noise.steps.begin(), given.begin(), given.end());
   Eigen::MatrixXd all(raw.rows(), raw.cols() + steps);
-  all << raw, step_columns(layout_, given, raw.rows());
+  all << raw, fit::step_columns(layout_, given, raw.rows());
   noise.support += (left_in_full(raw) - left_in_full(all)) / (noise.own * noise.own);
   return noise;
 }
@@ -289,7 +291,7 @@ NoiseModel Evidence::estimate(const Eigen::MatrixXd& raw, std::vector<NoiseStep>
 double Evidence::left_in_full(const Eigen::MatrixXd& raw) const {
   Eigen::MatrixXd fitted(raw_absorbed_.rows(), raw_absorbed_.cols() + raw.cols());
   fitted << raw_absorbed_, raw;
-  fitted = orthonormal(fitted, 1e-6, nullptr);
+  fitted = maths::orthonormal(fitted, 1e-6, nullptr);
   return (raw_residual_ - fitted * (fitted.transpose() * raw_residual_)).squaredNorm();
 }
 
@@ -302,8 +304,8 @@ Eigen::MatrixXd Evidence::offset_columns() const {
   return columns;
 }
 
-NoiseModel Evidence::noise_of_file() const {
-  NoiseModel noise = noise_;
+fit::NoiseModel Evidence::noise_of_file() const {
+  fit::NoiseModel noise = noise_;
   if (!noise.in_time) noise.time_constant *= stride_;
   return noise;
 }
@@ -319,7 +321,7 @@ void Evidence::share_poses(Eigen::MatrixXd& columns) const {
 
 void Evidence::whiten(Eigen::MatrixXd& columns) const {
   share_poses(columns);
-  if (!noise_.independent() || noise_.own != 1) vernier::whiten(layout_, noise_, columns);
+  if (!noise_.independent() || noise_.own != 1) vernier::fit::whiten(layout_, noise_, columns);
 }
 
 std::vector<int> Evidence::parts_of_runs() const {
@@ -338,25 +340,25 @@ std::vector<int> Evidence::parts_of_runs() const {
   return parts;
 }
 
-std::size_t Evidence::index_of(const DofPlace& place) const {
+std::size_t Evidence::index_of(const effects::DofPlace& place) const {
   return static_cast<std::size_t>(std::find(places_.begin(), places_.end(), place) - places_.begin());
 }
 
 ColumnMaker::ColumnMaker(const Evidence& evidence)
     : evidence_(evidence), scratch_(evidence.machine()), own_statics_(scratch_.statics.size()) {}
 
-Eigen::MatrixXd ColumnMaker::raw(const Candidate& candidate, const std::vector<double>& scanned) {
+Eigen::MatrixXd ColumnMaker::raw(const effects::Candidate& candidate, const std::vector<double>& scanned) {
   scratch_.statics.resize(own_statics_);
-  const std::vector<std::size_t> linear = add_unknowns(scratch_, candidate, scanned);
+  const std::vector<std::size_t> linear = effects::add_unknowns(scratch_, candidate, scanned);
   std::vector<char> active(scratch_.statics.size(), 0);
   for (const std::size_t unknown : linear) active[unknown] = 1;
   active.resize(scratch_.statics.size() + 6 * scratch_.axes.size(), 0);
   const std::vector<std::size_t>& rows = evidence_.rows();
   Eigen::MatrixXd result =
       Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(linear.size()));
-  Evaluator evaluate(scratch_, evidence_.measurement().states, active);
-  for (const CandidateTerm& term : candidate.terms) {
-    const ValueAndSlopes dual = evaluate(*parse_expression_for(scratch_, term.text));
+  model::Evaluator evaluate(scratch_, evidence_.measurement().states, active);
+  for (const effects::CandidateTerm& term : candidate.terms) {
+    const model::ValueAndSlopes dual = evaluate(*model::parse_expression_for(scratch_, term.text));
     const auto answer = evidence_.response(evidence_.index_of(term.place));
     for (const auto& [key, value] : dual.by) {
       const auto found = std::find(linear.begin(), linear.end(), key);
@@ -371,17 +373,20 @@ Eigen::MatrixXd ColumnMaker::raw(const Candidate& candidate, const std::vector<d
   return result;
 }
 
-Eigen::MatrixXd ColumnMaker::columns(const Candidate& candidate, const std::vector<double>& scanned) {
+Eigen::MatrixXd ColumnMaker::columns(const effects::Candidate& candidate,
+                                     const std::vector<double>& scanned) {
   Eigen::MatrixXd result = raw(candidate, scanned);
   evidence_.whiten(result);
   return result;
 }
 
-Eigen::MatrixXd Evidence::raw_columns(const Candidate& candidate, const std::vector<double>& scanned) const {
+Eigen::MatrixXd Evidence::raw_columns(const effects::Candidate& candidate,
+                                      const std::vector<double>& scanned) const {
   return ColumnMaker(*this).raw(candidate, scanned);
 }
 
-Eigen::MatrixXd Evidence::columns(const Candidate& candidate, const std::vector<double>& scanned) const {
+Eigen::MatrixXd Evidence::columns(const effects::Candidate& candidate,
+                                  const std::vector<double>& scanned) const {
   return ColumnMaker(*this).columns(candidate, scanned);
 }
 
@@ -417,7 +422,7 @@ std::vector<double> Evidence::places_read(std::size_t axis, int sense, double ap
 
 int Evidence::sense_of(std::size_t axis, std::size_t row) const {
   const auto at = static_cast<Eigen::Index>(row);
-  const Column& direction = measurement_.states.direction[axis];
+  const model::Column& direction = measurement_.states.direction[axis];
   if (measurement_.has_recorded("dir" + machine_.axes[axis].name)) return static_cast<int>(direction[at]);
   // Not told: the way from the row before, over repeats at one place.
   for (Eigen::Index before = at; before-- > 0;) {
@@ -440,4 +445,4 @@ Evidence::Range Evidence::time_range() const {
   return range;
 }
 
-}  // namespace vernier
+}  // namespace vernier::diagnose

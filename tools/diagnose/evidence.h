@@ -13,25 +13,26 @@
 #include "tools/model/machine.h"
 #include "tools/model/measurement.h"
 
-namespace vernier {
+namespace vernier::diagnose {
 
 /// Everything that a search needs of a fitted machine and its rows: what each degree of freedom does to each
 /// observation, what is left of the readings, and what the model's own free parameters could still absorb.
 class Evidence {
  public:
   /// `fitted`: the machine at its best fit; every logged column becomes an input. tool.
-  Evidence(const Machine& fitted, const Measurement& measurement, const DiagnoseThresholds& thresholds = {});
+  Evidence(const model::Machine& fitted, const model::Measurement& measurement,
+           const DiagnoseThresholds& thresholds = {});
 
   /// What every part of the search goes by.
   const DiagnoseThresholds& thresholds() const { return thresholds_; }
-  const Machine& machine() const { return machine_; }  // with every logged column as an input
-  const Measurement& measurement() const { return measurement_; }
+  const model::Machine& machine() const { return machine_; }  // with every logged column as an input
+  const model::Measurement& measurement() const { return measurement_; }
   /// Names of inputs that the user's machine does not declare start at this index.
   std::size_t declared_inputs() const { return declared_; }
   /// What an input is counted from: the declared reference, 20 degC, else a round number near its mean.
   double reference_of(std::size_t input) const;
-  const std::vector<DofPlace>& places() const { return places_; }
-  std::size_t index_of(const DofPlace& place) const;
+  const std::vector<effects::DofPlace>& places() const { return places_; }
+  std::size_t index_of(const effects::DofPlace& place) const;
 
   /// d reading / d (mm or deg at the place), weighted by 1/u, for the fit observations.
   auto response(std::size_t place) const { return response_.col(static_cast<Eigen::Index>(place)); }
@@ -39,7 +40,7 @@ class Evidence {
   const std::vector<std::size_t>& rows() const { return rows_; }
   /// Position that an axis was commanded to in each row of the measurement: a correction would make a pose
   /// of its own of every reading.
-  const Column& position(std::size_t axis) const { return position_[axis]; }
+  const model::Column& position(std::size_t axis) const { return position_[axis]; }
   const Eigen::VectorXd& weights() const { return weight_; }
   /// (measured - model) / u of the fit observations, its part within reach of the model removed.
   const Eigen::VectorXd& residual() const { return residual_; }
@@ -51,7 +52,7 @@ class Evidence {
 
   /// Columns of a candidate, one per linear unknown, unweighted in its own unit: weighted readings per unit
   /// of the unknown. `scanned`: values of the other unknowns, in their order.
-  Eigen::MatrixXd columns(const Candidate& candidate, const std::vector<double>& scanned) const;
+  Eigen::MatrixXd columns(const effects::Candidate& candidate, const std::vector<double>& scanned) const;
 
   /// Runs of the fit rows, for leaving them out: an index per fit observation. Where there is but one run,
   /// blocks of rows that follow one another.
@@ -69,22 +70,22 @@ class Evidence {
   void weigh_poses(double share);
   /// From now on the readings' errors count as hanging together like this (generalised least squares):
   /// residual, columns and what the model absorbs are whitened by it.
-  void assume(const NoiseModel& noise);
-  const NoiseModel& noise() const { return noise_; }
+  void assume(const fit::NoiseModel& noise);
+  const fit::NoiseModel& noise() const { return noise_; }
   /// log det of the covariance of the readings under that model.
   double log_determinant() const { return log_determinant_; }
   /// How the readings' errors hang together beside the model and columns that `raw_columns` gave.
   /// `given`: steps that are taken to be there, with the heights that they have beside all that.
-  NoiseModel estimate(const Eigen::MatrixXd& raw, std::vector<NoiseStep> given = {}) const;
-  const NoiseLayout& layout() const { return layout_; }
+  fit::NoiseModel estimate(const Eigen::MatrixXd& raw, std::vector<fit::NoiseStep> given = {}) const;
+  const fit::NoiseLayout& layout() const { return layout_; }
   /// Sum of squares of the weighted residual that the model and such columns leave, nothing whitened.
   double left_in_full(const Eigen::MatrixXd& raw) const;
   /// Columns of a candidate before any whitening.
-  Eigen::MatrixXd raw_columns(const Candidate& candidate, const std::vector<double>& scanned) const;
+  Eigen::MatrixXd raw_columns(const effects::Candidate& candidate, const std::vector<double>& scanned) const;
   /// Before any whitening: a column for each kind of reading, what the same offset in all of them does.
   Eigen::MatrixXd offset_columns() const;
   /// The noise model for the rows of the file where every k-th one was enough here.
-  NoiseModel noise_of_file() const;
+  fit::NoiseModel noise_of_file() const;
   /// That weighing, of columns over the fit observations.
   void whiten(Eigen::MatrixXd& columns) const;
 
@@ -119,21 +120,21 @@ class Evidence {
   std::vector<std::vector<Eigen::Index>> readings_at_one_pose() const;
 
   DiagnoseThresholds thresholds_;
-  Machine machine_;
-  Measurement measurement_;
+  model::Machine machine_;
+  model::Measurement measurement_;
   std::size_t declared_ = 0;
-  std::vector<DofPlace> places_;
+  std::vector<effects::DofPlace> places_;
   std::vector<std::size_t> observation_, rows_;  // of the fit observations
   Eigen::MatrixXd response_, absorbed_;
   Eigen::VectorXd weight_, residual_;
   std::vector<int> block_;
-  std::vector<Column> position_;
+  std::vector<model::Column> position_;
   std::vector<std::vector<Eigen::Index>> poses_;  // observations that share an error
   double pose_share_ = 0;
   bool noise_known_ = false, with_u_ = false;
   double stride_ = 1;  // of the rows that were kept
-  NoiseLayout layout_;
-  NoiseModel noise_;
+  fit::NoiseLayout layout_;
+  fit::NoiseModel noise_;
   double log_determinant_ = 0, reach_mm_ = 0;
   Eigen::VectorXd raw_residual_;
   Eigen::MatrixXd raw_absorbed_;
@@ -144,14 +145,14 @@ class Evidence {
 class ColumnMaker {
  public:
   explicit ColumnMaker(const Evidence& evidence);
-  Eigen::MatrixXd raw(const Candidate& candidate, const std::vector<double>& scanned);
+  Eigen::MatrixXd raw(const effects::Candidate& candidate, const std::vector<double>& scanned);
   /// The same, whitened.
-  Eigen::MatrixXd columns(const Candidate& candidate, const std::vector<double>& scanned);
+  Eigen::MatrixXd columns(const effects::Candidate& candidate, const std::vector<double>& scanned);
 
  private:
   const Evidence& evidence_;
-  Machine scratch_;
+  model::Machine scratch_;
   std::size_t own_statics_;
 };
 
-}  // namespace vernier
+}  // namespace vernier::diagnose

@@ -13,24 +13,24 @@
 #include "tools/maths/chance.h"
 #include "tools/model/chain.h"
 
-namespace vernier {
+namespace vernier::diagnose {
 namespace {
 
 /// Does one noise model say what another says, but for this share of the noise?
-bool is_alike(const NoiseModel& a, const NoiseModel& b, double share) {
+bool is_alike(const fit::NoiseModel& a, const fit::NoiseModel& b, double share) {
   const double same = share * std::max(a.total(), b.total());
   return std::abs(a.own - b.own) < same && std::abs(a.pose - b.pose) < same &&
          std::abs(a.run - b.run) < same && std::abs(a.drift - b.drift) < same && a.steps == b.steps;
 }
 
-std::vector<NoiseStep> set_ups_in(const NoiseModel& noise) {
-  std::vector<NoiseStep> steps = noise.steps;
-  std::erase_if(steps, [](const NoiseStep& step) { return !step.of_set_up(); });
+std::vector<fit::NoiseStep> set_ups_in(const fit::NoiseModel& noise) {
+  std::vector<fit::NoiseStep> steps = noise.steps;
+  std::erase_if(steps, [](const fit::NoiseStep& step) { return !step.of_set_up(); });
   return steps;
 }
 
 /// The same but for the readings' own noise.
-bool hangs_alike(NoiseModel a, const NoiseModel& b, double share) {
+bool hangs_alike(fit::NoiseModel a, const fit::NoiseModel& b, double share) {
   const double scale = b.own / a.own;
   a.own = b.own;
   a.pose *= scale;
@@ -41,9 +41,9 @@ bool hangs_alike(NoiseModel a, const NoiseModel& b, double share) {
 
 }  // namespace
 
-Finder::Finder(const Machine& fitted, const Measurement& measurement, const std::vector<Effect>& effects,
-               std::size_t most_effects, std::function<void(double, const std::string&)> progress,
-               const DiagnoseThresholds& thresholds)
+Finder::Finder(const model::Machine& fitted, const model::Measurement& measurement,
+               const std::vector<effects::Effect>& effects, std::size_t most_effects,
+               std::function<void(double, const std::string&)> progress, const DiagnoseThresholds& thresholds)
     : most_effects_(most_effects),
       progress_(std::move(progress)),
       evidence_(fitted, measurement, thresholds),
@@ -61,7 +61,7 @@ void Finder::find() {
     accept();
   }
   weigh_correlation();
-  if (!has_uncertainty(evidence_.measurement())) name_simplest();
+  if (!fit::has_uncertainty(evidence_.measurement())) name_simplest();
   if (!evidence_.noise().independent()) order_by_size();
 }
 
@@ -95,7 +95,7 @@ void Finder::name_simplest() {
 }
 
 void Finder::scan_beside(const std::vector<std::size_t>& items, double from, double to, std::size_t first) {
-  const Eigen::MatrixXd beside = orthonormal(pool_.columns(items), 1e-6, nullptr);
+  const Eigen::MatrixXd beside = maths::orthonormal(pool_.columns(items), 1e-6, nullptr);
   std::vector<Scored> scored = scanner_.scan(
       beside,
       [&](double share) {
@@ -137,8 +137,8 @@ std::vector<Product> Finder::best_products() {
   std::sort(order.begin(), order.end());
   std::vector<Product> best;
   for (std::size_t i = 0; i < std::min(thresholds_.extended, order.size()); ++i) {
-    const Choice& choice = pool_.candidate(order[i].second).choice;
-    best.push_back({*choice.place, parse_expression(choice.term), choice.inputs, choice.units});
+    const effects::Choice& choice = pool_.candidate(order[i].second).choice;
+    best.push_back({*choice.place, model::parse_expression(choice.term), choice.inputs, choice.units});
   }
   return best;
 }
@@ -231,7 +231,7 @@ Eigen::MatrixXd Finder::raw_columns(const std::vector<std::size_t>& items) const
   return all;
 }
 
-void Finder::search_under(const NoiseModel& noise) {
+void Finder::search_under(const fit::NoiseModel& noise) {
   evidence_.assume(noise);
   pool_.clear();
   chosen_.clear();
@@ -240,7 +240,7 @@ void Finder::search_under(const NoiseModel& noise) {
 }
 
 double Finder::priced_criterion() const {
-  const NoiseModel& used = evidence_.noise();
+  const fit::NoiseModel& used = evidence_.noise();
   // Of the readings' own scale only what is left of them counts (restricted likelihood), as in the
   // selection's criterion.
   const auto readings = static_cast<double>(evidence_.residual().size());
@@ -248,28 +248,28 @@ double Finder::priced_criterion() const {
   return evidence_.log_determinant() - own + criterion_ + used.price() * std::log(readings);
 }
 
-double Finder::settle_noise_from(NoiseModel noise) {
+double Finder::settle_noise_from(fit::NoiseModel noise) {
   constexpr int kMostRounds = 4;
   for (int round = 0; round < kMostRounds; ++round) {
     search_under(noise);
-    const NoiseModel next = evidence_.estimate(raw_columns(chosen_), set_ups_in(noise));
+    const fit::NoiseModel next = evidence_.estimate(raw_columns(chosen_), set_ups_in(noise));
     if (is_alike(next, noise, thresholds_.same_noise)) return priced_criterion();
     noise = next;
   }
   return std::numeric_limits<double>::infinity();
 }
 
-NoiseModel Finder::noise() const {
-  NoiseModel noise = evidence_.noise_of_file();
+fit::NoiseModel Finder::noise() const {
+  fit::NoiseModel noise = evidence_.noise_of_file();
   if (!noise.independent()) return noise;
-  const NoiseModel estimated = evidence_.estimate(raw_columns(chosen_));
+  const fit::NoiseModel estimated = evidence_.estimate(raw_columns(chosen_));
   noise.own = estimated.own;
   noise.support = estimated.support;
   return noise;
 }
 
 void Finder::share_poses() {
-  const Eigen::MatrixXd all = orthonormal(pool_.columns(chosen_), 1e-6, nullptr);
+  const Eigen::MatrixXd all = maths::orthonormal(pool_.columns(chosen_), 1e-6, nullptr);
   const Eigen::VectorXd left = evidence_.residual() - all * (all.transpose() * evidence_.residual());
   const double share = evidence_.shared_pose_error(left, all);
   if (share <= 0) return;
@@ -282,22 +282,22 @@ void Finder::weigh_correlation() {
   // The instrument is a rival of every name: errors that hang together may be its own drift, or what an
   // effect leaves of itself. Both ways are gone, from all that a search can explain and from nothing
   // explained, and the better one is taken.
-  const NoiseModel white = evidence_.noise();
-  const NoiseModel after_all = evidence_.estimate(raw_columns(chosen_));
-  const NoiseModel after_none =
+  const fit::NoiseModel white = evidence_.noise();
+  const fit::NoiseModel after_all = evidence_.estimate(raw_columns(chosen_));
+  const fit::NoiseModel after_none =
       chosen_.empty() ? after_all : evidence_.estimate(Eigen::MatrixXd(evidence_.residual().size(), 0));
   // A set of effects stands only with the noise that it leaves.
   const double same = thresholds_.same_noise;
   const bool stands = hangs_alike(after_all, white, same);
-  const std::optional<NoiseModel> set_ups = touched_anew(after_all);
+  const std::optional<fit::NoiseModel> set_ups = touched_anew(after_all);
   if (stands && !set_ups && hangs_alike(after_none, white, same)) return;
   double best = stands ? priced_criterion() : std::numeric_limits<double>::infinity();
-  NoiseModel kept = white;
+  fit::NoiseModel kept = white;
   bool is_current = true;  // do search and evidence stand as `kept` has them?
-  std::vector<NoiseModel> starts = {after_all};
+  std::vector<fit::NoiseModel> starts = {after_all};
   if (!is_alike(after_none, after_all, same)) starts.push_back(after_none);
   if (set_ups) starts.push_back(*set_ups);
-  for (const NoiseModel& start : starts) {
+  for (const fit::NoiseModel& start : starts) {
     if (hangs_alike(start, white, same)) continue;
     double value = settle_noise_from(start);
     if (chosen_.empty() && !is_one_offset(start)) value -= thresholds_.instrument_distance;
@@ -314,24 +314,24 @@ void Finder::weigh_correlation() {
   }
 }
 
-std::optional<NoiseModel> Finder::touched_anew(const NoiseModel& explained) const {
-  std::vector<NoiseStep> steps = set_up_steps(evidence_.layout());
+std::optional<fit::NoiseModel> Finder::touched_anew(const fit::NoiseModel& explained) const {
+  std::vector<fit::NoiseStep> steps = fit::set_up_steps(evidence_.layout());
   if (steps.empty()) return std::nullopt;
   const Eigen::MatrixXd none(evidence_.residual().size(), 0);
-  const Eigen::MatrixXd columns = step_columns(evidence_.layout(), steps, none.rows());
+  const Eigen::MatrixXd columns = fit::step_columns(evidence_.layout(), steps, none.rows());
   const double fall = evidence_.left_in_full(none) - evidence_.left_in_full(columns);
   const double price = static_cast<double>(steps.size()) * std::log(static_cast<double>(none.rows()));
   if (fall < (price + thresholds_.instrument_distance) * explained.own * explained.own) return std::nullopt;
   // From independent readings: what else hangs together may be a cause that is still to be found.
-  NoiseModel start = evidence_.estimate(none, std::move(steps));
+  fit::NoiseModel start = evidence_.estimate(none, std::move(steps));
   start.own = explained.own;
   start.pose = start.run = start.drift = 0;
   return start;
 }
 
-bool Finder::is_one_offset(const NoiseModel& noise) const {
+bool Finder::is_one_offset(const fit::NoiseModel& noise) const {
   if (noise.run <= 0 && noise.drift <= 0) return false;
-  const NoiseModel beside = evidence_.estimate(evidence_.offset_columns());
+  const fit::NoiseModel beside = evidence_.estimate(evidence_.offset_columns());
   return beside.run <= 0 && beside.drift <= 0;
 }
 
@@ -398,11 +398,11 @@ double Finder::held_out_evidence(std::size_t item) const {
 }
 
 bool Finder::is_learned(std::size_t item) const {
-  const Machine& machine = evidence_.machine();
+  const model::Machine& machine = evidence_.machine();
   const std::vector<std::string>& inputs = pool_.candidate(item).choice.inputs;
   return std::any_of(inputs.begin(), inputs.end(), [&](const std::string& name) {
     const auto input = machine.find_input(name);
-    return input && class_of_input(machine.inputs[*input]) == InputClass::kFeature;
+    return input && effects::class_of_input(machine.inputs[*input]) == effects::InputClass::kFeature;
   });
 }
 
@@ -417,10 +417,10 @@ bool Finder::shows_in_one_block(std::size_t item) const {
 }
 
 std::string Finder::too_large(std::size_t item) const {
-  const Candidate& candidate = pool_.candidate(item);
+  const effects::Candidate& candidate = pool_.candidate(item);
   const std::vector<double> k = coefficient_of_each_unknown(item);
   std::size_t linear = 0;
-  for (const CandidateUnknown& unknown : linear_unknowns(candidate)) {
+  for (const effects::CandidateUnknown& unknown : effects::linear_unknowns(candidate)) {
     const std::size_t at = linear++;
     if (k[at] == 0 || unknown.limit <= 0) continue;
     const double size = std::abs(k[at]) * typical_size(candidate, at, item);
@@ -431,10 +431,10 @@ std::string Finder::too_large(std::size_t item) const {
   return {};
 }
 
-double Finder::extent_of(const Candidate& candidate) const {
-  const Machine& machine = evidence_.machine();
+double Finder::extent_of(const effects::Candidate& candidate) const {
+  const model::Machine& machine = evidence_.machine();
   const auto& place = candidate.choice.place;
-  if (place && is_angle(machine, *place)) {
+  if (place && effects::is_angle(machine, *place)) {
     const auto axis = candidate.choice.axis;
     if (!axis || !machine.axes[*axis].rotary) return 0;
     const Evidence::Range range = evidence_.range_of(*axis);
@@ -443,14 +443,14 @@ double Finder::extent_of(const Candidate& candidate) const {
   return evidence_.reach_mm();
 }
 
-double Finder::typical_size(const Candidate& candidate, std::size_t linear, std::size_t item) const {
+double Finder::typical_size(const effects::Candidate& candidate, std::size_t linear, std::size_t item) const {
   // Where it was read, and all along the axis that drives it: a curve may leave its stations there.
-  const States& read = evidence_.measurement().states;
+  const model::States& read = evidence_.measurement().states;
   double largest = largest_value(candidate, linear, item, read);
   if (candidate.choice.axis) {
     const Evidence::Range range = evidence_.range_of(*candidate.choice.axis);
-    States along = select_states(read, evidence_.rows());
-    Column& position = along.axis[*candidate.choice.axis];
+    model::States along = model::select_states(read, evidence_.rows());
+    model::Column& position = along.axis[*candidate.choice.axis];
     constexpr double kGolden = 0.61803398874989485;  // of a turn: even over the range in any order of rows
     for (Eigen::Index i = 0; i < position.size(); ++i) {
       const double at = static_cast<double>(i) * kGolden;
@@ -461,14 +461,16 @@ double Finder::typical_size(const Candidate& candidate, std::size_t linear, std:
   return largest;
 }
 
-double Finder::largest_value(const Candidate& candidate, std::size_t linear, std::size_t item,
-                             const States& states) const {
-  Machine scratch = evidence_.machine();
-  const std::vector<std::size_t> statics = add_unknowns(scratch, candidate, pool_[item].scored.scanned);
+double Finder::largest_value(const effects::Candidate& candidate, std::size_t linear, std::size_t item,
+                             const model::States& states) const {
+  model::Machine scratch = evidence_.machine();
+  const std::vector<std::size_t> statics =
+      effects::add_unknowns(scratch, candidate, pool_[item].scored.scanned);
   scratch.statics[statics[linear]].value = 1;
   double largest = 0;
-  for (const CandidateTerm& term : candidate.terms) {
-    const Column column = ::vernier::evaluate(scratch, *parse_expression_for(scratch, term.text), states);
+  for (const effects::CandidateTerm& term : candidate.terms) {
+    const model::Column column =
+        ::vernier::model::evaluate(scratch, *model::parse_expression_for(scratch, term.text), states);
     largest = std::max(largest, column.abs().maxCoeff());
   }
   return largest;
@@ -477,7 +479,7 @@ double Finder::largest_value(const Candidate& candidate, std::size_t linear, std
 std::vector<double> Finder::coefficient_of_each_unknown(std::size_t item) const {
   const Eigen::VectorXd k = own_coefficients(item);
   std::vector<double> each(
-      static_cast<std::size_t>(std::ranges::distance(linear_unknowns(pool_.candidate(item)))));
+      static_cast<std::size_t>(std::ranges::distance(effects::linear_unknowns(pool_.candidate(item)))));
   for (std::size_t i = 0; i < pool_[item].kept.size(); ++i)
     each[pool_[item].kept[i]] = k[static_cast<Eigen::Index>(i)];
   return each;
@@ -521,7 +523,7 @@ double Finder::score_alone(std::size_t item) const {
 }
 
 double Finder::p_value(std::size_t item) const {
-  const Eigen::MatrixXd basis = orthonormal(pool_[item].columns, 1e-6, nullptr);
+  const Eigen::MatrixXd basis = maths::orthonormal(pool_[item].columns, 1e-6, nullptr);
   const double gain = (basis.transpose() * evidence_.residual()).squaredNorm();
   const double left = evidence_.chi_square() - gain;
   double variance = left / std::max(1.0, evidence_.freedom() - static_cast<double>(basis.cols()));
@@ -532,7 +534,7 @@ double Finder::p_value(std::size_t item) const {
   const FinePeriods& fine = list_[scored.candidate].fine;
   const double tries = scored.scanned.size() == 1 && fine.holds(scored.scanned[0]) ? fine.tries() : 1;
   return std::min(1.0, tries * static_cast<double>(list_.size()) *
-                           chi_square_tail(gain / std::max(variance, 1e-300), unknowns));
+                           maths::chi_square_tail(gain / std::max(variance, 1e-300), unknowns));
 }
 
 Rivals Finder::rivals_of(std::size_t item) const {
@@ -547,7 +549,7 @@ Rivals Finder::rivals_of(std::size_t item) const {
     if (distance < thresholds_.distance) {
       // A form that holds this one and more would need evidence of its own: no rival.
       if (pool_.contains(rival, item)) continue;
-      const Choice &mine = pool_.candidate(item).choice, &other = pool_.candidate(rival).choice;
+      const effects::Choice &mine = pool_.candidate(item).choice, &other = pool_.candidate(rival).choice;
       const bool alike =
           (mine.effect == other.effect && mine.inputs == other.inputs) || pool_.same_kind(rival, item);
       if (alike && pool_.same_columns(item, rival)) {
@@ -568,7 +570,8 @@ Rivals Finder::rivals_of(std::size_t item) const {
 }
 
 std::vector<double> Finder::aliases_of(std::size_t item) const {
-  return scanner_.aliases(pool_[item].scored, orthonormal(pool_.columns(without(item)), 1e-6, nullptr));
+  return scanner_.aliases(pool_[item].scored,
+                          maths::orthonormal(pool_.columns(without(item)), 1e-6, nullptr));
 }
 
 double Finder::growth_without(std::size_t item) const {
@@ -581,4 +584,4 @@ bool Finder::linear_down_to_noise() const {
   return chi_square_ / freedom < 1 + evidence_.thresholds().verdict.noise_sigmas * std::sqrt(2 / freedom);
 }
 
-}  // namespace vernier
+}  // namespace vernier::diagnose

@@ -11,7 +11,7 @@
 #include "tools/diagnose/scan.h"
 #include "tools/diagnose/selection.h"
 
-namespace vernier {
+namespace vernier::diagnose {
 
 /// What could stand in the place of an accepted effect. All are items of the pool.
 struct Rivals {
@@ -26,9 +26,9 @@ struct Rivals {
 class Finder {
  public:
   /// `fitted`: the machine at its best fit. `progress`: share of the whole diagnosis, and what is being done.
-  Finder(const Machine& fitted, const Measurement& measurement, const std::vector<Effect>& effects,
-         std::size_t most_effects, std::function<void(double, const std::string&)> progress,
-         const DiagnoseThresholds& thresholds = {});
+  Finder(const model::Machine& fitted, const model::Measurement& measurement,
+         const std::vector<effects::Effect>& effects, std::size_t most_effects,
+         std::function<void(double, const std::string&)> progress, const DiagnoseThresholds& thresholds = {});
   Finder(const Finder&) = delete;
   Finder& operator=(const Finder&) = delete;
 
@@ -40,7 +40,7 @@ class Finder {
   const Pool& pool() const { return pool_; }
   const Evidence& evidence() const { return evidence_; }
   /// How the errors of the readings hang together beside the accepted effects.
-  NoiseModel noise() const;
+  fit::NoiseModel noise() const;
   const std::vector<ScannedCandidate>& candidates() const { return list_; }
 
   /// Coefficients of an item's columns within the accepted set, in the unit of its unknowns.
@@ -93,16 +93,16 @@ class Finder {
   void share_poses();
   /// The criterion of selection with the price of the noise model.
   double priced_criterion() const;
-  void search_under(const NoiseModel& noise);
+  void search_under(const fit::NoiseModel& noise);
   /// Search and noise in turn until both stand still. Returns the criterion with the noise model's own price.
-  double settle_noise_from(NoiseModel noise);
+  double settle_noise_from(fit::NoiseModel noise);
   /// What is touched may stand elsewhere in each set-up, which no reading along a normal is free of: that as
   /// the instrument's part of a rival, where it takes more away than it costs. explained: what is left beside
   /// all that was chosen.
-  std::optional<NoiseModel> touched_anew(const NoiseModel& explained) const;
+  std::optional<fit::NoiseModel> touched_anew(const fit::NoiseModel& explained) const;
   /// Does what hangs together by run or in time under this model come to one offset of all readings? A common
   /// cause does that, and no instrument that is set up anew or drifts.
-  bool is_one_offset(const NoiseModel& noise) const;
+  bool is_one_offset(const fit::NoiseModel& noise) const;
   /// Unwhitened columns of several items side by side.
   Eigen::MatrixXd raw_columns(const std::vector<std::size_t>& items) const;
   std::vector<std::size_t> without(std::size_t item) const;
@@ -120,12 +120,12 @@ class Finder {
   std::string too_large(std::size_t item) const;
   /// What the size of a term is judged by: travel of the rotary axis that drives an angle, deg (0: none
   /// does); reach of the machine for lengths, mm.
-  double extent_of(const Candidate& candidate) const;
+  double extent_of(const effects::Candidate& candidate) const;
   /// Largest value over the fit rows and along the axis that drives it that a linear unknown of 1 gives its
   /// term, mm or deg.
-  double typical_size(const Candidate& candidate, std::size_t linear, std::size_t item) const;
-  double largest_value(const Candidate& candidate, std::size_t linear, std::size_t item,
-                       const States& states) const;
+  double typical_size(const effects::Candidate& candidate, std::size_t linear, std::size_t item) const;
+  double largest_value(const effects::Candidate& candidate, std::size_t linear, std::size_t item,
+                       const model::States& states) const;
   void accept();
 
   std::size_t most_effects_;
@@ -140,4 +140,4 @@ class Finder {
   double criterion_ = 0, chi_square_ = 0;
 };
 
-}  // namespace vernier
+}  // namespace vernier::diagnose

@@ -11,13 +11,14 @@
 #include "tools/fit/fit.h"
 #include "tools/fit/statistics.h"
 
-namespace vernier {
+namespace vernier::diagnose {
 namespace {
 
 /// Rows with a reading more than `far` spreads from the fit; the spread is that of most of them, and u at
 /// least.
-std::vector<std::size_t> far_rows(const Measurement& rows, const Eigen::VectorXd& residual, double far) {
-  const Eigen::VectorXd weights = fit_weights(rows);
+std::vector<std::size_t> far_rows(const model::Measurement& rows, const Eigen::VectorXd& residual,
+                                  double far) {
+  const Eigen::VectorXd weights = fit::fit_weights(rows);
   std::vector<double> sizes;
   for (Eigen::Index i = 0; i < weights.size(); ++i)
     if (weights[i] > 0) sizes.push_back(std::abs(weights[i] * residual[i]));
@@ -25,7 +26,7 @@ std::vector<std::size_t> far_rows(const Measurement& rows, const Eigen::VectorXd
   std::nth_element(sizes.begin(), sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2), sizes.end());
   // The median of |x| of a normal variable is 0.6745 of its standard deviation.
   double spread = sizes[sizes.size() / 2] / 0.6745;
-  if (has_uncertainty(rows)) spread = std::max(spread, 1.0);
+  if (fit::has_uncertainty(rows)) spread = std::max(spread, 1.0);
   std::vector<std::size_t> found;
   for (Eigen::Index i = 0; i < weights.size(); ++i)
     if (std::abs(weights[i] * residual[i]) > far * spread) {
@@ -36,16 +37,16 @@ std::vector<std::size_t> far_rows(const Measurement& rows, const Eigen::VectorXd
 }
 
 struct Peeled {
-  Measurement rows;                // that are left
+  model::Measurement rows;         // that are left
   std::vector<std::size_t> lines;  // of those that are not, in order
   std::vector<std::size_t> kept;   // rows of all that are left
-  FitResult fit;                   // to the rows that are left
+  fit::FitResult fit;              // to the rows that are left
 };
 
 /// Leaves out far rows and fits again, until there are none; nothing where there never were, or more than
 /// `most`.
-std::optional<Peeled> peel(const Machine& machine, const Measurement& all, const Eigen::VectorXd& of_all,
-                           double far, double most) {
+std::optional<Peeled> peel(const model::Machine& machine, const model::Measurement& all,
+                           const Eigen::VectorXd& of_all, double far, double most) {
   Peeled peeled{all, {}, {}, {}};
   peeled.kept.resize(all.rows());
   std::iota(peeled.kept.begin(), peeled.kept.end(), std::size_t{0});
@@ -59,10 +60,10 @@ std::optional<Peeled> peel(const Machine& machine, const Measurement& all, const
       if (std::find(found.begin(), found.end(), row) == found.end()) keep.push_back(row);
     for (const std::size_t row : found) peeled.lines.push_back(peeled.rows.line[row]);
     if (static_cast<double>(peeled.lines.size()) > most) return std::nullopt;
-    peeled.rows = select_rows(peeled.rows, keep);
+    peeled.rows = model::select_rows(peeled.rows, keep);
     for (std::size_t i = 0; i < keep.size(); ++i) peeled.kept[i] = peeled.kept[keep[i]];
     peeled.kept.resize(keep.size());
-    peeled.fit = fit(machine, peeled.rows);
+    peeled.fit = fit::fit(machine, peeled.rows);
   }
   if (peeled.lines.empty()) return std::nullopt;
   std::sort(peeled.lines.begin(), peeled.lines.end());
@@ -70,7 +71,7 @@ std::optional<Peeled> peel(const Machine& machine, const Measurement& all, const
 }
 
 /// "12 of 400 rows (line 14, 142, ...)"
-std::string rows_in_words(const Peeled& peeled, const Measurement& all) {
+std::string rows_in_words(const Peeled& peeled, const model::Measurement& all) {
   constexpr std::ptrdiff_t kNamed = 8;
   const auto count = static_cast<std::ptrdiff_t>(peeled.lines.size());
   return fmt::format("{} of {} rows (line {}{})", count, all.rows(),
@@ -80,10 +81,11 @@ std::string rows_in_words(const Peeled& peeled, const Measurement& all) {
 
 }  // namespace
 
-std::optional<std::string> outliers_to_blame(const Machine& machine, const Measurement& measurement,
+std::optional<std::string> outliers_to_blame(const model::Machine& machine,
+                                             const model::Measurement& measurement,
                                              const Eigen::VectorXd& of_all,
                                              const VerdictThresholds& thresholds) {
-  if (!has_uncertainty(measurement)) return std::nullopt;  // nothing says what the rest should be
+  if (!fit::has_uncertainty(measurement)) return std::nullopt;  // nothing says what the rest should be
   const auto peeled = peel(machine, measurement, of_all, thresholds.outlier_spreads,
                            thresholds.outliers_alone * static_cast<double>(measurement.rows()));
   if (!peeled || peeled->fit.freedom <= 0) return std::nullopt;
@@ -96,10 +98,11 @@ std::optional<std::string> outliers_to_blame(const Machine& machine, const Measu
       rows_in_words(*peeled, measurement));
 }
 
-std::optional<WithoutOutliers> without_gross_outliers(const Machine& machine, const Measurement& measurement,
+std::optional<WithoutOutliers> without_gross_outliers(const model::Machine& machine,
+                                                      const model::Measurement& measurement,
                                                       const Eigen::VectorXd& of_all,
                                                       const VerdictThresholds& thresholds) {
-  const bool with_u = has_uncertainty(measurement);
+  const bool with_u = fit::has_uncertainty(measurement);
   const double far = with_u ? thresholds.outlier_spreads : thresholds.outlier_spreads_without_u;
   const double share = with_u ? thresholds.outliers_beside : thresholds.outliers_alone;
   auto peeled =
@@ -112,4 +115,4 @@ std::optional<WithoutOutliers> without_gross_outliers(const Machine& machine, co
                   rows_in_words(*peeled, measurement), far)};
 }
 
-}  // namespace vernier
+}  // namespace vernier::diagnose

@@ -8,7 +8,7 @@
 
 #include "tools/maths/golden.h"
 
-namespace vernier {
+namespace vernier::diagnose {
 namespace {
 
 using Index = Eigen::Index;
@@ -75,8 +75,8 @@ Eigen::MatrixXd powers(const Positions& positions, double first, double step, In
 /// The frequency between two others where the power is largest.
 double peak_between(const Positions& positions, Index column, double low, double high) {
   constexpr int kSections = 12;
-  return golden_peak([&](double frequency) { return power_at(positions, column, frequency); }, low, high,
-                     kSections)
+  return maths::golden_peak([&](double frequency) { return power_at(positions, column, frequency); }, low,
+                            high, kSections)
       .at;
 }
 
@@ -205,7 +205,8 @@ FinePeriods fine_periods(const Evidence& evidence, std::size_t axis, const std::
   return fine.fastest > fine.slowest + limits.fewest * fine.step ? fine : FinePeriods{};
 }
 
-Eigen::VectorXd carrier_of(const Evidence& evidence, const Candidate& candidate, const FinePeriods& fine) {
+Eigen::VectorXd carrier_of(const Evidence& evidence, const effects::Candidate& candidate,
+                           const FinePeriods& fine) {
   constexpr double kSame = 1e-9;
   Eigen::VectorXd carrier;
   for (const double frequency : {fine.slowest, fine.fastest}) {
@@ -255,4 +256,4 @@ std::vector<std::vector<double>> promising_periods(const Evidence& evidence,
   return found;
 }
 
-}  // namespace vernier
+}  // namespace vernier::diagnose

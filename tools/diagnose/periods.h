@@ -6,7 +6,7 @@
 #include "tools/diagnose/evidence.h"
 #include "tools/effects/candidate.h"
 
-namespace vernier {
+namespace vernier::diagnose {
 
 /// Periods of an axis below those of the grid: too many to project every one. A wave so fast is nearly
 /// orthogonal to what the model absorbs, so a periodogram shows where one may be.
@@ -40,7 +40,8 @@ FinePeriods fine_periods(const Evidence& evidence, std::size_t axis, const std::
 
 /// The factor that two columns sin(2 pi q / p) and cos(2 pi q / p) of a candidate share at all readings, the
 /// same for every period p; empty where the term is no such pair. Before poses are weighed. tool.
-Eigen::VectorXd carrier_of(const Evidence& evidence, const Candidate& candidate, const FinePeriods& fine);
+Eigen::VectorXd carrier_of(const Evidence& evidence, const effects::Candidate& candidate,
+                           const FinePeriods& fine);
 
 /// The most promising fine periods for each of several candidates of one axis, by the periodogram of a
 /// residual that stands outside of what the model absorbs, those below the level of chance left out; refined.
@@ -49,4 +50,4 @@ std::vector<std::vector<double>> promising_periods(const Evidence& evidence,
                                                    const std::vector<const FinePeriods*>& of_axis,
                                                    const Eigen::VectorXd& residual);
 
-}  // namespace vernier
+}  // namespace vernier::diagnose

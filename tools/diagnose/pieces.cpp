@@ -5,14 +5,14 @@
 #include <cmath>
 #include <iterator>
 
-namespace vernier {
+namespace vernier::diagnose {
 namespace {
 
 /// Period of an item in the unit of its axis; 0 for one that has none.
 double period_of(const Pool& pool, std::size_t item) {
   auto value = pool[item].scored.scanned.begin();
-  for (const CandidateUnknown& unknown : scanned_unknowns(pool.candidate(item))) {
-    if (unknown.kind == UnknownKind::kPeriod) return *value;
+  for (const effects::CandidateUnknown& unknown : effects::scanned_unknowns(pool.candidate(item))) {
+    if (unknown.kind == effects::UnknownKind::kPeriod) return *value;
     ++value;
   }
   return 0;
@@ -29,7 +29,7 @@ bool unresolved(double a, double b, double length) {
   return a > 0 && b > 0 && length * std::abs(1 / a - 1 / b) < 1;
 }
 
-bool is_function_of_its_axis(const Evidence& evidence, const Candidate& candidate) {
+bool is_function_of_its_axis(const Evidence& evidence, const effects::Candidate& candidate) {
   return candidate.choice.axis && candidate.choice.place && candidate.terms.size() == 1 &&
          drivers_of(evidence.machine(), candidate).empty();
 }
@@ -42,7 +42,7 @@ bool is_plain_wave(const Evidence& evidence, const Pool& pool, std::size_t item)
   return range.high - range.low >= evidence.thresholds().shape.periods_of_a_wave * period;
 }
 
-bool moves_alike(const Evidence& evidence, const DofPlace& a, const DofPlace& b) {
+bool moves_alike(const Evidence& evidence, const effects::DofPlace& a, const effects::DofPlace& b) {
   const auto x = evidence.response(evidence.index_of(a)), y = evidence.response(evidence.index_of(b));
   return std::abs(x.dot(y)) > evidence.thresholds().shape.moves_alike * x.norm() * y.norm();
 }
@@ -74,7 +74,7 @@ std::vector<std::size_t> unresolved_periods(const Evidence& evidence, const Pool
   for (const std::size_t a : items)
     for (const std::size_t b : items) {
       if (a >= b) continue;
-      const Candidate &x = pool.candidate(a), &y = pool.candidate(b);
+      const effects::Candidate &x = pool.candidate(a), &y = pool.candidate(b);
       if (!is_function_of_its_axis(evidence, x) || !is_function_of_its_axis(evidence, y)) continue;
       if (x.choice.axis != y.choice.axis || !moves_alike(evidence, *x.choice.place, *y.choice.place))
         continue;
@@ -85,19 +85,19 @@ std::vector<std::size_t> unresolved_periods(const Evidence& evidence, const Pool
 }
 
 bool has_one_reading_a_row(const Evidence& evidence) {
-  const std::vector<Observation>& all = evidence.measurement().observations;
+  const std::vector<model::Observation>& all = evidence.measurement().observations;
   return std::all_of(all.begin(), all.end(),
-                     [&](const Observation& o) { return o.kind == all.front().kind; });
+                     [&](const model::Observation& o) { return o.kind == all.front().kind; });
 }
 
 /// Position, or what follows from it along a path at a steady feed.
-bool follows_from_position(const Evidence& evidence, const Candidate& candidate) {
+bool follows_from_position(const Evidence& evidence, const effects::Candidate& candidate) {
   const auto drivers = drivers_of(evidence.machine(), candidate);
   return std::all_of(drivers.begin(), drivers.end(), [](const auto& driver) {
-    return driver.first == static_cast<int>(SymbolKind::kAcceleration) ||
-           driver.first == static_cast<int>(SymbolKind::kVelocity) ||
-           driver.first == static_cast<int>(SymbolKind::kFeed) ||
-           driver.first == static_cast<int>(SymbolKind::kCurvature);
+    return driver.first == static_cast<int>(model::SymbolKind::kAcceleration) ||
+           driver.first == static_cast<int>(model::SymbolKind::kVelocity) ||
+           driver.first == static_cast<int>(model::SymbolKind::kFeed) ||
+           driver.first == static_cast<int>(model::SymbolKind::kCurvature);
   });
 }
 
@@ -106,7 +106,7 @@ bool follows_from_position(const Evidence& evidence, const Candidate& candidate)
 std::vector<std::size_t> pieces_of_one_function(const Evidence& evidence, const Pool& pool,
                                                 const std::vector<std::size_t>& items) {
   const ShapeThresholds& thresholds = evidence.thresholds().shape;
-  const auto choice = [&](std::size_t item) -> const Choice& { return pool.candidate(item).choice; };
+  const auto choice = [&](std::size_t item) -> const effects::Choice& { return pool.candidate(item).choice; };
   const auto waves = static_cast<std::size_t>(std::count_if(
       items.begin(), items.end(), [&](std::size_t item) { return is_plain_wave(evidence, pool, item); }));
   // Waves beside a curve of the same axis are what a table cannot follow of one function, a chirp.
@@ -146,4 +146,4 @@ std::vector<std::size_t> pieces_of_one_function(const Evidence& evidence, const 
   return {};
 }
 
-}  // namespace vernier
+}  // namespace vernier::diagnose

@@ -5,7 +5,7 @@
 #include "tools/diagnose/evidence.h"
 #include "tools/diagnose/pool.h"
 
-namespace vernier {
+namespace vernier::diagnose {
 
 /// Items that are more likely the pieces of one function that the catalogue does not hold than as many
 /// causes; empty where there are no such. A curve and a period of one axis may well stand beside each other;
@@ -18,4 +18,4 @@ namespace vernier {
 std::vector<std::size_t> pieces_of_one_function(const Evidence& evidence, const Pool& pool,
                                                 const std::vector<std::size_t>& items);
 
-}  // namespace vernier
+}  // namespace vernier::diagnose

@@ -6,27 +6,27 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vernier {
+namespace vernier::diagnose {
 
 namespace {
 
 /// Between forms that fit alike the simpler one wins: at the axis' own degree of freedom first, then across
 /// the axis, then anywhere. Far below any evidence.
-double rank_of(const Candidate& candidate, double step) {
+double rank_of(const effects::Candidate& candidate, double step) {
   switch (candidate.choice.form->place) {
-    case PlaceRule::kOwn:
+    case effects::PlaceRule::kOwn:
       return 0;
-    case PlaceRule::kPair:
-    case PlaceRule::kEachAxis:
+    case effects::PlaceRule::kPair:
+    case effects::PlaceRule::kEachAxis:
       return step;
-    case PlaceRule::kCross:
-    case PlaceRule::kNormal:
-    case PlaceRule::kBase:
-    case PlaceRule::kJoint:
+    case effects::PlaceRule::kCross:
+    case effects::PlaceRule::kNormal:
+    case effects::PlaceRule::kBase:
+    case effects::PlaceRule::kJoint:
       return 2 * step;
-    case PlaceRule::kTurn:
-    case PlaceRule::kBaseTurn:
-    case PlaceRule::kLength:
+    case effects::PlaceRule::kTurn:
+    case effects::PlaceRule::kBaseTurn:
+    case effects::PlaceRule::kLength:
       return 3 * step;
     default:
       return 4 * step;
@@ -34,31 +34,32 @@ double rank_of(const Candidate& candidate, double step) {
 }
 
 /// Is the first unknown that is scanned a period?
-bool has_period(const Candidate& candidate) {
-  auto scanned = scanned_unknowns(candidate);
-  return !scanned.empty() && (*scanned.begin()).kind == UnknownKind::kPeriod;
+bool has_period(const effects::Candidate& candidate) {
+  auto scanned = effects::scanned_unknowns(candidate);
+  return !scanned.empty() && (*scanned.begin()).kind == effects::UnknownKind::kPeriod;
 }
 
 /// What an axis moves out bends what carries it. A sag of what it carries, or of the other branch, has no
 /// load that would change with it.
-bool carries_not(const AxisPlaces& axes, const Choice& choice) {
-  if (choice.form->place != PlaceRule::kSag || !choice.axis || !choice.place) return false;
-  const std::optional<DofPlace>& own = axes.own(*choice.axis);
+bool carries_not(const effects::AxisPlaces& axes, const effects::Choice& choice) {
+  if (choice.form->place != effects::PlaceRule::kSag || !choice.axis || !choice.place) return false;
+  const std::optional<effects::DofPlace>& own = axes.own(*choice.axis);
   return own && (choice.place->workpiece != own->workpiece || choice.place->transform > own->transform);
 }
 
 }  // namespace
 
-std::set<std::pair<int, std::size_t>> drivers_of(const Machine& machine, const Candidate& candidate) {
+std::set<std::pair<int, std::size_t>> drivers_of(const model::Machine& machine,
+                                                 const effects::Candidate& candidate) {
   std::set<std::pair<int, std::size_t>> drivers;
-  Machine scratch = machine;
-  add_unknowns(scratch, candidate, {});
-  for (const CandidateTerm& term : candidate.terms)
-    walk(*parse_expression_for(scratch, term.text), [&](const Expr& node) {
-      if (node.op == Op::kRunIs) drivers.insert({-1, 0});
-      if (node.op != Op::kSymbol) return;
-      const SymbolKind kind = node.symbol.kind;
-      if (kind == SymbolKind::kStatic || kind == SymbolKind::kAxis) return;
+  model::Machine scratch = machine;
+  effects::add_unknowns(scratch, candidate, {});
+  for (const effects::CandidateTerm& term : candidate.terms)
+    model::walk(*model::parse_expression_for(scratch, term.text), [&](const model::Expr& node) {
+      if (node.op == model::Op::kRunIs) drivers.insert({-1, 0});
+      if (node.op != model::Op::kSymbol) return;
+      const model::SymbolKind kind = node.symbol.kind;
+      if (kind == model::SymbolKind::kStatic || kind == model::SymbolKind::kAxis) return;
       drivers.insert({static_cast<int>(kind), node.symbol.index});
     });
   return drivers;
@@ -70,7 +71,7 @@ Pool::Pool(const Evidence& evidence, const Scanner& scanner)
       scanner_(scanner),
       axes_(evidence.machine()) {}
 
-const Candidate& Pool::candidate(std::size_t i) const {
+const effects::Candidate& Pool::candidate(std::size_t i) const {
   return scanner_.candidates()[items_[i].scored.candidate].candidate;
 }
 
@@ -79,7 +80,7 @@ double Pool::penalty(const Scored& scored) const {
   double cost = 2 * std::log(static_cast<double>(scanner_.candidates().size())) +
                 rank_of(item.candidate, thresholds_.step_of_place);
   // A jump between runs follows any slow drift: it is named only where no continuous effect does as well.
-  const Choice& choice = item.candidate.choice;
+  const effects::Choice& choice = item.candidate.choice;
   if (choice.effect->rare || choice.form->rare || !choice.runs.empty()) cost += thresholds_.rare;
   if (carries_not(axes_, choice)) cost += 2 * thresholds_.rare;
   // A scanned unknown is as many tries as the grid has values that differ, where that is more than the price
@@ -94,8 +95,8 @@ double Pool::penalty(const Scored& scored) const {
 
 /// One key per effect and place; a second period at the same place is another one.
 std::string Pool::place_key(const Scored& scored) const {
-  const Candidate& candidate = scanner_.candidates()[scored.candidate].candidate;
-  const Choice& c = candidate.choice;
+  const effects::Candidate& candidate = scanner_.candidates()[scored.candidate].candidate;
+  const effects::Choice& c = candidate.choice;
   std::string key = c.effect->id;
   if (c.axis) key += fmt::format(" a{}", *c.axis);
   if (c.axis2) key += fmt::format(" b{}", *c.axis2);
@@ -104,7 +105,7 @@ std::string Pool::place_key(const Scored& scored) const {
   if (has_period(candidate))
     key += fmt::format(" p{}", std::lround(thresholds_.periods_per_e * std::log(scored.scanned[0])));
   key += c.runs.size() == 1 ? " " + c.runs[0] : "";
-  if (c.effect == &custom_effect()) key += " " + c.term;
+  if (c.effect == &effects::custom_effect()) key += " " + c.term;
   return key;
 }
 
@@ -189,7 +190,7 @@ SelectionProblem Pool::problem_of(const std::vector<std::size_t>& items) const {
 }
 
 bool Pool::same_cause(std::size_t a, std::size_t b) const {
-  const Choice &x = candidate(a).choice, &y = candidate(b).choice;
+  const effects::Choice &x = candidate(a).choice, &y = candidate(b).choice;
   if (is_custom(a) || is_custom(b)) return x.effect == y.effect && x.term == y.term;
   const bool one_cause =
       x.effect == y.effect || (!x.effect->cause.empty() && x.effect->cause == y.effect->cause);
@@ -197,8 +198,8 @@ bool Pool::same_cause(std::size_t a, std::size_t b) const {
 }
 
 bool Pool::same_columns(std::size_t a, std::size_t b) const {
-  const Eigen::MatrixXd x = orthonormal(items_[a].columns, 1e-6, nullptr);
-  const Eigen::MatrixXd y = orthonormal(items_[b].columns, 1e-6, nullptr);
+  const Eigen::MatrixXd x = maths::orthonormal(items_[a].columns, 1e-6, nullptr);
+  const Eigen::MatrixXd y = maths::orthonormal(items_[b].columns, 1e-6, nullptr);
   if (x.cols() != y.cols()) return false;
   // Squares of the cosines between the two spans, the least of them decides.
   const double common = (x.transpose() * y).squaredNorm();
@@ -206,7 +207,7 @@ bool Pool::same_columns(std::size_t a, std::size_t b) const {
 }
 
 double Pool::common_share(std::size_t item, std::size_t other) const {
-  const Eigen::MatrixXd basis = orthonormal(items_[other].columns, 1e-6, nullptr);
+  const Eigen::MatrixXd basis = maths::orthonormal(items_[other].columns, 1e-6, nullptr);
   return (basis.transpose() * items_[item].columns).squaredNorm() / items_[item].columns.squaredNorm();
 }
 
@@ -216,8 +217,8 @@ double Pool::witnesses(std::size_t item) const {
 }
 
 bool Pool::contains(std::size_t general, std::size_t special) const {
-  const Eigen::MatrixXd x = orthonormal(items_[general].columns, 1e-6, nullptr);
-  const Eigen::MatrixXd y = orthonormal(items_[special].columns, 1e-6, nullptr);
+  const Eigen::MatrixXd x = maths::orthonormal(items_[general].columns, 1e-6, nullptr);
+  const Eigen::MatrixXd y = maths::orthonormal(items_[special].columns, 1e-6, nullptr);
   const auto unknowns = [&](std::size_t i) {
     return items_[i].columns.cols() + static_cast<Eigen::Index>(items_[i].scored.scanned.size());
   };
@@ -234,13 +235,13 @@ bool Pool::same_kind(std::size_t a, std::size_t b) const {
   const auto kinds = [&](std::size_t i) {
     std::set<std::pair<int, std::size_t>> found;
     for (const auto& [kind, index] : drivers_of(evidence_.machine(), candidate(i))) {
-      const bool mere_count =
-          kind == static_cast<int>(SymbolKind::kVisit) || kind == static_cast<int>(SymbolKind::kSince);
-      if (!mere_count) found.insert({kind, kind == static_cast<int>(SymbolKind::kInput) ? index : 0});
+      const bool mere_count = kind == static_cast<int>(model::SymbolKind::kVisit) ||
+                              kind == static_cast<int>(model::SymbolKind::kSince);
+      if (!mere_count) found.insert({kind, kind == static_cast<int>(model::SymbolKind::kInput) ? index : 0});
     }
     return found;
   };
   return kinds(a) == kinds(b);
 }
 
-}  // namespace vernier
+}  // namespace vernier::diagnose

@@ -8,10 +8,11 @@
 #include "tools/diagnose/scan.h"
 #include "tools/diagnose/selection.h"
 
-namespace vernier {
+namespace vernier::diagnose {
 
 /// What a term depends on besides positions and constants: dir of an axis, an input, t ...
-std::set<std::pair<int, std::size_t>> drivers_of(const Machine& machine, const Candidate& candidate);
+std::set<std::pair<int, std::size_t>> drivers_of(const model::Machine& machine,
+                                                 const effects::Candidate& candidate);
 
 /// The best of all candidates, with their columns side by side, so that sets of them can be compared.
 class Pool {
@@ -43,7 +44,7 @@ class Pool {
 
   std::size_t size() const { return items_.size(); }
   const Item& operator[](std::size_t i) const { return items_[i]; }
-  const Candidate& candidate(std::size_t i) const;
+  const effects::Candidate& candidate(std::size_t i) const;
   void ban(std::size_t i, std::string why) {
     items_[i].banned = true;
     items_[i].why_not = std::move(why);
@@ -52,7 +53,7 @@ class Pool {
   /// Columns of several items side by side.
   Eigen::MatrixXd columns(const std::vector<std::size_t>& items) const;
   /// A term that the search made; it has no name in the catalogue.
-  bool is_custom(std::size_t i) const { return candidate(i).choice.effect == &custom_effect(); }
+  bool is_custom(std::size_t i) const { return candidate(i).choice.effect == &effects::custom_effect(); }
   /// Share of the squares of an item's columns that lies in the span of another's.
   double common_share(std::size_t item, std::size_t other) const;
   /// How many readings carry an item: squared sum over the sum of squares of its columns' squares.
@@ -77,9 +78,9 @@ class Pool {
   const Evidence& evidence_;
   const PoolThresholds& thresholds_;
   const Scanner& scanner_;
-  AxisPlaces axes_;
+  effects::AxisPlaces axes_;
   std::vector<Item> items_;
   std::set<std::string> keys_;
 };
 
-}  // namespace vernier
+}  // namespace vernier::diagnose

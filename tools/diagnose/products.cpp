@@ -4,16 +4,16 @@
 
 #include "tools/diagnose/enumerate.h"
 
-namespace vernier {
+namespace vernier::diagnose {
 namespace {
 
 /// A recorded quantity as a factor of a term.
 struct ProductFactor {
-  ExprPtr value;
+  model::ExprPtr value;
   std::string input, unit;  // name and unit where it is an input
 };
 
-bool varies(const Column& column, const std::vector<std::size_t>& rows) {
+bool varies(const model::Column& column, const std::vector<std::size_t>& rows) {
   for (const std::size_t row : rows)
     if (column[static_cast<Eigen::Index>(row)] != column[static_cast<Eigen::Index>(rows[0])]) return true;
   return false;
@@ -21,25 +21,26 @@ bool varies(const Column& column, const std::vector<std::size_t>& rows) {
 
 /// An input about its reference.
 ProductFactor input_factor(const Evidence& evidence, std::size_t index) {
-  const Input& input = evidence.machine().inputs[index];
-  return {subtract_number(make_symbol(input.name), evidence.reference_of(index)), input.name, input.unit};
+  const model::Input& input = evidence.machine().inputs[index];
+  return {model::subtract_number(model::make_symbol(input.name), evidence.reference_of(index)), input.name,
+          input.unit};
 }
 
 std::vector<ProductFactor> factors_of(const Evidence& evidence) {
-  const Machine& machine = evidence.machine();
-  const States& s = evidence.measurement().states;
+  const model::Machine& machine = evidence.machine();
+  const model::States& s = evidence.measurement().states;
   std::vector<ProductFactor> list;
-  const auto take = [&](const ExprPtr& value, const Column& column) {
+  const auto take = [&](const model::ExprPtr& value, const model::Column& column) {
     if (varies(column, evidence.rows())) list.push_back({value, {}, {}});
   };
-  const auto take_named = [&](const std::string& name, const Column& column) {
-    take(make_symbol(name), column);
+  const auto take_named = [&](const std::string& name, const model::Column& column) {
+    take(model::make_symbol(name), column);
   };
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
     const std::string& name = machine.axes[i].name;
     if (machine.axes[i].rotary) {
-      take(make_node(Op::kSin, {make_symbol(name)}), evidence.position(i));
-      take(make_node(Op::kCos, {make_symbol(name)}), evidence.position(i));
+      take(model::make_node(model::Op::kSin, {model::make_symbol(name)}), evidence.position(i));
+      take(model::make_node(model::Op::kCos, {model::make_symbol(name)}), evidence.position(i));
     } else {
       take_named(name, evidence.position(i));
     }
@@ -52,34 +53,36 @@ std::vector<ProductFactor> factors_of(const Evidence& evidence) {
   take_named("t", s.time);
   take_named("visit", s.visit);
   for (std::size_t i = 0; i < machine.inputs.size(); ++i)
-    if (varies(s.input[i], evidence.rows()) && class_of_input(machine.inputs[i]) != InputClass::kSetpoint)
+    if (varies(s.input[i], evidence.rows()) &&
+        effects::class_of_input(machine.inputs[i]) != effects::InputClass::kSetpoint)
       list.push_back(input_factor(evidence, i));
   return list;
 }
 
-ScannedCandidate as_candidate(const Machine& machine, const AxisPlaces& axes, const Product& product) {
-  Choice choice;
-  choice.effect = &custom_effect();
-  choice.form = &custom_effect().forms[0];
+ScannedCandidate as_candidate(const model::Machine& machine, const effects::AxisPlaces& axes,
+                              const Product& product) {
+  effects::Choice choice;
+  choice.effect = &effects::custom_effect();
+  choice.form = &effects::custom_effect().forms[0];
   choice.place = product.place;
-  choice.term = to_text(*product.term);
+  choice.term = model::to_text(*product.term);
   choice.inputs = product.inputs;
   choice.units = product.units;
   ScannedCandidate item;
-  item.candidate = make_candidate(machine, axes, choice);
+  item.candidate = effects::make_candidate(machine, axes, choice);
   return item;
 }
 
 constexpr std::size_t kMostFactors = 3;
 
-std::size_t factors_in(const Expr& term) {
+std::size_t factors_in(const model::Expr& term) {
   std::size_t count = 0;
-  walk(term, [&](const Expr& node) { count += node.op == Op::kMultiply ? 1 : 0; });
+  model::walk(term, [&](const model::Expr& node) { count += node.op == model::Op::kMultiply ? 1 : 0; });
   return count;
 }
 
 Product with_factor(Product product, const ProductFactor& factor) {
-  product.term = make_node(Op::kMultiply, {product.term, factor.value});
+  product.term = model::make_node(model::Op::kMultiply, {product.term, factor.value});
   if (!factor.input.empty() &&
       std::find(product.inputs.begin(), product.inputs.end(), factor.input) == product.inputs.end()) {
     product.inputs.push_back(factor.input);
@@ -93,7 +96,7 @@ Product with_factor(Product product, const ProductFactor& factor) {
 std::vector<ScannedCandidate> enumerate_products(const Evidence& evidence,
                                                  const std::vector<Product>& extend) {
   const std::vector<ProductFactor> factors = factors_of(evidence);
-  const AxisPlaces axes(evidence.machine());
+  const effects::AxisPlaces axes(evidence.machine());
   std::vector<ScannedCandidate> list;
   if (!extend.empty()) {
     for (const Product& product : extend)
@@ -102,9 +105,9 @@ std::vector<ScannedCandidate> enumerate_products(const Evidence& evidence,
           list.push_back(as_candidate(evidence.machine(), axes, with_factor(product, factor)));
     return list;
   }
-  for (const DofPlace& place : distinct_places(evidence, false))
+  for (const effects::DofPlace& place : distinct_places(evidence, false))
     for (std::size_t i = 0; i < factors.size(); ++i) {
-      const Product one = with_factor({place, make_symbol("k"), {}, {}}, factors[i]);
+      const Product one = with_factor({place, model::make_symbol("k"), {}, {}}, factors[i]);
       list.push_back(as_candidate(evidence.machine(), axes, one));
       for (std::size_t k = i; k < factors.size(); ++k)
         list.push_back(as_candidate(evidence.machine(), axes, with_factor(one, factors[k])));
@@ -112,4 +115,4 @@ std::vector<ScannedCandidate> enumerate_products(const Evidence& evidence,
   return list;
 }
 
-}  // namespace vernier
+}  // namespace vernier::diagnose

@@ -4,15 +4,15 @@
 #include <cmath>
 #include <vector>
 
-namespace vernier {
+namespace vernier::diagnose {
 
 bool Proof::speaks_against(const ProofThresholds& thresholds) const {
   const double least = expected - thresholds.chance_sigmas * std::sqrt(2 * expected);
   return can_tell(thresholds) && !bears_out(thresholds) && evidence < least;
 }
 
-Proof proof_on_check_rows(const Measurement& rows, const Eigen::VectorXd& before,
-                          const Eigen::VectorXd& after, const NoiseModel& noise, double variance) {
+Proof proof_on_check_rows(const model::Measurement& rows, const Eigen::VectorXd& before,
+                          const Eigen::VectorXd& after, const fit::NoiseModel& noise, double variance) {
   Proof proof;
   std::vector<std::size_t> check;
   for (std::size_t i = 0; i < rows.observations.size(); ++i)
@@ -20,16 +20,16 @@ Proof proof_on_check_rows(const Measurement& rows, const Eigen::VectorXd& before
   if (check.empty() || before.size() != after.size()) return proof;
   Eigen::MatrixXd left(static_cast<Eigen::Index>(check.size()), 2);
   for (std::size_t i = 0; i < check.size(); ++i) {
-    const double u = uncertainty_of(rows, rows.observations[check[i]]);
+    const double u = model::uncertainty_of(rows, rows.observations[check[i]]);
     const double weight = (u > 0 ? 1 / u : 1) / std::sqrt(variance);
     const auto from = static_cast<Eigen::Index>(check[i]), at = static_cast<Eigen::Index>(i);
     left(at, 0) = weight * before[from];
     left(at, 1) = weight * after[from];
   }
-  if (!noise.independent()) whiten(noise_layout(rows, check), noise, left);
+  if (!noise.independent()) fit::whiten(fit::noise_layout(rows, check), noise, left);
   proof.evidence = (left.col(0).squaredNorm() - left.col(1).squaredNorm()) / 2;
   proof.expected = (left.col(0) - left.col(1)).squaredNorm() / 2;
   return proof;
 }
 
-}  // namespace vernier
+}  // namespace vernier::diagnose

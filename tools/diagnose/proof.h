@@ -6,7 +6,7 @@
 #include "tools/fit/noise.h"
 #include "tools/model/measurement.h"
 
-namespace vernier {
+namespace vernier::diagnose {
 
 /// What rows that no fit and no selection saw say of a step from one model to another.
 struct Proof {
@@ -25,7 +25,7 @@ struct Proof {
 /// The check rows under two models. before, after: residuals (measured - model) of all observations; noise:
 /// how the readings' errors hang together; variance: of a weighted reading's own part, where the stated u is
 /// too small, at least 1 (with u); without u its square in mm. tool.
-Proof proof_on_check_rows(const Measurement& rows, const Eigen::VectorXd& before,
-                          const Eigen::VectorXd& after, const NoiseModel& noise, double variance);
+Proof proof_on_check_rows(const model::Measurement& rows, const Eigen::VectorXd& before,
+                          const Eigen::VectorXd& after, const fit::NoiseModel& noise, double variance);
 
-}  // namespace vernier
+}  // namespace vernier::diagnose

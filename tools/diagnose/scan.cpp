@@ -10,7 +10,7 @@
 
 #include "tools/maths/golden.h"
 
-namespace vernier {
+namespace vernier::diagnose {
 namespace {
 
 /// Columns projected at a time: one product of matrices instead of many of vectors.
@@ -74,7 +74,7 @@ bool Scanner::score(const Eigen::MatrixXd& raw, const Eigen::MatrixXd& projected
     scored.own_share = std::min(scored.own_share, after / before);
   }
   std::vector<std::size_t> kept;
-  const Eigen::MatrixXd basis = orthonormal(own, thresholds_.least_independent, &kept);
+  const Eigen::MatrixXd basis = maths::orthonormal(own, thresholds_.least_independent, &kept);
   if (basis.cols() == 0) return false;
   if (!item.may_lose_columns && basis.cols() < own.cols() - vanished) return false;
   scored.gain = (basis.transpose() * residual).squaredNorm();
@@ -206,7 +206,7 @@ void Scanner::refine(Scored& scored, const Eigen::MatrixXd& beside) const {
     const auto [low, high] = neighbours(item, i, scored.scanned[i]);
     constexpr int kSections = 14;
     std::vector<double> point = scored.scanned;
-    const Peak best = golden_peak(
+    const maths::Peak best = maths::golden_peak(
         [&](double inverse) {
           point[i] = 1 / inverse;
           return gain_at(maker, scored, point, beside, residual);
@@ -220,11 +220,12 @@ void Scanner::refine(Scored& scored, const Eigen::MatrixXd& beside) const {
 }
 
 std::vector<double> Scanner::aliases(const Scored& scored, const Eigen::MatrixXd& beside) const {
-  const Candidate& candidate = candidates_[scored.candidate].candidate;
+  const effects::Candidate& candidate = candidates_[scored.candidate].candidate;
   std::size_t scanned = 0;
-  for (const CandidateUnknown& unknown : candidate.unknowns) {
-    if (unknown.kind == UnknownKind::kPeriod) ++scanned;
-    if (unknown.kind != UnknownKind::kPeriod && unknown.kind != UnknownKind::kLinear) return {};
+  for (const effects::CandidateUnknown& unknown : candidate.unknowns) {
+    if (unknown.kind == effects::UnknownKind::kPeriod) ++scanned;
+    if (unknown.kind != effects::UnknownKind::kPeriod && unknown.kind != effects::UnknownKind::kLinear)
+      return {};
   }
   if (scanned != 1 || scored.scanned.size() != 1 || !candidate.choice.axis) return {};
   const std::size_t axis = *candidate.choice.axis;
@@ -256,7 +257,7 @@ std::vector<double> Scanner::aliases(const Scored& scored, const Eigen::MatrixXd
       // The middle itself is right where positions are even to the last digit.
       const double there = gain_of(frequency);
       if (there < mine / 2) continue;
-      const Peak best = golden_peak(gain_of, frequency - width, frequency + width, kSections);
+      const maths::Peak best = maths::golden_peak(gain_of, frequency - width, frequency + width, kSections);
       if (std::max(there, best.value) >= near)
         frequencies.push_back(there >= best.value ? frequency : best.at);
     }
@@ -275,7 +276,7 @@ Eigen::MatrixXd Scanner::projected(const Scored& scored, std::vector<std::size_t
   for (Eigen::Index j = 0; j < own.cols(); ++j)
     if (own.col(j).norm() < thresholds_.least_own * raw.col(j).norm() || (own.cols() > 1 && vanishes(raw, j)))
       usable.col(j).setZero();
-  orthonormal(usable, thresholds_.least_independent, &chosen);
+  maths::orthonormal(usable, thresholds_.least_independent, &chosen);
   Eigen::MatrixXd result(own.rows(), static_cast<Eigen::Index>(chosen.size()));
   for (std::size_t j = 0; j < chosen.size(); ++j)
     result.col(static_cast<Eigen::Index>(j)) = own.col(static_cast<Eigen::Index>(chosen[j]));
@@ -283,4 +284,4 @@ Eigen::MatrixXd Scanner::projected(const Scored& scored, std::vector<std::size_t
   return result;
 }
 
-}  // namespace vernier
+}  // namespace vernier::diagnose

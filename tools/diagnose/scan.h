@@ -8,7 +8,7 @@
 #include "tools/diagnose/evidence.h"
 #include "tools/maths/orthonormal.h"
 
-namespace vernier {
+namespace vernier::diagnose {
 
 /// What a candidate at its best scanned values does to the residual, after the model's own free parameters
 /// have had their chance.
@@ -77,4 +77,4 @@ class Scanner {
 /// Every combination of the values of several lists.
 std::vector<std::vector<double>> grid_points(const std::vector<std::vector<double>>& lists);
 
-}  // namespace vernier
+}  // namespace vernier::diagnose

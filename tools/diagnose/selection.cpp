@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace vernier {
+namespace vernier::diagnose {
 namespace {
 
 Eigen::Index column_count(const SelectionProblem& p, const std::vector<std::size_t>& chosen) {
@@ -183,4 +183,4 @@ Eigen::VectorXd coefficients(const SelectionProblem& p, const std::vector<std::s
   return gram.ldlt().solve(moment);
 }
 
-}  // namespace vernier
+}  // namespace vernier::diagnose

@@ -6,7 +6,7 @@
 
 #include "tools/diagnose/thresholds.h"
 
-namespace vernier {
+namespace vernier::diagnose {
 
 /// A group of columns that enter a model together.
 struct SelectionEntry {
@@ -46,4 +46,4 @@ Selection select(const SelectionProblem& problem, std::size_t most);
 /// Coefficients of the columns of a set, in its order.
 Eigen::VectorXd coefficients(const SelectionProblem& problem, const std::vector<std::size_t>& chosen);
 
-}  // namespace vernier
+}  // namespace vernier::diagnose

@@ -9,7 +9,7 @@
 
 #include "tools/maths/chance.h"
 
-namespace vernier {
+namespace vernier::diagnose {
 namespace {
 
 using Index = Eigen::Index;
@@ -55,14 +55,14 @@ Gain gain_of(const Evidence& evidence, const Eigen::MatrixXd& raw, const Eigen::
   Eigen::MatrixXd own = raw;
   const Eigen::VectorXd before = own.colwise().norm();
   const Eigen::MatrixXd& q = evidence.absorbed();
-  const Eigen::MatrixXd others = orthonormal(beside, 1e-6, nullptr);
+  const Eigen::MatrixXd others = maths::orthonormal(beside, 1e-6, nullptr);
   for (int pass = 0; pass < 2; ++pass) {
     own -= q * (q.transpose() * own);
     own -= others * (others.transpose() * own);
   }
   for (Index j = 0; j < own.cols(); ++j)
     if (own.col(j).norm() < least_own * before[j]) own.col(j).setZero();
-  const Eigen::MatrixXd basis = orthonormal(own, least_own, nullptr);
+  const Eigen::MatrixXd basis = maths::orthonormal(own, least_own, nullptr);
   const Eigen::VectorXd rest = evidence.residual() - others * (others.transpose() * evidence.residual());
   const double explained = (basis.transpose() * rest).squaredNorm();
   const double freedom =
@@ -73,7 +73,7 @@ Gain gain_of(const Evidence& evidence, const Eigen::MatrixXd& raw, const Eigen::
 }
 
 /// Line and half-waves over the range, as they show in the readings of a place.
-Eigen::MatrixXd half_waves(const Evidence& evidence, const DofPlace& place, const Eigen::VectorXd& u,
+Eigen::MatrixXd half_waves(const Evidence& evidence, const effects::DofPlace& place, const Eigen::VectorXd& u,
                            int count) {
   Eigen::MatrixXd columns(u.size(), count + 1);
   const auto answer = evidence.response(evidence.index_of(place)).array();
@@ -90,7 +90,7 @@ Eigen::MatrixXd moved(const Evidence& evidence, const Pool& pool, std::size_t it
   // Small against the phase of a thousandth of a period at the end of the range.
   constexpr double kStep = 1e-6;
   const std::vector<double>& scanned = pool[item].scored.scanned;
-  const Candidate& candidate = pool.candidate(item);
+  const effects::Candidate& candidate = pool.candidate(item);
   const Eigen::MatrixXd here = evidence.columns(candidate, scanned);
   Eigen::MatrixXd all(here.rows(), here.cols() * static_cast<Index>(scanned.size()));
   for (std::size_t i = 0; i < scanned.size(); ++i) {
@@ -108,7 +108,7 @@ struct Jump {
 };
 
 /// The jump along the axis, at one degree of freedom, that explains most.
-Jump best_jump(const Evidence& evidence, const DofPlace& place, const Eigen::VectorXd& u,
+Jump best_jump(const Evidence& evidence, const effects::DofPlace& place, const Eigen::VectorXd& u,
                const Eigen::MatrixXd& beside) {
   const auto places = static_cast<int>(evidence.thresholds().shape.places_of_jump);
   const Eigen::ArrayXd answer = evidence.response(evidence.index_of(place)).array();
@@ -124,7 +124,7 @@ Jump best_jump(const Evidence& evidence, const DofPlace& place, const Eigen::Vec
 }
 
 bool is_function_of_an_axis(const Evidence& evidence, const Pool& pool, std::size_t item) {
-  const Candidate& candidate = pool.candidate(item);
+  const effects::Candidate& candidate = pool.candidate(item);
   return candidate.choice.axis && candidate.choice.place && candidate.terms.size() == 1 &&
          drivers_of(evidence.machine(), candidate).empty();
 }
@@ -146,7 +146,7 @@ std::string doubt_of_curve(const Evidence& evidence, const Pool& pool, const std
   // A period was found among many: it asks for more witnesses than a curve.
   const double seen_per_unknown =
       pool[item].scored.scanned.empty() ? limits.seen_per_unknown : limits.seen_per_period;
-  const Choice& choice = pool.candidate(item).choice;
+  const effects::Choice& choice = pool.candidate(item).choice;
   const Eigen::MatrixXd beside = pool.columns(of_other_axes(evidence, pool, items, item));
   const AxisFunction shape = function_of_axis(evidence, *choice.axis, *choice.place, beside);
   const auto coefficients = static_cast<double>(pool[item].columns.cols());
@@ -177,7 +177,7 @@ std::string doubt_of_curve(const Evidence& evidence, const Pool& pool, const std
 
 }  // namespace
 
-AxisFunction function_of_axis(const Evidence& evidence, std::size_t axis, const DofPlace& place,
+AxisFunction function_of_axis(const Evidence& evidence, std::size_t axis, const effects::DofPlace& place,
                               const Eigen::MatrixXd& beside) {
   const ShapeThresholds& limits = evidence.thresholds().shape;
   const auto most_slow = static_cast<int>(limits.most_half_waves);
@@ -198,7 +198,7 @@ AxisFunction function_of_axis(const Evidence& evidence, std::size_t axis, const 
   const Gain all = gain_of(evidence, waves.leftCols(2 * slow_count + 1), beside);
   const Gain fast = gain_of(evidence, waves.middleCols(slow_count + 1, slow_count), held);
   shape.fast_share = std::max(0.0, fast.chi_square - fast.rank) / std::max(all.chi_square - all.rank, 1e-300);
-  if (fast.rank > 0) shape.log_p = log_chi_square_tail(fast.chi_square, fast.rank);
+  if (fast.rank > 0) shape.log_p = maths::log_chi_square_tail(fast.chi_square, fast.rank);
   return shape;
 }
 
@@ -222,7 +222,7 @@ double log_p_of_change(const Evidence& evidence, const Pool& pool, const std::ve
   Eigen::MatrixXd beside(all.rows(), all.cols() + more.cols());
   beside << all, more;
   const Gain gain = gain_of(evidence, changed.leftCols(count), beside);
-  return gain.rank == 0 ? 0 : log_chi_square_tail(gain.chi_square, gain.rank);
+  return gain.rank == 0 ? 0 : maths::log_chi_square_tail(gain.chi_square, gain.rank);
 }
 
 std::string doubt_of_shape(const Evidence& evidence, const Pool& pool, const std::vector<std::size_t>& items,
@@ -239,4 +239,4 @@ std::string doubt_of_shape(const Evidence& evidence, const Pool& pool, const std
   return {};
 }
 
-}  // namespace vernier
+}  // namespace vernier::diagnose

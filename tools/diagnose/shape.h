@@ -6,7 +6,7 @@
 #include "tools/diagnose/evidence.h"
 #include "tools/diagnose/pool.h"
 
-namespace vernier {
+namespace vernier::diagnose {
 
 /// What the readings show of an error as a function of one axis at one degree of freedom.
 struct AxisFunction {
@@ -21,7 +21,7 @@ struct AxisFunction {
 /// read (longer ones where it has fewer than 17 positions: two for each) against half-waves of half that
 /// length. `beside`: other effects, any columns after projection on the complement of what the model absorbs.
 /// tool.
-AxisFunction function_of_axis(const Evidence& evidence, std::size_t axis, const DofPlace& place,
+AxisFunction function_of_axis(const Evidence& evidence, std::size_t axis, const effects::DofPlace& place,
                               const Eigen::MatrixXd& beside);
 
 /// Logarithm of the chance that an accepted term seems to change along the axes by noise alone: the term
@@ -37,4 +37,4 @@ double log_p_of_change(const Evidence& evidence, const Pool& pool, const std::ve
 std::string doubt_of_shape(const Evidence& evidence, const Pool& pool, const std::vector<std::size_t>& items,
                            std::size_t item);
 
-}  // namespace vernier
+}  // namespace vernier::diagnose

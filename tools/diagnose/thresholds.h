@@ -2,7 +2,7 @@
 #pragma once
 #include <cstddef>
 
-namespace vernier {
+namespace vernier::diagnose {
 
 // Every number of a diagnosis that was chosen and could have been chosen otherwise: one struct a concern,
 // each with its unit, its meaning and where it comes from. "Experiment" without a name is the sweep of
@@ -420,4 +420,4 @@ struct DiagnoseThresholds {
   }
 };
 
-}  // namespace vernier
+}  // namespace vernier::diagnose

@@ -11,13 +11,13 @@
 #include "tools/text/numbers.h"
 #include "tools/text/xml_text.h"
 
-namespace vernier {
+namespace vernier::effects {
 namespace {
 
 /// Collects the insertions that put a candidate into a machine file.
 class Adder {
  public:
-  Adder(const std::string& text, const Machine& machine, const Candidate& candidate)
+  Adder(const std::string& text, const model::Machine& machine, const Candidate& candidate)
       : text_(text), machine_(machine), candidate_(candidate) {
     find_domain();
   }
@@ -25,7 +25,7 @@ class Adder {
   std::string add() {
     document_.load_buffer(text_.data(), text_.size(), pugi::parse_default, pugi::encoding_utf8);
     find(document_);
-    if (variables_.empty()) throw InputError(machine_.file + ": no <variables> to add to");
+    if (variables_.empty()) throw text::InputError(machine_.file + ": no <variables> to add to");
     insert_variables();
     for (const CandidateTerm& term : candidate_.terms)
       if (is_stand_in(machine_, term.place))
@@ -33,17 +33,17 @@ class Adder {
       else
         edit_term(term);
     if (!base_row_.empty()) insert_base_row();
-    return apply_edits(text_, std::move(edits_));
+    return text::apply_edits(text_, std::move(edits_));
   }
 
  private:
   void find(const pugi::xml_node& parent) {
     for (const pugi::xml_node node : parent.children()) {
-      if (equal_no_case(node.name(), "variables") && variables_.empty()) variables_ = node;
-      if (equal_no_case(node.name(), "static") && static_.empty()) static_ = node;
-      if (equal_no_case(node.name(), "inputs") && inputs_.empty()) inputs_ = node;
-      if (equal_no_case(node.name(), "transforms")) chains_.push_back(node);
-      if (equal_no_case(node.name(), "variables") || node.parent() == document_) find(node);
+      if (text::equal_no_case(node.name(), "variables") && variables_.empty()) variables_ = node;
+      if (text::equal_no_case(node.name(), "static") && static_.empty()) static_ = node;
+      if (text::equal_no_case(node.name(), "inputs") && inputs_.empty()) inputs_ = node;
+      if (text::equal_no_case(node.name(), "transforms")) chains_.push_back(node);
+      if (text::equal_no_case(node.name(), "variables") || node.parent() == document_) find(node);
     }
   }
 
@@ -53,7 +53,7 @@ class Adder {
     const Choice& choice = candidate_.choice;
     bool learned = false;
     for (std::size_t i = 0; i < choice.inputs.size(); ++i) {
-      Input input;
+      model::Input input;
       input.name = choice.inputs[i];
       input.unit = i < choice.units.size() ? choice.units[i] : "";
       if (const auto known = machine_.find_input(input.name)) input = machine_.inputs[*known];
@@ -63,10 +63,11 @@ class Adder {
     if (!learned) return domain_.clear();
     bool feed = false;
     for (const CandidateTerm& term : candidate_.terms)
-      walk(*parse_expression(term.text),
-           [&feed](const Expr& e) { feed = feed || (e.op == Op::kSymbol && e.name == "feed"); });
+      model::walk(*model::parse_expression(term.text), [&feed](const model::Expr& e) {
+        feed = feed || (e.op == model::Op::kSymbol && e.name == "feed");
+      });
     if (feed) domain_.emplace_back("feed", "mm/min");
-    for (const Input& input : machine_.inputs) {
+    for (const model::Input& input : machine_.inputs) {
       const bool listed =
           std::any_of(domain_.begin(), domain_.end(), [&](const auto& q) { return q.first == input.name; });
       if (!listed && class_of_input(input) == InputClass::kTemperature)
@@ -81,8 +82,8 @@ class Adder {
     if (domain_.empty()) return term;
     std::vector<std::string> quantities;
     for (const auto& [quantity, unit] : domain_) quantities.push_back(quantity);
-    const ExprPtr weight = parse_expression(domain_weight(domain_name_, quantities));
-    return to_text(*make_node(Op::kMultiply, {weight, parse_expression(term)}));
+    const model::ExprPtr weight = model::parse_expression(fit::domain_weight(domain_name_, quantities));
+    return model::to_text(*model::make_node(model::Op::kMultiply, {weight, model::parse_expression(term)}));
   }
 
   static std::size_t offset(const pugi::xml_node& node) {
@@ -94,7 +95,7 @@ class Adder {
     for (at = text_.find('<', at); at != std::string::npos; at = text_.find('<', at + 1)) {
       if (text_.compare(at, 4, "<!--") == 0)
         at = text_.find("-->", at);
-      else if (text_.compare(at, tag.size(), tag) == 0 && !is_name(text_.substr(at + tag.size(), 1)))
+      else if (text_.compare(at, tag.size(), tag) == 0 && !text::is_name(text_.substr(at + tag.size(), 1)))
         break;
     }
     return at;
@@ -102,7 +103,7 @@ class Adder {
 
   /// Puts `lines` at the end of an element's content; `name` for one that is closed at once.
   void append(const pugi::xml_node& node, const std::string& lines) {
-    const std::size_t end_of_start = text_.find('>', end_of_attributes(text_, offset(node)));
+    const std::size_t end_of_start = text_.find('>', text::end_of_attributes(text_, offset(node)));
     if (text_[end_of_start - 1] == '/') {
       edits_.push_back({end_of_start - 1, 2, ">\n" + lines + "</" + std::string(node.name()) + ">"});
       return;
@@ -123,13 +124,14 @@ class Adder {
       // A time constant or a period has no meaning at 0: its nominal is the start (the term is 0 all the
       // same, for its coefficient is).
       lines += fmt::format("      <{} value=\"{}\" nominal=\"{}\" unit=\"{}\" note=\"{}\"/>\n", unknown.name,
-                           number_text(unknown.start),
-                           unknown.kind == UnknownKind::kLinear ? "0" : number_text(unknown.start),
-                           escape_attribute(unknown.unit), escape_attribute(candidate_.label));
-    for (const DomainStatic& item : open_domain(domain_name_, domain_))
-      lines += fmt::format(
-          "      <{} value=\"{}\" Hide=\"true\" unit=\"{}\" note=\"where it is valid: {}\"/>\n", item.name,
-          number_text(item.value), escape_attribute(item.unit), escape_attribute(candidate_.label));
+                           text::number_text(unknown.start),
+                           unknown.kind == UnknownKind::kLinear ? "0" : text::number_text(unknown.start),
+                           text::escape_attribute(unknown.unit), text::escape_attribute(candidate_.label));
+    for (const fit::DomainStatic& item : fit::open_domain(domain_name_, domain_))
+      lines +=
+          fmt::format("      <{} value=\"{}\" Hide=\"true\" unit=\"{}\" note=\"where it is valid: {}\"/>\n",
+                      item.name, text::number_text(item.value), text::escape_attribute(item.unit),
+                      text::escape_attribute(candidate_.label));
     return lines;
   }
 
@@ -137,8 +139,8 @@ class Adder {
     std::string lines;
     for (const auto& [name, unit] : names_of_new_inputs()) {
       const double reference = candidate_.choice.reference.value_or(unit == "degC" ? 20 : 0);
-      lines += fmt::format("      <{} unit=\"{}\" reference=\"{}\"/>\n", name, escape_attribute(unit),
-                           number_text(reference));
+      lines += fmt::format("      <{} unit=\"{}\" reference=\"{}\"/>\n", name, text::escape_attribute(unit),
+                           text::number_text(reference));
     }
     return lines;
   }
@@ -172,7 +174,7 @@ class Adder {
     for (const pugi::xml_node chain : chains_) {
       bool workpiece = false;
       for (const pugi::xml_attribute item : chain.attributes())
-        if (equal_no_case(item.name(), "branch")) workpiece = item.value() == std::string("workpiece");
+        if (text::equal_no_case(item.name(), "branch")) workpiece = item.value() == std::string("workpiece");
       if (workpiece == of_workpiece) return chain;
     }
     return {};
@@ -184,7 +186,7 @@ class Adder {
     std::size_t index = !place.workpiece && is_stand_in(machine_, {false, 0, 0}) ? 1 : 0;
     for (const pugi::xml_node node : chain_of(place.workpiece).children())
       if (node.type() == pugi::node_element && index++ == place.transform) return node;
-    throw InputError(
+    throw text::InputError(
         fmt::format("{}: transform {} was not found again", machine_.file, transform_at(machine_, place).n));
   }
 
@@ -200,15 +202,15 @@ class Adder {
   }
 
   /// Comparisons bind loosest: beside something else they need parentheses.
-  static bool is_comparison(const Expr& expr) {
-    return expr.op == Op::kEqual || expr.op == Op::kLess || expr.op == Op::kGreater;
+  static bool is_comparison(const model::Expr& expr) {
+    return expr.op == model::Op::kEqual || expr.op == model::Op::kLess || expr.op == model::Op::kGreater;
   }
 
   /// The term as it stands in an attribute, beside others or alone.
   std::string value_of(const CandidateTerm& term) const {
     const std::string text = in_domain(term.text);
-    const bool open = is_comparison(*parse_expression(text));
-    return escape_attribute(open ? "(" + text + ")" : text);
+    const bool open = is_comparison(*model::parse_expression(text));
+    return text::escape_attribute(open ? "(" + text + ")" : text);
   }
 
   void edit_term(const CandidateTerm& term) {
@@ -216,10 +218,10 @@ class Adder {
     const std::string name = dof_name(machine_, term.place);
     const std::string value = value_of(term);
     const bool closed = !is_comparison(*transform_at(machine_, term.place).dof[term.place.dof]);
-    for (const AttributeSpan& span : attribute_spans(text_, offset(node))) {
-      if (!equal_no_case(span.name, name)) continue;
+    for (const text::AttributeSpan& span : text::attribute_spans(text_, offset(node))) {
+      if (!text::equal_no_case(span.name, name)) continue;
       const std::string before = text_.substr(span.value_at, span.value_size);
-      const auto number = parse_number(before);
+      const auto number = text::parse_number(before);
       if (before.empty() || (number && *number == 0))
         edits_.push_back({span.value_at, span.value_size, value});
       else {
@@ -229,11 +231,11 @@ class Adder {
       }
       return;
     }
-    edits_.push_back({end_of_attributes(text_, offset(node)), 0, " " + name + "=\"" + value + "\""});
+    edits_.push_back({text::end_of_attributes(text_, offset(node)), 0, " " + name + "=\"" + value + "\""});
   }
 
   const std::string& text_;
-  const Machine& machine_;
+  const model::Machine& machine_;
   const Candidate& candidate_;
   std::string domain_name_;
   std::vector<std::pair<std::string, std::string>> domain_;  // quantity and unit; empty: not learned
@@ -241,13 +243,14 @@ class Adder {
   pugi::xml_node variables_, static_, inputs_;
   std::vector<pugi::xml_node> chains_;
   std::string base_row_;  // attributes of the row to write
-  std::vector<TextEdit> edits_;
+  std::vector<text::TextEdit> edits_;
 };
 
 }  // namespace
 
-std::string add_to_machine_text(const std::string& text, const Machine& machine, const Candidate& candidate) {
+std::string add_to_machine_text(const std::string& text, const model::Machine& machine,
+                                const Candidate& candidate) {
   return Adder(text, machine, candidate).add();
 }
 
-}  // namespace vernier
+}  // namespace vernier::effects

@@ -9,7 +9,7 @@
 #include "tools/text/numbers.h"
 #include "tools/text/xml_text.h"
 
-namespace vernier {
+namespace vernier::effects {
 namespace {
 
 /// A value as it stands in an add string: the characters that the string itself uses are written %XX.
@@ -60,7 +60,7 @@ std::string quoted_list(const std::vector<std::string>& list) {
 /// Reads one add string against a machine.
 class AddReader {
  public:
-  AddReader(const std::string& text, const Machine& machine, const std::vector<Effect>& effects)
+  AddReader(const std::string& text, const model::Machine& machine, const std::vector<Effect>& effects)
       : text_(text), machine_(machine), axes_(machine), effects_(effects) {}
 
   Choice read() {
@@ -78,7 +78,7 @@ class AddReader {
 
  private:
   [[noreturn]] void fail(const std::string& word, const std::string& what) const {
-    throw InputError("\"" + text_ + "\": \"" + word + "\": " + what);
+    throw text::InputError("\"" + text_ + "\": \"" + word + "\": " + what);
   }
 
   void split() {
@@ -139,11 +139,11 @@ class AddReader {
   void read_inputs() {
     for (const char* key : {"input", "input2", "input3"})
       if (const auto name = take(key)) {
-        if (!is_name(*name)) fail(*name, "not a name");
-        if (is_reserved_word(*name)) fail(*name, "this name is reserved");
+        if (!text::is_name(*name)) fail(*name, "not a name");
+        if (model::is_reserved_word(*name)) fail(*name, "this name is reserved");
         choice_.inputs.push_back(*name);
         const auto known = machine_.find_input(*name);
-        if (!known && resolve_name(machine_, *name).kind != SymbolKind::kUnresolved)
+        if (!known && model::resolve_name(machine_, *name).kind != model::SymbolKind::kUnresolved)
           fail(*name, "this name is taken by something that is no input");
         choice_.units.push_back(known ? machine_.inputs[*known].unit : "");
       }
@@ -181,9 +181,9 @@ class AddReader {
     if (branch_ && (*branch_ == "workpiece") != transform_->workpiece)
       fail(*branch_, "which transform of this branch? transform=N");
     if (dof_) {
-      const Transform& at = transform_at(machine_, *transform_);
+      const model::Transform& at = transform_at(machine_, *transform_);
       for (std::size_t d = 0; d < at.dof_count(); ++d)
-        if (equal_no_case(at.dof_name(d), *dof_))
+        if (text::equal_no_case(at.dof_name(d), *dof_))
           choice_.place = DofPlace{transform_->workpiece, transform_->transform, d};
       if (!choice_.place) fail(*dof_, "not a degree of freedom of this transform");
     }
@@ -256,7 +256,7 @@ class AddReader {
   }
 
   double number(const std::string& key, const std::string& text) const {
-    const auto value = parse_number(text);
+    const auto value = text::parse_number(text);
     if (!value) fail(key + "=" + text, "expected a number");
     return *value;
   }
@@ -266,7 +266,7 @@ class AddReader {
     if (const auto text = take("sum")) choice_.sum = *text;
     if (choice_.sum.empty() && choice_.axis) choice_.sum = machine_.axes[*choice_.axis].name;
     if (choice_.axis) {
-      const Axis& axis = machine_.axes[*choice_.axis];
+      const model::Axis& axis = machine_.axes[*choice_.axis];
       choice_.from = axis.min.value_or(0);
       choice_.to = axis.max.value_or(0);
     }
@@ -295,7 +295,7 @@ class AddReader {
   }
 
   const std::string& text_;
-  const Machine& machine_;
+  const model::Machine& machine_;
   AxisPlaces axes_;
   const std::vector<Effect>& effects_;
   std::string id_;
@@ -309,7 +309,7 @@ class AddReader {
 
 }  // namespace
 
-std::string add_string(const Machine& machine, const Choice& c) {
+std::string add_string(const model::Machine& machine, const Choice& c) {
   std::string text = c.effect->id;
   char separator = ':';
   const auto put = [&](const std::string& key, const std::string& value) {
@@ -325,23 +325,24 @@ std::string add_string(const Machine& machine, const Choice& c) {
     put("transform", std::to_string(transform_at(machine, *c.place).n));
     put("dof", dof_name(machine, *c.place));
   }
-  if (c.reference) put("reference", number_text(*c.reference));
+  if (c.reference) put("reference", text::number_text(*c.reference));
   for (std::size_t i = 0; i < c.units.size(); ++i)
     if (!c.units[i].empty()) put(numbered("unit", i), quote(c.units[i]));
   if (!custom) put("form", c.form->label);
   if (!custom && c.form->asks_for("sum")) put("sum", c.sum);
   if (!custom && has_range(*c.form)) {
-    put("from", number_text(c.from));
-    put("to", number_text(c.to));
+    put("from", text::number_text(c.from));
+    put("to", text::number_text(c.to));
   }
   if (!c.runs.empty()) put("runs", quoted_list(c.runs));
-  for (const auto& [name, value] : c.start) put("start." + name, number_text(value));
+  for (const auto& [name, value] : c.start) put("start." + name, text::number_text(value));
   if (custom) put("term", c.term);
   return text;
 }
 
-Choice parse_add_string(const std::string& text, const Machine& machine, const std::vector<Effect>& effects) {
+Choice parse_add_string(const std::string& text, const model::Machine& machine,
+                        const std::vector<Effect>& effects) {
   return AddReader(text, machine, effects).read();
 }
 
-}  // namespace vernier
+}  // namespace vernier::effects

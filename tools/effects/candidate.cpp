@@ -12,7 +12,7 @@
 #include "tools/text/error.h"
 #include "tools/text/numbers.h"
 
-namespace vernier {
+namespace vernier::effects {
 namespace {
 
 void replace_all(std::string& text, std::string_view what, const std::string& with) {
@@ -28,35 +28,38 @@ std::string plain(std::string_view text) {
   return name;
 }
 
-ExprPtr sum_of(const std::vector<ExprPtr>& parts) {
-  ExprPtr sum = parts.at(0);
-  for (std::size_t i = 1; i < parts.size(); ++i) sum = make_node(Op::kAdd, {sum, parts[i]});
+model::ExprPtr sum_of(const std::vector<model::ExprPtr>& parts) {
+  model::ExprPtr sum = parts.at(0);
+  for (std::size_t i = 1; i < parts.size(); ++i) sum = model::make_node(model::Op::kAdd, {sum, parts[i]});
   return sum;
 }
 
-bool is_product(const Expr& expr) { return expr.op == Op::kMultiply || expr.op == Op::kDivide; }
-
-/// A product with its first factor negated: "-k*X".
-ExprPtr with_first_negated(const ExprPtr& expr) {
-  if (!is_product(*expr)) return make_node(Op::kNegate, {expr});
-  return make_node(expr->op, {with_first_negated(expr->args[0]), expr->args[1]});
+bool is_product(const model::Expr& expr) {
+  return expr.op == model::Op::kMultiply || expr.op == model::Op::kDivide;
 }
 
-ExprPtr negative(const ExprPtr& expr) {
-  const Expr* first = expr.get();
+/// A product with its first factor negated: "-k*X".
+model::ExprPtr with_first_negated(const model::ExprPtr& expr) {
+  if (!is_product(*expr)) return model::make_node(model::Op::kNegate, {expr});
+  return model::make_node(expr->op, {with_first_negated(expr->args[0]), expr->args[1]});
+}
+
+model::ExprPtr negative(const model::ExprPtr& expr) {
+  const model::Expr* first = expr.get();
   while (is_product(*first)) first = first->args[0].get();
-  return first->op == Op::kNegate ? make_node(Op::kNegate, {expr}) : with_first_negated(expr);
+  return first->op == model::Op::kNegate ? model::make_node(model::Op::kNegate, {expr})
+                                         : with_first_negated(expr);
 }
 
 /// Works one choice out into terms and unknowns: every placeholder and every unknown of the form's tree is
 /// replaced by what the choice and the machine put there.
 class Maker {
  public:
-  Maker(const Machine& machine, const AxisPlaces& axes, const Choice& choice)
+  Maker(const model::Machine& machine, const AxisPlaces& axes, const Choice& choice)
       : machine_(machine), axes_(axes), choice_(choice) {
-    for (const Static& item : machine.statics) taken_.insert(item.name);
-    for (const Axis& item : machine.axes) taken_.insert(item.name);
-    for (const Input& item : machine.inputs) taken_.insert(item.name);
+    for (const model::Static& item : machine.statics) taken_.insert(item.name);
+    for (const model::Axis& item : machine.axes) taken_.insert(item.name);
+    for (const model::Input& item : machine.inputs) taken_.insert(item.name);
     for (const std::string& name : choice.inputs) taken_.insert(name);
   }
 
@@ -67,8 +70,8 @@ class Maker {
     if (terms.empty()) missing("a degree of freedom to act at");
     name_unknowns(terms);
     for (const TermAt& term : terms) {
-      const ExprPtr filled = fill(term);
-      result_.terms.push_back({term.place, to_text(term.negated ? *negative(filled) : *filled)});
+      const model::ExprPtr filled = fill(term);
+      result_.terms.push_back({term.place, model::to_text(term.negated ? *negative(filled) : *filled)});
     }
     result_.label = label();
     result_.spoken = spoken_name(machine_, axes_, result_);
@@ -79,7 +82,7 @@ class Maker {
   /// A form's tree and where it goes.
   struct TermAt {
     DofPlace place;
-    ExprPtr tree;
+    model::ExprPtr tree;
     std::optional<std::size_t> axis;
     bool negated =
         false;  // terms that share a coefficient count in the same sense along the machine's motion
@@ -87,7 +90,7 @@ class Maker {
   };
 
   [[noreturn]] void missing(const std::string& what) const {
-    throw InputError(choice_.effect->id + ": " + what + " is missing");
+    throw text::InputError(choice_.effect->id + ": " + what + " is missing");
   }
 
   bool is_custom() const { return choice_.effect == &custom_effect(); }
@@ -100,19 +103,20 @@ class Maker {
       choice_.reference = machine_.inputs[*known].reference;
   }
 
-  std::vector<ExprPtr> trees() const {
+  std::vector<model::ExprPtr> trees() const {
     if (!is_custom()) return choice_.form->trees;
     try {
-      return {parse_expression(choice_.term)};
-    } catch (const ExpressionError& error) {
-      throw InputError(choice_.effect->id + ": \"" + error.word + "\": " + error.what() + ", in its term");
+      return {model::parse_expression(choice_.term)};
+    } catch (const model::ExpressionError& error) {
+      throw text::InputError(choice_.effect->id + ": \"" + error.word + "\": " + error.what() +
+                             ", in its term");
     }
   }
 
   std::vector<TermAt> terms_to_fill() const {
-    const std::vector<ExprPtr> form = trees();
+    const std::vector<model::ExprPtr> form = trees();
     std::vector<TermAt> terms;
-    const auto at_own = [&](std::size_t axis, const ExprPtr& tree) {
+    const auto at_own = [&](std::size_t axis, const model::ExprPtr& tree) {
       if (const auto& own = axes_.own(axis)) terms.push_back({*own, tree, axis, axes_.sense(axis) < 0});
     };
     switch (choice_.form->place) {
@@ -141,10 +145,10 @@ class Maker {
     return terms;
   }
 
-  ExprPtr fill(const TermAt& term) const {
-    return substitute(term.tree, [&](const std::string& name) -> ExprPtr {
+  model::ExprPtr fill(const TermAt& term) const {
+    return model::substitute(term.tree, [&](const std::string& name) -> model::ExprPtr {
       if (const auto unknown = final_name_.find(name); unknown != final_name_.end())
-        return make_symbol(unknown->second);
+        return model::make_symbol(unknown->second);
       const std::vector<std::string> marks = marks_in(name);
       if (marks.empty()) {
         check_name(name);
@@ -155,27 +159,29 @@ class Maker {
       // dir{q}, v{q}, lag of an input: a name with another name in it.
       std::string whole = name;
       for (const std::string& mark : marks)
-        whole.replace(whole.find('{'), mark.size() + 2, to_text(*value_of(mark, term)));
+        whole.replace(whole.find('{'), mark.size() + 2, model::to_text(*value_of(mark, term)));
       check_name(whole);
-      return make_symbol(whole);
+      return model::make_symbol(whole);
     });
   }
 
   /// What stands in the place of a placeholder.
-  ExprPtr value_of(const std::string& mark, const TermAt& term) const {
-    if (mark == "q") return make_symbol(axis_of(term));
-    if (mark == "T" || mark == "L" || mark == "F" || mark == "V") return make_symbol(input(0));
-    if (mark == "S") return make_symbol(input(1));
-    if (mark == "ref") return make_number(choice_.reference ? *choice_.reference : (missing("input"), 0));
-    if (mark == "from") return make_number(choice_.from);
-    if (mark == "to") return make_number(choice_.to);
-    if (mark == "mid") return make_number(0.5 * (choice_.from + choice_.to));
-    if (mark == "span") return make_number(choice_.to - choice_.from);
-    if (mark == "n") return make_symbol(term.normal == nullptr ? (missing("place normal"), "") : term.normal);
+  model::ExprPtr value_of(const std::string& mark, const TermAt& term) const {
+    if (mark == "q") return model::make_symbol(axis_of(term));
+    if (mark == "T" || mark == "L" || mark == "F" || mark == "V") return model::make_symbol(input(0));
+    if (mark == "S") return model::make_symbol(input(1));
+    if (mark == "ref")
+      return model::make_number(choice_.reference ? *choice_.reference : (missing("input"), 0));
+    if (mark == "from") return model::make_number(choice_.from);
+    if (mark == "to") return model::make_number(choice_.to);
+    if (mark == "mid") return model::make_number(0.5 * (choice_.from + choice_.to));
+    if (mark == "span") return model::make_number(choice_.to - choice_.from);
+    if (mark == "n")
+      return model::make_symbol(term.normal == nullptr ? (missing("place normal"), "") : term.normal);
     if (mark == "runs") return steps();
     if (mark == "sum") {
       if (choice_.sum.empty()) missing("sum");
-      return parse_expression(choice_.sum);
+      return model::parse_expression(choice_.sum);
     }
     return hats(axis_of(term));
   }
@@ -191,29 +197,32 @@ class Maker {
   }
 
   /// h1·hat1 + h2·hat2 …: triangles over the range.
-  ExprPtr hats(const std::string& axis) const {
+  model::ExprPtr hats(const std::string& axis) const {
     const std::size_t count = choice_.form->hats;
     if (!(choice_.to > choice_.from)) missing("from or to (the range of the axis)");
     const double width = (choice_.to - choice_.from) / static_cast<double>(count - 1);
-    std::vector<ExprPtr> parts;
+    std::vector<model::ExprPtr> parts;
     for (std::size_t i = 0; i < count; ++i) {
       const double node = choice_.from + width * static_cast<double>(i);
-      const ExprPtr away = make_node(Op::kAbs, {subtract_number(make_symbol(axis), node)});
-      const ExprPtr falling =
-          make_node(Op::kSubtract, {make_number(1), make_node(Op::kDivide, {away, make_number(width)})});
-      parts.push_back(make_node(Op::kMultiply, {make_symbol(final_name_.at(fmt::format("h{}", i + 1))),
-                                                make_node(Op::kMax, {make_number(0), falling})}));
+      const model::ExprPtr away =
+          model::make_node(model::Op::kAbs, {model::subtract_number(model::make_symbol(axis), node)});
+      const model::ExprPtr falling = model::make_node(
+          model::Op::kSubtract,
+          {model::make_number(1), model::make_node(model::Op::kDivide, {away, model::make_number(width)})});
+      parts.push_back(model::make_node(
+          model::Op::kMultiply, {model::make_symbol(final_name_.at(fmt::format("h{}", i + 1))),
+                                 model::make_node(model::Op::kMax, {model::make_number(0), falling})}));
     }
     return sum_of(parts);
   }
 
   /// h1·run("a") + h2·run("b") …
-  ExprPtr steps() const {
-    std::vector<ExprPtr> parts;
+  model::ExprPtr steps() const {
+    std::vector<model::ExprPtr> parts;
     const std::vector<std::string> names = names_of_steps();
     for (std::size_t i = 0; i < names.size(); ++i)
-      parts.push_back(
-          make_node(Op::kMultiply, {make_symbol(final_name_.at(names[i])), make_run(choice_.runs[i])}));
+      parts.push_back(model::make_node(model::Op::kMultiply, {model::make_symbol(final_name_.at(names[i])),
+                                                              model::make_run(choice_.runs[i])}));
     return sum_of(parts);
   }
 
@@ -232,8 +241,8 @@ class Maker {
       if (std::find(found.begin(), found.end(), name) == found.end()) found.push_back(name);
     };
     for (const TermAt& term : terms)
-      walk(*term.tree, [&](const Expr& node) {
-        if (node.op != Op::kSymbol) return;
+      model::walk(*term.tree, [&](const model::Expr& node) {
+        if (node.op != model::Op::kSymbol) return;
         if (choice_.effect->find_unknown(node.name) != nullptr) take(node.name);
         if (node.name == "{runs}")
           for (const std::string& name : names_of_steps()) take(name);
@@ -246,15 +255,15 @@ class Maker {
   /// Every other name of a term is one of the machine's or an input that comes with it.
   void check_name(const std::string& name) const {
     const auto& inputs = choice_.inputs;
-    if (resolve_name(machine_, name).kind == SymbolKind::kUnresolved &&
+    if (model::resolve_name(machine_, name).kind == model::SymbolKind::kUnresolved &&
         std::find(inputs.begin(), inputs.end(), name) == inputs.end())
-      throw InputError(choice_.effect->id + ": \"" + name +
-                       "\": unknown name in its term (a logged column is named by input=NAME)");
+      throw text::InputError(choice_.effect->id + ": \"" + name +
+                             "\": unknown name in its term (a logged column is named by input=NAME)");
   }
 
   bool is_free(const std::string& name) const {
-    return !taken_.contains(name) && !is_reserved_word(name) &&
-           resolve_name(machine_, name).kind == SymbolKind::kUnresolved;
+    return !taken_.contains(name) && !model::is_reserved_word(name) &&
+           model::resolve_name(machine_, name).kind == model::SymbolKind::kUnresolved;
   }
 
   void name_unknowns(const std::vector<TermAt>& terms) {
@@ -283,7 +292,8 @@ class Maker {
     const auto start = choice_.start.find(rule_name);
     if (start != choice_.start.end()) item.start = start->second;
     if (item.kind != UnknownKind::kLinear && item.start == 0)
-      throw InputError(choice_.effect->id + ": start." + rule_name + " is missing: " + why_a_start(item));
+      throw text::InputError(choice_.effect->id + ": start." + rule_name +
+                             " is missing: " + why_a_start(item));
     return item;
   }
 
@@ -323,7 +333,7 @@ class Maker {
         stem += fmt::format("_{}{}", dof_name(machine_, *choice_.place),
                             transform_at(machine_, *choice_.place).n);
     }
-    return is_name(stem) ? stem : "effect_" + stem;  // an id may begin with a digit
+    return text::is_name(stem) ? stem : "effect_" + stem;  // an id may begin with a digit
   }
 
   std::string label() const {
@@ -339,7 +349,7 @@ class Maker {
     return text;
   }
 
-  const Machine& machine_;
+  const model::Machine& machine_;
   const AxisPlaces& axes_;
   Choice choice_;
   Candidate result_;
@@ -374,12 +384,12 @@ Choice choice_at(const Candidate& candidate, const std::vector<double>& scanned)
   return choice;
 }
 
-std::vector<std::size_t> add_unknowns(Machine& machine, const Candidate& candidate,
+std::vector<std::size_t> add_unknowns(model::Machine& machine, const Candidate& candidate,
                                       const std::vector<double>& scanned) {
   std::vector<std::size_t> linear;
   std::size_t next = 0;
   for (const CandidateUnknown& unknown : candidate.unknowns) {
-    Static item;
+    model::Static item;
     item.name = unknown.name;
     if (unknown.kind == UnknownKind::kLinear)
       linear.push_back(machine.statics.size());
@@ -390,12 +400,12 @@ std::vector<std::size_t> add_unknowns(Machine& machine, const Candidate& candida
   return linear;
 }
 
-Candidate make_candidate(const Machine& machine, const AxisPlaces& axes, const Choice& choice) {
+Candidate make_candidate(const model::Machine& machine, const AxisPlaces& axes, const Choice& choice) {
   return Maker(machine, axes, choice).make();
 }
 
-Candidate make_candidate(const Machine& machine, const Choice& choice) {
+Candidate make_candidate(const model::Machine& machine, const Choice& choice) {
   return make_candidate(machine, AxisPlaces(machine), choice);
 }
 
-}  // namespace vernier
+}  // namespace vernier::effects

@@ -12,7 +12,7 @@
 #include "tools/text/files.h"
 #include "tools/text/numbers.h"
 
-namespace vernier {
+namespace vernier::effects {
 
 extern const char* const kBuiltInCatalogue;  // the text of catalogue.txt
 
@@ -27,7 +27,7 @@ std::optional<std::size_t> hats_of(const std::string& mark) {
   // A table of more stations is no effect to be searched for.
   constexpr double kMostHats = 100;
   if (mark.rfind(kHats, 0) != 0) return std::nullopt;
-  const auto count = parse_number(mark.substr(kHats.size()));
+  const auto count = text::parse_number(mark.substr(kHats.size()));
   if (!count || *count < 2 || *count > kMostHats || *count != std::floor(*count)) return std::nullopt;
   return static_cast<std::size_t>(*count);
 }
@@ -55,7 +55,7 @@ class CatalogueReader {
     fail_at(line_, word, what);
   }
   [[noreturn]] void fail_at(std::size_t line, const std::string& word, const std::string& what) const {
-    throw InputError(Place{file_, line}, word, what);
+    throw text::InputError(text::Place{file_, line}, word, what);
   }
 
   static std::string next_word(std::string& rest) {
@@ -120,7 +120,7 @@ class CatalogueReader {
   void take_size(Effect& effect, std::string rest) const {
     EffectSize size;
     const std::string factor = next_word(rest);
-    const auto value = parse_number(factor);
+    const auto value = text::parse_number(factor);
     if (!value || *value == 0 || rest.empty()) fail(factor, "a size is \"size FACTOR UNKNOWN...\"");
     size.factor = *value;
     while (!rest.empty()) size.unknowns.push_back(next_word(rest));
@@ -139,7 +139,7 @@ class CatalogueReader {
     check_braces(rest);
     try {
       read_term(form);
-    } catch (const ExpressionError& error) {
+    } catch (const model::ExpressionError& error) {
       fail(rest, error.what());
     }
     for (const EffectForm& other : effect.forms)
@@ -171,13 +171,14 @@ class CatalogueReader {
   void take_unknown(Effect& effect, std::string rest) {
     UnknownRule rule;
     rule.name = next_word(rest);
-    if (!is_name(rule.name) || is_reserved_word(rule.name)) fail(rule.name, "not a name for an unknown");
+    if (!text::is_name(rule.name) || model::is_reserved_word(rule.name))
+      fail(rule.name, "not a name for an unknown");
     if (effect.find_unknown(rule.name) != nullptr) fail(rule.name, "this unknown stands twice");
     rule.unit = next_word(rest);
     const std::string kind = next_word(rest);
     const auto number = [&] {
       const std::string word = next_word(rest);
-      const auto value = parse_number(word);
+      const auto value = text::parse_number(word);
       if (!value) fail(word, "expected a number");
       return *value;
     };
@@ -230,9 +231,9 @@ class CatalogueReader {
     if ((form.trees.size() == 2) != (form.place == PlaceRule::kPair))
       fail_at(line, form.term, "a pair has two terms with | between them, other places have one");
     std::set<std::string> used;
-    for (const ExprPtr& tree : form.trees)
-      walk(*tree, [&](const Expr& node) {
-        if (node.op != Op::kSymbol) return;
+    for (const model::ExprPtr& tree : form.trees)
+      model::walk(*tree, [&](const model::Expr& node) {
+        if (node.op != model::Op::kSymbol) return;
         for (const std::string& mark : marks_in(node.name)) check_mark(mark, line);
         if (effect.find_unknown(node.name) != nullptr) used.insert(node.name);
       });
@@ -267,11 +268,11 @@ std::vector<std::string> marks_in(const std::string& name) {
 void read_term(EffectForm& form) {
   // No label of a run stands in a catalogue: a bar is one of a pair.
   const auto bar = form.term.find('|');
-  form.trees = {parse_template(form.term.substr(0, bar))};
-  if (bar != std::string::npos) form.trees.push_back(parse_template(form.term.substr(bar + 1)));
-  for (const ExprPtr& tree : form.trees)
-    walk(*tree, [&](const Expr& node) {
-      if (node.op != Op::kSymbol) return;
+  form.trees = {model::parse_template(form.term.substr(0, bar))};
+  if (bar != std::string::npos) form.trees.push_back(model::parse_template(form.term.substr(bar + 1)));
+  for (const model::ExprPtr& tree : form.trees)
+    model::walk(*tree, [&](const model::Expr& node) {
+      if (node.op != model::Op::kSymbol) return;
       for (const std::string& mark : marks_in(node.name)) {
         if (const auto hats = hats_of(mark)) form.hats = *hats;
         form.marks.insert(mark.substr(0, mark.find(' ')));
@@ -299,7 +300,7 @@ const std::vector<Effect>& built_in_effects() {
 std::vector<Effect> effect_catalogue(const std::vector<std::string>& files) {
   std::vector<Effect> all = built_in_effects();
   for (const std::string& file : files)
-    for (Effect& effect : parse_effects(read_file(file), file)) {
+    for (Effect& effect : parse_effects(text::read_file(file), file)) {
       const auto same =
           std::find_if(all.begin(), all.end(), [&](const Effect& e) { return e.id == effect.id; });
       if (same == all.end())
@@ -310,4 +311,4 @@ std::vector<Effect> effect_catalogue(const std::vector<std::string>& files) {
   return all;
 }
 
-}  // namespace vernier
+}  // namespace vernier::effects

@@ -10,7 +10,7 @@
 
 #include "tools/model/expression.h"
 
-namespace vernier {
+namespace vernier::effects {
 
 /// Where a form of an effect may act. `q` is the axis that drives it.
 enum class PlaceRule : std::uint8_t {
@@ -54,17 +54,18 @@ struct EffectForm {
   std::string label;
   PlaceRule place = PlaceRule::kOwn;
   std::string term;
-  bool rare = false;            // met more seldom than the effect's other forms
-  std::vector<ExprPtr> trees;   // the term, read: one, of a pair two
-  std::set<std::string> marks;  // of its placeholders: q, T, hats ...
-  std::size_t hats = 0;         // N of {hats N}
+  bool rare = false;                  // met more seldom than the effect's other forms
+  std::vector<model::ExprPtr> trees;  // the term, read: one, of a pair two
+  std::set<std::string> marks;        // of its placeholders: q, T, hats ...
+  std::size_t hats = 0;               // N of {hats N}
 
   bool asks_for(const std::string& mark) const { return marks.contains(mark); }
   bool asks_for_input() const { return asks_for("T") || asks_for("L") || asks_for("F") || asks_for("V"); }
   /// Does any node of the term answer?
   template <class Is>
   bool any(const Is& is) const {
-    return std::any_of(trees.begin(), trees.end(), [&](const ExprPtr& tree) { return any_node(*tree, is); });
+    return std::any_of(trees.begin(), trees.end(),
+                       [&](const model::ExprPtr& tree) { return model::any_node(*tree, is); });
   }
 };
 
@@ -109,4 +110,4 @@ std::vector<Effect> effect_catalogue(const std::vector<std::string>& files);
 /// The name of a place rule as the catalogue writes it.
 const char* place_name(PlaceRule rule);
 
-}  // namespace vernier
+}  // namespace vernier::effects

@@ -6,14 +6,14 @@
 #include "tools/model/machine_writer.h"
 #include "tools/model/rebind.h"
 
-namespace vernier {
+namespace vernier::effects {
 namespace {
 
-Static& static_of(Machine& machine, const CandidateUnknown& unknown) {
+model::Static& static_of(model::Machine& machine, const CandidateUnknown& unknown) {
   return machine.statics[machine.find_static(unknown.name).value()];
 }
 
-void start_at(Machine& machine, const Candidate& effect, const std::vector<double>& coefficients) {
+void start_at(model::Machine& machine, const Candidate& effect, const std::vector<double>& coefficients) {
   auto value = coefficients.begin();
   if (coefficients.empty()) return;
   for (const CandidateUnknown& unknown : linear_unknowns(effect))
@@ -21,7 +21,7 @@ void start_at(Machine& machine, const Candidate& effect, const std::vector<doubl
 }
 
 /// Holds what the fit drove out of where it was looked for. True where there was one.
-bool hold_runaways(Machine& machine, const std::vector<EffectToFit>& effects, FittedEffects& result) {
+bool hold_runaways(model::Machine& machine, const std::vector<EffectToFit>& effects, FittedEffects& result) {
   bool any = false;
   for (std::size_t i = 0; i < effects.size(); ++i) {
     if (!effects[i].is_driven_out) continue;
@@ -38,11 +38,11 @@ bool hold_runaways(Machine& machine, const std::vector<EffectToFit>& effects, Fi
 }  // namespace
 
 MachineText machine_text(const std::string& text, const std::string& file) {
-  return {text, with_base_row(parse_machine(text, file))};
+  return {text, with_base_row(model::parse_machine(text, file))};
 }
 
-MachineText fitted_text(const std::string& text, const FitResult& fit) {
-  return {update_machine_text(text, fit.machine, true), fit.machine};
+MachineText fitted_text(const std::string& text, const fit::FitResult& fit) {
+  return {model::update_machine_text(text, fit.machine, true), fit.machine};
 }
 
 Candidate put_in(MachineText& into, const Choice& choice) {
@@ -51,26 +51,26 @@ Candidate put_in(MachineText& into, const Choice& choice) {
   return effect;
 }
 
-void hold_scanned(Machine& machine, const Candidate& effect, bool held) {
+void hold_scanned(model::Machine& machine, const Candidate& effect, bool held) {
   for (const CandidateUnknown& unknown : scanned_unknowns(effect)) static_of(machine, unknown).hidden = held;
 }
 
-FittedEffects fit_with_effects(const MachineText& base, const Measurement& rows,
-                               const std::vector<EffectToFit>& effects, const FitOptions& options) {
+FittedEffects fit_with_effects(const MachineText& base, const model::Measurement& rows,
+                               const std::vector<EffectToFit>& effects, const fit::FitOptions& options) {
   FittedEffects result;
   MachineText with = machine_text(base.text, base.machine.file);
   for (const EffectToFit& effect : effects) result.effects.push_back(put_in(with, effect.choice));
-  Machine& machine = with.machine;
+  model::Machine& machine = with.machine;
   for (std::size_t i = 0; i < effects.size(); ++i) {
     start_at(machine, result.effects[i], effects[i].coefficients);
     if (effects[i].hold_scanned) hold_scanned(machine, result.effects[i], true);
   }
-  result.rows = rebind(rows, base.machine, machine);
-  result.fit = fit(machine, result.rows, options);
-  if (hold_runaways(machine, effects, result)) result.fit = fit(machine, result.rows, options);
-  result.text = update_machine_text(with.text, result.fit.machine, true);
-  result.text = close_domains(result.text, result.fit.machine, result.rows);
+  result.rows = model::rebind(rows, base.machine, machine);
+  result.fit = fit::fit(machine, result.rows, options);
+  if (hold_runaways(machine, effects, result)) result.fit = fit::fit(machine, result.rows, options);
+  result.text = model::update_machine_text(with.text, result.fit.machine, true);
+  result.text = fit::close_domains(result.text, result.fit.machine, result.rows);
   return result;
 }
 
-}  // namespace vernier
+}  // namespace vernier::effects

@@ -9,20 +9,20 @@
 #include "tools/model/machine.h"
 #include "tools/model/measurement.h"
 
-namespace vernier {
+namespace vernier::effects {
 
 /// A machine together with its file's text: what effects are put into. The machine has a row for rigid
 /// motions of the whole (with_base_row), the text only once a term stands there.
 struct MachineText {
   std::string text;
-  Machine machine;
+  model::Machine machine;
 };
 
 /// Reads a machine that effects may be put into; `file` is for messages. Throws InputError. tool.
 MachineText machine_text(const std::string& text, const std::string& file);
 
 /// The machine at its best fit, and its text with the fitted values. tool.
-MachineText fitted_text(const std::string& text, const FitResult& fit);
+MachineText fitted_text(const std::string& text, const fit::FitResult& fit);
 
 /// Writes one more effect into both. Returns it with the names that its unknowns got. Throws InputError.
 /// tool.
@@ -43,17 +43,17 @@ struct EffectToFit {
 struct FittedEffects {
   std::string text;                // the machine's file with the effects, fitted
   std::vector<Candidate> effects;  // with the names that their unknowns have there
-  Measurement rows;                // bound to that machine: rows that lack an input are excluded
-  FitResult fit;
+  model::Measurement rows;         // bound to that machine: rows that lack an input are excluded
+  fit::FitResult fit;
 };
 
 /// The one way to put effects into a machine and fit it: written into the text one after the other, the rows
 /// bound to the inputs that came with them, everything that is free fitted. Of a term that was learned on
 /// features the text says where it is valid. Throws InputError. tool.
-FittedEffects fit_with_effects(const MachineText& base, const Measurement& rows,
-                               const std::vector<EffectToFit>& effects, const FitOptions& options = {});
+FittedEffects fit_with_effects(const MachineText& base, const model::Measurement& rows,
+                               const std::vector<EffectToFit>& effects, const fit::FitOptions& options = {});
 
 /// Marks the scanned unknowns of an effect as held, or as free. tool.
-void hold_scanned(Machine& machine, const Candidate& effect, bool held);
+void hold_scanned(model::Machine& machine, const Candidate& effect, bool held);
 
-}  // namespace vernier
+}  // namespace vernier::effects

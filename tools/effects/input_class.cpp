@@ -11,7 +11,7 @@
 #include "tools/text/units.h"
 #include "tools/vibration/signal_features.h"
 
-namespace vernier {
+namespace vernier::effects {
 
 namespace {
 
@@ -28,12 +28,12 @@ bool is_setpoint(const std::string& name) {
 
 }  // namespace
 
-InputClass class_of_input(const Input& input) {
+InputClass class_of_input(const model::Input& input) {
   const std::string& unit = input.unit;
   std::string lower;
   for (const char c : input.name) lower += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   if (is_setpoint(lower)) return InputClass::kSetpoint;
-  if (const auto known = find_unit(unit); known && known->dimension == Dimension::kTemperature)
+  if (const auto known = text::find_unit(unit); known && known->dimension == text::Dimension::kTemperature)
     return InputClass::kTemperature;
   if (unit == "N" || unit == "kg") return InputClass::kLoad;
   if (unit == "mm/s^2" || unit == "m/s^2" || unit == "deg/s^2" || unit == "g") return InputClass::kFeature;
@@ -42,15 +42,15 @@ InputClass class_of_input(const Input& input) {
   if (has("temp") || input.name.rfind("T_", 0) == 0) return InputClass::kTemperature;
   if (has("load") || has("force") || has("mass") || has("torque") || has("weight")) return InputClass::kLoad;
   if (has("vib") || has("acc") || has("rms")) return InputClass::kFeature;
-  for (const char* feature : kFeatureNames)
+  for (const char* feature : vibration::kFeatureNames)
     if (input.name.ends_with(std::string("_") + feature)) return InputClass::kFeature;
   return InputClass::kOther;
 }
 
 double standard_reference(std::string_view unit) {
-  const auto known = find_unit(unit);
-  if (!known || known->dimension != Dimension::kTemperature) return kReferenceDegC;
-  return std::round(1e6 * (kReferenceDegC - known->offset) / known->factor) / 1e6;
+  const auto known = text::find_unit(unit);
+  if (!known || known->dimension != text::Dimension::kTemperature) return maths::kReferenceDegC;
+  return std::round(1e6 * (maths::kReferenceDegC - known->offset) / known->factor) / 1e6;
 }
 
-}  // namespace vernier
+}  // namespace vernier::effects

@@ -5,16 +5,16 @@
 
 #include "tools/model/machine.h"
 
-namespace vernier {
+namespace vernier::effects {
 
 /// What a logged column is, by its unit (by its name where it has none).
 /// kSetpoint: what a controller asked for, no reading: it explains nothing that the reading beside it does
 /// not.
 enum class InputClass : std::uint8_t { kTemperature, kLoad, kFeature, kSetpoint, kOther };
-InputClass class_of_input(const Input& input);
+InputClass class_of_input(const model::Input& input);
 
 /// The temperature at which dimensions are specified (ISO 1), in a unit of temperature: 20 degC or 293.15 K.
 /// tool.
 double standard_reference(std::string_view unit);
 
-}  // namespace vernier
+}  // namespace vernier::effects

@@ -4,38 +4,39 @@
 #include "tools/effects/candidate.h"
 #include "tools/model/chain.h"
 
-namespace vernier {
+namespace vernier::effects {
 namespace {
 
-const std::vector<Transform>& branch_of(const Machine& machine, bool workpiece) {
+const std::vector<model::Transform>& branch_of(const model::Machine& machine, bool workpiece) {
   return workpiece ? machine.workpiece : machine.tool;
 }
 
 /// Value of a degree of freedom of the nominal chain, with one axis at `position` and the others at rest.
-double value_at(const Machine& nominal, const Expr& expr, std::size_t axis, double position) {
+double value_at(const model::Machine& nominal, const model::Expr& expr, std::size_t axis, double position) {
   std::vector<double> references;
-  for (const Input& input : nominal.inputs) references.push_back(input.reference);
-  States one = make_states(1, nominal.axes.size(), references);
+  for (const model::Input& input : nominal.inputs) references.push_back(input.reference);
+  model::States one = model::make_states(1, nominal.axes.size(), references);
   for (std::size_t i = 0; i < nominal.axes.size(); ++i) {
-    const Axis& item = nominal.axes[i];
+    const model::Axis& item = nominal.axes[i];
     one.axis[i][0] = item.min && item.max ? *item.min + 0.37 * (*item.max - *item.min) : 1;
   }
   one.axis[axis][0] = position;
-  return evaluate(nominal, expr, one)[0];
+  return model::evaluate(nominal, expr, one)[0];
 }
 
-bool names_axis(const Expr& expr, std::size_t axis) {
+bool names_axis(const model::Expr& expr, std::size_t axis) {
   bool found = false;
-  walk(expr, [&](const Expr& node) {
-    found = found || (node.op == Op::kSymbol && node.symbol == Symbol{SymbolKind::kAxis, axis});
+  model::walk(expr, [&](const model::Expr& node) {
+    found = found ||
+            (node.op == model::Op::kSymbol && node.symbol == model::Symbol{model::SymbolKind::kAxis, axis});
   });
   return found;
 }
 
 /// Change of a degree of freedom per unit of an axis in the nominal chain.
-double slope(const Machine& nominal, const Expr& expr, std::size_t axis) {
+double slope(const model::Machine& nominal, const model::Expr& expr, std::size_t axis) {
   if (!names_axis(expr, axis)) return 0;
-  const Axis& item = nominal.axes[axis];
+  const model::Axis& item = nominal.axes[axis];
   const double middle = item.min && item.max ? 0.5 * (*item.min + *item.max) : 1;
   const double value =
       value_at(nominal, expr, axis, middle + 0.5) - value_at(nominal, expr, axis, middle - 0.5);
@@ -44,20 +45,20 @@ double slope(const Machine& nominal, const Expr& expr, std::size_t axis) {
 
 }  // namespace
 
-const Transform& transform_at(const Machine& machine, const DofPlace& place) {
+const model::Transform& transform_at(const model::Machine& machine, const DofPlace& place) {
   return branch_of(machine, place.workpiece).at(place.transform);
 }
 
-const char* dof_name(const Machine& machine, const DofPlace& place) {
+const char* dof_name(const model::Machine& machine, const DofPlace& place) {
   return transform_at(machine, place).dof_name(place.dof);
 }
 
-bool is_angle(const Machine& machine, const DofPlace& place) {
-  if (transform_at(machine, place).kind == TransformKind::kSixDof) return place.dof >= 3;
+bool is_angle(const model::Machine& machine, const DofPlace& place) {
+  if (transform_at(machine, place).kind == model::TransformKind::kSixDof) return place.dof >= 3;
   return place.dof == 0 || place.dof == 3;
 }
 
-std::vector<DofPlace> all_places(const Machine& machine) {
+std::vector<DofPlace> all_places(const model::Machine& machine) {
   std::vector<DofPlace> places;
   for (const bool workpiece : {false, true}) {
     const auto& branch = branch_of(machine, workpiece);
@@ -67,8 +68,8 @@ std::vector<DofPlace> all_places(const Machine& machine) {
   return places;
 }
 
-AxisPlaces::AxisPlaces(const Machine& machine) {
-  const Machine nominal = nominal_machine(machine);
+AxisPlaces::AxisPlaces(const model::Machine& machine) {
+  const model::Machine nominal = model::nominal_machine(machine);
   const std::vector<DofPlace> places = all_places(nominal);
   for (std::size_t axis = 0; axis < machine.axes.size(); ++axis) {
     std::optional<DofPlace> best;
@@ -93,7 +94,7 @@ std::optional<std::size_t> AxisPlaces::axis_of(const DofPlace& place) const {
   return std::nullopt;
 }
 
-std::vector<DofPlace> carrier_places(const Machine& machine) {
+std::vector<DofPlace> carrier_places(const model::Machine& machine) {
   std::vector<DofPlace> places;
   const auto take = [&](bool workpiece, std::size_t at) {
     const std::size_t count = branch_of(machine, workpiece)[at].dof_count();
@@ -108,36 +109,36 @@ std::vector<DofPlace> carrier_places(const Machine& machine) {
   return places;
 }
 
-bool is_stand_in(const Machine& machine, const DofPlace& place) {
+bool is_stand_in(const model::Machine& machine, const DofPlace& place) {
   return transform_at(machine, place).line == 0;
 }
 
-Machine with_base_row(Machine machine) {
+model::Machine with_base_row(model::Machine machine) {
   const bool workpiece = !machine.workpiece.empty();
-  std::vector<Transform>& branch = workpiece ? machine.workpiece : machine.tool;
+  std::vector<model::Transform>& branch = workpiece ? machine.workpiece : machine.tool;
   if (branch.empty() || !base_places(machine).empty()) return machine;
-  Transform row;
+  model::Transform row;
   row.line = 0;  // of no file
   row.n = workpiece ? branch.back().n + 1 : branch.front().n - 1;
   for (std::size_t d = 0; d < row.dof_count(); ++d) {
     row.text[d] = "0";
-    row.dof[d] = parse_expression(row.text[d]);
+    row.dof[d] = model::parse_expression(row.text[d]);
   }
   branch.insert(workpiece ? branch.end() : branch.begin(), row);
   return machine;
 }
 
-std::vector<DofPlace> base_places(const Machine& machine) {
+std::vector<DofPlace> base_places(const model::Machine& machine) {
   const bool workpiece = !machine.workpiece.empty();
   const auto& branch = branch_of(machine, workpiece);
   if (branch.empty()) return {};
   const std::size_t at = workpiece ? branch.size() - 1 : 0;
-  if (branch[at].kind != TransformKind::kSixDof) return {};
+  if (branch[at].kind != model::TransformKind::kSixDof) return {};
   if (workpiece) {
     // The lengths act before the angles of the same transform: with a turning table they are no base shift.
-    const Machine nominal = nominal_machine(machine);
+    const model::Machine nominal = model::nominal_machine(machine);
     for (std::size_t d = 3; d < 6; ++d) {
-      const Expr& expr = *nominal.workpiece[at].dof[d];
+      const model::Expr& expr = *nominal.workpiece[at].dof[d];
       for (std::size_t axis = 0; axis < machine.axes.size(); ++axis)
         if (names_axis(expr, axis) || value_at(nominal, expr, axis, 0) != 0) return {};
     }
@@ -145,4 +146,4 @@ std::vector<DofPlace> base_places(const Machine& machine) {
   return {{workpiece, at, 0}, {workpiece, at, 1}, {workpiece, at, 2}};
 }
 
-}  // namespace vernier
+}  // namespace vernier::effects

@@ -3,10 +3,10 @@
 #include "tools/effects/candidate.h"
 #include "tools/model/machine.h"
 
-namespace vernier {
+namespace vernier::effects {
 
 /// Adds to a degree of freedom a new static of value 0, under a name that no expression can write. Returns
 /// its index in `machine.statics`. tool.
-std::size_t add_probe(Machine& machine, const DofPlace& place);
+std::size_t add_probe(model::Machine& machine, const DofPlace& place);
 
-}  // namespace vernier
+}  // namespace vernier::effects

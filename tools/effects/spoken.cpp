@@ -8,7 +8,7 @@
 #include <cmath>
 #include <string_view>
 
-namespace vernier {
+namespace vernier::effects {
 namespace {
 
 /// A unit of the machine file in the one that a shop says it in.
@@ -52,18 +52,18 @@ std::string sized(double value, double std, const std::string& unit) {
   return with_std(value * shop->factor, std * shop->factor) + " " + shop->said;
 }
 
-bool turns(const Machine& machine, const AxisPlaces& axes, std::size_t axis) {
+bool turns(const model::Machine& machine, const AxisPlaces& axes, std::size_t axis) {
   const auto& own = axes.own(axis);
   return own ? is_angle(machine, *own) : machine.axes[axis].rotary;
 }
 
 /// " along Y", " about Z", " in a": which degree of freedom of its part an effect has; empty for the motion's
 /// own.
-std::string direction(const Machine& machine, const AxisPlaces& axes, const DofPlace& place) {
+std::string direction(const model::Machine& machine, const AxisPlaces& axes, const DofPlace& place) {
   const auto axis = axes.axis_of(place);
   if (axis && axes.is_own(*axis, place)) return {};
   const std::string_view name = dof_name(machine, place);
-  if (transform_at(machine, place).kind != TransformKind::kSixDof) return fmt::format(" in {}", name);
+  if (transform_at(machine, place).kind != model::TransformKind::kSixDof) return fmt::format(" in {}", name);
   return name.front() == 'r' ? fmt::format(" about {}", name.substr(1)) : fmt::format(" along {}", name);
 }
 
@@ -81,10 +81,10 @@ const CandidateUnknown* by_rule(const Candidate& candidate, const std::string& r
 
 }  // namespace
 
-std::string part_name(const Machine& machine, const AxisPlaces& axes, const DofPlace& place) {
+std::string part_name(const model::Machine& machine, const AxisPlaces& axes, const DofPlace& place) {
   if (const auto axis = axes.axis_of(place)) {
     const std::string& name = machine.axes[*axis].name;
-    if (transform_at(machine, place).kind != TransformKind::kSixDof) return "joint " + name;
+    if (transform_at(machine, place).kind != model::TransformKind::kSixDof) return "joint " + name;
     if (turns(machine, axes, *axis)) return name + (place.workpiece ? " table" : " head");
     return name + (place.workpiece ? " table" : " carriage");
   }
@@ -95,7 +95,7 @@ std::string part_name(const Machine& machine, const AxisPlaces& axes, const DofP
   return "tool";
 }
 
-std::string spoken_name(const Machine& machine, const AxisPlaces& axes, const Candidate& candidate) {
+std::string spoken_name(const model::Machine& machine, const AxisPlaces& axes, const Candidate& candidate) {
   const Choice& choice = candidate.choice;
   std::string what = choice.effect->short_name;
   if (what.empty()) {
@@ -143,4 +143,4 @@ std::string spoken_with_size(const Candidate& candidate, const std::vector<Spoke
   return text;
 }
 
-}  // namespace vernier
+}  // namespace vernier::effects

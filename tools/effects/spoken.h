@@ -5,15 +5,15 @@
 
 #include "tools/effects/candidate.h"
 
-namespace vernier {
+namespace vernier::effects {
 
 /// The part of the machine at a place as a machinist calls it: "Z carriage", "C table", "B head", "joint J3",
 /// "frame", "tool", "workpiece". tool.
-std::string part_name(const Machine& machine, const AxisPlaces& axes, const DofPlace& place);
+std::string part_name(const model::Machine& machine, const AxisPlaces& axes, const DofPlace& place);
 
 /// "Z carriage: lag", "X carriage: play along Y", "X and Y: unequal lag". The candidate's choice and terms
 /// are read. tool.
-std::string spoken_name(const Machine& machine, const AxisPlaces& axes, const Candidate& candidate);
+std::string spoken_name(const model::Machine& machine, const AxisPlaces& axes, const Candidate& candidate);
 
 /// A fitted unknown of a candidate, by its name in the machine file.
 struct SpokenValue {
@@ -26,4 +26,4 @@ struct SpokenValue {
 /// um, period 10.0 +- 0.2 mm". Without such a number (a table, a curve) the name alone. tool.
 std::string spoken_with_size(const Candidate& candidate, const std::vector<SpokenValue>& values);
 
-}  // namespace vernier
+}  // namespace vernier::effects

@@ -7,7 +7,7 @@
 #include "tools/text/error.h"
 #include "tools/text/numbers.h"
 
-namespace vernier {
+namespace vernier::evaluate {
 namespace {
 
 const double kOfRange = 1 / std::sqrt(3.0);  // U = 2 u, u = range / (2 sqrt 3)
@@ -28,7 +28,7 @@ constexpr std::array<Entry, 7> kEntries = {{{"device", &PositioningBudget::devic
 
 void add_to_budget(PositioningBudget& budget, const std::string& words) {
   const auto at = words.find('=');
-  const auto number = at == std::string::npos ? std::nullopt : parse_number(words.substr(at + 1));
+  const auto number = at == std::string::npos ? std::nullopt : text::parse_number(words.substr(at + 1));
   for (const Entry& entry : kEntries)
     if (number && *number >= 0 && words.substr(0, at) == entry.name) {
       budget.*entry.value = *number;
@@ -37,7 +37,7 @@ void add_to_budget(PositioningBudget& budget, const std::string& words) {
     }
   std::string names;
   for (const Entry& entry : kEntries) names += std::string(" ") + entry.name;
-  throw InputError("--budget " + words + ": of the form device=0.8, for one of" + names);
+  throw text::InputError("--budget " + words + ": of the form device=0.8, for one of" + names);
 }
 
 std::vector<BudgetPart> budget_parts(const PositioningBudget& budget, double length_mm) {
@@ -60,4 +60,4 @@ std::map<std::string, double> budget_uncertainty(const PositioningBudget& budget
   return {{"A", all}, {"E", all}, {"M", all}, {"B", drift * std::sqrt(2 / runs)}, {"R", 2 * drift}};
 }
 
-}  // namespace vernier
+}  // namespace vernier::evaluate

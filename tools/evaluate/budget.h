@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace vernier {
+namespace vernier::evaluate {
 
 /// What the uncertainty of a positioning test by ISO 230-2 is made of. A range counts as rectangular, u =
 /// range / (2 sqrt 3), and U = 2 u: 0.58 of it (GUM 4.3.7). Absent parts are 0.
@@ -39,4 +39,4 @@ std::vector<BudgetPart> budget_parts(const PositioningBudget& budget, double len
 std::map<std::string, double> budget_uncertainty(const PositioningBudget& budget, double length_mm,
                                                  double runs);
 
-}  // namespace vernier
+}  // namespace vernier::evaluate

@@ -11,7 +11,7 @@
 #include "tools/text/numbers.h"
 #include "tools/text/units.h"
 
-namespace vernier {
+namespace vernier::evaluate {
 namespace {
 
 /// Steps whose directions differ by less are on one line: 1 mm across a metre is a set-up's, not another
@@ -32,32 +32,33 @@ struct Columns {
   std::optional<std::size_t> u;
 };
 
-double in_mm(const CsvFile& csv, std::size_t row, std::size_t column) {
-  const auto value = parse_number(csv.rows[row][column]);
+double in_mm(const text::CsvFile& csv, std::size_t row, std::size_t column) {
+  const auto value = text::parse_number(csv.rows[row][column]);
   if (!value)
-    throw InputError({csv.file, csv.line[row]}, csv.rows[row][column],
-                     "not a number, in column " + csv.columns[column].name);
-  return find_unit(csv.columns[column].unit)->factor * *value;
+    throw text::InputError({csv.file, csv.line[row]}, csv.rows[row][column],
+                           "not a number, in column " + csv.columns[column].name);
+  return text::find_unit(csv.columns[column].unit)->factor * *value;
 }
 
-Columns columns_of(const CsvFile& csv, const std::string& reading) {
+Columns columns_of(const text::CsvFile& csv, const std::string& reading) {
   Columns columns;
   bool found = false;
   for (std::size_t k = 0; k < csv.columns.size(); ++k) {
     const std::string& name = csv.columns[k].name;
-    const bool length = find_unit(csv.columns[k].unit)->dimension == Dimension::kLength;
+    const bool length = text::find_unit(csv.columns[k].unit)->dimension == text::Dimension::kLength;
     if (name.size() == 1 && name[0] >= 'X' && name[0] <= 'Z' && length)
       columns.axis[static_cast<std::size_t>(name[0] - 'X')] = k;
     if (name == "u" && length) columns.u = k;
     if (name != reading) continue;
-    if (!length) throw InputError({csv.file, csv.header_line}, name, "a displacement needs a unit of length");
+    if (!length)
+      throw text::InputError({csv.file, csv.header_line}, name, "a displacement needs a unit of length");
     columns.reading = k;
     found = true;
   }
-  const Place header{csv.file, csv.header_line};
-  if (!found) throw InputError(header, reading, "this column is missing");
+  const text::Place header{csv.file, csv.header_line};
+  if (!found) throw text::InputError(header, reading, "this column is missing");
   if (std::count(columns.axis.begin(), columns.axis.end(), std::nullopt) > 1)
-    throw InputError(header, "X", "a diagonal needs columns of two linear axes at least");
+    throw text::InputError(header, "X", "a diagonal needs columns of two linear axes at least");
   return columns;
 }
 
@@ -106,9 +107,10 @@ std::vector<Line> lines_of(const std::vector<Row>& rows, const std::string& file
   for (const Line& line : lines) {
     const std::string name = signs_of(line.direction);
     if (name.size() < 4)
-      throw InputError({file, line.rows.front().line}, name,
-                       name.empty() ? "a row that lies on no line with its neighbours"
-                                    : "a line along one axis: that is ISO 230-2 (vernier evaluate iso230-2)");
+      throw text::InputError({file, line.rows.front().line}, name,
+                             name.empty()
+                                 ? "a row that lies on no line with its neighbours"
+                                 : "a line along one axis: that is ISO 230-2 (vernier evaluate iso230-2)");
   }
   return lines;
 }
@@ -160,7 +162,7 @@ DiagonalFile diagonal_of(const std::vector<Line>& passes, const std::string& nam
 
 std::vector<DiagonalFile> read_diagonals(const std::string& text, const std::string& file,
                                          const std::string& reading) {
-  const CsvFile csv = parse_csv(text, file);
+  const text::CsvFile csv = text::parse_csv(text, file);
   const Columns columns = columns_of(csv, reading);
   std::vector<Row> rows;
   std::optional<double> u;
@@ -186,7 +188,7 @@ std::vector<DiagonalFile> read_diagonals(const std::string& text, const std::str
     list.push_back(diagonal_of(by_name[name], name));
     list.back().positions.u = u;
   }
-  if (list.empty()) throw InputError({file, csv.header_line}, reading, "no row has a reading");
+  if (list.empty()) throw text::InputError({file, csv.header_line}, reading, "no row has a reading");
   return list;
 }
 
@@ -201,4 +203,4 @@ std::map<std::string, double> machine_values(const std::map<std::string, Positio
   return most;
 }
 
-}  // namespace vernier
+}  // namespace vernier::evaluate

@@ -6,7 +6,7 @@
 
 #include "tools/evaluate/positioning.h"
 
-namespace vernier {
+namespace vernier::evaluate {
 
 /// A diagonal displacement test of one diagonal: targets are the ways along it from its end with the lowest
 /// first axis, as commanded; deviations are of the measured way. mm.
@@ -29,4 +29,4 @@ std::vector<DiagonalFile> read_diagonals(const std::string& text, const std::str
 /// themselves.
 std::map<std::string, double> machine_values(const std::map<std::string, PositioningResult>& body);
 
-}  // namespace vernier
+}  // namespace vernier::evaluate

@@ -9,7 +9,7 @@
 #include "tools/text/units.h"
 #include "tools/text/words.h"
 
-namespace vernier {
+namespace vernier::evaluate {
 
 std::pair<std::string, double> limit_of(const std::string& words, const std::string& option,
                                         const std::vector<std::string>& names) {
@@ -19,13 +19,14 @@ std::pair<std::string, double> limit_of(const std::string& words, const std::str
   std::size_t end = 0;
   while (end < rest.size() && (std::isdigit(static_cast<unsigned char>(rest[end])) != 0 || rest[end] == '.'))
     ++end;
-  const auto number = parse_number(rest.substr(0, end));
-  const auto unit = find_unit(rest.substr(end));
-  const bool fits = unit && (unit->dimension == Dimension::kLength || unit->dimension == Dimension::kAngle);
+  const auto number = text::parse_number(rest.substr(0, end));
+  const auto unit = text::find_unit(rest.substr(end));
+  const bool fits =
+      unit && (unit->dimension == text::Dimension::kLength || unit->dimension == text::Dimension::kAngle);
   if (!number || !fits || std::find(names.begin(), names.end(), name) == names.end())
-    throw InputError(option + " " + words + ": of the form " + names.front() + "=10um, for one of " +
-                     joined(names, " "));
+    throw text::InputError(option + " " + words + ": of the form " + names.front() + "=10um, for one of " +
+                           text::joined(names, " "));
   return {name, *number * unit->factor};
 }
 
-}  // namespace vernier
+}  // namespace vernier::evaluate

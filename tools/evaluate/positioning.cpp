@@ -10,7 +10,7 @@
 #include "tools/text/numbers.h"
 #include "tools/text/units.h"
 
-namespace vernier {
+namespace vernier::evaluate {
 namespace {
 
 double mean_of(const std::vector<double>& values) {
@@ -43,9 +43,9 @@ TargetResult result_at(const TargetReadings& readings) {
     result.count[sense] = list.size();
     if (list.empty()) continue;
     if (list.size() == 1)
-      throw InputError("one reading at " + number_text(readings.target) +
-                       (sense == 0 ? " forward" : " backward") +
-                       ": a spread needs two, ISO 230-2 asks for five");
+      throw text::InputError("one reading at " + text::number_text(readings.target) +
+                             (sense == 0 ? " forward" : " backward") +
+                             ": a spread needs two, ISO 230-2 asks for five");
     result.mean[sense] = mean_of(list);
     result.spread[sense] = spread_of(list, result.mean[sense]);
     result.repeatability[sense] = 4 * result.spread[sense];
@@ -62,7 +62,7 @@ TargetResult result_at(const TargetReadings& readings) {
 
 class Table {
  public:
-  Table(const std::string& text, const std::string& file) : csv_(parse_csv(text, file)) {}
+  Table(const std::string& text, const std::string& file) : csv_(text::parse_csv(text, file)) {}
 
   std::optional<std::size_t> find(const std::string& name) const {
     for (std::size_t k = 0; k < csv_.columns.size(); ++k)
@@ -71,24 +71,24 @@ class Table {
   }
   std::size_t need(const std::string& name) const {
     const auto column = find(name);
-    if (!column) throw InputError({csv_.file, csv_.header_line}, name, "this column is missing");
+    if (!column) throw text::InputError({csv_.file, csv_.header_line}, name, "this column is missing");
     return *column;
   }
-  Unit unit(std::size_t column) const { return *find_unit(csv_.columns[column].unit); }
+  text::Unit unit(std::size_t column) const { return *text::find_unit(csv_.columns[column].unit); }
   /// In the base unit; nothing for an empty cell.
   std::optional<double> number(std::size_t row, std::size_t column) const {
     const std::string& cell = csv_.rows[row][column];
     if (cell.empty()) return std::nullopt;
-    const auto value = parse_number(cell);
+    const auto value = text::parse_number(cell);
     if (!value)
-      throw InputError({csv_.file, csv_.line[row]}, cell,
-                       "not a number, in column " + csv_.columns[column].name);
+      throw text::InputError({csv_.file, csv_.line[row]}, cell,
+                             "not a number, in column " + csv_.columns[column].name);
     return unit(column).factor * *value + unit(column).offset;
   }
-  const CsvFile& csv() const { return csv_; }
+  const text::CsvFile& csv() const { return csv_; }
 
  private:
-  CsvFile csv_;
+  text::CsvFile csv_;
 };
 
 }  // namespace
@@ -121,7 +121,7 @@ PositioningResult evaluate_positioning(const std::vector<TargetReadings>& readin
     result.targets.push_back(at);
   }
   if (result.targets.size() < 2)
-    throw InputError("an axis is judged by two targets at least; ISO 230-2 asks for five a metre");
+    throw text::InputError("an axis is judged by two targets at least; ISO 230-2 asks for five a metre");
   for (std::size_t sense = 0; sense < 2; ++sense) {
     result.systematic[sense] = means[sense].width();
     result.accuracy[sense] = bands[sense].width();
@@ -139,12 +139,13 @@ PositioningFile read_positioning(const std::string& text, const std::string& fil
   const Table table(text, file);
   const std::size_t position = table.need(axis), actual = table.need(reading);
   PositioningFile result;
-  const Dimension dimension = table.unit(position).dimension;
-  if (dimension != Dimension::kLength && dimension != Dimension::kAngle)
-    throw InputError({file, table.csv().header_line}, axis, "an axis position needs a unit like mm or deg");
+  const text::Dimension dimension = table.unit(position).dimension;
+  if (dimension != text::Dimension::kLength && dimension != text::Dimension::kAngle)
+    throw text::InputError({file, table.csv().header_line}, axis,
+                           "an axis position needs a unit like mm or deg");
   if (table.unit(actual).dimension != dimension)
-    throw InputError({file, table.csv().header_line}, reading, "of another kind of unit than " + axis);
-  result.unit = base_unit(dimension);
+    throw text::InputError({file, table.csv().header_line}, reading, "of another kind of unit than " + axis);
+  result.unit = text::base_unit(dimension);
   const auto dir = table.find("dir" + axis), u = table.find("u");
   result.sense_from_order = !dir;
   // Targets are what was commanded: a thousandth of a micrometre apart they are the same.
@@ -153,7 +154,7 @@ PositioningFile read_positioning(const std::string& text, const std::string& fil
   double sense = 0;
   for (std::size_t row = 0; row < table.csv().rows.size(); ++row) {
     const auto at = table.number(row, position);
-    if (!at) throw InputError({file, table.csv().line[row]}, axis, "this column may not be empty");
+    if (!at) throw text::InputError({file, table.csv().line[row]}, axis, "this column may not be empty");
     if (dir) {
       sense = table.number(row, *dir).value_or(0);
     } else if (before) {
@@ -174,8 +175,8 @@ PositioningFile read_positioning(const std::string& text, const std::string& fil
   }
   for (auto& [key, target] : targets) result.readings.push_back(std::move(target));
   if (result.rows == 0)
-    throw InputError({file, table.csv().header_line}, axis,
-                     "no row has a reading and a sense of approach (dir" + axis + " of 1 or -1)");
+    throw text::InputError({file, table.csv().header_line}, axis,
+                           "no row has a reading and a sense of approach (dir" + axis + " of 1 or -1)");
   return result;
 }
 
@@ -196,4 +197,4 @@ const char* conformity_text(Conformity conformity) {
   return "";
 }
 
-}  // namespace vernier
+}  // namespace vernier::evaluate

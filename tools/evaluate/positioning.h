@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace vernier {
+namespace vernier::evaluate {
 
 /// Deviations at one target, by sense of approach: forward (0) and backward (1). mm or deg.
 struct TargetReadings {
@@ -57,4 +57,4 @@ Conformity conformity(double value, double tolerance, double expanded_uncertaint
 /// "met", "not met", "not decided (within the uncertainty)".
 const char* conformity_text(Conformity conformity);
 
-}  // namespace vernier
+}  // namespace vernier::evaluate

@@ -5,7 +5,7 @@
 
 #include <array>
 
-namespace vernier {
+namespace vernier::evaluate {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -160,4 +160,4 @@ Json positioning_page(const Json& json, const PositioningWords& words) {
                 {"rows", places}}}}}}}};
 }
 
-}  // namespace vernier
+}  // namespace vernier::evaluate

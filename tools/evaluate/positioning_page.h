@@ -8,7 +8,7 @@
 
 #include "tools/evaluate/positioning.h"
 
-namespace vernier {
+namespace vernier::evaluate {
 
 /// What a report to be handed over says besides its numbers.
 struct PositioningWords {
@@ -30,4 +30,4 @@ nlohmann::ordered_json positioning_json(const PositioningResult& result, const P
 /// The page of it, for improvement_report_html. tool.
 nlohmann::ordered_json positioning_page(const nlohmann::ordered_json& json, const PositioningWords& words);
 
-}  // namespace vernier
+}  // namespace vernier::evaluate

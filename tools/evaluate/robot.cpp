@@ -16,13 +16,13 @@
 #include "tools/maths/factors.h"
 #include "tools/text/error.h"
 
-namespace vernier {
+namespace vernier::evaluate {
 namespace {
 
 using Eigen::Matrix3d, Eigen::Vector3d;
 
 Eigen::Quaterniond rotation(const Vector3d& vector_deg) {
-  const Vector3d v = vector_deg * kRadPerDeg;
+  const Vector3d v = vector_deg * maths::kRadPerDeg;
   const double angle = v.norm();
   return angle > 0 ? Eigen::Quaterniond(Eigen::AngleAxisd(angle, v / angle)) : Eigen::Quaterniond::Identity();
 }
@@ -31,7 +31,7 @@ Eigen::Quaterniond rotation(const Vector3d& vector_deg) {
 Vector3d turn(const Vector3d& from_deg, const Vector3d& to_deg) {
   const Eigen::AngleAxisd way(rotation(to_deg) * rotation(from_deg).conjugate());
   const double angle = way.angle() > M_PI ? way.angle() - 2 * M_PI : way.angle();
-  return kDegPerRad * angle * way.axis();
+  return maths::kDegPerRad * angle * way.axis();
 }
 
 /// The x that chi square of k degrees of freedom exceeds with chance p.
@@ -40,7 +40,7 @@ double chi_square_point(double p, double k) {
   constexpr int kHalvings = 80;
   for (int i = 0; i < kHalvings; ++i) {
     const double middle = (low + high) / 2;
-    (chi_square_tail(middle, k) > p ? low : high) = middle;
+    (maths::chi_square_tail(middle, k) > p ? low : high) = middle;
   }
   return (low + high) / 2;
 }
@@ -134,7 +134,8 @@ Key key_of(const PoseReading& reading) {
   for (int k = 0; k < 3; ++k) {
     key[static_cast<std::size_t>(k)] = std::llround(reading.commanded_mm[k] * 1e6);
     if (reading.commanded_deg)
-      key[static_cast<std::size_t>(k) + 3] = std::llround((*reading.commanded_deg)[k] * kRadPerDeg * 1e9);
+      key[static_cast<std::size_t>(k) + 3] =
+          std::llround((*reading.commanded_deg)[k] * maths::kRadPerDeg * 1e9);
   }
   return key;
 }
@@ -157,7 +158,7 @@ std::vector<PoseResult> evaluate_poses(const std::vector<PoseReading>& readings)
   for (const auto& pose : by_pose(readings)) {
     const Vector3d& at = pose.front()->commanded_mm;
     if (pose.size() < 2)
-      throw InputError(
+      throw text::InputError(
           fmt::format("one reading at {:g} {:g} {:g} mm: a spread needs two, ISO 9283 asks for thirty", at[0],
                       at[1], at[2]));
     results.push_back(pose_of(pose));
@@ -172,16 +173,16 @@ void align_to_commanded(std::vector<PoseReading>& readings) {
     from.col(static_cast<Eigen::Index>(i)) = readings[i].measured_mm;
     to.col(static_cast<Eigen::Index>(i)) = readings[i].commanded_mm;
   }
-  if (!fixes_motion(to))
-    throw InputError("--align: poses that lie on one line, or fewer than three, fix no frame");
-  const RigidMotion motion = align(from, to);
+  if (!maths::fixes_motion(to))
+    throw text::InputError("--align: poses that lie on one line, or fewer than three, fix no frame");
+  const maths::RigidMotion motion = maths::align(from, to);
   const Eigen::Quaterniond turned(motion.rotation);
   for (PoseReading& r : readings) {
     r.measured_mm = motion.rotation * r.measured_mm + motion.translation;
     if (!r.measured_deg) continue;
     const Eigen::AngleAxisd whole(turned * rotation(*r.measured_deg));
-    r.measured_deg = kDegPerRad * whole.angle() * whole.axis();
+    r.measured_deg = maths::kDegPerRad * whole.angle() * whole.axis();
   }
 }
 
-}  // namespace vernier
+}  // namespace vernier::evaluate

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace vernier {
+namespace vernier::evaluate {
 
 /// One visit of a pose, or one sample of a path: where the robot was told to be and where it was found. mm;
 /// rotations as rotation vectors, deg.
@@ -43,4 +43,4 @@ std::vector<PoseResult> evaluate_poses(const std::vector<PoseReading>& readings)
 /// the poses do not fix a frame (fewer than three, on one line). tool.
 void align_to_commanded(std::vector<PoseReading>& readings);
 
-}  // namespace vernier
+}  // namespace vernier::evaluate

@@ -12,7 +12,7 @@
 #include "tools/text/numbers.h"
 #include "tools/text/units.h"
 
-namespace vernier {
+namespace vernier::evaluate {
 namespace {
 
 using Eigen::Vector3d;
@@ -45,7 +45,7 @@ struct Crossing {
 std::vector<Crossing> stations_of(const Cycle& cycle, std::size_t count) {
   const std::vector<double> way = ways(cycle);
   if (!(way.back() > 0))
-    throw InputError("the commanded path of run \"" + cycle.front().run + "\" has no length");
+    throw text::InputError("the commanded path of run \"" + cycle.front().run + "\" has no length");
   std::vector<Crossing> stations;
   std::size_t i = 1;
   for (std::size_t k = 0; k < count; ++k) {
@@ -87,7 +87,7 @@ std::optional<PoseReading> crossing(const Cycle& cycle, const std::vector<double
 PathResult evaluate_path(const std::vector<PoseReading>& readings, std::size_t stations) {
   const std::vector<Cycle> cycles = cycles_of(readings);
   if (cycles.size() < 2)
-    throw InputError("one cycle (run) of the path: repeatability needs two, ISO 9283 asks for ten");
+    throw text::InputError("one cycle (run) of the path: repeatability needs two, ISO 9283 asks for ten");
   std::vector<std::vector<double>> way;
   for (const Cycle& cycle : cycles) way.push_back(ways(cycle));
   PathResult result;
@@ -96,7 +96,7 @@ PathResult evaluate_path(const std::vector<PoseReading>& readings, std::size_t s
     for (std::size_t i = 0; i < cycles.size(); ++i) {
       const auto found = crossing(cycles[i], way[i], station);
       if (!found)
-        throw InputError(
+        throw text::InputError(
             fmt::format("run \"{}\" does not pass the commanded path at {:.3f} mm from its beginning",
                         cycles[i].front().run, station.way));
       here.push_back(*found);
@@ -112,23 +112,23 @@ PathResult evaluate_path(const std::vector<PoseReading>& readings, std::size_t s
 }
 
 std::vector<PoseReading> read_pose_readings(const std::string& text, const std::string& file) {
-  const CsvFile csv = parse_csv(text, file);
+  const text::CsvFile csv = text::parse_csv(text, file);
   std::map<std::string, std::size_t> place;
   for (std::size_t k = 0; k < csv.columns.size(); ++k) place[csv.columns[k].name] = k;
-  const Place header{file, csv.header_line};
+  const text::Place header{file, csv.header_line};
   for (const char* name : {"px", "py", "pz", "x", "y", "z"}) {
     if (!place.contains(name))
-      throw InputError(header, name,
-                       "this column is missing: px py pz commanded, x y z measured (or give --machine)");
-    if (find_unit(csv.columns[place[name]].unit)->dimension != Dimension::kLength)
-      throw InputError(header, name, "this column needs a unit like mm");
+      throw text::InputError(
+          header, name, "this column is missing: px py pz commanded, x y z measured (or give --machine)");
+    if (text::find_unit(csv.columns[place[name]].unit)->dimension != text::Dimension::kLength)
+      throw text::InputError(header, name, "this column needs a unit like mm");
   }
   const auto number = [&](std::size_t row, const std::string& name) -> std::optional<double> {
     const std::string& cell = csv.rows[row][place[name]];
     if (cell.empty()) return std::nullopt;
-    const auto value = parse_number(cell);
-    if (!value) throw InputError({file, csv.line[row]}, cell, "not a number");
-    return *value * find_unit(csv.columns[place[name]].unit)->factor;
+    const auto value = text::parse_number(cell);
+    if (!value) throw text::InputError({file, csv.line[row]}, cell, "not a number");
+    return *value * text::find_unit(csv.columns[place[name]].unit)->factor;
   };
   std::vector<PoseReading> readings;
   for (std::size_t row = 0; row < csv.rows.size(); ++row) {
@@ -137,7 +137,7 @@ std::vector<PoseReading> read_pose_readings(const std::string& text, const std::
     const std::string commanded[] = {"px", "py", "pz"}, measured[] = {"x", "y", "z"};
     for (int k = 0; k < 3; ++k) {
       const auto value = number(row, commanded[k]), found = number(row, measured[k]);
-      if (!value) throw InputError({file, csv.line[row]}, commanded[k], "this column may not be empty");
+      if (!value) throw text::InputError({file, csv.line[row]}, commanded[k], "this column may not be empty");
       read = read && found;
       one.commanded_mm[k] = *value;
       one.measured_mm[k] = found.value_or(0);
@@ -146,8 +146,8 @@ std::vector<PoseReading> read_pose_readings(const std::string& text, const std::
     if (place.contains("u")) one.u_mm = number(row, "u").value_or(0);
     if (read) readings.push_back(one);
   }
-  if (readings.empty()) throw InputError(header, "x", "no row has a reading");
+  if (readings.empty()) throw text::InputError(header, "x", "no row has a reading");
   return readings;
 }
 
-}  // namespace vernier
+}  // namespace vernier::evaluate

@@ -6,7 +6,7 @@
 
 #include "tools/evaluate/robot.h"
 
-namespace vernier {
+namespace vernier::evaluate {
 
 /// ISO 9283:1998, 8.2 and 8.3: AT_P and RT_P, the largest at the stations.
 struct PathResult {
@@ -25,4 +25,4 @@ PathResult evaluate_path(const std::vector<PoseReading>& readings, std::size_t s
 /// are there. check rows count too; a row without a reading is left out. Throws InputError. tool.
 std::vector<PoseReading> read_pose_readings(const std::string& text, const std::string& file);
 
-}  // namespace vernier
+}  // namespace vernier::evaluate

@@ -14,7 +14,7 @@
 #include "tools/text/numbers.h"
 #include "tools/text/units.h"
 
-namespace vernier {
+namespace vernier::exchange {
 namespace {
 
 constexpr std::array<const char*, 6> kDirections = {"X", "Y", "Z", "A", "B", "C"};
@@ -28,24 +28,26 @@ bool has_iso_letter(const std::string& axis) {
   return std::find(kDirections.begin(), kDirections.end(), axis) != kDirections.end();
 }
 
-std::string own_name(const Machine& machine, std::size_t axis, std::size_t column) {
-  return symbol_name(machine, {SymbolKind::kTableValue, 6 * axis + column});
+std::string own_name(const model::Machine& machine, std::size_t axis, std::size_t column) {
+  return model::symbol_name(machine, {model::SymbolKind::kTableValue, 6 * axis + column});
 }
 
 /// Twelve digits: a round trip between deg and rad keeps them.
-double twelve_digits(double value) { return *parse_number(fmt::format("{:.12g}", value)); }
+double twelve_digits(double value) { return *text::parse_number(fmt::format("{:.12g}", value)); }
 
-double number_of(const std::string& word, const Place& place) {
-  const auto value = parse_number(word);
-  if (!value) throw InputError(place, word, "not a number");
+double number_of(const std::string& word, const text::Place& place) {
+  const auto value = text::parse_number(word);
+  if (!value) throw text::InputError(place, word, "not a number");
   return *value;
 }
 
-void check_increasing(const Table& table, const std::string& file, const std::vector<std::size_t>& lines) {
+void check_increasing(const model::Table& table, const std::string& file,
+                      const std::vector<std::size_t>& lines) {
   for (std::size_t i = 1; i < table.stations.size(); ++i)
     if (table.stations[i].loc <= table.stations[i - 1].loc)
-      throw InputError({file, lines[i]}, table.stations[i].loc_text, "positions must increase");
-  if (table.stations.size() < 2) throw InputError({file, lines.at(0)}, "", "a table needs two rows at least");
+      throw text::InputError({file, lines[i]}, table.stations[i].loc_text, "positions must increase");
+  if (table.stations.size() < 2)
+    throw text::InputError({file, lines.at(0)}, "", "a table needs two rows at least");
 }
 
 std::vector<std::string> words_of(const std::string& line) {
@@ -78,8 +80,9 @@ std::vector<Block> blocks_of(const std::string& text, const std::string& file) {
       block.header_line = number;
     } else {
       if (words.size() != block.header.size())
-        throw InputError({file, number}, words[0],
-                         fmt::format("{} fields where the header has {}", words.size(), block.header.size()));
+        throw text::InputError(
+            {file, number}, words[0],
+            fmt::format("{} fields where the header has {}", words.size(), block.header.size()));
       block.rows.push_back(std::move(words));
       block.line.push_back(number);
     }
@@ -95,33 +98,33 @@ std::optional<std::size_t> error_column(const std::string& word, const std::stri
   return std::nullopt;
 }
 
-Table table_of_block(const Block& block, const std::string& file, const Machine& machine) {
-  const Place place{file, block.header_line};
+model::Table table_of_block(const Block& block, const std::string& file, const model::Machine& machine) {
+  const text::Place place{file, block.header_line};
   const auto is_argument = [](const std::string& word) { return has_iso_letter(word); };
   const auto arguments = std::count_if(block.header.begin(), block.header.end(), is_argument);
   if (arguments == 0)
-    throw InputError(place, block.header[0],
-                     "a position error or parameter of the machine, no component error: "
-                     "a machine file holds it as a static of its own sign and place");
+    throw text::InputError(place, block.header[0],
+                           "a position error or parameter of the machine, no component error: "
+                           "a machine file holds it as a static of its own sign and place");
   if (arguments > 1)
-    throw InputError(place, block.header[1], "errors of two arguments: a table has one axis");
+    throw text::InputError(place, block.header[1], "errors of two arguments: a table has one axis");
   const auto found = std::find_if(block.header.begin(), block.header.end(), is_argument);
   const auto axis = machine.find_axis(*found);
-  if (!axis) throw InputError(place, *found, "this machine has no axis of that name");
+  if (!axis) throw text::InputError(place, *found, "this machine has no axis of that name");
   const auto at = static_cast<std::size_t>(found - block.header.begin());
   std::vector<double> positions;
   for (std::size_t i = 0; i < block.rows.size(); ++i)
     positions.push_back(number_of(block.rows[i][at], {file, block.line[i]}));
-  if (block.rows.empty()) throw InputError(place, *found, "no rows below this header");
-  Table table = empty_table(machine, *axis, positions);
-  table.interpolation = Interpolation::kLinear;
+  if (block.rows.empty()) throw text::InputError(place, *found, "no rows below this header");
+  model::Table table = empty_table(machine, *axis, positions);
+  table.interpolation = model::Interpolation::kLinear;
   for (std::size_t c = 0; c < block.header.size(); ++c) {
     if (c == at) continue;
     const auto column = error_column(block.header[c], *found);
-    if (!column) throw InputError(place, block.header[c], "no component error of axis " + *found);
+    if (!column) throw text::InputError(place, block.header[c], "no component error of axis " + *found);
     for (std::size_t i = 0; i < block.rows.size(); ++i) {
       const double value = number_of(block.rows[i][c], {file, block.line[i]});
-      table.stations[i].value[*column] = *column < 3 ? value : twelve_digits(value * kDegPerRad);
+      table.stations[i].value[*column] = *column < 3 ? value : twelve_digits(value * maths::kDegPerRad);
     }
   }
   check_increasing(table, file, block.line);
@@ -130,96 +133,100 @@ Table table_of_block(const Block& block, const std::string& file, const Machine&
 
 }  // namespace
 
-std::string axis_csv(const Machine& machine, const Table& table) {
-  const Axis& axis = machine.axes[table.axis];
+std::string axis_csv(const model::Machine& machine, const model::Table& table) {
+  const model::Axis& axis = machine.axes[table.axis];
   std::string text = "# error table of axis " + axis.name + ", " +
-                     (table.interpolation == Interpolation::kCubic ? "cubic spline" : "linear") +
+                     (table.interpolation == model::Interpolation::kCubic ? "cubic spline" : "linear") +
                      " between rows, held at the ends; deviations (actual - nominal)\n" + axis.name +
                      (axis.rotary ? "[deg]" : "[mm]");
   for (std::size_t k = 0; k < 6; ++k)
     text += "," + own_name(machine, table.axis, k) + (k < 3 ? "[mm]" : "[deg]");
   text += "\n";
-  for (const Station& station : table.stations) {
-    text += number_text(station.loc);
-    for (const double value : station.value) text += "," + number_text(value);
+  for (const model::Station& station : table.stations) {
+    text += text::number_text(station.loc);
+    for (const double value : station.value) text += "," + text::number_text(value);
     text += "\n";
   }
   return text;
 }
 
-Table parse_axis_csv(const std::string& text, const std::string& file, const Machine& machine) {
-  const CsvFile csv = parse_csv(text, file);
-  const Place place{file, csv.header_line};
+model::Table parse_axis_csv(const std::string& text, const std::string& file, const model::Machine& machine) {
+  const text::CsvFile csv = text::parse_csv(text, file);
+  const text::Place place{file, csv.header_line};
   const auto axis = machine.find_axis(csv.columns[0].name);
-  if (!axis) throw InputError(place, csv.columns[0].name, "the first column is no axis of this machine");
-  const auto numbers = [&](std::size_t column, Dimension dimension) {
-    const Unit unit = *find_unit(csv.columns[column].unit);
+  if (!axis)
+    throw text::InputError(place, csv.columns[0].name, "the first column is no axis of this machine");
+  const auto numbers = [&](std::size_t column, text::Dimension dimension) {
+    const text::Unit unit = *text::find_unit(csv.columns[column].unit);
     if (unit.dimension != dimension)
-      throw InputError(place, csv.columns[column].name,
-                       std::string("this column needs a unit like ") + base_unit(dimension));
+      throw text::InputError(place, csv.columns[column].name,
+                             std::string("this column needs a unit like ") + text::base_unit(dimension));
     std::vector<double> result;
     for (std::size_t i = 0; i < csv.rows.size(); ++i)
       result.push_back(unit.factor * number_of(csv.rows[i][column], {file, csv.line[i]}));
     return result;
   };
   const std::string& name = machine.axes[*axis].name;
-  Table table = empty_table(machine, *axis,
-                            numbers(0, machine.axes[*axis].rotary ? Dimension::kAngle : Dimension::kLength));
+  model::Table table = empty_table(
+      machine, *axis,
+      numbers(0, machine.axes[*axis].rotary ? text::Dimension::kAngle : text::Dimension::kLength));
   for (std::size_t c = 1; c < csv.columns.size(); ++c) {
     std::size_t k = 0;
     while (k < 6 && csv.columns[c].name != own_name(machine, *axis, k) &&
            csv.columns[c].name != iso_name(k, name))
       ++k;
     if (k == 6)
-      throw InputError(place, csv.columns[c].name,
-                       "no error of axis " + name + "; known are " + own_name(machine, *axis, 0) + " … or " +
-                           iso_name(0, name) + " …");
-    const std::vector<double> values = numbers(c, k < 3 ? Dimension::kLength : Dimension::kAngle);
+      throw text::InputError(place, csv.columns[c].name,
+                             "no error of axis " + name + "; known are " + own_name(machine, *axis, 0) +
+                                 " … or " + iso_name(0, name) + " …");
+    const std::vector<double> values = numbers(c, k < 3 ? text::Dimension::kLength : text::Dimension::kAngle);
     for (std::size_t i = 0; i < values.size(); ++i) table.stations[i].value[k] = values[i];
   }
   check_increasing(table, file, csv.line);
   return table;
 }
 
-std::string isg_csv(const Machine& machine) {
+std::string isg_csv(const model::Machine& machine) {
   std::string text =
       "// component errors, ISO 230 names; arguments in mm or deg, lengths in mm, angles in rad\n";
   bool first = true;
-  for (const Table& table : machine.tables) {
+  for (const model::Table& table : machine.tables) {
     const std::string& axis = machine.axes[table.axis].name;
     if (!has_iso_letter(axis))
-      throw InputError({machine.file, table.line}, axis, "the format knows axes X, Y, Z, A, B and C only");
-    if (table.interpolation != Interpolation::kLinear)
-      throw InputError({machine.file, table.line}, axis,
-                       "a cubic table: the controller interpolates linearly");
+      throw text::InputError({machine.file, table.line}, axis,
+                             "the format knows axes X, Y, Z, A, B and C only");
+    if (table.interpolation != model::Interpolation::kLinear)
+      throw text::InputError({machine.file, table.line}, axis,
+                             "a cubic table: the controller interpolates linearly");
     text += (first ? "" : "#\n") + axis;
     for (std::size_t k = 0; k < 6; ++k) text += "\t" + iso_name(k, axis);
     text += "\n";
-    for (const Station& station : table.stations) {
-      text += number_text(station.loc);
+    for (const model::Station& station : table.stations) {
+      text += text::number_text(station.loc);
       for (std::size_t k = 0; k < 6; ++k)
-        text += "\t" + (k < 3 ? number_text(station.value[k])
-                              : fmt::format("{:.12g}", station.value[k] / kDegPerRad));
+        text += "\t" + (k < 3 ? text::number_text(station.value[k])
+                              : fmt::format("{:.12g}", station.value[k] / maths::kDegPerRad));
       text += "\n";
     }
     first = false;
   }
-  if (first) throw InputError({machine.file, 0}, "", "this machine has no table to export");
+  if (first) throw text::InputError({machine.file, 0}, "", "this machine has no table to export");
   return text;
 }
 
-std::vector<Table> parse_isg_csv(const std::string& text, const std::string& file, const Machine& machine) {
-  std::vector<Table> tables;
+std::vector<model::Table> parse_isg_csv(const std::string& text, const std::string& file,
+                                        const model::Machine& machine) {
+  std::vector<model::Table> tables;
   for (const Block& block : blocks_of(text, file)) {
-    Table table = table_of_block(block, file, machine);
-    for (const Table& other : tables)
+    model::Table table = table_of_block(block, file, machine);
+    for (const model::Table& other : tables)
       if (other.axis == table.axis)
-        throw InputError({file, block.header_line}, machine.axes[table.axis].name,
-                         "a second table of this axis");
+        throw text::InputError({file, block.header_line}, machine.axes[table.axis].name,
+                               "a second table of this axis");
     tables.push_back(std::move(table));
   }
-  if (tables.empty()) throw InputError({file, 0}, "", "no component errors in this file");
+  if (tables.empty()) throw text::InputError({file, 0}, "", "no component errors in this file");
   return tables;
 }
 
-}  // namespace vernier
+}  // namespace vernier::exchange

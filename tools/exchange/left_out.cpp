@@ -6,7 +6,7 @@
 #include <functional>
 #include <random>
 
-namespace vernier {
+namespace vernier::exchange {
 namespace {
 
 using Eigen::Index;
@@ -18,49 +18,52 @@ constexpr double kReach_mm_or_deg = 100, kInput = 10, kSpeed = 200, kSince_mm = 
 
 class Sampler {
  public:
-  Sampler(const Machine& machine, std::size_t axis, const States& at)
+  Sampler(const model::Machine& machine, std::size_t axis, const model::States& at)
       : machine_(machine),
         axis_(axis),
-        base_(select_states(at, std::vector<std::size_t>(kSamples, 0))),
+        base_(model::select_states(at, std::vector<std::size_t>(kSamples, 0))),
         random_(kSeed) {
     fill_axis(base_, axis_);
     for (Index i = 0; i < base_.direction[axis_].size(); ++i) base_.direction[axis_][i] = i % 2 == 0 ? 1 : -1;
   }
 
   /// The largest change of the axis' offset when `vary` has changed the states.
-  double change_um(const std::function<void(States&)>& vary) {
-    States varied = base_;
+  double change_um(const std::function<void(model::States&)>& vary) {
+    model::States varied = base_;
     vary(varied);
     return 1000 * (offset(varied) - offset(base_)).abs().maxCoeff();
   }
 
-  void fill_axis(States& states, std::size_t axis) {
-    const Axis& one = machine_.axes[axis];
+  void fill_axis(model::States& states, std::size_t axis) {
+    const model::Axis& one = machine_.axes[axis];
     fill(states.axis[axis], one.min.value_or(-kReach_mm_or_deg), one.max.value_or(kReach_mm_or_deg));
   }
-  void fill(Column& column, double low, double high) {
+  void fill(model::Column& column, double low, double high) {
     std::uniform_real_distribution<double> value(low, high);
     for (Index i = 0; i < column.size(); ++i) column[i] = value(random_);
   }
-  void signs(Column& column) {
+  void signs(model::Column& column) {
     for (Index i = 0; i < column.size(); ++i) column[i] = random_() % 2 == 0 ? 1 : -1;
   }
 
  private:
-  Column offset(const States& states) const { return first_order_offset(machine_, states)[axis_]; }
+  model::Column offset(const model::States& states) const {
+    return kinematics::first_order_offset(machine_, states)[axis_];
+  }
 
-  const Machine& machine_;
+  const model::Machine& machine_;
   std::size_t axis_;
-  States base_;
+  model::States base_;
   std::mt19937_64 random_;
 };
 
 }  // namespace
 
-std::vector<LeftOut> beyond_own_axis(const Machine& machine, std::size_t axis, const States& at) {
+std::vector<LeftOut> beyond_own_axis(const model::Machine& machine, std::size_t axis,
+                                     const model::States& at) {
   Sampler sampler(machine, axis, at);
   std::vector<LeftOut> result;
-  const auto look = [&](const std::string& what, const std::function<void(States&)>& vary) {
+  const auto look = [&](const std::string& what, const std::function<void(model::States&)>& vary) {
     const double um = sampler.change_um(vary);
     if (um > kNothing_um)
       result.push_back({"the error of " + machine.axes[axis].name + " depends on " + what, um});
@@ -68,37 +71,37 @@ std::vector<LeftOut> beyond_own_axis(const Machine& machine, std::size_t axis, c
   for (std::size_t other = 0; other < machine.axes.size(); ++other) {
     if (other == axis) continue;
     const std::string& name = machine.axes[other].name;
-    look("the position of " + name, [&](States& s) { sampler.fill_axis(s, other); });
-    look("the sense of motion of " + name, [&](States& s) { sampler.signs(s.direction[other]); });
+    look("the position of " + name, [&](model::States& s) { sampler.fill_axis(s, other); });
+    look("the sense of motion of " + name, [&](model::States& s) { sampler.signs(s.direction[other]); });
   }
   for (std::size_t k = 0; k < machine.inputs.size(); ++k) {
-    const Input& input = machine.inputs[k];
-    look("input " + input.name, [&](States& s) {
+    const model::Input& input = machine.inputs[k];
+    look("input " + input.name, [&](model::States& s) {
       sampler.fill(s.input[k], input.min.value_or(input.reference - kInput),
                    input.max.value_or(input.reference + kInput));
     });
   }
-  look("speed, acceleration, feed or path curvature", [&](States& s) {
-    for (Column& v : s.velocity) sampler.fill(v, -kSpeed, kSpeed);
-    for (Column& a : s.acceleration) sampler.fill(a, -kSpeed, kSpeed);
+  look("speed, acceleration, feed or path curvature", [&](model::States& s) {
+    for (model::Column& v : s.velocity) sampler.fill(v, -kSpeed, kSpeed);
+    for (model::Column& a : s.acceleration) sampler.fill(a, -kSpeed, kSpeed);
     sampler.fill(s.feed, 0, 60 * kSpeed);
     sampler.fill(s.curvature, 0, 0.1);
   });
-  look("the travel since the last reversal", [&](States& s) {
-    for (Column& since : s.since) sampler.fill(since, 0, kSince_mm);
+  look("the travel since the last reversal", [&](model::States& s) {
+    for (model::Column& since : s.since) sampler.fill(since, 0, kSince_mm);
   });
-  look("time", [&](States& s) { s.time = Column::LinSpaced(s.time.size(), 0, kTime_s); });
+  look("time", [&](model::States& s) { s.time = model::Column::LinSpaced(s.time.size(), 0, kTime_s); });
   return result;
 }
 
-std::vector<LeftOut> beyond_tables(const Machine& machine, const States& at) {
-  Machine rest = machine;
-  for (Table& table : rest.tables)
-    for (Station& station : table.stations) station.value.fill(0);
+std::vector<LeftOut> beyond_tables(const model::Machine& machine, const model::States& at) {
+  model::Machine rest = machine;
+  for (model::Table& table : rest.tables)
+    for (model::Station& station : table.stations) station.value.fill(0);
   std::mt19937_64 random(kSeed);
-  States states = select_states(at, std::vector<std::size_t>(kSamples, 0));
+  model::States states = model::select_states(at, std::vector<std::size_t>(kSamples, 0));
   for (std::size_t a = 0; a < machine.axes.size(); ++a) {
-    const Axis& axis = machine.axes[a];
+    const model::Axis& axis = machine.axes[a];
     std::uniform_real_distribution<double> value(axis.min.value_or(-kReach_mm_or_deg),
                                                  axis.max.value_or(kReach_mm_or_deg));
     for (Index i = 0; i < states.axis[a].size(); ++i) {
@@ -106,19 +109,20 @@ std::vector<LeftOut> beyond_tables(const Machine& machine, const States& at) {
       states.direction[a][i] = random() % 2 == 0 ? 1 : -1;
     }
   }
-  const double um = 1000 * deviation(rest, states).colwise().norm().maxCoeff();
+  const double um = 1000 * model::deviation(rest, states).colwise().norm().maxCoeff();
   if (!(um > kNothing_um)) return {};
   return {
       {"errors that stand outside the tables (position errors, scale factors, reversal, other terms)", um}};
 }
 
-void refuse(const Machine& machine, const std::string& format, const std::vector<LeftOut>& left_out,
+void refuse(const model::Machine& machine, const std::string& format, const std::vector<LeftOut>& left_out,
             bool allowed) {
   if (left_out.empty() || allowed) return;
   std::string text;
   for (const LeftOut& one : left_out) text += fmt::format("\n  {}: up to {:.4g} um", one.what, one.um);
-  throw InputError({machine.file, 0}, "",
-                   format + " cannot express this machine; --leave-out writes the rest all the same:" + text);
+  throw text::InputError(
+      {machine.file, 0}, "",
+      format + " cannot express this machine; --leave-out writes the rest all the same:" + text);
 }
 
-}  // namespace vernier
+}  // namespace vernier::exchange

@@ -5,7 +5,7 @@
 
 #include "tools/kinematics/correction.h"
 
-namespace vernier {
+namespace vernier::exchange {
 
 /// Something that a format cannot say, and how much it is.
 struct LeftOut {
@@ -20,14 +20,15 @@ inline constexpr double kNothing_um = 0.01;
 /// axis: the largest change that other axes, inputs, speed, travel since reversal … make at random states
 /// (fixed seed) within the axis ranges, one entry for each that counts. `at`: the state (count 1) that stays.
 /// tool.
-std::vector<LeftOut> beyond_own_axis(const Machine& machine, std::size_t axis, const States& at);
+std::vector<LeftOut> beyond_own_axis(const model::Machine& machine, std::size_t axis,
+                                     const model::States& at);
 
 /// Deviations that stay when all tables are zero (position errors, scale factors, user terms): the largest at
 /// random states. tool.
-std::vector<LeftOut> beyond_tables(const Machine& machine, const States& at);
+std::vector<LeftOut> beyond_tables(const model::Machine& machine, const model::States& at);
 
 /// Refuses with all reasons unless `allowed`. Throws InputError.
-void refuse(const Machine& machine, const std::string& format, const std::vector<LeftOut>& left_out,
+void refuse(const model::Machine& machine, const std::string& format, const std::vector<LeftOut>& left_out,
             bool allowed);
 
-}  // namespace vernier
+}  // namespace vernier::exchange

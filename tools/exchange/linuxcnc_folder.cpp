@@ -8,34 +8,34 @@
 
 #include "tools/model/machine_reader.h"
 
-namespace vernier {
+namespace vernier::exchange {
 namespace {
 
 // What the component can take (comp/equation.h), and a pin's name (HAL_NAME_LEN less "vernier.0.input.").
 constexpr std::size_t kMostJoints = 8, kMostInputs = 24, kLongestName = 23;
 
-std::vector<const Input*> sensors(const Machine& machine) {
-  std::vector<const Input*> result;
-  for (const Input& input : machine.inputs) result.push_back(&input);
+std::vector<const model::Input*> sensors(const model::Machine& machine) {
+  std::vector<const model::Input*> result;
+  for (const model::Input& input : machine.inputs) result.push_back(&input);
   return result;
 }
 
-void check_names(const Machine& machine) {
+void check_names(const model::Machine& machine) {
   const auto check = [&](const std::string& name, std::size_t line) {
     const bool good =
         name.size() <= kLongestName && std::all_of(name.begin(), name.end(), [](unsigned char c) {
           return std::isalnum(c) != 0 || c == '_' || c == '-';
         });
-    if (!good) throw InputError({machine.file, line}, name, "a name that no HAL pin can have");
+    if (!good) throw text::InputError({machine.file, line}, name, "a name that no HAL pin can have");
   };
   if (machine.axes.size() > kMostJoints)
-    throw InputError({machine.file, 0}, machine.axes[kMostJoints].name,
-                     "more axes than the component has joints");
+    throw text::InputError({machine.file, 0}, machine.axes[kMostJoints].name,
+                           "more axes than the component has joints");
   if (machine.inputs.size() > kMostInputs)
-    throw InputError({machine.file, 0}, machine.inputs[kMostInputs].name,
-                     "more inputs than the component has");
-  for (const Axis& axis : machine.axes) check(axis.name, axis.line);
-  for (const Input* input : sensors(machine)) check(input->name, input->line);
+    throw text::InputError({machine.file, 0}, machine.inputs[kMostInputs].name,
+                           "more inputs than the component has");
+  for (const model::Axis& axis : machine.axes) check(axis.name, axis.line);
+  for (const model::Input* input : sensors(machine)) check(input->name, input->line);
 }
 
 std::string lower(std::string text) {
@@ -44,10 +44,10 @@ std::string lower(std::string text) {
 }
 
 // Only where the component would take another kind from the name.
-std::string rotary_argument(const Machine& machine) {
+std::string rotary_argument(const model::Machine& machine) {
   std::string names;
   bool by_name = true;
-  for (const Axis& axis : machine.axes) {
+  for (const model::Axis& axis : machine.axes) {
     const bool usual = axis.name == "A" || axis.name == "B" || axis.name == "C";
     by_name = by_name && axis.rotary == usual;
     if (axis.rotary) names += (names.empty() ? "" : ",") + axis.name;
@@ -55,10 +55,10 @@ std::string rotary_argument(const Machine& machine) {
   return by_name ? "" : " rotary=" + (names.empty() ? std::string("none") : names);
 }
 
-std::string load_line(const Machine& machine) {
+std::string load_line(const model::Machine& machine) {
   std::string axes, inputs;
-  for (const Axis& axis : machine.axes) axes += (axes.empty() ? "" : ",") + axis.name;
-  for (const Input* input : sensors(machine)) inputs += (inputs.empty() ? "" : ",") + input->name;
+  for (const model::Axis& axis : machine.axes) axes += (axes.empty() ? "" : ",") + axis.name;
+  for (const model::Input* input : sensors(machine)) inputs += (inputs.empty() ? "" : ",") + input->name;
   return "loadrt vernier axes=" + axes + (inputs.empty() ? "" : " inputs=" + inputs) +
          rotary_argument(machine) + " units=[TRAJ]LINEAR_UNITS";
 }
@@ -79,7 +79,7 @@ std::string joint_lines(std::size_t n) {
       n);
 }
 
-std::string hal_file(const Machine& machine) {
+std::string hal_file(const model::Machine& machine) {
   std::string text = fmt::format(
       "# {}: the correction between the joints and their drives. Loaded after the files that connect the "
       "drives.\n"
@@ -94,7 +94,7 @@ std::string hal_file(const Machine& machine) {
   text += "\nnet vernier-vel motion.current-vel => vernier.0.current-vel\n";
   if (!machine.inputs.empty())
     text += "\n# Sensors: until one is connected there is no correction. Put your pins here.\n";
-  for (const Input* input : sensors(machine))
+  for (const model::Input* input : sensors(machine))
     text += fmt::format("# net {} YOUR-SENSOR.PIN => vernier.0.input.{}   # {}, reference {:g}\n",
                         lower(input->name), input->name, input->unit.empty() ? "no unit" : input->unit,
                         input->reference);
@@ -109,10 +109,10 @@ std::string hal_file(const Machine& machine) {
 }
 
 // What the controller itself refuses needs no holding.
-std::string narrower_limits(const Machine& machine) {
+std::string narrower_limits(const model::Machine& machine) {
   std::string text;
   for (std::size_t n = 0; n < machine.axes.size(); ++n) {
-    const Axis& axis = machine.axes[n];
+    const model::Axis& axis = machine.axes[n];
     if (axis.min && axis.max && axis.max_correction)
       text += fmt::format("#   [JOINT_{}] MIN_LIMIT = {:.6g}, MAX_LIMIT = {:.6g}\n", n,
                           *axis.min + *axis.max_correction, *axis.max - *axis.max_correction);
@@ -125,7 +125,7 @@ std::string narrower_limits(const Machine& machine) {
                             text;
 }
 
-std::string ini_lines(const Machine& machine, const std::string& folder) {
+std::string ini_lines(const model::Machine& machine, const std::string& folder) {
   std::string text = fmt::format(
       "# Into your INI file: this line as the last HALFILE of its section [HAL],\n"
       "#   HALFILE = {0}/vernier.hal\n"
@@ -147,7 +147,7 @@ std::string ini_lines(const Machine& machine, const std::string& folder) {
   return text + narrower_limits(machine);
 }
 
-std::string readme(const Machine& machine, const std::string& folder) {
+std::string readme(const model::Machine& machine, const std::string& folder) {
   std::string joints;
   for (std::size_t n = 0; n < machine.axes.size(); ++n)
     joints += fmt::format("{}joint {} = {}", n == 0 ? "" : ", ", n, machine.axes[n].name);
@@ -173,11 +173,11 @@ std::string readme(const Machine& machine, const std::string& folder) {
 
 }  // namespace
 
-std::vector<ConfigurationFile> linuxcnc_folder(const Machine& machine, const std::string& folder) {
+std::vector<ConfigurationFile> linuxcnc_folder(const model::Machine& machine, const std::string& folder) {
   check_names(machine);
   return {{"vernier.hal", hal_file(machine)},
           {"vernier.ini", ini_lines(machine, folder)},
           {"README.md", readme(machine, folder)}};
 }
 
-}  // namespace vernier
+}  // namespace vernier::exchange

@@ -5,7 +5,7 @@
 
 #include "tools/model/machine.h"
 
-namespace vernier {
+namespace vernier::exchange {
 
 /// A text file of a configuration folder.
 struct ConfigurationFile {
@@ -17,6 +17,6 @@ struct ConfigurationFile {
 /// out again (README.md). Joints from 0 are the machine's axes in the order of its file. folder: its name
 /// beside the user's INI file. Throws InputError: more than eight axes, or more than 24 inputs, or a name
 /// that HAL does not take. tool.
-std::vector<ConfigurationFile> linuxcnc_folder(const Machine& machine, const std::string& folder);
+std::vector<ConfigurationFile> linuxcnc_folder(const model::Machine& machine, const std::string& folder);
 
-}  // namespace vernier
+}  // namespace vernier::exchange

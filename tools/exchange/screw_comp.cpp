@@ -13,21 +13,21 @@
 #include "tools/model/machine_writer.h"
 #include "tools/text/numbers.h"
 
-namespace vernier {
+namespace vernier::exchange {
 namespace {
 
 /// What files round: they are written to 1e-6 mm, so two trims may differ by as much.
 constexpr double kRounding_mm = 1.01e-6;
 
-std::vector<ScrewPoint> trims_at(const Machine& machine, std::size_t axis, const States& at,
+std::vector<ScrewPoint> trims_at(const model::Machine& machine, std::size_t axis, const model::States& at,
                                  const std::vector<double>& positions) {
   const std::size_t count = positions.size();
-  States states = select_states(at, std::vector<std::size_t>(2 * count, 0));
+  model::States states = model::select_states(at, std::vector<std::size_t>(2 * count, 0));
   for (std::size_t i = 0; i < 2 * count; ++i) {
     states.axis[axis][static_cast<Eigen::Index>(i)] = positions[i % count];
     states.direction[axis][static_cast<Eigen::Index>(i)] = i < count ? 1 : -1;
   }
-  const Column offset = first_order_offset(machine, states)[axis];
+  const model::Column offset = kinematics::first_order_offset(machine, states)[axis];
   std::vector<ScrewPoint> points;
   for (std::size_t i = 0; i < count; ++i)
     points.push_back(
@@ -48,14 +48,15 @@ double bend_of(const std::vector<ScrewPoint>& five) {
   return worst;
 }
 
-std::vector<double> first_positions(const Machine& machine, std::size_t axis) {
-  const Axis& one = machine.axes[axis];
+std::vector<double> first_positions(const model::Machine& machine, std::size_t axis) {
+  const model::Axis& one = machine.axes[axis];
   std::vector<double> result;
-  if (const Table* table = machine.table_of(axis)) {
-    for (const Station& station : table->stations) result.push_back(station.loc);
+  if (const model::Table* table = machine.table_of(axis)) {
+    for (const model::Station& station : table->stations) result.push_back(station.loc);
   } else {
     if (!one.min || !one.max)
-      throw InputError({machine.file, one.line}, one.name, "this axis needs min and max to be exported");
+      throw text::InputError({machine.file, one.line}, one.name,
+                             "this axis needs min and max to be exported");
     result = {*one.min, *one.max};
   }
   if (one.min && *one.min < result.front()) result.insert(result.begin(), *one.min);
@@ -65,13 +66,13 @@ std::vector<double> first_positions(const Machine& machine, std::size_t axis) {
 
 }  // namespace
 
-std::vector<ScrewPoint> screw_points(const Machine& machine, std::size_t axis, const States& at,
+std::vector<ScrewPoint> screw_points(const model::Machine& machine, std::size_t axis, const model::States& at,
                                      double tolerance_um) {
   std::vector<double> positions = first_positions(machine, axis);
   for (bool split = true; split;) {
     split = false;
     if (positions.size() > kMostScrewPoints)
-      throw InputError(
+      throw text::InputError(
           {machine.file, 0}, machine.axes[axis].name,
           fmt::format("more than {} lines are needed to stay within {} um", kMostScrewPoints, tolerance_um));
     std::vector<double> next = {positions.front()};
@@ -107,69 +108,72 @@ std::vector<ScrewPoint> parse_screw(const std::string& text, const std::string& 
   std::istringstream lines(text);
   std::string line;
   for (std::size_t number = 1; std::getline(lines, line); ++number) {
-    const Place place{file, number};
+    const text::Place place{file, number};
     std::istringstream words(line);
     std::vector<double> three;
     for (std::string word; words >> word;) {
-      const auto value = parse_number(word);
-      if (!value) throw InputError(place, word, "not a number: the controller would stop reading here");
+      const auto value = text::parse_number(word);
+      if (!value) throw text::InputError(place, word, "not a number: the controller would stop reading here");
       three.push_back(*value);
     }
     if (three.size() != 3)
-      throw InputError(place, line,
-                       "a line is nominal, forward, reverse: the controller would stop reading here");
+      throw text::InputError(place, line,
+                             "a line is nominal, forward, reverse: the controller would stop reading here");
     if (!points.empty() && three[0] <= points.back().nominal)
-      throw InputError(place, line, "positions must increase");
+      throw text::InputError(place, line, "positions must increase");
     if (points.size() == kMostScrewPoints)
-      throw InputError(place, line, fmt::format("the controller keeps only {} lines", kMostScrewPoints));
+      throw text::InputError(place, line,
+                             fmt::format("the controller keeps only {} lines", kMostScrewPoints));
     if (type == ScrewType::kActual)
       points.push_back({three[0], three[0] - three[1], three[0] - three[2]});
     else
       points.push_back({three[0], three[1], three[2]});
   }
-  if (points.size() < 2) throw InputError({file, 0}, "", "a table needs two lines at least");
+  if (points.size() < 2) throw text::InputError({file, 0}, "", "a table needs two lines at least");
   return points;
 }
 
-std::string screw_into_machine(const std::string& text, const Machine& machine, std::size_t axis,
+std::string screw_into_machine(const std::string& text, const model::Machine& machine, std::size_t axis,
                                const std::vector<ScrewPoint>& points, const std::string& reversal) {
   const std::string& name = machine.axes[axis].name;
-  const auto own = std::find_if(kSixDofNames.begin(), kSixDofNames.begin() + 3, [&](const char* letter) {
-    return name.find(*letter) != std::string::npos;  // X, Xm, X1 …
-  });
-  if (own == kSixDofNames.begin() + 3)
-    throw InputError({machine.file, 0}, name,
-                     "which column of its table is along this axis? Its name has no X, Y or Z");
+  const auto own =
+      std::find_if(model::kSixDofNames.begin(), model::kSixDofNames.begin() + 3, [&](const char* letter) {
+        return name.find(*letter) != std::string::npos;  // X, Xm, X1 …
+      });
+  if (own == model::kSixDofNames.begin() + 3)
+    throw text::InputError({machine.file, 0}, name,
+                           "which column of its table is along this axis? Its name has no X, Y or Z");
   std::vector<double> positions;
   for (const ScrewPoint& point : points) positions.push_back(point.nominal);
-  Table table = empty_table(machine, axis, positions);
-  table.interpolation = Interpolation::kLinear;
+  model::Table table = empty_table(machine, axis, positions);
+  table.interpolation = model::Interpolation::kLinear;
   const double half = (points[0].reverse_trim - points[0].forward_trim) / 2;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (std::abs((points[i].reverse_trim - points[i].forward_trim) / 2 - half) > kRounding_mm)
-      throw InputError({}, number_text(points[i].nominal),
-                       "the reversal is not the same at all positions: a machine file has one term for it");
-    table.stations[i].value[static_cast<std::size_t>(own - kSixDofNames.begin())] =
+      throw text::InputError(
+          {}, text::number_text(points[i].nominal),
+          "the reversal is not the same at all positions: a machine file has one term for it");
+    table.stations[i].value[static_cast<std::size_t>(own - model::kSixDofNames.begin())] =
         nine_decimals(-(points[i].forward_trim + points[i].reverse_trim) / 2);
   }
-  Machine next = machine;
+  model::Machine next = machine;
   if (!reversal.empty()) {
     const auto index = machine.find_static(reversal);
-    if (!index) throw InputError({machine.file, 0}, reversal, "no static of that name");
+    if (!index) throw text::InputError({machine.file, 0}, reversal, "no static of that name");
     next.statics[*index].value = nine_decimals(half);
   }
   check_used(machine, table);
-  const std::string result = set_table(update_machine_text(text, next, false), next, table);
-  const Machine back = parse_machine(result, machine.file);
+  const std::string result = set_table(model::update_machine_text(text, next, false), next, table);
+  const model::Machine back = model::parse_machine(result, machine.file);
   std::vector<double> references;
-  for (const Input& input : back.inputs) references.push_back(input.reference);
+  for (const model::Input& input : back.inputs) references.push_back(input.reference);
   const std::vector<ScrewPoint> again =
-      trims_at(back, axis, make_states(1, back.axes.size(), references), positions);
+      trims_at(back, axis, model::make_states(1, back.axes.size(), references), positions);
   for (std::size_t i = 0; i < points.size(); ++i) {
     const double off = std::max(std::abs(again[i].forward_trim - points[i].forward_trim),
                                 std::abs(again[i].reverse_trim - points[i].reverse_trim));
     if (off > kRounding_mm)
-      throw InputError(
+      throw text::InputError(
           {machine.file, 0}, name,
           fmt::format("this machine would not have the trims of the file: {:.4g} um off at {} (a reversal "
                       "wants --reversal STATIC; other errors of this axis have to be 0)",
@@ -178,4 +182,4 @@ std::string screw_into_machine(const std::string& text, const Machine& machine, 
   return result;
 }
 
-}  // namespace vernier
+}  // namespace vernier::exchange

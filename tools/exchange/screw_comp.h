@@ -6,7 +6,7 @@
 #include "tools/model/machine.h"
 #include "tools/model/states.h"
 
-namespace vernier {
+namespace vernier::exchange {
 
 /// One line of a screw-compensation file. A trim is what the controller adds to the command: a correction.
 struct ScrewPoint {
@@ -25,7 +25,7 @@ inline constexpr std::size_t kMostScrewPoints = 256;
 /// tolerance_um between them; other axes, motion and inputs as in `at` (count 1). They are first-order
 /// offsets, as if measured at the commanded positions, so an axis that carries the workpiece has the right
 /// sign. Throws InputError: no min and max, or more lines than the controller keeps. tool.
-std::vector<ScrewPoint> screw_points(const Machine& machine, std::size_t axis, const States& at,
+std::vector<ScrewPoint> screw_points(const model::Machine& machine, std::size_t axis, const model::States& at,
                                      double tolerance_um);
 
 /// Text of a file: three numbers a line, nothing else (the controller stops reading at any other line).
@@ -39,7 +39,7 @@ std::vector<ScrewPoint> parse_screw(const std::string& text, const std::string& 
 /// half their difference as static `reversal` (empty: there must be none). Verified: the machine that comes
 /// out has these trims again. Throws InputError where it has not, or where the reversal is not the same at
 /// all points. tool.
-std::string screw_into_machine(const std::string& text, const Machine& machine, std::size_t axis,
+std::string screw_into_machine(const std::string& text, const model::Machine& machine, std::size_t axis,
                                const std::vector<ScrewPoint>& points, const std::string& reversal);
 
-}  // namespace vernier
+}  // namespace vernier::exchange

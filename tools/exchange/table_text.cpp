@@ -9,7 +9,7 @@
 #include "tools/text/numbers.h"
 #include "tools/text/xml_text.h"
 
-namespace vernier {
+namespace vernier::exchange {
 namespace {
 
 constexpr std::size_t kNowhere = std::string::npos;
@@ -17,23 +17,23 @@ constexpr std::size_t kNowhere = std::string::npos;
 /// Offset of a word in any case, from `at` on.
 std::size_t find_no_case(const std::string& text, const std::string& word, std::size_t at) {
   for (; at + word.size() <= text.size(); ++at)
-    if (equal_no_case(std::string_view(text).substr(at, word.size()), word)) return at;
+    if (text::equal_no_case(std::string_view(text).substr(at, word.size()), word)) return at;
   return kNowhere;
 }
 
-std::string table_element(const Machine& machine, const Table& table) {
-  const Axis& axis = machine.axes[table.axis];
+std::string table_element(const model::Machine& machine, const model::Table& table) {
+  const model::Axis& axis = machine.axes[table.axis];
   std::string text = "<table axis=\"" + axis.name + "\" interpolation=\"" +
-                     (table.interpolation == Interpolation::kCubic ? "cubic" : "linear") + "\"";
+                     (table.interpolation == model::Interpolation::kCubic ? "cubic" : "linear") + "\"";
   std::string fit;
   for (std::size_t k = 0; k < 6; ++k)
-    if (table.free[k]) fit += (fit.empty() ? "" : " ") + std::string(kSixDofNames[k]);
+    if (table.free[k]) fit += (fit.empty() ? "" : " ") + std::string(model::kSixDofNames[k]);
   if (!fit.empty()) text += " fit=\"" + fit + "\"";
   text += ">\n";
-  for (const Station& station : table.stations) {
-    text += "        <station loc=\"" + number_text(station.loc) + "\"";
+  for (const model::Station& station : table.stations) {
+    text += "        <station loc=\"" + text::number_text(station.loc) + "\"";
     for (std::size_t k = 0; k < 6; ++k)
-      text += std::string(" ") + kSixDofNames[k] + "=\"" + number_text(station.value[k]) + "\"";
+      text += std::string(" ") + model::kSixDofNames[k] + "=\"" + text::number_text(station.value[k]) + "\"";
     text += "/>\n";
   }
   return text + "      </table>";
@@ -43,29 +43,31 @@ std::string table_element(const Machine& machine, const Table& table) {
 std::size_t table_start(const std::string& text, const std::string& axis) {
   for (std::size_t at = find_no_case(text, "<table", 0); at != kNowhere;
        at = find_no_case(text, "<table", at + 1))
-    for (const AttributeSpan& span : attribute_spans(text, at + 1))
-      if (equal_no_case(span.name, "axis") && text.substr(span.value_at, span.value_size) == axis) return at;
+    for (const text::AttributeSpan& span : text::attribute_spans(text, at + 1))
+      if (text::equal_no_case(span.name, "axis") && text.substr(span.value_at, span.value_size) == axis)
+        return at;
   return kNowhere;
 }
 
-std::string with_element(const std::string& text, const Machine& machine, const Table& table) {
+std::string with_element(const std::string& text, const model::Machine& machine, const model::Table& table) {
   const std::string element = table_element(machine, table);
   const std::string& axis = machine.axes[table.axis].name;
   if (machine.table_of(table.axis) != nullptr) {
     const std::size_t start = table_start(text, axis), end = find_no_case(text, "</table>", start);
     if (start == kNowhere || end == kNowhere)
-      throw InputError({machine.file, 0}, axis, "its table is not found");
-    return apply_edits(text, {{start, end + 8 - start, element}});
+      throw text::InputError({machine.file, 0}, axis, "its table is not found");
+    return text::apply_edits(text, {{start, end + 8 - start, element}});
   }
   const std::size_t list = find_no_case(text, "</comptables>", 0),
                     variables = find_no_case(text, "</variables>", 0);
-  if (list != kNowhere) return apply_edits(text, {{list, 0, "  " + element + "\n    "}});
+  if (list != kNowhere) return text::apply_edits(text, {{list, 0, "  " + element + "\n    "}});
   if (variables == kNowhere)
-    throw InputError({machine.file, 0}, "variables", "no such section to put a table into");
-  return apply_edits(text, {{variables, 0, "<comptables>\n      " + element + "\n    </comptables>\n  "}});
+    throw text::InputError({machine.file, 0}, "variables", "no such section to put a table into");
+  return text::apply_edits(text,
+                           {{variables, 0, "<comptables>\n      " + element + "\n    </comptables>\n  "}});
 }
 
-bool same(const Table& a, const Table& b) {
+bool same(const model::Table& a, const model::Table& b) {
   if (a.stations.size() != b.stations.size() || a.interpolation != b.interpolation || a.free != b.free)
     return false;
   for (std::size_t i = 0; i < a.stations.size(); ++i)
@@ -75,40 +77,43 @@ bool same(const Table& a, const Table& b) {
 
 }  // namespace
 
-std::string set_table(const std::string& text, const Machine& machine, const Table& table) {
+std::string set_table(const std::string& text, const model::Machine& machine, const model::Table& table) {
   const std::string result = with_element(text, machine, table);
-  const Machine back = parse_machine(result, machine.file);
-  const Table* read = back.table_of(table.axis);
+  const model::Machine back = model::parse_machine(result, machine.file);
+  const model::Table* read = back.table_of(table.axis);
   if (read == nullptr || !same(*read, table))
-    throw InputError({machine.file, 0}, machine.axes[table.axis].name,
-                     "the table cannot be put into this text: a comment may hold a table of its own");
+    throw text::InputError({machine.file, 0}, machine.axes[table.axis].name,
+                           "the table cannot be put into this text: a comment may hold a table of its own");
   return result;
 }
 
-void check_used(const Machine& machine, const Table& table) {
+void check_used(const model::Machine& machine, const model::Table& table) {
   std::set<std::size_t> used;
   for (const auto* branch : {&machine.tool, &machine.workpiece})
-    for (const Transform& transform : *branch)
+    for (const model::Transform& transform : *branch)
       for (std::size_t i = 0; i < transform.dof_count(); ++i)
-        walk(*transform.dof[i], [&](const Expr& node) {
-          if (node.op == Op::kSymbol && node.symbol.kind == SymbolKind::kTableValue)
+        model::walk(*transform.dof[i], [&](const model::Expr& node) {
+          if (node.op == model::Op::kSymbol && node.symbol.kind == model::SymbolKind::kTableValue)
             used.insert(node.symbol.index);
         });
   for (std::size_t k = 0; k < 6; ++k) {
-    const auto zero = [&](const Station& station) { return station.value[k] == 0; };
+    const auto zero = [&](const model::Station& station) { return station.value[k] == 0; };
     if (std::all_of(table.stations.begin(), table.stations.end(), zero)) continue;
     if (used.contains(6 * table.axis + k)) continue;
-    throw InputError({machine.file, 0}, symbol_name(machine, {SymbolKind::kTableValue, 6 * table.axis + k}),
-                     "no transform uses this table value, so the table would have no effect");
+    throw text::InputError({machine.file, 0},
+                           model::symbol_name(machine, {model::SymbolKind::kTableValue, 6 * table.axis + k}),
+                           "no transform uses this table value, so the table would have no effect");
   }
 }
 
-Table empty_table(const Machine& machine, std::size_t axis, const std::vector<double>& positions) {
-  Table table;
-  if (const Table* old = machine.table_of(axis)) table = *old;
+model::Table empty_table(const model::Machine& machine, std::size_t axis,
+                         const std::vector<double>& positions) {
+  model::Table table;
+  if (const model::Table* old = machine.table_of(axis)) table = *old;
   table.axis = axis;
   table.stations.clear();
-  for (const double position : positions) table.stations.push_back({position, number_text(position), {}});
+  for (const double position : positions)
+    table.stations.push_back({position, text::number_text(position), {}});
   return table;
 }
 
@@ -117,4 +122,4 @@ double nine_decimals(double value) {
   return scaled == 0 ? 0 : scaled / 1e9;
 }
 
-}  // namespace vernier
+}  // namespace vernier::exchange

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vernier {
+namespace vernier::fit {
 namespace {
 
 /// Evaluates all rows once per point; the residual blocks read their line of the result.
@@ -20,7 +20,7 @@ class WholeEvaluation : public ceres::EvaluationCallback {
       valid_ = true;
       try {
         residual_ = problem_.weighted_residuals(values_, jacobians ? &jacobian_ : nullptr);
-      } catch (const InputError&) {
+      } catch (const text::InputError&) {
         valid_ = false;
       }
       has_jacobian_ = jacobians && valid_;
@@ -28,13 +28,13 @@ class WholeEvaluation : public ceres::EvaluationCallback {
   }
   bool valid() const { return valid_; }
   double residual(Eigen::Index row) const { return residual_[row]; }
-  const SparseRows& jacobian() const { return jacobian_; }
+  const model::SparseRows& jacobian() const { return jacobian_; }
 
  private:
   const FitProblem& problem_;
   const Eigen::VectorXd& values_;
   Eigen::VectorXd residual_;
-  SparseRows jacobian_;
+  model::SparseRows jacobian_;
   bool has_jacobian_ = false, valid_ = true;
 };
 
@@ -127,7 +127,7 @@ CeresOutcome solve_once(const FitProblem& problem, const Eigen::VectorXd& start,
   ceres::Problem::Options ceres_options;
   ceres_options.evaluation_callback = &all;
   ceres::Problem ceres_problem(ceres_options);
-  SparseRows jacobian;
+  model::SparseRows jacobian;
   problem.weighted_residuals(start, &jacobian);
   for (Eigen::Index i = 0; i < start.size(); ++i)
     ceres_problem.AddParameterBlock(outcome.point.data() + i, 1);
@@ -137,7 +137,7 @@ CeresOutcome solve_once(const FitProblem& problem, const Eigen::VectorXd& start,
       continue;
     std::vector<int> columns;
     std::vector<double*> blocks;
-    for (SparseRows::InnerIterator entry(jacobian, row); entry; ++entry) {
+    for (model::SparseRows::InnerIterator entry(jacobian, row); entry; ++entry) {
       columns.push_back(static_cast<int>(entry.col()));
       blocks.push_back(outcome.point.data() + entry.col());
     }
@@ -190,4 +190,4 @@ CeresOutcome solve_with_ceres(const FitProblem& problem, const Eigen::VectorXd& 
   return outcome;
 }
 
-}  // namespace vernier
+}  // namespace vernier::fit

@@ -5,7 +5,7 @@
 #include "tools/fit/fit.h"
 #include "tools/fit/problem.h"
 
-namespace vernier {
+namespace vernier::fit {
 
 struct CeresOutcome {
   Eigen::VectorXd point;
@@ -24,4 +24,4 @@ Eigen::VectorXd robust_shares(const Eigen::VectorXd& residual, Loss loss, double
 CeresOutcome solve_with_ceres(const FitProblem& problem, const Eigen::VectorXd& start,
                               const FitOptions& options);
 
-}  // namespace vernier
+}  // namespace vernier::fit

@@ -18,7 +18,7 @@
 #include "tools/model/evaluate.h"
 #include "tools/text/units.h"
 
-namespace vernier {
+namespace vernier::fit {
 namespace {
 
 /// A single error three times what all of them together left is implausible already.
@@ -34,32 +34,34 @@ constexpr double kAnywhere_mm = 1e5, kAnyTurn_deg = 360;
 constexpr int kLengthStatics = Convention::kFirstOfStatics, kAngleStatics = 6, kOtherStatics = 7;
 
 /// Statics that shape a term rather than scale it: in a divisor, an exponent, or a time constant.
-void collect_shapes(const Expr& expr, bool inside, std::set<std::size_t>& shapes) {
-  if (expr.op == Op::kSymbol && expr.symbol.kind == SymbolKind::kStatic && inside)
+void collect_shapes(const model::Expr& expr, bool inside, std::set<std::size_t>& shapes) {
+  if (expr.op == model::Op::kSymbol && expr.symbol.kind == model::SymbolKind::kStatic && inside)
     shapes.insert(expr.symbol.index);
   for (std::size_t i = 0; i < expr.args.size(); ++i) {
-    const bool second = i == 1 && (expr.op == Op::kDivide || expr.op == Op::kPower || expr.op == Op::kLag);
-    collect_shapes(*expr.args[i], inside || second || expr.op == Op::kExp || expr.op == Op::kLog, shapes);
+    const bool second = i == 1 && (expr.op == model::Op::kDivide || expr.op == model::Op::kPower ||
+                                   expr.op == model::Op::kLag);
+    collect_shapes(*expr.args[i],
+                   inside || second || expr.op == model::Op::kExp || expr.op == model::Op::kLog, shapes);
   }
 }
 
-std::set<std::size_t> shape_statics(const Machine& machine) {
+std::set<std::size_t> shape_statics(const model::Machine& machine) {
   std::set<std::size_t> shapes;
   for (const auto* branch : {&machine.tool, &machine.workpiece})
-    for (const Transform& transform : *branch)
+    for (const model::Transform& transform : *branch)
       for (std::size_t d = 0; d < transform.dof_count(); ++d)
         collect_shapes(*transform.dof[d], false, shapes);
   return shapes;
 }
 
 /// Where parameters stay: statics at nominal (or where they are), tables 0, set-ups as fitted.
-Machine centre_of(const Machine& machine) {
-  Machine centre = machine;
-  const ParameterSet parameters(machine, {});  // no runs: without set-ups
+model::Machine centre_of(const model::Machine& machine) {
+  model::Machine centre = machine;
+  const model::ParameterSet parameters(machine, {});  // no runs: without set-ups
   Eigen::VectorXd values = parameters.get(machine);
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     double& value = values[static_cast<Eigen::Index>(i)];
-    value = parameters[i].kind == ParameterKind::kStatic
+    value = parameters[i].kind == model::ParameterKind::kStatic
                 ? machine.statics[parameters[i].item].nominal.value_or(value)
                 : 0;
   }
@@ -71,16 +73,16 @@ struct Misfit {
   double length_mm = 0, turn_rad = 0;
 };
 
-Misfit misfit_of(const Machine& machine, const Measurement& m) {
+Misfit misfit_of(const model::Machine& machine, const model::Measurement& m) {
   const Eigen::VectorXd residual = residuals(machine, m);
   Misfit misfit;
   double lengths = 0, turns = 0;
   for (std::size_t i = 0; i < m.observations.size(); ++i) {
-    const Observation& o = m.observations[i];
+    const model::Observation& o = m.observations[i];
     if (m.check[o.row] != 0) continue;
     const double value = residual[static_cast<Eigen::Index>(i)];
-    if (is_rotation(o.kind)) {
-      misfit.turn_rad += std::pow(value / kDegPerRad, 2);
+    if (model::is_rotation(o.kind)) {
+      misfit.turn_rad += std::pow(value / maths::kDegPerRad, 2);
       ++turns;
     } else {
       misfit.length_mm += value * value;
@@ -92,8 +94,8 @@ Misfit misfit_of(const Machine& machine, const Measurement& m) {
   return misfit;
 }
 
-double reach_of(const Machine& machine, const Measurement& m) {
-  const ChainRows chain(machine, m.states);
+double reach_of(const model::Machine& machine, const model::Measurement& m) {
+  const model::ChainRows chain(machine, m.states);
   Eigen::Vector3d low = Eigen::Vector3d::Constant(1e300), high = -low;
   for (std::size_t row = 0; row < m.rows(); ++row) {
     if (m.check[row] != 0) continue;
@@ -106,17 +108,17 @@ double reach_of(const Machine& machine, const Measurement& m) {
 
 /// A static's scale by what it does: the value that moves the degrees of freedom in which it stands by a
 /// length or an angle of that size, rms over the rows; infinite where it moves none.
-Eigen::VectorXd scales_by_place(const Machine& machine, const Measurement& m, double length_mm,
+Eigen::VectorXd scales_by_place(const model::Machine& machine, const model::Measurement& m, double length_mm,
                                 double angle_deg) {
   std::vector<char> active(machine.statics.size(), 0);
   std::fill(active.begin(), active.end(), 1);
-  Evaluator evaluate(machine, m.states, active);
+  model::Evaluator evaluate(machine, m.states, active);
   Eigen::VectorXd scale = Eigen::VectorXd::Constant(static_cast<Eigen::Index>(machine.statics.size()),
                                                     std::numeric_limits<double>::infinity());
   for (const auto* branch : {&machine.tool, &machine.workpiece})
-    for (const Transform& transform : *branch)
+    for (const model::Transform& transform : *branch)
       for (std::size_t d = 0; d < transform.dof_count(); ++d) {
-        const bool angle = transform.kind == TransformKind::kSixDof ? d >= 3 : d == 0 || d == 3;
+        const bool angle = transform.kind == model::TransformKind::kSixDof ? d >= 3 : d == 0 || d == 3;
         for (const auto& [key, slope] : evaluate(*transform.dof[d]).by) {
           if (key >= machine.statics.size()) continue;
           const double size = std::sqrt(slope.column(m.states.count).square().mean());
@@ -129,20 +131,20 @@ Eigen::VectorXd scales_by_place(const Machine& machine, const Measurement& m, do
 
 /// Statics that lean a travel: what they do to a length is in proportion to the position of one linear axis
 /// that has a table.
-void find_slopes(const Machine& machine, const Measurement& m, const ParameterSet& parameters,
-                 Convention& convention) {
+void find_slopes(const model::Machine& machine, const model::Measurement& m,
+                 const model::ParameterSet& parameters, Convention& convention) {
   convention.slope_of.assign(parameters.size(), -1);
   convention.slope_mm = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(parameters.size()));
   std::map<std::size_t, std::size_t> parameter_of;  // a static's
   for (std::size_t i = 0; i < parameters.size(); ++i)
-    if (parameters[i].kind == ParameterKind::kStatic) parameter_of[parameters[i].item] = i;
+    if (parameters[i].kind == model::ParameterKind::kStatic) parameter_of[parameters[i].item] = i;
   if (parameter_of.empty()) return;
   std::vector<char> active(machine.statics.size(), 0);
   for (const auto& [item, parameter] : parameter_of) active[item] = 1;
-  Evaluator evaluate(machine, m.states, active);
-  const auto take = [&](std::size_t parameter, const Column& slope) {
+  model::Evaluator evaluate(machine, m.states, active);
+  const auto take = [&](std::size_t parameter, const model::Column& slope) {
     for (std::size_t table = 0; table < machine.tables.size(); ++table) {
-      const Column& position = m.states.axis[machine.tables[table].axis];
+      const model::Column& position = m.states.axis[machine.tables[table].axis];
       if (machine.axes[machine.tables[table].axis].rotary || position.size() == 0) continue;
       const double size = position.abs().maxCoeff();
       if (size <= 0 || ((slope - position).abs().maxCoeff() > 1e-9 * size &&
@@ -154,8 +156,8 @@ void find_slopes(const Machine& machine, const Measurement& m, const ParameterSe
     }
   };
   for (const auto* branch : {&machine.tool, &machine.workpiece})
-    for (const Transform& transform : *branch)
-      for (std::size_t d = 0; d < 3 && transform.kind == TransformKind::kSixDof; ++d)
+    for (const model::Transform& transform : *branch)
+      for (std::size_t d = 0; d < 3 && transform.kind == model::TransformKind::kSixDof; ++d)
         for (const auto& [key, slope] : evaluate(*transform.dof[d]).by)
           if (const auto found = parameter_of.find(key); found != parameter_of.end())
             take(found->second, slope.column(m.states.count));
@@ -165,10 +167,11 @@ void find_slopes(const Machine& machine, const Measurement& m, const ParameterSe
 double scale_by_unit(const std::string& unit, double length_mm, double reach_mm) {
   if (unit == "urad") return length_mm / reach_mm * 1e6;
   if (unit == "mrad") return length_mm / reach_mm * 1e3;
-  const auto known = find_unit(unit);
+  const auto known = text::find_unit(unit);
   if (!known) return 0;
-  if (known->dimension == Dimension::kLength) return length_mm / known->factor;
-  if (known->dimension == Dimension::kAngle) return length_mm / reach_mm * kDegPerRad / known->factor;
+  if (known->dimension == text::Dimension::kLength) return length_mm / known->factor;
+  if (known->dimension == text::Dimension::kAngle)
+    return length_mm / reach_mm * maths::kDegPerRad / known->factor;
   return 0;
 }
 
@@ -180,20 +183,20 @@ constexpr double kRough = 0.2;
 /// Errors of a guideway are smooth, their largest part is a level, a slope, a bow: what stands at one station
 /// says something of the next. With less than two travels of correlation the level of an angle that only the
 /// tool's length shows was underrated (coverage 0.89 to 0.94 where 0.95 was said, `reach_check`).
-double expected_correlation(const Table& table, std::size_t a, std::size_t b) {
+double expected_correlation(const model::Table& table, std::size_t a, std::size_t b) {
   const double span = table.stations.back().loc - table.stations.front().loc;
   double distance = std::abs(table.stations[a].loc - table.stations[b].loc);
   if (table.periodic) distance = std::min(distance, span - distance);
   return (1 - kRough) * std::exp(-0.5 * distance / span);
 }
 
-void correlate(const Machine& machine, const ParameterSet& parameters, Convention& convention) {
+void correlate(const model::Machine& machine, const model::ParameterSet& parameters, Convention& convention) {
   using Entry = Eigen::Triplet<double>;
   std::map<std::pair<std::size_t, std::size_t>, std::vector<std::size_t>> columns;
   std::vector<Entry> together, apart;
   for (std::size_t i = 0; i < parameters.size(); ++i) {
-    const Parameter& p = parameters[i];
-    if (p.kind == ParameterKind::kStation) {
+    const model::Parameter& p = parameters[i];
+    if (p.kind == model::ParameterKind::kStation) {
       columns[{p.item, p.column}].push_back(i);
       continue;
     }
@@ -201,7 +204,7 @@ void correlate(const Machine& machine, const ParameterSet& parameters, Conventio
     apart.emplace_back(static_cast<int>(i), static_cast<int>(i), 1);
   }
   for (const auto& [column, members] : columns) {
-    const Table& table = machine.tables[column.first];
+    const model::Table& table = machine.tables[column.first];
     const auto n = static_cast<Eigen::Index>(members.size());
     Eigen::MatrixXd k = Eigen::MatrixXd::Identity(n, n);
     for (Eigen::Index a = 0; a < n; ++a)
@@ -237,12 +240,12 @@ Eigen::SparseMatrix<double> scaled_precision(const Convention& convention, const
 namespace {
 
 struct SetUp {
-  Machine machine;
+  model::Machine machine;
   double cost = 0;
 };
 
-SetUp fitted_set_up(const Machine& machine, const ParameterSet& shifts, const FitProblem& problem,
-                    const Eigen::VectorXd& start) {
+SetUp fitted_set_up(const model::Machine& machine, const model::ParameterSet& shifts,
+                    const FitProblem& problem, const Eigen::VectorXd& start) {
   LevenbergOptions options;
   options.negligible = [](double cost) { return 1e-10 * cost; };
   options.slope = [&](const Eigen::VectorXd& x) { return problem.slope(x); };
@@ -257,15 +260,15 @@ SetUp fitted_set_up(const Machine& machine, const ParameterSet& shifts, const Fi
 
 }  // namespace
 
-Machine set_up(const Machine& machine, const Measurement& rows) {
-  Machine rigid = machine;
-  for (Freedom& one : freedoms_of(rigid))
-    if (one.kind() != ParameterKind::kBaseShift) one.set_free(false);
-  const ParameterSet shifts(rigid, setups_of_fit_rows(rows));
+model::Machine set_up(const model::Machine& machine, const model::Measurement& rows) {
+  model::Machine rigid = machine;
+  for (model::Freedom& one : model::freedoms_of(rigid))
+    if (one.kind() != model::ParameterKind::kBaseShift) one.set_free(false);
+  const model::ParameterSet shifts(rigid, setups_of_fit_rows(rows));
   if (shifts.size() == 0) return machine;
   FitProblem problem(rigid, rows, shifts);
   const Eigen::VectorXd none = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(shifts.size()));
-  Machine at_zero = rigid;
+  model::Machine at_zero = rigid;
   shifts.set(at_zero, none);
   const std::vector<bool> held = unseen_turns(at_zero, rows, shifts, reach_of(at_zero, rows));
   // From the measuring frame itself, so that what no reading sees (the tilt of a flat bar's circle) is 0
@@ -279,14 +282,15 @@ Machine set_up(const Machine& machine, const Measurement& rows) {
   return given.cost < (1 - kPlainly) * plain.cost ? std::move(given.machine) : std::move(plain.machine);
 }
 
-Convention convention_of(const Machine& machine, const Measurement& rows, const ParameterSet& parameters) {
-  const Machine centre = set_up(centre_of(machine), rows);
+Convention convention_of(const model::Machine& machine, const model::Measurement& rows,
+                         const model::ParameterSet& parameters) {
+  const model::Machine centre = set_up(centre_of(machine), rows);
   Convention result;
   result.reach_mm = reach_of(centre, rows);
   const Misfit misfit = misfit_of(centre, rows);
   result.misfit_mm = std::max({misfit.length_mm, misfit.turn_rad * result.reach_mm, kLeastMisfit_mm});
   const double length_mm = kTimesMisfit * result.misfit_mm;
-  const double angle_deg = length_mm / result.reach_mm * kDegPerRad;
+  const double angle_deg = length_mm / result.reach_mm * maths::kDegPerRad;
   result.centre = parameters.get(centre);
   const auto n = static_cast<Eigen::Index>(parameters.size());
   result.scale.resize(n);
@@ -300,20 +304,20 @@ Convention convention_of(const Machine& machine, const Measurement& rows, const 
   const std::vector<bool> unseen = unseen_turns(centre, rows, parameters, result.reach_mm);
   Eigen::VectorXd by_place;
   for (std::size_t i = 0; i < parameters.size(); ++i) {
-    const Parameter& p = parameters[i];
+    const model::Parameter& p = parameters[i];
     double& scale = result.scale[static_cast<Eigen::Index>(i)];
-    if (p.kind == ParameterKind::kBaseShift) {
+    if (p.kind == model::ParameterKind::kBaseShift) {
       // An instrument that sees one line is aligned to it; how well shows in nothing but its own cosine
       // error.
       scale = p.column < 3 ? kAnywhere_mm : unseen[i] ? angle_deg : kAnyTurn_deg;
       continue;
     }
-    if (p.kind == ParameterKind::kScaleFactor) {
+    if (p.kind == model::ParameterKind::kScaleFactor) {
       scale = length_mm / result.reach_mm;
       continue;
     }
-    if (p.kind == ParameterKind::kStation) {
-      const Table& table = machine.tables[p.item];
+    if (p.kind == model::ParameterKind::kStation) {
+      const model::Table& table = machine.tables[p.item];
       result.table[i] = static_cast<int>(p.item);
       scale = p.column < 3 ? length_mm : angle_deg;
       result.kind[i] = 1 + (p.column < 3 ? 0 : 1) + (machine.axes[table.axis].rotary ? 2 : 0);
@@ -324,7 +328,7 @@ Convention convention_of(const Machine& machine, const Measurement& rows, const 
       }
       continue;
     }
-    const Static& item = machine.statics[p.item];
+    const model::Static& item = machine.statics[p.item];
     const double nominal = std::abs(item.nominal.value_or(item.value));
     const bool shape = shapes.contains(p.item);
     result.shape[i] = shape ? 1 : 0;
@@ -348,4 +352,4 @@ Convention convention_of(const Machine& machine, const Measurement& rows, const 
   return result;
 }
 
-}  // namespace vernier
+}  // namespace vernier::fit

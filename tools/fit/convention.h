@@ -9,7 +9,7 @@
 #include "tools/model/measurement.h"
 #include "tools/model/parameters.h"
 
-namespace vernier {
+namespace vernier::fit {
 
 /// Where each parameter stays if the data say nothing of it, and how far from there it may plausibly be. This
 /// is the convention that makes a fit's answer unique: of all machines that the data cannot tell apart, the
@@ -45,9 +45,10 @@ Eigen::SparseMatrix<double> scaled_precision(const Convention& convention, const
 /// periods and time constants (what stands in a divisor, an exponent or a lag) their own nominal value,
 /// coefficients of any other unit what moves their degree of freedom by as much. `scale` of the machine file
 /// takes the place of any. Evaluated at the nominal machine: the same whatever the start. tool.
-Convention convention_of(const Machine& machine, const Measurement& rows, const ParameterSet& parameters);
+Convention convention_of(const model::Machine& machine, const model::Measurement& rows,
+                         const model::ParameterSet& parameters);
 
 /// The machine with its free BaseShifts fitted to the fit rows and nothing else changed. tool.
-Machine set_up(const Machine& machine, const Measurement& rows);
+model::Machine set_up(const model::Machine& machine, const model::Measurement& rows);
 
-}  // namespace vernier
+}  // namespace vernier::fit

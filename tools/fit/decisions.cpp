@@ -8,25 +8,25 @@
 
 #include "tools/maths/factors.h"
 
-namespace vernier {
+namespace vernier::fit {
 namespace {
 
 /// The parameter, or the column of a table that it belongs to.
 std::string column_of(const FitResult& result, std::size_t i) {
-  const Parameter& p = result.parameters[i];
-  if (p.kind != ParameterKind::kStation) return p.name;
+  const model::Parameter& p = result.parameters[i];
+  if (p.kind != model::ParameterKind::kStation) return p.name;
   return "table." + result.machine.axes[result.machine.tables[p.item].axis].name + "." +
-         kSixDofNames[p.column];
+         model::kSixDofNames[p.column];
 }
 
 /// One standard uncertainty of a parameter at the edge of the measured box. A coefficient of no known unit
 /// counts by its scale, which is what three times the misfit would be.
 double reach_um(const FitResult& result, std::size_t i) {
   const ParameterEstimate& e = result.estimates[i];
-  if (e.unit == "mm") return kUmPerMm * e.std;
-  if (e.unit == "deg") return kUmPerMm * e.std * kRadPerDeg * result.reach_mm;
-  if (e.unit == "rad") return kUmPerMm * e.std * result.reach_mm;
-  return e.scale > 0 ? kUmPerMm * 3 * result.misfit_mm * e.std / e.scale : 0;
+  if (e.unit == "mm") return maths::kUmPerMm * e.std;
+  if (e.unit == "deg") return maths::kUmPerMm * e.std * maths::kRadPerDeg * result.reach_mm;
+  if (e.unit == "rad") return maths::kUmPerMm * e.std * result.reach_mm;
+  return e.scale > 0 ? maths::kUmPerMm * 3 * result.misfit_mm * e.std / e.scale : 0;
 }
 
 struct DecisionGroup {
@@ -62,7 +62,7 @@ std::vector<Decision> decisions_of(const FitResult& result, std::size_t most) {
     return name;
   };
   const auto is_set_up = [&](std::size_t i) {
-    return result.parameters[i].kind == ParameterKind::kBaseShift;
+    return result.parameters[i].kind == model::ParameterKind::kBaseShift;
   };
   for (const auto& parts : result.observability.unidentifiable) {
     std::string first;
@@ -94,4 +94,4 @@ std::vector<Decision> decisions_of(const FitResult& result, std::size_t most) {
   return list;
 }
 
-}  // namespace vernier
+}  // namespace vernier::fit

@@ -5,7 +5,7 @@
 
 #include "tools/fit/fit.h"
 
-namespace vernier {
+namespace vernier::fit {
 
 /// Something that the readings left open and the convention settled.
 struct Decision {
@@ -19,4 +19,4 @@ struct Decision {
 /// measuring frame stands is nobody's error. tool.
 std::vector<Decision> decisions_of(const FitResult& result, std::size_t most = 10);
 
-}  // namespace vernier
+}  // namespace vernier::fit

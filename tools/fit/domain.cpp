@@ -11,14 +11,15 @@
 #include "tools/text/numbers.h"
 #include "tools/text/xml_text.h"
 
-namespace vernier {
+namespace vernier::fit {
 namespace {
 
 constexpr double kOpen = 1e9;
 constexpr double kFadeShare = 0.1;
 
-Column values_of(const Machine& machine, const DomainRange& range, const States& states) {
-  return evaluate(machine, *parse_expression_for(machine, range.quantity), states);
+model::Column values_of(const model::Machine& machine, const DomainRange& range,
+                        const model::States& states) {
+  return model::evaluate(machine, *model::parse_expression_for(machine, range.quantity), states);
 }
 
 /// New numbers for attributes of the elements in a text's `section` ("static", "inputs"), by element name.
@@ -28,27 +29,27 @@ struct Setting {
 };
 
 void edit(const pugi::xml_node& parent, const std::string& text, const std::vector<Setting>& settings,
-          std::vector<TextEdit>& edits) {
+          std::vector<text::TextEdit>& edits) {
   for (const pugi::xml_node node : parent.children())
     for (const pugi::xml_node item : node.children())
       for (const Setting& one : settings) {
-        if (!equal_no_case(node.name(), one.section) || one.element != item.name()) continue;
+        if (!text::equal_no_case(node.name(), one.section) || one.element != item.name()) continue;
         const auto at = static_cast<std::size_t>(item.offset_debug());
         bool there = false;
-        for (const AttributeSpan& span : attribute_spans(text, at)) {
-          if (!equal_no_case(span.name, one.attribute)) continue;
-          edits.push_back({span.value_at, span.value_size, number_text(one.value)});
+        for (const text::AttributeSpan& span : text::attribute_spans(text, at)) {
+          if (!text::equal_no_case(span.name, one.attribute)) continue;
+          edits.push_back({span.value_at, span.value_size, text::number_text(one.value)});
           there = true;
         }
         if (!there)
-          edits.push_back({end_of_attributes(text, at), 0,
-                           fmt::format(" {}=\"{}\"", one.attribute, number_text(one.value))});
+          edits.push_back({text::end_of_attributes(text, at), 0,
+                           fmt::format(" {}=\"{}\"", one.attribute, text::number_text(one.value))});
       }
   for (const pugi::xml_node node : parent.children()) edit(node, text, settings, edits);
 }
 
 /// Statics of a range, and the range of an input that has none.
-void close(const Machine& machine, const DomainRange& range, double low, double high,
+void close(const model::Machine& machine, const DomainRange& range, double low, double high,
            std::vector<Setting>& settings) {
   double width = high > low ? high - low : std::fabs(high);
   if (width == 0) width = 1;
@@ -91,9 +92,9 @@ std::vector<DomainStatic> open_domain(
   return list;
 }
 
-std::vector<DomainRange> domain_ranges(const Machine& machine) {
+std::vector<DomainRange> domain_ranges(const model::Machine& machine) {
   std::vector<DomainRange> list;
-  for (const Static& item : machine.statics) {
+  for (const model::Static& item : machine.statics) {
     const auto end = item.name.size() < 4 ? std::string::npos : item.name.rfind("_low");
     const auto begin = item.name.find('_');
     if (!item.hidden || end == std::string::npos || end + 4 != item.name.size() || begin >= end) continue;
@@ -106,8 +107,8 @@ std::vector<DomainRange> domain_ranges(const Machine& machine) {
                       false};
     const auto high = machine.find_static(item.name.substr(0, end) + "_high");
     const auto fade = machine.find_static(item.name.substr(0, end) + "_fade");
-    range.symbol = resolve_name(machine, range.quantity);
-    if (!high || !fade || range.symbol.kind == SymbolKind::kUnresolved) continue;
+    range.symbol = model::resolve_name(machine, range.quantity);
+    if (!high || !fade || range.symbol.kind == model::SymbolKind::kUnresolved) continue;
     range.high = machine.statics[*high].value;
     range.fade = machine.statics[*fade].value;
     range.open = range.low <= -kOpen && range.high >= kOpen;
@@ -116,11 +117,12 @@ std::vector<DomainRange> domain_ranges(const Machine& machine) {
   return list;
 }
 
-std::string close_domains(const std::string& text, const Machine& machine, const Measurement& measurement) {
+std::string close_domains(const std::string& text, const model::Machine& machine,
+                          const model::Measurement& measurement) {
   std::vector<Setting> settings;
   for (const DomainRange& range : domain_ranges(machine)) {
     if (!range.open) continue;
-    const Column column = values_of(machine, range, measurement.states);
+    const model::Column column = values_of(machine, range, measurement.states);
     double low = HUGE_VAL, high = -HUGE_VAL;
     for (std::size_t row = 0; row < measurement.rows(); ++row) {
       if (measurement.check[row]) continue;
@@ -132,12 +134,12 @@ std::string close_domains(const std::string& text, const Machine& machine, const
   if (settings.empty()) return text;
   pugi::xml_document document;
   document.load_buffer(text.data(), text.size(), pugi::parse_default, pugi::encoding_utf8);
-  std::vector<TextEdit> edits;
+  std::vector<text::TextEdit> edits;
   edit(document, text, settings, edits);
-  return apply_edits(text, std::move(edits));
+  return text::apply_edits(text, std::move(edits));
 }
 
-std::vector<DomainUse> domain_use(const Machine& machine, const Measurement& measurement) {
+std::vector<DomainUse> domain_use(const model::Machine& machine, const model::Measurement& measurement) {
   std::vector<DomainUse> list;
   for (const DomainRange& range : domain_ranges(machine)) {
     DomainUse use{range, HUGE_VAL, -HUGE_VAL, 0, 0};
@@ -153,4 +155,4 @@ std::vector<DomainUse> domain_use(const Machine& machine, const Measurement& mea
   return list;
 }
 
-}  // namespace vernier
+}  // namespace vernier::fit

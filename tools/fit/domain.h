@@ -7,7 +7,7 @@
 #include "tools/model/machine.h"
 #include "tools/model/measurement.h"
 
-namespace vernier {
+namespace vernier::fit {
 
 /// Domains of validity of learned terms. A term that was learned on features is worth nothing where it was
 /// not trained; it is written `weight*term`, an ordinary expression over ordinary hidden statics, so that
@@ -28,16 +28,17 @@ std::vector<DomainStatic> open_domain(
 /// One quantity of one domain of a machine: the hidden statics are found by their names.
 struct DomainRange {
   std::string domain, quantity;
-  Symbol symbol;
+  model::Symbol symbol;
   double low = 0, high = 0, fade = 0;
   bool open = false;  // not trained yet
 };
-std::vector<DomainRange> domain_ranges(const Machine& machine);
+std::vector<DomainRange> domain_ranges(const model::Machine& machine);
 
 /// The text with every open range closed around the fit rows of a measurement: lowest and highest value of
 /// the quantity, fade a tenth of their distance (of the value, where it did not vary). Ranges that are closed
 /// stay. tool.
-std::string close_domains(const std::string& text, const Machine& machine, const Measurement& measurement);
+std::string close_domains(const std::string& text, const model::Machine& machine,
+                          const model::Measurement& measurement);
 
 /// How rows stand to a domain. tool.
 struct DomainUse {
@@ -45,6 +46,6 @@ struct DomainUse {
   double least = 0, most = 0;       // of the quantity over all rows
   std::size_t faded = 0, gone = 0;  // rows where the weight is below 1, and 0
 };
-std::vector<DomainUse> domain_use(const Machine& machine, const Measurement& measurement);
+std::vector<DomainUse> domain_use(const model::Machine& machine, const model::Measurement& measurement);
 
-}  // namespace vernier
+}  // namespace vernier::fit

@@ -16,16 +16,16 @@
 #include "tools/model/fit_record.h"
 #include "tools/model/prediction.h"
 
-namespace vernier {
+namespace vernier::fit {
 namespace {
 
 /// The rows that the fit needs: its own, or all where lag makes a row depend on those before it.
-Measurement rows_for_fit(const Machine& machine, const Measurement& all) {
-  if (uses_lag(machine)) return all;
+model::Measurement rows_for_fit(const model::Machine& machine, const model::Measurement& all) {
+  if (model::uses_lag(machine)) return all;
   std::vector<std::size_t> keep;
   for (std::size_t row = 0; row < all.rows(); ++row)
     if (all.check[row] == 0) keep.push_back(row);
-  return keep.size() == all.rows() ? all : select_rows(all, keep);
+  return keep.size() == all.rows() ? all : model::select_rows(all, keep);
 }
 
 /// An estimate rests on data where the convention may have moved it by less than this share of its standard
@@ -73,7 +73,7 @@ StatedPriors stated_priors(FitResult& result, const FitOptions& options, const C
       stated.weight[static_cast<Eigen::Index>(i)] = 1 / (prior.std * prior.std);
       result.priors.emplace_back(result.parameters[i].name, prior.std);
     }
-    if (!found) throw InputError("\"" + prior.pattern + "\": no free parameter has this name");
+    if (!found) throw text::InputError("\"" + prior.pattern + "\": no free parameter has this name");
   }
   return stated;
 }
@@ -112,7 +112,7 @@ double left_mm(const FitResult& result) {
   return std::max(result.after.rms_um.value_or(0) * 1e-3, turns_mm);
 }
 
-void judge(FitResult& result, const Machine& machine, const Measurement& measurement) {
+void judge(FitResult& result, const model::Machine& machine, const model::Measurement& measurement) {
   result.worst = worst_reading(measurement, result.residual, false);
   result.worst_check = worst_reading(measurement, result.residual, true);
   const bool misses = left_mm(result) > kAbsurdResidual * result.reach_mm;
@@ -132,8 +132,8 @@ void judge(FitResult& result, const Machine& machine, const Measurement& measure
 
 /// What moved during the survey that is none of the machine's: the largest step or drift of the instrument,
 /// or a rest far above its noise, over what the nominal machine leaves.
-void find_disturbance(const FitResult& result, const Measurement& rows, const Convention& convention,
-                      bool robust, FitRecord& record) {
+void find_disturbance(const FitResult& result, const model::Measurement& rows, const Convention& convention,
+                      bool robust, model::FitRecord& record) {
   const auto offer = [&](double mm, std::string words) {
     if (!(mm / result.misfit_mm > record.disturbed)) return;
     record.disturbed = mm / result.misfit_mm;
@@ -141,11 +141,11 @@ void find_disturbance(const FitResult& result, const Measurement& rows, const Co
   };
   const double unit_um = noise_unit_um(rows);
   for (const NoiseStep& step : result.noise.steps) {
-    const auto kind = static_cast<ObservationKind>(step.kind);
-    if (is_rotation(kind)) continue;
+    const auto kind = static_cast<model::ObservationKind>(step.kind);
+    if (model::is_rotation(kind)) continue;
     offer(1e-3 * std::abs(step.height) * unit_um,
           fmt::format("a step of {:.3g} um in {} from row {} on", std::abs(step.height) * unit_um,
-                      kObservationNames[static_cast<std::size_t>(step.kind)], step.row + 1));
+                      model::kObservationNames[static_cast<std::size_t>(step.kind)], step.row + 1));
   }
   offer(1e-3 * result.noise.drift * unit_um,
         fmt::format("a drift of {:.3g} um", result.noise.drift * unit_um));
@@ -159,7 +159,7 @@ void find_disturbance(const FitResult& result, const Measurement& rows, const Co
   if (robust || result.parameters.size() == 0 ||
       (result.noise_um && 1e3 * left_mm(result) < kAbove * *result.noise_um))
     return;
-  Machine nominal = result.machine;
+  model::Machine nominal = result.machine;
   result.parameters.set(nominal, convention.centre);
   const auto move = find_move(result.machine, rows, result.parameters, convention.centre, convention.scale,
                               residuals(nominal, rows));
@@ -169,8 +169,8 @@ void find_disturbance(const FitResult& result, const Measurement& rows, const Co
 }
 
 /// What the machine file keeps of the fit.
-void remember(FitResult& result, const Measurement& rows, const Convention& convention, bool robust) {
-  auto record = std::make_shared<FitRecord>();
+void remember(FitResult& result, const model::Measurement& rows, const Convention& convention, bool robust) {
+  auto record = std::make_shared<model::FitRecord>();
   record->converged = result.converged;
   record->rms_mm = left_mm(result);
   record->reach_mm = result.reach_mm;
@@ -186,10 +186,10 @@ void remember(FitResult& result, const Measurement& rows, const Convention& conv
     record->origins.emplace_back(origin_name(result.estimates[i].from));
     record->values[static_cast<Eigen::Index>(i)] = result.estimates[i].value;
   }
-  record->factor = covariance_factor(result.covariance);
-  const auto add = [&](const std::string& name, const Column& column) {
-    FitRecord::Range range{name, std::numeric_limits<double>::infinity(),
-                           -std::numeric_limits<double>::infinity()};
+  record->factor = model::covariance_factor(result.covariance);
+  const auto add = [&](const std::string& name, const model::Column& column) {
+    model::FitRecord::Range range{name, std::numeric_limits<double>::infinity(),
+                                  -std::numeric_limits<double>::infinity()};
     for (std::size_t row = 0; row < rows.rows(); ++row) {
       if (rows.check[row] != 0) continue;
       range.min = std::min(range.min, column[static_cast<Eigen::Index>(row)]);
@@ -198,7 +198,7 @@ void remember(FitResult& result, const Measurement& rows, const Convention& conv
     if (range.min <= range.max) record->measured.push_back(range);
   };
   for (std::size_t i = 0; i < result.machine.axes.size(); ++i)
-    add(result.machine.axes[i].name, commanded(rows, i));
+    add(result.machine.axes[i].name, model::commanded(rows, i));
   for (std::size_t i = 0; i < result.machine.inputs.size(); ++i)
     add(result.machine.inputs[i].name, rows.states.input[i]);
   result.machine.fitted = std::move(record);
@@ -207,10 +207,10 @@ void remember(FitResult& result, const Measurement& rows, const Convention& conv
 /// The fitted machine against the nominal one, set up as well as it can be (`centre`), on rows that the fit
 /// has not seen.
 std::optional<double> check_ratio(const FitResult& result, const Eigen::VectorXd& centre,
-                                  const Measurement& m) {
+                                  const model::Measurement& m) {
   constexpr std::size_t kEnough = 12;  // readings: the ratio of two spreads of twelve stays below 1.25 or so
   if (result.check.count < kEnough || !result.check.rms_um) return std::nullopt;
-  Machine nominal = result.machine;
+  model::Machine nominal = result.machine;
   result.parameters.set(nominal, centre);
   const Eigen::VectorXd left = residuals(nominal, m);
   const double nominal_um = role_statistics(m, left, true).rms_um.value_or(0);
@@ -219,23 +219,23 @@ std::optional<double> check_ratio(const FitResult& result, const Eigen::VectorXd
 }
 
 /// residual / sqrt(u^2 + g C g^T) over the check rows; u is the reading's own, without it the fit's spread.
-std::optional<NormalisedError> normalised_error(const FitResult& result, const Measurement& m) {
+std::optional<NormalisedError> normalised_error(const FitResult& result, const model::Measurement& m) {
   if (result.check.count == 0 || result.freedom < 0.5) return std::nullopt;
   std::vector<std::size_t> keep;
   for (std::size_t row = 0; row < m.rows(); ++row)
     if (m.check[row] != 0) keep.push_back(row);
-  const Measurement rows = uses_lag(result.machine) ? m : select_rows(m, keep);
-  const Linearisation linear = linearise(result.machine, rows, result.parameters);
+  const model::Measurement rows = model::uses_lag(result.machine) ? m : model::select_rows(m, keep);
+  const model::Linearisation linear = model::linearise(result.machine, rows, result.parameters);
   NormalisedError error;
   for (std::size_t i = 0; i < rows.observations.size(); ++i) {
-    const Observation& o = rows.observations[i];
+    const model::Observation& o = rows.observations[i];
     if (rows.check[o.row] == 0) continue;
     const auto at = static_cast<Eigen::Index>(i);
     double model = 0;
-    for (SparseRows::InnerIterator a(linear.jacobian, at); a; ++a)
-      for (SparseRows::InnerIterator b(linear.jacobian, at); b; ++b)
+    for (model::SparseRows::InnerIterator a(linear.jacobian, at); a; ++a)
+      for (model::SparseRows::InnerIterator b(linear.jacobian, at); b; ++b)
         model += a.value() * b.value() * result.observability.covariance(a.col(), b.col());
-    const double u = uncertainty_of(rows, o);
+    const double u = model::uncertainty_of(rows, o);
     const double reading = u > 0 ? u * u : result.variance_factor;
     const double e = (o.value - linear.predicted[at]) / std::sqrt(reading + result.variance_factor * model);
     error.rms += e * e;
@@ -255,8 +255,8 @@ const char* origin_name(Origin origin) {
   return kNames[static_cast<std::size_t>(origin)];
 }
 
-Eigen::VectorXd residuals(const Machine& machine, const Measurement& m) {
-  const Eigen::VectorXd predicted = predict(machine, m);
+Eigen::VectorXd residuals(const model::Machine& machine, const model::Measurement& m) {
+  const Eigen::VectorXd predicted = model::predict(machine, m);
   Eigen::VectorXd result(predicted.size());
   for (std::size_t i = 0; i < m.observations.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
@@ -265,15 +265,17 @@ Eigen::VectorXd residuals(const Machine& machine, const Measurement& m) {
   return result;
 }
 
-FitResult fit(const Machine& machine, const Measurement& measurement, const FitOptions& options) {
+FitResult fit(const model::Machine& machine, const model::Measurement& measurement,
+              const FitOptions& options) {
   FitResult result;
   result.machine = machine;
-  result.parameters = ParameterSet(machine, setups_of_fit_rows(measurement));
+  result.parameters = model::ParameterSet(machine, setups_of_fit_rows(measurement));
   const Eigen::VectorXd start_residual = residuals(machine, measurement);
   result.before = role_statistics(measurement, start_residual, false);
-  if (result.before.count == 0) throw InputError("no observation with role fit: there is nothing to fit");
+  if (result.before.count == 0)
+    throw text::InputError("no observation with role fit: there is nothing to fit");
   result.noise_um = noise_um(measurement);
-  const Measurement rows = rows_for_fit(machine, measurement);
+  const model::Measurement rows = rows_for_fit(machine, measurement);
   const Convention convention = convention_of(machine, rows, result.parameters);
   result.misfit_mm = convention.misfit_mm;
   result.reach_mm = convention.reach_mm;
@@ -305,4 +307,4 @@ FitResult fit(const Machine& machine, const Measurement& measurement, const FitO
   return result;
 }
 
-}  // namespace vernier
+}  // namespace vernier::fit

@@ -14,7 +14,7 @@
 #include "tools/model/measurement.h"
 #include "tools/model/parameters.h"
 
-namespace vernier {
+namespace vernier::fit {
 
 enum class Loss : std::uint8_t { kSquared, kHuber, kCauchy };
 enum class Solver : std::uint8_t { kNormalEquations, kCeres };
@@ -81,8 +81,8 @@ struct StageFigures {
 };
 
 struct FitResult {
-  Machine machine;  // with the fitted values
-  ParameterSet parameters;
+  model::Machine machine;  // with the fitted values
+  model::ParameterSet parameters;
   std::vector<ParameterEstimate> estimates;
   Observability observability;
   RoleStatistics before, after, check;
@@ -115,9 +115,10 @@ struct FitResult {
 /// data cannot separate is named in `observability`. Standard uncertainty: from u, times sqrt(chi^2 / dof)
 /// where that exceeds 1; without u from the residual (GUM 5.2); where data say little, from the scale. Throws
 /// InputError where there is nothing to fit. tool.
-FitResult fit(const Machine& machine, const Measurement& measurement, const FitOptions& options = {});
+FitResult fit(const model::Machine& machine, const model::Measurement& measurement,
+              const FitOptions& options = {});
 
 /// residual = measured - predicted.
-Eigen::VectorXd residuals(const Machine& machine, const Measurement& measurement);
+Eigen::VectorXd residuals(const model::Machine& machine, const model::Measurement& measurement);
 
-}  // namespace vernier
+}  // namespace vernier::fit

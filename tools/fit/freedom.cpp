@@ -4,29 +4,30 @@
 #include "tools/fit/solve.h"
 #include "tools/model/parameters.h"
 
-namespace vernier {
+namespace vernier::fit {
 namespace {
 
-void set_freedom(Machine& machine, const std::string& pattern, bool free) {
+void set_freedom(model::Machine& machine, const std::string& pattern, bool free) {
   bool found = false;
-  for (Freedom& one : freedoms_of(machine)) {
+  for (model::Freedom& one : model::freedoms_of(machine)) {
     if (!matches_pattern(pattern, one.name())) continue;
     one.set_free(free);
     found = true;
   }
   if (!found)
-    throw InputError("\"" + pattern +
-                     "\": no static, table column (table.X.rY), BaseShift or scalefactor.X has this name");
+    throw text::InputError(
+        "\"" + pattern +
+        "\": no static, table column (table.X.rY), BaseShift or scalefactor.X has this name");
 }
 
 }  // namespace
 
-Machine with_freedom(const Machine& machine, const std::vector<std::string>& free,
-                     const std::vector<std::string>& hold) {
-  Machine result = machine;
+model::Machine with_freedom(const model::Machine& machine, const std::vector<std::string>& free,
+                            const std::vector<std::string>& hold) {
+  model::Machine result = machine;
   for (const std::string& pattern : free) set_freedom(result, pattern, true);
   for (const std::string& pattern : hold) set_freedom(result, pattern, false);
   return result;
 }
 
-}  // namespace vernier
+}  // namespace vernier::fit

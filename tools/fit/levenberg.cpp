@@ -8,7 +8,7 @@
 
 #include "tools/maths/pivoted_cholesky.h"
 
-namespace vernier {
+namespace vernier::fit {
 namespace {
 
 using Eigen::Index;
@@ -56,7 +56,7 @@ class Minimiser {
   LevenbergResult result_;
   VectorXd scale_, shrink_, gradient_;  // gradient_: of the current point, scaled
   MatrixXd scaled_;                     // normal matrix with unit diagonal
-  std::optional<PivotedCholesky> factor_;
+  std::optional<maths::PivotedCholesky> factor_;
   MatrixXd unseen_;  // orthonormal; scaled
   double damping_ = 0, growth_ = 2, promised_ = 0;
   bool troubled_ = false;  // the last step fell short of its promise
@@ -181,4 +181,4 @@ LevenbergResult minimise(const VectorXd& start,
   return Minimiser(start, equations, cost, options).run();
 }
 
-}  // namespace vernier
+}  // namespace vernier::fit

@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-namespace vernier {
+namespace vernier::fit {
 
 /// What a least-squares problem hands to the solver at a point: half the weighted sum of squares' two
 /// derivatives.
@@ -54,4 +54,4 @@ LevenbergResult minimise(const Eigen::VectorXd& start,
                          const std::function<double(const Eigen::VectorXd&)>& cost,
                          const LevenbergOptions& options);
 
-}  // namespace vernier
+}  // namespace vernier::fit

@@ -13,7 +13,7 @@
 #include "tools/maths/orthonormal.h"
 #include "tools/model/prediction.h"
 
-namespace vernier {
+namespace vernier::fit {
 namespace {
 
 using Eigen::Index;
@@ -33,38 +33,39 @@ constexpr double kMostOfTheRest = 0.5, kLogChance = -20;
 constexpr double kAlone = 0.9;
 constexpr Index kToolShifts = 3, kSetUpShifts = 6;
 
-void append_probe(Machine& machine, std::vector<Transform>& branch, std::size_t count) {
-  Transform transform;
+void append_probe(model::Machine& machine, std::vector<model::Transform>& branch, std::size_t count) {
+  model::Transform transform;
   transform.n = branch.empty() ? 1 : branch.back().n + 1;
   for (std::size_t d = 0; d < 6; ++d) {
-    Expr expr;
+    model::Expr expr;
     if (d < count) {
-      Static probe;
+      model::Static probe;
       probe.name = "move " + std::to_string(machine.statics.size());
-      expr.op = Op::kSymbol;
+      expr.op = model::Op::kSymbol;
       expr.name = probe.name;
-      expr.symbol = {SymbolKind::kStatic, machine.statics.size()};
+      expr.symbol = {model::SymbolKind::kStatic, machine.statics.size()};
       machine.statics.push_back(probe);
     }
-    transform.dof[d] = std::make_shared<const Expr>(expr);
+    transform.dof[d] = std::make_shared<const model::Expr>(expr);
   }
   branch.push_back(transform);
 }
 
 /// What the tool point's shift and the workpiece's shift and turn do to each reading.
-MatrixXd motion_columns(const Machine& fitted, const Measurement& rows) {
-  Machine probed = fitted;
-  for (Freedom& one : freedoms_of(probed)) one.set_free(false);
+MatrixXd motion_columns(const model::Machine& fitted, const model::Measurement& rows) {
+  model::Machine probed = fitted;
+  for (model::Freedom& one : model::freedoms_of(probed)) one.set_free(false);
   append_probe(probed, probed.tool, kToolShifts);
   append_probe(probed, probed.workpiece, kSetUpShifts);
-  const ParameterSet probes(probed, {});
-  return MatrixXd(linearise(probed, rows, probes).jacobian);
+  const model::ParameterSet probes(probed, {});
+  return MatrixXd(model::linearise(probed, rows, probes).jacobian);
 }
 
 class MoveSearch {
  public:
-  MoveSearch(const Machine& fitted, const Measurement& rows, const ParameterSet& parameters,
-             const VectorXd& centre, const VectorXd& scale, const VectorXd& nominal)
+  MoveSearch(const model::Machine& fitted, const model::Measurement& rows,
+             const model::ParameterSet& parameters, const VectorXd& centre, const VectorXd& scale,
+             const VectorXd& nominal)
       : measurement_(rows) {
     const VectorXd weights = fit_weights(rows);
     const auto p = static_cast<double>(parameters.size());
@@ -75,7 +76,7 @@ class MoveSearch {
         std::max(1.0, std::ceil(static_cast<double>(all.size()) * (p + 60) * (p + 60) / kMostProducts)));
     for (std::size_t i = 0; i < all.size(); i += stride) kept_.push_back(all[i]);
     std::vector<Index> kept(kept_.begin(), kept_.end());
-    const Linearisation linear = linearise(fitted, rows, parameters);
+    const model::Linearisation linear = model::linearise(fitted, rows, parameters);
     const VectorXd w = weights(kept);
     motion_ = w.asDiagonal() * motion_columns(fitted, rows)(kept, Eigen::all);
     nominal_ = w.cwiseProduct(nominal(kept));
@@ -137,7 +138,7 @@ class MoveSearch {
   double gain_of(std::size_t at, Index first, Index count) const {
     MatrixXd columns = from(at, first, count);
     columns -= basis_ * (basis_.transpose() * columns);
-    const MatrixXd own = orthonormal(columns, 1e-6, nullptr);
+    const MatrixXd own = maths::orthonormal(columns, 1e-6, nullptr);
     return (own.transpose() * rest_).squaredNorm();
   }
 
@@ -160,11 +161,11 @@ class MoveSearch {
     const double freedom = static_cast<double>(kept_.size()) - kShifts;
     const double left = std::max(all - best_.gain, 1e-300);
     if (best_.gain < kMostOfTheRest * all) return std::nullopt;
-    if (log_f_tail((best_.gain / kShifts) / (left / freedom), kShifts, freedom) > kLogChance)
+    if (maths::log_f_tail((best_.gain / kShifts) / (left / freedom), kShifts, freedom) > kLogChance)
       return std::nullopt;
     // Of the nominal machine: what is left beside the move and the set-up of all rows.
-    const MatrixXd moved = orthonormal(beside_set_up(), 1e-9, nullptr);
-    const MatrixXd still = orthonormal(MatrixXd(motion_.rightCols(kSetUpShifts)), 1e-9, nullptr);
+    const MatrixXd moved = maths::orthonormal(beside_set_up(), 1e-9, nullptr);
+    const MatrixXd still = maths::orthonormal(MatrixXd(motion_.rightCols(kSetUpShifts)), 1e-9, nullptr);
     const double with = (nominal_ - moved * (moved.transpose() * nominal_)).squaredNorm();
     const double without = (nominal_ - still * (still.transpose() * nominal_)).squaredNorm();
     Move move;
@@ -192,7 +193,7 @@ class MoveSearch {
     return columns;
   }
 
-  const Measurement& measurement_;
+  const model::Measurement& measurement_;
   std::vector<std::size_t> kept_;  // observations
   MatrixXd motion_, basis_;
   VectorXd rest_, nominal_;
@@ -201,9 +202,10 @@ class MoveSearch {
 
 }  // namespace
 
-std::optional<Move> find_move(const Machine& fitted, const Measurement& rows, const ParameterSet& parameters,
-                              const VectorXd& centre, const VectorXd& scale, const VectorXd& nominal) {
+std::optional<Move> find_move(const model::Machine& fitted, const model::Measurement& rows,
+                              const model::ParameterSet& parameters, const VectorXd& centre,
+                              const VectorXd& scale, const VectorXd& nominal) {
   return MoveSearch(fitted, rows, parameters, centre, scale, nominal).run();
 }
 
-}  // namespace vernier
+}  // namespace vernier::fit

@@ -8,7 +8,7 @@
 #include "tools/model/measurement.h"
 #include "tools/model/parameters.h"
 
-namespace vernier {
+namespace vernier::fit {
 
 /// Tool or set-up that moved in the middle of a survey.
 struct Move {
@@ -21,8 +21,8 @@ struct Move {
 /// the model (linearised at `fitted`; scale: of its parameters, which hold them near `centre`), and they are
 /// believed where they take most of the rest away and chance does not. nominal: what the nominal machine, set
 /// up, leaves of the readings. Nothing: no such row. tool.
-std::optional<Move> find_move(const Machine& fitted, const Measurement& rows, const ParameterSet& parameters,
-                              const Eigen::VectorXd& centre, const Eigen::VectorXd& scale,
-                              const Eigen::VectorXd& nominal);
+std::optional<Move> find_move(const model::Machine& fitted, const model::Measurement& rows,
+                              const model::ParameterSet& parameters, const Eigen::VectorXd& centre,
+                              const Eigen::VectorXd& scale, const Eigen::VectorXd& nominal);
 
-}  // namespace vernier
+}  // namespace vernier::fit

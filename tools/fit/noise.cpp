@@ -13,7 +13,7 @@
 
 #include "tools/maths/factors.h"
 
-namespace vernier {
+namespace vernier::fit {
 namespace {
 
 /// Steps between rows below this share of an axis' range may be the same pose read again; what separates them
@@ -37,10 +37,10 @@ double median(std::vector<double> values) {
 }
 
 /// Largest share of its range that any axis moves from one row to the next.
-std::vector<double> relative_steps(const Measurement& m, const std::vector<Column>& axes) {
+std::vector<double> relative_steps(const model::Measurement& m, const std::vector<model::Column>& axes) {
   std::vector<double> steps(m.rows(), 1);
   std::vector<double> range;
-  for (const Column& axis : axes)
+  for (const model::Column& axis : axes)
     range.push_back(axis.size() > 0 ? std::max(axis.maxCoeff() - axis.minCoeff(), 1e-12) : 1);
   for (std::size_t row = 1; row < m.rows(); ++row) {
     double largest = 0;
@@ -48,7 +48,7 @@ std::vector<double> relative_steps(const Measurement& m, const std::vector<Colum
       const auto at = static_cast<Eigen::Index>(row);
       largest = std::max(largest, std::abs(axes[a][at] - axes[a][at - 1]) / range[a]);
     }
-    const Labels& setup = m.states.setup;
+    const model::Labels& setup = m.states.setup;
     steps[row] = m.states.of(setup, row) == m.states.of(setup, row - 1) ? largest : 1;
   }
   return steps;
@@ -357,10 +357,11 @@ double NoiseModel::price() const {
 
 double NoiseModel::total() const { return std::hypot(own, shared()); }
 
-NoiseLayout noise_layout(const Measurement& measurement, const std::vector<std::size_t>& observations) {
+NoiseLayout noise_layout(const model::Measurement& measurement,
+                         const std::vector<std::size_t>& observations) {
   NoiseLayout layout;
-  const States& states = measurement.states;
-  const std::vector<double> steps = relative_steps(measurement, commanded_states(measurement).axis);
+  const model::States& states = measurement.states;
+  const std::vector<double> steps = relative_steps(measurement, model::commanded_states(measurement).axis);
   const double tolerance = pose_tolerance(steps);
   std::vector<int> pose(measurement.rows(), 0);
   for (std::size_t row = 1; row < pose.size(); ++row)
@@ -376,7 +377,7 @@ NoiseLayout noise_layout(const Measurement& measurement, const std::vector<std::
   layout.in_time = moves && !falls;
   std::map<int, NoiseSeries> of_kind;
   for (std::size_t i = 0; i < observations.size(); ++i) {
-    const Observation& o = measurement.observations[observations[i]];
+    const model::Observation& o = measurement.observations[observations[i]];
     NoiseSeries& series = of_kind[static_cast<int>(o.kind)];
     series.reading.push_back(static_cast<Eigen::Index>(i));
     series.kind = static_cast<int>(o.kind);
@@ -386,7 +387,7 @@ NoiseLayout noise_layout(const Measurement& measurement, const std::vector<std::
     series.setup.push_back(static_cast<int>(states.of(states.setup, o.row)));
     series.clock.push_back(static_cast<int>(states.of(states.clock, o.row)));
     series.pose.push_back(pose[o.row]);
-    if (o.kind == ObservationKind::kD) {
+    if (o.kind == model::ObservationKind::kD) {
       const auto at = static_cast<Eigen::Index>(o.row);
       series.normal.emplace_back(states.normal[0][at], states.normal[1][at], states.normal[2][at]);
     }
@@ -428,7 +429,7 @@ Eigen::MatrixXd step_columns(const NoiseLayout& layout, const std::vector<NoiseS
 std::vector<NoiseStep> set_up_steps(const NoiseLayout& layout) {
   std::vector<NoiseStep> steps;
   for (const NoiseSeries& series : layout.series) {
-    if (series.kind != static_cast<int>(ObservationKind::kD)) continue;
+    if (series.kind != static_cast<int>(model::ObservationKind::kD)) continue;
     for (std::size_t i = 0; i < series.reading.size(); ++i)
       if (i == 0 || series.setup[i] != series.setup[i - 1])
         for (int component = 0; component < 3; ++component)
@@ -554,9 +555,9 @@ std::string in_words(const NoiseModel& model, double unit_um) {
   for (const NoiseStep& step : model.steps)
     if (!step.of_set_up())
       text += fmt::format(", a step of {:.3g} +- {:.2g} um in {} from row {} on", step.height * unit_um,
-                          step.std * unit_um, kObservationNames[static_cast<std::size_t>(step.kind)],
+                          step.std * unit_um, model::kObservationNames[static_cast<std::size_t>(step.kind)],
                           step.row + 1);
   return text;
 }
 
-}  // namespace vernier
+}  // namespace vernier::fit

@@ -7,7 +7,7 @@
 
 #include "tools/model/measurement.h"
 
-namespace vernier {
+namespace vernier::fit {
 
 /// Readings of one kind in the order of the file: what an error that hangs together in time, run or pose is
 /// shared along.
@@ -31,7 +31,7 @@ struct NoiseLayout {
 
 /// observations: indices into measurement.observations, in their order. Positions count as one pose where
 /// they differ by less than a tolerance that the gap between small and large steps gives. tool.
-NoiseLayout noise_layout(const Measurement& measurement, const std::vector<std::size_t>& observations);
+NoiseLayout noise_layout(const model::Measurement& measurement, const std::vector<std::size_t>& observations);
 
 /// From this row on all readings of one kind are off by the same; or, where what is touched was set up anew,
 /// by that component of a shift along each reading's normal.
@@ -97,4 +97,4 @@ NoiseModel estimate_noise(const NoiseLayout& layout, const Eigen::VectorXd& resi
 /// One sentence for people. unit_um: um that 1 stands for (rms of u; 1000 where none is given). tool.
 std::string in_words(const NoiseModel& model, double unit_um);
 
-}  // namespace vernier
+}  // namespace vernier::fit

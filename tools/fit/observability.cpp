@@ -9,7 +9,7 @@
 
 #include "tools/maths/pivoted_cholesky.h"
 
-namespace vernier {
+namespace vernier::fit {
 namespace {
 
 /// A part smaller than this share of a combination's largest is rounding or a detail nobody should read.
@@ -141,7 +141,7 @@ std::optional<Parts> by_pivots(const Eigen::MatrixXd& scaled, double limit_share
   parts.largest = largest_eigenvalue(scaled);
   const double limit = limit_share * parts.largest;
   // A remaining square bounds the smallest eigenvalue left from above, and n times it the largest.
-  const PivotedCholesky factor(scaled, limit / static_cast<double>(n));
+  const maths::PivotedCholesky factor(scaled, limit / static_cast<double>(n));
   parts.rank = factor.rank();
   if (parts.rank == 0) return std::nullopt;
   parts.unseen = factor.null_basis();
@@ -183,4 +183,4 @@ Observability observe(const Eigen::MatrixXd& normal, double cutoff) {
   return result;
 }
 
-}  // namespace vernier
+}  // namespace vernier::fit

@@ -6,7 +6,7 @@
 
 #include "tools/model/parameters.h"
 
-namespace vernier {
+namespace vernier::fit {
 
 /// What a weighted Jacobian says about its parameters. Computed on columns scaled to unit length.
 struct Observability {
@@ -35,4 +35,4 @@ inline constexpr double kUnseenShare = 1e-5;
 /// and inverse iteration, the whole eigen-decomposition only where the rank is not plain from that. tool.
 Observability observe(const Eigen::MatrixXd& normal, double cutoff = kUnseenShare);
 
-}  // namespace vernier
+}  // namespace vernier::fit

@@ -5,7 +5,7 @@
 
 #include "tools/fit/statistics.h"
 
-namespace vernier {
+namespace vernier::fit {
 
 namespace {
 
@@ -25,15 +25,15 @@ void add_block(double* to, Eigen::Index to_stride, const double* from, Eigen::In
 /// Adds one row's share: each pair of groups meets in one block of `inner`, which every pair of their
 /// stations takes with the product of their weights. Fills the lower triangle (and parts of the upper within
 /// a group).
-void scatter(const std::vector<ParameterGroup>& groups, const Eigen::MatrixXd& inner,
+void scatter(const std::vector<model::ParameterGroup>& groups, const Eigen::MatrixXd& inner,
              const Eigen::VectorXd& answer, NormalEquations& sum) {
   const Eigen::Index n = sum.normal.rows(), slots = inner.rows();
   for (std::size_t b = 0; b < groups.size(); ++b) {
-    const ParameterGroup& low = groups[b];
+    const model::ParameterGroup& low = groups[b];
     for (const auto& [row, row_weight] : low.first_weight) {
       for (Eigen::Index i = 0; i < low.width; ++i) sum.gradient[row + i] += row_weight * answer[low.slot + i];
       for (std::size_t a = 0; a <= b; ++a) {
-        const ParameterGroup& high = groups[a];
+        const model::ParameterGroup& high = groups[a];
         for (const auto& [column, column_weight] : high.first_weight)
           if (column <= row)
             add_block(sum.normal.data() + column * n + row, n, inner.data() + high.slot * slots + low.slot,
@@ -79,7 +79,8 @@ void silence_rounding(NormalEquations& equations, double squared_weights) {
 
 }  // namespace
 
-FitProblem::FitProblem(const Machine& machine, const Measurement& measurement, const ParameterSet& parameters)
+FitProblem::FitProblem(const model::Machine& machine, const model::Measurement& measurement,
+                       const model::ParameterSet& parameters)
     : machine_(machine),
       measurement_(measurement),
       parameters_(parameters),
@@ -90,8 +91,8 @@ FitProblem::FitProblem(const Machine& machine, const Measurement& measurement, c
     measured_[static_cast<Eigen::Index>(i)] = measurement.observations[i].value;
 }
 
-Machine FitProblem::at(const Eigen::VectorXd& point) const {
-  Machine machine = machine_;
+model::Machine FitProblem::at(const Eigen::VectorXd& point) const {
+  model::Machine machine = machine_;
   parameters_.set(machine, point);
   return machine;
 }
@@ -109,17 +110,19 @@ double FitProblem::prior_cost(const Eigen::VectorXd& point) const {
 
 double FitProblem::cost(const Eigen::VectorXd& point) const {
   try {
-    return (measured_ - predict(at(point), measurement_)).cwiseProduct(weights_).squaredNorm() +
+    return (measured_ - model::predict(at(point), measurement_)).cwiseProduct(weights_).squaredNorm() +
            prior_cost(point);
-  } catch (const InputError&) {
+  } catch (const text::InputError&) {
     return std::numeric_limits<double>::infinity();
   }
 }
 
-Eigen::VectorXd FitProblem::weighted_residuals(const Eigen::VectorXd& point, SparseRows* jacobian) const {
-  if (jacobian == nullptr) return (measured_ - predict(at(point), measurement_)).cwiseProduct(weights_);
-  Linearisation linear =
-      linearise(at(point), linearizer_, measurement_.observations.size(), parameters_.size());
+Eigen::VectorXd FitProblem::weighted_residuals(const Eigen::VectorXd& point,
+                                               model::SparseRows* jacobian) const {
+  if (jacobian == nullptr)
+    return (measured_ - model::predict(at(point), measurement_)).cwiseProduct(weights_);
+  model::Linearisation linear =
+      model::linearise(at(point), linearizer_, measurement_.observations.size(), parameters_.size());
   *jacobian = weights_.asDiagonal() * linear.jacobian;
   return (measured_ - linear.predicted).cwiseProduct(weights_);
 }
@@ -131,7 +134,7 @@ NormalEquations FitProblem::equations(const Eigen::VectorXd& point) const {
   result.normal = Eigen::MatrixXd::Zero(n, n);
   Eigen::MatrixXd weighted, inner;
   Eigen::VectorXd residual, answer;
-  linearizer_.each_row(at(point), [&](const RowLinear& row) {
+  linearizer_.each_row(at(point), [&](const model::RowLinear& row) {
     const auto first = static_cast<Eigen::Index>(row.first_observation);
     const Eigen::Index count = row.predicted.size();
     const auto weight = weights_.segment(first, count);
@@ -155,20 +158,20 @@ Slope FitProblem::slope(const Eigen::VectorXd& point) const {
   Slope result;
   result.gradient = Eigen::VectorXd::Zero(point.size());
   Eigen::VectorXd weighted, answer;
-  const auto add_row = [&](const RowLinear& row) {
+  const auto add_row = [&](const model::RowLinear& row) {
     const auto first = static_cast<Eigen::Index>(row.first_observation);
     const Eigen::Index count = row.predicted.size();
     const auto weight = weights_.segment(first, count);
     weighted = weight.cwiseProduct(measured_.segment(first, count) - row.predicted);
     result.cost += weighted.squaredNorm();
     answer.noalias() = row.gradient * weighted.cwiseProduct(weight);
-    for (const ParameterGroup& group : row.groups)
+    for (const model::ParameterGroup& group : row.groups)
       for (const auto& [start, share] : group.first_weight)
         result.gradient.segment(start, group.width) += share * answer.segment(group.slot, group.width);
   };
   try {
     linearizer_.each_row(at(point), add_row);
-  } catch (const InputError&) {
+  } catch (const text::InputError&) {
     result.cost = std::numeric_limits<double>::infinity();
     return result;
   }
@@ -184,21 +187,21 @@ Eigen::VectorXd FitProblem::bend(const Eigen::VectorXd& point, const Eigen::Vect
   Eigen::VectorXd result = Eigen::VectorXd::Zero(point.size());
   Eigen::VectorXd ahead;
   try {
-    ahead = predict(at(point + kPart * step), measurement_);
-  } catch (const InputError&) {
+    ahead = model::predict(at(point + kPart * step), measurement_);
+  } catch (const text::InputError&) {
     return result;
   }
-  linearizer_.each_row(at(point), [&](const RowLinear& row) {
+  linearizer_.each_row(at(point), [&](const model::RowLinear& row) {
     for (Eigen::Index o = 0; o < row.predicted.size(); ++o) {
       const Eigen::Index at_row = static_cast<Eigen::Index>(row.first_observation) + o;
       double slope = 0;
-      for (const ParameterGroup& group : row.groups)
+      for (const model::ParameterGroup& group : row.groups)
         for (const auto& [first, weight] : group.first_weight)
           slope += weight *
                    row.gradient.col(o).segment(group.slot, group.width).dot(step.segment(first, group.width));
       const double second = 2 / (kPart * kPart) * (ahead[at_row] - row.predicted[o] - kPart * slope);
       const double weighted = second * weights_[at_row] * weights_[at_row];
-      for (const ParameterGroup& group : row.groups)
+      for (const model::ParameterGroup& group : row.groups)
         for (const auto& [first, weight] : group.first_weight)
           result.segment(first, group.width) +=
               weight * weighted * row.gradient.col(o).segment(group.slot, group.width);
@@ -207,4 +210,4 @@ Eigen::VectorXd FitProblem::bend(const Eigen::VectorXd& point, const Eigen::Vect
   return result;
 }
 
-}  // namespace vernier
+}  // namespace vernier::fit

@@ -10,13 +10,14 @@
 #include "tools/model/parameters.h"
 #include "tools/model/prediction.h"
 
-namespace vernier {
+namespace vernier::fit {
 
 /// A machine, rows and free parameters as a least-squares problem in the parameters' own units.
 class FitProblem {
  public:
   /// Keeps references to `measurement` and `parameters`. Check rows have weight 0.
-  FitProblem(const Machine& machine, const Measurement& measurement, const ParameterSet& parameters);
+  FitProblem(const model::Machine& machine, const model::Measurement& measurement,
+             const model::ParameterSet& parameters);
 
   /// Parameters held near `centre`: (value - centre)^T precision (value - centre) is added to the cost.
   void set_priors(const Eigen::SparseMatrix<double>& precision, Eigen::VectorXd centre);
@@ -32,27 +33,27 @@ class FitProblem {
   /// the way. Zero where the model is undefined there.
   Eigen::VectorXd bend(const Eigen::VectorXd& point, const Eigen::VectorXd& step) const;
   /// Weighted residuals (measured - predicted) / u and, if asked for, the weighted Jacobian of `predicted`.
-  Eigen::VectorXd weighted_residuals(const Eigen::VectorXd& point, SparseRows* jacobian) const;
+  Eigen::VectorXd weighted_residuals(const Eigen::VectorXd& point, model::SparseRows* jacobian) const;
 
   std::size_t parameter_count() const { return parameters_.size(); }
   const Eigen::SparseMatrix<double>& prior_precision() const { return prior_precision_; }
   const Eigen::VectorXd& prior_centre() const { return prior_centre_; }  // empty: no priors
-  const Measurement& measurement() const { return measurement_; }
+  const model::Measurement& measurement() const { return measurement_; }
   const Eigen::VectorXd& weights() const { return weights_; }  // of the readings
   /// Every reading counts by so much less from now on.
   void weigh(const Eigen::VectorXd& shares) { weights_ = weights_.cwiseProduct(shares); }
 
  private:
-  Machine at(const Eigen::VectorXd& point) const;
+  model::Machine at(const Eigen::VectorXd& point) const;
   double prior_cost(const Eigen::VectorXd& point) const;
 
-  Machine machine_;
-  const Measurement& measurement_;
-  const ParameterSet& parameters_;
-  Linearizer linearizer_;
+  model::Machine machine_;
+  const model::Measurement& measurement_;
+  const model::ParameterSet& parameters_;
+  model::Linearizer linearizer_;
   Eigen::VectorXd weights_, measured_;
   Eigen::SparseMatrix<double> prior_precision_;
   Eigen::VectorXd prior_centre_;
 };
 
-}  // namespace vernier
+}  // namespace vernier::fit

@@ -12,18 +12,18 @@
 #include "tools/model/prediction.h"
 #include "tools/model/work_poses.h"
 
-namespace vernier {
+namespace vernier::fit {
 namespace {
 
 /// A file keeps 17 digits: a value that differs by more was changed.
 bool changed(double now, double fitted) { return std::abs(now - fitted) > 1e-9 * std::abs(fitted); }
 
 /// Where a fit measured: its ranges, else what the file says of an axis, else where it stands.
-std::vector<std::array<double, 2>> measured_ranges(const Machine& machine) {
+std::vector<std::array<double, 2>> measured_ranges(const model::Machine& machine) {
   std::vector<std::array<double, 2>> ranges;
   for (std::size_t a = 0; a < machine.axes.size(); ++a) {
-    std::array<double, 2> range = work_range(machine, a).value_or(std::array{0.0, 0.0});
-    for (const FitRecord::Range& measured : machine.fitted->measured)
+    std::array<double, 2> range = model::work_range(machine, a).value_or(std::array{0.0, 0.0});
+    for (const model::FitRecord::Range& measured : machine.fitted->measured)
       if (measured.name == machine.axes[a].name) range = {measured.min, measured.max};
     ranges.push_back(range);
   }
@@ -31,29 +31,30 @@ std::vector<std::array<double, 2>> measured_ranges(const Machine& machine) {
 }
 
 /// The machine in workpiece coordinates alone, its scale factors free where the fit freed them.
-Machine without_set_up(const Machine& machine) {
-  Machine bare = machine;
+model::Machine without_set_up(const model::Machine& machine) {
+  model::Machine bare = machine;
   bare.base_shifts.clear();
   if (!machine.fitted) return bare;
   const std::vector<std::string>& names = machine.fitted->parameters;
-  for (Axis& axis : bare.axes)
+  for (model::Axis& axis : bare.axes)
     axis.scale_free = std::find(names.begin(), names.end(), "scalefactor." + axis.name) != names.end();
   return bare;
 }
 
 }  // namespace
 
-Measurement point_readings(const States& states) {
-  Measurement m;
+model::Measurement point_readings(const model::States& states) {
+  model::Measurement m;
   m.states = states;
-  m.uncertainty = Column::Zero(static_cast<Eigen::Index>(states.count));
+  m.uncertainty = model::Column::Zero(static_cast<Eigen::Index>(states.count));
   m.check.assign(states.count, 0);
   m.centre = m.nominal_point = Eigen::Matrix3Xd::Zero(3, static_cast<Eigen::Index>(states.count));
   m.files = {"point"};
   m.file.assign(states.count, 0);
   for (std::size_t row = 0; row < states.count; ++row) m.line.push_back(row + 1);
   for (std::size_t row = 0; row < states.count; ++row)
-    for (const ObservationKind kind : {ObservationKind::kX, ObservationKind::kY, ObservationKind::kZ})
+    for (const model::ObservationKind kind :
+         {model::ObservationKind::kX, model::ObservationKind::kY, model::ObservationKind::kZ})
       m.observations.push_back({kind, row, 0});
   return m;
 }
@@ -68,16 +69,17 @@ Eigen::MatrixXd rigid_motions(const Eigen::Matrix3Xd& points) {
   return motions;
 }
 
-Reach::Reach(const Machine& machine) : machine_(without_set_up(machine)), known_(machine.fitted != nullptr) {
+Reach::Reach(const model::Machine& machine)
+    : machine_(without_set_up(machine)), known_(machine.fitted != nullptr) {
   if (!known_) return;
-  const FitRecord& record = *machine.fitted;
-  parameters_ = ParameterSet(machine_, {});
+  const model::FitRecord& record = *machine.fitted;
+  parameters_ = model::ParameterSet(machine_, {});
   std::map<std::string, Eigen::Index> place;
   for (std::size_t i = 0; i < record.parameters.size(); ++i)
     place[record.parameters[i]] = static_cast<Eigen::Index>(i);
   // What was added since then and does nothing yet needs no cover.
   const Eigen::VectorXd values = parameters_.get(machine_),
-                        nominal = parameters_.get(nominal_machine(machine_));
+                        nominal = parameters_.get(model::nominal_machine(machine_));
   factor_ = Eigen::MatrixXd::Zero(values.size(), record.factor.cols());
   std::vector<std::pair<Eigen::Index, double>> hand_set;
   for (std::size_t i = 0; i < parameters_.size(); ++i) {
@@ -97,27 +99,27 @@ Reach::Reach(const Machine& machine) : machine_(without_set_up(machine)), known_
   for (std::size_t k = 0; k < hand_set.size(); ++k)
     factor_(hand_set[k].first, known + static_cast<Eigen::Index>(k)) = hand_set[k].second;
   if (parameters_.size() == 0) return;
-  measured_ = poses_over(machine_, measured_ranges(machine)).states;
+  measured_ = model::poses_over(machine_, measured_ranges(machine)).states;
 }
 
-Eigen::MatrixXd Reach::rigid_part(const States& like, Eigen::Index row) const {
-  States over = measured_;
+Eigen::MatrixXd Reach::rigid_part(const model::States& like, Eigen::Index row) const {
+  model::States over = measured_;
   for (std::size_t i = 0; i < machine_.inputs.size(); ++i)
     if (machine_.inputs[i].hidden_axis) over.input[i].setConstant(like.input[i][row]);
-  return rigid_motions(forward(machine_, over).position)
+  return rigid_motions(model::forward(machine_, over).position)
       .completeOrthogonalDecomposition()
       .solve(spread_at(over));
 }
 
-Eigen::MatrixXd Reach::spread_at(const States& states) const {
-  return linearise(machine_, point_readings(states), parameters_).jacobian * factor_;  // 3 N x k
+Eigen::MatrixXd Reach::spread_at(const model::States& states) const {
+  return model::linearise(machine_, point_readings(states), parameters_).jacobian * factor_;  // 3 N x k
 }
 
-std::vector<Eigen::Matrix3d> Reach::covariance(const States& states) const {
+std::vector<Eigen::Matrix3d> Reach::covariance(const model::States& states) const {
   std::vector<Eigen::Matrix3d> result(states.count, Eigen::Matrix3d::Zero());
   if (!known_ || parameters_.size() == 0) return result;
   const Eigen::MatrixXd spread = spread_at(states),
-                        motions = rigid_motions(forward(machine_, states).position);
+                        motions = rigid_motions(model::forward(machine_, states).position);
   std::map<std::vector<double>, Eigen::MatrixXd> rigid;
   for (std::size_t i = 0; i < states.count; ++i) {
     const auto row = static_cast<Eigen::Index>(i);
@@ -133,7 +135,7 @@ std::vector<Eigen::Matrix3d> Reach::covariance(const States& states) const {
   return result;
 }
 
-Eigen::VectorXd Reach::std_um(const States& states) const {
+Eigen::VectorXd Reach::std_um(const model::States& states) const {
   Eigen::VectorXd result(static_cast<Eigen::Index>(states.count));
   const auto each = covariance(states);
   for (std::size_t i = 0; i < each.size(); ++i)
@@ -141,4 +143,4 @@ Eigen::VectorXd Reach::std_um(const States& states) const {
   return result;
 }
 
-}  // namespace vernier
+}  // namespace vernier::fit

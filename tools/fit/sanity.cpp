@@ -12,26 +12,26 @@
 #include "tools/fit/statistics.h"
 #include "tools/maths/factors.h"
 
-namespace vernier {
+namespace vernier::fit {
 namespace {
 
-std::string reading_name(const Measurement& m, const Observation& o) {
+std::string reading_name(const model::Measurement& m, const model::Observation& o) {
   return fmt::format("{}:{} {}", m.files[m.file[o.row]], m.line[o.row],
-                     kObservationNames[static_cast<std::size_t>(o.kind)]);
+                     model::kObservationNames[static_cast<std::size_t>(o.kind)]);
 }
 
 struct Mistake {
   std::string sentence;
-  std::function<void(Measurement&)> undo;
+  std::function<void(model::Measurement&)> undo;
 };
 
-void swap_kinds(Measurement& m, ObservationKind a, ObservationKind b) {
-  for (Observation& o : m.observations) o.kind = o.kind == a ? b : o.kind == b ? a : o.kind;
+void swap_kinds(model::Measurement& m, model::ObservationKind a, model::ObservationKind b) {
+  for (model::Observation& o : m.observations) o.kind = o.kind == a ? b : o.kind == b ? a : o.kind;
 }
 
-void scale_rotations(Measurement& m, double factor) {
-  for (Observation& o : m.observations)
-    if (is_rotation(o.kind)) o.value *= factor;
+void scale_rotations(model::Measurement& m, double factor) {
+  for (model::Observation& o : m.observations)
+    if (model::is_rotation(o.kind)) o.value *= factor;
 }
 
 /// What a length was written in where mm were meant, and the factor that mends it.
@@ -43,74 +43,78 @@ constexpr std::array<std::pair<const char*, double>, 6> kLengthUnits = {
      {"millimetres taken for centimetres", 0.1},
      {"millimetres taken for inches", 1 / 25.4}}};
 
-void add_mistakes_of_readings(const Measurement& rows, std::vector<Mistake>& list) {
-  constexpr std::array kKinds = {ObservationKind::kX, ObservationKind::kY, ObservationKind::kZ};
-  const auto name = [](ObservationKind kind) { return kObservationNames[static_cast<std::size_t>(kind)]; };
+void add_mistakes_of_readings(const model::Measurement& rows, std::vector<Mistake>& list) {
+  constexpr std::array kKinds = {model::ObservationKind::kX, model::ObservationKind::kY,
+                                 model::ObservationKind::kZ};
+  const auto name = [](model::ObservationKind kind) {
+    return model::kObservationNames[static_cast<std::size_t>(kind)];
+  };
   for (std::size_t a = 0; a < 3; ++a)
     for (std::size_t b = a + 1; b < 3; ++b)
       list.push_back({fmt::format("the columns {} and {} look swapped", name(kKinds[a]), name(kKinds[b])),
-                      [=](Measurement& mended) { swap_kinds(mended, kKinds[a], kKinds[b]); }});
-  for (const ObservationKind kind : kKinds)
-    list.push_back(
-        {fmt::format("the column {} looks as if its sign were turned", name(kind)), [=](Measurement& mended) {
-           for (Observation& o : mended.observations)
-             if (o.kind == kind) o.value = -o.value;
-         }});
-  std::set<ObservationKind> lengths;
-  for (const Observation& o : rows.observations)
-    if (!is_rotation(o.kind)) lengths.insert(o.kind);
+                      [=](model::Measurement& mended) { swap_kinds(mended, kKinds[a], kKinds[b]); }});
+  for (const model::ObservationKind kind : kKinds)
+    list.push_back({fmt::format("the column {} looks as if its sign were turned", name(kind)),
+                    [=](model::Measurement& mended) {
+                      for (model::Observation& o : mended.observations)
+                        if (o.kind == kind) o.value = -o.value;
+                    }});
+  std::set<model::ObservationKind> lengths;
+  for (const model::Observation& o : rows.observations)
+    if (!model::is_rotation(o.kind)) lengths.insert(o.kind);
   for (const auto& [unit, factor] : kLengthUnits) {
-    list.push_back(
-        {fmt::format("the readings look as if they were {}", unit), [factor = factor](Measurement& mended) {
-           for (Observation& o : mended.observations)
-             if (!is_rotation(o.kind)) o.value *= factor;
-         }});
+    list.push_back({fmt::format("the readings look as if they were {}", unit),
+                    [factor = factor](model::Measurement& mended) {
+                      for (model::Observation& o : mended.observations)
+                        if (!model::is_rotation(o.kind)) o.value *= factor;
+                    }});
     if (lengths.size() < 2) continue;
-    for (const ObservationKind kind : lengths)
+    for (const model::ObservationKind kind : lengths)
       list.push_back({fmt::format("the column {} looks as if it were {}", name(kind), unit),
-                      [=, factor = factor](Measurement& mended) {
-                        for (Observation& o : mended.observations)
+                      [=, factor = factor](model::Measurement& mended) {
+                        for (model::Observation& o : mended.observations)
                           if (o.kind == kind) o.value *= factor;
                       }});
   }
   list.push_back({"the rotations look as if they were in radians",
-                  [](Measurement& mended) { scale_rotations(mended, kDegPerRad); }});
+                  [](model::Measurement& mended) { scale_rotations(mended, maths::kDegPerRad); }});
   list.push_back({"the rotations look as if radians had been written and degrees meant",
-                  [](Measurement& mended) { scale_rotations(mended, 1 / kDegPerRad); }});
+                  [](model::Measurement& mended) { scale_rotations(mended, 1 / maths::kDegPerRad); }});
 }
 
-void add_mistakes_of_positions(const Machine& machine, std::vector<Mistake>& list) {
+void add_mistakes_of_positions(const model::Machine& machine, std::vector<Mistake>& list) {
   for (std::size_t a = 0; a < machine.axes.size(); ++a) {
     const std::string& name = machine.axes[a].name;
     for (std::size_t b = a + 1; b < machine.axes.size(); ++b)
       if (machine.axes[a].rotary == machine.axes[b].rotary)
-        list.push_back({fmt::format("the columns {} and {} look swapped", name, machine.axes[b].name),
-                        [=](Measurement& rows) { std::swap(rows.states.axis[a], rows.states.axis[b]); }});
+        list.push_back(
+            {fmt::format("the columns {} and {} look swapped", name, machine.axes[b].name),
+             [=](model::Measurement& rows) { std::swap(rows.states.axis[a], rows.states.axis[b]); }});
     const auto scaled = [&](const char* what, double factor) {
       list.push_back({fmt::format("the column {} looks as if it were {}", name, what),
-                      [=](Measurement& rows) { rows.states.axis[a] *= factor; }});
+                      [=](model::Measurement& rows) { rows.states.axis[a] *= factor; }});
     };
     scaled("of the other sign", -1);
     if (machine.axes[a].rotary) {
-      scaled("in radians", kDegPerRad);
-      scaled("degrees taken for radians", 1 / kDegPerRad);
+      scaled("in radians", maths::kDegPerRad);
+      scaled("degrees taken for radians", 1 / maths::kDegPerRad);
     } else {
       for (const auto& [unit, factor] : kLengthUnits) scaled(unit, factor);
     }
   }
 }
 
-std::vector<Mistake> mistakes_of(const Machine& machine, const Measurement& rows) {
+std::vector<Mistake> mistakes_of(const model::Machine& machine, const model::Measurement& rows) {
   std::vector<Mistake> list;
   add_mistakes_of_readings(rows, list);
   add_mistakes_of_positions(machine, list);
   return list;
 }
 
-std::size_t positions_out_of_range(const Machine& machine, const Measurement& m) {
+std::size_t positions_out_of_range(const model::Machine& machine, const model::Measurement& m) {
   std::size_t count = 0;
   for (std::size_t a = 0; a < machine.axes.size(); ++a) {
-    const Axis& axis = machine.axes[a];
+    const model::Axis& axis = machine.axes[a];
     if (!axis.min || !axis.max || axis.rollover) continue;
     for (const double q : m.states.axis[a]) count += q < *axis.min || q > *axis.max ? 1 : 0;
   }
@@ -118,9 +122,9 @@ std::size_t positions_out_of_range(const Machine& machine, const Measurement& m)
 }
 
 /// The first axis position that stands outside the axis' range by more than half of it; empty: none.
-std::string cell_out_of_range(const Machine& machine, const Measurement& m) {
+std::string cell_out_of_range(const model::Machine& machine, const model::Measurement& m) {
   for (std::size_t a = 0; a < machine.axes.size(); ++a) {
-    const Axis& axis = machine.axes[a];
+    const model::Axis& axis = machine.axes[a];
     if (!axis.min || !axis.max || axis.rollover) continue;
     const double margin = 0.5 * (*axis.max - *axis.min);
     for (std::size_t row = 0; row < m.rows(); ++row) {
@@ -135,7 +139,8 @@ std::string cell_out_of_range(const Machine& machine, const Measurement& m) {
 
 }  // namespace
 
-WorstReading worst_reading(const Measurement& measurement, const Eigen::VectorXd& residual, bool check) {
+WorstReading worst_reading(const model::Measurement& measurement, const Eigen::VectorXd& residual,
+                           bool check) {
   const bool with_u = has_uncertainty(measurement);
   std::vector<double> sizes;
   double squares = 0, largest = 0;
@@ -144,7 +149,7 @@ WorstReading worst_reading(const Measurement& measurement, const Eigen::VectorXd
     const auto at = static_cast<Eigen::Index>(i);
     const std::size_t row = measurement.observations[i].row;
     if ((measurement.check[row] != 0) != check) continue;
-    const double u = uncertainty_of(measurement, measurement.observations[i]);
+    const double u = model::uncertainty_of(measurement, measurement.observations[i]);
     const double size = std::abs(with_u && u > 0 ? residual[at] / u : residual[at]);
     sizes.push_back(size);
     squares += size * size;
@@ -162,11 +167,12 @@ WorstReading worst_reading(const Measurement& measurement, const Eigen::VectorXd
   return worst;
 }
 
-std::string likely_mistake(const Machine& machine, const Measurement& rows, const WorstReading& worst) {
+std::string likely_mistake(const model::Machine& machine, const model::Measurement& rows,
+                           const WorstReading& worst) {
   constexpr double kMostOfAll = 0.5, kFivefold = 0.2, kAsGood = 1.5;
   if (const std::string cell = cell_out_of_range(machine, rows); !cell.empty()) return cell;
   if (worst.share > kMostOfAll) return worst.reading + " stands alone against all others";
-  const ParameterSet none;
+  const model::ParameterSet none;
   const double misfit_mm = convention_of(machine, rows, none).misfit_mm;
   struct Found {
     double left_mm = 0;
@@ -175,7 +181,7 @@ std::string likely_mistake(const Machine& machine, const Measurement& rows, cons
   };
   std::vector<Found> found;
   for (const Mistake& mistake : mistakes_of(machine, rows)) {
-    Measurement mended = rows;
+    model::Measurement mended = rows;
     mistake.undo(mended);
     const double left_mm = convention_of(machine, mended, none).misfit_mm;
     if (left_mm < kFivefold * misfit_mm)
@@ -194,4 +200,4 @@ std::string likely_mistake(const Machine& machine, const Measurement& rows, cons
   return sentence;
 }
 
-}  // namespace vernier
+}  // namespace vernier::fit

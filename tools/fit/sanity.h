@@ -6,7 +6,7 @@
 #include "tools/model/machine.h"
 #include "tools/model/measurement.h"
 
-namespace vernier {
+namespace vernier::fit {
 
 /// A model that leaves more of the readings than this share of what it reaches has not been measured: they
 /// are of something else. Machines leave 1e-5, hand-made robots 1e-2.
@@ -22,11 +22,13 @@ struct WorstReading {
   std::string reading;  // "survey.csv:57 z"
 };
 /// `check`: of which role.
-WorstReading worst_reading(const Measurement& measurement, const Eigen::VectorXd& residual, bool check);
+WorstReading worst_reading(const model::Measurement& measurement, const Eigen::VectorXd& residual,
+                           bool check);
 
 /// Why readings are not those of this machine, in a sentence: one gross reading, two columns swapped, a unit,
 /// a sign. Each is tried; what lowers the misfit of the nominal machine fivefold is it. Empty: nothing found.
 /// tool.
-std::string likely_mistake(const Machine& machine, const Measurement& rows, const WorstReading& worst);
+std::string likely_mistake(const model::Machine& machine, const model::Measurement& rows,
+                           const WorstReading& worst);
 
-}  // namespace vernier
+}  // namespace vernier::fit

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace vernier {
+namespace vernier::fit {
 namespace {
 
 /// Scales follow the machine's own errors within this share of the convention's, and the whole of it.
@@ -111,4 +111,4 @@ double SeenErrors::variance(int kind, int table) const {
   return std::clamp(variance, kLeastShare * kLeastShare, most);
 }
 
-}  // namespace vernier
+}  // namespace vernier::fit

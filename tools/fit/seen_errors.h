@@ -6,7 +6,7 @@
 
 #include "tools/fit/convention.h"
 
-namespace vernier {
+namespace vernier::fit {
 
 /// How large a machine's errors are, as far as its readings show them: a kind as a whole (lengths or angles,
 /// of linear or rotary axes), and each table beside the others. All in units of the convention's scales.
@@ -44,4 +44,4 @@ class SeenErrors {
   std::map<std::pair<int, int>, Seen> leaning_tables_;
 };
 
-}  // namespace vernier
+}  // namespace vernier::fit

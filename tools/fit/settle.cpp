@@ -10,7 +10,7 @@
 #include "tools/fit/seen_errors.h"
 #include "tools/fit/statistics.h"
 
-namespace vernier {
+namespace vernier::fit {
 namespace {
 
 using Eigen::Index;
@@ -190,7 +190,7 @@ class Settler {
       result_.point = from + step;
       try {
         linearise();
-      } catch (const InputError&) {
+      } catch (const text::InputError&) {
         continue;  // the model has no value there
       }
       // A millionth of a reading's variance is rounding of a large sum.
@@ -242,7 +242,7 @@ class Settler {
   /// hang together, what they do to a fit that took them for independent (White 1980).
   MatrixXd readings_covariance(const MatrixXd& data) {
     constexpr double kMostNumbers = 5e7;
-    const Measurement& rows = problem_.measurement();
+    const model::Measurement& rows = problem_.measurement();
     const VectorXd& weights = problem_.weights();
     std::vector<std::size_t> fitted;
     for (std::size_t i = 0; i < rows.observations.size(); ++i)
@@ -253,7 +253,7 @@ class Settler {
       if (noise_) result_.noise = *noise_;
       return result_.variance * data;
     }
-    SparseRows jacobian;
+    model::SparseRows jacobian;
     const VectorXd residual = problem_.weighted_residuals(result_.point, &jacobian)(fitted);
     const MatrixXd j = MatrixXd(jacobian)(fitted, Eigen::all);
     const NoiseLayout layout = noise_layout(rows, fitted);
@@ -300,4 +300,4 @@ Settled describe(FitProblem& problem, const VectorXd& point, const Convention& c
   return Settler(problem, convention, stated, observations, with_u, noise).describe(point);
 }
 
-}  // namespace vernier
+}  // namespace vernier::fit

@@ -8,7 +8,7 @@
 #include "tools/fit/noise.h"
 #include "tools/fit/problem.h"
 
-namespace vernier {
+namespace vernier::fit {
 
 /// Priors that the user states (`--prior`): as if measured at `centre` with 1 / sqrt(weight).
 struct StatedPriors {
@@ -45,4 +45,4 @@ Settled describe(FitProblem& problem, const Eigen::VectorXd& point, const Conven
                  const StatedPriors& stated, std::size_t observations, bool with_u,
                  const std::optional<NoiseModel>& noise);
 
-}  // namespace vernier
+}  // namespace vernier::fit

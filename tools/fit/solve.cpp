@@ -12,7 +12,7 @@
 #include "tools/fit/statistics.h"
 #include "tools/text/words.h"
 
-namespace vernier {
+namespace vernier::fit {
 namespace {
 
 /// A step that lowers chi^2 by less than this share of one observation's variance moves no parameter by more
@@ -23,7 +23,8 @@ constexpr double kNegligible = 1e-3, kNegligibleShare = 1e-6;
 /// Before the readings' spread is known, without u: this share of what the nominal machine leaves of them.
 constexpr double kFirstNoise = 0.1;
 
-std::vector<Eigen::Index> freed_in(const std::vector<std::string>& patterns, const ParameterSet& parameters) {
+std::vector<Eigen::Index> freed_in(const std::vector<std::string>& patterns,
+                                   const model::ParameterSet& parameters) {
   std::set<Eigen::Index> freed;
   for (const std::string& pattern : patterns) {
     bool found = false;
@@ -32,7 +33,7 @@ std::vector<Eigen::Index> freed_in(const std::vector<std::string>& patterns, con
         freed.insert(static_cast<Eigen::Index>(i));
         found = true;
       }
-    if (!found) throw InputError("\"" + pattern + "\": no free parameter has this name");
+    if (!found) throw text::InputError("\"" + pattern + "\": no free parameter has this name");
   }
   return {freed.begin(), freed.end()};
 }
@@ -87,7 +88,7 @@ LevenbergResult solve_all(const FitProblem& problem, const Eigen::VectorXd& star
 
 /// Scales and stated priors in the problem's cost.
 void hold_near_centre(FitProblem& problem, const Convention& convention, const StatedPriors& stated) {
-  const Measurement& m = problem.measurement();
+  const model::Measurement& m = problem.measurement();
   double variance = 1;
   if (!has_uncertainty(m)) {
     const auto noise = noise_um(m);
@@ -101,8 +102,8 @@ void hold_near_centre(FitProblem& problem, const Convention& convention, const S
 
 /// The machine's own values, its set-ups aligned, or the convention's centre: whichever is nearer. Set-ups
 /// always start where they fit best: what no reading sees of them stays at 0.
-Eigen::VectorXd nearer_start(const FitProblem& problem, const Machine& machine, const Convention& convention,
-                             const ParameterSet& parameters) {
+Eigen::VectorXd nearer_start(const FitProblem& problem, const model::Machine& machine,
+                             const Convention& convention, const model::ParameterSet& parameters) {
   const Eigen::VectorXd given = parameters.get(set_up(machine, problem.measurement()));
   return problem.cost(given) < problem.cost(convention.centre) ? given : convention.centre;
 }
@@ -117,10 +118,10 @@ Eigen::VectorXd with_shapes_of(const Eigen::VectorXd& given, const Convention& c
 
 }  // namespace
 
-std::vector<std::string> setups_of_fit_rows(const Measurement& m) {
+std::vector<std::string> setups_of_fit_rows(const model::Measurement& m) {
   const std::vector<std::string>& names = m.states.names(m.states.setup);
   std::vector<char> seen(names.size(), 0);
-  for (const Observation& o : m.observations)
+  for (const model::Observation& o : m.observations)
     if (m.check[o.row] == 0) seen[m.states.of(m.states.setup, o.row)] = 1;
   std::vector<std::string> setups;
   for (std::size_t i = 0; i < seen.size(); ++i)
@@ -137,12 +138,12 @@ bool matches_pattern(std::string_view pattern, std::string_view name) {
          matches_pattern(pattern.substr(1), name.substr(1));
 }
 
-Eigen::VectorXd solve(FitProblem& problem, const Machine& machine, const Convention& convention,
+Eigen::VectorXd solve(FitProblem& problem, const model::Machine& machine, const Convention& convention,
                       const StatedPriors& stated, const FitOptions& options, FitResult& result) {
   hold_near_centre(problem, convention, stated);
   Eigen::VectorXd point = nearer_start(problem, machine, convention, result.parameters);
   const auto figures = [&](std::string patterns, std::size_t count, int iterations) {
-    Machine there = machine;
+    model::Machine there = machine;
     result.parameters.set(there, point);
     const Eigen::VectorXd left = residuals(there, problem.measurement());
     result.stages.push_back({std::move(patterns), count, iterations,
@@ -154,7 +155,7 @@ Eigen::VectorXd solve(FitProblem& problem, const Machine& machine, const Convent
     const LevenbergResult stage = solve_stage(problem, point, freed, options, result.before.count);
     point = stage.point;
     result.iterations += stage.iterations;
-    figures(joined(patterns, ","), freed.size(), stage.iterations);
+    figures(text::joined(patterns, ","), freed.size(), stage.iterations);
   }
   int iterations = 0;
   if (options.solver == Solver::kCeres || options.loss != Loss::kSquared) {
@@ -182,4 +183,4 @@ Eigen::VectorXd solve(FitProblem& problem, const Machine& machine, const Convent
   return point;
 }
 
-}  // namespace vernier
+}  // namespace vernier::fit

@@ -10,19 +10,19 @@
 #include "tools/fit/problem.h"
 #include "tools/fit/settle.h"
 
-namespace vernier {
+namespace vernier::fit {
 
 /// Does `name` match `pattern` (* any letters, ? one letter)?
 bool matches_pattern(std::string_view pattern, std::string_view name);
 
 /// The runs that have an observation with role fit.
-std::vector<std::string> setups_of_fit_rows(const Measurement& m);
+std::vector<std::string> setups_of_fit_rows(const model::Measurement& m);
 
 /// From the machine's own values, or from nominal where that is nearer, through the stages to the minimum
 /// over all parameters, with the solver that `options` name; the convention's scales are in force from the
 /// start. Fills iterations, converged and stages of `result`; reads its parameters and its count of
 /// observations. Throws InputError for a stage that names nobody. tool.
-Eigen::VectorXd solve(FitProblem& problem, const Machine& machine, const Convention& convention,
+Eigen::VectorXd solve(FitProblem& problem, const model::Machine& machine, const Convention& convention,
                       const StatedPriors& stated, const FitOptions& options, FitResult& result);
 
-}  // namespace vernier
+}  // namespace vernier::fit

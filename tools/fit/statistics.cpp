@@ -6,24 +6,24 @@
 
 #include "tools/maths/factors.h"
 
-namespace vernier {
+namespace vernier::fit {
 
-std::vector<double> row_conditions(const Measurement& m, std::size_t row) {
+std::vector<double> row_conditions(const model::Measurement& m, std::size_t row) {
   const auto at = static_cast<Eigen::Index>(row);
-  const States& s = m.states;
+  const model::States& s = m.states;
   std::vector<double> key;
-  for (std::size_t i = 0; i < s.axis.size(); ++i) key.push_back(commanded(m, i, at));
+  for (std::size_t i = 0; i < s.axis.size(); ++i) key.push_back(model::commanded(m, i, at));
   for (const auto* columns : {&s.velocity, &s.acceleration, &s.direction, &s.since, &s.input})
-    for (const Column& column : *columns) key.push_back(column[at]);
-  for (const Column& normal : s.normal) key.push_back(normal[at]);
+    for (const model::Column& column : *columns) key.push_back(column[at]);
+  for (const model::Column& normal : s.normal) key.push_back(normal[at]);
   for (Eigen::Index k = 0; k < 3; ++k) {
     key.push_back(std::isnan(m.centre(k, at)) ? 0 : m.centre(k, at));
     key.push_back(std::isnan(m.nominal_point(k, at)) ? 0 : m.nominal_point(k, at));
   }
   key.push_back(s.feed[at]);
   key.push_back(s.curvature[at]);
-  for (const CandidateInput& candidate : m.candidates)
-    key.push_back(std::isnan(candidate.value[at]) ? kLongWay : candidate.value[at]);
+  for (const model::CandidateInput& candidate : m.candidates)
+    key.push_back(std::isnan(candidate.value[at]) ? model::kLongWay : candidate.value[at]);
   return key;
 }
 
@@ -51,19 +51,19 @@ struct RepeatPool {
   }
 };
 
-std::optional<double> repeat_noise_um(const Measurement& m) {
+std::optional<double> repeat_noise_um(const model::Measurement& m) {
   struct PoseReadings {
     double sum = 0, squares = 0;
     std::size_t count = 0;
   };
   std::map<std::pair<std::vector<double>, int>, PoseReadings> groups;
-  for (const Observation& o : m.observations) {
-    if (m.check[o.row] != 0 || is_rotation(o.kind)) continue;
+  for (const model::Observation& o : m.observations) {
+    if (m.check[o.row] != 0 || model::is_rotation(o.kind)) continue;
     std::vector<double> key = row_conditions(m, o.row);
-    for (const Column& correction : m.correction)
+    for (const model::Column& correction : m.correction)
       key.push_back(std::round(correction[static_cast<Eigen::Index>(o.row)] / kCorrectionStep));
     PoseReadings& group = groups[{std::move(key), static_cast<int>(o.kind)}];
-    const double value = o.value * kUmPerMm;
+    const double value = o.value * maths::kUmPerMm;
     // Deviations from the group's first value would do; a running mean keeps the digits.
     ++group.count;
     const double step = value - group.sum;
@@ -82,16 +82,16 @@ std::optional<double> repeat_noise_um(const Measurement& m) {
 
 }  // namespace
 
-RoleStatistics role_statistics(const Measurement& m, const Eigen::VectorXd& residual, bool check) {
+RoleStatistics role_statistics(const model::Measurement& m, const Eigen::VectorXd& residual, bool check) {
   RepeatPool lengths, rotations;
   for (std::size_t i = 0; i < m.observations.size(); ++i) {
-    const Observation& o = m.observations[i];
+    const model::Observation& o = m.observations[i];
     if ((m.check[o.row] != 0) != check) continue;
     const double value = residual[static_cast<Eigen::Index>(i)];
-    if (is_rotation(o.kind))
-      rotations.add(value * kUradPerDeg);
+    if (model::is_rotation(o.kind))
+      rotations.add(value * maths::kUradPerDeg);
     else
-      lengths.add(value * kUmPerMm);
+      lengths.add(value * maths::kUmPerMm);
   }
   RoleStatistics result;
   result.count = lengths.count + rotations.count;
@@ -102,36 +102,37 @@ RoleStatistics role_statistics(const Measurement& m, const Eigen::VectorXd& resi
   return result;
 }
 
-bool has_uncertainty(const Measurement& m) {
+bool has_uncertainty(const model::Measurement& m) {
   bool any = false;
-  for (const Observation& o : m.observations) {
+  for (const model::Observation& o : m.observations) {
     if (m.check[o.row] != 0) continue;
-    if (uncertainty_of(m, o) <= 0) return false;
+    if (model::uncertainty_of(m, o) <= 0) return false;
     any = true;
   }
   return any;
 }
 
-std::optional<double> noise_um(const Measurement& m) {
+std::optional<double> noise_um(const model::Measurement& m) {
   if (!has_uncertainty(m)) return repeat_noise_um(m);
   RepeatPool pool;
-  for (const Observation& o : m.observations)
-    if (m.check[o.row] == 0 && !is_rotation(o.kind)) pool.add(uncertainty_of(m, o) * kUmPerMm);
+  for (const model::Observation& o : m.observations)
+    if (m.check[o.row] == 0 && !model::is_rotation(o.kind))
+      pool.add(model::uncertainty_of(m, o) * maths::kUmPerMm);
   return pool.rms();
 }
 
-double noise_unit_um(const Measurement& m) {
-  return has_uncertainty(m) ? noise_um(m).value_or(kUmPerMm) : kUmPerMm;
+double noise_unit_um(const model::Measurement& m) {
+  return has_uncertainty(m) ? noise_um(m).value_or(maths::kUmPerMm) : maths::kUmPerMm;
 }
 
-Eigen::VectorXd fit_weights(const Measurement& m) {
+Eigen::VectorXd fit_weights(const model::Measurement& m) {
   Eigen::VectorXd weights(static_cast<Eigen::Index>(m.observations.size()));
   for (std::size_t i = 0; i < m.observations.size(); ++i) {
     const std::size_t row = m.observations[i].row;
-    const double u = uncertainty_of(m, m.observations[i]);
+    const double u = model::uncertainty_of(m, m.observations[i]);
     weights[static_cast<Eigen::Index>(i)] = m.check[row] != 0 ? 0 : u > 0 ? 1 / u : 1;
   }
   return weights;
 }
 
-}  // namespace vernier
+}  // namespace vernier::fit

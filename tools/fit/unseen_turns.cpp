@@ -10,21 +10,21 @@
 #include "tools/maths/factors.h"
 #include "tools/model/prediction.h"
 
-namespace vernier {
+namespace vernier::fit {
 
-std::vector<bool> unseen_turns(const Machine& machine, const Measurement& rows,
-                               const ParameterSet& parameters, double reach_mm) {
+std::vector<bool> unseen_turns(const model::Machine& machine, const model::Measurement& rows,
+                               const model::ParameterSet& parameters, double reach_mm) {
   // Of the size of the machine: where other axes move by less, they tell no turn of the instrument.
   constexpr double kSeen = 1e-3;
   std::vector<bool> unseen(parameters.size(), false);
   std::map<std::size_t, std::array<Eigen::Index, 6>> shifts;
   for (std::size_t i = 0; i < parameters.size(); ++i)
-    if (parameters[i].kind == ParameterKind::kBaseShift) {
+    if (parameters[i].kind == model::ParameterKind::kBaseShift) {
       auto& columns = shifts.try_emplace(parameters[i].item).first->second;
       columns[parameters[i].column] = static_cast<Eigen::Index>(i);
     }
   if (shifts.empty()) return unseen;
-  const Linearisation linear = linearise(machine, rows, parameters);
+  const model::Linearisation linear = model::linearise(machine, rows, parameters);
   for (const auto& shift : shifts) {
     const std::array<Eigen::Index, 6>& columns = shift.second;
     Eigen::MatrixXd lengths(linear.jacobian.rows(), 3);
@@ -37,7 +37,7 @@ std::vector<bool> unseen_turns(const Machine& machine, const Measurement& rows,
     const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver(lengths);
     const double rows_seen = std::max(1.0, lengths.squaredNorm());
     for (std::size_t k = 3; k < 6; ++k) {
-      const Eigen::VectorXd turn = column(k) * kDegPerRad;
+      const Eigen::VectorXd turn = column(k) * maths::kDegPerRad;
       const double left = (turn - lengths * solver.solve(turn)).norm() / std::sqrt(rows_seen);
       unseen[static_cast<std::size_t>(columns[k])] = left < kSeen * reach_mm;
     }
@@ -56,4 +56,4 @@ void hold_at(FitProblem& problem, const std::vector<bool>& held, const Eigen::Ve
   problem.set_priors(precision, at);
 }
 
-}  // namespace vernier
+}  // namespace vernier::fit

@@ -15,7 +15,7 @@
 #include "tools/text/words.h"
 #include "tools/text/xml_text.h"
 
-namespace vernier {
+namespace vernier::importer {
 namespace {
 
 // Line ends stay as they are, so that offsets count in the text as it is on disk.
@@ -27,12 +27,12 @@ class B5rReader {
     const auto result = document_.load_buffer(text_.data(), text_.size(), kParseFlags, pugi::encoding_utf8);
     if (!result) {
       const auto at = static_cast<std::size_t>(std::max<std::ptrdiff_t>(result.offset, 0));
-      throw InputError({path_, line_of(text_, at)}, word_at(at), result.description());
+      throw text::InputError({path_, text::line_of(text_, at)}, word_at(at), result.description());
     }
     root_ = document_.child("TEST_DOCUMENT");
     if (!root_)
-      throw InputError({path_, 1}, document_.first_child().name(),
-                       "a ball-bar file begins with TEST_DOCUMENT");
+      throw text::InputError({path_, 1}, document_.first_child().name(),
+                             "a ball-bar file begins with TEST_DOCUMENT");
   }
 
   BallbarFile read() const {
@@ -52,7 +52,8 @@ class B5rReader {
  private:
   [[noreturn]] void fail(const pugi::xml_node& node, const std::string& word, const std::string& what) const {
     const auto offset = node.offset_debug();
-    throw InputError({path_, offset < 0 ? 0 : line_of(text_, static_cast<std::size_t>(offset))}, word, what);
+    throw text::InputError({path_, offset < 0 ? 0 : text::line_of(text_, static_cast<std::size_t>(offset))},
+                           word, what);
   }
 
   std::string word_at(std::size_t at) const {
@@ -68,8 +69,8 @@ class B5rReader {
   }
 
   double number(const pugi::xml_node& node) const {
-    const std::string text = trimmed(node.text().get());
-    const auto value = parse_number(text);
+    const std::string text = text::trimmed(node.text().get());
+    const auto value = text::parse_number(text);
     if (!value) fail(node, text, std::string(node.name()) + " must be a number");
     return *value;
   }
@@ -77,14 +78,14 @@ class B5rReader {
   double positive(const pugi::xml_node& node) const {
     const double value = number(node);
     if (!(value > 0))
-      fail(node, trimmed(node.text().get()), std::string(node.name()) + " must be above zero");
+      fail(node, text::trimmed(node.text().get()), std::string(node.name()) + " must be above zero");
     return value;
   }
 
   std::size_t index(const pugi::xml_node& node, std::size_t count) const {
     const double value = number(node);
     if (value < 0 || value != std::floor(value) || value >= static_cast<double>(count)) {
-      fail(node, trimmed(node.text().get()),
+      fail(node, text::trimmed(node.text().get()),
            std::string(node.name()) + " is no index of the " + std::to_string(count) + " readings");
     }
     return static_cast<std::size_t>(value);
@@ -98,10 +99,10 @@ class B5rReader {
     for (std::size_t at = text.find_first_not_of(" \t\r\n"); at < text.size();) {
       const std::size_t end = std::min(text.find_first_of(" \t\r\n", at), text.size());
       const std::string word(text.substr(at, end - at));
-      const auto value = parse_number(word);
+      const auto value = text::parse_number(word);
       if (!value) {
-        const std::size_t line = offset < 0 ? 0 : line_of(text_, static_cast<std::size_t>(offset) + at);
-        throw InputError({path_, line}, word, std::string(node.name()) + " must hold numbers");
+        const std::size_t line = offset < 0 ? 0 : text::line_of(text_, static_cast<std::size_t>(offset) + at);
+        throw text::InputError({path_, line}, word, std::string(node.name()) + " must hold numbers");
       }
       values.push_back(*value);
       at = text.find_first_not_of(" \t\r\n", end);
@@ -111,7 +112,7 @@ class B5rReader {
   }
 
   int direction(const pugi::xml_node& node) const {
-    const std::string word = trimmed(node.text().get());
+    const std::string word = text::trimmed(node.text().get());
     if (word == "CCW") return +1;
     if (word == "CW") return -1;
     fail(node, word, "a direction is CCW or CW");
@@ -122,8 +123,8 @@ class B5rReader {
     const std::string view = plane.attribute("VIEW").value();
     // Seen from another side, counter-clockwise would not be from +A towards +B; no such file is decoded.
     if (view != "+A+B") fail(plane, view, "only the view +A+B is known");
-    file.axis_a = trimmed(need(plane, "A_AXIS_NAME").text().get());
-    file.axis_b = trimmed(need(plane, "B_AXIS_NAME").text().get());
+    file.axis_a = text::trimmed(need(plane, "A_AXIS_NAME").text().get());
+    file.axis_b = text::trimmed(need(plane, "B_AXIS_NAME").text().get());
     const auto is_linear = [](const std::string& axis) { return axis == "X" || axis == "Y" || axis == "Z"; };
     if (!is_linear(file.axis_a))
       fail(plane.child("A_AXIS_NAME"), file.axis_a, "an axis of a plane is X, Y or Z");
@@ -135,7 +136,7 @@ class B5rReader {
     file.programmed_feed_mm_min = positive(need(bar, "PROGRAMMED_FEEDRATE"));
     const double arc_deg = number(need(bar, "END_ANGLE")) - number(need(bar, "START_ANGLE"));
     if (!(arc_deg > 0) || arc_deg > 360)
-      fail(bar.child("END_ANGLE"), trimmed(bar.child("END_ANGLE").text().get()),
+      fail(bar.child("END_ANGLE"), text::trimmed(bar.child("END_ANGLE").text().get()),
            "must be 0 to 360 deg beyond START_ANGLE");
     if (arc_deg < 360)
       file.notes.push_back("partial arc: START..END is taken to span START_ANGLE..END_ANGLE");
@@ -143,7 +144,7 @@ class B5rReader {
 
   BallbarRun read_run(const pugi::xml_node& bar, const pugi::xml_node& node) const {
     BallbarRun run;
-    run.label = trimmed(need(node, "RUN_DIRECTION").text().get());
+    run.label = text::trimmed(need(node, "RUN_DIRECTION").text().get());
     run.direction = direction(need(node, "RUN_DIRECTION"));
     run.sample_rate_hz = positive(need(node, "SAMPLE_RATE"));
     run.first_deg = number(need(bar, "START_ANGLE"));
@@ -152,7 +153,7 @@ class B5rReader {
     run.start = index(need(node, "START_INDEX"), run.reading_mm.size());
     run.end = index(need(node, "END_INDEX"), run.reading_mm.size());
     if (run.end < run.start + 2)
-      fail(node.child("END_INDEX"), trimmed(node.child("END_INDEX").text().get()),
+      fail(node.child("END_INDEX"), text::trimmed(node.child("END_INDEX").text().get()),
            "END_INDEX must be above START_INDEX by two or more");
     run.features = read_features(node);
     return run;
@@ -161,7 +162,7 @@ class B5rReader {
   std::vector<BallbarFeature> read_features(const pugi::xml_node& parent) const {
     std::vector<BallbarFeature> features;
     for (const auto node : parent.children("FEATURE")) {
-      if (trimmed(node.text().get()).empty()) continue;  // printed only where it was computed
+      if (text::trimmed(node.text().get()).empty()) continue;  // printed only where it was computed
       features.push_back({node.attribute("NAME").value(), node.attribute("DT").value(), number(node)});
     }
     return features;
@@ -183,6 +184,6 @@ class B5rReader {
 
 }  // namespace
 
-BallbarFile read_b5r(const std::string& path) { return B5rReader(path, read_file(path)).read(); }
+BallbarFile read_b5r(const std::string& path) { return B5rReader(path, text::read_file(path)).read(); }
 
-}  // namespace vernier
+}  // namespace vernier::importer

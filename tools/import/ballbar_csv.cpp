@@ -10,7 +10,7 @@
 
 #include "tools/import/ballbar_motion.h"
 
-namespace vernier {
+namespace vernier::importer {
 namespace {
 
 constexpr const char* kMotionColumns[] = {"v{}[mm/s]", "a{}[mm/s^2]", "dir{}", "since{}[mm]"};
@@ -140,4 +140,4 @@ BallbarCsv ballbar_csv(const std::vector<BallbarFile>& files, const BallbarCsvOp
   return Writer(files, options).take();
 }
 
-}  // namespace vernier
+}  // namespace vernier::importer

@@ -6,7 +6,7 @@
 
 #include "tools/import/ballbar_file.h"
 
-namespace vernier {
+namespace vernier::importer {
 
 struct BallbarCsvOptions {
   /// Time between the records of two runs, s, where the instrument does not log it. The default is what the
@@ -25,4 +25,4 @@ struct BallbarCsv {
 /// file's plane has it. tool.
 BallbarCsv ballbar_csv(const std::vector<BallbarFile>& files, const BallbarCsvOptions& options);
 
-}  // namespace vernier
+}  // namespace vernier::importer

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/import/ballbar_file.h"
 
-namespace vernier {
+namespace vernier::importer {
 
 std::optional<double> printed_result(const BallbarFile& file, const std::string& analysis,
                                      const std::string& version, const std::string& feature) {
@@ -14,4 +14,4 @@ std::optional<double> printed_result(const BallbarFile& file, const std::string&
   return std::nullopt;
 }
 
-}  // namespace vernier
+}  // namespace vernier::importer

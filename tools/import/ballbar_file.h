@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace vernier {
+namespace vernier::importer {
 
 /// One printed result of a file: AF_CIRCULARITY and the like, with its unit type as written (UT_LENGTH_UM …).
 struct BallbarFeature {
@@ -65,4 +65,4 @@ struct BallbarFile {
 std::optional<double> printed_result(const BallbarFile& file, const std::string& analysis,
                                      const std::string& version, const std::string& feature);
 
-}  // namespace vernier
+}  // namespace vernier::importer

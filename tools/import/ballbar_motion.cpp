@@ -6,7 +6,7 @@
 
 #include "tools/maths/factors.h"
 
-namespace vernier {
+namespace vernier::importer {
 namespace {
 
 double samples_in_arc(const BallbarRun& run) { return static_cast<double>(run.end - run.start + 1); }
@@ -26,7 +26,7 @@ AxisMotion axis_motion(double radius_mm, double phase_deg) {
   // above.
   const double phase = wrapped(phase_deg);
   const bool falling = phase > 0 && phase <= 180;
-  const double position = radius_mm * std::cos(phase * kRadPerDeg);
+  const double position = radius_mm * std::cos(phase * maths::kRadPerDeg);
   return falling ? AxisMotion{-1, radius_mm - position} : AxisMotion{+1, radius_mm + position};
 }
 
@@ -41,14 +41,14 @@ double turned_deg(const BallbarRun& run, std::size_t index) {
 double actual_feed_mm_min(const BallbarFile& file, const BallbarRun& run) {
   if (run.clock)
     return file.radius_mm * 2 * std::numbers::pi / (run.clock->turn_samples / run.sample_rate_hz) * 60;
-  const double path_mm = file.radius_mm * arc_deg(run) * kRadPerDeg;
+  const double path_mm = file.radius_mm * arc_deg(run) * maths::kRadPerDeg;
   return path_mm / (samples_in_arc(run) / run.sample_rate_hz) * 60;
 }
 
 CirclePoint circle_point(const BallbarFile& file, const BallbarRun& run, std::size_t index) {
   const double turned = turned_deg(run, index);
   const double angle_deg = run.direction > 0 ? run.first_deg + turned : run.last_deg - turned;
-  const double angle = angle_deg * kRadPerDeg, c = std::cos(angle), s = std::sin(angle);
+  const double angle = angle_deg * maths::kRadPerDeg, c = std::cos(angle), s = std::sin(angle);
   const double speed = actual_feed_mm_min(file, run) / 60, radius = file.radius_mm;
   const double centripetal = speed * speed / radius;
   CirclePoint point;
@@ -86,4 +86,4 @@ std::vector<CircularPass> circular_passes(const BallbarFile& file) {
   return passes;
 }
 
-}  // namespace vernier
+}  // namespace vernier::importer

@@ -7,7 +7,7 @@
 #include "tools/import/ballbar_file.h"
 #include "tools/import/circular.h"
 
-namespace vernier {
+namespace vernier::importer {
 
 /// Where the machine was commanded to be when one reading was taken, on a circle run at constant speed.
 struct CirclePoint {
@@ -28,4 +28,4 @@ CirclePoint circle_point(const BallbarFile& file, const BallbarRun& run, std::si
 /// The analysed arcs (start..end) of all runs for analyse_circle. tool.
 std::vector<CircularPass> circular_passes(const BallbarFile& file);
 
-}  // namespace vernier
+}  // namespace vernier::importer

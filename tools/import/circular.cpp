@@ -9,7 +9,7 @@
 
 #include "tools/maths/factors.h"
 
-namespace vernier {
+namespace vernier::importer {
 namespace {
 
 // Offset of the radius and centre: deviation = offset + a cos + b sin, mm.
@@ -22,7 +22,8 @@ FittedCircle fit_circle(const CircularPass& pass) {
   if (pass.deviation_mm.size() != pass.angle_deg.size())
     throw std::invalid_argument("circle: angles and deviations differ in number");
   if (count < 3) throw std::invalid_argument("circle: a pass needs three samples");
-  const Eigen::ArrayXd angle = Eigen::Map<const Eigen::ArrayXd>(pass.angle_deg.data(), count) * kRadPerDeg;
+  const Eigen::ArrayXd angle =
+      Eigen::Map<const Eigen::ArrayXd>(pass.angle_deg.data(), count) * maths::kRadPerDeg;
   Eigen::MatrixXd basis(count, 3);
   basis << Eigen::VectorXd::Ones(count), angle.cos().matrix(), angle.sin().matrix();
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(basis);
@@ -34,7 +35,7 @@ FittedCircle fit_circle(const CircularPass& pass) {
 
 // Deviation with the centre taken out, mm, of sample i.
 double centred(const CircularPass& pass, const FittedCircle& circle, std::size_t i) {
-  const double angle = pass.angle_deg[i] * kRadPerDeg;
+  const double angle = pass.angle_deg[i] * maths::kRadPerDeg;
   return pass.deviation_mm[i] - circle.a * std::cos(angle) - circle.b * std::sin(angle);
 }
 
@@ -48,14 +49,14 @@ CircularPassResult analyse_pass(double nominal_radius_mm, const CircularPass& pa
   result.radius_mm = nominal_radius_mm + circle.offset;
   result.feed_mm_min = pass.feed_mm_min;
   for (std::size_t i = 0; i < pass.angle_deg.size(); ++i) {
-    result.circular_um.push_back((centred(pass, circle, i) - circle.offset) * kUmPerMm);
+    result.circular_um.push_back((centred(pass, circle, i) - circle.offset) * maths::kUmPerMm);
   }
   const auto [min, max] = std::minmax_element(result.circular_um.begin(), result.circular_um.end());
   result.min_circular_um = *min;
   result.max_circular_um = *max;
   result.circular_deviation_um = *max - *min;
-  result.min_radial_um = *min + circle.offset * kUmPerMm;
-  result.max_radial_um = *max + circle.offset * kUmPerMm;
+  result.min_radial_um = *min + circle.offset * maths::kUmPerMm;
+  result.max_radial_um = *max + circle.offset * maths::kUmPerMm;
   result.min_deg = pass.angle_deg[static_cast<std::size_t>(min - result.circular_um.begin())];
   result.max_deg = pass.angle_deg[static_cast<std::size_t>(max - result.circular_um.begin())];
   return result;
@@ -66,7 +67,7 @@ Hysteresis hysteresis_by_index(const CircularPass& ccw, const CircularPass& cw, 
   const std::size_t count = std::min(ccw.angle_deg.size(), cw.angle_deg.size());
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t j = cw.angle_deg.size() - 1 - i;
-    const double um = std::abs(centred(ccw, mean, i) - centred(cw, mean, j)) * kUmPerMm;
+    const double um = std::abs(centred(ccw, mean, i) - centred(cw, mean, j)) * maths::kUmPerMm;
     if (um > worst.um) worst = {um, cw.angle_deg[j]};
   }
   return worst;
@@ -116,7 +117,7 @@ std::optional<Hysteresis> hysteresis_by_angle(const CircularPass& ccw, const Cir
   for (std::size_t j = 0; j < cw.angle_deg.size(); ++j) {
     const auto other = radius.at(cw.angle_deg[j]);
     if (!other) continue;
-    const double um = std::abs(*other - centred(cw, mean, j)) * kUmPerMm;
+    const double um = std::abs(*other - centred(cw, mean, j)) * maths::kUmPerMm;
     if (!worst || um > worst->um) worst = Hysteresis{um, cw.angle_deg[j]};
   }
   return worst;
@@ -126,7 +127,7 @@ AboutMean about_mean(const CircularPass& ccw, const CircularPass& cw, const Fitt
   AboutMean result{-HUGE_VAL, HUGE_VAL, 0, 0};
   for (const CircularPass* pass : {&ccw, &cw}) {
     for (std::size_t i = 0; i < pass->angle_deg.size(); ++i) {
-      const double um = (centred(*pass, mean, i) - mean.offset) * kUmPerMm;
+      const double um = (centred(*pass, mean, i) - mean.offset) * maths::kUmPerMm;
       if (um > result.max_um) result.max_um = um, result.max_deg = pass->angle_deg[i];
       if (um < result.min_um) result.min_um = um, result.min_deg = pass->angle_deg[i];
     }
@@ -138,7 +139,8 @@ AboutMean about_mean(const CircularPass& ccw, const CircularPass& cw, const Fitt
 // the linearised circle.
 double true_radius_offset(double nominal_radius_mm, const CircularPass& pass, FittedCircle circle) {
   const auto count = static_cast<Eigen::Index>(pass.angle_deg.size());
-  const Eigen::ArrayXd angle = Eigen::Map<const Eigen::ArrayXd>(pass.angle_deg.data(), count) * kRadPerDeg;
+  const Eigen::ArrayXd angle =
+      Eigen::Map<const Eigen::ArrayXd>(pass.angle_deg.data(), count) * maths::kRadPerDeg;
   const Eigen::ArrayXd length =
       nominal_radius_mm + Eigen::Map<const Eigen::ArrayXd>(pass.deviation_mm.data(), count);
   // An eccentricity of a thousandth of the radius shrinks a thousandfold in each step.
@@ -178,7 +180,7 @@ CircularResult analyse_circle(double nominal_radius_mm, const std::vector<Circul
   result.mean_centre_b_mm = mean.b;
   result.mean_radius_mm = nominal_radius_mm + mean.offset;
   result.about_mean = about_mean(passes[*first_ccw], passes[*first_cw], mean);
-  result.mean_bidirectional_radial_um = kUmPerMm *
+  result.mean_bidirectional_radial_um = maths::kUmPerMm *
                                         (true_radius_offset(nominal_radius_mm, passes[*first_ccw], ca) +
                                          true_radius_offset(nominal_radius_mm, passes[*first_cw], cb)) /
                                         2;
@@ -187,4 +189,4 @@ CircularResult analyse_circle(double nominal_radius_mm, const std::vector<Circul
   return result;
 }
 
-}  // namespace vernier
+}  // namespace vernier::importer

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace vernier {
+namespace vernier::importer {
 
 /// One pass over a circle in one sense, in time order.
 struct CircularPass {
@@ -62,4 +62,4 @@ struct CircularResult {
 /// 230-4:1996, 3.4 to 3.6.
 CircularResult analyse_circle(double nominal_radius_mm, const std::vector<CircularPass>& passes);
 
-}  // namespace vernier
+}  // namespace vernier::importer

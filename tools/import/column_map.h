@@ -7,14 +7,14 @@
 #include "tools/import/delimited.h"
 #include "tools/text/error.h"
 
-namespace vernier {
+namespace vernier::importer {
 
 /// Where a column of the measurement file comes from.
 struct MappedColumn {
   std::string source;      // a number from 1, or a name in the header line; empty for a constant
   std::string constant;    // the value, where it is the same in every row
   std::string name, unit;  // of the measurement file
-  Place place;             // where the map says so; no file for an argument
+  text::Place place;       // where the map says so; no file for an argument
 };
 
 /// What an instrument's table means.
@@ -31,8 +31,8 @@ struct ColumnMap {
 void read_column_map(ColumnMap& map, const std::string& text, const std::string& file);
 
 /// Adds "3=x[mm]" or "Name=x[mm]"; "run=s1" or "u[um]=5". Throws InputError.
-void add_column(ColumnMap& map, const std::string& words, const Place& place = {});
-void add_constant(ColumnMap& map, const std::string& words, const Place& place = {});
+void add_column(ColumnMap& map, const std::string& words, const text::Place& place = {});
+void add_constant(ColumnMap& map, const std::string& words, const text::Place& place = {});
 
 /// A table on its way to a measurement file: columns of text, a cell for every row.
 struct ImportTable {
@@ -59,4 +59,4 @@ ImportTable mapped_table(const std::string& text, const std::string& file, const
 /// The table as a measurement file; reads it back as one. Throws InputError where that fails. tool.
 std::string measurement_csv(const ImportTable& table);
 
-}  // namespace vernier
+}  // namespace vernier::importer

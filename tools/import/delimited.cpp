@@ -7,7 +7,7 @@
 #include "tools/text/error.h"
 #include "tools/text/words.h"
 
-namespace vernier {
+namespace vernier::importer {
 namespace {
 
 char separator_in(const std::string& line, bool decimal_comma) {
@@ -29,10 +29,10 @@ class Lines {
     ++number_;
     if (!line.empty() && line.back() == '\r') line.pop_back();
     if (line.find('\0') != std::string::npos)
-      throw InputError(place(), "", "a zero byte: this is not a text file");
+      throw text::InputError(place(), "", "a zero byte: this is not a text file");
     return true;
   }
-  Place place() const { return {file_, number_}; }
+  text::Place place() const { return {file_, number_}; }
 
  private:
   const std::string& text_;
@@ -42,13 +42,13 @@ class Lines {
 
 }  // namespace
 
-char separator_of(const std::string& name, const Place& place) {
+char separator_of(const std::string& name, const text::Place& place) {
   if (name == "auto") return 0;
   if (name == "comma") return ',';
   if (name == "semicolon") return ';';
   if (name == "tab") return '\t';
   if (name == "space") return ' ';
-  throw InputError(place, name, "a separator is comma, semicolon, tab, space or auto");
+  throw text::InputError(place, name, "a separator is comma, semicolon, tab, space or auto");
 }
 
 DelimitedFile parse_delimited(const std::string& text, const std::string& file,
@@ -59,12 +59,12 @@ DelimitedFile parse_delimited(const std::string& text, const std::string& file,
   char separator = format.separator;
   std::string line;
   while (lines.next(line)) {
-    const Place place = lines.place();
-    const std::string bare = trimmed(line);
+    const text::Place place = lines.place();
+    const std::string bare = text::trimmed(line);
     if (place.line <= format.skip || bare.empty()) continue;
     if (!format.comment.empty() && bare.starts_with(format.comment)) continue;
     if (separator == 0) separator = separator_in(line, format.decimal_comma);
-    std::vector<std::string> fields = fields_of(line, {separator, true}, place);
+    std::vector<std::string> fields = text::fields_of(line, {separator, true}, place);
     if (format.header && result.header.empty()) {
       result.header = std::move(fields);
       result.header_line = place.line;
@@ -74,14 +74,14 @@ DelimitedFile parse_delimited(const std::string& text, const std::string& file,
                                : result.rows.empty() ? fields.size()
                                                      : result.rows.front().size();
     if (fields.size() != wanted)
-      throw InputError(
+      throw text::InputError(
           place, bare.substr(0, 40),
           std::to_string(fields.size()) + " fields where the lines above have " + std::to_string(wanted));
     result.rows.push_back(std::move(fields));
     result.line.push_back(place.line);
   }
-  if (result.rows.empty()) throw InputError({file, 0}, "", "no rows of data");
+  if (result.rows.empty()) throw text::InputError({file, 0}, "", "no rows of data");
   return result;
 }
 
-}  // namespace vernier
+}  // namespace vernier::importer

@@ -5,7 +5,7 @@
 
 #include "tools/text/error.h"
 
-namespace vernier {
+namespace vernier::importer {
 
 /// How a table of an instrument is written.
 struct DelimitedFormat {
@@ -32,6 +32,6 @@ DelimitedFile parse_delimited(const std::string& text, const std::string& file,
 
 /// The separator that a name means: comma, semicolon, tab, space, auto. place: of the name, where it is not
 /// an argument. Throws InputError.
-char separator_of(const std::string& name, const Place& place = {});
+char separator_of(const std::string& name, const text::Place& place = {});
 
-}  // namespace vernier
+}  // namespace vernier::importer

@@ -10,7 +10,7 @@
 
 #include "tools/maths/factors.h"
 
-namespace vernier {
+namespace vernier::importer {
 namespace {
 
 double sign(double x) { return x > 0 ? 1.0 : (x < 0 ? -1.0 : 0.0); }
@@ -34,7 +34,7 @@ constexpr std::size_t kCyclicPerAxis = 8;
 
 void cyclic_columns(const DiagnosticsSample& sample, char axis, const DiagnosticsSetup& setup,
                     double* columns) {
-  const double angle = sample.angle_deg * kRadPerDeg;
+  const double angle = sample.angle_deg * maths::kRadPerDeg;
   const Senses moving = senses(angle, sample.direction);
   const double along = axis == 'A' ? std::cos(angle) : std::sin(angle);
   const double pitch = axis == 'A' ? setup.pitch_a_mm : setup.pitch_b_mm;
@@ -87,7 +87,7 @@ CyclicEffect cyclic_effect(const std::vector<DiagnosticsSample>& samples, const 
 
 std::array<double, kDiagnosticsCount> diagnostics_basis(double angle_deg, int direction,
                                                         const DiagnosticsSetup& setup) {
-  const double t = angle_deg * kRadPerDeg, d = direction;
+  const double t = angle_deg * maths::kRadPerDeg, d = direction;
   const double c = std::cos(t), s = std::sin(t);
   const auto [va, vb] = senses(t, direction);
   const double radius_m = setup.radius_mm / 1000, speed_um_ms = setup.feed_mm_min / 60;  // mm/s = um/ms
@@ -152,4 +152,4 @@ DiagnosticsResult fit_diagnostics(const std::vector<DiagnosticsSample>& samples,
   return result;
 }
 
-}  // namespace vernier
+}  // namespace vernier::importer

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace vernier {
+namespace vernier::importer {
 
 inline constexpr std::size_t kDiagnosticsCount = 20;
 
@@ -85,4 +85,4 @@ struct DiagnosticsResult {
 DiagnosticsResult fit_diagnostics(const std::vector<DiagnosticsSample>& samples,
                                   const DiagnosticsSetup& setup);
 
-}  // namespace vernier
+}  // namespace vernier::importer

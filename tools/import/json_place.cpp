@@ -8,7 +8,7 @@
 #include "tools/text/words.h"
 #include "tools/text/xml_text.h"
 
-namespace vernier {
+namespace vernier::importer {
 namespace {
 
 // Walks over a text by the parser's events and remembers where in the document it is.
@@ -88,8 +88,8 @@ struct Counting {
 }  // namespace
 
 nlohmann::json parse_json(const std::string& path, std::string_view text) {
-  if (nests_deeper_than(text, kMostJsonDepth))
-    throw InputError({path, 1}, "[", "nests deeper than any record does");
+  if (text::nests_deeper_than(text, text::kMostJsonDepth))
+    throw text::InputError({path, 1}, "[", "nests deeper than any record does");
   try {
     return nlohmann::json::parse(text);
   } catch (const nlohmann::json::out_of_range& error) {
@@ -97,7 +97,7 @@ nlohmann::json parse_json(const std::string& path, std::string_view text) {
     const std::string what = error.what();
     const std::size_t open = what.find('\''), close = what.rfind('\'');
     const std::string word = open < close ? what.substr(open + 1, close - open - 1) : "";
-    throw InputError({path, line_of(text, text.find(word))}, word, "a number that is too large");
+    throw text::InputError({path, text::line_of(text, text.find(word))}, word, "a number that is too large");
   } catch (const nlohmann::json::parse_error& error) {
     const std::size_t at = std::min(error.byte == 0 ? 0 : error.byte - 1, text.size());
     std::size_t begin = at;
@@ -105,7 +105,7 @@ nlohmann::json parse_json(const std::string& path, std::string_view text) {
       --begin;
     std::string word(
         text.substr(begin, std::min<std::size_t>(24, text.find_first_of(" \t\r\n,:[]{}", at) - begin)));
-    throw InputError({path, line_of(text, at)}, word.empty() ? "end of file" : word, "not JSON");
+    throw text::InputError({path, text::line_of(text, at)}, word.empty() ? "end of file" : word, "not JSON");
   }
 }
 
@@ -117,7 +117,7 @@ std::size_t json_line(std::string_view text, const std::string& pointer) {
   if (ran_through) return 0;
   // The parser has read one character beyond the value, which may be the line end behind it.
   const auto offset = static_cast<std::size_t>(reached - text.data());
-  return line_of(text, offset == 0 ? 0 : offset - 1);
+  return text::line_of(text, offset == 0 ? 0 : offset - 1);
 }
 
-}  // namespace vernier
+}  // namespace vernier::importer

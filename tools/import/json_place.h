@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace vernier {
+namespace vernier::importer {
 
 /// Parses JSON. Throws InputError with the line of the offending byte and the word there. tool.
 nlohmann::json parse_json(const std::string& path, std::string_view text);
@@ -14,4 +14,4 @@ nlohmann::json parse_json(const std::string& path, std::string_view text);
 /// such value. tool.
 std::size_t json_line(std::string_view text, const std::string& pointer);
 
-}  // namespace vernier
+}  // namespace vernier::importer

@@ -9,29 +9,30 @@
 #include "tools/text/numbers.h"
 #include "tools/text/units.h"
 
-namespace vernier {
+namespace vernier::importer {
 namespace {
 
 using Index = Eigen::Index;
 
 class Log {
  public:
-  Log(const std::string& text, const std::string& file) : csv_(parse_csv(text, file)) {}
+  Log(const std::string& text, const std::string& file) : csv_(text::parse_csv(text, file)) {}
 
-  const CsvFile& csv() const { return csv_; }
+  const text::CsvFile& csv() const { return csv_; }
 
   std::size_t need(const std::string& name) const {
     for (std::size_t k = 0; k < csv_.columns.size(); ++k)
       if (csv_.columns[k].name == name) return k;
-    throw InputError({csv_.file, csv_.header_line}, name, "the log has no such column");
+    throw text::InputError({csv_.file, csv_.header_line}, name, "the log has no such column");
   }
   /// In the base unit.
   double number(std::size_t row, std::size_t column) const {
     const std::string& cell = csv_.rows[row][column];
-    const auto value = parse_number(cell);
+    const auto value = text::parse_number(cell);
     if (!value)
-      throw InputError({csv_.file, csv_.line[row]}, cell, "not a number, for " + csv_.columns[column].name);
-    const Unit unit = *find_unit(csv_.columns[column].unit);
+      throw text::InputError({csv_.file, csv_.line[row]}, cell,
+                             "not a number, for " + csv_.columns[column].name);
+    const text::Unit unit = *text::find_unit(csv_.columns[column].unit);
     return *value * unit.factor + unit.offset;
   }
   Eigen::VectorXd numbers(std::size_t column) const {
@@ -44,16 +45,16 @@ class Log {
   std::string of(const Dwell& dwell, std::size_t column) const {
     double sum = 0;
     for (std::size_t row = dwell.first; row <= dwell.last; ++row) {
-      const auto value = parse_number(csv_.rows[row][column]);
+      const auto value = text::parse_number(csv_.rows[row][column]);
       if (!value) return csv_.rows[dwell.first][column];
       sum += *value;
     }
     // Nine decimals are below every axis: a mean of equal numbers leaves no tail of binary digits.
-    return number_text(std::round(1e9 * sum / static_cast<double>(dwell.last - dwell.first + 1)) / 1e9);
+    return text::number_text(std::round(1e9 * sum / static_cast<double>(dwell.last - dwell.first + 1)) / 1e9);
   }
 
  private:
-  CsvFile csv_;
+  text::CsvFile csv_;
 };
 
 Eigen::Matrix3Xd points_of(const ImportTable& tracker) {
@@ -61,7 +62,7 @@ Eigen::Matrix3Xd points_of(const ImportTable& tracker) {
   Index k = 0;
   for (const char* name : {"x", "y", "z"}) {
     if (tracker.find(name) == nullptr)
-      throw InputError({tracker.file, 0}, name, "not mapped: --log pairs points of x, y and z");
+      throw text::InputError({tracker.file, 0}, name, "not mapped: --log pairs points of x, y and z");
     const std::vector<double> values = tracker.numbers(name);
     points.row(k++) = Eigen::Map<const Eigen::RowVectorXd>(values.data(), points.cols());
   }
@@ -69,12 +70,12 @@ Eigen::Matrix3Xd points_of(const ImportTable& tracker) {
 }
 
 /// Where the nominal machine stands in each dwell.
-Eigen::Matrix3Xd stands(const Machine& machine, const Eigen::MatrixXd& axes,
+Eigen::Matrix3Xd stands(const model::Machine& machine, const Eigen::MatrixXd& axes,
                         const std::vector<Dwell>& dwells) {
   std::vector<double> references;
   for (const auto& input : machine.inputs) references.push_back(input.reference);
-  States states = make_states(dwells.size(), machine.axes.size(), references);
-  make_one_run(states, "log");
+  model::States states = model::make_states(dwells.size(), machine.axes.size(), references);
+  model::make_one_run(states, "log");
   for (std::size_t j = 0; j < dwells.size(); ++j)
     for (std::size_t a = 0; a < machine.axes.size(); ++a)
       states.axis[a][static_cast<Index>(j)] =
@@ -82,7 +83,7 @@ Eigen::Matrix3Xd stands(const Machine& machine, const Eigen::MatrixXd& axes,
               .segment(static_cast<Index>(dwells[j].first),
                        static_cast<Index>(dwells[j].last - dwells[j].first + 1))
               .mean();
-  return forward(nominal_machine(machine), states).position;
+  return model::forward(model::nominal_machine(machine), states).position;
 }
 
 ImportTable paired_table(const ImportTable& tracker, const Log& log, const Pairing& pairing,
@@ -92,10 +93,10 @@ ImportTable paired_table(const ImportTable& tracker, const Log& log, const Pairi
   for (std::size_t i = 0; i < pairing.dwell.size(); ++i)
     if (pairing.dwell[i]) kept.push_back(i), table.line.push_back(tracker.line[i]);
   for (std::size_t k = 0; k < log.csv().columns.size(); ++k) {
-    const CsvColumn& column = log.csv().columns[k];
+    const text::CsvColumn& column = log.csv().columns[k];
     if (column.name != "t" && tracker.find(column.name) != nullptr)
-      throw InputError({log.csv().file, log.csv().header_line}, column.name,
-                       "the tracker's table has this column too");
+      throw text::InputError({log.csv().file, log.csv().header_line}, column.name,
+                             "the tracker's table has this column too");
     ImportTable::Column made{column.name, column.unit, {}};
     for (const std::size_t i : kept) made.cells.push_back(log.of(dwells[*pairing.dwell[i]], k));
     table.columns.push_back(std::move(made));
@@ -112,13 +113,13 @@ ImportTable paired_table(const ImportTable& tracker, const Log& log, const Pairi
 }  // namespace
 
 LoggedTable with_log(const ImportTable& tracker, const std::string& text, const std::string& log_file,
-                     const Machine& machine, const LogOptions& options) {
+                     const model::Machine& machine, const LogOptions& options) {
   const Log log(text, log_file);
   const Eigen::VectorXd time = log.numbers(log.need("t"));
   for (Index row = 1; row < time.size(); ++row)
     if (time[row] < time[row - 1])
-      throw InputError({log_file, log.csv().line[static_cast<std::size_t>(row)]}, "t",
-                       "falls: a log is in time order");
+      throw text::InputError({log_file, log.csv().line[static_cast<std::size_t>(row)]}, "t",
+                             "falls: a log is in time order");
   Eigen::MatrixXd axes(time.size(), static_cast<Index>(machine.axes.size()));
   for (std::size_t a = 0; a < machine.axes.size(); ++a)
     axes.col(static_cast<Index>(a)) = log.numbers(log.need(machine.axes[a].name));
@@ -127,7 +128,7 @@ LoggedTable with_log(const ImportTable& tracker, const std::string& text, const 
   input.dwells =
       find_dwells(time, axes, Eigen::VectorXd::Constant(axes.cols(), options.still), options.dwell_s);
   if (input.dwells.empty())
-    throw InputError({log_file, 0}, "", "the machine never stands still so long: --dwell, --still");
+    throw text::InputError({log_file, 0}, "", "the machine never stands still so long: --dwell, --still");
   input.stand = stands(machine, axes, input.dwells);
   input.point = points_of(tracker);
   input.distance_tolerance_mm = options.tolerance_mm;
@@ -139,11 +140,11 @@ LoggedTable with_log(const ImportTable& tracker, const std::string& text, const 
   for (std::size_t i = 0; i < result.pairing.dwell.size(); ++i)
     if (!result.pairing.dwell[i]) result.unmatched_line.push_back(tracker.line[i]);
   if (result.unmatched_line.size() == tracker.line.size())
-    throw InputError({tracker.file, 0}, "",
-                     "no point fits the log: another machine, another day, or --tolerance");
+    throw text::InputError({tracker.file, 0}, "",
+                           "no point fits the log: another machine, another day, or --tolerance");
   result.dwells = input.dwells;
   result.table = paired_table(tracker, log, result.pairing, input.dwells);
   return result;
 }
 
-}  // namespace vernier
+}  // namespace vernier::importer

@@ -7,7 +7,7 @@
 #include "tools/import/pairing.h"
 #include "tools/model/machine.h"
 
-namespace vernier {
+namespace vernier::importer {
 
 struct LogOptions {
   double dwell_s = 0.5;     // shorter standstills are none
@@ -28,6 +28,6 @@ struct LoggedTable {
 /// words, `t` by the log's clock. text: the log, a CSV of measurement columns with `t` and every axis of the
 /// machine, in time order. Throws InputError with file, line and word. tool.
 LoggedTable with_log(const ImportTable& tracker, const std::string& text, const std::string& log_file,
-                     const Machine& machine, const LogOptions& options);
+                     const model::Machine& machine, const LogOptions& options);
 
-}  // namespace vernier
+}  // namespace vernier::importer

@@ -9,7 +9,7 @@
 #include "tools/maths/alignment.h"
 #include "tools/text/error.h"
 
-namespace vernier {
+namespace vernier::importer {
 namespace {
 
 using Index = Eigen::Index;
@@ -135,8 +135,8 @@ bool drop_by_place(const PairingInput& input, Pairing& result) {
     from.col(at(k)) = input.stand.col(at(*result.dwell[paired[k]]));
     to.col(at(k)) = input.point.col(at(paired[k]));
   }
-  if (!fixes_motion(from)) return false;
-  const Eigen::VectorXd off = aligned_error(align(from, to), from, to).colwise().norm();
+  if (!maths::fixes_motion(from)) return false;
+  const Eigen::VectorXd off = maths::aligned_error(maths::align(from, to), from, to).colwise().norm();
   result.rms_mm = std::sqrt(off.squaredNorm() / static_cast<double>(off.size()));
   constexpr double kBeyond = 3;
   Index worst = 0;
@@ -170,7 +170,7 @@ Pairing pair_points(const PairingInput& input) {
   const auto points = static_cast<std::size_t>(input.point.cols());
   if (input.stand.cols() == 0 && !input.time) {
     if (points != input.dwells.size())
-      throw InputError(
+      throw text::InputError(
           fmt::format("{} points and {} dwells, and nothing that tells which belong together: give a "
                       "column t, or --machine for the ways between them",
                       points, input.dwells.size()));
@@ -193,4 +193,4 @@ Pairing pair_points(const PairingInput& input) {
   return result;
 }
 
-}  // namespace vernier
+}  // namespace vernier::importer

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace vernier {
+namespace vernier::importer {
 
 /// A stretch of a machine's log in which no axis moved.
 struct Dwell {
@@ -44,4 +44,4 @@ struct Pairing {
 /// numbers differ. tool.
 Pairing pair_points(const PairingInput& input);
 
-}  // namespace vernier
+}  // namespace vernier::importer

@@ -8,7 +8,7 @@
 #include "tools/import/ballbar_motion.h"
 #include "tools/maths/factors.h"
 
-namespace vernier {
+namespace vernier::importer {
 namespace {
 
 using Values = std::map<std::string, double>;
@@ -51,7 +51,7 @@ void take_linear(const std::vector<DiagnosticsSample>& samples, const Diagnostic
   const auto value = [&](const std::string& name) { return found.value[diagnostic(name)]; };
   for (std::size_t i = 0; i < kDiagnosticsCount; ++i)
     values[std::string("AF_") + kDiagnosticsNames[i]] = found.value[i];
-  values["AF_BEST_RADIUS"] = setup.radius_mm + value("GLOBAL_SCALE") / kUmPerMm;
+  values["AF_BEST_RADIUS"] = setup.radius_mm + value("GLOBAL_SCALE") / maths::kUmPerMm;
   const double radius_m = setup.radius_mm / 1e3;
   for (const std::string axis : {"A", "B"}) {
     const double sense = axis == "A" ? +1 : -1;
@@ -86,8 +86,8 @@ double roundness_um(const BallbarFile& file, const DiagnosticsResult& found) {
   Extent extent;
   for (const auto& pass : circular_passes(file))
     for (std::size_t i = 0; i < pass.angle_deg.size(); ++i) {
-      const double angle = pass.angle_deg[i] * kRadPerDeg;
-      extent.take(pass.deviation_mm[i] * kUmPerMm - a * std::cos(angle) - b * std::sin(angle));
+      const double angle = pass.angle_deg[i] * maths::kRadPerDeg;
+      extent.take(pass.deviation_mm[i] * maths::kUmPerMm - a * std::cos(angle) - b * std::sin(angle));
     }
   return extent.span();
 }
@@ -105,7 +105,7 @@ double rest_um(const BallbarFile& file) {
         const auto i = static_cast<std::size_t>(std::clamp(std::floor(at), 0.0, have - 2));
         const double share = at - static_cast<double>(i);
         const double reading = (1 - share) * pass.deviation_mm[i] + share * pass.deviation_mm[i + 1];
-        squares += std::pow((reading - series.reading_mm[k]) * kUmPerMm, 2);
+        squares += std::pow((reading - series.reading_mm[k]) * maths::kUmPerMm, 2);
       }
     }
   return std::sqrt(squares / count);
@@ -168,7 +168,7 @@ std::vector<DiagnosticsSample> model_curve(const BallbarFile& file) {
     for (std::size_t k = 0; k < series.reading_mm.size(); ++k) {
       const double turned = (static_cast<double>(k) + 0.5) * 360 / count;
       const bool ccw = series.label == "CCW";
-      samples.push_back({ccw ? turned : 360 - turned, ccw ? +1 : -1, series.reading_mm[k] * kUmPerMm});
+      samples.push_back({ccw ? turned : 360 - turned, ccw ? +1 : -1, series.reading_mm[k] * maths::kUmPerMm});
     }
   }
   return samples;
@@ -205,4 +205,4 @@ RecomputedResults recompute_diagnostics(const BallbarFile& file, const BallbarAn
   return results;
 }
 
-}  // namespace vernier
+}  // namespace vernier::importer

@@ -8,7 +8,7 @@
 #include "tools/import/circular.h"
 #include "tools/import/diagnostics.h"
 
-namespace vernier {
+namespace vernier::importer {
 
 inline constexpr const char* kDiagnosticsAnalysis = "RENISHAW_DIAGNOSTICS";
 
@@ -33,4 +33,4 @@ std::vector<DiagnosticsSample> model_curve(const BallbarFile& file);
 RecomputedResults recompute_diagnostics(const BallbarFile& file, const BallbarAnalysis& analysis,
                                         const CircularResult& circle);
 
-}  // namespace vernier
+}  // namespace vernier::importer

@@ -6,7 +6,7 @@
 #include "tools/import/printed_diagnostics.h"
 #include "tools/maths/factors.h"
 
-namespace vernier {
+namespace vernier::importer {
 namespace {
 
 // Of one unit in the last digit that the instrument's software prints.
@@ -23,7 +23,7 @@ Values run_values(const CircularPassResult& pass) {
   return {{"AF_CENTRE_OFFSET_A", pass.centre_a_mm},
           {"AF_CENTRE_OFFSET_B", pass.centre_b_mm},
           {"AF_BEST_RADIUS", pass.radius_mm},
-          {"AF_CIRCULARITY", pass.circular_deviation_um / kUmPerMm},
+          {"AF_CIRCULARITY", pass.circular_deviation_um / maths::kUmPerMm},
           {"AF_CALCULATED_FEEDRATE", pass.feed_mm_min.value_or(NAN)}};
 }
 
@@ -53,8 +53,8 @@ void both_senses(const CircularResult& circle, Values& values) {
   values["AF_MIN_CIRCULAR_DEVIATION"] = mean.min_um;
   values["AF_MAX_CIRCULAR_DEVIATION_LOCATION"] = mean.max_deg;
   values["AF_MIN_CIRCULAR_DEVIATION_LOCATION"] = mean.min_deg;
-  values["AF_CENTRE_OFFSET_A"] = *circle.mean_centre_a_mm * kUmPerMm;
-  values["AF_CENTRE_OFFSET_B"] = *circle.mean_centre_b_mm * kUmPerMm;
+  values["AF_CENTRE_OFFSET_A"] = *circle.mean_centre_a_mm * maths::kUmPerMm;
+  values["AF_CENTRE_OFFSET_B"] = *circle.mean_centre_b_mm * maths::kUmPerMm;
   values["AF_BEST_RADIUS"] = *circle.mean_radius_mm;
   if (const auto feed = mean_feed_mm_min(circle)) values["AF_CALCULATED_FEEDRATE"] = *feed;
 }
@@ -105,4 +105,4 @@ std::vector<PrintedResult> printed_results(const BallbarFile& file, const Circul
   return results;
 }
 
-}  // namespace vernier
+}  // namespace vernier::importer

@@ -7,7 +7,7 @@
 #include "tools/import/ballbar_file.h"
 #include "tools/import/circular.h"
 
-namespace vernier {
+namespace vernier::importer {
 
 /// A result that the file prints beside the same one computed here, both in the printed unit.
 struct PrintedResult {
@@ -27,4 +27,4 @@ struct PrintedResult {
 /// read as its software meant them. tool.
 std::vector<PrintedResult> printed_results(const BallbarFile& file, const CircularResult& circle);
 
-}  // namespace vernier
+}  // namespace vernier::importer

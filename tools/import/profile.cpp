@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace vernier {
+namespace vernier::importer {
 namespace {
 
 using Index = Eigen::Index;
@@ -92,4 +92,4 @@ ProfileShift profile_shift(const Eigen::VectorXd& first, const Eigen::VectorXd& 
   return result;
 }
 
-}  // namespace vernier
+}  // namespace vernier::importer

@@ -4,7 +4,7 @@
 
 #include "tools/import/ballbar_file.h"
 
-namespace vernier {
+namespace vernier::importer {
 
 inline constexpr Eigen::Index kProfilePoints = 720;  // of a turn, half a degree each
 
@@ -20,4 +20,4 @@ struct ProfileShift {
 };
 ProfileShift profile_shift(const Eigen::VectorXd& first, const Eigen::VectorXd& second);
 
-}  // namespace vernier
+}  // namespace vernier::importer

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-namespace vernier {
+namespace vernier::importer {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -34,8 +34,8 @@ Json run_json(const RunRepair& run) {
           {"turn_uncertainty", run.turn_uncertainty},
           {"gaps", gaps},
           {"start_shift_deg", run.start_shift_deg},
-          {"start_uncertainty_deg", or_null(run.start_uncertainty_deg)},
-          {"start_correlation", or_null(run.start_correlation)},
+          {"start_uncertainty_deg", text::or_null(run.start_uncertainty_deg)},
+          {"start_correlation", text::or_null(run.start_correlation)},
           {"start_from", run.start_from},
           {"feed_in_samples", run.feed_in},
           {"before", agreement_json(run.before)},
@@ -48,9 +48,9 @@ Json error_json(const RepeatingError& error) {
     steps.push_back({{"stations", step.stations},
                      {"left_out_um", step.left_out_um},
                      {"fit_um", step.fit_um},
-                     {"other_turn_um", or_null(step.other_turn_um)},
-                     {"other_turn_usual_um", or_null(step.other_turn_usual_um)},
-                     {"other_direction_um", or_null(step.other_direction_um)}});
+                     {"other_turn_um", text::or_null(step.other_turn_um)},
+                     {"other_turn_usual_um", text::or_null(step.other_turn_usual_um)},
+                     {"other_direction_um", text::or_null(step.other_direction_um)}});
   }
   return {{"run", error.run},
           {"fit_samples", error.fit_samples},
@@ -132,4 +132,4 @@ void print_repair(std::FILE* out, const RepairReport& report) {
   }
 }
 
-}  // namespace vernier
+}  // namespace vernier::importer

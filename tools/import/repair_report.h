@@ -7,7 +7,7 @@
 #include "tools/import/repeating_error.h"
 #include "tools/import/time_repair.h"
 
-namespace vernier {
+namespace vernier::importer {
 
 /// A repaired file and what repeats in it, before and after.
 struct RepairReport {
@@ -23,4 +23,4 @@ RepairReport repair_and_judge(const BallbarFile& file);
 nlohmann::ordered_json repair_json(const RepairReport& report);
 void print_repair(std::FILE* out, const RepairReport& report);
 
-}  // namespace vernier
+}  // namespace vernier::importer

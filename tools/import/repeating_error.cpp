@@ -10,7 +10,7 @@
 
 #include "tools/import/ballbar_motion.h"
 
-namespace vernier {
+namespace vernier::importer {
 namespace {
 
 using Index = Eigen::Index;
@@ -173,4 +173,4 @@ RepeatingError repeating_error(const BallbarFile& file, std::size_t run,
   return result;
 }
 
-}  // namespace vernier
+}  // namespace vernier::importer

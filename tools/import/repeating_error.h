@@ -7,7 +7,7 @@
 
 #include "tools/import/ballbar_file.h"
 
-namespace vernier {
+namespace vernier::importer {
 
 /// A model of the repeating error of one turn: centre and radius, and a table of the angle (linear between
 /// stations, periodic). rms in um.
@@ -35,4 +35,4 @@ struct RepeatingError {
 RepeatingError repeating_error(const BallbarFile& file, std::size_t run,
                                const std::vector<std::vector<char>>& on_circle = {});
 
-}  // namespace vernier
+}  // namespace vernier::importer

@@ -14,7 +14,7 @@
 #include "tools/text/units.h"
 #include "tools/text/words.h"
 
-namespace vernier {
+namespace vernier::importer {
 namespace {
 
 using Words = std::set<std::string>;
@@ -27,7 +27,9 @@ std::string lower(std::string_view text) {
 }
 
 /// The words of a heading; X_ist and X-ist are two.
-std::vector<std::string> words_of(const std::string& name) { return words_in(name, " \t_-./:;,()[]#+"); }
+std::vector<std::string> words_of(const std::string& name) {
+  return text::words_in(name, " \t_-./:;,()[]#+");
+}
 
 // What headings say in the languages of shop floors.
 const Words kTarget = {"soll",    "sollwert",     "target",       "nominal",    "cmd",
@@ -93,7 +95,7 @@ class Guess {
     return false;
   }
 
-  SheetColumn column(const Heading& heading) const {
+  SheetColumn column(const sheet::Heading& heading) const {
     SheetColumn column{SheetColumn::Use::kColumn, heading.name, heading.unit, "by its heading"};
     if (is_axis(heading.name) || is_known_name(heading.name) || is_motion(heading.name)) return column;
     std::string axis;
@@ -128,7 +130,7 @@ class Guess {
   }
 
  private:
-  static std::string other(const Heading& heading) {
+  static std::string other(const sheet::Heading& heading) {
     static const std::map<std::string, std::string> kNames = {
         {"zeit", "t"},         {"time", "t"},        {"vorschub", "feed"}, {"feedrate", "feed"},
         {"feed rate", "feed"}, {"lauf", "run"},      {"pass", "run"},      {"durchgang", "run"},
@@ -136,18 +138,18 @@ class Guess {
         {"unsicherheit", "u"}, {"uncertainty", "u"}, {"rolle", "role"},    {"richtung", "dir"},
         {"direction", "dir"},  {"sense", "dir"},     {"länge", "length"},  {"laenge", "length"}};
     const auto found = kNames.find(lower(heading.name));
-    return found == kNames.end() ? name_from_words(heading.name) : found->second;
+    return found == kNames.end() ? sheet::name_from_words(heading.name) : found->second;
   }
 
   const SheetWishes& wishes_;
 };
 
 /// Index of the column that a person names; none: npos.
-std::size_t find_heading(const SheetTable& table, const std::string& words) {
+std::size_t find_heading(const sheet::SheetTable& table, const std::string& words) {
   for (const bool by_text : {true, false})
     for (std::size_t k = 0; k < table.headings.size(); ++k)
       if ((by_text ? table.headings[k].text : table.headings[k].name) == words) return k;
-  const auto number = parse_number(words);
+  const auto number = text::parse_number(words);
   if (number && *number >= 1 && *number <= static_cast<double>(table.headings.size()) &&
       *number == std::floor(*number))
     return static_cast<std::size_t>(*number) - 1;
@@ -155,38 +157,40 @@ std::size_t find_heading(const SheetTable& table, const std::string& words) {
 }
 
 /// "x[mm]" as name and unit.
-SheetColumn target_of(const std::string& words, const Place& place) {
+SheetColumn target_of(const std::string& words, const text::Place& place) {
   SheetColumn column;
   const auto open = words.find('[');
-  column.name = trimmed(words.substr(0, open));
+  column.name = text::trimmed(words.substr(0, open));
   if (open != std::string::npos) {
     const std::string unit = words.substr(open);
-    if (!unit.ends_with(']') || !unit_meant(unit))
-      throw InputError(place, unit, "unknown unit; known are " + known_units());
-    column.unit = *unit_meant(unit);
+    if (!unit.ends_with(']') || !sheet::unit_meant(unit))
+      throw text::InputError(place, unit, "unknown unit; known are " + text::known_units());
+    column.unit = *sheet::unit_meant(unit);
   }
-  if (!is_name(column.name)) throw InputError(place, column.name, "a column name is letters, digits and _");
+  if (!text::is_name(column.name))
+    throw text::InputError(place, column.name, "a column name is letters, digits and _");
   return column;
 }
 
-std::pair<std::string, std::string> halves(const std::string& words, bool last, const Place& place,
+std::pair<std::string, std::string> halves(const std::string& words, bool last, const text::Place& place,
                                            const char* form) {
   const auto at = last ? words.rfind('=') : words.find('=');
   std::pair<std::string, std::string> two;
-  if (at != std::string::npos) two = {trimmed(words.substr(0, at)), trimmed(words.substr(at + 1))};
+  if (at != std::string::npos)
+    two = {text::trimmed(words.substr(0, at)), text::trimmed(words.substr(at + 1))};
   if (two.first.empty() || two.second.empty())
-    throw InputError(place, words, std::string("not of the form ") + form);
+    throw text::InputError(place, words, std::string("not of the form ") + form);
   return two;
 }
 
 enum class Holds { kNothing, kNumbers, kWords };  // words: in most of the cells that are filled
 
-Holds holds(const Sheet& sheet, const SheetTable& table, std::size_t column) {
+Holds holds(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::size_t column) {
   std::size_t words = 0, filled = 0;
   for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
     const std::string& cell = sheet.rows[row][column];
     filled += cell.empty() ? 0 : 1;
-    words += !cell.empty() && !plain_number(cell, sheet.decimal_comma) ? 1 : 0;
+    words += !cell.empty() && !sheet::plain_number(cell, sheet.decimal_comma) ? 1 : 0;
   }
   if (filled == 0) return Holds::kNothing;
   return 2 * words > filled ? Holds::kWords : Holds::kNumbers;
@@ -218,7 +222,7 @@ std::set<std::string> measured_axes(const std::vector<SheetColumn>& columns,
 }
 
 /// Deviations and senses that name no axis belong to the only one; what stays open is left out and said.
-void settle(const Sheet& sheet, const SheetTable& table, std::vector<SheetColumn>& columns,
+void settle(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::vector<SheetColumn>& columns,
             const Guess& guess) {
   std::set<std::string> axes, measured;
   for (const SheetColumn& column : columns)
@@ -250,7 +254,7 @@ void settle(const Sheet& sheet, const SheetTable& table, std::vector<SheetColumn
 }
 
 /// The same name twice: an index column or a remark that reads like another.
-void keep_names_apart(const SheetTable& table, std::vector<SheetColumn>& columns) {
+void keep_names_apart(const sheet::SheetTable& table, std::vector<SheetColumn>& columns) {
   std::map<std::string, std::size_t> seen;
   for (std::size_t k = 0; k < columns.size(); ++k) {
     SheetColumn& column = columns[k];
@@ -276,38 +280,39 @@ std::string direction_word(const std::string& cell) {
 }
 
 /// One cell as the measurement file writes it.
-std::string cell_text(const Sheet& sheet, const SheetColumn& column, const std::string& cell,
+std::string cell_text(const sheet::Sheet& sheet, const SheetColumn& column, const std::string& cell,
                       std::size_t row) {
-  const Place place{sheet.file, sheet.line[row]};
+  const text::Place place{sheet.file, sheet.line[row]};
   if (column.words) return cell;
   if (is_label(column.name)) {
     const std::string small = lower(cell);
     if (column.name != "role") return cell;
     if (small == "check" || small == "kontrolle" || small == "prüfen") return "check";
     if (small == "fit" || small.empty()) return small;
-    throw InputError(place, cell, "a role is fit or check");
+    throw text::InputError(place, cell, "a role is fit or check");
   }
   if (cell.empty() || cell == "-" || cell == "--" || cell == "n/a" || cell == "#NV" || cell == "#N/A") {
     if (!column.name.starts_with("dir")) return "";
   }
   if (column.name.starts_with("dir"))
     if (const std::string sense = direction_word(cell); !sense.empty()) return sense;
-  if (const auto number = plain_number(cell, sheet.decimal_comma)) return *number;
-  const bool other_sign = plain_number(cell, !sheet.decimal_comma).has_value();
-  throw InputError(place, cell,
-                   "not a number, for " + column.name +
-                       (other_sign ? std::string("; a decimal ") + (sheet.decimal_comma ? "point" : "comma") +
-                                         "? (--decimal point or comma says which is meant)"
-                                   : std::string()));
+  if (const auto number = sheet::plain_number(cell, sheet.decimal_comma)) return *number;
+  const bool other_sign = sheet::plain_number(cell, !sheet.decimal_comma).has_value();
+  throw text::InputError(
+      place, cell,
+      "not a number, for " + column.name +
+          (other_sign ? std::string("; a decimal ") + (sheet.decimal_comma ? "point" : "comma") +
+                            "? (--decimal point or comma says which is meant)"
+                      : std::string()));
 }
 
 }  // namespace
 
-void assign_column(SheetWishes& wishes, const SheetTable& table, const std::string& words) {
+void assign_column(SheetWishes& wishes, const sheet::SheetTable& table, const std::string& words) {
   // A heading may hold the sign itself: the split that makes a heading of one side is the one that was meant.
   for (const bool last : {false, true}) {
     const auto [left, right] = halves(words, last, {}, "name[unit]=HEADING");
-    if (find_heading(table, right) != std::string::npos && is_name(left.substr(0, left.find('[')))) {
+    if (find_heading(table, right) != std::string::npos && text::is_name(left.substr(0, left.find('[')))) {
       wishes.assignments.push_back({right, target_of(left, {}), {}});
       return;
     }
@@ -317,11 +322,11 @@ void assign_column(SheetWishes& wishes, const SheetTable& table, const std::stri
     }
   }
   std::string known;
-  for (const Heading& heading : table.headings) known += (known.empty() ? "" : ", ") + heading.text;
-  throw InputError("--column \"" + words + "\": no such heading; there are " + known);
+  for (const sheet::Heading& heading : table.headings) known += (known.empty() ? "" : ", ") + heading.text;
+  throw text::InputError("--column \"" + words + "\": no such heading; there are " + known);
 }
 
-void assign_deviation(SheetWishes& wishes, const std::string& words, const Place& place) {
+void assign_deviation(SheetWishes& wishes, const std::string& words, const text::Place& place) {
   const auto [left, right] = halves(words, false, place, "AXIS[unit]=HEADING");
   SheetColumn column = target_of(left, place);
   column.use = SheetColumn::Use::kDeviation;
@@ -330,12 +335,12 @@ void assign_deviation(SheetWishes& wishes, const std::string& words, const Place
 
 void read_sheet_profile(SheetWishes& wishes, const std::string& text, const std::string& file) {
   std::size_t number = 0;
-  for (const std::string& raw : parts_of(text, '\n')) {
-    const Place place{file, ++number};
-    const std::string line = trimmed(raw);
+  for (const std::string& raw : text::parts_of(text, '\n')) {
+    const text::Place place{file, ++number};
+    const std::string line = text::trimmed(raw);
     if (line.empty() || line.front() == '#') continue;
     const std::string key = line.substr(0, line.find(' '));
-    const std::string rest = trimmed(line.substr(key.size()));
+    const std::string rest = text::trimmed(line.substr(key.size()));
     if (key == "column" || key == "deviation") {
       const auto [heading, target] = halves(rest, true, place, "HEADING = name[unit]");
       SheetColumn column = target_of(target, place);
@@ -351,7 +356,7 @@ void read_sheet_profile(SheetWishes& wishes, const std::string& text, const std:
       wishes.constants.push_back(map.columns.front());
     } else {
       const auto [name, value] = halves(line, false, place, "STATEMENT = VALUE");
-      const auto skip = parse_count(value);
+      const auto skip = text::parse_count(value);
       if (name == "separator")
         wishes.format.separator = separator_of(value, place);
       else if (name == "decimal" && (value == "comma" || value == "point"))
@@ -362,10 +367,10 @@ void read_sheet_profile(SheetWishes& wishes, const std::string& text, const std:
         wishes.format.sheet = value;
       else if (name == "comment")
         wishes.format.comment = value == "none" ? "" : value;
-      else if (name == "unit" && unit_meant(value))
-        wishes.unit = *unit_meant(value);
+      else if (name == "unit" && sheet::unit_meant(value))
+        wishes.unit = *sheet::unit_meant(value);
       else
-        throw InputError(
+        throw text::InputError(
             place, name,
             "not understood; known are column, deviation, leave, set, separator, decimal, skip, sheet, "
             "comment, unit");
@@ -373,14 +378,14 @@ void read_sheet_profile(SheetWishes& wishes, const std::string& text, const std:
   }
 }
 
-std::string sheet_profile(const Sheet& sheet, const SheetTable& table,
+std::string sheet_profile(const sheet::Sheet& sheet, const sheet::SheetTable& table,
                           const std::vector<SheetColumn>& columns, const SheetWishes& wishes) {
   std::string text =
       "# How tables like " + sheet.file + " are read: vernier import table FILE --profile THIS -o MEAS\n";
   if (sheet.workbook && !wishes.format.sheet.empty()) text += "sheet = " + wishes.format.sheet + "\n";
   if (!sheet.workbook)
     text += std::string("separator = ") +
-            (sheet.separator == ' ' ? "space" : separator_word(sheet.separator)) + "\n";
+            (sheet.separator == ' ' ? "space" : sheet::separator_word(sheet.separator)) + "\n";
   text += std::string("decimal = ") + (sheet.decimal_comma ? "comma" : "point") + "\n";
   if (wishes.format.skip > 0) text += "skip = " + std::to_string(wishes.format.skip) + "\n";
   for (std::size_t k = 0; k < columns.size(); ++k) {
@@ -399,16 +404,16 @@ std::string sheet_profile(const Sheet& sheet, const SheetTable& table,
   return text;
 }
 
-std::vector<SheetColumn> columns_of_sheet(const Sheet& sheet, const SheetTable& table,
+std::vector<SheetColumn> columns_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& table,
                                           const SheetWishes& wishes) {
   const Guess guess(wishes);
   std::vector<SheetColumn> columns;
-  for (const Heading& heading : table.headings) columns.push_back(guess.column(heading));
+  for (const sheet::Heading& heading : table.headings) columns.push_back(guess.column(heading));
   for (const SheetWishes::Assignment& wish : wishes.assignments) {
     const std::size_t at = find_heading(table, wish.heading);
     if (at == std::string::npos) {
       if (wish.column.use == SheetColumn::Use::kLeft) continue;  // one that this file does not have
-      throw InputError(wish.place, wish.heading, "no column of " + sheet.file + " has this heading");
+      throw text::InputError(wish.place, wish.heading, "no column of " + sheet.file + " has this heading");
     }
     columns[at] = wish.column;
     if (columns[at].unit.empty()) columns[at].unit = table.headings[at].unit;
@@ -427,7 +432,7 @@ std::vector<SheetColumn> columns_of_sheet(const Sheet& sheet, const SheetTable& 
   return columns;
 }
 
-ImportTable table_of_sheet(const Sheet& sheet, const SheetTable& table,
+ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& table,
                            const std::vector<SheetColumn>& columns, const SheetWishes& wishes) {
   ImportTable result{sheet.file, {}, {}};
   const Guess guess(wishes);
@@ -442,11 +447,11 @@ ImportTable table_of_sheet(const Sheet& sheet, const SheetTable& table,
     static const Words kReadings = {"x", "y", "z", "rx", "ry", "rz", "length", "d"};
     measured |= column.use == SheetColumn::Use::kDeviation || kReadings.contains(column.name);
   }
-  const Place heading{sheet.file, sheet.line[table.heading_row]};
+  const text::Place heading{sheet.file, sheet.line[table.heading_row]};
   if (!without.empty())
-    throw InputError(heading, "", "no unit: say it for all (--unit mm) or for each, such as" + without);
+    throw text::InputError(heading, "", "no unit: say it for all (--unit mm) or for each, such as" + without);
   if (!measured)
-    throw InputError(
+    throw text::InputError(
         heading, "",
         "nothing measured among the columns (x y z rx ry rz length d, or a deviation of an axis): say which "
         "it is, such as --column \"x[mm]=HEADING\" or --deviation \"X[um]=HEADING\"; --preview shows what "
@@ -461,8 +466,8 @@ ImportTable table_of_sheet(const Sheet& sheet, const SheetTable& table,
   for (std::size_t k = 0; k < columns.size(); ++k)
     if (columns[k].use == SheetColumn::Use::kColumn) axis_column.emplace(columns[k].name, k);
   const auto mm = [](const std::string& text, const std::string& unit) {
-    const Unit found = *find_unit(unit);
-    return *parse_number(text) * found.factor;
+    const text::Unit found = *text::find_unit(unit);
+    return *text::parse_number(text) * found.factor;
   };
   for (std::size_t k = 0; k < columns.size(); ++k) {
     const SheetColumn& column = columns[k];
@@ -473,9 +478,10 @@ ImportTable table_of_sheet(const Sheet& sheet, const SheetTable& table,
     const std::size_t base =
         deviation && axis_column.contains(column.name) ? axis_column[column.name] : columns.size();
     if (deviation && base == columns.size())
-      throw InputError(heading, column.name, "this axis has no column");
+      throw text::InputError(heading, column.name, "this axis has no column");
     if (result.find(made.name) != nullptr)
-      throw InputError(heading, table.headings[k].text, "this would be " + made.name + " a second time");
+      throw text::InputError(heading, table.headings[k].text,
+                             "this would be " + made.name + " a second time");
     for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
       const auto& cells = sheet.rows[row];
       if (std::all_of(cells.begin(), cells.end(), [](const std::string& cell) { return cell.empty(); }))
@@ -484,9 +490,11 @@ ImportTable table_of_sheet(const Sheet& sheet, const SheetTable& table,
       if (deviation && !text.empty()) {
         const std::string at = cell_text(sheet, columns[base], cells[base], row);
         if (at.empty())
-          throw InputError({sheet.file, sheet.line[row]}, column.name, "a deviation without its position");
+          throw text::InputError({sheet.file, sheet.line[row]}, column.name,
+                                 "a deviation without its position");
         // Nine decimals are below every instrument: adding leaves no tail of binary digits.
-        text = number_text(std::round((mm(at, columns[base].unit) + mm(text, column.unit)) * 1e9) / 1e9);
+        text =
+            text::number_text(std::round((mm(at, columns[base].unit) + mm(text, column.unit)) * 1e9) / 1e9);
       }
       made.cells.push_back(std::move(text));
     }
@@ -498,4 +506,4 @@ ImportTable table_of_sheet(const Sheet& sheet, const SheetTable& table,
   return result;
 }
 
-}  // namespace vernier
+}  // namespace vernier::importer

@@ -8,7 +8,7 @@
 #include "tools/sheet/heading.h"
 #include "tools/sheet/sheet.h"
 
-namespace vernier {
+namespace vernier::importer {
 
 /// What becomes of a column of a sheet.
 struct SheetColumn {
@@ -25,9 +25,9 @@ struct SheetWishes {
   struct Assignment {
     std::string heading;  // its text, its name, or a number from 1
     SheetColumn column;
-    Place place;  // in a profile; no file for an argument
+    text::Place place;  // in a profile; no file for an argument
   };
-  SheetFormat format;
+  sheet::SheetFormat format;
   std::vector<Assignment> assignments;
   std::vector<MappedColumn> constants;  // "run=a", "u[um]=2"
   std::string unit;
@@ -36,9 +36,9 @@ struct SheetWishes {
 
 /// Adds "x[mm]=X ist" (also "X ist=x[mm]", as the other imports have it: `table` says which side is a
 /// heading). Throws InputError.
-void assign_column(SheetWishes& wishes, const SheetTable& table, const std::string& words);
+void assign_column(SheetWishes& wishes, const sheet::SheetTable& table, const std::string& words);
 /// Adds "X[um]=Abweichung": the position of the axis plus this deviation is what was measured.
-void assign_deviation(SheetWishes& wishes, const std::string& words, const Place& place = {});
+void assign_deviation(SheetWishes& wishes, const std::string& words, const text::Place& place = {});
 
 /// A profile: how a table is read, once and for all. A statement a line, # remarks:
 ///   separator = semicolon    decimal = comma    skip = 2    sheet = Tabelle1    unit = mm
@@ -46,17 +46,17 @@ void assign_deviation(SheetWishes& wishes, const std::string& words, const Place
 /// Throws InputError with file, line and word. tool.
 void read_sheet_profile(SheetWishes& wishes, const std::string& text, const std::string& file);
 /// The same for what was read, so that the next file of this kind needs no more words. tool.
-std::string sheet_profile(const Sheet& sheet, const SheetTable& table,
+std::string sheet_profile(const sheet::Sheet& sheet, const sheet::SheetTable& table,
                           const std::vector<SheetColumn>& columns, const SheetWishes& wishes);
 
 /// What each column is: as assigned, else by its heading. Throws InputError for a wish that fits no column.
 /// tool.
-std::vector<SheetColumn> columns_of_sheet(const Sheet& sheet, const SheetTable& table,
+std::vector<SheetColumn> columns_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& table,
                                           const SheetWishes& wishes);
 
 /// The rows of data as a measurement file's table. Throws InputError with file, line and word: a cell that is
 /// no number (its likely meaning with it), a column without a unit, a name twice, nothing measured. tool.
-ImportTable table_of_sheet(const Sheet& sheet, const SheetTable& table,
+ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& table,
                            const std::vector<SheetColumn>& columns, const SheetWishes& wishes);
 
-}  // namespace vernier
+}  // namespace vernier::importer

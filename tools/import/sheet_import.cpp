@@ -5,14 +5,14 @@
 
 #include "tools/text/error.h"
 
-namespace vernier {
+namespace vernier::importer {
 namespace {
 
 SheetWishes wishes_of(const SheetWords& words, SheetWishes wishes) {
   if (!words.separator.empty()) wishes.format.separator = separator_of(words.separator);
   if (!words.decimal.empty()) {
     if (words.decimal != "comma" && words.decimal != "point")
-      throw InputError("\"" + words.decimal + "\": a decimal sign is comma or point");
+      throw text::InputError("\"" + words.decimal + "\": a decimal sign is comma or point");
     wishes.format.decimal_comma = words.decimal == "comma";
   }
   if (!words.comment.empty()) wishes.format.comment = words.comment == "none" ? "" : words.comment;
@@ -20,8 +20,8 @@ SheetWishes wishes_of(const SheetWords& words, SheetWishes wishes) {
   if (!words.sheet.empty()) wishes.format.sheet = words.sheet;
   if (!words.axes.empty()) wishes.axes = words.axes;
   if (!words.unit.empty()) {
-    const auto unit = unit_meant(words.unit);
-    if (!unit) throw InputError("--unit " + words.unit + ": unknown unit");
+    const auto unit = sheet::unit_meant(words.unit);
+    if (!unit) throw text::InputError("--unit " + words.unit + ": unknown unit");
     wishes.unit = *unit;
   }
   for (const std::string& one : words.constants) {
@@ -38,8 +38,8 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
                            SheetWishes wishes) {
   SheetReading result;
   result.wishes = wishes_of(words, std::move(wishes));
-  result.sheet = read_sheet(bytes, file, result.wishes.format);
-  result.table = parts_of_sheet(result.sheet);
+  result.sheet = sheet::read_sheet(bytes, file, result.wishes.format);
+  result.table = sheet::parts_of_sheet(result.sheet);
   for (const std::string& one : words.columns) assign_column(result.wishes, result.table, one);
   for (const std::string& one : words.deviations) assign_deviation(result.wishes, one);
   for (const std::string& heading : words.left) {
@@ -51,11 +51,11 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
   return result;
 }
 
-std::string how_read(const Sheet& sheet) {
+std::string how_read(const sheet::Sheet& sheet) {
   if (sheet.workbook) return "workbook, sheet \"" + sheet.sheet + "\"";
   return fmt::format(
-      "{}, columns parted by {}, decimal {}{}", encoding_name(sheet.encoding),
-      separator_word(sheet.separator), sheet.decimal_comma ? "comma" : "point",
+      "{}, columns parted by {}, decimal {}{}", sheet::encoding_name(sheet.encoding),
+      sheet::separator_word(sheet.separator), sheet.decimal_comma ? "comma" : "point",
       sheet.decimal_doubtful ? " (it could part thousands as well: --decimal says which)" : "");
 }
 
@@ -88,4 +88,4 @@ nlohmann::ordered_json columns_json(const SheetReading& reading) {
   return list;
 }
 
-}  // namespace vernier
+}  // namespace vernier::importer

@@ -7,7 +7,7 @@
 
 #include "tools/import/sheet_columns.h"
 
-namespace vernier {
+namespace vernier::importer {
 
 /// What a person says of a spreadsheet, in the words of `vernier import table`; empty: guessed.
 struct SheetWords {
@@ -20,8 +20,8 @@ struct SheetWords {
 /// A spreadsheet as it was understood: everything up to the rows.
 struct SheetReading {
   SheetWishes wishes;
-  Sheet sheet;
-  SheetTable table;
+  sheet::Sheet sheet;
+  sheet::SheetTable table;
   std::vector<SheetColumn> columns;
 };
 
@@ -31,10 +31,10 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
                            SheetWishes wishes = {});
 
 /// "UTF-8, columns parted by semicolon, decimal comma".
-std::string how_read(const Sheet& sheet);
+std::string how_read(const sheet::Sheet& sheet);
 /// "x[mm]", "position of X + this, [um]", "left out".
 std::string becomes(const SheetColumn& column);
 /// [{heading, use: column | deviation | left, name, unit, why}].
 nlohmann::ordered_json columns_json(const SheetReading& reading);
 
-}  // namespace vernier
+}  // namespace vernier::importer

@@ -7,7 +7,7 @@
 #include "tools/maths/factors.h"
 #include "tools/text/units.h"
 
-namespace vernier {
+namespace vernier::importer {
 namespace {
 
 /// How far a direction or quaternion may be from length 1: rounding of four printed digits.
@@ -37,23 +37,24 @@ bool has_all(const ImportTable& table, const std::string& names) {
       missing += (missing.empty() ? "" : " ") + name;
   }
   if (found > 0 && !missing.empty())
-    throw InputError({table.file, 0}, missing, "not mapped, though others of " + names + " are");
+    throw text::InputError({table.file, 0}, missing, "not mapped, though others of " + names + " are");
   return found > 0;
 }
 
-void check_dimension(const ImportTable& table, const std::string& names, Dimension dimension) {
+void check_dimension(const ImportTable& table, const std::string& names, text::Dimension dimension) {
   for (const std::string& name : words(names)) {
     const std::string& unit = table.find(name)->unit;
-    if (find_unit(unit)->dimension == dimension) continue;
-    throw InputError({table.file, 0}, name + (unit.empty() ? "" : "[" + unit + "]"),
-                     dimension == Dimension::kNone
-                         ? std::string("this column is a pure number, it has no unit")
-                         : std::string("this column needs a unit like ") + base_unit(dimension));
+    if (text::find_unit(unit)->dimension == dimension) continue;
+    throw text::InputError({table.file, 0}, name + (unit.empty() ? "" : "[" + unit + "]"),
+                           dimension == text::Dimension::kNone
+                               ? std::string("this column is a pure number, it has no unit")
+                               : std::string("this column needs a unit like ") + text::base_unit(dimension));
   }
 }
 
 /// The columns `names` as rows of numbers in their base units.
-std::vector<Eigen::VectorXd> rows(const ImportTable& table, const std::string& names, Dimension dimension) {
+std::vector<Eigen::VectorXd> rows(const ImportTable& table, const std::string& names,
+                                  text::Dimension dimension) {
   check_dimension(table, names, dimension);
   const std::vector<std::string> list = words(names);
   std::vector<Eigen::VectorXd> result(table.line.size(),
@@ -81,8 +82,8 @@ void normalise(const ImportTable& table, std::vector<Eigen::VectorXd>& values, c
   for (std::size_t i = 0; i < values.size(); ++i) {
     const double length = values[i].norm();
     if (!(std::abs(length - 1) <= kLengthOff))
-      throw InputError({table.file, table.line[i]}, first_of(names),
-                       names + " is no unit vector: its length is " + std::to_string(length));
+      throw text::InputError({table.file, table.line[i]}, first_of(names),
+                             names + " is no unit vector: its length is " + std::to_string(length));
     values[i] /= length;
   }
 }
@@ -91,7 +92,7 @@ Eigen::Vector3d vector_of(Eigen::Quaterniond q) {
   if (q.w() < 0) q.coeffs() = -q.coeffs();
   const double sine = q.vec().norm();
   if (sine < 1e-300) return Eigen::Vector3d::Zero();
-  return q.vec() * (kDegPerRad * 2 * std::atan2(sine, q.w()) / sine);
+  return q.vec() * (maths::kDegPerRad * 2 * std::atan2(sine, q.w()) / sine);
 }
 
 }  // namespace
@@ -99,9 +100,9 @@ Eigen::Vector3d vector_of(Eigen::Quaterniond q) {
 Eigen::Vector3d rotation_vector_of_angles(const std::array<double, 3>& angles_deg) {
   using Eigen::AngleAxisd;
   using Eigen::Vector3d;
-  return vector_of(AngleAxisd(angles_deg[0] / kDegPerRad, Vector3d::UnitX()) *
-                   AngleAxisd(angles_deg[1] / kDegPerRad, Vector3d::UnitY()) *
-                   AngleAxisd(angles_deg[2] / kDegPerRad, Vector3d::UnitZ()));
+  return vector_of(AngleAxisd(angles_deg[0] / maths::kDegPerRad, Vector3d::UnitX()) *
+                   AngleAxisd(angles_deg[1] / maths::kDegPerRad, Vector3d::UnitY()) *
+                   AngleAxisd(angles_deg[2] / maths::kDegPerRad, Vector3d::UnitZ()));
 }
 
 Eigen::Vector3d rotation_vector_of_quaternion(const std::array<double, 4>& wxyz) {
@@ -114,15 +115,16 @@ void finish_tracker(ImportTable& table) {
   const bool by_vector =
       table.find("rx") != nullptr || table.find("ry") != nullptr || table.find("rz") != nullptr;
   if (by_angles + by_quaternion + by_vector > 1)
-    throw InputError({table.file, 0}, by_quaternion ? "qw" : "rX", "the orientation is mapped in two ways");
+    throw text::InputError({table.file, 0}, by_quaternion ? "qw" : "rX",
+                           "the orientation is mapped in two ways");
   std::vector<Eigen::VectorXd> vectors;
   if (by_angles) {
-    for (const Eigen::VectorXd& row : rows(table, angles, Dimension::kAngle))
+    for (const Eigen::VectorXd& row : rows(table, angles, text::Dimension::kAngle))
       vectors.emplace_back(rotation_vector_of_angles({row[0], row[1], row[2]}));
     replace(table, angles, "rx ry rz", "deg", vectors);
   }
   if (by_quaternion) {
-    std::vector<Eigen::VectorXd> values = rows(table, quaternion, Dimension::kNone);
+    std::vector<Eigen::VectorXd> values = rows(table, quaternion, text::Dimension::kNone);
     normalise(table, values, quaternion);
     for (const Eigen::VectorXd& row : values)
       vectors.emplace_back(rotation_vector_of_quaternion({row[0], row[1], row[2], row[3]}));
@@ -130,42 +132,44 @@ void finish_tracker(ImportTable& table) {
   }
   for (const char* name : {"x", "y", "z", "rx", "ry", "rz", "length"})
     if (table.find(name) != nullptr) return;
-  throw InputError({table.file, 0}, "",
-                   "nothing measured: map at least one of x y z, rX rY rZ, qw qx qy qz, rx ry rz");
+  throw text::InputError({table.file, 0}, "",
+                         "nothing measured: map at least one of x y z, rX rY rZ, qw qx qy qz, rx ry rz");
 }
 
 void finish_probe(ImportTable& table, double radius_mm) {
-  if (!has_all(table, "nx ny nz")) throw InputError({table.file, 0}, "nx ny nz", "a touch needs its normal");
+  if (!has_all(table, "nx ny nz"))
+    throw text::InputError({table.file, 0}, "nx ny nz", "a touch needs its normal");
   if (!has_all(table, "px py pz"))
-    throw InputError({table.file, 0}, "px py pz", "a touch needs its nominal point");
+    throw text::InputError({table.file, 0}, "px py pz", "a touch needs its nominal point");
   const bool recorded = has_all(table, "mx my mz"), given = table.find("d") != nullptr;
   if (recorded == given)
-    throw InputError({table.file, 0}, "d",
-                     recorded ? "both d and the recorded point mx my mz are mapped"
-                              : "neither d nor the recorded point mx my mz is mapped");
-  std::vector<Eigen::VectorXd> normal = rows(table, "nx ny nz", Dimension::kNone);
-  std::vector<Eigen::VectorXd> nominal = rows(table, "px py pz", Dimension::kLength);
+    throw text::InputError({table.file, 0}, "d",
+                           recorded ? "both d and the recorded point mx my mz are mapped"
+                                    : "neither d nor the recorded point mx my mz is mapped");
+  std::vector<Eigen::VectorXd> normal = rows(table, "nx ny nz", text::Dimension::kNone);
+  std::vector<Eigen::VectorXd> nominal = rows(table, "px py pz", text::Dimension::kLength);
   normalise(table, normal, "nx ny nz");
   for (std::size_t i = 0; i < nominal.size(); ++i) nominal[i] += radius_mm * normal[i];
   if (recorded) {
     std::vector<Eigen::VectorXd> d;
-    const std::vector<Eigen::VectorXd> point = rows(table, "mx my mz", Dimension::kLength);
+    const std::vector<Eigen::VectorXd> point = rows(table, "mx my mz", text::Dimension::kLength);
     for (std::size_t i = 0; i < point.size(); ++i)
       d.emplace_back(Eigen::VectorXd::Constant(1, normal[i].dot(point[i] - nominal[i])));
     replace(table, "mx my mz", "d", "mm", d);
   } else {
-    check_dimension(table, "d", Dimension::kLength);
+    check_dimension(table, "d", text::Dimension::kLength);
   }
   replace(table, "nx ny nz", "nx ny nz", "", normal);
   replace(table, "px py pz", "px py pz", "mm", nominal);
 }
 
 void set_roles(ImportTable& table, std::size_t every) {
-  if (table.find("role") != nullptr) throw InputError({table.file, 0}, "role", "the role is mapped already");
+  if (table.find("role") != nullptr)
+    throw text::InputError({table.file, 0}, "role", "the role is mapped already");
   ImportTable::Column role{"role", "", {}};
   for (std::size_t i = 0; i < table.line.size(); ++i)
     role.cells.emplace_back((i + 1) % every == 0 ? "check" : "fit");
   table.columns.push_back(std::move(role));
 }
 
-}  // namespace vernier
+}  // namespace vernier::importer

@@ -5,7 +5,7 @@
 
 #include "tools/import/column_map.h"
 
-namespace vernier {
+namespace vernier::importer {
 
 /// Makes a tracker's table one of measurements: positions x y z stay; the orientation, if there is one as
 /// fixed order angles rX rY rZ (Rx*Ry*Rz, as a sixdof transform) or as a quaternion qw qx qy qz, becomes the
@@ -28,4 +28,4 @@ void set_roles(ImportTable& table, std::size_t every);
 Eigen::Vector3d rotation_vector_of_angles(const std::array<double, 3>& angles_deg);
 Eigen::Vector3d rotation_vector_of_quaternion(const std::array<double, 4>& wxyz);
 
-}  // namespace vernier
+}  // namespace vernier::importer

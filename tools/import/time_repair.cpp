@@ -9,7 +9,7 @@
 #include "tools/import/profile.h"
 #include "tools/timebase/stretch.h"
 
-namespace vernier {
+namespace vernier::importer {
 namespace {
 
 using Index = Eigen::Index;
@@ -23,25 +23,25 @@ Eigen::MatrixXd readings_um(const BallbarRun& run) {
 
 // What a run is found to be before its angle is anchored.
 struct Found {
-  std::vector<RepeatBlock> blocks;
-  std::vector<LagJump> jumps;
+  std::vector<timebase::RepeatBlock> blocks;
+  std::vector<timebase::LagJump> jumps;
   double turn = 0, turn_uncertainty = 0;
   std::vector<double> sample;  // numbers, had none been lost
   std::size_t feed_in = 0, feed_out = 0;
 };
 
 // The two passes may differ in feed by what a wrong START and END make of it.
-RepeatOptions repeat_options() {
-  RepeatOptions options;
+timebase::RepeatOptions repeat_options() {
+  timebase::RepeatOptions options;
   options.search = 0.2;
   return options;
 }
 
 // The longest lag that a significant level has: gaps only make a lag shorter.
-bool find_turn(const std::vector<RepeatLevel>& levels, Found& found) {
+bool find_turn(const std::vector<timebase::RepeatLevel>& levels, Found& found) {
   constexpr double kSignificance = 1e-3;
   bool significant = false;
-  for (const RepeatLevel& level : levels) {
+  for (const timebase::RepeatLevel& level : levels) {
     significant = significant || level.p_agreement < kSignificance;
     if (level.lag <= found.turn) continue;
     found.turn = level.lag;
@@ -55,7 +55,7 @@ void number_samples(std::size_t count, Found& found) {
   double lost = 0;
   std::size_t next = 0;
   std::vector<std::pair<std::size_t, double>> gaps;
-  for (const LagJump& jump : found.jumps) gaps.emplace_back(jump.missing_before(), jump.missing());
+  for (const timebase::LagJump& jump : found.jumps) gaps.emplace_back(jump.missing_before(), jump.missing());
   std::sort(gaps.begin(), gaps.end());
   for (std::size_t i = 0; i < count; ++i) {
     while (next < gaps.size() && gaps[next].first <= i) lost += gaps[next++].second;
@@ -95,11 +95,11 @@ PassAgreement agreement(const PairOfPasses& pair, Index from, Index block) {
   PassAgreement result;
   double squares = 0, level = 0, sum = 0, count = 0;
   for (Index i = from; i + block <= pair.first.rows(); i += block) {
-    const auto a = stretch(pair.first, i, block), b = stretch(pair.second, i, block);
+    const auto a = timebase::stretch(pair.first, i, block), b = timebase::stretch(pair.second, i, block);
     if (!a || !b) continue;
     squares += (*a - *b).squaredNorm();
     level += (pair.first.middleRows(i, block) - pair.second.middleRows(i, block)).squaredNorm();
-    sum += concordance(*a, *b);
+    sum += timebase::concordance(*a, *b);
     count += 1;
     result.samples += static_cast<std::size_t>(block);
   }
@@ -141,12 +141,12 @@ std::optional<Found> examine(const BallbarRun& run, RunRepair& repair) {
   }
   const Eigen::VectorXd implied = Eigen::VectorXd::Constant(series.rows(), repair.turn_before);
   Found found;
-  found.blocks = compare_repeats(series, implied, repeat_options());
-  if (!find_turn(repeat_levels(found.blocks, repeat_options()), found)) {
+  found.blocks = timebase::compare_repeats(series, implied, repeat_options());
+  if (!find_turn(timebase::repeat_levels(found.blocks, repeat_options()), found)) {
     repair.why_not = "the second pass does not repeat the first at any lag";
     return std::nullopt;
   }
-  found.jumps = lag_jumps(series, found.blocks, repeat_options());
+  found.jumps = timebase::lag_jumps(series, found.blocks, repeat_options());
   number_samples(run.reading_mm.size(), found);
   const PairOfPasses pair = pair_passes(series, found.sample, found.turn);
   found.feed_in = feed_in(pair, kBlock);
@@ -164,7 +164,7 @@ void report(const Found& found, RunRepair& repair) {
   repair.turn_uncertainty = found.turn_uncertainty;
   repair.feed_in = found.feed_in;
   repair.feed_out = found.feed_out;
-  for (const LagJump& jump : found.jumps)
+  for (const timebase::LagJump& jump : found.jumps)
     repair.gaps.push_back({jump.missing_before(), jump.row_uncertainty, jump.missing(), jump.uncertainty});
 }
 
@@ -228,4 +228,4 @@ TimeRepair repair_time_base(const BallbarFile& file) {
   return repair;
 }
 
-}  // namespace vernier
+}  // namespace vernier::importer

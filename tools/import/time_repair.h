@@ -8,7 +8,7 @@
 #include "tools/import/ballbar_file.h"
 #include "tools/timebase/repeats.h"
 
-namespace vernier {
+namespace vernier::importer {
 
 /// Samples that a record lacks before one of its samples; seen from the other pass, which has them.
 struct RecordGap {
@@ -53,4 +53,4 @@ struct TimeRepair {
 /// left as it is and says why. tool.
 TimeRepair repair_time_base(const BallbarFile& file);
 
-}  // namespace vernier
+}  // namespace vernier::importer

@@ -11,13 +11,13 @@
 #include "tools/text/error.h"
 #include "tools/text/files.h"
 
-namespace vernier {
+namespace vernier::importer {
 namespace {
 
 class TraceReader {
  public:
   TraceReader(const std::string& path, const TraceSetup& setup)
-      : path_(path), text_(read_file(path)), setup_(setup) {}
+      : path_(path), text_(text::read_file(path)), setup_(setup) {}
 
   BallbarFile read() const {
     const nlohmann::json document = parse_json(path_, text_);
@@ -49,7 +49,7 @@ class TraceReader {
  private:
   [[noreturn]] void fail(const std::string& pointer, const std::string& what) const {
     const auto value = pointer.empty() ? std::string("the document") : word_at(pointer);
-    throw InputError({path_, pointer.empty() ? 1 : json_line(text_, pointer)}, value, what);
+    throw text::InputError({path_, pointer.empty() ? 1 : json_line(text_, pointer)}, value, what);
   }
 
   std::string word_at(const std::string& pointer) const {
@@ -121,8 +121,8 @@ std::vector<BallbarFile> read_trace_circles(const std::vector<std::string>& path
   std::size_t runs = 0;
   for (const std::string& path : paths) runs += read_ballbar_trace(path, of_circle(circles[0])).runs.size();
   if (runs % circles.size() != 0)
-    throw InputError({paths.front(), 0}, std::to_string(runs) + " runs",
-                     "do not divide evenly among " + std::to_string(circles.size()) + " planes");
+    throw text::InputError({paths.front(), 0}, std::to_string(runs) + " runs",
+                           "do not divide evenly among " + std::to_string(circles.size()) + " planes");
   const std::size_t each = runs / circles.size();
   std::size_t next = 0;  // run of the whole path
   for (const std::string& path : paths) {
@@ -147,4 +147,4 @@ BallbarFile read_ballbar_trace(const std::string& path, const TraceSetup& setup)
   return TraceReader(path, setup).read();
 }
 
-}  // namespace vernier
+}  // namespace vernier::importer

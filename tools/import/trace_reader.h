@@ -5,7 +5,7 @@
 
 #include "tools/import/ballbar_file.h"
 
-namespace vernier {
+namespace vernier::importer {
 
 /// What a file of Ballbar Trace does not hold and the operator must say.
 struct TraceSetup {
@@ -36,4 +36,4 @@ std::vector<BallbarFile> read_trace_circles(const std::vector<std::string>& path
 /// readings lie in the arc, none is overshoot. Throws InputError with file, line and word. tool.
 BallbarFile read_ballbar_trace(const std::string& path, const TraceSetup& setup);
 
-}  // namespace vernier
+}  // namespace vernier::importer

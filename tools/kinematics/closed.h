@@ -5,7 +5,7 @@
 
 #include "tools/kinematics/inverse.h"
 
-namespace vernier {
+namespace vernier::kinematics {
 
 /// Closed solution of a chain whose tool point is an affine function of its linear axes:
 /// p = origin + jacobian * q, exactly, whatever the motion and inputs of the one state it was made at.
@@ -20,10 +20,10 @@ struct ClosedSolution {
 /// every rotation is free of the linear axes, every length is at most of first degree in them, tables of them
 /// are zero, and there are one to three of them, independent. `at`: the one state (count 1) that gives the
 /// other axes, motion and inputs. tool.
-std::optional<ClosedSolution> closed_solution(const Machine& machine, const States& at);
+std::optional<ClosedSolution> closed_solution(const model::Machine& machine, const model::States& at);
 
 /// Linear axis positions for tool points (3 x N, mm), as columns. With fewer than three axes: the nearest
 /// ones.
 Eigen::MatrixXd solve_closed(const ClosedSolution& solution, const Eigen::Matrix3Xd& points);
 
-}  // namespace vernier
+}  // namespace vernier::kinematics

@@ -8,9 +8,9 @@
 
 #include "tools/kinematics/jacobian.h"
 
-namespace vernier {
-Column tilt_between(const Poses& actual, const Poses& nominal) {
-  Column result(static_cast<Eigen::Index>(actual.rotation.size()));
+namespace vernier::kinematics {
+model::Column tilt_between(const model::Poses& actual, const model::Poses& nominal) {
+  model::Column result(static_cast<Eigen::Index>(actual.rotation.size()));
   for (std::size_t i = 0; i < actual.rotation.size(); ++i) {
     const Eigen::Vector3d a = actual.rotation[i].col(2), b = nominal.rotation[i].col(2);
     result[static_cast<Eigen::Index>(i)] = std::atan2(a.cross(b).norm(), a.dot(b)) * 180 / std::numbers::pi;
@@ -18,10 +18,12 @@ Column tilt_between(const Poses& actual, const Poses& nominal) {
   return result;
 }
 
-CorrectionResult correct(const Machine& machine, const States& states, const CorrectionOptions& options) {
-  const Poses nominal = forward(nominal_machine(machine), states), actual = forward(machine, states);
+CorrectionResult correct(const model::Machine& machine, const model::States& states,
+                         const CorrectionOptions& options) {
+  const model::Poses nominal = model::forward(model::nominal_machine(machine), states),
+                     actual = model::forward(machine, states);
   CorrectionResult result;
-  result.offset.assign(machine.axes.size(), Column::Zero(static_cast<Eigen::Index>(states.count)));
+  result.offset.assign(machine.axes.size(), model::Column::Zero(static_cast<Eigen::Index>(states.count)));
   result.before = actual.position - nominal.position;
   result.tilt_before = tilt_between(actual, nominal);
   InverseOptions solving;
@@ -32,22 +34,25 @@ CorrectionResult correct(const Machine& machine, const States& states, const Cor
   solving.keep_ranges = false;  // a correction may reach a little beyond the travel that is declared
   solving.only_reachable = true;
   if (!options.with_rotary && solving.axes.empty())
-    throw InputError({machine.file, 0}, "", "this machine has no linear axis: correct with its rotary axes");
+    throw text::InputError({machine.file, 0}, "",
+                           "this machine has no linear axis: correct with its rotary axes");
   InverseResult solved = solve(machine, nominal, states, solving);
   for (std::size_t i = 0; i < machine.axes.size(); ++i)
     result.offset[i] = solved.states.axis[i] - states.axis[i];
-  const Poses corrected = forward(machine, solved.states);
+  const model::Poses corrected = model::forward(machine, solved.states);
   result.after = corrected.position - nominal.position;
   result.tilt_after = tilt_between(corrected, nominal);
   result.each = std::move(solved.each);
   return result;
 }
 
-std::vector<Column> first_order_offset(const Machine& machine, const States& states) {
-  const Machine nominal = nominal_machine(machine);
+std::vector<model::Column> first_order_offset(const model::Machine& machine, const model::States& states) {
+  const model::Machine nominal = model::nominal_machine(machine);
   const std::vector<std::size_t> axes = linear_axes(machine);
-  const Eigen::Matrix3Xd deviation = forward(machine, states).position - forward(nominal, states).position;
-  std::vector<Column> result(machine.axes.size(), Column::Zero(static_cast<Eigen::Index>(states.count)));
+  const Eigen::Matrix3Xd deviation =
+      model::forward(machine, states).position - model::forward(nominal, states).position;
+  std::vector<model::Column> result(machine.axes.size(),
+                                    model::Column::Zero(static_cast<Eigen::Index>(states.count)));
   if (axes.empty()) return result;
   const auto jacobian = axis_jacobian(nominal, states, axes, Match::kPosition, InverseOptions{}.lever_mm);
   for (std::size_t i = 0; i < states.count; ++i) {
@@ -60,4 +65,4 @@ std::vector<Column> first_order_offset(const Machine& machine, const States& sta
   return result;
 }
 
-}  // namespace vernier
+}  // namespace vernier::kinematics

@@ -12,7 +12,7 @@
 #include "tools/maths/halton.h"
 #include "tools/model/evaluate.h"
 
-namespace vernier {
+namespace vernier::kinematics {
 namespace {
 
 using Eigen::Index;
@@ -22,7 +22,7 @@ using Eigen::VectorXd;
 /// Damping: where it begins, how it grows and shrinks, and where no step is left to try.
 constexpr double kFirstDamping = 1e-6, kGrow = 10, kShrink = 0.1, kMostDamping = 1e12, kLeastDamping = 1e-14;
 
-std::vector<std::size_t> axes_of(const Machine& machine, const InverseOptions& options) {
+std::vector<std::size_t> axes_of(const model::Machine& machine, const InverseOptions& options) {
   if (!options.axes.empty()) return options.axes;
   std::vector<std::size_t> all(machine.axes.size());
   for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
@@ -38,7 +38,7 @@ struct Walker {
 
 class InverseSolver {
  public:
-  InverseSolver(const Machine& machine, const Poses& target, const States& start,
+  InverseSolver(const model::Machine& machine, const model::Poses& target, const model::States& start,
                 const InverseOptions& options)
       : machine_(machine),
         target_(target),
@@ -49,7 +49,7 @@ class InverseSolver {
         proofs_(start.count) {}
 
   InverseResult run() {
-    measure(forward(machine_, states_), true);
+    measure(model::forward(machine_, states_), true);
     for (int i = 0; i < options_.most_iterations && step(); ++i) continue;
     return {states_, finish()};
   }
@@ -57,17 +57,17 @@ class InverseSolver {
  private:
   double length_of(const VectorXd& residual) const { return residual.norm(); }
 
-  VectorXd residual_at(const Poses& poses, std::size_t i) const {
+  VectorXd residual_at(const model::Poses& poses, std::size_t i) const {
     return pose_error(poses, target_, i, options_.match, options_.lever_mm);
   }
 
   bool small(const VectorXd& residual) const {
     return residual.head<3>().norm() <= options_.tolerance_mm &&
-           residual.tail(residual.size() - 3).norm() / options_.lever_mm * kDegPerRad <=
+           residual.tail(residual.size() - 3).norm() / options_.lever_mm * maths::kDegPerRad <=
                options_.tolerance_deg;
   }
 
-  void measure(const Poses& poses, bool first) {
+  void measure(const model::Poses& poses, bool first) {
     for (std::size_t i = 0; i < walkers_.size(); ++i) {
       if (first) walkers_[i].residual = residual_at(poses, i);
       walkers_[i].done = walkers_[i].done || small(walkers_[i].residual);
@@ -79,10 +79,10 @@ class InverseSolver {
     if (std::all_of(walkers_.begin(), walkers_.end(), [](const Walker& w) { return w.done; })) return false;
     const std::vector<MatrixXd> jacobian =
         axis_jacobian(machine_, states_, axes_, options_.match, options_.lever_mm);
-    States trial = states_;
+    model::States trial = states_;
     for (std::size_t i = 0; i < walkers_.size(); ++i)
       if (!walkers_[i].done) move(trial, i, damped_step(jacobian[i], walkers_[i]));
-    const Poses poses = forward(machine_, trial);
+    const model::Poses poses = model::forward(machine_, trial);
     for (std::size_t i = 0; i < walkers_.size(); ++i)
       if (!walkers_[i].done) judge(trial, poses, jacobian[i], i);
     return true;
@@ -96,12 +96,12 @@ class InverseSolver {
     return axis_scales(machine_, axes_, options_.lever_mm).cwiseProduct(scaled_step);
   }
 
-  void move(States& states, std::size_t row, const VectorXd& by) const {
+  void move(model::States& states, std::size_t row, const VectorXd& by) const {
     for (std::size_t k = 0; k < axes_.size(); ++k)
       states.axis[axes_[k]][static_cast<Index>(row)] += by[static_cast<Index>(k)];
   }
 
-  void judge(const States& trial, const Poses& poses, const MatrixXd& jacobian, std::size_t i) {
+  void judge(const model::States& trial, const model::Poses& poses, const MatrixXd& jacobian, std::size_t i) {
     Walker& walker = walkers_[i];
     ++proofs_[i].iterations;
     const VectorXd residual = residual_at(poses, i);
@@ -123,12 +123,12 @@ class InverseSolver {
   std::vector<Inverse> finish() {
     const std::vector<MatrixXd> jacobian =
         axis_jacobian(machine_, states_, axes_, options_.match, options_.lever_mm);
-    const Poses poses = forward(machine_, states_);
+    const model::Poses poses = model::forward(machine_, states_);
     for (std::size_t i = 0; i < walkers_.size(); ++i) {
       Inverse& proof = proofs_[i];
       const VectorXd residual = residual_at(poses, i);
       proof.residual_mm = residual.head<3>().norm();
-      proof.residual_deg = residual.tail(residual.size() - 3).norm() / options_.lever_mm * kDegPerRad;
+      proof.residual_deg = residual.tail(residual.size() - 3).norm() / options_.lever_mm * maths::kDegPerRad;
       proof.reducible_mm = reducible(jacobian[i], machine_, axes_, residual, options_);
       proof.condition = condition_of(jacobian[i], machine_, axes_, options_);
       const bool met =
@@ -153,7 +153,7 @@ class InverseSolver {
   }
 
   /// Turns a rotary axis by whole turns into its range; false where it (or a linear one) cannot stand there.
-  static bool into_range(double& value, const Axis& axis) {
+  static bool into_range(double& value, const model::Axis& axis) {
     if (axis.rollover && axis.rotary) {
       value = std::remainder(value, 360.0);  // a rotary axis that rolls over knows no other turn
       if (axis.min && value < *axis.min) value += 360;
@@ -174,11 +174,11 @@ class InverseSolver {
     return false;
   }
 
-  const Machine& machine_;
-  const Poses& target_;
+  const model::Machine& machine_;
+  const model::Poses& target_;
   const InverseOptions& options_;
   std::vector<std::size_t> axes_;
-  States states_;
+  model::States states_;
   std::vector<Walker> walkers_;
   std::vector<Inverse> proofs_;
 };
@@ -205,24 +205,24 @@ const char* name_of(InverseFault fault) {
   return "";
 }
 
-InverseResult solve(const Machine& machine, const Poses& target, const States& start,
+InverseResult solve(const model::Machine& machine, const model::Poses& target, const model::States& start,
                     const InverseOptions& options) {
   return InverseSolver(machine, target, start, options).run();
 }
 
-InverseResult solve_anywhere(const Machine& machine, const Poses& target, const States& start,
-                             const InverseOptions& options, int restarts) {
+InverseResult solve_anywhere(const model::Machine& machine, const model::Poses& target,
+                             const model::States& start, const InverseOptions& options, int restarts) {
   constexpr std::array<std::size_t, 12> kPrimes = {2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37};
   InverseResult best = solve(machine, target, start, options);
   const std::vector<std::size_t> axes = axes_of(machine, options);
   for (int i = 1; i <= restarts && !best.each[0].converged; ++i) {
-    States other = start;
+    model::States other = start;
     for (std::size_t k = 0; k < axes.size(); ++k) {
-      const Axis& axis = machine.axes[axes[k]];
+      const model::Axis& axis = machine.axes[axes[k]];
       if (axis.min && axis.max)
         other.axis[axes[k]][0] =
             *axis.min + (*axis.max - *axis.min) *
-                            radical_inverse(static_cast<std::size_t>(i), kPrimes[k % kPrimes.size()]);
+                            maths::radical_inverse(static_cast<std::size_t>(i), kPrimes[k % kPrimes.size()]);
     }
     InverseResult next = solve(machine, target, other, options);
     if (better(next.each[0], best.each[0])) best = std::move(next);
@@ -230,7 +230,7 @@ InverseResult solve_anywhere(const Machine& machine, const Poses& target, const 
   return best;
 }
 
-std::vector<std::size_t> linear_axes(const Machine& machine) {
+std::vector<std::size_t> linear_axes(const model::Machine& machine) {
   std::vector<std::size_t> result;
   for (std::size_t i = 0; i < machine.axes.size(); ++i)
     if (!machine.axes[i].rotary) result.push_back(i);
@@ -249,7 +249,7 @@ Eigen::Vector3d rotation_vector(const Eigen::Matrix3d& rotation) {
 Eigen::Matrix3d rotation_of(const Eigen::Vector3d& vector_deg) {
   const double angle = vector_deg.norm();
   if (angle == 0) return Eigen::Matrix3d::Identity();
-  return Eigen::AngleAxisd(angle / kDegPerRad, vector_deg / angle).toRotationMatrix();
+  return Eigen::AngleAxisd(angle / maths::kDegPerRad, vector_deg / angle).toRotationMatrix();
 }
 
-}  // namespace vernier
+}  // namespace vernier::kinematics

@@ -12,7 +12,7 @@
 #include "tools/model/machine.h"
 #include "tools/model/states.h"
 
-namespace vernier {
+namespace vernier::kinematics {
 
 /// What of a pose has to be met: the tool point; the point and the direction of the tool's z axis; all of it.
 enum class Match : std::uint8_t { kPosition, kDirection, kPose };
@@ -52,7 +52,7 @@ struct Inverse {
 };
 
 struct InverseResult {
-  States states;  // the start states with the axes found
+  model::States states;  // the start states with the axes found
   std::vector<Inverse> each;
 };
 
@@ -60,21 +60,21 @@ struct InverseResult {
 /// states at once. `target`: one pose a state, workpiece coordinates (rotation unused for kPosition).
 /// `start`: first guess, and motion, inputs, runs and time as they are. Jacobian by central differences, so
 /// that every expression of the chain counts. Throws InputError where the chain is not finite. tool.
-InverseResult solve(const Machine& machine, const Poses& target, const States& start,
+InverseResult solve(const model::Machine& machine, const model::Poses& target, const model::States& start,
                     const InverseOptions& options);
 
 /// The same for one pose from many places: `start` first, then up to `restarts` starts spread over the axis
 /// ranges (Halton sequence, the same every time). The first solution within the ranges, else the best
 /// failure. Axes without min and max keep their start. tool.
-InverseResult solve_anywhere(const Machine& machine, const Poses& target, const States& start,
-                             const InverseOptions& options, int restarts);
+InverseResult solve_anywhere(const model::Machine& machine, const model::Poses& target,
+                             const model::States& start, const InverseOptions& options, int restarts);
 
 /// Axes of `machine` that are linear, in order.
-std::vector<std::size_t> linear_axes(const Machine& machine);
+std::vector<std::size_t> linear_axes(const model::Machine& machine);
 
 /// Rotation vector of a matrix, rad.
 Eigen::Vector3d rotation_vector(const Eigen::Matrix3d& rotation);
 /// Matrix of a rotation vector, deg.
 Eigen::Matrix3d rotation_of(const Eigen::Vector3d& vector_deg);
 
-}  // namespace vernier
+}  // namespace vernier::kinematics

@@ -9,7 +9,7 @@
 
 #include "tools/maths/factors.h"
 
-namespace vernier {
+namespace vernier::kinematics {
 namespace {
 
 using Eigen::Index;
@@ -57,7 +57,8 @@ Eigen::JacobiSVD<MatrixXd> decompose(const MatrixXd& jacobian, const VectorXd& s
 
 }  // namespace
 
-VectorXd pose_error(const Poses& poses, const Poses& target, std::size_t i, Match match, double lever_mm) {
+VectorXd pose_error(const model::Poses& poses, const model::Poses& target, std::size_t i, Match match,
+                    double lever_mm) {
   const Vector3d length =
       target.position.col(static_cast<Index>(i)) - poses.position.col(static_cast<Index>(i));
   if (match == Match::kPosition) return length;
@@ -67,16 +68,16 @@ VectorXd pose_error(const Poses& poses, const Poses& target, std::size_t i, Matc
   return rows(length, turn, at, match, lever_mm);
 }
 
-std::vector<MatrixXd> axis_jacobian(const Machine& machine, const States& states,
+std::vector<MatrixXd> axis_jacobian(const model::Machine& machine, const model::States& states,
                                     const std::vector<std::size_t>& axes, Match match, double lever_mm) {
   std::vector<MatrixXd> result(states.count, MatrixXd(rows_of(match), static_cast<Index>(axes.size())));
-  const Poses here = match == Match::kDirection ? forward(machine, states) : Poses{};
+  const model::Poses here = match == Match::kDirection ? model::forward(machine, states) : model::Poses{};
   for (std::size_t k = 0; k < axes.size(); ++k) {
-    States moved = states;
+    model::States moved = states;
     moved.axis[axes[k]] += kHalfStep;
-    const Poses after = forward(machine, moved);
+    const model::Poses after = model::forward(machine, moved);
     moved.axis[axes[k]] = states.axis[axes[k]] - kHalfStep;
-    const Poses before = forward(machine, moved);
+    const model::Poses before = model::forward(machine, moved);
     for (std::size_t i = 0; i < states.count; ++i) {
       const auto column = static_cast<Index>(i);
       const Vector3d length = after.position.col(column) - before.position.col(column);
@@ -90,23 +91,24 @@ std::vector<MatrixXd> axis_jacobian(const Machine& machine, const States& states
   return result;
 }
 
-VectorXd axis_scales(const Machine& machine, const std::vector<std::size_t>& axes, double lever_mm) {
+VectorXd axis_scales(const model::Machine& machine, const std::vector<std::size_t>& axes, double lever_mm) {
   VectorXd result(static_cast<Index>(axes.size()));
   for (std::size_t k = 0; k < axes.size(); ++k)
-    result[static_cast<Index>(k)] = machine.axes[axes[k]].rotary ? kDegPerRad / lever_mm : 1;
+    result[static_cast<Index>(k)] = machine.axes[axes[k]].rotary ? maths::kDegPerRad / lever_mm : 1;
   return result;
 }
 
-double condition_of(const MatrixXd& jacobian, const Machine& machine, const std::vector<std::size_t>& axes,
-                    const InverseOptions& options) {
+double condition_of(const MatrixXd& jacobian, const model::Machine& machine,
+                    const std::vector<std::size_t>& axes, const InverseOptions& options) {
   if (jacobian.cols() < jacobian.rows()) return std::numeric_limits<double>::infinity();
   const auto svd = decompose(jacobian, axis_scales(machine, axes, options.lever_mm));
   const double least = svd.singularValues()[jacobian.rows() - 1];
   return least > 0 ? svd.singularValues()[0] / least : std::numeric_limits<double>::infinity();
 }
 
-double reducible(const MatrixXd& jacobian, const Machine& machine, const std::vector<std::size_t>& axes,
-                 const VectorXd& residual, const InverseOptions& options) {
+double reducible(const MatrixXd& jacobian, const model::Machine& machine,
+                 const std::vector<std::size_t>& axes, const VectorXd& residual,
+                 const InverseOptions& options) {
   const auto svd = decompose(jacobian, axis_scales(machine, axes, options.lever_mm));
   double square = 0;
   for (Index k = 0; k < svd.singularValues().size(); ++k) {
@@ -117,4 +119,4 @@ double reducible(const MatrixXd& jacobian, const Machine& machine, const std::ve
   return std::sqrt(square);
 }
 
-}  // namespace vernier
+}  // namespace vernier::kinematics

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-namespace vernier {
+namespace vernier::lint {
 
 const char* weight_name(LintWeight weight) {
   switch (weight) {
@@ -63,4 +63,4 @@ std::vector<LintFinding> LintFindings::take() {
   return list;
 }
 
-}  // namespace vernier
+}  // namespace vernier::lint

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace vernier {
+namespace vernier::lint {
 
 /// How much a finding weighs.
 enum class LintWeight {
@@ -63,4 +63,4 @@ class LintFindings {
   std::vector<Entry> entries_;
 };
 
-}  // namespace vernier
+}  // namespace vernier::lint

@@ -10,12 +10,12 @@
 #include "tools/text/files.h"
 #include "tools/text/words.h"
 
-namespace vernier {
+namespace vernier::lint {
 
 LintedKind linted_kind_of(const std::string& bytes, const std::string& file) {
-  if (is_workbook(bytes)) return LintedKind::kSpreadsheet;
-  const std::string text = utf8_of(bytes, encoding_of(bytes));
-  const std::string head = trimmed(std::string_view(text).substr(0, 4096));
+  if (sheet::is_workbook(bytes)) return LintedKind::kSpreadsheet;
+  const std::string text = sheet::utf8_of(bytes, sheet::encoding_of(bytes));
+  const std::string head = text::trimmed(std::string_view(text).substr(0, 4096));
   if (head.starts_with('<') || file.ends_with(".xml")) return LintedKind::kMachine;
   if (head.empty() || text.find('\0') != std::string::npos) return LintedKind::kOther;
   return import_command_for(bytes, file).empty() ? LintedKind::kMeasurement : LintedKind::kSpreadsheet;
@@ -38,9 +38,9 @@ const char* linted_kind_name(LintedKind kind) {
 std::vector<LintedFile> lint_files(const std::vector<std::string>& paths) {
   std::vector<LintedFile> list;
   std::vector<std::string> bytes;
-  std::optional<Machine> machine;
+  std::optional<model::Machine> machine;
   for (const std::string& path : paths) {
-    bytes.push_back(read_file(path));
+    bytes.push_back(text::read_file(path));
     list.push_back({path, linted_kind_of(bytes.back(), path), true, {}});
     if (list.back().kind != LintedKind::kMachine) continue;
     MachineLint result = lint_machine(bytes.back(), path);
@@ -58,4 +58,4 @@ std::vector<LintedFile> lint_files(const std::vector<std::string>& paths) {
   return list;
 }
 
-}  // namespace vernier
+}  // namespace vernier::lint

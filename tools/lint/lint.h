@@ -5,7 +5,7 @@
 
 #include "tools/lint/finding.h"
 
-namespace vernier {
+namespace vernier::lint {
 
 /// What a file is by its looks.
 enum class LintedKind { kMachine, kMeasurement, kSpreadsheet, kOther };
@@ -24,4 +24,4 @@ struct LintedFile {
 /// first machine that could be read. Throws InputError for a file that cannot be opened. tool.
 std::vector<LintedFile> lint_files(const std::vector<std::string>& paths);
 
-}  // namespace vernier
+}  // namespace vernier::lint

@@ -5,7 +5,7 @@
 #include <map>
 #include <tuple>
 
-namespace vernier {
+namespace vernier::lint {
 
 const std::set<std::string>& reading_names() {
   static const std::set<std::string> kNames = {"x", "y", "z", "rx", "ry", "rz", "length", "d"};
@@ -59,11 +59,11 @@ std::vector<std::string> LintNames::known() const {
                                     "cy",  "cz",   "px",   "py",   "pz", "nx",    "ny",       "nz", "t",
                                     "run", "role", "feed", "curv", "u",  "visit", "corrected"};
   if (machine_ == nullptr) return names;
-  for (const Axis& axis : machine_->axes)
+  for (const model::Axis& axis : machine_->axes)
     for (const char* prefix : {"", "dir", "since", "v", "a", "correction"})
       names.push_back(prefix + axis.name);
-  for (const Input& input : machine_->inputs) names.push_back(input.name);
+  for (const model::Input& input : machine_->inputs) names.push_back(input.name);
   return names;
 }
 
-}  // namespace vernier
+}  // namespace vernier::lint

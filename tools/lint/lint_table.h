@@ -7,7 +7,7 @@
 
 #include "tools/model/machine.h"
 
-namespace vernier {
+namespace vernier::lint {
 
 /// A column of a measurement file, whatever is wrong with it.
 struct LintColumn {
@@ -35,7 +35,7 @@ struct LintTable {
 /// …).
 class LintNames {
  public:
-  explicit LintNames(const Machine* machine) : machine_(machine) {}
+  explicit LintNames(const model::Machine* machine) : machine_(machine) {}
   bool is_axis(const std::string& name) const;
   /// Of a name that is an axis.
   bool is_rotary(const std::string& name) const;
@@ -47,7 +47,7 @@ class LintNames {
   std::vector<std::string> known() const;
 
  private:
-  const Machine* machine_;
+  const model::Machine* machine_;
 };
 
 /// x y z rx ry rz length d.
@@ -56,4 +56,4 @@ const std::set<std::string>& reading_names();
 /// A file's name as it may stand in a command.
 std::string quoted_for_shell(const std::string& file);
 
-}  // namespace vernier
+}  // namespace vernier::lint

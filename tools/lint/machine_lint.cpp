@@ -13,7 +13,7 @@
 #include "tools/text/similar.h"
 #include "tools/text/units.h"
 
-namespace vernier {
+namespace vernier::lint {
 namespace {
 
 /// A message of InputError in its parts.
@@ -29,7 +29,7 @@ Problem problem_of(const std::string& message, const std::string& file) {
   std::size_t digits = 0;
   while (digits < rest.size() && std::isdigit(static_cast<unsigned char>(rest[digits])) != 0) ++digits;
   if (digits > 0 && rest.compare(digits, 2, ": ") == 0) {
-    problem.line = static_cast<std::size_t>(*parse_number(rest.substr(0, digits)));
+    problem.line = static_cast<std::size_t>(*text::parse_number(rest.substr(0, digits)));
     rest = rest.substr(digits + 2);
   }
   const auto close = rest.find("\": ", 1);
@@ -175,23 +175,24 @@ std::string meaning_of(const Problem& problem, const std::string& text) {
   if (number && has(problem.word, ",")) return "decimal comma? Machine files have a decimal point";
   if (number && !problem.word.empty()) {
     std::size_t end = problem.word.find_first_not_of("0123456789.+-eE");
-    if (end != std::string::npos && end > 0 && parse_number(problem.word.substr(0, end)))
+    if (end != std::string::npos && end > 0 && text::parse_number(problem.word.substr(0, end)))
       return "a unit stands in unit=\"…\", not behind the number; values are in mm and deg";
   }
   if (has(problem.what, "unknown name") || has(problem.what, "no such axis"))
-    if (const auto meant = word_meant(problem.word, names_in(text))) return "did you mean " + *meant + "?";
+    if (const auto meant = text::word_meant(problem.word, names_in(text)))
+      return "did you mean " + *meant + "?";
   if (has(problem.what, "unknown attribute")) {
     static const std::vector<std::string> kAttributes = {
         "value", "nominal",       "unit",          "note",    "Hide",     "scale",       "rotary",
         "min",   "max",           "maxcorrection", "maxslew", "rollover", "scalefactor", "reference",
         "axis",  "interpolation", "fit",           "loc",     "branch",   "theta",       "alpha"};
-    if (const auto meant = word_meant(problem.word, kAttributes)) return "did you mean " + *meant + "?";
+    if (const auto meant = text::word_meant(problem.word, kAttributes)) return "did you mean " + *meant + "?";
   }
   if (has(problem.what, "unknown element")) {
     static const std::vector<std::string> kElements = {
         "variables",  "static", "machineaxes", "inputs",    "comptables", "table", "station",
         "transforms", "sixdof", "DH",          "BaseShift", "tools",      "volume"};
-    if (const auto meant = word_meant(problem.word, kElements)) return "did you mean " + *meant + "?";
+    if (const auto meant = text::word_meant(problem.word, kElements)) return "did you mean " + *meant + "?";
   }
   if (has(problem.what, "stations must increase"))
     return "stations stand in the order of their positions, each once";
@@ -204,24 +205,24 @@ struct Used {
   bool feed = false;
 };
 
-Used used_by(const Machine& machine) {
+Used used_by(const model::Machine& machine) {
   Used used;
   for (const auto* branch : {&machine.tool, &machine.workpiece})
-    for (const Transform& transform : *branch)
+    for (const model::Transform& transform : *branch)
       for (std::size_t i = 0; i < transform.dof_count(); ++i)
-        walk(*transform.dof[i], [&](const Expr& node) {
-          if (node.op != Op::kSymbol) return;
+        model::walk(*transform.dof[i], [&](const model::Expr& node) {
+          if (node.op != model::Op::kSymbol) return;
           const auto [kind, index] = node.symbol;
-          if (kind == SymbolKind::kStatic) used.statics.insert(index);
-          if (kind == SymbolKind::kAxis) used.axes.insert(index);
-          if (kind == SymbolKind::kInput) used.inputs.insert(index);
-          if (kind == SymbolKind::kTableValue) used.table_values.insert(index);
+          if (kind == model::SymbolKind::kStatic) used.statics.insert(index);
+          if (kind == model::SymbolKind::kAxis) used.axes.insert(index);
+          if (kind == model::SymbolKind::kInput) used.inputs.insert(index);
+          if (kind == model::SymbolKind::kTableValue) used.table_values.insert(index);
         });
   return used;
 }
 
 /// What a broken term would have used: names in the text of the transforms.
-void add_words(Used& used, const Machine& machine, const std::string& text) {
+void add_words(Used& used, const model::Machine& machine, const std::string& text) {
   std::string word;
   for (std::size_t at = std::min(text.find("<transforms"), text.size()); at <= text.size(); ++at) {
     const bool letter =
@@ -245,7 +246,7 @@ void add_words(Used& used, const Machine& machine, const std::string& text) {
 
 class Oddities {
  public:
-  Oddities(const Machine& machine, const std::string& text, bool broken_terms, LintFindings& findings)
+  Oddities(const model::Machine& machine, const std::string& text, bool broken_terms, LintFindings& findings)
       : m_(machine), findings_(findings), used_(used_by(machine)) {
     if (broken_terms) add_words(used_, machine, text);
   }
@@ -254,13 +255,13 @@ class Oddities {
     for (std::size_t i = 0; i < m_.statics.size(); ++i) look_at(m_.statics[i], i);
     for (std::size_t i = 0; i < m_.axes.size(); ++i) look_at(m_.axes[i], i);
     for (std::size_t i = 0; i < m_.inputs.size(); ++i) look_at(m_.inputs[i], i);
-    for (const Table& table : m_.tables) look_at(table);
+    for (const model::Table& table : m_.tables) look_at(table);
     if (m_.base_shifts.empty())
       findings_.remark(
           0, "BaseShift", "there is none: the measuring frame is the machine's own",
           "a tracker or CMM stands somewhere else; <BaseShift X=\"0\" …/> lets a fit find where");
     std::set<std::string> runs;
-    for (const BaseShift& shift : m_.base_shifts)
+    for (const model::BaseShift& shift : m_.base_shifts)
       if (shift.run && m_.base_shifts.size() == 1)
         findings_.remark(shift.line, *shift.run,
                          "this BaseShift is for one run only; rows of other runs have none");
@@ -269,17 +270,17 @@ class Oddities {
  private:
   void look_at_unit(const std::string& name, const std::string& unit, std::size_t line, bool scales) {
     if (unit.empty()) return;
-    const auto known = find_unit(unit);
+    const auto known = text::find_unit(unit);
     if (!known) {
       std::vector<std::string> units;
-      const std::string all = known_units();
+      const std::string all = text::known_units();
       for (std::size_t at = 0; at < all.size();) {
         const std::size_t end = std::min(all.find(' ', at), all.size());
         units.push_back(all.substr(at, end - at));
         at = end + 1;
       }
       const bool inch = unit == "inch" || unit == "inches" || unit == "\"";
-      const auto meant = inch ? std::optional<std::string>("in") : word_meant(unit, units);
+      const auto meant = inch ? std::optional<std::string>("in") : text::word_meant(unit, units);
       // "1/K", "mm/degC": units of coefficients are made of the known ones.
       const bool composed = unit.find_first_of("/*^") != std::string::npos;
       if (!composed)
@@ -289,15 +290,15 @@ class Oddities {
     }
     const bool base = known->factor == 1 && known->offset == 0;
     if (scales || base || unit == "rad" || unit == "um/m" || unit == "%") return;
-    if (known->dimension == Dimension::kLength || known->dimension == Dimension::kAngle)
-      findings_.warn(
-          line, unit,
-          "a unit never scales the value of " + name + ": the chain takes it as " +
-              base_unit(known->dimension),
-          std::string("write the value in ") + base_unit(known->dimension) + ", or the factor in the term");
+    if (known->dimension == text::Dimension::kLength || known->dimension == text::Dimension::kAngle)
+      findings_.warn(line, unit,
+                     "a unit never scales the value of " + name + ": the chain takes it as " +
+                         text::base_unit(known->dimension),
+                     std::string("write the value in ") + text::base_unit(known->dimension) +
+                         ", or the factor in the term");
   }
 
-  void look_at(const Static& item, std::size_t index) {
+  void look_at(const model::Static& item, std::size_t index) {
     look_at_unit(item.name, item.unit, item.line, false);
     if (!used_.statics.contains(index) && item.hidden)
       findings_.add_of_kind("unused constant", LintWeight::kRemark, item.line, item.name,
@@ -312,11 +313,11 @@ class Oddities {
           "nominal is what the control believes, mostly 0 for an error");
     if (!item.hidden && item.nominal && item.unit == "mm" && std::abs(item.value - *item.nominal) > 50)
       findings_.warn(item.line, item.name,
-                     fmt::format("{} mm off its nominal", number_text(item.value - *item.nominal)),
+                     fmt::format("{} mm off its nominal", text::number_text(item.value - *item.nominal)),
                      "µm written as mm?");
   }
 
-  void look_at(const Axis& axis, std::size_t index) {
+  void look_at(const model::Axis& axis, std::size_t index) {
     bool by_table = false;
     for (std::size_t c = 0; c < 6; ++c) by_table |= used_.table_values.contains(index * 6 + c);
     if (!used_.axes.contains(index))
@@ -334,19 +335,19 @@ class Oddities {
     if (axis.min && axis.max && !axis.rotary) {
       const double travel = *axis.max - *axis.min;
       if (travel < 5)
-        findings_.warn(axis.line, axis.name, fmt::format("a travel of {} mm", number_text(travel)),
+        findings_.warn(axis.line, axis.name, fmt::format("a travel of {} mm", text::number_text(travel)),
                        "metres or inches? Axes are in mm");
       if (travel > 1e5)
-        findings_.warn(axis.line, axis.name, fmt::format("a travel of {} mm", number_text(travel)),
+        findings_.warn(axis.line, axis.name, fmt::format("a travel of {} mm", text::number_text(travel)),
                        "µm? Axes are in mm");
     }
     if (axis.min && axis.max && axis.rotary && *axis.max - *axis.min < 7)
       findings_.warn(axis.line, axis.name,
-                     fmt::format("turns by {} deg only", number_text(*axis.max - *axis.min)),
+                     fmt::format("turns by {} deg only", text::number_text(*axis.max - *axis.min)),
                      "radians? Angles are in deg");
     if (axis.max_correction && *axis.max_correction > (axis.rotary ? 10 : 5))
       findings_.warn(axis.line, axis.name,
-                     fmt::format("maxcorrection of {} {}", number_text(*axis.max_correction),
+                     fmt::format("maxcorrection of {} {}", text::number_text(*axis.max_correction),
                                  axis.rotary ? "deg" : "mm"),
                      "µm? It is in the axis' unit");
     if (!axis.max_correction)
@@ -354,15 +355,15 @@ class Oddities {
                             "no maxcorrection: a board may add any amount to this axis");
   }
 
-  void look_at(const Input& input, std::size_t index) {
+  void look_at(const model::Input& input, std::size_t index) {
     look_at_unit(input.name, input.unit, input.line, true);
     if (!used_.inputs.contains(index))
       findings_.warn(input.line, input.name, "no transform uses this input",
                      "a term is missing, or it may go");
   }
 
-  void look_at(const Table& table) {
-    const Axis& axis = m_.axes[table.axis];
+  void look_at(const model::Table& table) {
+    const model::Axis& axis = m_.axes[table.axis];
     bool any = false;
     for (std::size_t c = 0; c < 6; ++c) {
       const bool used = used_.table_values.contains(table.axis * 6 + c);
@@ -370,7 +371,7 @@ class Oddities {
       if (!used && table.free[c])
         findings_.warn(
             table.line, axis.name,
-            fmt::format("fit frees column {}, which no transform uses", kSixDofNames[c]),
+            fmt::format("fit frees column {}, which no transform uses", model::kSixDofNames[c]),
             fmt::format("{}{}{} is missing in some transform", c < 3 ? "l" : "r", axis.name, "xyz"[c % 3]));
     }
     if (!any)
@@ -382,14 +383,15 @@ class Oddities {
       findings_.remark(
           table.line, axis.name,
           fmt::format("stations from {} to {}, travel from {} to {}: beyond its ends a table holds",
-                      number_text(table.stations.front().loc), number_text(table.stations.back().loc),
-                      number_text(*axis.min), number_text(*axis.max)));
+                      text::number_text(table.stations.front().loc),
+                      text::number_text(table.stations.back().loc), text::number_text(*axis.min),
+                      text::number_text(*axis.max)));
     if (table.stations.front().loc < *axis.min - slack || table.stations.back().loc > *axis.max + slack)
       findings_.warn(table.line, axis.name, "stations outside the travel of the axis",
                      "another unit, or another axis?");
   }
 
-  const Machine& m_;
+  const model::Machine& m_;
   LintFindings& findings_;
   Used used_;
 };
@@ -402,13 +404,13 @@ MachineLint lint_machine(const std::string& text, const std::string& file) {
   LintFindings findings(file);
   std::string mended = text;
   std::vector<Problem> seen;
-  std::optional<Machine> machine;
+  std::optional<model::Machine> machine;
   bool broken_terms = false, all_read = false;
   while (!all_read && seen.size() < kMostProblems) {
     try {
-      machine = parse_machine(mended, file);
+      machine = model::parse_machine(mended, file);
       all_read = true;
-    } catch (const InputError& error) {
+    } catch (const text::InputError& error) {
       const Problem problem = problem_of(error.what(), file);
       if (std::find(seen.begin(), seen.end(), problem) != seen.end()) break;
       seen.push_back(problem);
@@ -431,4 +433,4 @@ MachineLint lint_machine(const std::string& text, const std::string& file) {
   return result;
 }
 
-}  // namespace vernier
+}  // namespace vernier::lint

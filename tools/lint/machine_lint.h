@@ -7,11 +7,11 @@
 #include "tools/lint/finding.h"
 #include "tools/model/machine.h"
 
-namespace vernier {
+namespace vernier::lint {
 
 struct MachineLint {
   std::vector<LintFinding> findings;
-  std::optional<Machine> machine;  // where nothing is an error
+  std::optional<model::Machine> machine;  // where nothing is an error
 };
 
 /// Reads a machine file to its end, past what is wrong with it (a broken word is taken out and the rest read
@@ -19,4 +19,4 @@ struct MachineLint {
 /// scale, an axis, static, input or table that no transform uses, a missing range or nominal. tool.
 MachineLint lint_machine(const std::string& text, const std::string& file);
 
-}  // namespace vernier
+}  // namespace vernier::lint

@@ -23,7 +23,7 @@
 #include "tools/text/units.h"
 #include "tools/text/words.h"
 
-namespace vernier {
+namespace vernier::lint {
 namespace {
 
 constexpr double kAbsent = std::numeric_limits<double>::quiet_NaN();
@@ -37,7 +37,7 @@ std::string command(const std::string& file) {
 
 class Look {
  public:
-  Look(std::string bytes, const std::string& file, const Machine* machine)
+  Look(std::string bytes, const std::string& file, const model::Machine* machine)
       : bytes_(std::move(bytes)),
         text_(bytes_),
         file_(file),
@@ -58,28 +58,28 @@ class Look {
   // ---- how it is written
 
   bool look_at_bytes() {
-    if (is_workbook(text_))
+    if (sheet::is_workbook(text_))
       return findings_.error(0, "", "a workbook (.xlsx), no measurement file", "read it: " + command(file_)),
              false;
     if (text_.starts_with("\xD0\xCF\x11\xE0"))
       return findings_.error(0, "", "a workbook of the old kind (.xls)",
                              "save it as .xlsx or CSV, then vernier import table"),
              false;
-    const Encoding encoding = encoding_of(text_);
-    if (encoding == Encoding::kUtf16Le || encoding == Encoding::kUtf16Be)
-      return findings_.error(0, "", std::string("written in ") + encoding_name(encoding),
+    const sheet::Encoding encoding = sheet::encoding_of(text_);
+    if (encoding == sheet::Encoding::kUtf16Le || encoding == sheet::Encoding::kUtf16Be)
+      return findings_.error(0, "", std::string("written in ") + sheet::encoding_name(encoding),
                              "read it: " + command(file_)),
              false;
-    if (encoding == Encoding::kUtf8Bom) {
+    if (encoding == sheet::Encoding::kUtf8Bom) {
       findings_.remark(1, "", "begins with a byte order mark", "it is read over");
       text_ = text_.substr(3);
     }
-    if (encoding == Encoding::kWindows1252) {
+    if (encoding == sheet::Encoding::kWindows1252) {
       if (text_.find('\0') != std::string::npos)
         return findings_.error(0, "", "zero bytes: no text file"), false;
       findings_.warn(0, "", "not UTF-8: letters beyond ASCII are of some other code page",
                      "µ and ° in units will not be understood; " + command(file_) + " reads it");
-      text_ = utf8_of(bytes_, encoding);
+      text_ = sheet::utf8_of(bytes_, encoding);
     }
     if (text_.find('\0') != std::string::npos)
       return findings_.error(0, "", "zero bytes: no text file"), false;
@@ -92,7 +92,7 @@ class Look {
     std::vector<std::size_t> numbers;
     for (std::size_t at = 0; at < text_.size();) {
       const std::size_t end = std::min(text_.find('\n', at), text_.size());
-      const std::string line = trimmed(text_.substr(at, end - at));
+      const std::string line = text::trimmed(text_.substr(at, end - at));
       at = end + 1;
       ++number;
       if (line.empty() || line.front() == '#') continue;
@@ -103,23 +103,23 @@ class Look {
     std::string joined_lines;
     for (std::size_t i = 0; i < std::min<std::size_t>(lines.size(), 200); ++i)
       joined_lines += lines[i] + "\n";
-    const char separator = guess_separator(joined_lines, "");
+    const char separator = sheet::guess_separator(joined_lines, "");
     if (separator != ',' && lines.front().find(separator) != std::string::npos &&
         lines.front().find(',') == std::string::npos && (separator != ' ' || lines.size() > 1)) {
       findings_.error(numbers.front(), lines.front().substr(0, 30),
-                      std::string("columns parted by ") + separator_word(separator) + ", not by comma",
+                      std::string("columns parted by ") + sheet::separator_word(separator) + ", not by comma",
                       "a spreadsheet or an instrument's table; read it: " + command(file_));
       for (std::size_t i = 1; i < lines.size(); ++i)
-        for (const std::string& cell : parts_of(lines[i], separator == ' ' ? ' ' : separator))
-          if (decimal_sign_in(cell) == DecimalSign::kComma) {
+        for (const std::string& cell : text::parts_of(lines[i], separator == ' ' ? ' ' : separator))
+          if (sheet::decimal_sign_in(cell) == sheet::DecimalSign::kComma) {
             findings_.error(numbers[i], cell, "a decimal comma", "that import reads it too");
             return false;
           }
       return false;
     }
     for (std::size_t i = 0; i < lines.size(); ++i) try {
-        table_.rows.push_back({fields_of(lines[i], {}, {file_, numbers[i]}), numbers[i]});
-      } catch (const InputError& problem) {
+        table_.rows.push_back({text::fields_of(lines[i], {}, {file_, numbers[i]}), numbers[i]});
+      } catch (const text::InputError& problem) {
         findings_.error(numbers[i], lines[i].substr(0, 30), "a quote without its fellow",
                         "quotes go around a whole field, doubled inside");
       }
@@ -139,7 +139,7 @@ class Look {
       findings_.error(table_.header_line, "", "commas at the end of the header",
                       "empty columns of a spreadsheet; read it: " + command(file_));
     std::size_t numbers = 0;
-    for (const std::string& cell : header_) numbers += plain_number(cell, false).has_value() ? 1 : 0;
+    for (const std::string& cell : header_) numbers += sheet::plain_number(cell, false).has_value() ? 1 : 0;
     if (numbers * 2 > header_.size())
       return findings_.error(table_.header_line, header_.front(),
                              "a row of numbers where the header should be",
@@ -151,24 +151,24 @@ class Look {
     for (const std::string& cell : header_) {
       LintColumn column;
       const auto open = cell.find('[');
-      column.name = trimmed(cell.substr(0, open));
+      column.name = text::trimmed(cell.substr(0, open));
       const bool bracket = open != std::string::npos && cell.ends_with(']');
-      if (bracket) column.unit = trimmed(cell.substr(open + 1, cell.size() - open - 2));
-      if (!is_name(column.name) || (open != std::string::npos && !bracket)) {
-        const Heading heading = parse_heading(cell);
+      if (bracket) column.unit = text::trimmed(cell.substr(open + 1, cell.size() - open - 2));
+      if (!text::is_name(column.name) || (open != std::string::npos && !bracket)) {
+        const sheet::Heading heading = sheet::parse_heading(cell);
         findings_.error(table_.header_line, cell,
                         cell.empty() ? "a column without a name"
                                      : "a column is name[unit], its name of letters, digits and _",
                         heading.unit.empty() ? ""
-                                             : "meant is " + name_from_words(heading.name) + "[" +
+                                             : "meant is " + sheet::name_from_words(heading.name) + "[" +
                                                    heading.unit + "]? " + command(file_) + " reads it so");
-        column.name = name_from_words(heading.name);
+        column.name = sheet::name_from_words(heading.name);
         column.unit = heading.unit;
-      } else if (!column.unit.empty() && !find_unit(column.unit)) {
-        const auto meant = unit_meant(column.unit);
+      } else if (!column.unit.empty() && !text::find_unit(column.unit)) {
+        const auto meant = sheet::unit_meant(column.unit);
         findings_.error(table_.header_line, column.unit, "nobody knows this unit",
                         meant ? "meant is " + *meant + "? " + command(file_) + " reads it so"
-                              : "known are " + known_units());
+                              : "known are " + text::known_units());
         column.unit = meant.value_or("");
       } else if (!bracket && !names_.needed_unit(column.name).empty() &&
                  names_.needed_unit(column.name) != "?") {
@@ -180,7 +180,7 @@ class Look {
         const std::string needs = names_.needed_unit(column.name);
         if (needs.empty())
           findings_.error(table_.header_line, cell, "a pure number or a word: it has no unit");
-        else if (find_unit(needs)->dimension != find_unit(column.unit)->dimension)
+        else if (text::find_unit(needs)->dimension != text::find_unit(column.unit)->dimension)
           findings_.error(table_.header_line, cell, "this column needs a unit like " + needs);
       }
       if (!seen.insert(column.name).second)
@@ -188,8 +188,8 @@ class Look {
       column.label = column.name == "run" || column.name == "role" || column.name == "corrected";
       if (names_.needed_unit(column.name) == "?" && column.name != "u" &&
           std::find(known.begin(), known.end(), column.name) == known.end()) {
-        const auto meant = word_meant(column.name, known);
-        const bool nearly = meant && column.name.size() > 2 && letters_apart(column.name, *meant) <= 1;
+        const auto meant = text::word_meant(column.name, known);
+        const bool nearly = meant && column.name.size() > 2 && text::letters_apart(column.name, *meant) <= 1;
         if (nearly)
           findings_.warn(table_.header_line, column.name, "a column that the machine does not know",
                          "did you mean " + *meant + "?");
@@ -199,7 +199,7 @@ class Look {
       table_.columns.push_back(std::move(column));
     }
     if (!own.empty())
-      findings_.remark(table_.header_line, joined(own, ", "),
+      findings_.remark(table_.header_line, text::joined(own, ", "),
                        machine_ != nullptr
                            ? "columns that the machine does not know: kept as candidates for diagnose"
                            : "columns of one's own: kept as candidates for diagnose");
@@ -224,13 +224,13 @@ class Look {
         }
     }
     if (machine_ == nullptr) return;
-    for (const Axis& axis : machine_->axes)
+    for (const model::Axis& axis : machine_->axes)
       if (table_.find(axis.name) == nullptr) {
         std::vector<std::string> names;
         for (const LintColumn& column : table_.columns) names.push_back(column.name);
-        const auto meant = word_meant(axis.name, names);
+        const auto meant = text::word_meant(axis.name, names);
         findings_.error(table_.header_line, axis.name, "the column of this axis is missing",
-                        meant && letters_apart(axis.name, *meant) == 0
+                        meant && text::letters_apart(axis.name, *meant) == 0
                             ? "there is " + *meant + ": names have capitals where the machine file has them"
                             : "");
       }
@@ -242,20 +242,20 @@ class Look {
     std::set<std::string> wanted;
     bool lag = false;
     for (const auto* branch : {&machine_->tool, &machine_->workpiece})
-      for (const Transform& transform : *branch)
+      for (const model::Transform& transform : *branch)
         for (std::size_t i = 0; i < transform.dof_count(); ++i)
-          walk(*transform.dof[i], [&](const Expr& node) {
-            lag |= node.op == Op::kLag;
-            if (node.op != Op::kSymbol) return;
+          model::walk(*transform.dof[i], [&](const model::Expr& node) {
+            lag |= node.op == model::Op::kLag;
+            if (node.op != model::Op::kSymbol) return;
             switch (node.symbol.kind) {
-              case SymbolKind::kVelocity:
-              case SymbolKind::kAcceleration:
-              case SymbolKind::kDirection:
-              case SymbolKind::kSince:
-              case SymbolKind::kFeed:
-              case SymbolKind::kCurvature:
-              case SymbolKind::kNormal:
-              case SymbolKind::kTime:
+              case model::SymbolKind::kVelocity:
+              case model::SymbolKind::kAcceleration:
+              case model::SymbolKind::kDirection:
+              case model::SymbolKind::kSince:
+              case model::SymbolKind::kFeed:
+              case model::SymbolKind::kCurvature:
+              case model::SymbolKind::kNormal:
+              case model::SymbolKind::kTime:
                 wanted.insert(node.name);
                 break;
               default:
@@ -270,11 +270,11 @@ class Look {
             "a term of the machine file needs this column; without it it is 0 in all rows and the term "
             "cannot be seen",
             "log it, or hold the term in the fit");
-    for (const Input& input : machine_->inputs)
+    for (const model::Input& input : machine_->inputs)
       if (table_.find(input.name) == nullptr)
-        findings_.warn(
-            table_.header_line, input.name,
-            fmt::format("no column for this input: it is {} in all rows", number_text(input.reference)));
+        findings_.warn(table_.header_line, input.name,
+                       fmt::format("no column for this input: it is {} in all rows",
+                                   text::number_text(input.reference)));
   }
 
   // ---- its rows
@@ -299,7 +299,7 @@ class Look {
       if (row.cells.size() != width) {
         const bool more = row.cells.size() > width;
         findings_.add_of_kind(more ? "wide" : "narrow", LintWeight::kError, row.line,
-                              joined(row.cells, ",").substr(0, 30),
+                              text::joined(row.cells, ",").substr(0, 30),
                               fmt::format("{} fields where the header has {}", row.cells.size(), width),
                               more ? "decimal commas? Numbers have a decimal point here"
                                    : "a line that was cut, or a field without its comma");
@@ -315,10 +315,10 @@ class Look {
 
   void read_column(std::size_t k) {
     LintColumn& column = table_.columns[k];
-    const auto unit = find_unit(column.unit);
+    const auto unit = text::find_unit(column.unit);
     std::size_t words = 0;
     for (const LintRow& row : table_.rows)
-      words += !row.cells[k].empty() && !parse_number(row.cells[k]) ? 1 : 0;
+      words += !row.cells[k].empty() && !text::parse_number(row.cells[k]) ? 1 : 0;
     // Words in most rows of a column of one's own: labels, not numbers gone wrong.
     const bool own = names_.needed_unit(column.name) == "?" && column.name != "u";
     if (own && 2 * words > table_.rows.size()) {
@@ -331,15 +331,15 @@ class Look {
       column.cell.push_back(cell);
       column.value.push_back(kAbsent);
       if (column.label || cell.empty()) continue;
-      const auto number = parse_number(cell);
+      const auto number = text::parse_number(cell);
       if (number) {
         column.value.back() = (unit ? unit->factor : 1) * *number + (unit ? unit->offset : 0);
         continue;
       }
       std::string meaning = "an empty cell is a reading that is missing";
-      if (plain_number(cell, true))
+      if (sheet::plain_number(cell, true))
         meaning = "decimal comma? " + command(file_) + " reads it";
-      else if (plain_number(cell, false))
+      else if (sheet::plain_number(cell, false))
         meaning = "a sign between thousands? Write the number without";
       else if (!names_.axis_of(column.name, "dir").empty())
         meaning = "a direction is 1, -1 or 0";
@@ -352,8 +352,9 @@ class Look {
   void confirm() {
     if (machine_ == nullptr || findings_.any(LintWeight::kError)) return;
     try {
-      parse_measurement(bytes_, file_, *machine_, [](Measurement&, const Machine&, const std::string&) {});
-    } catch (const InputError& problem) {
+      model::parse_measurement(bytes_, file_, *machine_,
+                               [](model::Measurement&, const model::Machine&, const std::string&) {});
+    } catch (const text::InputError& problem) {
       const std::string message = problem.what();
       findings_.error(
           0, "", message.starts_with(file_ + ":") ? "line " + message.substr(file_.size() + 1) : message);
@@ -363,7 +364,7 @@ class Look {
   const std::string bytes_;  // as a fit would read them
   std::string text_;         // without mark, in UTF-8
   const std::string& file_;
-  const Machine* machine_;
+  const model::Machine* machine_;
   LintFindings findings_;
   LintNames names_;
   std::vector<std::string> header_;  // its fields
@@ -374,37 +375,38 @@ class Look {
 }  // namespace
 
 std::vector<LintFinding> lint_measurement(const std::string& bytes, const std::string& file,
-                                          const Machine* machine) {
+                                          const model::Machine* machine) {
   return Look(bytes, file, machine).all();
 }
 
 std::string import_command_for(const std::string& bytes, const std::string& file) {
-  if (is_workbook(bytes)) return command(file);
-  const Encoding encoding = encoding_of(bytes);
-  if (encoding == Encoding::kUtf16Le || encoding == Encoding::kUtf16Be) return command(file);
+  if (sheet::is_workbook(bytes)) return command(file);
+  const sheet::Encoding encoding = sheet::encoding_of(bytes);
+  if (encoding == sheet::Encoding::kUtf16Le || encoding == sheet::Encoding::kUtf16Be) return command(file);
   try {
-    const Sheet sheet = read_sheet(bytes, file);
-    const SheetTable table = parts_of_sheet(sheet);
+    const sheet::Sheet sheet = sheet::read_sheet(bytes, file);
+    const sheet::SheetTable table = sheet::parts_of_sheet(sheet);
     if (!table.has_headings) return "";
     bool odd = sheet.separator != ',' || sheet.decimal_comma || table.units_row > 0 ||
-               encoding == Encoding::kWindows1252;
+               encoding == sheet::Encoding::kWindows1252;
     for (const std::string& cell : sheet.rows[table.heading_row]) {
       const auto open = cell.find('[');
-      const std::string name = trimmed(cell.substr(0, open));
-      odd |= !is_name(name) || (open != std::string::npos &&
-                                !find_unit(trimmed(cell.substr(open + 1, cell.size() - open - 2))));
-      odd |= open == std::string::npos && !parse_heading(cell).unit.empty();
+      const std::string name = text::trimmed(cell.substr(0, open));
+      odd |= !text::is_name(name) ||
+             (open != std::string::npos &&
+              !text::find_unit(text::trimmed(cell.substr(open + 1, cell.size() - open - 2))));
+      odd |= open == std::string::npos && !sheet::parse_heading(cell).unit.empty();
     }
     // Trailing separators leave columns that a sheet has dropped already.
     const auto heading = static_cast<std::ptrdiff_t>(sheet.line[table.heading_row]);
     std::size_t at = 0;
     for (std::ptrdiff_t line = 1; line < heading && at != std::string::npos; ++line)
       at = bytes.find('\n', at) + 1;
-    odd |= trimmed(bytes.substr(at, bytes.find('\n', at) - at)).ends_with(',');
+    odd |= text::trimmed(bytes.substr(at, bytes.find('\n', at) - at)).ends_with(',');
     return odd ? command(file) : "";
-  } catch (const InputError&) {
+  } catch (const text::InputError&) {
     return "";
   }
 }
 
-}  // namespace vernier
+}  // namespace vernier::lint

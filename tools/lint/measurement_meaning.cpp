@@ -13,12 +13,13 @@
 #include "tools/text/similar.h"
 #include "tools/text/units.h"
 
-namespace vernier {
+namespace vernier::lint {
 namespace {
 
 class Meaning {
  public:
-  Meaning(const LintTable& table, const std::string& file, const Machine* machine, LintFindings& findings)
+  Meaning(const LintTable& table, const std::string& file, const model::Machine* machine,
+          LintFindings& findings)
       : table_(table), file_(file), machine_(machine), names_(machine), findings_(findings) {}
 
   void look() {
@@ -70,9 +71,10 @@ class Meaning {
       findings_.warn(table_.header_line, "feed", "the feed is 0 in all rows",
                      "lag and dynamic effects show only while the machine moves");
     if (column.name == "u" && most > 1)
-      findings_.warn(table_.header_line, "u", fmt::format("an uncertainty of {} mm", number_text(most)),
+      findings_.warn(table_.header_line, "u", fmt::format("an uncertainty of {} mm", text::number_text(most)),
                      "µm? Write u[um]");
-    if (find_unit(column.unit) && find_unit(column.unit)->dimension == Dimension::kTemperature)
+    if (text::find_unit(column.unit) &&
+        text::find_unit(column.unit)->dimension == text::Dimension::kTemperature)
       if (const std::string doubt = temperature_doubt(least, most); !doubt.empty())
         findings_.warn(table_.header_line, column.name,
                        fmt::format("from {:.4g} to {:.4g} degC", least, most), doubt);
@@ -84,10 +86,10 @@ class Meaning {
     if (most - least < 1e-9)
       findings_.warn(table_.header_line, column.name,
                      fmt::format("axis {} never moves: it stands at {} {} in all rows", column.name,
-                                 number_text(least), unit),
+                                 text::number_text(least), unit),
                      "its errors cannot be told from the set-up's");
     if (machine_ == nullptr) return;
-    const Axis& axis = machine_->axes[*machine_->find_axis(column.name)];
+    const model::Axis& axis = machine_->axes[*machine_->find_axis(column.name)];
     if (!axis.min || !axis.max) return;
     const double travel = *axis.max - *axis.min, slack = 0.01 * travel;
     std::size_t outside = 0, first = 0;
@@ -103,11 +105,11 @@ class Meaning {
       if (close(1e-3)) meaning = "µm read as mm?";
       if (close(1 / 25.4)) meaning = "";
       if (turns && close(1.0 / 3600)) meaning = "arcsec read as deg?";
-      findings_.warn(
-          line(first), column.cell[first],
-          fmt::format("{} is outside the travel of {} to {} {} in {} of {} rows", column.name,
-                      number_text(*axis.min), number_text(*axis.max), unit, outside, table_.rows.size()),
-          meaning);
+      findings_.warn(line(first), column.cell[first],
+                     fmt::format("{} is outside the travel of {} to {} {} in {} of {} rows", column.name,
+                                 text::number_text(*axis.min), text::number_text(*axis.max), unit, outside,
+                                 table_.rows.size()),
+                     meaning);
     } else if (most - least > 1e-9 && most - least < 0.05 * travel) {
       std::string meaning;
       if (!turns && close(25.4)) meaning = "inch read as mm?";
@@ -125,7 +127,7 @@ class Meaning {
       for (std::size_t row = 0; row < table_.rows.size(); ++row) {
         const std::string& word = role->cell[row];
         if (word != "fit" && word != "check" && !word.empty()) {
-          const auto meant = word_meant(word, {"fit", "check"});
+          const auto meant = text::word_meant(word, {"fit", "check"});
           findings_.add_of_kind("role", LintWeight::kError, line(row), word, "a role is fit or check",
                                 meant ? "did you mean " + *meant + "?" : "");
         }
@@ -158,7 +160,7 @@ class Meaning {
             "time " + label, LintWeight::kWarning, line(row), time->cell[row],
             fmt::format("t falls in {}: {} s after {} s",
                         label.empty() ? std::string("this file") : "run " + label,
-                        number_text(time->value[row]), number_text(time->value[before->second])),
+                        text::number_text(time->value[row]), text::number_text(time->value[before->second])),
             "rows are in the order of time; a new set-up or clock is a new run");
       last[label] = row;
     }
@@ -236,7 +238,7 @@ class Meaning {
 
   const LintTable& table_;
   const std::string& file_;
-  const Machine* machine_;
+  const model::Machine* machine_;
   LintNames names_;
   LintFindings& findings_;
   bool any_reading_ = false;
@@ -244,7 +246,7 @@ class Meaning {
 
 }  // namespace
 
-void look_at_meaning(const LintTable& table, const std::string& file, const Machine* machine,
+void look_at_meaning(const LintTable& table, const std::string& file, const model::Machine* machine,
                      LintFindings& findings) {
   Meaning(table, file, machine, findings).look();
 }
@@ -257,4 +259,4 @@ std::string temperature_doubt(double least_degC, double most_degC) {
   return {};
 }
 
-}  // namespace vernier
+}  // namespace vernier::lint

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace vernier {
+namespace vernier::map {
 namespace {
 
 using Eigen::Index;
@@ -11,81 +11,83 @@ using Eigen::Index;
 /// Of what counts as reached.
 constexpr double kSlack_mm = 1e-6;
 
-const Axis& ranged(const Machine& machine, std::size_t axis) {
-  const Axis& one = machine.axes[axis];
+const model::Axis& ranged(const model::Machine& machine, std::size_t axis) {
+  const model::Axis& one = machine.axes[axis];
   if (!one.min || !one.max)
-    throw InputError({machine.file, one.line}, one.name, "this axis needs min and max");
+    throw text::InputError({machine.file, one.line}, one.name, "this axis needs min and max");
   return one;
 }
 
 }  // namespace
 
-ErrorField error_field(const Machine& machine, const States& at, const std::vector<std::size_t>& axes,
-                       std::size_t count) {
+ErrorField error_field(const model::Machine& machine, const model::States& at,
+                       const std::vector<std::size_t>& axes, std::size_t count) {
   if (axes.empty() || axes.size() > 3)
-    throw InputError({machine.file, 0}, "", "a map is over one to three axes");
+    throw text::InputError({machine.file, 0}, "", "a map is over one to three axes");
   ErrorField field;
   field.axes = axes;
   field.counts.assign(axes.size(), count);
   std::size_t nodes = 1;
   for (const std::size_t n : field.counts) nodes *= n;
-  field.states = select_states(at, std::vector<std::size_t>(nodes, 0));
+  field.states = model::select_states(at, std::vector<std::size_t>(nodes, 0));
   std::size_t stride = 1;
   for (const std::size_t axis : axes) {
-    const Axis& one = ranged(machine, axis);
+    const model::Axis& one = ranged(machine, axis);
     for (std::size_t i = 0; i < nodes; ++i)
       field.states.axis[axis][static_cast<Index>(i)] =
           *one.min +
           (*one.max - *one.min) * static_cast<double>(i / stride % count) / static_cast<double>(count - 1);
     stride *= count;
   }
-  field.nominal = forward(nominal_machine(machine), field.states).position;
-  field.deviation = forward(machine, field.states).position - field.nominal;
+  field.nominal = model::forward(model::nominal_machine(machine), field.states).position;
+  field.deviation = model::forward(machine, field.states).position - field.nominal;
   return field;
 }
 
-Bench::Bench(const Machine& machine, const States& at)
+Bench::Bench(const model::Machine& machine, const model::States& at)
     : machine_(machine),
-      nominal_(nominal_machine(machine)),
+      nominal_(model::nominal_machine(machine)),
       at_(at),
-      axes_(linear_axes(machine)),
-      closed_(closed_solution(nominal_, at)) {
+      axes_(kinematics::linear_axes(machine)),
+      closed_(kinematics::closed_solution(nominal_, at)) {
   if (axes_.empty() || axes_.size() > 3)
-    throw InputError({machine.file, 0}, "", "no measurement is simulated: it needs one to three linear axes");
+    throw text::InputError({machine.file, 0}, "",
+                           "no measurement is simulated: it needs one to three linear axes");
   for (const std::size_t axis : axes_) ranged(machine, axis);
 }
 
 Eigen::Vector3d Bench::point_at(const Eigen::VectorXd& fraction) const {
   Eigen::VectorXd q(fraction.size());
   for (Index k = 0; k < q.size(); ++k) {
-    const Axis& axis = machine_.axes[axes_[static_cast<std::size_t>(k)]];
+    const model::Axis& axis = machine_.axes[axes_[static_cast<std::size_t>(k)]];
     q[k] = *axis.min + fraction[k] * (*axis.max - *axis.min);
   }
-  return forward(nominal_, standing_at(q)).position.col(0);
+  return model::forward(nominal_, standing_at(q)).position.col(0);
 }
 
-States Bench::standing_at(const Eigen::MatrixXd& positions) const {
-  States states = select_states(at_, std::vector<std::size_t>(static_cast<std::size_t>(positions.cols()), 0));
+model::States Bench::standing_at(const Eigen::MatrixXd& positions) const {
+  model::States states =
+      model::select_states(at_, std::vector<std::size_t>(static_cast<std::size_t>(positions.cols()), 0));
   for (Index k = 0; k < positions.rows(); ++k)
     states.axis[axes_[static_cast<std::size_t>(k)]] = positions.row(k).transpose().array();
   return states;
 }
 
 Eigen::MatrixXd Bench::positions_of(const Eigen::Matrix3Xd& points) const {
-  if (closed_) return solve_closed(*closed_, points);
+  if (closed_) return kinematics::solve_closed(*closed_, points);
   Eigen::MatrixXd middle(axes_.size(), points.cols());
   for (std::size_t k = 0; k < axes_.size(); ++k)
     middle.row(static_cast<Index>(k))
         .setConstant((*machine_.axes[axes_[k]].min + *machine_.axes[axes_[k]].max) / 2);
-  Poses target;
+  model::Poses target;
   target.position = points;
   target.rotation.assign(static_cast<std::size_t>(points.cols()), Eigen::Matrix3d::Identity());
-  InverseOptions options;
-  options.match = Match::kPosition;
+  kinematics::InverseOptions options;
+  options.match = kinematics::Match::kPosition;
   options.axes = axes_;
   options.keep_ranges = false;
   options.only_reachable = axes_.size() < 3;
-  const States solved = solve(nominal_, target, standing_at(middle), options).states;
+  const model::States solved = kinematics::solve(nominal_, target, standing_at(middle), options).states;
   Eigen::MatrixXd positions(axes_.size(), points.cols());
   for (std::size_t k = 0; k < axes_.size(); ++k)
     positions.row(static_cast<Index>(k)) = solved.axis[axes_[k]].matrix().transpose();
@@ -93,7 +95,7 @@ Eigen::MatrixXd Bench::positions_of(const Eigen::Matrix3Xd& points) const {
 }
 
 bool Bench::comes_to(const Eigen::MatrixXd& positions, const Eigen::Matrix3Xd& points) const {
-  const Eigen::Matrix3Xd there = forward(nominal_, standing_at(positions)).position;
+  const Eigen::Matrix3Xd there = model::forward(nominal_, standing_at(positions)).position;
   return (there - points).colwise().norm().maxCoeff() <= kSlack_mm;
 }
 
@@ -103,7 +105,7 @@ bool Bench::reaches(const Eigen::Matrix3Xd& points) const {
   const Eigen::MatrixXd q = positions_of(points);
   if (!comes_to(q, points)) return false;
   for (Index k = 0; k < q.rows(); ++k) {
-    const Axis& axis = machine_.axes[axes_[static_cast<std::size_t>(k)]];
+    const model::Axis& axis = machine_.axes[axes_[static_cast<std::size_t>(k)]];
     if (q.row(k).minCoeff() < *axis.min - kSlack_mm || q.row(k).maxCoeff() > *axis.max + kSlack_mm)
       return false;
   }
@@ -111,16 +113,16 @@ bool Bench::reaches(const Eigen::Matrix3Xd& points) const {
 }
 
 Eigen::Matrix3Xd Bench::measure(const Eigen::Matrix3Xd& points) const {
-  return forward(machine_, states_of(positions_of(points))).position;
+  return model::forward(machine_, states_of(positions_of(points))).position;
 }
 
-States Bench::states_of(const Eigen::MatrixXd& positions) const {
+model::States Bench::states_of(const Eigen::MatrixXd& positions) const {
   const Index count = positions.cols();
-  States states = standing_at(positions);
+  model::States states = standing_at(positions);
   constexpr double kStill_mm = 1e-9;  // less is rounding of the back solution, no motion
   for (Index k = 0; k < positions.rows(); ++k) {
     const std::size_t axis = axes_[static_cast<std::size_t>(k)];
-    double sense = 0, since = kLongWay;
+    double sense = 0, since = model::kLongWay;
     for (Index i = 1; i < count && sense == 0; ++i) {
       const double step = positions(k, i) - positions(k, i - 1);
       if (std::abs(step) > kStill_mm) sense = step > 0 ? 1 : -1;
@@ -133,10 +135,10 @@ States Bench::states_of(const Eigen::MatrixXd& positions) const {
         sense = next;
       }
       states.direction[axis][i] = sense;
-      states.since[axis][i] = std::min(since, kLongWay);
+      states.since[axis][i] = std::min(since, model::kLongWay);
     }
   }
   return states;
 }
 
-}  // namespace vernier
+}  // namespace vernier::map

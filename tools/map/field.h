@@ -7,21 +7,21 @@
 
 #include "tools/kinematics/closed.h"
 
-namespace vernier {
+namespace vernier::map {
 
 /// Deviation vectors on a grid over the ranges of one to three axes.
 struct ErrorField {
   std::vector<std::size_t> axes;    // swept, the first one runs fastest
   std::vector<std::size_t> counts;  // nodes along each
-  States states;                    // one a node
+  model::States states;             // one a node
   Eigen::Matrix3Xd nominal;         // tool point of the nominal chain, mm
   Eigen::Matrix3Xd deviation;       // actual - nominal, mm
 };
 
 /// The field over the declared ranges of `axes`, `count` nodes along each; everything else as in `at` (count
 /// 1). Throws InputError: an axis without min and max, no axis or more than three. tool.
-ErrorField error_field(const Machine& machine, const States& at, const std::vector<std::size_t>& axes,
-                       std::size_t count);
+ErrorField error_field(const model::Machine& machine, const model::States& at,
+                       const std::vector<std::size_t>& axes, std::size_t count);
 
 /// A machine on which measurements are simulated: its nominal chain is what was commanded, the machine itself
 /// what happens. Its linear axes are found by the closed back solution where the nominal chain has one, else
@@ -29,7 +29,7 @@ ErrorField error_field(const Machine& machine, const States& at, const std::vect
 class Bench {
  public:
   /// Throws InputError where the chain has no linear axis or more than three, or one without a range.
-  Bench(const Machine& machine, const States& at);
+  Bench(const model::Machine& machine, const model::States& at);
 
   const std::vector<std::size_t>& axes() const { return axes_; }
   /// Nominal tool point (mm) where the linear axes stand at these fractions (0..1) of their ranges.
@@ -45,15 +45,15 @@ class Bench {
 
  private:
   bool comes_to(const Eigen::MatrixXd& positions, const Eigen::Matrix3Xd& points) const;
-  States standing_at(const Eigen::MatrixXd& positions) const;
+  model::States standing_at(const Eigen::MatrixXd& positions) const;
   Eigen::MatrixXd positions_of(const Eigen::Matrix3Xd& points) const;
-  States states_of(const Eigen::MatrixXd& positions) const;
+  model::States states_of(const Eigen::MatrixXd& positions) const;
 
-  const Machine& machine_;
-  Machine nominal_;
-  States at_;
+  const model::Machine& machine_;
+  model::Machine nominal_;
+  model::States at_;
   std::vector<std::size_t> axes_;
-  std::optional<ClosedSolution> closed_;
+  std::optional<kinematics::ClosedSolution> closed_;
 };
 
-}  // namespace vernier
+}  // namespace vernier::map

@@ -17,7 +17,7 @@
 #include "tools/text/numbers.h"
 #include "tools/text/units.h"
 
-namespace vernier {
+namespace vernier::map {
 namespace {
 
 using Eigen::Index;
@@ -86,14 +86,14 @@ std::optional<double> fitting_radius(const Bench& bench, const Vector3d& centre,
   return 0.9 * low;
 }
 
-CircularPass measured_circle(const Bench& bench, const Vector3d& centre, double radius, int plane,
-                             int sense) {
+importer::CircularPass measured_circle(const Bench& bench, const Vector3d& centre, double radius, int plane,
+                                       int sense) {
   const Matrix3Xd points = circle_points(centre, radius, plane, sense);
   // A lap before the one that counts, so that senses and travel since reversal are those of steady motion.
   Matrix3Xd laps(3, 2 * kCirclePoints + 1);
   laps << points.leftCols(kCirclePoints), points;
   const Matrix3Xd actual = bench.measure(laps).rightCols(kCirclePoints);
-  CircularPass pass;
+  importer::CircularPass pass;
   pass.label = sense > 0 ? "CCW" : "CW";
   pass.direction = sense;
   for (int i = 0; i < kCirclePoints; ++i) {
@@ -113,7 +113,7 @@ void add_line(const Bench& bench, const std::string& name, const Eigen::VectorXd
     lines.push_back(measure_line(bench, name, first, last));
 }
 
-void add_diagonal(const Machine& machine, const Bench& bench, const std::vector<Index>& moving,
+void add_diagonal(const model::Machine& machine, const Bench& bench, const std::vector<Index>& moving,
                   unsigned signs, std::vector<LineResult>& lines) {
   const auto count = static_cast<Index>(bench.axes().size());
   // Faces at the low end of the axes that stay.
@@ -141,8 +141,8 @@ LineResult measure_line(const Bench& bench, const std::string& name, const Vecto
   constexpr double kBeyond = std::numeric_limits<double>::infinity();
   double mean_low = kBeyond, mean_high = -kBeyond, low = kBeyond, high = -kBeyond;
   for (int i = 0; i < positions; ++i) {
-    const double f = kUmPerMm * (along.dot(off.col(i)) - start);
-    const double r = kUmPerMm * (along.dot(off.col(2 * positions - 1 - i)) - start);
+    const double f = maths::kUmPerMm * (along.dot(off.col(i)) - start);
+    const double r = maths::kUmPerMm * (along.dot(off.col(2 * positions - 1 - i)) - start);
     line.distance_mm.push_back((there.col(i) - from).norm());
     line.forward_um.push_back(f);
     line.reverse_um.push_back(r);
@@ -155,11 +155,11 @@ LineResult measure_line(const Bench& bench, const std::string& name, const Vecto
   }
   line.error_um = high - low;
   line.mean_um = mean_high - mean_low;
-  line.straightness_um = kUmPerMm * straightness(there, off.leftCols(positions), along);
+  line.straightness_um = maths::kUmPerMm * straightness(there, off.leftCols(positions), along);
   return line;
 }
 
-std::vector<LineResult> axis_lines(const Machine& machine, const Bench& bench) {
+std::vector<LineResult> axis_lines(const model::Machine& machine, const Bench& bench) {
   std::vector<LineResult> lines;
   for (std::size_t k = 0; k < bench.axes().size(); ++k) {
     Eigen::VectorXd from = Eigen::VectorXd::Constant(static_cast<Index>(bench.axes().size()), 0.5), to = from;
@@ -170,7 +170,7 @@ std::vector<LineResult> axis_lines(const Machine& machine, const Bench& bench) {
   return lines;
 }
 
-std::vector<LineResult> diagonals(const Machine& machine, const Bench& bench) {
+std::vector<LineResult> diagonals(const model::Machine& machine, const Bench& bench) {
   std::vector<LineResult> lines;
   const auto count = static_cast<Index>(bench.axes().size());
   if (count == 3)
@@ -187,9 +187,9 @@ Json circles_json(const Bench& bench) {
   for (int plane = 0; plane < 3; ++plane) {
     const auto radius = fitting_radius(bench, centre, plane);
     if (!radius) continue;
-    const CircularResult result =
-        analyse_circle(*radius, {measured_circle(bench, centre, *radius, plane, 1),
-                                 measured_circle(bench, centre, *radius, plane, -1)});
+    const importer::CircularResult result =
+        importer::analyse_circle(*radius, {measured_circle(bench, centre, *radius, plane, 1),
+                                           measured_circle(bench, centre, *radius, plane, -1)});
     list.push_back(
         {{"plane", kPlaneNames[plane]},
          {"radius_mm", *radius},
@@ -229,7 +229,7 @@ Json squares_json(const Bench& bench) {
       const Eigen::VectorXd t = (nominal.colwise() - from).transpose() * along;
       slope[s] = line_fit(t, off.transpose() * left)[0];  // rad, anticlockwise
       straight = std::max(straight, straightness(nominal, off, along));
-      sides.push_back(kUmPerMm * ((actual.col(kSide - 1) - actual.col(0)).norm() - 2 * half));
+      sides.push_back(maths::kUmPerMm * ((actual.col(kSide - 1) - actual.col(0)).norm() - 2 * half));
     }
     // Side 0 along the first axis, side 1 along the second; the opposite sides have the opposite sense.
     const double square = (slope[1] + slope[3]) / 2 - (slope[0] + slope[2]) / 2;
@@ -237,7 +237,7 @@ Json squares_json(const Bench& bench) {
                     {"side_mm", 2 * half},
                     {"angle_um_per_m", 1e6 * square},
                     {"side_length_deviation_um", sides},
-                    {"straightness_um", kUmPerMm * straight}});
+                    {"straightness_um", maths::kUmPerMm * straight}});
   }
   return list;
 }
@@ -271,13 +271,13 @@ Json cylinder_json(const Bench& bench) {
   const Eigen::VectorXd fit = a.colPivHouseholderQr().solve(r);
   return {{"radius_mm", *radius},
           {"height_mm", 2 * half},
-          {"cylindricity_um", kUmPerMm * range(r - a * fit)},
-          {"radius_deviation_um", kUmPerMm * (fit[0] - *radius)},
+          {"cylindricity_um", maths::kUmPerMm * range(r - a * fit)},
+          {"radius_deviation_um", maths::kUmPerMm * (fit[0] - *radius)},
           {"axis_tilt_um_per_m", {1e6 * fit[3], 1e6 * fit[4]}}};
 }
 
 Json free_lines_json(const Bench& bench, const std::string& path) {
-  const CsvFile csv = parse_csv(read_file(path), path);
+  const text::CsvFile csv = text::parse_csv(text::read_file(path), path);
   std::map<std::string, std::size_t> column;
   for (std::size_t i = 0; i < csv.columns.size(); ++i) column[csv.columns[i].name] = i;
   std::map<std::string, std::vector<Vector3d>> lines;
@@ -287,32 +287,33 @@ Json free_lines_json(const Bench& bench, const std::string& path) {
       const std::string name(1, "xyz"[c]);
       const auto found = column.find(name);
       if (found == column.end() ||
-          find_unit(csv.columns[found->second].unit)->dimension != Dimension::kLength)
-        throw InputError({path, csv.header_line}, name, "free lines are points x[mm],y[mm],z[mm],run");
-      const auto value = parse_number(csv.rows[i][found->second]);
-      if (!value) throw InputError({path, csv.line[i]}, csv.rows[i][found->second], "not a number");
-      point[c] = *value * find_unit(csv.columns[found->second].unit)->factor;
+          text::find_unit(csv.columns[found->second].unit)->dimension != text::Dimension::kLength)
+        throw text::InputError({path, csv.header_line}, name, "free lines are points x[mm],y[mm],z[mm],run");
+      const auto value = text::parse_number(csv.rows[i][found->second]);
+      if (!value) throw text::InputError({path, csv.line[i]}, csv.rows[i][found->second], "not a number");
+      point[c] = *value * text::find_unit(csv.columns[found->second].unit)->factor;
     }
     if (!bench.reaches(point))
-      throw InputError({path, csv.line[i]}, "", "this point is outside the working volume");
+      throw text::InputError({path, csv.line[i]}, "", "this point is outside the working volume");
     lines[column.contains("run") ? csv.rows[i][column["run"]] : ""].push_back(point);
   }
   Json list = Json::array();
   for (const auto& [name, points] : lines) {
-    if (points.size() < 2) throw InputError({path, 0}, name, "a line needs two points at least");
+    if (points.size() < 2) throw text::InputError({path, 0}, name, "a line needs two points at least");
     Matrix3Xd nominal(3, static_cast<Index>(points.size()));
     for (std::size_t i = 0; i < points.size(); ++i) nominal.col(static_cast<Index>(i)) = points[i];
     const Matrix3Xd actual = bench.measure(nominal);
     const Index last = nominal.cols() - 1;
     const Vector3d along = nominal.col(last) - nominal.col(0);
-    if (along.norm() == 0) throw InputError({path, 0}, name, "a line needs two different ends");
+    if (along.norm() == 0) throw text::InputError({path, 0}, name, "a line needs two different ends");
     list.push_back(
         {{"run", name},
          {"points", points.size()},
          {"length_mm", along.norm()},
-         {"length_deviation_um", kUmPerMm * ((actual.col(last) - actual.col(0)).norm() - along.norm())},
-         {"straightness_um", kUmPerMm * straightness(nominal, actual - nominal, along.normalized())},
-         {"max_deviation_um", kUmPerMm * (actual - nominal).colwise().norm().maxCoeff()}});
+         {"length_deviation_um",
+          maths::kUmPerMm * ((actual.col(last) - actual.col(0)).norm() - along.norm())},
+         {"straightness_um", maths::kUmPerMm * straightness(nominal, actual - nominal, along.normalized())},
+         {"max_deviation_um", maths::kUmPerMm * (actual - nominal).colwise().norm().maxCoeff()}});
   }
   return list;
 }
@@ -331,4 +332,4 @@ Json line_json(const LineResult& line) {
           {"reverse_um", line.reverse_um}};
 }
 
-}  // namespace vernier
+}  // namespace vernier::map

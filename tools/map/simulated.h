@@ -6,7 +6,7 @@
 
 #include "tools/map/field.h"
 
-namespace vernier {
+namespace vernier::map {
 
 /// A straight line measured there and back, deviations along it from its first point, um.
 struct LineResult {
@@ -31,8 +31,8 @@ LineResult measure_line(const Bench& bench, const std::string& name, const Eigen
 /// Each linear axis through the middle of the volume; body diagonals (four) and face diagonals (two in each
 /// face at the low end of the third axis; with two axes the two of the plane). Names: "X", "+X+Y-Z", "+X-Y".
 /// A line that the nominal chain cannot follow is left out.
-std::vector<LineResult> axis_lines(const Machine& machine, const Bench& bench);
-std::vector<LineResult> diagonals(const Machine& machine, const Bench& bench);
+std::vector<LineResult> axis_lines(const model::Machine& machine, const Bench& bench);
+std::vector<LineResult> diagonals(const model::Machine& machine, const Bench& bench);
 
 /// ISO 230-4 numbers of circles in the planes XY, YZ, ZX of the workpiece about the middle of the volume,
 /// both senses, as large as fits; planes that the axes cannot reach are left out. tool.
@@ -48,4 +48,4 @@ nlohmann::ordered_json free_lines_json(const Bench& bench, const std::string& pa
 
 nlohmann::ordered_json line_json(const LineResult& line);
 
-}  // namespace vernier
+}  // namespace vernier::map

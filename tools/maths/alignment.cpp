@@ -4,7 +4,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
 
-namespace vernier {
+namespace vernier::maths {
 namespace {
 
 /// Below this share of the largest extent a second extent is rounding: mm^2 over mm^2.
@@ -48,4 +48,4 @@ Eigen::Matrix3Xd aligned_error(const RigidMotion& motion, const Eigen::Matrix3Xd
   return ((motion.rotation * from).colwise() + motion.translation) - to;
 }
 
-}  // namespace vernier
+}  // namespace vernier::maths

@@ -2,7 +2,7 @@
 #pragma once
 #include <Eigen/Core>
 
-namespace vernier {
+namespace vernier::maths {
 
 /// A rigid motion: point -> rotation * point + translation.
 struct RigidMotion {
@@ -24,4 +24,4 @@ bool fixes_motion(const Eigen::Matrix3Xd& points);
 Eigen::Matrix3Xd aligned_error(const RigidMotion& motion, const Eigen::Matrix3Xd& from,
                                const Eigen::Matrix3Xd& to);
 
-}  // namespace vernier
+}  // namespace vernier::maths

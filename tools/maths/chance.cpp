@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace vernier {
+namespace vernier::maths {
 namespace {
 
 constexpr int kMostTerms = 10000;
@@ -84,4 +84,4 @@ double log_correlation_tail(double r, double pairs) {
   return r > 0 ? both - std::log(2.0) : std::log1p(-std::exp(both) / 2);
 }
 
-}  // namespace vernier
+}  // namespace vernier::maths

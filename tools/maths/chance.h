@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-namespace vernier {
+namespace vernier::maths {
 
 /// Natural logarithm of the upper tail of an F distribution: log P(F >= f). f >= 0, d1 > 0, d2 > 0, none of
 /// them has to be whole. In logarithms because the findings of a good survey lie far below the smallest
@@ -20,4 +20,4 @@ double chi_square_tail(double x, double k);
 /// tool.
 double log_correlation_tail(double r, double pairs);
 
-}  // namespace vernier
+}  // namespace vernier::maths

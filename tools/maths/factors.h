@@ -4,7 +4,7 @@
 
 /// Factors between the units that tools write: the only place where they stand. Files keep mm, deg, degC and
 /// s; a radian appears only inside a function that needs one.
-namespace vernier {
+namespace vernier::maths {
 
 inline constexpr double kRadPerDeg = std::numbers::pi / 180;
 inline constexpr double kDegPerRad = 180 / std::numbers::pi;
@@ -15,4 +15,4 @@ inline constexpr double kMmPerInch = 25.4;  // exact by definition
 /// ISO 1: the temperature at which dimensions are specified.
 inline constexpr double kReferenceDegC = 20;
 
-}  // namespace vernier
+}  // namespace vernier::maths

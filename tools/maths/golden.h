@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-namespace vernier {
+namespace vernier::maths {
 
 struct Peak {
   double at = 0, value = 0;
@@ -32,4 +32,4 @@ Peak golden_peak(const Function& value, double low, double high, int sections) {
   return at_a > at_b ? Peak{a, at_a} : Peak{b, at_b};
 }
 
-}  // namespace vernier
+}  // namespace vernier::maths

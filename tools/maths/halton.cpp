@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/maths/halton.h"
 
-namespace vernier {
+namespace vernier::maths {
 
 double radical_inverse(std::size_t index, std::size_t base) {
   double result = 0, digit = 1;
@@ -12,4 +12,4 @@ double radical_inverse(std::size_t index, std::size_t base) {
   return result;
 }
 
-}  // namespace vernier
+}  // namespace vernier::maths

@@ -7,7 +7,7 @@
 
 #include "tools/maths/chance.h"
 
-namespace vernier {
+namespace vernier::maths {
 namespace {
 
 /// Gaussian elimination of the leading functions of a small symmetric system, one pivot at a time.
@@ -132,4 +132,4 @@ double log_p_together(const std::vector<const Moments*>& moments, const std::vec
   return rank > 0 ? log_f_tail(sum / rank, rank, freedom) : 0;
 }
 
-}  // namespace vernier
+}  // namespace vernier::maths

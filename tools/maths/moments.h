@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-namespace vernier {
+namespace vernier::maths {
 
 /// A regression reduced to what its F tests need: inner products of the functions with one another and with
 /// the residual, after projection on the complement of what was fitted before. Functions have length 1 before
@@ -45,4 +45,4 @@ Eigen::VectorXd coefficients(const Moments& moments, const FunctionSet& function
 /// serial correlation widens the variance of the explained sum, at least 1. tool.
 double log_p(const Moments& moments, const Explained& part, double inflation = 1);
 
-}  // namespace vernier
+}  // namespace vernier::maths

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/maths/orthonormal.h"
 
-namespace vernier {
+namespace vernier::maths {
 
 Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& columns, double least, std::vector<std::size_t>* kept) {
   Eigen::MatrixXd basis(columns.rows(), columns.cols());
@@ -20,4 +20,4 @@ Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& columns, double least, std::v
   return basis.leftCols(count);
 }
 
-}  // namespace vernier
+}  // namespace vernier::maths

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace vernier {
+namespace vernier::maths {
 namespace {
 
 using Eigen::Index;
@@ -119,4 +119,4 @@ Eigen::MatrixXd PivotedCholesky::inverse() const {
   return result;
 }
 
-}  // namespace vernier
+}  // namespace vernier::maths

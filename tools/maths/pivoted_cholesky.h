@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-namespace vernier {
+namespace vernier::maths {
 
 /// L L^T of the rows and columns of a positive semidefinite matrix that are not (nearly) dependent on the
 /// others: diagonal pivoting, block by block (Lucas, LAPACK-style codes for level 2 and 3 pivoted Cholesky
@@ -37,4 +37,4 @@ class PivotedCholesky {
   Eigen::Index rank_ = 0;
 };
 
-}  // namespace vernier
+}  // namespace vernier::maths

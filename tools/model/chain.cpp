@@ -3,7 +3,7 @@
 
 #include "tools/model/chain_rows.h"
 
-namespace vernier {
+namespace vernier::model {
 
 Poses forward(const Machine& machine, const States& states) {
   ChainRows chain(machine, states);
@@ -22,4 +22,4 @@ Eigen::Matrix3Xd deviation(const Machine& machine, const States& states) {
   return forward(machine, states).position - forward(nominal_machine(machine), states).position;
 }
 
-}  // namespace vernier
+}  // namespace vernier::model

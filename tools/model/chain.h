@@ -6,7 +6,7 @@
 #include "tools/model/machine.h"
 #include "tools/model/states.h"
 
-namespace vernier {
+namespace vernier::model {
 
 /// Tool points and orientations of N states in workpiece coordinates (no BaseShift).
 struct Poses {
@@ -27,4 +27,4 @@ std::array<double, 6> table_values(const Table& table, double raw);
 /// Value of an expression of the machine at every state.
 Column evaluate(const Machine& machine, const Expr& expr, const States& states);
 
-}  // namespace vernier
+}  // namespace vernier::model

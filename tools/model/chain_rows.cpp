@@ -7,7 +7,7 @@
 
 #include "tools/maths/factors.h"
 
-namespace vernier {
+namespace vernier::model {
 namespace {
 
 using Eigen::Matrix3d;
@@ -15,7 +15,7 @@ using Eigen::Vector3d;
 
 Matrix3d turn(double angle_deg, const Vector3d& axis) {
   if (angle_deg == 0) return Matrix3d::Identity();
-  return Eigen::AngleAxisd(angle_deg * kRadPerDeg, axis).toRotationMatrix();
+  return Eigen::AngleAxisd(angle_deg * maths::kRadPerDeg, axis).toRotationMatrix();
 }
 
 Frame dh_frame(double theta_deg, double d, double a, double alpha_deg) {
@@ -32,7 +32,7 @@ Frame compose(const Frame& below, const Frame& above) {
 
 Twist shift_along(const Vector3d& direction) { return {direction, Vector3d::Zero()}; }
 Twist turn_about(const Vector3d& axis, const Vector3d& through, const Vector3d& point) {
-  return {kRadPerDeg * axis.cross(point - through), kRadPerDeg * axis};
+  return {maths::kRadPerDeg * axis.cross(point - through), maths::kRadPerDeg * axis};
 }
 
 }  // namespace
@@ -41,8 +41,8 @@ Twist turn_about(const Vector3d& axis, const Vector3d& through, const Vector3d& 
 struct TurnValues {
   explicit TurnValues(double angle_deg) {
     if (angle_deg == 0) return;
-    s = std::sin(angle_deg * kRadPerDeg);
-    c = std::cos(angle_deg * kRadPerDeg);
+    s = std::sin(angle_deg * maths::kRadPerDeg);
+    c = std::cos(angle_deg * maths::kRadPerDeg);
   }
   double s = 0, c = 1;
 };
@@ -83,10 +83,10 @@ ChainRows::Link ChainRows::link(const Transform& transform, const char* branch, 
     if (!dual.value.all_finite()) {
       std::size_t row = 0;
       while (row + 1 < count_ && std::isfinite(dual.value[row])) ++row;
-      throw InputError({machine_.file, transform.line}, transform.text[i],
-                       std::string("not a finite number, in ") + transform.dof_name(i) + " of transform " +
-                           std::to_string(transform.n) + " (" + branch + "), data row " +
-                           std::to_string(row + 1));
+      throw text::InputError({machine_.file, transform.line}, transform.text[i],
+                             std::string("not a finite number, in ") + transform.dof_name(i) +
+                                 " of transform " + std::to_string(transform.n) + " (" + branch +
+                                 "), data row " + std::to_string(row + 1));
     }
     Dof& dof = result.dof[i];
     dof.value = std::move(dual.value);
@@ -157,4 +157,4 @@ void ChainRows::add_twists(const Link& link, std::size_t i, const Frame& below, 
     }
 }
 
-}  // namespace vernier
+}  // namespace vernier::model

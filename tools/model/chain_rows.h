@@ -7,7 +7,7 @@
 #include "tools/model/machine.h"
 #include "tools/model/states.h"
 
-namespace vernier {
+namespace vernier::model {
 
 /// A frame: rotation and origin in the frame below.
 struct Frame {
@@ -63,4 +63,4 @@ class ChainRows {
   std::vector<std::size_t> keys_;
 };
 
-}  // namespace vernier
+}  // namespace vernier::model

@@ -6,7 +6,7 @@
 #include "tools/maths/factors.h"
 #include "tools/model/chain.h"
 
-namespace vernier {
+namespace vernier::model {
 namespace {
 
 template <class F>
@@ -40,13 +40,13 @@ double by_first(Op op, double a, double b) {
     case Op::kPower:
       return b == 0 ? 0 : b * std::pow(a, b - 1);
     case Op::kSin:
-      return kRadPerDeg * std::cos(a * kRadPerDeg);
+      return maths::kRadPerDeg * std::cos(a * maths::kRadPerDeg);
     case Op::kCos:
-      return -kRadPerDeg * std::sin(a * kRadPerDeg);
+      return -maths::kRadPerDeg * std::sin(a * maths::kRadPerDeg);
     case Op::kTan:
-      return kRadPerDeg / (std::cos(a * kRadPerDeg) * std::cos(a * kRadPerDeg));
+      return maths::kRadPerDeg / (std::cos(a * maths::kRadPerDeg) * std::cos(a * maths::kRadPerDeg));
     case Op::kAtan2:
-      return b / (a * a + b * b) / kRadPerDeg;
+      return b / (a * a + b * b) / maths::kRadPerDeg;
     case Op::kSqrt:
       return 0.5 / std::sqrt(a);
     case Op::kAbs:
@@ -77,7 +77,7 @@ double by_second(Op op, double a, double b) {
     case Op::kPower:
       return a > 0 ? std::pow(a, b) * std::log(a) : 0;
     case Op::kAtan2:
-      return -a / (a * a + b * b) / kRadPerDeg;
+      return -a / (a * a + b * b) / maths::kRadPerDeg;
     case Op::kMin:
       return a <= b ? 0 : 1;
     case Op::kMax:
@@ -234,9 +234,9 @@ ValueAndSlopes Evaluator::lag(const ValueAndSlopes& input, const ValueAndSlopes&
     if (before < states_.count && tau.value[i] > 0) {
       const double dt = states_.time[at] - states_.time[from];
       if (dt < 0)
-        throw InputError("lag needs rows in time order: t falls from " + std::to_string(states_.time[from]) +
-                         " to " + std::to_string(states_.time[at]) + " s in run \"" +
-                         states_.names(states_.clock)[clock] + "\"");
+        throw text::InputError(
+            "lag needs rows in time order: t falls from " + std::to_string(states_.time[from]) + " to " +
+            std::to_string(states_.time[at]) + " s in run \"" + states_.names(states_.clock)[clock] + "\"");
       step = lag_step(dt / tau.value[i]);
       h_by_tau = -dt / (tau.value[i] * tau.value[i]);
     }
@@ -271,4 +271,4 @@ bool uses_lag(const Machine& machine) {
   return found;
 }
 
-}  // namespace vernier
+}  // namespace vernier::model

@@ -9,7 +9,7 @@
 #include "tools/model/states.h"
 #include "tools/model/station_table.h"
 
-namespace vernier {
+namespace vernier::model {
 
 /// A number per state, or one number for all of them.
 class Value {
@@ -67,4 +67,4 @@ class Evaluator {
 /// Does any expression of the machine use lag? Then rows must be evaluated together, in time order.
 bool uses_lag(const Machine& machine);
 
-}  // namespace vernier
+}  // namespace vernier::model

@@ -8,7 +8,7 @@
 #include "tools/maths/factors.h"
 #include "tools/text/numbers.h"
 
-namespace vernier {
+namespace vernier::model {
 namespace {
 
 /// Nesting deeper than this is refused, so that no input can exhaust the stack.
@@ -131,7 +131,7 @@ class Parser {
         while (end < text_.size() && is_digit(text_[end])) ++end;
       }
     }
-    const std::optional<double> value = parse_number(text_.substr(at_, end - at_));
+    const std::optional<double> value = text::parse_number(text_.substr(at_, end - at_));
     if (!value || (end < text_.size() && is_letter(text_[end]))) fail("not a number");
     at_ = end;
     return make_number(*value);
@@ -357,7 +357,7 @@ bool is_reserved_word(std::string_view name) {
 std::string to_text(const Expr& expr) {
   switch (expr.op) {
     case Op::kNumber:
-      return number_text(expr.number);
+      return text::number_text(expr.number);
     case Op::kSymbol:
       return expr.name;
     case Op::kRunIs: {
@@ -411,13 +411,13 @@ double apply(Op op, double a, double b) {
     case Op::kGreater:
       return a > b ? 1 : 0;
     case Op::kSin:
-      return std::sin(a * kRadPerDeg);
+      return std::sin(a * maths::kRadPerDeg);
     case Op::kCos:
-      return std::cos(a * kRadPerDeg);
+      return std::cos(a * maths::kRadPerDeg);
     case Op::kTan:
-      return std::tan(a * kRadPerDeg);
+      return std::tan(a * maths::kRadPerDeg);
     case Op::kAtan2:
-      return std::atan2(a, b) / kRadPerDeg;
+      return std::atan2(a, b) / maths::kRadPerDeg;
     case Op::kSqrt:
       return std::sqrt(a);
     case Op::kAbs:
@@ -454,4 +454,4 @@ bool is_constant(const Expr& expr, double& value) {
   return true;
 }
 
-}  // namespace vernier
+}  // namespace vernier::model

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-namespace vernier {
+namespace vernier::model {
 
 /// What a node of an expression does. Angles are degrees throughout (`sin cos tan` take them, `atan2` gives
 /// them).
@@ -135,4 +135,4 @@ bool any_node(const Expr& expr, const Is& is) {
   return found;
 }
 
-}  // namespace vernier
+}  // namespace vernier::model

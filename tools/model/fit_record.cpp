@@ -12,7 +12,7 @@
 #include "tools/text/numbers.h"
 #include "tools/text/xml_text.h"
 
-namespace vernier {
+namespace vernier::model {
 namespace {
 
 constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -82,26 +82,26 @@ Eigen::MatrixXd covariance_factor(const Eigen::MatrixXd& covariance) {
 
 std::string fit_record_xml(const FitRecord& record) {
   std::string text = "  <fitted converged=\"" + std::string(record.converged ? "true" : "false") +
-                     "\" rms=\"" + number_text(record.rms_mm) + "\" reach=\"" + number_text(record.reach_mm) +
-                     "\" worst=\"" + number_text(record.worst) + "\" reading=\"" +
-                     escape_attribute(record.worst_reading) + "\"";
-  if (!record.culprit.empty()) text += " culprit=\"" + escape_attribute(record.culprit) + "\"";
+                     "\" rms=\"" + text::number_text(record.rms_mm) + "\" reach=\"" +
+                     text::number_text(record.reach_mm) + "\" worst=\"" + text::number_text(record.worst) +
+                     "\" reading=\"" + text::escape_attribute(record.worst_reading) + "\"";
+  if (!record.culprit.empty()) text += " culprit=\"" + text::escape_attribute(record.culprit) + "\"";
   if (record.check_ratio > 0)
-    text += " check=\"" + number_text(record.check_ratio) + "\" check-reading=\"" +
-            escape_attribute(record.worst_check) + "\"";
+    text += " check=\"" + text::number_text(record.check_ratio) + "\" check-reading=\"" +
+            text::escape_attribute(record.worst_check) + "\"";
   if (record.disturbed > 0)
-    text += " disturbed=\"" + number_text(record.disturbed) + "\" disturbance=\"" +
-            escape_attribute(record.disturbance) + "\"";
+    text += " disturbed=\"" + text::number_text(record.disturbed) + "\" disturbance=\"" +
+            text::escape_attribute(record.disturbance) + "\"";
   text += ">\n    <measured>";
   for (const FitRecord::Range& range : record.measured)
-    text +=
-        "<" + range.name + " min=\"" + number_text(range.min) + "\" max=\"" + number_text(range.max) + "\"/>";
+    text += "<" + range.name + " min=\"" + text::number_text(range.min) + "\" max=\"" +
+            text::number_text(range.max) + "\"/>";
   text += "</measured>\n    <covariance parameters=\"";
   for (std::size_t i = 0; i < record.parameters.size(); ++i)
-    text += (i > 0 ? "|" : "") + escape_attribute(record.parameters[i]);
+    text += (i > 0 ? "|" : "") + text::escape_attribute(record.parameters[i]);
   if (!record.origins.empty()) text += "\" from=\"";
   for (std::size_t i = 0; i < record.origins.size(); ++i)
-    text += (i > 0 ? "|" : "") + escape_attribute(record.origins[i]);
+    text += (i > 0 ? "|" : "") + text::escape_attribute(record.origins[i]);
   // Values whole, since they are compared; the factor as 4-byte numbers, 1e-7 of its largest part.
   std::vector<std::uint8_t> bytes;
   for (const double value : record.values) {
@@ -145,7 +145,7 @@ std::string with_fit_record(const std::string& text, const FitRecord& record) {
   document.load_buffer(text.data(), text.size(), pugi::parse_default, pugi::encoding_utf8);
   const std::string element = fit_record_xml(record);
   for (const pugi::xml_node node : document.document_element().children()) {
-    if (!equal_no_case(node.name(), "fitted")) continue;
+    if (!text::equal_no_case(node.name(), "fitted")) continue;
     std::size_t begin = text.rfind('<', static_cast<std::size_t>(node.offset_debug()));
     const std::size_t end = text.find('>', text.find("</", begin)) + 1;
     const std::size_t close = text.find("</fitted", begin);
@@ -157,4 +157,4 @@ std::string with_fit_record(const std::string& text, const FitRecord& record) {
   return text.substr(0, root_end) + element + text.substr(root_end);
 }
 
-}  // namespace vernier
+}  // namespace vernier::model

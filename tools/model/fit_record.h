@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace vernier {
+namespace vernier::model {
 
 struct Machine;
 
@@ -53,4 +53,4 @@ bool read_fit_numbers(std::string_view text, std::size_t n, FitRecord& record);
 /// The text with its `<fitted>` replaced, or put before the end of the root. tool.
 std::string with_fit_record(const std::string& text, const FitRecord& record);
 
-}  // namespace vernier
+}  // namespace vernier::model

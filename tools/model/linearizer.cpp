@@ -7,7 +7,7 @@
 #include "tools/model/observation_model.h"
 #include "tools/model/station_table.h"
 
-namespace vernier {
+namespace vernier::model {
 namespace {
 
 using Eigen::Index;
@@ -165,4 +165,4 @@ void Linearizer::Pass::fill(std::size_t row, std::size_t at, const Eigen::Vector
   row_.groups.push_back({all_.slots_, 6, {{parameter[0], 1.0}}});
 }
 
-}  // namespace vernier
+}  // namespace vernier::model

@@ -11,7 +11,7 @@
 #include "tools/model/measurement.h"
 #include "tools/model/parameters.h"
 
-namespace vernier {
+namespace vernier::model {
 
 /// Parameters that stand side by side and share their weights: the free columns of a table (a weight for each
 /// station that takes part at a row), statics, or the components of a BaseShift (weight 1).
@@ -92,4 +92,4 @@ class Linearizer {
   Eigen::Index slots_ = 0;  // without the six of the BaseShift
 };
 
-}  // namespace vernier
+}  // namespace vernier::model

@@ -5,7 +5,7 @@
 
 #include "tools/text/numbers.h"
 
-namespace vernier {
+namespace vernier::model {
 namespace {
 
 template <class List>
@@ -82,7 +82,7 @@ Machine with_tool(const Machine& machine, const std::array<double, 3>& point) {
   Transform shift;
   shift.n = machine.tool.empty() ? 1 : machine.tool.back().n + 1;
   for (std::size_t i = 0; i < shift.dof_count(); ++i) {
-    shift.text[i] = i < 3 ? number_text(point[i]) : "0";
+    shift.text[i] = i < 3 ? text::number_text(point[i]) : "0";
     shift.dof[i] = parse_expression_for(machine, shift.text[i]);
   }
   longer.tool.push_back(std::move(shift));
@@ -180,4 +180,4 @@ Machine nominal_machine(const Machine& machine) {
   return nominal;
 }
 
-}  // namespace vernier
+}  // namespace vernier::model

@@ -11,7 +11,7 @@
 #include "tools/model/expression.h"
 #include "tools/text/error.h"
 
-namespace vernier {
+namespace vernier::model {
 
 /// X Y Z rX rY rZ in mm and deg: the columns of a table, of BaseShift, of a sixdof transform.
 inline constexpr std::array<const char*, 6> kSixDofNames = {"X", "Y", "Z", "rX", "rY", "rZ"};
@@ -145,4 +145,4 @@ std::string symbol_unit(const Machine& machine, const Symbol& symbol);
 /// tables and scalefactor 0; inputs and motion as they are. BaseShift is identity.
 Machine nominal_machine(const Machine& machine);
 
-}  // namespace vernier
+}  // namespace vernier::model

@@ -14,7 +14,7 @@
 #include "tools/text/units.h"
 #include "tools/text/xml_text.h"
 
-namespace vernier {
+namespace vernier::model {
 namespace {
 
 using Words = std::initializer_list<const char*>;
@@ -46,7 +46,7 @@ class Reader {
         text_.data(), text_.size(), pugi::parse_default | pugi::parse_doctype, pugi::encoding_utf8);
     if (!result) {
       const auto at = static_cast<std::size_t>(std::max<std::ptrdiff_t>(result.offset, 0));
-      throw InputError({machine_.file, line_at(at)}, word_at(at), result.description());
+      throw text::InputError({machine_.file, line_at(at)}, word_at(at), result.description());
     }
     TooDeep too_deep;
     if (!document_.traverse(too_deep)) fail(too_deep.found, too_deep.found.name(), "nested too deeply");
@@ -58,7 +58,7 @@ class Reader {
       if (root) fail(node, node.name(), "a second root element");
       root = node;
     }
-    if (!root) throw InputError({machine_.file, 1}, "", "no <machine> in this file");
+    if (!root) throw text::InputError({machine_.file, 1}, "", "no <machine> in this file");
     read_root(root);
     check_names();
     resolve_all();
@@ -132,7 +132,7 @@ class Reader {
     std::string word;
     std::size_t count = 0;
     while (words >> word) {
-      const auto number = parse_number(word);
+      const auto number = text::parse_number(word);
       if (!number || count >= 3)
         fail_attribute(root, "gravity", word, "gravity is three numbers, a unit vector");
       machine_.gravity[count++] = *number;
@@ -227,15 +227,15 @@ class Reader {
       item.line = line(node);
       const auto value = attribute(node, "value");
       if (!value) fail(node, node.name(), "a static needs a value");
-      if (equal_no_case(*value, "true") || equal_no_case(*value, "false")) {
-        item.value = equal_no_case(*value, "true") ? 1 : 0;
+      if (text::equal_no_case(*value, "true") || text::equal_no_case(*value, "false")) {
+        item.value = text::equal_no_case(*value, "true") ? 1 : 0;
         item.hidden = true;
       } else {
         item.value = number(node, "value", 0);
       }
       if (attribute(node, "nominal")) item.nominal = number(node, "nominal", 0);
       item.scale = positive(node, "scale");
-      item.unit = canonical_unit(attribute(node, "unit").value_or(""));
+      item.unit = text::canonical_unit(attribute(node, "unit").value_or(""));
       item.note = attribute(node, "note").value_or("");
       item.hidden = boolean(node, "Hide", item.hidden);
       machine_.statics.push_back(item);
@@ -266,9 +266,9 @@ class Reader {
     std::string word;
     bool position = false;
     while (words >> word) {
-      if (!equal_no_case(word, "position") && !equal_no_case(word, "orientation"))
+      if (!text::equal_no_case(word, "position") && !text::equal_no_case(word, "orientation"))
         fail_attribute(list, "correct", word, "correct is \"position\" or \"position orientation\"");
-      (equal_no_case(word, "position") ? position : machine_.correct_orientation) = true;
+      (text::equal_no_case(word, "position") ? position : machine_.correct_orientation) = true;
     }
     if (!position)
       fail_attribute(list, "correct", *attribute(list, "correct"),
@@ -298,7 +298,7 @@ class Reader {
         if (optional_number(node, limit).value_or(1) <= 0)
           fail_attribute(node, limit, attribute(node, limit).value_or(""), "a limit must be greater than 0");
       if (boolean(node, "Hide", false)) {
-        machine_.inputs.push_back({axis.name, canonical_unit(attribute(node, "unit").value_or("")),
+        machine_.inputs.push_back({axis.name, text::canonical_unit(attribute(node, "unit").value_or("")),
                                    number(node, "reference", 0), axis.min, axis.max, true, axis.line});
       } else {
         machine_.axes.push_back(axis);
@@ -314,7 +314,7 @@ class Reader {
       Input input;
       input.name = new_name(node);
       input.line = line(node);
-      input.unit = canonical_unit(attribute(node, "unit").value_or(""));
+      input.unit = text::canonical_unit(attribute(node, "unit").value_or(""));
       input.reference = number(node, "reference", 0);
       input.min = optional_number(node, "min");
       input.max = optional_number(node, "max");
@@ -368,7 +368,7 @@ class Reader {
     std::vector<double> scales;
     std::istringstream words(attribute(node, "scale").value_or(""));
     for (std::string word; words >> word;) {
-      const auto value = parse_number(word);
+      const auto value = text::parse_number(word);
       if (!value || *value <= 0) fail_attribute(node, "scale", word, "a scale must be greater than 0");
       scales.push_back(*value);
     }
@@ -473,7 +473,7 @@ class Reader {
       only_axes.statics.clear();
       const Symbol symbol = resolve_name(only_axes, name);
       if (symbol.kind != SymbolKind::kUnresolved && symbol.kind != SymbolKind::kAxis)
-        throw InputError({machine_.file, at_line}, name, "this name is already a quantity of the axes");
+        throw text::InputError({machine_.file, at_line}, name, "this name is already a quantity of the axes");
     };
     for (const Static& item : machine_.statics) check(item.name, item.line);
     for (const Input& input : machine_.inputs) check(input.name, input.line);
@@ -486,7 +486,8 @@ class Reader {
 
   std::string new_name(const pugi::xml_node& node) {
     const std::string name = node.name();
-    if (!is_name(name)) fail(node, name, "names are letters, digits and _, and begin with a letter or _");
+    if (!text::is_name(name))
+      fail(node, name, "names are letters, digits and _, and begin with a letter or _");
     if (is_reserved_word(name)) fail(node, name, "this name is reserved");
     if (!names_.insert(name).second) fail(node, name, "this name stands twice");
     return name;
@@ -508,14 +509,14 @@ class Reader {
         continue;
       }
       if (std::none_of(known.begin(), known.end(),
-                       [&](const char* word) { return equal_no_case(name, word); }))
+                       [&](const char* word) { return text::equal_no_case(name, word); }))
         fail_attribute(node, item.name(), name, std::string("unknown attribute of <") + node.name() + ">");
     }
   }
 
   static std::optional<std::string> attribute(const pugi::xml_node& node, std::string_view name) {
     for (const pugi::xml_attribute item : node.attributes())
-      if (equal_no_case(item.name(), name)) return item.value();
+      if (text::equal_no_case(item.name(), name)) return item.value();
     return std::nullopt;
   }
 
@@ -525,22 +526,22 @@ class Reader {
   std::optional<double> optional_number(const pugi::xml_node& node, const char* name) {
     const auto text = attribute(node, name);
     if (!text) return std::nullopt;
-    const auto value = parse_number(*text);
+    const auto value = text::parse_number(*text);
     if (!value) fail_attribute(node, name, *text, std::string(name) + " must be a number");
     return value;
   }
   bool boolean(const pugi::xml_node& node, const char* name, bool fallback) {
     const auto text = attribute(node, name);
     if (!text) return fallback;
-    if (equal_no_case(*text, "true") || *text == "1") return true;
-    if (equal_no_case(*text, "false") || *text == "0") return false;
+    if (text::equal_no_case(*text, "true") || *text == "1") return true;
+    if (text::equal_no_case(*text, "false") || *text == "0") return false;
     fail_attribute(node, name, *text, std::string(name) + " is true or false");
   }
 
   // -- elements
   // --------------------------------------------------------------------------------------------------
   static bool is(const pugi::xml_node& node, std::string_view name) {
-    return equal_no_case(node.name(), name);
+    return text::equal_no_case(node.name(), name);
   }
   std::vector<pugi::xml_node> children(const pugi::xml_node& node) {
     std::vector<pugi::xml_node> list;
@@ -575,16 +576,16 @@ class Reader {
     return text_.substr(std::min(offset, text_.size()), end - offset);
   }
   [[noreturn]] void fail(const pugi::xml_node& node, const std::string& word, const std::string& what) {
-    throw InputError({machine_.file, line(node)}, word, what);
+    throw text::InputError({machine_.file, line(node)}, word, what);
   }
   [[noreturn]] void fail_attribute(const pugi::xml_node& node, std::string_view name, const std::string& word,
                                    const std::string& what) {
     std::size_t at = line(node);
     const std::ptrdiff_t offset = node.offset_debug();
     if (offset >= 0)
-      for (const AttributeSpan& span : attribute_spans(text_, static_cast<std::size_t>(offset)))
-        if (equal_no_case(span.name, name)) at = line_at(span.name_at);
-    throw InputError({machine_.file, at}, word, what);
+      for (const text::AttributeSpan& span : text::attribute_spans(text_, static_cast<std::size_t>(offset)))
+        if (text::equal_no_case(span.name, name)) at = line_at(span.name_at);
+    throw text::InputError({machine_.file, at}, word, what);
   }
 
   const std::string& text_;
@@ -604,6 +605,6 @@ class Reader {
 
 Machine parse_machine(const std::string& text, const std::string& file) { return Reader(text, file).read(); }
 
-Machine read_machine(const std::string& path) { return parse_machine(read_file(path), path); }
+Machine read_machine(const std::string& path) { return parse_machine(text::read_file(path), path); }
 
-}  // namespace vernier
+}  // namespace vernier::model

@@ -8,7 +8,7 @@
 #include "tools/text/numbers.h"
 #include "tools/text/xml_text.h"
 
-namespace vernier {
+namespace vernier::model {
 namespace {
 
 /// Collects the edits that turn the numbers of a text into those of a machine.
@@ -21,17 +21,17 @@ class Writer {
     pugi::xml_document document;
     document.load_buffer(text_.data(), text_.size(), pugi::parse_default, pugi::encoding_utf8);
     visit(document);
-    return apply_edits(text_, std::move(edits_));
+    return text::apply_edits(text_, std::move(edits_));
   }
 
  private:
   void visit(const pugi::xml_node& parent) {
     for (const pugi::xml_node node : parent.children()) {
-      if (equal_no_case(node.name(), "static"))
+      if (text::equal_no_case(node.name(), "static"))
         for (const pugi::xml_node child : node.children()) edit_static(child);
-      else if (equal_no_case(node.name(), "table"))
+      else if (text::equal_no_case(node.name(), "table"))
         edit_table(node);
-      else if (equal_no_case(node.name(), "machineaxes"))
+      else if (text::equal_no_case(node.name(), "machineaxes"))
         for (const pugi::xml_node child : node.children()) edit_axis(child);
       else
         visit(node);
@@ -39,10 +39,11 @@ class Writer {
   }
 
   void edit_static(const pugi::xml_node& node) {
-    if (equal_no_case(node.name(), "BaseShift")) {
+    if (text::equal_no_case(node.name(), "BaseShift")) {
       std::optional<std::string> run;
       for (const pugi::xml_attribute item : node.attributes())
-        if (equal_no_case(item.name(), "run") || equal_no_case(item.name(), "setup")) run = item.value();
+        if (text::equal_no_case(item.name(), "run") || text::equal_no_case(item.name(), "setup"))
+          run = item.value();
       for (const BaseShift& shift : machine_.base_shifts)
         if (shift.run == run) set_six(node, shift.value);
       return;
@@ -52,14 +53,14 @@ class Writer {
     const Static& item = machine_.statics[*index];
     const std::string before = text_of(node, "value");
     if (item.hidden) return;
-    set(node, "value", number_text(item.value));
+    set(node, "value", text::number_text(item.value));
     if (set_nominal_ && !item.nominal) set(node, "nominal", before);
   }
 
   void edit_axis(const pugi::xml_node& node) {
     const auto axis = machine_.find_axis(node.name());
     if (axis && machine_.axes[*axis].scale_free)
-      set(node, "scalefactor", number_text(machine_.axes[*axis].scale_factor));
+      set(node, "scalefactor", text::number_text(machine_.axes[*axis].scale_factor));
   }
 
   void edit_table(const pugi::xml_node& node) {
@@ -73,25 +74,25 @@ class Writer {
 
   void set_six(const pugi::xml_node& node, const std::array<double, 6>& value) {
     for (std::size_t i = 0; i < 6; ++i) {
-      const auto now = parse_number(text_of(node, kSixDofNames[i]));
-      if (now.value_or(0) != value[i]) set(node, kSixDofNames[i], number_text(value[i]));
+      const auto now = text::parse_number(text_of(node, kSixDofNames[i]));
+      if (now.value_or(0) != value[i]) set(node, kSixDofNames[i], text::number_text(value[i]));
     }
   }
 
   std::string text_of(const pugi::xml_node& node, std::string_view name) const {
-    for (const AttributeSpan& span : attribute_spans(text_, offset(node)))
-      if (equal_no_case(span.name, name)) return text_.substr(span.value_at, span.value_size);
+    for (const text::AttributeSpan& span : text::attribute_spans(text_, offset(node)))
+      if (text::equal_no_case(span.name, name)) return text_.substr(span.value_at, span.value_size);
     return {};
   }
 
   void set(const pugi::xml_node& node, const std::string& name, const std::string& value) {
-    for (const AttributeSpan& span : attribute_spans(text_, offset(node)))
-      if (equal_no_case(span.name, name)) {
+    for (const text::AttributeSpan& span : text::attribute_spans(text_, offset(node)))
+      if (text::equal_no_case(span.name, name)) {
         if (text_.compare(span.value_at, span.value_size, value) != 0)
           edits_.push_back({span.value_at, span.value_size, value});
         return;
       }
-    edits_.push_back({end_of_attributes(text_, offset(node)), 0, " " + name + "=\"" + value + "\""});
+    edits_.push_back({text::end_of_attributes(text_, offset(node)), 0, " " + name + "=\"" + value + "\""});
   }
 
   static std::size_t offset(const pugi::xml_node& node) {
@@ -101,7 +102,7 @@ class Writer {
   const std::string& text_;
   const Machine& machine_;
   bool set_nominal_;
-  std::vector<TextEdit> edits_;
+  std::vector<text::TextEdit> edits_;
 };
 
 }  // namespace
@@ -111,4 +112,4 @@ std::string update_machine_text(const std::string& text, const Machine& machine,
   return machine.fitted ? with_fit_record(written, *machine.fitted) : written;
 }
 
-}  // namespace vernier
+}  // namespace vernier::model

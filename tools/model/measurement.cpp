@@ -15,7 +15,7 @@
 #include "tools/text/numbers.h"
 #include "tools/text/units.h"
 
-namespace vernier {
+namespace vernier::model {
 namespace {
 
 constexpr double kAbsent = std::numeric_limits<double>::quiet_NaN();
@@ -25,22 +25,23 @@ const std::string kCorrection = "correction", kCorrected = "corrected";
 /// One file's columns as numbers in their base units; NaN for an empty cell.
 class FileReader {
  public:
-  explicit FileReader(const CsvFile& csv) : csv_(csv) {
+  explicit FileReader(const text::CsvFile& csv) : csv_(csv) {
     for (std::size_t i = 0; i < csv.columns.size(); ++i) index_[csv.columns[i].name] = i;
   }
 
   bool has(const std::string& name) const { return index_.contains(name); }
 
   /// A column that must have this dimension; `required`: an empty cell is an error.
-  Column numbers(const std::string& name, Dimension dimension, bool required) {
+  Column numbers(const std::string& name, text::Dimension dimension, bool required) {
     const std::size_t column = index_.at(name);
     used_.insert(name);
-    const Unit unit = *find_unit(csv_.columns[column].unit);
+    const text::Unit unit = *text::find_unit(csv_.columns[column].unit);
     if (unit.dimension != dimension)
-      throw InputError(header(), csv_.columns[column].unit.empty() ? name : name + "[" + unit.name + "]",
-                       dimension == Dimension::kNone
-                           ? std::string("this column is a pure number, it has no unit")
-                           : std::string("this column needs a unit like ") + base_unit(dimension));
+      throw text::InputError(
+          header(), csv_.columns[column].unit.empty() ? name : name + "[" + unit.name + "]",
+          dimension == text::Dimension::kNone
+              ? std::string("this column is a pure number, it has no unit")
+              : std::string("this column needs a unit like ") + text::base_unit(dimension));
     return read(column, unit.factor, unit.offset, required);
   }
 
@@ -51,12 +52,12 @@ class FileReader {
     for (const auto& row : csv_.rows) {
       if (row[column].empty()) continue;
       ++filled;
-      if (!parse_number(row[column])) ++words;
+      if (!text::parse_number(row[column])) ++words;
     }
     return 2 * words > filled && csv_.columns[column].unit.empty();
   }
 
-  Dimension dimension(const std::string& name) const { return find_unit(unit(name))->dimension; }
+  text::Dimension dimension(const std::string& name) const { return text::find_unit(unit(name))->dimension; }
 
   /// A column as it is, without conversion.
   Column raw(const std::string& name) {
@@ -76,15 +77,15 @@ class FileReader {
     return result;
   }
 
-  std::vector<CsvColumn> unused() const {
-    std::vector<CsvColumn> list;
-    for (const CsvColumn& column : csv_.columns)
+  std::vector<text::CsvColumn> unused() const {
+    std::vector<text::CsvColumn> list;
+    for (const text::CsvColumn& column : csv_.columns)
       if (!used_.contains(column.name)) list.push_back(column);
     return list;
   }
 
-  Place header() const { return {csv_.file, csv_.header_line}; }
-  Place place(std::size_t row) const { return {csv_.file, csv_.line[row]}; }
+  text::Place header() const { return {csv_.file, csv_.header_line}; }
+  text::Place place(std::size_t row) const { return {csv_.file, csv_.line[row]}; }
   const std::string& unit(const std::string& name) const { return csv_.columns[index_.at(name)].unit; }
   const std::string& cell(const std::string& name, std::size_t row) const {
     return csv_.rows[row][index_.at(name)];
@@ -98,18 +99,20 @@ class FileReader {
       const std::string& text = csv_.rows[row][column];
       double& value = result[static_cast<Eigen::Index>(row)];
       if (text.empty()) {
-        if (required) throw InputError(place(row), csv_.columns[column].name, "this column may not be empty");
+        if (required)
+          throw text::InputError(place(row), csv_.columns[column].name, "this column may not be empty");
         value = kAbsent;
         continue;
       }
-      const auto number = parse_number(text);
-      if (!number) throw InputError(place(row), text, "not a number, in column " + csv_.columns[column].name);
+      const auto number = text::parse_number(text);
+      if (!number)
+        throw text::InputError(place(row), text, "not a number, in column " + csv_.columns[column].name);
       value = factor * *number + offset;
     }
     return result;
   }
 
-  const CsvFile& csv_;
+  const text::CsvFile& csv_;
   std::map<std::string, std::size_t> index_;
   std::set<std::string> used_;
 };
@@ -117,7 +120,7 @@ class FileReader {
 /// Reads one file into a Measurement of its own.
 class Builder {
  public:
-  Builder(const CsvFile& csv, const Machine& machine) : machine_(machine), reader_(csv) {
+  Builder(const text::CsvFile& csv, const Machine& machine) : machine_(machine), reader_(csv) {
     std::vector<double> references;
     for (const Input& input : machine.inputs) references.push_back(input.reference);
     result_.states = make_states(reader_.rows(), machine.axes.size(), references);
@@ -137,7 +140,7 @@ class Builder {
     read_directions();
     read_distances();
     read_observations();
-    for (const CsvColumn& column : reader_.unused())
+    for (const text::CsvColumn& column : reader_.unused())
       if (reader_.is_text(column.name))
         result_.labels.push_back({column.name, reader_.words(column.name)});
       else
@@ -166,21 +169,21 @@ class Builder {
     };
     for (const Axis& axis : machine_.axes)
       if (reserved(axis.name) || reserved_since(axis.name))
-        throw InputError({machine_.file, axis.line}, axis.name,
-                         "measurement files use this name for a measured column");
+        throw text::InputError({machine_.file, axis.line}, axis.name,
+                               "measurement files use this name for a measured column");
     for (const Input& input : machine_.inputs)
       if (reserved(input.name))
-        throw InputError({machine_.file, input.line}, input.name,
-                         "measurement files use this name for a measured column");
+        throw text::InputError({machine_.file, input.line}, input.name,
+                               "measurement files use this name for a measured column");
   }
 
   void read_axes() {
     for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
       const Axis& axis = machine_.axes[i];
       if (!reader_.has(axis.name))
-        throw InputError(reader_.header(), axis.name, "the column of this axis is missing");
+        throw text::InputError(reader_.header(), axis.name, "the column of this axis is missing");
       result_.states.axis[i] =
-          reader_.numbers(axis.name, axis.rotary ? Dimension::kAngle : Dimension::kLength, true);
+          reader_.numbers(axis.name, axis.rotary ? text::Dimension::kAngle : text::Dimension::kLength, true);
     }
   }
 
@@ -191,13 +194,13 @@ class Builder {
       const std::string name = kCorrection + machine_.axes[i].name;
       if (!reader_.has(name)) continue;
       if (result_.correction.empty()) result_.correction.assign(machine_.axes.size(), zero);
-      const Column read =
-          reader_.numbers(name, machine_.axes[i].rotary ? Dimension::kAngle : Dimension::kLength, false);
+      const Column read = reader_.numbers(
+          name, machine_.axes[i].rotary ? text::Dimension::kAngle : text::Dimension::kLength, false);
       result_.correction[i] = read.isNaN().select(0, read);
     }
-    for (const CsvColumn& column : reader_.unused())
+    for (const text::CsvColumn& column : reader_.unused())
       if (column.name.starts_with(kCorrection) && reader_.has(column.name.substr(kCorrection.size())))
-        throw InputError(reader_.header(), column.name, "the machine file has no such axis");
+        throw text::InputError(reader_.header(), column.name, "the machine file has no such axis");
     if (reader_.has(kCorrected)) read_fingerprints();
   }
 
@@ -211,13 +214,13 @@ class Builder {
       std::transform(word.begin(), word.end(), word.begin(),
                      [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
       if (word.size() != 16 || word.find_first_not_of("0123456789abcdef") != std::string::npos)
-        throw InputError(reader_.place(row), reader_.cell(kCorrected, row),
-                         "the fingerprint of an image has 16 hexadecimal digits");
+        throw text::InputError(reader_.place(row), reader_.cell(kCorrected, row),
+                               "the fingerprint of an image has 16 hexadecimal digits");
     }
     if (!any) result_.corrected.clear();
   }
 
-  void motion(const std::string& name, Dimension dimension, Column& target, double factor = 1) {
+  void motion(const std::string& name, text::Dimension dimension, Column& target, double factor = 1) {
     if (!reader_.has(name)) return;
     target = factor * reader_.numbers(name, dimension, true);
     result_.recorded.push_back(name);
@@ -227,24 +230,27 @@ class Builder {
     States& states = result_.states;
     for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
       const Axis& axis = machine_.axes[i];
-      motion("v" + axis.name, axis.rotary ? Dimension::kAngularSpeed : Dimension::kSpeed, states.velocity[i]);
-      motion("a" + axis.name, axis.rotary ? Dimension::kAngularAcceleration : Dimension::kAcceleration,
+      motion("v" + axis.name, axis.rotary ? text::Dimension::kAngularSpeed : text::Dimension::kSpeed,
+             states.velocity[i]);
+      motion("a" + axis.name,
+             axis.rotary ? text::Dimension::kAngularAcceleration : text::Dimension::kAcceleration,
              states.acceleration[i]);
-      motion("dir" + axis.name, Dimension::kNone, states.direction[i]);
-      motion("since" + axis.name, axis.rotary ? Dimension::kAngle : Dimension::kLength, states.since[i]);
+      motion("dir" + axis.name, text::Dimension::kNone, states.direction[i]);
+      motion("since" + axis.name, axis.rotary ? text::Dimension::kAngle : text::Dimension::kLength,
+             states.since[i]);
       for (std::size_t row = 0; row < reader_.rows(); ++row) {
         const double dir = states.direction[i][static_cast<Eigen::Index>(row)];
         if (dir != -1 && dir != 0 && dir != 1)
-          throw InputError(reader_.place(row), reader_.cell("dir" + axis.name, row),
-                           "a direction is -1, 0 or 1");
+          throw text::InputError(reader_.place(row), reader_.cell("dir" + axis.name, row),
+                                 "a direction is -1, 0 or 1");
       }
     }
-    motion("feed", Dimension::kSpeed, states.feed, 60);
-    motion("curv", Dimension::kCurvature, states.curvature);
-    motion("t", Dimension::kTime, states.time);
+    motion("feed", text::Dimension::kSpeed, states.feed, 60);
+    motion("curv", text::Dimension::kCurvature, states.curvature);
+    motion("t", text::Dimension::kTime, states.time);
     for (std::size_t k = 0; k < 3; ++k)
       if (const std::string name = std::string("n") + "xyz"[k]; reader_.has(name))
-        states.normal[k] = reader_.numbers(name, Dimension::kNone, false);
+        states.normal[k] = reader_.numbers(name, text::Dimension::kNone, false);
     for (Column& normal : states.normal) normal = normal.isNaN().select(0, normal);
   }
 
@@ -255,15 +261,15 @@ class Builder {
       if (!reader_.has(input.name)) continue;
       Column& target = result_.states.input[i];
       target = reader_.raw(input.name);
-      const Unit written = *find_unit(reader_.unit(input.name));
-      const auto declared = find_unit(input.unit);
+      const text::Unit written = *text::find_unit(reader_.unit(input.name));
+      const auto declared = text::find_unit(input.unit);
       const bool same_text = input.unit == written.name;
       if (!same_text && !input.unit.empty()) {
         if (!declared || declared->dimension != written.dimension)
-          throw InputError(reader_.header(),
-                           input.name + (written.dimension == Dimension::kNone ? "" : "[") + written.name +
-                               (written.dimension == Dimension::kNone ? "" : "]"),
-                           "the machine file declares this input in " + input.unit);
+          throw text::InputError(reader_.header(),
+                                 input.name + (written.dimension == text::Dimension::kNone ? "" : "[") +
+                                     written.name + (written.dimension == text::Dimension::kNone ? "" : "]"),
+                                 "the machine file declares this input in " + input.unit);
         target = (written.factor * target + written.offset - declared->offset) / declared->factor;
       }
       for (std::size_t row = 0; row < reader_.rows(); ++row)
@@ -277,7 +283,7 @@ class Builder {
       const std::vector<std::string> roles = reader_.words("role");
       for (std::size_t row = 0; row < roles.size(); ++row) {
         if (roles[row] != "fit" && roles[row] != "check" && !roles[row].empty())
-          throw InputError(reader_.place(row), roles[row], "a role is fit or check");
+          throw text::InputError(reader_.place(row), roles[row], "a role is fit or check");
         result_.check[row] = roles[row] == "check" ? 1 : 0;
       }
     }
@@ -293,15 +299,16 @@ class Builder {
     std::vector<double> seen(states.names(states.clock).size(), 0);
     for (std::size_t row = 0; row < reader_.rows(); ++row)
       states.visit[static_cast<Eigen::Index>(row)] = seen[states.of(states.clock, row)]++;
-    if (reader_.has("visit")) states.visit = reader_.numbers("visit", Dimension::kNone, true);
+    if (reader_.has("visit")) states.visit = reader_.numbers("visit", text::Dimension::kNone, true);
     result_.uncertainty = Column::Zero(static_cast<Eigen::Index>(reader_.rows()));
     if (reader_.has("u")) {
-      const bool angle = reader_.dimension("u") == Dimension::kAngle;
-      result_.uncertainty = reader_.numbers("u", angle ? Dimension::kAngle : Dimension::kLength, true);
+      const bool angle = reader_.dimension("u") == text::Dimension::kAngle;
+      result_.uncertainty =
+          reader_.numbers("u", angle ? text::Dimension::kAngle : text::Dimension::kLength, true);
       require_above_zero("u", result_.uncertainty);
     }
-    if (!has_word("ua") || reader_.dimension("ua") != Dimension::kAngle) return;
-    const Column read = reader_.numbers("ua", Dimension::kAngle, false);
+    if (!has_word("ua") || reader_.dimension("ua") != text::Dimension::kAngle) return;
+    const Column read = reader_.numbers("ua", text::Dimension::kAngle, false);
     require_above_zero("ua", read);
     result_.angle_uncertainty = read.isNaN().select(0, read);
   }
@@ -309,7 +316,8 @@ class Builder {
   void require_above_zero(const std::string& name, const Column& values) const {
     for (std::size_t row = 0; row < reader_.rows(); ++row)
       if (values[static_cast<Eigen::Index>(row)] <= 0)
-        throw InputError(reader_.place(row), reader_.cell(name, row), "an uncertainty is greater than 0");
+        throw text::InputError(reader_.place(row), reader_.cell(name, row),
+                               "an uncertainty is greater than 0");
   }
 
   /// Is there a column of this name, and does the machine file not claim it for an input of its own?
@@ -339,16 +347,18 @@ class Builder {
   /// ax ay az: three pure numbers, a unit vector where they are given. With a unit they are other columns.
   void read_directions() {
     for (const char* name : {"ax", "ay", "az"})
-      if (!has_word(name) || reader_.dimension(name) != Dimension::kNone || reader_.is_text(name)) return;
+      if (!has_word(name) || reader_.dimension(name) != text::Dimension::kNone || reader_.is_text(name))
+        return;
     result_.direction.resize(3, static_cast<Eigen::Index>(reader_.rows()));
     for (Eigen::Index k = 0; k < 3; ++k)
       result_.direction.row(k) =
-          reader_.numbers(std::string("a") + "xyz"[k], Dimension::kNone, false).matrix().transpose();
+          reader_.numbers(std::string("a") + "xyz"[k], text::Dimension::kNone, false).matrix().transpose();
     for (std::size_t row = 0; row < reader_.rows(); ++row) {
       auto direction = result_.direction.col(static_cast<Eigen::Index>(row));
       const auto given = 3 - direction.array().isNaN().count();
       if (given != 0 && (given != 3 || std::abs(direction.norm() - 1) > 0.01))
-        throw InputError(reader_.place(row), reader_.cell("ax", row), "ax, ay, az must be a unit vector");
+        throw text::InputError(reader_.place(row), reader_.cell("ax", row),
+                               "ax, ay, az must be a unit vector");
       direction.normalize();
     }
     has_directions_ = true;
@@ -361,7 +371,7 @@ class Builder {
     const std::vector<std::string> from = reader_.words("from");
     std::map<std::string, std::size_t> rows_of_word;
     std::set<std::string> twice;
-    for (const CsvColumn& column : reader_.unused())
+    for (const text::CsvColumn& column : reader_.unused())
       if (reader_.is_text(column.name)) {
         const std::vector<std::string> words = reader_.peek(column.name);
         for (std::size_t row = 0; row < words.size(); ++row)
@@ -374,16 +384,17 @@ class Builder {
       if (known != rows_of_word.end() && !twice.contains(from[row])) {
         result_.other_end[row] = known->second;
       } else {
-        const auto number = known == rows_of_word.end() ? parse_number(from[row]) : std::nullopt;
+        const auto number = known == rows_of_word.end() ? text::parse_number(from[row]) : std::nullopt;
         if (!number || *number < 1 || *number > static_cast<double>(reader_.rows()) ||
             *number != std::floor(*number))
-          throw InputError(reader_.place(row), from[row],
-                           known == rows_of_word.end() ? "no row has this label, and it is no number of a row"
-                                                       : "more than one row has this label");
+          throw text::InputError(reader_.place(row), from[row],
+                                 known == rows_of_word.end()
+                                     ? "no row has this label, and it is no number of a row"
+                                     : "more than one row has this label");
         result_.other_end[row] = static_cast<std::size_t>(*number) - 1;
       }
       if (result_.other_end[row] == row)
-        throw InputError(reader_.place(row), from[row], "a distance has two ends, this row is both");
+        throw text::InputError(reader_.place(row), from[row], "a distance has two ends, this row is both");
     }
     has_distances_ = true;
   }
@@ -394,11 +405,11 @@ class Builder {
       const std::string name = prefix + "xyz"[k];
       if (!reader_.has(name)) {
         if (reader_.has(owner))
-          throw InputError(reader_.header(), owner, "this column needs " + name + " beside it");
+          throw text::InputError(reader_.header(), owner, "this column needs " + name + " beside it");
         continue;
       }
-      const Column column = prefix == "n" ? reader_.numbers(name, Dimension::kNone, false)
-                                          : reader_.numbers(name, Dimension::kLength, false);
+      const Column column = prefix == "n" ? reader_.numbers(name, text::Dimension::kNone, false)
+                                          : reader_.numbers(name, text::Dimension::kLength, false);
       target.row(static_cast<Eigen::Index>(k)) = column.matrix().transpose();
     }
   }
@@ -418,14 +429,15 @@ class Builder {
       if (is_direction(kind)) {
         if (has_directions_) values[k] = 0 * result_.direction.row(0).transpose().array();
       } else if (is_measured(kind)) {
-        values[k] = reader_.numbers(kObservationNames[k],
-                                    is_rotation(kind) ? Dimension::kAngle : Dimension::kLength, false);
+        values[k] =
+            reader_.numbers(kObservationNames[k],
+                            is_rotation(kind) ? text::Dimension::kAngle : text::Dimension::kLength, false);
       }
       any = any || values[k].size() > 0;
     }
     if (!any)
-      throw InputError(reader_.header(), "",
-                       "no measured column (x y z rx ry rz length d ax ay az distance ix iy)");
+      throw text::InputError(reader_.header(), "",
+                             "no measured column (x y z rx ry rz length d ax ay az distance ix iy)");
     for (std::size_t row = 0; row < reader_.rows(); ++row)
       for (std::size_t k = 0; k < values.size(); ++k) {
         const auto at = static_cast<Eigen::Index>(row);
@@ -441,7 +453,7 @@ class Builder {
   bool is_measured(ObservationKind kind) const {
     const char* name = kObservationNames[static_cast<std::size_t>(kind)];
     if (kind == ObservationKind::kDistance) return has_distances_;
-    if (is_inclination(kind)) return has_word(name) && reader_.dimension(name) == Dimension::kAngle;
+    if (is_inclination(kind)) return has_word(name) && reader_.dimension(name) == text::Dimension::kAngle;
     return reader_.has(name);
   }
 
@@ -450,23 +462,23 @@ class Builder {
     const auto at = static_cast<Eigen::Index>(row);
     const auto finite = [&](const Eigen::Matrix3Xd& m) { return m.col(at).allFinite(); };
     if (kind == ObservationKind::kLength && !finite(result_.centre))
-      throw InputError(reader_.place(row), "length", "cx, cy and cz may not be empty here");
+      throw text::InputError(reader_.place(row), "length", "cx, cy and cz may not be empty here");
     for (const char* name : {"length", "distance"})
       if (kObservationNames[static_cast<std::size_t>(kind)] == std::string_view(name) &&
           reader_.cell(name, row).front() == '-')
-        throw InputError(reader_.place(row), reader_.cell(name, row), "a length is not negative");
+        throw text::InputError(reader_.place(row), reader_.cell(name, row), "a length is not negative");
     if (kind == ObservationKind::kDistance && result_.other_end[row] == kNoRow)
-      throw InputError(reader_.place(row), "from", "may not be empty here: the row at the other end");
+      throw text::InputError(reader_.place(row), "from", "may not be empty here: the row at the other end");
     if (is_inclination(kind) && !machine_.workpiece.empty())
-      throw InputError(reader_.header(), kObservationNames[static_cast<std::size_t>(kind)],
-                       "an inclination is read on the tool of a machine whose workpiece stands still");
+      throw text::InputError(reader_.header(), kObservationNames[static_cast<std::size_t>(kind)],
+                             "an inclination is read on the tool of a machine whose workpiece stands still");
     if (kind != ObservationKind::kD) return;
     if (!finite(result_.nominal_point))
-      throw InputError(reader_.place(row), "d", "px, py and pz may not be empty here");
+      throw text::InputError(reader_.place(row), "d", "px, py and pz may not be empty here");
     const auto& n = result_.states.normal;
     const double size = std::hypot(n[0][at], n[1][at], n[2][at]);
     if (std::abs(size - 1) > 0.01)
-      throw InputError(reader_.place(row), reader_.cell("nx", row), "nx, ny, nz must be a unit vector");
+      throw text::InputError(reader_.place(row), reader_.cell("nx", row), "nx, ny, nz must be a unit vector");
   }
 
   const Machine& machine_;
@@ -517,8 +529,8 @@ void append_candidates(Measurement& all, const Measurement& next) {
     for (const CandidateInput& other : next.candidates)
       if (other.name == candidate.name) {
         if (other.unit != candidate.unit)
-          throw InputError({next.files[0], 0}, other.name,
-                           "another file gives this column in [" + candidate.unit + "]");
+          throw text::InputError({next.files[0], 0}, other.name,
+                                 "another file gives this column in [" + candidate.unit + "]");
         tail = other.value;
       }
     candidate.value = join(candidate.value, tail);
@@ -586,10 +598,11 @@ void add_corrections(Measurement& m, const Machine& machine, const std::string& 
         m.corrected.begin());
     if (row == m.rows()) return;  // the rows that it ran in are excluded
     if (!images)
-      throw InputError({m.files.front(), m.line[row]}, m.corrected[row],
-                       "what this image added is not known: say where it is (--images DIR), or give columns "
-                       "correction" +
-                           machine.axes.front().name + " and so on");
+      throw text::InputError(
+          {m.files.front(), m.line[row]}, m.corrected[row],
+          "what this image added is not known: say where it is (--images DIR), or give columns "
+          "correction" +
+              machine.axes.front().name + " and so on");
     m.correction.assign(machine.axes.size(), Column::Zero(static_cast<Eigen::Index>(m.rows())));
     images(m, machine, text);
   }
@@ -651,9 +664,9 @@ void require_time_order(const Measurement& m) {
     std::size_t& before = last[clock];
     const auto at = static_cast<Eigen::Index>(row), from = static_cast<Eigen::Index>(before);
     if (before < m.rows() && m.states.time[at] < m.states.time[from])
-      throw InputError({m.files[m.file[row]], m.line[row]}, "t",
-                       fmt::format("falls from {} to {} s in run \"{}\": rows are in the order of time",
-                                   m.states.time[from], m.states.time[at], clocks[clock]));
+      throw text::InputError({m.files[m.file[row]], m.line[row]}, "t",
+                             fmt::format("falls from {} to {} s in run \"{}\": rows are in the order of time",
+                                         m.states.time[from], m.states.time[at], clocks[clock]));
     before = row;
   }
 }
@@ -734,7 +747,7 @@ void append_measurement(Measurement& all, Measurement next, bool apart) {
 
 Measurement parse_measurement(const std::string& text, const std::string& file, const Machine& machine,
                               const ImageCorrection& images) {
-  const CsvFile csv = parse_csv(text, file);
+  const text::CsvFile csv = text::parse_csv(text, file);
   Builder builder(csv, machine);
   const Measurement all = builder.build();
   Measurement rows = without(all, builder.excluded());
@@ -744,10 +757,10 @@ Measurement parse_measurement(const std::string& text, const std::string& file, 
 
 Measurement read_measurement(const std::vector<std::string>& paths, const Machine& machine,
                              const ImageCorrection& images) {
-  if (paths.empty()) throw InputError("no measurement file");
+  if (paths.empty()) throw text::InputError("no measurement file");
   Measurement all;
   for (std::size_t i = 0; i < paths.size(); ++i) {
-    Measurement next = parse_measurement(read_file(paths[i]), paths[i], machine, images);
+    Measurement next = parse_measurement(text::read_file(paths[i]), paths[i], machine, images);
     if (i == 0)
       all = std::move(next);
     else
@@ -756,4 +769,4 @@ Measurement read_measurement(const std::vector<std::string>& paths, const Machin
   return all;
 }
 
-}  // namespace vernier
+}  // namespace vernier::model

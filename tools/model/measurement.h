@@ -8,7 +8,7 @@
 #include "tools/model/machine.h"
 #include "tools/model/states.h"
 
-namespace vernier {
+namespace vernier::model {
 
 /// a1 a2: the two angles by which a measured direction is off (columns ax ay az); ix iy: inclinations of the
 /// tool's x and y axes against the horizontal; distance: to the tool point of another row.
@@ -136,4 +136,4 @@ void append_measurement(Measurement& all, Measurement next, bool apart = false);
 Measurement parse_measurement(const std::string& text, const std::string& file, const Machine& machine,
                               const ImageCorrection& images = {});
 
-}  // namespace vernier
+}  // namespace vernier::model

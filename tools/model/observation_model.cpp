@@ -8,7 +8,7 @@
 
 #include "tools/maths/factors.h"
 
-namespace vernier {
+namespace vernier::model {
 namespace {
 
 using Eigen::Matrix3d;
@@ -85,7 +85,7 @@ const Vector3d& ObservationModel::rotation_vector(std::size_t row) {
                             [](const Observation& a, std::size_t r) { return a.row < r; });
   for (; o != m_.observations.end() && o->row == row; ++o)
     if (o->kind >= ObservationKind::kRx && o->kind <= ObservationKind::kRz)
-      measured[component(o->kind)] = o->value / kDegPerRad;
+      measured[component(o->kind)] = o->value / maths::kDegPerRad;
   phi_ = nearest_rotation_vector(base_.rotation * pose_.rotation, measured);
   has_phi_ = true;
   return phi_;
@@ -117,15 +117,16 @@ double ObservationModel::predicted(const Observation& o) {
     case ObservationKind::kA2: {
       const Matrix3d frame = sight(at);
       const Vector3d axis = tool_axis();
-      return kDegPerRad * angle_over_sine(frame.col(0).dot(axis)).value * frame.col(across(o.kind)).dot(axis);
+      return maths::kDegPerRad * angle_over_sine(frame.col(0).dot(axis)).value *
+             frame.col(across(o.kind)).dot(axis);
     }
     case ObservationKind::kDistance:
       return (point_ - other_end_).norm();
     case ObservationKind::kIx:
     case ObservationKind::kIy:
-      return kDegPerRad * std::asin(std::clamp(up_.dot(pose_.rotation.col(level(o.kind))), -1.0, 1.0));
+      return maths::kDegPerRad * std::asin(std::clamp(up_.dot(pose_.rotation.col(level(o.kind))), -1.0, 1.0));
     default:
-      return kDegPerRad * rotation_vector(o.row)[component(o.kind)];
+      return maths::kDegPerRad * rotation_vector(o.row)[component(o.kind)];
   }
 }
 
@@ -144,7 +145,7 @@ Twist ObservationModel::gradient(const Observation& o) const {
     const Vector3d axis = tool_axis(), along = frame.col(0), aside = frame.col(across(o.kind));
     const ValueAndSlope phi = angle_over_sine(along.dot(axis));
     g.rotation =
-        kDegPerRad * (phi.value * axis.cross(aside) + aside.dot(axis) * phi.slope * axis.cross(along));
+        maths::kDegPerRad * (phi.value * axis.cross(aside) + aside.dot(axis) * phi.slope * axis.cross(along));
   } else if (o.kind == ObservationKind::kDistance) {
     const Vector3d arm = point_ - other_end_;
     const double length = arm.norm();
@@ -152,13 +153,13 @@ Twist ObservationModel::gradient(const Observation& o) const {
   } else if (is_inclination(o.kind)) {
     const Vector3d arm = pose_.rotation.col(level(o.kind));
     const double cosine = std::sqrt(std::max(1 - std::pow(up_.dot(arm), 2), 1e-12));
-    g.rotation = base_.rotation * (kDegPerRad / cosine * arm.cross(up_));
+    g.rotation = base_.rotation * (maths::kDegPerRad / cosine * arm.cross(up_));
   } else if (is_rotation(o.kind)) {
-    g.rotation = kDegPerRad * inverse_left_jacobian(phi_).row(component(o.kind)).transpose();
+    g.rotation = maths::kDegPerRad * inverse_left_jacobian(phi_).row(component(o.kind)).transpose();
   } else {
     g.point = Vector3d::Unit(static_cast<int>(o.kind));
   }
   return g;
 }
 
-}  // namespace vernier
+}  // namespace vernier::model

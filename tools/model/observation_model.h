@@ -5,7 +5,7 @@
 #include "tools/model/chain_rows.h"
 #include "tools/model/measurement.h"
 
-namespace vernier {
+namespace vernier::model {
 
 /// What the observations of one row should read, given the tool's pose in workpiece coordinates and the
 /// BaseShift of the row's set-up (null: identity). gravity: of the machine, unit vector. Keeps references.
@@ -50,4 +50,4 @@ class ObservationModel {
   bool has_phi_ = false;
 };
 
-}  // namespace vernier
+}  // namespace vernier::model

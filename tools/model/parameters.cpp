@@ -3,7 +3,7 @@
 
 #include <set>
 
-namespace vernier {
+namespace vernier::model {
 namespace {
 
 double& slot(Machine& machine, const Parameter& p) {
@@ -90,4 +90,4 @@ void ParameterSet::set(Machine& machine, const Eigen::VectorXd& values) const {
         if (table.free[c]) table.stations.back().value[c] = table.stations.front().value[c];
 }
 
-}  // namespace vernier
+}  // namespace vernier::model

@@ -6,7 +6,7 @@
 
 #include "tools/model/machine.h"
 
-namespace vernier {
+namespace vernier::model {
 
 enum class ParameterKind : std::uint8_t { kStatic, kScaleFactor, kStation, kBaseShift };
 
@@ -68,4 +68,4 @@ class ParameterSet {
 /// The BaseShift of a run: its own, else the plain one, else none (identity).
 std::optional<std::size_t> base_shift_of(const Machine& machine, const std::string& run);
 
-}  // namespace vernier
+}  // namespace vernier::model

@@ -5,7 +5,7 @@
 #include "tools/model/linearizer.h"
 #include "tools/model/observation_model.h"
 
-namespace vernier {
+namespace vernier::model {
 
 Eigen::VectorXd predict(const Machine& machine, const Measurement& m) {
   const ChainRows chain(machine, m.states);
@@ -58,4 +58,4 @@ Linearisation linearise(const Machine& machine, const Linearizer& linearizer, st
   return result;
 }
 
-}  // namespace vernier
+}  // namespace vernier::model

@@ -7,7 +7,7 @@
 #include "tools/model/measurement.h"
 #include "tools/model/parameters.h"
 
-namespace vernier {
+namespace vernier::model {
 
 using SparseRows = Eigen::SparseMatrix<double, Eigen::RowMajor, int>;
 
@@ -30,4 +30,4 @@ class Linearizer;
 Linearisation linearise(const Machine& machine, const Linearizer& linearizer, std::size_t observations,
                         std::size_t parameters);
 
-}  // namespace vernier
+}  // namespace vernier::model

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace vernier {
+namespace vernier::model {
 
 Measurement rebind(const Measurement& measurement, const Machine& from, const Machine& to) {
   Measurement result = measurement;
@@ -38,4 +38,4 @@ Measurement rebind(const Measurement& measurement, const Machine& from, const Ma
   return result;
 }
 
-}  // namespace vernier
+}  // namespace vernier::model

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace vernier {
+namespace vernier::model {
 namespace {
 
 Column pick(const Column& column, const std::vector<std::size_t>& which) {
@@ -107,4 +107,4 @@ States select_states(const States& states, const std::vector<std::size_t>& which
   return result;
 }
 
-}  // namespace vernier
+}  // namespace vernier::model

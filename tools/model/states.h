@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace vernier {
+namespace vernier::model {
 
 using Column = Eigen::ArrayXd;
 
@@ -68,4 +68,4 @@ States make_states(std::size_t count, std::size_t axes, const std::vector<double
 /// The rows `which` of `states`, in that order.
 States select_states(const States& states, const std::vector<std::size_t>& which);
 
-}  // namespace vernier
+}  // namespace vernier::model

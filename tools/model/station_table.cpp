@@ -7,7 +7,7 @@
 
 #include "tools/model/chain.h"
 
-namespace vernier {
+namespace vernier::model {
 namespace {
 
 /// Second derivatives of the interpolating cubic spline as a linear map of the values (natural ends).
@@ -143,4 +143,4 @@ void StationTable::weights(double raw, std::vector<std::pair<std::size_t, double
 
 std::array<double, 6> table_values(const Table& table, double raw) { return StationTable(table).values(raw); }
 
-}  // namespace vernier
+}  // namespace vernier::model

@@ -7,7 +7,7 @@
 
 #include "tools/model/machine.h"
 
-namespace vernier {
+namespace vernier::model {
 
 /// Look-up in a station table: linear or cubic (natural, or periodic), held at both ends, periodic where the
 /// axis rolls over. Linear in the station values, so it also gives the weight of each. tool.
@@ -37,4 +37,4 @@ class StationTable {
   std::vector<std::array<double, 6>> bend_;  // cubic: second derivative of the six columns at every station
 };
 
-}  // namespace vernier
+}  // namespace vernier::model

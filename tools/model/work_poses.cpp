@@ -7,7 +7,7 @@
 #include "tools/maths/halton.h"
 #include "tools/model/chain.h"
 
-namespace vernier {
+namespace vernier::model {
 namespace {
 
 constexpr std::size_t kPoses = 500;
@@ -25,7 +25,8 @@ WorkPoses poses_over(const Machine& machine, const std::vector<std::array<double
     q[0] = low;
     q[1] = high;
     for (std::size_t i = 2; i < kPoses; ++i)
-      q[static_cast<Eigen::Index>(i)] = low + (high - low) * radical_inverse(i, kPrimes[a % kPrimes.size()]);
+      q[static_cast<Eigen::Index>(i)] =
+          low + (high - low) * maths::radical_inverse(i, kPrimes[a % kPrimes.size()]);
     for (std::size_t i = 0; i < kPoses; ++i)
       poses.states.direction[a][static_cast<Eigen::Index>(i)] = (i >> (a % 8)) % 2 == 0 ? 1 : -1;
   }
@@ -41,11 +42,11 @@ WorkPoses work_poses(const Machine& machine) {
     if (const Table* table = machine.table_of(a); !range && table != nullptr && table->stations.size() > 1)
       range = std::array{table->stations.front().loc, table->stations.back().loc};
     if (!range)
-      throw InputError({machine.file, machine.axes[a].line}, machine.axes[a].name,
-                       "an axis needs min and max, or a place in <volume>");
+      throw text::InputError({machine.file, machine.axes[a].line}, machine.axes[a].name,
+                             "an axis needs min and max, or a place in <volume>");
     ranges.push_back(*range);
   }
   return poses_over(machine, ranges);
 }
 
-}  // namespace vernier
+}  // namespace vernier::model

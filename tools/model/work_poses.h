@@ -6,7 +6,7 @@
 #include "tools/model/machine.h"
 #include "tools/model/states.h"
 
-namespace vernier {
+namespace vernier::model {
 
 /// Poses spread over where a machine works.
 struct WorkPoses {
@@ -22,4 +22,4 @@ WorkPoses poses_over(const Machine& machine, const std::vector<std::array<double
 /// without a range. tool.
 WorkPoses work_poses(const Machine& machine);
 
-}  // namespace vernier
+}  // namespace vernier::model

@@ -9,53 +9,55 @@
 #include "tools/model/chain.h"
 #include "tools/text/error.h"
 
-namespace vernier {
+namespace vernier::offline {
 
-double CorrectionSummary::largest_um(const Machine& machine) const {
+double CorrectionSummary::largest_um(const model::Machine& machine) const {
   double squares = 0;
   for (std::size_t i = 0; i < largest.size(); ++i)
     if (!machine.axes[i].rotary) squares += largest[i] * largest[i];
-  return kUmPerMm * std::sqrt(squares);
+  return maths::kUmPerMm * std::sqrt(squares);
 }
 
-Corrector::Corrector(const Machine& machine, CorrectorOptions options)
-    : machine_(machine), nominal_(nominal_machine(machine)), options_(options) {
+Corrector::Corrector(const model::Machine& machine, CorrectorOptions options)
+    : machine_(machine), nominal_(model::nominal_machine(machine)), options_(options) {
   summary_.largest.assign(machine.axes.size(), 0);
 }
 
-Eigen::MatrixXd Corrector::commands(const States& states) {
+Eigen::MatrixXd Corrector::commands(const model::States& states) {
   Eigen::MatrixXd result(static_cast<Eigen::Index>(machine_.axes.size()),
                          static_cast<Eigen::Index>(states.count));
-  const auto keep = [&](std::size_t axis, const Column& values) {
+  const auto keep = [&](std::size_t axis, const model::Column& values) {
     result.row(static_cast<Eigen::Index>(axis)) = values.matrix().transpose();
   };
   if (!options_.back) {
-    const CorrectionResult corrected = correct(machine_, states, {.with_rotary = options_.with_rotary});
+    const kinematics::CorrectionResult corrected =
+        kinematics::correct(machine_, states, {.with_rotary = options_.with_rotary});
     for (std::size_t i = 0; i < machine_.axes.size(); ++i) keep(i, states.axis[i] + corrected.offset[i]);
     return result;
   }
-  InverseOptions solving;
-  solving.match = options_.with_rotary ? Match::kDirection : Match::kPosition;
-  if (!options_.with_rotary) solving.axes = linear_axes(machine_);
+  kinematics::InverseOptions solving;
+  solving.match = options_.with_rotary ? kinematics::Match::kDirection : kinematics::Match::kPosition;
+  if (!options_.with_rotary) solving.axes = kinematics::linear_axes(machine_);
   solving.keep_ranges = false;
   solving.only_reachable = true;
-  const InverseResult solved = solve(nominal_, forward(machine_, states), states, solving);
+  const kinematics::InverseResult solved =
+      kinematics::solve(nominal_, model::forward(machine_, states), states, solving);
   for (std::size_t i = 0; i < machine_.axes.size(); ++i) keep(i, solved.states.axis[i]);
   return result;
 }
 
-void Corrector::count(const States& states, const Eigen::MatrixXd& commands) {
+void Corrector::count(const model::States& states, const Eigen::MatrixXd& commands) {
   // What was reached is judged on the chain itself, not by what the solver says.
-  States there = states;
+  model::States there = states;
   for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
     there.axis[i] = commands.row(static_cast<Eigen::Index>(i)).transpose().array();
     if (states.count > 0)
       summary_.largest[i] = std::max(summary_.largest[i], (there.axis[i] - states.axis[i]).abs().maxCoeff());
   }
-  const Machine &from = options_.back ? nominal_ : machine_, &to = options_.back ? machine_ : nominal_;
-  const Eigen::Matrix3Xd left = forward(from, there).position - forward(to, states).position;
+  const model::Machine &from = options_.back ? nominal_ : machine_, &to = options_.back ? machine_ : nominal_;
+  const Eigen::Matrix3Xd left = model::forward(from, there).position - model::forward(to, states).position;
   constexpr double kReached = 1e-6;  // mm, beyond what the axes cannot reach at all
-  const Eigen::Matrix3Xd before = forward(from, states).position - forward(to, states).position;
+  const Eigen::Matrix3Xd before = model::forward(from, states).position - model::forward(to, states).position;
   for (Eigen::Index i = 0; i < left.cols(); ++i) {
     summary_.left_mm = std::max(summary_.left_mm, left.col(i).norm());
     if (left.col(i).norm() > kReached && left.col(i).norm() >= before.col(i).norm()) ++summary_.not_converged;
@@ -68,8 +70,9 @@ void refuse_corrected(const std::string& text, const std::string& file) {
   if (at == std::string::npos) return;
   const auto line = 1 + static_cast<std::size_t>(
                             std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
-  throw InputError({file, line}, kCorrectedMark,
-                   "this was corrected before; corrected again it would be off by as much the other way");
+  throw text::InputError(
+      {file, line}, kCorrectedMark,
+      "this was corrected before; corrected again it would be off by as much the other way");
 }
 
-}  // namespace vernier
+}  // namespace vernier::offline

@@ -7,7 +7,7 @@
 #include "tools/model/machine.h"
 #include "tools/model/states.h"
 
-namespace vernier {
+namespace vernier::offline {
 
 struct CorrectorOptions {
   bool with_rotary =
@@ -25,26 +25,26 @@ struct CorrectionSummary {
   double left_mm = 0;             // largest distance between the corrected tool point and the ideal one
 
   /// Largest correction of the linear axes together, um.
-  double largest_um(const Machine& machine) const;
+  double largest_um(const model::Machine& machine) const;
 };
 
 /// Commands with the correction in them: axis positions that bring the tool of the machine as it is to where
 /// its nominal chain has it.
 class Corrector {
  public:
-  explicit Corrector(const Machine& machine, CorrectorOptions options = {});
+  explicit Corrector(const model::Machine& machine, CorrectorOptions options = {});
 
-  const Machine& machine() const { return machine_; }
+  const model::Machine& machine() const { return machine_; }
   /// Axis positions (axes x states) to command for states that are as if the machine were ideal; motion and
   /// inputs count as they are. Throws InputError where the chain is not finite. tool.
-  Eigen::MatrixXd commands(const States& states);
+  Eigen::MatrixXd commands(const model::States& states);
   /// Adds positions that will be written to the summary.
-  void count(const States& states, const Eigen::MatrixXd& commands);
+  void count(const model::States& states, const Eigen::MatrixXd& commands);
   const CorrectionSummary& summary() const { return summary_; }
 
  private:
-  const Machine& machine_;
-  Machine nominal_;
+  const model::Machine& machine_;
+  model::Machine nominal_;
   CorrectorOptions options_;
   CorrectionSummary summary_;
 };
@@ -55,4 +55,4 @@ inline constexpr const char* kCorrectedMark = "corrected by vernier";
 /// Throws InputError, naming the line, where a text says that it was corrected. tool.
 void refuse_corrected(const std::string& text, const std::string& file);
 
-}  // namespace vernier
+}  // namespace vernier::offline

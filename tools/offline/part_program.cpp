@@ -16,7 +16,7 @@
 #include "tools/text/numbers.h"
 #include "tools/text/words.h"
 
-namespace vernier {
+namespace vernier::offline {
 namespace {
 
 using Eigen::Index;
@@ -31,7 +31,7 @@ struct Word {
   std::string text;  // as it stands
 };
 
-std::vector<Word> words_of(const std::string& line, const Place& place) {
+std::vector<Word> words_of(const std::string& line, const text::Place& place) {
   std::vector<Word> words;
   for (std::size_t i = 0; i < line.size();) {
     const char c = line[i];
@@ -39,7 +39,8 @@ std::vector<Word> words_of(const std::string& line, const Place& place) {
       ++i;
     } else if (c == ';' || c == '(') {
       const auto end = c == ';' ? line.size() : line.find(')', i);
-      if (end == std::string::npos) throw InputError(place, line.substr(i, 20), "a remark without its end");
+      if (end == std::string::npos)
+        throw text::InputError(place, line.substr(i, 20), "a remark without its end");
       const std::size_t next = std::min(end + 1, line.size());
       words.push_back({'(', 0, line.substr(i, next - i)});
       i = next;
@@ -54,10 +55,11 @@ std::vector<Word> words_of(const std::string& line, const Place& place) {
                                  line[i] == '-' || line[i] == '+'))
         ++i;
       const char letter = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-      const auto value = parse_number(line.substr(number, i - number));
+      const auto value = text::parse_number(line.substr(number, i - number));
       if (std::isalpha(static_cast<unsigned char>(c)) == 0 || !value)
-        throw InputError(place, line.substr(from, std::max<std::size_t>(i - from, 8)),
-                         "not understood: parameters, expressions and loops have to be written out first");
+        throw text::InputError(
+            place, line.substr(from, std::max<std::size_t>(i - from, 8)),
+            "not understood: parameters, expressions and loops have to be written out first");
       words.push_back({letter, *value, line.substr(from, i - from)});
     }
   }
@@ -71,7 +73,7 @@ using Curve = std::function<VectorXd(double)>;
 
 class Translator {
  public:
-  Translator(const std::string& file, const States& at, const std::vector<char>& known,
+  Translator(const std::string& file, const model::States& at, const std::vector<char>& known,
              const PartProgramOptions& options, Corrector& corrector)
       : file_(file),
         at_(at),
@@ -86,8 +88,8 @@ class Translator {
       position_[static_cast<Index>(i)] = at.axis[i][0];
       const std::string& name = machine_.axes[i].name;
       if (name.size() != 1)
-        throw InputError({machine_.file, machine_.axes[i].line}, name,
-                         "part programs know axes of one letter; a CSV of positions takes any name");
+        throw text::InputError({machine_.file, machine_.axes[i].line}, name,
+                               "part programs know axes of one letter; a CSV of positions takes any name");
       letters_ += static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
     }
   }
@@ -98,7 +100,7 @@ class Translator {
     for (std::string line; std::getline(lines, line);) {
       if (!line.empty() && line.back() == '\r') line.pop_back();
       ++place_.line;
-      if (!marked && trimmed(line) != "%") {
+      if (!marked && text::trimmed(line) != "%") {
         result_.text += fmt::format("({}: machine {})\n", kCorrectedMark, machine_.name);
         marked = true;
       }
@@ -115,11 +117,11 @@ class Translator {
                                            76.0, 81.0, 82.0, 83.0, 84.0, 85.0, 86.0, 87.0, 88.0,
                                            89.0, 90.1, 92.0, 95.0, 5.0,  5.1,  5.2,  5.3};
     if (word.letter == 'G' && std::find(kGroups.begin(), kGroups.end(), word.value) != kGroups.end())
-      throw InputError(place_, word.text,
-                       "what this code does to positions is not followed; write the moves out first");
+      throw text::InputError(place_, word.text,
+                             "what this code does to positions is not followed; write the moves out first");
     if (word.letter == 'O' || word.letter == '#' ||
         (word.letter == 'M' && (word.value == 98 || word.value == 99)))
-      throw InputError(place_, word.text, "subprograms and loops have to be written out first");
+      throw text::InputError(place_, word.text, "subprograms and loops have to be written out first");
   }
 
   void take_code(double code) {
@@ -163,7 +165,7 @@ class Translator {
       return;
     }
     if (motion_ == Motion::kNone)
-      throw InputError(place_, line.substr(0, 20), "an axis word, and no G0, G1, G2 or G3 before it");
+      throw text::InputError(place_, line.substr(0, 20), "an axis word, and no G0, G1, G2 or G3 before it");
     move(words, arc);
   }
 
@@ -193,7 +195,8 @@ class Translator {
       else if (known_[*axis] != 0)
         target[at] += value;
       else
-        throw InputError(place_, word.text, "a step from where the axis stands, which is not known: --at");
+        throw text::InputError(place_, word.text,
+                               "a step from where the axis stands, which is not known: --at");
       reached_.push_back(*axis);
     }
     return target;
@@ -208,10 +211,11 @@ class Translator {
     for (const std::size_t axis : reached_) known_[axis] = 1;
     for (std::size_t i = 0; i < known_.size(); ++i)
       if (known_[i] == 0)
-        throw InputError(place_, std::string(1, letters_[i]),
-                         "where this axis stands is not known yet: name it in the first move, or with --at");
+        throw text::InputError(
+            place_, std::string(1, letters_[i]),
+            "where this axis stands is not known yet: name it in the first move, or with --at");
     if (arc && !start_known)
-      throw InputError(place_, words.front().text, "an arc from a place that is not known: --at");
+      throw text::InputError(place_, words.front().text, "an arc from a place that is not known: --at");
     const Curve curve =
         arc ? arc_of(words, from, to) : Curve([&](double s) -> VectorXd { return from + s * (to - from); });
     write(words, curve, start_known, arc);
@@ -224,7 +228,7 @@ class Translator {
                                                        : std::array{'Y', 'Z'};
     const auto first = axis_of(letters[0]), second = axis_of(letters[1]);
     if (!first || !second)
-      throw InputError(place_, fmt::format("G{}", plane_), "the machine lacks an axis of this plane");
+      throw text::InputError(place_, fmt::format("G{}", plane_), "the machine lacks an axis of this plane");
     const auto a = static_cast<Index>(*first), b = static_cast<Index>(*second);
     const auto find = [&](char letter) -> std::optional<double> {
       for (const Word& word : words)
@@ -232,7 +236,7 @@ class Translator {
       return std::nullopt;
     };
     if (const auto turns = find('P'); turns && *turns != 1)
-      throw InputError(place_, "P", "an arc of several turns has to be written turn by turn");
+      throw text::InputError(place_, "P", "an arc of several turns has to be written turn by turn");
     const double sense = motion_ == Motion::kCounterClockwise ? 1 : -1;
     Eigen::Vector2d start(from[a], from[b]), end(to[a], to[b]), centre;
     const auto offset = [&](char letter) { return find(letter).value_or(0) * unit_; };
@@ -241,7 +245,7 @@ class Translator {
       const Eigen::Vector2d chord = end - start;
       const double half = chord.norm() / 2, height = radius * radius - half * half;
       if (half <= 0 || height < -1e-6 * radius * radius)
-        throw InputError(place_, "R", "no arc of this radius joins its ends");
+        throw text::InputError(place_, "R", "no arc of this radius joins its ends");
       // The lesser arc for a positive radius, on the left of the chord for a turn to the left.
       const double side = sense * (radius > 0 ? 1 : -1);
       centre = start + chord / 2 +
@@ -254,8 +258,8 @@ class Translator {
     const Eigen::Vector2d out = start - centre, in = end - centre;
     constexpr double kOff = 0.05;  // mm, and a thousandth of the radius: as controls allow
     if (out.norm() <= 0 || std::abs(out.norm() - in.norm()) > kOff + 1e-3 * out.norm())
-      throw InputError(place_, words.front().text,
-                       "the ends of the arc are not at one distance from its centre");
+      throw text::InputError(place_, words.front().text,
+                             "the ends of the arc are not at one distance from its centre");
     double angle = std::atan2(out.x() * in.y() - out.y() * in.x(), out.dot(in));
     constexpr double kWhole = 2 * std::numbers::pi, kSame = 1e-9;
     if (sense * angle <= kSame) angle += sense * kWhole;
@@ -270,8 +274,8 @@ class Translator {
   }
 
   /// Positions along a move with the motion that belongs to them.
-  States along(const Curve& curve, const std::vector<double>& shares, bool rapid) const {
-    States states = select_states(at_, std::vector<std::size_t>(shares.size(), 0));
+  model::States along(const Curve& curve, const std::vector<double>& shares, bool rapid) const {
+    model::States states = model::select_states(at_, std::vector<std::size_t>(shares.size(), 0));
     constexpr double kStep = 1e-6;
     for (std::size_t k = 0; k < shares.size(); ++k) {
       const auto row = static_cast<Index>(k);
@@ -387,7 +391,7 @@ class Translator {
       for (int k = 0; k <= count; ++k) shares.push_back(from + (to - from) * k / count);
       const VectorXd begin = curve(from), end = curve(to);
       note_senses(begin, curve((from + to) / 2));
-      const States states = along(curve, shares, false);
+      const model::States states = along(curve, shares, false);
       const Eigen::MatrixXd there = corrector_.commands(states);
       std::vector<Index> kept;
       const VectorXd& last = list.empty() ? command_ : list.back().command;
@@ -398,7 +402,7 @@ class Translator {
         list.push_back({shares[static_cast<std::size_t>(k)], there.col(k)});
         rows.push_back(static_cast<std::size_t>(k));
       }
-      corrector_.count(select_states(states, rows), there(Eigen::all, kept));
+      corrector_.count(model::select_states(states, rows), there(Eigen::all, kept));
     }
     return list;
   }
@@ -418,7 +422,7 @@ class Translator {
     if (rapid || !start_known) {
       // A rapid move is no path, and what comes from a place that is not known is none that could be cut.
       if (start_known) note_senses(curve(0), curve(1));
-      const States end = along(curve, {1}, rapid);
+      const model::States end = along(curve, {1}, rapid);
       const Eigen::MatrixXd there = corrector_.commands(end);
       corrector_.count(end, there);
       list = {{1, there.col(0)}};
@@ -462,11 +466,11 @@ class Translator {
   }
 
   const std::string& file_;
-  const States& at_;
-  const Machine& machine_;
+  const model::States& at_;
+  const model::Machine& machine_;
   const PartProgramOptions& options_;
   Corrector& corrector_;
-  Place place_;
+  text::Place place_;
   std::string letters_;
   Motion motion_ = Motion::kNone;
   int plane_ = 17;
@@ -482,11 +486,11 @@ class Translator {
 
 }  // namespace
 
-PartProgram corrected_program(const std::string& text, const std::string& file, const States& at,
+PartProgram corrected_program(const std::string& text, const std::string& file, const model::States& at,
                               const std::vector<char>& known, const PartProgramOptions& options,
                               Corrector& corrector) {
   refuse_corrected(text, file);
   return Translator(file, at, known, options, corrector).translate(text);
 }
 
-}  // namespace vernier
+}  // namespace vernier::offline

@@ -5,7 +5,7 @@
 
 #include "tools/offline/corrector.h"
 
-namespace vernier {
+namespace vernier::offline {
 
 struct PartProgramOptions {
   /// How far the written path may leave the one that a correction at every moment would make, mm.
@@ -27,8 +27,8 @@ struct PartProgram {
 /// the first block, and inputs. Throws InputError with file, line and word for what would be wrong if it were
 /// passed on: cycles, compensation of the cutter, other zeros and rotations, parameters, loops, an axis that
 /// was never commanded and that `at` does not name. tool.
-PartProgram corrected_program(const std::string& text, const std::string& file, const States& at,
+PartProgram corrected_program(const std::string& text, const std::string& file, const model::States& at,
                               const std::vector<char>& known, const PartProgramOptions& options,
                               Corrector& corrector);
 
-}  // namespace vernier
+}  // namespace vernier::offline

@@ -16,7 +16,7 @@
 #include "tools/text/numbers.h"
 #include "tools/text/units.h"
 
-namespace vernier {
+namespace vernier::offline {
 namespace {
 
 using Eigen::Index;
@@ -27,98 +27,102 @@ constexpr int kDigits = 7;
 /// The columns of one file as numbers.
 class PositionTable {
  public:
-  PositionTable(const std::string& text, const std::string& file) : csv_(parse_csv(text, file)) {}
+  PositionTable(const std::string& text, const std::string& file) : csv_(text::parse_csv(text, file)) {}
 
-  const CsvFile& csv() const { return csv_; }
+  const text::CsvFile& csv() const { return csv_; }
   std::optional<std::size_t> find(const std::string& name) const {
     for (std::size_t i = 0; i < csv_.columns.size(); ++i)
       if (csv_.columns[i].name == name) return i;
     return std::nullopt;
   }
-  Column numbers(std::size_t column, Dimension dimension) const {
-    const CsvColumn& head = csv_.columns[column];
-    const Unit unit = *find_unit(head.unit);
+  model::Column numbers(std::size_t column, text::Dimension dimension) const {
+    const text::CsvColumn& head = csv_.columns[column];
+    const text::Unit unit = *text::find_unit(head.unit);
     if (unit.dimension != dimension)
-      throw InputError({csv_.file, csv_.header_line}, head.name,
-                       std::string("this column needs a unit like ") + base_unit(dimension));
-    Column result(static_cast<Index>(csv_.rows.size()));
+      throw text::InputError({csv_.file, csv_.header_line}, head.name,
+                             std::string("this column needs a unit like ") + text::base_unit(dimension));
+    model::Column result(static_cast<Index>(csv_.rows.size()));
     for (std::size_t row = 0; row < csv_.rows.size(); ++row) {
-      const auto number = parse_number(csv_.rows[row][column]);
+      const auto number = text::parse_number(csv_.rows[row][column]);
       if (!number)
-        throw InputError({csv_.file, csv_.line[row]}, csv_.rows[row][column],
-                         "not a number, in column " + head.name);
+        throw text::InputError({csv_.file, csv_.line[row]}, csv_.rows[row][column],
+                               "not a number, in column " + head.name);
       result[static_cast<Index>(row)] = unit.factor * *number + unit.offset;
     }
     return result;
   }
 
  private:
-  CsvFile csv_;
+  text::CsvFile csv_;
 };
 
-void read_column(const PositionTable& table, const std::string& name, Dimension dimension, Column& target,
-                 double factor = 1) {
+void read_column(const PositionTable& table, const std::string& name, text::Dimension dimension,
+                 model::Column& target, double factor = 1) {
   if (const auto column = table.find(name)) target = factor * table.numbers(*column, dimension);
 }
 
 /// All that is known of each row beside the positions: what `at` says, and what the columns do.
-States states_of(const PositionTable& table, const Machine& machine, const States& at) {
+model::States states_of(const PositionTable& table, const model::Machine& machine, const model::States& at) {
   const std::size_t rows = table.csv().rows.size();
-  States states = select_states(at, std::vector<std::size_t>(rows, 0));
+  model::States states = model::select_states(at, std::vector<std::size_t>(rows, 0));
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-    const Axis& axis = machine.axes[i];
-    const auto either = [&](Dimension linear, Dimension rotary) { return axis.rotary ? rotary : linear; };
-    read_column(table, axis.name, either(Dimension::kLength, Dimension::kAngle), states.axis[i]);
-    read_column(table, "v" + axis.name, either(Dimension::kSpeed, Dimension::kAngularSpeed),
+    const model::Axis& axis = machine.axes[i];
+    const auto either = [&](text::Dimension linear, text::Dimension rotary) {
+      return axis.rotary ? rotary : linear;
+    };
+    read_column(table, axis.name, either(text::Dimension::kLength, text::Dimension::kAngle), states.axis[i]);
+    read_column(table, "v" + axis.name, either(text::Dimension::kSpeed, text::Dimension::kAngularSpeed),
                 states.velocity[i]);
-    read_column(table, "a" + axis.name, either(Dimension::kAcceleration, Dimension::kAngularAcceleration),
+    read_column(table, "a" + axis.name,
+                either(text::Dimension::kAcceleration, text::Dimension::kAngularAcceleration),
                 states.acceleration[i]);
-    read_column(table, "dir" + axis.name, Dimension::kNone, states.direction[i]);
-    read_column(table, "since" + axis.name, either(Dimension::kLength, Dimension::kAngle), states.since[i]);
+    read_column(table, "dir" + axis.name, text::Dimension::kNone, states.direction[i]);
+    read_column(table, "since" + axis.name, either(text::Dimension::kLength, text::Dimension::kAngle),
+                states.since[i]);
   }
-  read_column(table, "feed", Dimension::kSpeed, states.feed, 60);
-  read_column(table, "curv", Dimension::kCurvature, states.curvature);
-  read_column(table, "t", Dimension::kTime, states.time);
+  read_column(table, "feed", text::Dimension::kSpeed, states.feed, 60);
+  read_column(table, "curv", text::Dimension::kCurvature, states.curvature);
+  read_column(table, "t", text::Dimension::kTime, states.time);
   for (std::size_t i = 0; i < machine.inputs.size(); ++i) {
-    const Input& input = machine.inputs[i];
+    const model::Input& input = machine.inputs[i];
     const auto column = table.find(input.name);
-    const auto unit = find_unit(input.unit);
+    const auto unit = text::find_unit(input.unit);
     if (!column || !unit) continue;
     states.input[i] = (table.numbers(*column, unit->dimension) - unit->offset) / unit->factor;
   }
   return states;
 }
 
-Poses targets_of(const PositionTable& table, bool& with_direction) {
-  Poses target;
+model::Poses targets_of(const PositionTable& table, bool& with_direction) {
+  model::Poses target;
   const std::size_t rows = table.csv().rows.size();
   target.position = Eigen::Matrix3Xd::Zero(3, static_cast<Index>(rows));
   target.rotation.assign(rows, Eigen::Matrix3d::Identity());
-  const auto three = [&](const char* names, const char* prefix, Dimension dimension) {
+  const auto three = [&](const char* names, const char* prefix, text::Dimension dimension) {
     Eigen::Matrix3Xd values(3, static_cast<Index>(rows));
     for (Index k = 0; k < 3; ++k) {
       const std::string name = std::string(prefix) + names[k];
       const auto column = table.find(name);
       if (!column)
-        throw InputError({table.csv().file, table.csv().header_line}, name, "this column is missing");
+        throw text::InputError({table.csv().file, table.csv().header_line}, name, "this column is missing");
       values.row(k) = table.numbers(*column, dimension).matrix().transpose();
     }
     return values;
   };
-  target.position = three("xyz", "", Dimension::kLength);
+  target.position = three("xyz", "", text::Dimension::kLength);
   with_direction = table.find("rx") || table.find("i");
   if (!with_direction) return target;
   const bool vector = table.find("rx").has_value();
   const Eigen::Matrix3Xd turn =
-      vector ? three("xyz", "r", Dimension::kAngle) : three("ijk", "", Dimension::kNone);
+      vector ? three("xyz", "r", text::Dimension::kAngle) : three("ijk", "", text::Dimension::kNone);
   for (std::size_t row = 0; row < rows; ++row) {
     const Eigen::Vector3d one = turn.col(static_cast<Index>(row));
     if (vector) {
-      target.rotation[row] = rotation_of(one);
+      target.rotation[row] = kinematics::rotation_of(one);
       continue;
     }
     if (std::abs(one.norm() - 1) > 0.01)
-      throw InputError({table.csv().file, table.csv().line[row]}, "i", "i, j, k must be a unit vector");
+      throw text::InputError({table.csv().file, table.csv().line[row]}, "i", "i, j, k must be a unit vector");
     target.rotation[row] =
         Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), one).toRotationMatrix();
   }
@@ -126,23 +130,25 @@ Poses targets_of(const PositionTable& table, bool& with_direction) {
 }
 
 /// Axis positions at which the nominal chain has the tool at the targets.
-States solved(const PositionTable& table, const Machine& machine, States states) {
+model::States solved(const PositionTable& table, const model::Machine& machine, model::States states) {
   bool with_direction = false;
-  const Poses target = targets_of(table, with_direction);
-  InverseOptions options;
-  options.match = with_direction ? Match::kDirection : Match::kPosition;
-  if (!with_direction && !linear_axes(machine).empty()) options.axes = linear_axes(machine);
-  const Machine nominal = nominal_machine(machine);
+  const model::Poses target = targets_of(table, with_direction);
+  kinematics::InverseOptions options;
+  options.match = with_direction ? kinematics::Match::kDirection : kinematics::Match::kPosition;
+  if (!with_direction && !kinematics::linear_axes(machine).empty())
+    options.axes = kinematics::linear_axes(machine);
+  const model::Machine nominal = model::nominal_machine(machine);
   for (std::size_t row = 0; row < states.count; ++row) {
     const auto at = static_cast<Index>(row);
-    const Poses one{target.position.col(at), {target.rotation[row]}};
+    const model::Poses one{target.position.col(at), {target.rotation[row]}};
     // From where the row before stands: the nearest of several solutions.
-    States start = select_states(states, {row > 0 ? row - 1 : row});
+    model::States start = model::select_states(states, {row > 0 ? row - 1 : row});
     constexpr int kRestarts = 48;
-    const InverseResult result = solve_anywhere(nominal, one, start, options, kRestarts);
+    const kinematics::InverseResult result =
+        kinematics::solve_anywhere(nominal, one, start, options, kRestarts);
     if (!result.each[0].converged)
-      throw LimitNotMet(fmt::format("{}:{}: the target cannot be reached: {}", table.csv().file,
-                                    table.csv().line[row], name_of(result.each[0].fault)));
+      throw text::LimitNotMet(fmt::format("{}:{}: the target cannot be reached: {}", table.csv().file,
+                                          table.csv().line[row], kinematics::name_of(result.each[0].fault)));
     for (std::size_t i = 0; i < machine.axes.size(); ++i) states.axis[i][at] = result.states.axis[i][0];
   }
   return states;
@@ -150,32 +156,32 @@ States solved(const PositionTable& table, const Machine& machine, States states)
 
 }  // namespace
 
-std::string corrected_positions(const std::string& text, const std::string& file, const States& at,
+std::string corrected_positions(const std::string& text, const std::string& file, const model::States& at,
                                 Corrector& corrector) {
   refuse_corrected(text, file);
   const PositionTable table(text, file);
-  const Machine& machine = corrector.machine();
+  const model::Machine& machine = corrector.machine();
   std::vector<std::optional<std::size_t>> column_of(machine.axes.size());
   std::size_t found = 0;
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
     column_of[i] = table.find(machine.axes[i].name);
     found += column_of[i] ? 1 : 0;
   }
-  States states = states_of(table, machine, at);
+  model::States states = states_of(table, machine, at);
   if (found == 0 && table.find("x"))
     states = solved(table, machine, states);
   else
     for (std::size_t i = 0; i < machine.axes.size(); ++i)
       if (!column_of[i])
-        throw InputError({file, table.csv().header_line}, machine.axes[i].name,
-                         "the column of this axis is missing");
+        throw text::InputError({file, table.csv().header_line}, machine.axes[i].name,
+                               "the column of this axis is missing");
   const Eigen::MatrixXd commands = corrector.commands(states);
   corrector.count(states, commands);
 
   const auto written = [&](std::size_t axis, std::size_t row) {
     double value = commands(static_cast<Index>(axis), static_cast<Index>(row));
     if (const auto column = column_of[axis]) {
-      const Unit unit = *find_unit(table.csv().columns[*column].unit);
+      const text::Unit unit = *text::find_unit(table.csv().columns[*column].unit);
       value = (value - unit.offset) / unit.factor;
     }
     return fmt::format("{:.{}f}", value, kDigits);
@@ -197,16 +203,16 @@ std::string corrected_positions(const std::string& text, const std::string& file
       for (std::size_t i = 0; i < machine.axes.size(); ++i)
         cells.push_back(head ? machine.axes[i].name + (machine.axes[i].rotary ? "[deg]" : "[mm]")
                              : written(i, row));
-    std::vector<std::string> own = fields_of(line, {}, {file, number});
+    std::vector<std::string> own = text::fields_of(line, {}, {file, number});
     if (data)
       for (std::size_t i = 0; i < machine.axes.size(); ++i)
         if (column_of[i]) own[*column_of[i]] = written(i, row);
     cells.insert(cells.end(), own.begin(), own.end());
-    for (std::size_t i = 0; i < cells.size(); ++i) result += (i > 0 ? "," : "") + csv_cell(cells[i]);
+    for (std::size_t i = 0; i < cells.size(); ++i) result += (i > 0 ? "," : "") + text::csv_cell(cells[i]);
     result += "\n";
     row += data ? 1 : 0;
   }
   return result;
 }
 
-}  // namespace vernier
+}  // namespace vernier::offline

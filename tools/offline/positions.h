@@ -4,7 +4,7 @@
 
 #include "tools/offline/corrector.h"
 
-namespace vernier {
+namespace vernier::offline {
 
 /// A CSV of positions with the axis columns corrected: all other cells, columns and comments as they stand.
 /// Its columns are those of a measurement or path file (axes, inputs, motion; sense and speed count as
@@ -12,7 +12,7 @@ namespace vernier {
 /// them rx ry rz (rotation vector) or i j k (tool direction); the nominal chain's back solution then gives
 /// the axes, which are put in front. Throws InputError with file, line and word; LimitNotMet where a target
 /// cannot be reached. tool.
-std::string corrected_positions(const std::string& text, const std::string& file, const States& at,
+std::string corrected_positions(const std::string& text, const std::string& file, const model::States& at,
                                 Corrector& corrector);
 
-}  // namespace vernier
+}  // namespace vernier::offline

@@ -10,7 +10,7 @@
 #include "tools/text/units.h"
 #include "tools/text/words.h"
 
-namespace vernier {
+namespace vernier::part {
 namespace {
 
 /// Far above rounding of a chain of this size (1e-12 mm), far below any error that matters.
@@ -24,16 +24,16 @@ const std::vector<JointPose> kProbes = {{0, 0, 0, 0, 0},       {70, 0, 0, 0, 0},
                                         {-50, 80, 5, -17, 95}, {33, -44, 55, 18, -20}};
 
 /// Value of one "NAME=NUMBER[UNIT]" in the unit of the static.
-double error_value(const Static& target, const std::string& word, const std::string& text) {
+double error_value(const model::Static& target, const std::string& word, const std::string& text) {
   std::size_t split = text.size();
-  while (split > 0 && !parse_number(text.substr(0, split))) --split;
-  const std::optional<double> number = parse_number(text.substr(0, split));
-  if (!number) throw InputError({"--errors", 0}, word, "not a number");
+  while (split > 0 && !text::parse_number(text.substr(0, split))) --split;
+  const std::optional<double> number = text::parse_number(text.substr(0, split));
+  if (!number) throw text::InputError({"--errors", 0}, word, "not a number");
   const std::string name = text.substr(split);
   if (name.empty()) return *number;
-  const std::optional<Unit> from = find_unit(name), to = find_unit(target.unit);
+  const std::optional<text::Unit> from = text::find_unit(name), to = text::find_unit(target.unit);
   if (!from || !to || from->dimension != to->dimension)
-    throw InputError(
+    throw text::InputError(
         {"--errors", 0}, word,
         "\"" + name + "\" is no unit that \"" + target.unit + "\" of " + target.name + " can be given in");
   return (*number * from->factor + from->offset - to->offset) / to->factor;
@@ -41,10 +41,10 @@ double error_value(const Static& target, const std::string& word, const std::str
 
 }  // namespace
 
-States BHeadMachine::states(const std::vector<JointPose>& joints) const {
+model::States BHeadMachine::states(const std::vector<JointPose>& joints) const {
   std::vector<double> references;
-  for (const Input& input : machine.inputs) references.push_back(input.reference);
-  States result = make_states(joints.size(), machine.axes.size(), references);
+  for (const model::Input& input : machine.inputs) references.push_back(input.reference);
+  model::States result = model::make_states(joints.size(), machine.axes.size(), references);
   for (std::size_t i = 0; i < joints.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
     const JointPose& q = joints[i];
@@ -54,24 +54,24 @@ States BHeadMachine::states(const std::vector<JointPose>& joints) const {
   return result;
 }
 
-BHeadMachine b_head_machine(Machine machine) {
+BHeadMachine b_head_machine(model::Machine machine) {
   BHeadMachine result;
   result.machine = std::move(machine);
-  const Place place{result.machine.file, 0};
+  const text::Place place{result.machine.file, 0};
   constexpr std::array<const char*, 5> kAxes = {"X", "Y", "Z", "B", "C"};
   for (std::size_t k = 0; k < 5; ++k) {
     const auto found = result.machine.find_axis(kAxes[k]);
-    if (!found) throw InputError(place, kAxes[k], "the S-shaped part needs a machine with this axis");
+    if (!found) throw text::InputError(place, kAxes[k], "the S-shaped part needs a machine with this axis");
     result.axis[k] = *found;
   }
-  const Poses poses = forward(nominal_machine(result.machine), result.states(kProbes));
+  const model::Poses poses = model::forward(model::nominal_machine(result.machine), result.states(kProbes));
   result.pivot_mm = -poses.position(2, 0);
   for (std::size_t i = 0; i < kProbes.size(); ++i) {
     const ToolPose want = tool_pose(kProbes[i], result.pivot_mm);
     const double apart = (poses.position.col(static_cast<Eigen::Index>(i)) - want.tip).norm();
     const double turned = (poses.rotation[i].col(2) - want.axis).norm();
     if (apart > kSameMm || turned > kSameAxis)
-      throw InputError(
+      throw text::InputError(
           place, result.machine.name,
           fmt::format("the nominal chain is not X Z B on the tool side and Y C on the workpiece "
                       "side with crossing axes: at X {} Y {} Z {} B {} C {} the tool is {:.3g} mm "
@@ -82,17 +82,18 @@ BHeadMachine b_head_machine(Machine machine) {
   return result;
 }
 
-void set_errors(Machine& machine, const std::string& text) {
-  for (const std::string& word : words_in(text, ", ")) {
+void set_errors(model::Machine& machine, const std::string& text) {
+  for (const std::string& word : text::words_in(text, ", ")) {
     const std::size_t equals = word.find('=');
-    if (equals == std::string::npos) throw InputError({"--errors", 0}, word, "expected NAME=VALUE");
+    if (equals == std::string::npos) throw text::InputError({"--errors", 0}, word, "expected NAME=VALUE");
     const auto index = machine.find_static(word.substr(0, equals));
-    if (!index) throw InputError({"--errors", 0}, word, "no static of this name in " + machine.name);
-    Static& target = machine.statics[*index];
-    if (target.hidden) throw InputError({"--errors", 0}, word, "a hidden static is no error of the machine");
+    if (!index) throw text::InputError({"--errors", 0}, word, "no static of this name in " + machine.name);
+    model::Static& target = machine.statics[*index];
+    if (target.hidden)
+      throw text::InputError({"--errors", 0}, word, "a hidden static is no error of the machine");
     if (!target.nominal) target.nominal = target.value;
     target.value = error_value(target, word, word.substr(equals + 1));
   }
 }
 
-}  // namespace vernier
+}  // namespace vernier::part

@@ -7,24 +7,24 @@
 #include "tools/model/states.h"
 #include "tools/part/joint_path.h"
 
-namespace vernier {
+namespace vernier::part {
 
 /// A machine file whose nominal chain is that of the five-axis machine with B head and C table. Errors may be
 /// anything that the file can say; its free statics are the parameters of the part.
 struct BHeadMachine {
-  Machine machine;
+  model::Machine machine;
   double pivot_mm = 0;                // B axis to tool tip, read off the nominal chain
   std::array<std::size_t, 5> axis{};  // where X Y Z B C stand among the machine's axes
 
   /// Joint values of the origin of the work coordinates: tip at (0, 0, 0), tool vertical, C = 0.
   JointPose origin() const { return {0, 0, pivot_mm, 0, 0}; }
   /// Rows for the chain; inputs at their reference, motion zero.
-  States states(const std::vector<JointPose>& joints) const;
+  model::States states(const std::vector<JointPose>& joints) const;
 };
 
 /// Checks the nominal chain against the closed direct solution at poses over the ranges of the axes. Throws
 /// InputError where an axis is missing or the chain is another. tool.
-BHeadMachine b_head_machine(Machine machine);
+BHeadMachine b_head_machine(model::Machine machine);
 
 /// tables/machines/five_axis_bhead_ctable.xml as it was when the program was built: the machine of the paper
 /// with its eight location errors, all 0; angles in deg, L0 499.889 mm (the paper's simulation).
@@ -37,6 +37,6 @@ inline constexpr std::array<const char*, 8> kLocationErrors = {"EC0Y", "EA0Z", "
 /// Sets statics from "EA0B=3.2419e-4rad, EX0B=0.0294": comma or blank between; a unit behind the number is
 /// converted to the static's, no unit means the static's own. Throws InputError for an unknown or hidden
 /// name, a malformed number or a unit of another dimension. tool.
-void set_errors(Machine& machine, const std::string& text);
+void set_errors(model::Machine& machine, const std::string& text);
 
-}  // namespace vernier
+}  // namespace vernier::part

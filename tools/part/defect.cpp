@@ -7,7 +7,7 @@
 #include "tools/model/chain_rows.h"
 #include "tools/part/s_part.h"
 
-namespace vernier {
+namespace vernier::part {
 namespace {
 
 /// Joint poses of points of both flanks, in the order of the points.
@@ -53,7 +53,7 @@ Probe probe_of(const PartPoint& point, const DefectOptions& options) {
 }
 
 /// The statics that a fit may change, as keys of the chain's derivatives.
-std::vector<char> active_keys(const Machine& machine) {
+std::vector<char> active_keys(const model::Machine& machine) {
   std::vector<char> active(machine.statics.size() + 6 * machine.axes.size(), 0);
   for (const std::size_t index : free_statics(machine)) active[index] = 1;
   return active;
@@ -61,7 +61,7 @@ std::vector<char> active_keys(const Machine& machine) {
 
 }  // namespace
 
-std::vector<std::size_t> free_statics(const Machine& machine) {
+std::vector<std::size_t> free_statics(const model::Machine& machine) {
   std::vector<std::size_t> indices;
   for (std::size_t i = 0; i < machine.statics.size(); ++i)
     if (!machine.statics[i].hidden) indices.push_back(i);
@@ -70,14 +70,15 @@ std::vector<std::size_t> free_statics(const Machine& machine) {
 
 std::vector<ToolDisplacement> displacements(const BHeadMachine& machine, const std::vector<JointPose>& joints,
                                             const std::vector<double>& height_mm) {
-  const States states = machine.states(joints);
-  const Machine nominal = nominal_machine(machine.machine);
-  const ChainRows actual(machine.machine, states, active_keys(machine.machine)), ideal(nominal, states);
+  const model::States states = machine.states(joints);
+  const model::Machine nominal = model::nominal_machine(machine.machine);
+  const model::ChainRows actual(machine.machine, states, active_keys(machine.machine)),
+      ideal(nominal, states);
   const std::vector<std::size_t> wanted = free_statics(machine.machine);
   std::vector<ToolDisplacement> result(joints.size());
-  std::vector<Twist> twists;
+  std::vector<model::Twist> twists;
   for (std::size_t i = 0; i < joints.size(); ++i) {
-    const Frame here = actual.pose(i, twists), there = ideal.pose(i);
+    const model::Frame here = actual.pose(i, twists), there = ideal.pose(i);
     const Eigen::Vector3d arm = height_mm[i] * here.rotation.col(2);
     result[i].shift = here.origin - there.origin + (arm - height_mm[i] * there.rotation.col(2));
     // A chain need not use every static: what it has no derivative for stays zero.
@@ -130,4 +131,4 @@ std::vector<PartPoint> standard_points() {
   return points;
 }
 
-}  // namespace vernier
+}  // namespace vernier::part

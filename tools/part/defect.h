@@ -6,7 +6,7 @@
 
 #include "tools/part/b_head_machine.h"
 
-namespace vernier {
+namespace vernier::part {
 
 /// A point of the part: flank 0 (A) or 1 (B), and where on it.
 struct PartPoint {
@@ -38,7 +38,7 @@ std::vector<ToolDisplacement> displacements(const BHeadMachine& machine, const s
                                             const std::vector<double>& height_mm);
 
 /// Indices of the statics that `by` and the Jacobian of a part stand for, in the order of the machine file.
-std::vector<std::size_t> free_statics(const Machine& machine);
+std::vector<std::size_t> free_statics(const model::Machine& machine);
 
 /// What the errors of a machine do to the part, at N points.
 struct PartDefect {
@@ -62,4 +62,4 @@ PartDefect part_defect(const BHeadMachine& machine, const std::vector<PartPoint>
 std::vector<PartPoint> standard_points();
 inline constexpr std::size_t kPointsPerLine = 25;
 
-}  // namespace vernier
+}  // namespace vernier::part

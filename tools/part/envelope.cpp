@@ -7,7 +7,7 @@
 #include <functional>
 #include <numbers>
 
-namespace vernier {
+namespace vernier::part {
 namespace {
 
 constexpr int kSamplesPerSpan = 40;
@@ -89,4 +89,4 @@ Worst worst_distance(const RuledSurface& surface, const Cutter& cutter, double v
                surface.top.spans());
 }
 
-}  // namespace vernier
+}  // namespace vernier::part

@@ -4,7 +4,7 @@
 
 #include "tools/part/flank_path.h"
 
-namespace vernier {
+namespace vernier::part {
 
 /// A point that the moving cutter leaves behind, and the cutter's normal there (from its axis outwards it is
 /// -normal: `normal` points out of the part).
@@ -39,4 +39,4 @@ Worst worst_formula(const RuledSurface& surface, const Cutter& cutter, double v,
 /// Largest overcut as a distance (positive), likewise.
 Worst worst_distance(const RuledSurface& surface, const Cutter& cutter, double v, NormalReading reading = {});
 
-}  // namespace vernier
+}  // namespace vernier::part

@@ -3,7 +3,7 @@
 
 #include <Eigen/Geometry>
 
-namespace vernier {
+namespace vernier::part {
 namespace {
 
 /// A direction and how it turns.
@@ -44,4 +44,4 @@ FlankPose flank_pose(const RuledSurface& surface, const Cutter& cutter, double u
   return pose;
 }
 
-}  // namespace vernier
+}  // namespace vernier::part

@@ -4,7 +4,7 @@
 
 #include "tools/part/ruled_surface.h"
 
-namespace vernier {
+namespace vernier::part {
 
 /// A cylindrical cutter: the tip is `length_mm` below the top curve, along the generatrix.
 struct Cutter {
@@ -34,4 +34,4 @@ struct FlankPose {
 /// too much is in tools/part/envelope.h. tool.
 FlankPose flank_pose(const RuledSurface& surface, const Cutter& cutter, double u, NormalReading reading = {});
 
-}  // namespace vernier
+}  // namespace vernier::part

@@ -4,7 +4,7 @@
 #include <numbers>
 #include <stdexcept>
 
-namespace vernier {
+namespace vernier::part {
 
 GaugeBlockEstimate estimate_gauge_block(const std::array<double, 4>& y_mm, double pivot_mm) {
   if (!(pivot_mm > 0)) throw std::invalid_argument("the pivot length must be above 0");
@@ -14,4 +14,4 @@ GaugeBlockEstimate estimate_gauge_block(const std::array<double, 4>& y_mm, doubl
           kHalfDifference};
 }
 
-}  // namespace vernier
+}  // namespace vernier::part

@@ -2,7 +2,7 @@
 #pragma once
 #include <array>
 
-namespace vernier {
+namespace vernier::part {
 
 /// Where a gauge block on the table is read in Y at table positions C = 0, 90, 180, 270 deg with the tool
 /// vertical, X = 0 and the tip at the height of the work origin (Z = L0): two of the location errors, from
@@ -18,4 +18,4 @@ struct GaugeBlockEstimate {
 /// block along Y cancels only within each pair. tool.
 GaugeBlockEstimate estimate_gauge_block(const std::array<double, 4>& y_mm, double pivot_mm);
 
-}  // namespace vernier
+}  // namespace vernier::part

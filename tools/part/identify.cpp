@@ -11,7 +11,7 @@
 #include "tools/part/measured_part.h"
 #include "tools/part/s_part.h"
 
-namespace vernier {
+namespace vernier::part {
 namespace {
 
 constexpr std::array<const char*, 6> kAlignment = {"part.X",  "part.Y",  "part.Z",
@@ -24,7 +24,7 @@ Eigen::MatrixXd alignment_columns(const PartDefect& defect) {
   for (Eigen::Index i = 0; i < columns.rows(); ++i) {
     const Eigen::Vector3d normal = defect.normal.col(i), position = defect.position.col(i);
     columns.row(i).head<3>() = normal;
-    columns.row(i).tail<3>() = kRadPerDeg * position.cross(normal);
+    columns.row(i).tail<3>() = maths::kRadPerDeg * position.cross(normal);
   }
   return columns;
 }
@@ -103,16 +103,16 @@ class PartProblem {
   }
   /// What the points can tell apart, seen where all errors are nominal: away from there the second order
   /// feigns a difference between columns that are one.
-  Observability seen_at_nominal() const {
+  fit::Observability seen_at_nominal() const {
     Eigen::VectorXd point = Eigen::VectorXd::Zero(size());
     for (std::size_t i = 0; i < free_.size(); ++i) {
-      const Static& item = machine_.machine.statics[free_[i]];
+      const model::Static& item = machine_.machine.statics[free_[i]];
       point[static_cast<Eigen::Index>(i)] = item.nominal.value_or(item.value);
     }
     Eigen::MatrixXd normal;
     Eigen::VectorXd gradient;
     cost(point, normal, gradient);
-    return observe(normal);
+    return fit::observe(normal);
   }
 
  private:
@@ -132,7 +132,7 @@ struct Solution {
 
 /// Newton with the inverse of the start kept: the errors are so small that the chain is all but linear in
 /// them, and the directions that the points cannot see stay as they are.
-Solution solve(const PartProblem& problem, const Observability& seen) {
+Solution solve(const PartProblem& problem, const fit::Observability& seen) {
   constexpr int kMost = 50;
   constexpr double kSettled = 1e-12;  // of the step that the first iteration made
   Solution solution{problem.start()};
@@ -203,19 +203,20 @@ void warn_of_rest(const BHeadMachine& machine, const MeasuredPart& part, const I
 Identification identify(const BHeadMachine& machine, const MeasuredPart& part,
                         const IdentifyOptions& options) {
   const PartProblem problem(machine, part, options);
-  const Place place{part.file, 0};
+  const text::Place place{part.file, 0};
   if (problem.free().empty())
-    throw InputError({machine.machine.file, 0}, "static", "nothing is free to be fitted");
+    throw text::InputError({machine.machine.file, 0}, "static", "nothing is free to be fitted");
   if (static_cast<Eigen::Index>(part.points.size()) < problem.size())
-    throw InputError(place, std::to_string(part.points.size()) + " points", "fewer points than unknowns");
+    throw text::InputError(place, std::to_string(part.points.size()) + " points",
+                           "fewer points than unknowns");
   const bool with_uncertainty = part.points.front().uncertainty_mm > 0;
-  const Observability seen = problem.seen_at_nominal();
+  const fit::Observability seen = problem.seen_at_nominal();
   const Solution solved = solve(problem, seen);
   Identification result;
   result.observability = seen;
   result.machine = problem.at(solved.point).machine;
   for (const std::size_t index : problem.free()) {
-    const Static& item = result.machine.statics[index];
+    const model::Static& item = result.machine.statics[index];
     result.errors.push_back({item.name, item.unit, item.value, {}});
   }
   for (std::size_t k = 0; options.aligned && k < kAlignment.size(); ++k)
@@ -234,8 +235,8 @@ Identification identify(const BHeadMachine& machine, const MeasuredPart& part,
   return result;
 }
 
-Observability part_observability(const BHeadMachine& machine, const std::vector<PartPoint>& points,
-                                 const DefectOptions& options) {
+fit::Observability part_observability(const BHeadMachine& machine, const std::vector<PartPoint>& points,
+                                      const DefectOptions& options) {
   MeasuredPart part;
   for (const PartPoint& point : points) part.points.push_back({point, 0, 1, 0});
   const IdentifyOptions asked{options};
@@ -243,4 +244,4 @@ Observability part_observability(const BHeadMachine& machine, const std::vector<
   return problem.seen_at_nominal();
 }
 
-}  // namespace vernier
+}  // namespace vernier::part

@@ -8,7 +8,7 @@
 #include "tools/part/defect.h"
 #include "tools/part/measured_part.h"
 
-namespace vernier {
+namespace vernier::part {
 
 struct IdentifyOptions {
   DefectOptions defect;
@@ -27,9 +27,9 @@ struct IdentifiedError {
 };
 
 struct Identification {
-  Machine machine;                         // with the identified values
+  model::Machine machine;                  // with the identified values
   std::vector<IdentifiedError> errors;     // free statics, then the alignment, then the tool's radius
-  Observability observability;             // over `errors`
+  fit::Observability observability;        // over `errors`
   Eigen::MatrixXd correlation;             // over `errors`; 0 for those not determined
   Eigen::VectorXd before_mm, residual_mm;  // measured - model at the start, at the end
   double chi_square = 0, variance_factor = 1;
@@ -49,7 +49,7 @@ Identification identify(const BHeadMachine& machine, const MeasuredPart& part,
 
 /// What N points could tell about the free statics at all (at their nominal values), each point with standard
 /// uncertainty 1 mm.
-Observability part_observability(const BHeadMachine& machine, const std::vector<PartPoint>& points,
-                                 const DefectOptions& options);
+fit::Observability part_observability(const BHeadMachine& machine, const std::vector<PartPoint>& points,
+                                      const DefectOptions& options);
 
-}  // namespace vernier
+}  // namespace vernier::part

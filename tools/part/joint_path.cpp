@@ -7,7 +7,7 @@
 
 #include "tools/maths/factors.h"
 
-namespace vernier {
+namespace vernier::part {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -67,18 +67,18 @@ void choose_smaller(std::vector<Rotary>& path) {
 }  // namespace
 
 ToolPose tool_pose(const JointPose& q, double pivot_mm) {
-  const double sin_b = std::sin(q.b_deg * kRadPerDeg), cos_b = std::cos(q.b_deg * kRadPerDeg);
-  const double sin_c = std::sin(q.c_deg * kRadPerDeg), cos_c = std::cos(q.c_deg * kRadPerDeg);
+  const double sin_b = std::sin(q.b_deg * maths::kRadPerDeg), cos_b = std::cos(q.b_deg * maths::kRadPerDeg);
+  const double sin_c = std::sin(q.c_deg * maths::kRadPerDeg), cos_c = std::cos(q.c_deg * maths::kRadPerDeg);
   const double arm_mm = q.x_mm - pivot_mm * sin_b;
   return {{arm_mm * cos_c + q.y_mm * sin_c, -arm_mm * sin_c + q.y_mm * cos_c, q.z_mm - pivot_mm * cos_b},
           {sin_b * cos_c, -sin_b * sin_c, cos_b}};
 }
 
 JointPose joints_for(const ToolPose& pose, double pivot_mm, double b_deg, double c_deg) {
-  const double sin_c = std::sin(c_deg * kRadPerDeg), cos_c = std::cos(c_deg * kRadPerDeg);
-  return {pose.tip.x() * cos_c - pose.tip.y() * sin_c + pivot_mm * std::sin(b_deg * kRadPerDeg),
-          pose.tip.x() * sin_c + pose.tip.y() * cos_c, pose.tip.z() + pivot_mm * std::cos(b_deg * kRadPerDeg),
-          b_deg, c_deg};
+  const double sin_c = std::sin(c_deg * maths::kRadPerDeg), cos_c = std::cos(c_deg * maths::kRadPerDeg);
+  return {pose.tip.x() * cos_c - pose.tip.y() * sin_c + pivot_mm * std::sin(b_deg * maths::kRadPerDeg),
+          pose.tip.x() * sin_c + pose.tip.y() * cos_c,
+          pose.tip.z() + pivot_mm * std::cos(b_deg * maths::kRadPerDeg), b_deg, c_deg};
 }
 
 std::vector<JointPose> back_solution(const std::vector<ToolPose>& poses, double pivot_mm,
@@ -96,7 +96,8 @@ std::vector<JointPose> back_solution(const std::vector<ToolPose>& poses, double 
   if (!positive) choose_smaller(path);
   std::vector<JointPose> joints;
   for (std::size_t i = 0; i < path.size(); ++i)
-    joints.push_back(joints_for(poses[i], pivot_mm, path[i].b_rad / kRadPerDeg, path[i].c_rad / kRadPerDeg));
+    joints.push_back(
+        joints_for(poses[i], pivot_mm, path[i].b_rad / maths::kRadPerDeg, path[i].c_rad / maths::kRadPerDeg));
   return joints;
 }
 
@@ -123,4 +124,4 @@ std::vector<JointPose> joint_path(const RuledSurface& surface, const Cutter& cut
   return asked;
 }
 
-}  // namespace vernier
+}  // namespace vernier::part

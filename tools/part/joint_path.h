@@ -4,7 +4,7 @@
 
 #include "tools/part/flank_path.h"
 
-namespace vernier {
+namespace vernier::part {
 
 /// Axis positions of the machine with X and Z slides, B head on the tool side, Y slide and C table on the
 /// workpiece side.
@@ -39,4 +39,4 @@ std::vector<JointPose> joint_path(const RuledSurface& surface, const Cutter& cut
                                   const std::vector<double>& u, double pivot_mm,
                                   RotarySolution solution = RotarySolution::kContinuous);
 
-}  // namespace vernier
+}  // namespace vernier::part

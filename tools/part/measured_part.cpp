@@ -11,7 +11,7 @@
 #include "tools/text/numbers.h"
 #include "tools/text/units.h"
 
-namespace vernier {
+namespace vernier::part {
 namespace {
 
 /// A nominal point so far from both flanks is none of theirs (the flanks are known to rounding; files have
@@ -21,29 +21,30 @@ constexpr double kOnSurfaceMm = 0.05;
 /// One column of lengths, in mm.
 class LengthColumn {
  public:
-  LengthColumn(const CsvFile& csv, const std::string& name, bool required) : csv_(csv) {
+  LengthColumn(const text::CsvFile& csv, const std::string& name, bool required) : csv_(csv) {
     for (std::size_t i = 0; i < csv.columns.size(); ++i)
       if (csv.columns[i].name == name) index_ = i;
     if (!index_ && required)
-      throw InputError({csv.file, csv.header_line}, name, "a measured part needs this column");
+      throw text::InputError({csv.file, csv.header_line}, name, "a measured part needs this column");
     if (!index_) return;
-    const std::optional<Unit> unit = find_unit(csv.columns[*index_].unit);
-    if (!unit || unit->dimension != Dimension::kLength)
-      throw InputError({csv.file, csv.header_line}, name, "needs a unit of length, as in " + name + "[mm]");
+    const std::optional<text::Unit> unit = text::find_unit(csv.columns[*index_].unit);
+    if (!unit || unit->dimension != text::Dimension::kLength)
+      throw text::InputError({csv.file, csv.header_line}, name,
+                             "needs a unit of length, as in " + name + "[mm]");
     factor_ = unit->factor;
   }
   bool present() const { return index_.has_value(); }
   double at(std::size_t row) const {
     const std::string& text = csv_.rows[row][*index_];
-    const std::optional<double> number = parse_number(text);
+    const std::optional<double> number = text::parse_number(text);
     if (!number)
-      throw InputError({csv_.file, csv_.line[row]}, text,
-                       "no number in column " + csv_.columns[*index_].name);
+      throw text::InputError({csv_.file, csv_.line[row]}, text,
+                             "no number in column " + csv_.columns[*index_].name);
     return *number * factor_;
   }
 
  private:
-  const CsvFile& csv_;
+  const text::CsvFile& csv_;
   std::optional<std::size_t> index_;
   double factor_ = 1;
 };
@@ -61,7 +62,7 @@ std::optional<SurfaceFoot> foot_near(const RuledSurface& surface, const Eigen::V
   }
 }
 
-PartPoint place_on_part(const Eigen::Vector3d& position, const Place& place) {
+PartPoint place_on_part(const Eigen::Vector3d& position, const text::Place& place) {
   PartPoint best;
   double best_mm = -1;
   for (std::size_t flank = 0; flank < s_part().size(); ++flank) {
@@ -74,9 +75,9 @@ PartPoint place_on_part(const Eigen::Vector3d& position, const Place& place) {
   }
   constexpr double kEdge = kOnSurfaceMm / kPartHeightMm;
   if (best_mm < 0)
-    throw InputError(place, point_text(position), "no point of the part: far from both flanks");
+    throw text::InputError(place, point_text(position), "no point of the part: far from both flanks");
   if (best_mm > kOnSurfaceMm || best.v < -kEdge || best.v > 1 + kEdge)
-    throw InputError(
+    throw text::InputError(
         place, point_text(position),
         fmt::format("no point of the part: {:.3g} mm from the nearest flank, at {:.3g} of its height",
                     best_mm, best.v));
@@ -86,23 +87,24 @@ PartPoint place_on_part(const Eigen::Vector3d& position, const Place& place) {
 }  // namespace
 
 MeasuredPart read_measured_part(const std::string& text, const std::string& file) {
-  const CsvFile csv = parse_csv(text, file);
+  const text::CsvFile csv = text::parse_csv(text, file);
   const LengthColumn x(csv, "sx", true), y(csv, "sy", true), z(csv, "sz", true), defect(csv, "defect", true);
   const LengthColumn u(csv, "u", false);
   MeasuredPart part{file, {}};
   for (std::size_t row = 0; row < csv.rows.size(); ++row) {
-    const Place place{file, csv.line[row]};
+    const text::Place place{file, csv.line[row]};
     MeasuredPoint point;
     point.line = csv.line[row];
     const Eigen::Vector3d position(x.at(row), y.at(row), z.at(row));
     point.defect_mm = defect.at(row);
     if (u.present()) point.uncertainty_mm = u.at(row);
     if (u.present() && !(point.uncertainty_mm > 0))
-      throw InputError(place, number_text(point.uncertainty_mm), "u is a standard uncertainty above 0");
+      throw text::InputError(place, text::number_text(point.uncertainty_mm),
+                             "u is a standard uncertainty above 0");
     point.at = place_on_part(position, place);
     part.points.push_back(point);
   }
   return part;
 }
 
-}  // namespace vernier
+}  // namespace vernier::part

@@ -6,7 +6,7 @@
 
 #include "tools/part/defect.h"
 
-namespace vernier {
+namespace vernier::part {
 
 /// One measured point of the part.
 struct MeasuredPoint {
@@ -27,4 +27,4 @@ struct MeasuredPart {
 /// flanks, u not positive or given for some rows only. tool.
 MeasuredPart read_measured_part(const std::string& text, const std::string& file);
 
-}  // namespace vernier
+}  // namespace vernier::part

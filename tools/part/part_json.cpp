@@ -11,7 +11,7 @@
 #include "tools/part/part_report.h"
 #include "tools/part/s_part.h"
 
-namespace vernier {
+namespace vernier::part {
 namespace {
 
 using nlohmann::ordered_json;
@@ -68,7 +68,7 @@ ordered_json path_json(const BHeadMachine& machine, const PartPath& path) {
           {"poses", path.u.size()},
           {"duration_s", path.t_s.back()},
           {"step_mm", path.step_mm},
-          {"chord_error_um", kUmPerMm * path.chord_error_mm},
+          {"chord_error_um", maths::kUmPerMm * path.chord_error_mm},
           {"axes", ranges},
           {"beyond_limits", beyond_limits(machine, path)}};
 }
@@ -92,18 +92,18 @@ ordered_json defect_json(const PartJob& job) {
           {"points", mm.size()},
           {"min_mm", mm.minCoeff()},
           {"max_mm", mm.maxCoeff()},
-          {"rms_um", kUmPerMm * std::sqrt(mm.squaredNorm() / static_cast<double>(mm.size()))},
+          {"rms_um", maths::kUmPerMm * std::sqrt(mm.squaredNorm() / static_cast<double>(mm.size()))},
           {"tip_along_flank", {tip_range_json(job, 0), tip_range_json(job, 1)}}};
 }
 
-std::vector<std::string> free_names(const Machine& machine) {
+std::vector<std::string> free_names(const model::Machine& machine) {
   std::vector<std::string> names;
-  for (const Static& item : machine.statics)
+  for (const model::Static& item : machine.statics)
     if (!item.hidden) names.push_back(item.name);
   return names;
 }
 
-ordered_json groups_json(const Observability& seen, const std::vector<std::string>& names) {
+ordered_json groups_json(const fit::Observability& seen, const std::vector<std::string>& names) {
   ordered_json list = ordered_json::array();
   for (const auto& group : seen.unidentifiable) {
     ordered_json entry = ordered_json::array();
@@ -116,14 +116,14 @@ ordered_json groups_json(const Observability& seen, const std::vector<std::strin
 ordered_json observability_json(const PartJob& job, DefectReading reading) {
   DefectOptions options = job.options;
   options.reading = reading;
-  const Observability seen = part_observability(job.machine, job.points, options);
+  const fit::Observability seen = part_observability(job.machine, job.points, options);
   const std::vector<std::string> names = free_names(job.machine.machine);
   ordered_json per_um = ordered_json::object();
   for (std::size_t i = 0; i < names.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);
     const bool known = seen.determined[i] != 0;
     per_um[names[i]] =
-        known ? ordered_json(std::sqrt(seen.covariance(k, k)) / kUmPerMm) : ordered_json(nullptr);
+        known ? ordered_json(std::sqrt(seen.covariance(k, k)) / maths::kUmPerMm) : ordered_json(nullptr);
   }
   return {{"reading", reading_name(reading)},
           {"rank", seen.rank},
@@ -155,9 +155,9 @@ void add_identification(ordered_json& result, const Identification& found) {
                           {"std", error.std ? ordered_json(*error.std) : ordered_json(nullptr)},
                           {"unit", error.unit}});
   }
-  result["rms_before_um"] = kUmPerMm * std::sqrt(found.before_mm.squaredNorm() / count);
-  result["rms_um"] = kUmPerMm * std::sqrt(found.residual_mm.squaredNorm() / count);
-  result["max_um"] = kUmPerMm * found.residual_mm.cwiseAbs().maxCoeff();
+  result["rms_before_um"] = maths::kUmPerMm * std::sqrt(found.before_mm.squaredNorm() / count);
+  result["rms_um"] = maths::kUmPerMm * std::sqrt(found.residual_mm.squaredNorm() / count);
+  result["max_um"] = maths::kUmPerMm * found.residual_mm.cwiseAbs().maxCoeff();
   result["n_obs"] = found.residual_mm.size();
   result["n_params"] = found.errors.size();
   result["parameters"] = parameters;
@@ -178,7 +178,7 @@ const char* reading_name(DefectReading reading) {
 
 ordered_json part_json(const PartJob& job) {
   ordered_json errors = ordered_json::array();
-  for (const Static& item : job.machine.machine.statics)
+  for (const model::Static& item : job.machine.machine.statics)
     if (!item.hidden) errors.push_back({{"name", item.name}, {"value", item.value}, {"unit", item.unit}});
   ordered_json result = {
       {"machine", job.machine.machine.name},
@@ -196,4 +196,4 @@ ordered_json part_json(const PartJob& job) {
   return result;
 }
 
-}  // namespace vernier
+}  // namespace vernier::part

@@ -7,7 +7,7 @@
 #include "tools/part/identify.h"
 #include "tools/part/part_path.h"
 
-namespace vernier {
+namespace vernier::part {
 
 /// All that one run of `part s-shape` found out.
 struct PartJob {
@@ -26,4 +26,4 @@ nlohmann::ordered_json part_json(const PartJob& job);
 /// A reading as the command line writes it.
 const char* reading_name(DefectReading reading);
 
-}  // namespace vernier
+}  // namespace vernier::part

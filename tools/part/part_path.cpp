@@ -9,7 +9,7 @@
 #include "tools/maths/factors.h"
 #include "tools/part/s_part.h"
 
-namespace vernier {
+namespace vernier::part {
 namespace {
 
 constexpr int kSamples = 2000;
@@ -45,7 +45,7 @@ PartPath part_path(const BHeadMachine& machine, std::size_t flank, const PathOpt
     path.step_mm = std::max(path.step_mm, (here - before).norm());
     length_mm += (here - before).norm();
     before = here;
-    path.t_s.push_back(length_mm / options.feed_mm_min * kSecondsPerMinute);
+    path.t_s.push_back(length_mm / options.feed_mm_min * maths::kSecondsPerMinute);
   }
   path.chord_error_mm = path.step_mm * path.step_mm / (8 * options.cutter.radius_mm);
   path.joints = joint_path(surface, options.cutter, path.u, machine.pivot_mm, options.solution);
@@ -77,7 +77,7 @@ std::string path_gcode(const PartPath& path, const PathOptions& options) {
     text += i == 0 ? "G0" : "G1";
     for (std::size_t k = 0; k < 5; ++k)
       text += fmt::format(" {}{}", kAxisNames[k], fixed(values(path.joints[i])[k], 5));
-    if (i > 0) text += fmt::format(" F{:.4f}", kSecondsPerMinute / (path.t_s[i] - path.t_s[i - 1]));
+    if (i > 0) text += fmt::format(" F{:.4f}", maths::kSecondsPerMinute / (path.t_s[i] - path.t_s[i - 1]));
     text += '\n';
   }
   return text + "G94\nM2\n";
@@ -101,7 +101,7 @@ std::string defect_csv(const std::vector<PartPoint>& points, const PartDefect& d
 std::vector<std::string> beyond_limits(const BHeadMachine& machine, const PartPath& path) {
   std::vector<std::string> beyond;
   for (std::size_t k = 0; k < 5; ++k) {
-    const Axis& axis = machine.machine.axes[machine.axis[k]];
+    const model::Axis& axis = machine.machine.axes[machine.axis[k]];
     double low = values(path.joints.front())[k], high = low;
     for (const JointPose& q : path.joints) {
       low = std::min(low, values(q)[k]);
@@ -120,18 +120,18 @@ void check_cutter(const RuledSurface& surface, const Cutter& cutter) {
   for (int i = 0; i <= kSamples; ++i) {
     const FlankPose pose = flank_pose(surface, cutter, static_cast<double>(i) / kSamples);
     if (cutter.length_mm < pose.generatrix_mm)
-      throw InputError(
+      throw text::InputError(
           {"--tool-length", 0}, fmt::format("{:g}", cutter.length_mm),
           fmt::format("shorter than the flank, {:.4g} mm at u = {:.4f}", pose.generatrix_mm, pose.u));
     // At the bottom and at the top of the flank the cutter's axis must move forward.
     for (const double v : {0.0, 1.0}) {
       const double h_mm = cutter.length_mm - (1 - v) * pose.generatrix_mm;
       if ((pose.tip_du + h_mm * pose.axis_du).dot(pose.tangent) > 0) continue;
-      throw InputError(
+      throw text::InputError(
           {"--tool-diameter", 0}, fmt::format("{:g}", 2 * cutter.radius_mm),
           fmt::format("too thick for the hollow of flank {} at u = {:.4f}", surface.name, pose.u));
     }
   }
 }
 
-}  // namespace vernier
+}  // namespace vernier::part

@@ -6,7 +6,7 @@
 #include "tools/part/b_head_machine.h"
 #include "tools/part/defect.h"
 
-namespace vernier {
+namespace vernier::part {
 
 /// The joint path of one flank, timed.
 struct PartPath {
@@ -46,4 +46,4 @@ std::vector<std::string> beyond_limits(const BHeadMachine& machine, const PartPa
 /// or not longer than the flank.
 void check_cutter(const RuledSurface& surface, const Cutter& cutter);
 
-}  // namespace vernier
+}  // namespace vernier::part

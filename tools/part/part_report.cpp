@@ -11,7 +11,7 @@
 #include "tools/part/part_json.h"
 #include "tools/part/s_part.h"
 
-namespace vernier {
+namespace vernier::part {
 namespace {
 
 using nlohmann::ordered_json;
@@ -43,7 +43,7 @@ ordered_json defect_plot(const PartJob& job) {
       std::vector<PartPoint> points;
       for (const double u : along()) points.push_back({flank, u, z_mm / kPartHeightMm});
       const PartDefect defect = part_defect(job.machine, points, job.options);
-      const Eigen::VectorXd um = kUmPerMm * defect.defect_mm;
+      const Eigen::VectorXd um = maths::kUmPerMm * defect.defect_mm;
       y.push_back({{"name", fmt::format("{} at {:g} mm", s_part()[flank].name, z_mm)},
                    {"unit", "µm"},
                    {"values", std::vector<double>(um.begin(), um.end())}});
@@ -62,8 +62,8 @@ ordered_json defect_section(const PartJob& job, const ordered_json& result) {
            {"The part is clamped where it was cut and its offsets were set at the work origin; no "
             "alignment to the model."}},
           {"numbers",
-           {{{"label", "least"}, {"value", kUmPerMm * d["min_mm"].get<double>()}, {"unit", "µm"}},
-            {{"label", "largest"}, {"value", kUmPerMm * d["max_mm"].get<double>()}, {"unit", "µm"}},
+           {{{"label", "least"}, {"value", maths::kUmPerMm * d["min_mm"].get<double>()}, {"unit", "µm"}},
+            {{"label", "largest"}, {"value", maths::kUmPerMm * d["max_mm"].get<double>()}, {"unit", "µm"}},
             {{"label", "rms"}, {"value", d["rms_um"]}, {"unit", "µm"}, {"strong", true}},
             {{"label", "points"}, {"value", d["points"]}, {"unit", ""}}}},
           {"plots", {defect_plot(job)}},
@@ -160,7 +160,7 @@ ordered_json observability_section(const ordered_json& result) {
 ordered_json identification_section(const PartJob& job, const ordered_json& result) {
   const Identification& found = *job.identified;
   const auto column = [](const char* name, const Eigen::VectorXd& mm) {
-    const Eigen::VectorXd um = kUmPerMm * mm;
+    const Eigen::VectorXd um = maths::kUmPerMm * mm;
     return ordered_json{
         {"name", name}, {"unit", "µm"}, {"values", std::vector<double>(um.begin(), um.end())}};
   };
@@ -214,4 +214,4 @@ ordered_json part_report(const PartJob& job, const ordered_json& result) {
           {"sections", sections}};
 }
 
-}  // namespace vernier
+}  // namespace vernier::part

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace vernier {
+namespace vernier::part {
 namespace {
 
 constexpr int kMostSteps = 60;
@@ -69,4 +69,4 @@ SurfaceFoot nearest(const RuledSurface& surface, const Eigen::Vector3d& point) {
   return nearest(surface, point, best_u, best_v);
 }
 
-}  // namespace vernier
+}  // namespace vernier::part

@@ -5,7 +5,7 @@
 
 #include "tools/part/spline.h"
 
-namespace vernier {
+namespace vernier::part {
 
 /// One flank of the part: straight lines between a bottom and a top curve at the same parameter,
 /// S(u,v) = (1-v) C0(u) + v C1(u), u and v 0..1, mm in workpiece coordinates.
@@ -38,4 +38,4 @@ SurfaceFoot nearest(const RuledSurface& surface, const Eigen::Vector3d& point, d
 /// The same with a start found by searching the whole surface.
 SurfaceFoot nearest(const RuledSurface& surface, const Eigen::Vector3d& point);
 
-}  // namespace vernier
+}  // namespace vernier::part

@@ -6,7 +6,7 @@
 
 #include "tools/part/ruled_surface.h"
 
-namespace vernier {
+namespace vernier::part {
 namespace {
 
 // Control points x, y in mm as the paper's table 1 prints them, in the order of the program; z is 0 at the
@@ -115,4 +115,4 @@ const std::array<RuledSurface, 2>& s_part() {
   return part;
 }
 
-}  // namespace vernier
+}  // namespace vernier::part

@@ -4,7 +4,7 @@
 
 #include "tools/part/ruled_surface.h"
 
-namespace vernier {
+namespace vernier::part {
 
 /// The two flanks of the S-shaped test part of ISO 10791-7, A and B. Control points: the programs of tables 1
 /// and 2 in Chanal, Duc, Chevalier, Precision Engineering 75 (2022) 193-209, with the misprints that
@@ -15,4 +15,4 @@ const std::array<RuledSurface, 2>& s_part();
 inline constexpr double kPartHeightMm = 30;
 inline constexpr std::array<double, 2> kMeasuredHeightsMm = {11, 25};
 
-}  // namespace vernier
+}  // namespace vernier::part

@@ -5,7 +5,7 @@
 #include <array>
 #include <stdexcept>
 
-namespace vernier {
+namespace vernier::part {
 namespace {
 
 using Points = std::vector<Eigen::Vector3d>;
@@ -76,4 +76,4 @@ double Spline::length_mm() const {
   return length;
 }
 
-}  // namespace vernier
+}  // namespace vernier::part

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace vernier {
+namespace vernier::part {
 
 /// A point of a curve and its derivatives by the curve parameter.
 struct CurvePoint {
@@ -31,4 +31,4 @@ class Spline {
   std::vector<double> knots_;
 };
 
-}  // namespace vernier
+}  // namespace vernier::part

@@ -9,26 +9,27 @@
 #include "tools/plan/uneven.h"
 #include "tools/text/error.h"
 
-namespace vernier {
+namespace vernier::plan {
 
-std::vector<std::string> advice_for(const std::string& text, const Machine& machine, const Measurement& m,
-                                    const Diagnosis& d, const std::vector<Effect>& effects) {
-  if (d.verdict != Verdict::kAmbiguous || d.candidates.empty()) return {};
-  const CandidateFinding& first = d.candidates.front();
+std::vector<std::string> advice_for(const std::string& text, const model::Machine& machine,
+                                    const model::Measurement& m, const diagnose::Diagnosis& d,
+                                    const std::vector<effects::Effect>& effects) {
+  if (d.verdict != diagnose::Verdict::kAmbiguous || d.candidates.empty()) return {};
+  const diagnose::CandidateFinding& first = d.candidates.front();
   const std::string& id = first.candidate.choice.effect->id;
   // A finding is not lost because no advice can be made of it.
   const auto advice = [&](const std::string& a, const std::string& b) -> std::vector<std::string> {
     try {
       return next_measurement(text, machine, m, a, b, effects);
-    } catch (const InputError& error) {
+    } catch (const text::InputError& error) {
       return {fmt::format("no advice on {} against {}: {}", a, b, error.what())};
     }
   };
   std::vector<std::string> uneven;
-  for (const CandidateFinding& one : d.candidates)
+  for (const diagnose::CandidateFinding& one : d.candidates)
     if (!one.aliases.empty()) uneven.push_back(uneven_sentence(machine, m, one));
   if (!uneven.empty()) return uneven;
-  for (const CandidateFinding& other : d.candidates) {
+  for (const diagnose::CandidateFinding& other : d.candidates) {
     const auto& names = other.confounded_with;
     if (&other == &first || std::find(names.begin(), names.end(), id) == names.end()) continue;
     return advice(first.add, other.add);
@@ -37,4 +38,4 @@ std::vector<std::string> advice_for(const std::string& text, const Machine& mach
   return advice(first.add, first.confounded_with.front());
 }
 
-}  // namespace vernier
+}  // namespace vernier::plan

@@ -4,43 +4,45 @@
 #include <algorithm>
 #include <tuple>
 
-namespace vernier {
+namespace vernier::plan {
 namespace {
 
 /// A diagnosis keeps 6 of distance; what is worse by twice that will hardly come back with a few new rows.
 constexpr double kNear = 12;
 
 using Cause = std::tuple<std::string, std::optional<std::size_t>, std::vector<std::string>>;
-Cause cause_of(const Candidate& candidate) {
+Cause cause_of(const effects::Candidate& candidate) {
   return {candidate.choice.effect->id, candidate.choice.axis, candidate.choice.inputs};
 }
 
 }  // namespace
 
-std::vector<FittedRival> find_bystanders(const MachineText& model, const Measurement& measurement,
+std::vector<FittedRival> find_bystanders(const effects::MachineText& model,
+                                         const model::Measurement& measurement,
                                          const std::vector<const FittedRival*>& named,
-                                         const std::vector<Effect>& effects, std::size_t most) {
-  const Evidence evidence(model.machine, measurement);
-  const std::vector<ScannedCandidate> list = enumerate_candidates(evidence, effects);
-  Scanner scanner(evidence, list);
+                                         const std::vector<effects::Effect>& effects, std::size_t most) {
+  const diagnose::Evidence evidence(model.machine, measurement);
+  const std::vector<diagnose::ScannedCandidate> list = diagnose::enumerate_candidates(evidence, effects);
+  diagnose::Scanner scanner(evidence, list);
   const Eigen::MatrixXd none(evidence.residual().size(), 0);
-  std::vector<Scored> scored = scanner.scan(none, {});
-  std::sort(scored.begin(), scored.end(),
-            [&](const Scored& x, const Scored& y) { return value_of(x, evidence) > value_of(y, evidence); });
+  std::vector<diagnose::Scored> scored = scanner.scan(none, {});
+  std::sort(scored.begin(), scored.end(), [&](const diagnose::Scored& x, const diagnose::Scored& y) {
+    return value_of(x, evidence) > value_of(y, evidence);
+  });
   std::set<Cause> seen;
   for (const FittedRival* rival : named) seen.insert(cause_of(rival->candidate));
   std::vector<FittedRival> found;
-  for (const Scored& item : scored) {
+  for (const diagnose::Scored& item : scored) {
     if (found.size() >= most || value_of(item, evidence) < value_of(scored.front(), evidence) - kNear) break;
-    const Candidate& candidate = list[item.candidate].candidate;
+    const effects::Candidate& candidate = list[item.candidate].candidate;
     if (!seen.insert(cause_of(candidate)).second) continue;
-    Scored refined = item;
+    diagnose::Scored refined = item;
     scanner.refine(refined, none);
-    found.push_back(fit_rival(model, evidence, measurement,
-                              add_string(evidence.machine(), choice_at(candidate, refined.scanned)),
-                              effects));
+    found.push_back(fit_rival(
+        model, evidence, measurement,
+        effects::add_string(evidence.machine(), effects::choice_at(candidate, refined.scanned)), effects));
   }
   return found;
 }
 
-}  // namespace vernier
+}  // namespace vernier::plan

@@ -6,13 +6,14 @@
 #include "tools/model/measurement.h"
 #include "tools/plan/rival.h"
 
-namespace vernier {
+namespace vernier::plan {
 
 /// Other causes that explain the rows nearly as well as the best candidate of all: a diagnosis will weigh
 /// them too, so rows that separate two named effects had better separate these as well. One per effect,
 /// driving axis and input, best first, at most `most`; neither of the named ones. tool.
-std::vector<FittedRival> find_bystanders(const MachineText& model, const Measurement& measurement,
+std::vector<FittedRival> find_bystanders(const effects::MachineText& model,
+                                         const model::Measurement& measurement,
                                          const std::vector<const FittedRival*>& named,
-                                         const std::vector<Effect>& effects, std::size_t most);
+                                         const std::vector<effects::Effect>& effects, std::size_t most);
 
-}  // namespace vernier
+}  // namespace vernier::plan

@@ -10,7 +10,7 @@
 #include "tools/model/measurement.h"
 #include "tools/plan/offered_poses.h"
 
-namespace vernier {
+namespace vernier::plan {
 namespace {
 
 using Eigen::Index;
@@ -28,12 +28,12 @@ struct Told {
 
 class CheckPlanner {
  public:
-  CheckPlanner(const Machine& machine, const CheckPlanOptions& options)
+  CheckPlanner(const model::Machine& machine, const CheckPlanOptions& options)
       : machine_(machine), options_(options), offered_(offered_poses(machine, kCheckOffered, 0)) {
-    Measurement rows = point_readings(offered_);
+    model::Measurement rows = fit::point_readings(offered_);
     rows.uncertainty.setConstant(1e-3 * options.reading_um);
-    all_ = suspect_columns(machine, rows);
-    spread_ = spread_of_fit(machine, all_.suspects, all_.parameters);
+    all_ = check::suspect_columns(machine, rows);
+    spread_ = check::spread_of_fit(machine, all_.suspects, all_.parameters);
     // Columns are in units of the readings' uncertainty: back to um of the tool point.
     const double per_pose = options.reading_um / std::sqrt(static_cast<double>(kCheckOffered));
     moves_um_ = per_pose * all_.columns.colwise().norm();
@@ -46,10 +46,10 @@ class CheckPlanner {
     const std::vector<std::size_t> chosen = choose();
     CheckPlan plan;
     const std::vector<std::size_t> way = nearest_way(machine_, offered_, chosen);
-    plan.states = select_states(offered_, way);
+    plan.states = model::select_states(offered_, way);
     const VectorXd amounts = amounts_of(told_by(chosen));
     for (const Index j : looked_) {
-      const Suspect& suspect = all_.suspects[static_cast<std::size_t>(j)];
+      const check::Suspect& suspect = all_.suspects[static_cast<std::size_t>(j)];
       if (!seen(amounts, j)) {
         plan.not_seen.push_back(suspect.name);
         continue;
@@ -155,10 +155,10 @@ class CheckPlanner {
     return worst[kDraws / 2];
   }
 
-  const Machine& machine_;
+  const model::Machine& machine_;
   const CheckPlanOptions& options_;
-  States offered_;
-  SuspectColumns all_;
+  model::States offered_;
+  check::SuspectColumns all_;
   MatrixXd spread_;
   VectorXd moves_um_;          // of the tool point by a change of 1, rms over the poses
   std::vector<Index> looked_;  // suspects of the machine
@@ -166,14 +166,14 @@ class CheckPlanner {
 
 }  // namespace
 
-CheckPlan check_plan(const Machine& machine, const CheckPlanOptions& options) {
+CheckPlan check_plan(const model::Machine& machine, const CheckPlanOptions& options) {
   return CheckPlanner(machine, options).plan();
 }
 
-std::string check_plan_csv(const Machine& machine, const CheckPlan& plan, double reading_um) {
+std::string check_plan_csv(const model::Machine& machine, const CheckPlan& plan, double reading_um) {
   return "# Approach every pose in the sense that dir tells; fill in x, y, z as they are read; then: vernier "
          "check.\n" +
          pose_rows_csv(machine, plan.states, std::vector<char>(plan.states.count, 0), reading_um, "check");
 }
 
-}  // namespace vernier
+}  // namespace vernier::plan

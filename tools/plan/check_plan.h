@@ -7,7 +7,7 @@
 #include "tools/model/machine.h"
 #include "tools/model/states.h"
 
-namespace vernier {
+namespace vernier::plan {
 
 struct CheckPlanOptions {
   std::size_t points = 10;
@@ -17,14 +17,14 @@ struct CheckPlanOptions {
 
 /// How small a change a check shows.
 struct Shown {
-  Suspect suspect;
+  check::Suspect suspect;
   double change = 0;   // in its unit
   double tool_um = 0;  // what that moves the tool point by, rms over the work volume
 };
 
 /// A short measurement that sees the likeliest changes of a fitted machine.
 struct CheckPlan {
-  States states;             // in the order in which they are measured
+  model::States states;      // in the order in which they are measured
   std::vector<Shown> shows;  // the one that has to move the tool furthest before it shows comes first
   std::vector<std::string> not_seen;
   double random_um = 0;  // the first of `shows`, from as many poses at random (median of several draws)
@@ -34,9 +34,9 @@ struct CheckPlan {
 /// the tool point by `expected_um`) most, beside a free set-up and what the fit itself left uncertain. A
 /// change shows from five standard deviations on: what evidence of 100 against some thirty suspects of six
 /// sizes takes. Throws InputError: never fitted, an axis without range. tool.
-CheckPlan check_plan(const Machine& machine, const CheckPlanOptions& options = {});
+CheckPlan check_plan(const model::Machine& machine, const CheckPlanOptions& options = {});
 
 /// A measurement file with these rows, readings to be filled in.
-std::string check_plan_csv(const Machine& machine, const CheckPlan& plan, double reading_um);
+std::string check_plan_csv(const model::Machine& machine, const CheckPlan& plan, double reading_um);
 
-}  // namespace vernier
+}  // namespace vernier::plan

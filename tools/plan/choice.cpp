@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace vernier {
+namespace vernier::plan {
 namespace {
 
 /// What the worst side reaches with each offer; the others' sum, as far as they need it, breaks ties.
@@ -58,4 +58,4 @@ void exchange_rows(Sides& sides, std::vector<std::size_t>& chosen) {
   sides.assume(chosen);
 }
 
-}  // namespace vernier
+}  // namespace vernier::plan

@@ -4,7 +4,7 @@
 
 #include "tools/plan/discrimination.h"
 
-namespace vernier {
+namespace vernier::plan {
 
 /// Everything that the rows must tell apart: one entry per pair of a truth and a rival that is refitted.
 struct Sides {
@@ -24,4 +24,4 @@ void choose_rows(Sides& sides, std::vector<std::size_t>& chosen, std::size_t lea
 /// One pass of exchanges: each chosen row in turn for the offer that does better in its place. tool.
 void exchange_rows(Sides& sides, std::vector<std::size_t>& chosen);
 
-}  // namespace vernier
+}  // namespace vernier::plan

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace vernier {
+namespace vernier::plan {
 namespace {
 
 /// Of a column's squared length over all rows: directions that the rows see less than this are free.
@@ -82,4 +82,4 @@ double needed_non_centrality(double confidence, double lead) {
   return root * root;
 }
 
-}  // namespace vernier
+}  // namespace vernier::plan

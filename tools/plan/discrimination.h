@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-namespace vernier {
+namespace vernier::plan {
 
 /// How well rows tell two rivals apart when one of them is true and the other one, with all free parameters
 /// of the model, is fitted to the rows. The non-centrality of the rest's chi^2 is
@@ -44,4 +44,4 @@ double needed_non_centrality(double confidence, double lead);
 /// Quantile of the standard normal distribution (bisection of erfc). p: 0 to 1, exclusive.
 double normal_quantile(double p);
 
-}  // namespace vernier
+}  // namespace vernier::plan

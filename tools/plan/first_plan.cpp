@@ -13,7 +13,7 @@
 #include "tools/plan/offered_poses.h"
 #include "tools/text/error.h"
 
-namespace vernier {
+namespace vernier::plan {
 namespace {
 
 using Eigen::Index;
@@ -23,16 +23,17 @@ using Eigen::MatrixXd;
 constexpr std::size_t kOffered = 800, kJudged = 150;
 class FirstPlanner {
  public:
-  FirstPlanner(const Machine& machine, const FirstPlanOptions& options)
+  FirstPlanner(const model::Machine& machine, const FirstPlanOptions& options)
       : machine_(machine), options_(options), offered_(offered_poses(machine, kOffered, 0)) {
-    const Measurement rows = point_readings(offered_);
-    const ParameterSet parameters(machine, {""});
+    const model::Measurement rows = fit::point_readings(offered_);
+    const model::ParameterSet parameters(machine, {""});
     for (std::size_t i = 0; i < parameters.size(); ++i)
-      (parameters[i].kind == ParameterKind::kBaseShift ? shifts_ : own_).push_back(static_cast<Index>(i));
+      (parameters[i].kind == model::ParameterKind::kBaseShift ? shifts_ : own_)
+          .push_back(static_cast<Index>(i));
     if (own_.empty())
-      throw InputError({machine.file, 0}, machine.name,
-                       "the machine file frees nothing that could be measured");
-    const MatrixXd all(linearise(machine, rows, parameters).jacobian);
+      throw text::InputError({machine.file, 0}, machine.name,
+                             "the machine file frees nothing that could be measured");
+    const MatrixXd all(model::linearise(machine, rows, parameters).jacobian);
     // In units of what each parameter may plausibly be: what moves the tool point by so much, rms.
     scale_ = Eigen::VectorXd::Ones(all.cols());
     for (Index j = 0; j < all.cols(); ++j) {
@@ -46,10 +47,11 @@ class FirstPlanner {
   }
 
   /// Of any poses.
-  double uncertainty_um(const States& poses) const {
-    const Measurement rows = point_readings(poses);
-    const ParameterSet parameters(machine_, {""});
-    const MatrixXd columns = MatrixXd(linearise(machine_, rows, parameters).jacobian) * scale_.asDiagonal();
+  double uncertainty_um(const model::States& poses) const {
+    const model::Measurement rows = fit::point_readings(poses);
+    const model::ParameterSet parameters(machine_, {""});
+    const MatrixXd columns =
+        MatrixXd(model::linearise(machine_, rows, parameters).jacobian) * scale_.asDiagonal();
     const MatrixXd information =
         MatrixXd::Identity(columns.cols(), columns.cols()) + columns.transpose() * columns / variance();
     return expanded_um(information.llt().solve(MatrixXd::Identity(columns.cols(), columns.cols())));
@@ -70,29 +72,29 @@ class FirstPlanner {
 
  private:
   /// How the parameters move the tool point over the volume, every tool of the file, but for a rigid motion.
-  void judge(const ParameterSet& parameters) {
-    std::vector<Machine> tooled = {machine_};
-    for (const Tool& tool : machine_.tools) tooled.push_back(with_tool(machine_, tool.point));
-    const Measurement rows = point_readings(offered_poses(machine_, kJudged, 7919));
+  void judge(const model::ParameterSet& parameters) {
+    std::vector<model::Machine> tooled = {machine_};
+    for (const model::Tool& tool : machine_.tools) tooled.push_back(model::with_tool(machine_, tool.point));
+    const model::Measurement rows = fit::point_readings(offered_poses(machine_, kJudged, 7919));
     weight_ = MatrixXd::Zero(jacobian_.cols(), jacobian_.cols());
-    for (const Machine& one : tooled) {
-      const MatrixXd all = MatrixXd(linearise(one, rows, parameters).jacobian) * scale_.asDiagonal();
+    for (const model::Machine& one : tooled) {
+      const MatrixXd all = MatrixXd(model::linearise(one, rows, parameters).jacobian) * scale_.asDiagonal();
       MatrixXd own = MatrixXd::Zero(all.rows(), all.cols());
       own(Eigen::all, own_) = all(Eigen::all, own_);
-      const MatrixXd basis = orthonormal(rigid_motions(points_of(one, rows)), 1e-9, nullptr);
+      const MatrixXd basis = maths::orthonormal(fit::rigid_motions(points_of(one, rows)), 1e-9, nullptr);
       own -= basis * (basis.transpose() * own);
       weight_ += own.transpose() * own / static_cast<double>(kJudged * tooled.size());
     }
   }
 
   /// In the measuring frame, as the columns are.
-  static Eigen::Matrix3Xd points_of(const Machine& machine, const Measurement& rows) {
-    const Eigen::VectorXd predicted = predict(machine, rows);
+  static Eigen::Matrix3Xd points_of(const model::Machine& machine, const model::Measurement& rows) {
+    const Eigen::VectorXd predicted = model::predict(machine, rows);
     return Eigen::Map<const Eigen::Matrix3Xd>(predicted.data(), 3, predicted.size() / 3);
   }
 
   double expanded_um(const MatrixXd& covariance) const {
-    return 2 * kUmPerMm * std::sqrt(std::max(0.0, covariance.cwiseProduct(weight_).sum()));
+    return 2 * maths::kUmPerMm * std::sqrt(std::max(0.0, covariance.cwiseProduct(weight_).sum()));
   }
 
   double variance() const { return std::pow(1e-3 * options_.reading_um, 2); }
@@ -149,10 +151,10 @@ class FirstPlanner {
     const std::vector<std::size_t> way = nearest_way(machine_, offered_, chosen);
     const auto checks =
         static_cast<std::size_t>(std::ceil(options_.check_share * static_cast<double>(way.size())));
-    const States extra = offered_poses(machine_, std::max<std::size_t>(1, checks), 104729);
+    const model::States extra = offered_poses(machine_, std::max<std::size_t>(1, checks), 104729);
     constexpr std::size_t kReferenceEvery = 25;
-    std::vector<std::pair<const States*, std::size_t>> rows;
-    const auto take = [&](const States& from, std::size_t at, bool check) {
+    std::vector<std::pair<const model::States*, std::size_t>> rows;
+    const auto take = [&](const model::States& from, std::size_t at, bool check) {
       rows.emplace_back(&from, at);
       plan.check.push_back(check ? 1 : 0);
     };
@@ -169,17 +171,17 @@ class FirstPlanner {
       take(offered_, way.front(), false);
       ++plan.references;
     }
-    plan.states = select_states(offered_, std::vector<std::size_t>(rows.size(), 0));
+    plan.states = model::select_states(offered_, std::vector<std::size_t>(rows.size(), 0));
     for (std::size_t i = 0; i < rows.size(); ++i)
-      for (auto list : {&States::axis, &States::direction})
+      for (auto list : {&model::States::axis, &model::States::direction})
         for (std::size_t axis = 0; axis < machine_.axes.size(); ++axis)
           (plan.states.*list)[axis][static_cast<Index>(i)] =
               (rows[i].first->*list)[axis][static_cast<Index>(rows[i].second)];
   }
 
-  const Machine& machine_;
+  const model::Machine& machine_;
   const FirstPlanOptions& options_;
-  States offered_;
+  model::States offered_;
   std::vector<Index> shifts_, own_;
   Eigen::VectorXd scale_;
   MatrixXd jacobian_;    // of the poses offered, three rows each, in units of the scales
@@ -189,19 +191,20 @@ class FirstPlanner {
 
 }  // namespace
 
-FirstPlan first_plan(const Machine& machine, const FirstPlanOptions& options) {
+FirstPlan first_plan(const model::Machine& machine, const FirstPlanOptions& options) {
   return FirstPlanner(machine, options).plan();
 }
 
-double planned_uncertainty_um(const Machine& machine, const States& poses, const FirstPlanOptions& options) {
+double planned_uncertainty_um(const model::Machine& machine, const model::States& poses,
+                              const FirstPlanOptions& options) {
   return FirstPlanner(machine, options).uncertainty_um(poses);
 }
 
-std::string first_plan_csv(const Machine& machine, const FirstPlan& plan, double reading_um) {
+std::string first_plan_csv(const model::Machine& machine, const FirstPlan& plan, double reading_um) {
   return "# Approach every pose in the sense that dir tells. The first pose comes again: a drift shows "
          "there.\n"
          "# Fill in x, y, z as they are read; rows with the role check judge the fit and never enter it.\n" +
          pose_rows_csv(machine, plan.states, plan.check, reading_um, "first");
 }
 
-}  // namespace vernier
+}  // namespace vernier::plan

@@ -6,7 +6,7 @@
 #include "tools/model/machine.h"
 #include "tools/model/states.h"
 
-namespace vernier {
+namespace vernier::plan {
 
 struct FirstPlanOptions {
   /// Expanded uncertainty (k = 2) of the tool point over the work volume at which the plan is long enough,
@@ -20,7 +20,7 @@ struct FirstPlanOptions {
 
 /// Poses to measure a machine at for the first time.
 struct FirstPlan {
-  States states;                       // in the order in which they are measured
+  model::States states;                // in the order in which they are measured
   std::vector<char> check;             // role of each
   std::size_t references = 0;          // of them: the first pose again, that a drift shows
   double before_um = 0, after_um = 0;  // expanded uncertainty over the volume, without and with the fit poses
@@ -34,14 +34,14 @@ struct FirstPlan {
 /// frees. What moves the whole is the set-up's and counts for nothing. Measured in the order of a way through
 /// the axes' travels, the first pose repeated, check poses in between. Throws InputError for an axis without
 /// a range, or nothing free. tool.
-FirstPlan first_plan(const Machine& machine, const FirstPlanOptions& options = {});
+FirstPlan first_plan(const model::Machine& machine, const FirstPlanOptions& options = {});
 
 /// Expanded uncertainty (k = 2) of the tool point over the work volume, um, after readings at any poses, in
 /// the same terms as `after_um`. tool.
-double planned_uncertainty_um(const Machine& machine, const States& poses,
+double planned_uncertainty_um(const model::Machine& machine, const model::States& poses,
                               const FirstPlanOptions& options = {});
 
 /// A measurement file with these rows, readings to be filled in.
-std::string first_plan_csv(const Machine& machine, const FirstPlan& plan, double reading_um);
+std::string first_plan_csv(const model::Machine& machine, const FirstPlan& plan, double reading_um);
 
-}  // namespace vernier
+}  // namespace vernier::plan

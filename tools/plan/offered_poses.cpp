@@ -11,24 +11,24 @@
 #include "tools/model/work_poses.h"
 #include "tools/text/error.h"
 
-namespace vernier {
+namespace vernier::plan {
 
 using Eigen::Index;
 
-States offered_poses(const Machine& machine, std::size_t count, std::size_t from) {
+model::States offered_poses(const model::Machine& machine, std::size_t count, std::size_t from) {
   constexpr std::size_t kPrimes[] = {2, 3, 5, 7, 11, 13, 17, 19, 23, 29};
   std::vector<double> references;
-  for (const Input& input : machine.inputs) references.push_back(input.reference);
-  States states = make_states(count, machine.axes.size(), references);
+  for (const model::Input& input : machine.inputs) references.push_back(input.reference);
+  model::States states = model::make_states(count, machine.axes.size(), references);
   for (std::size_t axis = 0; axis < machine.axes.size(); ++axis) {
-    const auto range = work_range(machine, axis);
+    const auto range = model::work_range(machine, axis);
     if (!range)
-      throw InputError({machine.file, machine.axes[axis].line}, machine.axes[axis].name,
-                       "a plan needs min and max of every axis");
+      throw text::InputError({machine.file, machine.axes[axis].line}, machine.axes[axis].name,
+                             "a plan needs min and max of every axis");
     for (std::size_t i = 0; i < count; ++i) {
-      double share = radical_inverse(from + i + 1, kPrimes[axis % std::size(kPrimes)]);
+      double share = maths::radical_inverse(from + i + 1, kPrimes[axis % std::size(kPrimes)]);
       // A third of the poses lie at the ends of an axis, drawn by another sequence.
-      const double end = radical_inverse(from + i + 1, kPrimes[(axis + 4) % std::size(kPrimes)]);
+      const double end = maths::radical_inverse(from + i + 1, kPrimes[(axis + 4) % std::size(kPrimes)]);
       if (end < 1.0 / 6) share = 0;
       if (end > 5.0 / 6) share = 1;
       const double value = (*range)[0] + share * ((*range)[1] - (*range)[0]);
@@ -36,19 +36,19 @@ States offered_poses(const Machine& machine, std::size_t count, std::size_t from
       states.axis[axis][static_cast<Index>(i)] =
           std::clamp(std::round(value / digit) * digit, (*range)[0], (*range)[1]);
       states.direction[axis][static_cast<Index>(i)] =
-          radical_inverse(from + i + 1, kPrimes[(axis + 2) % std::size(kPrimes)]) < 0.5 ? -1 : 1;
+          maths::radical_inverse(from + i + 1, kPrimes[(axis + 2) % std::size(kPrimes)]) < 0.5 ? -1 : 1;
     }
   }
   return states;
 }
 
-std::vector<std::size_t> nearest_way(const Machine& machine, const States& offered,
+std::vector<std::size_t> nearest_way(const model::Machine& machine, const model::States& offered,
                                      const std::vector<std::size_t>& chosen) {
   std::vector<std::size_t> rest = chosen, way;
   const auto far = [&](std::size_t a, std::size_t b) {
     double squares = 0;
     for (std::size_t axis = 0; axis < machine.axes.size(); ++axis) {
-      const auto range = work_range(machine, axis);
+      const auto range = model::work_range(machine, axis);
       const double step =
           (offered.axis[axis][static_cast<Index>(a)] - offered.axis[axis][static_cast<Index>(b)]) /
           std::max((*range)[1] - (*range)[0], 1e-9);
@@ -68,22 +68,22 @@ std::vector<std::size_t> nearest_way(const Machine& machine, const States& offer
   return way;
 }
 
-std::string pose_rows_csv(const Machine& machine, const States& states, const std::vector<char>& check,
-                          double reading_um, const std::string& run) {
+std::string pose_rows_csv(const model::Machine& machine, const model::States& states,
+                          const std::vector<char>& check, double reading_um, const std::string& run) {
   std::string text;
-  for (const Axis& axis : machine.axes)
+  for (const model::Axis& axis : machine.axes)
     text += fmt::format("{0}[{1}],dir{0},", axis.name, axis.rotary ? "deg" : "mm");
-  for (const Input& input : machine.inputs)
+  for (const model::Input& input : machine.inputs)
     text += input.unit.empty() ? input.name + "," : fmt::format("{}[{}],", input.name, input.unit);
   text += "x[mm],y[mm],z[mm],u[mm],run,role\n";
   for (std::size_t row = 0; row < states.count; ++row) {
     const auto at = static_cast<Index>(row);
     for (std::size_t i = 0; i < machine.axes.size(); ++i)
       text += fmt::format("{:.6g},{:g},", states.axis[i][at], states.direction[i][at]);
-    for (const Input& input : machine.inputs) text += fmt::format("{:g},", input.reference);
+    for (const model::Input& input : machine.inputs) text += fmt::format("{:g},", input.reference);
     text += fmt::format(",,,{:g},{},{}\n", 1e-3 * reading_um, run, check[row] != 0 ? "check" : "fit");
   }
   return text;
 }
 
-}  // namespace vernier
+}  // namespace vernier::plan

@@ -6,20 +6,20 @@
 #include "tools/model/machine.h"
 #include "tools/model/states.h"
 
-namespace vernier {
+namespace vernier::plan {
 
 /// Poses that a plan may choose from: spread over the ranges in which the machine works (Halton's sequence,
 /// from its member `from` on), a third of them at the ends of an axis, where errors show most; inputs at
 /// their reference, either sense of approach. Throws InputError for an axis without a range. tool.
-States offered_poses(const Machine& machine, std::size_t count, std::size_t from);
+model::States offered_poses(const model::Machine& machine, std::size_t count, std::size_t from);
 
 /// The chosen ones as a way: always to the nearest that is left, in shares of the axes' ranges.
-std::vector<std::size_t> nearest_way(const Machine& machine, const States& offered,
+std::vector<std::size_t> nearest_way(const model::Machine& machine, const model::States& offered,
                                      const std::vector<std::size_t>& chosen);
 
 /// Rows of a measurement file with x, y, z to be filled in; check: the role of each; reading_um: u of a
 /// coordinate.
-std::string pose_rows_csv(const Machine& machine, const States& states, const std::vector<char>& check,
-                          double reading_um, const std::string& run);
+std::string pose_rows_csv(const model::Machine& machine, const model::States& states,
+                          const std::vector<char>& check, double reading_um, const std::string& run);
 
-}  // namespace vernier
+}  // namespace vernier::plan

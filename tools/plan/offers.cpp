@@ -7,7 +7,7 @@
 
 #include "tools/effects/input_class.h"
 
-namespace vernier {
+namespace vernier::plan {
 namespace {
 
 constexpr double kTemperatureStep = 5;  // K, what a shop can do to a machine without harm
@@ -54,10 +54,10 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-std::vector<double> values_of(const Column& column) { return {column.begin(), column.end()}; }
+std::vector<double> values_of(const model::Column& column) { return {column.begin(), column.end()}; }
 
-bool moves(const States& states, std::size_t row) {
-  for (const Column& v : states.velocity)
+bool moves(const model::States& states, std::size_t row) {
+  for (const model::Column& v : states.velocity)
     if (v[static_cast<Eigen::Index>(row)] != 0) return true;
   return false;
 }
@@ -65,7 +65,8 @@ bool moves(const States& states, std::size_t row) {
 /// Draws the offered rows one by one into the columns.
 class Offerer {
  public:
-  Offerer(const Machine& machine, const Measurement& existing, const Drivers& drivers, std::size_t count)
+  Offerer(const model::Machine& machine, const model::Measurement& existing, const Drivers& drivers,
+          std::size_t count)
       : machine_(machine), old_(existing), drivers_(drivers), count_(count) {}
 
   Offers offer() {
@@ -77,15 +78,15 @@ class Offerer {
   }
 
  private:
-  bool driven(SymbolKind kind) const { return drivers_.kinds.contains(kind); }
+  bool driven(model::SymbolKind kind) const { return drivers_.kinds.contains(kind); }
   bool any_recorded(const char* prefix) const {
     return std::any_of(machine_.axes.begin(), machine_.axes.end(),
-                       [&](const Axis& axis) { return old_.has_recorded(prefix + axis.name); });
+                       [&](const model::Axis& axis) { return old_.has_recorded(prefix + axis.name); });
   }
 
   void find_ranges() {
     for (std::size_t a = 0; a < machine_.axes.size(); ++a) {
-      const Column q = commanded(old_, a);
+      const model::Column q = model::commanded(old_, a);
       double low = machine_.axes[a].min.value_or(q.minCoeff());
       double high = machine_.axes[a].max.value_or(q.maxCoeff());
       const double edge = kEdge * (high - low);
@@ -95,14 +96,14 @@ class Offerer {
   }
 
   /// Levels of a column: its range, and beyond it what can be set; the middle alone where nobody uses it.
-  std::vector<double> levels(const Column& column, const Input& input) {
+  std::vector<double> levels(const model::Column& column, const model::Input& input) {
     const double middle = median(values_of(column));
     if (!drivers_.inputs.contains(input.name)) return {middle};
     const double low = column.minCoeff(), high = column.maxCoeff();
-    switch (class_of_input(input)) {
-      case InputClass::kTemperature:
+    switch (effects::class_of_input(input)) {
+      case effects::InputClass::kTemperature:
         return {low - kTemperatureStep, low, high, high + kTemperatureStep};
-      case InputClass::kLoad:
+      case effects::InputClass::kLoad:
         return {0, low, high, std::max(kLoadFactor * high, high)};
       default:
         result_.not_settable.push_back(input.name);
@@ -113,26 +114,27 @@ class Offerer {
   void choose_levels() {
     for (std::size_t i = 0; i < machine_.inputs.size(); ++i)
       input_levels_.push_back(levels(old_.states.input[i], machine_.inputs[i]));
-    for (const CandidateInput& candidate : old_.candidates) {
+    for (const model::CandidateInput& candidate : old_.candidates) {
       std::vector<double> known;
       for (const double value : candidate.value)
         if (std::isfinite(value)) known.push_back(value);
-      const Column column = Eigen::Map<const Column>(known.data(), static_cast<Eigen::Index>(known.size()));
-      Input input;
+      const model::Column column =
+          Eigen::Map<const model::Column>(known.data(), static_cast<Eigen::Index>(known.size()));
+      model::Input input;
       input.name = candidate.name;
       input.unit = candidate.unit;
       candidate_levels_.push_back(known.empty() ? std::vector<double>{0} : levels(column, input));
     }
     const double begin = old_.states.time.minCoeff(), end = old_.states.time.maxCoeff();
     time_levels_ = {end + step_of_time()};
-    if (driven(SymbolKind::kTime))
+    if (driven(model::SymbolKind::kTime))
       for (const double share : kLater)
         time_levels_.push_back(end + std::min(share * (end - begin), std::max(end - begin, kWorkingDayS)));
     bool moving = false;
     for (std::size_t row = 0; row < old_.rows(); ++row) moving = moving || moves(old_.states, row);
     speeds_ = moving ? std::vector<double>(kSpeeds.begin(), kSpeeds.end()) : std::vector<double>{1};
-    senses_ = any_recorded("dir") || driven(SymbolKind::kDirection);
-    since_ = any_recorded("since") || driven(SymbolKind::kSince);
+    senses_ = any_recorded("dir") || driven(model::SymbolKind::kDirection);
+    since_ = any_recorded("since") || driven(model::SymbolKind::kSince);
   }
 
   double step_of_time() const {
@@ -147,27 +149,28 @@ class Offerer {
     for (std::size_t i = 0; i < count_; ++i)
       which.push_back(std::min(
           old_.rows() - 1, static_cast<std::size_t>(Spread(i).next() * static_cast<double>(old_.rows()))));
-    Measurement& rows = result_.rows = select_rows(old_, which);
+    model::Measurement& rows = result_.rows = model::select_rows(old_, which);
     const double u = median(values_of(old_.uncertainty));
     plan_without_correction(rows);
     for (std::size_t row = result_.existing; row < rows.rows(); ++row) {
       rows.uncertainty[static_cast<Eigen::Index>(row)] = u;
-      begin_run(rows.states, row, kPlanRun);
+      model::begin_run(rows.states, row, kPlanRun);
       rows.states.visit[static_cast<Eigen::Index>(row)] = 0;
     }
     // Where a tool will point is not known before it stands there.
     if (rows.direction.cols() > 0)
       rows.direction.rightCols(static_cast<Eigen::Index>(count_)).setConstant(std::nan(""));
     fixed_pose_.assign(rows.rows(), 0);
-    for (const Observation& o : rows.observations)
-      if (o.kind == ObservationKind::kLength || o.kind == ObservationKind::kD) fixed_pose_[o.row] = 1;
+    for (const model::Observation& o : rows.observations)
+      if (o.kind == model::ObservationKind::kLength || o.kind == model::ObservationKind::kD)
+        fixed_pose_[o.row] = 1;
   }
 
   /// The offered rows are commanded where the templates were, and nothing is added to them.
-  void plan_without_correction(Measurement& rows) const {
+  void plan_without_correction(model::Measurement& rows) const {
     const auto from = static_cast<Eigen::Index>(result_.existing), count = static_cast<Eigen::Index>(count_);
     for (std::size_t a = 0; a < rows.correction.size(); ++a) {
-      rows.states.axis[a].segment(from, count) = commanded(rows, a).segment(from, count);
+      rows.states.axis[a].segment(from, count) = model::commanded(rows, a).segment(from, count);
       rows.correction[a].segment(from, count).setZero();
     }
     for (std::size_t row = result_.existing; row < rows.corrected.size(); ++row) rows.corrected[row].clear();
@@ -200,7 +203,7 @@ class Offerer {
   /// The template's motion, at another speed and in either sense: the same path, so that accelerations go
   /// with the square.
   void draw_motion(Eigen::Index at, Spread& spread) {
-    States& s = result_.rows.states;
+    model::States& s = result_.rows.states;
     const double speed = spread.pick(speeds_), sense = spread.next() < 0.5 ? -1 : 1;
     const double since = spread.pick(kSince);
     const bool alike = spread.next() < 0.5;
@@ -214,8 +217,8 @@ class Offerer {
     }
   }
 
-  const Machine& machine_;
-  const Measurement& old_;
+  const model::Machine& machine_;
+  const model::Measurement& old_;
   const Drivers& drivers_;
   std::size_t count_;
   Offers result_;
@@ -227,19 +230,19 @@ class Offerer {
 
 }  // namespace
 
-Measurement append_rows(const Measurement& first, const Measurement& second) {
-  Measurement all = first;
-  append_measurement(all, second, true);
+model::Measurement append_rows(const model::Measurement& first, const model::Measurement& second) {
+  model::Measurement all = first;
+  model::append_measurement(all, second, true);
   return all;
 }
 
-Measurement rows_to_build_on(const Measurement& all, const Drivers& drivers, std::size_t most) {
+model::Measurement rows_to_build_on(const model::Measurement& all, const Drivers& drivers, std::size_t most) {
   std::vector<char> read(all.rows(), 0);
-  for (const Observation& o : all.observations) read[o.row] = 1;
+  for (const model::Observation& o : all.observations) read[o.row] = 1;
   std::vector<std::size_t> keep;
   for (std::size_t row = 0; row < all.rows(); ++row) {
     bool known = all.check[row] == 0 && read[row] != 0;
-    for (const CandidateInput& candidate : all.candidates)
+    for (const model::CandidateInput& candidate : all.candidates)
       if (drivers.inputs.contains(candidate.name))
         known = known && std::isfinite(candidate.value[static_cast<Eigen::Index>(row)]);
     if (known) keep.push_back(row);
@@ -247,12 +250,12 @@ Measurement rows_to_build_on(const Measurement& all, const Drivers& drivers, std
   const std::size_t stride = (keep.size() + most - 1) / std::max<std::size_t>(1, most);
   std::vector<std::size_t> thinned;
   for (std::size_t i = 0; i < keep.size(); i += std::max<std::size_t>(1, stride)) thinned.push_back(keep[i]);
-  return select_rows(all, thinned);
+  return model::select_rows(all, thinned);
 }
 
-Offers offer_rows(const Machine& machine, const Measurement& existing, const Drivers& drivers,
+Offers offer_rows(const model::Machine& machine, const model::Measurement& existing, const Drivers& drivers,
                   std::size_t count) {
   return Offerer(machine, existing, drivers, count).offer();
 }
 
-}  // namespace vernier
+}  // namespace vernier::plan

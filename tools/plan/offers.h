@@ -7,21 +7,21 @@
 #include "tools/model/measurement.h"
 #include "tools/plan/rival.h"
 
-namespace vernier {
+namespace vernier::plan {
 
 /// Label of the planned rows: a set-up of their own.
 inline constexpr const char* kPlanRun = "plan";
 
 /// Rows of `second` behind those of `first`; both bound to the same machine, with the same columns. tool.
-Measurement append_rows(const Measurement& first, const Measurement& second);
+model::Measurement append_rows(const model::Measurement& first, const model::Measurement& second);
 
 /// The rows that the plan builds on: fit rows with every input that the rivals use, at most `most` of them,
 /// spread evenly. tool.
-Measurement rows_to_build_on(const Measurement& all, const Drivers& drivers, std::size_t most);
+model::Measurement rows_to_build_on(const model::Measurement& all, const Drivers& drivers, std::size_t most);
 
 /// Existing rows, followed by rows that could be measured next.
 struct Offers {
-  Measurement rows;                       // bound to the machine that the measurement is bound to
+  model::Measurement rows;                // bound to the machine that the measurement is bound to
   std::size_t existing = 0;               // rows [0, existing) are measured
   std::vector<std::string> not_settable;  // inputs that a rival uses and that nobody can set (a decoy)
 };
@@ -32,7 +32,7 @@ struct Offers {
 /// time and inputs as the rivals ask for them. Temperatures go 5 K beyond what was recorded, loads down to 0
 /// and to 1.5 times the largest. Each row is a run of its own, labelled kPlanRun, so that a lag has settled.
 /// u: that of the existing rows (median). tool.
-Offers offer_rows(const Machine& machine, const Measurement& existing, const Drivers& drivers,
+Offers offer_rows(const model::Machine& machine, const model::Measurement& existing, const Drivers& drivers,
                   std::size_t count);
 
-}  // namespace vernier
+}  // namespace vernier::plan

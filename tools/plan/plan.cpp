@@ -15,7 +15,7 @@
 #include "tools/plan/offers.h"
 #include "tools/plan/sentence.h"
 
-namespace vernier {
+namespace vernier::plan {
 namespace {
 
 /// The distance that a diagnosis asks of a rival before it gives a name with confidence.
@@ -32,17 +32,17 @@ constexpr double kSoakS = 3600;
 constexpr std::size_t kPair = 2;
 
 /// First observation of each row, and one past the last.
-std::vector<Eigen::Index> first_observations(const Measurement& m) {
+std::vector<Eigen::Index> first_observations(const model::Measurement& m) {
   std::vector<Eigen::Index> first(m.rows() + 1, 0);
-  for (const Observation& o : m.observations) ++first[o.row + 1];
+  for (const model::Observation& o : m.observations) ++first[o.row + 1];
   for (std::size_t row = 0; row < m.rows(); ++row) first[row + 1] += first[row];
   return first;
 }
 
 class Planner {
  public:
-  Planner(const std::string& text, const Machine& machine, const Measurement& measurement,
-          const std::string& a, const std::string& b, const std::vector<Effect>& effects,
+  Planner(const std::string& text, const model::Machine& machine, const model::Measurement& measurement,
+          const std::string& a, const std::string& b, const std::vector<effects::Effect>& effects,
           const PlanOptions& options)
       : options_(options), model_(fit_model(text, machine, measurement)) {
     plan_.a = fit_rival(model_, measurement, a, effects);
@@ -51,7 +51,7 @@ class Planner {
     free_shift_of_plan(plan_.a.machine);
     free_shift_of_plan(plan_.b.machine);
     drivers_ = drivers_of(std::vector<const FittedRival*>{&plan_.a, &plan_.b});
-    plan_.rows = select_rows(measurement, {});
+    plan_.rows = model::select_rows(measurement, {});
     existing_ = rows_to_build_on(measurement, drivers_, kMostExisting);
     spread_ = spread();
     bystanders_ =
@@ -79,25 +79,25 @@ class Planner {
 
  private:
   /// Where every run has a BaseShift of its own, so will the new one.
-  static void free_shift_of_plan(Machine& machine) {
+  static void free_shift_of_plan(model::Machine& machine) {
     bool own = false, plain = false;
-    for (const BaseShift& shift : machine.base_shifts) {
+    for (const model::BaseShift& shift : machine.base_shifts) {
       own = own || (shift.run && !shift.hidden);
       plain = plain || !shift.run;
     }
     if (!own || plain) return;
-    BaseShift shift;
+    model::BaseShift shift;
     shift.run = kPlanRun;
     machine.base_shifts.push_back(shift);
   }
 
-  Measurement bound_to(const Measurement& rows, const FittedRival& rival) const {
-    return rebind(rows, model_.machine, rival.machine);
+  model::Measurement bound_to(const model::Measurement& rows, const FittedRival& rival) const {
+    return model::rebind(rows, model_.machine, rival.machine);
   }
 
   double weighted_square(const FittedRival& rival) const {
-    const Measurement bound = bound_to(existing_, rival);
-    return residuals(rival.machine, bound).cwiseProduct(fit_weights(bound)).squaredNorm();
+    const model::Measurement bound = bound_to(existing_, rival);
+    return fit::residuals(rival.machine, bound).cwiseProduct(fit::fit_weights(bound)).squaredNorm();
   }
 
   /// What a weight of 1/u must be divided by: the spread of the better rival's residual, not below 1 where u
@@ -109,7 +109,7 @@ class Planner {
                                                      static_cast<double>(parameters_of(*rival).size()));
       least = std::min(least, std::sqrt(weighted_square(*rival) / freedom));
     }
-    if (has_uncertainty(existing_)) return std::max(1.0, least);
+    if (fit::has_uncertainty(existing_)) return std::max(1.0, least);
     return std::max(least, 1e-9);  // exact readings: a picometre
   }
 
@@ -123,7 +123,7 @@ class Planner {
     return cost(plan_.b) - cost(plan_.a);
   }
 
-  ParameterSet parameters_of(const FittedRival& rival) const {
+  model::ParameterSet parameters_of(const FittedRival& rival) const {
     std::vector<std::string> setups = existing_.states.names(existing_.states.setup);
     setups.emplace_back(kPlanRun);
     return {rival.machine, setups};
@@ -142,17 +142,17 @@ class Planner {
     Eigen::VectorXd predicted;
     Eigen::MatrixXd jacobian;
   };
-  Linear linear(const Measurement& rows, const FittedRival& rival) const {
-    const Measurement bound = bound_to(rows, rival);
-    const Linearisation all = linearise(rival.machine, bound, parameters_of(rival));
-    const Eigen::VectorXd weights = fit_weights(bound) / spread_;
+  Linear linear(const model::Measurement& rows, const FittedRival& rival) const {
+    const model::Measurement bound = bound_to(rows, rival);
+    const model::Linearisation all = model::linearise(rival.machine, bound, parameters_of(rival));
+    const Eigen::VectorXd weights = fit::fit_weights(bound) / spread_;
     return {&rival, weights.cwiseProduct(all.predicted),
             weights.asDiagonal() * Eigen::MatrixXd(all.jacobian)};
   }
 
   /// Rows [0, existing) count, the others are offers. A true and B refitted, B true and A refitted, then each
   /// of them true and a bystander refitted.
-  Sides sides_of(const Measurement& rows, std::size_t existing) const {
+  Sides sides_of(const model::Measurement& rows, std::size_t existing) const {
     const std::vector<Eigen::Index> first = first_observations(rows);
     Sides sides;
     const auto add = [&](const Linear& truth, const Linear& rival) {
@@ -231,26 +231,26 @@ class Planner {
   }
 
   /// Grouped by time, then by inputs (a temperature is set once), then by speed and place; one run.
-  Measurement carried_out(const Offers& offers, const std::vector<std::size_t>& chosen) const {
+  model::Measurement carried_out(const Offers& offers, const std::vector<std::size_t>& chosen) const {
     std::vector<std::size_t> order;
     for (const std::size_t offer : chosen) order.push_back(offers.existing + offer);
-    const Measurement& all = offers.rows;
+    const model::Measurement& all = offers.rows;
     const auto settings = [&](std::size_t row) {
       const auto at = static_cast<Eigen::Index>(row);
       std::vector<double> values;
-      for (const Column& column : all.states.input) values.push_back(column[at]);
-      for (const CandidateInput& candidate : all.candidates) values.push_back(candidate.value[at]);
+      for (const model::Column& column : all.states.input) values.push_back(column[at]);
+      for (const model::CandidateInput& candidate : all.candidates) values.push_back(candidate.value[at]);
       return values;
     };
     const auto key = [&](std::size_t row) {
       const auto at = static_cast<Eigen::Index>(row);
       std::vector<double> rest = {all.states.feed[at]};
-      for (const Column& q : all.states.axis) rest.push_back(q[at]);
+      for (const model::Column& q : all.states.axis) rest.push_back(q[at]);
       return std::tuple(all.states.time[at], settings(row), rest);
     };
     std::sort(order.begin(), order.end(), [&](std::size_t x, std::size_t y) { return key(x) < key(y); });
-    Measurement rows = select_rows(all, order);
-    make_one_run(rows.states, kPlanRun);
+    model::Measurement rows = model::select_rows(all, order);
+    model::make_one_run(rows.states, kPlanRun);
     double time = -1e300;
     for (std::size_t i = 0; i < order.size(); ++i) {
       const bool other = i > 0 && settings(order[i]) != settings(order[i - 1]);
@@ -264,15 +264,15 @@ class Planner {
 
   /// Time from one row to the next as it was recorded.
   double pace() const {
-    const Column& t = existing_.states.time;
+    const model::Column& t = existing_.states.time;
     return (t.maxCoeff() - t.minCoeff()) / std::max(1.0, static_cast<double>(existing_.rows()) - 1);
   }
 
   const PlanOptions& options_;
-  MachineText model_;
+  effects::MachineText model_;
   Plan plan_;
   Drivers drivers_;
-  Measurement existing_;
+  model::Measurement existing_;
   std::vector<FittedRival> bystanders_;
   double spread_ = 1;
 };
@@ -286,15 +286,15 @@ const Separation& Plan::worse() const {
   return reached(a_true) < reached(b_true) ? a_true : b_true;
 }
 
-Plan plan_next(const std::string& text, const Machine& machine, const Measurement& measurement,
-               const std::string& a, const std::string& b, const std::vector<Effect>& effects,
+Plan plan_next(const std::string& text, const model::Machine& machine, const model::Measurement& measurement,
+               const std::string& a, const std::string& b, const std::vector<effects::Effect>& effects,
                const PlanOptions& options) {
   return Planner(text, machine, measurement, a, b, effects, options).plan();
 }
 
-std::vector<std::string> next_measurement(const std::string& text, const Machine& machine,
-                                          const Measurement& measurement, const std::string& a,
-                                          const std::string& b, const std::vector<Effect>& effects,
+std::vector<std::string> next_measurement(const std::string& text, const model::Machine& machine,
+                                          const model::Measurement& measurement, const std::string& a,
+                                          const std::string& b, const std::vector<effects::Effect>& effects,
                                           const PlanOptions& options) {
   const Plan plan = plan_next(text, machine, measurement, a, b, effects, options);
   std::vector<std::string> list = {plan.sentence};
@@ -305,4 +305,4 @@ std::vector<std::string> next_measurement(const std::string& text, const Machine
   return list;
 }
 
-}  // namespace vernier
+}  // namespace vernier::plan

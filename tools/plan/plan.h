@@ -10,7 +10,7 @@
 #include "tools/model/measurement.h"
 #include "tools/plan/rival.h"
 
-namespace vernier {
+namespace vernier::plan {
 
 struct PlanOptions {
   double confidence = 0.95;           // that the chi^2 difference names the right one
@@ -28,8 +28,8 @@ struct Separation {
 /// The next measurement.
 struct Plan {
   FittedRival a, b;
-  Machine machine;   // that `rows` is bound to
-  Measurement rows;  // planned rows in time order, readings 0; empty: nothing helps
+  model::Machine machine;   // that `rows` is bound to
+  model::Measurement rows;  // planned rows in time order, readings 0; empty: nothing helps
   Separation a_true, b_true;
   double lead_of_a = 0;                    // by how much B explains the rows so far worse than A (BIC)
   bool told_already = false;               // that, or what they could show, is enough to name one of them
@@ -43,15 +43,15 @@ struct Plan {
 
 /// Which rows, measured next, would tell two named effects apart? `a`, `b`: ids or add strings (see
 /// fit_rival). The effects must outlive the plan. Throws InputError. tool.
-Plan plan_next(const std::string& text, const Machine& machine, const Measurement& measurement,
-               const std::string& a, const std::string& b, const std::vector<Effect>& effects,
+Plan plan_next(const std::string& text, const model::Machine& machine, const model::Measurement& measurement,
+               const std::string& a, const std::string& b, const std::vector<effects::Effect>& effects,
                const PlanOptions& options = {});
 
 /// The plan's sentence and what it needs to be carried out, for the list of a diagnosis. Empty where there is
 /// nothing to say about the pair. tool.
-std::vector<std::string> next_measurement(const std::string& text, const Machine& machine,
-                                          const Measurement& measurement, const std::string& a,
-                                          const std::string& b, const std::vector<Effect>& effects,
+std::vector<std::string> next_measurement(const std::string& text, const model::Machine& machine,
+                                          const model::Measurement& measurement, const std::string& a,
+                                          const std::string& b, const std::vector<effects::Effect>& effects,
                                           const PlanOptions& options = {});
 
-}  // namespace vernier
+}  // namespace vernier::plan

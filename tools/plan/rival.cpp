@@ -11,24 +11,25 @@
 #include "tools/model/machine_writer.h"
 #include "tools/text/error.h"
 
-namespace vernier {
+namespace vernier::plan {
 namespace {
 
-const Effect* effect_named(const std::vector<Effect>& effects, const std::string& id) {
-  for (const Effect& effect : effects)
+const effects::Effect* effect_named(const std::vector<effects::Effect>& effects, const std::string& id) {
+  for (const effects::Effect& effect : effects)
     if (effect.id == id) return &effect;
-  return id == custom_effect().id ? &custom_effect() : nullptr;
+  return id == effects::custom_effect().id ? &effects::custom_effect() : nullptr;
 }
 
 std::string id_of(const std::string& text) { return text.substr(0, text.find(':')); }
 
 /// A time constant or decay length at the short end of what was looked at: the term has become a constant or
 /// a spike, and tells nothing of the effect that it is named for.
-bool degenerate(const Scored& scored, const ScannedCandidate& item) {
+bool degenerate(const diagnose::Scored& scored, const diagnose::ScannedCandidate& item) {
   std::size_t next = 0;
-  for (const CandidateUnknown& unknown : scanned_unknowns(item.candidate)) {
+  for (const effects::CandidateUnknown& unknown : effects::scanned_unknowns(item.candidate)) {
     const std::vector<double>& grid = item.grid[next];
-    const bool decays = unknown.kind == UnknownKind::kTime || unknown.kind == UnknownKind::kTravel;
+    const bool decays =
+        unknown.kind == effects::UnknownKind::kTime || unknown.kind == effects::UnknownKind::kTravel;
     if (decays && grid.size() > 1 && scored.scanned[next] < 0.5 * (grid[0] + grid[1])) return true;
     ++next;
   }
@@ -36,32 +37,36 @@ bool degenerate(const Scored& scored, const ScannedCandidate& item) {
 }
 
 /// The `add` string of the candidate of one effect that fits the rows best.
-std::string best_of_effect(const Evidence& evidence, const Effect& effect) {
-  const std::vector<Effect> one = {effect};
-  const std::vector<ScannedCandidate> list = enumerate_candidates(evidence, one);
-  Scanner scanner(evidence, list);
+std::string best_of_effect(const diagnose::Evidence& evidence, const effects::Effect& effect) {
+  const std::vector<effects::Effect> one = {effect};
+  const std::vector<diagnose::ScannedCandidate> list = diagnose::enumerate_candidates(evidence, one);
+  diagnose::Scanner scanner(evidence, list);
   const Eigen::MatrixXd none(evidence.residual().size(), 0);
-  std::vector<Scored> scored = scanner.scan(none, {});
+  std::vector<diagnose::Scored> scored = scanner.scan(none, {});
   if (scored.empty())
-    throw InputError("\"" + effect.id +
-                     "\": these rows show nothing of it at any place (give an add string)");
-  const auto value = [&](const Scored& item) {
+    throw text::InputError("\"" + effect.id +
+                           "\": these rows show nothing of it at any place (give an add string)");
+  const auto value = [&](const diagnose::Scored& item) {
     constexpr double kPriceOfDegenerate = 6;
     return value_of(item, evidence) - (degenerate(item, list[item.candidate]) ? kPriceOfDegenerate : 0);
   };
-  const auto worse = [&](const Scored& a, const Scored& b) { return value(a) < value(b); };
+  const auto worse = [&](const diagnose::Scored& a, const diagnose::Scored& b) {
+    return value(a) < value(b);
+  };
   std::sort(scored.rbegin(), scored.rend(), worse);
   constexpr std::size_t kRefined = 6;
   scored.resize(std::min(scored.size(), kRefined));
-  for (Scored& item : scored) scanner.refine(item, none);
-  const Scored& best = *std::max_element(scored.begin(), scored.end(), worse);
-  return add_string(evidence.machine(), choice_at(list[best.candidate].candidate, best.scanned));
+  for (diagnose::Scored& item : scored) scanner.refine(item, none);
+  const diagnose::Scored& best = *std::max_element(scored.begin(), scored.end(), worse);
+  return effects::add_string(evidence.machine(),
+                             effects::choice_at(list[best.candidate].candidate, best.scanned));
 }
 
 /// The coefficients from the projected columns; empty where the model absorbs all of them.
-std::vector<double> linear_estimate(const Evidence& evidence, const Candidate& candidate) {
+std::vector<double> linear_estimate(const diagnose::Evidence& evidence, const effects::Candidate& candidate) {
   std::vector<double> scanned;
-  for (const CandidateUnknown& unknown : scanned_unknowns(candidate)) scanned.push_back(unknown.start);
+  for (const effects::CandidateUnknown& unknown : effects::scanned_unknowns(candidate))
+    scanned.push_back(unknown.start);
   const Eigen::MatrixXd raw = evidence.columns(candidate, scanned);
   const Eigen::MatrixXd& q = evidence.absorbed();
   const Eigen::MatrixXd own = raw - q * (q.transpose() * raw);
@@ -76,44 +81,46 @@ std::vector<double> linear_estimate(const Evidence& evidence, const Candidate& c
 
 }  // namespace
 
-double value_of(const Scored& scored, const Evidence& evidence) {
+double value_of(const diagnose::Scored& scored, const diagnose::Evidence& evidence) {
   const double spread = evidence.chi_square() / std::max(1.0, evidence.freedom());
   const double variance = evidence.noise_known() ? 1 : std::max(spread, 1e-300);
   return scored.gain / variance -
          static_cast<double>(scored.unknowns) * std::log(static_cast<double>(evidence.rows().size()));
 }
 
-MachineText fit_model(const std::string& text, const Machine& machine, const Measurement& measurement) {
-  return fitted_text(text, fit(with_base_row(machine), measurement));
+effects::MachineText fit_model(const std::string& text, const model::Machine& machine,
+                               const model::Measurement& measurement) {
+  return effects::fitted_text(text, fit::fit(effects::with_base_row(machine), measurement));
 }
 
-FittedRival fit_rival(const MachineText& model, const Measurement& measurement, const std::string& name,
-                      const std::vector<Effect>& effects) {
-  return fit_rival(model, Evidence(model.machine, measurement), measurement, name, effects);
+FittedRival fit_rival(const effects::MachineText& model, const model::Measurement& measurement,
+                      const std::string& name, const std::vector<effects::Effect>& effects) {
+  return fit_rival(model, diagnose::Evidence(model.machine, measurement), measurement, name, effects);
 }
 
-FittedRival fit_rival(const MachineText& model, const Evidence& evidence, const Measurement& measurement,
-                      const std::string& name, const std::vector<Effect>& effects) {
-  const Effect* effect = effect_named(effects, id_of(name));
+FittedRival fit_rival(const effects::MachineText& model, const diagnose::Evidence& evidence,
+                      const model::Measurement& measurement, const std::string& name,
+                      const std::vector<effects::Effect>& effects) {
+  const effects::Effect* effect = effect_named(effects, id_of(name));
   if (effect == nullptr)
-    throw InputError("\"" + id_of(name) + "\": unknown effect (`vernier effects` lists them)");
+    throw text::InputError("\"" + id_of(name) + "\": unknown effect (`vernier effects` lists them)");
   FittedRival rival;
   rival.add = name.find(':') == std::string::npos ? best_of_effect(evidence, *effect) : name;
-  const Machine& base = model.machine;
-  EffectToFit one;
-  one.choice = parse_add_string(rival.add, base, effects);
-  one.coefficients = linear_estimate(evidence, make_candidate(base, one.choice));
+  const model::Machine& base = model.machine;
+  effects::EffectToFit one;
+  one.choice = effects::parse_add_string(rival.add, base, effects);
+  one.coefficients = linear_estimate(evidence, effects::make_candidate(base, one.choice));
   // What the scan found is held: data that cannot tell two effects apart do not settle a period either.
   one.hold_scanned = true;
-  FittedEffects fitted = fit_with_effects(model, measurement, {one});
+  effects::FittedEffects fitted = effects::fit_with_effects(model, measurement, {one});
   rival.candidate = std::move(fitted.effects[0]);
   rival.machine = std::move(fitted.fit.machine);
-  hold_scanned(rival.machine, rival.candidate, false);
+  effects::hold_scanned(rival.machine, rival.candidate, false);
   return rival;
 }
 
 std::vector<std::string> split_rivals(const std::vector<std::string>& arguments,
-                                      const std::vector<Effect>& effects) {
+                                      const std::vector<effects::Effect>& effects) {
   std::vector<std::string> parts;
   for (const std::string& argument : arguments) {
     std::size_t from = 0;
@@ -126,27 +133,27 @@ std::vector<std::string> split_rivals(const std::vector<std::string>& arguments,
     parts.push_back(argument.substr(from));
   }
   if (parts.size() != 2)
-    throw InputError("--separate wants two effects, there are " + std::to_string(parts.size()));
+    throw text::InputError("--separate wants two effects, there are " + std::to_string(parts.size()));
   return parts;
 }
 
 Drivers drivers_of(const std::vector<const FittedRival*>& rivals) {
   Drivers drivers;
   for (const FittedRival* rival : rivals)
-    for (const auto& [kind, index] : drivers_of(rival->machine, rival->candidate)) {
+    for (const auto& [kind, index] : diagnose::drivers_of(rival->machine, rival->candidate)) {
       if (kind < 0) continue;  // a run by its label: new rows have a label of their own
-      drivers.kinds.insert(static_cast<SymbolKind>(kind));
-      if (static_cast<SymbolKind>(kind) == SymbolKind::kInput)
+      drivers.kinds.insert(static_cast<model::SymbolKind>(kind));
+      if (static_cast<model::SymbolKind>(kind) == model::SymbolKind::kInput)
         drivers.inputs.insert(rival->machine.inputs[index].name);
     }
   return drivers;
 }
 
-Machine without_effect(const FittedRival& rival) {
-  Machine machine = rival.machine;
-  for (const CandidateUnknown& unknown : linear_unknowns(rival.candidate))
+model::Machine without_effect(const FittedRival& rival) {
+  model::Machine machine = rival.machine;
+  for (const effects::CandidateUnknown& unknown : effects::linear_unknowns(rival.candidate))
     machine.statics[*machine.find_static(unknown.name)].value = 0;
   return machine;
 }
 
-}  // namespace vernier
+}  // namespace vernier::plan

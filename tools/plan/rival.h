@@ -11,44 +11,46 @@
 #include "tools/model/machine.h"
 #include "tools/model/measurement.h"
 
-namespace vernier {
+namespace vernier::plan {
 
 /// The machine at its best fit: what rivals are added to.
-MachineText fit_model(const std::string& text, const Machine& machine, const Measurement& measurement);
+effects::MachineText fit_model(const std::string& text, const model::Machine& machine,
+                               const model::Measurement& measurement);
 
 /// An effect added to a fitted machine and fitted to the same rows.
 struct FittedRival {
-  Candidate candidate;
+  effects::Candidate candidate;
   std::string add;
-  Machine machine;  // with the effect, at its best fit; all unknowns of the effect are free
+  model::Machine machine;  // with the effect, at its best fit; all unknowns of the effect are free
 };
 
 /// `name`: an effect id (the candidate of that effect which fits the rows best) or a complete `add` string.
 /// The effects must outlive the result. Throws InputError: unknown effect, no candidate of it in these rows.
 /// tool.
-FittedRival fit_rival(const MachineText& model, const Measurement& measurement, const std::string& name,
-                      const std::vector<Effect>& effects);
+FittedRival fit_rival(const effects::MachineText& model, const model::Measurement& measurement,
+                      const std::string& name, const std::vector<effects::Effect>& effects);
 
 /// The same with the evidence of the model and the rows at hand.
-FittedRival fit_rival(const MachineText& model, const Evidence& evidence, const Measurement& measurement,
-                      const std::string& name, const std::vector<Effect>& effects);
+FittedRival fit_rival(const effects::MachineText& model, const diagnose::Evidence& evidence,
+                      const model::Measurement& measurement, const std::string& name,
+                      const std::vector<effects::Effect>& effects);
 
 /// Fall of chi^2 in units of the noise less the price of the unknowns (BIC).
-double value_of(const Scored& scored, const Evidence& evidence);
+double value_of(const diagnose::Scored& scored, const diagnose::Evidence& evidence);
 
 /// The parts of `--separate`: cut at a comma only where what follows begins with the id of an effect.
 /// Throws InputError where they are not two. tool.
 std::vector<std::string> split_rivals(const std::vector<std::string>& arguments,
-                                      const std::vector<Effect>& effects);
+                                      const std::vector<effects::Effect>& effects);
 
 /// What the rivals depend on besides positions and constants.
 struct Drivers {
-  std::set<SymbolKind> kinds;
+  std::set<model::SymbolKind> kinds;
   std::set<std::string> inputs;
 };
 Drivers drivers_of(const std::vector<const FittedRival*>& rivals);
 
 /// The rival's machine with the effect taken back: its coefficients 0.
-Machine without_effect(const FittedRival& rival);
+model::Machine without_effect(const FittedRival& rival);
 
-}  // namespace vernier
+}  // namespace vernier::plan

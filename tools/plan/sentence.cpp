@@ -12,13 +12,13 @@
 #include "tools/model/rebind.h"
 #include "tools/plan/offers.h"
 
-namespace vernier {
+namespace vernier::plan {
 namespace {
 
 /// A ratio beyond this says no more than that the effect appears.
 constexpr double kMostRatio = 20;
 
-double median(const Column& column) {
+double median(const model::Column& column) {
   std::vector<double> values(column.begin(), column.end());
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
@@ -36,7 +36,7 @@ std::string behaves(double r) {
 }
 
 /// "15 and 35", "15, 20 and 35", "15 to 35".
-std::string listed(const Column& column) {
+std::string listed(const model::Column& column) {
   std::set<std::string> seen;
   std::vector<double> sorted(column.begin(), column.end());
   std::sort(sorted.begin(), sorted.end());
@@ -51,7 +51,7 @@ std::string listed(const Column& column) {
   return fmt::format("{} and {}", fmt::join(words, ", "), last);
 }
 
-std::string so_far(const Column& old) {
+std::string so_far(const model::Column& old) {
   const double low = old.minCoeff(), high = old.maxCoeff();
   if (high - low <= 1e-3 * std::max(std::abs(low), std::abs(high))) return fmt::format("so far {:.4g}", low);
   return fmt::format("so far {:.4g} to {:.4g}", low, high);
@@ -60,26 +60,27 @@ std::string so_far(const Column& old) {
 std::string with_unit(const std::string& unit) { return unit.empty() ? std::string() : " " + unit; }
 
 /// Length of each row's velocity, mm/s or deg/s.
-Column speed_of(const States& states) {
-  Column square = Column::Zero(static_cast<Eigen::Index>(states.count));
-  for (const Column& v : states.velocity) square += v * v;
+model::Column speed_of(const model::States& states) {
+  model::Column square = model::Column::Zero(static_cast<Eigen::Index>(states.count));
+  for (const model::Column& v : states.velocity) square += v * v;
   return square.sqrt();
 }
 
-Column moving_only(const Column& speed) {
+model::Column moving_only(const model::Column& speed) {
   std::vector<double> values;
   for (const double v : speed)
     if (v > 0) values.push_back(v);
-  return Eigen::Map<const Column>(values.data(), static_cast<Eigen::Index>(values.size()));
+  return Eigen::Map<const model::Column>(values.data(), static_cast<Eigen::Index>(values.size()));
 }
 
 }  // namespace
 
-Explanation::Explanation(const Plan& plan, const Measurement& existing) : plan_(plan), existing_(existing) {}
+Explanation::Explanation(const Plan& plan, const model::Measurement& existing)
+    : plan_(plan), existing_(existing) {}
 
 Explanation::Contrast Explanation::speed() const {
   Contrast c;
-  const Column planned = speed_of(plan_.rows.states), old = moving_only(speed_of(existing_.states));
+  const model::Column planned = speed_of(plan_.rows.states), old = moving_only(speed_of(existing_.states));
   if (old.size() == 0) return c;
   const double usual = median(old);
   std::vector<std::size_t> which;
@@ -89,14 +90,14 @@ Explanation::Contrast Explanation::speed() const {
   if (std::abs(farthest / usual - 1) < 0.2) return c;
   for (std::size_t row = 0; row < plan_.rows.rows(); ++row)
     if (std::abs(planned[static_cast<Eigen::Index>(row)] / farthest - 1) < 1e-6) which.push_back(row);
-  c.planned = c.as_was = select_rows(plan_.rows, which);
+  c.planned = c.as_was = model::select_rows(plan_.rows, which);
   const double back = usual / farthest;
-  for (Column& v : c.as_was.states.velocity) v *= back;
-  for (Column& a : c.as_was.states.acceleration) a *= back * back;
+  for (model::Column& v : c.as_was.states.velocity) v *= back;
+  for (model::Column& a : c.as_was.states.acceleration) a *= back * back;
   c.as_was.states.feed *= back;
   c.where = fmt::format("at speeds of {} mm/s or deg/s ({})", listed(moving_only(planned)), so_far(old));
   c.farthest = fmt::format("{:.4g} mm/s or deg/s", farthest);
-  const Column feed = moving_only(plan_.rows.states.feed);
+  const model::Column feed = moving_only(plan_.rows.states.feed);
   if (feed.size() == moving_only(planned).size() && existing_.has_recorded("feed")) {
     c.where = fmt::format("at F{} mm/min ({})", listed(feed), so_far(moving_only(existing_.states.feed)));
     c.farthest = fmt::format("F{:.4g}", c.planned.states.feed[0]);
@@ -107,7 +108,7 @@ Explanation::Contrast Explanation::speed() const {
 
 Explanation::Contrast Explanation::sense(std::size_t axis) const {
   Contrast c;
-  const Column& old = existing_.states.direction[axis];
+  const model::Column& old = existing_.states.direction[axis];
   constexpr double kOneSided = 0.9;
   const double usual = old.mean();
   if (std::abs(usual) < kOneSided) return c;
@@ -115,7 +116,7 @@ Explanation::Contrast Explanation::sense(std::size_t axis) const {
   for (std::size_t row = 0; row < plan_.rows.rows(); ++row)
     if (plan_.rows.states.direction[axis][static_cast<Eigen::Index>(row)] * usual < 0) which.push_back(row);
   if (which.empty()) return c;
-  c.planned = c.as_was = select_rows(plan_.rows, which);
+  c.planned = c.as_was = model::select_rows(plan_.rows, which);
   c.as_was.states.direction[axis] *= -1;
   c.as_was.states.velocity[axis] *= -1;
   const std::string& name = plan_.machine.axes[axis].name;
@@ -126,8 +127,8 @@ Explanation::Contrast Explanation::sense(std::size_t axis) const {
 }
 
 Explanation::Contrast Explanation::level(const std::string& name, const std::string& unit,
-                                         const Column& planned, const Column& old,
-                                         const std::function<void(Measurement&, double)>& set) const {
+                                         const model::Column& planned, const model::Column& old,
+                                         const std::function<void(model::Measurement&, double)>& set) const {
   Contrast c;
   const double usual = median(old), range = std::max(old.maxCoeff() - old.minCoeff(), 1e-9);
   Eigen::Index at = 0;
@@ -137,7 +138,7 @@ Explanation::Contrast Explanation::level(const std::string& name, const std::str
   std::vector<std::size_t> which;
   for (std::size_t row = 0; row < plan_.rows.rows(); ++row)
     if (std::abs(planned[static_cast<Eigen::Index>(row)] - planned[at]) < 0.05 * away) which.push_back(row);
-  c.planned = c.as_was = select_rows(plan_.rows, which);
+  c.planned = c.as_was = model::select_rows(plan_.rows, which);
   set(c.as_was, usual);
   c.where = fmt::format("at {} {}{} ({})", name, listed(planned), with_unit(unit), so_far(old));
   c.farthest = fmt::format("{} {:.4g}{}", name, planned[at], with_unit(unit));
@@ -147,33 +148,34 @@ Explanation::Contrast Explanation::level(const std::string& name, const std::str
 
 std::vector<Explanation::Contrast> Explanation::contrasts() const {
   std::vector<Contrast> list = {speed()};
-  const Measurement& next = plan_.rows;
-  const Machine& machine = plan_.machine;
+  const model::Measurement& next = plan_.rows;
+  const model::Machine& machine = plan_.machine;
   for (std::size_t a = 0; a < machine.axes.size(); ++a) list.push_back(sense(a));
   for (std::size_t i = 0; i < machine.inputs.size(); ++i)
     list.push_back(level(machine.inputs[i].name, machine.inputs[i].unit, next.states.input[i],
                          existing_.states.input[i],
-                         [i](Measurement& m, double value) { m.states.input[i].setConstant(value); }));
+                         [i](model::Measurement& m, double value) { m.states.input[i].setConstant(value); }));
   for (std::size_t i = 0; i < next.candidates.size(); ++i) {
-    const Column& old = existing_.candidates[i].value;
+    const model::Column& old = existing_.candidates[i].value;
     if (!old.isFinite().all()) continue;
-    list.push_back(level(next.candidates[i].name, next.candidates[i].unit, next.candidates[i].value, old,
-                         [i](Measurement& m, double value) { m.candidates[i].value.setConstant(value); }));
+    list.push_back(
+        level(next.candidates[i].name, next.candidates[i].unit, next.candidates[i].value, old,
+              [i](model::Measurement& m, double value) { m.candidates[i].value.setConstant(value); }));
   }
   list.push_back(level("t", "s", next.states.time, existing_.states.time,
-                       [](Measurement& m, double value) { m.states.time.setConstant(value); }));
+                       [](model::Measurement& m, double value) { m.states.time.setConstant(value); }));
   for (std::size_t a = 0; a < machine.axes.size(); ++a)
     list.push_back(level(machine.axes[a].name, machine.axes[a].rotary ? "deg" : "mm", next.states.axis[a],
-                         commanded(existing_, a),
-                         [a](Measurement& m, double value) { m.states.axis[a].setConstant(value); }));
+                         model::commanded(existing_, a),
+                         [a](model::Measurement& m, double value) { m.states.axis[a].setConstant(value); }));
   return list;
 }
 
 double Explanation::ratio(const FittedRival& rival, const Contrast& contrast) const {
-  const Machine bare = without_effect(rival);
-  const auto shift = [&](const Measurement& rows) -> Eigen::VectorXd {
-    const Measurement bound = rebind(rows, plan_.machine, rival.machine);
-    return predict(rival.machine, bound) - predict(bare, bound);
+  const model::Machine bare = without_effect(rival);
+  const auto shift = [&](const model::Measurement& rows) -> Eigen::VectorXd {
+    const model::Measurement bound = model::rebind(rows, plan_.machine, rival.machine);
+    return model::predict(rival.machine, bound) - model::predict(bare, bound);
   };
   const Eigen::VectorXd now = shift(contrast.planned), was = shift(contrast.as_was);
   if (now.norm() == 0 && was.norm() == 0) return 1;
@@ -219,4 +221,4 @@ std::string Explanation::sentence() const {
   return fmt::format("Measure {} points {}{}.{}", plan_.rows.rows(), where, why, beyond);
 }
 
-}  // namespace vernier
+}  // namespace vernier::plan

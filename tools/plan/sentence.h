@@ -7,14 +7,14 @@
 #include "tools/model/measurement.h"
 #include "tools/plan/plan.h"
 
-namespace vernier {
+namespace vernier::plan {
 
 /// Says in one sentence why the planned rows tell the rivals apart: which state they have that the existing
 /// rows lack, and what that does to each rival. Keeps references. tool.
 class Explanation {
  public:
   /// `existing`: the rows that the plan builds on, bound to the plan's machine.
-  Explanation(const Plan& plan, const Measurement& existing);
+  Explanation(const Plan& plan, const model::Measurement& existing);
   std::string sentence() const;
 
  private:
@@ -22,7 +22,7 @@ class Explanation {
   struct Contrast {
     std::string where;     // "at T_bed 15 and 35 degC (so far 20 to 25)"
     std::string farthest;  // "35 degC"
-    Measurement planned, as_was;
+    model::Measurement planned, as_was;
     bool usable = false;
   };
   struct Answer {
@@ -31,13 +31,13 @@ class Explanation {
   std::vector<Contrast> contrasts() const;
   Contrast speed() const;
   Contrast sense(std::size_t axis) const;
-  Contrast level(const std::string& name, const std::string& unit, const Column& planned, const Column& old,
-                 const std::function<void(Measurement&, double)>& set) const;
+  Contrast level(const std::string& name, const std::string& unit, const model::Column& planned,
+                 const model::Column& old, const std::function<void(model::Measurement&, double)>& set) const;
   Answer answer(const Contrast& contrast) const;
   double ratio(const FittedRival& rival, const Contrast& contrast) const;
 
   const Plan& plan_;
-  const Measurement& existing_;
+  const model::Measurement& existing_;
 };
 
-}  // namespace vernier
+}  // namespace vernier::plan

@@ -12,7 +12,7 @@
 #include "tools/plan/offers.h"
 #include "tools/text/numbers.h"
 
-namespace vernier {
+namespace vernier::plan {
 namespace {
 
 /// A feed for approaches where none is recorded, mm/min, and the share of the range that an approach takes.
@@ -24,15 +24,15 @@ struct SheetColumn {
 };
 
 /// Six significant digits: far finer than any axis is set or read.
-std::string cell_text(double value) { return number_text(std::stod(fmt::format("{:.9g}", value))); }
+std::string cell_text(double value) { return text::number_text(std::stod(fmt::format("{:.9g}", value))); }
 
-bool any_nonzero(const Column& column) { return (column != 0).any(); }
+bool any_nonzero(const model::Column& column) { return (column != 0).any(); }
 
 class Sheet {
  public:
   explicit Sheet(const Plan& plan) : rows_(plan.rows) {
     drivers_ = drivers_of(std::vector<const FittedRival*>{&plan.a, &plan.b});
-    const std::vector<Axis>& axes = plan.machine.axes;
+    const std::vector<model::Axis>& axes = plan.machine.axes;
     for (std::size_t a = 0; a < axes.size(); ++a)
       add(axes[a].name + (axes[a].rotary ? "[deg]" : "[mm]"), rows_.states.axis[a]);
     for (std::size_t a = 0; a < axes.size(); ++a) motion(a, axes[a]);
@@ -41,7 +41,7 @@ class Sheet {
     if (rows_.has_recorded("t")) add("t[s]", rows_.states.time);
     for (std::size_t i = 0; i < plan.machine.inputs.size(); ++i)
       add(header(plan.machine.inputs[i].name, plan.machine.inputs[i].unit), rows_.states.input[i]);
-    for (const CandidateInput& candidate : rows_.candidates)
+    for (const model::CandidateInput& candidate : rows_.candidates)
       if (drivers_.inputs.contains(candidate.name))
         add(header(candidate.name, candidate.unit), candidate.value);
   }
@@ -49,14 +49,15 @@ class Sheet {
   std::vector<SheetColumn> columns;
 
   void add_readings() {
-    std::set<ObservationKind> kinds;
-    for (const Observation& o : rows_.observations) kinds.insert(o.kind);
-    for (const ObservationKind kind : kinds)
-      columns.push_back({std::string(kObservationNames[static_cast<std::size_t>(kind)]) +
-                             (is_rotation(kind) ? "[deg]" : "[mm]"),
+    std::set<model::ObservationKind> kinds;
+    for (const model::Observation& o : rows_.observations) kinds.insert(o.kind);
+    for (const model::ObservationKind kind : kinds)
+      columns.push_back({std::string(model::kObservationNames[static_cast<std::size_t>(kind)]) +
+                             (model::is_rotation(kind) ? "[deg]" : "[mm]"),
                          [](std::size_t) { return std::string(); }});
-    if (kinds.contains(ObservationKind::kLength)) add_points({"cx[mm]", "cy[mm]", "cz[mm]"}, rows_.centre);
-    if (kinds.contains(ObservationKind::kD)) {
+    if (kinds.contains(model::ObservationKind::kLength))
+      add_points({"cx[mm]", "cy[mm]", "cz[mm]"}, rows_.centre);
+    if (kinds.contains(model::ObservationKind::kD)) {
       add_points({"px[mm]", "py[mm]", "pz[mm]"}, rows_.nominal_point);
       static constexpr std::array<const char*, 3> kNormals = {"nx", "ny", "nz"};
       for (std::size_t i = 0; i < kNormals.size(); ++i) add(kNormals[i], rows_.states.normal[i]);
@@ -70,7 +71,7 @@ class Sheet {
     return unit.empty() ? name : name + "[" + unit + "]";
   }
 
-  void add(const std::string& header, const Column& column) {
+  void add(const std::string& header, const model::Column& column) {
     columns.push_back(
         {header, [&column](std::size_t row) { return cell_text(column[static_cast<Eigen::Index>(row)]); }});
   }
@@ -82,30 +83,30 @@ class Sheet {
                          }});
   }
 
-  void motion(std::size_t a, const Axis& axis) {
+  void motion(std::size_t a, const model::Axis& axis) {
     const std::string unit = axis.rotary ? "deg" : "mm";
     if (any_nonzero(rows_.states.direction[a])) add("dir" + axis.name, rows_.states.direction[a]);
     if (any_nonzero(rows_.states.velocity[a]))
       add("v" + axis.name + "[" + unit + "/s]", rows_.states.velocity[a]);
     if (any_nonzero(rows_.states.acceleration[a]))
       add("a" + axis.name + "[" + unit + "/s^2]", rows_.states.acceleration[a]);
-    if ((rows_.states.since[a] < kLongWay).all())
+    if ((rows_.states.since[a] < model::kLongWay).all())
       add("since" + axis.name + "[" + unit + "]", rows_.states.since[a]);
   }
 
-  const Measurement& rows_;
+  const model::Measurement& rows_;
   Drivers drivers_;
 };
 
 /// Writes one row's moves.
 class MoveWriter {
  public:
-  MoveWriter(const Machine& machine, const States& states, std::string& out)
+  MoveWriter(const model::Machine& machine, const model::States& states, std::string& out)
       : machine_(machine), states_(states), out_(out) {}
 
   void write(std::size_t row) {
     const auto at = static_cast<Eigen::Index>(row);
-    const States& s = states_;
+    const model::States& s = states_;
     std::vector<double> from, to, through;
     double speed = 0;
     for (std::size_t a = 0; a < machine_.axes.size(); ++a) {
@@ -140,20 +141,20 @@ class MoveWriter {
 
  private:
   double inside(std::size_t a, double q) const {
-    const Axis& axis = machine_.axes[a];
+    const model::Axis& axis = machine_.axes[a];
     if (axis.rollover) return q;
     return std::clamp(q, axis.min.value_or(-1e300), axis.max.value_or(1e300));
   }
 
   double span(std::size_t a) const {
-    const Axis& axis = machine_.axes[a];
-    const Column& q = states_.axis[a];
+    const model::Axis& axis = machine_.axes[a];
+    const model::Column& q = states_.axis[a];
     return axis.min && axis.max ? *axis.max - *axis.min : q.maxCoeff() - q.minCoeff();
   }
 
   double way_of(std::size_t a, Eigen::Index at) const {
     const double since = states_.since[a][at];
-    return since < kLongWay ? since : kApproachShare * span(a);
+    return since < model::kLongWay ? since : kApproachShare * span(a);
   }
 
   /// Way before and behind a point that is passed: the least that any moving axis is given.
@@ -177,8 +178,8 @@ class MoveWriter {
     return text;
   }
 
-  const Machine& machine_;
-  const States& states_;
+  const model::Machine& machine_;
+  const model::States& states_;
   std::string& out_;
 };
 
@@ -193,7 +194,7 @@ std::string settings(const Plan& plan, const Drivers& drivers, std::size_t row) 
   const auto at = static_cast<Eigen::Index>(row);
   for (std::size_t i = 0; i < plan.machine.inputs.size(); ++i)
     add(plan.machine.inputs[i].name, plan.machine.inputs[i].unit, plan.rows.states.input[i][at]);
-  for (const CandidateInput& candidate : plan.rows.candidates)
+  for (const model::CandidateInput& candidate : plan.rows.candidates)
     add(candidate.name, candidate.unit, candidate.value[at]);
   return text;
 }
@@ -220,10 +221,11 @@ std::string plan_csv(const Plan& plan) {
 std::string plan_gcode(const Plan& plan) {
   std::string text = "; " + plan.sentence + "\n; check clearances before running\nG21 G90 G94\n";
   const Drivers drivers = drivers_of(std::vector<const FittedRival*>{&plan.a, &plan.b});
-  const bool timed = drivers.kinds.contains(SymbolKind::kTime);
+  const bool timed = drivers.kinds.contains(model::SymbolKind::kTime);
   MoveWriter writer(plan.machine, plan.rows.states, text);
-  const bool tethered = std::any_of(plan.rows.observations.begin(), plan.rows.observations.end(),
-                                    [](const Observation& o) { return o.kind == ObservationKind::kLength; });
+  const bool tethered =
+      std::any_of(plan.rows.observations.begin(), plan.rows.observations.end(),
+                  [](const model::Observation& o) { return o.kind == model::ObservationKind::kLength; });
   std::string before;
   double time = -1e300, step = 0;
   for (std::size_t row = 0; row < plan.rows.rows(); ++row) {
@@ -243,7 +245,8 @@ std::string plan_gcode(const Plan& plan) {
   return text + "M30\n";
 }
 
-std::string poses_gcode(const Machine& machine, const States& states, const std::string& remark) {
+std::string poses_gcode(const model::Machine& machine, const model::States& states,
+                        const std::string& remark) {
   std::string text = "; " + remark + "\n; check clearances before running\nG21 G90 G94\n";
   MoveWriter writer(machine, states, text);
   for (std::size_t row = 0; row < states.count; ++row) writer.write(row);
@@ -263,4 +266,4 @@ std::string plan_table(const Plan& plan) {
   return text;
 }
 
-}  // namespace vernier
+}  // namespace vernier::plan

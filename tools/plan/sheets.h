@@ -4,7 +4,7 @@
 
 #include "tools/plan/plan.h"
 
-namespace vernier {
+namespace vernier::plan {
 
 /// The planned rows as a measurement file whose readings are left to be filled in: units in the header, run
 /// kPlanRun. Only columns that the existing rows have or the rivals use. tool.
@@ -16,9 +16,10 @@ std::string plan_csv(const Plan& plan);
 std::string plan_gcode(const Plan& plan);
 
 /// Poses to stand at one after the other, as G-code in the same way: `remark` is its first line. tool.
-std::string poses_gcode(const Machine& machine, const States& states, const std::string& remark);
+std::string poses_gcode(const model::Machine& machine, const model::States& states,
+                        const std::string& remark);
 
 /// The same rows as a table for people.
 std::string plan_table(const Plan& plan);
 
-}  // namespace vernier
+}  // namespace vernier::plan

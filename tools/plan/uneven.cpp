@@ -9,7 +9,7 @@
 
 #include "tools/text/numbers.h"
 
-namespace vernier {
+namespace vernier::plan {
 namespace {
 
 using Wave = std::complex<double>;
@@ -67,22 +67,22 @@ std::vector<double> uneven_positions(double low, double high, const std::vector<
   return best;
 }
 
-std::string uneven_sentence(const Machine& machine, const Measurement& measurement,
-                            const CandidateFinding& finding) {
+std::string uneven_sentence(const model::Machine& machine, const model::Measurement& measurement,
+                            const diagnose::CandidateFinding& finding) {
   constexpr std::size_t kPositions = 12;
   const std::size_t axis = finding.axis.value();
-  const Column at = commanded(measurement, axis);
+  const model::Column at = model::commanded(measurement, axis);
   std::vector<double> taken;
   for (std::size_t row = 0; row < measurement.rows(); ++row)
     if (measurement.check[row] == 0) taken.push_back(at[static_cast<Eigen::Index>(row)]);
   const auto [low, high] = std::minmax_element(taken.begin(), taken.end());
   std::string text;
   for (const double q : uneven_positions(*low, *high, taken, kPositions))
-    text += (text.empty() ? "" : ", ") + number_text(q);
-  const Axis& item = machine.axes[axis];
+    text += (text.empty() ? "" : ", ") + text::number_text(q);
+  const model::Axis& item = machine.axes[axis];
   return "Measure " + item.name + " in uneven steps as well, which tell the " +
          std::to_string(finding.aliases.size() + 1) + " periods apart: " + text +
          (item.rotary ? " deg, both senses." : " mm, both senses.");
 }
 
-}  // namespace vernier
+}  // namespace vernier::plan

@@ -8,7 +8,7 @@
 #include "tools/model/machine.h"
 #include "tools/model/measurement.h"
 
-namespace vernier {
+namespace vernier::plan {
 
 /// `count` more positions of an axis between `low` and `high`, in its unit and increasing, such that no two
 /// waves down to 1/1000 of the range look alike at them and at the positions `taken` together: of many draws
@@ -18,7 +18,7 @@ std::vector<double> uneven_positions(double low, double high, const std::vector<
 
 /// Where to measure next, as a sentence, where the positions of the axis do not tell the periods of `finding`
 /// from others (CandidateFinding::aliases). tool.
-std::string uneven_sentence(const Machine& machine, const Measurement& measurement,
-                            const CandidateFinding& finding);
+std::string uneven_sentence(const model::Machine& machine, const model::Measurement& measurement,
+                            const diagnose::CandidateFinding& finding);
 
-}  // namespace vernier
+}  // namespace vernier::plan

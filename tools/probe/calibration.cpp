@@ -10,7 +10,7 @@
 #include "tools/maths/factors.h"
 #include "tools/text/error.h"
 
-namespace vernier {
+namespace vernier::probe {
 namespace {
 
 using Eigen::Index;
@@ -59,8 +59,8 @@ bool explains(const TouchFit& with, const TouchFit& without, double level) {
   const double more = without.sigma * without.sigma * without.dof - with.sigma * with.sigma * with.dof;
   const int extra = without.dof - with.dof;
   if (extra <= 0 || with.dof <= 0 || with.sigma <= 0) return false;
-  return std::exp(log_f_tail(std::max(0.0, more / extra / (with.sigma * with.sigma)), extra, with.dof)) <
-         level;
+  return std::exp(maths::log_f_tail(std::max(0.0, more / extra / (with.sigma * with.sigma)), extra,
+                                    with.dof)) < level;
 }
 
 /// Adds the standard deviation of the delay from touch to touch: the part of the residuals' variance that
@@ -103,14 +103,14 @@ ProbeCalibration calibrate_block(TouchTable& table, const CalibrationSetup& setu
   const VectorXd upper = table.need({"upper", "up", "mean_up", "mean_upper"}, "position at the upper face");
   const VectorXd lower = table.need({"lower", "lp", "mean_lp", "mean_lower"}, "position at the lower face");
   if (!setup.ball_radius_mm)
-    throw InputError("a block needs the nominal radius of the stylus ball (--ball-radius)");
+    throw text::InputError("a block needs the nominal radius of the stylus ball (--ball-radius)");
   const VectorXd difference = (upper - lower).array() - (setup.size_mm + 2 * *setup.ball_radius_mm);
   ProbeCalibration result;
   result.delay_found = varies(feed);
   // d = intercept - 2 F / 60 * delay: both faces are recorded late.
   const TouchModel model = [&](const VectorXd& p) -> VectorXd {
     VectorXd r = difference.array() - p(0);
-    if (result.delay_found) r += 2 / kSecondsPerMinute * p(1) * feed;
+    if (result.delay_found) r += 2 / maths::kSecondsPerMinute * p(1) * feed;
     return r;
   };
   TouchFitOptions options;
@@ -119,16 +119,16 @@ ProbeCalibration calibrate_block(TouchTable& table, const CalibrationSetup& setu
       fit_touches(model, VectorXd::Zero(result.delay_found ? 2 : 1), options, {"tip radius", "delay"});
   if (result.delay_found) {
     add(result, "delay", "ms", 1e3, 1);
-    const double slope = -2 / kSecondsPerMinute * kUmPerMm;
+    const double slope = -2 / maths::kSecondsPerMinute * maths::kUmPerMm;
     result.line_slope_um_per_mm_min = slope * result.fit.value(1);
     result.line_slope_std = std::abs(slope) * result.fit.std_of(1);
-    result.line_intercept_um = result.fit.value(0) * kUmPerMm;
-    result.line_intercept_std_um = result.fit.std_of(0) * kUmPerMm;
+    result.line_intercept_um = result.fit.value(0) * maths::kUmPerMm;
+    result.line_intercept_std_um = result.fit.std_of(0) * maths::kUmPerMm;
   }
   add(result, "effective_tip_radius", "mm", 0.5, 0, *setup.ball_radius_mm);
-  add(result, "pretravel", "um", -0.5 * kUmPerMm, 0);
+  add(result, "pretravel", "um", -0.5 * maths::kUmPerMm, 0);
   say_feeds(feed, result.delay_found, result.findings);
-  add_spread(result, feed / kSecondsPerMinute, 2);
+  add_spread(result, feed / maths::kSecondsPerMinute, 2);
   result.findings.push_back(
       "Both faces lie along one line: lobes of the pretravel and its direction are not seen.");
   return result;
@@ -178,7 +178,8 @@ struct RoundTouches {
   // Largest gap between the azimuths of neighbouring touches, deg.
   double largest_gap(const VectorXd& p) const {
     std::vector<double> phi;
-    for (Index i = 0; i < x.size(); ++i) phi.push_back(std::atan2(y(i) - p(1), x(i) - p(0)) * kDegPerRad);
+    for (Index i = 0; i < x.size(); ++i)
+      phi.push_back(std::atan2(y(i) - p(1), x(i) - p(0)) * maths::kDegPerRad);
     std::sort(phi.begin(), phi.end());
     double gap = phi.front() + 360 - phi.back();
     for (std::size_t i = 1; i < phi.size(); ++i) gap = std::max(gap, phi[i] - phi[i - 1]);
@@ -200,7 +201,7 @@ RoundTouches round_touches(TouchTable& table, const CalibrationSetup& setup) {
   const bool in_xz = setup.artefact == Artefact::kSphere && z && (!y || stays(*y));
   touches.y = in_xz ? *z : y ? *y : table.need({"y", "Y"}, "recorded position");
   if (touches.sphere) touches.z = *z;
-  touches.speed = table.need({"feed", "F"}, "feed along the approach") / kSecondsPerMinute;
+  touches.speed = table.need({"feed", "F"}, "feed along the approach") / maths::kSecondsPerMinute;
   touches.braking = VectorXd::Zero(touches.x.size());
   if (const auto a = table.find({"a", "acceleration"})) touches.braking = *a;
   return touches;
@@ -213,12 +214,12 @@ void say_plane(const RoundTouches& touches, const CalibrationSetup& setup,
   findings.push_back(
       fmt::format("The sphere was touched in one plane, taken to go through its centre: {} mm beside it "
                   "would make the effective tip radius {:.1f} um too small.",
-                  kOff_mm, kOff_mm * kOff_mm / setup.size_mm * kUmPerMm));
+                  kOff_mm, kOff_mm * kOff_mm / setup.size_mm * maths::kUmPerMm));
 }
 
 void say_round(const RoundTouches& touches, const LeverReach& reach, double gap,
                std::vector<std::string>& findings) {
-  say_feeds(touches.speed * kSecondsPerMinute, reach.delay, findings);
+  say_feeds(touches.speed * maths::kSecondsPerMinute, reach.delay, findings);
   if (!reach.lobes && gap > kLargestGapDeg)
     findings.push_back(
         fmt::format("No touch in {:.0f} deg of the azimuth: a three-lobed pretravel cannot be told from an "
@@ -276,8 +277,8 @@ ProbeCalibration calibrate_round(TouchTable& table, const CalibrationSetup& setu
   add(result, "effective_tip_radius", "mm", touches.sign, extra - 1, -touches.sign * half);
   if (setup.ball_radius_mm) {
     const Calibrated& tip = result.parameters.back();
-    result.parameters.push_back(
-        {"pretravel", "um", (*setup.ball_radius_mm - tip.value) * kUmPerMm, tip.std * kUmPerMm});
+    result.parameters.push_back({"pretravel", "um", (*setup.ball_radius_mm - tip.value) * maths::kUmPerMm,
+                                 tip.std * maths::kUmPerMm});
   }
   if (reach.lobes) {
     const Index c = extra + (reach.delay ? 1 : 0);
@@ -285,9 +286,10 @@ ProbeCalibration calibrate_round(TouchTable& table, const CalibrationSetup& setu
                  size = std::hypot(cosine, sine);
     Eigen::Vector2d along(cosine / size, sine / size), across(-sine / size, cosine / size);
     const Eigen::Matrix2d v = result.fit.covariance.block<2, 2>(c, c);
-    result.parameters.push_back({"lobe", "um", size * kUmPerMm, std::sqrt(along.dot(v * along)) * kUmPerMm});
-    result.parameters.push_back({"lobe_azimuth", "deg", std::atan2(sine, cosine) * kDegPerRad / 3,
-                                 std::sqrt(across.dot(v * across)) / size * kDegPerRad / 3});
+    result.parameters.push_back(
+        {"lobe", "um", size * maths::kUmPerMm, std::sqrt(along.dot(v * along)) * maths::kUmPerMm});
+    result.parameters.push_back({"lobe_azimuth", "deg", std::atan2(sine, cosine) * maths::kDegPerRad / 3,
+                                 std::sqrt(across.dot(v * across)) / size * maths::kDegPerRad / 3});
   }
   const char* const axes[] = {"centre_x", "centre_y", "centre_z"};
   for (Index i = 0; i < extra - 1; ++i) add(result, axes[i], "mm", 1, i);
@@ -309,8 +311,8 @@ void say_outliers(const TouchFit& fit, const TouchTable& table, std::vector<std:
   for (const TouchOutlier& outlier : fit.outliers)
     findings.push_back(
         fmt::format("{}:{}: left out: {:+.2f} um from the others, {:.0f} times their scatter (chance {:.1g})",
-                    table.file(), table.line(outlier.touch), outlier.residual * kUmPerMm, std::abs(outlier.t),
-                    outlier.p_value));
+                    table.file(), table.line(outlier.touch), outlier.residual * maths::kUmPerMm,
+                    std::abs(outlier.t), outlier.p_value));
 }
 
 namespace {
@@ -323,11 +325,11 @@ void refuse_absurd(const ProbeCalibration& result, const CalibrationSetup& setup
   if (const Calibrated* const delay = result.find("delay");
       delay &&
       (delay->value - 3 * delay->std > kMostDelay_ms || delay->value + 3 * delay->std < kLeastDelay_ms))
-    throw InputError(fmt::format("{}: the touches give a delay of {:.4g} ms, which no probe has: {}",
-                                 table.file(), delay->value, kHint));
+    throw text::InputError(fmt::format("{}: the touches give a delay of {:.4g} ms, which no probe has: {}",
+                                       table.file(), delay->value, kHint));
   const Calibrated* const tip = result.find("effective_tip_radius");
   if (tip && std::abs(tip->value) - 3 * tip->std > setup.size_mm)
-    throw InputError(fmt::format(
+    throw text::InputError(fmt::format(
         "{}: the touches give an effective tip radius of {:.4g} mm beside an artefact of {:.4g} mm: {}",
         table.file(), tip->value, setup.size_mm, kHint));
 }
@@ -348,7 +350,7 @@ void say_conditions(TouchTable& table, const CalibrationSetup& setup, std::vecto
 }  // namespace
 
 ProbeCalibration calibrate_probe(TouchTable& table, const CalibrationSetup& setup) {
-  if (!(setup.size_mm > 0)) throw InputError("the size of the artefact is not above 0 (--size)");
+  if (!(setup.size_mm > 0)) throw text::InputError("the size of the artefact is not above 0 (--size)");
   ProbeCalibration result =
       setup.artefact == Artefact::kBlock ? calibrate_block(table, setup) : calibrate_round(table, setup);
   refuse_absurd(result, setup, table);
@@ -361,7 +363,8 @@ ProbeCalibration calibrate_probe(TouchTable& table, const CalibrationSetup& setu
 GroupComparison compare_groups(const TouchTable& table, const CalibrationSetup& setup,
                                const std::string& column, const ProbeCalibration& all) {
   const std::vector<std::string> values = table.values_of(column);
-  if (values.size() < 2) throw InputError({table.file(), table.csv().header_line}, column, "one group only");
+  if (values.size() < 2)
+    throw text::InputError({table.file(), table.csv().header_line}, column, "one group only");
   GroupComparison result;
   double within = 0;
   int dof = 0;
@@ -376,7 +379,7 @@ GroupComparison compare_groups(const TouchTable& table, const CalibrationSetup& 
   const int extra = all.fit.dof - dof;
   if (extra > 0 && dof > 0 && within > 0)
     result.chance =
-        std::exp(log_f_tail(std::max(0.0, together - within) / extra / (within / dof), extra, dof));
+        std::exp(maths::log_f_tail(std::max(0.0, together - within) / extra / (within / dof), extra, dof));
   result.words =
       result.chance < kGroupChance
           ? fmt::format("The groups differ (chance {:.1g} if they were alike): calibrate each by itself.",
@@ -386,4 +389,4 @@ GroupComparison compare_groups(const TouchTable& table, const CalibrationSetup& 
   return result;
 }
 
-}  // namespace vernier
+}  // namespace vernier::probe

@@ -8,7 +8,7 @@
 #include "tools/probe/touch_fit.h"
 #include "tools/probe/touch_table.h"
 
-namespace vernier {
+namespace vernier::probe {
 
 enum class Artefact { kBlock, kRing, kSphere };
 
@@ -81,4 +81,4 @@ struct GroupComparison {
 GroupComparison compare_groups(const TouchTable& table, const CalibrationSetup& setup,
                                const std::string& column, const ProbeCalibration& all);
 
-}  // namespace vernier
+}  // namespace vernier::probe

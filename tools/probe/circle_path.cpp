@@ -10,7 +10,7 @@
 #include "tools/maths/factors.h"
 #include "tools/text/error.h"
 
-namespace vernier {
+namespace vernier::probe {
 namespace {
 
 /// Axes of a plane, their place among X Y Z, and the words of the plane and of its arcs' centres.
@@ -24,12 +24,12 @@ constexpr Plane kPlanes[] = {{"XY", 0, 1, "G17"}, {"YZ", 1, 2, "G19"}, {"ZX", 2,
 const Plane& plane_of(const CirclePath& path) {
   for (const Plane& plane : kPlanes)
     if (path.plane == plane.name) return plane;
-  throw InputError({}, path.plane, "a plane is XY, YZ or ZX");
+  throw text::InputError({}, path.plane, "a plane is XY, YZ or ZX");
 }
 
 void check(const CirclePath& path) {
   const auto need = [](bool good, const char* word, const char* what) {
-    if (!good) throw InputError({}, word, what);
+    if (!good) throw text::InputError({}, word, what);
   };
   const double arc = path.to_deg - path.from_deg;
   need(path.radius_mm > 0, "radius", "must be above zero");
@@ -46,8 +46,8 @@ void check(const CirclePath& path) {
 std::array<double, 3> point(const CirclePath& path, double angle_deg, double radius_mm) {
   const Plane& plane = plane_of(path);
   std::array<double, 3> at = path.centre_mm;
-  at[plane.a] += radius_mm * std::cos(angle_deg * kRadPerDeg);
-  at[plane.b] += radius_mm * std::sin(angle_deg * kRadPerDeg);
+  at[plane.a] += radius_mm * std::cos(angle_deg * maths::kRadPerDeg);
+  at[plane.b] += radius_mm * std::sin(angle_deg * maths::kRadPerDeg);
   return at;
 }
 
@@ -136,7 +136,7 @@ std::string robot_pose(const CirclePath& path, const std::array<double, 3>& at) 
   // To a tenth of a micrometre, and no minus before zero.
   for (const double mm : at) text += fmt::format("{:.7f}, ", std::round(mm * 1e4) / 1e7 + 0.0);
   for (std::size_t k = 0; k < 3; ++k)
-    text += fmt::format("{:.6f}{}", path.tool_deg[k] * kRadPerDeg, k < 2 ? ", " : "]");
+    text += fmt::format("{:.6f}{}", path.tool_deg[k] * maths::kRadPerDeg, k < 2 ? ", " : "]");
   return text;
 }
 
@@ -162,9 +162,9 @@ void robot_sense(const CirclePath& path, bool ccw, std::string& text) {
 
 std::string urscript_of(const CirclePath& path) {
   std::string text = "def ballbar():\n";
-  text +=
-      fmt::format("  vel = {:.6f} # m/s along the circle\n", path.feed_mm_min / kSecondsPerMinute / kUmPerMm);
-  text += fmt::format("  acc = {:.6f} # m/s^2\n", path.acceleration_mm_s2 / kUmPerMm);
+  text += fmt::format("  vel = {:.6f} # m/s along the circle\n",
+                      path.feed_mm_min / maths::kSecondsPerMinute / maths::kUmPerMm);
+  text += fmt::format("  acc = {:.6f} # m/s^2\n", path.acceleration_mm_s2 / maths::kUmPerMm);
   text += "  blend = 0.001 # m: so that it does not stop between two arcs\n";
   text += fmt::format(
       "  movel({}, a=acc, v=vel)\n",
@@ -185,4 +185,4 @@ std::string circle_program(const CirclePath& path, CircleDialect dialect) {
                                              : blocks_of(path, dialect == CircleDialect::kLinuxcnc);
 }
 
-}  // namespace vernier
+}  // namespace vernier::probe

@@ -3,7 +3,7 @@
 #include <array>
 #include <string>
 
-namespace vernier {
+namespace vernier::probe {
 
 /// What a program of a circular test is written for.
 enum class CircleDialect {
@@ -32,4 +32,4 @@ struct CirclePath {
 /// (Walker, PhD thesis, Strathclyde 2026, figure 4-8, figure 6-5, appendix 16.1).
 std::string circle_program(const CirclePath& path, CircleDialect dialect);
 
-}  // namespace vernier
+}  // namespace vernier::probe

@@ -5,7 +5,7 @@
 
 #include "tools/maths/factors.h"
 
-namespace vernier {
+namespace vernier::probe {
 namespace {
 
 constexpr double kApproachPerFollowing = 5.1 / 1.78;
@@ -13,7 +13,7 @@ constexpr double kApproachPerFollowing = 5.1 / 1.78;
 }  // namespace
 
 double following_error(const TouchConditions& conditions, double feed) {
-  return feed / kSecondsPerMinute / conditions.gain_per_s;
+  return feed / maths::kSecondsPerMinute / conditions.gain_per_s;
 }
 
 double least_approach(const TouchConditions& conditions, double feed) {
@@ -25,7 +25,7 @@ double least_overtravel(const TouchConditions& conditions, double feed) {
 }
 
 double stopping_way(const TouchConditions& conditions, double feed) {
-  return feed / kSecondsPerMinute * conditions.delay_s + following_error(conditions, feed);
+  return feed / maths::kSecondsPerMinute * conditions.delay_s + following_error(conditions, feed);
 }
 
 std::vector<std::string> broken_conditions(const TouchConditions& conditions, double feed, double clearance,
@@ -55,4 +55,4 @@ std::vector<std::string> broken_conditions(const TouchConditions& conditions, do
   return broken;
 }
 
-}  // namespace vernier
+}  // namespace vernier::probe

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace vernier {
+namespace vernier::probe {
 
 /// What a touch at speed takes to be a valid one: the machine comes to the surface at constant speed and
 /// stays there until the probe has triggered, and the stylus is not bent further than it bears. Defaults:
@@ -33,4 +33,4 @@ double stopping_way(const TouchConditions& conditions, double feed);
 std::vector<std::string> broken_conditions(const TouchConditions& conditions, double feed, double clearance,
                                            std::optional<double> overtravel);
 
-}  // namespace vernier
+}  // namespace vernier::probe

@@ -13,7 +13,7 @@
 #include "tools/maths/factors.h"
 #include "tools/text/error.h"
 
-namespace vernier {
+namespace vernier::probe {
 namespace {
 
 using Eigen::Index;
@@ -60,8 +60,8 @@ Touches read_touches(TouchTable& table, const FeatureSetup& setup, std::vector<s
     for (Index i = 0; i < rows; ++i) {
       const double length = n.row(i).norm();
       if (std::abs(length - 1) > 1e-3)
-        throw InputError({table.file(), table.line(static_cast<std::size_t>(i))},
-                         fmt::format("{:.4g}", length), "length of the normal, not 1");
+        throw text::InputError({table.file(), table.line(static_cast<std::size_t>(i))},
+                               fmt::format("{:.4g}", length), "length of the normal, not 1");
       n.row(i) /= length;
     }
     touches.n = n;
@@ -71,9 +71,10 @@ Touches read_touches(TouchTable& table, const FeatureSetup& setup, std::vector<s
   auto t = table.find({"T"});
   if (!t && setup.temperature_degC) t = VectorXd::Constant(rows, *setup.temperature_degC);
   if (!t)
-    throw InputError(table.file() +
-                     ": an expansion is given and no temperature (column T[degC], or --temperature)");
-  for (Index i = 0; i < rows; ++i) touches.p.row(i) /= 1 + *setup.expansion_per_K * ((*t)(i)-kReferenceDegC);
+    throw text::InputError(table.file() +
+                           ": an expansion is given and no temperature (column T[degC], or --temperature)");
+  for (Index i = 0; i < rows; ++i)
+    touches.p.row(i) /= 1 + *setup.expansion_per_K * ((*t)(i)-maths::kReferenceDegC);
   findings.push_back(
       fmt::format("Points as at 20 degC: measured at {:.2f} degC in the mean, expansion {:.3g} um/(m K), "
                   "about the origin.",
@@ -150,9 +151,9 @@ MeasuredFeature fit_plane(const Touches& touches, const FeatureSetup& setup) {
   });
   make.add_vector("normal", "", normal);
   make.add("tilt_x", "deg",
-           [&](const VectorXd& p) { return std::atan2(-normal(p)(1), normal(p)(2)) * kDegPerRad; });
+           [&](const VectorXd& p) { return std::atan2(-normal(p)(1), normal(p)(2)) * maths::kDegPerRad; });
   make.add("tilt_y", "deg",
-           [&](const VectorXd& p) { return std::atan2(normal(p)(0), normal(p)(2)) * kDegPerRad; });
+           [&](const VectorXd& p) { return std::atan2(normal(p)(0), normal(p)(2)) * maths::kDegPerRad; });
   feature.normals = normal(feature.fit.value).transpose().replicate(touches.size(), 1);
   feature.deviation = feature.fit.residual;
   if (!touches.n && setup.ball_radius_mm > 0)
@@ -204,8 +205,9 @@ MeasuredFeature fit_line(const Touches& touches, const FeatureSetup& setup) {
     return c + v * Vector3d(0, p(0), flat ? 0 : p(1)) - off;
   });
   make.add_vector("direction", "", direction);
-  make.add("angle", "deg",
-           [&](const VectorXd& p) { return std::atan2(direction(p)(1), direction(p)(0)) * kDegPerRad; });
+  make.add("angle", "deg", [&](const VectorXd& p) {
+    return std::atan2(direction(p)(1), direction(p)(0)) * maths::kDegPerRad;
+  });
   feature.normals = MatrixXd::Zero(touches.size(), 3);
   feature.deviation = VectorXd::Zero(touches.size());
   for (Index i = 0; i < touches.size(); ++i) {
@@ -332,11 +334,11 @@ MeasuredFeature fit_cylinder(const Touches& touches, const FeatureSetup& setup) 
       if (!best || feature.fit.outliers.size() < best->fit.outliers.size() ||
           (feature.fit.outliers.size() == best->fit.outliers.size() && feature.fit.rms < best->fit.rms))
         best = feature, frame = v;
-    } catch (const InputError& error) {
+    } catch (const text::InputError& error) {
       why = error.what();
     }
   }
-  if (!best) throw InputError(why);
+  if (!best) throw text::InputError(why);
   MeasuredFeature& feature = *best;
   const auto axis = [&](const VectorXd& p) -> Vector3d {
     const Vector3d a = (frame * Vector3d(p(2), p(3), 1)).normalized();
@@ -387,22 +389,22 @@ struct BlockModel {
 };
 
 MeasuredFeature fit_block(const Touches& touches, const FeatureSetup& setup) {
-  if (!touches.n) throw InputError("a block needs the normal of the touched face in each row (nx, ny)");
+  if (!touches.n) throw text::InputError("a block needs the normal of the touched face in each row (nx, ny)");
   if (!(setup.block_size_mm[0] > 0 && setup.block_size_mm[1] > 0))
-    throw InputError("a block needs its size (--size X,Y)");
+    throw text::InputError("a block needs its size (--size X,Y)");
   BlockModel model{
       touches, {}, {}, {setup.block_size_mm[0] / 2, setup.block_size_mm[1] / 2}, setup.ball_radius_mm};
   std::set<int> faces;
   for (Index i = 0; i < touches.size(); ++i) {
     const double nx = (*touches.n)(i, 0), ny = (*touches.n)(i, 1);
     if (std::max(std::abs(nx), std::abs(ny)) < 0.9)
-      throw InputError(
+      throw text::InputError(
           "a normal of the block lies along neither X nor Y (the block is turned by more than 25 deg)");
     model.axis.push_back(std::abs(nx) > std::abs(ny) ? 0 : 1);
     model.side.push_back(model.axis.back() == 0 ? (nx > 0 ? 1 : -1) : (ny > 0 ? 1 : -1));
     faces.insert(model.axis.back());
   }
-  if (faces.size() < 2) throw InputError("both a face across X and a face across Y must be touched");
+  if (faces.size() < 2) throw text::InputError("both a face across X and a face across Y must be touched");
   MeasuredFeature feature;
   Vector3d start(0, touches.p.col(0).mean(), touches.p.col(1).mean());
   feature.fit = fit_touches(model, start, options_of(touches, setup), {"angle", "centre x", "centre y"});
@@ -412,7 +414,7 @@ MeasuredFeature fit_block(const Touches& touches, const FeatureSetup& setup) {
   };
   make.add("centre_x", "mm", [&](const VectorXd& p) { return centre(p)(0); });
   make.add("centre_y", "mm", [&](const VectorXd& p) { return centre(p)(1); });
-  make.add("angle", "deg", [](const VectorXd& p) { return p(0) * kDegPerRad; });
+  make.add("angle", "deg", [](const VectorXd& p) { return p(0) * maths::kDegPerRad; });
   feature.normals = MatrixXd::Zero(touches.size(), 3);
   feature.deviation.resize(touches.size());
   const double a = feature.fit.value(0);
@@ -441,7 +443,7 @@ MeasuredFeature fit_kind(const Touches& touches, const FeatureSetup& setup) {
     case FeatureKind::kBlock:
       return fit_block(touches, setup);
   }
-  throw InputError("no such feature");
+  throw text::InputError("no such feature");
 }
 
 // Expansion and temperature are the same for all touches: they widen what has a size or a place.
@@ -461,7 +463,7 @@ MeasuredFeature fit_feature(TouchTable& table, const FeatureSetup& setup) {
   feature.points = touches.p;
   if (setup.expansion_per_K) {
     const auto t = table.find({"T"});
-    widen(feature, setup, (t ? t->mean() : *setup.temperature_degC) - kReferenceDegC);
+    widen(feature, setup, (t ? t->mean() : *setup.temperature_degC) - maths::kReferenceDegC);
   }
   double low = 0, high = 0;
   for (Index i = 0; i < feature.deviation.size(); ++i)
@@ -481,8 +483,8 @@ std::string feature_csv(const TouchTable& table, const MeasuredFeature& feature)
   static const std::set<std::string> kReplaced = {"x", "y", "z", "nx", "ny", "nz", "d", "px", "py", "pz"};
   std::string text;
   auto out = std::back_inserter(text);
-  const CsvFile& csv = table.csv();
-  for (const CsvColumn& column : csv.columns)
+  const text::CsvFile& csv = table.csv();
+  for (const text::CsvColumn& column : csv.columns)
     if (!kReplaced.contains(column.name))
       fmt::format_to(out, "{}{},", column.name, column.unit.empty() ? "" : "[" + column.unit + "]");
   text += "d[mm],nx,ny,nz,px[mm],py[mm],pz[mm]\n";
@@ -499,4 +501,4 @@ std::string feature_csv(const TouchTable& table, const MeasuredFeature& feature)
   return text;
 }
 
-}  // namespace vernier
+}  // namespace vernier::probe

@@ -9,7 +9,7 @@
 #include "tools/probe/touch_fit.h"
 #include "tools/probe/touch_table.h"
 
-namespace vernier {
+namespace vernier::probe {
 
 enum class FeatureKind { kPlane, kLine, kCircle, kSphere, kCylinder, kBlock };
 
@@ -54,4 +54,4 @@ MeasuredFeature fit_feature(TouchTable& table, const FeatureSetup& setup);
 /// section 2), the other columns as they were, without the recorded point. tool.
 std::string feature_csv(const TouchTable& table, const MeasuredFeature& feature);
 
-}  // namespace vernier
+}  // namespace vernier::probe

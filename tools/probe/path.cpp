@@ -12,7 +12,7 @@
 #include "tools/maths/factors.h"
 #include "tools/text/error.h"
 
-namespace vernier {
+namespace vernier::probe {
 namespace {
 
 /// A touch: where the approach begins and where it would end, program units, machine X Y Z (turning: X is Z).
@@ -20,22 +20,22 @@ struct Approach {
   double from[3], to[3], feed;
 };
 
-double in_program(const ProbePath& path, double mm) { return path.inch ? mm / kMmPerInch : mm; }
+double in_program(const ProbePath& path, double mm) { return path.inch ? mm / maths::kMmPerInch : mm; }
 
 int steps_of(const ProbePath& path) {
   if (!(path.step_deg > 0) || path.to_deg < path.from_deg)
-    throw InputError("angles: from, to and step leave no point");
+    throw text::InputError("angles: from, to and step leave no point");
   const double steps = (path.to_deg - path.from_deg) / path.step_deg;
-  if (steps > 100000) throw InputError("angles: more than 100000 points");
+  if (steps > 100000) throw text::InputError("angles: more than 100000 points");
   return static_cast<int>(std::floor(steps + 1e-9)) + 1;
 }
 
 void check(const ProbePath& path) {
-  if (!(path.radius > 0)) throw InputError("the artefact has no size");
-  if (!(path.clearance > 0)) throw InputError("the clearance is not above 0");
-  if (path.feeds.empty()) throw InputError("no feed is given");
+  if (!(path.radius > 0)) throw text::InputError("the artefact has no size");
+  if (!(path.clearance > 0)) throw text::InputError("the clearance is not above 0");
+  if (path.feeds.empty()) throw text::InputError("no feed is given");
   for (const double feed : path.feeds)
-    if (!(feed > 0)) throw InputError(fmt::format("feed {}: not above 0", feed));
+    if (!(feed > 0)) throw text::InputError(fmt::format("feed {}: not above 0", feed));
 }
 
 void check_touches(const ProbePath& path, Dialect dialect) {
@@ -44,11 +44,11 @@ void check_touches(const ProbePath& path, Dialect dialect) {
   if (dialect != Dialect::kTurning) overtravel = path.overtravel;
   std::vector<std::string> broken;
   for (const double feed : path.feeds)
-    for (std::string& reason :
-         broken_conditions(path.conditions, path.inch ? feed * kMmPerInch : feed, path.clearance, overtravel))
+    for (std::string& reason : broken_conditions(path.conditions, path.inch ? feed * maths::kMmPerInch : feed,
+                                                 path.clearance, overtravel))
       broken.push_back(std::move(reason));
   if (broken.empty()) return;
-  throw LimitNotMet(fmt::format("no valid touches: {}", fmt::join(broken, "; ")));
+  throw text::LimitNotMet(fmt::format("no valid touches: {}", fmt::join(broken, "; ")));
 }
 
 // ---- the turning dialect
@@ -91,9 +91,9 @@ void turning_tail(std::string& text, int block) {
 }
 
 std::string turning_program(const ProbePath& path) {
-  if (!path.sphere) throw InputError("the turning dialect is for a sphere");
+  if (!path.sphere) throw text::InputError("the turning dialect is for a sphere");
   if (path.feeds.size() != 1)
-    throw InputError("the turning dialect takes one feed: write one program for each");
+    throw text::InputError("the turning dialect takes one feed: write one program for each");
   std::string text;
   turning_head(path, text);
   auto out = std::back_inserter(text);
@@ -102,7 +102,7 @@ std::string turning_program(const ProbePath& path) {
   int block = 210;
   const int points = steps_of(path);
   for (int i = 0; i < points; ++i, block += 50) {
-    const double angle = (path.from_deg + i * path.step_deg) * kRadPerDeg;
+    const double angle = (path.from_deg + i * path.step_deg) * maths::kRadPerDeg;
     const float x0 = point_value(r * std::cos(angle) - r), y0 = point_value(r * std::sin(angle));
     const float xr = point_value(far * std::cos(angle) - r), yr = point_value(far * std::sin(angle));
     const auto away = static_cast<double>(2 * (yr + offset)), at = static_cast<double>(2 * (y0 + offset));
@@ -124,10 +124,11 @@ std::vector<Approach> sphere_touches(const ProbePath& path) {
   for (const double feed : path.feeds)
     for (const double elevation : path.elevations_deg) {
       if (elevation < 0 || elevation > 90)
-        throw InputError(fmt::format("elevation {}: not in 0..90", elevation));
+        throw text::InputError(fmt::format("elevation {}: not in 0..90", elevation));
       const bool pole = elevation == 90;
       for (int i = 0; i < (pole ? 1 : points); ++i) {
-        const double phi = (path.from_deg + i * path.step_deg) * kRadPerDeg, e = elevation * kRadPerDeg;
+        const double phi = (path.from_deg + i * path.step_deg) * maths::kRadPerDeg,
+                     e = elevation * maths::kRadPerDeg;
         const double n[3] = {pole ? 0 : std::cos(phi) * std::cos(e), pole ? 0 : std::sin(phi) * std::cos(e),
                              std::sin(e)};
         Approach touch{{}, {}, feed};
@@ -242,4 +243,4 @@ std::string probe_program(const ProbePath& path, Dialect dialect) {
   return dialect == Dialect::kTurning ? turning_program(path) : three_axis_program(path, dialect);
 }
 
-}  // namespace vernier
+}  // namespace vernier::probe

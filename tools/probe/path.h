@@ -5,7 +5,7 @@
 
 #include "tools/probe/conditions.h"
 
-namespace vernier {
+namespace vernier::probe {
 
 /// Controllers that a probing program can be written for.
 enum class Dialect {
@@ -42,4 +42,4 @@ struct ProbePath {
 /// 6415, appendices A1, B).
 std::string probe_program(const ProbePath& path, Dialect dialect);
 
-}  // namespace vernier
+}  // namespace vernier::probe

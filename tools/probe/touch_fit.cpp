@@ -11,7 +11,7 @@
 #include "tools/maths/chance.h"
 #include "tools/text/error.h"
 
-namespace vernier {
+namespace vernier::probe {
 namespace {
 
 using Eigen::Index;
@@ -90,7 +90,7 @@ class TouchSolver {
     pass.scale = pass.j.colwise().norm().transpose();
     for (Index k = 0; k < pass.scale.size(); ++k)
       if (pass.scale(k) == 0)
-        throw InputError(
+        throw text::InputError(
             fmt::format("the touches say nothing about {}", names_[static_cast<std::size_t>(k)]));
     pass.svd.compute(pass.j * pass.scale.cwiseInverse().asDiagonal(),
                      Eigen::ComputeThinU | Eigen::ComputeThinV);
@@ -100,7 +100,7 @@ class TouchSolver {
     for (Index k = 0; k < at.size(); ++k)
       if (std::abs(pass.svd.matrixV()(k, at.size() - 1)) > 0.3)
         weak += (weak.empty() ? "" : ", ") + names_[static_cast<std::size_t>(k)];
-    throw InputError("the touches cannot tell apart: " + weak);
+    throw text::InputError("the touches cannot tell apart: " + weak);
   }
 
   const TouchModel& model_;
@@ -126,7 +126,7 @@ std::optional<TouchOutlier> worst(const Pass& pass, const VectorXd& weight, cons
     if (without <= 0) continue;
     const double t = e / std::sqrt(without / (dof - 1) * (1 - leverage));
     // Two-sided: t^2 is F with 1 and dof - 1.
-    const double p = std::min(1.0, n * std::exp(log_f_tail(t * t, 1, dof - 1)));
+    const double p = std::min(1.0, n * std::exp(maths::log_f_tail(t * t, 1, dof - 1)));
     if (p < options.outlier_level && (!found || std::abs(t) > std::abs(found->t)))
       found = TouchOutlier{static_cast<std::size_t>(i) / options.per_touch, pass.residual(i), t, p};
   }
@@ -150,7 +150,7 @@ TouchFit fit_touches(const TouchModel& model, const VectorXd& start, const Touch
                                       static_cast<std::ptrdiff_t>(options.per_touch));
     fit.dof = used - static_cast<int>(start.size());
     if (fit.dof < 0)
-      throw InputError(fmt::format("{} observations are too few for {} unknowns", used, start.size()));
+      throw text::InputError(fmt::format("{} observations are too few for {} unknowns", used, start.size()));
     pass = solver.solve(at, fit.kept);
     weight = solver.weights(observations, fit.kept);
     const auto outlier = worst(pass, weight, options, used, fit.dof);
@@ -187,4 +187,4 @@ VectorXd algebraic_centre(const MatrixXd& points) {
   return s;
 }
 
-}  // namespace vernier
+}  // namespace vernier::probe

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace vernier {
+namespace vernier::probe {
 
 /// A touch that does not belong to the others.
 struct TouchOutlier {
@@ -53,4 +53,4 @@ TouchFit fit_touches(const TouchModel& model, const Eigen::VectorXd& start, cons
 /// tool.
 Eigen::VectorXd algebraic_centre(const Eigen::MatrixXd& points);
 
-}  // namespace vernier
+}  // namespace vernier::probe

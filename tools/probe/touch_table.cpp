@@ -10,7 +10,7 @@
 #include "tools/text/numbers.h"
 #include "tools/text/units.h"
 
-namespace vernier {
+namespace vernier::probe {
 namespace {
 
 // Units that a name may end with, longest first.
@@ -36,46 +36,48 @@ std::string unit_in_name(std::string name) {
 std::pair<std::string, std::string> split(const std::string& words, const char* option) {
   const auto at = words.find('=');
   if (at == 0 || at == std::string::npos || at + 1 == words.size())
-    throw InputError(fmt::format("{} \"{}\": not of the form column=value", option, words));
+    throw text::InputError(fmt::format("{} \"{}\": not of the form column=value", option, words));
   return {words.substr(0, at), words.substr(at + 1)};
 }
 
-void rename(CsvFile& csv, const std::string& words) {
+void rename(text::CsvFile& csv, const std::string& words) {
   auto parts = split(words, "--column");
   std::string &from = parts.first, &to = parts.second;
   const auto found = std::find_if(csv.columns.begin(), csv.columns.end(),
-                                  [&](const CsvColumn& c) { return c.name == from; });
-  if (found == csv.columns.end()) throw InputError({csv.file, csv.header_line}, from, "no such column");
+                                  [&](const text::CsvColumn& c) { return c.name == from; });
+  if (found == csv.columns.end()) throw text::InputError({csv.file, csv.header_line}, from, "no such column");
   if (const auto bracket = to.find('['); bracket != std::string::npos && to.back() == ']') {
     found->unit = to.substr(bracket + 1, to.size() - bracket - 2);
     to.resize(bracket);
-    if (!find_unit(found->unit)) throw InputError({csv.file, csv.header_line}, found->unit, "unknown unit");
+    if (!text::find_unit(found->unit))
+      throw text::InputError({csv.file, csv.header_line}, found->unit, "unknown unit");
   }
   // "mean_lp_um=lower" stays a column in um.
   if (found->unit.empty()) found->unit = unit_in_name(from);
   // A column that had the name already steps back.
-  for (CsvColumn& column : csv.columns)
+  for (text::CsvColumn& column : csv.columns)
     if (column.name == to && &column != &*found) column.name += "_before";
   found->name = to;
 }
 
-std::size_t column_of(const CsvFile& csv, const std::string& name) {
+std::size_t column_of(const text::CsvFile& csv, const std::string& name) {
   const auto found = std::find_if(csv.columns.begin(), csv.columns.end(),
-                                  [&](const CsvColumn& c) { return c.name == name; });
-  if (found == csv.columns.end()) throw InputError({csv.file, csv.header_line}, name, "no such column");
+                                  [&](const text::CsvColumn& c) { return c.name == name; });
+  if (found == csv.columns.end()) throw text::InputError({csv.file, csv.header_line}, name, "no such column");
   return static_cast<std::size_t>(found - csv.columns.begin());
 }
 
-void keep_rows(CsvFile& csv, const std::string& name, const std::string& value) {
+void keep_rows(text::CsvFile& csv, const std::string& name, const std::string& value) {
   const std::size_t index = column_of(csv, name);
-  CsvFile kept = csv;
+  text::CsvFile kept = csv;
   kept.rows.clear(), kept.line.clear();
   for (std::size_t i = 0; i < csv.rows.size(); ++i) {
     if (csv.rows[i][index] != value) continue;
     kept.rows.push_back(csv.rows[i]);
     kept.line.push_back(csv.line[i]);
   }
-  if (kept.rows.empty()) throw InputError({csv.file, csv.header_line}, value, "no row has this " + name);
+  if (kept.rows.empty())
+    throw text::InputError({csv.file, csv.header_line}, value, "no row has this " + name);
   csv = std::move(kept);
 }
 
@@ -83,7 +85,7 @@ void keep_rows(CsvFile& csv, const std::string& name, const std::string& value) 
 
 TouchTable::TouchTable(const std::string& text, const std::string& file,
                        const std::vector<std::string>& renames, const std::vector<std::string>& where)
-    : csv_(parse_csv(text, file)) {
+    : csv_(text::parse_csv(text, file)) {
   for (const std::string& words : renames) rename(csv_, words);
   for (const std::string& words : where) {
     const auto [name, value] = split(words, "--where");
@@ -129,30 +131,30 @@ std::optional<Eigen::VectorXd> TouchTable::find(const std::vector<std::string>& 
   if (found == nullptr) return std::nullopt;
   const std::string& unit_name = found->unit;
   const bool per_minute = unit_name == "mm/min";  // the unit of feeds here
-  const auto unit = find_unit(unit_name);
+  const auto unit = text::find_unit(unit_name);
   Eigen::VectorXd values(static_cast<Eigen::Index>(rows()));
   for (std::size_t i = 0; i < rows(); ++i) {
     const std::string& cell = csv_.rows[i][found->index];
-    const auto number = parse_number(cell);
+    const auto number = text::parse_number(cell);
     if (!number)
-      throw InputError({csv_.file, csv_.line[i]}, cell,
-                       "not a number in column " + csv_.columns[found->index].name);
+      throw text::InputError({csv_.file, csv_.line[i]}, cell,
+                             "not a number in column " + csv_.columns[found->index].name);
     const double value = per_minute || !unit ? *number : unit->factor * *number + unit->offset;
     values(static_cast<Eigen::Index>(i)) =
-        unit && unit->dimension == Dimension::kSpeed && !per_minute ? 60 * value : value;
+        unit && unit->dimension == text::Dimension::kSpeed && !per_minute ? 60 * value : value;
   }
   return values;
 }
 
 Eigen::VectorXd TouchTable::need(const std::vector<std::string>& names, const std::string& what) {
   if (auto values = find(names)) return *values;
-  throw InputError({csv_.file, csv_.header_line}, names.front(), "no such column: " + what);
+  throw text::InputError({csv_.file, csv_.header_line}, names.front(), "no such column: " + what);
 }
 
 std::optional<Eigen::VectorXd> TouchTable::uncertainty() {
   auto u = find({"u"});
-  if (u && u->minCoeff() <= 0) throw InputError(csv_.file + ": u is not above 0 in every row");
+  if (u && u->minCoeff() <= 0) throw text::InputError(csv_.file + ": u is not above 0 in every row");
   return u;
 }
 
-}  // namespace vernier
+}  // namespace vernier::probe

@@ -7,7 +7,7 @@
 
 #include "tools/text/csv.h"
 
-namespace vernier {
+namespace vernier::probe {
 
 /// Touches as a table: columns by name, `feed[mm/min]` or `feed_mm_min`, lengths in any unit.
 class TouchTable {
@@ -25,7 +25,7 @@ class TouchTable {
   std::size_t rows() const { return csv_.rows.size(); }
   const std::string& file() const { return csv_.file; }
   std::size_t line(std::size_t row) const { return csv_.line[row]; }
-  const CsvFile& csv() const { return csv_; }
+  const text::CsvFile& csv() const { return csv_; }
 
   /// Numbers of the column known under one of the names, in base units (mm, deg, mm/min stays mm/min, s,
   /// degC); nothing where there is none. A cell that is no number is an InputError. The first name that a
@@ -47,8 +47,8 @@ class TouchTable {
     std::size_t index = 0;
   };
   std::vector<Column> columns_;
-  CsvFile csv_;
+  text::CsvFile csv_;
   std::vector<std::string> notes_;
 };
 
-}  // namespace vernier
+}  // namespace vernier::probe

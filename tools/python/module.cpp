@@ -25,35 +25,38 @@
 #include "tools/text/files.h"
 #include "tools/text/numbers.h"
 
-namespace vernier {
+namespace vernier::python {
 
 std::shared_ptr<const MachineOfPython> machine_of_text(const std::string& path, std::string text) {
   auto made = std::make_shared<MachineOfPython>();
   made->path = path;
-  made->machine = parse_machine(text, path);
+  made->machine = model::parse_machine(text, path);
   made->text = std::move(text);
   return made;
 }
 
 ResultOfPython fit_of_python(const MachineOfPython& machine, const MeasurementsOfPython& measurements) {
   ResultOfPython result;
-  const auto m = std::make_shared<Measurement>(read_measurement(measurements.paths, machine.machine));
-  const FitResult found = fit(machine.machine, *m, {});
-  if (!found.absurd.empty()) throw LimitNotMet(found.absurd);
-  result.json = fit_json(found, *m);
+  const auto m =
+      std::make_shared<model::Measurement>(model::read_measurement(measurements.paths, machine.machine));
+  const fit::FitResult found = fit::fit(machine.machine, *m, {});
+  if (!found.absurd.empty()) throw text::LimitNotMet(found.absurd);
+  result.json = results::fit_json(found, *m);
   result.residual = found.residual;
   result.machine = machine_of_text(
-      machine.path, close_domains(update_machine_text(machine.text, found.machine, true), found.machine, *m));
+      machine.path,
+      fit::close_domains(model::update_machine_text(machine.text, found.machine, true), found.machine, *m));
   result.measurement = m;
   return result;
 }
 
 ResultOfPython compare_of_python(const MachineOfPython& machine, const MeasurementsOfPython& measurements) {
   ResultOfPython result;
-  const auto m = std::make_shared<Measurement>(read_measurement(measurements.paths, machine.machine));
-  result.residual = residuals(machine.machine, *m);
-  result.json = compare_json(machine.machine, *m, result.residual);
-  add_failure(result.json, failure_picture(machine.machine, *m, result.residual));
+  const auto m =
+      std::make_shared<model::Measurement>(model::read_measurement(measurements.paths, machine.machine));
+  result.residual = fit::residuals(machine.machine, *m);
+  result.json = results::compare_json(machine.machine, *m, result.residual);
+  results::add_failure(result.json, residual::failure_picture(machine.machine, *m, result.residual));
   result.machine = std::make_shared<MachineOfPython>(machine);
   result.measurement = m;
   return result;
@@ -62,30 +65,30 @@ ResultOfPython compare_of_python(const MachineOfPython& machine, const Measureme
 ResultOfPython diagnose_of_python(const MachineOfPython& machine, const MeasurementsOfPython& measurements,
                                   std::size_t most) {
   ResultOfPython result;
-  const Measurement m = read_measurement(measurements.paths, machine.machine);
-  DiagnoseOptions options;
-  options.effects = effect_catalogue({});
+  const model::Measurement m = model::read_measurement(measurements.paths, machine.machine);
+  diagnose::DiagnoseOptions options;
+  options.effects = effects::effect_catalogue({});
   options.most_effects = most;
-  Diagnosis found = diagnose(machine.text, machine.machine, m, options);
-  found.next_measurement = advice_for(machine.text, machine.machine, m, found, options.effects);
-  result.json = diagnosis_json(found, m);
+  diagnose::Diagnosis found = diagnose::diagnose(machine.text, machine.machine, m, options);
+  found.next_measurement = plan::advice_for(machine.text, machine.machine, m, found, options.effects);
+  result.json = results::diagnosis_json(found, m);
   // As --residuals of the command: what the machine at the end of the ladder leaves, read with its inputs.
   result.machine = machine_of_text(machine.path, found.machine_text);
-  const auto again =
-      std::make_shared<Measurement>(read_measurement(measurements.paths, result.machine->machine));
-  result.residual = residuals(result.machine->machine, *again);
+  const auto again = std::make_shared<model::Measurement>(
+      model::read_measurement(measurements.paths, result.machine->machine));
+  result.residual = fit::residuals(result.machine->machine, *again);
   result.measurement = again;
   return result;
 }
 
-}  // namespace vernier
+}  // namespace vernier::python
 
 namespace {
 
 namespace py = pybind11;
-using vernier::MachineOfPython;
-using vernier::MeasurementsOfPython;
-using vernier::ResultOfPython;
+using vernier::python::MachineOfPython;
+using vernier::python::MeasurementsOfPython;
+using vernier::python::ResultOfPython;
 
 std::string path_text(const py::handle& path) {
   return py::str(py::module_::import("os").attr("fspath")(path)).cast<std::string>();
@@ -99,16 +102,16 @@ MeasurementsOfPython measurements_of(const py::args& paths) {
     else
       made.paths.push_back(path_text(one));
   }
-  if (made.paths.empty()) throw vernier::InputError("Measurements: no file");
+  if (made.paths.empty()) throw vernier::text::InputError("Measurements: no file");
   // Now, not at the first fit: is it there, and is it a table?
-  for (const std::string& path : made.paths) vernier::parse_csv(vernier::read_file(path), path);
+  for (const std::string& path : made.paths) vernier::text::parse_csv(vernier::text::read_file(path), path);
   return made;
 }
 
 /// The columns of --residuals, as numbers where they are numbers: what pandas.DataFrame takes.
 py::dict table_of(const ResultOfPython& result) {
-  const vernier::CsvFile csv =
-      vernier::parse_csv(vernier::residual_csv(*result.measurement, result.residual), "residuals");
+  const vernier::text::CsvFile csv = vernier::text::parse_csv(
+      vernier::results::residual_csv(*result.measurement, result.residual), "residuals");
   py::dict table;
   for (std::size_t k = 0; k < csv.columns.size(); ++k) {
     const std::string& name = csv.columns[k].name;
@@ -116,7 +119,7 @@ py::dict table_of(const ResultOfPython& result) {
         name == "observation" || name == "unit" || name == "role" || name == "run" || name == "file";
     py::list cells;
     for (const auto& row : csv.rows) {
-      const auto number = words ? std::nullopt : vernier::parse_number(row[k]);
+      const auto number = words ? std::nullopt : vernier::text::parse_number(row[k]);
       if (words)
         cells.append(py::str(row[k]));
       else
@@ -139,15 +142,15 @@ PYBIND11_MODULE(vernier, module) {
   module.doc() = "Error models of machines: fit, compare and diagnose as the program `vernier` does.";
   module.attr("__version__") = VERNIER_VERSION;
   // Kept for as long as the interpreter lives, and so never given back after its end.
-  static const py::handle record = vernier::make_record_class().release();
+  static const py::handle record = vernier::python::make_record_class().release();
   module.attr("Record") = record;
-  py::register_exception<vernier::InputError>(module, "InputError", PyExc_ValueError);
-  py::register_exception<vernier::LimitNotMet>(module, "Refused", PyExc_RuntimeError);
+  py::register_exception<vernier::text::InputError>(module, "InputError", PyExc_ValueError);
+  py::register_exception<vernier::text::LimitNotMet>(module, "Refused", PyExc_RuntimeError);
 
   py::class_<MachineOfPython, std::shared_ptr<MachineOfPython>>(module, "Machine", "A machine file.")
       .def(py::init([](const py::object& path) {
              const std::string name = path_text(path);
-             return *vernier::machine_of_text(name, vernier::read_file(name));
+             return *vernier::python::machine_of_text(name, vernier::text::read_file(name));
            }),
            py::arg("path"))
       .def_readonly("path", &MachineOfPython::path)
@@ -162,7 +165,7 @@ PYBIND11_MODULE(vernier, module) {
       .def(
           "save",
           [](const MachineOfPython& self, const py::object& path) {
-            vernier::write_file(path_text(path), self.text);
+            vernier::text::write_file(path_text(path), self.text);
           },
           py::arg("path"), "Writes the machine file.")
       .def("__repr__", [](const MachineOfPython& self) {
@@ -177,8 +180,8 @@ PYBIND11_MODULE(vernier, module) {
                              "What a call found: the keys of the command's JSON as attributes.")
       .def_property_readonly("json",
                              [](const ResultOfPython& self) {
-                               return vernier::python_of(self.json,
-                                                         py::reinterpret_borrow<py::object>(record));
+                               return vernier::python::python_of(self.json,
+                                                                 py::reinterpret_borrow<py::object>(record));
                              })
       .def_property_readonly(
           "residuals", [](const ResultOfPython& self) { return self.residual; },
@@ -192,7 +195,7 @@ PYBIND11_MODULE(vernier, module) {
       .def("__getattr__",
            [](const ResultOfPython& self, const std::string& name) {
              if (!self.json.contains(name)) throw py::attribute_error(name);
-             return vernier::python_of(self.json[name], py::reinterpret_borrow<py::object>(record));
+             return vernier::python::python_of(self.json[name], py::reinterpret_borrow<py::object>(record));
            })
       .def("__dir__", [](const ResultOfPython& self) {
         std::vector<std::string> names = {"json", "model", "residuals", "table"};
@@ -203,21 +206,22 @@ PYBIND11_MODULE(vernier, module) {
   module.def(
       "fit",
       [](const MachineOfPython& machine, const MeasurementsOfPython& meas) {
-        return free_of_the_lock([&] { return vernier::fit_of_python(machine, meas); });
+        return free_of_the_lock([&] { return vernier::python::fit_of_python(machine, meas); });
       },
       py::arg("machine"), py::arg("meas"), "Estimates the free parameters; .model is the fitted machine.");
   module.def(
       "compare",
       [](const MachineOfPython& machine, const MeasurementsOfPython& meas) {
-        return free_of_the_lock([&] { return vernier::compare_of_python(machine, meas); });
+        return free_of_the_lock([&] { return vernier::python::compare_of_python(machine, meas); });
       },
       py::arg("machine"), py::arg("meas"),
       "The model as it is against measurements: how well, and where it fails.");
   module.def(
       "diagnose",
       [](const MachineOfPython& machine, const MeasurementsOfPython& meas, std::size_t most) {
-        return free_of_the_lock([&] { return vernier::diagnose_of_python(machine, meas, most); });
+        return free_of_the_lock([&] { return vernier::python::diagnose_of_python(machine, meas, most); });
       },
-      py::arg("machine"), py::arg("meas"), py::arg("most") = vernier::DiagnoseOptions{}.most_effects,
+      py::arg("machine"), py::arg("meas"),
+      py::arg("most") = vernier::diagnose::DiagnoseOptions{}.most_effects,
       "Which physical effect is missing; .model has the effects of the ladder.");
 }

@@ -9,12 +9,12 @@
 #include "tools/model/machine.h"
 #include "tools/model/measurement.h"
 
-namespace vernier {
+namespace vernier::python {
 
 /// A machine file: its text, which keeps remarks, and what it means.
 struct MachineOfPython {
   std::string path, text;
-  Machine machine;
+  model::Machine machine;
 };
 
 /// Measurement files by their names; a machine gives their columns a meaning, so they are read with one.
@@ -25,7 +25,7 @@ struct MeasurementsOfPython {
 /// What a call found: the JSON of the command of that name, and the residuals behind it.
 struct ResultOfPython {
   nlohmann::ordered_json json;
-  std::shared_ptr<const Measurement> measurement;
+  std::shared_ptr<const model::Measurement> measurement;
   Eigen::VectorXd residual;
   std::shared_ptr<const MachineOfPython> machine;  // as fitted, or as the ladder of a diagnosis ends
 };
@@ -40,4 +40,4 @@ ResultOfPython compare_of_python(const MachineOfPython& machine, const Measureme
 ResultOfPython diagnose_of_python(const MachineOfPython& machine, const MeasurementsOfPython& measurements,
                                   std::size_t most);
 
-}  // namespace vernier
+}  // namespace vernier::python

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace vernier {
+namespace vernier::python {
 
 namespace py = pybind11;
 
@@ -50,4 +50,4 @@ py::object python_of(const nlohmann::ordered_json& json, const py::object& recor
   return py::none();
 }
 
-}  // namespace vernier
+}  // namespace vernier::python

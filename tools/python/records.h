@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace vernier {
+namespace vernier::python {
 
 /// JSON as Python has it: null None, lists, numbers, text; an object is a dict whose keys are attributes too
 /// (class `Record` of the module). tool.
@@ -13,4 +13,4 @@ pybind11::object python_of(const nlohmann::ordered_json& json, const pybind11::o
 /// Makes that class. tool.
 pybind11::object make_record_class();
 
-}  // namespace vernier
+}  // namespace vernier::python

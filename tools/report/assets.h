@@ -2,10 +2,10 @@
 #pragma once
 #include <string_view>
 
-namespace vernier {
+namespace vernier::report {
 
 /// The bundled plots (tools/report/web, one script) and the style sheet of the reports. tool.
 std::string_view report_script();
 std::string_view report_style();
 
-}  // namespace vernier
+}  // namespace vernier::report

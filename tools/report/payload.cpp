@@ -8,7 +8,7 @@
 #include <cstring>
 #include <limits>
 
-namespace vernier {
+namespace vernier::report {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -115,4 +115,4 @@ std::string script_json(const Json& value) {
   return safe;
 }
 
-}  // namespace vernier
+}  // namespace vernier::report

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace vernier {
+namespace vernier::report {
 
 /// Base64 (RFC 4648, padded) of some bytes. tool.
 std::string base64(std::string_view bytes);
@@ -22,4 +22,4 @@ nlohmann::ordered_json packed(const nlohmann::ordered_json& value);
 /// replaced. tool.
 std::string script_json(const nlohmann::ordered_json& value);
 
-}  // namespace vernier
+}  // namespace vernier::report

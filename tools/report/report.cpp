@@ -7,7 +7,7 @@
 #include "tools/report/payload.h"
 #include "tools/report/thinning.h"
 
-namespace vernier {
+namespace vernier::report {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -102,4 +102,4 @@ std::string improvement_report_html(const Json& result) {
               {{"type", "improvement"}, {"result", shown}});
 }
 
-}  // namespace vernier
+}  // namespace vernier::report

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-namespace vernier {
+namespace vernier::report {
 
 /// One self-contained HTML page that draws the JSON result of `compare`; it computes no result of its own.
 /// The page opens without a network, in light and dark. Everything is optional but an object:
@@ -49,4 +49,4 @@ std::string improve_report_html(const nlohmann::ordered_json& result);
 /// Observations of one kind that a page draws at most.
 inline constexpr std::size_t kMostDrawn = 20000;
 
-}  // namespace vernier
+}  // namespace vernier::report

@@ -7,7 +7,7 @@
 
 #include "tools/report/payload.h"
 
-namespace vernier {
+namespace vernier::report {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -143,4 +143,4 @@ Json thinned_detail(const Json& detail, std::size_t most) {
   return result;
 }
 
-}  // namespace vernier
+}  // namespace vernier::report

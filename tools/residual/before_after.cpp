@@ -12,7 +12,7 @@
 #include "tools/fit/fit.h"
 #include "tools/maths/factors.h"
 
-namespace vernier {
+namespace vernier::residual {
 namespace {
 
 using Index = Eigen::Index;
@@ -37,9 +37,9 @@ double digits(double value, int count) {
   return rounded(value, step);
 }
 
-Measurement as_commanded(const Measurement& m) {
-  Measurement result = m;
-  result.states = commanded_states(m);
+model::Measurement as_commanded(const model::Measurement& m) {
+  model::Measurement result = m;
+  result.states = model::commanded_states(m);
   result.correction.clear();
   std::fill(result.check.begin(), result.check.end(), char{0});
   return result;
@@ -47,7 +47,7 @@ Measurement as_commanded(const Measurement& m) {
 
 /// What somebody set before a reading: the rows of both sides that agree in it are one pose. Positions to
 /// 1 nm (and the like of a degree), feeds to three digits: they are read back, not typed.
-std::vector<double> pose_of(const Measurement& m, std::size_t row) {
+std::vector<double> pose_of(const model::Measurement& m, std::size_t row) {
   const auto at = static_cast<Index>(row);
   std::vector<double> key;
   for (std::size_t i = 0; i < m.states.axis.size(); ++i) {
@@ -55,7 +55,7 @@ std::vector<double> pose_of(const Measurement& m, std::size_t row) {
     key.push_back(m.states.direction[i][at]);
   }
   key.push_back(digits(m.states.feed[at], 3));
-  for (const Column& normal : m.states.normal) key.push_back(rounded(normal[at], 1e-6));
+  for (const model::Column& normal : m.states.normal) key.push_back(rounded(normal[at], 1e-6));
   for (const Eigen::Matrix3Xd* point : {&m.centre, &m.nominal_point})
     for (Index k = 0; k < 3; ++k) {
       const double value = (*point)(k, at);
@@ -86,13 +86,13 @@ struct Sums {
 
 /// A side with where each of its rows belongs.
 struct Side {
-  Measurement rows;  // as commanded
+  model::Measurement rows;  // as commanded
   Eigen::VectorXd error;
   std::vector<std::size_t> sample;  // of each row; kNone: left out
 };
 constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 
-Side make_side(const Machine& machine, const Measurement& m) {
+Side make_side(const model::Machine& machine, const model::Measurement& m) {
   Side side{as_commanded(m), errors_as_commanded(machine, m), {}};
   side.sample.assign(m.rows(), kNone);
   return side;
@@ -101,7 +101,7 @@ Side make_side(const Machine& machine, const Measurement& m) {
 /// Rows of a side with a reading.
 std::vector<char> read_rows(const Side& side) {
   std::vector<char> read(side.rows.rows(), 0);
-  for (const Observation& o : side.rows.observations) read[o.row] = 1;
+  for (const model::Observation& o : side.rows.observations) read[o.row] = 1;
   return read;
 }
 
@@ -159,11 +159,11 @@ std::size_t cut_blocks(Side& side, std::size_t first) {
 
 /// Which readings a group takes.
 struct PickedRows {
-  std::optional<ObservationKind> kind;
+  std::optional<model::ObservationKind> kind;
   std::optional<double> feed;
-  bool takes(const Side& side, const Observation& o) const {
+  bool takes(const Side& side, const model::Observation& o) const {
     if (side.sample[o.row] == kNone) return false;
-    if (kind ? o.kind != *kind : is_rotation(o.kind)) return false;
+    if (kind ? o.kind != *kind : model::is_rotation(o.kind)) return false;
     return !feed || digits(side.rows.states.feed[static_cast<Index>(o.row)], 2) == *feed;
   }
 };
@@ -193,9 +193,10 @@ class Resampler {
  private:
   void gather(const PickedRows& selection, const Side& side, std::size_t k, ErrorFigures& figures) {
     for (std::size_t i = 0; i < side.rows.observations.size(); ++i) {
-      const Observation& o = side.rows.observations[i];
+      const model::Observation& o = side.rows.observations[i];
       if (!selection.takes(side, o)) continue;
-      const double error = side.error[static_cast<Index>(i)] * (is_rotation(o.kind) ? kUradPerDeg : kUmPerMm);
+      const double error = side.error[static_cast<Index>(i)] *
+                           (model::is_rotation(o.kind) ? maths::kUradPerDeg : maths::kUmPerMm);
       parts_[side.sample[o.row]][k].add(error);
       ++figures.count;
       figures.largest = std::max(figures.largest, std::abs(error));
@@ -297,9 +298,9 @@ class Resampler {
   std::vector<std::array<Sums, 2>> parts_;
 };
 
-std::set<ObservationKind> kinds_of(const Side& side) {
-  std::set<ObservationKind> kinds;
-  for (const Observation& o : side.rows.observations) kinds.insert(o.kind);
+std::set<model::ObservationKind> kinds_of(const Side& side) {
+  std::set<model::ObservationKind> kinds;
+  for (const model::Observation& o : side.rows.observations) kinds.insert(o.kind);
   return kinds;
 }
 
@@ -315,30 +316,30 @@ std::vector<double> feeds_of(const Side& before, const Side& after) {
 
 std::vector<PickedRows> selections(const Side& before, const Side& after) {
   std::vector<PickedRows> list;
-  std::set<ObservationKind> kinds = kinds_of(before);
-  const std::set<ObservationKind> other = kinds_of(after);
-  std::erase_if(kinds, [&](ObservationKind kind) { return !other.contains(kind); });
+  std::set<model::ObservationKind> kinds = kinds_of(before);
+  const std::set<model::ObservationKind> other = kinds_of(after);
+  std::erase_if(kinds, [&](model::ObservationKind kind) { return !other.contains(kind); });
   const std::vector<double> feeds = feeds_of(before, after);
-  for (const ObservationKind kind : kinds) list.push_back({kind, {}});
+  for (const model::ObservationKind kind : kinds) list.push_back({kind, {}});
   for (const double feed : feeds) list.push_back({{}, feed});
   if (kinds.size() > 1)
     for (const double feed : feeds)
-      for (const ObservationKind kind : kinds) list.push_back({kind, feed});
+      for (const model::ObservationKind kind : kinds) list.push_back({kind, feed});
   return list;
 }
 
-std::size_t corrected_rows(const Measurement& m) {
+std::size_t corrected_rows(const model::Measurement& m) {
   std::size_t count = 0;
   for (std::size_t row = 0; row < m.rows(); ++row)
     count += std::any_of(m.correction.begin(), m.correction.end(),
-                         [&](const Column& c) { return c[static_cast<Index>(row)] != 0; });
+                         [&](const model::Column& c) { return c[static_cast<Index>(row)] != 0; });
   return count;
 }
 
-void require_length(const Measurement& m) {
+void require_length(const model::Measurement& m) {
   if (std::all_of(m.observations.begin(), m.observations.end(),
-                  [](const Observation& o) { return is_rotation(o.kind); }))
-    throw InputError({m.files.front(), 0}, "", "no reading of a length: nothing to compare");
+                  [](const model::Observation& o) { return model::is_rotation(o.kind); }))
+    throw text::InputError({m.files.front(), 0}, "", "no reading of a length: nothing to compare");
 }
 
 }  // namespace
@@ -349,15 +350,15 @@ Helped BeforeAfter::verdict() const {
   return Helped::kCannotBeTold;
 }
 
-Eigen::VectorXd errors_as_commanded(const Machine& machine, const Measurement& measurement) {
-  const Measurement rows = as_commanded(measurement);
-  Machine nominal = nominal_machine(machine);
+Eigen::VectorXd errors_as_commanded(const model::Machine& machine, const model::Measurement& measurement) {
+  const model::Measurement rows = as_commanded(measurement);
+  model::Machine nominal = model::nominal_machine(machine);
   nominal.base_shifts = machine.base_shifts;
-  return residuals(set_up(nominal, rows), rows);
+  return fit::residuals(fit::set_up(nominal, rows), rows);
 }
 
-BeforeAfter compare_before_after(const Machine& machine, const Measurement& before, const Measurement& after,
-                                 const BeforeAfterOptions& options) {
+BeforeAfter compare_before_after(const model::Machine& machine, const model::Measurement& before,
+                                 const model::Measurement& after, const BeforeAfterOptions& options) {
   require_length(before);
   require_length(after);
   Side first = make_side(machine, before), second = make_side(machine, after);
@@ -382,4 +383,4 @@ BeforeAfter compare_before_after(const Machine& machine, const Measurement& befo
   return result;
 }
 
-}  // namespace vernier
+}  // namespace vernier::residual

@@ -7,7 +7,7 @@
 #include "tools/model/machine.h"
 #include "tools/model/measurement.h"
 
-namespace vernier {
+namespace vernier::residual {
 
 struct ConfidenceInterval {
   double low = 0, high = 0;
@@ -23,8 +23,8 @@ struct ErrorFigures {
 
 /// Before and after, of all readings of lengths or of a part of them.
 struct ReductionGroup {
-  std::optional<ObservationKind> kind;  // of one kind only (rotations are in none of several)
-  std::optional<double> feed;           // of one feed only, mm/min
+  std::optional<model::ObservationKind> kind;  // of one kind only (rotations are in none of several)
+  std::optional<double> feed;                  // of one feed only, mm/min
   ErrorFigures before, after;
   /// 1 - rms after / rms before, and its interval of 95 %; nothing where the readings are too few, or 0.
   std::optional<double> reduction;
@@ -56,10 +56,10 @@ struct BeforeAfterOptions {
 /// the reduction is that of the logarithm of the ratio, studentised with the linearised standard uncertainty
 /// (bootstrap-t: Efron and Tibshirani, section 12.5). Throws InputError where one has no reading of a length.
 /// tool.
-BeforeAfter compare_before_after(const Machine& machine, const Measurement& before, const Measurement& after,
-                                 const BeforeAfterOptions& options = {});
+BeforeAfter compare_before_after(const model::Machine& machine, const model::Measurement& before,
+                                 const model::Measurement& after, const BeforeAfterOptions& options = {});
 
 /// The error of every reading as above, mm or deg.
-Eigen::VectorXd errors_as_commanded(const Machine& machine, const Measurement& measurement);
+Eigen::VectorXd errors_as_commanded(const model::Machine& machine, const model::Measurement& measurement);
 
-}  // namespace vernier
+}  // namespace vernier::residual

@@ -9,20 +9,21 @@
 #include "tools/model/prediction.h"
 #include "tools/residual/repeats.h"
 
-namespace vernier {
+namespace vernier::residual {
 namespace {
 
 constexpr int kMostPerSide = 5;
 constexpr double kRowsPerCell = 6;  // wanted, so that a mean says more than a reading
 
 /// Nominal tool points of all rows in the measuring frame, mm.
-Eigen::Matrix3Xd tool_points(const Machine& machine, const Measurement& m) {
-  Measurement probe = m;
+Eigen::Matrix3Xd tool_points(const model::Machine& machine, const model::Measurement& m) {
+  model::Measurement probe = m;
   probe.observations.clear();
   for (std::size_t row = 0; row < m.rows(); ++row)
-    for (const ObservationKind kind : {ObservationKind::kX, ObservationKind::kY, ObservationKind::kZ})
+    for (const model::ObservationKind kind :
+         {model::ObservationKind::kX, model::ObservationKind::kY, model::ObservationKind::kZ})
       probe.observations.push_back({kind, row, 0});
-  const Eigen::VectorXd points = predict(machine, probe);
+  const Eigen::VectorXd points = model::predict(machine, probe);
   return Eigen::Map<const Eigen::Matrix3Xd>(points.data(), 3, static_cast<Eigen::Index>(m.rows()));
 }
 
@@ -32,16 +33,17 @@ struct RowVectors {
   std::vector<int> seen;
 };
 
-RowVectors row_vectors(const Measurement& m, const Eigen::VectorXd& residual, const Eigen::Matrix3Xd& point) {
+RowVectors row_vectors(const model::Measurement& m, const Eigen::VectorXd& residual,
+                       const Eigen::Matrix3Xd& point) {
   RowVectors vectors{Eigen::Matrix3Xd::Zero(3, point.cols()), std::vector<int>(m.rows(), 0)};
   for (std::size_t i = 0; i < m.observations.size(); ++i) {
-    const Observation& o = m.observations[i];
+    const model::Observation& o = m.observations[i];
     const auto row = static_cast<Eigen::Index>(o.row);
-    if (is_rotation(o.kind) || m.check[o.row] != 0) continue;
+    if (model::is_rotation(o.kind) || m.check[o.row] != 0) continue;
     Eigen::Vector3d direction = Eigen::Vector3d::Zero();
-    if (o.kind == ObservationKind::kLength)
+    if (o.kind == model::ObservationKind::kLength)
       direction = (point.col(row) - m.centre.col(row)).normalized();
-    else if (o.kind == ObservationKind::kD)
+    else if (o.kind == model::ObservationKind::kD)
       for (Eigen::Index k = 0; k < 3; ++k) direction[k] = m.states.normal[static_cast<std::size_t>(k)][row];
     else
       direction[static_cast<Eigen::Index>(o.kind)] = 1;
@@ -53,7 +55,7 @@ RowVectors row_vectors(const Measurement& m, const Eigen::VectorXd& residual, co
 
 }  // namespace
 
-std::vector<FailureCell> failure_cells(const Machine& machine, const Measurement& m,
+std::vector<FailureCell> failure_cells(const model::Machine& machine, const model::Measurement& m,
                                        const Eigen::VectorXd& residual) {
   const Eigen::Matrix3Xd point = tool_points(machine, m);
   const RowVectors vectors = row_vectors(m, residual, point);
@@ -93,12 +95,12 @@ std::vector<FailureCell> failure_cells(const Machine& machine, const Measurement
   std::vector<FailureCell> cells;
   for (const auto& [cell, sum] : sums) {
     const auto n = static_cast<double>(sum.count);
-    FailureCell item{sum.point / n, kUmPerMm * sum.mean / n, 0, sum.count};
+    FailureCell item{sum.point / n, maths::kUmPerMm * sum.mean / n, 0, sum.count};
     const double spread = std::max(0.0, sum.squares / n - (sum.mean / n).squaredNorm());
-    item.noise_um = sum.count > 1 ? kUmPerMm * std::sqrt(spread / (n - 1)) : 0;
+    item.noise_um = sum.count > 1 ? maths::kUmPerMm * std::sqrt(spread / (n - 1)) : 0;
     cells.push_back(item);
   }
   return cells;
 }
 
-}  // namespace vernier
+}  // namespace vernier::residual

@@ -5,11 +5,11 @@
 
 #include "tools/residual/sample.h"
 
-namespace vernier {
+namespace vernier::residual {
 
 /// Mean residual vectors over at most 5 x 5 x 5 parts of the volume (lengths: x y z as such, `length` along
 /// the bar, `d` along its normal). residual: mm or deg, one per observation. tool.
-std::vector<FailureCell> failure_cells(const Machine& machine, const Measurement& measurement,
+std::vector<FailureCell> failure_cells(const model::Machine& machine, const model::Measurement& measurement,
                                        const Eigen::VectorXd& residual);
 
-}  // namespace vernier
+}  // namespace vernier::residual

@@ -10,7 +10,7 @@
 #include "tools/maths/factors.h"
 #include "tools/residual/sentence.h"
 
-namespace vernier {
+namespace vernier::residual {
 namespace {
 
 constexpr std::size_t kMostFindings = 6;  // of a kind
@@ -55,8 +55,8 @@ class Search {
 
   /// Functions of everything taken but `except`, the constant first; last, what the products need beside them
   /// so that they stand for nothing but the interaction.
-  FunctionSet others(std::size_t except) const {
-    FunctionSet set{0}, own{0};
+  maths::FunctionSet others(std::size_t except) const {
+    maths::FunctionSet set{0}, own{0};
     for (std::size_t i = 0; i < taken_.size(); ++i) {
       const BasisTerm& term = taken_[i].term;
       if (term.shape == Shape::kConstant) continue;
@@ -68,11 +68,11 @@ class Search {
         if (std::find(own.begin(), own.end(), f) == own.end()) set.push_back(f);
     return set;
   }
-  const Moments& moments() const { return base_; }
+  const maths::Moments& moments() const { return base_; }
   /// Beyond the constant.
-  Moments centred() const {
-    Moments moments = base_;
-    condition_on(moments, {0});
+  maths::Moments centred() const {
+    maths::Moments moments = base_;
+    maths::condition_on(moments, {0});
     return moments;
   }
   const Eigen::VectorXd& held() const { return held_; }
@@ -92,9 +92,9 @@ class Search {
 
   /// Functions of the columns that change from row to row: taking them out leaves serial correlation as it
   /// is.
-  FunctionSet quick_functions() const {
+  maths::FunctionSet quick_functions() const {
     constexpr double kQuick = 0.3;
-    FunctionSet set;
+    maths::FunctionSet set;
     const std::size_t most = sample_.rows.size() / 4;
     for (const int order : {1, 2, 4})
       for (const BasisTerm& term : sample_.basis->terms) {
@@ -110,9 +110,9 @@ class Search {
 
   /// Factor by which serial correlation widens the variance of this curve's coefficient (Bartlett):
   /// correlation of what is left beside the curve, up to the first lag where it is within chance.
-  double inflation(const Eigen::VectorXd& curve, const FunctionSet& with) const {
+  double inflation(const Eigen::VectorXd& curve, const maths::FunctionSet& with) const {
     if (!(curve.squaredNorm() > 0)) return 1;
-    FunctionSet set = with;
+    maths::FunctionSet set = with;
     set.insert(set.end(), quick_.begin(), quick_.end());
     const Eigen::VectorXd rest = left(set);
     if (!(rest.squaredNorm() > 0)) return 1;
@@ -127,8 +127,8 @@ class Search {
     return std::max(1.0, factor);
   }
 
-  Eigen::VectorXd left(const FunctionSet& set) const {
-    const Eigen::VectorXd beta = coefficients(moments(), set);
+  Eigen::VectorXd left(const maths::FunctionSet& set) const {
+    const Eigen::VectorXd beta = maths::coefficients(moments(), set);
     Eigen::VectorXd rest = held_;
     for (std::size_t i = 0; i < set.size(); ++i)
       rest -= matrix_.col(set[i]) * beta[static_cast<Eigen::Index>(i)];
@@ -146,21 +146,21 @@ class Search {
       base_.sum = held_.squaredNorm();
     }
     now_ = base_;
-    condition_on(now_, {0});
+    maths::condition_on(now_, {0});
     for (const Taken& one : taken_)
-      if (one.term.shape != Shape::kConstant) condition_on(now_, one.term.subject);
+      if (one.term.shape != Shape::kConstant) maths::condition_on(now_, one.term.subject);
   }
 
-  FunctionSet with(const FunctionSet& functions) const {
-    FunctionSet set = others(taken_.size());
+  maths::FunctionSet with(const maths::FunctionSet& functions) const {
+    maths::FunctionSet set = others(taken_.size());
     set.insert(set.end(), functions.begin(), functions.end());
     return set;
   }
 
-  Eigen::VectorXd curve(const BasisTerm& term, const Moments& in) const {
-    FunctionSet set = term.adjust;
+  Eigen::VectorXd curve(const BasisTerm& term, const maths::Moments& in) const {
+    maths::FunctionSet set = term.adjust;
     set.insert(set.end(), term.subject.begin(), term.subject.end());
-    const Eigen::VectorXd beta = coefficients(in, set);
+    const Eigen::VectorXd beta = maths::coefficients(in, set);
     Eigen::VectorXd f = Eigen::VectorXd::Zero(sample_.held.size());
     for (std::size_t i = 0; i < set.size(); ++i)
       f += matrix_.col(set[i]) * beta[static_cast<Eigen::Index>(i)];
@@ -172,12 +172,12 @@ class Search {
   }
 
   void take_constant() {
-    const Explained part = explained(now_, {}, {0});
+    const maths::Explained part = maths::explained(now_, {}, {0});
     const double stretch = inflation(matrix_.col(0), {0});
-    const double p = corrected(log_p(now_, part, stretch));
+    const double p = corrected(maths::log_p(now_, part, stretch));
     if (p < std::log(context_.least_p))
       taken_.push_back({{Shape::kConstant, kNoColumn, {}, 0, {0}, {}}, {}, p});
-    condition_on(now_, {0});
+    maths::condition_on(now_, {0});
   }
 
   bool take_best() {
@@ -188,8 +188,8 @@ class Search {
     std::vector<Option> options;
     for (const BasisTerm& term : sample_.basis->terms) {
       if (term.shape == Shape::kConstant) continue;
-      const Explained part = explained(now_, term.adjust, term.subject);
-      if (part.rank > 0) options.push_back({log_p(now_, part), &term});
+      const maths::Explained part = maths::explained(now_, term.adjust, term.subject);
+      if (part.rank > 0) options.push_back({maths::log_p(now_, part), &term});
     }
     std::sort(options.begin(), options.end(),
               [](const Option& a, const Option& b) { return a.log_p < b.log_p; });
@@ -198,7 +198,8 @@ class Search {
       const BasisTerm& term = *options[i].term;
       if (corrected(options[i].log_p) >= std::log(context_.least_p)) break;
       const double stretch = inflation(curve(term, now_), with(term.subject));
-      const double p = corrected(log_p(now_, explained(now_, term.adjust, term.subject), stretch));
+      const double p =
+          corrected(maths::log_p(now_, maths::explained(now_, term.adjust, term.subject), stretch));
       if (p >= std::log(context_.least_p)) continue;
       if (const auto period = better_period(p)) return take_period(*period);
       taken_.push_back({term, {}, p});
@@ -225,7 +226,7 @@ class Search {
       if (!period) continue;
       const auto f = sine_functions(i, period->length);
       const double stretch = inflation(f.first * period->factor[0] + f.second * period->factor[1], with({}));
-      const double p = corrected(log_p(now_, period->part, stretch));
+      const double p = corrected(maths::log_p(now_, period->part, stretch));
       if (p < than && (!best || p < best->log_p)) best = Found{*period, i, p};
     }
     return best;
@@ -263,9 +264,9 @@ class Search {
       }
       functions.push_back(raw.normalized());
     }
-    Moments small;
+    maths::Moments small;
     Eigen::MatrixXd matrix(n, static_cast<Eigen::Index>(functions.size()) + 1);
-    FunctionSet all;
+    maths::FunctionSet all;
     for (std::size_t i = 0; i < functions.size(); ++i) {
       matrix.col(static_cast<Eigen::Index>(i)) = functions[i];
       all.push_back(static_cast<Eigen::Index>(i));
@@ -275,8 +276,8 @@ class Search {
     small.score = matrix.transpose() * held_;
     small.sum = held_.squaredNorm();
     small.freedom = sample_.moments.freedom;
-    const Explained part = explained(small, all, {matrix.cols() - 1});
-    return corrected(log_p(small, part)) < std::log(context_.least_p);
+    const maths::Explained part = maths::explained(small, all, {matrix.cols() - 1});
+    return corrected(maths::log_p(small, part)) < std::log(context_.least_p);
   }
 
   /// A period becomes two functions of the basis from here on.
@@ -308,8 +309,8 @@ class Search {
       double most = std::log(context_.least_p);
       for (std::size_t i = 0; i < taken_.size(); ++i) {
         if (taken_[i].term.shape == Shape::kConstant) continue;
-        const Explained part = explained(moments(), others(i), taken_[i].term.subject);
-        double p = corrected(log_p(moments(), part));
+        const maths::Explained part = maths::explained(moments(), others(i), taken_[i].term.subject);
+        double p = corrected(maths::log_p(moments(), part));
         // Too little to be worth a sentence goes before what may be chance.
         if (part.sum < kWorthSaying * base_.sum) p = 1 - part.sum / base_.sum;
         if (p <= most) continue;
@@ -324,12 +325,12 @@ class Search {
 
   const KindSample& sample_;
   const FindingContext& context_;
-  Moments base_;            // with the periods that were taken
-  Moments now_;             // beyond what has been taken
+  maths::Moments base_;     // with the periods that were taken
+  maths::Moments now_;      // beyond what has been taken
   Eigen::MatrixXd matrix_;  // as base_
   Eigen::VectorXd plain_;   // weighted residual
   Eigen::VectorXd held_;    // with outliers held
-  FunctionSet quick_;
+  maths::FunctionSet quick_;
   std::vector<Taken> taken_;
 };
 
@@ -344,12 +345,12 @@ class Describer {
   Describer(const KindSample& sample, const FindingContext& context, const Search& search,
             const std::vector<Taken>& taken)
       : sample_(sample), context_(context), search_(search), taken_(taken) {
-    FunctionSet all = search.others(taken.size());
-    const Eigen::VectorXd beta = coefficients(search.moments(), all);
+    maths::FunctionSet all = search.others(taken.size());
+    const Eigen::VectorXd beta = maths::coefficients(search.moments(), all);
     rest_ = search.held();
     for (std::size_t i = 0; i < all.size(); ++i)
       rest_ -= search.matrix().col(all[i]) * beta[static_cast<Eigen::Index>(i)];
-    scale_ = is_rotation(sample.kind) ? kUradPerDeg : kUmPerMm;
+    scale_ = model::is_rotation(sample.kind) ? maths::kUradPerDeg : maths::kUmPerMm;
     std::size_t from = 1;
     for (const Taken& one : taken) {
       Eigen::VectorXd curve = Eigen::VectorXd::Zero(sample.held.size());
@@ -396,14 +397,14 @@ class Describer {
   void shares(std::size_t at, Finding& f) const {
     const Taken& one = taken_[at];
     if (one.term.shape == Shape::kConstant) {
-      const Moments& m = search_.moments();
-      f.share_alone = f.share_after = adjusted_share(explained(m, {}, {0}).sum, 1, m.sum, m.freedom);
+      const maths::Moments& m = search_.moments();
+      f.share_alone = f.share_after = adjusted_share(maths::explained(m, {}, {0}).sum, 1, m.sum, m.freedom);
       return;
     }
-    const Moments m = search_.centred();
-    const Explained alone = explained(m, {}, one.term.subject);
+    const maths::Moments m = search_.centred();
+    const maths::Explained alone = maths::explained(m, {}, one.term.subject);
     f.share_alone = adjusted_share(alone.sum, alone.rank, m.sum, m.freedom);
-    const Explained after = explained(search_.moments(), search_.others(at), one.term.subject);
+    const maths::Explained after = maths::explained(search_.moments(), search_.others(at), one.term.subject);
     f.share_after = m.sum > 0 ? std::clamp(after.sum / m.sum, 0.0, 1.0) : 0;
   }
 
@@ -483,8 +484,8 @@ class Describer {
   /// Columns of which one term would have done as well.
   void alike(std::size_t at, Finding& f) const {
     const Taken& one = taken_[at];
-    const FunctionSet others = search_.others(at);
-    const double own = explained(search_.moments(), others, one.term.subject).sum;
+    const maths::FunctionSet others = search_.others(at);
+    const double own = maths::explained(search_.moments(), others, one.term.subject).sum;
     for (const BasisTerm& term : sample_.basis->terms) {
       if (term.shape == Shape::kConstant || term.second || term.column == one.term.column ||
           term.subject.size() > std::max<std::size_t>(2, one.term.subject.size()))
@@ -492,7 +493,8 @@ class Describer {
       const std::string& name = context_.columns[term.column].name;
       if (std::find(f.alike.begin(), f.alike.end(), name) != f.alike.end() || name == f.second_column)
         continue;
-      if (explained(search_.moments(), others, term.subject).sum > kAlike * own) f.alike.push_back(name);
+      if (maths::explained(search_.moments(), others, term.subject).sum > kAlike * own)
+        f.alike.push_back(name);
     }
   }
 
@@ -508,8 +510,8 @@ class Describer {
 /// Neighbours in time that agree although every finding is taken out.
 void add_wandering(const KindSample& sample, const FindingContext& context, const Search& search,
                    const std::vector<Taken>& taken, std::vector<Finding>& findings) {
-  const FunctionSet all = search.others(taken.size());
-  const Eigen::VectorXd beta = coefficients(search.moments(), all);
+  const maths::FunctionSet all = search.others(taken.size());
+  const Eigen::VectorXd beta = maths::coefficients(search.moments(), all);
   Eigen::VectorXd rest = search.held();
   for (std::size_t i = 0; i < all.size(); ++i)
     rest -= search.matrix().col(all[i]) * beta[static_cast<Eigen::Index>(i)];
@@ -525,7 +527,7 @@ void add_wandering(const KindSample& sample, const FindingContext& context, cons
   f.column = "visit";
   f.shape = Shape::kWanders;
   f.p_value = p;
-  const double scale = is_rotation(sample.kind) ? kUradPerDeg : kUmPerMm;
+  const double scale = model::is_rotation(sample.kind) ? maths::kUradPerDeg : maths::kUmPerMm;
   // The part that a row shares with the next one.
   f.share_alone = f.share_after =
       std::clamp(best.correlation * rest.squaredNorm() / search.centred().sum, 0.0, 1.0);
@@ -539,9 +541,9 @@ void add_wandering(const KindSample& sample, const FindingContext& context, cons
 
 void add_shares(const KindSample& sample, const FindingContext& context, const Search& search,
                 const std::vector<Taken>& taken, std::vector<ColumnShare>& shares) {
-  const Moments centred = search.centred();
+  const maths::Moments centred = search.centred();
   for (std::size_t column = 0; column < context.columns.size(); ++column) {
-    FunctionSet others{0};
+    maths::FunctionSet others{0};
     for (const Taken& one : taken)
       if (one.term.column != column && one.term.second.value_or(kNoColumn) != column)
         others.insert(others.end(), one.term.subject.begin(), one.term.subject.end());
@@ -551,12 +553,12 @@ void add_shares(const KindSample& sample, const FindingContext& context, const S
     for (const BasisTerm& term : sample.basis->terms) {
       if (term.column != column || term.second || term.shape == Shape::kConstant) continue;
       any = true;
-      const Moments& m = centred;
-      const Explained alone = explained(m, {}, term.subject);
+      const maths::Moments& m = centred;
+      const maths::Explained alone = maths::explained(m, {}, term.subject);
       share.share_alone =
           std::max(share.share_alone, adjusted_share(alone.sum, alone.rank, m.sum, m.freedom));
-      least = std::min(least, log_p(m, alone));
-      const Explained after = explained(search.moments(), others, term.subject);
+      least = std::min(least, maths::log_p(m, alone));
+      const maths::Explained after = maths::explained(search.moments(), others, term.subject);
       const double left = search.moments().sum - after.sum_before;
       share.share_after =
           std::max(share.share_after, adjusted_share(after.sum, after.rank, left, m.freedom) * left / m.sum);
@@ -590,4 +592,4 @@ std::vector<Finding> find_structure(const KindSample& sample, const FindingConte
   return findings;
 }
 
-}  // namespace vernier
+}  // namespace vernier::residual

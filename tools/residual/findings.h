@@ -4,11 +4,11 @@
 
 #include "tools/residual/sample.h"
 
-namespace vernier {
+namespace vernier::residual {
 
 /// What is fixed for all kinds of a search for findings.
 struct FindingContext {
-  const Measurement& measurement;
+  const model::Measurement& measurement;
   const std::vector<RecordedColumn>& columns;
   std::size_t tried = 1;  // terms and frequencies, all kinds: the factor of every p-value
   double least_p = 0.01;  // corrected; a finding must stay below
@@ -22,4 +22,4 @@ std::size_t count_tried(const KindSample& sample, const std::vector<RecordedColu
 std::vector<Finding> find_structure(const KindSample& sample, const FindingContext& context,
                                     std::vector<ColumnShare>& shares);
 
-}  // namespace vernier
+}  // namespace vernier::residual

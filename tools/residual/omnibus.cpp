@@ -8,7 +8,7 @@
 
 #include "tools/residual/repeats.h"
 
-namespace vernier {
+namespace vernier::residual {
 namespace {
 
 /// Tests of one sort share its part of the chance of a false alarm.
@@ -25,46 +25,47 @@ class Tester {
       : samples_(samples), columns_(columns) {
     for (const KindSample& sample : samples) {
       centred_.push_back(sample.moments);
-      condition_on(centred_.back(), {0});
+      maths::condition_on(centred_.back(), {0});
       projected_.push_back(sample.projected);
-      condition_on(projected_.back(), {0});
+      maths::condition_on(projected_.back(), {0});
     }
   }
 
   void constants(Sort& sort) const {
     const BasisTerm constant{Shape::kConstant, kNoColumn, {}, 0, {0}, {}};
-    std::vector<const Moments*> all;
-    std::vector<Explained> parts;
+    std::vector<const maths::Moments*> all;
+    std::vector<maths::Explained> parts;
     for (const KindSample& sample : samples_) {
-      sort.add(log_p(sample.projected, explained(sample.projected, {}, constant.subject)),
+      sort.add(maths::log_p(sample.projected, maths::explained(sample.projected, {}, constant.subject)),
                std::string("mean of ") + sample.name());
       all.push_back(&sample.moments);
-      parts.push_back(explained(sample.moments, {}, constant.subject));
+      parts.push_back(maths::explained(sample.moments, {}, constant.subject));
     }
-    if (samples_.size() > 1) sort.add(log_p_together(all, parts), "means");
+    if (samples_.size() > 1) sort.add(maths::log_p_together(all, parts), "means");
   }
 
   /// Every term of one column (products: of two), each kind apart and all together.
   void terms(Sort& sort, bool products) const {
     using Key = std::tuple<std::size_t, std::size_t, Shape, int>;
-    std::map<Key, std::pair<std::vector<const Moments*>, std::vector<Explained>>> together;
+    std::map<Key, std::pair<std::vector<const maths::Moments*>, std::vector<maths::Explained>>> together;
     for (std::size_t k = 0; k < samples_.size(); ++k)
       for (const BasisTerm& term : samples_[k].basis->terms) {
         if (term.shape == Shape::kConstant || (term.shape == Shape::kProduct) != products) continue;
-        const Explained part = explained(projected_[k], term.adjust, term.subject);
+        const maths::Explained part = maths::explained(projected_[k], term.adjust, term.subject);
         if (part.rank > 0)
-          sort.add(log_p(projected_[k], part), std::string(samples_[k].name()) + " against " + label(term));
+          sort.add(maths::log_p(projected_[k], part),
+                   std::string(samples_[k].name()) + " against " + label(term));
         auto& [moments, parts] =
             together[{term.column, term.second.value_or(kNoColumn), term.shape, term.order}];
         moments.push_back(&centred_[k]);
-        parts.push_back(explained(centred_[k], term.adjust, term.subject));
+        parts.push_back(maths::explained(centred_[k], term.adjust, term.subject));
       }
     for (const auto& [key, all] : together)
       if (all.second.size() > 1) {
         const auto& [first, second, shape, order] = key;
         const BasisTerm term{shape, first, second == kNoColumn ? std::optional<std::size_t>() : second,
                              order, {},    {}};
-        sort.add(log_p_together(all.first, all.second), "all kinds against " + label(term));
+        sort.add(maths::log_p_together(all.first, all.second), "all kinds against " + label(term));
       }
   }
 
@@ -72,17 +73,18 @@ class Tester {
   void joint(Sort& sort) const {
     for (const bool axes_only : {true, false})
       for (const int order : {1, 2, 3, 8}) {
-        std::vector<const Moments*> all;
-        std::vector<Explained> parts;
+        std::vector<const maths::Moments*> all;
+        std::vector<maths::Explained> parts;
         for (std::size_t k = 0; k < samples_.size(); ++k) {
-          const FunctionSet set = joint_set(samples_[k], axes_only, order);
+          const maths::FunctionSet set = joint_set(samples_[k], axes_only, order);
           if (set.size() < 2 || 2.0 * static_cast<double>(set.size()) > centred_[k].freedom) continue;
-          sort.add(log_p(projected_[k], explained(projected_[k], {}, set)),
+          sort.add(maths::log_p(projected_[k], maths::explained(projected_[k], {}, set)),
                    std::string(samples_[k].name()) + " against all columns together");
           all.push_back(&centred_[k]);
-          parts.push_back(explained(centred_[k], {}, set));
+          parts.push_back(maths::explained(centred_[k], {}, set));
         }
-        if (parts.size() > 1) sort.add(log_p_together(all, parts), "all kinds against all columns together");
+        if (parts.size() > 1)
+          sort.add(maths::log_p_together(all, parts), "all kinds against all columns together");
       }
   }
 
@@ -94,13 +96,13 @@ class Tester {
         const auto best = strongest_period(samples_[k], column, rest);
         if (!best) continue;
         const double scan = std::log(static_cast<double>(best->tried));
-        sort.add(std::min(0.0, log_p(centred_[k], best->part) + scan),
+        sort.add(std::min(0.0, maths::log_p(centred_[k], best->part) + scan),
                  std::string(samples_[k].name()) + " against a period of " + column.name);
       }
     }
   }
 
-  void neighbours(Sort& sort, const Measurement& m) const {
+  void neighbours(Sort& sort, const model::Measurement& m) const {
     std::vector<const RecordedColumn*> axes, all;
     for (const RecordedColumn& column : columns_) {
       if (column.kind == ColumnKind::kTime || column.kind == ColumnKind::kVisit) continue;
@@ -134,13 +136,13 @@ class Tester {
   }
 
   /// order 3: second order of every column and the products of pairs.
-  FunctionSet joint_set(const KindSample& sample, bool axes_only, int order) const {
+  maths::FunctionSet joint_set(const KindSample& sample, bool axes_only, int order) const {
     const auto wanted = [&](std::size_t column) {
       const ColumnKind kind = columns_[column].kind;
       return axes_only ? kind == ColumnKind::kAxis || kind == ColumnKind::kDirection
                        : kind != ColumnKind::kTime && kind != ColumnKind::kVisit;
     };
-    FunctionSet set;
+    maths::FunctionSet set;
     for (const BasisTerm& term : sample.basis->terms) {
       if (term.shape == Shape::kConstant || !wanted(term.column)) continue;
       const bool product = term.shape == Shape::kProduct;
@@ -156,13 +158,13 @@ class Tester {
   const std::vector<RecordedColumn>& columns_;
   /// Beyond the mean. A fit's Jacobian crosses kinds, so tests of several kinds together leave it aside (on
   /// the safe side), those of one kind use it.
-  std::vector<Moments> centred_, projected_;
+  std::vector<maths::Moments> centred_, projected_;
 };
 
 }  // namespace
 
 Omnibus omnibus_test(const std::vector<KindSample>& samples, const std::vector<RecordedColumn>& columns,
-                     const Measurement& m, const Repeats& repeats) {
+                     const model::Measurement& m, const Repeats& repeats) {
   const Tester tester(samples, columns);
   std::array<Sort, 7> sorts;
   sorts[0].part = 0.03, tester.constants(sorts[0]);
@@ -189,4 +191,4 @@ Omnibus omnibus_test(const std::vector<KindSample>& samples, const std::vector<R
   return result;
 }
 
-}  // namespace vernier
+}  // namespace vernier::residual

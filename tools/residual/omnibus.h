@@ -5,7 +5,7 @@
 
 #include "tools/residual/sample.h"
 
-namespace vernier {
+namespace vernier::residual {
 
 struct Repeats;
 
@@ -21,6 +21,6 @@ struct Omnibus {
 /// curve; all columns together; products of pairs; sines over the axes; neighbours in order and in place;
 /// repeats against lack of fit. tool.
 Omnibus omnibus_test(const std::vector<KindSample>& samples, const std::vector<RecordedColumn>& columns,
-                     const Measurement& measurement, const Repeats& repeats);
+                     const model::Measurement& measurement, const Repeats& repeats);
 
-}  // namespace vernier
+}  // namespace vernier::residual

@@ -8,7 +8,7 @@
 
 #include "tools/maths/factors.h"
 
-namespace vernier {
+namespace vernier::residual {
 namespace {
 
 constexpr int kMostDegree = 8;
@@ -21,7 +21,7 @@ class Recorder {
   Recorder(const std::vector<std::size_t>& rows, std::vector<RecordedColumn>& list)
       : rows_(rows), list_(list) {}
 
-  void add(const std::string& name, const std::string& unit, ColumnKind kind, const Column& value,
+  void add(const std::string& name, const std::string& unit, ColumnKind kind, const model::Column& value,
            bool rotary = false) {
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (const std::size_t row : rows_) {
@@ -38,12 +38,13 @@ class Recorder {
   std::vector<RecordedColumn>& list_;
 };
 
-void add_motion(Recorder& recorder, const Machine& machine, const Measurement& m) {
-  const States& s = m.states;
+void add_motion(Recorder& recorder, const model::Machine& machine, const model::Measurement& m) {
+  const model::States& s = m.states;
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
     const std::string& axis = machine.axes[i].name;
     const std::string unit = machine.axes[i].rotary ? "deg" : "mm";
-    const auto motion = [&](const std::string& name, const std::string& u, ColumnKind kind, const Column& v) {
+    const auto motion = [&](const std::string& name, const std::string& u, ColumnKind kind,
+                            const model::Column& v) {
       if (m.has_recorded(name)) recorder.add(name, u, kind, v);
     };
     motion("dir" + axis, "", ColumnKind::kDirection, s.direction[i]);
@@ -169,7 +170,8 @@ class Builder {
       for (const bool sine : {true, false}) {
         Eigen::VectorXd f(static_cast<Eigen::Index>(rows_.size()));
         for (std::size_t i = 0; i < rows_.size(); ++i) {
-          const double angle = n * columns_[at].value[static_cast<Eigen::Index>(rows_[i])] * kRadPerDeg;
+          const double angle =
+              n * columns_[at].value[static_cast<Eigen::Index>(rows_[i])] * maths::kRadPerDeg;
           f[static_cast<Eigen::Index>(i)] = sine ? std::sin(angle) : std::cos(angle);
         }
         term.subject.push_back(add(f));
@@ -258,24 +260,24 @@ int pair_rank(const RecordedColumn& a, const RecordedColumn& b) {
 
 }  // namespace
 
-std::vector<RecordedColumn> recorded_columns(const Machine& machine, const Measurement& m,
+std::vector<RecordedColumn> recorded_columns(const model::Machine& machine, const model::Measurement& m,
                                              const std::vector<std::size_t>& rows) {
   std::vector<RecordedColumn> list;
   Recorder recorder(rows, list);
-  const States& s = m.states;
+  const model::States& s = m.states;
   for (std::size_t i = 0; i < machine.axes.size(); ++i)
     recorder.add(machine.axes[i].name, machine.axes[i].rotary ? "deg" : "mm", ColumnKind::kAxis,
-                 commanded(m, i), machine.axes[i].rotary);
+                 model::commanded(m, i), machine.axes[i].rotary);
   add_motion(recorder, machine, m);
   if (m.has_recorded("t")) recorder.add("t", "s", ColumnKind::kTime, s.time);
   recorder.add("visit", "", ColumnKind::kVisit, s.visit);
-  Column run(static_cast<Eigen::Index>(m.rows()));
+  model::Column run(static_cast<Eigen::Index>(m.rows()));
   for (std::size_t row = 0; row < m.rows(); ++row)
     run[static_cast<Eigen::Index>(row)] = static_cast<double>(s.run[row]);
   recorder.add("run", "", ColumnKind::kRun, run);
   for (std::size_t i = 0; i < machine.inputs.size(); ++i)
     recorder.add(machine.inputs[i].name, machine.inputs[i].unit, ColumnKind::kInput, s.input[i]);
-  for (const CandidateInput& candidate : m.candidates)
+  for (const model::CandidateInput& candidate : m.candidates)
     recorder.add(candidate.name, candidate.unit, ColumnKind::kInput, candidate.value);
   for (std::size_t k = 0; k < 3; ++k)
     recorder.add(std::string("n") + "xyz"[k], "", ColumnKind::kNormal, s.normal[k]);
@@ -299,4 +301,4 @@ Basis make_basis(const std::vector<RecordedColumn>& columns, const std::vector<s
   return builder.finish();
 }
 
-}  // namespace vernier
+}  // namespace vernier::residual

@@ -8,7 +8,7 @@
 #include "tools/model/measurement.h"
 #include "tools/residual/structure.h"
 
-namespace vernier {
+namespace vernier::residual {
 
 enum class ColumnKind : std::uint8_t {
   kAxis,
@@ -25,13 +25,14 @@ enum class ColumnKind : std::uint8_t {
 struct RecordedColumn {
   std::string name, unit;
   ColumnKind kind = ColumnKind::kAxis;
-  bool turns = false;  // a rotary axis over at least half a turn
-  Column value;        // of every row; NaN where not recorded
+  bool turns = false;   // a rotary axis over at least half a turn
+  model::Column value;  // of every row; NaN where not recorded
 };
 
 /// The columns that vary over the rows `rows`: axes, recorded motion, t, visit, run, inputs, candidate
 /// inputs, normal. tool.
-std::vector<RecordedColumn> recorded_columns(const Machine& machine, const Measurement& measurement,
+std::vector<RecordedColumn> recorded_columns(const model::Machine& machine,
+                                             const model::Measurement& measurement,
                                              const std::vector<std::size_t>& rows);
 
 /// Columns of a Basis that belong together: what one statement about the residual has as coefficients.
@@ -57,4 +58,4 @@ struct Basis {
 Basis make_basis(const std::vector<RecordedColumn>& columns, const std::vector<std::size_t>& rows);
 inline constexpr std::size_t kMostPairs = 250;
 
-}  // namespace vernier
+}  // namespace vernier::residual

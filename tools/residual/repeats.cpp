@@ -9,7 +9,7 @@
 #include "tools/maths/chance.h"
 #include "tools/maths/factors.h"
 
-namespace vernier {
+namespace vernier::residual {
 namespace {
 
 constexpr std::size_t kLeastFreedom = 5;  // as noise_um
@@ -33,7 +33,7 @@ struct PoseGroup {
 
 }  // namespace
 
-Repeats compare_repeats(const std::vector<KindSample>& samples, const Measurement& m) {
+Repeats compare_repeats(const std::vector<KindSample>& samples, const model::Measurement& m) {
   Repeats result;
   double within = 0, between = 0, within_freedom = 0, between_freedom = 0, plain = 0, plain_total = 0,
          readings = 0;
@@ -44,7 +44,7 @@ Repeats compare_repeats(const std::vector<KindSample>& samples, const Measuremen
     for (std::size_t i = 0; i < sample.rows.size(); ++i) {
       const auto at = static_cast<Eigen::Index>(i);
       std::vector<double>& key = of_row[sample.rows[i]];
-      if (key.empty()) key = row_conditions(m, sample.rows[i]);
+      if (key.empty()) key = fit::row_conditions(m, sample.rows[i]);
       groups[key].add(sample.held[at], sample.weight[at], sample.residual[at]);
     }
     double own = 0, own_between = 0;
@@ -53,11 +53,11 @@ Repeats compare_repeats(const std::vector<KindSample>& samples, const Measuremen
       own += group.squares;
       own_between += group.weight * group.mean * group.mean;
       freedom += group.count - 1;
-      if (!is_rotation(sample.kind)) plain += group.plain_squares;
+      if (!model::is_rotation(sample.kind)) plain += group.plain_squares;
     }
-    if (is_rotation(sample.kind)) plain += 0;
+    if (model::is_rotation(sample.kind)) plain += 0;
     if (freedom == 0) continue;
-    if (!is_rotation(sample.kind)) {
+    if (!model::is_rotation(sample.kind)) {
       result.freedom += freedom;
       plain_total += sample.residual.squaredNorm();
       readings += static_cast<double>(sample.rows.size());
@@ -73,12 +73,12 @@ Repeats compare_repeats(const std::vector<KindSample>& samples, const Measuremen
     between_freedom += static_cast<double>(groups.size());
   }
   if (within > 0 && between_freedom > 0)
-    result.log_p = log_f_tail(between / between_freedom, between_freedom, within_freedom);
+    result.log_p = maths::log_f_tail(between / between_freedom, between_freedom, within_freedom);
   if (result.freedom >= kLeastFreedom) {
     const double pure = plain / static_cast<double>(result.freedom);
     const double rest = plain_total - plain - static_cast<double>(conditions) * pure;
-    result.pure_error_um = kUmPerMm * std::sqrt(pure);
-    result.lack_of_fit_um = kUmPerMm * std::sqrt(std::max(0.0, rest / readings));
+    result.pure_error_um = maths::kUmPerMm * std::sqrt(pure);
+    result.lack_of_fit_um = maths::kUmPerMm * std::sqrt(std::max(0.0, rest / readings));
   }
   return result;
 }
@@ -94,7 +94,7 @@ std::optional<double> neighbour_error_um(const std::vector<KindSample>& samples,
   double squares = 0, count = 0;
   std::map<std::vector<std::size_t>, std::vector<std::pair<std::size_t, std::size_t>>> pairs_of;
   for (const KindSample& sample : samples) {
-    if (is_rotation(sample.kind)) continue;
+    if (model::is_rotation(sample.kind)) continue;
     auto found = pairs_of.find(sample.rows);
     if (found == pairs_of.end()) found = pairs_of.emplace(sample.rows, neighbour_pairs(sample, place)).first;
     // The closer half: the rest of a greedy pairing is far apart.
@@ -109,7 +109,7 @@ std::optional<double> neighbour_error_um(const std::vector<KindSample>& samples,
     }
   }
   if (count < 10) return std::nullopt;
-  return kUmPerMm * std::sqrt(squares / count);
+  return maths::kUmPerMm * std::sqrt(squares / count);
 }
 
-}  // namespace vernier
+}  // namespace vernier::residual

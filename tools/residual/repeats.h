@@ -5,7 +5,7 @@
 
 #include "tools/residual/sample.h"
 
-namespace vernier {
+namespace vernier::residual {
 
 /// Spread of rows at equal conditions against what is left between conditions (lack of fit; Draper and Smith,
 /// Applied Regression Analysis, 3rd ed., section 2.1).
@@ -16,11 +16,11 @@ struct Repeats {
 };
 
 /// tool.
-Repeats compare_repeats(const std::vector<KindSample>& samples, const Measurement& measurement);
+Repeats compare_repeats(const std::vector<KindSample>& samples, const model::Measurement& measurement);
 
 /// Spread of the residual from the nearest pairs of rows in all columns but time and order, um: an upper
 /// bound of the noise. Lengths only; nothing with fewer than 10 pairs. tool.
 std::optional<double> neighbour_error_um(const std::vector<KindSample>& samples,
                                          const std::vector<RecordedColumn>& columns);
 
-}  // namespace vernier
+}  // namespace vernier::residual

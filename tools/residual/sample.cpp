@@ -9,7 +9,7 @@
 
 #include "tools/maths/chance.h"
 
-namespace vernier {
+namespace vernier::residual {
 namespace {
 
 constexpr double kMadPerSpread = 1.4826;  // of a normal distribution
@@ -84,7 +84,7 @@ void project(std::vector<KindSample>& samples, const std::vector<std::vector<std
     sum += (samples[k].held / spread[k] - own[k] * met_residual).squaredNorm();
   for (std::size_t k = 0; k < samples.size(); ++k) {
     const Eigen::MatrixXd met = own[k].transpose() * samples[k].basis->matrix;
-    Moments& moments = samples[k].projected;
+    maths::Moments& moments = samples[k].projected;
     moments.gram.noalias() -= met.transpose() * met;
     moments.score = moments.score / spread[k] - met.transpose() * met_residual;
     moments.sum = sum;
@@ -139,8 +139,8 @@ std::size_t hold_outliers(Eigen::VectorXd& values) {
   return outliers;
 }
 
-Eigen::VectorXd KindSample::without(const FunctionSet& functions) const {
-  const Eigen::VectorXd beta = coefficients(moments, functions);
+Eigen::VectorXd KindSample::without(const maths::FunctionSet& functions) const {
+  const Eigen::VectorXd beta = maths::coefficients(moments, functions);
   Eigen::VectorXd rest = held;
   for (std::size_t i = 0; i < functions.size(); ++i)
     rest -= basis->matrix.col(functions[i]) * beta[static_cast<Eigen::Index>(i)];
@@ -149,7 +149,7 @@ Eigen::VectorXd KindSample::without(const FunctionSet& functions) const {
 
 namespace {
 
-KindSample make_sample(const Measurement& m, const Eigen::VectorXd& residual,
+KindSample make_sample(const model::Measurement& m, const Eigen::VectorXd& residual,
                        const std::vector<std::size_t>& which) {
   KindSample sample;
   sample.kind = m.observations[which.front()].kind;
@@ -158,7 +158,7 @@ KindSample make_sample(const Measurement& m, const Eigen::VectorXd& residual,
   sample.weight.resize(n);
   for (Eigen::Index i = 0; i < n; ++i) {
     const std::size_t at = which[static_cast<std::size_t>(i)], row = m.observations[at].row;
-    const double u = uncertainty_of(m, m.observations[at]);
+    const double u = model::uncertainty_of(m, m.observations[at]);
     sample.rows.push_back(row);
     sample.residual[i] = residual[static_cast<Eigen::Index>(at)];
     sample.weight[i] = u > 0 ? 1 / u : 1;
@@ -168,8 +168,8 @@ KindSample make_sample(const Measurement& m, const Eigen::VectorXd& residual,
 }
 
 /// Observations of the fit rows that are tested, kind by kind.
-std::vector<std::vector<std::size_t>> tested_observations(const Measurement& m) {
-  std::array<std::vector<std::size_t>, kObservationNames.size()> of_kind;
+std::vector<std::vector<std::size_t>> tested_observations(const model::Measurement& m) {
+  std::array<std::vector<std::size_t>, model::kObservationNames.size()> of_kind;
   for (std::size_t i = 0; i < m.observations.size(); ++i)
     if (m.check[m.observations[i].row] == 0)
       of_kind[static_cast<std::size_t>(m.observations[i].kind)].push_back(i);
@@ -181,7 +181,7 @@ std::vector<std::vector<std::size_t>> tested_observations(const Measurement& m) 
 
 }  // namespace
 
-std::vector<KindSample> kind_samples(const Measurement& m, const Eigen::VectorXd& residual,
+std::vector<KindSample> kind_samples(const model::Measurement& m, const Eigen::VectorXd& residual,
                                      const std::vector<RecordedColumn>& columns,
                                      const StructureOptions& options) {
   std::vector<KindSample> list;
@@ -203,7 +203,7 @@ std::vector<KindSample> kind_samples(const Measurement& m, const Eigen::VectorXd
   const double left = 1 - static_cast<double>(options.fitted_parameters) / std::max(1.0, readings);
   std::vector<double> scale(m.observations.size(), 0), spread;
   for (std::size_t k = 0; k < list.size(); ++k) {
-    Moments& moments = list[k].moments;
+    maths::Moments& moments = list[k].moments;
     moments.freedom *= left;
     list[k].projected = moments;
     spread.push_back(std::sqrt(moments.sum / std::max(1.0, moments.freedom)));
@@ -272,11 +272,11 @@ PairTest correlate(const Eigen::VectorXd& residual,
   const double vary = (aa - a * a / test.pairs) * (bb - b * b / test.pairs);
   if (!(vary > 0)) return test;
   test.correlation = (ab - a * b / test.pairs) / std::sqrt(vary);
-  test.log_p = log_correlation_tail(test.correlation, test.pairs);
+  test.log_p = maths::log_correlation_tail(test.correlation, test.pairs);
   return test;
 }
 
-PairTest serial_pairs(const KindSample& sample, const Measurement& m, const Eigen::VectorXd& residual,
+PairTest serial_pairs(const KindSample& sample, const model::Measurement& m, const Eigen::VectorXd& residual,
                       std::size_t phase) {
   std::vector<std::pair<std::size_t, std::size_t>> pairs;
   for (std::size_t i = phase; i + 1 < sample.rows.size(); i += 2)
@@ -327,4 +327,4 @@ std::vector<std::pair<std::size_t, std::size_t>> neighbour_pairs(
   return pairs;
 }
 
-}  // namespace vernier
+}  // namespace vernier::residual

@@ -10,29 +10,29 @@
 #include "tools/residual/recorded.h"
 #include "tools/residual/structure.h"
 
-namespace vernier {
+namespace vernier::residual {
 
 /// A record longer than this is tested on every n-th of its rows.
 inline constexpr std::size_t kMostTestedRows = 8000;
 
 /// The residual of one kind of observation over the fit rows, ready to be tested.
 struct KindSample {
-  ObservationKind kind = ObservationKind::kX;
+  model::ObservationKind kind = model::ObservationKind::kX;
   std::vector<std::size_t> rows;  // in the order of the file
   Eigen::VectorXd residual;       // mm or deg
   Eigen::VectorXd weight;         // 1/u, 1 where absent
   Eigen::VectorXd held;           // weighted residual, held at 4 robust spreads: what the tests look at
   std::size_t outliers = 0;       // beyond 5 robust spreads
   std::shared_ptr<const Basis>
-      basis;        // its matrix with weighted rows, columns of length 1; shared between kinds
-  Moments moments;  // of this kind alone, as the residual stands
+      basis;               // its matrix with weighted rows, columns of length 1; shared between kinds
+  maths::Moments moments;  // of this kind alone, as the residual stands
   /// After projection on the complement of the fit's Jacobian, which crosses kinds: sum and freedom are of
   /// all kinds together, each in units of its own spread. Without a Jacobian the same as `moments`.
-  Moments projected;
+  maths::Moments projected;
 
-  const char* name() const { return kObservationNames[static_cast<std::size_t>(kind)]; }
+  const char* name() const { return model::kObservationNames[static_cast<std::size_t>(kind)]; }
   /// What `held` keeps once the joint fit of these functions is taken out.
-  Eigen::VectorXd without(const FunctionSet& functions) const;
+  Eigen::VectorXd without(const maths::FunctionSet& functions) const;
 };
 
 /// Holds values at 4 robust spreads and counts those beyond 5; where more than a tenth are, they are no
@@ -40,14 +40,14 @@ struct KindSample {
 std::size_t hold_outliers(Eigen::VectorXd& values);
 
 /// One sample for each kind with at least 8 fit rows and a residual that is not zero throughout. tool.
-std::vector<KindSample> kind_samples(const Measurement& measurement, const Eigen::VectorXd& residual,
+std::vector<KindSample> kind_samples(const model::Measurement& measurement, const Eigen::VectorXd& residual,
                                      const std::vector<RecordedColumn>& columns,
                                      const StructureOptions& options);
 
 /// The strongest sine over one column.
 struct Period {
   double length = 0;  // in the column's unit
-  Explained part;
+  maths::Explained part;
   std::size_t tried = 0;                             // frequencies
   Eigen::Vector2d factor = Eigen::Vector2d::Zero();  // of sine and cosine, weighted residual per 1
 };
@@ -63,7 +63,7 @@ struct PairTest {
 };
 
 /// Neighbours in the order of the rows within a run, beginning with the first (phase 0) or second (1) row.
-PairTest serial_pairs(const KindSample& sample, const Measurement& measurement,
+PairTest serial_pairs(const KindSample& sample, const model::Measurement& measurement,
                       const Eigen::VectorXd& residual, std::size_t phase);
 
 /// Disjoint pairs of rows that lie close to one another in `columns` (each scaled to its range), closest
@@ -73,4 +73,4 @@ std::vector<std::pair<std::size_t, std::size_t>> neighbour_pairs(
 PairTest correlate(const Eigen::VectorXd& residual,
                    const std::vector<std::pair<std::size_t, std::size_t>>& pairs);
 
-}  // namespace vernier
+}  // namespace vernier::residual

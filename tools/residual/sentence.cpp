@@ -7,7 +7,7 @@
 
 #include "tools/residual/findings.h"
 
-namespace vernier {
+namespace vernier::residual {
 namespace {
 
 bool is_angle(const Finding& f) { return f.observation.starts_with("r"); }
@@ -120,4 +120,4 @@ std::string sentence_of(const Finding& f, const SentenceFacts& facts) {
          " along with it and would explain as much";
 }
 
-}  // namespace vernier
+}  // namespace vernier::residual

@@ -5,7 +5,7 @@
 
 #include "tools/residual/sample.h"
 
-namespace vernier {
+namespace vernier::residual {
 
 /// What the sentence of a finding needs beside the finding itself.
 struct SentenceFacts {
@@ -21,4 +21,4 @@ struct SentenceFacts {
 /// One sentence in plain English. tool.
 std::string sentence_of(const Finding& finding, const SentenceFacts& facts);
 
-}  // namespace vernier
+}  // namespace vernier::residual

@@ -11,26 +11,26 @@
 #include "tools/residual/omnibus.h"
 #include "tools/residual/repeats.h"
 
-namespace vernier {
+namespace vernier::residual {
 namespace {
 
-std::vector<std::size_t> fit_rows(const Measurement& m) {
+std::vector<std::size_t> fit_rows(const model::Measurement& m) {
   std::vector<char> seen(m.rows(), 0);
-  for (const Observation& o : m.observations) seen[o.row] = m.check[o.row] == 0 ? 1 : 0;
+  for (const model::Observation& o : m.observations) seen[o.row] = m.check[o.row] == 0 ? 1 : 0;
   std::vector<std::size_t> rows;
   for (std::size_t row = 0; row < m.rows(); ++row)
     if (seen[row] != 0) rows.push_back(row);
   return rows;
 }
 
-std::optional<double> chi_tail(const Measurement& m, const Eigen::VectorXd& residual,
+std::optional<double> chi_tail(const model::Measurement& m, const Eigen::VectorXd& residual,
                                std::size_t parameters) {
-  if (!has_uncertainty(m)) return std::nullopt;
-  const Eigen::VectorXd weights = fit_weights(m);
+  if (!fit::has_uncertainty(m)) return std::nullopt;
+  const Eigen::VectorXd weights = fit::fit_weights(m);
   const auto readings = static_cast<double>((weights.array() > 0).count());
   const double freedom = readings - static_cast<double>(parameters);
   if (freedom <= 0) return std::nullopt;
-  return chi_square_tail(weights.cwiseProduct(residual).squaredNorm(), freedom);
+  return maths::chi_square_tail(weights.cwiseProduct(residual).squaredNorm(), freedom);
 }
 
 /// Strongest first: by the readings' variance that each removes, in units of what is left of its own kind's.
@@ -39,7 +39,7 @@ void sort_by_strength(std::vector<Finding>& findings, const std::vector<KindSamp
     for (const KindSample& sample : samples)
       if (f.observation == sample.name()) {
         const bool weighted = sample.weight.maxCoeff() > 1;
-        return f.share_after * (weighted || !is_rotation(sample.kind) ? sample.held.squaredNorm() : 0);
+        return f.share_after * (weighted || !model::is_rotation(sample.kind) ? sample.held.squaredNorm() : 0);
       }
     return 0.0;
   };
@@ -49,8 +49,8 @@ void sort_by_strength(std::vector<Finding>& findings, const std::vector<KindSamp
 
 }  // namespace
 
-FailurePicture failure_picture(const Machine& machine, const Measurement& m, const Eigen::VectorXd& residual,
-                               const StructureOptions& options) {
+FailurePicture failure_picture(const model::Machine& machine, const model::Measurement& m,
+                               const Eigen::VectorXd& residual, const StructureOptions& options) {
   FailurePicture picture;
   const std::vector<std::size_t> rows = fit_rows(m);
   const std::vector<RecordedColumn> columns = recorded_columns(machine, m, rows);
@@ -82,4 +82,4 @@ FailurePicture failure_picture(const Machine& machine, const Measurement& m, con
   return picture;
 }
 
-}  // namespace vernier
+}  // namespace vernier::residual

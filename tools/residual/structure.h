@@ -10,7 +10,7 @@
 #include "tools/model/measurement.h"
 #include "tools/model/prediction.h"
 
-namespace vernier {
+namespace vernier::residual {
 
 /// How a residual depends on a recorded column.
 enum class Shape : std::uint8_t {
@@ -81,7 +81,7 @@ struct FailurePicture {
 struct StructureOptions {
   std::size_t fitted_parameters = 0;  // rank of the fit that left this residual
   /// Of that fit, by observation; makes the tests sharper where many parameters were fitted. May be null.
-  const SparseRows* jacobian = nullptr;
+  const model::SparseRows* jacobian = nullptr;
 };
 
 /// Finds where a model fails: the residual of each kind of observation over the fit rows against every
@@ -89,7 +89,7 @@ struct StructureOptions {
 /// measured - model, one per observation, mm or deg. The tests weight by 1/u; each kind has its own variance.
 /// tool. F tests: Seber and Lee, Linear Regression Analysis, 2nd ed., chapter 4; serial correlation:
 /// Bartlett's formula.
-FailurePicture failure_picture(const Machine& machine, const Measurement& measurement,
+FailurePicture failure_picture(const model::Machine& machine, const model::Measurement& measurement,
                                const Eigen::VectorXd& residual, const StructureOptions& options = {});
 
-}  // namespace vernier
+}  // namespace vernier::residual

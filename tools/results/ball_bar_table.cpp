@@ -8,32 +8,33 @@
 #include "tools/import/diagnostics.h"
 #include "tools/maths/factors.h"
 
-namespace vernier {
+namespace vernier::results {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
 /// In the order of kDiagnosticsNames; A and B stand for the axes of the plane, an empty name is left out.
-constexpr std::array<const char*, kDiagnosticsCount> kWords = {"scale of both axes",
-                                                               "",
-                                                               "",
-                                                               "scale mismatch",
-                                                               "squareness",
-                                                               "straightness of A",
-                                                               "straightness of B",
-                                                               "servo mismatch",
-                                                               "fourth wave",
-                                                               "radius, between the senses",
-                                                               "centre along A, between the senses",
-                                                               "centre along B, between the senses",
-                                                               "backlash of A",
-                                                               "backlash of A, between its ends",
-                                                               "backlash of B",
-                                                               "backlash of B, between its ends",
-                                                               "lateral play of A",
-                                                               "lateral play of A, between its ends",
-                                                               "lateral play of B",
-                                                               "lateral play of B, between its ends"};
+constexpr std::array<const char*, importer::kDiagnosticsCount> kWords = {
+    "scale of both axes",
+    "",
+    "",
+    "scale mismatch",
+    "squareness",
+    "straightness of A",
+    "straightness of B",
+    "servo mismatch",
+    "fourth wave",
+    "radius, between the senses",
+    "centre along A, between the senses",
+    "centre along B, between the senses",
+    "backlash of A",
+    "backlash of A, between its ends",
+    "backlash of B",
+    "backlash of B, between its ends",
+    "lateral play of A",
+    "lateral play of A, between its ends",
+    "lateral play of B",
+    "lateral play of B, between its ends"};
 
 /// The axis' letter for A and B where they stand alone.
 std::string in_words(const char* words, const Circle& circle) {
@@ -49,35 +50,36 @@ std::string in_words(const char* words, const Circle& circle) {
 
 }  // namespace
 
-Json ball_bar_table(const Circle& circle, const Measurement& m) {
-  DiagnosticsSetup setup;
+Json ball_bar_table(const Circle& circle, const model::Measurement& m) {
+  importer::DiagnosticsSetup setup;
   setup.radius_mm = circle.nominal_radius_mm;
-  std::vector<DiagnosticsSample> samples;
+  std::vector<importer::DiagnosticsSample> samples;
   std::array<bool, 2> senses{};
   for (const CircleRun& run : circle.runs)
     for (std::size_t i = 0; i < run.observation.size(); ++i) {
-      const Observation& o = m.observations[run.observation[i]];
+      const model::Observation& o = m.observations[run.observation[i]];
       if (m.check[o.row] != 0) continue;
       if (const double feed = m.states.feed[static_cast<Eigen::Index>(o.row)]; feed > 0)
         setup.feed_mm_min = feed;
       senses[run.direction > 0 ? 0 : 1] = true;
-      samples.push_back({run.angle_deg[i], run.direction, kUmPerMm * (o.value - circle.nominal_radius_mm)});
+      samples.push_back(
+          {run.angle_deg[i], run.direction, maths::kUmPerMm * (o.value - circle.nominal_radius_mm)});
     }
-  constexpr std::size_t kFewest = 4 * kDiagnosticsCount;
+  constexpr std::size_t kFewest = 4 * importer::kDiagnosticsCount;
   if (!senses[0] || !senses[1] || samples.size() < kFewest) return nullptr;
-  const DiagnosticsResult found = fit_diagnostics(samples, setup);
+  const importer::DiagnosticsResult found = importer::fit_diagnostics(samples, setup);
   if (found.rank < found.columns) return nullptr;
-  std::array<double, kDiagnosticsCount> low{}, high{};
-  for (const DiagnosticsSample& sample : samples) {
-    const auto basis = diagnostics_basis(sample.angle_deg, sample.direction, setup);
-    for (std::size_t k = 0; k < kDiagnosticsCount; ++k) {
+  std::array<double, importer::kDiagnosticsCount> low{}, high{};
+  for (const importer::DiagnosticsSample& sample : samples) {
+    const auto basis = importer::diagnostics_basis(sample.angle_deg, sample.direction, setup);
+    for (std::size_t k = 0; k < importer::kDiagnosticsCount; ++k) {
       low[k] = std::min(low[k], basis[k] * found.value[k]);
       high[k] = std::max(high[k], basis[k] * found.value[k]);
     }
   }
   double all = 0;
   std::vector<std::size_t> order;
-  for (std::size_t k = 0; k < kDiagnosticsCount; ++k) {
+  for (std::size_t k = 0; k < importer::kDiagnosticsCount; ++k) {
     if (*kWords[k] == '\0') continue;
     order.push_back(k);
     all += high[k] - low[k];
@@ -88,10 +90,10 @@ Json ball_bar_table(const Circle& circle, const Measurement& m) {
   for (const std::size_t k : order)
     table.push_back({{"name", in_words(kWords[k], circle)},
                      {"value", found.value[k]},
-                     {"unit", kDiagnosticsUnits[k]},
+                     {"unit", importer::kDiagnosticsUnits[k]},
                      {"effect_um", high[k] - low[k]},
                      {"share", all > 0 ? (high[k] - low[k]) / all : 0}});
   return table;
 }
 
-}  // namespace vernier
+}  // namespace vernier::results

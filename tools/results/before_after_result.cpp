@@ -7,32 +7,32 @@
 
 #include "tools/text/optional_json.h"
 
-namespace vernier {
+namespace vernier::results {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-const char* unit_of(const ReductionGroup& group) {
-  return group.kind && is_rotation(*group.kind) ? "urad" : "um";
+const char* unit_of(const residual::ReductionGroup& group) {
+  return group.kind && model::is_rotation(*group.kind) ? "urad" : "um";
 }
 
-const char* verdict_word(Helped verdict) {
+const char* verdict_word(residual::Helped verdict) {
   switch (verdict) {
-    case Helped::kHelped:
+    case residual::Helped::kHelped:
       return "helped";
-    case Helped::kMadeWorse:
+    case residual::Helped::kMadeWorse:
       return "made-worse";
-    case Helped::kCannotBeTold:
+    case residual::Helped::kCannotBeTold:
       break;
   }
   return "cannot-be-told";
 }
 
-Json interval_json(const std::optional<ConfidenceInterval>& interval) {
+Json interval_json(const std::optional<residual::ConfidenceInterval>& interval) {
   return interval ? Json{interval->low, interval->high} : Json(nullptr);
 }
 
-Json figures_json(const ErrorFigures& f, const std::string& unit) {
+Json figures_json(const residual::ErrorFigures& f, const std::string& unit) {
   return {{"n", f.count},
           {"mean_" + unit, f.mean},
           {"spread_" + unit, f.spread},
@@ -43,11 +43,11 @@ Json figures_json(const ErrorFigures& f, const std::string& unit) {
           {"rms_interval", interval_json(f.rms_interval)}};
 }
 
-void add_figures(Json& json, const ReductionGroup& group) {
+void add_figures(Json& json, const residual::ReductionGroup& group) {
   const std::string unit = unit_of(group);
   json["before_" + unit] = group.before.rms;
   json["after_" + unit] = group.after.rms;
-  json["reduction"] = or_null(group.reduction);
+  json["reduction"] = text::or_null(group.reduction);
   json["interval"] = interval_json(group.interval);
   json["before"] = figures_json(group.before, unit);
   json["after"] = figures_json(group.after, unit);
@@ -55,13 +55,13 @@ void add_figures(Json& json, const ReductionGroup& group) {
 
 std::string percent(double share) { return fmt::format("{:.3g}", 100 * share); }
 
-std::string interval_text(const ReductionGroup& group) {
+std::string interval_text(const residual::ReductionGroup& group) {
   if (!group.interval) return "-";
   return percent(group.interval->low) + " to " + percent(group.interval->high);
 }
 
-std::string sentence(const BeforeAfter& result) {
-  const ReductionGroup& all = result.all;
+std::string sentence(const residual::BeforeAfter& result) {
+  const residual::ReductionGroup& all = result.all;
   const std::string figures =
       fmt::format("{:.4g} um rms before, {:.4g} um after", all.before.rms, all.after.rms);
   if (!all.interval)
@@ -71,19 +71,19 @@ std::string sentence(const BeforeAfter& result) {
   const std::string how =
       fmt::format("{}: {} % less (95 % interval {} %)", figures, percent(*all.reduction), interval_text(all));
   switch (result.verdict()) {
-    case Helped::kHelped:
+    case residual::Helped::kHelped:
       return "The correction helped: " + how + ".";
-    case Helped::kMadeWorse:
+    case residual::Helped::kMadeWorse:
       return fmt::format("The correction made it worse: {}: {} % more (95 % interval {} to {} %).", figures,
                          percent(-*all.reduction), percent(-all.interval->high), percent(-all.interval->low));
-    case Helped::kCannotBeTold:
+    case residual::Helped::kCannotBeTold:
       break;
   }
   return "It cannot be told whether the correction helped: " + how + ", which holds 0.";
 }
 
 /// How the two were compared, and what a reader should mind.
-std::vector<std::string> remarks(const BeforeAfter& result) {
+std::vector<std::string> remarks(const residual::BeforeAfter& result) {
   std::vector<std::string> list;
   if (result.paired)
     list.push_back(fmt::format("{} poses that both have, compared one by one", result.samples));
@@ -98,13 +98,13 @@ std::vector<std::string> remarks(const BeforeAfter& result) {
   return list;
 }
 
-std::string name_of(const ReductionGroup& group) {
-  std::string name = group.kind ? kObservationNames[static_cast<std::size_t>(*group.kind)] : "all";
+std::string name_of(const residual::ReductionGroup& group) {
+  std::string name = group.kind ? model::kObservationNames[static_cast<std::size_t>(*group.kind)] : "all";
   if (group.feed) name += fmt::format(" at {:g} mm/min", *group.feed);
   return name;
 }
 
-std::vector<std::string> cells(const ReductionGroup& group) {
+std::vector<std::string> cells(const residual::ReductionGroup& group) {
   // What the set-up took away is 0 to the digits of its fit.
   const auto shown = [](double value) { return std::abs(value) < 1e-5 ? 0 : value; };
   const auto two = [&](double before, double after) {
@@ -123,15 +123,15 @@ std::vector<std::string> cells(const ReductionGroup& group) {
 const std::vector<std::string> kColumns = {"readings", "unit",    "mean",        "spread",
                                            "rms",      "largest", "reduction %", "95 % interval"};
 
-std::vector<std::vector<std::string>> table(const BeforeAfter& result) {
+std::vector<std::vector<std::string>> table(const residual::BeforeAfter& result) {
   std::vector<std::vector<std::string>> rows = {cells(result.all)};
-  for (const ReductionGroup& group : result.groups) rows.push_back(cells(group));
+  for (const residual::ReductionGroup& group : result.groups) rows.push_back(cells(group));
   return rows;
 }
 
 }  // namespace
 
-Json before_after_json(const BeforeAfter& result) {
+Json before_after_json(const residual::BeforeAfter& result) {
   Json json;
   add_figures(json, result.all);
   json["verdict"] = verdict_word(result.verdict());
@@ -141,16 +141,16 @@ Json before_after_json(const BeforeAfter& result) {
   json["unmatched_rows"] = {{"before", result.unmatched_before}, {"after", result.unmatched_after}};
   json["corrected_rows"] = {{"before", result.corrected_before}, {"after", result.corrected_after}};
   json["groups"] = Json::array();
-  for (const ReductionGroup& group : result.groups) {
-    Json one = {{"axis", nullptr}, {"feed", or_null(group.feed)}, {"unit", unit_of(group)}};
-    if (group.kind) one["axis"] = kObservationNames[static_cast<std::size_t>(*group.kind)];
+  for (const residual::ReductionGroup& group : result.groups) {
+    Json one = {{"axis", nullptr}, {"feed", text::or_null(group.feed)}, {"unit", unit_of(group)}};
+    if (group.kind) one["axis"] = model::kObservationNames[static_cast<std::size_t>(*group.kind)];
     add_figures(one, group);
     json["groups"].push_back(std::move(one));
   }
   return json;
 }
 
-void print_before_after(std::FILE* out, const BeforeAfter& result) {
+void print_before_after(std::FILE* out, const residual::BeforeAfter& result) {
   fmt::print(out, "{}\n", sentence(result));
   for (const std::string& remark : remarks(result)) fmt::print(out, "{}\n", remark);
   const auto line = [&](const std::vector<std::string>& c) {
@@ -161,9 +161,9 @@ void print_before_after(std::FILE* out, const BeforeAfter& result) {
   for (const std::vector<std::string>& row : table(result)) line(row);
 }
 
-Json before_after_page(const BeforeAfter& result, const std::string& machine,
+Json before_after_page(const residual::BeforeAfter& result, const std::string& machine,
                        const std::vector<std::string>& files) {
-  const ReductionGroup& all = result.all;
+  const residual::ReductionGroup& all = result.all;
   Json section = {{"title", "Did it help?"}, {"prose", {sentence(result)}}};
   section["numbers"] = {{{"label", "rms before"}, {"value", all.before.rms}, {"unit", "um"}},
                         {{"label", "rms after"}, {"value", all.after.rms}, {"unit", "um"}, {"strong", true}}};
@@ -174,4 +174,4 @@ Json before_after_page(const BeforeAfter& result, const std::string& machine,
   return {{"title", "Before and after"}, {"machine", machine}, {"files", files}, {"sections", {section}}};
 }
 
-}  // namespace vernier
+}  // namespace vernier::results

@@ -7,18 +7,18 @@
 
 #include "tools/residual/before_after.h"
 
-namespace vernier {
+namespace vernier::results {
 
 /// The result of `compare --before --after` for programs (FORMATS section 6): before_um, after_um (rms),
 /// reduction, interval, verdict, sentence, paired, samples, rows left out and rows with a correction, and the
 /// figures of all readings and of each group.
-nlohmann::ordered_json before_after_json(const BeforeAfter& result);
+nlohmann::ordered_json before_after_json(const residual::BeforeAfter& result);
 
 /// The same for people: the verdict first, then the table.
-void print_before_after(std::FILE* out, const BeforeAfter& result);
+void print_before_after(std::FILE* out, const residual::BeforeAfter& result);
 
 /// What the report draws (improvement_report_html).
-nlohmann::ordered_json before_after_page(const BeforeAfter& result, const std::string& machine,
+nlohmann::ordered_json before_after_page(const residual::BeforeAfter& result, const std::string& machine,
                                          const std::vector<std::string>& files);
 
-}  // namespace vernier
+}  // namespace vernier::results

@@ -7,7 +7,7 @@
 #include "tools/maths/factors.h"
 #include "tools/model/chain.h"
 
-namespace vernier {
+namespace vernier::results {
 namespace {
 
 /// How far the nominal radius may vary, and the point may leave the plane, as a share of the radius.
@@ -42,7 +42,7 @@ CircleRun run_of(const RunPoints& points, std::array<std::size_t, 2> plane) {
   double travelled = 0, total = 0;
   for (std::size_t i = 0; i < points.arm.size(); ++i) {
     const auto a = static_cast<Eigen::Index>(plane[0]), b = static_cast<Eigen::Index>(plane[1]);
-    run.angle_deg.push_back(wrapped_deg(kDegPerRad * std::atan2(points.arm[i][b], points.arm[i][a])));
+    run.angle_deg.push_back(wrapped_deg(maths::kDegPerRad * std::atan2(points.arm[i][b], points.arm[i][a])));
     if (i == 0) continue;
     const double step = wrapped_deg(run.angle_deg[i] - run.angle_deg[i - 1] + 180) - 180;
     travelled += step;
@@ -55,15 +55,16 @@ CircleRun run_of(const RunPoints& points, std::array<std::size_t, 2> plane) {
 
 }  // namespace
 
-std::vector<Circle> find_circles(const Machine& machine, const Measurement& m) {
+std::vector<Circle> find_circles(const model::Machine& machine, const model::Measurement& m) {
   std::vector<RunPoints> runs(m.states.run_names.size());
-  const bool any = std::any_of(m.observations.begin(), m.observations.end(),
-                               [](const Observation& o) { return o.kind == ObservationKind::kLength; });
+  const bool any = std::any_of(m.observations.begin(), m.observations.end(), [](const model::Observation& o) {
+    return o.kind == model::ObservationKind::kLength;
+  });
   if (!any) return {};
-  const Poses nominal = forward(nominal_machine(machine), commanded_states(m));
+  const model::Poses nominal = model::forward(model::nominal_machine(machine), model::commanded_states(m));
   for (std::size_t i = 0; i < m.observations.size(); ++i) {
-    const Observation& o = m.observations[i];
-    if (o.kind != ObservationKind::kLength) continue;
+    const model::Observation& o = m.observations[i];
+    if (o.kind != model::ObservationKind::kLength) continue;
     RunPoints& points = runs[m.states.run[o.row]];
     const auto at = static_cast<Eigen::Index>(o.row);
     if (points.observation.empty()) points.centre = m.centre.col(at);
@@ -93,14 +94,14 @@ std::vector<Circle> find_circles(const Machine& machine, const Measurement& m) {
   return circles;
 }
 
-CircularResult analyse(const Circle& circle, const Measurement& m) {
-  std::vector<CircularPass> passes;
+importer::CircularResult analyse(const Circle& circle, const model::Measurement& m) {
+  std::vector<importer::CircularPass> passes;
   for (const CircleRun& run : circle.runs) {
-    CircularPass pass;
+    importer::CircularPass pass;
     pass.label = run.label;
     pass.direction = run.direction;
     for (std::size_t i = 0; i < run.observation.size(); ++i) {
-      const Observation& o = m.observations[run.observation[i]];
+      const model::Observation& o = m.observations[run.observation[i]];
       if (m.check[o.row] != 0) continue;
       if (pass.angle_deg.empty() && m.states.feed[static_cast<Eigen::Index>(o.row)] > 0)
         pass.feed_mm_min = m.states.feed[static_cast<Eigen::Index>(o.row)];
@@ -109,7 +110,7 @@ CircularResult analyse(const Circle& circle, const Measurement& m) {
     }
     passes.push_back(std::move(pass));
   }
-  return analyse_circle(circle.nominal_radius_mm, passes);
+  return importer::analyse_circle(circle.nominal_radius_mm, passes);
 }
 
-}  // namespace vernier
+}  // namespace vernier::results

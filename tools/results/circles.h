@@ -9,7 +9,7 @@
 #include "tools/model/machine.h"
 #include "tools/model/measurement.h"
 
-namespace vernier {
+namespace vernier::results {
 
 /// One run of a circular test as it lies in a measurement: which observations, at which angles.
 struct CircleRun {
@@ -30,10 +30,10 @@ struct Circle {
 /// Finds the circular tests (ball bar) in a measurement: runs whose lengths are measured while the nominal
 /// tool point moves on a circle about the length's centre in a coordinate plane, over at least 90 degrees.
 /// tool.
-std::vector<Circle> find_circles(const Machine& machine, const Measurement& measurement);
+std::vector<Circle> find_circles(const model::Machine& machine, const model::Measurement& measurement);
 
 /// ISO 230-4 analysis of a circle's fit rows (check rows are overshoot or held out). Throws
 /// std::invalid_argument where a run has too few of them.
-CircularResult analyse(const Circle& circle, const Measurement& measurement);
+importer::CircularResult analyse(const Circle& circle, const model::Measurement& measurement);
 
-}  // namespace vernier
+}  // namespace vernier::results

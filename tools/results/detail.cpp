@@ -10,19 +10,19 @@
 #include "tools/results/results.h"
 #include "tools/text/optional_json.h"
 
-namespace vernier {
+namespace vernier::results {
 namespace {
 
 using nlohmann::ordered_json;
 
 constexpr std::size_t kWorstRows = 25;
 
-double in_report_unit(ObservationKind kind, double value) {
-  return value * (is_rotation(kind) ? kUradPerDeg : kUmPerMm);
+double in_report_unit(model::ObservationKind kind, double value) {
+  return value * (model::is_rotation(kind) ? maths::kUradPerDeg : maths::kUmPerMm);
 }
 
 /// Six significant digits are more than a plot shows and a third of the size.
-ordered_json compact(const Column& column) {
+ordered_json compact(const model::Column& column) {
   ordered_json list = ordered_json::array();
   for (const double value : column) {
     if (!std::isfinite(value)) {
@@ -35,27 +35,28 @@ ordered_json compact(const Column& column) {
   return list;
 }
 
-void add_columns(ordered_json& detail, const Machine& machine, const Measurement& m) {
+void add_columns(ordered_json& detail, const model::Machine& machine, const model::Measurement& m) {
   detail["columns"] = ordered_json::array();
   detail["column_data"] = ordered_json::array();
-  each_column(machine, m,
-              [&](const std::string& name, const std::string& unit, const char* kind, const Column& data) {
-                detail["columns"].push_back({{"name", name}, {"unit", unit}, {"kind", kind}});
-                detail["column_data"].push_back(compact(data));
-              });
+  each_column(
+      machine, m,
+      [&](const std::string& name, const std::string& unit, const char* kind, const model::Column& data) {
+        detail["columns"].push_back({{"name", name}, {"unit", unit}, {"kind", kind}});
+        detail["column_data"].push_back(compact(data));
+      });
 }
 
-void add_observations(ordered_json& detail, const Measurement& m, const Eigen::VectorXd& residual) {
+void add_observations(ordered_json& detail, const model::Measurement& m, const Eigen::VectorXd& residual) {
   ordered_json kinds = ordered_json::array(), row = kinds, kind = kinds, scaled = kinds, measured = kinds,
                model = kinds;
   std::array<int, 8> slot;
   slot.fill(-1);
   for (std::size_t i = 0; i < m.observations.size(); ++i) {
-    const Observation& o = m.observations[i];
+    const model::Observation& o = m.observations[i];
     int& at = slot[static_cast<std::size_t>(o.kind)];
     if (at < 0) {
       at = static_cast<int>(kinds.size());
-      kinds.push_back(kObservationNames[static_cast<std::size_t>(o.kind)]);
+      kinds.push_back(model::kObservationNames[static_cast<std::size_t>(o.kind)]);
     }
     const double r = residual[static_cast<Eigen::Index>(i)];
     row.push_back(o.row);
@@ -68,7 +69,7 @@ void add_observations(ordered_json& detail, const Measurement& m, const Eigen::V
                             {"residual", scaled}, {"measured", measured}, {"model", model}};
 }
 
-void add_worst(ordered_json& detail, const Measurement& m, const Eigen::VectorXd& residual) {
+void add_worst(ordered_json& detail, const model::Measurement& m, const Eigen::VectorXd& residual) {
   std::vector<std::size_t> order(m.observations.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   const auto size = [&](std::size_t i) {
@@ -79,43 +80,43 @@ void add_worst(ordered_json& detail, const Measurement& m, const Eigen::VectorXd
                     [&](std::size_t a, std::size_t b) { return size(a) > size(b); });
   detail["worst"] = ordered_json::array();
   for (std::size_t k = 0; k < count; ++k) {
-    const Observation& o = m.observations[order[k]];
+    const model::Observation& o = m.observations[order[k]];
     detail["worst"].push_back(
         {{"row", o.row},
          {"file", m.files[m.file[o.row]]},
          {"line", m.line[o.row]},
          {"run", m.states.run_names[m.states.run[o.row]]},
          {"role", m.check[o.row] != 0 ? "check" : "fit"},
-         {"kind", kObservationNames[static_cast<std::size_t>(o.kind)]},
-         {"unit", is_rotation(o.kind) ? "urad" : "um"},
+         {"kind", model::kObservationNames[static_cast<std::size_t>(o.kind)]},
+         {"unit", model::is_rotation(o.kind) ? "urad" : "um"},
          {"residual", in_report_unit(o.kind, residual[static_cast<Eigen::Index>(order[k])])}});
   }
 }
 
-ordered_json hysteresis(const std::optional<Hysteresis>& value, bool angle) {
+ordered_json hysteresis(const std::optional<importer::Hysteresis>& value, bool angle) {
   return value ? ordered_json(angle ? value->deg : value->um) : ordered_json(nullptr);
 }
 
 /// The ISO 230-4 numbers of a circle, without the curves.
-ordered_json circle_summary(const Circle& circle, const Measurement& m) {
-  const CircularResult result = analyse(circle, m);
+ordered_json circle_summary(const Circle& circle, const model::Measurement& m) {
+  const importer::CircularResult result = analyse(circle, m);
   ordered_json json = {
       {"plane", {std::string(1, "XYZ"[circle.plane[0]]), std::string(1, "XYZ"[circle.plane[1]])}},
       {"centre", circle.centre_mm},
       {"nominal_radius_mm", circle.nominal_radius_mm},
       {"runs", ordered_json::array()}};
-  for (const CircularPassResult& pass : result.passes)
+  for (const importer::CircularPassResult& pass : result.passes)
     json["runs"].push_back({{"label", pass.label},
                             {"direction", pass.direction},
                             {"centre_mm", {pass.centre_a_mm, pass.centre_b_mm}},
                             {"radius_mm", pass.radius_mm},
-                            {"feed_mm_min", or_null(pass.feed_mm_min)},
+                            {"feed_mm_min", text::or_null(pass.feed_mm_min)},
                             {"circular_deviation_um", pass.circular_deviation_um},
                             {"max_radial_um", pass.max_radial_um},
                             {"max_radial_deg", pass.max_deg},
                             {"min_radial_um", pass.min_radial_um},
                             {"min_radial_deg", pass.min_deg}});
-  json["bidirectional_um"] = or_null(result.bidirectional_um);
+  json["bidirectional_um"] = text::or_null(result.bidirectional_um);
   json["hysteresis_um"] = hysteresis(result.hysteresis, false);
   json["hysteresis_deg"] = hysteresis(result.hysteresis, true);
   json["hysteresis_by_angle_um"] = hysteresis(result.hysteresis_by_angle, false);
@@ -124,15 +125,15 @@ ordered_json circle_summary(const Circle& circle, const Measurement& m) {
   return json;
 }
 
-void add_curves(ordered_json& json, const Circle& circle, const Measurement& m,
+void add_curves(ordered_json& json, const Circle& circle, const model::Measurement& m,
                 const Eigen::VectorXd& residual) {
   for (std::size_t k = 0; k < circle.runs.size(); ++k) {
     const CircleRun& run = circle.runs[k];
     ordered_json angle = ordered_json::array(), measured = angle, model = angle, check = angle;
     for (std::size_t i = 0; i < run.observation.size(); ++i) {
-      const Observation& o = m.observations[run.observation[i]];
-      const double deviation = kUmPerMm * (o.value - circle.nominal_radius_mm);
-      const double r = kUmPerMm * residual[static_cast<Eigen::Index>(run.observation[i])];
+      const model::Observation& o = m.observations[run.observation[i]];
+      const double deviation = maths::kUmPerMm * (o.value - circle.nominal_radius_mm);
+      const double r = maths::kUmPerMm * residual[static_cast<Eigen::Index>(run.observation[i])];
       angle.push_back(std::round(run.angle_deg[i] * 1e3) / 1e3);
       measured.push_back(std::round(deviation * 100) / 100);
       model.push_back(std::round((deviation - r) * 100) / 100);
@@ -146,7 +147,7 @@ void add_curves(ordered_json& json, const Circle& circle, const Measurement& m,
 }
 
 /// Circles with at least three fit rows in every run; the others have no numbers of the standard.
-std::vector<Circle> circles_with_numbers(const Machine& machine, const Measurement& m) {
+std::vector<Circle> circles_with_numbers(const model::Machine& machine, const model::Measurement& m) {
   std::vector<Circle> circles = find_circles(machine, m);
   std::erase_if(circles, [&](const Circle& circle) {
     return std::any_of(circle.runs.begin(), circle.runs.end(), [&](const CircleRun& run) {
@@ -160,15 +161,15 @@ std::vector<Circle> circles_with_numbers(const Machine& machine, const Measureme
 
 }  // namespace
 
-void each_column(const Machine& machine, const Measurement& m, const VisitColumn& visit) {
-  const States& s = m.states;
+void each_column(const model::Machine& machine, const model::Measurement& m, const VisitColumn& visit) {
+  const model::States& s = m.states;
   for (std::size_t i = 0; i < machine.axes.size(); ++i)
-    visit(machine.axes[i].name, machine.axes[i].rotary ? "deg" : "mm", "axis", commanded(m, i));
+    visit(machine.axes[i].name, machine.axes[i].rotary ? "deg" : "mm", "axis", model::commanded(m, i));
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
     const std::string& axis = machine.axes[i].name;
     const std::string unit = machine.axes[i].rotary ? "deg" : "mm";
     const auto motion = [&](const std::string& name, const std::string& u, const char* kind,
-                            const Column& data) {
+                            const model::Column& data) {
       if (m.has_recorded(name)) visit(name, u, kind, data);
     };
     motion("dir" + axis, "", "direction", s.direction[i]);
@@ -182,12 +183,12 @@ void each_column(const Machine& machine, const Measurement& m, const VisitColumn
   visit("visit", "", "visit", s.visit);
   for (std::size_t i = 0; i < machine.inputs.size(); ++i)
     visit(machine.inputs[i].name, machine.inputs[i].unit, "input", s.input[i]);
-  for (const CandidateInput& candidate : m.candidates)
+  for (const model::CandidateInput& candidate : m.candidates)
     visit(candidate.name, candidate.unit, "candidate", candidate.value);
 }
 
-ordered_json circular_detail(const Machine& machine, const Measurement& m, const Eigen::VectorXd& residual,
-                             bool with_rows) {
+ordered_json circular_detail(const model::Machine& machine, const model::Measurement& m,
+                             const Eigen::VectorXd& residual, bool with_rows) {
   ordered_json list = ordered_json::array();
   for (const Circle& circle : circles_with_numbers(machine, m)) {
     list.push_back(circle_summary(circle, m));
@@ -201,13 +202,13 @@ ordered_json circular_detail(const Machine& machine, const Measurement& m, const
   return list;
 }
 
-ordered_json circular_json(const Machine& machine, const Measurement& m) {
+ordered_json circular_json(const model::Machine& machine, const model::Measurement& m) {
   ordered_json list = ordered_json::array();
   for (const Circle& circle : circles_with_numbers(machine, m)) list.push_back(circle_summary(circle, m));
   return list;
 }
 
-void add_detail(ordered_json& result, const Machine& machine, const Measurement& m,
+void add_detail(ordered_json& result, const model::Machine& machine, const model::Measurement& m,
                 const Eigen::VectorXd& residual) {
   ordered_json detail;
   add_columns(detail, machine, m);
@@ -222,4 +223,4 @@ void add_detail(ordered_json& result, const Machine& machine, const Measurement&
   result["detail"] = std::move(detail);
 }
 
-}  // namespace vernier
+}  // namespace vernier::results

@@ -6,43 +6,44 @@
 #include "tools/results/structure_json.h"
 #include "tools/text/optional_json.h"
 
-namespace vernier {
+namespace vernier::results {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json parameter_json(const ParameterEstimate& item) {
+Json parameter_json(const fit::ParameterEstimate& item) {
   return {{"name", item.name}, {"value", item.value}, {"std", item.std}, {"unit", item.unit}};
 }
 
-std::string term_text(const Candidate& candidate) {
+std::string term_text(const effects::Candidate& candidate) {
   std::string text;
-  for (const CandidateTerm& term : candidate.terms) text += (text.empty() ? "" : " ; ") + term.text;
+  for (const effects::CandidateTerm& term : candidate.terms) text += (text.empty() ? "" : " ; ") + term.text;
   return text;
 }
 
-Json candidate_json(const CandidateFinding& finding, const Machine& machine) {
-  const Choice& choice = finding.candidate.choice;
+Json candidate_json(const diagnose::CandidateFinding& finding, const model::Machine& machine) {
+  const effects::Choice& choice = finding.candidate.choice;
   Json json;
   json["effect"] = choice.effect->id;
   json["title"] = choice.effect->title;
   json["add"] = finding.add;
-  json["said"] = said_of(finding);
+  json["said"] = diagnose::said_of(finding);
   json["label"] = finding.candidate.label;
   json["axis"] = finding.axis && !choice.axis2 ? Json(machine.axes[*finding.axis].name) : Json(nullptr);
   json["input"] = choice.inputs.empty() ? Json(nullptr) : Json(choice.inputs[0]);
   json["inputs"] = choice.inputs;
   const bool one = finding.candidate.terms.size() == 1;
-  const DofPlace& place = finding.candidate.terms[0].place;
+  const effects::DofPlace& place = finding.candidate.terms[0].place;
   json["branch"] = place.workpiece ? "workpiece" : "tool";
-  json["transform"] = one ? Json(transform_at(machine, place).n) : Json(nullptr);
-  json["dof"] = one ? Json(dof_name(machine, place)) : Json(nullptr);
+  json["transform"] = one ? Json(effects::transform_at(machine, place).n) : Json(nullptr);
+  json["dof"] = one ? Json(effects::dof_name(machine, place)) : Json(nullptr);
   json["term"] = term_text(finding.candidate);
   json["parameters"] = Json::array();
-  for (const ParameterEstimate& item : finding.parameters) json["parameters"].push_back(parameter_json(item));
-  json["rms_after_um"] = or_null(finding.rms_after_um);
-  json["check_rms_before_um"] = or_null(finding.check_rms_before_um);
-  json["check_rms_after_um"] = or_null(finding.check_rms_after_um);
+  for (const fit::ParameterEstimate& item : finding.parameters)
+    json["parameters"].push_back(parameter_json(item));
+  json["rms_after_um"] = text::or_null(finding.rms_after_um);
+  json["check_rms_before_um"] = text::or_null(finding.check_rms_before_um);
+  json["check_rms_after_um"] = text::or_null(finding.check_rms_after_um);
   json["share"] = finding.share;
   json["p_value"] = finding.p_value;
   json["score"] = finding.score;
@@ -58,37 +59,37 @@ Json candidate_json(const CandidateFinding& finding, const Machine& machine) {
 
 }  // namespace
 
-Json diagnosis_json(const Diagnosis& diagnosis, const Measurement& measurement) {
+Json diagnosis_json(const diagnose::Diagnosis& diagnosis, const model::Measurement& measurement) {
   Json json;
-  json["verdict"] = verdict_name(diagnosis.verdict);
+  json["verdict"] = diagnose::verdict_name(diagnosis.verdict);
   json["explanation"] = diagnosis.explanation;
-  json["rms_um"] = or_null(diagnosis.base.after.rms_um);
-  json["check_rms_um"] = or_null(diagnosis.base.check.rms_um);
-  json["noise_um"] = or_null(diagnosis.base.noise_um);
+  json["rms_um"] = text::or_null(diagnosis.base.after.rms_um);
+  json["check_rms_um"] = text::or_null(diagnosis.base.check.rms_um);
+  json["noise_um"] = text::or_null(diagnosis.base.noise_um);
   json["noise_model"] = noise_json(diagnosis.noise, diagnosis.noise_unit_um);
   json["n_obs"] = diagnosis.base.before.count;
   json["n_params"] = diagnosis.base.parameters.size();
   json["n_excluded"] = measurement.excluded;
   json["n_searched"] = diagnosis.searched;
   json["candidates"] = Json::array();
-  for (const CandidateFinding& finding : diagnosis.candidates)
+  for (const diagnose::CandidateFinding& finding : diagnosis.candidates)
     json["candidates"].push_back(candidate_json(finding, diagnosis.base.machine));
   json["ladder"] = Json::array();
-  for (const LadderStep& step : diagnosis.ladder) {
+  for (const diagnose::LadderStep& step : diagnosis.ladder) {
     const bool given = step.effect.empty();
     json["ladder"].push_back({{"effect", given ? Json(nullptr) : Json(step.effect)},
                               {"add", given ? Json(nullptr) : Json(step.add)},
                               {"label", given ? "the model as given" : step.label},
                               {"said", given ? "the model as given" : step.said},
-                              {"rms_um", or_null(step.rms_um)},
-                              {"check_rms_um", or_null(step.check_rms_um)},
+                              {"rms_um", text::or_null(step.rms_um)},
+                              {"check_rms_um", text::or_null(step.check_rms_um)},
                               {"confirmed", step.confirmed ? Json(*step.confirmed) : Json(nullptr)},
-                              {"evidence", or_null(step.evidence)},
+                              {"evidence", text::or_null(step.evidence)},
                               {"chi2_per_dof", step.chi_square_per_freedom}});
   }
   json["runner_up"] = Json(nullptr);
   if (diagnosis.runner_up) {
-    const CandidateFinding& runner = diagnosis.candidates[*diagnosis.runner_up];
+    const diagnose::CandidateFinding& runner = diagnosis.candidates[*diagnosis.runner_up];
     json["runner_up"] = {{"effect", runner.candidate.choice.effect->id},
                          {"label", runner.candidate.label},
                          {"said", runner.candidate.spoken},
@@ -100,4 +101,4 @@ Json diagnosis_json(const Diagnosis& diagnosis, const Measurement& measurement) 
   return json;
 }
 
-}  // namespace vernier
+}  // namespace vernier::results

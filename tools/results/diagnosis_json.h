@@ -4,9 +4,10 @@
 
 #include "tools/diagnose/diagnosis.h"
 
-namespace vernier {
+namespace vernier::results {
 
 /// The result of `diagnose` for programs (FORMATS section 3, and more keys).
-nlohmann::ordered_json diagnosis_json(const Diagnosis& diagnosis, const Measurement& measurement);
+nlohmann::ordered_json diagnosis_json(const diagnose::Diagnosis& diagnosis,
+                                      const model::Measurement& measurement);
 
-}  // namespace vernier
+}  // namespace vernier::results

@@ -8,7 +8,7 @@
 #include "tools/fit/reach.h"
 #include "tools/kinematics/at.h"
 
-namespace vernier {
+namespace vernier::results {
 
 using Json = nlohmann::ordered_json;
 
@@ -23,7 +23,7 @@ Json vectors(const Eigen::Matrix3Xd& columns, double factor) {
 
 }  // namespace
 
-Json field_json(const Machine& machine, const ErrorField& field) {
+Json field_json(const model::Machine& machine, const map::ErrorField& field) {
   Json axes = Json::array();
   for (const std::size_t axis : field.axes) axes.push_back(machine.axes[axis].name);
   const Eigen::VectorXd size_um = 1000 * field.deviation.colwise().norm();
@@ -38,7 +38,7 @@ Json field_json(const Machine& machine, const ErrorField& field) {
                {"point_mm", vectors(field.nominal, 1)},
                {"deviation_um", vectors(field.deviation, 1000)}};
   json["std_um"] = nullptr;
-  if (const Reach reach(machine); reach.known()) {
+  if (const fit::Reach reach(machine); reach.known()) {
     const Eigen::VectorXd std_um = reach.std_um(field.states);
     json["std_um"] = std::vector<double>(std_um.begin(), std_um.end());
     json["max_std_um"] = std_um.maxCoeff();
@@ -47,24 +47,24 @@ Json field_json(const Machine& machine, const ErrorField& field) {
   return json;
 }
 
-States middle_state(const Machine& machine, const std::string& words) {
+model::States middle_state(const model::Machine& machine, const std::string& words) {
   std::string all;
-  for (const Axis& axis : machine.axes)
+  for (const model::Axis& axis : machine.axes)
     if (axis.min && axis.max && !axis.rotary)
       all += fmt::format("{}={},", axis.name, (*axis.min + *axis.max) / 2);
   all += words;
   if (!all.empty() && all.back() == ',') all.pop_back();
-  return state_at(machine, all);
+  return kinematics::state_at(machine, all);
 }
 
-std::optional<Json> volume_json(const Machine& machine, std::size_t count, std::string& why_not) {
+std::optional<Json> volume_json(const model::Machine& machine, std::size_t count, std::string& why_not) {
   try {
-    const std::vector<std::size_t> axes = linear_axes(machine);
-    return field_json(machine, error_field(machine, middle_state(machine, ""), axes, count));
-  } catch (const InputError& error) {
+    const std::vector<std::size_t> axes = kinematics::linear_axes(machine);
+    return field_json(machine, map::error_field(machine, middle_state(machine, ""), axes, count));
+  } catch (const text::InputError& error) {
     why_not = error.what();
     return std::nullopt;
   }
 }
 
-}  // namespace vernier
+}  // namespace vernier::results

@@ -6,20 +6,20 @@
 
 #include "tools/map/field.h"
 
-namespace vernier {
+namespace vernier::results {
 
 /// A field as the reports draw it and programs read it: {axes[], counts[], max_um, rms_um, max_at_mm[3],
 /// point_mm[][3], deviation_um[][3]}. tool.
-nlohmann::ordered_json field_json(const Machine& machine, const ErrorField& field);
+nlohmann::ordered_json field_json(const model::Machine& machine, const map::ErrorField& field);
 
 /// Linear axes with a range at its middle, inputs at their reference, all else 0; then what the user's
 /// `words` say (as for state_at). Throws InputError with the word. tool.
-States middle_state(const Machine& machine, const std::string& words);
+model::States middle_state(const model::Machine& machine, const std::string& words);
 
 /// field_json over the linear axes, `count` nodes along each, from middle_state. Nothing where the machine
 /// has no such volume (no linear axis, more than three, one without min and max); `why_not` then says why.
 /// tool.
-std::optional<nlohmann::ordered_json> volume_json(const Machine& machine, std::size_t count,
+std::optional<nlohmann::ordered_json> volume_json(const model::Machine& machine, std::size_t count,
                                                   std::string& why_not);
 
-}  // namespace vernier
+}  // namespace vernier::results

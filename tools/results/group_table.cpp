@@ -12,7 +12,7 @@
 #include "tools/text/error.h"
 #include "tools/text/words.h"
 
-namespace vernier {
+namespace vernier::results {
 namespace {
 
 using nlohmann::ordered_json;
@@ -24,23 +24,23 @@ struct Sums {
 };
 using Groups = std::map<std::string, Sums>;
 
-std::vector<std::string> known_columns(const Measurement& m) {
+std::vector<std::string> known_columns(const model::Measurement& m) {
   std::vector<std::string> names = {"run"};
-  for (const LabelColumn& label : m.labels) names.push_back(label.name);
-  for (const CandidateInput& candidate : m.candidates) names.push_back(candidate.name);
+  for (const model::LabelColumn& label : m.labels) names.push_back(label.name);
+  for (const model::CandidateInput& candidate : m.candidates) names.push_back(candidate.name);
   return names;
 }
 
 /// The group of every row.
-std::vector<std::string> values_of(const Measurement& m, const std::string& column) {
-  for (const LabelColumn& label : m.labels)
+std::vector<std::string> values_of(const model::Measurement& m, const std::string& column) {
+  for (const model::LabelColumn& label : m.labels)
     if (label.name == column) return label.value;
   std::vector<std::string> values(m.rows());
   if (column == "run") {
     for (std::size_t row = 0; row < m.rows(); ++row) values[row] = m.states.run_names[m.states.run[row]];
     return values;
   }
-  for (const CandidateInput& candidate : m.candidates) {
+  for (const model::CandidateInput& candidate : m.candidates) {
     if (candidate.name != column) continue;
     for (std::size_t row = 0; row < m.rows(); ++row) {
       const double value = candidate.value[static_cast<Eigen::Index>(row)];
@@ -48,7 +48,8 @@ std::vector<std::string> values_of(const Measurement& m, const std::string& colu
     }
     return values;
   }
-  throw InputError({}, column, "no such column to group by; there are " + joined(known_columns(m), ", "));
+  throw text::InputError({}, column,
+                         "no such column to group by; there are " + text::joined(known_columns(m), ", "));
 }
 
 /// log of the chance that means of groups of one spread differ so much; 0 where there is none to tell from.
@@ -63,24 +64,25 @@ double log_chance(const Groups& groups) {
   const double within = squares - between;
   between -= sum * sum / count;
   if (!(within > 0)) return between > 0 ? -HUGE_VAL : 0;
-  return log_f_tail((between / d1) / (within / d2), d1, d2);
+  return maths::log_f_tail((between / d1) / (within / d2), d1, d2);
 }
 
-ordered_json one_column(const Measurement& m, const Eigen::VectorXd& residual, const std::string& column) {
+ordered_json one_column(const model::Measurement& m, const Eigen::VectorXd& residual,
+                        const std::string& column) {
   const std::vector<std::string> values = values_of(m, column);
-  std::map<ObservationKind, Groups> kinds;
+  std::map<model::ObservationKind, Groups> kinds;
   std::map<std::string, bool> seen;
   for (std::size_t i = 0; i < m.observations.size(); ++i) {
-    const Observation& o = m.observations[i];
+    const model::Observation& o = m.observations[i];
     if (m.check[o.row] != 0) continue;
-    const double unit = is_rotation(o.kind) ? kUradPerDeg : kUmPerMm;
+    const double unit = model::is_rotation(o.kind) ? maths::kUradPerDeg : maths::kUmPerMm;
     kinds[o.kind][values[o.row]].take(unit * residual[static_cast<Eigen::Index>(i)]);
     seen[values[o.row]] = true;
   }
   constexpr std::size_t kMostGroups = 50;
   if (seen.size() > kMostGroups)
-    throw InputError({}, column,
-                     fmt::format("{} different values: too many groups to be told apart", seen.size()));
+    throw text::InputError({}, column,
+                           fmt::format("{} different values: too many groups to be told apart", seen.size()));
   double least = 0;
   for (const auto& [kind, groups] : kinds) least = std::min(least, log_chance(groups));
   ordered_json each = ordered_json::array();
@@ -90,8 +92,8 @@ ordered_json one_column(const Measurement& m, const Eigen::VectorXd& residual, c
       const auto group = groups.find(value);
       if (group == groups.end()) continue;
       const Sums& sums = group->second;
-      readings.push_back({{"reading", kObservationNames[static_cast<std::size_t>(kind)]},
-                          {"unit", is_rotation(kind) ? "urad" : "um"},
+      readings.push_back({{"reading", model::kObservationNames[static_cast<std::size_t>(kind)]},
+                          {"unit", model::is_rotation(kind) ? "urad" : "um"},
                           {"n", static_cast<std::size_t>(sums.count)},
                           {"mean", sums.sum / sums.count},
                           {"rms", std::sqrt(sums.squares / sums.count)}});
@@ -105,11 +107,11 @@ ordered_json one_column(const Measurement& m, const Eigen::VectorXd& residual, c
 
 }  // namespace
 
-ordered_json group_table(const Measurement& m, const Eigen::VectorXd& residual,
+ordered_json group_table(const model::Measurement& m, const Eigen::VectorXd& residual,
                          const std::vector<std::string>& columns) {
   ordered_json table = ordered_json::array();
   for (const std::string& column : columns) table.push_back(one_column(m, residual, column));
   return table;
 }
 
-}  // namespace vernier
+}  // namespace vernier::results

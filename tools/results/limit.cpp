@@ -9,17 +9,18 @@
 #include "tools/text/numbers.h"
 #include "tools/text/units.h"
 
-namespace vernier {
+namespace vernier::results {
 namespace {
 
 /// Squares of what counts together: the coordinates of a row, or one other reading.
 using Together = std::map<std::pair<std::size_t, std::size_t>, double>;
 
-Together together_of(const Measurement& m, const Eigen::VectorXd& residual, bool rotation, bool check) {
+Together together_of(const model::Measurement& m, const Eigen::VectorXd& residual, bool rotation,
+                     bool check) {
   Together together;
   for (std::size_t i = 0; i < m.observations.size(); ++i) {
-    const Observation& o = m.observations[i];
-    if (is_rotation(o.kind) != rotation || (m.check[o.row] != 0) != check) continue;
+    const model::Observation& o = m.observations[i];
+    if (model::is_rotation(o.kind) != rotation || (m.check[o.row] != 0) != check) continue;
     const auto kind = static_cast<std::size_t>(o.kind);
     const std::size_t group = kind < 6 ? 0 : 1 + kind;
     together[{o.row, group}] += std::pow(residual[static_cast<Eigen::Index>(i)], 2);
@@ -27,13 +28,13 @@ Together together_of(const Measurement& m, const Eigen::VectorXd& residual, bool
   return together;
 }
 
-double u_of(const Measurement& m, std::size_t row, bool rotation) {
+double u_of(const model::Measurement& m, std::size_t row, bool rotation) {
   const auto at = static_cast<Eigen::Index>(row);
   const double angle = rotation && m.angle_uncertainty.size() > 0 ? m.angle_uncertainty[at] : 0;
   const double u = angle > 0 ? angle : m.uncertainty[at];
   if (!(u > 0))
-    throw InputError({m.files[m.file[row]], m.line[row]}, "u",
-                     "the limit is told in u, and this row has none");
+    throw text::InputError({m.files[m.file[row]], m.line[row]}, "u",
+                           "the limit is told in u, and this row has none");
   return u;
 }
 
@@ -45,27 +46,27 @@ ResidualLimit residual_limit(const std::string& words) {
   std::string rest = words;
   if (rest.starts_with("rms=")) limit.rms = true, rest = rest.substr(4);
   const std::size_t end = std::min(rest.find_first_not_of("0123456789."), rest.size());
-  const auto number = parse_number(rest.substr(0, end));
+  const auto number = text::parse_number(rest.substr(0, end));
   const std::string unit = rest.substr(end);
-  const auto found = find_unit(unit);
+  const auto found = text::find_unit(unit);
   limit.of_u = unit == "u";
-  limit.rotation = found && found->dimension == Dimension::kAngle;
+  limit.rotation = found && found->dimension == text::Dimension::kAngle;
   if (!number || !(*number > 0) ||
-      !(limit.of_u || limit.rotation || (found && found->dimension == Dimension::kLength)))
-    throw InputError({}, words,
-                     "a limit is of the form 2u, 25um, 0.2mm or 0.025deg; rms=1.5u judges the rms");
+      !(limit.of_u || limit.rotation || (found && found->dimension == text::Dimension::kLength)))
+    throw text::InputError({}, words,
+                           "a limit is of the form 2u, 25um, 0.2mm or 0.025deg; rms=1.5u judges the rms");
   limit.value = *number * (limit.of_u ? 1 : found->factor);
   return limit;
 }
 
-nlohmann::ordered_json judge_residuals(const Measurement& m, const Eigen::VectorXd& residual,
+nlohmann::ordered_json judge_residuals(const model::Measurement& m, const Eigen::VectorXd& residual,
                                        const ResidualLimit& limit) {
   Together together = together_of(m, residual, limit.rotation, true);
   const bool check = !together.empty();
   if (!check) together = together_of(m, residual, limit.rotation, false);
   if (together.empty())
-    throw InputError({}, limit.words,
-                     limit.rotation ? "no reading of an orientation" : "no reading of a length");
+    throw text::InputError({}, limit.words,
+                           limit.rotation ? "no reading of an orientation" : "no reading of a length");
   constexpr double kPrinted = 1e3;  // um, mdeg
   double shares = 0, squares = 0, worst = -1;
   std::size_t beyond = 0, worst_row = 0;
@@ -95,4 +96,4 @@ nlohmann::ordered_json judge_residuals(const Measurement& m, const Eigen::Vector
           {"pass", limit.rms ? rms_share <= 1 : beyond == 0}};
 }
 
-}  // namespace vernier
+}  // namespace vernier::results

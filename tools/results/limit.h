@@ -6,7 +6,7 @@
 
 #include "tools/model/measurement.h"
 
-namespace vernier {
+namespace vernier::results {
 
 /// A limit that residuals must keep: "2u" (so many times the u of each row), "0.2mm", "25um", "0.025deg"
 /// (readings of orientation); "rms=1.5u" judges their rms, without it each row counts.
@@ -23,7 +23,7 @@ ResidualLimit residual_limit(const std::string& words);
 /// {file, line, value, limit} in um or mdeg as `unit` says, pass}. Of a row counts the distance in space of
 /// its x y z (a rotation likewise), each other reading by itself. residual: mm or deg, one per observation.
 /// Throws InputError where no reading of that kind is there, or no u. tool.
-nlohmann::ordered_json judge_residuals(const Measurement& measurement, const Eigen::VectorXd& residual,
+nlohmann::ordered_json judge_residuals(const model::Measurement& measurement, const Eigen::VectorXd& residual,
                                        const ResidualLimit& limit);
 
-}  // namespace vernier
+}  // namespace vernier::results

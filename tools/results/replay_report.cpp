@@ -8,23 +8,24 @@
 #include "tools/results/results.h"
 #include "tools/text/optional_json.h"
 
-namespace vernier {
+namespace vernier::results {
 namespace {
 
 using nlohmann::ordered_json;
 
-ordered_json rung(const std::string& label, const Measurement& m, const Eigen::VectorXd& residual) {
+ordered_json rung(const std::string& label, const model::Measurement& m, const Eigen::VectorXd& residual) {
   return {{"label", label},
-          {"rms_um", or_null(role_statistics(m, residual, false).rms_um)},
-          {"check_rms_um", or_null(role_statistics(m, residual, true).rms_um)}};
+          {"rms_um", text::or_null(fit::role_statistics(m, residual, false).rms_um)},
+          {"check_rms_um", text::or_null(fit::role_statistics(m, residual, true).rms_um)}};
 }
 
 ordered_json number(const char* label, const ordered_json& value, const char* unit) {
   return {{"label", label}, {"value", value}, {"unit", unit}};
 }
 
-ordered_json model_section(const std::string& title, const Machine& machine, const Measurement& m) {
-  const Eigen::VectorXd residual = residuals(machine, m);
+ordered_json model_section(const std::string& title, const model::Machine& machine,
+                           const model::Measurement& m) {
+  const Eigen::VectorXd residual = fit::residuals(machine, m);
   ordered_json with_detail = ordered_json::object();
   add_detail(with_detail, machine, m, residual);
   ordered_json rows = ordered_json::array();
@@ -40,15 +41,15 @@ ordered_json model_section(const std::string& title, const Machine& machine, con
   return section;
 }
 
-ordered_json parameter_list(const Machine& machine) {
+ordered_json parameter_list(const model::Machine& machine) {
   ordered_json list = ordered_json::array();
-  for (const Static& item : machine.statics)
+  for (const model::Static& item : machine.statics)
     if (!item.hidden)
       list.push_back({{"name", item.name}, {"value", item.value}, {"std", nullptr}, {"unit", item.unit}});
   return list;
 }
 
-ordered_json loop_section(const LoadedImage& image, const std::vector<ReplayStep>& steps) {
+ordered_json loop_section(const compile::LoadedImage& image, const std::vector<ReplayStep>& steps) {
   ordered_json rows = ordered_json::array();
   for (const ReplayStep& step : steps)
     rows.push_back(
@@ -70,12 +71,12 @@ ordered_json loop_section(const LoadedImage& image, const std::vector<ReplayStep
 
 }  // namespace
 
-ordered_json replay_report(const std::optional<Machine>& before, const LoadedImage& image,
-                           const Measurement& m, const std::vector<ReplayStep>& steps) {
+ordered_json replay_report(const std::optional<model::Machine>& before, const compile::LoadedImage& image,
+                           const model::Measurement& m, const std::vector<ReplayStep>& steps) {
   ordered_json ladder = ordered_json::array();
   ladder.push_back(rung("nominal machine", m, steps.front().result.before));
-  if (before) ladder.push_back(rung("model " + before->name, m, residuals(*before, m)));
-  ladder.push_back(rung("model " + image.machine.name, m, residuals(image.machine, m)));
+  if (before) ladder.push_back(rung("model " + before->name, m, fit::residuals(*before, m)));
+  ladder.push_back(rung("model " + image.machine.name, m, fit::residuals(image.machine, m)));
   for (const ReplayStep& step : steps)
     ladder.push_back(rung("corrected, " + step.label, m, step.result.after));
   ordered_json sections = ordered_json::array();
@@ -96,4 +97,4 @@ ordered_json replay_report(const std::optional<Machine>& before, const LoadedIma
           {"sections", sections}};
 }
 
-}  // namespace vernier
+}  // namespace vernier::results

@@ -7,18 +7,19 @@
 #include "tools/model/measurement.h"
 #include "tools/simulate/replay.h"
 
-namespace vernier {
+namespace vernier::results {
 
 /// One replay of the same measurement through the loop, with what stood between firmware and machine.
 struct ReplayStep {
   std::string label;  // "one image unit", "8 bit converter"
-  ReplayResult result;
+  simulate::ReplayResult result;
 };
 
 /// The page from a measurement to a running correction: what was measured, what a simpler model (`before`,
 /// may be absent) and the image's model leave, what the 1 kHz loop leaves, on fit and on check rows
 /// (improvement_report_html).
-nlohmann::ordered_json replay_report(const std::optional<Machine>& before, const LoadedImage& image,
-                                     const Measurement& measurement, const std::vector<ReplayStep>& steps);
+nlohmann::ordered_json replay_report(const std::optional<model::Machine>& before,
+                                     const compile::LoadedImage& image, const model::Measurement& measurement,
+                                     const std::vector<ReplayStep>& steps);
 
-}  // namespace vernier
+}  // namespace vernier::results

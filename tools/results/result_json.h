@@ -5,17 +5,18 @@
 
 #include "tools/kinematics/correction.h"
 
-namespace vernier {
+namespace vernier::results {
 
 /// {"X": 12.5, …}: axes of state 0, mm or deg.
-nlohmann::ordered_json axes_json(const Machine& machine, const States& states);
+nlohmann::ordered_json axes_json(const model::Machine& machine, const model::States& states);
 /// {"position_mm": [3], "rotation_deg": [3] (rotation vector), "direction": [3] (tool z axis)} of state 0.
-nlohmann::ordered_json pose_json(const Poses& poses);
+nlohmann::ordered_json pose_json(const model::Poses& poses);
 /// {"offset": {axis: …}, "left_um": [3], "tilt_left_deg", "proof": …} of state 0.
-nlohmann::ordered_json correction_json(const Machine& machine, const CorrectionResult& result);
+nlohmann::ordered_json correction_json(const model::Machine& machine,
+                                       const kinematics::CorrectionResult& result);
 /// {"converged", "fault", "axis", "iterations", "residual_mm", "residual_deg", "condition"}.
-nlohmann::ordered_json inverse_json(const Machine& machine, const Inverse& proof);
+nlohmann::ordered_json inverse_json(const model::Machine& machine, const kinematics::Inverse& proof);
 /// A line for people.
-void print_pose(std::FILE* out, const char* what, const Poses& poses);
+void print_pose(std::FILE* out, const char* what, const model::Poses& poses);
 
-}  // namespace vernier
+}  // namespace vernier::results

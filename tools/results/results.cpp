@@ -14,32 +14,33 @@
 #include "tools/results/detail.h"
 #include "tools/text/optional_json.h"
 
-namespace vernier {
+namespace vernier::results {
 namespace {
 
 using nlohmann::ordered_json;
 
-std::size_t observations_of_fit_rows(const Measurement& m) {
+std::size_t observations_of_fit_rows(const model::Measurement& m) {
   std::size_t count = 0;
-  for (const Observation& o : m.observations) count += m.check[o.row] == 0 ? 1U : 0U;
+  for (const model::Observation& o : m.observations) count += m.check[o.row] == 0 ? 1U : 0U;
   return count;
 }
 
-ordered_json shared(const Machine& machine, const Measurement& m, const RoleStatistics& before,
-                    const RoleStatistics& fit, const RoleStatistics& check, std::size_t parameters) {
+ordered_json shared(const model::Machine& machine, const model::Measurement& m,
+                    const fit::RoleStatistics& before, const fit::RoleStatistics& fit,
+                    const fit::RoleStatistics& check, std::size_t parameters) {
   return {{"machine", machine.name},
           {"machine_file", machine.file},
           {"files", m.files},
-          {"rms_before_um", or_null(before.rms_um)},
-          {"rms_um", or_null(fit.rms_um)},
-          {"check_rms_um", or_null(check.rms_um)},
-          {"max_um", or_null(fit.max_um)},
-          {"check_max_um", or_null(check.max_um)},
-          {"rms_before_urad", or_null(before.rms_urad)},
-          {"rms_urad", or_null(fit.rms_urad)},
-          {"check_rms_urad", or_null(check.rms_urad)},
-          {"max_urad", or_null(fit.max_urad)},
-          {"noise_um", or_null(noise_um(m))},
+          {"rms_before_um", text::or_null(before.rms_um)},
+          {"rms_um", text::or_null(fit.rms_um)},
+          {"check_rms_um", text::or_null(check.rms_um)},
+          {"max_um", text::or_null(fit.max_um)},
+          {"check_max_um", text::or_null(check.max_um)},
+          {"rms_before_urad", text::or_null(before.rms_urad)},
+          {"rms_urad", text::or_null(fit.rms_urad)},
+          {"check_rms_urad", text::or_null(check.rms_urad)},
+          {"max_urad", text::or_null(fit.max_urad)},
+          {"noise_um", text::or_null(fit::noise_um(m))},
           {"n_obs", observations_of_fit_rows(m)},
           {"n_check", check.count},
           {"n_params", parameters},
@@ -48,8 +49,8 @@ ordered_json shared(const Machine& machine, const Measurement& m, const RoleStat
 
 /// How well the model itself is known where it was compared: rms and largest over the rows, um. Null for a
 /// machine that was never fitted.
-ordered_json prediction_std_json(const Machine& machine, const Measurement& m) {
-  const Reach reach(machine);
+ordered_json prediction_std_json(const model::Machine& machine, const model::Measurement& m) {
+  const fit::Reach reach(machine);
   if (!reach.known() || m.rows() == 0) return nullptr;
   const Eigen::VectorXd std_um = reach.std_um(m.states);
   return {{"rms", std::sqrt(std_um.squaredNorm() / static_cast<double>(std_um.size()))},
@@ -58,28 +59,29 @@ ordered_json prediction_std_json(const Machine& machine, const Measurement& m) {
 
 /// How far the modelled errors tilt the tool over the rows, deg: the tool's own direction is what a machine
 /// with rotary axes can correct. Null for a machine of linear axes.
-ordered_json tilt_json(const Machine& machine, const Measurement& m) {
-  const bool turns =
-      std::any_of(machine.axes.begin(), machine.axes.end(), [](const Axis& axis) { return axis.rotary; });
+ordered_json tilt_json(const model::Machine& machine, const model::Measurement& m) {
+  const bool turns = std::any_of(machine.axes.begin(), machine.axes.end(),
+                                 [](const model::Axis& axis) { return axis.rotary; });
   if (!turns || m.rows() == 0) return nullptr;
-  const Column tilt = tilt_between(forward(machine, m.states), forward(nominal_machine(machine), m.states));
+  const model::Column tilt = kinematics::tilt_between(
+      model::forward(machine, m.states), model::forward(model::nominal_machine(machine), m.states));
   return {{"rms", std::sqrt(tilt.square().mean())}, {"max", tilt.maxCoeff()}};
 }
 
 }  // namespace
 
-ordered_json fit_json(const FitResult& result, const Measurement& m) {
+ordered_json fit_json(const fit::FitResult& result, const model::Measurement& m) {
   ordered_json json =
       shared(result.machine, m, result.before, result.after, result.check, result.parameters.size());
   json["parameters"] = ordered_json::array();
-  for (const ParameterEstimate& item : result.estimates)
+  for (const fit::ParameterEstimate& item : result.estimates)
     json["parameters"].push_back({{"name", item.name},
                                   {"value", item.value},
                                   {"std", item.std},
                                   {"unit", item.unit},
-                                  {"from", origin_name(item.from)},
+                                  {"from", fit::origin_name(item.from)},
                                   {"scale", item.scale}});
-  json["noise_model"] = noise_json(result.noise, noise_unit_um(m));
+  json["noise_model"] = noise_json(result.noise, fit::noise_unit_um(m));
   json["unidentifiable"] = ordered_json::array();
   for (const auto& group : result.observability.unidentifiable) {
     ordered_json names = ordered_json::array();
@@ -87,31 +89,31 @@ ordered_json fit_json(const FitResult& result, const Measurement& m) {
     json["unidentifiable"].push_back(names);
   }
   json["convention"] = ordered_json::array();
-  for (const Decision& decision : decisions_of(result))
+  for (const fit::Decision& decision : fit::decisions_of(result))
     json["convention"].push_back({{"parameters", decision.parameters},
                                   {"reach_um", decision.reach_um},
                                   {"sentence", decision.sentence}});
   json["stages"] = ordered_json::array();
-  for (const StageFigures& stage : result.stages)
+  for (const fit::StageFigures& stage : result.stages)
     json["stages"].push_back({{"patterns", stage.patterns},
                               {"n_params", stage.parameters},
                               {"iterations", stage.iterations},
-                              {"rms_um", or_null(stage.fit.rms_um)},
-                              {"check_rms_um", or_null(stage.check.rms_um)}});
+                              {"rms_um", text::or_null(stage.fit.rms_um)},
+                              {"check_rms_um", text::or_null(stage.check.rms_um)}});
   json["noise_model"]["kind"] = std::string(result.noise.independent() ? "white" : "correlated") +
-                                (has_uncertainty(m) ? ", u given" : ", from the residual");
+                                (fit::has_uncertainty(m) ? ", u given" : ", from the residual");
   json["noise_model"]["scale_of_u"] =
-      has_uncertainty(m) ? ordered_json(std::sqrt(result.variance_factor)) : ordered_json(nullptr);
+      fit::has_uncertainty(m) ? ordered_json(std::sqrt(result.variance_factor)) : ordered_json(nullptr);
   json["misfit_um"] = 1000 * result.misfit_mm;
   json["reach_mm"] = result.reach_mm;
   json["weakest"] = ordered_json::array();
-  for (const Observability::Weak& weak : result.observability.weakest) {
+  for (const fit::Observability::Weak& weak : result.observability.weakest) {
     ordered_json names = ordered_json::array();
     for (const std::size_t i : weak.parts) names.push_back(result.parameters[i].name);
     json["weakest"].push_back({{"ratio", weak.ratio}, {"parameters", names}});
   }
   json["correlations"] = ordered_json::array();
-  for (const Correlation& c : result.correlations)
+  for (const fit::Correlation& c : result.correlations)
     json["correlations"].push_back(
         {result.parameters[c.first].name, result.parameters[c.second].name, c.value});
   json["priors"] = ordered_json::array();
@@ -131,8 +133,10 @@ ordered_json fit_json(const FitResult& result, const Measurement& m) {
   return json;
 }
 
-ordered_json compare_json(const Machine& machine, const Measurement& m, const Eigen::VectorXd& residual) {
-  const RoleStatistics fit = role_statistics(m, residual, false), check = role_statistics(m, residual, true);
+ordered_json compare_json(const model::Machine& machine, const model::Measurement& m,
+                          const Eigen::VectorXd& residual) {
+  const fit::RoleStatistics fit = fit::role_statistics(m, residual, false),
+                            check = fit::role_statistics(m, residual, true);
   ordered_json json = shared(machine, m, fit, fit, check, 0);
   json["parameters"] = ordered_json::array();
   json["unidentifiable"] = ordered_json::array();
@@ -145,9 +149,9 @@ ordered_json compare_json(const Machine& machine, const Measurement& m, const Ei
   return json;
 }
 
-ordered_json domains_json(const Machine& machine, const Measurement& m) {
+ordered_json domains_json(const model::Machine& machine, const model::Measurement& m) {
   ordered_json json = ordered_json::array();
-  for (const DomainUse& use : domain_use(machine, m))
+  for (const fit::DomainUse& use : fit::domain_use(machine, m))
     json.push_back({{"domain", use.range.domain},
                     {"quantity", use.range.quantity},
                     {"low", use.range.open ? ordered_json(nullptr) : ordered_json(use.range.low)},
@@ -171,7 +175,7 @@ void print_domains(std::FILE* out, const ordered_json& domains) {
                  use["rows_without_effect"].get<std::size_t>());
 }
 
-ordered_json stretches_json(const Measurement& m, const Eigen::VectorXd& residual) {
+ordered_json stretches_json(const model::Measurement& m, const Eigen::VectorXd& residual) {
   struct Stretch {
     std::size_t run = 0, first_line = 0, last_line = 0, count = 0;
     char check = 0;
@@ -180,8 +184,8 @@ ordered_json stretches_json(const Measurement& m, const Eigen::VectorXd& residua
   std::vector<Stretch> list;
   std::vector<std::size_t> open(m.states.run_names.size(), SIZE_MAX);  // the stretch that a run is in
   for (std::size_t i = 0; i < m.observations.size(); ++i) {
-    const Observation& o = m.observations[i];
-    if (is_rotation(o.kind)) continue;
+    const model::Observation& o = m.observations[i];
+    if (model::is_rotation(o.kind)) continue;
     std::size_t& at = open[m.states.run[o.row]];
     if (at == SIZE_MAX || list[at].check != m.check[o.row]) {
       at = list.size();
@@ -207,11 +211,11 @@ std::string number_or_dash(const std::optional<double>& value, const char* unit)
   return value ? fmt::format("{:.4g} {}", *value, unit) : std::string("-");
 }
 
-ordered_json noise_json(const NoiseModel& noise, double unit_um) {
+ordered_json noise_json(const fit::NoiseModel& noise, double unit_um) {
   ordered_json steps = ordered_json::array();
-  for (const NoiseStep& step : noise.steps) {
+  for (const fit::NoiseStep& step : noise.steps) {
     steps.push_back({{"row", step.row + 1},
-                     {"observation", kObservationNames[static_cast<std::size_t>(step.kind)]},
+                     {"observation", model::kObservationNames[static_cast<std::size_t>(step.kind)]},
                      {"height_um", step.height * unit_um},
                      {"std_um", step.std * unit_um}});
     if (step.of_set_up())
@@ -225,7 +229,7 @@ ordered_json noise_json(const NoiseModel& noise, double unit_um) {
           {"drift_time", noise.drift > 0 ? ordered_json(noise.time_constant) : ordered_json(nullptr)},
           {"drift_time_unit", noise.in_time ? "s" : "rows"},
           {"support", noise.support},
-          {"sentence", in_words(noise, unit_um)}};
+          {"sentence", fit::in_words(noise, unit_um)}};
 }
 
-}  // namespace vernier
+}  // namespace vernier::results

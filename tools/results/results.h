@@ -8,28 +8,28 @@
 #include "tools/fit/fit.h"
 #include "tools/fit/noise.h"
 
-namespace vernier {
+namespace vernier::results {
 
 /// The keys that `fit` and `compare` share (FORMATS section 3).
-nlohmann::ordered_json fit_json(const FitResult& result, const Measurement& measurement);
-nlohmann::ordered_json compare_json(const Machine& machine, const Measurement& measurement,
+nlohmann::ordered_json fit_json(const fit::FitResult& result, const model::Measurement& measurement);
+nlohmann::ordered_json compare_json(const model::Machine& machine, const model::Measurement& measurement,
                                     const Eigen::VectorXd& residual);
 
 /// Stretches of rows of one role within each run, in the order of the file: {run, role, first_line,
 /// last_line, n_obs, rms_um}. Shows where in a run a model holds (an overshoot arc, a warm-up, a late row).
-nlohmann::ordered_json stretches_json(const Measurement& measurement, const Eigen::VectorXd& residual);
+nlohmann::ordered_json stretches_json(const model::Measurement& measurement, const Eigen::VectorXd& residual);
 
 /// Where rows stand to the domains of validity of learned terms: {domain, quantity, low, high (trained; null
 /// while open), least, most (of the rows), rows_outside, rows_without_effect}; and as lines for people, where
 /// rows are outside.
-nlohmann::ordered_json domains_json(const Machine& machine, const Measurement& measurement);
+nlohmann::ordered_json domains_json(const model::Machine& machine, const model::Measurement& measurement);
 void print_domains(std::FILE* out, const nlohmann::ordered_json& domains);
 
 /// A noise model: {own_um, pose_um, run_um, drift_um, drift_time, drift_time_unit, support, sentence}.
 /// unit_um: um that 1 of it stands for.
-nlohmann::ordered_json noise_json(const NoiseModel& noise, double unit_um);
+nlohmann::ordered_json noise_json(const fit::NoiseModel& noise, double unit_um);
 
 /// A number for people: four significant digits, "-" for none.
 std::string number_or_dash(const std::optional<double>& value, const char* unit);
 
-}  // namespace vernier
+}  // namespace vernier::results

@@ -3,12 +3,12 @@
 
 #include <fmt/format.h>
 
-namespace vernier {
+namespace vernier::results {
 
-nlohmann::ordered_json safety_json(const SafetySheet& sheet) {
+nlohmann::ordered_json safety_json(const safety::SafetySheet& sheet) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
-  for (const SafetyFinding& f : sheet.findings)
-    list.push_back({{"rule", rule_name(f.rule)},
+  for (const safety::SafetyFinding& f : sheet.findings)
+    list.push_back({{"rule", safety::rule_name(f.rule)},
                     {"value", f.value ? nlohmann::ordered_json(*f.value) : nlohmann::ordered_json(nullptr)},
                     {"limit", f.limit},
                     {"unit", f.unit},
@@ -19,10 +19,10 @@ nlohmann::ordered_json safety_json(const SafetySheet& sheet) {
   return list;
 }
 
-void print_safety(std::FILE* out, const SafetySheet& sheet) {
+void print_safety(std::FILE* out, const safety::SafetySheet& sheet) {
   fmt::print(out, "safe to run?\n");
-  for (const SafetyFinding& f : sheet.findings)
-    fmt::print(out, "  {:<15} {:>9}  limit {:<6g} {:<28} {}{}\n", rule_name(f.rule),
+  for (const safety::SafetyFinding& f : sheet.findings)
+    fmt::print(out, "  {:<15} {:>9}  limit {:<6g} {:<28} {}{}\n", safety::rule_name(f.rule),
                f.value ? fmt::format("{:.3g}", *f.value) : "-", f.limit, f.unit,
                !f.value     ? "not known"
                : f.ok       ? "ok"
@@ -35,4 +35,4 @@ void print_safety(std::FILE* out, const SafetySheet& sheet) {
                name);
 }
 
-}  // namespace vernier
+}  // namespace vernier::results

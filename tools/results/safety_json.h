@@ -5,13 +5,13 @@
 
 #include "tools/safety/safety_sheet.h"
 
-namespace vernier {
+namespace vernier::results {
 
 /// [{"rule":…, "value":…, "limit":…, "unit":…, "ok":…, "accepted":…, "culprit":…, "reason":…}…]; value null
 /// where the file cannot tell.
-nlohmann::ordered_json safety_json(const SafetySheet& sheet);
+nlohmann::ordered_json safety_json(const safety::SafetySheet& sheet);
 
 /// The sheet for people, a line a rule.
-void print_safety(std::FILE* out, const SafetySheet& sheet);
+void print_safety(std::FILE* out, const safety::SafetySheet& sheet);
 
-}  // namespace vernier
+}  // namespace vernier::results

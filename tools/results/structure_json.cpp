@@ -2,7 +2,7 @@
 #include "tools/results/structure_json.h"
 #include "tools/text/optional_json.h"
 
-namespace vernier {
+namespace vernier::results {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -13,20 +13,20 @@ Json triple(const Eigen::Vector3d& v) { return Json::array({v[0], v[1], v[2]}); 
 
 }  // namespace
 
-Json findings_json(const FailurePicture& picture) {
+Json findings_json(const residual::FailurePicture& picture) {
   Json list = Json::array();
-  for (const Finding& f : picture.findings)
+  for (const residual::Finding& f : picture.findings)
     list.push_back({{"observation", f.observation},
                     {"column", name_or_null(f.column)},
                     {"second_column", name_or_null(f.second_column)},
-                    {"shape", kShapeNames[static_cast<std::size_t>(f.shape)]},
+                    {"shape", residual::kShapeNames[static_cast<std::size_t>(f.shape)]},
                     {"share_alone", f.share_alone},
                     {"share_after", f.share_after},
                     {"p_value", f.p_value},
                     {"rms_um", f.rms_um},
                     {"low_um", f.low_um},
                     {"high_um", f.high_um},
-                    {"period", or_null(f.period)},
+                    {"period", text::or_null(f.period)},
                     {"runs", f.runs},
                     {"runs_agreeing", f.runs_agreeing},
                     {"in_all_runs", f.in_all_runs},
@@ -35,32 +35,32 @@ Json findings_json(const FailurePicture& picture) {
   return list;
 }
 
-void add_failure(Json& result, const FailurePicture& picture) {
+void add_failure(Json& result, const residual::FailurePicture& picture) {
   result["findings"] = findings_json(picture);
   Json& structure = result["structure"];
   structure = {{"omnibus_p", picture.omnibus_p},
                {"omnibus_by", name_or_null(picture.omnibus_by)},
-               {"chi_p", or_null(picture.chi_p)},
-               {"pure_error_um", or_null(picture.pure_error_um)},
-               {"lack_of_fit_um", or_null(picture.lack_of_fit_um)},
-               {"lack_of_fit_p", or_null(picture.lack_of_fit_p)},
+               {"chi_p", text::or_null(picture.chi_p)},
+               {"pure_error_um", text::or_null(picture.pure_error_um)},
+               {"lack_of_fit_um", text::or_null(picture.lack_of_fit_um)},
+               {"lack_of_fit_p", text::or_null(picture.lack_of_fit_p)},
                {"repeat_freedom", picture.repeat_freedom},
-               {"neighbour_error_um", or_null(picture.neighbour_error_um)},
+               {"neighbour_error_um", text::or_null(picture.neighbour_error_um)},
                {"tried", picture.tried},
                {"outliers", picture.outliers},
                {"shares", Json::array()},
                {"cells", Json::array()}};
-  for (const ColumnShare& share : picture.shares)
+  for (const residual::ColumnShare& share : picture.shares)
     structure["shares"].push_back({{"observation", share.observation},
                                    {"column", share.column},
                                    {"share_alone", share.share_alone},
                                    {"share_after", share.share_after},
                                    {"p_value", share.p_value}});
-  for (const FailureCell& cell : picture.cells)
+  for (const residual::FailureCell& cell : picture.cells)
     structure["cells"].push_back({{"point_mm", triple(cell.point_mm)},
                                   {"mean_um", triple(cell.mean_um)},
                                   {"noise_um", cell.noise_um},
                                   {"count", cell.count}});
 }
 
-}  // namespace vernier
+}  // namespace vernier::results

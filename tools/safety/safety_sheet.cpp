@@ -18,7 +18,7 @@
 #include "tools/model/work_poses.h"
 #include "tools/safety/sources.h"
 
-namespace vernier {
+namespace vernier::safety {
 namespace {
 
 struct RuleText {
@@ -56,11 +56,11 @@ const RuleText& text_of(SafetyRule rule) {
 
 class Judge {
  public:
-  Judge(const Machine& machine, const std::vector<SafetyRule>& accepted)
+  Judge(const model::Machine& machine, const std::vector<SafetyRule>& accepted)
       : machine_(machine),
         accepted_(accepted),
-        poses_(work_poses(machine)),
-        deviation_(deviation(machine, poses_.states)) {}
+        poses_(model::work_poses(machine)),
+        deviation_(model::deviation(machine, poses_.states)) {}
 
   SafetySheet run() {
     judge_correction();
@@ -99,14 +99,15 @@ class Judge {
 
   /// What each axis would be moved by: the linear axes where there are any, else all (least squares, mm and
   /// deg).
-  std::vector<Column> offsets() const {
-    if (!linear_axes(machine_).empty()) return first_order_offset(machine_, poses_.states);
+  std::vector<model::Column> offsets() const {
+    if (!kinematics::linear_axes(machine_).empty())
+      return kinematics::first_order_offset(machine_, poses_.states);
     std::vector<std::size_t> all(machine_.axes.size());
     std::iota(all.begin(), all.end(), std::size_t{0});
     const auto count = static_cast<Eigen::Index>(poses_.states.count);
-    std::vector<Column> result(all.size(), Column::Zero(count));
-    const std::vector<Eigen::MatrixXd> jacobians =
-        axis_jacobian(nominal_machine(machine_), poses_.states, all, Match::kPosition, poses_.extent_mm);
+    std::vector<model::Column> result(all.size(), model::Column::Zero(count));
+    const std::vector<Eigen::MatrixXd> jacobians = kinematics::axis_jacobian(
+        model::nominal_machine(machine_), poses_.states, all, kinematics::Match::kPosition, poses_.extent_mm);
     for (Eigen::Index i = 0; i < count; ++i) {
       const Eigen::VectorXd move =
           jacobians[static_cast<std::size_t>(i)].completeOrthogonalDecomposition().solve(
@@ -117,7 +118,7 @@ class Judge {
   }
 
   void judge_correction() {
-    const std::vector<Column> offset = offsets();
+    const std::vector<model::Column> offset = offsets();
     double most = deviation_.colwise().norm().maxCoeff(), against_limit = 0;
     std::string of_limit;
     bool limited = false;
@@ -152,31 +153,32 @@ class Judge {
   }
 
   void judge_uncertainty() {
-    const Reach reach(machine_);
+    const fit::Reach reach(machine_);
     if (!reach.known()) {
       add(SafetyRule::kUncertainty, std::nullopt, "");
       return;
     }
     double worst = 0;
     std::string of = "the tool of the file";
-    const auto judge_tool = [&](const Machine& machine, const std::string& name) {
-      const Reach with(machine);
+    const auto judge_tool = [&](const model::Machine& machine, const std::string& name) {
+      const fit::Reach with(machine);
       const double rms_um =
           std::sqrt(with.std_um(poses_.states).squaredNorm() / static_cast<double>(poses_.states.count));
-      const double share = rms_um / std::max(kUmPerMm * correction_rms_mm(machine), 0.1);
+      const double share = rms_um / std::max(maths::kUmPerMm * correction_rms_mm(machine), 0.1);
       if (share <= worst) return;
       worst = share;
       of = name;
     };
     judge_tool(machine_, of);
-    for (const Tool& tool : machine_.tools) judge_tool(with_tool(machine_, tool.point), "tool " + tool.name);
+    for (const model::Tool& tool : machine_.tools)
+      judge_tool(model::with_tool(machine_, tool.point), "tool " + tool.name);
     add(SafetyRule::kUncertainty, worst, of);
     sheet_.stale = reach.stale();
   }
 
   /// What there is to correct with this tool, and what the noise of a good fit may leave of nothing.
-  double correction_rms_mm(const Machine& machine) const {
-    const Eigen::Matrix3Xd d = deviation(machine, poses_.states);
+  double correction_rms_mm(const model::Machine& machine) const {
+    const Eigen::Matrix3Xd d = model::deviation(machine, poses_.states);
     const Eigen::Matrix3Xd off = d.colwise() - d.rowwise().mean();
     return std::sqrt(off.squaredNorm() / static_cast<double>(off.cols()));
   }
@@ -189,21 +191,21 @@ class Judge {
     }
     double axis_worst = 0, input_worst = 0;
     std::string axis_of, input_of;
-    const auto overhang = [&](const FitRecord::Range& measured, double low, double high) {
+    const auto overhang = [&](const model::FitRecord::Range& measured, double low, double high) {
       const double outside = std::max(0.0, measured.min - low) + std::max(0.0, high - measured.max);
       return outside / std::max(measured.max - measured.min, 1e-3 * (high - low));
     };
-    for (const FitRecord::Range& measured : machine_.fitted->measured) {
+    for (const model::FitRecord::Range& measured : machine_.fitted->measured) {
       if (const auto axis = machine_.find_axis(measured.name)) {
-        const auto range = work_range(machine_, *axis);
-        if (!range || !acts(machine_, {SymbolKind::kAxis, *axis})) continue;
+        const auto range = model::work_range(machine_, *axis);
+        if (!range || !acts(machine_, {model::SymbolKind::kAxis, *axis})) continue;
         if (const double share = overhang(measured, (*range)[0], (*range)[1]); share > axis_worst) {
           axis_worst = share;
           axis_of = "axis " + measured.name;
         }
       } else if (const auto input = machine_.find_input(measured.name)) {
-        const Input& item = machine_.inputs[*input];
-        if (!item.min || !item.max || !acts(machine_, {SymbolKind::kInput, *input})) continue;
+        const model::Input& item = machine_.inputs[*input];
+        if (!item.min || !item.max || !acts(machine_, {model::SymbolKind::kInput, *input})) continue;
         if (const double share = overhang(measured, *item.min, *item.max); share > input_worst) {
           input_worst = share;
           input_of = "input " + measured.name;
@@ -222,15 +224,15 @@ class Judge {
     for (const Source& source : sources_of_machine()) {
       const double mean_mm = source.mean_mm.norm();
       if (source.is_table || source.varying_rms_mm > kSameEverywhere * mean_mm) continue;
-      if (kUmPerMm * mean_mm <= worst_um) continue;
-      worst_um = kUmPerMm * mean_mm;
+      if (maths::kUmPerMm * mean_mm <= worst_um) continue;
+      worst_um = maths::kUmPerMm * mean_mm;
       of = source.name;
     }
     add(SafetyRule::kSetUp, worst_um, of);
   }
 
   void judge_fit() {
-    const FitRecord* record = machine_.fitted.get();
+    const model::FitRecord* record = machine_.fitted.get();
     const auto known = [&](double value) { return record ? std::optional(value) : std::nullopt; };
     add(SafetyRule::kConverged, known(record && !record->converged ? 2 : 0), "");
     add(SafetyRule::kResidual, known(record ? record->rms_mm / std::max(record->reach_mm, 1e-9) : 0),
@@ -242,9 +244,9 @@ class Judge {
     add(SafetyRule::kDisturbed, known(record ? record->disturbed : 0), record ? record->disturbance : "");
   }
 
-  const Machine& machine_;
+  const model::Machine& machine_;
   const std::vector<SafetyRule>& accepted_;
-  const WorkPoses poses_;
+  const model::WorkPoses poses_;
   const Eigen::Matrix3Xd deviation_;
   std::optional<std::vector<Source>> sources_;
   SafetySheet sheet_;
@@ -268,7 +270,7 @@ std::vector<SafetyRule> rules_named(const std::vector<std::string>& names) {
       std::string all;
       for (std::size_t i = 0; i < kSafetyRuleCount; ++i)
         all += (i > 0 ? ", " : "") + std::string(rule_name(static_cast<SafetyRule>(i)));
-      throw InputError("--accept \"" + name + "\": no such rule; there are " + all);
+      throw text::InputError("--accept \"" + name + "\": no such rule; there are " + all);
     }
     rules.push_back(*rule);
   }
@@ -303,8 +305,8 @@ std::string SafetySheet::refusal() const {
   return text + fmt::format(" ({}); --accept {} overrides", worst->reason, rule_name(worst->rule));
 }
 
-SafetySheet safety_sheet(const Machine& machine, const std::vector<SafetyRule>& accepted) {
+SafetySheet safety_sheet(const model::Machine& machine, const std::vector<SafetyRule>& accepted) {
   return Judge(machine, accepted).run();
 }
 
-}  // namespace vernier
+}  // namespace vernier::safety

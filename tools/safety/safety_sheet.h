@@ -7,7 +7,7 @@
 
 #include "tools/model/machine.h"
 
-namespace vernier {
+namespace vernier::safety {
 
 /// What must hold of a machine file before its correction may run. The numbers travel in images: they stay.
 enum class SafetyRule : std::uint8_t {
@@ -52,9 +52,9 @@ struct SafetySheet {
 
 /// Judges a machine over its <volume> (else its axes' ranges) and with its <tools>, at the references of its
 /// inputs. `accepted`: rules that the user overrides. Throws InputError for an axis without a range. tool.
-SafetySheet safety_sheet(const Machine& machine, const std::vector<SafetyRule>& accepted = {});
+SafetySheet safety_sheet(const model::Machine& machine, const std::vector<SafetyRule>& accepted = {});
 
 /// Rules by their names. Throws InputError for one that does not exist, naming those that do.
 std::vector<SafetyRule> rules_named(const std::vector<std::string>& names);
 
-}  // namespace vernier
+}  // namespace vernier::safety

@@ -5,19 +5,19 @@
 
 #include "tools/model/chain.h"
 
-namespace vernier {
+namespace vernier::safety {
 namespace {
 
 constexpr double kNothing_mm = 1e-12;
 
 }  // namespace
 
-std::vector<Source> error_sources(const Machine& machine, const States& states) {
-  const Machine nominal = nominal_machine(machine);
-  const Eigen::Matrix3Xd at_nominal = forward(nominal, states).position;
+std::vector<Source> error_sources(const model::Machine& machine, const model::States& states) {
+  const model::Machine nominal = model::nominal_machine(machine);
+  const Eigen::Matrix3Xd at_nominal = model::forward(nominal, states).position;
   std::vector<Source> sources;
-  const auto take = [&](const std::string& name, bool is_table, const Machine& with) {
-    const Eigen::Matrix3Xd moved = forward(with, states).position - at_nominal;
+  const auto take = [&](const std::string& name, bool is_table, const model::Machine& with) {
+    const Eigen::Matrix3Xd moved = model::forward(with, states).position - at_nominal;
     Source source{name, is_table, moved.rowwise().mean(), 0, 0};
     const auto count = static_cast<double>(moved.cols());
     source.rms_mm = std::sqrt(moved.squaredNorm() / count);
@@ -26,41 +26,43 @@ std::vector<Source> error_sources(const Machine& machine, const States& states) 
   };
   for (std::size_t i = 0; i < machine.statics.size(); ++i) {
     if (machine.statics[i].value == nominal.statics[i].value) continue;
-    Machine with = nominal;
+    model::Machine with = nominal;
     with.statics[i].value = machine.statics[i].value;
     take(machine.statics[i].name, false, with);
   }
   for (std::size_t t = 0; t < machine.tables.size(); ++t)
     for (std::size_t c = 0; c < 6; ++c) {
-      Machine with = nominal;
+      model::Machine with = nominal;
       bool any = false;
       for (std::size_t s = 0; s < machine.tables[t].stations.size(); ++s) {
         with.tables[t].stations[s].value[c] = machine.tables[t].stations[s].value[c];
         any = any || machine.tables[t].stations[s].value[c] != 0;
       }
-      if (any) take("table." + machine.axes[machine.tables[t].axis].name + "." + kSixDofNames[c], true, with);
+      if (any)
+        take("table." + machine.axes[machine.tables[t].axis].name + "." + model::kSixDofNames[c], true, with);
     }
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
     if (machine.axes[i].scale_factor == 0) continue;
-    Machine with = nominal;
+    model::Machine with = nominal;
     with.axes[i].scale_factor = machine.axes[i].scale_factor;
     take("scalefactor." + machine.axes[i].name, false, with);
   }
   return sources;
 }
 
-bool acts(const Machine& machine, const Symbol& symbol) {
+bool acts(const model::Machine& machine, const model::Symbol& symbol) {
   bool found = false;
   for (const auto* branch : {&machine.tool, &machine.workpiece})
-    for (const Transform& transform : *branch)
+    for (const model::Transform& transform : *branch)
       for (std::size_t d = 0; d < transform.dof_count(); ++d)
-        walk(*transform.dof[d], [&](const Expr& node) {
-          if (node.op != Op::kSymbol) return;
-          found = found || node.symbol == symbol ||
-                  (symbol.kind == SymbolKind::kAxis && node.symbol.kind == SymbolKind::kTableValue &&
-                   node.symbol.index / 6 == symbol.index);
+        model::walk(*transform.dof[d], [&](const model::Expr& node) {
+          if (node.op != model::Op::kSymbol) return;
+          found =
+              found || node.symbol == symbol ||
+              (symbol.kind == model::SymbolKind::kAxis &&
+               node.symbol.kind == model::SymbolKind::kTableValue && node.symbol.index / 6 == symbol.index);
         });
   return found;
 }
 
-}  // namespace vernier
+}  // namespace vernier::safety

@@ -7,7 +7,7 @@
 #include "tools/model/machine.h"
 #include "tools/model/states.h"
 
-namespace vernier {
+namespace vernier::safety {
 
 /// One cause of deviation: a static away from nominal, a column of a table, a scale factor.
 struct Source {
@@ -19,9 +19,9 @@ struct Source {
 };
 
 /// What each source does alone, the others at nominal. Sources that do nothing are left out. tool.
-std::vector<Source> error_sources(const Machine& machine, const States& states);
+std::vector<Source> error_sources(const model::Machine& machine, const model::States& states);
 
 /// Does the symbol stand anywhere in the chain (tables of an axis count)?
-bool acts(const Machine& machine, const Symbol& symbol);
+bool acts(const model::Machine& machine, const model::Symbol& symbol);
 
-}  // namespace vernier
+}  // namespace vernier::safety

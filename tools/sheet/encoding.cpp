@@ -5,7 +5,7 @@
 #include <array>
 #include <cstdint>
 
-namespace vernier {
+namespace vernier::sheet {
 namespace {
 
 constexpr char32_t kNoLetter = 0xFFFD;
@@ -135,4 +135,4 @@ std::string utf8_of(std::string_view bytes, Encoding encoding) {
   return {};
 }
 
-}  // namespace vernier
+}  // namespace vernier::sheet

@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-namespace vernier {
+namespace vernier::sheet {
 
 /// How the bytes of a file are letters.
 enum class Encoding { kUtf8, kUtf8Bom, kUtf16Le, kUtf16Be, kWindows1252 };
@@ -18,4 +18,4 @@ Encoding encoding_of(std::string_view bytes);
 /// The text as UTF-8 without a mark. What is no letter becomes U+FFFD. tool.
 std::string utf8_of(std::string_view bytes, Encoding encoding);
 
-}  // namespace vernier
+}  // namespace vernier::sheet

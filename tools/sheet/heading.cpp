@@ -11,7 +11,7 @@
 #include "tools/text/units.h"
 #include "tools/text/words.h"
 
-namespace vernier {
+namespace vernier::sheet {
 namespace {
 
 std::string lower(std::string_view text) {
@@ -78,11 +78,11 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 52> kUnitWor
 }};
 
 std::string without_brackets(std::string text) {
-  text = trimmed(text);
+  text = text::trimmed(text);
   const std::string open = "[(<{", close = "])>}";
   if (text.size() >= 2 && open.find(text.front()) != std::string::npos &&
       open.find(text.front()) == close.find(text.back()))
-    return trimmed(text.substr(1, text.size() - 2));
+    return text::trimmed(text.substr(1, text.size() - 2));
   return text;
 }
 
@@ -114,51 +114,51 @@ bool is_units(const std::vector<std::string>& row) {
 }  // namespace
 
 std::optional<std::string> unit_meant(std::string_view word) {
-  const std::string bare = without_brackets(usual_spelling(word));
+  const std::string bare = without_brackets(text::usual_spelling(word));
   if (bare.empty()) return std::nullopt;
-  if (const auto unit = find_unit(bare)) return std::string(unit->name);
+  if (const auto unit = text::find_unit(bare)) return std::string(unit->name);
   std::string small = lower(bare);
   if (small.ends_with('.')) small.pop_back();
   for (const auto& [text, unit] : kUnitWords)
     if (small == text) return std::string(unit);
   // Capital letters where none belong: MM, Sec. Not for a single one: A is no a, M no m.
   if (bare.size() > 1)
-    if (const auto unit = find_unit(small)) return std::string(unit->name);
+    if (const auto unit = text::find_unit(small)) return std::string(unit->name);
   return std::nullopt;
 }
 
 Heading parse_heading(std::string_view cell) {
   Heading heading;
-  heading.text = trimmed(cell);
+  heading.text = text::trimmed(cell);
   heading.name = heading.text;
   const std::string& text = heading.text;
   const auto take = [&](std::size_t begin, std::size_t end, std::size_t name_end) {
-    const std::string word = trimmed(text.substr(begin, end - begin));
+    const std::string word = text::trimmed(text.substr(begin, end - begin));
     if (const auto unit = unit_meant(word))
       heading.unit = *unit;
     else
       return false;
-    heading.name = trimmed(text.substr(0, name_end));
+    heading.name = text::trimmed(text.substr(0, name_end));
     while (!heading.name.empty() && std::string("/,;:-").find(heading.name.back()) != std::string::npos)
-      heading.name = trimmed(heading.name.substr(0, heading.name.size() - 1));
+      heading.name = text::trimmed(heading.name.substr(0, heading.name.size() - 1));
     return !heading.name.empty();
   };
   for (const auto& [open, close] : {std::pair('[', ']'), std::pair('(', ')'), std::pair('<', '>')}) {
     const auto begin = text.rfind(open), end = text.rfind(close);
     if (begin == std::string::npos || end == std::string::npos || end < begin || begin == 0) continue;
     if (take(begin + 1, end, begin)) {
-      heading.name = trimmed(heading.name + " " + text.substr(end + 1));
+      heading.name = text::trimmed(heading.name + " " + text.substr(end + 1));
       return heading;
     }
     if (open == '[') {
-      heading.unknown_unit = trimmed(text.substr(begin + 1, end - begin - 1));
-      heading.name = trimmed(text.substr(0, begin));
+      heading.unknown_unit = text::trimmed(text.substr(begin + 1, end - begin - 1));
+      heading.name = text::trimmed(text.substr(0, begin));
     }
   }
   for (const std::string_view between : {" in ", " ", "/", ",", "_"}) {
     const auto at = text.rfind(between);
     // Behind a blank or _ stands a name's own word more often than a unit: only what no name would end in.
-    const std::string rest = at == std::string::npos ? "" : trimmed(text.substr(at + between.size()));
+    const std::string rest = at == std::string::npos ? "" : text::trimmed(text.substr(at + between.size()));
     const bool weak = between == " " || between == "_";
     if (rest.empty() || at == 0 || (weak && (rest.size() < 2 || lower(rest) == "min"))) continue;
     if (take(at + between.size(), text.size(), at)) return heading;
@@ -171,7 +171,7 @@ SheetTable parts_of_sheet(const Sheet& sheet) {
   std::size_t first = 0;
   while (first < sheet.rows.size() && !is_data(sheet, first)) ++first;
   if (first == sheet.rows.size())
-    throw InputError({sheet.file, sheet.line.front()}, "", "no row of this table holds numbers");
+    throw text::InputError({sheet.file, sheet.line.front()}, "", "no row of this table holds numbers");
   table.first_data = first;
   std::size_t heading = first;
   if (heading > 0 && is_units(sheet.rows[heading - 1])) table.units_row = --heading;
@@ -187,8 +187,8 @@ SheetTable parts_of_sheet(const Sheet& sheet) {
                            [](const auto& cell) { return !cell.empty(); });
     };
     if (filled(first) > filled(table.heading_row))
-      throw InputError(
-          {sheet.file, sheet.line[first]}, joined(sheet.rows[first], ",").substr(0, 30),
+      throw text::InputError(
+          {sheet.file, sheet.line[first]}, text::joined(sheet.rows[first], ",").substr(0, 30),
           "more fields than headings: decimal commas in a table that commas part? Save it with semicolons");
   }
   for (std::size_t k = 0; k < sheet.rows.front().size(); ++k) {
@@ -224,4 +224,4 @@ std::string name_from_words(std::string_view words) {
   return name;
 }
 
-}  // namespace vernier
+}  // namespace vernier::sheet

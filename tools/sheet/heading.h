@@ -7,7 +7,7 @@
 
 #include "tools/sheet/sheet.h"
 
-namespace vernier {
+namespace vernier::sheet {
 
 /// The unit of the formats that a word means in any usual spelling: "µm", "micron", "(°C)", "Grad", "inch",
 /// "mm/Min.", "U/min"; brackets around it do not count. Nothing where it is no unit. tool.
@@ -39,4 +39,4 @@ SheetTable parts_of_sheet(const Sheet& sheet);
 /// "X ist" → "X_ist": a name of the formats from any words, umlauts and signs spelled out. tool.
 std::string name_from_words(std::string_view words);
 
-}  // namespace vernier
+}  // namespace vernier::sheet

@@ -10,7 +10,7 @@
 #include "tools/text/error.h"
 #include "tools/text/words.h"
 
-namespace vernier {
+namespace vernier::sheet {
 namespace {
 
 struct Line {
@@ -27,7 +27,7 @@ std::vector<Line> lines_of(const std::string& text, std::size_t skip, const std:
     const std::string line = text.substr(at, end - at);
     at = end + (text.compare(end, 2, "\r\n") == 0 ? 2 : 1);
     ++number;
-    const std::string bare = trimmed(line);
+    const std::string bare = text::trimmed(line);
     if (number <= skip || bare.empty() || (!comment.empty() && bare.starts_with(comment))) continue;
     lines.push_back({line, number});
   }
@@ -47,8 +47,8 @@ std::size_t count_outside_quotes(const std::string& line, char separator) {
 
 /// The first line of a file from a spreadsheet may say it: sep=;
 char said_separator(std::vector<Line>& lines) {
-  if (lines.empty() || !trimmed(lines.front().text).starts_with("sep=") ||
-      trimmed(lines.front().text).size() > 5)
+  if (lines.empty() || !text::trimmed(lines.front().text).starts_with("sep=") ||
+      text::trimmed(lines.front().text).size() > 5)
     return 0;
   const std::string line = lines.front().text;
   lines.erase(lines.begin());
@@ -91,15 +91,16 @@ void make_even(Sheet& sheet) {
   if (sheet.rows.empty()) return;
   const std::size_t width = sheet.rows[widest].size();
   if (width > (kMostEmpty + (1 + kMostEmptyForOne) * cells) / sheet.rows.size())
-    throw InputError({sheet.file, sheet.line[widest]}, "",
-                     std::to_string(width) + " cells here, where the rows have " +
-                         std::to_string(cells / sheet.rows.size()) + ": no table");
+    throw text::InputError({sheet.file, sheet.line[widest]}, "",
+                           std::to_string(width) + " cells here, where the rows have " +
+                               std::to_string(cells / sheet.rows.size()) + ": no table");
   for (auto& row : sheet.rows) row.resize(width);
 }
 
 void split(Sheet& sheet, const std::vector<Line>& lines) {
   for (const Line& line : lines) {
-    std::vector<std::string> cells = fields_of(line.text, {sheet.separator, true}, {sheet.file, line.number});
+    std::vector<std::string> cells =
+        text::fields_of(line.text, {sheet.separator, true}, {sheet.file, line.number});
     if (std::all_of(cells.begin(), cells.end(), [](const std::string& cell) { return cell.empty(); }))
       continue;
     sheet.rows.push_back(std::move(cells));
@@ -118,7 +119,7 @@ void drop_empty_columns(Sheet& sheet) {
 
 void guess_decimal(Sheet& sheet) {
   std::size_t point = 0, comma = 0, either_point = 0, either_comma = 0;
-  Place at_point, at_comma;
+  text::Place at_point, at_comma;
   std::string point_word, comma_word;
   for (std::size_t row = 0; row < sheet.rows.size(); ++row)
     for (const std::string& cell : sheet.rows[row]) switch (decimal_sign_in(cell)) {
@@ -135,7 +136,7 @@ void guess_decimal(Sheet& sheet) {
           break;
       }
   if (point > 0 && comma > 0)
-    throw InputError(
+    throw text::InputError(
         comma < point ? at_comma : at_point, comma < point ? comma_word : point_word,
         std::string("a decimal ") + (comma < point ? "comma" : "point") + " here, a decimal " +
             (comma < point ? "point" : "comma") + " in line " +
@@ -179,7 +180,7 @@ Sheet read_sheet(const std::string& bytes, const std::string& file, const SheetF
   Sheet sheet;
   sheet.file = file;
   if (bytes.starts_with("\xD0\xCF\x11\xE0"))
-    throw InputError({file, 0}, "", "a workbook of the old kind (.xls): save it as .xlsx or as CSV");
+    throw text::InputError({file, 0}, "", "a workbook of the old kind (.xls): save it as .xlsx or as CSV");
   if (is_workbook(bytes)) {
     WorkbookSheet read = read_workbook(bytes, file, format.sheet);
     sheet.workbook = true;
@@ -197,7 +198,7 @@ Sheet read_sheet(const std::string& bytes, const std::string& file, const SheetF
     sheet.encoding = encoding_of(bytes);
     const std::string text = utf8_of(bytes, sheet.encoding);
     if (text.find('\0') != std::string::npos)
-      throw InputError({file, 0}, "", "zero bytes: neither a text nor a workbook (.xlsx)");
+      throw text::InputError({file, 0}, "", "zero bytes: neither a text nor a workbook (.xlsx)");
     std::vector<Line> lines = lines_of(text, format.skip, format.comment);
     const char said = said_separator(lines);
     sheet.separator = format.separator != 0 ? format.separator : said != 0 ? said : separator_of_lines(lines);
@@ -208,8 +209,8 @@ Sheet read_sheet(const std::string& bytes, const std::string& file, const SheetF
     else
       guess_decimal(sheet);
   }
-  if (sheet.rows.empty()) throw InputError({file, 0}, "", "no rows");
+  if (sheet.rows.empty()) throw text::InputError({file, 0}, "", "no rows");
   return sheet;
 }
 
-}  // namespace vernier
+}  // namespace vernier::sheet

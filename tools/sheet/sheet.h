@@ -7,7 +7,7 @@
 
 #include "tools/sheet/encoding.h"
 
-namespace vernier {
+namespace vernier::sheet {
 
 /// What is said of a table rather than guessed.
 struct SheetFormat {
@@ -44,4 +44,4 @@ char guess_separator(const std::string& text, const std::string& comment);
 /// "comma", "semicolon", "tab", "blanks".
 const char* separator_word(char separator);
 
-}  // namespace vernier
+}  // namespace vernier::sheet

@@ -7,14 +7,14 @@
 #include "tools/text/numbers.h"
 #include "tools/text/words.h"
 
-namespace vernier {
+namespace vernier::sheet {
 namespace {
 
 bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
 
 /// Signs that stand in numbers of spreadsheets, as ASCII: minus signs, blanks that do not break.
 std::string ascii_signs(std::string_view cell) {
-  std::string text = trimmed(cell);
+  std::string text = text::trimmed(cell);
   const auto replace = [&](std::string_view sign, const char* with) {
     for (std::size_t at = 0; (at = text.find(sign, at)) != std::string::npos;)
       text.replace(at, sign.size(), with);
@@ -54,7 +54,7 @@ std::optional<std::string> plain_number(std::string_view cell, bool decimal_comm
   std::replace(rest.begin(), rest.end(), ',', '.');
   text = whole + rest;
   if (text.starts_with("+")) text.erase(0, 1);
-  if (!parse_number(text)) return std::nullopt;
+  if (!text::parse_number(text)) return std::nullopt;
   return text;
 }
 
@@ -69,4 +69,4 @@ DecimalSign decimal_sign_in(std::string_view cell) {
   return by_comma ? DecimalSign::kComma : DecimalSign::kNeither;
 }
 
-}  // namespace vernier
+}  // namespace vernier::sheet

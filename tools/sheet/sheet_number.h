@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-namespace vernier {
+namespace vernier::sheet {
 
 /// A cell as number text with a point and nothing else ("-1234.5"): thousands ("1.234,5", "1'234.5", "1
 /// 234,5") and the long minus sign are understood. Nothing where it is no number of this decimal sign. tool.
@@ -14,4 +14,4 @@ std::optional<std::string> plain_number(std::string_view cell, bool decimal_comm
 enum class DecimalSign { kNeither, kPoint, kComma, kEither };
 DecimalSign decimal_sign_in(std::string_view cell);
 
-}  // namespace vernier
+}  // namespace vernier::sheet

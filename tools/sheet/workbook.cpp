@@ -12,7 +12,7 @@
 #include "tools/text/numbers.h"
 #include "tools/text/words.h"
 
-namespace vernier {
+namespace vernier::sheet {
 namespace {
 
 /// A part that unpacks to more is no survey but a bomb.
@@ -31,7 +31,7 @@ class Package {
     zip_ = zip_open_from_source(source, ZIP_RDONLY, &error);
     if (zip_ == nullptr) {
       zip_source_free(source);
-      throw InputError({file, 0}, "", std::string("not a workbook: ") + zip_error_strerror(&error));
+      throw text::InputError({file, 0}, "", std::string("not a workbook: ") + zip_error_strerror(&error));
     }
   }
   ~Package() { zip_discard(zip_); }
@@ -42,12 +42,12 @@ class Package {
     zip_stat_t status;
     if (zip_stat(zip_, name.c_str(), ZIP_FL_NOCASE, &status) != 0) return std::nullopt;
     if (status.size > kMostBytes)
-      throw InputError({file_, 0}, name, "this part of the workbook is too large");
+      throw text::InputError({file_, 0}, name, "this part of the workbook is too large");
     const std::unique_ptr<zip_file_t, int (*)(zip_file_t*)> open(zip_fopen_index(zip_, status.index, 0),
                                                                  zip_fclose);
     std::string text(status.size, '\0');
     if (!open || zip_fread(open.get(), text.data(), text.size()) != static_cast<zip_int64_t>(text.size()))
-      throw InputError({file_, 0}, name, "this part of the workbook cannot be read");
+      throw text::InputError({file_, 0}, name, "this part of the workbook cannot be read");
     return text;
   }
 
@@ -104,19 +104,19 @@ class Reader {
       WorkbookSheet sheet = cells_of(entry);
       if (!wanted.empty() || !sheet.rows.empty()) return sheet;
     }
-    if (wanted.empty()) throw InputError({file_, 0}, "", "no sheet of this workbook holds a cell");
-    throw InputError({file_, 0}, wanted, "no sheet of this name; there are " + names);
+    if (wanted.empty()) throw text::InputError({file_, 0}, "", "no sheet of this workbook holds a cell");
+    throw text::InputError({file_, 0}, wanted, "no sheet of this name; there are " + names);
   }
 
  private:
   void load(pugi::xml_document& document, const std::string& text, const std::string& name) const {
     const auto result =
         document.load_buffer(text.data(), text.size(), pugi::parse_default | pugi::parse_ws_pcdata);
-    if (!result) throw InputError({file_, 0}, name, std::string("broken: ") + result.description());
+    if (!result) throw text::InputError({file_, 0}, name, std::string("broken: ") + result.description());
   }
   void read_part(const std::string& name, pugi::xml_document& document) const {
     const auto text = package_.part(name);
-    if (!text) throw InputError({file_, 0}, name, "this zip is no workbook: a part is missing");
+    if (!text) throw text::InputError({file_, 0}, name, "this zip is no workbook: a part is missing");
     load(document, *text, name);
   }
 
@@ -132,8 +132,8 @@ class Reader {
       const std::string target = relation.attribute("Target").value();
       return target.starts_with("/") ? target.substr(1) : "xl/" + target;
     }
-    throw InputError({file_, 0}, entry.attribute("name").value(),
-                     "the workbook does not say where this sheet is");
+    throw text::InputError({file_, 0}, entry.attribute("name").value(),
+                           "the workbook does not say where this sheet is");
   }
 
   WorkbookSheet cells_of(const pugi::xml_node& entry) const {
@@ -144,20 +144,20 @@ class Reader {
     for (const pugi::xml_node row : child(document.document_element(), "sheetData").children()) {
       row_number = row.attribute("r") ? row.attribute("r").as_uint() : row_number + 1;
       if (row_number > kMostRows)
-        throw InputError({file_, 0}, sheet.name, "a row beyond the last of the format");
+        throw text::InputError({file_, 0}, sheet.name, "a row beyond the last of the format");
       std::vector<std::string> cells;
       bool any = false;
       for (const pugi::xml_node cell : row.children()) {
         const std::size_t column = column_of(cell, cells.size());
         if (column >= kMostColumns)
-          throw InputError({file_, row_number}, "", "a column beyond the last of the format");
-        const std::string value = trimmed(value_of(cell, row_number));
+          throw text::InputError({file_, row_number}, "", "a column beyond the last of the format");
+        const std::string value = text::trimmed(value_of(cell, row_number));
         if (value.empty()) continue;
         if (cells.size() <= column) {
           empty += column - cells.size();
           if (empty > kMostEmpty + kMostEmptyForOne * filled)
-            throw InputError({file_, row_number}, cell.attribute("r").value(),
-                             "nearly all cells up to here are empty: no table");
+            throw text::InputError({file_, row_number}, cell.attribute("r").value(),
+                                   "nearly all cells up to here are empty: no table");
           cells.resize(column + 1);
         }
         ++filled;
@@ -187,15 +187,15 @@ class Reader {
     if (type == "inlineStr") return text_of(child(cell, "is"));
     const std::string value = child(cell, "v").text().get();
     if (type == "s") {
-      const auto index = parse_number(value);
+      const auto index = text::parse_number(value);
       if (!index || *index < 0 || *index >= static_cast<double>(strings_.size()))
-        throw InputError({file_, row}, value, "the workbook has no text of this number");
+        throw text::InputError({file_, row}, value, "the workbook has no text of this number");
       return strings_[static_cast<std::size_t>(*index)];
     }
     // Stored with 17 digits, shown and meant with the 15 that a spreadsheet has: 200.00509999999997 is
     // 200.0051.
-    const auto number = type.empty() || type == "n" ? parse_number(value) : std::nullopt;
-    return number ? number_text(*parse_number(fmt::format("{:.15g}", *number))) : value;
+    const auto number = type.empty() || type == "n" ? text::parse_number(value) : std::nullopt;
+    return number ? text::number_text(*text::parse_number(fmt::format("{:.15g}", *number))) : value;
   }
 
   std::string file_;
@@ -210,4 +210,4 @@ WorkbookSheet read_workbook(const std::string& bytes, const std::string& file, c
   return Reader(bytes, file).read(sheet);
 }
 
-}  // namespace vernier
+}  // namespace vernier::sheet

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-namespace vernier {
+namespace vernier::sheet {
 
 /// A sheet of an Office Open XML workbook (ECMA-376 part 1, SpreadsheetML) as text: numbers with a decimal
 /// point as stored, formulas by their last value.
@@ -17,4 +17,4 @@ struct WorkbookSheet {
 /// workbook, no such sheet (the others are named), a part of more than 256 MB. tool.
 WorkbookSheet read_workbook(const std::string& bytes, const std::string& file, const std::string& sheet);
 
-}  // namespace vernier
+}  // namespace vernier::sheet

@@ -12,7 +12,7 @@
 #include "tools/text/files.h"
 #include "tools/text/numbers.h"
 
-namespace vernier {
+namespace vernier::sheet {
 namespace {
 
 /// Where the library writes: it knows files only.
@@ -45,7 +45,7 @@ void write_sheet(lxw_workbook* workbook, lxw_format* heading, const SheetToWrite
       width[k] = std::clamp(static_cast<double>(cell.size()) + 2, width[k], kWidest);
       const auto at = static_cast<lxw_row_t>(row);
       const auto column = static_cast<lxw_col_t>(k);
-      if (const auto number = row == 0 ? std::nullopt : parse_number(cell))
+      if (const auto number = row == 0 ? std::nullopt : text::parse_number(cell))
         worksheet_write_number(out, at, column, *number, nullptr);
       else if (!cell.empty())
         worksheet_write_string(out, at, column, cell.c_str(), row == 0 ? heading : nullptr);
@@ -70,7 +70,7 @@ std::string workbook_of(const std::vector<SheetToWrite>& sheets) {
   for (const SheetToWrite& sheet : sheets) write_sheet(workbook, heading, sheet);
   const lxw_error failed = workbook_close(workbook);
   if (failed != LXW_NO_ERROR) throw std::runtime_error(std::string("workbook: ") + lxw_strerror(failed));
-  return read_file(file.path());
+  return text::read_file(file.path());
 }
 
-}  // namespace vernier
+}  // namespace vernier::sheet

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-namespace vernier {
+namespace vernier::sheet {
 
 /// A sheet to be written: its first row are headings that stay in sight.
 struct SheetToWrite {
@@ -15,4 +15,4 @@ struct SheetToWrite {
 /// written. tool.
 std::string workbook_of(const std::vector<SheetToWrite>& sheets);
 
-}  // namespace vernier
+}  // namespace vernier::sheet

@@ -15,7 +15,7 @@
 #include "tools/simulate/loop.h"
 #include "tools/text/files.h"
 
-namespace vernier {
+namespace vernier::simulate {
 namespace {
 
 using Index = Eigen::Index;
@@ -32,22 +32,22 @@ class ImageFolder {
   explicit ImageFolder(std::string directory) : directory_(std::move(directory)) {
     std::error_code failed;
     const fs::path root(directory_);
-    if (!fs::is_directory(root, failed)) throw InputError("\"" + directory_ + "\": no such directory");
+    if (!fs::is_directory(root, failed)) throw text::InputError("\"" + directory_ + "\": no such directory");
     look_at(root);
     for (fs::recursive_directory_iterator it(root, fs::directory_options::skip_permission_denied, failed),
          end;
          !failed && it != end; it.increment(failed))
       if (it->is_directory(failed)) look_at(it->path());
-    if (failed) throw InputError("\"" + directory_ + "\": " + failed.message());
+    if (failed) throw text::InputError("\"" + directory_ + "\": " + failed.message());
   }
 
   /// Throws InputError where no directory holds it.
-  const LoadedImage& image(const std::string& fingerprint, const Place& place) {
+  const compile::LoadedImage& image(const std::string& fingerprint, const text::Place& place) {
     const auto found = directories_.find(fingerprint);
     if (found == directories_.end())
-      throw InputError(place, fingerprint, "no image below " + directory_ + " has this fingerprint");
-    std::unique_ptr<LoadedImage>& open = open_[fingerprint];
-    if (!open) open = load_image_dir(found->second);
+      throw text::InputError(place, fingerprint, "no image below " + directory_ + " has this fingerprint");
+    std::unique_ptr<compile::LoadedImage>& open = open_[fingerprint];
+    if (!open) open = compile::load_image_dir(found->second);
     return *open;
   }
 
@@ -57,7 +57,7 @@ class ImageFolder {
     if (!fs::is_regular_file(directory / "machine.vimg", failed) ||
         !fs::is_regular_file(directory / "machine.xml", failed))
       return;
-    const std::string bytes = read_file((directory / "machine.vimg").string());
+    const std::string bytes = text::read_file((directory / "machine.vimg").string());
     ImageHeader header;
     if (bytes.size() < sizeof(header)) return;  // no image, and no row can mean it
     std::memcpy(&header, bytes.data(), sizeof(header));
@@ -66,11 +66,11 @@ class ImageFolder {
 
   std::string directory_;
   std::map<std::string, std::string> directories_;
-  std::map<std::string, std::unique_ptr<LoadedImage>> open_;
+  std::map<std::string, std::unique_ptr<compile::LoadedImage>> open_;
 };
 
 /// What the board reads in a row of states bound to the image's machine.
-CycleInput cycle_input(const Machine& machine, const States& s, Index row) {
+CycleInput cycle_input(const model::Machine& machine, const model::States& s, Index row) {
   PlantState told;
   tell_state(machine, s, row, told);
   CycleInput input;
@@ -113,16 +113,17 @@ CycleInput between(const CycleInput& from, const CycleInput& to, double share) {
 /// deg, by axis of the image.
 class ImageRun {
  public:
-  ImageRun(const LoadedImage& image, const Measurement& rows)
+  ImageRun(const compile::LoadedImage& image, const model::Measurement& rows)
       : image_(image), rows_(rows), compensator_(std::make_unique<Compensator>(image.view.program())) {
-    result_.assign(image.machine.axes.size(), Column::Zero(static_cast<Index>(rows.rows())));
+    result_.assign(image.machine.axes.size(), model::Column::Zero(static_cast<Index>(rows.rows())));
   }
 
-  std::vector<Column> corrections() {
+  std::vector<model::Column> corrections() {
     const bool remembers = image_.view.program().equation.lag_count > 0;
     if (remembers && !rows_.has_recorded("t"))
-      throw InputError({rows_.files.front(), 0}, "t", "the image that ran has lags: it needs this column");
-    if (remembers) require_time_order(rows_);
+      throw text::InputError({rows_.files.front(), 0}, "t",
+                             "the image that ran has lags: it needs this column");
+    if (remembers) model::require_time_order(rows_);
     std::vector<std::size_t> last(rows_.states.names(rows_.states.clock).size(), rows_.rows());
     // Clock by clock, since a lag starts anew with each.
     for (std::size_t clock = 0; clock < last.size(); ++clock) {
@@ -140,12 +141,13 @@ class ImageRun {
  private:
   /// The ticks between two rows, so that lags are where they were.
   void walk(std::size_t before, std::size_t after) {
-    const Column& t = rows_.states.time;
+    const model::Column& t = rows_.states.time;
     const double ticks =
         (t[static_cast<Index>(after)] - t[static_cast<Index>(before)]) * 1e6 / image_.view.header().tick_us;
     if ((ticks_ += ticks) > kMostTicks)
-      throw InputError({rows_.files.front(), rows_.line[after]}, "t",
-                       "the image that ran has lags, and more than forty million ticks lie before this row");
+      throw text::InputError(
+          {rows_.files.front(), rows_.line[after]}, "t",
+          "the image that ran has lags, and more than forty million ticks lie before this row");
     const auto count = std::llround(ticks);
     const CycleInput from = input_of(before), to = input_of(after);
     for (long long k = 1; k < count; ++k)
@@ -162,31 +164,33 @@ class ImageRun {
           output.wanted[i].counts / (image_.machine.axes[i].rotary ? kCountsPerDeg : kCountsPerMm);
   }
 
-  const LoadedImage& image_;
-  const Measurement& rows_;
+  const compile::LoadedImage& image_;
+  const model::Measurement& rows_;
   std::unique_ptr<Compensator> compensator_;
-  std::vector<Column> result_;
+  std::vector<model::Column> result_;
   double ticks_ = 0;
 };
 
 /// The correction of one image in the rows of a file that it ran in.
-void apply(const LoadedImage& image, const std::string& fingerprint, const Machine& machine,
-           const std::string& text, Measurement& m) {
+void apply(const compile::LoadedImage& image, const std::string& fingerprint, const model::Machine& machine,
+           const std::string& text, model::Measurement& m) {
   // Bound to the image's machine: its inputs may be columns that this machine does not know.
-  const Measurement own = parse_measurement(text, m.files.front(), image.machine, [](auto&&...) {});
+  const model::Measurement own =
+      model::parse_measurement(text, m.files.front(), image.machine, [](auto&&...) {});
   std::map<std::size_t, Index> row_on_line;
   for (std::size_t row = 0; row < own.rows(); ++row) row_on_line[own.line[row]] = static_cast<Index>(row);
-  const std::vector<Column> corrections = ImageRun(image, own).corrections();
+  const std::vector<model::Column> corrections = ImageRun(image, own).corrections();
   for (std::size_t row = 0; row < m.rows(); ++row) {
     if (m.corrected[row] != fingerprint) continue;
-    const Place place{m.files.front(), m.line[row]};
+    const text::Place place{m.files.front(), m.line[row]};
     const auto found = row_on_line.find(m.line[row]);
     if (found == row_on_line.end())
-      throw InputError(place, fingerprint, "an input of this image is empty in this row");
+      throw text::InputError(place, fingerprint, "an input of this image is empty in this row");
     for (std::size_t i = 0; i < corrections.size(); ++i) {
       const auto axis = machine.find_axis(image.machine.axes[i].name);
       if (!axis)
-        throw InputError(place, image.machine.axes[i].name, "the machine file lacks this axis of the image");
+        throw text::InputError(place, image.machine.axes[i].name,
+                               "the machine file lacks this axis of the image");
       m.correction[*axis][static_cast<Index>(row)] = corrections[i][found->second];
     }
   }
@@ -194,10 +198,10 @@ void apply(const LoadedImage& image, const std::string& fingerprint, const Machi
 
 }  // namespace
 
-ImageCorrection corrections_of_images(const std::string& directory) {
+model::ImageCorrection corrections_of_images(const std::string& directory) {
   if (directory.empty()) return {};
-  return [folder = std::make_shared<ImageFolder>(directory)](Measurement& m, const Machine& machine,
-                                                             const std::string& text) {
+  return [folder = std::make_shared<ImageFolder>(directory)](
+             model::Measurement& m, const model::Machine& machine, const std::string& text) {
     std::map<std::string, std::size_t> first_row;
     for (std::size_t row = 0; row < m.rows(); ++row)
       if (!m.corrected[row].empty()) first_row.emplace(m.corrected[row], row);
@@ -206,4 +210,4 @@ ImageCorrection corrections_of_images(const std::string& directory) {
   };
 }
 
-}  // namespace vernier
+}  // namespace vernier::simulate

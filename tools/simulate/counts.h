@@ -6,7 +6,7 @@
 
 #include "comp/quantity.h"
 
-namespace vernier {
+namespace vernier::simulate {
 
 /// Axis counts of a mm, and of a degree.
 inline constexpr double kCountsPerMm = 1e6, kCountsPerDeg = static_cast<double>(kTurnCounts) / 360;
@@ -17,4 +17,4 @@ inline std::int64_t counts(double value) {
   return std::llround(std::clamp(value, -kMost, kMost));
 }
 
-}  // namespace vernier
+}  // namespace vernier::simulate

@@ -12,20 +12,21 @@
 #include "tools/simulate/counts.h"
 #include "tools/text/error.h"
 
-namespace vernier {
+namespace vernier::simulate {
 namespace {
 
 /// Half an hour at 1 kHz: a correction that takes longer to come in has a slew limit that is a mistake.
 constexpr std::size_t kMostPreRoll = 1'800'000;
 
-TimeUs time_of(const States& states, std::size_t tick) {
+TimeUs time_of(const model::States& states, std::size_t tick) {
   return TimeUs(counts(1e6 * states.time[static_cast<Eigen::Index>(tick)]));
 }
 
 /// States that stand for a tick each.
 class StatesPath : public TickPath {
  public:
-  StatesPath(const Machine& machine, const States& states) : machine_(machine), states_(states) {}
+  StatesPath(const model::Machine& machine, const model::States& states)
+      : machine_(machine), states_(states) {}
   std::size_t count() const noexcept override { return states_.count; }
   void at(std::size_t tick, PlantState& state) const noexcept override {
     tell_state(machine_, states_, static_cast<Eigen::Index>(tick), state);
@@ -34,8 +35,8 @@ class StatesPath : public TickPath {
   bool kept(std::size_t) const noexcept override { return true; }
 
  private:
-  const Machine& machine_;
-  const States& states_;
+  const model::Machine& machine_;
+  const model::States& states_;
 };
 
 /// The path as the plant asks for it: before its begin and after its end the machine stands there.
@@ -72,7 +73,8 @@ PlantOptions plant_options(const LoopOptions& options) {
 /// One run; the parts of the board live here.
 class Loop {
  public:
-  Loop(const ImageView& image, const Machine& machine, const TickPath& path, const LoopOptions& options)
+  Loop(const ImageView& image, const model::Machine& machine, const TickPath& path,
+       const LoopOptions& options)
       : machine_(machine),
         path_(path),
         trajectory_(path),
@@ -82,7 +84,7 @@ class Loop {
     if (options.dac_bits) chain_.emplace(*options.dac_bits);
     Eigen::Index kept = 0;
     for (std::size_t tick = 0; tick < path.count(); ++tick) kept += path.kept(tick) ? 1 : 0;
-    result_.correction.assign(machine.axes.size(), Column::Zero(kept));
+    result_.correction.assign(machine.axes.size(), model::Column::Zero(kept));
   }
 
   LoopResult run() {
@@ -99,8 +101,8 @@ class Loop {
   void bring_in() {
     for (bool asked = false; cycle_.mode() != Mode::kActive; ++result_.pre_roll) {
       if (result_.pre_roll == kMostPreRoll)
-        throw LimitNotMet(std::string("the firmware did not become active, it is in mode ") +
-                          name_of(cycle_.mode()) + "; is maxslew too low to bring the correction in?");
+        throw text::LimitNotMet(std::string("the firmware did not become active, it is in mode ") +
+                                name_of(cycle_.mode()) + "; is maxslew too low to bring the correction in?");
       plant_.advance();
       runner_.set_time(path_.time(0));
       const bool ask = cycle_.mode() == Mode::kReady && !asked;
@@ -139,7 +141,7 @@ class Loop {
     return chain_->offset_nm(chain_->code_for(written)) / kCountsPerMm;
   }
 
-  const Machine& machine_;
+  const model::Machine& machine_;
   const TickPath& path_;
   PathTrajectory trajectory_;
   SimClock clock_;
@@ -153,15 +155,16 @@ class Loop {
 
 }  // namespace
 
-void tell_state(const Machine& machine, const States& states, Eigen::Index k, PlantState& state) noexcept {
+void tell_state(const model::Machine& machine, const model::States& states, Eigen::Index k,
+                PlantState& state) noexcept {
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
     const double scale = machine.axes[i].rotary ? kCountsPerDeg : kCountsPerMm;
     AxisReading& axis = state.axis[i];
     axis.position = AxisPosition(counts(scale * states.axis[i][k]));
     axis.velocity = AxisSpeed(counts(scale * states.velocity[i][k]));
     axis.acceleration = AxisAcceleration(counts(scale * states.acceleration[i][k]));
-    axis.since = states.since[i][k] >= kLongWay ? AxisTravel(INT64_MAX)
-                                                : AxisTravel(counts(scale * states.since[i][k]));
+    axis.since = states.since[i][k] >= model::kLongWay ? AxisTravel(INT64_MAX)
+                                                       : AxisTravel(counts(scale * states.since[i][k]));
     axis.sense = static_cast<std::int8_t>(states.direction[i][k]);
   }
   for (std::size_t i = 0; i < machine.inputs.size(); ++i)
@@ -172,14 +175,14 @@ void tell_state(const Machine& machine, const States& states, Eigen::Index k, Pl
   state.path.visit = VisitCount(counts(states.visit[k]));
 }
 
-LoopResult run_loop(const ImageView& image, const Machine& machine, const States& states,
+LoopResult run_loop(const ImageView& image, const model::Machine& machine, const model::States& states,
                     const LoopOptions& options) {
   return run_loop(image, machine, StatesPath(machine, states), options);
 }
 
-LoopResult run_loop(const ImageView& image, const Machine& machine, const TickPath& path,
+LoopResult run_loop(const ImageView& image, const model::Machine& machine, const TickPath& path,
                     const LoopOptions& options) {
   return std::make_unique<Loop>(image, machine, path, options)->run();
 }
 
-}  // namespace vernier
+}  // namespace vernier::simulate

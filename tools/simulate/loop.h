@@ -11,7 +11,7 @@
 #include "tools/model/machine.h"
 #include "tools/model/states.h"
 
-namespace vernier {
+namespace vernier::simulate {
 
 /// What stands between the firmware and a perfect machine.
 struct LoopOptions {
@@ -33,12 +33,13 @@ class TickPath {
 };
 
 /// Row `k` of states as the controller of the simulated machine tells it.
-void tell_state(const Machine& machine, const States& states, Eigen::Index k, PlantState& state) noexcept;
+void tell_state(const model::Machine& machine, const model::States& states, Eigen::Index k,
+                PlantState& state) noexcept;
 
 /// What the firmware did along a path.
 struct LoopResult {
   /// As the machine moves by it; per axis of the image, mm or deg, of each tick that is kept.
-  std::vector<Column> correction;
+  std::vector<model::Column> correction;
   std::size_t pre_roll = 0;     // ticks that the machine stood until the firmware was Active
   std::uint64_t saturated = 0;  // ticks of the path with a correction at a limit, or beyond the converter
   std::uint64_t slewing = 0, beyond_range = 0, not_active = 0;  // ticks of the path
@@ -53,10 +54,10 @@ struct LoopResult {
 /// the image's own). While it stands, its motion state is that of the first tick, as if it had come there on
 /// the path: a path cut out of a longer motion starts without a transient. Plausibility limits of readings
 /// are off: the path is what happened. Throws LimitNotMet where the firmware never becomes Active. tool.
-LoopResult run_loop(const ImageView& image, const Machine& machine, const States& states,
+LoopResult run_loop(const ImageView& image, const model::Machine& machine, const model::States& states,
                     const LoopOptions& options);
 /// The same along a path that is made as it goes.
-LoopResult run_loop(const ImageView& image, const Machine& machine, const TickPath& path,
+LoopResult run_loop(const ImageView& image, const model::Machine& machine, const TickPath& path,
                     const LoopOptions& options);
 
-}  // namespace vernier
+}  // namespace vernier::simulate

@@ -8,7 +8,7 @@
 #include "tools/simulate/path.h"
 #include "tools/text/error.h"
 
-namespace vernier {
+namespace vernier::simulate {
 namespace {
 
 /// Motion below this is the last digit of a path file, not motion; mm or deg.
@@ -16,8 +16,8 @@ constexpr double kRest = 1e-9;
 
 Eigen::Index index(std::size_t i) { return static_cast<Eigen::Index>(i); }
 
-Column interpolate(const Column& rows, const Ticks& ticks) {
-  Column result(index(ticks.count()));
+model::Column interpolate(const model::Column& rows, const Ticks& ticks) {
+  model::Column result(index(ticks.count()));
   for (std::size_t k = 0; k < ticks.count(); ++k) {
     const Eigen::Index near = index(ticks.segment[k]), far = std::min(near + 1, rows.size() - 1);
     result[index(k)] = rows[near] + ticks.fraction[index(k)] * (rows[far] - rows[near]);
@@ -26,8 +26,8 @@ Column interpolate(const Column& rows, const Ticks& ticks) {
 }
 
 /// The value of the row at or before the tick.
-Column hold(const Column& rows, const Ticks& ticks) {
-  Column result(index(ticks.count()));
+model::Column hold(const model::Column& rows, const Ticks& ticks) {
+  model::Column result(index(ticks.count()));
   for (std::size_t k = 0; k < ticks.count(); ++k) {
     const bool last = ticks.fraction[index(k)] >= 1 && index(ticks.segment[k]) + 1 < rows.size();
     result[index(k)] = rows[index(ticks.segment[k]) + (last ? 1 : 0)];
@@ -38,14 +38,14 @@ Column hold(const Column& rows, const Ticks& ticks) {
 /// Per axis: what its positions along the rows say about its motion. One entry per segment, `turn` the
 /// position of the last reversal (NaN: none yet).
 struct Segments {
-  Column speed, sense, turn;
-  Column acceleration;  // one per row
+  model::Column speed, sense, turn;
+  model::Column acceleration;  // one per row
 };
 
-Segments segments_of(const Column& time, const Column& position) {
+Segments segments_of(const model::Column& time, const model::Column& position) {
   const Eigen::Index count = std::max<Eigen::Index>(1, time.size() - 1);
-  Segments s{Column::Zero(count), Column::Zero(count), Column::Constant(count, std::nan("")),
-             Column::Zero(time.size())};
+  Segments s{model::Column::Zero(count), model::Column::Zero(count),
+             model::Column::Constant(count, std::nan("")), model::Column::Zero(time.size())};
   double sense = 0, turn = std::nan("");
   for (Eigen::Index i = 0; i + 1 < time.size(); ++i) {
     const double travel = position[i + 1] - position[i];
@@ -65,59 +65,65 @@ Segments segments_of(const Column& time, const Column& position) {
   return s;
 }
 
-Column of_segment(const Column& values, const Ticks& ticks) {
-  Column result(index(ticks.count()));
+model::Column of_segment(const model::Column& values, const Ticks& ticks) {
+  model::Column result(index(ticks.count()));
   for (std::size_t k = 0; k < ticks.count(); ++k) result[index(k)] = values[index(ticks.segment[k])];
   return result;
 }
 
-void fill_axis(const Path& path, const Axis& axis, const Ticks& ticks, std::size_t i, States& states) {
+void fill_axis(const Path& path, const model::Axis& axis, const Ticks& ticks, std::size_t i,
+               model::States& states) {
   if (!path.has(axis.name))
-    throw InputError({path.file(), 0}, axis.name, "the path has no column of this axis");
-  const auto dimension = [&](Dimension linear, Dimension rotary) { return axis.rotary ? rotary : linear; };
-  const Column rows = path.numbers(axis.name, dimension(Dimension::kLength, Dimension::kAngle));
+    throw text::InputError({path.file(), 0}, axis.name, "the path has no column of this axis");
+  const auto dimension = [&](text::Dimension linear, text::Dimension rotary) {
+    return axis.rotary ? rotary : linear;
+  };
+  const model::Column rows =
+      path.numbers(axis.name, dimension(text::Dimension::kLength, text::Dimension::kAngle));
   const Segments s = segments_of(path.time(), rows);
-  const auto given = [&](const std::string& name, Dimension linear, Dimension rotary) {
+  const auto given = [&](const std::string& name, text::Dimension linear, text::Dimension rotary) {
     return interpolate(path.numbers(name, dimension(linear, rotary)), ticks);
   };
   const std::string& n = axis.name;
   states.axis[i] = interpolate(rows, ticks);
-  states.velocity[i] = path.has("v" + n) ? given("v" + n, Dimension::kSpeed, Dimension::kAngularSpeed)
-                                         : of_segment(s.speed, ticks);
-  states.acceleration[i] = path.has("a" + n)
-                               ? given("a" + n, Dimension::kAcceleration, Dimension::kAngularAcceleration)
-                               : interpolate(s.acceleration, ticks);
-  states.direction[i] = path.has("dir" + n) ? hold(path.numbers("dir" + n, Dimension::kNone), ticks)
+  states.velocity[i] = path.has("v" + n)
+                           ? given("v" + n, text::Dimension::kSpeed, text::Dimension::kAngularSpeed)
+                           : of_segment(s.speed, ticks);
+  states.acceleration[i] = path.has("a" + n) ? given("a" + n, text::Dimension::kAcceleration,
+                                                     text::Dimension::kAngularAcceleration)
+                                             : interpolate(s.acceleration, ticks);
+  states.direction[i] = path.has("dir" + n) ? hold(path.numbers("dir" + n, text::Dimension::kNone), ticks)
                                             : of_segment(s.sense, ticks);
   if (((states.direction[i] != 0) && (states.direction[i].abs() != 1)).any())
-    throw InputError({path.file(), 0}, "dir" + n, "a direction is -1, 0 or 1");
+    throw text::InputError({path.file(), 0}, "dir" + n, "a direction is -1, 0 or 1");
   if (path.has("since" + n)) {
-    states.since[i] = given("since" + n, Dimension::kLength, Dimension::kAngle);
+    states.since[i] = given("since" + n, text::Dimension::kLength, text::Dimension::kAngle);
   } else {
-    const Column turn = of_segment(s.turn, ticks);
-    states.since[i] = turn.isNaN().select(kLongWay, (states.axis[i] - turn).abs());
+    const model::Column turn = of_segment(s.turn, ticks);
+    states.since[i] = turn.isNaN().select(model::kLongWay, (states.axis[i] - turn).abs());
   }
 }
 
 /// feed in mm/min, curvature in 1/mm, over the linear axes.
-void fill_path(const Path& path, const Machine& machine, const Ticks& ticks, States& states) {
-  const Column zero = Column::Zero(index(ticks.count()));
-  Column vv = zero, aa = zero, va = zero;
+void fill_path(const Path& path, const model::Machine& machine, const Ticks& ticks, model::States& states) {
+  const model::Column zero = model::Column::Zero(index(ticks.count()));
+  model::Column vv = zero, aa = zero, va = zero;
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
     if (machine.axes[i].rotary) continue;
     vv += states.velocity[i].square();
     aa += states.acceleration[i].square();
     va += states.velocity[i] * states.acceleration[i];
   }
-  states.feed = path.has("feed") ? Column(60 * interpolate(path.numbers("feed", Dimension::kSpeed), ticks))
-                                 : Column(60 * vv.sqrt());
+  states.feed = path.has("feed")
+                    ? model::Column(60 * interpolate(path.numbers("feed", text::Dimension::kSpeed), ticks))
+                    : model::Column(60 * vv.sqrt());
   // |v x a|^2 = |v|^2 |a|^2 - (v.a)^2, in any number of dimensions. At rest a path has no curvature.
-  const Column bend = (vv * aa - va.square()).max(0).sqrt() / (vv * vv.sqrt()).max(1e-300);
-  states.curvature = path.has("curv") ? interpolate(path.numbers("curv", Dimension::kCurvature), ticks)
-                                      : Column((vv > 1e-12).select(bend, 0));
+  const model::Column bend = (vv * aa - va.square()).max(0).sqrt() / (vv * vv.sqrt()).max(1e-300);
+  states.curvature = path.has("curv") ? interpolate(path.numbers("curv", text::Dimension::kCurvature), ticks)
+                                      : model::Column((vv > 1e-12).select(bend, 0));
 }
 
-void fill_runs(const Path& path, const Ticks& ticks, States& states) {
+void fill_runs(const Path& path, const Ticks& ticks, model::States& states) {
   if (!path.has("run")) return;
   const std::vector<std::string> labels = path.words("run");
   std::map<std::string, std::size_t> known;
@@ -132,10 +138,10 @@ void fill_runs(const Path& path, const Ticks& ticks, States& states) {
 
 }  // namespace
 
-States path_states(const Path& path, const Machine& machine, const Ticks& ticks) {
+model::States path_states(const Path& path, const model::Machine& machine, const Ticks& ticks) {
   std::vector<double> references;
-  for (const Input& input : machine.inputs) references.push_back(input.reference);
-  States states = make_states(ticks.count(), machine.axes.size(), references);
+  for (const model::Input& input : machine.inputs) references.push_back(input.reference);
+  model::States states = model::make_states(ticks.count(), machine.axes.size(), references);
   states.time = ticks.time;
   for (std::size_t i = 0; i < machine.axes.size(); ++i) fill_axis(path, machine.axes[i], ticks, i, states);
   fill_path(path, machine, ticks, states);
@@ -143,10 +149,10 @@ States path_states(const Path& path, const Machine& machine, const Ticks& ticks)
     if (path.has(machine.inputs[i].name)) states.input[i] = interpolate(path.input(machine.inputs[i]), ticks);
   for (std::size_t i = 0; i < 3; ++i)
     if (const std::string name = std::string("n") + "xyz"[i]; path.has(name))
-      states.normal[i] = interpolate(path.numbers(name, Dimension::kNone), ticks);
-  if (path.has("visit")) states.visit = hold(path.numbers("visit", Dimension::kNone), ticks);
+      states.normal[i] = interpolate(path.numbers(name, text::Dimension::kNone), ticks);
+  if (path.has("visit")) states.visit = hold(path.numbers("visit", text::Dimension::kNone), ticks);
   fill_runs(path, ticks, states);
   return states;
 }
 
-}  // namespace vernier
+}  // namespace vernier::simulate

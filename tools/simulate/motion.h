@@ -4,7 +4,7 @@
 #include "tools/model/states.h"
 #include "tools/simulate/path.h"
 
-namespace vernier {
+namespace vernier::simulate {
 
 /// Motion state of a machine at every tick. Positions and inputs are interpolated linearly. Of the motion,
 /// what the path has is interpolated (a sense is held from its row); the rest is derived:
@@ -15,6 +15,6 @@ namespace vernier {
 ///   since  travel since the last reversal; a long way before the first
 ///   feed   speed over the linear axes; curv  |v x a| / |v|^3 over them
 /// Throws InputError where an axis is missing. tool.
-States path_states(const Path& path, const Machine& machine, const Ticks& ticks);
+model::States path_states(const Path& path, const model::Machine& machine, const Ticks& ticks);
 
-}  // namespace vernier
+}  // namespace vernier::simulate

@@ -8,16 +8,17 @@
 #include "tools/text/files.h"
 #include "tools/text/numbers.h"
 
-namespace vernier {
+namespace vernier::simulate {
 
-Path::Path(const std::string& text, const std::string& file) : csv_(parse_csv(text, file)) {
-  if (!has("t")) throw InputError({file, csv_.header_line}, "t", "the column of the path's time is missing");
-  time_ = numbers("t", Dimension::kTime);
+Path::Path(const std::string& text, const std::string& file) : csv_(text::parse_csv(text, file)) {
+  if (!has("t"))
+    throw text::InputError({file, csv_.header_line}, "t", "the column of the path's time is missing");
+  time_ = numbers("t", text::Dimension::kTime);
   for (std::size_t row = 1; row < rows(); ++row) {
     const auto at = static_cast<Eigen::Index>(row);
     if (!(time_[at] > time_[at - 1]))
-      throw InputError({file, csv_.line[row]}, csv_.rows[row][*index_of("t")],
-                       "the time of a path must increase from row to row");
+      throw text::InputError({file, csv_.line[row]}, csv_.rows[row][*index_of("t")],
+                             "the time of a path must increase from row to row");
   }
 }
 
@@ -27,42 +28,42 @@ std::optional<std::size_t> Path::index_of(const std::string& name) const {
   return std::nullopt;
 }
 
-Column Path::read(std::size_t column) const {
-  Column values(static_cast<Eigen::Index>(rows()));
+model::Column Path::read(std::size_t column) const {
+  model::Column values(static_cast<Eigen::Index>(rows()));
   for (std::size_t row = 0; row < rows(); ++row) {
     const std::string& cell = csv_.rows[row][column];
-    const auto number = parse_number(cell);
+    const auto number = text::parse_number(cell);
     if (!number)
-      throw InputError({csv_.file, csv_.line[row]}, cell,
-                       cell.empty() ? "empty, in column " + csv_.columns[column].name
-                                    : "not a number, in column " + csv_.columns[column].name);
+      throw text::InputError({csv_.file, csv_.line[row]}, cell,
+                             cell.empty() ? "empty, in column " + csv_.columns[column].name
+                                          : "not a number, in column " + csv_.columns[column].name);
     values[static_cast<Eigen::Index>(row)] = *number;
   }
   return values;
 }
 
-Column Path::numbers(const std::string& name, Dimension dimension) const {
+model::Column Path::numbers(const std::string& name, text::Dimension dimension) const {
   const auto column = index_of(name);
-  if (!column) throw InputError({csv_.file, csv_.header_line}, name, "this column is missing");
+  if (!column) throw text::InputError({csv_.file, csv_.header_line}, name, "this column is missing");
   const std::string& written = csv_.columns[*column].unit;
-  const Unit unit = *find_unit(written);
+  const text::Unit unit = *text::find_unit(written);
   if (unit.dimension != dimension)
-    throw InputError({csv_.file, csv_.header_line}, name + (written.empty() ? "" : "[" + written + "]"),
-                     dimension == Dimension::kNone
-                         ? std::string("this column is a pure number, it has no unit")
-                         : std::string("this column needs a unit like ") + base_unit(dimension));
+    throw text::InputError({csv_.file, csv_.header_line}, name + (written.empty() ? "" : "[" + written + "]"),
+                           dimension == text::Dimension::kNone
+                               ? std::string("this column is a pure number, it has no unit")
+                               : std::string("this column needs a unit like ") + text::base_unit(dimension));
   return unit.factor * read(*column) + unit.offset;
 }
 
-Column Path::input(const Input& input) const {
+model::Column Path::input(const model::Input& input) const {
   const std::size_t column = index_of(input.name).value();
   const std::string& written = csv_.columns[column].unit;
   if (written == input.unit || input.unit.empty()) return read(column);
-  const auto declared = find_unit(input.unit);
-  const Unit unit = *find_unit(written);
+  const auto declared = text::find_unit(input.unit);
+  const text::Unit unit = *text::find_unit(written);
   if (!declared || declared->dimension != unit.dimension)
-    throw InputError({csv_.file, csv_.header_line}, input.name + "[" + written + "]",
-                     "the machine file declares this input in " + input.unit);
+    throw text::InputError({csv_.file, csv_.header_line}, input.name + "[" + written + "]",
+                           "the machine file declares this input in " + input.unit);
   return (unit.factor * read(column) + unit.offset - declared->offset) / declared->factor;
 }
 
@@ -73,14 +74,15 @@ std::vector<std::string> Path::words(const std::string& name) const {
   return result;
 }
 
-Path read_path(const std::string& file) { return {read_file(file), file}; }
+Path read_path(const std::string& file) { return {text::read_file(file), file}; }
 
 Ticks ticks_of(const Path& path, double period_s) {
-  const Column& t = path.time();
+  const model::Column& t = path.time();
   const double span = t[t.size() - 1] - t[0];
   // A millionth of a period, so that 0.3 s is 300 periods and not 299.
   const auto count = static_cast<std::size_t>(std::floor(span / period_s + 1e-6)) + 1;
-  Ticks ticks{Column(static_cast<Eigen::Index>(count)), {}, Column(static_cast<Eigen::Index>(count))};
+  Ticks ticks{
+      model::Column(static_cast<Eigen::Index>(count)), {}, model::Column(static_cast<Eigen::Index>(count))};
   ticks.segment.reserve(count);
   Eigen::Index row = 0;
   for (std::size_t k = 0; k < count; ++k) {
@@ -96,4 +98,4 @@ Ticks ticks_of(const Path& path, double period_s) {
   return ticks;
 }
 
-}  // namespace vernier
+}  // namespace vernier::simulate

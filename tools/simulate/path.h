@@ -10,7 +10,7 @@
 #include "tools/text/csv.h"
 #include "tools/text/units.h"
 
-namespace vernier {
+namespace vernier::simulate {
 
 /// A path file (FORMATS section 3, `simulate`): `t[s]`, axes, inputs and motion by name. Columns are turned
 /// into numbers when a machine asks for them, so one path serves machines with different inputs; a column
@@ -22,23 +22,23 @@ class Path {
 
   std::size_t rows() const { return csv_.rows.size(); }
   /// s, strictly increasing.
-  const Column& time() const { return time_; }
+  const model::Column& time() const { return time_; }
   bool has(const std::string& name) const { return index_of(name).has_value(); }
   /// A column in the base unit of its dimension. Throws InputError where it is absent, has another dimension,
   /// or a cell is empty or no number.
-  Column numbers(const std::string& name, Dimension dimension) const;
+  model::Column numbers(const std::string& name, text::Dimension dimension) const;
   /// The column of an input in the unit that the machine declares for it.
-  Column input(const Input& input) const;
+  model::Column input(const model::Input& input) const;
   /// The column's cells as they are.
   std::vector<std::string> words(const std::string& name) const;
   const std::string& file() const { return csv_.file; }
 
  private:
   std::optional<std::size_t> index_of(const std::string& name) const;
-  Column read(std::size_t column) const;
+  model::Column read(std::size_t column) const;
 
-  CsvFile csv_;
-  Column time_;
+  text::CsvFile csv_;
+  model::Column time_;
 };
 
 /// Reads a path file. tool.
@@ -46,13 +46,13 @@ Path read_path(const std::string& file);
 
 /// Where the ticks of a path lie: tick k at time()[0] + k * period, from the first row to the last.
 struct Ticks {
-  Column time;                       // s
+  model::Column time;                // s
   std::vector<std::size_t> segment;  // row at or before the tick; never the last row where there are two
-  Column fraction;                   // 0..1 of the way to the next row
+  model::Column fraction;            // 0..1 of the way to the next row
   std::size_t count() const { return segment.size(); }
 };
 
 /// period_s: time between two ticks.
 Ticks ticks_of(const Path& path, double period_s);
 
-}  // namespace vernier
+}  // namespace vernier::simulate

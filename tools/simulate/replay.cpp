@@ -7,27 +7,27 @@
 #include "tools/model/prediction.h"
 #include "tools/simulate/counts.h"
 
-namespace vernier {
+namespace vernier::simulate {
 namespace {
 
 /// Rows of one run, and the ticks between them: values linear, senses held. A tick is made when it is asked
 /// for: a record of hours has ten million.
 class BetweenRows : public TickPath {
  public:
-  BetweenRows(const Machine& machine, const Measurement& m, std::size_t run, double period_s)
+  BetweenRows(const model::Machine& machine, const model::Measurement& m, std::size_t run, double period_s)
       : machine_(machine), m_(m), period_s_(period_s) {
     for (std::size_t row = 0; row < m.rows(); ++row)
       if (m.states.run[row] == run) rows_.push_back(row);
     for (std::size_t i = 1; i < rows_.size(); ++i)
       if (time_at(i) <= time_at(i - 1))
-        throw InputError({m.files[m.file[rows_[i]]], m.line[rows_[i]]}, "t",
-                         "replay needs a time that increases within each run");
+        throw text::InputError({m.files[m.file[rows_[i]]], m.line[rows_[i]]}, "t",
+                               "replay needs a time that increases within each run");
     count_ =
         1 + static_cast<std::size_t>(std::floor((time_at(rows_.size() - 1) - time_at(0)) / period_s + 1e-6));
     for (std::size_t i = 0; i < rows_.size(); ++i)
       tick_of_row_.push_back(
           std::min(count_ - 1, static_cast<std::size_t>(std::lround((time_at(i) - time_at(0)) / period_s))));
-    one_ = select_states(m.states, {rows_.front()});
+    one_ = model::select_states(m.states, {rows_.front()});
   }
 
   const std::vector<std::size_t>& rows() const { return rows_; }
@@ -52,7 +52,7 @@ class BetweenRows : public TickPath {
   }
   void at(std::size_t tick, PlantState& state) const noexcept override {
     place(tick);
-    const States& rows = m_.states;
+    const model::States& rows = m_.states;
     for (std::size_t i = 0; i < rows.axis.size(); ++i) {
       one_.axis[i][0] = between(rows.axis[i]);
       one_.velocity[i][0] = between(rows.velocity[i]);
@@ -80,25 +80,25 @@ class BetweenRows : public TickPath {
                     ? 0
                     : std::min(1.0, (t - time_at(before_)) / (time_at(before_ + 1) - time_at(before_)));
   }
-  double value(const Column& rows, std::size_t i) const noexcept {
+  double value(const model::Column& rows, std::size_t i) const noexcept {
     return rows[static_cast<Eigen::Index>(rows_[std::min(i, rows_.size() - 1)])];
   }
-  double between(const Column& rows) const noexcept {
+  double between(const model::Column& rows) const noexcept {
     const double low = value(rows, before_);
     return low + fraction_ * (value(rows, before_ + 1) - low);
   }
-  double held(const Column& rows) const noexcept {
+  double held(const model::Column& rows) const noexcept {
     return value(rows, fraction_ < 1 - 1e-6 ? before_ : before_ + 1);
   }
 
-  const Machine& machine_;
-  const Measurement& m_;
+  const model::Machine& machine_;
+  const model::Measurement& m_;
   double period_s_;
   std::vector<std::size_t> rows_, tick_of_row_;
   std::size_t count_ = 0;
   mutable std::size_t tick_ = 0, before_ = 0;
   mutable double fraction_ = 0;
-  mutable States one_;
+  mutable model::States one_;
 };
 
 bool needs_time(const ImageView& image) {
@@ -117,16 +117,18 @@ void add_loop(const LoopResult& loop, std::size_t ticks, ReplayResult& result) {
 
 }  // namespace
 
-ReplayResult replay(const LoadedImage& image, const Measurement& m, const LoopOptions& options) {
+ReplayResult replay(const compile::LoadedImage& image, const model::Measurement& m,
+                    const LoopOptions& options) {
   const bool timed = m.has_recorded("t");
   if (!timed && needs_time(image.view))
-    throw InputError({m.files.front(), 0}, "t",
-                     "replay needs this column: a term of the machine goes with time");
+    throw text::InputError({m.files.front(), 0}, "t",
+                           "replay needs this column: a term of the machine goes with time");
   const double period_s = 1e-6 * image.view.header().tick_us;
-  Measurement corrected = m;
+  model::Measurement corrected = m;
   ReplayResult result;
   for (std::size_t row = 0; !timed && row < m.rows(); ++row) {
-    const LoopResult loop = run_loop(image.view, image.machine, select_states(m.states, {row}), options);
+    const LoopResult loop =
+        run_loop(image.view, image.machine, model::select_states(m.states, {row}), options);
     add_loop(loop, 1, result);
     for (std::size_t axis = 0; axis < image.machine.axes.size(); ++axis)
       corrected.states.axis[axis][static_cast<Eigen::Index>(row)] += loop.correction[axis][0];
@@ -141,9 +143,10 @@ ReplayResult replay(const LoadedImage& image, const Measurement& m, const LoopOp
         corrected.states.axis[axis][static_cast<Eigen::Index>(path.rows()[i])] +=
             loop.correction[axis][kept[i]];
   }
-  Machine nominal = nominal_machine(image.machine);
+  model::Machine nominal = model::nominal_machine(image.machine);
   nominal.base_shifts = image.machine.base_shifts;
-  const Eigen::VectorXd as_commanded = predict(nominal, m), as_moved = predict(nominal, corrected);
+  const Eigen::VectorXd as_commanded = model::predict(nominal, m),
+                        as_moved = model::predict(nominal, corrected);
   result.before.resize(as_commanded.size());
   for (std::size_t i = 0; i < m.observations.size(); ++i)
     result.before[static_cast<Eigen::Index>(i)] =
@@ -152,4 +155,4 @@ ReplayResult replay(const LoadedImage& image, const Measurement& m, const LoopOp
   return result;
 }
 
-}  // namespace vernier
+}  // namespace vernier::simulate

@@ -7,7 +7,7 @@
 #include "tools/model/measurement.h"
 #include "tools/simulate/loop.h"
 
-namespace vernier {
+namespace vernier::simulate {
 
 /// What a measurement would read if the firmware had run during it.
 struct ReplayResult {
@@ -24,6 +24,7 @@ struct ReplayResult {
 /// nominal machine: reading' = reading + nominal(q + correction) - nominal(q). Column t increases within each
 /// run; without it every row is a pose at which the machine stands, if no term of the image goes with time.
 /// Throws InputError otherwise. tool.
-ReplayResult replay(const LoadedImage& image, const Measurement& measurement, const LoopOptions& options);
+ReplayResult replay(const compile::LoadedImage& image, const model::Measurement& measurement,
+                    const LoopOptions& options);
 
-}  // namespace vernier
+}  // namespace vernier::simulate

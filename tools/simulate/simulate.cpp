@@ -13,18 +13,19 @@
 #include "tools/simulate/motion.h"
 #include "tools/text/error.h"
 
-namespace vernier {
+namespace vernier::simulate {
 namespace {
 
 /// Index in the truth of every axis of the image's machine.
-std::vector<std::size_t> match_axes(const Machine& truth, const Machine& machine) {
+std::vector<std::size_t> match_axes(const model::Machine& truth, const model::Machine& machine) {
   std::vector<std::size_t> match;
-  for (const Axis& axis : machine.axes) {
+  for (const model::Axis& axis : machine.axes) {
     const auto found = truth.find_axis(axis.name);
-    if (!found) throw InputError({truth.file, 0}, axis.name, "the true machine lacks this axis of the image");
+    if (!found)
+      throw text::InputError({truth.file, 0}, axis.name, "the true machine lacks this axis of the image");
     if (truth.axes[*found].rotary != axis.rotary)
-      throw InputError({truth.file, truth.axes[*found].line}, axis.name,
-                       "rotary in one machine file and linear in the other");
+      throw text::InputError({truth.file, truth.axes[*found].line}, axis.name,
+                             "rotary in one machine file and linear in the other");
     match.push_back(*found);
   }
   return match;
@@ -36,11 +37,12 @@ double rms_um(const Eigen::Matrix3Xd& error) {
 
 double max_um(const Eigen::Matrix3Xd& error) { return 1e3 * error.colwise().norm().maxCoeff(); }
 
-Eigen::Matrix3Xd error_of(const Poses& actual, const Poses& nominal) {
-  return aligned_error(align(actual.position, nominal.position), actual.position, nominal.position);
+Eigen::Matrix3Xd error_of(const model::Poses& actual, const model::Poses& nominal) {
+  return maths::aligned_error(maths::align(actual.position, nominal.position), actual.position,
+                              nominal.position);
 }
 
-double rms_deg(const Column& tilt) { return std::sqrt(tilt.square().mean()); }
+double rms_deg(const model::Column& tilt) { return std::sqrt(tilt.square().mean()); }
 
 double percentile_ns(const Histogram& h, std::uint64_t per_million) {
   return static_cast<double>(h.percentile_ns(per_million));
@@ -48,24 +50,25 @@ double percentile_ns(const Histogram& h, std::uint64_t per_million) {
 
 }  // namespace
 
-SimulateResult simulate(const Machine& truth, const LoadedImage& image, const Path& path,
+SimulateResult simulate(const model::Machine& truth, const compile::LoadedImage& image, const Path& path,
                         const LoopOptions& options) {
   const std::vector<std::size_t> match = match_axes(truth, image.machine);
   const Ticks ticks = ticks_of(path, 1e-6 * image.view.header().tick_us);
   SimulateResult result;
   result.states = path_states(path, image.machine, ticks);
-  States actual = path_states(path, truth, ticks);
-  const Poses nominal = forward(nominal_machine(image.machine), result.states),
-              before = forward(truth, actual);
+  model::States actual = path_states(path, truth, ticks);
+  const model::Poses nominal = model::forward(model::nominal_machine(image.machine), result.states),
+                     before = model::forward(truth, actual);
   result.error_before = error_of(before, nominal);
-  result.tilt_before = tilt_between(before, nominal);
+  result.tilt_before = kinematics::tilt_between(before, nominal);
   result.loop = run_loop(image.view, image.machine, result.states, options);
   for (std::size_t i = 0; i < match.size(); ++i) actual.axis[match[i]] += result.loop.correction[i];
-  const Poses after = forward(truth, actual);
+  const model::Poses after = model::forward(truth, actual);
   result.error_after = error_of(after, nominal);
-  result.tilt_after = tilt_between(after, nominal);
+  result.tilt_after = kinematics::tilt_between(after, nominal);
   if (image.machine.correct_orientation)
-    for (const bool damped : damped_poses(image.machine, result.states)) result.damped += damped ? 1 : 0;
+    for (const bool damped : compile::damped_poses(image.machine, result.states))
+      result.damped += damped ? 1 : 0;
   result.rms_before_um = rms_um(result.error_before);
   result.rms_after_um = rms_um(result.error_after);
   result.max_before_um = max_um(result.error_before);
@@ -73,7 +76,7 @@ SimulateResult simulate(const Machine& truth, const LoadedImage& image, const Pa
   return result;
 }
 
-nlohmann::ordered_json simulate_json(const SimulateResult& result, const Machine& machine,
+nlohmann::ordered_json simulate_json(const SimulateResult& result, const model::Machine& machine,
                                      const LoopOptions& options) {
   const LoopResult& loop = result.loop;
   nlohmann::ordered_json json{{"ticks", result.states.count},        {"rms_before_um", result.rms_before_um},
@@ -102,17 +105,18 @@ nlohmann::ordered_json simulate_json(const SimulateResult& result, const Machine
   return json;
 }
 
-std::string ticks_csv(const SimulateResult& result, const Machine& machine) {
+std::string ticks_csv(const SimulateResult& result, const model::Machine& machine) {
   std::string text = "t[s]";
-  for (const Axis& axis : machine.axes) text += "," + axis.name + (axis.rotary ? "[deg]" : "[mm]");
-  for (const Axis& axis : machine.axes) text += ",corr_" + axis.name + (axis.rotary ? "[deg]" : "[um]");
+  for (const model::Axis& axis : machine.axes) text += "," + axis.name + (axis.rotary ? "[deg]" : "[mm]");
+  for (const model::Axis& axis : machine.axes)
+    text += ",corr_" + axis.name + (axis.rotary ? "[deg]" : "[um]");
   text +=
       ",before_x[um],before_y[um],before_z[um],after_x[um],after_y[um],after_z[um],before_tilt[deg],after_"
       "tilt[deg]\n";
   auto out = std::back_inserter(text);
   for (Eigen::Index k = 0; k < static_cast<Eigen::Index>(result.states.count); ++k) {
     fmt::format_to(out, "{:.6f}", result.states.time[k]);
-    for (const Column& axis : result.states.axis) fmt::format_to(out, ",{:.6f}", axis[k]);
+    for (const model::Column& axis : result.states.axis) fmt::format_to(out, ",{:.6f}", axis[k]);
     for (std::size_t i = 0; i < machine.axes.size(); ++i)
       fmt::format_to(out, ",{:.6f}", result.loop.correction[i][k] * (machine.axes[i].rotary ? 1 : 1e3));
     for (const Eigen::Matrix3Xd* error : {&result.error_before, &result.error_after})
@@ -123,4 +127,4 @@ std::string ticks_csv(const SimulateResult& result, const Machine& machine) {
   return text;
 }
 
-}  // namespace vernier
+}  // namespace vernier::simulate

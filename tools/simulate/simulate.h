@@ -8,19 +8,19 @@
 #include "tools/simulate/loop.h"
 #include "tools/simulate/path.h"
 
-namespace vernier {
+namespace vernier::simulate {
 
 /// A simulated run (FORMATS section 3). Errors are p_truth(q + correction) - p_nominal(q) without BaseShift,
 /// after the best rigid alignment of the whole path; mm, 3 x ticks.
 struct SimulateResult {
-  States states;  // of the image's machine
+  model::States states;  // of the image's machine
   LoopResult loop;
   Eigen::Matrix3Xd error_before, error_after;
   double rms_before_um = 0, rms_after_um = 0;  // over ticks and x, y, z
   double max_before_um = 0, max_after_um = 0;  // largest norm
   /// Angle between the true and the nominal direction of the tool, deg a tick; not aligned, for a rigid
   /// motion that fits points of a short path turns as it likes.
-  Column tilt_before, tilt_after;
+  model::Column tilt_before, tilt_after;
   /// Ticks in poses where the image's correction of direction is damped (compile.h).
   std::size_t damped = 0;
 };
@@ -28,13 +28,13 @@ struct SimulateResult {
 /// Runs the firmware with `image` on the true machine along a path. Axes and inputs of the two machines are
 /// matched by name. Throws InputError where the image corrects an axis that the truth does not have, or the
 /// path lacks an axis; LimitNotMet where the firmware never becomes Active. tool.
-SimulateResult simulate(const Machine& truth, const LoadedImage& image, const Path& path,
+SimulateResult simulate(const model::Machine& truth, const compile::LoadedImage& image, const Path& path,
                         const LoopOptions& options);
 
 /// The result with FORMATS' keys and more.
-nlohmann::ordered_json simulate_json(const SimulateResult& result, const Machine& machine,
+nlohmann::ordered_json simulate_json(const SimulateResult& result, const model::Machine& machine,
                                      const LoopOptions& options);
 /// Every tick: t, axes, corrections and errors, as CSV of the project's dialect.
-std::string ticks_csv(const SimulateResult& result, const Machine& machine);
+std::string ticks_csv(const SimulateResult& result, const model::Machine& machine);
 
-}  // namespace vernier
+}  // namespace vernier::simulate

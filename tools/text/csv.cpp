@@ -7,7 +7,7 @@
 #include "tools/text/units.h"
 #include "tools/text/words.h"
 
-namespace vernier {
+namespace vernier::text {
 namespace {
 
 CsvColumn column_of(const std::string& field, const Place& place) {
@@ -112,4 +112,4 @@ CsvFile parse_csv(const std::string& text, const std::string& file) {
   return csv;
 }
 
-}  // namespace vernier
+}  // namespace vernier::text

@@ -5,7 +5,7 @@
 
 #include "tools/text/error.h"
 
-namespace vernier {
+namespace vernier::text {
 
 struct FieldRules {
   char separator = ',';        // a blank: blanks and tabs, several count once
@@ -38,4 +38,4 @@ struct CsvFile {
 /// header. tool.
 CsvFile parse_csv(const std::string& text, const std::string& file);
 
-}  // namespace vernier
+}  // namespace vernier::text

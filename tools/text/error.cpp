@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/text/error.h"
 
-namespace vernier {
+namespace vernier::text {
 namespace {
 
 std::string message(const Place& place, const std::string& word, const std::string& what) {
@@ -17,4 +17,4 @@ std::string message(const Place& place, const std::string& word, const std::stri
 InputError::InputError(const Place& place, const std::string& word, const std::string& what)
     : std::runtime_error(message(place, word, what)) {}
 
-}  // namespace vernier
+}  // namespace vernier::text

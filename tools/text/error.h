@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace vernier {
+namespace vernier::text {
 
 /// Where in an input file something stands. `line` is 1-based; 0 means the file as a whole.
 struct Place {
@@ -26,4 +26,4 @@ class LimitNotMet : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-}  // namespace vernier
+}  // namespace vernier::text

@@ -12,7 +12,7 @@
 #include "hal/support/output_file.h"
 #include "tools/text/error.h"
 
-namespace vernier {
+namespace vernier::text {
 
 std::string read_file(const std::string& path) {
   if (std::filesystem::is_directory(path)) throw InputError({path, 0}, "", "is a folder, not a file");
@@ -47,4 +47,4 @@ void make_folder(const std::string& path) {
     throw InputError({path, 0}, "", "cannot be made a folder: " + failed.message());
 }
 
-}  // namespace vernier
+}  // namespace vernier::text

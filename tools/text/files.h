@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 
-namespace vernier {
+namespace vernier::text {
 
 /// Writes `text` to `path` as write_output (hal/support/output_file.h) does: an ordinary file as a whole or
 /// not at all, a device or pipe by writing to it, links followed. Throws InputError with the path where it
@@ -20,4 +20,4 @@ void require_place(const std::string& path);
 /// The whole of a file. Throws InputError where it cannot be read. tool.
 std::string read_file(const std::string& path);
 
-}  // namespace vernier
+}  // namespace vernier::text

@@ -6,7 +6,7 @@
 #include <charconv>
 #include <cmath>
 
-namespace vernier {
+namespace vernier::text {
 
 std::optional<double> parse_number(std::string_view text) {
   if (!text.empty() && text.front() == '+') {
@@ -40,4 +40,4 @@ std::string number_text(double value) {
   return {buffer.data(), end};
 }
 
-}  // namespace vernier
+}  // namespace vernier::text

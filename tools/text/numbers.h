@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace vernier {
+namespace vernier::text {
 
 /// A finite decimal number that fills the whole of `text` ("1", "-2.5e-3", "+4"); nothing for anything else
 /// (empty, blanks, hex, inf, nan) and for what is so large that its square is none (beyond 1e150).
@@ -22,4 +22,4 @@ bool is_name(std::string_view text);
 /// The shortest decimal that reads back to the same double.
 std::string number_text(double value);
 
-}  // namespace vernier
+}  // namespace vernier::text

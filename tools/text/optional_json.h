@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-namespace vernier {
+namespace vernier::text {
 
 /// The value, or JSON's null where there is none. tool.
 template <class T>
@@ -11,4 +11,4 @@ nlohmann::ordered_json or_null(const std::optional<T>& value) {
   return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
 }
 
-}  // namespace vernier
+}  // namespace vernier::text

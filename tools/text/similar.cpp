@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cctype>
 
-namespace vernier {
+namespace vernier::text {
 
 std::size_t letters_apart(std::string_view a, std::string_view b) {
   const auto small = [](char c) { return std::tolower(static_cast<unsigned char>(c)); };
@@ -35,4 +35,4 @@ std::optional<std::string> word_meant(std::string_view word, const std::vector<s
   return best;
 }
 
-}  // namespace vernier
+}  // namespace vernier::text

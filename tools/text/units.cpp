@@ -6,7 +6,7 @@
 
 #include "tools/maths/factors.h"
 
-namespace vernier {
+namespace vernier::text {
 namespace {
 
 /// Standard gravity, mm/s^2 (ISO 80000-3).
@@ -19,7 +19,7 @@ constexpr std::array<Unit, 35> kUnits = {{
     {"m", Dimension::kLength, 1e3, 0},
     {"in", Dimension::kLength, 25.4, 0},
     {"deg", Dimension::kAngle, 1, 0},
-    {"rad", Dimension::kAngle, kDegPerRad, 0},
+    {"rad", Dimension::kAngle, maths::kDegPerRad, 0},
     {"arcsec", Dimension::kAngle, 1.0 / 3600, 0},
     {"degC", Dimension::kTemperature, 1, 0},
     {"K", Dimension::kTemperature, 1, -273.15},
@@ -119,4 +119,4 @@ const char* base_unit(Dimension dimension) {
   return kPerMm.name;
 }
 
-}  // namespace vernier
+}  // namespace vernier::text

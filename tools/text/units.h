@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-namespace vernier {
+namespace vernier::text {
 
 enum class Dimension {
   kNone,
@@ -53,4 +53,4 @@ std::string known_units();
 /// The base unit of a dimension as written.
 const char* base_unit(Dimension dimension);
 
-}  // namespace vernier
+}  // namespace vernier::text

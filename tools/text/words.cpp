@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace vernier {
+namespace vernier::text {
 
 std::string trimmed(std::string_view text) {
   constexpr std::string_view kBlanks = " \t\r\n";
@@ -60,4 +60,4 @@ bool nests_deeper_than(std::string_view json, std::size_t most) {
   return false;
 }
 
-}  // namespace vernier
+}  // namespace vernier::text

@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-namespace vernier {
+namespace vernier::text {
 
 /// The text without blanks, tabs and ends of line around it. tool.
 std::string trimmed(std::string_view text);
@@ -24,4 +24,4 @@ std::string joined(const std::vector<std::string>& words, std::string_view separ
 bool nests_deeper_than(std::string_view json, std::size_t most);
 constexpr std::size_t kMostJsonDepth = 64;
 
-}  // namespace vernier
+}  // namespace vernier::text

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cctype>
 
-namespace vernier {
+namespace vernier::text {
 namespace {
 
 bool is_space(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
@@ -92,4 +92,4 @@ std::string escape_attribute(std::string_view value) {
   return text;
 }
 
-}  // namespace vernier
+}  // namespace vernier::text

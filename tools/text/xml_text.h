@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace vernier {
+namespace vernier::text {
 
 /// Where an attribute of a start tag stands in the text of an XML file.
 struct AttributeSpan {
@@ -40,4 +40,4 @@ std::string apply_edits(const std::string& text, std::vector<TextEdit> edits);
 /// A number or text as it may stand between double quotes in an attribute.
 std::string escape_attribute(std::string_view value);
 
-}  // namespace vernier
+}  // namespace vernier::text

@@ -6,7 +6,7 @@
 
 #include "tools/timebase/stretch.h"
 
-namespace vernier {
+namespace vernier::timebase {
 namespace {
 
 using Index = Eigen::Index;
@@ -59,4 +59,4 @@ std::optional<Closure> examine_closure(const Eigen::MatrixXd& points, const Eige
   return best;
 }
 
-}  // namespace vernier
+}  // namespace vernier::timebase

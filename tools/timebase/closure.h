@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <optional>
 
-namespace vernier {
+namespace vernier::timebase {
 
 /// The end of a run over a closed path beside its beginning: what the path does after closing has come before
 /// the positions close.
@@ -19,4 +19,4 @@ struct Closure {
 /// close. A beginning that also resembles other places of the run (a periodic error) is no finding. tool.
 std::optional<Closure> examine_closure(const Eigen::MatrixXd& points, const Eigen::MatrixXd& series);
 
-}  // namespace vernier
+}  // namespace vernier::timebase

@@ -8,7 +8,7 @@
 
 #include "tools/timebase/stretch.h"
 
-namespace vernier {
+namespace vernier::timebase {
 namespace {
 
 using Block = Eigen::MatrixXd;
@@ -226,4 +226,4 @@ std::vector<LagJump> lag_jumps(const Eigen::MatrixXd& series, const std::vector<
   return jumps;
 }
 
-}  // namespace vernier
+}  // namespace vernier::timebase

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace vernier {
+namespace vernier::timebase {
 
 /// A stretch of a series beside the later stretch that resembles it most. Rows are of the series; a lag is in
 /// rows, later minus earlier.
@@ -74,4 +74,4 @@ struct LagJump {
 std::vector<LagJump> lag_jumps(const Eigen::MatrixXd& series, const std::vector<RepeatBlock>& blocks,
                                const RepeatOptions& options = {});
 
-}  // namespace vernier
+}  // namespace vernier::timebase

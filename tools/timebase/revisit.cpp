@@ -6,7 +6,7 @@
 #include <limits>
 #include <numeric>
 
-namespace vernier {
+namespace vernier::timebase {
 namespace {
 
 using Index = Eigen::Index;
@@ -101,10 +101,10 @@ double return_to(const Eigen::MatrixXd& points, const std::vector<Index>& near, 
 
 }  // namespace
 
-Eigen::MatrixXd path_points(const Measurement& m, const std::vector<std::size_t>& rows) {
+Eigen::MatrixXd path_points(const model::Measurement& m, const std::vector<std::size_t>& rows) {
   std::vector<Eigen::VectorXd> columns;
   for (std::size_t a = 0; a < m.states.axis.size(); ++a) {
-    const Column axis = commanded(m, a);
+    const model::Column axis = model::commanded(m, a);
     Eigen::VectorXd column(static_cast<Index>(rows.size()));
     for (std::size_t i = 0; i < rows.size(); ++i)
       column[static_cast<Index>(i)] = axis[static_cast<Index>(rows[i])];
@@ -171,4 +171,4 @@ std::optional<PathMap> map_paths(const Eigen::MatrixXd& first, const Eigen::Matr
   return map;
 }
 
-}  // namespace vernier
+}  // namespace vernier::timebase

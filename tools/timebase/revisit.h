@@ -7,11 +7,11 @@
 
 #include "tools/model/measurement.h"
 
-namespace vernier {
+namespace vernier::timebase {
 
 /// Commanded axis positions of some rows as points: rows x axes, each axis in shares of its range over those
 /// rows; an axis that stands still is left out. tool.
-Eigen::MatrixXd path_points(const Measurement& m, const std::vector<std::size_t>& rows);
+Eigen::MatrixXd path_points(const model::Measurement& m, const std::vector<std::size_t>& rows);
 
 /// How many rows later the path passes each point again in the same sense, the row between two by projection;
 /// NaN where it does not. A pause at a point is no return; poses set one by one (steps of a tenth of the
@@ -28,4 +28,4 @@ struct PathMap {
 /// Both: points of the same axes, in the same unit. tool.
 std::optional<PathMap> map_paths(const Eigen::MatrixXd& first, const Eigen::MatrixXd& second);
 
-}  // namespace vernier
+}  // namespace vernier::timebase

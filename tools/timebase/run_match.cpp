@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-namespace vernier {
+namespace vernier::timebase {
 namespace {
 
 using Index = Eigen::Index;
@@ -198,4 +198,4 @@ std::optional<RunMatch> match_runs(const Eigen::MatrixXd& first, const Eigen::Ma
   return match;
 }
 
-}  // namespace vernier
+}  // namespace vernier::timebase

@@ -6,7 +6,7 @@
 
 #include "tools/timebase/revisit.h"
 
-namespace vernier {
+namespace vernier::timebase {
 
 /// Two runs over the same path: where the positions put the second beside the first, and where their
 /// residuals agree.
@@ -37,4 +37,4 @@ struct RunMatchOptions {
 std::optional<RunMatch> match_runs(const Eigen::MatrixXd& first, const Eigen::MatrixXd& second,
                                    const PathMap& implied, const RunMatchOptions& options = {});
 
-}  // namespace vernier
+}  // namespace vernier::timebase

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace vernier {
+namespace vernier::timebase {
 namespace {
 
 using Block = Eigen::MatrixXd;
@@ -66,4 +66,4 @@ double upper_quantile(double p) {
   return z;
 }
 
-}  // namespace vernier
+}  // namespace vernier::timebase

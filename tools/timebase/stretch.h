@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <optional>
 
-namespace vernier {
+namespace vernier::timebase {
 
 /// `rows` rows of a series (rows x channels) from `first`, mean and slope of each channel taken off: a drift
 /// between two passes is no shift. Nothing beyond the series or where a cell is NaN. tool.
@@ -28,4 +28,4 @@ double chance_of_ratio(double larger, double smaller, double rows);
 double upper_tail(double z);
 double upper_quantile(double p);
 
-}  // namespace vernier
+}  // namespace vernier::timebase

@@ -10,7 +10,7 @@
 
 #include "tools/timebase/revisit.h"
 
-namespace vernier {
+namespace vernier::timebase {
 namespace {
 
 using Index = Eigen::Index;
@@ -22,7 +22,7 @@ struct RecordSeries {
   Eigen::MatrixXd residual_um;
 };
 
-std::vector<RecordSeries> rows_by_run(const Measurement& m) {
+std::vector<RecordSeries> rows_by_run(const model::Measurement& m) {
   std::vector<RecordSeries> runs(m.states.run_names.size());
   for (std::size_t row = 0; row < m.rows(); ++row) runs[m.states.run[row]].rows.push_back(row);
   for (std::size_t k = 0; k < runs.size(); ++k) runs[k].run = k;
@@ -42,13 +42,14 @@ Eigen::MatrixXd usual_kinds(const Eigen::MatrixXd& all) {
   return all(Eigen::all, keep);
 }
 
-std::vector<RecordSeries> series_of(const Measurement& m, const Eigen::VectorXd& residual, bool with_check) {
+std::vector<RecordSeries> series_of(const model::Measurement& m, const Eigen::VectorXd& residual,
+                                    bool with_check) {
   std::vector<RecordSeries> runs = rows_by_run(m);
   Eigen::MatrixXd table = Eigen::MatrixXd::Constant(
-      static_cast<Index>(m.rows()), static_cast<Index>(kObservationNames.size()), std::nan(""));
+      static_cast<Index>(m.rows()), static_cast<Index>(model::kObservationNames.size()), std::nan(""));
   for (std::size_t i = 0; i < m.observations.size(); ++i) {
-    const Observation& o = m.observations[i];
-    if (!is_rotation(o.kind) && (with_check || !m.check[o.row]))
+    const model::Observation& o = m.observations[i];
+    if (!model::is_rotation(o.kind) && (with_check || !m.check[o.row]))
       table(static_cast<Index>(o.row), static_cast<Index>(o.kind)) = 1000 * residual[static_cast<Index>(i)];
   }
   for (RecordSeries& run : runs) {
@@ -89,7 +90,7 @@ struct Revisits {
 };
 
 // Passes over the same poses within one run.
-Revisits examine_run(const Measurement& m, const RecordSeries& run, const RepeatOptions& options) {
+Revisits examine_run(const model::Measurement& m, const RecordSeries& run, const RepeatOptions& options) {
   Revisits revisits;
   const Eigen::VectorXd implied = revisit_lags(path_points(m, run.rows));
   revisits.blocks = compare_repeats(run.residual_um, implied, options);
@@ -106,7 +107,8 @@ void add_gaps(const RecordSeries& run, const Revisits& revisits, const RepeatOpt
 }
 
 // The axes' own scale must be the same for both runs of a pair.
-std::optional<TimeRunMatch> examine_pair(const Measurement& m, const RecordSeries& a, const RecordSeries& b) {
+std::optional<TimeRunMatch> examine_pair(const model::Measurement& m, const RecordSeries& a,
+                                         const RecordSeries& b) {
   if (a.residual_um.cols() != b.residual_um.cols() || !a.residual_um.allFinite() ||
       !b.residual_um.allFinite())
     return std::nullopt;
@@ -121,7 +123,7 @@ std::optional<TimeRunMatch> examine_pair(const Measurement& m, const RecordSerie
   return TimeRunMatch{a.run, b.run, *match};
 }
 
-void examine_pairs(const Measurement& m, const std::vector<RecordSeries>& runs,
+void examine_pairs(const model::Measurement& m, const std::vector<RecordSeries>& runs,
                    const TimeBaseOptions& options, TimeBaseFinding& finding) {
   for (std::size_t i = 0; i < runs.size(); ++i) {
     for (std::size_t k = i + 1; k < runs.size() && finding.matches.size() < options.most_pairs; ++k) {
@@ -130,7 +132,7 @@ void examine_pairs(const Measurement& m, const std::vector<RecordSeries>& runs,
   }
 }
 
-std::string sentence_of_run(const Measurement& m, const RecordSeries& run, const Revisits& revisits,
+std::string sentence_of_run(const model::Measurement& m, const RecordSeries& run, const Revisits& revisits,
                             const RepeatOptions& options) {
   const RepeatBlock* best = nullptr;
   for (const std::size_t i : trusted_blocks(revisits.blocks, options)) {
@@ -147,7 +149,7 @@ std::string sentence_of_run(const Measurement& m, const RecordSeries& run, const
       best->implied_correlation, best->implied_difference);
 }
 
-std::string sentence_of_match(const Measurement& m, const TimeRunMatch& pair) {
+std::string sentence_of_match(const model::Measurement& m, const TimeRunMatch& pair) {
   return fmt::format(
       "The residuals of runs {} and {} agree sample by sample at the rate {:.3f} (correlation {:.2f}), not "
       "at the {:.3f} "
@@ -181,7 +183,7 @@ void join_chances(TimeBaseFinding& finding, double revisits) {
 // What is told as evidence must be unlikely in itself, if not beyond the limit of the finding.
 constexpr double kWorthTelling = 0.02;
 
-void tell(const Measurement& m, TimeBaseFinding& finding) {
+void tell(const model::Measurement& m, TimeBaseFinding& finding) {
   const auto add = [&](const std::string& sentence) {
     finding.why += (finding.why.empty() ? "" : " ") + sentence;
   };
@@ -206,7 +208,7 @@ void tell(const Measurement& m, TimeBaseFinding& finding) {
       "wrong clock.");
 }
 
-void conclude(const Measurement& m, const TimeBaseOptions& options, TimeBaseFinding& finding) {
+void conclude(const model::Measurement& m, const TimeBaseOptions& options, TimeBaseFinding& finding) {
   finding.found = finding.p_value < options.significance;
   if (finding.found) return tell(m, finding);
   finding.gaps.clear();
@@ -218,7 +220,7 @@ void conclude(const Measurement& m, const TimeBaseOptions& options, TimeBaseFind
 
 }  // namespace
 
-TimeBaseFinding examine_time_base(const Measurement& measurement, const Eigen::VectorXd& residual,
+TimeBaseFinding examine_time_base(const model::Measurement& measurement, const Eigen::VectorXd& residual,
                                   const TimeBaseOptions& options) {
   TimeBaseFinding finding;
   RepeatOptions repeats;
@@ -243,4 +245,4 @@ TimeBaseFinding examine_time_base(const Measurement& measurement, const Eigen::V
   return finding;
 }
 
-}  // namespace vernier
+}  // namespace vernier::timebase

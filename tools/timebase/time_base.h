@@ -10,7 +10,7 @@
 #include "tools/timebase/repeats.h"
 #include "tools/timebase/run_match.h"
 
-namespace vernier {
+namespace vernier::timebase {
 
 /// A stretch of a run beside its repetition in the same run. Rows are those of the measurement.
 struct TimeBlock {
@@ -69,7 +69,7 @@ struct TimeBaseOptions {
 /// (hysteresis, cyclic errors, drift) is none. Poses that come only once, or a second pass at another speed,
 /// say nothing. `residual`: measured - model per observation, mm; lengths only, rotations are not looked at.
 /// tool.
-TimeBaseFinding examine_time_base(const Measurement& measurement, const Eigen::VectorXd& residual,
+TimeBaseFinding examine_time_base(const model::Measurement& measurement, const Eigen::VectorXd& residual,
                                   const TimeBaseOptions& options = {});
 
-}  // namespace vernier
+}  // namespace vernier::timebase

@@ -15,7 +15,7 @@
 #include "tools/maths/factors.h"
 #include "tools/text/error.h"
 
-namespace vernier {
+namespace vernier::upload {
 namespace {
 
 constexpr double kNmPerMm = 1e6, kCountsPerDeg = static_cast<double>(kTurnCounts) / 360;
@@ -38,7 +38,7 @@ template <class T>
 T get(const std::vector<std::uint8_t>& bytes, std::size_t offset) {
   T value{};
   if (offset > bytes.size() || sizeof(T) > bytes.size() - offset)
-    throw InputError("the board's reply is too short");
+    throw text::InputError("the board's reply is too short");
   std::memcpy(&value, bytes.data() + offset, sizeof(T));
   return value;
 }
@@ -47,12 +47,12 @@ T get(const std::vector<std::uint8_t>& bytes, std::size_t offset) {
   UploadResult result;
   const auto fault = get<std::uint8_t>(payload, 0), image = get<std::uint8_t>(payload, 1),
              binding = get<std::uint8_t>(payload, 2);
-  if (fault >= kUploadFaultCount) throw LimitNotMet("the board refuses: unknown reason");
+  if (fault >= kUploadFaultCount) throw text::LimitNotMet("the board refuses: unknown reason");
   result.fault = static_cast<UploadFault>(fault);
   result.image = static_cast<ImageFault>(image);
   result.bind = static_cast<BindFault>(binding);
   for (std::size_t i = 3; i < payload.size(); ++i) result.offender.add(static_cast<char>(payload[i]));
-  throw LimitNotMet(std::string("the board refuses: ") + describe(result).c_str());
+  throw text::LimitNotMet(std::string("the board refuses: ") + describe(result).c_str());
 }
 
 }  // namespace
@@ -60,7 +60,7 @@ T get(const std::vector<std::uint8_t>& bytes, std::size_t offset) {
 std::vector<std::uint8_t> Client::ask_once(const std::vector<std::uint8_t>& request) {
   const std::vector<std::uint8_t> reply = transport_->ask(request);
   if (reply.size() < kReplyHeaderBytes || reply[0] != request[0] || reply[1] != request[1])
-    throw InputError("the board's reply does not belong to the request");
+    throw text::InputError("the board's reply does not belong to the request");
   return reply;
 }
 
@@ -100,22 +100,22 @@ std::vector<std::uint8_t> Client::ask(LinkOp op, const std::vector<std::uint8_t>
         refused(rest);
       case LinkStatus::kNotReady:
       case LinkStatus::kStale:  // another client was quicker
-        if (attempt >= kTriesWhileNotReady) throw InputError("the board is not ready");
+        if (attempt >= kTriesWhileNotReady) throw text::InputError("the board is not ready");
         transport_->pause(std::chrono::milliseconds(attempt < 50 ? 2 : 20));
         continue;
       case LinkStatus::kUnknownOp:
-        throw InputError("the board does not know this request");
+        throw text::InputError("the board does not know this request");
       case LinkStatus::kNotAllowed:
-        throw LimitNotMet("the board refuses: not over this link (access in its board file)");
+        throw text::LimitNotMet("the board refuses: not over this link (access in its board file)");
       case LinkStatus::kUnsigned:
-        throw LimitNotMet("the board refuses: it wants this signed (--key, or VERNIER_KEY)");
+        throw text::LimitNotMet("the board refuses: it wants this signed (--key, or VERNIER_KEY)");
       case LinkStatus::kBadSignature:
-        throw LimitNotMet("the board refuses: it does not trust this key with that");
+        throw text::LimitNotMet("the board refuses: it does not trust this key with that");
       case LinkStatus::kBadLength:
       case LinkStatus::kBadValue:
-        throw InputError("the board finds the request senseless");
+        throw text::InputError("the board finds the request senseless");
     }
-    throw InputError("the board's reply has an unknown status");
+    throw text::InputError("the board's reply has an unknown status");
   }
 }
 
@@ -123,15 +123,15 @@ Client::Client(std::unique_ptr<Transport> transport) : transport_(std::move(tran
   const auto hello = ask(LinkOp::kHello);
   const auto version = get<std::uint16_t>(hello, 0);
   if (version != kLinkVersion)
-    throw InputError(
+    throw text::InputError(
         fmt::format("the board speaks version {} of the link, this tool {}", version, kLinkVersion));
   info_.hello = get<HelloReply>(hello, 0);
   info_.board = std::string(info_.hello.board, strnlen(info_.hello.board, sizeof(info_.hello.board)));
   if (info_.hello.axes > kMaxAxes || info_.hello.inputs > kMaxInputs)
-    throw InputError("the board claims more axes or inputs than there can be");
+    throw text::InputError("the board claims more axes or inputs than there can be");
   const auto name = [this](std::uint8_t kind, std::uint8_t index, std::uint8_t& flags) {
     const auto reply = ask(LinkOp::kName, {kind, index});
-    if (reply.size() != kImageNameBytes + 1) throw InputError("the board's reply is of the wrong size");
+    if (reply.size() != kImageNameBytes + 1) throw text::InputError("the board's reply is of the wrong size");
     flags = reply[kImageNameBytes];
     const auto* const text = reinterpret_cast<const char*>(reply.data());
     return std::string(text, strnlen(text, kImageNameBytes));
@@ -210,7 +210,7 @@ std::string limits_text(std::uint8_t limits) {
 BoardState Client::state() {
   const auto reply = ask(LinkOp::kState);
   if (reply.size() != sizeof(LinkState) + info_.axes.size() * sizeof(LinkAxisState))
-    throw InputError("the board's reply is of the wrong size");
+    throw text::InputError("the board's reply is of the wrong size");
   const auto head = get<LinkState>(reply, 0);
   BoardState state;
   state.fingerprint = head.fingerprint;
@@ -227,7 +227,7 @@ BoardState Client::state() {
 
 BoardTick Client::newest() {
   const auto reply = ask(LinkOp::kTick);
-  if (reply.size() != tick_bytes()) throw InputError("the board's reply is of the wrong size");
+  if (reply.size() != tick_bytes()) throw text::InputError("the board's reply is of the wrong size");
   return parse_tick(reply.data());
 }
 
@@ -239,7 +239,8 @@ BoardHistory Client::history(std::uint64_t first, std::uint16_t every) {
   BoardHistory history;
   history.next = get<std::uint64_t>(reply, 0);
   history.lost = get<std::uint16_t>(reply, 8);
-  if ((reply.size() - 10) % tick_bytes() != 0) throw InputError("the board's reply is of the wrong size");
+  if ((reply.size() - 10) % tick_bytes() != 0)
+    throw text::InputError("the board's reply is of the wrong size");
   for (std::size_t at = 10; at < reply.size(); at += tick_bytes())
     history.ticks.push_back(parse_tick(reply.data() + at));
   return history;
@@ -251,7 +252,7 @@ HealthRecord Client::health() {
   for (std::size_t have = 0; have < kCounters;) {
     const auto reply = ask(LinkOp::kHealth, {static_cast<std::uint8_t>(have)});
     if (get<std::uint8_t>(reply, 0) != kCounters || reply.size() < 9)
-      throw InputError("the board counts other things than this tool knows");
+      throw text::InputError("the board counts other things than this tool knows");
     for (std::size_t at = 1; at + 8 <= reply.size() && have < kCounters; at += 8)
       words[have++] = get<std::uint64_t>(reply, at);
   }
@@ -287,7 +288,8 @@ std::vector<BoardShare> Client::shares() {
     for (std::size_t at = 6; at + sizeof(LinkShare) <= reply.size() && shares.size() < share_names_.size();
          at += sizeof(LinkShare)) {
       const auto share = get<LinkShare>(reply, at);
-      if (share.axis >= info_.axes.size()) throw InputError("the board names an axis that it does not have");
+      if (share.axis >= info_.axes.size())
+        throw text::InputError("the board names an axis that it does not have");
       const double counts = info_.axes[share.axis].rotary ? kCountsPerDeg : kNmPerMm;
       shares.push_back({share.axis, share_names_[shares.size()], share.correction / counts});
     }
@@ -328,11 +330,11 @@ std::optional<std::vector<std::uint8_t>> Client::confirmed(const std::function<v
   std::vector<std::uint8_t> bytes = piece(0, 16);
   const std::size_t total = std::size_t{get<std::uint32_t>(bytes, offsetof(UploadHeader, header_bytes))} +
                             get<std::uint32_t>(bytes, offsetof(UploadHeader, image_bytes));
-  if (total > info_.hello.capacity) throw InputError("the board's image is larger than its slot");
+  if (total > info_.hello.capacity) throw text::InputError("the board's image is larger than its slot");
   while (bytes.size() < total) {
     const auto size = static_cast<std::uint8_t>(std::min<std::size_t>(kReadBytes, total - bytes.size()));
     const auto more = piece(static_cast<std::uint32_t>(bytes.size()), size);
-    if (more.size() != size) throw InputError("the board's reply is of the wrong size");
+    if (more.size() != size) throw text::InputError("the board's reply is of the wrong size");
     append(bytes, more.data(), more.size());
     progress(static_cast<double>(bytes.size()) / static_cast<double>(total));
   }
@@ -349,7 +351,8 @@ BoardTouches Client::touches(std::uint64_t first) {
   out.next = get<std::uint64_t>(reply, 0);
   out.lost = get<std::uint16_t>(reply, 8);
   const std::size_t touch_bytes = sizeof(LinkTouch) + info_.axes.size() * sizeof(LinkTouchAxis);
-  if ((reply.size() - 10) % touch_bytes != 0) throw InputError("the board's reply is of the wrong size");
+  if ((reply.size() - 10) % touch_bytes != 0)
+    throw text::InputError("the board's reply is of the wrong size");
   for (std::size_t at = 10; at < reply.size(); at += touch_bytes) {
     const auto head = get<LinkTouch>(reply, at);
     BoardTouch touch;
@@ -380,14 +383,14 @@ void Client::workpiece(const std::array<double, 3>& origin_mm, double angle_deg)
   constexpr double kMostMm = 1e8;
   WorkpieceFrame frame;
   for (std::size_t i = 0; i < 3; ++i) {
-    if (!(std::abs(origin_mm[i]) < kMostMm)) throw InputError("the workpiece lies beyond 100 km");
+    if (!(std::abs(origin_mm[i]) < kMostMm)) throw text::InputError("the workpiece lies beyond 100 km");
     frame.origin[i] = PositionNm(std::llround(origin_mm[i] * kNmPerMm));
   }
-  if (!std::isfinite(angle_deg)) throw InputError("the angle of the workpiece is no number");
+  if (!std::isfinite(angle_deg)) throw text::InputError("the angle of the workpiece is no number");
   frame.cosine =
-      static_cast<std::int32_t>(std::lround(std::cos(angle_deg * kRadPerDeg) * WorkpieceFrame::kOne));
+      static_cast<std::int32_t>(std::lround(std::cos(angle_deg * maths::kRadPerDeg) * WorkpieceFrame::kOne));
   frame.sine =
-      static_cast<std::int32_t>(std::lround(std::sin(angle_deg * kRadPerDeg) * WorkpieceFrame::kOne));
+      static_cast<std::int32_t>(std::lround(std::sin(angle_deg * maths::kRadPerDeg) * WorkpieceFrame::kOne));
   std::vector<std::uint8_t> payload;
   put(payload, frame);
   ask(LinkOp::kWorkpiece, payload);
@@ -399,4 +402,4 @@ void Client::weight(std::uint8_t axis, double share) {
   ask(LinkOp::kWeight, payload);
 }
 
-}  // namespace vernier
+}  // namespace vernier::upload

@@ -16,7 +16,7 @@
 #include "tools/upload/signing.h"
 #include "tools/upload/transport.h"
 
-namespace vernier {
+namespace vernier::upload {
 
 /// An axis or input as the board names it.
 struct BoardSignal {
@@ -147,4 +147,4 @@ class Client {
   BoardInfo info_{};
 };
 
-}  // namespace vernier
+}  // namespace vernier::upload

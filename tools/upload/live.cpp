@@ -7,7 +7,7 @@
 #include <cmath>
 #include <iterator>
 
-namespace vernier {
+namespace vernier::upload {
 namespace {
 
 struct Counter {
@@ -167,4 +167,4 @@ std::string live_text(const BoardInfo& info, const BoardTick& tick, const Health
   return text + counted + "\n";
 }
 
-}  // namespace vernier
+}  // namespace vernier::upload

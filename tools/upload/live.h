@@ -5,7 +5,7 @@
 
 #include "tools/upload/client.h"
 
-namespace vernier {
+namespace vernier::upload {
 
 /// What a board does just now, for programs: mode, fault, axes, inputs, counters, latency, slots. tool.
 nlohmann::ordered_json live_json(const BoardInfo& info, const BoardTick& tick, const HealthRecord& health,
@@ -22,4 +22,4 @@ std::string live_text(const BoardInfo& info, const BoardTick& tick, const Health
                       const SlotsReply& slots, const std::vector<BoardShare>& shares,
                       const BoardState& state);
 
-}  // namespace vernier
+}  // namespace vernier::upload

@@ -12,7 +12,7 @@
 #include "tables/serial_frame.h"
 #include "tools/text/error.h"
 
-namespace vernier {
+namespace vernier::upload {
 namespace {
 
 constexpr int kReplyTimeoutMs =
@@ -37,7 +37,7 @@ speed_t speed_of(std::uint32_t baud) {
     case 921600:
       return B921600;
     default:
-      throw InputError("board address: no serial line has " + std::to_string(baud) + " baud");
+      throw text::InputError("board address: no serial line has " + std::to_string(baud) + " baud");
   }
 }
 
@@ -80,18 +80,18 @@ class SerialTransport : public Transport {
     return ::cfsetspeed(&settings, speed) == 0 && ::tcsetattr(line_, TCSANOW, &settings) == 0 &&
            ::tcflush(line_, TCIOFLUSH) == 0;
   }
-  [[noreturn]] void fail(int error) const { throw InputError(name_ + ": " + std::strerror(error)); }
+  [[noreturn]] void fail(int error) const { throw text::InputError(name_ + ": " + std::strerror(error)); }
   std::vector<std::uint8_t> next_message() {
     for (;;) {
       pollfd waiting{line_, POLLIN, 0};
       const int ready = ::poll(&waiting, 1, kReplyTimeoutMs);
       if (ready < 0 && errno == EINTR) continue;
-      if (ready == 0) throw InputError(name_ + ": no reply");
+      if (ready == 0) throw text::InputError(name_ + ": no reply");
       std::uint8_t byte = 0;
       const ssize_t got = ready < 0 ? -1 : ::read(line_, &byte, 1);
       if (got < 0 && errno == EINTR) continue;
       if (got < 0) fail(errno);
-      if (got == 0) throw InputError(name_ + ": the line was closed");
+      if (got == 0) throw text::InputError(name_ + ": the line was closed");
       if (reader_.take(byte)) return {reader_.message(), reader_.message() + reader_.size()};
     }
   }
@@ -107,4 +107,4 @@ std::unique_ptr<Transport> open_serial_transport(const BoardUrl& url) {
   return std::make_unique<SerialTransport>(url);
 }
 
-}  // namespace vernier
+}  // namespace vernier::upload

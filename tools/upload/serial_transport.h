@@ -4,10 +4,10 @@
 
 #include "tools/upload/transport.h"
 
-namespace vernier {
+namespace vernier::upload {
 
 /// A board at a serial line of bytes (tables/serial_frame.h): serial://DEVICE[?baud=115200], 8N1, raw. Throws
 /// InputError naming the device. tool.
 std::unique_ptr<Transport> open_serial_transport(const BoardUrl& url);
 
-}  // namespace vernier
+}  // namespace vernier::upload

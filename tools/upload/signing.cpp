@@ -13,7 +13,7 @@
 #include "tools/text/error.h"
 #include "tools/text/files.h"
 
-namespace vernier {
+namespace vernier::upload {
 namespace {
 
 constexpr const char* kSecretTitle = "vernier board secret key";
@@ -57,10 +57,10 @@ std::string public_key_text(const SigningKey& key) {
 
 SigningKey read_secret_key(const std::string& path) {
   start_sodium();
-  std::istringstream text(read_file(path));
+  std::istringstream text(text::read_file(path));
   struct stat info {};
   if (::stat(path.c_str(), &info) == 0 && (info.st_mode & (S_IRWXG | S_IRWXO)) != 0)
-    throw InputError(path + ": others may read this secret key: chmod 600 it");
+    throw text::InputError(path + ": others may read this secret key: chmod 600 it");
   std::string title, line;
   std::getline(text, title);
   std::getline(text, line);
@@ -70,7 +70,7 @@ SigningKey read_secret_key(const std::string& path) {
       sodium_base642bin(key.secret.data(), key.secret.size(), line.c_str(), line.size(), nullptr, &size,
                         nullptr, sodium_base64_VARIANT_ORIGINAL) != 0 ||
       size != key.secret.size())
-    throw InputError(path + ":1: not a secret key of vernier keys");
+    throw text::InputError(path + ":1: not a secret key of vernier keys");
   return key;
 }
 
@@ -86,7 +86,7 @@ std::vector<std::uint8_t> make_upload(const std::vector<std::uint8_t>& image, co
                                       const std::string& board) {
   start_sodium();
   if (board.size() >= kBoardNameBytes)
-    throw InputError("\"" + board + "\": too long for the name of a board");
+    throw text::InputError("\"" + board + "\": too long for the name of a board");
   ImageHeader inside;
   std::memcpy(&inside, image.data(), sizeof(inside));
   UploadHeader header{};
@@ -115,7 +115,7 @@ std::vector<std::uint8_t> image_in(const std::vector<std::uint8_t>& upload) {
     std::memcpy(&header_bytes, upload.data() + offsetof(UploadHeader, header_bytes), sizeof(header_bytes));
   const bool known = header_bytes == sizeof(UploadHeader) || header_bytes == sizeof(UploadHeaderV1);
   if (!known || upload.size() < header_bytes)
-    throw InputError("the board's upload is not one of this tool's");
+    throw text::InputError("the board's upload is not one of this tool's");
   return {upload.begin() + static_cast<std::ptrdiff_t>(header_bytes), upload.end()};
 }
 
@@ -133,4 +133,4 @@ SignedRequest sign_request(const SigningKey& key, const SignedRequestHead& head,
   return request;
 }
 
-}  // namespace vernier
+}  // namespace vernier::upload

@@ -9,7 +9,7 @@
 #include "tables/link_format.h"
 #include "tables/upload_format.h"
 
-namespace vernier {
+namespace vernier::upload {
 
 /// A key pair: the secret half signs uploads, the public half is given to boards.
 struct SigningKey {
@@ -41,4 +41,4 @@ std::vector<std::uint8_t> image_in(const std::vector<std::uint8_t>& upload);
 SignedRequest sign_request(const SigningKey& key, const SignedRequestHead& head,
                            const std::vector<std::uint8_t>& rest);
 
-}  // namespace vernier
+}  // namespace vernier::upload

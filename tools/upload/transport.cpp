@@ -14,7 +14,7 @@
 #include "tools/text/error.h"
 #include "tools/upload/serial_transport.h"
 
-namespace vernier {
+namespace vernier::upload {
 namespace {
 
 // Checking an image and bringing it to a slow medium takes a board some seconds.
@@ -23,12 +23,12 @@ constexpr std::uint32_t kReplyTimeoutS = 15;
 class ModbusTransport : public Transport {
  public:
   ModbusTransport(modbus_t* context, std::string name) : context_(context), name_(std::move(name)) {
-    if (context_ == nullptr) throw InputError(name_ + ": " + modbus_strerror(errno));
+    if (context_ == nullptr) throw text::InputError(name_ + ": " + modbus_strerror(errno));
     modbus_set_response_timeout(context_, kReplyTimeoutS, 0);
     if (modbus_connect(context_) == 0) return;
     const std::string why = modbus_strerror(errno);
     modbus_free(context_);
-    throw InputError(name_ + ": no board answers: " + why);
+    throw text::InputError(name_ + ": no board answers: " + why);
   }
   ~ModbusTransport() override {
     modbus_close(context_);
@@ -46,7 +46,8 @@ class ModbusTransport : public Transport {
     if (modbus_write_registers(context_, kMailboxRegister, std::max(registers, 2), words.data()) < 0) fail();
     words.fill(0);
     if (modbus_read_input_registers(context_, kMailboxRegister, kMailboxRegisters, words.data()) < 0) fail();
-    if (words[0] > 2 * (kMailboxRegisters - 1)) throw InputError(name_ + ": a reply of impossible length");
+    if (words[0] > 2 * (kMailboxRegisters - 1))
+      throw text::InputError(name_ + ": a reply of impossible length");
     std::vector<std::uint8_t> reply(words[0]);
     for (std::size_t i = 0; i < reply.size(); ++i)
       reply[i] = static_cast<std::uint8_t>(i % 2 == 0 ? words[1 + i / 2] >> 8 : words[1 + i / 2] & 0xff);
@@ -57,7 +58,7 @@ class ModbusTransport : public Transport {
   [[noreturn]] void fail() {
     const std::string why = modbus_strerror(errno);
     modbus_flush(context_);
-    throw InputError(name_ + ": " + why);
+    throw text::InputError(name_ + ": " + why);
   }
 
   modbus_t* context_;
@@ -69,13 +70,13 @@ class IsotpTransport : public Transport {
   explicit IsotpTransport(const BoardUrl& url) : name_("can://" + url.place) {
     std::string error;
     link_ = IsotpLink::open(url.place, url.number("receive", 0x601), url.number("send", 0x600), error);
-    if (!link_) throw InputError(error);
+    if (!link_) throw text::InputError(error);
   }
   std::vector<std::uint8_t> ask(const std::vector<std::uint8_t>& request) override {
     std::vector<std::uint8_t> reply(kMaxReplyBytes);
     const int size = link_->ask(request.data(), static_cast<std::uint32_t>(request.size()), reply.data(),
                                 kMaxReplyBytes, TimeUs(std::int64_t{kReplyTimeoutS} * 1'000'000));
-    if (size < 0) throw InputError(name_ + ": no reply: " + std::strerror(errno));
+    if (size < 0) throw text::InputError(name_ + ": no reply: " + std::strerror(errno));
     reply.resize(static_cast<std::size_t>(size));
     return reply;
   }
@@ -92,12 +93,12 @@ std::string numeric(const std::string& host) {
   hints.ai_socktype = SOCK_STREAM;
   addrinfo* found = nullptr;
   if (const int error = getaddrinfo(host.c_str(), nullptr, &hints, &found); error != 0)
-    throw InputError(host + ": " + gai_strerror(error));
+    throw text::InputError(host + ": " + gai_strerror(error));
   char text[NI_MAXHOST] = {};
   const int error =
       getnameinfo(found->ai_addr, found->ai_addrlen, text, sizeof(text), nullptr, 0, NI_NUMERICHOST);
   freeaddrinfo(found);
-  if (error != 0) throw InputError(host + ": " + gai_strerror(error));
+  if (error != 0) throw text::InputError(host + ": " + gai_strerror(error));
   return text;
 }
 
@@ -117,4 +118,4 @@ std::unique_ptr<Transport> open_transport(const BoardUrl& url) {
   return std::make_unique<ModbusTransport>(context, "rtu://" + url.place);
 }
 
-}  // namespace vernier
+}  // namespace vernier::upload

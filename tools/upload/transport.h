@@ -9,7 +9,7 @@
 
 #include "tools/upload/url.h"
 
-namespace vernier {
+namespace vernier::upload {
 
 /// Carries one request to a board and its reply back (tables/link_format.h).
 class Transport {
@@ -25,4 +25,4 @@ class Transport {
 /// Opens the way to a board. Throws InputError naming the address. tool.
 std::unique_ptr<Transport> open_transport(const BoardUrl& url);
 
-}  // namespace vernier
+}  // namespace vernier::upload

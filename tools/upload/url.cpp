@@ -5,7 +5,7 @@
 
 #include "tools/text/error.h"
 
-namespace vernier {
+namespace vernier::upload {
 namespace {
 
 std::uint32_t parse_number(const std::string& text, const std::string& where) {
@@ -15,7 +15,7 @@ std::uint32_t parse_number(const std::string& text, const std::string& where) {
   std::uint32_t value = 0;
   const auto [end, error] = std::from_chars(first, last, value, hex ? 16 : 10);
   if (error != std::errc{} || end != last || first == last)
-    throw InputError("board address: " + where + ": '" + text + "' is no number");
+    throw text::InputError("board address: " + where + ": '" + text + "' is no number");
   return value;
 }
 
@@ -25,7 +25,7 @@ void parse_options(const std::string& text, BoardUrl& url) {
     const std::string option = text.substr(at, end - at);
     const std::size_t equals = option.find('=');
     if (equals == std::string::npos || equals == 0)
-      throw InputError("board address: '" + option + "' is not name=value");
+      throw text::InputError("board address: '" + option + "' is not name=value");
     url.options[option.substr(0, equals)] = option.substr(equals + 1);
     at = end + 1;
   }
@@ -45,7 +45,7 @@ BoardUrl parse_url(const std::string& text) {
   std::string rest = colon == std::string::npos ? text : text.substr(colon + 3);
   if (url.scheme == "modbus" || url.scheme == "modbus-tcp") url.scheme = "tcp";
   if (url.scheme != "tcp" && url.scheme != "rtu" && url.scheme != "can" && url.scheme != "serial")
-    throw InputError("board address: '" + url.scheme + "' is none of tcp, rtu, serial and can");
+    throw text::InputError("board address: '" + url.scheme + "' is none of tcp, rtu, serial and can");
   if (const std::size_t question = rest.find('?'); question != std::string::npos) {
     parse_options(rest.substr(question + 1), url);
     rest.resize(question);
@@ -54,14 +54,15 @@ BoardUrl parse_url(const std::string& text) {
     while (!rest.empty() && rest.back() == '/') rest.pop_back();
     if (const std::size_t port = rest.rfind(':'); port != std::string::npos) {
       const std::uint32_t number = parse_number(rest.substr(port + 1), "port");
-      if (number == 0 || number > 65535) throw InputError("board address: no port " + std::to_string(number));
+      if (number == 0 || number > 65535)
+        throw text::InputError("board address: no port " + std::to_string(number));
       url.port = static_cast<int>(number);
       rest.resize(port);
     }
   }
   url.place = rest;
-  if (url.place.empty()) throw InputError("board address: '" + text + "' names no place");
+  if (url.place.empty()) throw text::InputError("board address: '" + text + "' names no place");
   return url;
 }
 
-}  // namespace vernier
+}  // namespace vernier::upload

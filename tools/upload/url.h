@@ -4,7 +4,7 @@
 #include <map>
 #include <string>
 
-namespace vernier {
+namespace vernier::upload {
 
 /// Where a board is: `tcp://HOST[:PORT]`, `rtu://DEVICE[?baud=..&parity=..&unit=..]`,
 /// `can://INTERFACE?send=ID&receive=ID`, `serial://DEVICE[?baud=..]`.
@@ -21,4 +21,4 @@ struct BoardUrl {
 /// Throws InputError naming the word. `HOST:PORT` alone is TCP. tool.
 BoardUrl parse_url(const std::string& text);
 
-}  // namespace vernier
+}  // namespace vernier::upload

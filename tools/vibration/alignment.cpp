@@ -9,14 +9,14 @@
 #include "tools/text/error.h"
 #include "tools/vibration/fourier.h"
 
-namespace vernier {
+namespace vernier::vibration {
 namespace {
 
 void check(const Series& series) {
   if (series.t_s.size() < 16 || series.value.size() != series.t_s.size())
-    throw InputError("a record of less than 16 samples cannot be aligned");
+    throw text::InputError("a record of less than 16 samples cannot be aligned");
   if (std::adjacent_find(series.t_s.begin(), series.t_s.end(), std::greater_equal<>()) != series.t_s.end())
-    throw InputError("a record whose times do not increase cannot be aligned");
+    throw text::InputError("a record whose times do not increase cannot be aligned");
 }
 
 /// Cubic through value and slope of both neighbours; t is held within the record.
@@ -98,7 +98,7 @@ std::vector<Lagged> correlations(const std::vector<double>& a, const std::vector
 
 /// The best lag, and in `rival` the best of the other tops.
 Lagged best_lag(const std::vector<Lagged>& all, double& rival) {
-  if (all.empty()) throw InputError("the records have nothing in common: one of them does not move");
+  if (all.empty()) throw text::InputError("the records have nothing in common: one of them does not move");
   const auto best = std::max_element(
       all.begin(), all.end(), [](const Lagged& a, const Lagged& b) { return a.correlation < b.correlation; });
   rival = 0;
@@ -212,14 +212,15 @@ ClockFit align_clocks(const Series& reference, const Series& other) {
   const double centre = (from + to) / 2;
   const ClockProblem problem(reference, other, static_cast<double>(width_of(lags, best) + 1) * step);
   for (const double part : {0.125, 0.25, 0.5, 1.0}) problem.solve(fit, centre, part * (to - from) / 2);
-  if (fit.correlation < 0.5) throw InputError("the records have no motion in common: correlation below 0.5");
+  if (fit.correlation < 0.5)
+    throw text::InputError("the records have no motion in common: correlation below 0.5");
   return fit;
 }
 
 std::vector<PathPlace> nearest_places(const Eigen::MatrixXd& path, const Eigen::MatrixXd& points,
                                       double reach) {
   if (path.cols() < 2 || path.rows() != points.rows())
-    throw InputError("a path needs two samples of the same axes");
+    throw text::InputError("a path needs two samples of the same axes");
   std::vector<PathPlace> places;
   PathPlace last;
   for (Eigen::Index p = 0; p < points.cols(); ++p) {
@@ -240,4 +241,4 @@ std::vector<PathPlace> nearest_places(const Eigen::MatrixXd& path, const Eigen::
   return places;
 }
 
-}  // namespace vernier
+}  // namespace vernier::vibration

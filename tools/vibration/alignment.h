@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-namespace vernier {
+namespace vernier::vibration {
 
 /// One quantity over the clock of its instrument: t in s, increasing; as many values.
 struct Series {
@@ -40,4 +40,4 @@ struct PathPlace {
 std::vector<PathPlace> nearest_places(const Eigen::MatrixXd& path, const Eigen::MatrixXd& points,
                                       double reach);
 
-}  // namespace vernier
+}  // namespace vernier::vibration

@@ -14,7 +14,7 @@
 #include "tools/text/units.h"
 #include "tools/vibration/integration.h"
 
-namespace vernier {
+namespace vernier::vibration {
 namespace {
 
 constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
@@ -24,9 +24,9 @@ constexpr std::size_t kCorners = 60, kLineSteps = 200;
 
 /// mm/s^2 in the signal's unit.
 double acceleration_factor(const Signal& signal) {
-  const auto unit = find_unit(signal.unit);
-  if (!unit || unit->dimension != Dimension::kAcceleration)
-    throw InputError(
+  const auto unit = text::find_unit(signal.unit);
+  if (!unit || unit->dimension != text::Dimension::kAcceleration)
+    throw text::InputError(
         fmt::format("\"{}\": no acceleration (unit g, m/s^2 or mm/s^2), so no displacement: \"{}\"",
                     signal.name, signal.unit));
   return unit->factor;
@@ -61,7 +61,7 @@ DisplacementSeries by_corner(const Signal& signal, double rate_Hz, double corner
                                 std::llround(180 * rate_Hz)};  // 0.18 of the rate, as on the board
   Displacement filter;
   if (!filter.start(scale))
-    throw InputError(
+    throw text::InputError(
         fmt::format("--corner {:g} Hz: at {:g} Hz it must be within {:.3g} and {:.4g} Hz, and the "
                     "resolution of \"{}\" such that a sample is at most 16 um",
                     corner_Hz, rate_Hz, std::max(0.001, rate_Hz / 131072), rate_Hz / 64, signal.name));
@@ -103,14 +103,14 @@ std::vector<Pairing> pairings_of(const VibrationRecord& record, const std::vecto
     for (const Signal& signal : record.signals)
       if (signal.name == one.signal) pairing.signal = &signal;
     if (pairing.signal == nullptr)
-      throw InputError(fmt::format("\"{}\": the accelerometer record has no such signal", one.signal));
+      throw text::InputError(fmt::format("\"{}\": the accelerometer record has no such signal", one.signal));
     for (std::size_t row = 0; row < ends.size(); ++row) {
       if (!ends[row] || *ends[row] >= record.samples || !std::isfinite(one.at_row_um[row])) continue;
       pairing.sample.push_back(*ends[row]);
       pairing.um.push_back(one.at_row_um[row]);
     }
     if (pairing.um.size() < 3)
-      throw InputError(
+      throw text::InputError(
           fmt::format("\"{}\": {} rows within the record have a measured displacement, three are the least",
                       one.signal, pairing.um.size()));
     pairings.push_back(std::move(pairing));
@@ -176,8 +176,8 @@ std::vector<double> offered_cuts(const VibrationRecord& record, const std::vecto
 }  // namespace
 
 bool is_acceleration(const Signal& signal) {
-  const auto unit = find_unit(signal.unit);
-  return unit && unit->dimension == Dimension::kAcceleration;
+  const auto unit = text::find_unit(signal.unit);
+  return unit && unit->dimension == text::Dimension::kAcceleration;
 }
 
 DisplacementSeries displacement_of(const Signal& signal, double rate_Hz, const DisplacementChoice& choice) {
@@ -196,7 +196,8 @@ AgreedCut agreed_cut(const VibrationRecord& record, const std::vector<KnownDispl
     if (rms_um < best.rms_um) best = {*one.value, rms_um, 0};
   }
   if (!std::isfinite(best.rms_um))
-    throw InputError("the record is too short to find a cut-off: less than six periods of every corner");
+    throw text::InputError(
+        "the record is too short to find a cut-off: less than six periods of every corner");
   Spread measured;
   for (const Pairing& pairing : pairings) {
     const Spread spread = spread_about_mean(pairing.um);
@@ -206,4 +207,4 @@ AgreedCut agreed_cut(const VibrationRecord& record, const std::vector<KnownDispl
   return best;
 }
 
-}  // namespace vernier
+}  // namespace vernier::vibration

@@ -7,7 +7,7 @@
 
 #include "tools/vibration/feature_rows.h"
 
-namespace vernier {
+namespace vernier::vibration {
 
 /// Name of the displacement among the features of a signal.
 inline constexpr const char* kDisplacementName = "DISPLACEMENT";
@@ -60,4 +60,4 @@ struct AgreedCut {
 AgreedCut agreed_cut(const VibrationRecord& record, const std::vector<KnownDisplacement>& known,
                      const std::vector<std::optional<std::size_t>>& ends, const DisplacementChoice& choice);
 
-}  // namespace vernier
+}  // namespace vernier::vibration

@@ -13,41 +13,41 @@
 #include "tools/text/numbers.h"
 #include "tools/text/units.h"
 
-namespace vernier {
+namespace vernier::vibration {
 namespace {
 
-std::optional<std::size_t> column_named(const CsvFile& file, const std::string& name) {
+std::optional<std::size_t> column_named(const text::CsvFile& file, const std::string& name) {
   for (std::size_t i = 0; i < file.columns.size(); ++i)
     if (file.columns[i].name == name) return i;
   return {};
 }
 
-std::vector<double> column_values(const CsvFile& file, std::size_t column) {
+std::vector<double> column_values(const text::CsvFile& file, std::size_t column) {
   std::vector<double> values;
   for (std::size_t row = 0; row < file.rows.size(); ++row) {
     const std::string& cell = file.rows[row][column];
-    const auto value = parse_number(cell);
-    if (!value) throw InputError({file.file, file.line[row]}, cell, "no number");
+    const auto value = text::parse_number(cell);
+    if (!value) throw text::InputError({file.file, file.line[row]}, cell, "no number");
     values.push_back(*value);
   }
   return values;
 }
 
 /// Rate of even times; throws where they are not.
-double rate_of(const CsvFile& file, const std::vector<double>& t_s) {
+double rate_of(const text::CsvFile& file, const std::vector<double>& t_s) {
   const auto n = static_cast<double>(t_s.size() - 1);
   const double step = (t_s.back() - t_s.front()) / n;
   for (std::size_t i = 0; i < t_s.size(); ++i)
     if (!(step > 0) || std::fabs(t_s[i] - t_s.front() - step * static_cast<double>(i)) > 0.01 * step)
-      throw InputError({file.file, file.line[i]}, number_text(t_s[i]),
-                       "t is not even to 1 % of a sample period");
+      throw text::InputError({file.file, file.line[i]}, text::number_text(t_s[i]),
+                             "t is not even to 1 % of a sample period");
   return 1 / step;
 }
 
 const Signal& signal_named(const VibrationRecord& record, const std::string& name) {
   for (const Signal& signal : record.signals)
     if (signal.name == name) return signal;
-  throw InputError(fmt::format("\"{}\": the accelerometer record has no such signal", name));
+  throw text::InputError(fmt::format("\"{}\": the accelerometer record has no such signal", name));
 }
 
 std::string header_of(const Signal& signal, std::size_t feature) {
@@ -58,35 +58,35 @@ std::string header_of(const Signal& signal, std::size_t feature) {
 
 }  // namespace
 
-std::vector<double> numeric_column(const CsvFile& file, const std::string& name) {
+std::vector<double> numeric_column(const text::CsvFile& file, const std::string& name) {
   const auto column = column_named(file, name);
-  if (!column) throw InputError({file.file, file.header_line}, name, "the file has no such column");
+  if (!column) throw text::InputError({file.file, file.header_line}, name, "the file has no such column");
   std::vector<double> values = column_values(file, *column);
-  if (const auto unit = find_unit(file.columns[*column].unit))
+  if (const auto unit = text::find_unit(file.columns[*column].unit))
     for (double& value : values) value = unit->factor * value + unit->offset;
   return values;
 }
 
-std::vector<double> measured_lengths_um(const CsvFile& file, const std::string& name) {
+std::vector<double> measured_lengths_um(const text::CsvFile& file, const std::string& name) {
   const auto column = column_named(file, name);
-  if (!column) throw InputError({file.file, file.header_line}, name, "the file has no such column");
-  const auto unit = find_unit(file.columns[*column].unit);
-  if (!unit || unit->dimension != Dimension::kLength)
-    throw InputError({file.file, file.header_line}, name, "is no length (unit mm, um, m or in)");
+  if (!column) throw text::InputError({file.file, file.header_line}, name, "the file has no such column");
+  const auto unit = text::find_unit(file.columns[*column].unit);
+  if (!unit || unit->dimension != text::Dimension::kLength)
+    throw text::InputError({file.file, file.header_line}, name, "is no length (unit mm, um, m or in)");
   std::vector<double> lengths_um;
   for (std::size_t row = 0; row < file.rows.size(); ++row) {
     const std::string& cell = file.rows[row][*column];
-    const auto value = parse_number(cell);
-    if (!value && !cell.empty()) throw InputError({file.file, file.line[row]}, cell, "no number");
+    const auto value = text::parse_number(cell);
+    if (!value && !cell.empty()) throw text::InputError({file.file, file.line[row]}, cell, "no number");
     lengths_um.push_back(value ? 1e3 * unit->factor * *value : std::numeric_limits<double>::quiet_NaN());
   }
   return lengths_um;
 }
 
-VibrationRecord read_vibration(const CsvFile& file, std::optional<double> rate_Hz,
+VibrationRecord read_vibration(const text::CsvFile& file, std::optional<double> rate_Hz,
                                const std::vector<std::string>& positions) {
   if (file.rows.size() < 2)
-    throw InputError({file.file, 0}, file.file, "an accelerometer record of less than two samples");
+    throw text::InputError({file.file, 0}, file.file, "an accelerometer record of less than two samples");
   VibrationRecord record;
   record.samples = file.rows.size();
   if (column_named(file, "t")) {
@@ -96,28 +96,30 @@ VibrationRecord read_vibration(const CsvFile& file, std::optional<double> rate_H
   } else if (rate_Hz) {
     record.rate_Hz = *rate_Hz;
   } else {
-    throw InputError({file.file, file.header_line}, "t", "no column t; --rate gives the samples per second");
+    throw text::InputError({file.file, file.header_line}, "t",
+                           "no column t; --rate gives the samples per second");
   }
   for (const std::string& name : positions)
     record.positions.push_back({name, "", numeric_column(file, name)});
   for (std::size_t i = 0; i < file.columns.size(); ++i) {
-    const CsvColumn& column = file.columns[i];
+    const text::CsvColumn& column = file.columns[i];
     if (column.name == "t" || std::count(positions.begin(), positions.end(), column.name) != 0) continue;
     record.signals.push_back({column.name, column.unit, column_values(file, i)});
   }
-  if (record.signals.empty()) throw InputError({file.file, file.header_line}, file.file, "no signal");
+  if (record.signals.empty()) throw text::InputError({file.file, file.header_line}, file.file, "no signal");
   return record;
 }
 
 void add_difference(VibrationRecord& record, const std::string& definition) {
   const auto equals = definition.find('='),
              minus = definition.find('-', equals == std::string::npos ? 0 : equals);
-  if (equals == std::string::npos || minus == std::string::npos || !is_name(definition.substr(0, equals)))
-    throw InputError(fmt::format("\"{}\": not of the form NAME=A-B", definition));
+  if (equals == std::string::npos || minus == std::string::npos ||
+      !text::is_name(definition.substr(0, equals)))
+    throw text::InputError(fmt::format("\"{}\": not of the form NAME=A-B", definition));
   const Signal& a = signal_named(record, definition.substr(equals + 1, minus - equals - 1));
   const Signal& b = signal_named(record, definition.substr(minus + 1));
   if (a.unit != b.unit)
-    throw InputError(fmt::format("\"{}\": a difference of {} and {}", definition, a.unit, b.unit));
+    throw text::InputError(fmt::format("\"{}\": a difference of {} and {}", definition, a.unit, b.unit));
   Signal difference{definition.substr(0, equals), a.unit, a.value};
   for (std::size_t i = 0; i < record.samples; ++i) difference.value[i] -= b.value[i];
   record.signals.push_back(std::move(difference));
@@ -143,7 +145,8 @@ FeatureColumns feature_columns(const VibrationRecord& record, const FeatureChoic
                                  record.rate_Hz, fourier);
       if (!full && &signal == &record.signals.front()) ++columns.empty_rows;
       for (const std::size_t feature : choice.features)
-        columns.cells[row].push_back(std::isfinite(values[feature]) ? number_text(values[feature]) : "");
+        columns.cells[row].push_back(std::isfinite(values[feature]) ? text::number_text(values[feature])
+                                                                    : "");
     }
   }
   return columns;
@@ -161,4 +164,4 @@ Series acceleration_of(const std::vector<double>& t_s, const std::vector<double>
   return series;
 }
 
-}  // namespace vernier
+}  // namespace vernier::vibration

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-namespace vernier {
+namespace vernier::vibration {
 
 struct Fourier::Plans {
   fftw_plan forward = nullptr, backward = nullptr;
@@ -39,4 +39,4 @@ std::span<const double> Fourier::backward(std::span<const std::complex<double>> 
   return series_;
 }
 
-}  // namespace vernier
+}  // namespace vernier::vibration

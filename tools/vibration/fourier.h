@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-namespace vernier {
+namespace vernier::vibration {
 
 /// Fourier transform of real series of one length n >= 1 (FFTW): plans are made once. One object a thread.
 /// tool.
@@ -29,4 +29,4 @@ class Fourier {
   std::unique_ptr<Plans> plans_;
 };
 
-}  // namespace vernier
+}  // namespace vernier::vibration

@@ -12,7 +12,7 @@
 #include "tools/text/error.h"
 #include "tools/vibration/fourier.h"
 
-namespace vernier {
+namespace vernier::vibration {
 namespace {
 
 std::vector<double> cumulated(std::span<const double> x, double step) {
@@ -28,7 +28,8 @@ void centre(std::vector<double>& x) {
 
 void check(const AcceleratedPass& pass) {
   if (pass.ax.size() < 4 || pass.ay.size() != pass.ax.size() || pass.angle_rad.size() != pass.ax.size())
-    throw InputError("a circular pass needs accelerations of two axes and an angle for each of its samples");
+    throw text::InputError(
+        "a circular pass needs accelerations of two axes and an angle for each of its samples");
 }
 
 /// The spectrum of x with 0 for its mean and for lines at or below the cut-off.
@@ -119,7 +120,7 @@ double mean_radial_um(const AcceleratedPass& pass, double cutoff, Constants cons
 }
 
 FittedCut fitted_cutoff(const std::vector<AcceleratedPass>& passes, Constants constants, std::size_t steps) {
-  if (passes.empty()) throw InputError("no circular pass to find a cut-off with");
+  if (passes.empty()) throw text::InputError("no circular pass to find a cut-off with");
   std::vector<double> powers;
   for (const AcceleratedPass& pass : passes) {
     check(pass);
@@ -139,4 +140,4 @@ FittedCut fitted_cutoff(const std::vector<AcceleratedPass>& passes, Constants co
   return best;
 }
 
-}  // namespace vernier
+}  // namespace vernier::vibration

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-namespace vernier {
+namespace vernier::vibration {
 
 /// Spectral lines of a record that are kept: |F|^2/N above a cut-off, in the unit of the samples squared (C.
 /// Walker, PhD thesis, University of Strathclyde 2026, section 4; `facts.json` fft_filter).
@@ -66,4 +66,4 @@ struct FittedCut {
 FittedCut fitted_cutoff(const std::vector<AcceleratedPass>& passes, Constants constants,
                         std::size_t steps = 200);
 
-}  // namespace vernier
+}  // namespace vernier::vibration

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vernier {
+namespace vernier::vibration {
 namespace {
 
 // MATLAB's meanfreq: one-sided periodogram, rectangular window; the mean value counts, zero and half the rate
@@ -53,4 +53,4 @@ SignalFeatures signal_features(std::span<const double> x, double rate_Hz, Fourie
           *high / rms};
 }
 
-}  // namespace vernier
+}  // namespace vernier::vibration

@@ -7,7 +7,7 @@
 
 #include "tools/vibration/fourier.h"
 
-namespace vernier {
+namespace vernier::vibration {
 
 /// The features of comp/vibration/feature_window.h in double, by their definitions: the reference that the
 /// fixed point is held against, and what `vernier features` writes. Same order.
@@ -24,4 +24,4 @@ bool in_signal_unit(std::size_t feature);
 /// is 0/0. Two passes for the central moments. tool.
 SignalFeatures signal_features(std::span<const double> x, double rate_Hz, Fourier& fourier);
 
-}  // namespace vernier
+}  // namespace vernier::vibration

@@ -7,7 +7,7 @@
 #include "tools/text/files.h"
 #include "tools/workbench/file_desk.h"
 
-namespace vernier {
+namespace vernier::workbench {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -63,8 +63,8 @@ ApiReply Api::project_page() {
 ApiReply Api::get_file(const ApiRequest& request) {
   const std::string name = request.word("name");
   const auto path = project_.existing(name);
-  if (!std::filesystem::is_regular_file(path)) throw InputError("\"" + name + "\": no file");
-  ApiReply reply{200, "application/octet-stream", read_file(path.string()), {}};
+  if (!std::filesystem::is_regular_file(path)) throw text::InputError("\"" + name + "\": no file");
+  ApiReply reply{200, "application/octet-stream", text::read_file(path.string()), {}};
   if (ends_with(name, ".html")) {
     // A report may run its own script, but in an origin of its own: it reaches nothing of the workbench.
     reply.type = "text/html; charset=utf-8";
@@ -82,7 +82,7 @@ ApiReply Api::put_file(const ApiRequest& request) {
   const std::string name = request.word("name");
   project_.writable(name);
   if (!request.words("new").empty() && std::filesystem::exists(project_.writable(name)))
-    throw InputError("\"" + name + "\": there is such a file already");
+    throw text::InputError("\"" + name + "\": there is such a file already");
   if (ApiReply checked = reader_.reply(request); checked.status != 200) return checked;
   project_.save(name, request.body);
   return json_reply({{"name", name}, {"bytes", request.body.size()}});
@@ -91,7 +91,7 @@ ApiReply Api::put_file(const ApiRequest& request) {
 /// The lines around an error: {"first", "lines": [...]}.
 ApiReply Api::lines(const ApiRequest& request) {
   constexpr std::size_t kAround = 2, kLongest = 400;
-  const std::string text = read_file(project_.existing(request.word("name")).string());
+  const std::string text = text::read_file(project_.existing(request.word("name")).string());
   const std::size_t wanted = whole_number(request.word("line"));
   const std::size_t first = wanted > kAround ? wanted - kAround : 1;
   Json list = Json::array();
@@ -123,7 +123,7 @@ ApiReply Api::history(const ApiRequest& request) {
     else if (what == "redo")
       history_.redo();
     else
-      throw InputError("\"" + what + "\": undo or redo");
+      throw text::InputError("\"" + what + "\": undo or redo");
   }
   return json_reply({{"history", history_.entries()}, {"script", history_.script()}});
 }
@@ -133,4 +133,4 @@ ApiReply Api::live(const ApiRequest& request) {
   return json_reply(live_.pictures(request.word("to"), after.empty() ? 0 : whole_number(after)));
 }
 
-}  // namespace vernier
+}  // namespace vernier::workbench

@@ -9,7 +9,7 @@
 #include "tools/workbench/project.h"
 #include "tools/workbench/request.h"
 
-namespace vernier {
+namespace vernier::workbench {
 
 /// What the page can ask for, without a network: files, commands, rows, predictions, terms, history, a board.
 /// What takes reading a file is answered by a process of its own (FileReader), or by a command.
@@ -41,4 +41,4 @@ class Api {
   Jobs jobs_;
 };
 
-}  // namespace vernier
+}  // namespace vernier::workbench

@@ -2,11 +2,11 @@
 #pragma once
 #include <string_view>
 
-namespace vernier {
+namespace vernier::workbench {
 
 /// The page of the workbench, its script (tools/workbench/web, one bundle) and its style sheet. tool.
 std::string_view workbench_page();
 std::string_view workbench_script();
 std::string_view workbench_style();
 
-}  // namespace vernier
+}  // namespace vernier::workbench

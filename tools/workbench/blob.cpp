@@ -4,7 +4,7 @@
 #include <bit>
 #include <cstring>
 
-namespace vernier {
+namespace vernier::workbench {
 
 static_assert(std::endian::native == std::endian::little, "arrays go out as they lie in memory");
 
@@ -41,4 +41,4 @@ std::string Blob::bytes(const nlohmann::ordered_json& header) const {
   return all + text + arrays_;
 }
 
-}  // namespace vernier
+}  // namespace vernier::workbench

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace vernier {
+namespace vernier::workbench {
 
 /// JSON with long rows of numbers beside it, for the page: a 4-byte length, the JSON padded with blanks to a
 /// multiple of 4, then the arrays, little-endian, each on a multiple of 4. In the JSON an array is
@@ -27,4 +27,4 @@ class Blob {
   std::string arrays_;
 };
 
-}  // namespace vernier
+}  // namespace vernier::workbench

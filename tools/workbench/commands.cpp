@@ -7,7 +7,7 @@
 
 #include "tools/text/error.h"
 
-namespace vernier {
+namespace vernier::workbench {
 namespace {
 
 enum class FieldKind : std::uint8_t { kIn, kInList, kOut, kText, kTextList, kNumber, kFlag };
@@ -144,7 +144,7 @@ const std::vector<Allowed>& allowed() {
 }
 
 [[noreturn]] void refuse(const Field& field, const std::string& what) {
-  throw InputError(fmt::format("\"{}\": {}", field.key, what));
+  throw text::InputError(fmt::format("\"{}\": {}", field.key, what));
 }
 
 std::string text_of(const Field& field, const nlohmann::json& value) {
@@ -201,11 +201,11 @@ void add_field(const Field& field, const nlohmann::json& value, const Project& p
 
 PlannedCommand plan_command(const nlohmann::json& request, const Project& project) {
   if (!request.is_object() || !request.contains("command") || !request["command"].is_string())
-    throw InputError("a request for a command names it: {\"command\": ...}");
+    throw text::InputError("a request for a command names it: {\"command\": ...}");
   const auto name = request["command"].get<std::string>();
   const auto found =
       std::find_if(allowed().begin(), allowed().end(), [&](const Allowed& one) { return one.name == name; });
-  if (found == allowed().end()) throw InputError("\"" + name + "\": no command of the workbench");
+  if (found == allowed().end()) throw text::InputError("\"" + name + "\": no command of the workbench");
   PlannedCommand command{name, {name}, {}, found->on_board, found->for_history};
   std::size_t known = 1;
   for (const Field& field : found->fields) {
@@ -218,7 +218,7 @@ PlannedCommand plan_command(const nlohmann::json& request, const Project& projec
     ++known;
     add_field(field, *value, project, command);
   }
-  if (known != request.size()) throw InputError("a field that " + name + " does not have");
+  if (known != request.size()) throw text::InputError("a field that " + name + " does not have");
   return command;
 }
 
@@ -233,4 +233,4 @@ nlohmann::ordered_json command_list() {
   return list;
 }
 
-}  // namespace vernier
+}  // namespace vernier::workbench

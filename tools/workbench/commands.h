@@ -6,7 +6,7 @@
 
 #include "tools/workbench/project.h"
 
-namespace vernier {
+namespace vernier::workbench {
 
 /// A command that the page asked for, ready to run in the project's folder.
 struct PlannedCommand {
@@ -25,4 +25,4 @@ PlannedCommand plan_command(const nlohmann::json& request, const Project& projec
 /// The commands and their fields, for the page and its tests.
 nlohmann::ordered_json command_list();
 
-}  // namespace vernier
+}  // namespace vernier::workbench

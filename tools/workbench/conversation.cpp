@@ -14,7 +14,7 @@
 #include "tools/text/error.h"
 #include "tools/workbench/process.h"
 
-namespace vernier {
+namespace vernier::workbench {
 namespace {
 
 // A frame of 1e5 rows has some 20 MB.
@@ -100,13 +100,13 @@ Conversation::Conversation(const std::string& program, const std::vector<std::st
                            const std::string& directory) {
   int ends[2];
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
-    throw InputError(std::string("no way to a process: ") + std::strerror(errno));
+    throw text::InputError(std::string("no way to a process: ") + std::strerror(errno));
   stream_ = ends[0];
   child_ = start_process(program, arguments, directory, {ends[1], ends[1], STDERR_FILENO});
   ::close(ends[1]);
   if (child_ >= 0) return;
   ::close(stream_);
-  throw InputError(std::string("a process cannot be started: ") + std::strerror(errno));
+  throw text::InputError(std::string("a process cannot be started: ") + std::strerror(errno));
 }
 
 Conversation::~Conversation() { end(); }
@@ -136,4 +136,4 @@ std::string Conversation::end() {
                            : "signal " + std::to_string(WTERMSIG(status));
 }
 
-}  // namespace vernier
+}  // namespace vernier::workbench

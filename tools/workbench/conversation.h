@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace vernier {
+namespace vernier::workbench {
 
 /// Texts as one message between two processes.
 using Message = std::vector<std::string>;
@@ -38,4 +38,4 @@ class Conversation {
   int stream_ = -1;
 };
 
-}  // namespace vernier
+}  // namespace vernier::workbench

@@ -5,50 +5,50 @@
 
 #include "tools/text/units.h"
 
-namespace vernier {
+namespace vernier::workbench {
 namespace {
 
 constexpr std::array<const char*, 8> kNames = {"mm", "deg", "degC", "s", "V", "N", "kg", "A"};
 
-std::optional<UnitPowers> powers_of(Dimension dimension) {
+std::optional<UnitPowers> powers_of(text::Dimension dimension) {
   switch (dimension) {
-    case Dimension::kNone:
+    case text::Dimension::kNone:
       return UnitPowers{};
-    case Dimension::kLength:
+    case text::Dimension::kLength:
       return UnitPowers{1};
-    case Dimension::kAngle:
+    case text::Dimension::kAngle:
       return UnitPowers{0, 1};
-    case Dimension::kTemperature:
+    case text::Dimension::kTemperature:
       return UnitPowers{0, 0, 1};
-    case Dimension::kTime:
+    case text::Dimension::kTime:
       return UnitPowers{0, 0, 0, 1};
-    case Dimension::kSpeed:
+    case text::Dimension::kSpeed:
       return UnitPowers{1, 0, 0, -1};
-    case Dimension::kAngularSpeed:
+    case text::Dimension::kAngularSpeed:
       return UnitPowers{0, 1, 0, -1};
-    case Dimension::kAcceleration:
+    case text::Dimension::kAcceleration:
       return UnitPowers{1, 0, 0, -2};
-    case Dimension::kAngularAcceleration:
+    case text::Dimension::kAngularAcceleration:
       return UnitPowers{0, 1, 0, -2};
-    case Dimension::kVoltage:
+    case text::Dimension::kVoltage:
       return UnitPowers{0, 0, 0, 0, 1};
-    case Dimension::kForce:
+    case text::Dimension::kForce:
       return UnitPowers{0, 0, 0, 0, 0, 1};
-    case Dimension::kMass:
+    case text::Dimension::kMass:
       return UnitPowers{0, 0, 0, 0, 0, 0, 1};
-    case Dimension::kCurvature:
+    case text::Dimension::kCurvature:
       return UnitPowers{-1};
-    case Dimension::kCurrent:
+    case text::Dimension::kCurrent:
       return UnitPowers{0, 0, 0, 0, 0, 0, 0, 1};
-    case Dimension::kFrequency:
+    case text::Dimension::kFrequency:
       return UnitPowers{0, 0, 0, -1};
-    case Dimension::kPressure:
+    case text::Dimension::kPressure:
       return UnitPowers{-2, 0, 0, 0, 0, 1};
-    case Dimension::kTorque:
+    case text::Dimension::kTorque:
       return UnitPowers{1, 0, 0, 0, 0, 1};
-    case Dimension::kPower:
+    case text::Dimension::kPower:
       return UnitPowers{1, 0, 0, -1, 0, 1};
-    case Dimension::kRatio:
+    case text::Dimension::kRatio:
       return UnitPowers{};
   }
   return std::nullopt;
@@ -59,24 +59,24 @@ using Unit = std::optional<UnitPowers>;
 /// Walks an expression from its leaves; nothing goes on as nothing.
 class UnitWalk {
  public:
-  UnitWalk(const Machine& machine, const std::string& unknown, std::vector<std::string>& warnings)
+  UnitWalk(const model::Machine& machine, const std::string& unknown, std::vector<std::string>& warnings)
       : machine_(machine), unknown_(unknown), warnings_(warnings) {}
 
-  Unit of(const Expr& expr) {
+  Unit of(const model::Expr& expr) {
     switch (expr.op) {
-      case Op::kNumber:
-      case Op::kRunIs:
+      case model::Op::kNumber:
+      case model::Op::kRunIs:
         return UnitPowers{};
-      case Op::kSymbol:
-        return expr.name == unknown_ ? UnitPowers{} : unit_powers(symbol_unit(machine_, expr.symbol));
-      case Op::kNegate:
-      case Op::kAbs:
+      case model::Op::kSymbol:
+        return expr.name == unknown_ ? UnitPowers{} : unit_powers(model::symbol_unit(machine_, expr.symbol));
+      case model::Op::kNegate:
+      case model::Op::kAbs:
         return of(*expr.args[0]);
-      case Op::kMultiply:
+      case model::Op::kMultiply:
         return product(expr, 1);
-      case Op::kDivide:
+      case model::Op::kDivide:
         return product(expr, -1);
-      case Op::kPower:
+      case model::Op::kPower:
         return power(expr);
       default:
         return function(expr);
@@ -84,7 +84,7 @@ class UnitWalk {
   }
 
  private:
-  Unit product(const Expr& expr, int sense) {
+  Unit product(const model::Expr& expr, int sense) {
     const Unit a = of(*expr.args[0]), b = of(*expr.args[1]);
     if (!a || !b) return std::nullopt;
     UnitPowers result = *a;
@@ -92,61 +92,62 @@ class UnitWalk {
     return result;
   }
 
-  Unit power(const Expr& expr) {
+  Unit power(const model::Expr& expr) {
     const Unit base = of(*expr.args[0]);
     pure(*expr.args[1], "an exponent");
     double exponent = 0;
     if (!base) return std::nullopt;
     if (*base == UnitPowers{}) return UnitPowers{};
-    if (!is_constant(*expr.args[1], exponent) || exponent != std::round(exponent) || std::abs(exponent) > 20)
+    if (!model::is_constant(*expr.args[1], exponent) || exponent != std::round(exponent) ||
+        std::abs(exponent) > 20)
       return std::nullopt;
     UnitPowers result = *base;
     for (int& one : result) one *= static_cast<int>(exponent);
     return result;
   }
 
-  Unit alike(const Expr& expr) {
+  Unit alike(const model::Expr& expr) {
     const Unit a = of(*expr.args[0]), b = of(*expr.args[1]);
     double constant = 0;
     // A number beside a quantity is one of its unit: T - 20.
-    if (is_constant(*expr.args[0], constant)) return b;
-    if (is_constant(*expr.args[1], constant)) return a;
+    if (model::is_constant(*expr.args[0], constant)) return b;
+    if (model::is_constant(*expr.args[1], constant)) return a;
     if (a && b && *a != *b)
-      warnings_.push_back(to_text(*expr.args[0]) + " is in " + unit_text(*a) + ", " + to_text(*expr.args[1]) +
-                          " in " + unit_text(*b));
+      warnings_.push_back(model::to_text(*expr.args[0]) + " is in " + unit_text(*a) + ", " +
+                          model::to_text(*expr.args[1]) + " in " + unit_text(*b));
     return a ? a : b;
   }
 
-  Unit function(const Expr& expr) {
+  Unit function(const model::Expr& expr) {
     switch (expr.op) {
-      case Op::kAdd:
-      case Op::kSubtract:
-      case Op::kMin:
-      case Op::kMax:
+      case model::Op::kAdd:
+      case model::Op::kSubtract:
+      case model::Op::kMin:
+      case model::Op::kMax:
         return alike(expr);
-      case Op::kEqual:
-      case Op::kLess:
-      case Op::kGreater:
+      case model::Op::kEqual:
+      case model::Op::kLess:
+      case model::Op::kGreater:
         alike(expr);
         return UnitPowers{};
-      case Op::kAtan2:
+      case model::Op::kAtan2:
         alike(expr);
         return UnitPowers{0, 1};
-      case Op::kSin:
-      case Op::kCos:
-      case Op::kTan:
+      case model::Op::kSin:
+      case model::Op::kCos:
+      case model::Op::kTan:
         angle(*expr.args[0]);
         return UnitPowers{};
-      case Op::kSign:
+      case model::Op::kSign:
         of(*expr.args[0]);
         return UnitPowers{};
-      case Op::kExp:
-      case Op::kLog:
-        pure(*expr.args[0], std::string("the argument of ") + function_name(expr.op));
+      case model::Op::kExp:
+      case model::Op::kLog:
+        pure(*expr.args[0], std::string("the argument of ") + model::function_name(expr.op));
         return UnitPowers{};
-      case Op::kSqrt:
+      case model::Op::kSqrt:
         return root(of(*expr.args[0]));
-      case Op::kLag:
+      case model::Op::kLag:
         return lag(expr);
       default:
         return std::nullopt;
@@ -162,28 +163,28 @@ class UnitWalk {
     return of_square;
   }
 
-  Unit lag(const Expr& expr) {
+  Unit lag(const model::Expr& expr) {
     const Unit tau = of(*expr.args[1]);
     double constant = 0;
-    if (tau && !is_constant(*expr.args[1], constant) && *tau != UnitPowers{0, 0, 0, 1})
+    if (tau && !model::is_constant(*expr.args[1], constant) && *tau != UnitPowers{0, 0, 0, 1})
       warnings_.push_back("the time constant of lag is in " + unit_text(*tau) + ", not in s");
     return of(*expr.args[0]);
   }
 
-  void pure(const Expr& expr, const std::string& what) {
+  void pure(const model::Expr& expr, const std::string& what) {
     const Unit unit = of(expr);
     if (unit && *unit != UnitPowers{})
       warnings_.push_back(what + " is in " + unit_text(*unit) + ", not a pure number");
   }
 
   /// Turns over a period (360*X/p) are pure numbers, an axis' own angle is in deg: both are right.
-  void angle(const Expr& expr) {
+  void angle(const model::Expr& expr) {
     const Unit unit = of(expr);
     if (unit && *unit != UnitPowers{} && *unit != UnitPowers{0, 1})
-      warnings_.push_back(to_text(expr) + " is in " + unit_text(*unit) + ", not an angle");
+      warnings_.push_back(model::to_text(expr) + " is in " + unit_text(*unit) + ", not an angle");
   }
 
-  const Machine& machine_;
+  const model::Machine& machine_;
   const std::string& unknown_;
   std::vector<std::string>& warnings_;
 };
@@ -191,7 +192,7 @@ class UnitWalk {
 }  // namespace
 
 std::optional<UnitPowers> unit_powers(const std::string& unit) {
-  const auto found = find_unit(unit);
+  const auto found = text::find_unit(unit);
   return found ? powers_of(found->dimension) : std::nullopt;
 }
 
@@ -208,9 +209,9 @@ std::string unit_text(const UnitPowers& powers) {
          (below.find('*') == std::string::npos ? below : "(" + below + ")");
 }
 
-std::optional<UnitPowers> expression_unit(const Machine& machine, const Expr& expr,
+std::optional<UnitPowers> expression_unit(const model::Machine& machine, const model::Expr& expr,
                                           const std::string& unknown, std::vector<std::string>& warnings) {
   return UnitWalk(machine, unknown, warnings).of(expr);
 }
 
-}  // namespace vernier
+}  // namespace vernier::workbench

@@ -7,7 +7,7 @@
 
 #include "tools/model/machine.h"
 
-namespace vernier {
+namespace vernier::workbench {
 
 /// Powers of mm, deg, degC, s, V, N, kg.
 using UnitPowers = std::array<int, 8>;
@@ -19,7 +19,7 @@ std::string unit_text(const UnitPowers& powers);
 
 /// The unit of an expression, with `unknown` taken as a pure number; nothing where it cannot be told (a
 /// static without unit, a power that is no number). warnings: what does not go together. tool.
-std::optional<UnitPowers> expression_unit(const Machine& machine, const Expr& expr,
+std::optional<UnitPowers> expression_unit(const model::Machine& machine, const model::Expr& expr,
                                           const std::string& unknown, std::vector<std::string>& warnings);
 
-}  // namespace vernier
+}  // namespace vernier::workbench

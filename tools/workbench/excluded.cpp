@@ -10,7 +10,7 @@
 #include "tools/text/csv.h"
 #include "tools/text/error.h"
 
-namespace vernier {
+namespace vernier::workbench {
 namespace {
 
 constexpr std::string_view kMark = "# excluded \"", kEndOfReason = "\": ";
@@ -56,7 +56,7 @@ std::size_t line_number(std::string_view word) {
   std::size_t value = 0;
   const auto end = std::from_chars(word.data(), word.data() + word.size(), value);
   if (end.ec != std::errc() || end.ptr != word.data() + word.size() || value == 0 || value > kMostLines)
-    throw InputError("--lines \"" + std::string(word) + "\": no line number");
+    throw text::InputError("--lines \"" + std::string(word) + "\": no line number");
   return value;
 }
 
@@ -76,11 +76,12 @@ std::string exclude_rows(const std::string& text, const std::string& file,
                          const std::vector<std::size_t>& lines, const std::string& reason) {
   if (std::any_of(reason.begin(), reason.end(),
                   [](char c) { return c == '"' || static_cast<unsigned char>(c) < 0x20; }))
-    throw InputError("--reason: quotes and line ends cannot stand in it");
-  const CsvFile csv = parse_csv(text, file);
+    throw text::InputError("--reason: quotes and line ends cannot stand in it");
+  const text::CsvFile csv = text::parse_csv(text, file);
   for (const std::size_t line : lines)
     if (!std::binary_search(csv.line.begin(), csv.line.end(), line))
-      throw InputError({file, line}, std::to_string(line), "no row of the measurement stands on this line");
+      throw text::InputError({file, line}, std::to_string(line),
+                             "no row of the measurement stands on this line");
   return changed(text, lines, [&](std::string_view row, std::size_t) {
     return std::string(kMark) + reason + std::string(kEndOfReason) + std::string(row);
   });
@@ -92,13 +93,13 @@ std::string restore_rows(const std::string& text, const std::string& file,
   std::string result = changed(text, lines, [&](std::string_view row, std::size_t number) {
     auto excluded = read_excluded(row, number);
     if (!excluded)
-      throw InputError({file, number}, std::to_string(number), "no excluded row stands on this line");
+      throw text::InputError({file, number}, std::to_string(number), "no excluded row stands on this line");
     ++restored;
     return excluded->row;
   });
   if (restored != lines.size())
-    throw InputError({file, lines.back()}, std::to_string(lines.back()), "beyond the end of the file");
-  parse_csv(result, file);  // what is written can be read
+    throw text::InputError({file, lines.back()}, std::to_string(lines.back()), "beyond the end of the file");
+  text::parse_csv(result, file);  // what is written can be read
   return result;
 }
 
@@ -111,7 +112,7 @@ std::vector<std::size_t> parse_lines(const std::string& text) {
     const auto dash = word.find('-');
     const std::size_t first = line_number(word.substr(0, dash));
     const std::size_t last = dash == std::string_view::npos ? first : line_number(word.substr(dash + 1));
-    if (last < first) throw InputError("--lines \"" + std::string(word) + "\": ends before it begins");
+    if (last < first) throw text::InputError("--lines \"" + std::string(word) + "\": ends before it begins");
     for (std::size_t line = first; line <= last; ++line) lines.push_back(line);
     if (comma == std::string_view::npos) break;
     rest.remove_prefix(comma + 1);
@@ -121,4 +122,4 @@ std::vector<std::size_t> parse_lines(const std::string& text) {
   return lines;
 }
 
-}  // namespace vernier
+}  // namespace vernier::workbench

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace vernier {
+namespace vernier::workbench {
 
 /// A row of a measurement file that was taken out by hand: a comment `# excluded "reason": row` in its place,
 /// so that every command passes over it, every other row keeps its line, and nothing is lost.
@@ -28,4 +28,4 @@ std::string restore_rows(const std::string& text, const std::string& file,
 /// Lines such as "12,15-20": 1-based, sorted, each once. Throws InputError with the word. tool.
 std::vector<std::size_t> parse_lines(const std::string& text);
 
-}  // namespace vernier
+}  // namespace vernier::workbench

@@ -14,7 +14,7 @@
 #include "tools/workbench/sheets.h"
 #include "tools/workbench/terms.h"
 
-namespace vernier {
+namespace vernier::workbench {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -54,44 +54,47 @@ ApiReply FileDesk::answer(const ApiRequest& request) {
 /// Machines and measurements are read before they are kept, so that an error shows where it was dropped.
 ApiReply FileDesk::check(const ApiRequest& request) {
   const std::string name = request.word("name");
-  if (name.ends_with(".xml")) parse_machine(request.body, name);
+  if (name.ends_with(".xml")) model::parse_machine(request.body, name);
   // What does not even begin as a measurement file may be a spreadsheet: kept, and imported from there.
-  if (name.ends_with(".csv") && begins_as_measurement(request.body)) parse_csv(request.body, name);
+  if (name.ends_with(".csv") && begins_as_measurement(request.body)) text::parse_csv(request.body, name);
   return json_reply({{"name", name}});
 }
 
 /// {"kind"}: "measurement", or "sheet" where a table has to be imported.
 ApiReply FileDesk::kind(const ApiRequest& request) {
-  const std::string text = read_file(project_.existing(request.word("name")).string());
+  const std::string text = text::read_file(project_.existing(request.word("name")).string());
   return json_reply({{"kind", begins_as_measurement(text) ? "measurement" : "sheet"}});
 }
 
 ApiReply FileDesk::sheet(const ApiRequest& request) {
   const auto json = body_json(request);
   const std::string name = text_at(json, "name");
-  SheetWords words = sheet_words(json);
+  importer::SheetWords words = sheet_words(json);
   if (json.contains("machine") && json["machine"].is_string() &&
       !json["machine"].get<std::string>().empty()) {
     const std::string machine = text_at(json, "machine");
-    for (const Axis& axis : parse_machine(read_file(project_.existing(machine).string()), machine).axes)
+    for (const model::Axis& axis :
+         model::parse_machine(text::read_file(project_.existing(machine).string()), machine).axes)
       words.axes.push_back(axis.name);
   }
-  return json_reply(sheet_preview(read_file(project_.existing(name).string()), name, words));
+  return json_reply(sheet_preview(text::read_file(project_.existing(name).string()), name, words));
 }
 
 /// The sheet "safe to run?" of a machine file, before anything is compiled.
 ApiReply FileDesk::safety(const ApiRequest& request) {
   const std::string name = request.word("machine");
-  const SafetySheet sheet = safety_sheet(parse_machine(read_file(project_.existing(name).string()), name));
+  const safety::SafetySheet sheet =
+      safety::safety_sheet(model::parse_machine(text::read_file(project_.existing(name).string()), name));
   return json_reply({{"ok", sheet.ok()},
                      {"refusal", sheet.refusal()},
                      {"stale", sheet.stale},
-                     {"rules", safety_json(sheet)}});
+                     {"rules", results::safety_json(sheet)}});
 }
 
 ApiReply FileDesk::excluded(const ApiRequest& request) {
   Json list = Json::array();
-  for (const ExcludedRow& row : excluded_rows(read_file(project_.existing(request.word("name")).string())))
+  for (const ExcludedRow& row :
+       excluded_rows(text::read_file(project_.existing(request.word("name")).string())))
     list.push_back({{"line", row.line}, {"reason", row.reason}, {"row", row.row}});
   return json_reply({{"excluded", list}});
 }
@@ -111,10 +114,11 @@ ApiReply FileDesk::predict(const ApiRequest& request) {
   const auto rows =
       cache_.get(text_at(json, "machine"), texts_at(json, "measurements"), json.value("datum", false));
   std::map<std::string, double> values;
-  if (!json.contains("values") || !json["values"].is_object()) throw InputError("\"values\" is missing");
+  if (!json.contains("values") || !json["values"].is_object())
+    throw text::InputError("\"values\" is missing");
   for (const auto& [name, value] : json["values"].items()) {
     if (!value.is_number() || !std::isfinite(value.get<double>()))
-      throw InputError("\"" + name + "\": no number");
+      throw text::InputError("\"" + name + "\": no number");
     values[name] = value.get<double>();
   }
   return blob_reply(prediction_blob(*rows, values));
@@ -128,10 +132,11 @@ ApiReply FileDesk::explain(const ApiRequest& request) {
 
 ApiReply FileDesk::names(const ApiRequest& request) {
   const std::string name = request.word("machine");
-  const Machine machine = parse_machine(read_file(project_.existing(name).string()), name);
+  const model::Machine machine =
+      model::parse_machine(text::read_file(project_.existing(name).string()), name);
   Json transforms = Json::array();
   for (const auto* branch : {&machine.tool, &machine.workpiece})
-    for (const Transform& transform : *branch) {
+    for (const model::Transform& transform : *branch) {
       Json dofs = Json::array();
       for (std::size_t i = 0; i < transform.dof_count(); ++i)
         dofs.push_back({{"dof", transform.dof_name(i)}, {"text", transform.text[i]}});
@@ -144,17 +149,18 @@ ApiReply FileDesk::names(const ApiRequest& request) {
 ApiReply FileDesk::term(const ApiRequest& request) {
   const auto json = body_json(request);
   const std::string name = text_at(json, "machine");
-  Machine machine = parse_machine(read_file(project_.existing(name).string()), name);
+  model::Machine machine = model::parse_machine(text::read_file(project_.existing(name).string()), name);
   // Columns of the measurement that the machine does not know: `add` declares what a term uses of them.
   if (json.contains("columns") && json["columns"].is_array()) {
     for (const auto& column : json["columns"]) {
-      Input input;
+      model::Input input;
       input.name = text_at(column, "name");
       input.unit = text_at(column, "unit");
-      if (resolve_name(machine, input.name).kind == SymbolKind::kUnresolved) machine.inputs.push_back(input);
+      if (model::resolve_name(machine, input.name).kind == model::SymbolKind::kUnresolved)
+        machine.inputs.push_back(input);
     }
   }
   return json_reply(check_term(machine, text_at(json, "term"), text_at(json, "unit")));
 }
 
-}  // namespace vernier
+}  // namespace vernier::workbench

@@ -6,7 +6,7 @@
 #include "tools/workbench/request.h"
 #include "tools/workbench/rows.h"
 
-namespace vernier {
+namespace vernier::workbench {
 
 /// All that takes reading a machine, a measurement or a term: it runs in a process of its own, so that a file
 /// that means harm ends that and not the server. tool.
@@ -40,4 +40,4 @@ class FileDesk {
   RowCache cache_;
 };
 
-}  // namespace vernier
+}  // namespace vernier::workbench

@@ -3,7 +3,7 @@
 
 #include "tools/workbench/file_desk.h"
 
-namespace vernier {
+namespace vernier::workbench {
 namespace {
 
 Message message_of(const ApiRequest& request) {
@@ -46,8 +46,8 @@ ApiReply FileReader::reply(const ApiRequest& request) {
     if (reader_->ask(message_of(request), patience_s_, answer) && read_reply(answer, reply)) return reply;
     const std::string how = reader_->end();
     reader_.reset();
-    throw InputError("what reads files ended over this request (" + how +
-                     "): one of its files cannot be read; nothing was changed");
+    throw text::InputError("what reads files ended over this request (" + how +
+                           "): one of its files cannot be read; nothing was changed");
   });
 }
 
@@ -58,4 +58,4 @@ void serve_files(const Project& project, int stream) {
     if (!write_message(stream, 0, message_of(desk.reply(request)))) return;
 }
 
-}  // namespace vernier
+}  // namespace vernier::workbench

@@ -8,7 +8,7 @@
 #include "tools/workbench/project.h"
 #include "tools/workbench/request.h"
 
-namespace vernier {
+namespace vernier::workbench {
 
 /// The server's side of a FileDesk in a process of its own (`vernier workbench DIR --reader`): it starts it
 /// when it is needed, hands requests over one by one, and starts another after one that ended. May be called
@@ -33,4 +33,4 @@ class FileReader {
 /// The other side: answers on `stream` until it ends. tool.
 void serve_files(const Project& project, int stream);
 
-}  // namespace vernier
+}  // namespace vernier::workbench

@@ -8,7 +8,7 @@
 #include "tools/text/words.h"
 #include "tools/workbench/now.h"
 
-namespace vernier {
+namespace vernier::workbench {
 namespace {
 
 namespace fs = std::filesystem;
@@ -42,18 +42,19 @@ bool is_entry(const nlohmann::ordered_json& entry) {
 CommandHistory::CommandHistory(const Project& project) : project_(project) {
   const fs::path path = list_of_entries(project);
   if (std::error_code failed; !fs::exists(path, failed)) return;
-  const std::string text = read_file(path.string());
-  if (nests_deeper_than(text, kMostJsonDepth)) throw InputError(path.string() + ": nests too deeply");
+  const std::string text = text::read_file(path.string());
+  if (text::nests_deeper_than(text, text::kMostJsonDepth))
+    throw text::InputError(path.string() + ": nests too deeply");
   const auto read = nlohmann::ordered_json::parse(text, nullptr, false);
-  if (!read.is_array()) throw InputError(path.string() + ": no list of commands");
+  if (!read.is_array()) throw text::InputError(path.string() + ": no list of commands");
   for (const auto& entry : read)
-    if (!is_entry(entry)) throw InputError(path.string() + ": an entry that is no command");
+    if (!is_entry(entry)) throw text::InputError(path.string() + ": an entry that is no command");
   entries_ = read;
 }
 
 void CommandHistory::save() const {
-  make_folder(folder(project_).string());
-  write_file(list_of_entries(project_).string(), entries_.dump(1) + "\n");
+  text::make_folder(folder(project_).string());
+  text::write_file(list_of_entries(project_).string(), entries_.dump(1) + "\n");
   project_.save(kScript, script_unguarded());
 }
 
@@ -81,7 +82,7 @@ void CommandHistory::undo() {
     save();
     return;
   }
-  throw InputError("nothing to undo");
+  throw text::InputError("nothing to undo");
 }
 
 void CommandHistory::redo() {
@@ -92,7 +93,7 @@ void CommandHistory::redo() {
     save();
     return;
   }
-  throw InputError("nothing to do again");
+  throw text::InputError("nothing to do again");
 }
 
 nlohmann::ordered_json CommandHistory::entries() const {
@@ -114,4 +115,4 @@ std::string CommandHistory::script_unguarded() const {
   return text;
 }
 
-}  // namespace vernier
+}  // namespace vernier::workbench

@@ -6,7 +6,7 @@
 
 #include "tools/workbench/commands.h"
 
-namespace vernier {
+namespace vernier::workbench {
 
 /// What was done in a project, in order: kept in `.vernier/history.json` and, without what was undone, as the
 /// shell script `history.sh` that does it again. Commands to a board stand in the script as comments. tool.
@@ -34,4 +34,4 @@ class CommandHistory {
   nlohmann::ordered_json entries_ = nlohmann::ordered_json::array();
 };
 
-}  // namespace vernier
+}  // namespace vernier::workbench

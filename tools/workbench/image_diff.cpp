@@ -14,7 +14,7 @@
 #include "tables/image_view.h"
 #include "tools/text/error.h"
 
-namespace vernier {
+namespace vernier::workbench {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -26,7 +26,7 @@ struct OpenImage {
     std::memcpy(words.data(), bytes.data(), bytes.size());
     const ImageFault fault = view.open(reinterpret_cast<const std::uint8_t*>(words.data()),
                                        static_cast<std::uint32_t>(bytes.size()), workspace);
-    if (fault != ImageFault::kNone) throw InputError(std::string(which) + ": " + describe(fault));
+    if (fault != ImageFault::kNone) throw text::InputError(std::string(which) + ": " + describe(fault));
   }
   std::vector<std::uint64_t> words;
   ImageView view;
@@ -174,4 +174,4 @@ Json image_diff(const std::vector<std::uint8_t>& a, const std::vector<std::uint8
   return json;
 }
 
-}  // namespace vernier
+}  // namespace vernier::workbench

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-namespace vernier {
+namespace vernier::workbench {
 
 /// How two images differ: {"same", "a" and "b": {name, fingerprint, bytes, operations, tables, lags, axes[],
 /// inputs[], effects[]}, "only_a", "only_b": effects by their share names, "poses", "corrections": [{axis,
@@ -13,4 +13,4 @@ namespace vernier {
 /// theirs; um or mdeg. a: what would run; b: what runs. Throws InputError for what is no image. tool.
 nlohmann::ordered_json image_diff(const std::vector<std::uint8_t>& a, const std::vector<std::uint8_t>& b);
 
-}  // namespace vernier
+}  // namespace vernier::workbench

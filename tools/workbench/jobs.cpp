@@ -10,7 +10,7 @@
 #include "tools/workbench/now.h"
 #include "tools/workbench/process.h"
 
-namespace vernier {
+namespace vernier::workbench {
 namespace {
 
 constexpr std::size_t kMostRunning = 4, kMostKept = 60, kMostOutput = std::size_t{256} << 20;
@@ -46,7 +46,7 @@ std::uint64_t Jobs::start(const PlannedCommand& command) {
   const auto running =
       std::count_if(jobs_.begin(), jobs_.end(), [](const auto& one) { return !one.second->over; });
   if (static_cast<std::size_t>(running) >= kMostRunning)
-    throw InputError("too many commands at work: wait for one or cancel it");
+    throw text::InputError("too many commands at work: wait for one or cancel it");
   auto job = std::make_shared<Job>();
   job->command = command;
   job->typed = shell_text("vernier", command.arguments);
@@ -92,7 +92,8 @@ void Jobs::run(Job& job) {
 
 void Jobs::finish(Job& job, int exit, const std::string& out, const std::string& err) {
   nlohmann::ordered_json result;
-  if (!nests_deeper_than(out, kMostJsonDepth)) result = nlohmann::ordered_json::parse(out, nullptr, false);
+  if (!text::nests_deeper_than(out, text::kMostJsonDepth))
+    result = nlohmann::ordered_json::parse(out, nullptr, false);
   if (result.is_discarded()) result = nullptr;
   const std::scoped_lock lock(guard_);
   job.exit = exit;
@@ -112,7 +113,7 @@ void Jobs::finish(Job& job, int exit, const std::string& out, const std::string&
 
 std::shared_ptr<Jobs::Job> Jobs::find(std::uint64_t id) {
   const auto found = jobs_.find(id);
-  if (found == jobs_.end()) throw InputError("no command with the number " + std::to_string(id));
+  if (found == jobs_.end()) throw text::InputError("no command with the number " + std::to_string(id));
   return found->second;
 }
 
@@ -139,4 +140,4 @@ void Jobs::cancel(std::uint64_t id) {
   job.process.cancel();
 }
 
-}  // namespace vernier
+}  // namespace vernier::workbench

@@ -12,7 +12,7 @@
 #include "tools/workbench/history.h"
 #include "tools/workbench/process.h"
 
-namespace vernier {
+namespace vernier::workbench {
 
 /// Runs commands of the page as processes of this same program in the project's folder, each in a thread that
 /// waits for it: what the page gets is what the terminal gets, a bad file harms nothing but its own job, and
@@ -57,4 +57,4 @@ class Jobs {
   std::uint64_t next_ = 1;
 };
 
-}  // namespace vernier
+}  // namespace vernier::workbench

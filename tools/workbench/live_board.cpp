@@ -7,7 +7,7 @@
 #include "tools/upload/live.h"
 #include "tools/workbench/now.h"
 
-namespace vernier {
+namespace vernier::workbench {
 namespace {
 
 using namespace std::chrono_literals;
@@ -29,12 +29,12 @@ void LiveBoard::end() {
 }
 
 void LiveBoard::look(const std::string& url) {
-  Client client(open_transport(parse_url(url)));
+  upload::Client client(upload::open_transport(upload::parse_url(url)));
   const auto period = std::chrono::duration<double>(1 / kLiveRateHz);
   auto due = std::chrono::steady_clock::now();
   while (true) {
-    nlohmann::ordered_json picture = live_json(client.info(), client.newest(), client.health(),
-                                               client.slots(), client.shares(), client.state());
+    nlohmann::ordered_json picture = upload::live_json(client.info(), client.newest(), client.health(),
+                                                       client.slots(), client.shares(), client.state());
     std::unique_lock lock(guard_);
     picture["seq"] = next_++;
     picture["at_s"] = steady_s();
@@ -61,7 +61,7 @@ void LiveBoard::watch(const std::string& url) {
 }
 
 nlohmann::ordered_json LiveBoard::pictures(const std::string& url, std::uint64_t after) {
-  parse_url(url);
+  upload::parse_url(url);
   {
     const std::scoped_lock exchange(ending_);
     std::unique_lock lock(guard_);
@@ -87,4 +87,4 @@ nlohmann::ordered_json LiveBoard::pictures(const std::string& url, std::uint64_t
           {"error", error_.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(error_)}};
 }
 
-}  // namespace vernier
+}  // namespace vernier::workbench

@@ -7,7 +7,7 @@
 #include <string>
 #include <thread>
 
-namespace vernier {
+namespace vernier::workbench {
 
 /// Watches one board at a time, as `vernier watch` does: a thread of its own asks it kLiveRateHz times a
 /// second, keeps the last pictures, and lets go of the board when nobody has asked for kLetGoS. tool.
@@ -41,4 +41,4 @@ class LiveBoard {
   bool stop_ = false, running_ = false;
 };
 
-}  // namespace vernier
+}  // namespace vernier::workbench

@@ -3,7 +3,7 @@
 
 #include <chrono>
 
-namespace vernier {
+namespace vernier::workbench {
 
 double steady_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -14,4 +14,4 @@ std::int64_t unix_s() {
       .count();
 }
 
-}  // namespace vernier
+}  // namespace vernier::workbench

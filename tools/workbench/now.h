@@ -2,11 +2,11 @@
 #pragma once
 #include <cstdint>
 
-namespace vernier {
+namespace vernier::workbench {
 
 /// s since some moment, never back: for durations. tool.
 double steady_s();
 /// s since 1970: for dates. tool.
 std::int64_t unix_s();
 
-}  // namespace vernier
+}  // namespace vernier::workbench

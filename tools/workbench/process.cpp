@@ -14,7 +14,7 @@
 
 #include "tools/text/error.h"
 
-namespace vernier {
+namespace vernier::workbench {
 namespace {
 
 constexpr int kNotStarted = 127, kOurBug = 70;
@@ -23,7 +23,7 @@ constexpr int kNotStarted = 127, kOurBug = 70;
 struct Pipe {
   Pipe() {
     if (::pipe2(end.data(), O_CLOEXEC) != 0)
-      throw InputError(std::string("no pipe to a command: ") + std::strerror(errno));
+      throw text::InputError(std::string("no pipe to a command: ") + std::strerror(errno));
   }
   ~Pipe() {
     close_end(0);
@@ -131,7 +131,7 @@ ProcessResult run_process(const std::string& program, const std::vector<std::str
   const pid_t child = start_process(program, arguments, directory, {nothing, out.end[1], err.end[1]});
   const int failed = errno;
   ::close(nothing);
-  if (child < 0) throw InputError(std::string("a command cannot be started: ") + std::strerror(failed));
+  if (child < 0) throw text::InputError(std::string("a command cannot be started: ") + std::strerror(failed));
   running.group = child;
   if (running.cancelled) running.cancel();
   out.close_end(1);
@@ -175,4 +175,4 @@ std::string shell_text(const std::string& program, const std::vector<std::string
   return text;
 }
 
-}  // namespace vernier
+}  // namespace vernier::workbench

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-namespace vernier {
+namespace vernier::workbench {
 
 /// How a program ended, and what it wrote.
 struct ProcessResult {
@@ -43,4 +43,4 @@ pid_t start_process(const std::string& program, const std::vector<std::string>& 
 /// A command as a shell takes it: words quoted where they must be.
 std::string shell_text(const std::string& program, const std::vector<std::string>& arguments);
 
-}  // namespace vernier
+}  // namespace vernier::workbench

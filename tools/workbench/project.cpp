@@ -8,7 +8,7 @@
 #include "tools/text/error.h"
 #include "tools/text/files.h"
 
-namespace vernier {
+namespace vernier::workbench {
 namespace {
 
 namespace fs = std::filesystem;
@@ -69,19 +69,19 @@ void refuse_special(const fs::path& path, const std::string& name) {
   std::error_code failed;
   const fs::file_status status = fs::symlink_status(path, failed);
   if (fs::is_symlink(status))
-    throw InputError("\"" + name + "\": a symbolic link, which the workbench does not follow");
+    throw text::InputError("\"" + name + "\": a symbolic link, which the workbench does not follow");
   if (fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status))
-    throw InputError("\"" + name + "\": neither a file nor a folder");
+    throw text::InputError("\"" + name + "\": neither a file nor a folder");
 }
 
 Project::Project(const std::string& directory) {
   std::error_code failed;
   root_ = fs::canonical(directory, failed);
-  if (failed || !fs::is_directory(root_)) throw InputError(directory + ": no such folder");
+  if (failed || !fs::is_directory(root_)) throw text::InputError(directory + ": no such folder");
 }
 
 fs::path Project::checked(const std::string& name) const {
-  if (!is_project_name(name)) throw InputError("\"" + name + "\": no name for a file of a project");
+  if (!is_project_name(name)) throw text::InputError("\"" + name + "\": no name for a file of a project");
   fs::path path = root_;
   for (const fs::path& part : fs::path(name)) {
     path /= part;
@@ -94,7 +94,7 @@ fs::path Project::existing(const std::string& name) const {
   fs::path path = checked(name);
   std::error_code failed;
   if (!fs::is_regular_file(path, failed) && !fs::is_directory(path, failed))
-    throw InputError("\"" + name + "\": no such file in the project");
+    throw text::InputError("\"" + name + "\": no such file in the project");
   return path;
 }
 
@@ -108,7 +108,7 @@ fs::path Project::writable(const std::string& name) const {
 }
 
 void Project::save(const std::string& name, const std::string& bytes) const {
-  write_file(writable(name).string(), bytes);
+  text::write_file(writable(name).string(), bytes);
 }
 
 void Project::list_folder(const fs::path& folder, const std::string& prefix, bool deeper,
@@ -134,4 +134,4 @@ std::vector<ProjectFile> Project::list() const {
   return files;
 }
 
-}  // namespace vernier
+}  // namespace vernier::workbench

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace vernier {
+namespace vernier::workbench {
 
 /// What a file of a project is, by its name.
 enum class FileKind : std::uint8_t { kMachine, kMeasurement, kInstrument, kReport, kImage, kKey, kOther };
@@ -55,4 +55,4 @@ class Project {
   std::filesystem::path root_;
 };
 
-}  // namespace vernier
+}  // namespace vernier::workbench

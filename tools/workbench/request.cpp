@@ -6,7 +6,7 @@
 #include "tools/text/error.h"
 #include "tools/text/words.h"
 
-namespace vernier {
+namespace vernier::workbench {
 namespace {
 
 std::string without_root(const Project& project, std::string text) {
@@ -42,9 +42,9 @@ ApiReply blob_reply(std::string bytes) { return {200, "application/octet-stream"
 ApiReply reply_of(const Project& project, const std::function<ApiReply()>& answer) {
   try {
     return answer();
-  } catch (const InputError& error) {
+  } catch (const text::InputError& error) {
     return json_reply({{"message", without_root(project, error.what())}}, 422);
-  } catch (const LimitNotMet& error) {
+  } catch (const text::LimitNotMet& error) {
     return json_reply({{"message", without_root(project, error.what())}}, 422);
   } catch (const std::exception& error) {
     return json_reply({{"message", std::string("internal error: ") + error.what()}}, 500);
@@ -52,9 +52,10 @@ ApiReply reply_of(const Project& project, const std::function<ApiReply()>& answe
 }
 
 nlohmann::json body_json(const ApiRequest& request) {
-  if (nests_deeper_than(request.body, kMostJsonDepth)) throw InputError("the request nests too deeply");
+  if (text::nests_deeper_than(request.body, text::kMostJsonDepth))
+    throw text::InputError("the request nests too deeply");
   auto json = nlohmann::json::parse(request.body, nullptr, false);
-  if (!json.is_object()) throw InputError("the request holds no JSON object");
+  if (!json.is_object()) throw text::InputError("the request holds no JSON object");
   return json;
 }
 
@@ -62,14 +63,14 @@ std::uint64_t whole_number(const std::string& text) {
   std::uint64_t value = 0;
   const auto end = std::from_chars(text.data(), text.data() + text.size(), value);
   if (end.ec != std::errc() || end.ptr != text.data() + text.size())
-    throw InputError("\"" + text + "\": no whole number");
+    throw text::InputError("\"" + text + "\": no whole number");
   return value;
 }
 
 std::string text_at(const nlohmann::json& json, const char* key) {
   const auto found = json.find(key);
   if (found == json.end() || !found->is_string())
-    throw InputError(std::string("\"") + key + "\": a text is missing");
+    throw text::InputError(std::string("\"") + key + "\": a text is missing");
   return found->get<std::string>();
 }
 
@@ -77,12 +78,13 @@ std::vector<std::string> texts_at(const nlohmann::json& json, const char* key) {
   std::vector<std::string> list;
   const auto found = json.find(key);
   if (found == json.end() || !found->is_array())
-    throw InputError(std::string("\"") + key + "\": a list is missing");
+    throw text::InputError(std::string("\"") + key + "\": a list is missing");
   for (const auto& one : *found) {
-    if (!one.is_string()) throw InputError(std::string("\"") + key + "\": holds something that is no text");
+    if (!one.is_string())
+      throw text::InputError(std::string("\"") + key + "\": holds something that is no text");
     list.push_back(one.get<std::string>());
   }
   return list;
 }
 
-}  // namespace vernier
+}  // namespace vernier::workbench

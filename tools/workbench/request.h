@@ -10,7 +10,7 @@
 
 #include "tools/workbench/project.h"
 
-namespace vernier {
+namespace vernier::workbench {
 
 /// A request of the page that has proved where it comes from.
 struct ApiRequest {
@@ -41,4 +41,4 @@ std::string text_at(const nlohmann::json& json, const char* key);
 std::vector<std::string> texts_at(const nlohmann::json& json, const char* key);
 std::uint64_t whole_number(const std::string& text);
 
-}  // namespace vernier
+}  // namespace vernier::workbench

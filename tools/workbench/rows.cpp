@@ -20,7 +20,7 @@
 #include "tools/workbench/blob.h"
 #include "tools/workbench/values.h"
 
-namespace vernier {
+namespace vernier::workbench {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -28,22 +28,24 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kKeptRows = 6;
 
-std::vector<float> in_report_units(const Measurement& m, const Eigen::VectorXd& residual) {
+std::vector<float> in_report_units(const model::Measurement& m, const Eigen::VectorXd& residual) {
   std::vector<float> values(m.observations.size());
   for (std::size_t i = 0; i < values.size(); ++i)
-    values[i] = static_cast<float>(residual[static_cast<Eigen::Index>(i)] *
-                                   (is_rotation(m.observations[i].kind) ? kUradPerDeg : kUmPerMm));
+    values[i] = static_cast<float>(
+        residual[static_cast<Eigen::Index>(i)] *
+        (model::is_rotation(m.observations[i].kind) ? maths::kUradPerDeg : maths::kUmPerMm));
   return values;
 }
 
-void add_figures(Json& json, const Measurement& m, const Eigen::VectorXd& residual) {
-  const RoleStatistics fit = role_statistics(m, residual, false), check = role_statistics(m, residual, true);
-  json["rms_um"] = or_null(fit.rms_um);
-  json["max_um"] = or_null(fit.max_um);
-  json["check_rms_um"] = or_null(check.rms_um);
-  json["check_max_um"] = or_null(check.max_um);
-  json["rms_urad"] = or_null(fit.rms_urad);
-  json["check_rms_urad"] = or_null(check.rms_urad);
+void add_figures(Json& json, const model::Measurement& m, const Eigen::VectorXd& residual) {
+  const fit::RoleStatistics fit = fit::role_statistics(m, residual, false),
+                            check = fit::role_statistics(m, residual, true);
+  json["rms_um"] = text::or_null(fit.rms_um);
+  json["max_um"] = text::or_null(fit.max_um);
+  json["check_rms_um"] = text::or_null(check.rms_um);
+  json["check_max_um"] = text::or_null(check.max_um);
+  json["rms_urad"] = text::or_null(fit.rms_urad);
+  json["check_rms_urad"] = text::or_null(check.rms_urad);
 }
 
 Json vectors(Blob& blob, const Eigen::Matrix3Xd& list) {
@@ -53,28 +55,28 @@ Json vectors(Blob& blob, const Eigen::Matrix3Xd& list) {
 }
 
 /// Unit vectors along which a row's length or d is measured; 0 for rows without.
-Eigen::Matrix3Xd directions(const Measurement& m, const Eigen::Matrix3Xd& point) {
+Eigen::Matrix3Xd directions(const model::Measurement& m, const Eigen::Matrix3Xd& point) {
   Eigen::Matrix3Xd list = Eigen::Matrix3Xd::Zero(3, point.cols());
-  for (const Observation& o : m.observations) {
+  for (const model::Observation& o : m.observations) {
     const auto row = static_cast<Eigen::Index>(o.row);
-    if (o.kind == ObservationKind::kLength)
+    if (o.kind == model::ObservationKind::kLength)
       list.col(row) = (point.col(row) - m.centre.col(row)).stableNormalized();
-    if (o.kind == ObservationKind::kD)
+    if (o.kind == model::ObservationKind::kD)
       for (std::size_t k = 0; k < 3; ++k) list(static_cast<Eigen::Index>(k), row) = m.states.normal[k][row];
   }
   return list;
 }
 
 /// Standard uncertainty of each observation, mm or deg; 0 where the file gives none.
-Eigen::VectorXd standard_uncertainties(const Measurement& m) {
+Eigen::VectorXd standard_uncertainties(const model::Measurement& m) {
   Eigen::VectorXd u = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(m.observations.size()));
   for (std::size_t i = 0; i < m.observations.size(); ++i)
-    u[static_cast<Eigen::Index>(i)] = uncertainty_of(m, m.observations[i]);
+    u[static_cast<Eigen::Index>(i)] = model::uncertainty_of(m, m.observations[i]);
   return u;
 }
 
 /// What the fit that wrote the file knew of a parameter, where its value is still that fit's.
-void add_knowledge(Json& json, const FitRecord& record, const std::string& name, double value) {
+void add_knowledge(Json& json, const model::FitRecord& record, const std::string& name, double value) {
   const auto found = std::find(record.parameters.begin(), record.parameters.end(), name);
   if (found == record.parameters.end()) return;
   const auto row = static_cast<Eigen::Index>(found - record.parameters.begin());
@@ -85,14 +87,14 @@ void add_knowledge(Json& json, const FitRecord& record, const std::string& name,
     json["from"] = record.origins[static_cast<std::size_t>(row)];
 }
 
-Json observations_json(Blob& blob, const Measurement& m, const Eigen::VectorXd& residual) {
+Json observations_json(Blob& blob, const model::Measurement& m, const Eigen::VectorXd& residual) {
   std::vector<std::uint8_t> kind;
   std::vector<std::uint32_t> row;
-  for (const Observation& o : m.observations) {
+  for (const model::Observation& o : m.observations) {
     kind.push_back(static_cast<std::uint8_t>(o.kind));
     row.push_back(static_cast<std::uint32_t>(o.row));
   }
-  return {{"kinds", kObservationNames},
+  return {{"kinds", model::kObservationNames},
           {"kind", blob.u8(kind)},
           {"row", blob.u32(row)},
           {"u", blob.f32(in_report_units(m, standard_uncertainties(m)))},
@@ -121,7 +123,7 @@ std::string RowCache::key_of(const std::string& machine, const std::vector<std::
 
 std::shared_ptr<const LoadedRows> RowCache::get(const std::string& machine,
                                                 const std::vector<std::string>& measurements, bool datum) {
-  if (measurements.empty()) throw InputError("no measurement is named");
+  if (measurements.empty()) throw text::InputError("no measurement is named");
   const std::string key = (datum ? "datum\n" : "") + key_of(machine, measurements);
   {
     const std::scoped_lock lock(guard_);
@@ -129,13 +131,14 @@ std::shared_ptr<const LoadedRows> RowCache::get(const std::string& machine,
       if (entry.key == key) return entry.rows;
   }
   auto rows = std::make_shared<LoadedRows>();
-  rows->text = read_file(project_.existing(machine).string());
-  rows->machine = parse_machine(rows->text, machine);
+  rows->text = text::read_file(project_.existing(machine).string());
+  rows->machine = model::parse_machine(rows->text, machine);
   std::vector<std::string> paths;
   for (const std::string& name : measurements) paths.push_back(project_.existing(name).string());
-  rows->measurement = read_measurement(paths, rows->machine, corrections_of_images(project_.root().string()));
+  rows->measurement = model::read_measurement(paths, rows->machine,
+                                              simulate::corrections_of_images(project_.root().string()));
   rows->datum = datum;
-  if (datum) rows->machine = set_up(rows->machine, rows->measurement);
+  if (datum) rows->machine = fit::set_up(rows->machine, rows->measurement);
   rows->measurement.files = measurements;
   const std::scoped_lock lock(guard_);
   if (kept_.size() >= kKeptRows) kept_.erase(kept_.begin());
@@ -144,21 +147,21 @@ std::shared_ptr<const LoadedRows> RowCache::get(const std::string& machine,
 }
 
 std::string rows_blob(const LoadedRows& rows) {
-  const Machine& machine = rows.machine;
-  const Measurement& m = rows.measurement;
-  const Eigen::VectorXd residual = residuals(machine, m);
-  const Eigen::Matrix3Xd point = forward(machine, m.states).position;
+  const model::Machine& machine = rows.machine;
+  const model::Measurement& m = rows.measurement;
+  const Eigen::VectorXd residual = fit::residuals(machine, m);
+  const Eigen::Matrix3Xd point = model::forward(machine, m.states).position;
   Blob blob;
   Json json = {
       {"machine", machine.name}, {"files", m.files}, {"n_rows", m.rows()}, {"n_excluded", m.excluded}};
   add_figures(json, m, residual);
-  json["noise_um"] = or_null(noise_um(m));
+  json["noise_um"] = text::or_null(fit::noise_um(m));
   json["corrected"] =
       std::any_of(m.corrected.begin(), m.corrected.end(), [](const auto& one) { return !one.empty(); });
   json["columns"] = Json::array();
-  each_column(
+  results::each_column(
       machine, m,
-      [&](const std::string& name, const std::string& unit, const char* kind, const Column& data) {
+      [&](const std::string& name, const std::string& unit, const char* kind, const model::Column& data) {
         json["columns"].push_back({{"name", name}, {"unit", unit}, {"kind", kind}, {"data", blob.f32(data)}});
       });
   json["runs"] = m.states.run_names;
@@ -169,14 +172,14 @@ std::string rows_blob(const LoadedRows& rows) {
   json["point"] = vectors(blob, point);
   json["direction"] = vectors(blob, directions(m, point));
   json["observations"] = observations_json(blob, m, residual);
-  json["circular"] = circular_detail(machine, m, residual, true);
+  json["circular"] = results::circular_detail(machine, m, residual, true);
   return blob.bytes(json);
 }
 
 std::string prediction_blob(const LoadedRows& rows, const std::map<std::string, double>& values) {
-  Machine machine = rows.machine;
+  model::Machine machine = rows.machine;
   set_values(machine, values);
-  const Eigen::VectorXd residual = residuals(machine, rows.measurement);
+  const Eigen::VectorXd residual = fit::residuals(machine, rows.measurement);
   Blob blob;
   Json json;
   add_figures(json, rows.measurement, residual);
@@ -185,14 +188,15 @@ std::string prediction_blob(const LoadedRows& rows, const std::map<std::string, 
 }
 
 std::string explanation_blob(const LoadedRows& rows, const std::string& add) {
-  const Measurement& m = rows.measurement;
-  const FitResult base = fit(rows.machine, m);
-  const MachineText fitted = machine_text(fitted_text(rows.text, base).text, rows.machine.file);
-  EffectToFit effect;
-  effect.choice = parse_add_string(add, fitted.machine, built_in_effects());
-  const FittedEffects with = fit_with_effects(fitted, m, {effect});
+  const model::Measurement& m = rows.measurement;
+  const fit::FitResult base = fit::fit(rows.machine, m);
+  const effects::MachineText fitted =
+      effects::machine_text(effects::fitted_text(rows.text, base).text, rows.machine.file);
+  effects::EffectToFit effect;
+  effect.choice = effects::parse_add_string(add, fitted.machine, effects::built_in_effects());
+  const effects::FittedEffects with = effects::fit_with_effects(fitted, m, {effect});
   if (with.rows.observations.size() != m.observations.size())
-    throw InputError("this effect excludes rows whose input is empty: nothing to lay over all rows");
+    throw text::InputError("this effect excludes rows whose input is empty: nothing to lay over all rows");
   Blob blob;
   Json json = {{"label", with.effects[0].spoken}};
   add_figures(json, with.rows, with.fit.residual);
@@ -202,15 +206,16 @@ std::string explanation_blob(const LoadedRows& rows, const std::string& add) {
 }
 
 nlohmann::ordered_json parameters_json(const LoadedRows& rows) {
-  const ParameterSet parameters(rows.machine, rows.measurement.states.names(rows.measurement.states.setup));
+  const model::ParameterSet parameters(rows.machine,
+                                       rows.measurement.states.names(rows.measurement.states.setup));
   const Eigen::VectorXd values = parameters.get(rows.machine);
   Json list = Json::array();
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const double value = values[static_cast<Eigen::Index>(i)];
-    const Parameter& one = parameters[i];
+    const model::Parameter& one = parameters[i];
     Json json = {{"name", one.name},   {"value", value}, {"unit", one.unit},
                  {"nominal", nullptr}, {"std", nullptr}, {"from", nullptr}};
-    if (one.kind == ParameterKind::kStatic)
+    if (one.kind == model::ParameterKind::kStatic)
       if (const auto& nominal = rows.machine.statics[one.item].nominal) json["nominal"] = *nominal;
     if (const auto& record = rows.machine.fitted) add_knowledge(json, *record, one.name, value);
     list.push_back(json);
@@ -218,4 +223,4 @@ nlohmann::ordered_json parameters_json(const LoadedRows& rows) {
   return list;
 }
 
-}  // namespace vernier
+}  // namespace vernier::workbench

@@ -11,14 +11,14 @@
 #include "tools/model/measurement.h"
 #include "tools/workbench/project.h"
 
-namespace vernier {
+namespace vernier::workbench {
 
 /// A machine and rows of a project, as read.
 struct LoadedRows {
-  std::string text;  // of the machine file
-  Machine machine;   // with its set-up fitted to the rows, where that was asked for
+  std::string text;        // of the machine file
+  model::Machine machine;  // with its set-up fitted to the rows, where that was asked for
   bool datum = false;
-  Measurement measurement;
+  model::Measurement measurement;
 };
 
 /// Reads machines with their measurements and keeps the last few, as long as their files stay as they are.
@@ -59,4 +59,4 @@ std::string explanation_blob(const LoadedRows& rows, const std::string& add);
 /// fit that wrote the file left them; null where there was none, or where the value was changed since.
 nlohmann::ordered_json parameters_json(const LoadedRows& rows);
 
-}  // namespace vernier
+}  // namespace vernier::workbench

@@ -12,7 +12,7 @@
 #include "tools/text/error.h"
 #include "tools/workbench/assets.h"
 
-namespace vernier {
+namespace vernier::workbench {
 namespace {
 
 constexpr const char* kContentPolicy =
@@ -73,7 +73,7 @@ constexpr std::array<Asset, 3> kAssets = {
 std::string new_token() {
   std::array<unsigned char, 32> bytes{};
   if (::getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size()))
-    throw InputError("no random numbers for a session");
+    throw text::InputError("no random numbers for a session");
   std::string text;
   for (const unsigned char byte : bytes) {
     text += "0123456789abcdef"[byte >> 4];
@@ -204,7 +204,8 @@ WorkbenchServer::WorkbenchServer(Api& api, std::uint16_t port) : inside_(std::ma
     inside_->port = server.bind_to_any_port("127.0.0.1");
   else
     inside_->port = server.bind_to_port("127.0.0.1", port) ? port : -1;
-  if (inside_->port <= 0) throw InputError("port " + std::to_string(port) + " of 127.0.0.1 cannot be had");
+  if (inside_->port <= 0)
+    throw text::InputError("port " + std::to_string(port) + " of 127.0.0.1 cannot be had");
 }
 
 WorkbenchServer::~WorkbenchServer() = default;
@@ -235,4 +236,4 @@ void WorkbenchServer::stop() {
   if (inside_->serving) inside_->server.stop();
 }
 
-}  // namespace vernier
+}  // namespace vernier::workbench

@@ -6,7 +6,7 @@
 
 #include "tools/workbench/api.h"
 
-namespace vernier {
+namespace vernier::workbench {
 
 /// Largest body of a request, bytes.
 inline constexpr std::size_t kMostBodyBytes = std::size_t{64} << 20;
@@ -39,4 +39,4 @@ class WorkbenchServer {
   std::unique_ptr<Inside> inside_;
 };
 
-}  // namespace vernier
+}  // namespace vernier::workbench

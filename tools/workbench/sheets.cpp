@@ -7,7 +7,7 @@
 #include "tools/text/error.h"
 #include "tools/text/words.h"
 
-namespace vernier {
+namespace vernier::workbench {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -17,7 +17,7 @@ constexpr std::size_t kShown = 8;  // rows of a preview
 std::string text_or_none(const nlohmann::json& request, const char* key) {
   const auto found = request.find(key);
   if (found == request.end() || found->is_null()) return {};
-  if (!found->is_string()) throw InputError(std::string("\"") + key + "\" must be a text");
+  if (!found->is_string()) throw text::InputError(std::string("\"") + key + "\" must be a text");
   return found->get<std::string>();
 }
 
@@ -25,9 +25,9 @@ std::vector<std::string> list_or_none(const nlohmann::json& request, const char*
   const auto found = request.find(key);
   if (found == request.end() || found->is_null()) return {};
   std::vector<std::string> list;
-  if (!found->is_array()) throw InputError(std::string("\"") + key + "\" must be a list");
+  if (!found->is_array()) throw text::InputError(std::string("\"") + key + "\" must be a list");
   for (const nlohmann::json& one : *found) {
-    if (!one.is_string()) throw InputError(std::string("\"") + key + "\" must be a list of texts");
+    if (!one.is_string()) throw text::InputError(std::string("\"") + key + "\" must be a list of texts");
     list.push_back(one.get<std::string>());
   }
   return list;
@@ -48,41 +48,42 @@ Json first_lines(const std::string& csv) {
 bool begins_as_measurement(const std::string& text) {
   for (std::size_t at = text.starts_with("\xEF\xBB\xBF") ? 3 : 0; at < text.size();) {
     const std::size_t end = std::min(text.find('\n', at), text.size());
-    const std::string line = trimmed(text.substr(at, end - at));
+    const std::string line = text::trimmed(text.substr(at, end - at));
     at = end + 1;
     if (line.empty() || line.front() == '#') continue;
     try {
       const auto commas = static_cast<std::size_t>(std::count(line.begin(), line.end(), ','));
-      const CsvFile csv = parse_csv(line + "\n0" + std::string(commas, ',') + "\n", "");
+      const text::CsvFile csv = text::parse_csv(line + "\n0" + std::string(commas, ',') + "\n", "");
       return std::any_of(csv.columns.begin(), csv.columns.end(),
-                         [](const CsvColumn& column) { return !column.unit.empty(); });
-    } catch (const InputError&) {
+                         [](const text::CsvColumn& column) { return !column.unit.empty(); });
+    } catch (const text::InputError&) {
       return false;
     }
   }
   return false;
 }
 
-Json sheet_preview(const std::string& bytes, const std::string& file, const SheetWords& words) {
-  const SheetReading reading = read_as_sheet(bytes, file, words);
-  const Sheet& sheet = reading.sheet;
-  Json json = {{"how", how_read(sheet)},
+Json sheet_preview(const std::string& bytes, const std::string& file, const importer::SheetWords& words) {
+  const importer::SheetReading reading = importer::read_as_sheet(bytes, file, words);
+  const sheet::Sheet& sheet = reading.sheet;
+  Json json = {{"how", importer::how_read(sheet)},
                {"workbook", sheet.workbook},
-               {"separator", separator_word(sheet.separator)},
+               {"separator", sheet::separator_word(sheet.separator)},
                {"decimal", sheet.decimal_comma ? "comma" : "point"},
                {"heading_line",
                 reading.table.has_headings ? Json(sheet.line[reading.table.heading_row]) : Json(nullptr)},
-               {"columns", columns_json(reading)},
+               {"columns", importer::columns_json(reading)},
                {"rows", Json::array()}};
   for (std::size_t row = reading.table.first_data; row < sheet.rows.size() && json["rows"].size() < kShown;
        ++row)
     json["rows"].push_back(sheet.rows[row]);
   try {
-    const ImportTable table = table_of_sheet(sheet, reading.table, reading.columns, reading.wishes);
-    json["csv"] = first_lines(measurement_csv(table));
+    const importer::ImportTable table =
+        importer::table_of_sheet(sheet, reading.table, reading.columns, reading.wishes);
+    json["csv"] = first_lines(importer::measurement_csv(table));
     json["n_rows"] = table.line.size();
     json["message"] = nullptr;
-  } catch (const InputError& error) {
+  } catch (const text::InputError& error) {
     json["csv"] = Json::array();
     json["n_rows"] = 0;
     json["message"] = error.what();
@@ -90,8 +91,8 @@ Json sheet_preview(const std::string& bytes, const std::string& file, const Shee
   return json;
 }
 
-SheetWords sheet_words(const nlohmann::json& request) {
-  SheetWords words;
+importer::SheetWords sheet_words(const nlohmann::json& request) {
+  importer::SheetWords words;
   words.separator = text_or_none(request, "separator");
   words.decimal = text_or_none(request, "decimal");
   words.comment = text_or_none(request, "comment");
@@ -106,4 +107,4 @@ SheetWords sheet_words(const nlohmann::json& request) {
   return words;
 }
 
-}  // namespace vernier
+}  // namespace vernier::workbench

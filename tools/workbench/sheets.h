@@ -5,7 +5,7 @@
 
 #include "tools/import/sheet_import.h"
 
-namespace vernier {
+namespace vernier::workbench {
 
 /// Is the text a measurement file by its first line: names with units, parted by commas? What is not may be a
 /// spreadsheet. tool.
@@ -15,10 +15,10 @@ bool begins_as_measurement(const std::string& text);
 /// (columns_json), rows: the first as cells, csv: the first lines of the measurement file, n_rows, message:
 /// why it is none yet}. Throws InputError where it is no table at all. tool.
 nlohmann::ordered_json sheet_preview(const std::string& bytes, const std::string& file,
-                                     const SheetWords& words);
+                                     const importer::SheetWords& words);
 
 /// The words of a request: separator, decimal, comment, sheet, unit (texts), skip (number), columns,
 /// deviations, leave, set (lists). Throws InputError.
-SheetWords sheet_words(const nlohmann::json& request);
+importer::SheetWords sheet_words(const nlohmann::json& request);
 
-}  // namespace vernier
+}  // namespace vernier::workbench

@@ -3,7 +3,7 @@
 
 #include "tools/workbench/dimensions.h"
 
-namespace vernier {
+namespace vernier::workbench {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -13,10 +13,10 @@ void add(Json& list, const std::string& name, const std::string& unit, const cha
 }
 
 /// The same machine with the unknown coefficient as one more static.
-Machine with_unknown(const Machine& machine) {
-  Machine wider = machine;
+model::Machine with_unknown(const model::Machine& machine) {
+  model::Machine wider = machine;
   if (!wider.find_static("k")) {
-    Static unknown;
+    model::Static unknown;
     unknown.name = "k";
     wider.statics.push_back(unknown);
   }
@@ -25,9 +25,9 @@ Machine with_unknown(const Machine& machine) {
 
 }  // namespace
 
-Json expression_names(const Machine& machine) {
+Json expression_names(const model::Machine& machine) {
   Json list = Json::array();
-  for (const Axis& axis : machine.axes) {
+  for (const model::Axis& axis : machine.axes) {
     const std::string unit = axis.rotary ? "deg" : "mm";
     add(list, axis.name, unit, "axis position");
     add(list, "v" + axis.name, unit + "/s", "speed of the axis");
@@ -35,8 +35,8 @@ Json expression_names(const Machine& machine) {
     add(list, "dir" + axis.name, "", "sense of the last motion");
     add(list, "since" + axis.name, unit, "travel since the last reversal");
   }
-  for (const Input& input : machine.inputs) add(list, input.name, input.unit, "input");
-  for (const Static& one : machine.statics) add(list, one.name, one.unit, "static");
+  for (const model::Input& input : machine.inputs) add(list, input.name, input.unit, "input");
+  for (const model::Static& one : machine.statics) add(list, one.name, one.unit, "static");
   add(list, "feed", "mm/min", "along the path");
   add(list, "curv", "1/mm", "path curvature");
   add(list, "t", "s", "time");
@@ -49,11 +49,11 @@ Json expression_names(const Machine& machine) {
   return list;
 }
 
-Json check_term(const Machine& machine, const std::string& text, const std::string& unit) {
-  const Machine wider = with_unknown(machine);
+Json check_term(const model::Machine& machine, const std::string& text, const std::string& unit) {
+  const model::Machine wider = with_unknown(machine);
   Json result;
   try {
-    const ExprPtr expr = parse_expression_for(wider, text);
+    const model::ExprPtr expr = model::parse_expression_for(wider, text);
     std::vector<std::string> warnings;
     const auto found = expression_unit(wider, *expr, "k", warnings);
     const auto wanted = unit_powers(unit);
@@ -64,13 +64,15 @@ Json check_term(const Machine& machine, const std::string& text, const std::stri
       result["k_unit"] = unit_text(rest);
     }
     bool has_unknown = false;
-    walk(*expr, [&](const Expr& node) { has_unknown |= node.op == Op::kSymbol && node.name == "k"; });
+    model::walk(*expr, [&](const model::Expr& node) {
+      has_unknown |= node.op == model::Op::kSymbol && node.name == "k";
+    });
     if (!has_unknown) warnings.emplace_back("there is no unknown k in it: nothing to fit");
     result["warnings"] = warnings;
-  } catch (const ExpressionError& error) {
+  } catch (const model::ExpressionError& error) {
     result = {{"ok", false}, {"message", error.what()}, {"offset", error.offset}, {"word", error.word}};
   }
   return result;
 }
 
-}  // namespace vernier
+}  // namespace vernier::workbench

@@ -5,17 +5,18 @@
 
 #include "tools/model/machine.h"
 
-namespace vernier {
+namespace vernier::workbench {
 
 /// Every name that an expression of this machine may use, with its unit and what it is, for completion:
 /// [{name, unit, what}]. `candidates`: columns that the machine does not know yet, which `add` declares.
 /// tool.
-nlohmann::ordered_json expression_names(const Machine& machine);
+nlohmann::ordered_json expression_names(const model::Machine& machine);
 
 /// Is `text` a term for a degree of freedom whose unit is `unit` (mm or deg)? The unknown coefficient is `k`.
 /// {"ok", "message", "offset", "word"} where it is no expression of this machine; else {"ok": true, "unit" of
 /// the expression without k, "k_unit": what k must have, "warnings": units that do not go together}. Units
 /// never scale a value (FORMATS section 1), so that they only warn. tool.
-nlohmann::ordered_json check_term(const Machine& machine, const std::string& text, const std::string& unit);
+nlohmann::ordered_json check_term(const model::Machine& machine, const std::string& text,
+                                  const std::string& unit);
 
-}  // namespace vernier
+}  // namespace vernier::workbench

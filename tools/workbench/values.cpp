@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/workbench/values.h"
 
-namespace vernier {
+namespace vernier::workbench {
 
-ParameterSet all_parameters(const Machine& machine) {
+model::ParameterSet all_parameters(const model::Machine& machine) {
   // A run that no BaseShift names stands for the rows of the plain one.
   std::vector<std::string> runs = {""};
-  for (const BaseShift& shift : machine.base_shifts)
+  for (const model::BaseShift& shift : machine.base_shifts)
     if (shift.run) runs.push_back(*shift.run);
-  return ParameterSet(machine, runs);
+  return model::ParameterSet(machine, runs);
 }
 
-void set_values(Machine& machine, const std::map<std::string, double>& values) {
-  const ParameterSet parameters = all_parameters(machine);
+void set_values(model::Machine& machine, const std::map<std::string, double>& values) {
+  const model::ParameterSet parameters = all_parameters(machine);
   Eigen::VectorXd point = parameters.get(machine);
   std::map<std::string, double> left = values;
   for (std::size_t i = 0; i < parameters.size(); ++i) {
@@ -24,9 +24,9 @@ void set_values(Machine& machine, const std::map<std::string, double>& values) {
   parameters.set(machine, point);
   for (const auto& [name, value] : left) {
     const auto found = machine.find_static(name);
-    if (!found) throw InputError("\"" + name + "\": no parameter of " + machine.file);
+    if (!found) throw text::InputError("\"" + name + "\": no parameter of " + machine.file);
     machine.statics[*found].value = value;
   }
 }
 
-}  // namespace vernier
+}  // namespace vernier::workbench

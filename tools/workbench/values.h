@@ -7,13 +7,13 @@
 #include "tools/model/machine.h"
 #include "tools/model/parameters.h"
 
-namespace vernier {
+namespace vernier::workbench {
 
 /// The free parameters of a machine with every BaseShift that it has: those of each run, and the plain one.
-ParameterSet all_parameters(const Machine& machine);
+model::ParameterSet all_parameters(const model::Machine& machine);
 
 /// Sets parameters by name (as in the result of fit); a hidden static too. Throws InputError with a name that
 /// the machine does not have. tool.
-void set_values(Machine& machine, const std::map<std::string, double>& values);
+void set_values(model::Machine& machine, const std::map<std::string, double>& values);
 
-}  // namespace vernier
+}  // namespace vernier::workbench

@@ -12,6 +12,10 @@
 #include "tests/unit/compile/agreement.h"
 
 namespace vernier::bench {
+
+using namespace vernier::compile;
+using namespace vernier::model;
+using namespace vernier::text;
 namespace {
 
 constexpr unsigned kSeed = 20261122;
@@ -79,7 +83,7 @@ int main(int argc, char** argv) {
   bool holds = true;
   try {
     for (const std::string& name : machines) holds = vernier::bench::check(name, poses) && holds;
-  } catch (const vernier::InputError& e) {
+  } catch (const vernier::text::InputError& e) {
     return std::fprintf(stderr, "bound_check: %s\n", e.what()), 1;
   }
   if (!holds) std::printf("the proved bound does not hold\n");

@@ -19,6 +19,7 @@
 namespace {
 
 using namespace vernier;
+using namespace vernier::text;
 using namespace vernier::bench;
 using namespace vernier::support;
 

@@ -9,6 +9,9 @@
 
 namespace vernier::bench {
 
+using namespace vernier::fit;
+using namespace vernier::model;
+
 std::optional<double> held_out_ratio(const support::HiddenSurvey& survey, const std::string& add,
                                      const std::string& vernier, const std::string& folder,
                                      std::string& why) {
@@ -27,7 +30,7 @@ std::optional<double> held_out_ratio(const support::HiddenSurvey& survey, const 
     return {};
   }
   const Machine truth = parse_machine(survey.truth, "truth.xml");
-  const FitResult reference = fit(truth, parse_measurement(survey.csv, "survey.csv", truth));
+  const FitResult reference = fit::fit(truth, parse_measurement(survey.csv, "survey.csv", truth));
   if (!reference.check.rms_um || *reference.check.rms_um <= 0) {
     why = "no check rows";
     return {};

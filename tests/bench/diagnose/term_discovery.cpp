@@ -16,6 +16,8 @@
 namespace {
 
 using namespace vernier;
+using namespace vernier::diagnose;
+using namespace vernier::maths;
 
 /// Columns of the library and what each is: input, position (0: none, 1..3: x y z) or second input.
 struct Library {

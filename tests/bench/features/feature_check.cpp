@@ -15,7 +15,7 @@
 namespace {
 
 using vernier::FeatureWindow;
-constexpr std::size_t kCount = vernier::kFeatureNames.size();
+constexpr std::size_t kCount = vernier::vibration::kFeatureNames.size();
 
 /// Noise, tone, offset and knocks of sizes that change every few thousand samples, LSB of 10 ug.
 class Cutting {
@@ -49,8 +49,8 @@ struct Worst {
   double error[kCount] = {}, ratio[kCount] = {};
 };
 
-void compare(const vernier::FeatureValues& fixed, const vernier::SignalFeatures& exact, double rate_n,
-             Worst& worst) {
+void compare(const vernier::FeatureValues& fixed, const vernier::vibration::SignalFeatures& exact,
+             double rate_n, Worst& worst) {
   for (std::size_t i = 0; i < kCount; ++i) {
     if (!std::isfinite(exact[i])) continue;
     const double micro = exact[i] * 1e6, error = std::fabs(static_cast<double>(fixed.value[i].count) - micro);
@@ -68,7 +68,7 @@ bool check(std::uint32_t n, long windows, unsigned seed) {
   static FeatureWindow window;
   if (!prepare_weights(n, weights)) return false;
   if (!window.start({vernier::InputMicro(10), vernier::InputMicro(1'651'000'000)}, weights)) return false;
-  vernier::Fourier fourier(n);
+  vernier::vibration::Fourier fourier(n);
   Cutting cutting(seed);
   std::vector<double> x;
   Worst worst;
@@ -82,8 +82,8 @@ bool check(std::uint32_t n, long windows, unsigned seed) {
   }
   bool good = true;
   for (std::size_t i = 0; i < kCount; ++i) {
-    std::printf("%5u  %-10s  error up to %9.3f e-6, %.3f of the bound\n", n, vernier::kFeatureNames[i],
-                worst.error[i], worst.ratio[i]);
+    std::printf("%5u  %-10s  error up to %9.3f e-6, %.3f of the bound\n", n,
+                vernier::vibration::kFeatureNames[i], worst.error[i], worst.ratio[i]);
     good = good && worst.ratio[i] <= 1 && worst.ratio[i] > 0;
   }
   return good;

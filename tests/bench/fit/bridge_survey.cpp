@@ -13,6 +13,8 @@
 #include "tools/model/prediction.h"
 
 namespace vernier::bench {
+
+using namespace vernier::model;
 namespace {
 
 /// The tool's length along one direction, with what each set-up adds.

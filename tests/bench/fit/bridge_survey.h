@@ -8,6 +8,8 @@
 
 namespace vernier::bench {
 
+using namespace vernier::model;
+
 inline constexpr std::size_t kSetUps = 5;
 inline constexpr double kUncertainty_mm = 0.002;  // of a laser tracer's position over this volume
 

@@ -12,6 +12,8 @@
 #include "tools/model/chain_rows.h"
 
 namespace vernier::bench {
+
+using namespace vernier::model;
 namespace {
 
 constexpr double kRad = std::numbers::pi / 180;

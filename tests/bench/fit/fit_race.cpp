@@ -26,6 +26,7 @@
 namespace {
 
 using namespace vernier;
+using namespace vernier::fit;
 using namespace vernier::bench;
 
 struct Outcome {
@@ -72,7 +73,7 @@ Race race_own(const Survey& survey) {
   const double from = thread_seconds();
   FitOptions options;
   options.progress = [&](int, double cost) { race.way.push_back({thread_seconds() - from, cost}); };
-  race.converged = fit(survey.start, survey.readings, options).converged;
+  race.converged = fit::fit(survey.start, survey.readings, options).converged;
   return race;
 }
 
@@ -105,7 +106,7 @@ int main(int argc, char** argv) {
   }
   constexpr std::uint64_t kSeed = 1;
   const Survey survey = make_survey(stations, points, targets, start, kSeed);
-  const FitResult known = fit(survey.start, survey.readings);
+  const FitResult known = fit::fit(survey.start, survey.readings);
   const double target = known.chi_square * (1 + 1e-6);
   fmt::print("{} parameters ({} seen), {} points, seed {}, {}, {}\n", known.parameters.size(),
              known.observability.rank, points, kSeed,

@@ -25,6 +25,9 @@
 namespace {
 
 using namespace vernier;
+using namespace vernier::fit;
+using namespace vernier::model;
+using namespace vernier::plan;
 using Random = std::mt19937_64;
 
 constexpr double kReadingUm = 3;
@@ -170,7 +173,7 @@ double realised(const Machine& machine, const FirstPlan& plan, const FirstPlanOp
   const Eigen::VectorXd ideal = predict(truth, rows);
   for (std::size_t i = 0; i < rows.observations.size(); ++i)
     rows.observations[i].value = ideal[static_cast<Eigen::Index>(i)] + normal(random);
-  const FitResult fitted = fit(machine, rows);
+  const FitResult fitted = fit::fit(machine, rows);
   // Where the plan judges itself.
   const States fresh = offered_poses(machine, 150, 7919);
   const Eigen::Matrix3Xd off = forward(fitted.machine, fresh).position - forward(truth, fresh).position;

@@ -26,6 +26,9 @@
 namespace {
 
 using namespace vernier;
+using namespace vernier::fit;
+using namespace vernier::model;
+using namespace vernier::text;
 using support::Family;
 
 struct Options {
@@ -176,7 +179,7 @@ Outcome judge(const support::HiddenSurvey& survey, const Options& o, std::mt1993
     out.noise = 1000 * u;
   }
   const auto begin = std::chrono::steady_clock::now();
-  const FitResult result = fit(model, m);
+  const FitResult result = fit::fit(model, m);
   out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   out.converged = result.converged;
   out.fit_rms = result.after.rms_um.value_or(0);

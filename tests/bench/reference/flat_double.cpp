@@ -8,6 +8,10 @@
 #include <utility>
 
 namespace vernier::bench {
+
+using namespace vernier::compile;
+using namespace vernier::model;
+using namespace vernier::text;
 namespace {
 
 constexpr const char* kHead =

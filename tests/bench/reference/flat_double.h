@@ -6,6 +6,9 @@
 
 namespace vernier::bench {
 
+using namespace vernier::compile;
+using namespace vernier::model;
+
 /// The machine's error equation, as the compiler derives it, printed as C++ in double with nothing else
 /// changed: `void flat(const double* channel, double* deviation)`, channels in the units of the
 /// machine file and the order of `channels`, in namespace vernier::`space`. The

@@ -14,6 +14,10 @@
 #include "tools/compile/print.h"
 
 namespace vernier::bench {
+
+using namespace vernier::compile;
+using namespace vernier::model;
+using namespace vernier::text;
 namespace {
 
 constexpr std::size_t kPoses = 64;
@@ -36,7 +40,7 @@ void print_branch(const Machine& machine, const std::vector<Transform>& branch, 
   for (const Transform& t : branch) {
     text += t.kind == TransformKind::kSixDof ? "sixdof" : "DH";
     for (std::size_t d = 0; d < t.dof_count(); ++d)
-      for (const double v : evaluate(machine, *t.dof[d], states)) text += fmt::format(" {:.17g}", v);
+      for (const double v : model::evaluate(machine, *t.dof[d], states)) text += fmt::format(" {:.17g}", v);
     text += "\n";
   }
 }
@@ -105,7 +109,7 @@ void generate(const std::string& name, const std::string& directory) {
   const auto loaded = load_image(c.image, reference.machine);
   write_file(directory + "/chain.txt", print_chain(reference.machine, loaded->view));
   try {
-    const Derivation d = derive(reference.machine, 5e-6, c.evaluations);
+    const Derivation d = compile::derive(reference.machine, 5e-6, c.evaluations);
     write_file(directory + "/flat.cpp",
                print_flat_double(reference.machine, d, c.program.channels, "flat_" + name));
   } catch (const InputError& e) {
@@ -120,7 +124,7 @@ int main(int argc, char** argv) {
   if (argc != 3) return std::fprintf(stderr, "usage: bench_generate MACHINE DIR\n"), 1;
   try {
     vernier::bench::generate(argv[1], argv[2]);
-  } catch (const vernier::InputError& e) {
+  } catch (const vernier::text::InputError& e) {
     return std::fprintf(stderr, "bench_generate: %s\n", e.what()), 1;
   }
   return 0;

@@ -6,6 +6,10 @@
 #include <random>
 
 namespace vernier::bench {
+
+using namespace vernier::compile;
+using namespace vernier::model;
+using namespace vernier::text;
 namespace {
 
 constexpr unsigned kSeed = 20261121;

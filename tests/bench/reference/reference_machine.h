@@ -8,6 +8,9 @@
 
 namespace vernier::bench {
 
+using namespace vernier::compile;
+using namespace vernier::model;
+
 /// The machines that the benches of the run-time core run on. three_axis, five_axis, seven_axis and six_r are
 /// those of tables/machines with every error of their chain set (seven_axis_chain: without tables, one tool
 /// point in place of a choice); the others are test machines as they stand.

@@ -21,6 +21,9 @@
 namespace {
 
 using namespace vernier;
+using namespace vernier::fit;
+using namespace vernier::model;
+using namespace vernier::text;
 using Random = std::mt19937_64;
 
 constexpr double kTrackerMm = 0.1,
@@ -167,7 +170,7 @@ int main(int argc, char** argv) {
   staged.stages = {{"BaseShift*"}, {"BaseShift*", "*off", "l*", "cl*", "*flex"}};
   for (const bool in_stages : {true, false}) {
     const double from = now_s();
-    const FitResult result = fit(start, m, in_stages ? staged : FitOptions{});
+    const FitResult result = fit::fit(start, m, in_stages ? staged : FitOptions{});
     report(in_stages ? "in stages" : "all at once", result, m, now_s() - from);
   }
   return 0;

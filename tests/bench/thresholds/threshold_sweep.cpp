@@ -15,6 +15,10 @@
 #include "tools/results/diagnosis_json.h"
 
 namespace vernier::bench {
+
+using namespace vernier::diagnose;
+using namespace vernier::model;
+using namespace vernier::results;
 namespace {
 
 using support::Family;
@@ -79,7 +83,8 @@ Told told(const Subject& subject, const DiagnoseThresholds& thresholds) {
   options.shown = 3;  // enough to see who is confounded with whom; each more is a fit
   Told result;
   try {
-    const Diagnosis diagnosis = diagnose(subject.survey.model, subject.machine, subject.rows, options);
+    const Diagnosis diagnosis =
+        diagnose::diagnose(subject.survey.model, subject.machine, subject.rows, options);
     result.verdict = verdict_name(diagnosis.verdict);
     for (const LadderStep& step : diagnosis.ladder) result.names += step.label + "; ";
     Case one;

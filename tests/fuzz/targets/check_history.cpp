@@ -4,6 +4,9 @@
 #include "tools/text/error.h"
 
 namespace vernier::fuzz {
+
+using namespace vernier::check;
+using namespace vernier::text;
 namespace {
 
 void take(Bytes bytes) {

@@ -7,6 +7,9 @@
 #include "tools/upload/live.h"
 
 namespace vernier::fuzz {
+
+using namespace vernier::text;
+using namespace vernier::upload;
 namespace {
 
 /// Answers are the pieces of the input, with op and sequence of the request where the piece has room.

@@ -6,6 +6,9 @@
 #include "tools/text/csv.h"
 
 namespace vernier::fuzz {
+
+using namespace vernier::importer;
+using namespace vernier::text;
 namespace {
 
 /// A map of columns, a line of ====, the table that it is for: trackers and probes come in so.

@@ -4,6 +4,8 @@
 #include "tests/fuzz/target.h"
 
 namespace vernier::fuzz {
+
+using namespace vernier::text;
 namespace {
 
 void take(Bytes bytes) {

@@ -6,6 +6,9 @@
 #include "tools/text/error.h"
 
 namespace vernier::fuzz {
+
+using namespace vernier::create;
+using namespace vernier::text;
 namespace {
 
 void take(Bytes bytes) {

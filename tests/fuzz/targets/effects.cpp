@@ -4,6 +4,9 @@
 #include "tools/text/error.h"
 
 namespace vernier::fuzz {
+
+using namespace vernier::effects;
+using namespace vernier::text;
 namespace {
 
 void take(Bytes bytes) {

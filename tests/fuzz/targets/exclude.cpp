@@ -4,6 +4,9 @@
 #include "tools/workbench/excluded.h"
 
 namespace vernier::fuzz {
+
+using namespace vernier::text;
+using namespace vernier::workbench;
 namespace {
 
 /// Lines and a measurement file: what was taken out is there again when it is put back.

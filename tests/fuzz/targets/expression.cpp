@@ -4,6 +4,8 @@
 #include "tests/fuzz/target.h"
 
 namespace vernier::fuzz {
+
+using namespace vernier::model;
 namespace {
 
 template <class Parse>

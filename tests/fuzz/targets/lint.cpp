@@ -7,6 +7,9 @@
 #include "tools/text/error.h"
 
 namespace vernier::fuzz {
+
+using namespace vernier::lint;
+using namespace vernier::text;
 namespace {
 
 // `lint` tells all that is wrong: it gives findings where others throw.

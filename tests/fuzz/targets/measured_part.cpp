@@ -5,6 +5,9 @@
 #include "tools/text/error.h"
 
 namespace vernier::fuzz {
+
+using namespace vernier::part;
+using namespace vernier::text;
 namespace {
 
 void take(Bytes bytes) {

@@ -8,6 +8,9 @@
 #include "tools/text/error.h"
 
 namespace vernier::fuzz {
+
+using namespace vernier::model;
+using namespace vernier::text;
 namespace {
 
 const Machine& machine() {

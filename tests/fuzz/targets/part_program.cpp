@@ -7,6 +7,10 @@
 #include "tools/text/error.h"
 
 namespace vernier::fuzz {
+
+using namespace vernier::model;
+using namespace vernier::offline;
+using namespace vernier::text;
 namespace {
 
 const Machine& machine() {

@@ -4,6 +4,10 @@
 #include "tools/text/csv.h"
 
 namespace vernier::fuzz {
+
+using namespace vernier::importer;
+using namespace vernier::sheet;
+using namespace vernier::text;
 namespace {
 
 /// A profile, a line of ====, the spreadsheet that it is for: what comes out is a measurement file.

@@ -6,6 +6,10 @@
 #include "tools/text/error.h"
 
 namespace vernier::fuzz {
+
+using namespace vernier::exchange;
+using namespace vernier::model;
+using namespace vernier::text;
 namespace {
 
 const Machine& machine() {

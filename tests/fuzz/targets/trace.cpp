@@ -6,6 +6,9 @@
 #include "tools/text/csv.h"
 
 namespace vernier::fuzz {
+
+using namespace vernier::importer;
+using namespace vernier::text;
 namespace {
 
 void take(Bytes bytes) {

@@ -5,6 +5,9 @@
 #include "tools/text/error.h"
 
 namespace vernier::fuzz {
+
+using namespace vernier::text;
+using namespace vernier::upload;
 namespace {
 
 void take(Bytes bytes) {

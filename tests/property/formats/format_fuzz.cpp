@@ -20,9 +20,9 @@
 
 namespace {
 
-using vernier::InputError;
-using vernier::Machine;
-using vernier::Measurement;
+using vernier::model::Machine;
+using vernier::model::Measurement;
+using vernier::text::InputError;
 using Random = std::mt19937_64;
 
 std::size_t below(Random& random, std::size_t n) {
@@ -147,19 +147,21 @@ bool same(const Machine& a, const Machine& b) {
     if (a.statics[i].value != b.statics[i].value || a.statics[i].hidden != b.statics[i].hidden) return false;
   for (std::size_t i = 0; i < a.tool.size(); ++i)
     for (std::size_t k = 0; k < a.tool[i].dof_count(); ++k)
-      if (vernier::to_text(*a.tool[i].dof[k]) != vernier::to_text(*b.tool[i].dof[k])) return false;
+      if (vernier::model::to_text(*a.tool[i].dof[k]) != vernier::model::to_text(*b.tool[i].dof[k]))
+        return false;
   return true;
 }
 
 bool machine_case(const std::string& text, std::size_t number) {
   try {
-    const Machine machine = vernier::parse_machine(text, "f.xml");
-    const Machine again = vernier::parse_machine(vernier::update_machine_text(text, machine, false), "f.xml");
+    const Machine machine = vernier::model::parse_machine(text, "f.xml");
+    const Machine again =
+        vernier::model::parse_machine(vernier::model::update_machine_text(text, machine, false), "f.xml");
     if (!same(machine, again)) fail("does not read back the same", text, number);
-    for (const vernier::Static& item : machine.statics)
+    for (const vernier::model::Static& item : machine.statics)
       if (!std::isfinite(item.value) || !stands_in(text, item.value))
         fail("a static's value is not in the text", text, number);
-    for (const vernier::Table& table : machine.tables)
+    for (const vernier::model::Table& table : machine.tables)
       for (std::size_t i = 0; i + 1 < table.stations.size(); ++i)
         if (!(table.stations[i].loc < table.stations[i + 1].loc))
           fail("a table that does not increase", text, number);
@@ -173,8 +175,8 @@ bool machine_case(const std::string& text, std::size_t number) {
 
 bool measurement_case(const std::string& text, const Machine& machine, std::size_t number) {
   try {
-    const Measurement m = vernier::parse_measurement(text, "f.csv", machine);
-    for (const vernier::Observation& o : m.observations)
+    const Measurement m = vernier::model::parse_measurement(text, "f.csv", machine);
+    for (const vernier::model::Observation& o : m.observations)
       if (!std::isfinite(o.value)) fail("a reading that is not finite", text, number);
     std::size_t lines = 0;
     for (std::size_t at = 0; at < text.size(); ++lines) {
@@ -185,7 +187,8 @@ bool measurement_case(const std::string& text, const Machine& machine, std::size
     }
     if (m.rows() + m.excluded + 1 != lines) fail("a line was silently skipped", text, number);
     try {
-      if (!vernier::predict(machine, m).allFinite()) fail("a prediction that is not finite", text, number);
+      if (!vernier::model::predict(machine, m).allFinite())
+        fail("a prediction that is not finite", text, number);
     } catch (const InputError&) {
     }
     return true;
@@ -224,10 +227,10 @@ int main(int argc, char** argv) {
       "min],t[s],T[degC],x[um],y[mm],length[mm],cx[mm],cy[mm],cz[mm],u[um],load[kg],run,role\n"
       "1,2,1,100,0,20,5,0.1,50,0,0,0,2,1,a,fit\n2,3,-1,100,1,,5,0.1,,,,,2,,a,fit\n3,4,0,100,2,21,,0.1,51,1,2,"
       "3,2,3,\"b\",check\n";
-  const Machine machine = vernier::parse_machine(machines[1], "m.xml");
+  const Machine machine = vernier::model::parse_machine(machines[1], "m.xml");
   for (const std::string& text : machines)
-    vernier::parse_machine(text, "seed.xml");  // undamaged they are fine
-  vernier::parse_measurement(rows, "seed.csv", machine);
+    vernier::model::parse_machine(text, "seed.xml");  // undamaged they are fine
+  vernier::model::parse_measurement(rows, "seed.csv", machine);
   std::size_t accepted = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const bool is_machine = i % 2 == 0;

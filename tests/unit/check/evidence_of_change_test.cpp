@@ -15,6 +15,11 @@
 #include "tools/model/machine_writer.h"
 
 namespace vernier::check_test {
+
+using namespace vernier::check;
+using namespace vernier::fit;
+using namespace vernier::model;
+using namespace vernier::text;
 namespace {
 
 constexpr double kNoise_mm = 0.001, kFalseAlarms = 0.05;
@@ -60,7 +65,7 @@ void nothing(Machine& /*machine*/) {}
 Machine fitted(std::mt19937_64& random) {
   const Machine machine = parse_machine(kBridge, "m.xml");
   const FitResult result =
-      fit(machine, parse_measurement(rows(40, nothing, random, kNoise_mm), "s.csv", machine));
+      fit::fit(machine, parse_measurement(rows(40, nothing, random, kNoise_mm), "s.csv", machine));
   return result.machine;
 }
 

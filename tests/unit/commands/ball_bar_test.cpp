@@ -13,6 +13,8 @@
 #include "tools/text/numbers.h"
 
 namespace vernier::ball_bar_test {
+
+using namespace vernier::text;
 namespace {
 
 namespace fs = std::filesystem;

@@ -12,6 +12,8 @@
 #include "tools/text/similar.h"
 
 namespace vernier::manners_test {
+
+using namespace vernier::text;
 namespace {
 
 namespace fs = std::filesystem;

@@ -12,6 +12,8 @@
 #include "tools/text/files.h"
 
 namespace vernier::manual_test {
+
+using namespace vernier::text;
 namespace {
 
 namespace fs = std::filesystem;

@@ -12,6 +12,8 @@
 #include "tools/text/files.h"
 
 namespace vernier::outputs_test {
+
+using namespace vernier::text;
 namespace {
 
 namespace fs = std::filesystem;

@@ -16,6 +16,8 @@
 #include "tools/text/words.h"
 
 namespace vernier::pages_test {
+
+using namespace vernier::text;
 namespace {
 
 namespace fs = std::filesystem;

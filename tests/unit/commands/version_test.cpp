@@ -9,6 +9,8 @@
 #include "tools/text/files.h"
 
 namespace vernier::version_test {
+
+using namespace vernier::text;
 namespace {
 
 std::string output_of(const std::string& command) {

@@ -8,6 +8,9 @@
 
 namespace vernier {
 
+using namespace vernier::compile;
+using namespace vernier::model;
+
 /// What a comparison of the executed fixed-point program with the double chain has seen.
 struct Agreement {
   double worst_um = 0;     // |fixed point - double chain|

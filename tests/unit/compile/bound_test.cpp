@@ -6,6 +6,8 @@
 #include "tools/model/machine_reader.h"
 
 namespace vernier::bound_test {
+
+using namespace vernier::model;
 namespace {
 
 class ErrorBound : public testing::TestWithParam<const char*> {};

@@ -6,6 +6,10 @@
 #include "tools/model/machine_reader.h"
 
 namespace vernier::chains_test {
+
+using namespace vernier::compile;
+using namespace vernier::model;
+using namespace vernier::text;
 namespace {
 
 constexpr unsigned kSeed = 77;

@@ -8,6 +8,10 @@
 #include "tools/model/machine_reader.h"
 
 namespace vernier::effects_test {
+
+using namespace vernier::effects;
+using namespace vernier::model;
+using namespace vernier::text;
 namespace {
 
 constexpr unsigned kSeed = 20260701;

@@ -11,6 +11,9 @@
 #include "tools/compile/sine_table.h"
 
 namespace vernier::generated_test {
+
+using namespace vernier::compile;
+using namespace vernier::text;
 namespace {
 
 using Equation_ = void (*)(const std::int32_t*, LagState*, bool, std::int32_t*) noexcept;

@@ -9,6 +9,9 @@
 #include "tools/model/measurement.h"
 
 namespace vernier::learned_test {
+
+using namespace vernier::model;
+using namespace vernier::text;
 namespace {
 
 constexpr unsigned kSeed = 20260;

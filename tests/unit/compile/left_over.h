@@ -7,6 +7,10 @@
 
 namespace vernier {
 
+using namespace vernier::compile;
+using namespace vernier::kinematics;
+using namespace vernier::model;
+
 /// What the double chain is left with where the axes stand as the executed fixed-point program asks for.
 struct LeftOver {
   double before_um = 0, left_um = 0;         // tool point, largest

@@ -11,6 +11,10 @@
 #include "tools/model/machine_reader.h"
 
 namespace vernier::orientation_test {
+
+using namespace vernier::compile;
+using namespace vernier::model;
+using namespace vernier::text;
 namespace {
 
 constexpr unsigned kSeed = 17;

@@ -15,6 +15,10 @@
 
 namespace vernier {
 
+using namespace vernier::compile;
+using namespace vernier::model;
+using namespace vernier::text;
+
 /// Number of random poses: VERNIER_POSES in the environment, else 1e5 (1e6 by the bench command of
 /// tests/bench).
 inline std::size_t pose_count() {

@@ -7,6 +7,8 @@
 #include "tools/model/machine_reader.h"
 
 namespace vernier::range_test {
+
+using namespace vernier::model;
 namespace {
 
 class DeclaredRange : public testing::TestWithParam<std::string> {

@@ -7,6 +7,10 @@
 #include "tools/model/machine_reader.h"
 
 namespace vernier::refusal_test {
+
+using namespace vernier::compile;
+using namespace vernier::model;
+using namespace vernier::text;
 namespace {
 
 std::string replaced(std::string text, const std::string& what, const std::string& by) {

@@ -8,6 +8,9 @@
 #include "tools/model/machine_reader.h"
 
 namespace vernier::second_order_test {
+
+using namespace vernier::compile;
+using namespace vernier::model;
 namespace {
 
 constexpr unsigned kSeed = 91;

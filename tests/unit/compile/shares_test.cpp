@@ -9,6 +9,8 @@
 #include "tools/model/machine_reader.h"
 
 namespace vernier::shares_test {
+
+using namespace vernier::model;
 namespace {
 
 constexpr unsigned kSeed = 5;

@@ -12,6 +12,10 @@
 #include "tools/model/states.h"
 
 namespace vernier::machine_plan_test {
+
+using namespace vernier::create;
+using namespace vernier::model;
+using namespace vernier::text;
 namespace {
 
 std::vector<PlannedAxis> axes(const std::vector<std::string>& words) {

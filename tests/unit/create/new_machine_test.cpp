@@ -24,6 +24,9 @@
 #include "tools/text/words.h"
 
 namespace vernier::new_machine_test {
+
+using namespace vernier::model;
+using namespace vernier::text;
 namespace {
 
 namespace fs = std::filesystem;

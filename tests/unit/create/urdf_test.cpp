@@ -16,6 +16,10 @@
 #include "tools/text/error.h"
 
 namespace vernier::urdf_test {
+
+using namespace vernier::create;
+using namespace vernier::model;
+using namespace vernier::text;
 namespace {
 
 using Eigen::AngleAxisd;

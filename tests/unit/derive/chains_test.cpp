@@ -15,6 +15,11 @@
 #include "tools/text/files.h"
 
 namespace vernier::chains_test {
+
+using namespace vernier::compile;
+using namespace vernier::derive;
+using namespace vernier::model;
+using namespace vernier::text;
 namespace {
 
 namespace fs = std::filesystem;
@@ -95,7 +100,7 @@ double worst_difference(const ErrorEquation& equation, std::size_t poses, std::m
 TEST(DerivedChain, FiveAxisJacobianAgreesWithDifferencesTo1e8) {
   std::mt19937_64 random(kSeed);
   RecordProperty("seed", static_cast<int>(kSeed));
-  const ErrorEquation equation = derive(read_machine(kMachines + "five_axis_bhead_ctable.xml"));
+  const ErrorEquation equation = derive::derive(read_machine(kMachines + "five_axis_bhead_ctable.xml"));
   const double worst = worst_difference(equation, 200, random);
   // Truncation h^4/30 * 1 m = 3e-11, rounding 1e-13 * 1.5 / h = 2e-10.
   EXPECT_LE(worst, 1e-8);
@@ -107,7 +112,7 @@ TEST(DerivedChain, EveryReferenceMachineAgreesWithDifferences) {
   const auto files = reference_files();
   ASSERT_GE(files.size(), 14U);
   for (const std::string& file : files) {
-    const ErrorEquation equation = derive(read_machine(kMachines + file));
+    const ErrorEquation equation = derive::derive(read_machine(kMachines + file));
     ASSERT_FALSE(equation.parameters.empty()) << file;
     // Levers and positions up to 20 m: rounding 4e-12 mm * 1.5 / 1e-3 and truncation 1e-12 / 30 * 2e4.
     EXPECT_LT(worst_difference(equation, 10, random), 1e-7) << file;
@@ -117,7 +122,7 @@ TEST(DerivedChain, EveryReferenceMachineAgreesWithDifferences) {
 TEST(DerivedChain, EverythingThatTheFormatOffersAgreesWithDifferences) {
   std::mt19937_64 random(kSeed);
   // tau acts inside a lag whose factor has nominal 0: second order, no refusal.
-  const ErrorEquation equation = derive(support::full_machine());
+  const ErrorEquation equation = derive::derive(support::full_machine());
   EXPECT_LT(worst_difference(equation, 10, random), 1e-7);
   bool second_order = false;
   for (const std::string& note : equation.notes)
@@ -131,7 +136,7 @@ TEST(DerivedChain, FibrePlacementSixDofEqualsDhOn200RandomPoses) {
   const Machine sixdof = read_machine(kMachines + "fibre_placement.xml");
   const Machine dh = read_machine(kMachines + "fibre_placement_dh.xml");
   ASSERT_EQ(sixdof.axes.size(), 7U);
-  const ErrorEquation equation = derive(sixdof);
+  const ErrorEquation equation = derive::derive(sixdof);
   double position = 0, rotation = 0;
   for (int i = 0; i < 200; ++i) {
     States states = random_state(equation, random);
@@ -153,7 +158,7 @@ TEST(DerivedChain, FibrePlacementFileIsThePublishedOneUnchanged) {
 
 TEST(SecondOrder, BoundHoldsAndIsNotVacuous) {
   for (const std::string& file : reference_files()) {
-    const ErrorEquation equation = derive(read_machine(kMachines + file));
+    const ErrorEquation equation = derive::derive(read_machine(kMachines + file));
     const SecondOrderBound bound = bound_second_order(equation);
     if (file == "fibre_placement.xml") continue;  // 72 errors: the slow one, bounded below
     ASSERT_TRUE(bound.bound.has_value()) << file << ": " << bound.reason;
@@ -164,23 +169,26 @@ TEST(SecondOrder, BoundHoldsAndIsNotVacuous) {
     // All errors at their worst together is rare among random signs; far more than that would be useless.
     EXPECT_GE(seen->position_mm, bound.bound->position_mm / 30) << file;
   }
-  const SecondOrderBound fibre = bound_second_order(derive(read_machine(kMachines + "fibre_placement.xml")));
+  const SecondOrderBound fibre =
+      bound_second_order(derive::derive(read_machine(kMachines + "fibre_placement.xml")));
   ASSERT_TRUE(fibre.bound.has_value()) << fibre.reason;
 }
 
 TEST(SecondOrder, GrowsWithTheSquareOfTheErrors) {
   const Machine machine = read_machine(kMachines + "moving_bridge.xml");
-  const auto bound = [&](double k) { return bound_second_order(derive(machine, {0.1 * k, 1e-3 * k, k})); };
+  const auto bound = [&](double k) {
+    return bound_second_order(derive::derive(machine, {0.1 * k, 1e-3 * k, k}));
+  };
   const double ratio = bound(1).bound->position_mm / bound(0.01).bound->position_mm;
   EXPECT_NEAR(ratio, 1e4, 200);  // levers grow by the errors themselves, 1e-3 relative
 }
 
 TEST(SecondOrder, AxisWithoutRangeIsNamed) {
-  const SecondOrderBound bound = bound_second_order(
-      derive(parse_machine("<machine><variables><static><e value=\"0\" nominal=\"0\" unit=\"deg\"/></static>"
-                           "<machineaxes><X/></machineaxes></variables>"
-                           "<transforms><sixdof rZ=\"e\"/><sixdof X=\"X\"/></transforms></machine>",
-                           "m.xml")));
+  const SecondOrderBound bound = bound_second_order(derive::derive(
+      parse_machine("<machine><variables><static><e value=\"0\" nominal=\"0\" unit=\"deg\"/></static>"
+                    "<machineaxes><X/></machineaxes></variables>"
+                    "<transforms><sixdof rZ=\"e\"/><sixdof X=\"X\"/></transforms></machine>",
+                    "m.xml")));
   EXPECT_FALSE(bound.bound.has_value());
   EXPECT_NE(bound.reason.find("X has no range"), std::string::npos) << bound.reason;
 }
@@ -195,7 +203,7 @@ Machine with_term(const std::string& term) {
 
 std::string refusal(const std::string& term) {
   try {
-    derive(with_term(term));
+    derive::derive(with_term(term));
   } catch (const InputError& error) {
     return error.what();
   }
@@ -213,7 +221,7 @@ TEST(Derive, RefusesAnErrorInsideAComparisonNamingTheExpression) {
 }
 
 TEST(Derive, AnErrorWhoseFactorIsZeroNominallyIsOfSecondOrder) {
-  const ErrorEquation equation = derive(with_term("X+k*sin(360*X/m)"));
+  const ErrorEquation equation = derive::derive(with_term("X+k*sin(360*X/m)"));
   ASSERT_EQ(equation.parameters.size(), 2U);
   EXPECT_TRUE(equation.sensitivity[1][0].is_zero());
   EXPECT_FALSE(equation.sensitivity[0][0].is_zero());

@@ -17,6 +17,10 @@
 #include "tools/text/files.h"
 
 namespace vernier::closed_forms_test {
+
+using namespace vernier::derive;
+using namespace vernier::model;
+using namespace vernier::text;
 namespace {
 
 using GiNaC::ex;
@@ -65,7 +69,7 @@ TEST(ClosedForms, SevenConfigurationsEqualThePublishedEquationsTermByTerm) {
   const auto published = json_of(kColumn + "equations.json")["configurations"];
   ASSERT_EQ(published.size(), 7U);
   for (const auto& [name, file] : kFiles) {
-    const ErrorEquation equation = derive(reference_machine(file));
+    const ErrorEquation equation = derive::derive(reference_machine(file));
     EXPECT_EQ(equation.parameters.size(), 21U) << name;
     const Reader read(equation);
     constexpr std::array<const char*, 3> kKeys = {"dX", "dY", "dZ"};
@@ -82,7 +86,7 @@ TEST(ClosedForms, SevenConfigurationsEqualThePublishedEquationsTermByTerm) {
 
 TEST(ClosedForms, ColumnMachineEqualsTheEquationPrintedInTheNotes) {
   const auto paper = json_of(kColumn + "equations.json")["paper_final"];
-  const ErrorEquation equation = derive(reference_machine("column_moving_table"));
+  const ErrorEquation equation = derive::derive(reference_machine("column_moving_table"));
   const Reader read(equation);
   EXPECT_TRUE((component(equation, 0) - read(paper["dX"])).expand().is_zero());
   EXPECT_TRUE((component(equation, 1) - read(paper["dY"])).expand().is_zero());
@@ -161,7 +165,7 @@ TEST(ClosedForms, PublishedCasesAreReproduced) {
   constexpr double kPrinted = 0.51e-9;  // mm: half a unit of the last printed digit
   const auto published = json_of(kColumn + "equations.json")["configurations"];
   std::map<std::string, ErrorEquation> equations;
-  for (const auto& [name, file] : kFiles) equations.emplace(name, derive(reference_machine(file)));
+  for (const auto& [name, file] : kFiles) equations.emplace(name, derive::derive(reference_machine(file)));
   double worst_linear = 0, worst_product = 0, worst_chain = 0;
   const auto all = cases();
   ASSERT_EQ(all.size(), 56U);
@@ -197,7 +201,7 @@ TEST(ClosedForms, PublishedCasesAreReproduced) {
 
 TEST(ClosedForms, FiveAxisJacobianEqualsThePublishedOne) {
   const auto model = json_of(kRoot + "/tests/data/spart/published_jacobian.json");
-  const ErrorEquation equation = derive(reference_machine("five_axis_bhead_ctable"));
+  const ErrorEquation equation = derive::derive(reference_machine("five_axis_bhead_ctable"));
   const Reader read(equation);
   ASSERT_EQ(equation.parameters.size(), 8U);
   constexpr std::array<const char*, 3> kKeys = {"dx", "dy", "dz"};

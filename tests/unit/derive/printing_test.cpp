@@ -8,13 +8,17 @@
 #include "tools/text/files.h"
 
 namespace vernier::printing_test {
+
+using namespace vernier::derive;
+using namespace vernier::model;
+using namespace vernier::text;
 namespace {
 
 const std::string kRoot = VERNIER_SOURCE_DIR;
 constexpr std::uint64_t kSeed = 20260101;
 
 DerivedMachine derived(const std::string& name) {
-  DerivedMachine d{derive(read_machine(kRoot + "/tables/machines/" + name + ".xml")), {}, {}, 200};
+  DerivedMachine d{derive::derive(read_machine(kRoot + "/tables/machines/" + name + ".xml")), {}, {}, 200};
   d.bound = bound_second_order(d.equation);
   d.sampled = sample_second_order(d.equation, d.samples, kSeed);
   return d;
@@ -38,7 +42,7 @@ TEST(PrintedEquation, IsTheGoldenOne) {
 
 TEST(PrintedEquation, TextReadsBackToTheSameExpressions) {
   for (const std::string name : {"five_axis_bhead_ctable", "ur10e", "fibre_placement_dh"}) {
-    const ErrorEquation e = derive(read_machine(kRoot + "/tables/machines/" + name + ".xml"));
+    const ErrorEquation e = derive::derive(read_machine(kRoot + "/tables/machines/" + name + ".xml"));
     GiNaC::symtab names;
     for (const ErrorParameter& p : e.parameters) names[p.name] = p.symbol;
     for (const NominalSymbol& n : e.nominal) names[n.name] = n.symbol;

@@ -11,6 +11,12 @@
 #include "tools/model/machine_reader.h"
 
 namespace vernier::acceptance_test {
+
+using namespace vernier::diagnose;
+using namespace vernier::effects;
+using namespace vernier::fit;
+using namespace vernier::maths;
+using namespace vernier::model;
 namespace {
 
 constexpr std::uint64_t kSeed = 11;
@@ -89,7 +95,7 @@ struct Setting {
       : text(machine_text),
         machine(parse_machine(text, "line.xml")),
         rows(parse_measurement(csv, "rows.csv", machine)),
-        evidence(fit(machine, rows).machine, rows),
+        evidence(fit::fit(machine, rows).machine, rows),
         backlash(make_candidate(machine, parse_add_string("backlash:axis=X", machine, built_in_effects()))),
         columns(evidence.columns(backlash, {})) {
     columns -= evidence.absorbed() * (evidence.absorbed().transpose() * columns);
@@ -100,7 +106,7 @@ struct Setting {
     Measurement others = rows;
     for (std::size_t row = 0; row < rows.rows(); ++row)
       if (rows.states.run[row] == run) others.check[row] = 1;
-    const FitResult result = fit(model, others);
+    const FitResult result = fit::fit(model, others);
     double weights = 0, mean = 0, sum = 0;
     for (int pass = 0; pass < 2; ++pass) {
       sum = 0;

@@ -12,6 +12,11 @@
 #include "tools/model/rebind.h"
 
 namespace vernier::columns_test {
+
+using namespace vernier::diagnose;
+using namespace vernier::effects;
+using namespace vernier::model;
+using namespace vernier::text;
 namespace {
 
 constexpr std::uint64_t kSeed = 7;

@@ -20,6 +20,8 @@
 #include "tools/text/words.h"
 
 namespace vernier::hidden_survey_test {
+
+using namespace vernier::text;
 namespace {
 
 using bench::Outcome;

@@ -12,6 +12,10 @@
 #include "tools/model/machine_reader.h"
 
 namespace vernier::learned_test {
+
+using namespace vernier::diagnose;
+using namespace vernier::fit;
+using namespace vernier::model;
 namespace {
 
 constexpr unsigned kSeed = 31;
@@ -43,7 +47,7 @@ std::string survey(const std::array<double, 3>& slope_mm_per_g) {
 Diagnosis diagnosis_of(const std::string& rows) {
   const Machine machine = parse_machine(kMachine, "m.xml");
   static const DiagnoseOptions kOptions;  // the candidates point into its catalogue
-  return diagnose(kMachine, machine, parse_measurement(rows, "m.csv", machine), kOptions);
+  return diagnose::diagnose(kMachine, machine, parse_measurement(rows, "m.csv", machine), kOptions);
 }
 
 TEST(LearnedTerm, ThatHoldsAtEveryFeedIsWrittenWithinItsDomain) {

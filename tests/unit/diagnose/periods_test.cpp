@@ -16,6 +16,11 @@
 #include "tools/model/machine_reader.h"
 
 namespace vernier::periods_test {
+
+using namespace vernier::diagnose;
+using namespace vernier::effects;
+using namespace vernier::fit;
+using namespace vernier::model;
 namespace {
 
 constexpr std::uint64_t kSeed = 11;
@@ -45,7 +50,7 @@ std::string survey(int rows, const std::function<double(int)>& place,
 
 Diagnosis diagnosed(const std::string& rows) {
   const Machine machine = parse_machine(kAxis, "m.xml");
-  return diagnose(kAxis, machine, parse_measurement(rows, "m.csv", machine));
+  return diagnose::diagnose(kAxis, machine, parse_measurement(rows, "m.csv", machine));
 }
 
 const ParameterEstimate& period_of(const Diagnosis& answer) {

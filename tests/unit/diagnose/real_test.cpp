@@ -13,6 +13,8 @@
 #include "tools/text/files.h"
 
 namespace vernier::real_test {
+
+using namespace vernier::text;
 namespace {
 
 using nlohmann::json;

@@ -16,6 +16,10 @@
 #include "tools/model/machine_reader.h"
 
 namespace vernier::records_test {
+
+using namespace vernier::diagnose;
+using namespace vernier::effects;
+using namespace vernier::model;
 namespace {
 
 const char* const kLinear = R"(<machine name="m"><variables><static><c value="0" unit="mm"/></static>
@@ -30,7 +34,7 @@ double sine(double turns) { return std::sin(2 * std::numbers::pi * turns); }
 Diagnosis diagnosed(const std::string& machine_text, const std::string& rows) {
   static const DiagnoseOptions options;  // answers point into its effects
   const Machine machine = parse_machine(machine_text, "m.xml");
-  return diagnose(machine_text, machine, parse_measurement(rows, "m.csv", machine), options);
+  return diagnose::diagnose(machine_text, machine, parse_measurement(rows, "m.csv", machine), options);
 }
 
 const CandidateFinding* find(const Diagnosis& answer, const std::string& id) {

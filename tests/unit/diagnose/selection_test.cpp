@@ -11,6 +11,8 @@
 #include "tools/diagnose/selection.h"
 
 namespace vernier::selection_test {
+
+using namespace vernier::diagnose;
 namespace {
 
 constexpr std::uint64_t kSeed = 31;

@@ -7,6 +7,8 @@
 #include <string>
 
 namespace vernier::diagnose_test {
+
+using namespace vernier::diagnose;
 namespace {
 
 TEST(Thresholds, EachIsVisitedOnceByItsOwnName) {

@@ -12,6 +12,10 @@
 #include "tools/model/machine_reader.h"
 
 namespace vernier::verdict_test {
+
+using namespace vernier::diagnose;
+using namespace vernier::model;
+using namespace vernier::text;
 namespace {
 
 constexpr std::uint64_t kSeed = 5;
@@ -39,7 +43,7 @@ TEST(Verdict, UnexplainedSaysWhereTheRestFailsBehindALadder) {
   const Machine machine = parse_machine(kAxis, "m.xml");
   const Measurement rows = parse_measurement(reversal_and_chirp(), "m.csv", machine);
 
-  const Diagnosis answer = diagnose(kAxis, machine, rows);
+  const Diagnosis answer = diagnose::diagnose(kAxis, machine, rows);
 
   ASSERT_EQ(answer.verdict, Verdict::kUnexplained) << "seed " << kSeed << ": " << answer.explanation;
   ASSERT_GE(answer.ladder.size(), 2U);
@@ -64,7 +68,7 @@ TEST(Verdict, NeedsNoFreeParameter) {
     }
     const Measurement rows = parse_measurement(text, "m.csv", machine);
 
-    const Diagnosis answer = diagnose(fixed, machine, rows);
+    const Diagnosis answer = diagnose::diagnose(fixed, machine, rows);
 
     EXPECT_EQ(answer.verdict, backlash > 0 ? Verdict::kMissingEffect : Verdict::kConsistent)
         << "seed " << kSeed << ": " << answer.explanation;
@@ -92,7 +96,7 @@ TEST(Verdict, NamesNothingWhereTheLadderIsPiecesOfOneFunction) {
   const Machine machine = parse_machine(kAxis, "m.xml");
   const Measurement rows = parse_measurement(chirp(), "m.csv", machine);
 
-  const Diagnosis answer = diagnose(kAxis, machine, rows);
+  const Diagnosis answer = diagnose::diagnose(kAxis, machine, rows);
 
   EXPECT_EQ(answer.verdict, Verdict::kUnexplained) << "seed " << kSeed << ": " << answer.explanation;
   EXPECT_GE(answer.ladder.size(), 4U);
@@ -112,7 +116,7 @@ TEST(Verdict, TwoPeriodsOfOneAxisAreNamed) {
     }
   const Machine machine = parse_machine(kAxis, "m.xml");
 
-  const Diagnosis answer = diagnose(kAxis, machine, parse_measurement(text, "m.csv", machine));
+  const Diagnosis answer = diagnose::diagnose(kAxis, machine, parse_measurement(text, "m.csv", machine));
 
   EXPECT_EQ(answer.verdict, Verdict::kMissingEffect) << "seed " << kSeed << ": " << answer.explanation;
   ASSERT_EQ(answer.ladder.size(), 3U);
@@ -149,7 +153,7 @@ TEST(Verdict, TwoPeriodsThatTheAxisDoesNotResolveAreNotNamed) {
     return 0.006 * std::sin(turn / 40) + 0.006 * std::sin(turn / 42.6);
   });
 
-  const Diagnosis answer = diagnose(kAxis, machine, parse_measurement(text, "m.csv", machine));
+  const Diagnosis answer = diagnose::diagnose(kAxis, machine, parse_measurement(text, "m.csv", machine));
 
   EXPECT_EQ(answer.verdict, Verdict::kUnexplained) << "seed " << kSeed << ": " << answer.explanation;
   EXPECT_GE(answer.ladder.size(), 3U);
@@ -163,7 +167,7 @@ TEST(Verdict, ACurveFasterThanSmoothIsNotNamed) {
     return 0.0015 * std::sin(2 * 3.14159265358979 * 4.1 * (x / 500) * (x / 500) + 0.7);
   });
 
-  const Diagnosis answer = diagnose(kAxis, machine, parse_measurement(text, "m.csv", machine));
+  const Diagnosis answer = diagnose::diagnose(kAxis, machine, parse_measurement(text, "m.csv", machine));
 
   EXPECT_EQ(answer.verdict, Verdict::kUnexplained) << "seed " << kSeed << ": " << answer.explanation;
   EXPECT_NE(answer.explanation.find("faster than a smooth curve"), std::string::npos) << answer.explanation;
@@ -178,7 +182,7 @@ TEST(Verdict, ASmoothCurveThatIsNoneOfTheFormsIsNamed) {
     return 0.008 * std::exp(-part * part);
   });
 
-  const Diagnosis answer = diagnose(kAxis, machine, parse_measurement(text, "m.csv", machine));
+  const Diagnosis answer = diagnose::diagnose(kAxis, machine, parse_measurement(text, "m.csv", machine));
 
   EXPECT_EQ(answer.verdict, Verdict::kMissingEffect) << "seed " << kSeed << ": " << answer.explanation;
   EXPECT_EQ(answer.ladder.at(1).effect, "positioning-error");
@@ -198,7 +202,8 @@ TEST(Verdict, ACurveThatNothingCouldRefuteIsNotNamed) {
       [](int i) { return 500.0 / 11 * (i % 12); },
       [](double x, double) { return 0.02 * std::sin(2 * 3.14159265358979 * 6 * (x / 500) * (x / 500)); });
 
-  const Diagnosis answer = diagnose(kTableOfNine, machine, parse_measurement(text, "m.csv", machine));
+  const Diagnosis answer =
+      diagnose::diagnose(kTableOfNine, machine, parse_measurement(text, "m.csv", machine));
 
   EXPECT_EQ(answer.verdict, Verdict::kUnexplained) << "seed " << kSeed << ": " << answer.explanation;
 }
@@ -214,8 +219,9 @@ std::string growth(double bent) {
 TEST(Verdict, ANameThatDoesNotHoldAlongTheAxisIsNotGiven) {
   const Machine machine = parse_machine(kAxis, "m.xml");
 
-  const Diagnosis straight = diagnose(kAxis, machine, parse_measurement(growth(0), "m.csv", machine));
-  const Diagnosis bent = diagnose(kAxis, machine, parse_measurement(growth(0.3), "m.csv", machine));
+  const Diagnosis straight =
+      diagnose::diagnose(kAxis, machine, parse_measurement(growth(0), "m.csv", machine));
+  const Diagnosis bent = diagnose::diagnose(kAxis, machine, parse_measurement(growth(0.3), "m.csv", machine));
 
   EXPECT_EQ(straight.verdict, Verdict::kMissingEffect) << "seed " << kSeed << ": " << straight.explanation;
   EXPECT_EQ(straight.ladder.at(1).effect, "thermal-scale");
@@ -228,7 +234,7 @@ TEST(Verdict, AJumpIsNoSmoothCurve) {
   const Machine machine = parse_machine(kAxis, "m.xml");
   const std::string text = survey(anywhere(), [](double x, double) { return x > 210 ? 0.0025 : 0.0; });
 
-  const Diagnosis answer = diagnose(kAxis, machine, parse_measurement(text, "m.csv", machine));
+  const Diagnosis answer = diagnose::diagnose(kAxis, machine, parse_measurement(text, "m.csv", machine));
 
   EXPECT_EQ(answer.verdict, Verdict::kUnexplained) << "seed " << kSeed << ": " << answer.explanation;
   EXPECT_NE(answer.explanation.find("a jump at 2"), std::string::npos) << answer.explanation;
@@ -248,7 +254,7 @@ TEST(Verdict, AGrossOutlierDoesNotHideACause) {
                           i / 50);
     }
 
-    const Diagnosis answer = diagnose(kAxis, machine, parse_measurement(text, "m.csv", machine));
+    const Diagnosis answer = diagnose::diagnose(kAxis, machine, parse_measurement(text, "m.csv", machine));
 
     EXPECT_EQ(answer.verdict, Verdict::kMissingEffect) << "seed " << kSeed << ": " << answer.explanation;
     EXPECT_EQ(answer.ladder.back().effect, "backlash");
@@ -261,7 +267,7 @@ TEST(Verdict, RowsOutOfTheOrderOfTimeAreToldWithTheirLine) {
   const Measurement rows =
       parse_measurement("X[mm],t[s],x[mm],run\n0,0,0,a\n1,5,1,a\n0,1,0,b\n2,4,2,a\n", "m.csv", machine);
   try {
-    diagnose(kAxis, machine, rows);
+    diagnose::diagnose(kAxis, machine, rows);
     FAIL() << "no error";
   } catch (const InputError& error) {
     EXPECT_EQ(std::string(error.what()).find("m.csv:5: \"t\": falls from 5 to 4"), 0U) << error.what();

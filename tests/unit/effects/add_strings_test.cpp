@@ -7,6 +7,10 @@
 #include "tools/text/error.h"
 
 namespace vernier::add_strings_test {
+
+using namespace vernier::effects;
+using namespace vernier::model;
+using namespace vernier::text;
 namespace {
 
 constexpr const char* kText = R"xml(<?xml version="1.0"?>

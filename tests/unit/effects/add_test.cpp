@@ -12,6 +12,11 @@
 #include "tools/text/error.h"
 
 namespace vernier::add_test {
+
+using namespace vernier::effects;
+using namespace vernier::fit;
+using namespace vernier::model;
+using namespace vernier::text;
 namespace {
 
 using diagnose_test::all_choices;

@@ -11,6 +11,11 @@
 #include "tools/model/prediction.h"
 
 namespace vernier::base_row_test {
+
+using namespace vernier::diagnose;
+using namespace vernier::effects;
+using namespace vernier::model;
+using namespace vernier::text;
 namespace {
 
 using diagnose_test::machine_path;
@@ -127,7 +132,7 @@ Measurement readings(const Machine& machine, const Eigen::Vector3d& direction) {
 TEST(BaseRow, LetsADriftOfARobotBeNamed) {
   const Machine machine = parse_machine(kArm, "arm.xml");
 
-  const Diagnosis answer = diagnose(kArm, machine, readings(machine, {0, 0.2, 0}));
+  const Diagnosis answer = diagnose::diagnose(kArm, machine, readings(machine, {0, 0.2, 0}));
 
   ASSERT_EQ(answer.verdict, Verdict::kMissingEffect) << "seed " << kSeed << ": " << answer.explanation;
   EXPECT_EQ(answer.ladder.back().effect, "base-drift");
@@ -147,7 +152,7 @@ TEST(BaseRow, LetsADriftOfARobotBeNamed) {
 TEST(BaseRow, StandsBehindTheRowsOfTheFile) {
   const Machine machine = parse_machine(kArm, "arm.xml");
 
-  const Diagnosis answer = diagnose(kArm, machine, readings(machine, {0, 0, 0.2}));
+  const Diagnosis answer = diagnose::diagnose(kArm, machine, readings(machine, {0, 0, 0.2}));
 
   ASSERT_EQ(answer.verdict, Verdict::kMissingEffect) << "seed " << kSeed << ": " << answer.explanation;
   EXPECT_NE(answer.ladder.back().add.find("branch=tool,transform=1,dof=d"), std::string::npos)

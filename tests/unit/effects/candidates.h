@@ -15,6 +15,9 @@
 // Every form of every effect at the places of a machine, and rows to try them on.
 namespace vernier::diagnose_test {
 
+using namespace vernier::effects;
+using namespace vernier::model;
+
 inline std::string machine_path(const std::string& name) {
   return VERNIER_SOURCE_DIR "/tables/machines/" + name + ".xml";
 }

@@ -11,6 +11,10 @@
 #include "tools/text/files.h"
 
 namespace vernier::effects_test {
+
+using namespace vernier::effects;
+using namespace vernier::model;
+using namespace vernier::text;
 namespace {
 
 constexpr const char* kSound =

@@ -8,6 +8,10 @@
 #include "tools/model/machine_reader.h"
 
 namespace vernier::places_test {
+
+using namespace vernier::effects;
+using namespace vernier::model;
+using namespace vernier::text;
 namespace {
 
 using diagnose_test::machine_path;

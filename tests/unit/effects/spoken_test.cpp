@@ -8,6 +8,10 @@
 #include "tools/text/files.h"
 
 namespace vernier::spoken_test {
+
+using namespace vernier::effects;
+using namespace vernier::model;
+using namespace vernier::text;
 namespace {
 
 struct Spoken {

@@ -9,6 +9,9 @@
 #include "tools/text/error.h"
 
 namespace vernier::budget_test {
+
+using namespace vernier::evaluate;
+using namespace vernier::text;
 namespace {
 
 PositioningBudget shop() {

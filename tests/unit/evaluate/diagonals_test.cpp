@@ -10,6 +10,9 @@
 #include "tools/text/error.h"
 
 namespace vernier::diagonals_test {
+
+using namespace vernier::evaluate;
+using namespace vernier::text;
 namespace {
 
 /// A machine of 400 x 300 x 200 mm with a squareness and a reversal of X, measured along a diagonal by an

@@ -15,6 +15,9 @@
 #include "tools/text/files.h"
 
 namespace vernier::positioning_test {
+
+using namespace vernier::evaluate;
+using namespace vernier::text;
 namespace {
 
 const std::string kData = std::string(VERNIER_SOURCE_DIR) + "/tests/data/iso230_2/ecmc.csv";

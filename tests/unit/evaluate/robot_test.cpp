@@ -10,6 +10,9 @@
 #include "tools/text/error.h"
 
 namespace vernier::robot_test {
+
+using namespace vernier::evaluate;
+using namespace vernier::text;
 namespace {
 
 using Eigen::Vector3d;

@@ -11,6 +11,10 @@
 #include "tools/text/numbers.h"
 
 namespace vernier::component_csv_test {
+
+using namespace vernier::exchange;
+using namespace vernier::model;
+using namespace vernier::text;
 namespace {
 
 constexpr double kDeg = 180 / 3.14159265358979323846;

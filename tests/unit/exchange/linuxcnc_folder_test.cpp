@@ -6,6 +6,10 @@
 #include "tools/model/machine_reader.h"
 
 namespace vernier::linuxcnc_folder_test {
+
+using namespace vernier::exchange;
+using namespace vernier::model;
+using namespace vernier::text;
 namespace {
 
 Machine machine_with(const std::string& axes, const std::string& inputs = "") {

@@ -8,6 +8,11 @@
 #include "tools/model/machine_writer.h"
 
 namespace vernier::screw_comp_test {
+
+using namespace vernier::exchange;
+using namespace vernier::kinematics;
+using namespace vernier::model;
+using namespace vernier::text;
 namespace {
 
 /// X with a table and a reversal; Y is a table under the workpiece.

@@ -6,6 +6,9 @@
 #include "tools/text/error.h"
 
 namespace vernier::daemon_board_test {
+
+using namespace vernier::text;
+using namespace vernier::upload;
 namespace {
 
 class DaemonBoard : public DaemonFolder {};

@@ -27,6 +27,9 @@ extern char** environ;
 
 namespace vernier {
 
+using namespace vernier::text;
+using namespace vernier::upload;
+
 inline bool wait_for(const std::function<bool()>& done, int seconds = 20) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(seconds);
   while (!done()) {

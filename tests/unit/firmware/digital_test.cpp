@@ -6,6 +6,8 @@
 #include "tests/unit/firmware/upload_rig.h"
 
 namespace vernier::digital_test {
+
+using namespace vernier::upload;
 namespace {
 
 struct Switch : DigitalInput, DigitalOutput {

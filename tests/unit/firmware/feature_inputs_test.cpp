@@ -19,6 +19,10 @@
 #include "tools/vibration/signal_features.h"
 
 namespace vernier::feature_inputs_test {
+
+using namespace vernier::compile;
+using namespace vernier::model;
+using namespace vernier::vibration;
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;

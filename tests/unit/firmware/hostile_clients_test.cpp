@@ -12,6 +12,9 @@
 #include "tools/text/error.h"
 
 namespace vernier::hostile_clients_test {
+
+using namespace vernier::text;
+using namespace vernier::upload;
 namespace {
 
 // The unit's WatchdogSec; told four times a second. The sanitizers stretch fifty connections a second by ten,

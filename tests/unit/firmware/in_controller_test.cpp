@@ -6,6 +6,10 @@
 #include "tools/upload/live.h"
 
 namespace vernier::in_controller_test {
+
+using namespace vernier::compile;
+using namespace vernier::model;
+using namespace vernier::upload;
 namespace {
 
 struct Switch : DigitalInput {

@@ -14,6 +14,9 @@
 #include "tools/upload/client.h"
 
 namespace vernier::link_test {
+
+using namespace vernier::text;
+using namespace vernier::upload;
 namespace {
 
 /// A client whose requests go straight into the board's link; between two of them the board ticks.

@@ -52,6 +52,8 @@ void free(void* block) {
 #endif
 
 namespace vernier::no_allocation_test {
+
+using namespace vernier::upload;
 namespace {
 
 TEST(Tick, TouchesNoHeapWhileImagesComeInAndFaultsHappen) {

@@ -8,6 +8,9 @@
 #include "tools/upload/client.h"
 
 namespace vernier::probing_test {
+
+using namespace vernier::text;
+using namespace vernier::upload;
 namespace {
 
 constexpr double kDelay = 6.16e-3;

@@ -11,6 +11,8 @@
 
 namespace vernier {
 
+using namespace vernier::compile;
+
 /// The small machine on the simulated plant, roaming through its range at 20 degC + `warmer`.
 class Rig {
  public:

@@ -8,6 +8,9 @@
 
 namespace vernier {
 
+using namespace vernier::compile;
+using namespace vernier::model;
+
 /// Two axes and a thermometer: deviation of X is 10 um/100 mm of scale and 4 um of backlash, of Y 20 um per
 /// degC at the far end. X may be corrected by 30 um (so that it saturates beyond 260 mm), Y by 1 mm.
 inline constexpr const char* kSmallMachine = R"xml(<machine name="small">

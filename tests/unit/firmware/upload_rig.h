@@ -15,6 +15,10 @@
 
 namespace vernier {
 
+using namespace vernier::compile;
+using namespace vernier::model;
+using namespace vernier::upload;
+
 /// The small machine with another scale error, so that its equation is another one.
 inline std::vector<std::uint8_t> small_image_bytes(double scale, const std::string& text = kSmallMachine) {
   std::string changed = text;

@@ -13,6 +13,8 @@
 #include "tests/unit/firmware/upload_rig.h"
 
 namespace vernier::upload_test {
+
+using namespace vernier::upload;
 namespace {
 
 constexpr std::uint64_t kIssued = 1'000'000;

@@ -14,6 +14,10 @@
 #include "tools/text/files.h"
 
 namespace vernier::vernierd_test {
+
+using namespace vernier::compile;
+using namespace vernier::model;
+using namespace vernier::text;
 namespace {
 
 struct Outcome {

@@ -19,6 +19,9 @@
 #include "tools/model/prediction.h"
 
 namespace vernier::convention_test {
+
+using namespace vernier::fit;
+using namespace vernier::model;
 namespace {
 
 constexpr std::uint64_t kSeed = 7;
@@ -83,7 +86,7 @@ double difference(const FitResult& a, const FitResult& b) {
 
 TEST(Convention, TheAnswerDoesNotDependOnTheStart) {
   const Bridge bridge;
-  const FitResult reference = fit(bridge.model, bridge.rows);
+  const FitResult reference = fit::fit(bridge.model, bridge.rows);
   ASSERT_TRUE(reference.converged);
   std::mt19937_64 random(kSeed);
   std::normal_distribution<double> normal;
@@ -94,14 +97,15 @@ TEST(Convention, TheAnswerDoesNotDependOnTheStart) {
         for (std::size_t c = 0; c < 6; ++c) station.value[c] = (c < 3 ? 0.05 : 0.05) * normal(random);
     for (Static& item : from.statics)
       if (!item.hidden) item.value += 1e-3 * normal(random);
-    EXPECT_LT(difference(reference, fit(from, bridge.rows)), 1e-6) << "start " << start << ", seed " << kSeed;
+    EXPECT_LT(difference(reference, fit::fit(from, bridge.rows)), 1e-6)
+        << "start " << start << ", seed " << kSeed;
   }
-  EXPECT_LT(difference(reference, fit(reference.machine, bridge.rows)), 1e-6);  // refits to itself
+  EXPECT_LT(difference(reference, fit::fit(reference.machine, bridge.rows)), 1e-6);  // refits to itself
 }
 
 TEST(Convention, TheAnswerDoesNotDependOnTheOrderOfRowsOrStages) {
   const Bridge bridge;
-  const FitResult reference = fit(bridge.model, bridge.rows);
+  const FitResult reference = fit::fit(bridge.model, bridge.rows);
   std::mt19937_64 random(kSeed);
   std::vector<std::size_t> order(bridge.rows.rows());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -116,11 +120,11 @@ TEST(Convention, TheAnswerDoesNotDependOnTheOrderOfRowsOrStages) {
           o.row = to;
           shuffled.observations.push_back(o);
         }
-    EXPECT_LT(difference(reference, fit(bridge.model, shuffled)), 1e-6) << "order " << turn;
+    EXPECT_LT(difference(reference, fit::fit(bridge.model, shuffled)), 1e-6) << "order " << turn;
   }
   FitOptions staged;
   staged.stages = {{"BaseShift*"}, {"table.*.rX"}, {"table.*"}};
-  const FitResult result = fit(bridge.model, bridge.rows, staged);
+  const FitResult result = fit::fit(bridge.model, bridge.rows, staged);
   EXPECT_LT(difference(reference, result), 1e-6);
   ASSERT_EQ(result.stages.size(), 4U);  // a line of figures each, and one for all together
   EXPECT_GT(*result.stages[0].fit.rms_um, *result.stages[3].fit.rms_um);
@@ -151,10 +155,10 @@ TEST(Convention, LeavesWhatTheDataDetermine) {
   for (std::size_t i = 0; i < bridge.rows.observations.size(); ++i)
     bridge.rows.observations[i].value = exact[static_cast<Eigen::Index>(i)] + kU_mm * normal(random);
 
-  const FitResult weak = fit(bridge.model, bridge.rows);
+  const FitResult weak = fit::fit(bridge.model, bridge.rows);
   Machine wide = bridge.model;
   for (Table& table : wide.tables) table.scale.fill(5);
-  const FitResult none = fit(wide, bridge.rows);
+  const FitResult none = fit::fit(wide, bridge.rows);
 
   std::size_t determined = 0;
   for (std::size_t i = 0; i < weak.estimates.size(); ++i) {
@@ -169,7 +173,7 @@ TEST(Convention, LeavesWhatTheDataDetermine) {
 
 TEST(Convention, PutsRigidMotionIntoTheSetUpAndNothingBeyondItsScale) {
   const Bridge bridge;
-  const FitResult result = fit(bridge.model, bridge.rows);
+  const FitResult result = fit::fit(bridge.model, bridge.rows);
   for (const ParameterEstimate& estimate : result.estimates) {
     EXPECT_TRUE(std::isfinite(estimate.std)) << estimate.name;
     EXPECT_LE(estimate.std, 1.01 * estimate.scale) << estimate.name;
@@ -196,7 +200,7 @@ TEST(Convention, SaysWhatItDecided) {
       "m.xml");
   std::string csv = "X[mm],x[mm],y[mm],u[mm]\n";
   for (int i = 0; i < 20; ++i) csv += fmt::format("{},{},{},0.001\n", 10 * i, 10 * i + 0.2, 0.1);
-  const FitResult result = fit(machine, parse_measurement(csv, "m.csv", machine));
+  const FitResult result = fit::fit(machine, parse_measurement(csv, "m.csv", machine));
   EXPECT_EQ(result.estimates[0].from, Origin::kConvention);  // a and b share what is seen of their sum
   EXPECT_NEAR(result.estimates[0].value, 0.1, 1e-4);
   EXPECT_NEAR(result.estimates[1].value, 0.1, 1e-4);
@@ -213,7 +217,7 @@ double covered_share(std::uint64_t first, std::uint64_t count, bool bad_ram, boo
   std::size_t covered = 0, asked = 0;
   for (std::uint64_t seed = first; seed < first + count; ++seed) {
     const Bridge bridge(seed, bad_ram, two_stations);
-    const FitResult result = fit(bridge.model, bridge.rows);
+    const FitResult result = fit::fit(bridge.model, bridge.rows);
     const Machine said = with_tool(result.machine, {50, -50, -80}),
                   is = with_tool(bridge.truth, {50, -50, -80});
     const Reach reach(said);
@@ -254,7 +258,7 @@ TEST(Reach, CoversMostOfOneBadAxisWhoseSquarenessHidesItsAngles) {
 
 TEST(FitRecord, TravelsInTheMachineFile) {
   const Bridge bridge;
-  const FitResult result = fit(bridge.model, bridge.rows);
+  const FitResult result = fit::fit(bridge.model, bridge.rows);
   const std::string text = update_machine_text(support::bridge_text(7), result.machine, true);
   const Machine read = parse_machine(text, "fitted.xml");
   ASSERT_TRUE(read.fitted);
@@ -273,7 +277,7 @@ TEST(FitRecord, TravelsInTheMachineFile) {
 
 TEST(Sanity, NamesTheMistakeInTheReadings) {
   const Bridge bridge;
-  const auto absurd = [&](Measurement rows) { return fit(bridge.model, rows).absurd; };
+  const auto absurd = [&](Measurement rows) { return fit::fit(bridge.model, rows).absurd; };
   EXPECT_EQ(absurd(bridge.rows), "");
   Measurement swapped = bridge.rows;
   std::swap(swapped.states.axis[0], swapped.states.axis[1]);
@@ -314,7 +318,7 @@ TEST(Sanity, NamesReadingsThatComeFromNoFile) {
   for (std::size_t i = 0; i < rows.observations.size(); ++i)
     rows.observations[i].value = exact[static_cast<Eigen::Index>(i)];
   rows.observations[3 * 6 + 2].value += 50;
-  const FitResult result = fit(bridge.model, rows);
+  const FitResult result = fit::fit(bridge.model, rows);
   EXPECT_EQ(result.worst.reading, "point:7 z");
 }
 
@@ -349,7 +353,7 @@ TEST(Convention, ErrorThatSetUpsHideIsAsLargeAsTheReadingsSay) {
   std::normal_distribution<double> normal;
   for (std::size_t i = 0; i < rows.observations.size(); ++i)
     rows.observations[i].value = exact[static_cast<Eigen::Index>(i)] + 0.005 * normal(random);
-  const FitResult result = fit(model, rows);
+  const FitResult result = fit::fit(model, rows);
   ASSERT_TRUE(result.converged);
   const ParameterEstimate& bend = result.estimates[0];
   ASSERT_EQ(bend.name, "kb");

@@ -9,6 +9,9 @@
 #include "tools/model/machine_writer.h"
 
 namespace vernier::domain_test {
+
+using namespace vernier::fit;
+using namespace vernier::model;
 namespace {
 
 /// A learned term k*RMS in its domain over RMS and T, with the statics that `add` writes.
@@ -33,7 +36,7 @@ TEST(Domain, IsClosedAroundTheRowsOfTheFitAlone) {
   const Measurement rows = parse_measurement(kTraining, "m.csv", machine);
   ASSERT_EQ(domain_ranges(machine).size(), 2u);
   EXPECT_TRUE(domain_ranges(machine)[0].open);
-  const FitResult fitted = fit(machine, rows);
+  const FitResult fitted = fit::fit(machine, rows);
   EXPECT_NEAR(fitted.estimates[0].value, 0.01, 1e-9);
   const std::string closed =
       close_domains(update_machine_text(text, fitted.machine, true), fitted.machine, rows);
@@ -54,7 +57,7 @@ TEST(Domain, FadesTheTermToNothingAndSaysWhere) {
   const std::string text = machine_text();
   const Machine machine = parse_machine(text, "m.xml");
   const Measurement training = parse_measurement(kTraining, "m.csv", machine);
-  Machine fitted = fit(machine, training).machine;
+  Machine fitted = fit::fit(machine, training).machine;
   const Machine trained =
       parse_machine(close_domains(update_machine_text(text, fitted, true), fitted, training), "m.xml");
   const Measurement use = parse_measurement(

@@ -13,6 +13,10 @@
 #include "tools/model/prediction.h"
 
 namespace vernier::fit_test {
+
+using namespace vernier::fit;
+using namespace vernier::model;
+using namespace vernier::text;
 namespace {
 
 constexpr unsigned kSeed = 7;
@@ -43,7 +47,7 @@ TEST(Fit, FindsTheParametersOfAMachineWithEverything) {
   for (Static& item : start.statics) item.value = item.nominal.value_or(item.value);
   for (Table& table : start.tables)
     for (Station& station : table.stations) station.value.fill(0);
-  const FitResult result = fit(start, m);
+  const FitResult result = fit::fit(start, m);
   EXPECT_TRUE(result.converged);
   ASSERT_TRUE(result.after.rms_um.has_value());
   EXPECT_NEAR(*result.after.rms_um, 1, 0.05);
@@ -68,7 +72,7 @@ TEST(Fit, CeresComesToTheSameMinimum) {
   measure(truth, m, 1e-3, random);
   FitOptions ceres;
   ceres.solver = Solver::kCeres;
-  const FitResult a = fit(truth, m), b = fit(truth, m, ceres);
+  const FitResult a = fit::fit(truth, m), b = fit::fit(truth, m, ceres);
   EXPECT_NEAR(a.chi_square, b.chi_square, 1e-6 * a.chi_square);
 }
 
@@ -91,7 +95,7 @@ TEST(Fit, StandardUncertaintyIsTheSpreadOfManyFits) {
     constexpr int kFits = 2000;
     for (int i = 0; i < kFits; ++i) {
       measure(machine, m, 0.01, random);
-      const FitResult result = fit(machine, m);
+      const FitResult result = fit::fit(machine, m);
       squares += std::pow(result.estimates[1].value, 2);
       claimed += std::pow(result.estimates[1].std, 2);
     }
@@ -104,7 +108,7 @@ TEST(Fit, StandardUncertaintyIsTheSpreadOfManyFits) {
 TEST(Fit, NamesWhatTheDataCannotSeparateAndLeavesItNearNominal) {
   const Machine machine = line_machine("<a value=\"0.5\"/><b value=\"0.1\"/><c value=\"3\"/>", "X+a+b");
   const Measurement m = parse_measurement("X[mm],x[mm]\n0,1\n1,2\n2,3\n", "m.csv", machine);
-  const FitResult result = fit(machine, m);
+  const FitResult result = fit::fit(machine, m);
   EXPECT_EQ(result.observability.rank, 1);
   ASSERT_EQ(result.observability.unidentifiable.size(), 2U);
   EXPECT_NEAR(result.estimates[0].value + result.estimates[1].value, 1, 1e-9);
@@ -127,7 +131,7 @@ TEST(Fit, AParameterThatOnlyMovesRoundingStaysAtItsStart) {
       "m.xml");
   const Measurement m = parse_measurement(
       "X[mm],x[mm],z[mm]\n0,1,-69.28\n1000,1001.001,-69.283\n2000,2001,-69.28\n", "m.csv", machine);
-  const FitResult result = fit(machine, m);
+  const FitResult result = fit::fit(machine, m);
   EXPECT_EQ(result.estimates[1].value, 0.25);
   EXPECT_EQ(result.observability.unidentifiable, (std::vector<std::vector<std::size_t>>{{1}}));
 }
@@ -136,7 +140,7 @@ TEST(Fit, CheckRowsNeverEnter) {
   const Machine machine = line_machine("<a value=\"0\"/>", "X+a");
   const Measurement m =
       parse_measurement("X[mm],x[mm],role\n0,1,fit\n1,2,fit\n2,900,check\n", "m.csv", machine);
-  const FitResult result = fit(machine, m);
+  const FitResult result = fit::fit(machine, m);
   EXPECT_NEAR(result.estimates[0].value, 1, 1e-12);
   EXPECT_NEAR(*result.check.rms_um, 897e3, 1e-3);
   EXPECT_NEAR(*result.before.rms_um, 1000, 1e-9);
@@ -147,13 +151,13 @@ TEST(Fit, APriorHoldsAParameterAsAMeasurementWould) {
   const Measurement m = parse_measurement("X[mm],x[mm],u[mm]\n0,1,0.1\n1,2,0.1\n", "m.csv", machine);
   FitOptions options;
   options.priors = {{"a*", 0.1}};
-  const FitResult result = fit(machine, m, options);
+  const FitResult result = fit::fit(machine, m, options);
   // Two readings of 1 and a prior of 0, all with 0.1; the convention beside them moves it by less than 1 % of
   // its standard uncertainty, 0.06.
   EXPECT_NEAR(result.estimates[0].value, 2.0 / 3, 6e-4);
   ASSERT_EQ(result.priors.size(), 1U);
   options.priors = {{"nobody", 1}};
-  EXPECT_THROW(fit(machine, m, options), InputError);
+  EXPECT_THROW(fit::fit(machine, m, options), InputError);
 }
 
 TEST(Fit, StagesEndWhereAllAtOnceEnds) {
@@ -167,7 +171,7 @@ TEST(Fit, StagesEndWhereAllAtOnceEnds) {
       if (table.free[0]) station.value.fill(0);
   FitOptions staged;
   staged.stages = {{"table.X*"}, {"table.C*", "k"}};
-  EXPECT_NEAR(fit(start, m, staged).chi_square, fit(start, m).chi_square, 1e-3);
+  EXPECT_NEAR(fit::fit(start, m, staged).chi_square, fit::fit(start, m).chi_square, 1e-3);
 }
 
 /// The model's own claim about rows that it did not see: readings of the true machine lie within it.
@@ -177,7 +181,7 @@ TEST(Fit, CheckRowsAgreeWithTheClaimedUncertainty) {
   Measurement m = support::full_measurement(truth, 200, random);
   measure(truth, m, 1e-3, random);
   for (std::size_t row = 0; row < m.rows(); row += 4) m.check[row] = 1;
-  const FitResult result = fit(truth, m);
+  const FitResult result = fit::fit(truth, m);
   ASSERT_TRUE(result.normalised_check.has_value());
   // 50 rows of 8 readings: 1 / sqrt(2 * 400) = 3.5 %.
   EXPECT_NEAR(result.normalised_check->rms, 1, 0.14);
@@ -190,11 +194,11 @@ TEST(Fit, RobustLossIsNotPulledByAnOutlier) {
   for (int i = 0; i < 20; ++i) text += std::to_string(i) + "," + std::to_string(i + 1) + ",0.01\n";
   text += "20,71,0.01\n";
   const Measurement m = parse_measurement(text, "m.csv", machine);
-  EXPECT_GT(fit(machine, m).estimates[0].value, 3);
+  EXPECT_GT(fit::fit(machine, m).estimates[0].value, 3);
   for (const Loss loss : {Loss::kHuber, Loss::kCauchy}) {
     FitOptions options;
     options.loss = loss;
-    EXPECT_NEAR(fit(machine, m, options).estimates[0].value, 1, 0.01);
+    EXPECT_NEAR(fit::fit(machine, m, options).estimates[0].value, 1, 0.01);
   }
 }
 
@@ -213,7 +217,8 @@ TEST(Fit, RobustLossKeepsItsUncertaintyBesideAnOutlier) {
   for (const Loss loss : {Loss::kHuber, Loss::kCauchy}) {
     FitOptions options;
     options.loss = loss;
-    const FitResult clean = fit(machine, rows(0), options), outlier = fit(machine, rows(30), options);
+    const FitResult clean = fit::fit(machine, rows(0), options),
+                    outlier = fit::fit(machine, rows(30), options);
     EXPECT_TRUE(outlier.converged);
     EXPECT_LT(outlier.estimates[0].std, 1.5 * clean.estimates[0].std);
     EXPECT_LT(std::abs(outlier.estimates[0].value - 1), 4 * outlier.estimates[0].std);
@@ -229,7 +234,7 @@ struct RealCase {
 void expect_published(const std::string& folder, const RealCase& real) {
   const Machine machine = read_machine(folder + "/" + real.name + "/machine.xml");
   const Measurement m = read_measurement({folder + "/" + real.name + "/meas.csv"}, machine);
-  const FitResult result = fit(machine, m);
+  const FitResult result = fit::fit(machine, m);
   EXPECT_TRUE(result.converged) << real.name;
   EXPECT_NEAR(*result.after.rms_um, real.fit_um, real.tolerance_um) << real.name;
   EXPECT_NEAR(*result.check.rms_um, real.check_um, real.tolerance_um) << real.name;
@@ -291,7 +296,7 @@ TEST(Fit, DoesNotImitateAMissingEffectByTurnsOfManyDegrees) {
   Measurement m = parse_measurement(csv, "m.csv", truth);
   measure(truth, m, 3e-3, random);
 
-  const FitResult result = fit(start, m);
+  const FitResult result = fit::fit(start, m);
 
   for (const ParameterEstimate& estimate : result.estimates) {
     const double angle = estimate.unit == "deg" ? std::abs(estimate.value) : 0;

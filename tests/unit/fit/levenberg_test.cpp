@@ -8,6 +8,8 @@
 #include <functional>
 
 namespace vernier::levenberg_test {
+
+using namespace vernier::fit;
 namespace {
 
 using Eigen::MatrixXd;

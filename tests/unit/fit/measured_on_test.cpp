@@ -11,6 +11,9 @@
 #include "tools/model/prediction.h"
 
 namespace vernier::measured_on_test {
+
+using namespace vernier::fit;
+using namespace vernier::model;
 namespace {
 
 constexpr std::uint64_t kSeed = 11;
@@ -87,10 +90,10 @@ double difference(const FitResult& a, const FitResult& b) {
 
 TEST(MeasuredOn, MixedRowsGiveTheFitOfUncorrectedOnes) {
   const Survey survey;
-  const FitResult off = fit(survey.model, survey.read(survey.off));
+  const FitResult off = fit::fit(survey.model, survey.read(survey.off));
   const Measurement mixed = survey.read(survey.mixed);
   ASSERT_TRUE(mixed.candidates.empty());
-  const FitResult on = fit(survey.model, mixed);
+  const FitResult on = fit::fit(survey.model, mixed);
   // 30 um to the side, the slope of an error is 1e-4: the same readings to nanometres.
   EXPECT_LT(difference(off, on), 0.02);
   EXPECT_NEAR(*on.after.rms_um, *off.after.rms_um, 1e-3);
@@ -98,7 +101,7 @@ TEST(MeasuredOn, MixedRowsGiveTheFitOfUncorrectedOnes) {
   Measurement ignored = mixed;
   for (std::size_t i = 0; i < 3; ++i) ignored.states.axis[i] = commanded(mixed, i);
   ignored.correction.clear();
-  EXPECT_GT(*fit(survey.model, ignored).after.rms_um, 10);
+  EXPECT_GT(*fit::fit(survey.model, ignored).after.rms_um, 10);
 }
 
 TEST(MeasuredOn, ReadingsOfOnePoseRepeatWhereTheCorrectionsAgree) {

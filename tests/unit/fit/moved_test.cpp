@@ -12,6 +12,9 @@
 #include "tools/model/prediction.h"
 
 namespace vernier::moved_test {
+
+using namespace vernier::fit;
+using namespace vernier::model;
 namespace {
 
 constexpr std::size_t kRows = 150, kMovedFrom = 80;
@@ -71,7 +74,7 @@ FitResult surveyed(double tool_mm, double set_up_mm, bool with_u) {
     o.value = (moved ? after : before)[static_cast<Eigen::Index>(i)] + kU_mm * normal(random) +
               (moved && o.kind == ObservationKind::kY ? set_up_mm : 0);
   }
-  return fit(model, rows);
+  return fit::fit(model, rows);
 }
 
 TEST(Moved, SoundSurveyHasNoMove) {

@@ -12,6 +12,9 @@
 #include "tools/model/machine_reader.h"
 
 namespace vernier::noise_test {
+
+using namespace vernier::fit;
+using namespace vernier::model;
 namespace {
 
 constexpr unsigned kSeed = 20261122;
@@ -155,7 +158,7 @@ TEST(NoiseModel, UncertaintyOfAParameterHasItIn) {
                                 0.001 * error[static_cast<Eigen::Index>(k)];
     FitOptions independent;
     independent.noise = NoiseModel{};
-    const FitResult told = fit(machine(), m), white = fit(machine(), m, independent);
+    const FitResult told = fit::fit(machine(), m), white = fit::fit(machine(), m, independent);
     EXPECT_EQ(told.estimates[0].value, white.estimates[0].value);
     squares += std::pow(told.estimates[0].value / told.estimates[0].std, 2) / kSurveys;
     alone += std::pow(white.estimates[0].value / white.estimates[0].std, 2) / kSurveys;

@@ -7,6 +7,8 @@
 #include <set>
 
 namespace vernier::observability_test {
+
+using namespace vernier::fit;
 namespace {
 
 TEST(Observability, NamesTheCombinationThatTheDataCannotSee) {

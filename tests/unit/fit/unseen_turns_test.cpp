@@ -12,6 +12,9 @@
 #include "tools/model/measurement.h"
 
 namespace vernier::unseen_turns_test {
+
+using namespace vernier::fit;
+using namespace vernier::model;
 namespace {
 
 const Machine& line_machine() {
@@ -52,7 +55,7 @@ TEST(UnseenTurns, OneLineSeesNoneAndSeveralSeeTheirOwn) {
 }
 
 TEST(UnseenTurns, AScaleIsNotTakenForACosineError) {
-  const FitResult result = fit(line_machine(), rows(0));
+  const FitResult result = vernier::fit::fit(line_machine(), rows(0));
   EXPECT_TRUE(result.converged);
   EXPECT_LT(result.iterations, 30);
   for (const ParameterEstimate& one : result.estimates) {

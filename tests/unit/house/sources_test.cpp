@@ -107,5 +107,28 @@ TEST(Sources, SayTheirLicence) {
   EXPECT_GT(seen, 500u) << "the walk over the sources found next to nothing";
 }
 
+// Of a room of tools: `import` begins a module directive of C++20 where it stands first in a line.
+std::string namespace_of(const std::string& room) {
+  return "vernier::" + (room == "import" ? "importer" : room);
+}
+
+TEST(Sources, OfARoomStandInItsNamespace) {
+  const auto files = tracked_files();
+  if (files.empty()) GTEST_SKIP() << "not a git checkout: no list of tracked files";
+  std::size_t seen = 0;
+  for (const std::string& file : files) {
+    if (!file.starts_with("tools/") || !has_ending(file, {".h", ".cpp"})) continue;
+    const std::string room = file.substr(6, file.find('/', 6) - 6);
+    const std::string text = text_of(file);
+    for (std::size_t at = 0; (at = text.find("\nnamespace vernier", at)) != std::string::npos; ++at) {
+      const std::string name = text.substr(at + 11, text.find(' ', at + 11) - at - 11);
+      EXPECT_TRUE(name == namespace_of(room) || name.starts_with(namespace_of(room) + "::"))
+          << file << " opens " << name;
+      ++seen;
+    }
+  }
+  EXPECT_GT(seen, 300u) << "the walk over the sources found next to nothing";
+}
+
 }  // namespace
 }  // namespace vernier::house

@@ -9,6 +9,9 @@
 #include "tools/text/error.h"
 
 namespace vernier::b5r_reader_test {
+
+using namespace vernier::importer;
+using namespace vernier::text;
 namespace {
 
 const BallbarFile& the_file() {

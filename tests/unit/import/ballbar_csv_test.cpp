@@ -10,6 +10,8 @@
 #include "tools/import/ballbar_motion.h"
 
 namespace vernier::ballbar_csv_test {
+
+using namespace vernier::importer;
 namespace {
 
 const BallbarFile& the_file() {

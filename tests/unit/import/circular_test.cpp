@@ -9,6 +9,8 @@
 #include "tools/import/ballbar_motion.h"
 
 namespace vernier::circular_test {
+
+using namespace vernier::importer;
 namespace {
 
 const BallbarFile& the_file() {

@@ -11,6 +11,8 @@
 #include "tools/import/printed_diagnostics.h"
 
 namespace vernier::diagnostics_test {
+
+using namespace vernier::importer;
 namespace {
 
 constexpr const char* kAnalysis = "RENISHAW_DIAGNOSTICS";

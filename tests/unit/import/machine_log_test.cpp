@@ -13,6 +13,10 @@
 #include "tools/text/numbers.h"
 
 namespace vernier::machine_log_test {
+
+using namespace vernier::importer;
+using namespace vernier::model;
+using namespace vernier::text;
 namespace {
 
 const char* const kMachine =

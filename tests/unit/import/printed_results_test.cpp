@@ -10,6 +10,8 @@
 #include "tools/import/ballbar_motion.h"
 
 namespace vernier::printed_results_test {
+
+using namespace vernier::importer;
 namespace {
 
 std::vector<PrintedResult> results_of(const BallbarFile& file) {

@@ -9,6 +9,10 @@
 #include "tools/text/files.h"
 
 namespace vernier::sheet_columns_test {
+
+using namespace vernier::importer;
+using namespace vernier::sheet;
+using namespace vernier::text;
 namespace {
 
 std::string import(const std::string& bytes, SheetWishes wishes = {},

@@ -14,6 +14,10 @@
 #include "tools/model/measurement.h"
 
 namespace vernier::survey_test {
+
+using namespace vernier::importer;
+using namespace vernier::model;
+using namespace vernier::text;
 namespace {
 
 constexpr double kDeg = 180 / std::numbers::pi;

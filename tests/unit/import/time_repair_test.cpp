@@ -16,6 +16,9 @@
 #include "tools/timebase/stretch.h"
 
 namespace vernier::time_repair_test {
+
+using namespace vernier::importer;
+using namespace vernier::timebase;
 namespace {
 
 const BallbarFile& real_file() {

@@ -11,6 +11,9 @@
 #include "tools/text/error.h"
 
 namespace vernier::trace_reader_test {
+
+using namespace vernier::importer;
+using namespace vernier::text;
 namespace {
 
 TraceSetup setup_6000() {

@@ -9,6 +9,10 @@
 #include "tools/model/machine_reader.h"
 
 namespace vernier::closed_test {
+
+using namespace vernier::kinematics;
+using namespace vernier::model;
+using namespace vernier::text;
 namespace {
 
 TEST(ClosedSolution, IsThatOfTheNewtonIteration) {

@@ -11,6 +11,9 @@
 #include "tools/model/machine_reader.h"
 
 namespace vernier::correction_test {
+
+using namespace vernier::kinematics;
+using namespace vernier::model;
 namespace {
 
 constexpr unsigned long kSeed = 21;

@@ -11,6 +11,9 @@
 
 namespace vernier {
 
+using namespace vernier::model;
+using namespace vernier::text;
+
 /// Six joints of a common industrial arm (Denavit-Hartenberg lengths in mm), tool along its last z.
 inline Machine robot() {
   return parse_machine(R"XML(<machine name="arm"><variables>

@@ -10,6 +10,9 @@
 #include "tools/model/machine_reader.h"
 
 namespace vernier::solve_test {
+
+using namespace vernier::kinematics;
+using namespace vernier::model;
 namespace {
 
 constexpr unsigned long kSeed = 20;

@@ -8,6 +8,9 @@
 #include "tools/text/files.h"
 
 namespace vernier::machine_lint_test {
+
+using namespace vernier::lint;
+using namespace vernier::text;
 namespace {
 
 std::vector<std::string> lines_of(const std::string& text) {

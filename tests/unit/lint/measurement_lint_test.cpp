@@ -13,6 +13,10 @@
 #include "tools/text/files.h"
 
 namespace vernier::measurement_lint_test {
+
+using namespace vernier::lint;
+using namespace vernier::model;
+using namespace vernier::text;
 namespace {
 
 const Machine& machine() {

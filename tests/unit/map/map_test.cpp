@@ -9,6 +9,12 @@
 #include "tools/text/files.h"
 
 namespace vernier::map_test {
+
+using namespace vernier::kinematics;
+using namespace vernier::map;
+using namespace vernier::model;
+using namespace vernier::results;
+using namespace vernier::text;
 namespace {
 
 constexpr double kX = 600, kY = 400, kZ = 300;  // travel, mm

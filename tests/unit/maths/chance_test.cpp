@@ -6,6 +6,8 @@
 #include <cmath>
 
 namespace vernier::chance_test {
+
+using namespace vernier::maths;
 namespace {
 
 TEST(Chance, FTailMeetsClosedForms) {

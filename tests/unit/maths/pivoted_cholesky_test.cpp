@@ -6,6 +6,8 @@
 #include <random>
 
 namespace vernier::pivoted_cholesky_test {
+
+using namespace vernier::maths;
 namespace {
 
 using Eigen::MatrixXd;

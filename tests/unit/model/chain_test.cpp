@@ -16,6 +16,9 @@
 #include "tools/text/files.h"
 
 namespace vernier::chain_test {
+
+using namespace vernier::model;
+using namespace vernier::text;
 namespace {
 
 const std::string kData = VERNIER_SOURCE_DIR "/tests/data/electroimpact/";

@@ -12,6 +12,8 @@
 #include "tools/model/machine_reader.h"
 
 namespace vernier::expression_test {
+
+using namespace vernier::model;
 namespace {
 
 const char* const kMachine = R"XML(<machine name="m"><variables>
@@ -28,7 +30,7 @@ double value(const std::string& text) {
   states.axis[1][0] = 30;
   states.velocity[0][0] = 7;
   states.time[0] = 1;
-  return evaluate(machine, *parse_expression_for(machine, text), states)[0];
+  return model::evaluate(machine, *parse_expression_for(machine, text), states)[0];
 }
 
 TEST(Expression, FollowsThePrecedenceOfTheFormat) {
@@ -124,7 +126,7 @@ TEST(Expression, LagOfARampTrailsByTau) {
     states.time[at] = static_cast<double>(i);
     states.input[0][at] = static_cast<double>(i);
   }
-  const Column y = evaluate(machine, *parse_expression_for(machine, "lag(T,tau)"), states);
+  const Column y = model::evaluate(machine, *parse_expression_for(machine, "lag(T,tau)"), states);
   EXPECT_DOUBLE_EQ(y[0], 0);
   for (const Eigen::Index i : {1, 10, 199}) {
     const double t = static_cast<double>(i);
@@ -139,7 +141,7 @@ TEST(Expression, LagStartsAnewInEachRun) {
   states.run = {0, 0, 1, 1};
   states.time << 0, 1, 2, 3;
   states.input[0] << 5, 5, 9, 9;
-  const Column y = evaluate(machine, *parse_expression_for(machine, "lag(T,tau)"), states);
+  const Column y = model::evaluate(machine, *parse_expression_for(machine, "lag(T,tau)"), states);
   EXPECT_DOUBLE_EQ(y[1], 5);
   EXPECT_DOUBLE_EQ(y[2], 9);
 }
@@ -158,9 +160,9 @@ TEST(Expression, DerivativesAgreeWithDifferences) {
     for (std::size_t s = 0; s < 2; ++s) {
       const double start = machine.statics[s].value, step = 1e-6 * start;
       machine.statics[s].value = start + step;
-      const Column high = evaluate(machine, *tree, states);
+      const Column high = model::evaluate(machine, *tree, states);
       machine.statics[s].value = start - step;
-      const Column low = evaluate(machine, *tree, states);
+      const Column low = model::evaluate(machine, *tree, states);
       machine.statics[s].value = start;
       for (std::size_t i = 0; i < 3; ++i) {
         double derivative = 0;

@@ -6,6 +6,9 @@
 #include <gtest/gtest.h>
 
 namespace vernier::machine_test {
+
+using namespace vernier::model;
+using namespace vernier::text;
 namespace {
 
 const std::string kHead = "<machine name=\"m\">\n<variables>\n<static>\n";

@@ -11,6 +11,9 @@
 #include "tools/text/files.h"
 
 namespace vernier::measurement_test {
+
+using namespace vernier::model;
+using namespace vernier::text;
 namespace {
 
 Machine machine() {

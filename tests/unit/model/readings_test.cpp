@@ -15,6 +15,9 @@
 #include "tools/model/prediction.h"
 
 namespace vernier::readings_test {
+
+using namespace vernier::model;
+using namespace vernier::text;
 namespace {
 
 using Eigen::Index;
@@ -125,7 +128,7 @@ TEST(Groups, SetupClockAndBlockStandForThemselves) {
   // A lag of the whole day is not broken where the run changes.
   Machine lagging = machine();
   const ExprPtr lag = parse_expression_for(lagging, "lag(X, 10)");
-  const Column value = evaluate(lagging, *lag, s);
+  const Column value = model::evaluate(lagging, *lag, s);
   EXPECT_GT(value[1], 0);
   EXPECT_LT(value[1], 1);
   EXPECT_EQ(value[3], 3);

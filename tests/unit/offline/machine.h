@@ -5,6 +5,8 @@
 
 namespace vernier::offline_test {
 
+using namespace vernier::model;
+
 /// A bridge with squareness, a bent table, a cyclic error and play: up to 80 um.
 inline Machine bridge() {
   return parse_machine(R"XML(<machine name="bridge"><variables><static><sq value="1e-4" nominal="0"/>

@@ -11,6 +11,10 @@
 #include "tools/text/error.h"
 
 namespace vernier::offline_test {
+
+using namespace vernier::model;
+using namespace vernier::offline;
+using namespace vernier::text;
 namespace {
 
 using Eigen::Vector3d;

@@ -10,6 +10,10 @@
 #include "tools/text/numbers.h"
 
 namespace vernier::offline_test {
+
+using namespace vernier::model;
+using namespace vernier::offline;
+using namespace vernier::text;
 namespace {
 
 std::string list_corrected(const std::string& text, bool back = false) {

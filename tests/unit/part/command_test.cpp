@@ -13,6 +13,10 @@
 #include "tools/simulate/path.h"
 
 namespace vernier::command_test {
+
+using namespace vernier::model;
+using namespace vernier::simulate;
+using namespace vernier::text;
 namespace {
 
 class PartCommand : public testing::Test {

@@ -13,6 +13,10 @@
 #include "tools/part/s_part.h"
 
 namespace vernier::defect_test {
+
+using namespace vernier::model;
+using namespace vernier::part;
+using namespace vernier::text;
 namespace {
 
 constexpr double kDegPerRad = 180 / std::numbers::pi;
@@ -46,11 +50,13 @@ class Published {
   }
   Column term(const std::string& error, const char* direction, const std::vector<JointPose>& joints) const {
     const auto text = json_["jacobian"][error][direction].get<std::string>();
-    return evaluate(machine_.machine, *parse_expression_for(machine_.machine, text), machine_.states(joints));
+    return model::evaluate(machine_.machine, *parse_expression_for(machine_.machine, text),
+                           machine_.states(joints));
   }
   Column direct(const char* coordinate, const std::vector<JointPose>& joints) const {
     const auto text = json_["direct"][coordinate].get<std::string>();
-    return evaluate(machine_.machine, *parse_expression_for(machine_.machine, text), machine_.states(joints));
+    return model::evaluate(machine_.machine, *parse_expression_for(machine_.machine, text),
+                           machine_.states(joints));
   }
   const BHeadMachine& machine() const { return machine_; }
 

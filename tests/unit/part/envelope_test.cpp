@@ -11,6 +11,8 @@
 #include "tools/part/s_part.h"
 
 namespace vernier::envelope_test {
+
+using namespace vernier::part;
 namespace {
 
 constexpr NormalReading kPrinted{false, true}, kUnit{true, true}, kInward{false, false};

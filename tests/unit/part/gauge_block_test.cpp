@@ -11,6 +11,8 @@
 #include "tools/part/defect.h"
 
 namespace vernier::gauge_block_test {
+
+using namespace vernier::part;
 namespace {
 
 constexpr double kPivotMm = 533.889;

@@ -13,6 +13,11 @@
 #include "tools/part/measured_part.h"
 
 namespace vernier::identify_test {
+
+using namespace vernier::fit;
+using namespace vernier::model;
+using namespace vernier::part;
+using namespace vernier::text;
 namespace {
 
 using Pairs = std::set<std::set<std::string>>;

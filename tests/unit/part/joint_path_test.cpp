@@ -12,6 +12,8 @@
 #include "tools/part/s_part.h"
 
 namespace vernier::joint_path_test {
+
+using namespace vernier::part;
 namespace {
 
 constexpr double kPivotMm = 499.889;

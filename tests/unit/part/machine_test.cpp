@@ -5,6 +5,10 @@
 #include "tools/model/machine_reader.h"
 
 namespace vernier::machine_test {
+
+using namespace vernier::model;
+using namespace vernier::part;
+using namespace vernier::text;
 namespace {
 
 std::string message_of(const std::function<void()>& job) {

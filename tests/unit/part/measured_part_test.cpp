@@ -10,6 +10,9 @@
 #include "tools/part/s_part.h"
 
 namespace vernier::measured_part_test {
+
+using namespace vernier::part;
+using namespace vernier::text;
 namespace {
 
 std::string message_of(const std::string& csv) {

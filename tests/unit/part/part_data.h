@@ -12,6 +12,10 @@
 
 namespace vernier::part_data {
 
+using namespace vernier::model;
+using namespace vernier::part;
+using namespace vernier::text;
+
 inline std::string path(const std::string& name) {
   return std::string(VERNIER_SOURCE_DIR) + "/tests/data/spart/" + name;
 }

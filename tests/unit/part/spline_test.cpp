@@ -8,6 +8,8 @@
 #include <stdexcept>
 
 namespace vernier::spline_test {
+
+using namespace vernier::part;
 namespace {
 
 using Points = std::vector<Eigen::Vector3d>;

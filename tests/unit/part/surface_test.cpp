@@ -10,6 +10,8 @@
 #include "tools/part/s_part.h"
 
 namespace vernier::surface_test {
+
+using namespace vernier::part;
 namespace {
 
 TEST(SPart, CurvesAreThoseOfThePublishedControlPoints) {

@@ -12,6 +12,11 @@
 #include "tools/text/error.h"
 
 namespace vernier::check_plan_test {
+
+using namespace vernier::check;
+using namespace vernier::model;
+using namespace vernier::plan;
+using namespace vernier::text;
 namespace {
 
 constexpr double kU_mm = 0.002;
@@ -41,7 +46,7 @@ Measurement measured(const Machine& truth, const States& states, std::mt19937_64
 }
 
 Machine fitted(std::mt19937_64& random) {
-  return fit(model(), measured(model(), offered_poses(model(), 60, 5000), random)).machine;
+  return fit::fit(model(), measured(model(), offered_poses(model(), 60, 5000), random)).machine;
 }
 
 CheckPlanOptions options(std::size_t points = 8) { return {points, 1e3 * kU_mm, 20}; }

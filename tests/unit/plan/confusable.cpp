@@ -13,6 +13,10 @@
 #include "tools/plan/offers.h"
 
 namespace vernier::plan_test {
+
+using namespace vernier::effects;
+using namespace vernier::model;
+using namespace vernier::plan;
 namespace {
 
 constexpr int kRows = 96;

@@ -9,6 +9,9 @@
 
 namespace vernier::plan_test {
 
+using namespace vernier::model;
+using namespace vernier::plan;
+
 /// A survey whose design cannot tell two effects apart, and what each of them would be.
 struct Confusable {
   std::string name;

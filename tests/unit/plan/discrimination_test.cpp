@@ -10,6 +10,8 @@
 #include "tools/plan/discrimination.h"
 
 namespace vernier::discrimination_test {
+
+using namespace vernier::plan;
 namespace {
 
 constexpr std::uint64_t kSeed = 20240611;

@@ -14,6 +14,11 @@
 #include "tools/text/error.h"
 
 namespace vernier::first_plan_test {
+
+using namespace vernier::fit;
+using namespace vernier::model;
+using namespace vernier::plan;
+using namespace vernier::text;
 namespace {
 
 const char* const kBridge = R"XML(<machine name="bridge"><variables><static><sxy value="0" nominal="0"/>
@@ -74,7 +79,7 @@ TEST(FirstPlan, PromisesWhatAFitThenKeeps) {
     for (std::size_t i = 0; i < rows.observations.size(); ++i)
       rows.observations[i].value =
           ideal[static_cast<Eigen::Index>(i)] + 1e-3 * kAsked.reading_um * normal(random);
-    const FitResult fitted = fit(machine, rows);
+    const FitResult fitted = fit::fit(machine, rows);
     const States fresh = work_poses(machine).states;
     Eigen::Matrix3Xd off = forward(fitted.machine, fresh).position - forward(truth, fresh).position;
     off.colwise() -= off.rowwise().mean().eval();

@@ -8,6 +8,9 @@
 #include "tools/plan/offers.h"
 
 namespace vernier::measured_on_test {
+
+using namespace vernier::model;
+using namespace vernier::plan;
 namespace {
 
 Machine machine() {

@@ -11,6 +11,11 @@
 #include "tools/plan/offers.h"
 
 namespace vernier::plan_test {
+
+using namespace vernier::diagnose;
+using namespace vernier::effects;
+using namespace vernier::model;
+using namespace vernier::plan;
 namespace {
 
 constexpr std::uint64_t kSeed = 7001;
@@ -26,7 +31,7 @@ int surveys() {
 bool named(const Machine& machine, const Measurement& old, const Measurement& next,
            const std::string& effect) {
   const DiagnoseOptions options;  // holds the effects that the candidates point to
-  const Diagnosis d = diagnose(model_text(), machine, append_rows(old, next), options);
+  const Diagnosis d = diagnose::diagnose(model_text(), machine, append_rows(old, next), options);
   const bool right =
       d.verdict == Verdict::kMissingEffect && d.candidates.front().candidate.choice.effect->id == effect;
   if (!right) {

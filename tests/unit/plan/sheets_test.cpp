@@ -8,6 +8,10 @@
 #include "tools/plan/sheets.h"
 
 namespace vernier::plan_test {
+
+using namespace vernier::effects;
+using namespace vernier::model;
+using namespace vernier::plan;
 namespace {
 
 Plan plan_of_lag() {

@@ -6,6 +6,10 @@
 #include "tools/text/error.h"
 
 namespace vernier::split_test {
+
+using namespace vernier::effects;
+using namespace vernier::plan;
+using namespace vernier::text;
 namespace {
 
 using testing::ElementsAre;

@@ -9,6 +9,8 @@
 #include <numbers>
 
 namespace vernier::uneven_test {
+
+using namespace vernier::plan;
 namespace {
 
 /// How alike two waves look at the positions that differ by `frequency` periods per mm: 1 where they are the

@@ -14,6 +14,9 @@
 #include "tools/text/files.h"
 
 namespace vernier::calibration_test {
+
+using namespace vernier::probe;
+using namespace vernier::text;
 namespace {
 
 constexpr double kPi = std::numbers::pi;

@@ -7,6 +7,9 @@
 #include "tools/text/files.h"
 
 namespace vernier::circle_path_test {
+
+using namespace vernier::probe;
+using namespace vernier::text;
 namespace {
 
 std::string published(const char* name) {

@@ -12,6 +12,9 @@
 #include "tools/text/error.h"
 
 namespace vernier::feature_test {
+
+using namespace vernier::probe;
+using namespace vernier::text;
 namespace {
 
 using Eigen::Vector3d;

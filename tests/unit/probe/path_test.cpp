@@ -9,6 +9,9 @@
 #include "tools/text/files.h"
 
 namespace vernier::path_test {
+
+using namespace vernier::probe;
+using namespace vernier::text;
 namespace {
 
 ProbePath published() {

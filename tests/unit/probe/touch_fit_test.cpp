@@ -8,6 +8,9 @@
 #include "tools/text/error.h"
 
 namespace vernier::touch_fit_test {
+
+using namespace vernier::probe;
+using namespace vernier::text;
 namespace {
 
 using Eigen::VectorXd;

@@ -11,6 +11,8 @@
 #include <random>
 
 namespace vernier::payload_test {
+
+using namespace vernier::report;
 namespace {
 
 using Json = nlohmann::ordered_json;

@@ -6,6 +6,8 @@
 #include "tools/report/assets.h"
 
 namespace vernier::report_test {
+
+using namespace vernier::report;
 namespace {
 
 using Json = nlohmann::ordered_json;

@@ -12,6 +12,9 @@
 #include "tools/text/error.h"
 
 namespace vernier::before_after_test {
+
+using namespace vernier::model;
+using namespace vernier::residual;
 namespace {
 
 constexpr double kNoise_mm = 1e-3;

@@ -10,6 +10,11 @@
 #include "tools/text/error.h"
 
 namespace vernier::group_table_test {
+
+using namespace vernier::fit;
+using namespace vernier::model;
+using namespace vernier::results;
+using namespace vernier::text;
 namespace {
 
 const char* const kMachine =

@@ -10,6 +10,11 @@
 #include "tools/text/error.h"
 
 namespace vernier::limit_test {
+
+using namespace vernier::fit;
+using namespace vernier::model;
+using namespace vernier::results;
+using namespace vernier::text;
 namespace {
 
 nlohmann::ordered_json judged(const std::string& rows, const std::string& words) {

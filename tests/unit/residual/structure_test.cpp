@@ -19,6 +19,10 @@
 #include "tools/results/structure_json.h"
 
 namespace vernier::structure_test {
+
+using namespace vernier::model;
+using namespace vernier::residual;
+using namespace vernier::results;
 namespace {
 
 constexpr unsigned kSeed = 20;

@@ -12,6 +12,10 @@
 #include "tools/safety/sources.h"
 
 namespace vernier::safety_test {
+
+using namespace vernier::model;
+using namespace vernier::safety;
+using namespace vernier::text;
 namespace {
 
 constexpr std::uint64_t kSeed = 11;
@@ -98,7 +102,7 @@ TEST(SafetySheet, JudgesWhereItWorksAgainstWhereItWasMeasured) {
   const Eigen::VectorXd exact = predict(truth, m);
   for (std::size_t i = 0; i < m.observations.size(); ++i)
     m.observations[i].value = exact[static_cast<Eigen::Index>(i)];
-  Machine fitted = fit(model, m).machine;
+  Machine fitted = fit::fit(model, m).machine;
   EXPECT_NEAR(*finding(safety_sheet(fitted), SafetyRule::kMeasuredRange).value, 1, 0.05);
   EXPECT_EQ(finding(safety_sheet(fitted), SafetyRule::kMeasuredRange).culprit, "axis Y");
   fitted.volume = {{1, 0, 200}};  // <volume>: it works where it was measured
@@ -122,7 +126,7 @@ TEST(SafetySheet, JudgesEveryDeclaredTool) {
   };
   Machine truth = machine_of(tables);
   truth.statics[0].value = 5e-5;
-  const Machine fitted = fit(machine_of(tables), survey(truth, machine_of(tables), 1e-3)).machine;
+  const Machine fitted = fit::fit(machine_of(tables), survey(truth, machine_of(tables), 1e-3)).machine;
   const SafetySheet sheet = safety_sheet(fitted);
   const SafetyFinding& found = finding(sheet, SafetyRule::kUncertainty);
   EXPECT_EQ(found.culprit, "tool long");
@@ -139,7 +143,7 @@ TEST(SafetySheet, RefusesAFitThatOneReadingBent) {
   truth.statics[0].value = 5e-5;
   Measurement m = survey(truth, model, 1e-3);
   m.observations[100].value += 5;
-  const SafetySheet sheet = safety_sheet(fit(model, m).machine);
+  const SafetySheet sheet = safety_sheet(fit::fit(model, m).machine);
   EXPECT_FALSE(finding(sheet, SafetyRule::kOutlier).ok);
   EXPECT_EQ(finding(sheet, SafetyRule::kOutlier).culprit,
             "survey.csv:35 y");  // reading 100: row 33, header first
@@ -159,7 +163,7 @@ TEST(SafetySheet, RefusesAFitThatUnseenRowsDoNotBearOut) {
     m.check[row] = 1;
     m.observations[i].value = elsewhere.observations[i].value;
   }
-  const Machine fitted = fit(model, m).machine;
+  const Machine fitted = fit::fit(model, m).machine;
   const SafetySheet sheet = safety_sheet(fitted);
   EXPECT_NEAR(*finding(sheet, SafetyRule::kCheckRows).value, 2, 0.2);
   EXPECT_NE(sheet.refusal().find("check-rows"), std::string::npos) << sheet.refusal();
@@ -171,11 +175,12 @@ TEST(SafetySheet, RefusesASurveyInWhichSomethingElseMoved) {
   Machine truth = model;
   truth.statics[0].value = 1e-4;
   Measurement m = survey(truth, model, 1e-3);
-  EXPECT_TRUE(safety_sheet(fit(model, m).machine).ok()) << safety_sheet(fit(model, m).machine).refusal();
+  EXPECT_TRUE(safety_sheet(fit::fit(model, m).machine).ok())
+      << safety_sheet(fit::fit(model, m).machine).refusal();
   // From the 60th row on a tool that is 0.3 mm longer.
   for (Observation& o : m.observations)
     if (o.kind == ObservationKind::kZ && o.row >= 60) o.value += 0.3;
-  const SafetySheet sheet = safety_sheet(fit(model, m).machine);
+  const SafetySheet sheet = safety_sheet(fit::fit(model, m).machine);
   EXPECT_GT(*finding(sheet, SafetyRule::kDisturbed).value, 0.75);
   EXPECT_NE(sheet.refusal().find("moved before survey.csv:62"), std::string::npos) << sheet.refusal();
 }

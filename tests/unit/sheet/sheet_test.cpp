@@ -8,6 +8,9 @@
 #include "tools/text/error.h"
 
 namespace vernier::sheet_test {
+
+using namespace vernier::sheet;
+using namespace vernier::text;
 namespace {
 
 using Text = std::string;

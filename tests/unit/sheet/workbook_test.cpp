@@ -10,6 +10,9 @@
 #include "tools/text/files.h"
 
 namespace vernier::workbook_test {
+
+using namespace vernier::sheet;
+using namespace vernier::text;
 namespace {
 
 std::string bytes_of(const std::string& name) {

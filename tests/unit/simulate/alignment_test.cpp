@@ -7,6 +7,8 @@
 #include <random>
 
 namespace vernier::alignment_test {
+
+using namespace vernier::maths;
 namespace {
 
 constexpr std::uint64_t kSeed = 5;

@@ -18,6 +18,11 @@
 #include "tools/text/files.h"
 
 namespace vernier::corrected_test {
+
+using namespace vernier::compile;
+using namespace vernier::model;
+using namespace vernier::simulate;
+using namespace vernier::text;
 namespace {
 
 namespace fs = std::filesystem;

@@ -11,6 +11,10 @@
 #include "tools/text/error.h"
 
 namespace vernier::motion_test {
+
+using namespace vernier::model;
+using namespace vernier::simulate;
+using namespace vernier::text;
 namespace {
 
 Machine machine() {

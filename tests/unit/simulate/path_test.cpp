@@ -6,6 +6,9 @@
 #include "tools/text/error.h"
 
 namespace vernier::path_test {
+
+using namespace vernier::simulate;
+using namespace vernier::text;
 namespace {
 
 std::string message_of(const std::string& text) {

@@ -11,6 +11,11 @@
 #include "tools/text/error.h"
 
 namespace vernier::replay_test {
+
+using namespace vernier::compile;
+using namespace vernier::model;
+using namespace vernier::simulate;
+using namespace vernier::text;
 namespace {
 
 /// 0.1 mm/m of scale and, where asked for, growth with a temperature that lags.

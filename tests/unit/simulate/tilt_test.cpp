@@ -10,6 +10,10 @@
 #include "tools/simulate/simulate.h"
 
 namespace vernier::tilt_test {
+
+using namespace vernier::compile;
+using namespace vernier::model;
+using namespace vernier::simulate;
 namespace {
 
 std::string machine_text(const std::string& correct, const std::string& limits) {
@@ -36,7 +40,7 @@ SimulateResult run(const std::string& correct, const Path& path, const std::stri
   const std::string text = machine_text(correct, limits);
   const Machine machine = parse_machine(text, "five.xml");
   const auto image = load_image(compile_machine(machine, text, {}).image, machine);
-  return simulate(machine, *image, path, {});
+  return simulate::simulate(machine, *image, path, {});
 }
 
 TEST(Tilt, IsTakenBackWhileTheRotaryAxesSweep) {

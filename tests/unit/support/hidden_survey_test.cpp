@@ -12,6 +12,9 @@
 #include "tools/model/prediction.h"
 
 namespace vernier::support {
+
+using namespace vernier::fit;
+using namespace vernier::model;
 namespace {
 
 constexpr std::uint64_t kSeed = 20260101;
@@ -58,7 +61,7 @@ TEST_P(HiddenSurveyOf, LeavesTheRatioAskedForAfterAFit) {
     const Measurement exact = without_noise(survey, truth);
     for (std::size_t i = 0; i < m.observations.size(); ++i)
       m.observations[i].value = exact.observations[i].value;
-    EXPECT_NEAR(left_over(fit(model, m)), ratio, 0.05 * ratio);
+    EXPECT_NEAR(left_over(fit::fit(model, m)), ratio, 0.05 * ratio);
   }
 }
 
@@ -78,7 +81,7 @@ TEST_P(HiddenSurveyOf, IsTheModelOnceTheTermIsZero) {
     m.observations[i].value = exact.observations[i].value;
   // Of u: what the convention's pull leaves of readings without noise, in directions known to about their
   // scale.
-  EXPECT_LT(left_over(fit(model, m)), 0.05);
+  EXPECT_LT(left_over(fit::fit(model, m)), 0.05);
 }
 
 TEST_P(HiddenSurveyOf, CanShowEachOfItsEffects) {
@@ -100,7 +103,7 @@ TEST_P(HiddenSurveyOf, WithNothingHiddenLeavesOnlyNoise) {
   const HiddenSurvey survey = make_survey(spec_of(GetParam(), "", SurveyClass::kNoise));
   EXPECT_TRUE(survey.effects.empty());
   const Machine model = parse_machine(survey.model, "model.xml");
-  const FitResult result = fit(model, measured(survey, model));
+  const FitResult result = fit::fit(model, measured(survey, model));
   const auto freedom = static_cast<double>(result.freedom);
   EXPECT_NEAR(result.chi_square / freedom, 1, 5 * std::sqrt(2 / freedom));  // five sigma of chi^2
 }
@@ -208,7 +211,8 @@ TEST(HiddenSurvey, TellsByChiSquareWhatFitsTell) {
   ASSERT_TRUE(survey.can_tell);
   const Machine truth = parse_machine(survey.truth, "truth.xml");
   const Machine model = parse_machine(survey.model, "model.xml");
-  const FitResult with = fit(truth, measured(survey, truth)), without = fit(model, measured(survey, model));
+  const FitResult with = fit::fit(truth, measured(survey, truth)),
+                  without = fit::fit(model, measured(survey, model));
   EXPECT_NEAR(with.chi_square / static_cast<double>(with.freedom), 1, 5 * std::sqrt(2.0 / 900));
   // N * ratio^2 is what the term explains, within five times the spread 2 * ratio * sqrt(N).
   const auto n = static_cast<double>(with.before.count);

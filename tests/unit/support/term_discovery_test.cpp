@@ -9,6 +9,9 @@
 #include "tools/model/machine_reader.h"
 
 namespace vernier::support {
+
+using namespace vernier::fit;
+using namespace vernier::model;
 namespace {
 
 double correlation(Eigen::VectorXd a, Eigen::VectorXd b) {
@@ -48,7 +51,7 @@ TEST(TermDiscovery, FilesGiveTheCoefficientWithinItsBound) {
                         "<inputs><T unit=\"degC\" reference=\"20\"/></inputs>");
     files.model.replace(files.model.find("X+lXx"), 1, "X+c*(T-20)*X");
     const Machine machine = parse_machine(files.model, "model.xml");
-    const FitResult result = fit(machine, parse_measurement(files.csv, "survey.csv", machine));
+    const FitResult result = fit::fit(machine, parse_measurement(files.csv, "survey.csv", machine));
     const double found = result.machine.statics[*result.machine.find_static("c")].value;
     squares += std::pow((1000 * found - data.coefficient) / data.bound, 2);
   }

@@ -15,6 +15,8 @@
 #include "tests/unit/tables/golden_machine.h"
 
 namespace vernier::golden {
+
+using namespace vernier::upload;
 namespace {
 
 /// A record whose bytes count up from `first`, so that each field has a value of its own.

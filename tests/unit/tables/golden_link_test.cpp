@@ -13,6 +13,8 @@
 #include "tests/unit/tables/golden_machine.h"
 
 namespace vernier::golden {
+
+using namespace vernier::upload;
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;

@@ -10,6 +10,10 @@
 #include "tools/model/machine_reader.h"
 
 namespace vernier::golden {
+
+using namespace vernier::compile;
+using namespace vernier::model;
+using namespace vernier::upload;
 namespace {
 
 constexpr const char* kMachine = R"xml(<machine name="golden">

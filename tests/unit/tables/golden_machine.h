@@ -8,6 +8,8 @@
 
 namespace vernier::golden {
 
+using namespace vernier::upload;
+
 /// The image of a small machine with every kind of channel, operation and table, as the compiler writes it
 /// now.
 std::vector<std::uint8_t> golden_image();

@@ -12,6 +12,8 @@
 
 namespace vernier::test {
 
+using namespace vernier::model;
+
 inline constexpr double kPi = std::numbers::pi;
 
 /// A run round a circle of 100 mm at constant speed, as a controller commands it and a bar measures it.

@@ -7,6 +7,9 @@
 #include "tools/timebase/time_base.h"
 
 namespace vernier::time_base_false_alarm_test {
+
+using namespace vernier::model;
+using namespace vernier::timebase;
 namespace {
 
 using test::circle_record;

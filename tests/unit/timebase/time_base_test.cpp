@@ -14,6 +14,11 @@
 #include "tools/timebase/revisit.h"
 
 namespace vernier::time_base_test {
+
+using namespace vernier::fit;
+using namespace vernier::importer;
+using namespace vernier::model;
+using namespace vernier::timebase;
 namespace {
 
 using test::circle_record;
@@ -38,7 +43,7 @@ TEST(TimeBase, RealBallBarRecordBelongsToOtherInstants) {
   // GIVEN one turn in each sense, as the instrument's file cuts them out, and centre and radius fitted
   const Machine machine = read_machine(kReal + "machine.xml");
   const Measurement measurement = read_measurement({kReal + "meas.csv"}, machine);
-  const FitResult fitted = fit(machine, measurement);
+  const FitResult fitted = fit::fit(machine, measurement);
   // WHEN nothing but that is known
   const TimeBaseFinding finding = examine_time_base(measurement, fitted.residual);
   // THEN the runs agree at the same rate in samples (1591 a turn both), not at 1442/1590 of it
@@ -61,7 +66,7 @@ TEST(TimeBase, WholeBallBarRecordRepeatsAtAnotherLag) {
   const BallbarFile file =
       read_b5r(std::string(VERNIER_SOURCE_DIR) + "/tests/data/ballbar/ur10e_xy_100mm.b5r");
   const Measurement measurement = parse_measurement(ballbar_csv({file}, {}).text, "import.csv", machine);
-  const FitResult fitted = fit(machine, measurement);
+  const FitResult fitted = fit::fit(machine, measurement);
   const TimeBaseFinding finding = examine_time_base(measurement, fitted.residual);
   // THEN the lags are those found by hand: 1573 before angle 0, 1554 after it, 1591 clockwise
   ASSERT_TRUE(finding.found) << finding.why;
@@ -90,12 +95,12 @@ TEST(TimeBase, RepairedRecordIsInTimeAndItsErrorRepeats) {
   const std::string csv = ballbar_csv({repair_time_base(file).file}, {}).text;
   const Machine circle = read_machine(kReal + "machine.xml");
   const Measurement measurement = parse_measurement(csv, "repaired.csv", circle);
-  const FitResult plain = fit(circle, measurement);
+  const FitResult plain = fit::fit(circle, measurement);
   // THEN nothing repeats at another place any more,
   EXPECT_FALSE(examine_time_base(measurement, plain.residual).found);
   // and a table of the path angle for each sense, fitted to one turn, holds on the other: 19 um of 51
   const Machine repeating = read_machine(kReal + "repeating.xml");
-  const FitResult fitted = fit(repeating, parse_measurement(csv, "repaired.csv", repeating));
+  const FitResult fitted = fit::fit(repeating, parse_measurement(csv, "repaired.csv", repeating));
   EXPECT_GT(*plain.check.rms_um, 45);
   EXPECT_LT(*fitted.after.rms_um, 9);
   EXPECT_LT(*fitted.check.rms_um, 21);

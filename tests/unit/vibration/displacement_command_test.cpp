@@ -15,6 +15,8 @@
 #include "tools/text/files.h"
 
 namespace vernier::displacement_command_test {
+
+using namespace vernier::text;
 namespace {
 
 constexpr double kPi = 3.14159265358979323846, kGravity_mm_s2 = 9806.65, kRate_Hz = 1000;

@@ -12,6 +12,9 @@
 #include "tools/vibration/feature_rows.h"
 
 namespace vernier::features_command_test {
+
+using namespace vernier::text;
+using namespace vernier::vibration;
 namespace {
 
 const std::string kFolder = testing::TempDir() + "features_command_" + std::to_string(getpid()) + "/";

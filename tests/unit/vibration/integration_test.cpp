@@ -9,6 +9,9 @@
 #include "tools/text/error.h"
 
 namespace vernier::integration_test {
+
+using namespace vernier::text;
+using namespace vernier::vibration;
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;

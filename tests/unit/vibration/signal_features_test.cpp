@@ -9,6 +9,8 @@
 #include "comp/vibration/feature_window.h"
 
 namespace vernier::signal_features_test {
+
+using namespace vernier::vibration;
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;

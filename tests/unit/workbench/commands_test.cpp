@@ -6,6 +6,9 @@
 #include "tools/workbench/process.h"
 
 namespace vernier::commands_test {
+
+using namespace vernier::text;
+using namespace vernier::workbench;
 namespace {
 
 using nlohmann::json;

@@ -8,6 +8,10 @@
 #include "tools/workbench/values.h"
 
 namespace vernier::excluded_test {
+
+using namespace vernier::model;
+using namespace vernier::text;
+using namespace vernier::workbench;
 namespace {
 
 TEST(ExcludedRows, StayInTheirPlaceAndComeBackByteForByte) {

@@ -7,6 +7,11 @@
 #include "tools/text/error.h"
 
 namespace vernier::image_diff_test {
+
+using namespace vernier::compile;
+using namespace vernier::model;
+using namespace vernier::text;
+using namespace vernier::workbench;
 namespace {
 
 std::vector<std::uint8_t> image(const std::string& value, const std::string& axis = "Y") {

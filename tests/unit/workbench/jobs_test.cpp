@@ -8,6 +8,9 @@
 #include "tools/workbench/rows.h"
 
 namespace vernier::jobs_test {
+
+using namespace vernier::text;
+using namespace vernier::workbench;
 namespace {
 
 using nlohmann::json;

@@ -8,6 +8,9 @@
 #include "tools/workbench/history.h"
 
 namespace vernier::project_test {
+
+using namespace vernier::text;
+using namespace vernier::workbench;
 namespace {
 
 TEST(ProjectName, TakesPlainNamesOnly) {

@@ -6,6 +6,9 @@
 #include "tools/workbench/file_reader.h"
 
 namespace vernier::reader_test {
+
+using namespace vernier::text;
+using namespace vernier::workbench;
 namespace {
 
 /// A program that stands for `vernier`.

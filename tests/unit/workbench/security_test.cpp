@@ -9,6 +9,9 @@
 #include "tests/unit/workbench/rig.h"
 
 namespace vernier::security_test {
+
+using namespace vernier::text;
+using namespace vernier::workbench;
 namespace {
 
 /// Sends bytes to an address of this computer and reads until the other side is silent or gone; empty where

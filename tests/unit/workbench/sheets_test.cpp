@@ -7,6 +7,12 @@
 #include "tools/workbench/rows.h"
 
 namespace vernier::sheets_test {
+
+using namespace vernier::fit;
+using namespace vernier::importer;
+using namespace vernier::model;
+using namespace vernier::text;
+using namespace vernier::workbench;
 namespace {
 
 using nlohmann::json;

@@ -6,6 +6,9 @@
 #include "tools/workbench/dimensions.h"
 
 namespace vernier::terms_test {
+
+using namespace vernier::model;
+using namespace vernier::workbench;
 namespace {
 
 nlohmann::ordered_json check(const std::string& text, const std::string& unit = "mm") {
