@@ -73,6 +73,9 @@ void register_keys(CLI::App& vernier);
 namespace lint_cli {
 void register_lint(CLI::App& vernier);
 }  // namespace lint_cli
+namespace manual_cli {
+void register_manual(CLI::App& vernier);
+}  // namespace manual_cli
 namespace map_cli {
 void register_map(CLI::App& vernier);
 }  // namespace map_cli

@@ -5,6 +5,8 @@
 #include <memory>
 
 #include "tools/commands/command.h"
+#include "tools/commands/report_header.h"
+#include "tools/fit/convention.h"
 #include "tools/fit/fit.h"
 #include "tools/model/machine.h"
 #include "tools/model/machine_reader.h"
@@ -27,6 +29,8 @@ namespace {
 struct CompareArguments {
   std::string machine, output, json, images, residuals, limit;
   std::vector<std::string> measurements, before, after, by;
+  bool datum = false;
+  ReportHeader header;
 };
 
 std::optional<double> value_of(const nlohmann::ordered_json& json, const char* key) {
@@ -176,6 +180,8 @@ void run_before_after(const CompareArguments& arguments) {
   if (!arguments.measurements.empty())
     throw text::InputError("\"" + arguments.measurements.front() +
                            "\": with --before and --after there are no other measurement files");
+  if (arguments.datum)
+    throw text::InputError("--datum: of MEAS; --before and --after fit the set-up of each side anyway");
   if (!arguments.limit.empty()) throw text::InputError("--limit: of MEAS, not of --before and --after");
   if (!arguments.by.empty()) throw text::InputError("--by: of MEAS, not of --before and --after");
   if (!arguments.residuals.empty())
@@ -188,8 +194,8 @@ void run_before_after(const CompareArguments& arguments) {
   if (!arguments.output.empty()) {
     std::vector<std::string> files = arguments.before;
     files.insert(files.end(), arguments.after.begin(), arguments.after.end());
-    text::write_file(arguments.output, report::improvement_report_html(
-                                           results::before_after_page(result, machine.name, files)));
+    text::write_file(arguments.output, report::improvement_report_html(arguments.header.on(
+                                           results::before_after_page(result, machine.name, files))));
   }
   write_json(arguments.json, results::before_after_json(result));
   for (const std::string& note : machine.notes) fmt::print(stderr, "note: {}\n", note);
@@ -200,12 +206,14 @@ void run_compare(const CompareArguments& arguments) {
   if (!arguments.before.empty() || !arguments.after.empty()) return run_before_after(arguments);
   if (arguments.measurements.empty())
     throw text::InputError("compare needs measurement files: MEAS, or --before and --after");
-  const model::Machine machine = model::read_machine(arguments.machine);
-  const model::Measurement m = model::read_measurement(arguments.measurements, machine,
+  const model::Machine as_given = model::read_machine(arguments.machine);
+  const model::Measurement m = model::read_measurement(arguments.measurements, as_given,
                                                        simulate::corrections_of_images(arguments.images));
+  const model::Machine machine = arguments.datum ? fit::set_up(as_given, m) : as_given;
   const Eigen::VectorXd residual = fit::residuals(machine, m);
   nlohmann::ordered_json json = results::compare_json(machine, m, residual);
   results::add_failure(json, residual::failure_picture(machine, m, residual));
+  if (arguments.datum) json["datum"] = "fitted";
   if (!arguments.limit.empty())
     json["limit"] = results::judge_residuals(m, residual, results::residual_limit(arguments.limit));
   if (!arguments.by.empty()) json["groups"] = results::group_table(m, residual, arguments.by);
@@ -213,7 +221,8 @@ void run_compare(const CompareArguments& arguments) {
     nlohmann::ordered_json with_detail = json;
     results::add_detail(with_detail, machine, m, residual);
     add_field(with_detail, machine);
-    text::write_file(arguments.output, report::compare_report_html(with_detail));
+    text::write_file(arguments.output,
+                     report::compare_report_html(arguments.header.on(std::move(with_detail))));
   }
   if (!arguments.residuals.empty()) text::write_file(arguments.residuals, results::residual_csv(m, residual));
   write_json(arguments.json, json);
@@ -244,8 +253,13 @@ void register_compare(CLI::App& vernier) {
       "--limit", arguments->limit,
       "accept or requalify: check rows (else fit rows) must stay within 2u, 25um, 0.025deg; rms=1.5u "
       "judges the rms; exit status 2 where not");
+  command->add_flag(
+      "--datum", arguments->datum,
+      "fit how the instrument stood (free BaseShifts) first, nothing else: offsets and turns of "
+      "the set-up are then no failure of the model");
   command->add_option("--images", arguments->images, simulate::kImagesHelp);
   command->add_option("-o,--output", arguments->output, "the report, one HTML file that opens offline");
+  add_report_header(*command, arguments->header);
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->add_option("--residuals", arguments->residuals, kResidualsHelp);
   command->footer(

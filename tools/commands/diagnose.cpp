@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "tools/commands/command.h"
+#include "tools/commands/report_header.h"
 #include "tools/diagnose/diagnosis.h"
 #include "tools/fit/fit.h"
 #include "tools/model/machine_reader.h"
@@ -23,6 +24,7 @@ struct DiagnoseArguments {
   std::string machine, output, json, write, images, residuals;
   std::vector<std::string> measurements, effects;
   std::size_t most = 5;
+  ReportHeader header;
 };
 
 void print_ladder(std::FILE* out, const diagnose::Diagnosis& d) {
@@ -31,7 +33,7 @@ void print_ladder(std::FILE* out, const diagnose::Diagnosis& d) {
   for (const diagnose::LadderStep& step : d.ladder) {
     const bool rises = before != nullptr && step.check_rms_um && *step.check_rms_um > *before->check_rms_um;
     fmt::print(out, "  {:<56} {:>12} {:>12}{}\n",
-               step.effect.empty() ? "the model as given" : "+ " + step.label,
+               step.effect.empty() ? "the model as given" : "+ " + step.said,
                results::number_or_dash(step.rms_um, "um"), results::number_or_dash(step.check_rms_um, "um"),
                rises ? "  the check rows do not confirm this step" : "");
     before = &step;
@@ -44,13 +46,14 @@ void print_candidates(std::FILE* out, const diagnose::Diagnosis& d) {
   fmt::print(out, "{:<58} {:>8} {:>12} {:>12} {:>9}\n", "candidates, each alone", "score", "fit rows",
              "check rows", "p");
   for (const diagnose::CandidateFinding& c : d.candidates) {
-    fmt::print(out, "{} {:<56} {:>8.1f} {:>12} {:>12} {:>9.2g}\n", c.accepted ? "*" : " ", c.candidate.label,
+    fmt::print(out, "{} {:<56} {:>8.1f} {:>12} {:>12} {:>9.2g}\n", c.accepted ? "*" : " ", c.candidate.spoken,
                c.score, results::number_or_dash(c.rms_after_um, "um"),
                results::number_or_dash(c.check_rms_after_um, "um"), c.p_value);
     if (!c.why_not.empty()) fmt::print(out, "    not accepted: {}\n", c.why_not);
     if (!c.confounded_with.empty())
       fmt::print(out, "    alike in these data: {}\n", fmt::join(c.confounded_with, ", "));
     if (!c.accepted) continue;
+    fmt::print(out, "    {}; in the chain: {}\n", diagnose::said_of(c), c.candidate.label);
     for (const fit::ParameterEstimate& p : c.parameters)
       fmt::print(out, "    {} = {:.6g} +- {} {}\n", p.name, p.value, fmt::format("{:.2g}", p.std), p.unit);
     fmt::print(out, "    vernier add '{}' MACHINE -o NEW\n", c.add);
@@ -82,7 +85,7 @@ void run_diagnose(const DiagnoseArguments& arguments) {
     nlohmann::ordered_json page = json;
     page["machine"] = machine.name;
     page["files"] = arguments.measurements;
-    text::write_file(arguments.output, report::diagnose_report_html(page));
+    text::write_file(arguments.output, report::diagnose_report_html(arguments.header.on(std::move(page))));
   }
   if (!arguments.write.empty()) text::write_file(arguments.write, diagnosis.machine_text);
   if (!arguments.residuals.empty()) write_residuals(arguments, diagnosis);
@@ -104,6 +107,7 @@ void register_diagnose(CLI::App& vernier) {
   command->add_option("MACHINE", arguments->machine, "machine file (XML)")->required();
   command->add_option("MEAS", arguments->measurements, "measurement files (CSV)")->required();
   command->add_option("-o,--output", arguments->output, "report (HTML)");
+  add_report_header(*command, arguments->header);
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->add_option("--residuals", arguments->residuals, kResidualsHelp);
   command->add_option("--machine-out", arguments->write,

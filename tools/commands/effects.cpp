@@ -71,7 +71,8 @@ void run_add(const AddArguments& arguments) {
   const effects::Candidate candidate =
       effects::put_in(with, effects::parse_add_string(arguments.effect, machine, effects));
   text::write_file(arguments.output, with.text);
-  nlohmann::ordered_json json = {{"effect", candidate.choice.effect->id}, {"label", candidate.label}};
+  nlohmann::ordered_json json = {
+      {"effect", candidate.choice.effect->id}, {"label", candidate.label}, {"said", candidate.spoken}};
   for (const effects::CandidateTerm& term : candidate.terms)
     json["terms"].push_back({{"branch", term.place.workpiece ? "workpiece" : "tool"},
                              {"transform", effects::transform_at(machine, term.place).n},
@@ -81,7 +82,7 @@ void run_add(const AddArguments& arguments) {
     json["statics"].push_back({{"name", unknown.name}, {"start", unknown.start}, {"unit", unknown.unit}});
   write_json(arguments.json, json);
   std::FILE* out = human_stream(arguments.json);
-  fmt::print(out, "added {}\n", candidate.label);
+  fmt::print(out, "added {} ({})\n", candidate.spoken, candidate.label);
   for (const effects::CandidateTerm& term : candidate.terms)
     fmt::print(out, "  {} of transform {}: + {}\n", effects::dof_name(machine, term.place),
                effects::transform_at(machine, term.place).n, term.text);

@@ -8,6 +8,8 @@
 
 #include "tools/commands/command.h"
 #include "tools/commands/evaluate_kinds.h"
+#include "tools/commands/report_header.h"
+#include "tools/evaluate/budget.h"
 #include "tools/evaluate/limits.h"
 #include "tools/evaluate/positioning_page.h"
 #include "tools/report/report.h"
@@ -17,7 +19,8 @@ namespace vernier::commands::evaluate_cli {
 namespace {
 
 struct PositioningArguments {
-  std::vector<std::string> measurements, axes, tolerances, uncertainties, header;
+  std::vector<std::string> measurements, axes, tolerances, uncertainties, budget;
+  ReportHeader header;
   std::string reading, output, json;
 };
 
@@ -40,6 +43,29 @@ void print_result(std::FILE* out, const nlohmann::ordered_json& json) {
   }
 }
 
+double length_of(const evaluate::PositioningFile& file) {
+  return file.readings.back().target - file.readings.front().target;
+}
+
+/// The budget's uncertainties, where none is stated otherwise.
+evaluate::PositioningBudget budget_of(const PositioningArguments& arguments,
+                                      const evaluate::PositioningFile& file,
+                                      evaluate::PositioningWords& words) {
+  evaluate::PositioningBudget budget;
+  for (const std::string& one : arguments.budget) evaluate::add_to_budget(budget, one);
+  if (!budget.given) return budget;
+  if (file.unit != "mm")
+    throw text::InputError("--budget: of a linear axis; state --uncertainty for a rotary one");
+  std::size_t runs = file.rows;
+  for (const evaluate::TargetReadings& target : file.readings)
+    for (const auto& list : target.deviation)
+      if (!list.empty()) runs = std::min(runs, list.size());
+  for (const auto& [name, value] :
+       evaluate::budget_uncertainty(budget, length_of(file), static_cast<double>(runs)))
+    words.uncertainty.try_emplace(name, value);
+  return budget;
+}
+
 void run_positioning(const PositioningArguments& arguments) {
   if (arguments.axes.size() != 1) throw text::InputError("--axis: one axis a call");
   evaluate::PositioningWords words;
@@ -49,12 +75,7 @@ void run_positioning(const PositioningArguments& arguments) {
     words.tolerance.insert(evaluate::limit_of(one, "--tolerance", kCharacteristics));
   for (const std::string& one : arguments.uncertainties)
     words.uncertainty.insert(evaluate::limit_of(one, "--uncertainty", kCharacteristics));
-  for (const std::string& one : arguments.header) {
-    const auto at = one.find('=');
-    if (at == std::string::npos)
-      throw text::InputError("--header " + one + ": of the form \"serial number=4711\"");
-    words.header.emplace_back(one.substr(0, at), one.substr(at + 1));
-  }
+  words.header = arguments.header.entries();
   std::string reading = arguments.reading;
   if (reading.empty())
     for (const char c : words.axis) reading += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
@@ -79,11 +100,15 @@ void run_positioning(const PositioningArguments& arguments) {
   }
   std::sort(all.readings.begin(), all.readings.end(),
             [](const auto& a, const auto& b) { return a.target < b.target; });
-  const nlohmann::ordered_json json =
+  const evaluate::PositioningBudget budget = budget_of(arguments, all, words);
+  nlohmann::ordered_json json =
       evaluate::positioning_json(evaluate::evaluate_positioning(all.readings), all, words);
+  if (budget.given)
+    for (const evaluate::BudgetPart& part : evaluate::budget_parts(budget, length_of(all)))
+      json["budget"].push_back({{"part", part.name}, {"U_um", part.expanded_um}});
   if (!arguments.output.empty())
-    text::write_file(arguments.output,
-                     report::improvement_report_html(evaluate::positioning_page(json, words)));
+    text::write_file(arguments.output, report::improvement_report_html(
+                                           arguments.header.on(evaluate::positioning_page(json, words))));
   write_json(arguments.json, json);
   print_result(human_stream(arguments.json), json);
   for (const auto& one : json["characteristics"])
@@ -95,7 +120,8 @@ void run_positioning(const PositioningArguments& arguments) {
 
 void register_evaluate(CLI::App& vernier) {
   CLI::App* evaluate = vernier.add_subcommand(
-      "evaluate", "Judge a measurement by a standard: positioning (ISO 230-2), robots (ISO 9283)");
+      "evaluate",
+      "Judge a measurement by a standard: positioning (ISO 230-2), diagonals (ISO 230-6), robots (ISO 9283)");
   evaluate->require_subcommand(1);
   auto arguments = std::make_shared<PositioningArguments>();
   CLI::App* kind =
@@ -109,9 +135,13 @@ void register_evaluate(CLI::App& vernier) {
   kind->add_option("--uncertainty", arguments->uncertainties,
                    "expanded uncertainty (k = 2) of a characteristic: A=2um; again for each")
       ->allow_extra_args(false);
-  kind->add_option("--header", arguments->header,
-                   "an entry of the report: \"serial number=4711\", operator, date …; again for each")
+  kind->add_option(
+          "--budget", arguments->budget,
+          "a part of the uncertainty, from which that of each characteristic is worked out: device=0.8 "
+          "(um/m, k = 2), misalignment=1 (mm/m), thermometer=1 (range, K), expansion=11.5 and "
+          "expansion-range=2 (um/(m K)), away=3 (K from 20), drift=1.5 (range, um); again for each")
       ->allow_extra_args(false);
+  add_report_header(*kind, arguments->header);
   kind->add_option("-o,--output", arguments->output, "report (HTML)");
   kind->add_option("--json", arguments->json, "result for programs; - for standard output");
   kind->footer(
@@ -119,6 +149,7 @@ void register_evaluate(CLI::App& vernier) {
       "of the rows. Exit status 0 "
       "done, 1 bad input, 2 a tolerance is not met (ISO 14253-1: beyond it by more than the uncertainty).");
   kind->callback([arguments] { run_positioning(*arguments); });
+  add_diagonals_kind(*evaluate);
   add_robot_kind(*evaluate);
 }
 

@@ -74,7 +74,8 @@ std::string HelpText::make_help(const CLI::App* app, std::string name, CLI::AppF
   return text.ends_with("\n\n") ? text.substr(0, text.size() - 1) : text;
 }
 
-std::string HelpText::make_option(const CLI::Option* option, bool is_positional) const {
+std::pair<std::string, std::string> HelpText::option_words(const CLI::Option* option,
+                                                           bool is_positional) const {
   std::string left = make_option_name(option, is_positional), right = make_option_desc(option);
   // What it takes, without the library's words for it; of the words of a set those that the description
   // lacks.
@@ -88,12 +89,19 @@ std::string HelpText::make_option(const CLI::Option* option, bool is_positional)
   const auto open = type.find('{'), close = type.find('}');
   if (open != std::string::npos && close != std::string::npos) {
     std::vector<std::string> words = text::parts_of(type.substr(open + 1, close - open - 1), ',');
+    // A word that stands for a value of ours comes as word->value.
+    for (std::string& word : words) word = word.substr(0, word.find("->"));
+    const std::string all = text::joined(words, " ");
     std::erase_if(words, [&](const std::string& word) { return right.find(word) != std::string::npos; });
-    if (!words.empty())
-      right += ": " + text::joined(text::parts_of(type.substr(open + 1, close - open - 1), ','), " ");
+    if (!words.empty()) right += ": " + all;
   }
   if (!option->get_default_str().empty()) right += " (default " + option->get_default_str() + ")";
   if (option->get_required() && !is_positional) right += " (required)";
+  return {left, right};
+}
+
+std::string HelpText::make_option(const CLI::Option* option, bool is_positional) const {
+  const auto [left, right] = option_words(option, is_positional);
   return beside(left, right);
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 #include <CLI/CLI.hpp>
 #include <string>
+#include <utility>
 
 namespace vernier::commands {
 
@@ -9,6 +10,8 @@ namespace vernier::commands {
 class HelpText : public CLI::Formatter {
  public:
   std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override;
+  /// An option's names with what it takes, and its description with choices and default.
+  std::pair<std::string, std::string> option_words(const CLI::Option* option, bool is_positional) const;
   std::string make_option(const CLI::Option* option, bool is_positional) const override;
   std::string make_subcommand(const CLI::App* command) const override;
   std::string make_footer(const CLI::App* app) const override;

@@ -6,7 +6,7 @@
 
 #include "tools/commands/command.h"
 #include "tools/commands/import_kinds.h"
-#include "tools/import/sheet_columns.h"
+#include "tools/import/sheet_import.h"
 #include "tools/import/survey.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/measurement.h"
@@ -18,77 +18,22 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct TableArguments {
-  std::string file, separator, decimal, comment, sheet, unit, profile, save_profile, machine, output, json;
-  std::vector<std::string> columns, deviations, constants, left;
-  std::size_t skip = 0, check_every = 0;
+  std::string file, profile, save_profile, machine, output, json;
+  importer::SheetWords words;
+  std::size_t check_every = 0;
   bool preview = false;
 };
 
-importer::SheetWishes wishes_of(const TableArguments& arguments, const CLI::App& kind) {
-  importer::SheetWishes wishes;
-  if (!arguments.profile.empty())
-    importer::read_sheet_profile(wishes, text::read_file(arguments.profile), arguments.profile);
-  if (kind.count("--separator") > 0) wishes.format.separator = importer::separator_of(arguments.separator);
-  if (kind.count("--decimal") > 0) wishes.format.decimal_comma = arguments.decimal == "comma";
-  if (kind.count("--comment") > 0)
-    wishes.format.comment = arguments.comment == "none" ? "" : arguments.comment;
-  if (kind.count("--skip") > 0) wishes.format.skip = arguments.skip;
-  if (kind.count("--sheet") > 0) wishes.format.sheet = arguments.sheet;
-  if (!arguments.unit.empty()) {
-    const auto unit = sheet::unit_meant(arguments.unit);
-    if (!unit) throw text::InputError("--unit " + arguments.unit + ": unknown unit");
-    wishes.unit = *unit;
-  }
-  for (const std::string& words : arguments.constants) {
-    importer::ColumnMap map;
-    importer::add_constant(map, words);
-    wishes.constants.push_back(map.columns.front());
-  }
-  return wishes;
-}
-
-void add_said_columns(importer::SheetWishes& wishes, const TableArguments& arguments,
-                      const sheet::SheetTable& table) {
-  for (const std::string& words : arguments.columns) importer::assign_column(wishes, table, words);
-  for (const std::string& words : arguments.deviations) importer::assign_deviation(wishes, words);
-  for (const std::string& heading : arguments.left) {
-    importer::SheetColumn column;
-    column.use = importer::SheetColumn::Use::kLeft;
-    wishes.assignments.push_back({heading, column, {}});
-  }
-}
-
-std::string how_read(const sheet::Sheet& sheet) {
-  if (sheet.workbook) return "workbook, sheet \"" + sheet.sheet + "\"";
-  return fmt::format(
-      "{}, columns parted by {}, decimal {}{}", sheet::encoding_name(sheet.encoding),
-      sheet::separator_word(sheet.separator), sheet.decimal_comma ? "comma" : "point",
-      sheet.decimal_doubtful ? " (it could part thousands as well: --decimal says which)" : "");
-}
-
-std::string becomes(const importer::SheetColumn& column) {
-  const std::string unit = column.unit.empty() ? "" : "[" + column.unit + "]";
-  switch (column.use) {
-    case importer::SheetColumn::Use::kColumn:
-      return column.name + unit + (column.words ? " (words)" : "");
-    case importer::SheetColumn::Use::kDeviation:
-      return fmt::format("position of {} + this, {}", column.name, unit);
-    case importer::SheetColumn::Use::kLeft:
-      return "left out";
-  }
-  return "";
-}
-
-void print_columns(std::FILE* out, const sheet::Sheet& sheet, const sheet::SheetTable& table,
-                   const std::vector<importer::SheetColumn>& columns) {
-  fmt::print(out, "{}: {}\n", sheet.file, how_read(sheet));
+void print_columns(std::FILE* out, const importer::SheetReading& reading) {
+  const auto& [wishes, sheet, table, columns] = reading;
+  fmt::print(out, "{}: {}\n", sheet.file, importer::how_read(sheet));
   if (table.has_headings)
     fmt::print(out, "headings in line {}{}, data from line {}\n", sheet.line[table.heading_row],
                table.units_row > 0 ? fmt::format(", units in line {}", sheet.line[table.units_row]) : "",
                sheet.line[table.first_data]);
   for (std::size_t k = 0; k < columns.size(); ++k)
-    fmt::print(out, "  {:>2}  {:<24} {:<26} {}\n", k + 1, table.headings[k].text, becomes(columns[k]),
-               columns[k].why);
+    fmt::print(out, "  {:>2}  {:<24} {:<26} {}\n", k + 1, table.headings[k].text,
+               importer::becomes(columns[k]), columns[k].why);
 }
 
 void print_rows(std::FILE* out, const std::string& csv) {
@@ -101,39 +46,25 @@ void print_rows(std::FILE* out, const std::string& csv) {
   }
 }
 
-Json columns_json(const sheet::SheetTable& table, const std::vector<importer::SheetColumn>& columns) {
-  Json list = Json::array();
-  for (std::size_t k = 0; k < columns.size(); ++k) {
-    const char* use = columns[k].use == importer::SheetColumn::Use::kColumn      ? "column"
-                      : columns[k].use == importer::SheetColumn::Use::kDeviation ? "deviation"
-                                                                                 : "left";
-    list.push_back({{"heading", table.headings[k].text},
-                    {"use", use},
-                    {"name", columns[k].name},
-                    {"unit", columns[k].unit},
-                    {"why", columns[k].why}});
-  }
-  return list;
-}
-
-void run_table(const TableArguments& arguments, const CLI::App& kind) {
-  importer::SheetWishes wishes = wishes_of(arguments, kind);
+void run_table(const TableArguments& arguments) {
+  importer::SheetWishes wishes;
+  if (!arguments.profile.empty())
+    importer::read_sheet_profile(wishes, text::read_file(arguments.profile), arguments.profile);
+  importer::SheetWords words = arguments.words;
   if (!arguments.machine.empty())
     for (const model::Axis& axis : model::read_machine(arguments.machine).axes)
-      wishes.axes.push_back(axis.name);
-  const sheet::Sheet sheet =
-      sheet::read_sheet(text::read_file(arguments.file), arguments.file, wishes.format);
-  const sheet::SheetTable table = sheet::parts_of_sheet(sheet);
-  add_said_columns(wishes, arguments, table);
-  const std::vector<importer::SheetColumn> columns = importer::columns_of_sheet(sheet, table, wishes);
+      words.axes.push_back(axis.name);
+  const importer::SheetReading reading =
+      importer::read_as_sheet(text::read_file(arguments.file), arguments.file, words, std::move(wishes));
+  const sheet::Sheet& sheet = reading.sheet;
   std::FILE* out = human_stream(arguments.json);
-  if (arguments.preview) print_columns(out, sheet, table, columns);
+  if (arguments.preview) print_columns(out, reading);
   importer::ImportTable read = [&] {
     try {
-      return importer::table_of_sheet(sheet, table, columns, wishes);
+      return importer::table_of_sheet(sheet, reading.table, reading.columns, reading.wishes);
     } catch (const text::InputError&) {
       // What was understood is where the mend begins.
-      if (!arguments.preview) print_columns(stderr, sheet, table, columns);
+      if (!arguments.preview) print_columns(stderr, reading);
       throw;
     }
   }();
@@ -144,7 +75,7 @@ void run_table(const TableArguments& arguments, const CLI::App& kind) {
                  {"separator", sheet.workbook ? Json(nullptr) : Json(sheet::separator_word(sheet.separator))},
                  {"decimal", sheet.decimal_comma ? "comma" : "point"},
                  {"n_rows", read.line.size()},
-                 {"columns", columns_json(table, columns)}};
+                 {"columns", importer::columns_json(reading)}};
   if (!arguments.machine.empty()) {
     const model::Measurement m =
         model::parse_measurement(csv, arguments.file, model::read_machine(arguments.machine));
@@ -160,9 +91,10 @@ void run_table(const TableArguments& arguments, const CLI::App& kind) {
   if (arguments.output.empty()) throw text::InputError("where to? -o MEAS.csv (or --preview)");
   text::write_file(arguments.output, csv);
   if (!arguments.save_profile.empty())
-    text::write_file(arguments.save_profile, importer::sheet_profile(sheet, table, columns, wishes));
+    text::write_file(arguments.save_profile,
+                     importer::sheet_profile(sheet, reading.table, reading.columns, reading.wishes));
   write_json(arguments.json, result);
-  print_columns(out, sheet, table, columns);
+  print_columns(out, reading);
   fmt::print(out, "{}: {} rows\n", arguments.output, read.line.size());
 }
 
@@ -174,25 +106,25 @@ void add_table_kind(CLI::App& import) {
   kind->add_option("file", arguments->file, "the table")->required()->type_name("FILE");
   kind->add_option("-o,--output", arguments->output, "Measurement file to write (CSV)")->type_name("FILE");
   kind->add_flag("--preview", arguments->preview, "say how the table was understood, write nothing");
-  kind->add_option("--column", arguments->columns,
+  kind->add_option("--column", arguments->words.columns,
                    "what a column is: \"x[mm]=X ist\" (heading or number); again for each")
       ->allow_extra_args(false);
-  kind->add_option("--deviation", arguments->deviations,
+  kind->add_option("--deviation", arguments->words.deviations,
                    "\"X[um]=Abweichung\": position of X plus this was measured; again for each")
       ->allow_extra_args(false);
-  kind->add_option("--leave", arguments->left, "heading of a column to leave out; again for each")
+  kind->add_option("--leave", arguments->words.left, "heading of a column to leave out; again for each")
       ->allow_extra_args(false);
-  kind->add_option("--set", arguments->constants, "the same in every row: \"run=s1\", \"u[um]=5\"")
+  kind->add_option("--set", arguments->words.constants, "the same in every row: \"run=s1\", \"u[um]=5\"")
       ->allow_extra_args(false);
-  kind->add_option("--unit", arguments->unit, "unit of lengths and angles whose heading has none");
-  kind->add_option("--separator", arguments->separator,
+  kind->add_option("--unit", arguments->words.unit, "unit of lengths and angles whose heading has none");
+  kind->add_option("--separator", arguments->words.separator,
                    "comma, semicolon, tab, space; default: guessed and said");
-  kind->add_option("--decimal", arguments->decimal, "decimal sign; default: guessed and said")
+  kind->add_option("--decimal", arguments->words.decimal, "decimal sign; default: guessed and said")
       ->check(CLI::IsMember({"point", "comma"}));
-  kind->add_option("--sheet", arguments->sheet,
+  kind->add_option("--sheet", arguments->words.sheet,
                    "sheet of a workbook, name or number; default: the first with cells");
-  kind->add_option("--skip", arguments->skip, "lines at the top to leave out");
-  kind->add_option("--comment", arguments->comment,
+  kind->add_option("--skip", arguments->words.skip, "lines at the top to leave out");
+  kind->add_option("--comment", arguments->words.comment,
                    "lines that begin so are left out; none for none; default: #");
   kind->add_option("--profile", arguments->profile, "read it as this profile says")->type_name("FILE");
   kind->add_option("--save-profile", arguments->save_profile, "write how it was read, for the next one")
@@ -208,7 +140,7 @@ void add_table_kind(CLI::App& import) {
       "Headings are read in their usual forms: X [mm], X(mm), X soll, X ist in \u00b5m,\n"
       "Abweichung X; a row of units below them too. What was guessed is printed; --preview\n"
       "prints it and writes nothing.");
-  kind->callback([arguments, kind] { run_table(*arguments, *kind); });
+  kind->callback([arguments] { run_table(*arguments); });
 }
 
 }  // namespace vernier::commands::import_cli

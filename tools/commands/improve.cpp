@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "tools/commands/command.h"
+#include "tools/commands/report_header.h"
 #include "tools/compile/compile.h"
 #include "tools/diagnose/diagnosis.h"
 #include "tools/model/machine_reader.h"
@@ -27,6 +28,7 @@ struct ImproveArguments {
   std::string machine, output, json, images;
   std::vector<std::string> measurements, effects;
   bool yes = false;
+  ReportHeader header;
 };
 
 /// A rung of the ladder that was taken, and the machine file that stands on it.
@@ -36,8 +38,8 @@ struct Rung {
 };
 
 bool agreed(const ImproveArguments& arguments, const diagnose::LadderStep& step, std::FILE* out) {
-  fmt::print(out, "+ {}: fit rows {}, check rows {}\n", step.label,
-             results::number_or_dash(step.rms_um, "um"), results::number_or_dash(step.check_rms_um, "um"));
+  fmt::print(out, "+ {}: fit rows {}, check rows {}\n", step.said, results::number_or_dash(step.rms_um, "um"),
+             results::number_or_dash(step.check_rms_um, "um"));
   if (arguments.yes) return true;
   fmt::print(out, "  add it? [y/n] ");
   std::fflush(out);
@@ -123,7 +125,7 @@ class Improver {
     for (std::size_t i = 1; i < d.ladder.size(); ++i) {
       const diagnose::LadderStep& step = d.ladder[i];
       if (!agreed(arguments_, step, out_)) return false;
-      take({"+ " + step.label, step.effect, step.add, "", step.text, step.rms_um, step.check_rms_um});
+      take({"+ " + step.said, step.effect, step.add, "", step.text, step.rms_um, step.check_rms_um});
     }
     const model::Machine before = machine_;
     text_ = rungs_.back().text;
@@ -163,7 +165,7 @@ class Improver {
     simulate(json);
     judge(json);
     const std::string page = arguments_.output + "/improve.html";
-    text::write_file(page, report::improve_report_html(json));
+    text::write_file(page, report::improve_report_html(arguments_.header.on(json)));
     text::write_file(arguments_.output + "/improve.json", json.dump(1) + "\n");
     write_json(arguments_.json, json);
     fmt::print(out_, "left in {}: {} machine files, improve.json, improve.html\n", arguments_.output,
@@ -228,6 +230,7 @@ void register_improve(CLI::App& vernier) {
       ->required();
   command->add_option("--effects", arguments->effects, "files with effects of your own; may be repeated");
   command->add_option("--images", arguments->images, simulate::kImagesHelp);
+  add_report_header(*command, arguments->header);
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->add_flag("--yes", arguments->yes, "add every effect that is found, without asking");
   command->footer(

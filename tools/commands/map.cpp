@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "tools/commands/command.h"
+#include "tools/commands/report_header.h"
 #include "tools/map/simulated.h"
 #include "tools/model/machine_reader.h"
 #include "tools/report/report.h"
@@ -20,6 +21,7 @@ struct MapArguments {
   std::string machine, output, json, at, lines;
   std::vector<std::string> over;
   std::size_t grid = 7;
+  ReportHeader header;
 };
 
 constexpr const char* kNotMeasured =
@@ -172,7 +174,7 @@ void run_map(const MapArguments& arguments) {
   else
     json["notes"].push_back(kNotMeasured);
   if (!arguments.output.empty())
-    text::write_file(arguments.output, report::improvement_report_html(page_of(json)));
+    text::write_file(arguments.output, report::improvement_report_html(arguments.header.on(page_of(json))));
   write_json(arguments.json, json);
   std::FILE* out = human_stream(arguments.json);
   fmt::print(out, "largest deviation {:.4g} um, rms {:.4g} um over {} nodes\n",
@@ -197,6 +199,7 @@ void register_map(CLI::App& vernier) {
       "map", "The error field over the working volume, and what would be measured in it");
   command->add_option("MACHINE", arguments->machine, "machine file (XML)")->required();
   command->add_option("-o,--output", arguments->output, "the report, one HTML file that opens offline");
+  add_report_header(*command, arguments->header);
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->add_option("--grid", arguments->grid, "nodes along each axis")
       ->check(CLI::Range(2, 40))

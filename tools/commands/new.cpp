@@ -15,7 +15,7 @@ namespace vernier::commands::new_cli {
 namespace {
 
 struct NewArguments {
-  std::string type, output, measurements, json, name, tool, dh, urdf, tip, reading = "point";
+  std::string type, output, measurements, json, name, tool, dh, urdf, tip, reading = "point", errors = "all";
   std::string tool_side, work_side;
   std::vector<std::string> axes, centres, joints;
 };
@@ -103,6 +103,9 @@ create::MachinePlan plan_of(const NewArguments& arguments, const CLI::App& comma
   create::MachinePlan plan =
       arguments.urdf.empty() ? plan_of_words(arguments, command) : plan_of_urdf(arguments, command);
   if (!arguments.name.empty()) plan.name = arguments.name;
+  plan.positioning_only = arguments.errors == "positioning";
+  if (plan.positioning_only && !plan.arm.empty())
+    throw text::InputError("--errors positioning: of machines with slides; a robot's rows are all it has");
   return plan;
 }
 
@@ -113,7 +116,9 @@ void run_new(const NewArguments& arguments, const CLI::App& command) {
   if (!arguments.measurements.empty()) text::require_place(arguments.measurements);
   const std::string survey = create::survey_template(machine, create::reading_of(arguments.reading));
   text::write_file(arguments.output, text);
-  if (!arguments.measurements.empty()) text::write_file(arguments.measurements, survey);
+  if (!arguments.measurements.empty())
+    text::write_file(arguments.measurements,
+                     arguments.measurements.ends_with(".xlsx") ? create::survey_workbook(survey) : survey);
   nlohmann::ordered_json json = {
       {"type", plan.type}, {"machine", arguments.output}, {"drawing", create::drawing(plan)}};
   for (const model::Axis& axis : machine.axes) json["axes"].push_back(axis.name);
@@ -129,8 +134,12 @@ void run_new(const NewArguments& arguments, const CLI::App& command) {
   const std::string meas = arguments.measurements.empty() ? "MEAS.csv" : arguments.measurements;
   if (!arguments.measurements.empty())
     fmt::print(out, "{}: rows to be measured, with empty cells for the readings\n", meas);
-  fmt::print(out, "next: vernier lint {0} {1}, then vernier fit {0} {1} -o fitted.xml\n", arguments.output,
-             meas);
+  if (meas.ends_with(".xlsx"))
+    fmt::print(out, "next: fill it in, then vernier import table {} -o survey.csv --machine {}\n", meas,
+               arguments.output);
+  else
+    fmt::print(out, "next: vernier lint {0} {1}, then vernier fit {0} {1} -o fitted.xml\n", arguments.output,
+               meas);
 }
 
 }  // namespace
@@ -151,7 +160,13 @@ void register_new(CLI::App& vernier) {
       ->allow_extra_args(false);
   command->add_option("-o,--output", arguments->output, "the machine file (XML)")->required();
   command->add_option("--measurements", arguments->measurements,
-                      "also a measurement file to be filled in (CSV)");
+                      "also a measurement file to be filled in: CSV, or a workbook (.xlsx)");
+  command
+      ->add_option("--errors", arguments->errors,
+                   "what a fit may find: all; positioning (along each axis, what an interferometer or a dial "
+                   "gauge sees)")
+      ->check(CLI::IsMember({"all", "positioning"}))
+      ->capture_default_str();
   command
       ->add_option("--reading", arguments->reading,
                    "what the survey reads: point (x y z), length (ball bar), touch (dial gauge, probe), pose")

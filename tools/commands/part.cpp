@@ -9,6 +9,7 @@
 
 #include "tools/commands/command.h"
 #include "tools/commands/part_kinds.h"
+#include "tools/commands/report_header.h"
 #include "tools/evaluate/positioning.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/machine_writer.h"
@@ -30,6 +31,7 @@ struct Arguments {
   std::string machine, errors, identify, free, output, json;
   double tool_diameter_mm = 20, tool_length_mm = 35, feed_mm_min = 1000, step_mm = 0.5;
   part::DefectReading reading = part::DefectReading::kContact;
+  ReportHeader header;
   part::RotarySolution solution = part::RotarySolution::kContinuous;
   bool aligned = false, tool_radius = false;
   double tolerance_mm = 0, u95_mm = 0;  // width of the zone; of the machine that measured the part
@@ -165,7 +167,7 @@ void run_s_shape(const Arguments& arguments) {
   std::vector<std::pair<std::string, std::string>> files = {
       {"defect.csv", part::defect_csv(job.points, job.defect)},
       {"machine.xml", model::update_machine_text(machine_text, written, true)},
-      {"report.html", report::improvement_report_html(part::part_report(job, result))}};
+      {"report.html", report::improvement_report_html(arguments.header.on(part::part_report(job, result)))}};
   for (const part::PartPath& one : job.paths) {
     const char flank = part::s_part()[one.flank].name;
     files.emplace_back(fmt::format("path_{}.csv", flank), part::path_csv(job.machine, one));
@@ -275,6 +277,7 @@ void add_s_shape(CLI::App& part) {
       ->check(CLI::NonNegativeNumber);
   command->add_option("-o,--output", a->output, "directory for paths (CSV, G-code), defect, machine, report")
       ->required();
+  add_report_header(*command, a->header);
   command->add_option("--json", a->json, "result for programs; - for standard output");
   command->callback([a] { run_s_shape(*a); });
 }

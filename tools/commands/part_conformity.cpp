@@ -7,6 +7,7 @@
 
 #include "tools/commands/command.h"
 #include "tools/commands/part_kinds.h"
+#include "tools/commands/report_header.h"
 #include "tools/fit/fit.h"
 #include "tools/kinematics/at.h"
 #include "tools/model/machine_reader.h"
@@ -26,6 +27,7 @@ using Json = nlohmann::ordered_json;
 struct ConformityArguments {
   std::string machine, tool, frame = "part", images, output, json;
   PartSource part;
+  ReportHeader header;
   std::vector<std::string> measurements, effects;
   double process_um = 0;
   std::uint64_t seed = 1;
@@ -160,7 +162,7 @@ std::string conformity_page(const model::Machine& machine, const ConformityArgum
   Json notes = Json::array();
   for (const std::string& range : result.outside)
     notes.push_back("the part is where nobody measured: " + range);
-  return report::improvement_report_html(
+  return report::improvement_report_html(arguments.header.on(
       {{"title", "Will the part be in tolerance?"},
        {"machine", machine.name},
        {"files", {arguments.machine, arguments.part.path}},
@@ -170,7 +172,7 @@ std::string conformity_page(const model::Machine& machine, const ConformityArgum
            {fmt::format("{} trials (seed {}) over the covariance of the last fit, GUM supplement 1.",
                         result.trials, result.seed)}},
           {"tables", {table}},
-          {"notes", notes}}}}});
+          {"notes", notes}}}}}));
 }
 
 model::Machine machine_of(const ConformityArguments& arguments) {
@@ -271,6 +273,7 @@ void add_conformity(CLI::App& part) {
                     "the machine runs without its correction: that decides the exit status");
   command->add_option("--images", a->images, simulate::kImagesHelp);
   command->add_option("-o,--output", a->output, "the same as a page (HTML)");
+  add_report_header(*command, a->header);
   command->add_option("--json", a->json, "result for programs; - for standard output");
   command->footer(
       "Monte Carlo over the covariance of the last fit (JCGM 101). A tolerance is kept, or not, from a\n"

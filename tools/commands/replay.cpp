@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "tools/commands/command.h"
+#include "tools/commands/report_header.h"
 #include "tools/model/machine_reader.h"
 #include "tools/report/report.h"
 #include "tools/results/replay_report.h"
@@ -19,6 +20,7 @@ struct Arguments {
   std::string image, before, output, json, images;
   std::vector<std::string> measurements;
   std::vector<unsigned> dac;
+  ReportHeader header;
   simulate::LoopOptions loop;
 };
 
@@ -73,8 +75,8 @@ void run_replay(const Arguments& arguments) {
                                  {"steps", nlohmann::ordered_json::array()}};
   for (const results::ReplayStep& step : steps) json["steps"].push_back(step_json(step, m));
   if (!arguments.output.empty())
-    text::write_file(arguments.output,
-                     report::improvement_report_html(results::replay_report(before, *image, m, steps)));
+    text::write_file(arguments.output, report::improvement_report_html(arguments.header.on(
+                                           results::replay_report(before, *image, m, steps))));
   write_json(arguments.json, json);
   for (const results::ReplayStep& step : steps) print_step(human_stream(arguments.json), step, m);
 }
@@ -95,6 +97,7 @@ void register_replay(CLI::App& vernier) {
                       "a simpler machine file, to stand beside the image's in the report");
   command->add_option("--images", arguments->images, simulate::kImagesHelp);
   command->add_option("-o,--output", arguments->output, "the report, one HTML file that opens offline");
+  add_report_header(*command, arguments->header);
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->footer(
       "Runs the firmware along the measured motion and moves every reading by what its correction does to\n"

@@ -58,6 +58,7 @@ constexpr vernier::commands::RegisterCommand kCommands[] = {
     vernier::commands::workbench_cli::register_image_diff,
     vernier::commands::workbench_cli::register_workbench,
     vernier::commands::completion_cli::register_completion,
+    vernier::commands::manual_cli::register_manual,
 };
 
 /// Before a command works: is there a place for the result that it writes last?

@@ -37,9 +37,11 @@ std::string side_text(const MachinePlan& plan, const std::vector<std::size_t>& s
   return text + (work ? " > workpiece" : " > tool");
 }
 
-/// One static of an error: 0, free in a fit.
-std::string error_static(const std::string& name, const char* unit, const std::string& note) {
-  return fmt::format("      <{0} value=\"0\" nominal=\"0\" unit=\"{1}\" note=\"{2}\"/>\n", name, unit, note);
+/// One static of an error: 0, free in a fit unless the survey cannot see it.
+std::string error_static(const MachinePlan& plan, const std::string& name, const char* unit,
+                         const std::string& note) {
+  return fmt::format("      <{0} value=\"0\" nominal=\"0\" unit=\"{1}\"{2} note=\"{3}\"/>\n", name, unit,
+                     plan.positioning_only ? " Hide=\"true\"" : "", note);
 }
 std::string length_static(const std::string& name, double value, const std::string& note) {
   return fmt::format("      <{0} value=\"{1}\" unit=\"mm\" Hide=\"true\" note=\"{2}\"/>\n", name,
@@ -148,7 +150,7 @@ std::string slide_statics(const MachinePlan& plan) {
   for (std::size_t i = 0; i < plan.axes.size(); ++i) {
     if (plan.axes[i].rotary()) continue;
     for (const TravelAngle& angle : travel_angles(plan, i))
-      text += error_static(angle.name, "rad",
+      text += error_static(plan, angle.name, "rad",
                            fmt::format("squareness of {} to {}", plan.axes[i].name, angle.towards));
   }
   if (text.empty()) return "";
@@ -164,11 +166,11 @@ std::string turning_statics(const MachinePlan& plan) {
     if (!axis.rotary()) continue;
     for (std::size_t k = 0; k < 3; ++k)
       if (k != axis.along())
-        text += error_static(fmt::format("E{}0{}", kLengths[k], axis.name), "mm",
+        text += error_static(plan, fmt::format("E{}0{}", kLengths[k], axis.name), "mm",
                              fmt::format("line of {} off its place along {}", axis.name, kLengths[k]));
     for (std::size_t k = 0; k < 3; ++k)
       if (k != axis.along())
-        text += error_static(fmt::format("E{}0{}", kTurns[k], axis.name), "deg",
+        text += error_static(plan, fmt::format("E{}0{}", kTurns[k], axis.name), "deg",
                              fmt::format("line of {} leaning about {}", axis.name, kLengths[k]));
     for (std::size_t k = 0; k < 3; ++k)
       if (axis.centre[k] != 0)
@@ -195,12 +197,13 @@ std::string arm_statics(const MachinePlan& plan) {
       text += fmt::format("      <{0} value=\"{1}\" nominal=\"{1}\" unit=\"mm\"/>\n", name + j,
                           text::number_text(value));
     };
-    text += error_static("th" + j, "deg", (row.prismatic ? "turn of joint " : "zero of joint ") + j);
+    text += error_static(plan, "th" + j, "deg", (row.prismatic ? "turn of joint " : "zero of joint ") + j);
     if (!parallel) length("d", row.d);
     if (!last) length("a", row.a);
-    if (!last) text += error_static("al" + j, "deg", fmt::format("twist from joint {} to {}", i + 1, i + 2));
+    if (!last)
+      text += error_static(plan, "al" + j, "deg", fmt::format("twist from joint {} to {}", i + 1, i + 2));
     if (parallel)
-      text += error_static("be" + j, "deg",
+      text += error_static(plan, "be" + j, "deg",
                            fmt::format("joint {} not parallel to joint {}, about y", i + 2, i + 1));
   }
   return text;
@@ -246,12 +249,19 @@ std::string tables_text(const MachinePlan& plan) {
   std::string text =
       "    <!-- Six errors of each axis at stations along it, linear between them: X Y Z in mm (positioning "
       "and straightness),\n"
-      "         rX rY rZ in deg (roll, pitch, yaw). fit names the columns that a fit may change; take out "
-      "what your\n"
-      "         measurements cannot see, or add stations where you measured more densely. -->\n    "
-      "<comptables>\n";
+      "         rX rY rZ in deg (roll, pitch, yaw). fit names the columns that a fit may change; " +
+      std::string(
+          plan.positioning_only
+              ? "here the positioning along\n         each axis alone, as --errors positioning asked for: "
+                "add what else you measured"
+              : "take out what your\n         measurements cannot see, or add stations where you measured "
+                "more densely") +
+      ". -->\n    <comptables>\n";
   for (const PlannedAxis& axis : plan.axes) {
-    text += fmt::format("      <table axis=\"{}\" fit=\"X Y Z rX rY rZ\">\n", axis.name);
+    constexpr const char* kColumns[] = {"X", "Y", "Z", "rX", "rY", "rZ"};
+    text += fmt::format(
+        "      <table axis=\"{}\" fit=\"{}\">\n", axis.name,
+        plan.positioning_only ? kColumns[axis.along() + (axis.rotary() ? 3 : 0)] : "X Y Z rX rY rZ");
     for (const double loc : round_stations(axis.min, axis.max, axis.rotary()))
       text +=
           fmt::format("        <station loc=\"{}\" X=\"0\" Y=\"0\" Z=\"0\" rX=\"0\" rY=\"0\" rZ=\"0\"/>\n",

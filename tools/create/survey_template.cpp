@@ -8,7 +8,9 @@
 
 #include "tools/create/machine_plan.h"
 #include "tools/model/work_poses.h"
+#include "tools/sheet/workbook_writer.h"
 #include "tools/text/numbers.h"
+#include "tools/text/words.h"
 
 namespace vernier::create {
 namespace {
@@ -152,6 +154,19 @@ std::string survey_template(const model::Machine& machine, Reading reading) {
   text += header + ",run,role\n";
   const std::string empty(static_cast<std::size_t>(std::count(header.begin(), header.end(), ',')) + 1, ',');
   return text + Rows(machine, empty).text();
+}
+
+std::string survey_workbook(const std::string& survey) {
+  sheet::SheetToWrite rows{"Survey", {}}, remarks{"Read me", {{"How to fill it in"}}};
+  for (const std::string& line : text::parts_of(survey, '\n')) {
+    // How a CSV is written concerns nobody here.
+    if (line.starts_with("# Decimal point, comma")) continue;
+    if (line.starts_with("#"))
+      remarks.rows.push_back({line.substr(line.starts_with("# ") ? 2 : 1)});
+    else if (!line.empty())
+      rows.rows.push_back(text::parts_of(line, ','));
+  }
+  return sheet::workbook_of({rows, remarks});
 }
 
 }  // namespace vernier::create

@@ -22,4 +22,7 @@ Reading reading_of(const std::string& name);
 /// fourth one a check row) with their measured cells empty. tool.
 std::string survey_template(const model::Machine& machine, Reading reading);
 
+/// Such a survey as a workbook (.xlsx): its rows on the first sheet, the remarks on the second. tool.
+std::string survey_workbook(const std::string& survey);
+
 }  // namespace vernier::create

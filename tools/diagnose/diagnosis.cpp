@@ -13,6 +13,7 @@
 #include "tools/diagnose/proof.h"
 #include "tools/diagnose/shape.h"
 #include "tools/effects/fitted_effect.h"
+#include "tools/effects/spoken.h"
 #include "tools/fit/noise.h"
 #include "tools/fit/statistics.h"
 #include "tools/maths/factors.h"
@@ -149,7 +150,7 @@ class Diagnoser {
       // A step of one run carries to no other: rows of others that grow by it are enough.
       const bool of_runs = !pool_.candidate(items.back()).choice.runs.empty();
       if (proof.speaks_against(options_.thresholds.proof) || (of_runs && proof.evidence < 0)) {
-        disproved_.push_back(pool_.candidate(items.back()).label);
+        disproved_.push_back(pool_.candidate(items.back()).spoken);
         chosen_.erase(chosen_.begin() + static_cast<std::ptrdiff_t>(count - 1));
         continue;
       }
@@ -160,6 +161,7 @@ class Diagnoser {
       step.effect = pool_.candidate(items.back()).choice.effect->id;
       step.add = add_string_of(items.back());
       step.label = pool_.candidate(items.back()).label;
+      step.said = pool_.candidate(items.back()).spoken;
       step.rms_um = fitted.fit.after.rms_um;
       step.check_rms_um = fitted.fit.check.rms_um;
       step.chi_square_per_freedom = fitted.fit.chi_square / std::max(1.0, fitted.fit.freedom);
@@ -372,9 +374,9 @@ class Diagnoser {
       result_.explanation = fmt::format(
           "{} effects come down to the noise together, and are more likely the pieces of one function of the "
           "position that is none of the catalogue's: {}",
-          pieces.size(), pool_.candidate(pieces.front()).label);
+          pieces.size(), pool_.candidate(pieces.front()).spoken);
       for (std::size_t i = 1; i < pieces.size(); ++i)
-        result_.explanation += "; " + pool_.candidate(pieces[i]).label;
+        result_.explanation += "; " + pool_.candidate(pieces[i]).spoken;
       result_.explanation += ".";
     } else if (const std::size_t nameless = terms_without_standing(); nameless > 0) {
       result_.verdict = Verdict::kUnexplained;
@@ -392,7 +394,7 @@ class Diagnoser {
     } else if (!rivals.close.empty()) {
       result_.verdict = Verdict::kAmbiguous;
       result_.explanation = fmt::format("One of {} causes that explain these data alike, {} first.",
-                                        1 + rivals.close.size(), pool_.candidate(chosen_.front()).label);
+                                        1 + rivals.close.size(), pool_.candidate(chosen_.front()).spoken);
     } else {
       result_.verdict = Verdict::kMissingEffect;
       result_.explanation = in_words();
@@ -429,7 +431,7 @@ class Diagnoser {
       const effects::Choice& choice = pool_.candidate(item).choice;
       const model::Axis& axis = machine_.axes[*choice.axis];
       text = fmt::format("{}: {}, with any of {} periods: the positions of {} do not tell them apart. {:.5g}",
-                         choice.effect->title, pool_.candidate(item).label, aliases.size() + 1, axis.name,
+                         choice.effect->title, pool_.candidate(item).spoken, aliases.size() + 1, axis.name,
                          pool_[item].scored.scanned.front());
       constexpr std::size_t kListed = 20;
       for (std::size_t i = 0; i < std::min(kListed, aliases.size()); ++i)
@@ -443,15 +445,10 @@ class Diagnoser {
   /// The cause with its coefficients, how far the next one is behind, and what the whole ladder does.
   std::string in_words() const {
     const CandidateFinding& cause = result_.candidates.front();
-    std::string text = cause.candidate.choice.effect->title + ": " + cause.candidate.label;
-    constexpr std::size_t kFew = 3;
-    if (cause.parameters.size() <= kFew)
-      for (const fit::ParameterEstimate& p : cause.parameters)
-        text += fmt::format(", {} = {:.4g} +- {:.2g} {}", p.name, p.value, p.std, p.unit);
-    text += ".";
+    std::string text = said_of(cause) + ".";
     if (rivals_.best)
       text += fmt::format(" The next best other cause, {}, is {:.0f} behind.",
-                          pool_.candidate(*rivals_.best).label, rivals_.distance);
+                          pool_.candidate(*rivals_.best).spoken, rivals_.distance);
     return text + check_rows_in_words();
   }
 
@@ -467,7 +464,7 @@ class Diagnoser {
                                                           : ", ",
                          *step.check_rms_um);
       if (i > 0 && *step.check_rms_um > *result_.ladder[i - 1].check_rms_um)
-        worse += (worse.empty() ? "" : ", ") + step.label;
+        worse += (worse.empty() ? "" : ", ") + step.said;
     }
     std::string text = fmt::format(" With {} effect{} the check rows go from {} um", chosen_.size(),
                                    chosen_.size() == 1 ? "" : "s", way);
@@ -535,6 +532,13 @@ bool is_named(Verdict verdict) {
 }
 
 }  // namespace
+
+std::string said_of(const CandidateFinding& finding) {
+  std::vector<effects::SpokenValue> values;
+  for (const fit::ParameterEstimate& one : finding.parameters)
+    values.push_back({one.name, one.value, one.std});
+  return effects::spoken_with_size(finding.candidate, values);
+}
 
 const char* verdict_name(Verdict verdict) {
   switch (verdict) {

@@ -43,8 +43,12 @@ struct CandidateFinding {
   std::vector<double> aliases;  // other periods that the positions do not tell from its own, longest first
 };
 
+/// "Z carriage: lag 0.137 +- 0.007 ms": what it is and how much, for people (tools/effects/spoken.h).
+std::string said_of(const CandidateFinding& finding);
+
 struct LadderStep {
   std::string effect, add, label;  // empty: the model as given
+  std::string said;                // "Z carriage: lag"
   std::string text;                // the machine file, fitted
   std::optional<double> rms_um, check_rms_um;
   double chi_square_per_freedom = 0;

@@ -157,7 +157,7 @@ std::string doubt_of_curve(const Evidence& evidence, const Pool& pool, const std
         "{} removes it, but {:.0f} % of it changes faster than a smooth curve does (half-waves below {:.3g} "
         "of "
         "the axis' unit): it depends on the axis, and its cause has no name",
-        pool.candidate(item).label, 100 * shape.fast_share, shape.resolved);
+        pool.candidate(item).spoken, 100 * shape.fast_share, shape.resolved);
   if (curve) {
     const Jump jump = best_jump(evidence, *choice.place, positions(evidence, *choice.axis), beside);
     const Evidence::Range range = evidence.range_of(*choice.axis);
@@ -165,13 +165,13 @@ std::string doubt_of_curve(const Evidence& evidence, const Pool& pool, const std
       return fmt::format(
           "a jump at {:.4g} of the axis explains more than {}: it depends on the axis, and its cause has no "
           "name",
-          range.low + jump.at * (range.high - range.low), pool.candidate(item).label);
+          range.low + jump.at * (range.high - range.low), pool.candidate(item).spoken);
   }
   if ((unknowns >= limits.curve || shape.own_table) && shape.seen < seen_per_unknown * unknowns)
     return fmt::format(
         "{} takes {:.0f} unknowns where the readings show only {:.0f} independent functions of the axis "
         "beside the model: any function of it would do as well",
-        pool.candidate(item).label, unknowns, shape.seen);
+        pool.candidate(item).spoken, unknowns, shape.seen);
   return {};
 }
 
@@ -235,7 +235,7 @@ std::string doubt_of_shape(const Evidence& evidence, const Pool& pool, const std
   if (evidence.noise_known() &&
       log_p_of_change(evidence, pool, items, item) < evidence.thresholds().shape.change_chance)
     return fmt::format("{} changes along the axes, which what it is called does not",
-                       pool.candidate(item).label);
+                       pool.candidate(item).spoken);
   return {};
 }
 

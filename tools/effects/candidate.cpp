@@ -8,6 +8,7 @@
 #include <set>
 
 #include "tools/effects/input_class.h"
+#include "tools/effects/spoken.h"
 #include "tools/text/error.h"
 #include "tools/text/numbers.h"
 
@@ -73,6 +74,7 @@ class Maker {
       result_.terms.push_back({term.place, model::to_text(term.negated ? *negative(filled) : *filled)});
     }
     result_.label = label();
+    result_.spoken = spoken_name(machine_, axes_, result_);
     return std::move(result_);
   }
 

@@ -94,7 +94,8 @@ struct Candidate {
   Choice choice;
   std::vector<CandidateTerm> terms;
   std::vector<CandidateUnknown> unknowns;
-  std::string label;  // for people: "backlash of X"
+  std::string label;   // where it stands: "backlash of X in X of transform 2"
+  std::string spoken;  // for people: "X carriage: backlash" (spoken.h)
 };
 
 /// The unknowns that are coefficients, in their order: what the term is linear in.

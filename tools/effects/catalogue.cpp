@@ -74,6 +74,10 @@ class CatalogueReader {
     if (rest.empty()) fail(key, "nothing behind this word");
     if (key == "title")
       now.title = rest;
+    else if (key == "short")
+      now.short_name = rest;
+    else if (key == "size")
+      take_size(now, rest);
     else if (key == "formula")
       now.formula = rest;
     else if (key == "signature")
@@ -98,8 +102,8 @@ class CatalogueReader {
       take_unknown(now, rest);
     else
       fail(key,
-           "expected effect, title, formula, signature, exposed, impostors, rare, touches, instrument, "
-           "cause, seldom, form or unknown");
+           "expected effect, title, short, size, formula, signature, exposed, impostors, rare, touches, "
+           "instrument, cause, seldom, form or unknown");
   }
 
   void begin(const std::string& id) {
@@ -111,6 +115,16 @@ class CatalogueReader {
     effects_.back().id = id;
     first_line_ = line_;
     form_line_.clear();
+  }
+
+  void take_size(Effect& effect, std::string rest) const {
+    EffectSize size;
+    const std::string factor = next_word(rest);
+    const auto value = text::parse_number(factor);
+    if (!value || *value == 0 || rest.empty()) fail(factor, "a size is \"size FACTOR UNKNOWN...\"");
+    size.factor = *value;
+    while (!rest.empty()) size.unknowns.push_back(next_word(rest));
+    effect.size = size;
   }
 
   void take_form(Effect& effect, std::string rest) {
@@ -197,6 +211,10 @@ class CatalogueReader {
     if (effect.title.empty() || effect.signature.empty())
       fail_at(first_line_, effect.id, "title or signature is missing");
     if (effect.unknowns.empty()) fail_at(first_line_, effect.id, "an effect needs an unknown");
+    if (effect.size)
+      for (const std::string& name : effect.size->unknowns)
+        if (effect.find_unknown(name) == nullptr)
+          fail_at(first_line_, name, "size: no unknown of this effect");
     std::set<std::string> used;
     for (std::size_t i = 0; i < effect.forms.size(); ++i) {
       const std::set<std::string> here = unknowns_of(effect, effect.forms[i], form_line_[i]);

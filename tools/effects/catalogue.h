@@ -2,6 +2,7 @@
 #pragma once
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -73,9 +74,18 @@ void read_term(EffectForm& form);
 /// The placeholders in a name of a term: dir{q} has q, {hats 5} has "hats 5".
 std::vector<std::string> marks_in(const std::string& name);
 
+/// The number that a person is told of an effect: the factor times one unknown, or times the root of the sum
+/// of the squares of several (the amplitude of a sine and a cosine).
+struct EffectSize {
+  double factor = 1;
+  std::vector<std::string> unknowns;  // by their names in the catalogue
+};
+
 /// An entry of the catalogue: what a user may be told is missing.
 struct Effect {
   std::string id, title, formula, signature, exposed_by;
+  std::string short_name;          // behind the part of the machine: "Z carriage: lag"
+  std::optional<EffectSize> size;  // absent: no single number says it
   std::vector<std::string> impostors;
   bool rare = false;           // met seldom: wants more evidence than its rivals
   bool needs_touches = false;  // only readings along a surface's normal tell of it

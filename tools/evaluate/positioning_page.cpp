@@ -106,8 +106,7 @@ Json positioning_json(const PositioningResult& result, const PositioningFile& fi
 
 Json positioning_page(const Json& json, const PositioningWords& words) {
   const std::string unit = json["unit"] == "um" ? "µm" : "″";
-  Json header = Json::array(), tiles = Json::array(), table = Json::array(), places = Json::array();
-  for (const auto& [key, value] : words.header) header.push_back({key, value});
+  Json tiles = Json::array(), table = Json::array(), places = Json::array();
   for (const Json& one : json["characteristics"]) {
     const std::string name = one["name"];
     if (name == "A" || name == "R" || name == "E" || name == "M" || name == "B")
@@ -129,8 +128,13 @@ Json positioning_page(const Json& json, const PositioningWords& words) {
   plot["y"] = {{{"name", "mean forward"}, {"unit", unit}, {"values", column(json["targets"], "mean", 0)}},
                {{"name", "mean backward"}, {"unit", unit}, {"values", column(json["targets"], "mean", 1)}}};
   Json first = {{"title", "Positioning of axis " + words.axis + " (ISO 230-2)"}, {"numbers", tiles}};
-  if (!header.empty())
-    first["tables"] = {{{"caption", "Test"}, {"columns", {"", "entry"}}, {"rows", header}}};
+  if (json.contains("budget")) {
+    Json rows = Json::array();
+    for (const Json& part : json["budget"]) rows.push_back({part["part"], cell(part["U_um"])});
+    first["tables"] = {{{"caption", "Uncertainty of A, E and M: parts, k = 2, in µm"},
+                        {"columns", {"part", "U"}},
+                        {"rows", rows}}};
+  }
   const Json rule =
       "A tolerance is met where the value and its expanded uncertainty (k = 2) together stay within it, not "
       "met where it is exceeded "

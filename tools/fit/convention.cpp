@@ -12,6 +12,7 @@
 #include "tools/fit/levenberg.h"
 #include "tools/fit/problem.h"
 #include "tools/fit/solve.h"
+#include "tools/fit/unseen_turns.h"
 #include "tools/maths/factors.h"
 #include "tools/model/chain_rows.h"
 #include "tools/model/evaluate.h"
@@ -265,12 +266,17 @@ model::Machine set_up(const model::Machine& machine, const model::Measurement& r
     if (one.kind() != model::ParameterKind::kBaseShift) one.set_free(false);
   const model::ParameterSet shifts(rigid, setups_of_fit_rows(rows));
   if (shifts.size() == 0) return machine;
-  const FitProblem problem(rigid, rows, shifts);
+  FitProblem problem(rigid, rows, shifts);
+  const Eigen::VectorXd none = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(shifts.size()));
+  model::Machine at_zero = rigid;
+  shifts.set(at_zero, none);
+  const std::vector<bool> held = unseen_turns(at_zero, rows, shifts, reach_of(at_zero, rows));
   // From the measuring frame itself, so that what no reading sees (the tilt of a flat bar's circle) is 0
   // whatever the file says; from the file's where that ends plainly lower (a frame turned by more than a
   // quarter).
-  SetUp plain = fitted_set_up(machine, shifts, problem,
-                              Eigen::VectorXd::Zero(static_cast<Eigen::Index>(shifts.size())));
+  hold_at(problem, held, none);
+  SetUp plain = fitted_set_up(machine, shifts, problem, none);
+  hold_at(problem, held, shifts.get(rigid));
   SetUp given = fitted_set_up(machine, shifts, problem, shifts.get(rigid));
   constexpr double kPlainly = 1e-3;
   return given.cost < (1 - kPlainly) * plain.cost ? std::move(given.machine) : std::move(plain.machine);
@@ -295,12 +301,15 @@ Convention convention_of(const model::Machine& machine, const model::Measurement
   correlate(machine, parameters, result);
   find_slopes(centre, rows, parameters, result);
   const std::set<std::size_t> shapes = shape_statics(machine);
+  const std::vector<bool> unseen = unseen_turns(centre, rows, parameters, result.reach_mm);
   Eigen::VectorXd by_place;
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const model::Parameter& p = parameters[i];
     double& scale = result.scale[static_cast<Eigen::Index>(i)];
     if (p.kind == model::ParameterKind::kBaseShift) {
-      scale = p.column < 3 ? kAnywhere_mm : kAnyTurn_deg;
+      // An instrument that sees one line is aligned to it; how well shows in nothing but its own cosine
+      // error.
+      scale = p.column < 3 ? kAnywhere_mm : unseen[i] ? angle_deg : kAnyTurn_deg;
       continue;
     }
     if (p.kind == model::ParameterKind::kScaleFactor) {

@@ -184,6 +184,7 @@ void remember(FitResult& result, const model::Measurement& rows, const Conventio
   record->values.resize(static_cast<Eigen::Index>(result.estimates.size()));
   for (std::size_t i = 0; i < result.estimates.size(); ++i) {
     record->parameters.push_back(result.estimates[i].name);
+    record->origins.emplace_back(origin_name(result.estimates[i].from));
     record->values[static_cast<Eigen::Index>(i)] = result.estimates[i].value;
   }
   record->factor = model::covariance_factor(result.covariance);

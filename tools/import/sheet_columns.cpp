@@ -207,6 +207,20 @@ void leave(SheetColumn& column, const std::string& why) {
   column.why = why;
 }
 
+/// The axes that were measured along: a sense without a name is that of the only one, wherever the others
+/// stood.
+std::set<std::string> measured_axes(const std::vector<SheetColumn>& columns,
+                                    const std::set<std::string>& axes,
+                                    const std::set<std::string>& measured) {
+  if (axes.size() == 1) return axes;
+  std::set<std::string> moved;
+  for (const SheetColumn& column : columns)
+    if (column.use == SheetColumn::Use::kDeviation && axes.contains(column.name)) moved.insert(column.name);
+  for (const std::string& axis : axes)
+    if (measured.contains(lower(axis))) moved.insert(axis);
+  return moved;
+}
+
 /// Deviations and senses that name no axis belong to the only one; what stays open is left out and said.
 void settle(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::vector<SheetColumn>& columns,
             const Guess& guess) {
@@ -214,6 +228,7 @@ void settle(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::vect
   for (const SheetColumn& column : columns)
     if (column.use == SheetColumn::Use::kColumn)
       (guess.is_axis(column.name) ? axes : measured).insert(column.name);
+  const std::set<std::string> moved = measured_axes(columns, axes, measured);
   for (std::size_t k = 0; k < columns.size(); ++k) {
     SheetColumn& column = columns[k];
     const Holds content = holds(sheet, table, k);
@@ -228,8 +243,8 @@ void settle(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::vect
       leave(column, "a deviation of which axis? Say it: --deviation \"X=" + table.headings[k].text + "\"");
     else if (deviation && measured.contains(lower(column.name)))
       leave(column, "the measured position is there as " + lower(column.name));
-    else if (column.name == "dir" && axes.size() == 1)
-      column.name = "dir" + *axes.begin();
+    else if (column.name == "dir" && moved.size() == 1)
+      column.name = "dir" + *moved.begin();
     else if (column.name == "dir")
       leave(column, "the sense of which axis? Say it: --column \"dirX=" + table.headings[k].text + "\"");
     else if (!column.words && !is_label(column.name) && !column.name.starts_with("dir") &&

@@ -132,6 +132,9 @@ std::string fit_record_xml(const FitRecord& record) {
   text += "</measured>\n    <covariance parameters=\"";
   for (std::size_t i = 0; i < record.parameters.size(); ++i)
     text += (i > 0 ? "|" : "") + text::escape_attribute(record.parameters[i]);
+  if (!record.origins.empty()) text += "\" from=\"";
+  for (std::size_t i = 0; i < record.origins.size(); ++i)
+    text += (i > 0 ? "|" : "") + text::escape_attribute(record.origins[i]);
   // Values whole, since they are compared; the factor as 4-byte numbers, 1e-7 of its largest part.
   std::vector<std::uint8_t> bytes;
   for (const double value : record.values) {

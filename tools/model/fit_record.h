@@ -17,6 +17,9 @@ struct FitRecord {
   };
   std::vector<std::string> parameters;  // names as in the JSON of `fit`
   Eigen::VectorXd values;               // as fitted: a value changed since then is not covered
+  /// What each value rests on: data, convention, prior, as in the JSON of `fit`; empty in files that older
+  /// versions wrote.
+  std::vector<std::string> origins;
   /// n x n lower triangle L, covariance = L L^T in the parameters' units: of data and of what stands in where
   /// they say nothing.
   Eigen::MatrixXd factor;

@@ -114,6 +114,10 @@ class Reader {
         no_children(node);
         std::istringstream words(attribute(node, "parameters").value_or(""));
         for (std::string name; std::getline(words, name, '|');) record->parameters.push_back(name);
+        std::istringstream origins(attribute(node, "from").value_or(""));
+        for (std::string word; std::getline(origins, word, '|');) record->origins.push_back(word);
+        if (!record->origins.empty() && record->origins.size() != record->parameters.size())
+          fail_attribute(node, "from", "from", "one word for each of the parameters");
         if (!read_fit_numbers(attribute(node, "numbers").value_or(""), record->parameters.size(), *record))
           fail_attribute(node, "numbers", "numbers", "these are not the numbers of the parameters named");
       } else if (is(node, "open")) {

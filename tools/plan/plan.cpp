@@ -72,7 +72,7 @@ class Planner {
     plan_.told_already = sides.reached(kPair) >= 1 || std::abs(plan_.lead_of_a) > plan_.worse().needed;
     if (!plan_.told_already || options_.points) choose(offers);
     if (plan_.rows.rows() > 0 && plan_.separable)
-      for (const FittedRival& other : bystanders_) plan_.ruled_out.push_back(other.candidate.label);
+      for (const FittedRival& other : bystanders_) plan_.ruled_out.push_back(other.candidate.spoken);
     plan_.sentence = Explanation(plan_, existing_).sentence();
     return std::move(plan_);
   }
@@ -204,7 +204,7 @@ class Planner {
       if (reached)
         kept.push_back(bystanders_[i]);
       else
-        plan_.not_ruled_out.push_back(bystanders_[i].candidate.label);
+        plan_.not_ruled_out.push_back(bystanders_[i].candidate.spoken);
     }
     const bool any = kept.size() < bystanders_.size();
     bystanders_ = std::move(kept);

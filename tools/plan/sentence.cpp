@@ -189,7 +189,7 @@ Explanation::Answer Explanation::answer(const Contrast& contrast) const {
 }
 
 std::string Explanation::sentence() const {
-  const std::string &a = plan_.a.candidate.label, &b = plan_.b.candidate.label;
+  const std::string &a = plan_.a.candidate.spoken, &b = plan_.b.candidate.spoken;
   const Separation& worse = plan_.worse();
   std::string beyond;
   for (const std::string& name : plan_.not_settable)

@@ -32,14 +32,28 @@ constexpr const char* kHead =
     "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src 'unsafe-inline'; "
     "style-src 'unsafe-inline'; img-src data:\">\n";
 
+/// Who measured what, when and with what: the company above, the rest beside one another.
+std::string letterhead(const Json& result) {
+  std::string company, entries;
+  for (const Json& one : result.value("header", Json::array())) {
+    const auto key = one.at(0).get<std::string>(), value = one.at(1).get<std::string>();
+    if (key == "company")
+      company = "<p class=\"company\">" + escape_html(value) + "</p>";
+    else
+      entries += "<div><dt>" + escape_html(key) + "</dt><dd>" + escape_html(value) + "</dd></div>";
+  }
+  if (!entries.empty()) entries = "<dl class=\"letterhead\">" + entries + "</dl>";
+  return company + entries;
+}
+
 std::string page(const std::string& title, const std::string& subtitle, const Json& data) {
   std::string html = kHead;
   html += "<title>" + escape_html(title) + "</title>\n<style>\n";
   html += report_style();
   html +=
       "</style>\n</head>\n<body>\n<a class=\"skip\" href=\"#report\">Skip to the report</a>\n<header><h1>" +
-      escape_html(title) + "</h1><p>" + escape_html(subtitle) +
-      "</p></header>\n<nav aria-label=\"Sections\"><div id=\"nav\"></div></nav>\n" +
+      escape_html(title) + "</h1><p>" + escape_html(subtitle) + "</p>" + letterhead(data.at("result")) +
+      "</header>\n<nav aria-label=\"Sections\"><div id=\"nav\"></div></nav>\n" +
       "<main id=\"report\"><noscript>This report draws its plots with a script, which this viewer does not "
       "run.</noscript></main>\n" +
       "<script type=\"application/json\" id=\"report-data\">";

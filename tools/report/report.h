@@ -19,6 +19,7 @@ namespace vernier::report {
 ///     worst[{row, line, run, kind, residual}] },
 ///   field: {axes[], counts[], point_mm[][3], deviation_um[][3], max_um, rms_um} (arrows over a volume), or
 ///   field_note: why there is none
+/// Any of these pages: header[[key, value]…], who measured what, when and with what; "company" stands above.
 /// More observations of a kind than kMostDrawn are thinned: every n-th and the worst are drawn, and the page
 /// says so. Texts are shown as they are, never read as markup. Throws std::invalid_argument where `detail`
 /// contradicts itself. tool.

@@ -27,6 +27,8 @@ Json candidate_json(const diagnose::CandidateFinding& finding, const model::Mach
   json["effect"] = choice.effect->id;
   json["title"] = choice.effect->title;
   json["add"] = finding.add;
+  json["said"] = diagnose::said_of(finding);
+  json["label"] = finding.candidate.label;
   json["axis"] = finding.axis && !choice.axis2 ? Json(machine.axes[*finding.axis].name) : Json(nullptr);
   json["input"] = choice.inputs.empty() ? Json(nullptr) : Json(choice.inputs[0]);
   json["inputs"] = choice.inputs;
@@ -78,6 +80,7 @@ Json diagnosis_json(const diagnose::Diagnosis& diagnosis, const model::Measureme
     json["ladder"].push_back({{"effect", given ? Json(nullptr) : Json(step.effect)},
                               {"add", given ? Json(nullptr) : Json(step.add)},
                               {"label", given ? "the model as given" : step.label},
+                              {"said", given ? "the model as given" : step.said},
                               {"rms_um", text::or_null(step.rms_um)},
                               {"check_rms_um", text::or_null(step.check_rms_um)},
                               {"confirmed", step.confirmed ? Json(*step.confirmed) : Json(nullptr)},
@@ -89,6 +92,7 @@ Json diagnosis_json(const diagnose::Diagnosis& diagnosis, const model::Measureme
     const diagnose::CandidateFinding& runner = diagnosis.candidates[*diagnosis.runner_up];
     json["runner_up"] = {{"effect", runner.candidate.choice.effect->id},
                          {"label", runner.candidate.label},
+                         {"said", runner.candidate.spoken},
                          {"distance", diagnosis.runner_up_distance}};
   }
   add_failure(json, diagnosis.failure);

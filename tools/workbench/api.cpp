@@ -70,7 +70,7 @@ ApiReply Api::get_file(const ApiRequest& request) {
     reply.type = "text/html; charset=utf-8";
     reply.headers.emplace_back(
         "Content-Security-Policy",
-        "sandbox allow-scripts; default-src 'none'; script-src 'unsafe-inline'; style-src "
+        "sandbox allow-scripts allow-downloads; default-src 'none'; script-src 'unsafe-inline'; style-src "
         "'unsafe-inline'; img-src data: blob:");
   } else {
     reply.headers.emplace_back("Content-Disposition", "attachment");

@@ -5,10 +5,13 @@
 
 #include "tools/model/machine.h"
 #include "tools/model/machine_reader.h"
+#include "tools/results/safety_json.h"
+#include "tools/safety/safety_sheet.h"
 #include "tools/text/csv.h"
 #include "tools/text/error.h"
 #include "tools/text/files.h"
 #include "tools/workbench/excluded.h"
+#include "tools/workbench/sheets.h"
 #include "tools/workbench/terms.h"
 
 namespace vernier::workbench {
@@ -28,7 +31,9 @@ const FileDesk::Route* FileDesk::find(const ApiRequest& request) {
       {"PUT", "/api/file", &FileDesk::check},       {"GET", "/api/excluded", &FileDesk::excluded},
       {"GET", "/api/rows", &FileDesk::rows},        {"GET", "/api/parameters", &FileDesk::parameters},
       {"POST", "/api/predict", &FileDesk::predict}, {"POST", "/api/explain", &FileDesk::explain},
-      {"GET", "/api/names", &FileDesk::names},      {"POST", "/api/term", &FileDesk::term}};
+      {"GET", "/api/names", &FileDesk::names},      {"POST", "/api/term", &FileDesk::term},
+      {"GET", "/api/kind", &FileDesk::kind},        {"POST", "/api/sheet", &FileDesk::sheet},
+      {"GET", "/api/safety", &FileDesk::safety}};
   for (const Route& route : kRoutes)
     if (request.method == route.method && request.path == route.path) return &route;
   return nullptr;
@@ -50,8 +55,40 @@ ApiReply FileDesk::answer(const ApiRequest& request) {
 ApiReply FileDesk::check(const ApiRequest& request) {
   const std::string name = request.word("name");
   if (name.ends_with(".xml")) model::parse_machine(request.body, name);
-  if (name.ends_with(".csv")) text::parse_csv(request.body, name);
+  // What does not even begin as a measurement file may be a spreadsheet: kept, and imported from there.
+  if (name.ends_with(".csv") && begins_as_measurement(request.body)) text::parse_csv(request.body, name);
   return json_reply({{"name", name}});
+}
+
+/// {"kind"}: "measurement", or "sheet" where a table has to be imported.
+ApiReply FileDesk::kind(const ApiRequest& request) {
+  const std::string text = text::read_file(project_.existing(request.word("name")).string());
+  return json_reply({{"kind", begins_as_measurement(text) ? "measurement" : "sheet"}});
+}
+
+ApiReply FileDesk::sheet(const ApiRequest& request) {
+  const auto json = body_json(request);
+  const std::string name = text_at(json, "name");
+  importer::SheetWords words = sheet_words(json);
+  if (json.contains("machine") && json["machine"].is_string() &&
+      !json["machine"].get<std::string>().empty()) {
+    const std::string machine = text_at(json, "machine");
+    for (const model::Axis& axis :
+         model::parse_machine(text::read_file(project_.existing(machine).string()), machine).axes)
+      words.axes.push_back(axis.name);
+  }
+  return json_reply(sheet_preview(text::read_file(project_.existing(name).string()), name, words));
+}
+
+/// The sheet "safe to run?" of a machine file, before anything is compiled.
+ApiReply FileDesk::safety(const ApiRequest& request) {
+  const std::string name = request.word("machine");
+  const safety::SafetySheet sheet =
+      safety::safety_sheet(model::parse_machine(text::read_file(project_.existing(name).string()), name));
+  return json_reply({{"ok", sheet.ok()},
+                     {"refusal", sheet.refusal()},
+                     {"stale", sheet.stale},
+                     {"rules", results::safety_json(sheet)}});
 }
 
 ApiReply FileDesk::excluded(const ApiRequest& request) {
@@ -63,16 +100,19 @@ ApiReply FileDesk::excluded(const ApiRequest& request) {
 }
 
 ApiReply FileDesk::rows(const ApiRequest& request) {
-  return blob_reply(rows_blob(*cache_.get(request.word("machine"), request.words("measurement"))));
+  return blob_reply(rows_blob(
+      *cache_.get(request.word("machine"), request.words("measurement"), request.word("datum") == "1")));
 }
 
 ApiReply FileDesk::parameters(const ApiRequest& request) {
-  return json_reply(parameters_json(*cache_.get(request.word("machine"), request.words("measurement"))));
+  return json_reply(parameters_json(
+      *cache_.get(request.word("machine"), request.words("measurement"), request.word("datum") == "1")));
 }
 
 ApiReply FileDesk::predict(const ApiRequest& request) {
   const auto json = body_json(request);
-  const auto rows = cache_.get(text_at(json, "machine"), texts_at(json, "measurements"));
+  const auto rows =
+      cache_.get(text_at(json, "machine"), texts_at(json, "measurements"), json.value("datum", false));
   std::map<std::string, double> values;
   if (!json.contains("values") || !json["values"].is_object())
     throw text::InputError("\"values\" is missing");
@@ -86,7 +126,7 @@ ApiReply FileDesk::predict(const ApiRequest& request) {
 
 ApiReply FileDesk::explain(const ApiRequest& request) {
   const auto json = body_json(request);
-  const auto rows = cache_.get(text_at(json, "machine"), texts_at(json, "measurements"));
+  const auto rows = cache_.get(text_at(json, "machine"), texts_at(json, "measurements"), false);
   return blob_reply(explanation_blob(*rows, text_at(json, "add")));
 }
 

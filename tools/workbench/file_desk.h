@@ -29,6 +29,9 @@ class FileDesk {
   ApiReply explain(const ApiRequest& request);
   ApiReply names(const ApiRequest& request);
   ApiReply term(const ApiRequest& request);
+  ApiReply kind(const ApiRequest& request);
+  ApiReply sheet(const ApiRequest& request);
+  ApiReply safety(const ApiRequest& request);
 
   struct Route;
   static const Route* find(const ApiRequest& request);

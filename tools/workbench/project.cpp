@@ -34,7 +34,8 @@ FileKind kind_of(const fs::path& path) {
   const std::string extension = lower_extension(path);
   if (extension == ".xml") return FileKind::kMachine;
   if (extension == ".csv") return FileKind::kMeasurement;
-  if (extension == ".b5r") return FileKind::kInstrument;
+  for (const char* table : {".b5r", ".xlsx", ".txt", ".tsv", ".dat", ".asc", ".json"})
+    if (extension == table) return FileKind::kInstrument;
   if (extension == ".html") return FileKind::kReport;
   if (extension == ".vimg") return FileKind::kImage;
   if (extension == ".key" || extension == ".pub") return FileKind::kKey;

@@ -1,16 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/workbench/rows.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "tools/effects/fitted_effect.h"
+#include "tools/fit/convention.h"
 #include "tools/fit/fit.h"
 #include "tools/maths/factors.h"
 #include "tools/model/chain.h"
+#include "tools/model/fit_record.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/machine_writer.h"
 #include "tools/results/detail.h"
 #include "tools/results/results.h"
+#include "tools/simulate/corrected.h"
 #include "tools/text/files.h"
 #include "tools/text/optional_json.h"
 #include "tools/workbench/blob.h"
@@ -63,6 +67,26 @@ Eigen::Matrix3Xd directions(const model::Measurement& m, const Eigen::Matrix3Xd&
   return list;
 }
 
+/// Standard uncertainty of each observation, mm or deg; 0 where the file gives none.
+Eigen::VectorXd standard_uncertainties(const model::Measurement& m) {
+  Eigen::VectorXd u = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(m.observations.size()));
+  for (std::size_t i = 0; i < m.observations.size(); ++i)
+    u[static_cast<Eigen::Index>(i)] = model::uncertainty_of(m, m.observations[i]);
+  return u;
+}
+
+/// What the fit that wrote the file knew of a parameter, where its value is still that fit's.
+void add_knowledge(Json& json, const model::FitRecord& record, const std::string& name, double value) {
+  const auto found = std::find(record.parameters.begin(), record.parameters.end(), name);
+  if (found == record.parameters.end()) return;
+  const auto row = static_cast<Eigen::Index>(found - record.parameters.begin());
+  constexpr double kSame = 1e-9;  // of the value: what the file's digits may change
+  if (std::abs(record.values[row] - value) > kSame * std::max(1e-9, std::abs(value))) return;
+  json["std"] = record.factor.row(row).norm();
+  if (static_cast<std::size_t>(row) < record.origins.size())
+    json["from"] = record.origins[static_cast<std::size_t>(row)];
+}
+
 Json observations_json(Blob& blob, const model::Measurement& m, const Eigen::VectorXd& residual) {
   std::vector<std::uint8_t> kind;
   std::vector<std::uint32_t> row;
@@ -73,6 +97,7 @@ Json observations_json(Blob& blob, const model::Measurement& m, const Eigen::Vec
   return {{"kinds", model::kObservationNames},
           {"kind", blob.u8(kind)},
           {"row", blob.u32(row)},
+          {"u", blob.f32(in_report_units(m, standard_uncertainties(m)))},
           {"residual", blob.f32(in_report_units(m, residual))}};
 }
 
@@ -97,9 +122,9 @@ std::string RowCache::key_of(const std::string& machine, const std::vector<std::
 }
 
 std::shared_ptr<const LoadedRows> RowCache::get(const std::string& machine,
-                                                const std::vector<std::string>& measurements) {
+                                                const std::vector<std::string>& measurements, bool datum) {
   if (measurements.empty()) throw text::InputError("no measurement is named");
-  const std::string key = key_of(machine, measurements);
+  const std::string key = (datum ? "datum\n" : "") + key_of(machine, measurements);
   {
     const std::scoped_lock lock(guard_);
     for (const Entry& entry : kept_)
@@ -110,7 +135,10 @@ std::shared_ptr<const LoadedRows> RowCache::get(const std::string& machine,
   rows->machine = model::parse_machine(rows->text, machine);
   std::vector<std::string> paths;
   for (const std::string& name : measurements) paths.push_back(project_.existing(name).string());
-  rows->measurement = model::read_measurement(paths, rows->machine);
+  rows->measurement = model::read_measurement(paths, rows->machine,
+                                              simulate::corrections_of_images(project_.root().string()));
+  rows->datum = datum;
+  if (datum) rows->machine = fit::set_up(rows->machine, rows->measurement);
   rows->measurement.files = measurements;
   const std::scoped_lock lock(guard_);
   if (kept_.size() >= kKeptRows) kept_.erase(kept_.begin());
@@ -128,6 +156,8 @@ std::string rows_blob(const LoadedRows& rows) {
       {"machine", machine.name}, {"files", m.files}, {"n_rows", m.rows()}, {"n_excluded", m.excluded}};
   add_figures(json, m, residual);
   json["noise_um"] = text::or_null(fit::noise_um(m));
+  json["corrected"] =
+      std::any_of(m.corrected.begin(), m.corrected.end(), [](const auto& one) { return !one.empty(); });
   json["columns"] = Json::array();
   results::each_column(
       machine, m,
@@ -168,7 +198,7 @@ std::string explanation_blob(const LoadedRows& rows, const std::string& add) {
   if (with.rows.observations.size() != m.observations.size())
     throw text::InputError("this effect excludes rows whose input is empty: nothing to lay over all rows");
   Blob blob;
-  Json json = {{"label", with.effects[0].label}};
+  Json json = {{"label", with.effects[0].spoken}};
   add_figures(json, with.rows, with.fit.residual);
   json["explained"] = blob.f32(in_report_units(m, base.residual - with.fit.residual));
   json["before"] = blob.f32(in_report_units(m, base.residual));
@@ -180,10 +210,16 @@ nlohmann::ordered_json parameters_json(const LoadedRows& rows) {
                                        rows.measurement.states.names(rows.measurement.states.setup));
   const Eigen::VectorXd values = parameters.get(rows.machine);
   Json list = Json::array();
-  for (std::size_t i = 0; i < parameters.size(); ++i)
-    list.push_back({{"name", parameters[i].name},
-                    {"value", values[static_cast<Eigen::Index>(i)]},
-                    {"unit", parameters[i].unit}});
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const double value = values[static_cast<Eigen::Index>(i)];
+    const model::Parameter& one = parameters[i];
+    Json json = {{"name", one.name},   {"value", value}, {"unit", one.unit},
+                 {"nominal", nullptr}, {"std", nullptr}, {"from", nullptr}};
+    if (one.kind == model::ParameterKind::kStatic)
+      if (const auto& nominal = rows.machine.statics[one.item].nominal) json["nominal"] = *nominal;
+    if (const auto& record = rows.machine.fitted) add_knowledge(json, *record, one.name, value);
+    list.push_back(json);
+  }
   return list;
 }
 

@@ -15,8 +15,9 @@ namespace vernier::workbench {
 
 /// A machine and rows of a project, as read.
 struct LoadedRows {
-  std::string text;  // of the machine file
-  model::Machine machine;
+  std::string text;        // of the machine file
+  model::Machine machine;  // with its set-up fitted to the rows, where that was asked for
+  bool datum = false;
   model::Measurement measurement;
 };
 
@@ -25,9 +26,11 @@ struct LoadedRows {
 class RowCache {
  public:
   explicit RowCache(const Project& project) : project_(project) {}
-  /// Names in the project. Throws InputError with file, line and word.
+  /// Names in the project. `datum`: the machine's set-up is fitted to the rows first (`compare --datum`).
+  /// Rows that were measured with a correction on find its image in the project. Throws InputError with file,
+  /// line and word.
   std::shared_ptr<const LoadedRows> get(const std::string& machine,
-                                        const std::vector<std::string>& measurements);
+                                        const std::vector<std::string>& measurements, bool datum);
 
  private:
   struct Entry {
@@ -52,7 +55,8 @@ std::string prediction_blob(const LoadedRows& rows, const std::map<std::string, 
 /// model, per observation, um or urad. add: a candidate's `add` string. tool.
 std::string explanation_blob(const LoadedRows& rows, const std::string& add);
 
-/// Free parameters with value and unit, as the page's sliders need them.
+/// Free parameters: {name, value, unit, nominal, std, from}. std and from (data, convention, prior) as the
+/// fit that wrote the file left them; null where there was none, or where the value was changed since.
 nlohmann::ordered_json parameters_json(const LoadedRows& rows);
 
 }  // namespace vernier::workbench

@@ -86,7 +86,7 @@ TEST_F(Pages, TutorialRunsAsPrinted) {
   // The figures that the page prints.
   for (const char* figure :
        {"bed > Y (bridge) > X (carriage) > Z (ram) > tool", "3.129 um", "3.374 um",
-        "the residual is 3.3 times the noise", "X error repeats every 62.71 mm", "63.62 +- 0.3 mm",
+        "the residual is 3.3 times the noise", "X error repeats every 62.71 mm", "period 63.6 +- 0.3 mm",
         "check rows 2.468 um", "check rows 1.285 um", "verdict: consistent"})
     EXPECT_NE(said_.find(figure), std::string::npos) << figure << " is not what the commands print\n"
                                                      << said_;
@@ -107,6 +107,37 @@ TEST_F(Pages, ConformityAndPlanRunAsPrinted) {
   for (const std::string& block : blocks(page("tools/docs/plan.md"), "sh")) script += block;
   EXPECT_EQ(run(script), 0) << said_;
   EXPECT_NE(said_.find("what is left comes from"), std::string::npos) << said_;
+}
+
+/// A stranger's way: from a German spreadsheet to ISO 230-2 values, a named cause and a table for the
+/// control.
+TEST_F(Pages, FirstHourRunsAsPrinted) {
+  std::string script;
+  for (const std::string& block : blocks(page("tools/docs/first_hour.md"), "sh")) script += block;
+  ASSERT_EQ(run(script), 0) << said_;
+  for (const char* figure :
+       {"Windows-1252, columns parted by semicolon, decimal comma", "92.120 um", "tolerance 50: not met",
+        "25.750 um", "31.245 um", "12.194 um", "verdict: missing-effect",
+        "X carriage: backlash -23.7 +- 0.4 um", "fit rows 6.701 um", "check rows 8.848 um",
+        "check rows 1.355 um", "verdict: consistent", "safe to run: every rule of the sheet holds"})
+    EXPECT_NE(said_.find(figure), std::string::npos) << figure << " is not what the commands print\n"
+                                                     << said_;
+  const std::string left = folder_ + "/build/first_hour/";
+  // The truth (tests/data/router/make.py): 24 um of backlash, of which the fit is sure to 0.4 um.
+  std::istringstream table(read_file(left + "linuxcnc/X.comp"));
+  std::size_t lines = 0;
+  for (double nominal = 0, forward = 0, reverse = 0; table >> nominal >> forward >> reverse; ++lines)
+    EXPECT_NEAR(forward - reverse, 0.024, 0.0012) << nominal;
+  EXPECT_GE(lines, 5u);
+  const nlohmann::json json = nlohmann::json::parse(read_file(left + "iso230-2_X.json"));
+  EXPECT_EQ(json["header"]["serial number"], "4711");
+  EXPECT_EQ(json["header"]["operator"], "K. Muster");
+  const std::string report = read_file(left + "iso230-2_X.html");
+  EXPECT_NE(report.find("<p class=\"company\">Muster Maschinenbau GmbH</p>"), std::string::npos);
+  EXPECT_NE(report.find("<dt>serial number</dt><dd>4711</dd>"), std::string::npos);
+  if (std::system("command -v chromium >/dev/null") == 0) {
+    EXPECT_EQ(read_file(left + "iso230-2_X.pdf").substr(0, 5), "%PDF-");
+  }
 }
 
 TEST_F(Pages, ReadmeRunsAsPrinted) {
@@ -152,7 +183,7 @@ TEST(Links, OfTheFirstPagesLeadSomewhere) {
   for (const std::string name :
        {"README.md", "tools/docs/tutorial.md", "tools/docs/new.md", "tools/docs/lint.md",
         "tools/docs/machine_file.md", "tools/docs/measurement_file.md", "tools/docs/figures.md",
-        "tools/docs/import.md", "tools/docs/board.md"}) {
+        "tools/docs/import.md", "tools/docs/board.md", "tools/docs/first_hour.md"}) {
     const std::string text = page(name);
     const fs::path folder = (fs::path(VERNIER_SOURCE_DIR) / name).parent_path();
     for (std::size_t at = 0; (at = text.find("](", at)) != std::string::npos; ++at) {

@@ -43,7 +43,7 @@ const std::vector<Room>& rooms_of_tools() {
       {"vibration", {"maths", "model", "text"}},
       {"probe", {"maths", "model", "text"}},
       {"timebase", {"maths", "model", "text"}},
-      {"create", {"model", "text"}},
+      {"create", {"model", "sheet", "text"}},
       {"evaluate", {"maths", "text"}},
       {"import", {"maths", "model", "sheet", "text", "timebase"}},
       {"exchange", {"kinematics", "maths", "model", "text"}},
@@ -66,7 +66,9 @@ const std::vector<Room>& rooms_of_tools() {
        {"diagnose", "effects", "fit", "import", "kinematics", "map", "maths", "model", "residual", "safety",
         "simulate", "text"}},
       {"python", {"diagnose", "effects", "fit", "model", "plan", "residual", "results", "text"}},
-      {"workbench", {"diagnose", "effects", "fit", "maths", "model", "results", "text", "upload"}},
+      {"workbench",
+       {"diagnose", "effects", "fit", "import", "maths", "model", "results", "safety", "simulate", "text",
+        "upload"}},
   };
   return kRooms;
 }

@@ -142,11 +142,11 @@ export class Page {
       `(() => { const one = document.querySelector(${JSON.stringify(selector)}); one.value = ${JSON.stringify(value)}; one.dispatchEvent(new Event('change')); })()`,
     );
   }
-  /** Files as if a person had dropped them on the page. */
+  /** Files ({name, text} or {name, bytes}) as if a person had dropped them on the page. */
   async drop(files) {
-    const items = files.map((file) => ({ name: file.name, text: file.text }));
+    const items = files.map(({ name, text, bytes }) => ({ name, base64: Buffer.from(bytes ?? text).toString('base64') }));
     await this
-      .evaluate(`(() => { const data = new DataTransfer(); for (const one of ${JSON.stringify(items)}) data.items.add(new File([one.text], one.name));
+      .evaluate(`(() => { const data = new DataTransfer(); for (const one of ${JSON.stringify(items)}) data.items.add(new File([Uint8Array.from(atob(one.base64), (c) => c.charCodeAt(0))], one.name));
       document.dispatchEvent(new DragEvent('drop', { dataTransfer: data, bubbles: true, cancelable: true })); })()`);
   }
   async picture(path) {

@@ -37,6 +37,21 @@ TEST(WorkbenchCommand, IsWhatAPersonWouldType) {
                  {"separate", {"backlash:axis=X", "it's:x=(1 2)"}},
                  {"points", 12}}),
       "vernier plan m.xml rows.csv --separate backlash:axis=X --separate 'it'\\''s:x=(1 2)' --points 12");
+  EXPECT_EQ(rig.typed({{"command", "compare"},
+                       {"machine", "m.xml"},
+                       {"measurements", {"rows.csv"}},
+                       {"datum", true},
+                       {"images", true},
+                       {"header", {"serial number=4711", "company=Muster & Sohn"}}}),
+            "vernier compare m.xml rows.csv --datum --images=. --header 'serial number=4711' --header "
+            "'company=Muster & Sohn'");
+  EXPECT_EQ(rig.typed({{"command", "import"},
+                       {"kind", "table"},
+                       {"files", {"rows.csv"}},
+                       {"decimal", "comma"},
+                       {"deviations", {"X[um]=2"}},
+                       {"output", "read.csv"}}),
+            "vernier import table rows.csv --decimal comma --deviation 'X[um]=2' -o read.csv");
   EXPECT_EQ(
       rig.typed(
           {{"command", "upload"}, {"confirm", true}, {"revert", false}, {"to", "tcp://127.0.0.1:1502"}}),

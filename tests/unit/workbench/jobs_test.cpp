@@ -130,7 +130,7 @@ TEST(Rows, PredictionIsTheResidualOfTheMachineWithThatValue) {
   Rig rig;
   const Project project(rig.folder.project());
   RowCache rows(project);
-  const auto loaded = rows.get("m.xml", {"rows.csv"});
+  const auto loaded = rows.get("m.xml", {"rows.csv"}, false);
   const std::string blob = prediction_blob(*loaded, {{"k", 2e-4}});
   std::uint32_t length = 0;
   std::memcpy(&length, blob.data(), 4);
@@ -141,9 +141,9 @@ TEST(Rows, PredictionIsTheResidualOfTheMachineWithThatValue) {
               sizeof residual);
   const float wanted[4] = {1, 1.2F, -0.2F, 0.3F};  // 1 um, 11.2-10, 19.8-20, 20.3-20
   for (int i = 0; i < 4; ++i) EXPECT_NEAR(residual[i], wanted[i], 1e-3F) << i;
-  EXPECT_EQ(rows.get("m.xml", {"rows.csv"}), loaded);  // kept
+  EXPECT_EQ(rows.get("m.xml", {"rows.csv"}, false), loaded);  // kept
   write_file(rig.folder.in("rows.csv"), std::string(test::kSmallRows) + "1,1,1,b\n");
-  EXPECT_NE(rows.get("m.xml", {"rows.csv"}), loaded);  // until the file changes
+  EXPECT_NE(rows.get("m.xml", {"rows.csv"}, false), loaded);  // until the file changes
 }
 
 }  // namespace

@@ -32,7 +32,10 @@ const ApiRequest kReading[] = {{"PUT", "/api/file", {{"name", "new.xml"}}, test:
                                {"POST", "/api/predict", {}, kBody},
                                {"POST", "/api/explain", {}, kBody},
                                {"GET", "/api/names", {{"machine", "m.xml"}}, ""},
-                               {"POST", "/api/term", {}, kBody}};
+                               {"POST", "/api/term", {}, kBody},
+                               {"GET", "/api/kind", {{"name", "m.csv"}}, ""},
+                               {"POST", "/api/sheet", {}, R"({"name":"m.csv","machine":"m.xml"})"},
+                               {"GET", "/api/safety", {{"machine", "m.xml"}}, ""}};
 
 struct WorkbenchReader : testing::Test {
   WorkbenchReader() {

@@ -192,7 +192,7 @@ TEST_F(Attack, EveryAnswerForbidsForeignScriptsAndReportsAreShutIn) {
   const std::string page = ask("GET", "/", ours()), report = ask("GET", "/api/file?name=r.html", ours());
   EXPECT_NE(page.find("default-src 'none'; script-src 'self'; style-src 'self'"), std::string::npos);
   EXPECT_EQ(page.find("unsafe"), std::string::npos);
-  EXPECT_NE(report.find("Content-Security-Policy: sandbox allow-scripts; default-src 'none'"),
+  EXPECT_NE(report.find("Content-Security-Policy: sandbox allow-scripts allow-downloads; default-src 'none'"),
             std::string::npos);
   EXPECT_EQ(report.find("allow-same-origin"), std::string::npos);
   for (const std::string& answer : {page, report})

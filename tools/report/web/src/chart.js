@@ -2,8 +2,8 @@
 import { init, use } from 'echarts/core';
 import { BarChart, LineChart, ScatterChart } from 'echarts/charts';
 import { GridComponent, LegendComponent, MarkLineComponent, PolarComponent, TitleComponent, TooltipComponent } from 'echarts/components';
-import { CanvasRenderer } from 'echarts/renderers';
-import { el } from './dom.js';
+import { CanvasRenderer, SVGRenderer } from 'echarts/renderers';
+import { el, exportButtons } from './dom.js';
 
 use([
   BarChart,
@@ -16,6 +16,7 @@ use([
   TitleComponent,
   TooltipComponent,
   CanvasRenderer,
+  SVGRenderer,
 ]);
 
 const charts = new Set();
@@ -69,11 +70,50 @@ export function chart(label, options) {
   box.style.height = `${height}px`;
   box.redraw = () => draw(entry, true);
   box.options = () => options(box.clientWidth || 1000);
-  box.picture = () => {
-    draw(entry);
-    return entry.instance.getDataURL({ pixelRatio: 2, backgroundColor: colours().panel });
-  };
+  const stem = label.replace(/[^\w]+/g, '_');
+  entry.exports = exportButtons([
+    ['PNG', `${stem}.png`, () => png(entry)],
+    ['SVG', `${stem}.svg`, () => new Blob([svg(entry)], { type: 'image/svg+xml' })],
+    ['CSV', `${stem}.csv`, () => new Blob([csv(entry.options(1000).option)], { type: 'text/csv' })],
+  ]);
   return box;
+}
+
+function png(entry) {
+  draw(entry);
+  const [, base64] = entry.instance.getDataURL({ pixelRatio: 2, backgroundColor: colours().panel }).split(',');
+  return new Blob([Uint8Array.from(atob(base64), (c) => c.charCodeAt(0))], { type: 'image/png' });
+}
+
+function svg(entry) {
+  const width = entry.box.clientWidth || 1000;
+  const { height, option } = entry.options(width);
+  const twin = init(null, null, { renderer: 'svg', ssr: true, width, height });
+  twin.setOption({ animation: false, backgroundColor: colours().panel, ...option });
+  const text = twin.renderToSVGString();
+  twin.dispose();
+  return text;
+}
+
+const cell = (value) => {
+  const text = value === null || value === undefined ? '' : String(value);
+  return /[",\n]/.test(text) ? `"${text.replace(/"/g, '""')}"` : text;
+};
+
+/** The numbers of a chart: a row a point, with the names of its axes. */
+function csv(option) {
+  const axis = (one) => [one].flat()[0] ?? {};
+  const x = axis(option.xAxis ?? option.angleAxis),
+    y = axis(option.yAxis ?? option.radiusAxis);
+  const rows = [['series', x.name || 'x', y.name || 'y']];
+  const categories = x.data ?? y.data;
+  for (const series of [option.series ?? []].flat())
+    Array.from(series.data ?? []).forEach((item, i) => {
+      const value = item !== null && typeof item === 'object' && 'value' in item ? item.value : item;
+      const several = Array.isArray(value) || ArrayBuffer.isView(value);
+      rows.push([series.name ?? '', ...(several ? Array.from(value) : [categories?.[i] ?? i, value])]);
+    });
+  return `${rows.map((row) => row.map(cell).join(',')).join('\n')}\n`;
 }
 
 function draw(entry, again = false) {
@@ -82,7 +122,10 @@ function draw(entry, again = false) {
   const { height, option } = entry.options(width);
   entry.width = width;
   entry.box.style.height = `${height}px`;
-  if (entry.instance === null) entry.instance = init(entry.box, null, { renderer: 'canvas' });
+  if (entry.instance === null) {
+    entry.instance = init(entry.box, null, { renderer: 'canvas' });
+    entry.box.append(entry.exports);
+  }
   entry.instance.resize({ width, height });
   entry.instance.setOption({ animation: false, backgroundColor: 'transparent', ...option }, { notMerge: true });
 }

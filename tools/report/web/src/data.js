@@ -29,6 +29,14 @@ export function number(value, digits = 4) {
   return text.replace('-', '−');
 }
 
+/** A sentence of the program with the signs of print: its own are those of any terminal. */
+export const printed = (text) =>
+  String(text ?? '')
+    .replace(/\bum\b/g, 'µm')
+    .replace(/\+-/g, '±')
+    .replace(/\bdegC\b/g, '°C')
+    .replace(/(?<![\w.])-(?=\d)/g, '−');
+
 /** Fixed digits behind the point, as an instrument prints. */
 export function fixed(value, digits) {
   return value === null || value === undefined || !Number.isFinite(value) ? '–' : value.toFixed(digits).replace('-', '−');

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { el, table, tiles } from './dom.js';
-import { number } from './data.js';
+import { number, printed } from './data.js';
 import { ladder } from './plots.js';
 
 const kVerdicts = {
-  'missing-effect': (best) => `Missing: ${best ? best.effect : 'an effect'}${best?.effect === 'custom' ? ', no named physics' : ''}`,
+  'missing-effect': (best) => `Missing: ${best ? title(best) : 'an effect'}${best?.effect === 'custom' ? ', no named physics' : ''}`,
   ambiguous: () => 'One of several effects: these measurements cannot tell which',
   unexplained: () => 'Something is missing, and nothing known explains it',
   instrument: () => 'The measurement is the likelier cause, not the machine',
@@ -21,10 +21,10 @@ export function verdict(result) {
   if (best && (result.verdict === 'missing-effect' || result.verdict === 'ambiguous')) {
     items.push(um('rms with the first candidate', best.rms_after_um, true), um('… check rows', best.check_rms_after_um, true));
   }
-  const second = typeof result.runner_up === 'string' ? result.runner_up : result.runner_up?.effect;
+  const second = typeof result.runner_up === 'string' ? result.runner_up : (result.runner_up?.said ?? result.runner_up?.effect);
   return [
     el('p', { class: `verdict ${result.verdict ?? ''}` }, words),
-    result.explanation ? el('p', {}, result.explanation) : null,
+    result.explanation ? el('p', {}, printed(result.explanation)) : null,
     tiles(items),
     second
       ? el(
@@ -37,7 +37,9 @@ export function verdict(result) {
 }
 
 const stepName = (step, i) =>
-  step.label ?? (step.effect ? `${i}. + ${step.effect}${step.axis ? ` of ${step.axis}` : ''}` : i === 0 ? 'model as given' : 'fitted');
+  step.said ??
+  step.label ??
+  (step.effect ? `${i}. + ${step.effect}${step.axis ? ` of ${step.axis}` : ''}` : i === 0 ? 'model as given' : 'fitted');
 
 /** The steps of a ladder, each with a label. */
 export const labelled = (result) => (result.ladder ?? []).map((step, i) => ({ ...step, label: stepName(step, i) }));
@@ -53,20 +55,16 @@ export function falling(result) {
   ];
 }
 
+/** What a candidate is called. */
+export const title = (one) => printed(one.said ?? `${one.effect}${one.axis ? ` of ${one.axis}` : ''}`);
+
 /** What each candidate would do alone. */
 export function candidates(result) {
   const list = result.candidates ?? [];
   if (!list.length) return [el('p', {}, 'No candidate.')];
   const has = (key) => list.some((one) => one[key] !== undefined && one[key] !== null && one[key] !== '');
-  const place = (one) =>
-    [one.branch && one.branch !== 'tool' ? one.branch : null, one.transform ? `transform ${one.transform}` : null, one.dof]
-      .filter(Boolean)
-      .join(' ');
   const columns = [
-    ['effect', true, (one) => one.effect],
-    ['axis', true, (one) => one.axis ?? ''],
-    ['input', true, (one) => one.input ?? ''],
-    ['where', true, place],
+    ['cause', true, title],
     ['term', true, (one) => one.term ?? ''],
     ['rms after [µm]', false, (one) => number(one.rms_after_um, 4)],
     ['check rms after [µm]', false, (one) => number(one.check_rms_after_um, 4)],
@@ -88,10 +86,11 @@ export function candidates(result) {
     el(
       'details',
       {},
-      el('summary', {}, `${one.effect}${one.axis ? ` of ${one.axis}` : ''}`),
+      el('summary', {}, title(one)),
       el(
         'ul',
         {},
+        one.label ? el('li', {}, `In the chain: ${one.label}`) : null,
         one.signature ? el('li', {}, `Signature: ${one.signature}`) : null,
         values(one) ? el('li', {}, `Fitted: ${values(one)}`) : null,
         one.impostors?.length ? el('li', {}, `Known impostors: ${one.impostors.join(', ')}`) : null,

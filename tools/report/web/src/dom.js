@@ -13,6 +13,28 @@ export function el(name, attributes = {}, ...children) {
   return node;
 }
 
+/** Gives the person a file. */
+export function save(name, blob) {
+  const link = el('a', { href: URL.createObjectURL(blob), download: name });
+  document.body.append(link);
+  link.click();
+  link.remove();
+  setTimeout(() => URL.revokeObjectURL(link.href), 10000);
+}
+
+/** Buttons that save a picture or its numbers: [[label, file name, () => Blob or a promise of one]]. */
+export function exportButtons(kinds) {
+  return el(
+    'span',
+    { class: 'exports' },
+    kinds.map(([label, name, make]) => {
+      const node = el('button', { type: 'button', class: 'quiet', title: `Save as ${label}` }, label);
+      node.addEventListener('click', async () => save(name, await make()));
+      return node;
+    }),
+  );
+}
+
 let sections = 0;
 
 /** A section with a heading, linked from the bar at the top. */

@@ -3,15 +3,16 @@ import { choice, el, table, tiles } from '../../../report/web/src/dom.js';
 import { number } from '../../../report/web/src/data.js';
 import { fileAddress, freeName, getJson, postBlob, postJson, refresh, run } from './api.js';
 import { fallingFigure } from './charts.js';
-import { button, guarded, panel } from './parts.js';
+import { button, guarded, needsSubject, panel } from './parts.js';
+import { parameterPanel } from './parameters.js';
 import { redrawAll } from './plot.js';
 import { choose } from './project.js';
-import { along, loadRows, setResiduals, subject } from './rows.js';
+import { along, compared, loadRows, measured, setResiduals, subject } from './rows.js';
 import { scatter } from './scatter.js';
 import { emit, on, store } from './store.js';
+import { termPanel } from './term.js';
 
-// What was tried in this session, in order: {label, machine, rms_um, check_rms_um, noise_um}.
-const steps = [];
+const { steps } = store;
 
 /** A machine's name without what earlier steps have put behind it: model-added-2-fitted.xml is of model. */
 const stem = (machine) => machine.replace(/(-(added|set)(-\d+)?)?(-fitted(-\d+)?)?\.xml$/i, '');
@@ -25,7 +26,7 @@ function note(label, machine, result) {
 /** Fits a machine into a new file; what came out is a step. */
 async function fitInto(machine, label) {
   const output = freeName(`${unfitted(machine)}-fitted`, '.xml');
-  const { result } = await run({ command: 'fit', machine, measurements: store.measurements, output });
+  const { result } = await run({ command: 'fit', ...measured(), machine, output });
   note(label, output, result);
   await choose(output, store.measurements);
   return result;
@@ -39,7 +40,7 @@ export async function addEffect(effect, error) {
     if (steps.at(-1)?.machine !== before) await fitInto(before, 'the model, fitted');
     const output = freeName(`${stem(before)}-added`, '.xml');
     const { result } = await run({ command: 'add', effect, machine: store.machine, output });
-    await fitInto(output, `+ ${result.label}`);
+    await fitInto(output, `+ ${result.said ?? result.label}`);
   });
 }
 
@@ -118,7 +119,7 @@ function sliderPanel(error) {
     busy = true;
     const start = performance.now();
     try {
-      const answer = await postBlob('/api/predict', { ...subject(), values: { [chosen.name]: now() } });
+      const answer = await postBlob('/api/predict', { ...subject(), datum: store.datum, values: { [chosen.name]: now() } });
       setResiduals(store.rows, answer.residual);
       numbers.textContent = `rms ${number(answer.rms_um, 4)} µm on fit rows, ${number(answer.check_rms_um, 4)} µm on held-out rows`;
       Object.assign(numbers.dataset, { rms: answer.rms_um, ms: (performance.now() - start).toFixed(1) });
@@ -148,7 +149,7 @@ function sliderPanel(error) {
       guarded(error, async () => {
         const output = freeName(`${stem(store.machine)}-set`, '.xml');
         await run({ command: 'set', machine: store.machine, values: [`${chosen.name}=${now()}`], output });
-        const { result } = await run({ command: 'compare', machine: output, measurements: store.measurements });
+        const { result } = await run({ command: 'compare', ...compared(), machine: output });
         note(`${chosen.name} by hand`, output, result);
         await choose(output, store.measurements);
       }),
@@ -165,7 +166,11 @@ function sliderPanel(error) {
   async function build() {
     box.replaceChildren();
     parameters = store.rows
-      ? await getJson('/api/parameters', { machine: store.machine, measurement: store.measurements }).catch(() => [])
+      ? await getJson('/api/parameters', {
+          machine: store.machine,
+          measurement: store.measurements,
+          ...(store.datum ? { datum: '1' } : {}),
+        }).catch(() => [])
       : [];
     select.replaceChildren(...parameters.map((one) => el('option', { value: one.name }, one.name)));
     pick(parameters[0]?.name);
@@ -195,7 +200,7 @@ function sliderPanel(error) {
       name: 'by_hand',
       data: () => {
         const one = store.rows?.kinds[kind];
-        return one ? { x: along(one, base), y: one.value, row: one.row, check: store.rows.row_check, overlay: null } : null;
+        return one ? { x: along(one, base), y: one.value, row: one.row, u: one.u, check: store.rows.row_check, overlay: null } : null;
       },
       words: () => ({ x: `${base.name} [${base.unit}]`, y: `${store.rows.kinds[kind].kind} [${store.rows.kinds[kind].unit}]` }),
     });
@@ -207,139 +212,20 @@ function sliderPanel(error) {
   return panel('By hand', el('div', { class: 'controls' }, select, slider, value, span, keep, back, numbers), box);
 }
 
-/** A term of one's own: checked while it is written, names completed. */
-function termPanel(error) {
-  let names = [],
-    transforms = [],
-    at = 0;
-  const input = el('input', {
-    type: 'text',
-    class: 'term',
-    id: 'term',
-    spellcheck: 'false',
-    autocomplete: 'off',
-    placeholder: 'k*(T_column-20)*Z',
-    'aria-label': 'term',
-  });
-  const place = el('select', { id: 'term-place', 'aria-label': 'where' }),
-    list = el('ul', { class: 'completion', role: 'listbox', hidden: '' }),
-    words = el('p', { id: 'term-check', class: 'note', role: 'status' });
-  const wordAt = () => input.value.slice(0, input.selectionStart).match(/[A-Za-z_]\w*$/)?.[0] ?? '';
-  const where = () => JSON.parse(place.value);
-  // Columns that were recorded and that the machine does not know yet; a term may bring two of them along.
-  const candidates = () => (store.rows?.columns ?? []).filter((one) => one.kind === 'candidate');
-  const brought = () => {
-    const used = new Set(input.value.match(/[A-Za-z_]\w*/g) ?? []);
-    return candidates()
-      .filter((one) => used.has(one.name))
-      .map((one, i) => `input${i ? i + 1 : ''}=${one.name},${i === 0 && one.unit ? `unit=${one.unit},` : ''}`)
-      .join('');
-  };
-  const unit = () => (/^(r[XYZ]|theta|alpha)$/.test(where().dof) ? 'deg' : 'mm');
-  const take = (name) => {
-    const word = wordAt(),
-      start = input.selectionStart - word.length;
-    input.setRangeText(name, start, input.selectionStart, 'end');
-    list.hidden = true;
-    input.focus();
-    check();
-  };
-  const offer = () => {
-    const word = wordAt();
-    const found = word ? names.filter((one) => one.name.toLowerCase().startsWith(word.toLowerCase()) && one.name !== word).slice(0, 8) : [];
-    at = 0;
-    list.hidden = found.length === 0;
-    list.replaceChildren(
-      ...found.map((one, i) => {
-        const item = el(
-          'li',
-          { role: 'option', 'aria-selected': i === 0 ? 'true' : 'false', 'data-name': one.name },
-          one.name,
-          el('small', {}, `  ${one.unit} ${one.what}`),
-        );
-        item.addEventListener('pointerdown', (event) => {
-          event.preventDefault();
-          take(one.name);
-        });
-        return item;
-      }),
-    );
-  };
-  async function check() {
-    if (!input.value.trim() || !place.value) {
-      words.textContent = '';
-      return;
-    }
-    const asked = input.value;
-    const answer = await postJson('/api/term', {
-      machine: store.machine,
-      term: asked,
-      unit: unit(),
-      columns: candidates().map(({ name, unit: of }) => ({ name, unit: of })),
-    }).catch((why) => ({ ok: false, message: why.message, word: '' }));
-    if (asked !== input.value) return;
-    words.dataset.ok = answer.ok;
-    words.className = answer.ok ? 'note' : 'error';
-    words.textContent = answer.ok
-      ? [answer.k_unit === null ? 'the unit of k cannot be told' : `k is in ${answer.k_unit}`, ...answer.warnings].join('; ')
-      : `${answer.message}${answer.word ? `: "${answer.word}"` : ''}`;
-  }
-  input.addEventListener('input', () => {
-    offer();
-    check();
-  });
-  place.addEventListener('change', check);
-  input.addEventListener('keydown', (event) => {
-    if (list.hidden) return;
-    const items = [...list.children];
-    const step = { ArrowDown: 1, ArrowUp: -1 }[event.key];
-    if (step) at = (at + step + items.length) % items.length;
-    else if (event.key === 'Tab' || event.key === 'Enter') take(items[at].dataset.name);
-    else if (event.key === 'Escape') list.hidden = true;
-    else return;
-    event.preventDefault();
-    items.forEach((item, i) => item.setAttribute('aria-selected', String(i === at)));
-  });
-  const add = button(
-    'Add and fit',
-    () =>
-      addEffect(`custom:branch=${where().branch},transform=${where().n},dof=${where().dof},${brought()}term=${input.value.trim()}`, error),
-    { id: 'add-term' },
-  );
-  async function build() {
-    ({ names, transforms } = store.machine
-      ? await getJson('/api/names', { machine: store.machine }).catch(() => ({ names: [], transforms: [] }))
-      : { names: [], transforms: [] });
-    for (const column of candidates()) names.push({ name: column.name, unit: column.unit, what: 'column of the measurement' });
-    place.replaceChildren(
-      ...transforms.flatMap((one) =>
-        one.dofs.map(({ dof, text }) =>
-          el(
-            'option',
-            { value: JSON.stringify({ branch: one.branch, n: one.n, dof }) },
-            `${one.branch === 'tool' ? '' : `${one.branch} `}${one.n} ${dof} = ${text}`,
-          ),
-        ),
-      ),
-    );
-    check();
-  }
-  on('rows', build);
-  build();
-  return panel('A term of your own', el('div', { class: 'controls' }, place, input, add), list, words);
-}
-
 export function addView(root) {
   const error = el('div', { id: 'add-error' });
-  const fit = button('Fit the model', () => guarded(error, () => fitInto(store.machine, 'the model, fitted')), { id: 'fit' });
+  const fit = button('Fit the model', () => guarded(error, () => fitInto(store.machine, 'the model, fitted')), {
+    id: 'fit',
+    ...needsSubject,
+  });
   const improve = button(
     'Walk the whole ladder',
     () =>
       guarded(error, async () => {
         const output = freeName('better', '');
-        const { result } = await run({ command: 'improve', ...subject(), yes: true, output });
+        const { result } = await run({ command: 'improve', ...measured(), yes: true, output });
         for (const step of result.ladder)
-          note(step.label ?? step.effect ?? 'the model', step.machine, { ...step, noise_um: result.noise_um });
+          note(step.said ?? step.label ?? step.effect ?? 'the model', step.machine, { ...step, noise_um: result.noise_um });
         const last = result.ladder.at(-1)?.machine;
         if (last) await choose(last, store.measurements);
         improve.after(
@@ -347,10 +233,10 @@ export function addView(root) {
           el('a', { href: fileAddress(`${output}/improve.html`), target: '_blank', rel: 'noopener' }, `${output}/improve.html`),
         );
       }),
-    { class: 'quiet' },
+    { class: 'quiet', ...needsSubject },
   );
   const effect = el('input', { type: 'text', class: 'term', 'aria-label': 'effect', placeholder: 'backlash:axis=X', id: 'effect' });
-  const add = button('Add and fit', () => addEffect(effect.value.trim(), error), { class: 'quiet', id: 'add-effect' });
+  const add = button('Add and fit', () => addEffect(effect.value.trim(), error), { class: 'quiet', id: 'add-effect', ...needsSubject });
   const catalogue = el('div', { id: 'catalogue' });
   const list = button(
     'Catalogue',
@@ -387,8 +273,9 @@ export function addView(root) {
     error,
     panel(null, el('div', { class: 'controls' }, fit, improve, effect, add, list), catalogue),
     stepsPanel(),
+    parameterPanel(),
     sliderPanel(error),
-    termPanel(error),
+    termPanel((term) => addEffect(term, error)),
   );
   return { show: redrawAll };
 }

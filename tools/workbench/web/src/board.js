@@ -4,8 +4,9 @@ import { number } from '../../../report/web/src/data.js';
 import { fileAddress, freeName, getJson, run } from './api.js';
 import { budgetFigure } from './charts.js';
 import { livePanel } from './live.js';
+import { safetyPanel } from './safety.js';
 import { button, guarded, panel } from './parts.js';
-import { on, store } from './store.js';
+import { emit, on, store } from './store.js';
 
 const folders = () => [
   ...new Set(store.files.filter((file) => /\/machine\.vimg$/.test(file.name)).map((file) => file.name.replace(/\/machine\.vimg$/, ''))),
@@ -53,30 +54,6 @@ function differenceWords(diff) {
   ].filter(Boolean);
 }
 
-/** The sheet of compile: every rule with its value, limit and what counts most. */
-function safetyTable(sheet) {
-  const rows = sheet.map((one) => [
-    one.rule,
-    one.value === null ? '–' : number(one.value, 3),
-    number(one.limit, 3),
-    one.unit,
-    one.value === null ? 'not known' : one.ok ? 'ok' : one.accepted ? 'accepted' : 'no',
-    one.culprit,
-  ]);
-  return table(
-    'Safe to run?',
-    [
-      { name: 'rule', left: true },
-      { name: 'value' },
-      { name: 'limit' },
-      { name: 'unit', left: true },
-      { name: '', left: true },
-      { name: 'most by', left: true },
-    ],
-    rows,
-  );
-}
-
 export function boardView(root) {
   const error = el('div', { id: 'board-error' }),
     budget = el('div', { id: 'budget' }),
@@ -111,7 +88,7 @@ export function boardView(root) {
       );
       summary.dataset.bound = result.bound_um;
       summary.dataset.fingerprint = result.fingerprint;
-      budget.replaceChildren(budgetFigure(result, store.compare?.noise_um), summary, safetyTable(result.safe_to_run));
+      budget.replaceChildren(budgetFigure(result, store.compare?.noise_um), summary);
     },
     { id: 'compile' },
   );
@@ -131,6 +108,8 @@ export function boardView(root) {
     slots.textContent = result.trial
       ? `${result.trial} on trial, ${number(result.trial_left_s, 3)} s left: confirm it or it goes back to ${result.confirmed ?? 'none'}`
       : `${result.confirmed ?? 'no image'} is confirmed`;
+    store.uploaded = Boolean(result.confirmed);
+    emit('uploaded');
     Object.assign(slots.dataset, { confirmed: result.confirmed ?? '', trial: result.trial ?? '' });
   };
   const makeKey = step(
@@ -160,8 +139,10 @@ export function boardView(root) {
     });
   on('project', draw);
   draw();
+  const safety = safetyPanel();
   root.append(
     error,
+    safety.element,
     panel('Compile', el('div', { class: 'controls' }, compile, limit), budget),
     panel(
       'Board',
@@ -173,5 +154,5 @@ export function boardView(root) {
     ),
     livePanel(() => url.value, getJson),
   );
-  return { show() {} };
+  return { show: safety.look };
 }

@@ -37,6 +37,15 @@ const kShares = [
   ['second_order_um', 'second order'],
 ];
 
+/** How the bounds stand to the noise, in words: beside its bar theirs could not be seen. */
+function besideNoise(outputs, noise) {
+  const most = Math.max(...outputs.map((one) => one.total_um));
+  if (!Number.isFinite(noise) || !(noise > 0)) return '';
+  return most < noise
+    ? ` The noise of the measurement, ${number(noise, 3)} µm, is ${number(noise / most, 2)} times the largest.`
+    : ` The noise of the measurement is ${number(noise, 3)} µm.`;
+}
+
 /** What the proved bound of each output is made of, the noise of the measurement beside it. */
 export function budgetFigure(bound, noise) {
   const outputs = bound.outputs.filter((one) => one.total_um > 0);
@@ -44,8 +53,8 @@ export function budgetFigure(bound, noise) {
     'error budget',
     () => {
       const c = colours();
-      const inks = [c.fit, c.check, c.ccw, c.cw, c.accent2, c.soft, c.accent];
-      const rows = [...outputs.map((one) => one.axis), ...(Number.isFinite(noise) ? ['noise'] : [])];
+      const inks = [c.fit, c.check, c.ccw, c.cw, c.accent2, c.soft, c.ink];
+      const rows = outputs.map((one) => one.axis);
       const series = kShares.map(([key, name], k) => ({
         name,
         type: 'bar',
@@ -54,21 +63,23 @@ export function budgetFigure(bound, noise) {
         itemStyle: { color: inks[k] },
         data: outputs.map((one) => one[key]),
       }));
-      if (Number.isFinite(noise))
-        series.push({
-          name: 'noise of the measurement',
-          type: 'bar',
-          stack: 'bound',
-          barMaxWidth: 30,
-          itemStyle: { color: c.line },
-          data: [...outputs.map(() => null), noise],
-        });
+      // An empty bar at the end of each carries its sum.
+      series.push({
+        name: 'sum',
+        type: 'bar',
+        stack: 'bound',
+        barMaxWidth: 30,
+        itemStyle: { color: 'transparent' },
+        data: outputs.map((one) => ({ value: 0, label: { formatter: `${number(one.total_um, 3)} µm` } })),
+        label: { show: true, position: 'right', color: c.ink, fontSize: 11 },
+        tooltip: { show: false },
+      });
       return {
         height: 110 + 44 * rows.length,
         option: {
-          legend: { ...legendStyle(c), top: 0, left: 0 },
+          legend: { ...legendStyle(c), top: 0, left: 0, data: kShares.map(([, name]) => name) },
           tooltip: tip(c, 'µm'),
-          grid: { left: 10, right: 30, top: 48, bottom: 40, containLabel: true },
+          grid: { left: 10, right: 80, top: 48, bottom: 40, containLabel: true },
           xAxis: {
             ...axisStyle(c),
             type: 'value',
@@ -82,6 +93,8 @@ export function budgetFigure(bound, noise) {
         },
       };
     },
-    outputs.length ? 'Worst case over the whole declared range, proved; seen errors are two to five times smaller.' : null,
+    outputs.length
+      ? `Worst case over the whole declared range, proved; seen errors are two to five times smaller.${besideNoise(outputs, noise)}`
+      : null,
   );
 }

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { choice, el, tiles } from '../../../report/web/src/dom.js';
-import { number } from '../../../report/web/src/data.js';
-import { fileAddress, freeName, getJson, run } from './api.js';
-import { button, guarded, panel } from './parts.js';
+import { number, printed } from '../../../report/web/src/data.js';
+import { getJson, run } from './api.js';
+import { handoverPanel } from './handover.js';
+import { button, guarded, nothingYet, panel } from './parts.js';
 import { redrawAll } from './plot.js';
 import { polarPlot } from './polar.js';
-import { along, chosenLines, lineWords, loadRows, subject } from './rows.js';
-import { scatter } from './scatter.js';
+import { along, chosenLines, compared, lineWords, loadRows } from './rows.js';
+import { pointKey, scatter } from './scatter.js';
 import { histogram, sortedGroup, spreadWords } from './spread.js';
 import { emit, on, select, selection, store } from './store.js';
 import { rowTable } from './table.js';
@@ -41,7 +42,7 @@ function findings(result) {
       el(
         'li',
         {},
-        one.sentence,
+        printed(one.sentence),
         el('small', {}, ` ${number(100 * one.share_alone, 3)} % alone, ${number(100 * one.share_after, 3)} % beyond the others`),
       ),
     );
@@ -55,7 +56,14 @@ function matrix() {
     scatter(`residual against ${column.name}`, {
       height: 168,
       name: `residual_${column.name}`,
-      data: () => ({ x: along(group(), column), y: group().value, row: group().row, check: store.rows.row_check, overlay: null }),
+      data: () => ({
+        x: along(group(), column),
+        y: group().value,
+        row: group().row,
+        u: group().u,
+        check: store.rows.row_check,
+        overlay: null,
+      }),
       words: () => ({ title: `${column.name}${column.unit ? ` [${column.unit}]` : ''}` }),
     }),
   );
@@ -160,23 +168,30 @@ export function compareView(root) {
     where = el('div', {}),
     linked = el('div', {});
   let table = null;
-  const report = button(
-    'Report (offline HTML)',
-    () =>
-      guarded(error, async () => {
-        const output = freeName('compare', '.html');
-        await run({ command: 'compare', ...subject(), output });
-        report.after(' ', el('a', { href: fileAddress(output), target: '_blank', rel: 'noopener' }, output));
-      }),
-    { class: 'quiet' },
+  const datum = el('input', { type: 'checkbox', id: 'datum', checked: '' });
+  datum.addEventListener('change', () => {
+    store.datum = datum.checked;
+    loadRows();
+  });
+  const datumWords = el(
+    'label',
+    { class: 'choice', title: 'Offsets and turns of the set-up are no failure of the model. Nothing else is fitted.' },
+    datum,
+    ' fit how the instrument stood first',
   );
   where.classList.add('findings-room');
-  root.append(error, panel('How well', numbers, report), panel('Where it fails', where), linked);
+  root.append(
+    error,
+    panel('How well', el('div', { class: 'controls' }, datumWords), numbers),
+    panel('Where it fails', where),
+    linked,
+    handoverPanel(),
+  );
   async function numbersOf() {
     numbers.replaceChildren(el('p', { class: 'note' }, 'comparing …'));
-    const asked = JSON.stringify(subject());
-    const state = await guarded(error, () => run({ command: 'compare', ...subject() }));
-    if (!state || asked !== JSON.stringify(subject())) return;
+    const asked = JSON.stringify(compared());
+    const state = await guarded(error, () => run({ command: 'compare', ...compared() }));
+    if (!state || asked !== JSON.stringify(compared())) return;
     store.compare = state.result;
     numbers.replaceChildren(figures(state.result));
     where.replaceChildren(findings(state.result));
@@ -185,8 +200,9 @@ export function compareView(root) {
   function build() {
     linked.replaceChildren();
     where.replaceChildren();
+    store.compare = null;
     if (!store.rows) {
-      numbers.replaceChildren(el('p', { class: 'note' }, 'Choose a machine and measurements above.'));
+      numbers.replaceChildren(nothingYet());
       return;
     }
     kind = 0;
@@ -222,6 +238,7 @@ export function compareView(root) {
         'Against everything',
         el('div', { class: 'controls' }, kinds),
         words,
+        pointKey(),
         grid.element,
         el(
           'p',

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { choice, el, table } from '../../../report/web/src/dom.js';
 import { number } from '../../../report/web/src/data.js';
-import { next, verdict } from '../../../report/web/src/diagnosis.js';
+import { next, title, verdict } from '../../../report/web/src/diagnosis.js';
 import { fileAddress, freeName, run } from './api.js';
 import { addEffect } from './add.js';
 import { ladderFigure } from './charts.js';
 import { showExplanation } from './overlay.js';
-import { button, guarded, panel, showError } from './parts.js';
+import { button, guarded, needsSubject, nothingYet, panel, showError } from './parts.js';
 import { redrawAll } from './plot.js';
-import { along, subject, valuesOf } from './rows.js';
+import { along, measured, subject, valuesOf } from './rows.js';
 import { scatter } from './scatter.js';
 import { emit, on, store } from './store.js';
 import { vectorPlot } from './vectors.js';
@@ -24,6 +24,7 @@ function evidence(one) {
     'ul',
     {},
     [
+      ['In the chain', text(one.label)],
       ['Term', one.term],
       ['Fitted', values],
       ['Signature', one.signature],
@@ -43,9 +44,7 @@ function candidateTable(result, error, details) {
     const line = el(
       'tr',
       { tabindex: '0', 'data-add': one.add, class: one.accepted ? 'chosen' : null },
-      [one.effect, text(one.axis), [text(one.transform), text(one.dof)].filter(Boolean).join(' ')].map((words) =>
-        el('td', { class: 'text' }, words),
-      ),
+      el('td', { class: 'text' }, title(one)),
       [
         number(one.rms_after_um, 4),
         number(one.check_rms_after_um, 4),
@@ -60,10 +59,7 @@ function candidateTable(result, error, details) {
       ),
     );
     const enter = () => {
-      details.replaceChildren(
-        el('h3', {}, `${one.effect}${one.axis ? ` of ${one.axis}` : ''}${one.title ? `: ${one.title}` : ''}`),
-        evidence(one),
-      );
+      details.replaceChildren(el('h3', {}, title(one)), one.title ? el('p', {}, one.title) : null, evidence(one));
       details.dataset.candidate = one.add;
       store.hovered = one;
       showExplanation(
@@ -76,7 +72,7 @@ function candidateTable(result, error, details) {
     line.addEventListener('focus', enter);
     return line;
   };
-  const head = ['effect', 'axis', 'where', 'rms after [µm]', 'check [µm]', 'share', 'chance', 'score', ''];
+  const head = ['cause', 'rms after [µm]', 'check [µm]', 'share', 'chance', 'score', ''];
   return el(
     'div',
     { class: 'scroll' },
@@ -89,7 +85,7 @@ function candidateTable(result, error, details) {
         el(
           'tr',
           {},
-          head.map((name, i) => el('th', { class: i > 2 ? 'num' : 'text' }, name)),
+          head.map((name, i) => el('th', { class: i > 0 ? 'num' : 'text' }, name)),
         ),
       ),
       el('tbody', {}, result.candidates.map(row)),
@@ -120,6 +116,7 @@ function overlayPlot() {
         x: along(one, column()),
         y: store.overlay ? valuesOf(one, store.overlay.before) : one.value,
         row: one.row,
+        u: one.u,
         check: store.rows.row_check,
         overlay: over,
       };
@@ -136,9 +133,7 @@ function planPanel(result, error) {
   const names = result.candidates.map((one) => one.add);
   if (names.length < 2) return null;
   let [a, b] = names;
-  const label = (one) =>
-    `${one.effect}${one.axis ? ` of ${one.axis}` : ''}${one.transform !== null ? ` at ${one.transform} ${text(one.dof)}` : ''}`;
-  const options = result.candidates.map((one) => [one.add, label(one)]);
+  const options = result.candidates.map((one) => [one.add, title(one)]);
   const box = el('div', { id: 'plan' });
   const ask = button(
     'What would I have to measure to be sure?',
@@ -197,22 +192,13 @@ export function diagnoseView(root) {
     'Diagnose: what is missing?',
     () =>
       guarded(error, async () => {
-        const { result } = await run({ command: 'diagnose', ...subject() });
+        const { result } = await run({ command: 'diagnose', ...measured() });
         store.diagnosis = result;
+        store.diagnosed.add(store.measurements.join('|'));
         show(result);
-        emit('diagnosis');
+        emit('diagnosed');
       }),
-    { id: 'run-diagnose' },
-  );
-  const report = button(
-    'Report (offline HTML)',
-    () =>
-      guarded(error, async () => {
-        const output = freeName('diagnose', '.html');
-        await run({ command: 'diagnose', ...subject(), output });
-        report.after(' ', el('a', { href: fileAddress(output), target: '_blank', rel: 'noopener' }, output));
-      }),
-    { class: 'quiet' },
+    { id: 'run-diagnose', ...needsSubject },
   );
   let explained = null;
   on('overlay', () => {
@@ -246,10 +232,12 @@ export function diagnoseView(root) {
     [explained] = plots;
     redrawAll();
   }
-  root.append(error, panel(null, el('div', { class: 'controls' }, go, report)), box);
+  root.append(error, panel(null, el('div', { class: 'controls' }, go)), box);
   on('rows', () => {
-    box.replaceChildren();
+    box.replaceChildren(store.rows ? '' : nothingYet());
     store.diagnosis = explained = null;
+    emit('diagnosed');
   });
+  box.append(nothingYet());
   return { show: redrawAll };
 }

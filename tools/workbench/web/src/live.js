@@ -21,6 +21,9 @@ function trace(samples, c) {
   }));
 }
 
+/** "X of transform 2 (tool): BX*dirX": where in the chain it stands is of no use while a machine runs. */
+const inShort = (effect) => effect.replace(/ of transform \d+ \(\w+\)/, '');
+
 /** What runs, since when, and how much of it arrives: no correction must not look like one. */
 function runs(last) {
   if (!last.running) return last.image === 'lost' ? 'RUNS NOTHING: the confirmed image is lost' : 'runs nothing';
@@ -72,14 +75,18 @@ export function livePanel(url, getJson) {
       list.forEach((one, i) => {
         const y = 20 + i * 19,
           w = (half * one.correction) / most;
-        pen.text(4, y + 8, `${one.axis}  ${one.effect.slice(0, Math.max(8, Math.floor((middle - half) / 6.4)))}`, { colour: c.soft });
+        pen.text(4, y + 8, `${one.axis}  ${inShort(one.effect).slice(0, Math.max(8, Math.floor((middle - half) / 6.4)))}`, {
+          colour: c.soft,
+        });
         pen.rect(Math.min(middle, middle + w), y, Math.abs(w), 15, one.correction < 0 ? c.check : c.fit);
         pen.text(pen.width - 4, y + 8, number(1e3 * one.correction, 3), { colour: c.ink, align: 'right' });
       });
       pen.line([middle, 18, middle, pen.height], c.line);
     },
   });
+  const pictures = el('div', { class: 'live', hidden: '' }, lines.element, shares.element);
   function show(last) {
+    pictures.hidden = false;
     const rate = drawn.length > 1 ? (drawn.length - 1) / (drawn.at(-1) - drawn[0]) : 0;
     words.textContent = `mode ${last.mode}${last.holding ? ', held' : ''}, fault ${last.fault}; ${runs(last)}; ${number(rate, 3)} pictures a second`;
     words.classList.toggle('error', last.fault !== 'none' || last.image === 'lost');
@@ -140,5 +147,5 @@ export function livePanel(url, getJson) {
     },
     { id: 'watch' },
   );
-  return panel('Live', el('div', { class: 'controls' }, go, words), figures, el('div', { class: 'live' }, lines.element, shares.element));
+  return panel('Live', el('div', { class: 'controls' }, go, words), figures, pictures);
 }

@@ -7,9 +7,10 @@ import { cancel, job, refresh } from './api.js';
 import { boardView } from './board.js';
 import { compareView } from './compare.js';
 import { diagnoseView } from './diagnose.js';
+import { guide } from './guide.js';
 import { redrawAll } from './plot.js';
 import { choose, projectView } from './project.js';
-import { on, store } from './store.js';
+import { emit, on, store } from './store.js';
 
 const kViews = [
   ['project', 'Project', projectView],
@@ -28,6 +29,8 @@ function show(id) {
     view.link.setAttribute('aria-current', one === name ? 'page' : 'false');
   }
   document.body.dataset.view = name;
+  store.visited.add(name);
+  emit('view');
   views.get(name).view.show();
   redrawAll();
 }
@@ -52,6 +55,11 @@ function subjectBar() {
   rows.addEventListener('change', () => choose(store.machine, rows.value ? rows.value.split(' + ') : []));
   on('project', draw);
   on('rows', draw);
+  // What has to have a machine and rows cannot be pressed without.
+  on('rows', () => {
+    document.body.dataset.subject = store.rows ? 'yes' : 'no';
+    for (const node of document.querySelectorAll('[data-needs-subject]')) node.disabled = !store.rows;
+  });
   return el('span', { class: 'subject' }, machine, rows);
 }
 
@@ -100,10 +108,21 @@ async function start() {
   await refresh();
   const title = el('strong', {}, 'Vernier');
   const nav = el('nav', { 'aria-label': 'Steps' });
-  const main = el('main', {});
+  const main = el('main', {}),
+    way = guide();
   document.body.append(
     el('a', { class: 'skip', href: '#main' }, 'to the content'),
-    el('header', {}, title, el('span', { class: 'note folder', title: store.version }, store.folder), nav, subjectBar(), themeButton()),
+    el(
+      'header',
+      {},
+      title,
+      el('span', { class: 'note folder', title: store.version }, store.folder),
+      nav,
+      subjectBar(),
+      way.show,
+      themeButton(),
+    ),
+    way.root,
     main,
     commandBar(),
   );

@@ -1,13 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { el } from '../../../report/web/src/dom.js';
-import { chart, colours } from '../../../report/web/src/chart.js';
-import { init } from 'echarts/core';
-import { SVGRenderer } from 'echarts/renderers';
-import { use } from 'echarts/core';
+import { chart } from '../../../report/web/src/chart.js';
 import { getJson, Refused } from './api.js';
-import { exportButtons } from './plot.js';
-
-use([SVGRenderer]);
+import { store } from './store.js';
 
 export function button(label, act, attributes = {}) {
   const node = el('button', { type: 'button', ...attributes }, label);
@@ -16,7 +11,7 @@ export function button(label, act, attributes = {}) {
     try {
       await act(node);
     } finally {
-      node.disabled = false;
+      node.disabled = node.hasAttribute('data-needs-subject') && !store.rows;
     }
   });
   return node;
@@ -24,25 +19,22 @@ export function button(label, act, attributes = {}) {
 
 export const panel = (title, ...children) => el('section', { class: 'panel' }, title ? el('h2', {}, title) : null, ...children);
 
-/** A chart of the plotting library with its exports. */
-export function figure(label, options, caption = null) {
-  const box = chart(label, options);
-  const svg = () => {
-    const { height, option } = box.options();
-    const twin = init(null, null, { renderer: 'svg', ssr: true, width: box.clientWidth || 1000, height });
-    twin.setOption({ animation: false, backgroundColor: colours().panel, ...option });
-    const text = twin.renderToSVGString();
-    twin.dispose();
-    return text;
-  };
-  return el(
-    'figure',
-    {},
-    box,
-    exportButtons({ name: label.replace(/[^\w]+/g, '_'), png: async () => (await fetch(box.picture())).blob(), svg }),
-    caption ? el('figcaption', {}, caption) : null,
+/** Attributes of a button that a machine and rows have to be chosen for. */
+export const needsSubject = { 'data-needs-subject': '', disabled: '' };
+
+/** What stands where there is nothing to show yet. */
+export const nothingYet = () =>
+  el(
+    'p',
+    { class: 'note empty' },
+    'Choose a machine and measurements at the top, or take files in under ',
+    el('a', { href: '#project' }, 'Project'),
+    '.',
   );
-}
+
+/** A chart of the plotting library with its exports. */
+export const figure = (label, options, caption = null) =>
+  el('figure', {}, chart(label, options), caption ? el('figcaption', {}, caption) : null);
 
 /** An error in its box: the words, and where they name a line of a file, that line. */
 export async function showError(box, error) {

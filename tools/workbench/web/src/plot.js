@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { colours } from '../../../report/web/src/chart.js';
 import { number } from '../../../report/web/src/data.js';
-import { el } from '../../../report/web/src/dom.js';
+import { el, exportButtons } from '../../../report/web/src/dom.js';
 import { CanvasPen, SvgPen } from './pens.js';
 
 const plots = new Set();
@@ -32,28 +32,11 @@ export function redrawAll(done = null) {
   });
 }
 
-export function save(name, blob) {
-  const link = el('a', { href: URL.createObjectURL(blob), download: name });
-  document.body.append(link);
-  link.click();
-  link.remove();
-  setTimeout(() => URL.revokeObjectURL(link.href), 10000);
-}
-
-/** Buttons that export a picture: {name, png() a Blob promise, svg() a text}. */
-export function exportButtons({ name, png, svg }) {
-  const button = (label, act) => {
-    const node = el('button', { type: 'button', class: 'quiet', title: `Save as ${label}` }, label);
-    node.addEventListener('click', act);
-    return node;
-  };
-  return el(
-    'span',
-    { class: 'exports' },
-    button('PNG', async () => save(`${name}.png`, await png())),
-    button('SVG', () => save(`${name}.svg`, new Blob([svg()], { type: 'image/svg+xml' }))),
-  );
-}
+// Ink on paper: the pictures are drawn anew before the browser prints, and back after.
+for (const event of ['beforeprint', 'afterprint'])
+  addEventListener(event, () => {
+    for (const plot of plots) if (plot.canvas.isConnected && shown(plot)) plot.draw();
+  });
 
 /** A picture of our own: `paint(pen, colours)` draws it with any pen; pen.width and pen.height are its size. */
 export class Plot {
@@ -64,19 +47,22 @@ export class Plot {
     this.canvas.style.height = `${height}px`;
     this.seen = this.inSight = false;
     this.late = true;
+    const stem = name ?? label.replace(/[^\w]+/g, '_');
     this.element = el(
       'figure',
       { class: 'plot' },
       this.canvas,
-      exportButtons({
-        name: name ?? label.replace(/[^\w]+/g, '_'),
-        png: () =>
-          new Promise((done) => {
+      exportButtons([
+        [
+          'PNG',
+          `${stem}.png`,
+          () => {
             this.draw();
-            this.canvas.toBlob(done);
-          }),
-        svg: () => this.svg(),
-      }),
+            return new Promise((done) => this.canvas.toBlob(done));
+          },
+        ],
+        ['SVG', `${stem}.svg`, () => new Blob([this.svg()], { type: 'image/svg+xml' })],
+      ]),
     );
     plots.add(this);
     new ResizeObserver(() => {

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { el } from '../../../report/web/src/dom.js';
-import { fileAddress, postJson, putFile, refresh, run } from './api.js';
-import { button, panel } from './parts.js';
+import { fileAddress, freeName, getJson, postJson, putFile, refresh, run } from './api.js';
+import { beginPanel } from './begin.js';
+import { button, panel, showError } from './parts.js';
 import { loadRows } from './rows.js';
+import { importSheet } from './sheet.js';
 import { on, store } from './store.js';
 
 const kKinds = {
   machine: 'machine',
   measurement: 'measurement',
-  instrument: 'instrument file',
+  sheet: 'spreadsheet, to be imported',
+  instrument: 'instrument file, to be imported',
   report: 'report',
   image: 'image',
   key: 'key',
@@ -28,19 +31,44 @@ export async function choose(machine, measurements) {
   await loadRows();
 }
 
-/** A dropped file becomes part of the project; an instrument's file is imported at once. */
-async function take(file, repair) {
+const kSheet = /\.(csv|xlsx|txt|tsv|dat|asc)$/i;
+// What a CSV is, by its name and time: asked once.
+const kinds = new Map();
+
+/** Is it a measurement file, or a table that has to be read into one? */
+async function isSheet(name) {
+  if (!/\.csv$/i.test(name)) return kSheet.test(name);
+  const file = store.files.find((one) => one.name === name);
+  const key = `${name} ${file?.modified_s} ${file?.bytes}`;
+  if (!kinds.has(key))
+    kinds.set(
+      key,
+      getJson('/api/kind', { name }).catch(() => ({ kind: 'measurement' })),
+    );
+  return (await kinds.get(key)).kind === 'sheet';
+}
+
+/** Makes a measurement of a file of the project, as its kind asks for. */
+async function importFile(name, box, repair) {
+  const done = (output) => choose(store.machine, [output]);
+  if (/\.b5r$/i.test(name)) {
+    const stem = name.replace(/\.b5r$/i, '');
+    const output = freeName(stem, '.csv');
+    await run({ command: 'import', kind: 'ballbar', files: [name], repair_time_base: repair, output });
+    return done(output);
+  }
+  return importSheet(box, name, done);
+}
+
+/** A dropped file becomes part of the project; what is no measurement file yet is imported. */
+async function take(file, repair, box) {
   const bytes = await file.arrayBuffer();
   const name = file.name.replace(/[\\/:]/g, '_').replace(/^[.\-~ ]+/, '');
   await putFile(name, bytes);
   await refresh();
   if (/\.xml$/i.test(name)) return choose(name, store.measurements);
+  if (/\.b5r$/i.test(name) || (kSheet.test(name) && (await isSheet(name)))) return importFile(name, box, repair);
   if (/\.csv$/i.test(name)) return choose(store.machine, [name]);
-  if (/\.b5r$/i.test(name)) {
-    const output = `${name.replace(/\.b5r$/i, '')}.csv`;
-    await run({ command: 'import', kind: 'ballbar', files: [name], repair_time_base: repair, output });
-    return choose(store.machine, [output]);
-  }
   return null;
 }
 
@@ -63,13 +91,16 @@ async function showBadLine(box, file, message) {
   );
 }
 
-function fileRow(file) {
-  const usable = { machine: 'use', measurement: 'use' }[file.kind];
+function fileRow(file, importIt) {
+  const usable = { machine: 'use', measurement: 'use', sheet: 'import', instrument: 'import' }[file.kind];
   const act = !usable
     ? null
     : button(
         usable,
-        () => choose(file.kind === 'machine' ? file.name : store.machine, file.kind === 'machine' ? store.measurements : [file.name]),
+        () => {
+          if (usable === 'import') return importIt(file.name);
+          return file.kind === 'machine' ? choose(file.name, store.measurements) : choose(store.machine, [file.name]);
+        },
         { class: 'quiet' },
       );
   const also =
@@ -114,13 +145,14 @@ function history() {
 }
 
 export function projectView(root) {
-  const error = el('div', { id: 'drop-error' });
+  const error = el('div', { id: 'drop-error' }),
+    box = el('div', { id: 'import-box' });
   const repair = el('input', { type: 'checkbox' });
   const pick = el('input', { type: 'file', multiple: '', id: 'file-input', 'aria-label': 'Files to take into the project' });
   const zone = el(
     'div',
     { class: 'drop', id: 'drop' },
-    el('p', {}, 'Drop machine files (.xml), measurements (.csv) or ball-bar files (.b5r) here, or choose them: '),
+    el('p', {}, 'Drop what was measured (.csv, .xlsx, .txt, .b5r) and machine files (.xml) here, or choose them: '),
     pick,
     el('label', { class: 'choice' }, repair, ' repair the time base of ball-bar files'),
   );
@@ -128,7 +160,7 @@ export function projectView(root) {
     error.replaceChildren();
     for (const file of files) {
       try {
-        await take(file, repair.checked);
+        await take(file, repair.checked, box);
       } catch (why) {
         await showBadLine(error, file, why.message);
         return;
@@ -150,12 +182,26 @@ export function projectView(root) {
     if (event.dataTransfer?.files.length) takeAll([...event.dataTransfer.files]);
   });
   const files = el('tbody', { id: 'files' });
-  const draw = () => files.replaceChildren(...store.files.map(fileRow));
+  const again = async (name) => {
+    error.replaceChildren();
+    await importFile(name, box, repair.checked).catch((why) => showError(error, why));
+  };
+  let drawing = 0;
+  const draw = async () => {
+    const mine = ++drawing;
+    files.replaceChildren(...store.files.map((file) => fileRow(file, again)));
+    const known = await Promise.all(
+      store.files.map(async (file) => (file.kind === 'measurement' && (await isSheet(file.name)) ? { ...file, kind: 'sheet' } : file)),
+    );
+    if (mine === drawing) files.replaceChildren(...known.map((file) => fileRow(file, again)));
+  };
   on('project', draw);
   on('rows', draw);
   draw();
   root.append(
     panel('Take in', zone, error),
+    box,
+    beginPanel(choose),
     panel(
       'Files',
       el(

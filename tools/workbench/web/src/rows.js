@@ -14,6 +14,7 @@ function byKind(observations) {
     unit: kRotations.has(kind) ? 'µrad' : 'µm',
     index: new Uint32Array(counts[k]),
     row: new Uint32Array(counts[k]),
+    u: new Float32Array(counts[k]),
     value: new Float32Array(counts[k]),
   }));
   const next = new Uint32Array(groups.length);
@@ -22,6 +23,7 @@ function byKind(observations) {
       at = next[observations.kind[i]]++;
     group.index[at] = i;
     group.row[at] = observations.row[i];
+    group.u[at] = observations.u[i];
     group.value[at] = observations.residual[i];
   }
   return groups.filter((group) => group.index.length > 0);
@@ -82,6 +84,10 @@ function varies(column) {
 }
 
 export const subject = () => ({ machine: store.machine, measurements: store.measurements });
+/** The same for commands that read rows as a fit does: what a board had added to them is found in the project's images. */
+export const measured = () => ({ ...subject(), ...(store.rows?.corrected ? { images: true } : {}) });
+/** The same for the comparison. */
+export const compared = () => ({ ...measured(), ...(store.datum ? { datum: true } : {}) });
 
 /** Loads the machine and rows that are chosen; everything else follows from the event. */
 export async function loadRows() {
@@ -90,7 +96,11 @@ export async function loadRows() {
     emit('rows');
     return;
   }
-  const rows = await getBlob('/api/rows', { machine: store.machine, measurement: store.measurements });
+  const rows = await getBlob('/api/rows', {
+    machine: store.machine,
+    measurement: store.measurements,
+    ...(store.datum ? { datum: '1' } : {}),
+  });
   rows.columns = rows.columns.filter(varies);
   setResiduals(rows, rows.observations.residual);
   const same = store.rows && store.rows.n_rows === rows.n_rows;

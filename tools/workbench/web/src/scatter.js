@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+import { number } from '../../../report/web/src/data.js';
+import { el } from '../../../report/web/src/dom.js';
 import { Plot, axes, range, redrawAll } from './plot.js';
-import { select, selection } from './store.js';
+import { select, selection, store } from './store.js';
+import { hideTip, showTip } from './tip.js';
 
 const kFit = 0,
   kCheck = 1,
@@ -8,13 +11,32 @@ const kFit = 0,
   kChosen = 3,
   kOver = 4;
 export const kNone = 255;
+// More bars than these hide one another, and the points.
+const kMostBars = 800;
+const kNearPx = 9;
+// Narrower plots stand in rows, with one key for all of them.
+const kLegendFrom = 420;
 
 /** Colours of points: fit and check rows; where rows are chosen, all others step back. */
 export const palette = (c) => [c.fit, c.check, c.line, c.accent2, c.ccw];
 
+/** What the colours of small plots are. */
+export const pointKey = () =>
+  el(
+    'p',
+    { class: 'key' },
+    [
+      ['fit', 'fit rows'],
+      ['check', 'check rows, which no fit has seen'],
+      ['accent2', 'chosen rows'],
+    ].map(([ink, words]) => el('span', {}, el('i', { class: `dot ${ink}` }), words)),
+    el('span', {}, 'bars: ± standard uncertainty of the reading'),
+  );
+
 /**
- * Points of observations: data() gives {x, y, row, check, overlay} (typed arrays; overlay: other y values laid over, or
- * null) and words() {x, y, title}. Drag: choose rows. Shift-drag or arrow keys: move. Wheel, + and -: zoom. Double click
+ * Points of observations: data() gives {x, y, row, u, check, overlay} (typed arrays; u: standard uncertainties of y, drawn
+ * as bars where there are few points, may be absent; overlay: other y values laid over, or null) and words() {x, y, title}.
+ * Pointing at one tells its row. Drag: choose rows. Shift-drag or arrow keys: move. Wheel, + and -: zoom. Double click
  * or 0: the whole. Escape: choose nothing.
  */
 export function scatter(label, { height, data, words, name, fixed = null }) {
@@ -26,6 +48,42 @@ export function scatter(label, { height, data, words, name, fixed = null }) {
     return { x: range(d.x), y: fixed?.() ?? range(d.overlay ? [...range(d.y, 0), ...range(d.overlay, 0)] : d.y) };
   };
   const areaOf = (pen) => ({ x: 50, y: 18, w: Math.max(10, pen.width - 60), h: Math.max(10, pen.height - 50) });
+  /** Reading ± its standard uncertainty. */
+  const bars = (pen, area, d, ky, ink) => {
+    const points = [];
+    for (let i = 0; i < d.u.length; ++i) {
+      const half = d.u[i] * ky,
+        x = drawn.px[i];
+      if (!(half > 0) || x < area.x || x > area.x + area.w) continue;
+      const low = Math.min(area.y + area.h, drawn.py[i] + half),
+        high = Math.max(area.y, drawn.py[i] - half);
+      if (low > high) points.push(x, low, x, high, NaN, NaN);
+    }
+    if (points.length) pen.line(points, ink, 1);
+  };
+  /** What the colours are, at the right: above the frame, or within it where a title is in the way. */
+  const legend = (pen, area, d, any, c) => {
+    if (area.w < kLegendFrom) return;
+    const inks = palette(c);
+    const has = (role) => d.row.some((row) => Number(Boolean(d.check[row])) === role);
+    const items = any
+      ? [
+          ['chosen', inks[kChosen]],
+          ['others', inks[kDim]],
+        ]
+      : [...(has(0) ? [['fit rows', inks[kFit]]] : []), ...(has(1) ? [['check rows', inks[kCheck]]] : [])];
+    if (d.overlay) items.push(['explained', inks[kOver]]);
+    if (d.u && d.u.length <= kMostBars && d.u.some((u) => u > 0)) items.push(['± u', c.soft]);
+    const wide = items.reduce((sum, [text]) => sum + 6 * text.length + 18, 0);
+    const y = 6.4 * (words().title ?? '').length + wide < area.w ? area.y - 9 : area.y + 9;
+    let x = area.x + area.w - (y > area.y ? 6 : 0);
+    for (const [text, ink] of items.reverse()) {
+      pen.text(x, y, text, { colour: c.soft, align: 'right', size: 10 });
+      x -= 6 * text.length + 6;
+      pen.rect(x - 4, y - 3, 6, 6, ink);
+      x -= 12;
+    }
+  };
   const plot = new Plot(label, {
     height,
     name,
@@ -46,8 +104,9 @@ export function scatter(label, { height, data, words, name, fixed = null }) {
         }
       };
       place(d.y);
-      const size = n > 20000 ? 1.5 : n > 3000 ? 2 : 3;
       const any = selection.count > 0;
+      if (d.u && n <= kMostBars) bars(pen, area, d, ky, any ? c.line : c.soft);
+      const size = n > 20000 ? 1.5 : n > 3000 ? 2 : 3;
       for (let i = 0; i < n; ++i) drawn.colour[i] = any ? kDim : d.check[d.row[i]] ? kCheck : kFit;
       pen.dots(area, drawn.px, drawn.py, drawn.colour, palette(c), size);
       if (any) {
@@ -59,6 +118,7 @@ export function scatter(label, { height, data, words, name, fixed = null }) {
         drawn.colour.fill(kOver);
         pen.dots(area, drawn.px, drawn.py, drawn.colour, palette(c), size);
       }
+      legend(pen, area, d, any, c);
       if (drag?.brush)
         pen.rect(
           Math.min(drag.x0, drag.x1),
@@ -105,8 +165,42 @@ export function scatter(label, { height, data, words, name, fixed = null }) {
     drag = { x0: x, y0: y, x1: x, y1: y, brush: !event.shiftKey, add: event.ctrlKey || event.metaKey };
     canvas.setPointerCapture(event.pointerId);
   });
+  /** The point under the pointer, as words. */
+  const tell = (event) => {
+    const d = data();
+    if (!d || drawn === null || !store.rows) return hideTip();
+    const [x, y] = at(event);
+    let best = -1,
+      least = kNearPx * kNearPx;
+    const values = d.y,
+      a = area(),
+      kx = a.w / (view.x[1] - view.x[0]),
+      ky = a.h / (view.y[1] - view.y[0]);
+    for (let i = 0; i < values.length; ++i) {
+      const dx = a.x + (d.x[i] - view.x[0]) * kx - x,
+        dy = a.y + a.h - (values[i] - view.y[0]) * ky - y;
+      if (dx * dx + dy * dy < least) {
+        least = dx * dx + dy * dy;
+        best = i;
+      }
+    }
+    if (best < 0) return hideTip();
+    const { rows } = store,
+      row = d.row[best],
+      said = words();
+    return showTip(event, [
+      `${rows.files[rows.row_file[row]]}, line ${rows.row_line[row]}${rows.runs[rows.row_run[row]] ? `, run ${rows.runs[rows.row_run[row]]}` : ''}, ${d.check[row] ? 'check' : 'fit'} row`,
+      `${said.x ?? said.title ?? 'at'}: ${number(d.x[best], 6)}`,
+      `${said.y ?? 'residual'}: ${number(values[best], 4)}${d.u && d.u[best] > 0 ? ` ± ${number(d.u[best], 2)} (u)` : ''}`,
+    ]);
+  };
+  canvas.addEventListener('pointerleave', hideTip);
   canvas.addEventListener('pointermove', (event) => {
-    if (drag === null) return;
+    if (drag === null) {
+      if (view !== null) tell(event);
+      return;
+    }
+    hideTip();
     const [x, y] = at(event);
     if (!drag.brush) move((x - drag.x1) / area().w, (y - drag.y1) / area().h);
     Object.assign(drag, { x1: x, y1: y });

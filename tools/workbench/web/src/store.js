@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the views share, and how they hear of a change. Events: project, rows, selection, overlay, diagnosis, job.
+// What the views share, and how they hear of a change. Events: project, rows, selection, overlay, compared,
+// diagnosed, steps, safety, uploaded, view, job.
 const listeners = new Map();
 
 export const store = {
@@ -13,6 +14,13 @@ export const store = {
   compare: null,
   diagnosis: null,
   overlay: null,
+  datum: true, // the set-up is fitted before anything is compared
+  parameters: [],
+  steps: [], // what was tried in this session, in order: {label, machine, rms_um, check_rms_um, noise_um}
+  safety: null,
+  uploaded: false,
+  diagnosed: new Set(), // measurements that were asked what is missing
+  visited: new Set(), // views that were looked at
 };
 
 export const selection = { rows: new Uint8Array(0), count: 0 };

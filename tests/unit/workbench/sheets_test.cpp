@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/workbench/sheets.h"
+
+#include "tests/unit/workbench/rig.h"
+#include "tools/fit/fit.h"
+#include "tools/text/error.h"
+#include "tools/workbench/rows.h"
+
+namespace vernier::sheets_test {
+
+using namespace vernier::fit;
+using namespace vernier::importer;
+using namespace vernier::model;
+using namespace vernier::text;
+using namespace vernier::workbench;
+namespace {
+
+using nlohmann::json;
+
+const char* const kGerman = "X soll;Abweichung X\r\nmm;\xB5m\r\n0,00;1,5\r\n100,00;-2,5\r\n200,00;3,0\r\n";
+
+struct Desk : testing::Test {
+  Desk() : api(folder.project(), test::program(), "test") {
+    write_file(folder.in("m.xml"), test::kSmallMachine);
+    write_file(folder.in("rows.csv"), test::kSmallRows);
+    write_file(folder.in("german.csv"), kGerman);
+  }
+  json get(const std::string& path, const std::multimap<std::string, std::string>& query) {
+    return json::parse(api.reply({"GET", path, query, ""}).body);
+  }
+  test::Folder folder;
+  Api api;
+};
+
+TEST(Sheets, AMeasurementFileIsToldFromASpreadsheetByItsFirstLine) {
+  EXPECT_TRUE(begins_as_measurement("# a remark\nX[mm],x[mm],run\n"));
+  EXPECT_TRUE(begins_as_measurement("\xEF\xBB\xBFX[mm],x[mm]\n1,2,3\n"));  // its error is in another line
+  EXPECT_FALSE(begins_as_measurement(kGerman));
+  EXPECT_FALSE(begins_as_measurement("X (mm),x (mm)\n0,1\n"));
+  EXPECT_FALSE(begins_as_measurement("X,x\n0,1\n")) << "without a unit";
+  EXPECT_FALSE(begins_as_measurement(""));
+}
+
+TEST(Sheets, APreviewIsWhatTheImportDoes) {
+  const auto preview = sheet_preview(kGerman, "german.csv", {});
+  EXPECT_EQ(preview["decimal"], "comma");
+  EXPECT_EQ(preview["separator"], "semicolon");
+  EXPECT_EQ(preview["n_rows"], 3);
+  EXPECT_TRUE(preview["message"].is_null()) << preview["message"];
+  EXPECT_EQ(preview["columns"][1]["use"], "deviation");
+  EXPECT_NE(preview["csv"].dump().find("99.9975"), std::string::npos) << preview["csv"];
+  const auto open = sheet_preview("Pos;Anzeige\n0,0;1,5\n10,0;2,5\n", "dial.csv", {});
+  EXPECT_NE(open["message"].get<std::string>().find("nothing measured"), std::string::npos);
+  SheetWords words;
+  words.columns = {"X[mm]=1"};
+  words.deviations = {"X[um]=2"};
+  EXPECT_TRUE(sheet_preview("Pos;Anzeige\n0,0;1,5\n10,0;2,5\n", "dial.csv", words)["message"].is_null());
+}
+
+TEST(Sheets, WordsOfARequestAreTextsAndLists) {
+  EXPECT_EQ(sheet_words(json{{"columns", {"X[mm]=1"}}, {"skip", 2}}).skip, 2u);
+  EXPECT_THROW(sheet_words(json{{"columns", "X[mm]=1"}}), InputError);
+  EXPECT_THROW(sheet_words(json{{"unit", 3}}), InputError);
+  EXPECT_THROW(sheet_words(json{{"set", {1}}}), InputError);
+}
+
+TEST_F(Desk, ASpreadsheetIsKeptAndABrokenMeasurementIsNot) {
+  EXPECT_EQ(get("/api/kind", {{"name", "german.csv"}})["kind"], "sheet");
+  EXPECT_EQ(get("/api/kind", {{"name", "rows.csv"}})["kind"], "measurement");
+  EXPECT_EQ(api.reply({"PUT", "/api/file", {{"name", "other.csv"}}, kGerman}).status, 200);
+  EXPECT_EQ(api.reply({"PUT", "/api/file", {{"name", "bad.csv"}}, "X[mm],x[mm]\n1,2\n3,4,5\n"}).status, 422);
+}
+
+TEST_F(Desk, TheSheetIsThatOfTheCommand) {
+  const json sheet = get("/api/safety", {{"machine", "m.xml"}});
+  EXPECT_EQ(sheet["rules"].size(), 12u);
+  EXPECT_TRUE(sheet["ok"].get<bool>()) << sheet["refusal"];
+  EXPECT_TRUE(sheet["rules"][3]["value"].is_null()) << "no fit wrote this file";
+}
+
+TEST_F(Desk, DatumIsFittedBeforeRowsAreShown) {
+  // The instrument stands 5 mm off; the machine lets its set-up be fitted.
+  std::string machine = test::kSmallMachine;
+  machine.insert(machine.find("</static>"),
+                 "<BaseShift X=\"0\" Y=\"0\" Z=\"0\" rX=\"0\" rY=\"0\" rZ=\"0\"/>");
+  write_file(folder.in("b.xml"), machine);
+  write_file(folder.in("off.csv"),
+             "X[mm],Y[mm],x[mm],y[mm]\n0,0,5.001,0\n50,10,55,10.001\n100,60,104.999,60\n0,100,5,99.999\n");
+  const Project project(folder.project());
+  RowCache rows(project);
+  const auto largest = [&](bool datum) {
+    const auto loaded = rows.get("b.xml", {"off.csv"}, datum);
+    return residuals(loaded->machine, loaded->measurement).cwiseAbs().maxCoeff();
+  };
+  EXPECT_NEAR(largest(false), 5, 0.01);
+  EXPECT_LT(largest(true), 0.003);
+}
+
+TEST_F(Desk, RowsMeasuredWithACorrectionFindItsImageInTheFolder) {
+  const std::string in = "cd '" + folder.project() + "' && '" + test::program() + "' ";
+  std::string machine = test::kSmallMachine;
+  machine.replace(machine.find("value=\"0\""), 9, "value=\"1e-4\"");
+  write_file(folder.in("run.xml"), machine);
+  ASSERT_EQ(std::system((in + "compile run.xml -o image >out.txt 2>&1").c_str()), 0)
+      << read_file(folder.in("out.txt"));
+  const std::string fingerprint = json::parse(read_file(folder.in("image/bound.json")))["fingerprint"];
+  // With the correction on X stands 1e-4 Y short of what was commanded, and the reading is right.
+  write_file(folder.in("on.csv"), "X[mm],Y[mm],x[mm],corrected\n10,100,10.0," + fingerprint +
+                                      "\n20,50,20.0," + fingerprint + "\n");
+  const Project project(folder.project());
+  RowCache rows(project);
+  const auto loaded = rows.get("run.xml", {"on.csv"}, false);
+  EXPECT_LT(residuals(loaded->machine, loaded->measurement).cwiseAbs().maxCoeff(), 1e-5);
+  const std::string blob = rows_blob(*loaded);
+  EXPECT_NE(blob.find("\"corrected\":true"), std::string::npos);
+  EXPECT_EQ(std::system((in + "compare run.xml on.csv --images=. >out.txt 2>&1").c_str()), 0)
+      << read_file(folder.in("out.txt"));
+}
+
+TEST_F(Desk, ParametersSayHowWellTheyAreKnown) {
+  const Project project(folder.project());
+  RowCache cache(project);
+  const json before = parameters_json(*cache.get("m.xml", {"rows.csv"}, false));
+  ASSERT_EQ(before[0]["name"], "k");
+  EXPECT_TRUE(before[0]["std"].is_null());
+  const std::string in = "cd '" + folder.project() + "' && '" + test::program() + "' ";
+  ASSERT_EQ(std::system((in + "fit m.xml rows.csv -o f.xml --json f.json >out.txt 2>&1").c_str()), 0);
+  const json fitted = json::parse(read_file(folder.in("f.json")))["parameters"][0];
+  const json after = parameters_json(*cache.get("f.xml", {"rows.csv"}, false))[0];
+  EXPECT_EQ(after["from"], fitted["from"]);
+  // The file keeps the factor as 4-byte numbers.
+  EXPECT_NEAR(after["std"].get<double>(), fitted["std"].get<double>(), 1e-6 * fitted["std"].get<double>());
+  ASSERT_EQ(std::system((in + "set f.xml k=0.001 -o s.xml >out.txt 2>&1").c_str()), 0);
+  EXPECT_TRUE(parameters_json(*cache.get("s.xml", {"rows.csv"}, false))[0]["std"].is_null())
+      << "changed by hand since";
+}
+
+}  // namespace
+}  // namespace vernier::sheets_test

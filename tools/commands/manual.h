@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <CLI/CLI.hpp>
+#include <string>
+
+namespace vernier::commands {
+
+/// The manual page (troff, man macros) of a command, from the same definitions as its --help. `names`: the
+/// words to it, "vernier fit". version: "vernier 1.2.0". tool.
+std::string manual_page(const CLI::App& command, const std::string& names, const std::string& version);
+
+}  // namespace vernier::commands

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace vernier::commands {
+
+/// What a report to be handed over says besides its numbers: company, machine, serial number, operator,
+/// instrument, date, temperature and whatever else is given.
+struct ReportHeader {
+  std::vector<std::string> given;  // --header "serial number=4711"
+  std::string file;                // --letterhead: lines of such entries, for all reports of a shop
+
+  /// In the order of file, then arguments; one given twice stands where it first did, with its last words.
+  /// Throws InputError with file and line, or the option's words.
+  std::vector<std::pair<std::string, std::string>> entries() const;
+  /// The page with them, as tools/report/report.h draws them.
+  nlohmann::ordered_json on(nlohmann::ordered_json page) const;
+};
+
+/// Adds --header and --letterhead to a command that writes a report.
+void add_report_header(CLI::App& command, ReportHeader& header);
+
+}  // namespace vernier::commands

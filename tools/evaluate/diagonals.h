@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <map>
+#include <string>
+#include <vector>
+
+#include "tools/evaluate/positioning.h"
+
+namespace vernier::evaluate {
+
+/// A diagonal displacement test of one diagonal: targets are the ways along it from its end with the lowest
+/// first axis, as commanded; deviations are of the measured way. mm.
+struct DiagonalFile {
+  std::string name;  // signs of the axes along it: "+X+Y+Z", "+X-Y+Z"; of a face diagonal those that move
+  double length = 0;
+  PositioningFile positions;
+};
+
+/// The diagonals of a measurement file with columns of two or three linear axes (where the machine was sent)
+/// and `reading`, the displacement measured along the diagonal, in any zero and either sense of counting.
+/// Rows of one straight line in space are a diagonal; the sense of approach is that of the way from the row
+/// before. Throws InputError with file and line: a row on no line with its neighbours, a line along an axis,
+/// fewer than two targets. tool.
+std::vector<DiagonalFile> read_diagonals(const std::string& text, const std::string& file,
+                                         const std::string& reading);
+
+/// ISO 230-6:2002: each diagonal evaluated as an axis by ISO 230-2, and the machine's values, the largest of
+/// its body diagonals (E_d, B_d, R_d, …). By the letters A E M R B. Values of face diagonals stand for
+/// themselves.
+std::map<std::string, double> machine_values(const std::map<std::string, PositioningResult>& body);
+
+}  // namespace vernier::evaluate

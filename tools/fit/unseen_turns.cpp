@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/fit/unseen_turns.h"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+#include "tools/maths/factors.h"
+#include "tools/model/prediction.h"
+
+namespace vernier::fit {
+
+std::vector<bool> unseen_turns(const model::Machine& machine, const model::Measurement& rows,
+                               const model::ParameterSet& parameters, double reach_mm) {
+  // Of the size of the machine: where other axes move by less, they tell no turn of the instrument.
+  constexpr double kSeen = 1e-3;
+  std::vector<bool> unseen(parameters.size(), false);
+  std::map<std::size_t, std::array<Eigen::Index, 6>> shifts;
+  for (std::size_t i = 0; i < parameters.size(); ++i)
+    if (parameters[i].kind == model::ParameterKind::kBaseShift) {
+      auto& columns = shifts.try_emplace(parameters[i].item).first->second;
+      columns[parameters[i].column] = static_cast<Eigen::Index>(i);
+    }
+  if (shifts.empty()) return unseen;
+  const model::Linearisation linear = model::linearise(machine, rows, parameters);
+  for (const auto& shift : shifts) {
+    const std::array<Eigen::Index, 6>& columns = shift.second;
+    Eigen::MatrixXd lengths(linear.jacobian.rows(), 3);
+    const auto column = [&](std::size_t k) {
+      Eigen::VectorXd unit = Eigen::VectorXd::Zero(linear.jacobian.cols());
+      unit[columns[k]] = 1;
+      return Eigen::VectorXd(linear.jacobian * unit);
+    };
+    for (std::size_t k = 0; k < 3; ++k) lengths.col(static_cast<Eigen::Index>(k)) = column(k);
+    const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver(lengths);
+    const double rows_seen = std::max(1.0, lengths.squaredNorm());
+    for (std::size_t k = 3; k < 6; ++k) {
+      const Eigen::VectorXd turn = column(k) * maths::kDegPerRad;
+      const double left = (turn - lengths * solver.solve(turn)).norm() / std::sqrt(rows_seen);
+      unseen[static_cast<std::size_t>(columns[k])] = left < kSeen * reach_mm;
+    }
+  }
+  return unseen;
+}
+
+void hold_at(FitProblem& problem, const std::vector<bool>& held, const Eigen::VectorXd& at) {
+  constexpr double kHeld_deg = 1e-6;
+  if (std::find(held.begin(), held.end(), true) == held.end()) return;
+  Eigen::SparseMatrix<double> precision(at.size(), at.size());
+  for (std::size_t i = 0; i < held.size(); ++i)
+    if (held[i])
+      precision.insert(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i)) =
+          1 / (kHeld_deg * kHeld_deg);
+  problem.set_priors(precision, at);
+}
+
+}  // namespace vernier::fit

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/import/sheet_columns.h"
+
+namespace vernier::importer {
+
+/// What a person says of a spreadsheet, in the words of `vernier import table`; empty: guessed.
+struct SheetWords {
+  std::string separator, decimal, comment, sheet, unit;
+  std::optional<std::size_t> skip;
+  std::vector<std::string> columns, deviations, constants, left;
+  std::vector<std::string> axes;  // of the machine, where it is known
+};
+
+/// A spreadsheet as it was understood: everything up to the rows.
+struct SheetReading {
+  SheetWishes wishes;
+  sheet::Sheet sheet;
+  sheet::SheetTable table;
+  std::vector<SheetColumn> columns;
+};
+
+/// Reads text or workbook. `wishes`: what a profile said, over which `words` go. Throws InputError with file,
+/// line and word. tool.
+SheetReading read_as_sheet(const std::string& bytes, const std::string& file, const SheetWords& words,
+                           SheetWishes wishes = {});
+
+/// "UTF-8, columns parted by semicolon, decimal comma".
+std::string how_read(const sheet::Sheet& sheet);
+/// "x[mm]", "position of X + this, [um]", "left out".
+std::string becomes(const SheetColumn& column);
+/// [{heading, use: column | deviation | left, name, unit, why}].
+nlohmann::ordered_json columns_json(const SheetReading& reading);
+
+}  // namespace vernier::importer

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <string>
+#include <vector>
+
+namespace vernier::sheet {
+
+/// A sheet to be written: its first row are headings that stay in sight.
+struct SheetToWrite {
+  std::string name;
+  std::vector<std::vector<std::string>> rows;  // a cell that reads as a number becomes one
+};
+
+/// The bytes of a workbook (.xlsx). Same sheets, same bytes. Throws std::runtime_error where it cannot be
+/// written. tool.
+std::string workbook_of(const std::vector<SheetToWrite>& sheets);
+
+}  // namespace vernier::sheet

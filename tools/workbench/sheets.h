@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tools/import/sheet_import.h"
+
+namespace vernier::workbench {
+
+/// Is the text a measurement file by its first line: names with units, parted by commas? What is not may be a
+/// spreadsheet. tool.
+bool begins_as_measurement(const std::string& text);
+
+/// How a spreadsheet is understood and what would come of it: {how, separator, decimal, heading_line, columns
+/// (columns_json), rows: the first as cells, csv: the first lines of the measurement file, n_rows, message:
+/// why it is none yet}. Throws InputError where it is no table at all. tool.
+nlohmann::ordered_json sheet_preview(const std::string& bytes, const std::string& file,
+                                     const importer::SheetWords& words);
+
+/// The words of a request: separator, decimal, comment, sheet, unit (texts), skip (number), columns,
+/// deviations, leave, set (lists). Throws InputError.
+importer::SheetWords sheet_words(const nlohmann::json& request);
+
+}  // namespace vernier::workbench

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+import { el } from '../../../report/web/src/dom.js';
+import { number } from '../../../report/web/src/data.js';
+import { on, store } from './store.js';
+
+const um = (value) => `${number(value, 3)} µm`;
+
+/** The way from a measurement to a board: [id, name, view, is it done?, what to do]. */
+const kPath = [
+  ['data', 'Data', 'project', () => store.measurements.length > 0, () => 'Drop what was measured, in whatever file it came.'],
+  ['model', 'Model', 'project', () => Boolean(store.machine), () => 'Drop the machine file, or make one.'],
+  [
+    'fails',
+    'Where it fails',
+    'compare',
+    () => store.visited.has('compare') && store.compare !== null,
+    () => 'See what the model leaves of the readings, and along what.',
+  ],
+  [
+    'missing',
+    'What is missing',
+    'diagnose',
+    () => store.diagnosis !== null || store.diagnosed.has(store.measurements.join('|')),
+    () =>
+      store.compare
+        ? `The model leaves ${um(store.compare.rms_um)} beside ${um(store.compare.noise_um)} of noise: ask what is missing.`
+        : 'Ask what is missing.',
+  ],
+  [
+    'fall',
+    'Watch it fall',
+    'add',
+    () => store.steps.length > 0,
+    () => 'Fit, add what was named, and see the error fall on rows that no fit saw.',
+  ],
+  [
+    'safe',
+    'Safe to run?',
+    'board',
+    () => store.safety?.ok === true && store.safety.rules.every((one) => one.value !== null),
+    () => store.safety?.refusal || 'Twelve rules say whether the correction may run.',
+  ],
+  ['upload', 'Upload', 'board', () => store.uploaded, () => 'Compile, upload on trial, watch, confirm.'],
+];
+
+/** The path as a row of steps; each can be gone to at any time, and the whole can be put away. */
+export function guide() {
+  const list = el('ol', {}),
+    hint = el('span', { class: 'note', id: 'guide-hint', role: 'status' });
+  const away = el('button', { type: 'button', class: 'quiet', id: 'guide-away', title: 'put the path away' }, '×');
+  const root = el('nav', { class: 'guide', id: 'guide', 'aria-label': 'The way' }, list, hint, away);
+  const key = 'vernier:guide';
+  const remember = (value) => {
+    try {
+      localStorage.setItem(key, value);
+    } catch {
+      /* private mode */
+    }
+  };
+  try {
+    root.hidden = localStorage.getItem(key) === 'away';
+  } catch {
+    /* private mode */
+  }
+  away.addEventListener('click', () => {
+    root.hidden = true;
+    remember('away');
+  });
+  const draw = () => {
+    const next = kPath.find(([, , , done]) => !done());
+    list.replaceChildren(
+      ...kPath.map(([id, name, view, done], k) =>
+        el(
+          'li',
+          { class: done() ? 'done' : null, 'data-step': id, 'aria-current': next?.[0] === id ? 'step' : null },
+          el('a', { href: `#${view}` }, `${k + 1} ${name}`),
+        ),
+      ),
+    );
+    hint.textContent = next ? next[4]() : 'The correction runs.';
+  };
+  for (const event of ['project', 'rows', 'compared', 'diagnosed', 'steps', 'safety', 'uploaded', 'view']) on(event, draw);
+  draw();
+  const show = el('button', { type: 'button', class: 'quiet', id: 'guide-show', title: 'show the path, or put it away' }, 'Path');
+  show.addEventListener('click', () => {
+    root.hidden = !root.hidden;
+    remember(root.hidden ? 'away' : 'shown');
+  });
+  return { root, show };
+}

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+import { choice, el } from '../../../report/web/src/dom.js';
+import { fileAddress, freeName, run } from './api.js';
+import { button, guarded, needsSubject, panel } from './parts.js';
+import { compared, measured } from './rows.js';
+import { on, store } from './store.js';
+
+/** What stands at the head of a report; kept in this browser, for a shop writes more than one. */
+const kHeader = ['company', 'machine', 'serial number', 'operator', 'instrument', 'date', 'temperature'];
+const kKept = 'vernier:header';
+
+function kept() {
+  try {
+    return JSON.parse(localStorage.getItem(kKept)) ?? {};
+  } catch {
+    return {};
+  }
+}
+
+/** Reports that go to somebody else: with a head, and for an axis with a tolerance and its verdict (ISO 230-2). */
+export function handoverPanel() {
+  const error = el('div', {}),
+    links = el('p', { id: 'handover-links' });
+  const values = kept();
+  const fields = kHeader.map((key) => {
+    const input = el('input', {
+      type: 'text',
+      value: values[key] ?? '',
+      'aria-label': key,
+      maxlength: '120',
+      id: `header-${key.replace(' ', '-')}`,
+    });
+    input.style.minWidth = '9em';
+    input.addEventListener('change', () => {
+      values[key] = input.value.trim();
+      try {
+        localStorage.setItem(kKept, JSON.stringify(values));
+      } catch {
+        /* private mode */
+      }
+    });
+    return el('label', { class: 'choice' }, `${key} `, input);
+  });
+  const header = () => {
+    const list = kHeader.filter((key) => values[key]).map((key) => `${key}=${values[key]}`);
+    return list.length ? { header: list } : {};
+  };
+  const offer = (name) => links.append(el('a', { href: fileAddress(name), target: '_blank', rel: 'noopener' }, name), ' ');
+  const report = (label, id, base, fields_of) =>
+    button(
+      label,
+      () =>
+        guarded(error, async () => {
+          const output = freeName(base(), '.html');
+          try {
+            await run({ ...fields_of(), ...header(), output });
+          } catch (why) {
+            // A tolerance that is not met is an answer: the report says it.
+            if (why.job?.exit !== 2) throw why;
+          }
+          offer(output);
+        }),
+      { class: 'quiet', id, ...needsSubject },
+    );
+  let axis = '';
+  const axes = el('span', {});
+  const micrometres = (label) => {
+    const node = el('input', { type: 'text', 'aria-label': label, size: '5', placeholder: 'µm' });
+    node.style.minWidth = '0';
+    return node;
+  };
+  const tolerance = micrometres('tolerance of A'),
+    uncertainty = micrometres('its uncertainty, k = 2');
+  const length = (input, key) => {
+    const words = input.value.trim().replace(',', '.');
+    return words ? { [key]: [`A=${words}um`] } : {};
+  };
+  on('rows', () => {
+    // Axes along which something was measured that has their name in small letters.
+    const known = (store.rows?.columns ?? []).filter(
+      (one) => one.kind === 'axis' && store.rows.kinds.some((kind) => kind.kind === one.name.toLowerCase()),
+    );
+    axis = known[0]?.name ?? '';
+    axes.replaceChildren(
+      known.length
+        ? choice(
+            'axis',
+            known.map((one) => [one.name, one.name]),
+            axis,
+            (value) => {
+              axis = value;
+            },
+          )
+        : '',
+    );
+  });
+  return panel(
+    'Reports to hand over',
+    el('div', { class: 'controls' }, fields),
+    el(
+      'div',
+      { class: 'controls' },
+      report(
+        'Comparison',
+        'handover-compare',
+        () => 'compare',
+        () => ({ command: 'compare', ...compared() }),
+      ),
+      report(
+        'What is missing',
+        'handover-diagnose',
+        () => 'diagnose',
+        () => ({ command: 'diagnose', ...measured() }),
+      ),
+    ),
+    el(
+      'div',
+      { class: 'controls' },
+      axes,
+      el('label', { class: 'choice' }, 'tolerance of A ', tolerance),
+      el('label', { class: 'choice' }, 'its U (k = 2) ', uncertainty),
+      report(
+        'Positioning (ISO 230-2)',
+        'handover-positioning',
+        () => `iso230-2_${axis}`,
+        () => ({
+          command: 'evaluate',
+          standard: 'iso230-2',
+          measurements: store.measurements,
+          axis,
+          ...length(tolerance, 'tolerances'),
+          ...length(uncertainty, 'uncertainties'),
+        }),
+      ),
+    ),
+    links,
+    error,
+  );
+}

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+import { el } from '../../../report/web/src/dom.js';
+import { number } from '../../../report/web/src/data.js';
+import { getJson } from './api.js';
+import { guarded, panel } from './parts.js';
+import { emit, on, store } from './store.js';
+
+/** The rules in words for the person at the machine (tools/docs/safety.md has their reasons). */
+const kAsks = {
+  correction: 'How far would it move the machine?',
+  'max-correction': "Does it stay within each axis' limit?",
+  cancellation: 'Do large terms cancel one another?',
+  uncertainty: 'Is the correction known well enough?',
+  'measured-range': 'Was it measured where it works?',
+  'input-range': 'Were temperatures and inputs in that range?',
+  'set-up': 'Would the set-up of the instrument reach an axis?',
+  converged: 'Did the fit come to an end?',
+  residual: 'Is little left of the readings?',
+  outlier: 'Does no single reading stand apart?',
+  'check-rows': 'Do rows that no fit saw bear it out?',
+  disturbed: 'Was the instrument undisturbed?',
+};
+
+const answer = (one) => (one.value === null ? 'not known' : one.ok ? 'yes' : one.accepted ? 'accepted' : 'NO');
+
+function safetyTable(rules) {
+  const head = ['', 'value', 'limit', '', 'most by', ''];
+  return el(
+    'div',
+    { class: 'scroll' },
+    el(
+      'table',
+      { id: 'safety' },
+      el(
+        'thead',
+        {},
+        el(
+          'tr',
+          {},
+          head.map((name, i) => el('th', { class: i === 1 || i === 2 ? 'num' : 'text' }, name)),
+        ),
+      ),
+      el(
+        'tbody',
+        {},
+        rules.map((one) =>
+          el(
+            'tr',
+            { class: one.ok || one.value === null ? null : 'fails', 'data-rule': one.rule, title: one.reason },
+            el('td', { class: 'text' }, `${kAsks[one.rule] ?? one.rule} `, el('small', {}, one.rule)),
+            el('td', { class: 'num' }, one.value === null ? '–' : number(one.value, 3)),
+            el('td', { class: 'num' }, number(one.limit, 3)),
+            el('td', { class: 'text' }, one.unit),
+            el('td', { class: 'text' }, one.culprit),
+            el('td', { class: 'text answer' }, answer(one)),
+          ),
+        ),
+      ),
+    ),
+  );
+}
+
+/** The sheet of the machine that is chosen, before anything is compiled; looked at whenever this view is. */
+export function safetyPanel() {
+  const box = el('div', { class: 'safety-room' }),
+    error = el('div', {}),
+    words = el('p', { id: 'safety-words', class: 'verdict' });
+  async function look() {
+    if (!store.machine) {
+      words.textContent = '';
+      box.replaceChildren(el('p', { class: 'note' }, 'Choose a machine above.'));
+      return;
+    }
+    const asked = store.machine;
+    const sheet = await guarded(error, () => getJson('/api/safety', { machine: asked }));
+    if (asked !== store.machine) return;
+    store.safety = sheet;
+    emit('safety');
+    const unknown = sheet ? sheet.rules.filter((one) => one.value === null).length : 0;
+    const holds = unknown
+      ? `What is known holds; ${unknown} of ${sheet.rules.length} rules cannot be told: no fit wrote this file.`
+      : 'Every rule holds.';
+    words.textContent = sheet ? (sheet.ok ? holds : `Not safe: ${sheet.refusal}`) : '';
+    words.classList.toggle('error', Boolean(sheet) && !sheet.ok);
+    words.dataset.ok = sheet ? sheet.ok : '';
+    box.replaceChildren(...(sheet ? [safetyTable(sheet.rules)] : []));
+  }
+  on('rows', () => {
+    store.safety = null;
+    if (document.body.dataset.view === 'board') look();
+  });
+  return { element: panel('Safe to run?', words, box, error), look };
+}
