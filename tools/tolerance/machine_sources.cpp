@@ -70,7 +70,7 @@ struct PlacedTerm {
 class Namer {
  public:
   Namer(const model::Machine& machine, const std::vector<effects::Effect>& catalogue)
-      : machine_(machine), catalogue_(catalogue), axes_(machine), base_(effects::base_places(machine)) {
+      : machine_(machine), axes_(machine), base_(effects::base_places(machine)) {
     for (const effects::Effect& effect : catalogue)
       for (const effects::EffectForm& form : effect.forms)
         forms_.push_back({&effect, &form, tokens_of_form(form)});
@@ -253,7 +253,6 @@ class Namer {
   }
 
   const model::Machine& machine_;
-  const std::vector<effects::Effect>& catalogue_;
   effects::AxisPlaces axes_;
   std::vector<effects::DofPlace> base_;
   std::vector<KnownForm> forms_;

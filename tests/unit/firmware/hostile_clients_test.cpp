@@ -5,6 +5,7 @@
 #include <netinet/in.h>
 #include <sys/ptrace.h>
 
+#include <algorithm>
 #include <atomic>
 #include <optional>
 
@@ -77,6 +78,30 @@ class Hostile {
   std::thread thread_;
 };
 
+/// How late this machine itself wakes a thread that sleeps as the guardian does: not the daemon's fault.
+class OwnLateness {
+ public:
+  ~OwnLateness() {
+    stop_ = true;
+    thread_.join();
+  }
+  double longest_s() const { return longest_s_; }
+
+ private:
+  void run() {
+    constexpr std::chrono::duration<double> kAsked{0.25};
+    while (!stop_) {
+      const auto begun = std::chrono::steady_clock::now();
+      std::this_thread::sleep_for(kAsked);
+      const std::chrono::duration<double> slept = std::chrono::steady_clock::now() - begun;
+      longest_s_ = std::max(longest_s_.load(), (slept - kAsked).count());
+    }
+  }
+  std::atomic<bool> stop_{false};
+  std::atomic<double> longest_s_{0};
+  std::thread thread_{[this] { run(); }};
+};
+
 class HostileClients : public DaemonFolder {
  protected:
   HostileClients() {
@@ -110,6 +135,7 @@ TEST_F(HostileClients, NeitherDrippingNorDeafOnesDelayWatchdogTrialOrEnd) {
   ASSERT_TRUE(wait_for([&] { return manager.hears("WATCHDOG=1"); }));
   manager.longest_silence_s();
   manager.forget();
+  const OwnLateness own;
   // WHEN an image is tried in the middle of them, by a client that did not stand idle
   std::optional<Client> known;
   ASSERT_TRUE(wait_for([&] {
@@ -129,7 +155,8 @@ TEST_F(HostileClients, NeitherDrippingNorDeafOnesDelayWatchdogTrialOrEnd) {
   EXPECT_GT(trial_s, 1.5);
   EXPECT_LT(trial_s, 8) << "12.7 s past its end, or never, was the fault";
   EXPECT_EQ(client.newest().mode, Mode::kActive);
-  EXPECT_LT(manager.longest_silence_s(), kMostSilence_s);
+  // Eight wakes in a row have to be late for that.
+  EXPECT_LT(manager.longest_silence_s(), kMostSilence_s + 8 * own.longest_s());
   int thrown_out = 0;
   for (const auto& hostile : clients) thrown_out += hostile->thrown_out();
   EXPECT_GT(thrown_out, 20) << "the attack is worth something only if it was one";
