@@ -112,6 +112,11 @@ void run_positioning(const PositioningArguments& arguments) {
   write_json(arguments.json, json);
   print_result(human_stream(arguments.json), json);
   for (const auto& one : json["characteristics"])
+    if (one.contains("conformity") && one["conformity"].is_null())
+      throw text::LimitNotMet(
+          one["name"].get<std::string>() +
+          " cannot be judged: these readings do not have it (both senses, two runs each)");
+  for (const auto& one : json["characteristics"])
     if (one.contains("conformity") && one["conformity"] == "not met")
       throw text::LimitNotMet("the tolerance of " + one["name"].get<std::string>() + " is not met");
 }

@@ -91,6 +91,16 @@ class Table {
   text::CsvFile csv_;
 };
 
+/// Of a rotary axis the angle about it serves where no column has its name: rz of C.
+std::size_t reading_column(const Table& table, const std::string& axis, const std::string& reading) {
+  static const std::map<std::string, std::string> kAbout = {{"A", "rx"}, {"B", "ry"}, {"C", "rz"}};
+  if (const auto own = table.find(reading)) return *own;
+  const auto about = kAbout.find(axis);
+  if (about != kAbout.end())
+    if (const auto angle = table.find(about->second)) return *angle;
+  return table.need(reading);
+}
+
 }  // namespace
 
 PositioningResult evaluate_positioning(const std::vector<TargetReadings>& readings) {
@@ -137,7 +147,7 @@ PositioningResult evaluate_positioning(const std::vector<TargetReadings>& readin
 PositioningFile read_positioning(const std::string& text, const std::string& file, const std::string& axis,
                                  const std::string& reading) {
   const Table table(text, file);
-  const std::size_t position = table.need(axis), actual = table.need(reading);
+  const std::size_t position = table.need(axis), actual = reading_column(table, axis, reading);
   PositioningFile result;
   const text::Dimension dimension = table.unit(position).dimension;
   if (dimension != text::Dimension::kLength && dimension != text::Dimension::kAngle)
@@ -157,6 +167,9 @@ PositioningFile read_positioning(const std::string& text, const std::string& fil
     if (!at) throw text::InputError({file, table.csv().line[row]}, axis, "this column may not be empty");
     if (dir) {
       sense = table.number(row, *dir).value_or(0);
+      if (sense != 0 && std::abs(sense) != 1)
+        throw text::InputError({file, table.csv().line[row]}, text::number_text(sense),
+                               "a sense of approach is 1 or -1 (0: nothing moved)");
     } else if (before) {
       // At the far end the same target is approached again from the other side.
       sense = *at > *before ? 1 : *at < *before ? -1 : -sense;

@@ -132,11 +132,14 @@ class Guess {
  private:
   static std::string other(const sheet::Heading& heading) {
     static const std::map<std::string, std::string> kNames = {
-        {"zeit", "t"},         {"time", "t"},        {"vorschub", "feed"}, {"feedrate", "feed"},
-        {"feed rate", "feed"}, {"lauf", "run"},      {"pass", "run"},      {"durchgang", "run"},
-        {"messreihe", "run"},  {"run", "run"},       {"cycle", "run"},     {"zyklus", "run"},
-        {"unsicherheit", "u"}, {"uncertainty", "u"}, {"rolle", "role"},    {"richtung", "dir"},
-        {"direction", "dir"},  {"sense", "dir"},     {"länge", "length"},  {"laenge", "length"}};
+        {"zeit", "t"},         {"time", "t"},        {"vorschub", "feed"},     {"feedrate", "feed"},
+        {"feed rate", "feed"}, {"lauf", "run"},      {"pass", "run"},          {"durchgang", "run"},
+        {"messreihe", "run"},  {"run", "run"},       {"cycle", "run"},         {"zyklus", "run"},
+        {"unsicherheit", "u"}, {"uncertainty", "u"}, {"rolle", "role"},        {"richtung", "dir"},
+        {"direction", "dir"},  {"sense", "dir"},     {"länge", "length"},      {"laenge", "length"},
+        {"dir", "dir"},        {"dir.", "dir"},      {"richtg", "dir"},        {"richtg.", "dir"},
+        {"richt.", "dir"},     {"sinn", "dir"},      {"fahrtrichtung", "dir"}, {"anfahrrichtung", "dir"},
+        {"approach", "dir"},   {"motion", "dir"}};
     const auto found = kNames.find(lower(heading.name));
     return found == kNames.end() ? sheet::name_from_words(heading.name) : found->second;
   }
@@ -202,6 +205,11 @@ bool keeps_words(const SheetColumn& column, const Guess& guess) {
          !column.name.starts_with("dir") && !guess.is_axis(column.name) && !guess.is_motion(column.name);
 }
 
+bool is_angle(const std::string& unit) {
+  const auto found = text::find_unit(unit);
+  return found && found->dimension == text::Dimension::kAngle;
+}
+
 void leave(SheetColumn& column, const std::string& why) {
   column.use = SheetColumn::Use::kLeft;
   column.why = why;
@@ -239,6 +247,11 @@ void settle(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::vect
     if (column.why != "by its heading") continue;
     const bool deviation = column.use == SheetColumn::Use::kDeviation;
     if (deviation && column.name.empty() && axes.size() == 1) column.name = *axes.begin();
+    const auto along = std::find_if(columns.begin(), columns.end(), [&](const SheetColumn& one) {
+      return one.use == SheetColumn::Use::kColumn && one.name == column.name;
+    });
+    if (deviation && column.unit == "in" && along != columns.end() && is_angle(along->unit))
+      column.unit = "arcsec";  // " beside degrees
     if (deviation && (column.name.empty() || !axes.contains(column.name)))
       leave(column, "a deviation of which axis? Say it: --deviation \"X=" + table.headings[k].text + "\"");
     else if (deviation && measured.contains(lower(column.name)))
@@ -277,6 +290,33 @@ bool wants_unit(const SheetColumn& column) {
 std::string direction_word(const std::string& cell) {
   const std::string small = lower(cell);
   return kForth.contains(small) ? "1" : kBack.contains(small) ? "-1" : "";
+}
+
+/// Senses as numbers: 1 and -1, 0 where nothing moved. A heading of a shop that counts 1 and 0, or 1 and 2,
+/// means the other sense by its second; `dirX` of the measurement file means what it says.
+void settle_senses(const sheet::Sheet& sheet, const std::vector<std::size_t>& rows, bool own_name,
+                   std::vector<std::string>& cells) {
+  Words found(cells.begin(), cells.end());
+  found.erase("");
+  if (!own_name && (found == Words{"0", "1"} || found == Words{"1", "2"}))
+    for (std::string& cell : cells)
+      if (cell == "0" || cell == "2") cell = "-1";
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    if (const std::string& cell = cells[i]; !cell.empty() && cell != "0" && cell != "1" && cell != "-1")
+      throw text::InputError({sheet.file, rows[i]}, cell,
+                             "a sense is 1 or -1 (0: nothing moved), or a word such as forward or back");
+}
+
+/// The angle that a rotary axis turns by, as the measurement file names it.
+std::string angle_of(const std::string& axis, const text::Place& place) {
+  static const std::map<std::string, std::string> kAngles = {{"A", "rx"}, {"B", "ry"}, {"C", "rz"}};
+  const auto found = kAngles.find(axis);
+  if (found == kAngles.end())
+    throw text::InputError(
+        place, axis,
+        "a deviation in degrees: about which direction does it turn? Say it: --column \"rz[deg]=HEADING\" "
+        "with what was measured");
+  return found->second;
 }
 
 /// One cell as the measurement file writes it.
@@ -441,7 +481,9 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
   for (std::size_t k = 0; k < columns.size(); ++k) {
     const SheetColumn& column = columns[k];
     const bool geometry = guess.is_axis(column.name) || (is_known_name(column.name) && wants_unit(column));
-    if (wants_unit(column) && column.unit.empty() && geometry)
+    if (wants_unit(column) && column.unit.empty() && column.use == SheetColumn::Use::kDeviation)
+      without += fmt::format(" --deviation \"{}[um]={}\"", column.name, table.headings[k].text);
+    else if (wants_unit(column) && column.unit.empty() && geometry)
       without += fmt::format(" --column \"{}[mm]={}\"", column.name, table.headings[k].text);
     if (column.use == SheetColumn::Use::kLeft) continue;
     static const Words kReadings = {"x", "y", "z", "rx", "ry", "rz", "length", "d"};
@@ -479,6 +521,13 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
         deviation && axis_column.contains(column.name) ? axis_column[column.name] : columns.size();
     if (deviation && base == columns.size())
       throw text::InputError(heading, column.name, "this axis has no column");
+    if (deviation && is_angle(columns[base].unit)) {
+      made.name = angle_of(column.name, heading);
+      made.unit = "deg";
+      if (!is_angle(column.unit))
+        throw text::InputError(heading, table.headings[k].text,
+                               "a length, where " + column.name + " is an angle");
+    }
     if (result.find(made.name) != nullptr)
       throw text::InputError(heading, table.headings[k].text,
                              "this would be " + made.name + " a second time");
@@ -498,6 +547,8 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
       }
       made.cells.push_back(std::move(text));
     }
+    if (made.name.starts_with("dir"))
+      settle_senses(sheet, result.line, table.headings[k].text == made.name, made.cells);
     result.columns.push_back(std::move(made));
   }
   for (const MappedColumn& constant : wishes.constants)

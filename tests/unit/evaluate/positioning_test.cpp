@@ -124,6 +124,15 @@ TEST(Positioning, RefusesWhatItCannotJudge) {
   EXPECT_NE(refused("X[mm],x[mm],dirX\n0,0,1\n1,1,1\n", "X", "x").find("one reading at 0 forward"),
             std::string::npos);
   EXPECT_NE(refused("X[mm],x[mm],dirX\n0,0,1\n0,0,1\n", "X", "x").find("two targets"), std::string::npos);
+  EXPECT_NE(refused("X[mm],x[mm],dirX\n0,0,1\n0,0,2\n", "X", "x").find("a sense of approach is 1 or -1"),
+            std::string::npos);
+}
+
+TEST(Positioning, ReadsTheAngleAboutARotaryAxis) {
+  const PositioningFile file =
+      read_positioning("C[deg],rz[deg],dirC\n0,0.001,1\n90,90.002,1\n", "c.csv", "C", "c");
+  ASSERT_EQ(file.readings.size(), 2u);
+  EXPECT_NEAR(file.readings[1].deviation[0].at(0), 0.002, 1e-12);
 }
 
 TEST(Conformity, UncertaintyDecidesForNobody) {
@@ -156,6 +165,14 @@ TEST(EvaluateCommand, WritesNumbersReportAndVerdict) {
   EXPECT_EQ(run("--tolerance A=0.08um --uncertainty A=0.005um"), 2);
   EXPECT_EQ(run("--tolerance A=0.09um --uncertainty A=0.005um"), 0) << "undecided is no failure";
   EXPECT_EQ(run("--tolerance A=much"), 1);
+  // One sense has no A: what was asked for is not judged, and that is no "met".
+  write_file(folder + "/one.csv", "X[mm],x[mm],dirX\n0,0,1\n0,0.001,1\n9,9,1\n9,9.001,1\n");
+  const int status = std::system(
+      ("cd '" + folder +
+       "' && " VERNIER_BIN_DIR "/vernier evaluate iso230-2 one.csv --axis X --tolerance A=50um >out.txt 2>&1")
+          .c_str());
+  EXPECT_EQ(WEXITSTATUS(status), 2);
+  EXPECT_NE(read_file(folder + "/out.txt").find("A cannot be judged"), std::string::npos);
   fs::remove_all(folder);
 }
 
