@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <sstream>
 
 #include "tools/exchange/table_text.h"
@@ -64,17 +65,13 @@ std::vector<double> first_positions(const model::Machine& machine, std::size_t a
   return result;
 }
 
-}  // namespace
-
-std::vector<ScrewPoint> screw_points(const model::Machine& machine, std::size_t axis, const model::States& at,
-                                     double tolerance_um) {
+/// Positions between which straight lines stay within the tolerance; none where that takes too many.
+std::optional<std::vector<double>> positions_within(const model::Machine& machine, std::size_t axis,
+                                                    const model::States& at, double tolerance_um) {
   std::vector<double> positions = first_positions(machine, axis);
   for (bool split = true; split;) {
     split = false;
-    if (positions.size() > kMostScrewPoints)
-      throw text::InputError(
-          {machine.file, 0}, machine.axes[axis].name,
-          fmt::format("more than {} lines are needed to stay within {} um", kMostScrewPoints, tolerance_um));
+    if (positions.size() > kMostScrewPoints) return std::nullopt;
     std::vector<double> next = {positions.front()};
     for (std::size_t i = 0; i + 1 < positions.size(); ++i) {
       const double a = positions[i], w = positions[i + 1] - a;
@@ -87,7 +84,29 @@ std::vector<ScrewPoint> screw_points(const model::Machine& machine, std::size_t 
     }
     positions = std::move(next);
   }
-  return trims_at(machine, axis, at, positions);
+  return positions;
+}
+
+/// What would do instead.
+std::string way_out(const model::Machine& machine, std::size_t axis, const model::States& at,
+                    double tolerance_um) {
+  for (const double wider : {0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0})
+    if (wider > tolerance_um && positions_within(machine, axis, at, wider))
+      return fmt::format("; --tolerance {} would do, --component holds all of it", wider);
+  return "; --component holds all of it";
+}
+
+}  // namespace
+
+std::vector<ScrewPoint> screw_points(const model::Machine& machine, std::size_t axis, const model::States& at,
+                                     double tolerance_um) {
+  const auto positions = positions_within(machine, axis, at, tolerance_um);
+  if (!positions)
+    throw text::InputError(
+        {machine.file, 0}, machine.axes[axis].name,
+        fmt::format("more than {} lines are needed to stay within {} um{}", kMostScrewPoints, tolerance_um,
+                    way_out(machine, axis, at, tolerance_um)));
+  return trims_at(machine, axis, at, *positions);
 }
 
 std::string screw_text(const std::vector<ScrewPoint>& points, ScrewType type) {
