@@ -93,11 +93,9 @@ class Table {
 
 /// Of a rotary axis the angle about it serves where no column has its name: rz of C.
 std::size_t reading_column(const Table& table, const std::string& axis, const std::string& reading) {
-  static const std::map<std::string, std::string> kAbout = {{"A", "rx"}, {"B", "ry"}, {"C", "rz"}};
   if (const auto own = table.find(reading)) return *own;
-  const auto about = kAbout.find(axis);
-  if (about != kAbout.end())
-    if (const auto angle = table.find(about->second)) return *angle;
+  if (const auto about = text::angle_about(axis))
+    if (const auto angle = table.find(*about)) return *angle;
   return table.need(reading);
 }
 

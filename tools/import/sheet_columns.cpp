@@ -309,14 +309,11 @@ void settle_senses(const sheet::Sheet& sheet, const std::vector<std::size_t>& ro
 
 /// The angle that a rotary axis turns by, as the measurement file names it.
 std::string angle_of(const std::string& axis, const text::Place& place) {
-  static const std::map<std::string, std::string> kAngles = {{"A", "rx"}, {"B", "ry"}, {"C", "rz"}};
-  const auto found = kAngles.find(axis);
-  if (found == kAngles.end())
-    throw text::InputError(
-        place, axis,
-        "a deviation in degrees: about which direction does it turn? Say it: --column \"rz[deg]=HEADING\" "
-        "with what was measured");
-  return found->second;
+  if (auto angle = text::angle_about(axis)) return *angle;
+  throw text::InputError(
+      place, axis,
+      "a deviation in degrees: about which direction does it turn? Say it: --column \"rz[deg]=HEADING\" "
+      "with what was measured");
 }
 
 /// One cell as the measurement file writes it.

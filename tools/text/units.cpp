@@ -119,4 +119,11 @@ const char* base_unit(Dimension dimension) {
   return kPerMm.name;
 }
 
+std::optional<std::string> angle_about(std::string_view axis) {
+  if (axis == "A") return "rx";
+  if (axis == "B") return "ry";
+  if (axis == "C") return "rz";
+  return std::nullopt;
+}
+
 }  // namespace vernier::text

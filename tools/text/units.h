@@ -53,4 +53,7 @@ std::string known_units();
 /// The base unit of a dimension as written.
 const char* base_unit(Dimension dimension);
 
+/// The reading that holds a rotary axis' angle: rx, ry, rz of A, B, C (ISO 841); nothing for other axes.
+std::optional<std::string> angle_about(std::string_view axis);
+
 }  // namespace vernier::text

@@ -7,6 +7,7 @@
 #include <Eigen/QR>
 #include <random>
 
+#include "tests/unit/plan/bridge.h"
 #include "tools/fit/reach.h"
 #include "tools/model/chain.h"
 #include "tools/model/machine_reader.h"
@@ -17,6 +18,8 @@
 
 namespace vernier::accuracy_plan_test {
 
+using bridge_to_plan::bridge;
+using bridge_to_plan::kBridge;
 using namespace vernier::fit;
 using namespace vernier::model;
 using namespace vernier::plan;
@@ -24,16 +27,7 @@ using namespace vernier::text;
 using namespace vernier::tolerance;
 namespace {
 
-const char* const kBridge = R"XML(<machine name="bridge"><variables><static><sxy value="0" nominal="0"/>
-    <szx value="0" nominal="0"/><kx value="0" nominal="0"/><play value="0" nominal="0" unit="mm"/><BaseShift/></static>
-    <machineaxes><X min="0" max="600"/><Y min="0" max="400"/><Z min="-300" max="0"/></machineaxes>
-    <comptables><table axis="Y" fit="X Z rZ"><station loc="0"/><station loc="200"/><station loc="400"/></table>
-    </comptables></variables>
-    <transforms branch="tool"><sixdof n="1" X="X+kx*X+play*dirX"/><sixdof n="2" Y="Y" X="sxy*Y+lYx" Z="lYz" rZ="rYz"/>
-    <sixdof n="3" Z="Z" X="szx*Z"/></transforms></machine>)XML";
 constexpr double kU_mm = 0.003;
-
-Machine bridge() { return parse_machine(kBridge, "m.xml"); }
 
 Machine drawn(std::mt19937_64& random) {
   std::normal_distribution<double> normal(0, 1);
