@@ -11,9 +11,11 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <filesystem>
 #include <functional>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
@@ -92,49 +94,78 @@ class Daemon {
   pid_t pid_ = 0;
 };
 
-/// The service manager's side of sd_notify: hears what a daemon says, and when.
+/// The service manager's side of sd_notify: hears what a daemon says, and when. A thread of its own takes
+/// what comes, so that a test that is held up elsewhere never takes its own pause for a silence of the
+/// daemon.
 class NotifySocket {
  public:
-  explicit NotifySocket(const std::string& path) : path_(path), fd_(::socket(AF_UNIX, SOCK_DGRAM, 0)) {
+  explicit NotifySocket(const std::string& path)
+      : path_(path), fd_(::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
     sockaddr_un address{};
     address.sun_family = AF_UNIX;
     EXPECT_LT(path.size(), sizeof(address.sun_path));
     path.copy(address.sun_path, path.size());
     EXPECT_EQ(::bind(fd_, reinterpret_cast<const sockaddr*>(&address), sizeof(address)), 0);
+    const timeval patience{.tv_sec = 0, .tv_usec = 20'000};
+    EXPECT_EQ(::setsockopt(fd_, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof(patience)), 0);
+    thread_ = std::thread([this] { listen(); });
   }
-  ~NotifySocket() { ::close(fd_); }
+  ~NotifySocket() {
+    stop_ = true;
+    thread_.join();
+    ::close(fd_);
+  }
   NotifySocket(const NotifySocket&) = delete;
   NotifySocket& operator=(const NotifySocket&) = delete;
   std::string setting() const { return "NOTIFY_SOCKET=" + path_; }
-  /// Takes what has come; has `word` been heard by now?
-  bool hears(const char* word) {
-    char text[64];
-    for (ssize_t got = 0; (got = ::recv(fd_, text, sizeof(text), MSG_DONTWAIT)) > 0;) {
-      const std::string said(text, static_cast<std::size_t>(got));
-      heard_ += said + "\n";
-      if (said != "WATCHDOG=1") continue;
-      const auto now = std::chrono::steady_clock::now();
-      if (signs_++ > 0)
-        longest_ = std::max(longest_, std::chrono::duration<double>(now - last_sign_).count());
-      last_sign_ = now;
-    }
-    return heard_.find(word) != std::string::npos;
+  /// Has `word` been heard by now?
+  bool hears(const std::string& word) const { return heard().find(word) != std::string::npos; }
+  std::string heard() const {
+    const std::lock_guard lock(mutex_);
+    return heard_;
   }
-  const std::string& heard() const { return heard_; }
   /// Longest silence between two signs of life, and since the last one; s.
-  double longest_silence_s() {
-    hears("");
-    return std::max(longest_,
-                    std::chrono::duration<double>(std::chrono::steady_clock::now() - last_sign_).count());
+  double longest_silence_s() const {
+    const std::lock_guard lock(mutex_);
+    return std::max(longest_s_, since_last_s());
   }
-  int signs() const { return signs_; }
-  void forget() { longest_ = 0; }
+  int signs() const {
+    const std::lock_guard lock(mutex_);
+    return signs_;
+  }
+  /// Counts silences from the last sign on.
+  void forget() {
+    const std::lock_guard lock(mutex_);
+    longest_s_ = 0;
+  }
 
  private:
-  std::string path_, heard_;
-  int fd_, signs_ = 0;
+  void listen() {
+    char text[64];
+    while (!stop_) {
+      const ssize_t got = ::recv(fd_, text, sizeof(text), 0);
+      if (got <= 0) continue;
+      const std::string said(text, static_cast<std::size_t>(got));
+      const std::lock_guard lock(mutex_);
+      heard_ += said + "\n";
+      if (said != "WATCHDOG=1") continue;
+      if (signs_++ > 0) longest_s_ = std::max(longest_s_, since_last_s());
+      last_sign_ = std::chrono::steady_clock::now();
+    }
+  }
+  double since_last_s() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - last_sign_).count();
+  }
+
+  std::string path_;
+  int fd_;
+  std::atomic<bool> stop_{false};
+  mutable std::mutex mutex_;
+  std::string heard_;
+  int signs_ = 0;
   std::chrono::steady_clock::time_point last_sign_{};
-  double longest_ = 0;
+  double longest_s_ = 0;
+  std::thread thread_;
 };
 
 inline constexpr const char* kBoardText = R"([board]

@@ -18,13 +18,9 @@ using namespace vernier::text;
 using namespace vernier::upload;
 namespace {
 
-// The unit's WatchdogSec; told four times a second. The sanitizers stretch fifty connections a second by ten,
-// to 1.1 to 2.9 s; the fault was 22 s.
-#ifdef VERNIER_SANITIZED
-constexpr double kMostSilence_s = 8.0;
-#else
+// The unit's WatchdogSec; a sign of life comes four times a second (0.26 s measured, with all clients and a
+// busy machine; the fault was 22 s).
 constexpr double kMostSilence_s = 2.0;
-#endif
 
 int connect_to(int port) {
   const int fd = ::socket(AF_INET, SOCK_STREAM, 0);
@@ -133,7 +129,6 @@ TEST_F(HostileClients, NeitherDrippingNorDeafOnesDelayWatchdogTrialOrEnd) {
   for (int i = 0; i < 50; ++i)
     clients.push_back(std::make_unique<Hostile>(daemon.port(), static_cast<Hostile::Manner>(i % 3)));
   ASSERT_TRUE(wait_for([&] { return manager.hears("WATCHDOG=1"); }));
-  manager.longest_silence_s();
   manager.forget();
   const OwnLateness own;
   // WHEN an image is tried in the middle of them, by a client that did not stand idle
@@ -149,7 +144,7 @@ TEST_F(HostileClients, NeitherDrippingNorDeafOnesDelayWatchdogTrialOrEnd) {
   Client& client = *known;
   client.upload(upload(4e-5, 2), [](double) {});
   const auto begun = std::chrono::steady_clock::now();
-  EXPECT_TRUE(wait_for([&] { return manager.longest_silence_s() > 99 || client.slots().trial == kNoSlot; }));
+  EXPECT_TRUE(wait_for([&] { return client.slots().trial == kNoSlot; }));
   const double trial_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
   // THEN who is well-behaved is answered, the trial ends on time, and signs of life came all the while
   EXPECT_GT(trial_s, 1.5);
@@ -173,8 +168,8 @@ TEST_F(HostileClients, SlowMediumDelaysWhoAskedForItAndNobodyElse) {
   client.upload(upload(2e-5, 1), [](double) {});
   client.confirm();
   ASSERT_TRUE(wait_for([&] { return manager.hears("WATCHDOG=1"); }));
-  manager.longest_silence_s();
   manager.forget();
+  const OwnLateness own;
   // GIVEN a medium whose every write takes 1.2 s
   slow_fsync(1200);
   std::thread uploads([&] { client.upload(upload(4e-5, 2), [](double) {}); });
@@ -184,7 +179,6 @@ TEST_F(HostileClients, SlowMediumDelaysWhoAskedForItAndNobodyElse) {
     const bool trial = other.slots().trial != kNoSlot;
     worst_s =
         std::max(worst_s, std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count());
-    manager.hears("");
     return trial;
   };
   EXPECT_TRUE(wait_for(asked)) << "slow, but tried";
@@ -196,7 +190,7 @@ TEST_F(HostileClients, SlowMediumDelaysWhoAskedForItAndNobodyElse) {
   EXPECT_GT(trial_s, 1.5);
   EXPECT_LT(trial_s, 8);
   EXPECT_LT(worst_s, 3.0) << "another client is answered meanwhile";
-  EXPECT_LT(manager.longest_silence_s(), kMostSilence_s);
+  EXPECT_LT(manager.longest_silence_s(), kMostSilence_s + 8 * own.longest_s());
   std::printf("trial of 2 s: %.2f s, others waited %.3f s at most, longest silence %.2f s\n", trial_s,
               worst_s, manager.longest_silence_s());
   slow_fsync(0);
@@ -216,16 +210,14 @@ TEST_F(HostileClients, TickThatStandsStillGivesNoSignOfLife) {
   ASSERT_EQ(::ptrace(PTRACE_INTERRUPT, daemon.pid(), nullptr, nullptr), 0);
   int status = 0;
   ASSERT_EQ(::waitpid(daemon.pid(), &status, __WALL), daemon.pid());
-  manager.hears("");
   const int signs = manager.signs();
   const std::size_t fed = read_file(device).size();
   std::this_thread::sleep_for(std::chrono::milliseconds(1500));
-  manager.hears("");
   EXPECT_LE(manager.signs(), signs + 1) << "the tick stands still, all other threads run";
   EXPECT_LE(read_file(device).size(), fed + 1) << "nor is a hardware watchdog fed";
   EXPECT_NO_THROW(daemon.client(key_).slots()) << "links are served all the same";
   ASSERT_EQ(::ptrace(PTRACE_DETACH, daemon.pid(), nullptr, nullptr), 0);
-  EXPECT_TRUE(wait_for([&] { return manager.hears("") || manager.signs() > signs + 2; }));
+  EXPECT_TRUE(wait_for([&] { return manager.signs() > signs + 2; }));
 }
 
 }  // namespace
