@@ -17,11 +17,11 @@
 #include <set>
 
 #include "firmware/daemon/toml_text.h"
+#include "firmware/daemon/units.h"
 
 namespace vernier {
 namespace {
 
-constexpr double kNmPerMm = 1e6, kCountsPerDeg = static_cast<double>(kTurnCounts) / 360, kMicro = 1e6;
 constexpr double kMostCounts = 1e15;
 constexpr double kMostDelayUs = 40'000;  // of a probe: what the latch remembers at 1 kHz, less its settling
 

@@ -3,10 +3,11 @@
 
 #include <cmath>
 
+#include "firmware/daemon/units.h"
+
 namespace vernier {
 namespace {
 
-constexpr double kNmPerMm = 1e6, kCountsPerDeg = static_cast<double>(kTurnCounts) / 360;
 constexpr double kMostSpan = 1e4;  // mm or deg; beyond any correction, and within AnalogueScale
 
 }  // namespace

@@ -3,10 +3,12 @@
 
 #include <cmath>
 
+#include "firmware/daemon/units.h"
+
 namespace vernier {
 namespace {
 
-constexpr double kMicro = 1e6, kMostResolution = 1000, kResolution = 1e-5;
+constexpr double kMostResolution = 1000, kResolution = 1e-5;
 constexpr const char* kDisplacement = "DISPLACEMENT";
 constexpr std::int64_t kWindow = 1500, kMostEvery = 100'000, kBridged = 3;
 

@@ -8,17 +8,15 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <ctime>
 
 #include "hal/linux/can_socket.h"
 #include "hal/linux/monotonic_clock.h"
+#include "hal/linux/system_time.h"
 
 namespace vernier {
 namespace {
 
-constexpr std::int64_t kNsPerS = 1'000'000'000;
 constexpr int kMostFrames = 256;  // taken at a time
-constexpr int kMostInterruptions = 1000;
 
 }  // namespace
 
@@ -44,7 +42,7 @@ HalFault CanSync::wait_for_sync(InstantNs latest) noexcept {
   MonotonicClock clock;
   for (int i = 0; i < kMostInterruptions; ++i) {
     const std::int64_t left = std::max<std::int64_t>((latest - clock.now()).count, 0);
-    const timespec wait{static_cast<time_t>(left / kNsPerS), static_cast<long>(left % kNsPerS)};
+    const timespec wait = timespec_of(left);
     pollfd waiting{socket_, POLLIN, 0};
     const int ready = ::ppoll(&waiting, 1, &wait, nullptr);
     if (ready == 0) return HalFault::kNoReading;

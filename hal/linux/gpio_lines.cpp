@@ -8,20 +8,16 @@
 
 #include <cerrno>
 #include <cstring>
-#include <ctime>
 #include <filesystem>
+
+#include "hal/linux/system_time.h"
 
 namespace vernier {
 namespace {
 
 constexpr const char* kConsumer = "vernier";
-constexpr std::int64_t kNsPerS = 1'000'000'000;
 constexpr std::int64_t kClockMargin = 1'000'000;  // ns; a stamp further in the future is another clock's
 constexpr int kMostReads = 4;                     // of the kernel's buffer in one tick
-
-std::int64_t ns_of(const timespec& time) noexcept {
-  return std::int64_t{time.tv_sec} * kNsPerS + time.tv_nsec;
-}
 
 std::int64_t monotonic_ns() noexcept {
   timespec time{};

@@ -11,7 +11,6 @@
 namespace vernier {
 namespace {
 
-constexpr double kMicro = 1e6;
 constexpr std::int64_t kUsPerS = 1'000'000;
 
 }  // namespace
@@ -81,7 +80,8 @@ HalFault ModbusInput::take(std::int64_t& micro) noexcept {
                         : value_.type == Type::kUint16 ? words[0]
                         : value_.type == Type::kInt32  ? static_cast<std::int32_t>(both)
                                                        : static_cast<double>(std::bit_cast<float>(both));
-  return scaled(number * kMicro, value_.offset, value_.scale, micro) ? HalFault::kNone : HalFault::kNoReading;
+  return scaled(number * kPerUnit, value_.offset, value_.scale, micro) ? HalFault::kNone
+                                                                       : HalFault::kNoReading;
 }
 
 }  // namespace vernier

@@ -6,12 +6,12 @@
 namespace vernier {
 namespace {
 
-constexpr double kMicro = 1e6, kMostMicro = 1e18;
+constexpr double kMostMicro = 1e18;
 
 }  // namespace
 
 bool SampledInput::scaled(double raw_micro, double offset, double scale, std::int64_t& micro) noexcept {
-  const double value = (raw_micro + offset * kMicro) * scale;
+  const double value = (raw_micro + offset * kPerUnit) * scale;
   if (!(std::fabs(value) < kMostMicro)) return false;
   micro = std::llround(value);
   return true;

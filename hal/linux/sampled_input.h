@@ -18,6 +18,7 @@ class SampledInput : public InputReader {
   HalFault read_input(std::uint32_t input, InputMicro& value) noexcept override;
 
  protected:
+  static constexpr double kPerUnit = 1e6;  // inputs count in millionths of their unit
   /// stale_reads: reads without a new sample until the sensor counts as silent.
   explicit SampledInput(std::uint32_t stale_reads) : stale_reads_(stale_reads) {}
   /// One sample, 1e-6 of the unit of the input. kNoReading: there was none. Waits.

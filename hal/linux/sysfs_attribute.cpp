@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hal/linux/sysfs_attribute.h"
 
-#include "hal/linux/file_lock.h"
-
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -10,11 +8,13 @@
 #include <charconv>
 #include <cstring>
 
+#include "hal/linux/file_lock.h"
+#include "hal/linux/system_time.h"
+
 namespace vernier {
 namespace {
 
 constexpr std::size_t kLongestText = 64;  // of a number in an attribute
-constexpr int kMostInterruptions = 100;
 constexpr std::int64_t kMicro = 1'000'000, kMostWhole = 1'000'000'000'000;
 
 bool is_digit(char c) noexcept { return c >= '0' && c <= '9'; }

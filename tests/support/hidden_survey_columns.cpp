@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tests/support/hidden_survey_columns.h"
 
-#include <Eigen/QR>
-#include <Eigen/SVD>
 #include <cstring>
 #include <stdexcept>
 
+#include "tools/maths/decompositions.h"
 #include "tools/model/chain.h"
 #include "tools/model/parameters.h"
 #include "tools/model/prediction.h"

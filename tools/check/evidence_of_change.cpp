@@ -4,8 +4,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -14,6 +12,7 @@
 #include "tools/effects/probe.h"
 #include "tools/fit/solve.h"
 #include "tools/maths/chance.h"
+#include "tools/maths/decompositions.h"
 #include "tools/maths/orthonormal.h"
 #include "tools/model/fit_record.h"
 #include "tools/model/prediction.h"
@@ -222,7 +221,7 @@ class Judge {
       told += check.gram.topLeftCorner(p, p);
       const MatrixXd inner =
           MatrixXd::Identity(spread.cols(), spread.cols()) + spread.transpose() * told * spread;
-      doubt_after_.push_back(spread * inner.llt().solve(spread.transpose()));
+      doubt_after_.push_back(spread * maths::solve_positive(inner, spread.transpose()));
     }
   }
 

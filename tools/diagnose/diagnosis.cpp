@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
@@ -16,6 +15,7 @@
 #include "tools/effects/spoken.h"
 #include "tools/fit/noise.h"
 #include "tools/fit/statistics.h"
+#include "tools/maths/decompositions.h"
 #include "tools/maths/factors.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/machine_writer.h"
@@ -251,7 +251,7 @@ class Diagnoser {
         columns.conservativeResize(Eigen::NoChange, steps + seen.cols() + named.cols());
         columns.rightCols(seen.cols() + named.cols()) << seen, named;
       }
-      left -= columns * columns.completeOrthogonalDecomposition().solve(left);
+      left -= columns * maths::least_norm(columns, left);
     }
     residual(fitted) = left.col(0).cwiseQuotient(weights(fitted));
     return residual;

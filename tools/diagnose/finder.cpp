@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,6 +10,7 @@
 #include "tools/diagnose/acceptance.h"
 #include "tools/fit/statistics.h"
 #include "tools/maths/chance.h"
+#include "tools/maths/decompositions.h"
 #include "tools/model/chain.h"
 
 namespace vernier::diagnose {
@@ -493,7 +493,7 @@ Eigen::VectorXd Finder::own_coefficients(std::size_t item) const {
     const std::optional<std::size_t> entry = entry_of(one);
     if (!entry) {  // banned
       const Eigen::MatrixXd c = pool_[item].columns;
-      return c.colPivHouseholderQr().solve(evidence_.residual());
+      return maths::least_squares(c, evidence_.residual());
     }
     if (one == item) first = at;
     at += pool_[one].columns.cols();

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/diagnose/selection.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "tools/maths/decompositions.h"
 
 namespace vernier::diagnose {
 namespace {
@@ -180,7 +181,7 @@ Eigen::VectorXd coefficients(const SelectionProblem& p, const std::vector<std::s
   Eigen::VectorXd moment;
   gather(p, chosen, gram, moment);
   if (moment.size() == 0) return moment;
-  return gram.ldlt().solve(moment);
+  return maths::solve_symmetric(gram, moment);
 }
 
 }  // namespace vernier::diagnose

@@ -3,9 +3,10 @@
 
 #include <ceres/ceres.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+
+#include "tools/maths/decompositions.h"
 
 namespace vernier::fit {
 namespace {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/fit/convention.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -13,6 +12,7 @@
 #include "tools/fit/problem.h"
 #include "tools/fit/solve.h"
 #include "tools/fit/unseen_turns.h"
+#include "tools/maths/decompositions.h"
 #include "tools/maths/factors.h"
 #include "tools/model/chain_rows.h"
 #include "tools/model/evaluate.h"
@@ -212,7 +212,7 @@ void correlate(const model::Machine& machine, const model::ParameterSet& paramet
         k(a, b) = k(b, a) =
             expected_correlation(table, parameters[members[static_cast<std::size_t>(a)]].station,
                                  parameters[members[static_cast<std::size_t>(b)]].station);
-    const Eigen::MatrixXd inverse = k.llt().solve(Eigen::MatrixXd::Identity(n, n));
+    const Eigen::MatrixXd inverse = maths::solve_positive(k, Eigen::MatrixXd::Identity(n, n));
     for (Eigen::Index a = 0; a < n; ++a)
       for (Eigen::Index b = 0; b < n; ++b) {
         const int row = static_cast<int>(members[static_cast<std::size_t>(a)]);

@@ -3,13 +3,13 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "tools/fit/statistics.h"
 #include "tools/maths/chance.h"
+#include "tools/maths/decompositions.h"
 #include "tools/maths/orthonormal.h"
 #include "tools/model/prediction.h"
 
@@ -121,8 +121,7 @@ class MoveSearch {
     all.bottomRows(p) = spread * MatrixXd::Identity(p, p);
     rest_.resize(n + p);
     rest_ << rest, spread * off;
-    const Eigen::HouseholderQR<MatrixXd> qr(all);
-    basis_ = qr.householderQ() * MatrixXd::Identity(n + p, p);
+    basis_ = maths::thin_q(all);
     rest_ -= basis_ * (basis_.transpose() * rest_);
   }
 

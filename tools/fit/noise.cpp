@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,6 +10,7 @@
 #include <limits>
 #include <map>
 
+#include "tools/maths/decompositions.h"
 #include "tools/maths/factors.h"
 
 namespace vernier::fit {

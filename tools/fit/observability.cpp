@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/fit/observability.h"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
+#include "tools/maths/decompositions.h"
 #include "tools/maths/pivoted_cholesky.h"
 
 namespace vernier::fit {
@@ -125,10 +124,7 @@ void find_weak(Parts& parts) {
     return std::cos(static_cast<double>((i + 1) * (k + 1)));
   });
   Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> ritz;
-  for (int i = 0; i < 12; ++i) {
-    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(parts.inverse * v);
-    v = qr.householderQ() * Eigen::MatrixXd::Identity(n, width);
-  }
+  for (int i = 0; i < 12; ++i) v = maths::thin_q(parts.inverse * v);
   ritz.compute(v.transpose() * parts.inverse * v);
   parts.weak_squares = ritz.eigenvalues().tail(wanted).reverse().cwiseInverse();
   parts.weak = v * ritz.eigenvectors().rightCols(wanted).rowwise().reverse();

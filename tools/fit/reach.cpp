@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/fit/reach.h"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <map>
 
+#include "tools/maths/decompositions.h"
 #include "tools/model/chain.h"
 #include "tools/model/fit_record.h"
 #include "tools/model/measurement.h"
@@ -112,9 +112,7 @@ Eigen::MatrixXd Reach::rigid_part(const model::States& like, Eigen::Index row,
   model::States over = measured_;
   for (std::size_t i = 0; i < machine_.inputs.size(); ++i)
     if (machine_.inputs[i].hidden_axis) over.input[i].setConstant(like.input[i][row]);
-  return rigid_motions(model::forward(machine_, over).position)
-      .completeOrthogonalDecomposition()
-      .solve(moved_at(over, change));
+  return maths::least_norm(rigid_motions(model::forward(machine_, over).position), moved_at(over, change));
 }
 
 Eigen::MatrixXd Reach::moved_at(const model::States& states, const Eigen::MatrixXd& change) const {

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/fit/settle.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "tools/fit/seen_errors.h"
 #include "tools/fit/statistics.h"
+#include "tools/maths/decompositions.h"
 
 namespace vernier::fit {
 namespace {
@@ -37,7 +36,7 @@ constexpr double kLeastNoise = 1e-3;
 MatrixXd solve_scaled(const MatrixXd& matrix, const MatrixXd& right) {
   const Eigen::LLT<MatrixXd> llt(matrix);
   if (llt.info() == Eigen::Success) return llt.solve(right);
-  return matrix.ldlt().solve(right);
+  return maths::solve_symmetric(matrix, right);
 }
 
 /// Symmetric inverse of a positive definite matrix of unequal scales.
@@ -262,10 +261,7 @@ class Settler {
       result_.noise = *noise_;
     } else {
       MatrixXd basis(residual.size(), 0);
-      if (n * p * p < kMostNoiseProducts) {
-        const Eigen::ColPivHouseholderQR<MatrixXd> qr(j);
-        basis = qr.householderQ() * MatrixXd::Identity(j.rows(), qr.rank());
-      }
+      if (n * p * p < kMostNoiseProducts) basis = maths::range_of(j);
       result_.noise = estimate_noise(layout, residual, basis, with_u_);
     }
     if (result_.noise.independent()) return result_.variance * data;

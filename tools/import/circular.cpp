@@ -7,6 +7,7 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "tools/maths/decompositions.h"
 #include "tools/maths/factors.h"
 
 namespace vernier::importer {
@@ -151,7 +152,7 @@ double true_radius_offset(double nominal_radius_mm, const CircularPass& pass, Fi
     Eigen::MatrixXd basis(count, 3);
     basis << Eigen::VectorXd::Ones(count), (a / radius).matrix(), (b / radius).matrix();
     const Eigen::Vector3d change =
-        basis.colPivHouseholderQr().solve((radius - nominal_radius_mm - circle.offset).matrix());
+        maths::least_squares(basis, (radius - nominal_radius_mm - circle.offset).matrix());
     circle.offset += change[0], circle.a += change[1], circle.b += change[2];
   }
   return circle.offset;

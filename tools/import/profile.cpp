@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "tools/maths/decompositions.h"
+
 namespace vernier::importer {
 namespace {
 
@@ -33,7 +35,7 @@ void take_off_circle(Eigen::VectorXd& values) {
         2 * std::numbers::pi * (static_cast<double>(k) + 0.5) / static_cast<double>(kProfilePoints);
     basis.row(k) << 1, std::cos(angle), std::sin(angle);
   }
-  values -= basis * (basis.transpose() * basis).ldlt().solve(basis.transpose() * values);
+  values -= basis * maths::solve_symmetric(basis.transpose() * basis, basis.transpose() * values);
 }
 
 Eigen::VectorXd smoothed(const Eigen::VectorXd& values, Index half) {

@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "tools/import/ballbar_motion.h"
+#include "tools/maths/decompositions.h"
 
 namespace vernier::importer {
 namespace {
@@ -49,7 +50,7 @@ class Model {
  public:
   Model(const ErrorSamples& samples, std::size_t stations) : table_(static_cast<Index>(stations)) {
     const Eigen::MatrixXd basis = circle(samples);
-    circle_ = (basis.transpose() * basis).ldlt().solve(basis.transpose() * samples.reading_um);
+    circle_ = maths::solve_symmetric(basis.transpose() * basis, basis.transpose() * samples.reading_um);
     if (stations > 0) fit_table(samples, samples.reading_um - basis * circle_);
   }
 

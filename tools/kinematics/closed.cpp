@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/kinematics/closed.h"
 
-#include <Eigen/QR>
-#include <Eigen/SVD>
 #include <algorithm>
+
+#include "tools/maths/decompositions.h"
 
 namespace vernier::kinematics {
 namespace {
@@ -86,7 +86,7 @@ std::optional<ClosedSolution> closed_solution(const model::Machine& machine, con
 Eigen::MatrixXd solve_closed(const ClosedSolution& solution, const Eigen::Matrix3Xd& points) {
   const Eigen::MatrixXd jacobian = solution.jacobian;
   const Eigen::MatrixXd offset = points.colwise() - solution.origin;
-  return jacobian.colPivHouseholderQr().solve(offset);
+  return maths::least_squares(jacobian, offset);
 }
 
 }  // namespace vernier::kinematics

@@ -2,11 +2,11 @@
 #include "tools/kinematics/correction.h"
 
 #include <Eigen/Geometry>
-#include <Eigen/QR>
 #include <cmath>
 #include <numbers>
 
 #include "tools/kinematics/jacobian.h"
+#include "tools/maths/decompositions.h"
 
 namespace vernier::kinematics {
 model::Column tilt_between(const model::Poses& actual, const model::Poses& nominal) {
@@ -57,8 +57,7 @@ std::vector<model::Column> first_order_offset(const model::Machine& machine, con
   const auto jacobian = axis_jacobian(nominal, states, axes, Match::kPosition, InverseOptions{}.lever_mm);
   for (std::size_t i = 0; i < states.count; ++i) {
     const auto column = static_cast<Eigen::Index>(i);
-    const Eigen::VectorXd offset =
-        jacobian[i].completeOrthogonalDecomposition().solve(-deviation.col(column));
+    const Eigen::VectorXd offset = maths::least_norm(jacobian[i], -deviation.col(column));
     for (std::size_t k = 0; k < axes.size(); ++k)
       result[axes[k]][column] = offset[static_cast<Eigen::Index>(k)];
   }

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/kinematics/inverse.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "tools/kinematics/jacobian.h"
+#include "tools/maths/decompositions.h"
 #include "tools/maths/factors.h"
 #include "tools/maths/halton.h"
 #include "tools/model/evaluate.h"
@@ -92,7 +92,7 @@ class InverseSolver {
     const MatrixXd scaled = jacobian * axis_scales(machine_, axes_, options_.lever_mm).asDiagonal();
     MatrixXd normal = scaled.transpose() * scaled;
     normal.diagonal().array() += walker.damping;  // columns are scaled to about 1 mm per mm
-    const VectorXd scaled_step = normal.ldlt().solve(scaled.transpose() * walker.residual);
+    const VectorXd scaled_step = maths::solve_symmetric(normal, scaled.transpose() * walker.residual);
     return axis_scales(machine_, axes_, options_.lever_mm).cwiseProduct(scaled_step);
   }
 

@@ -2,11 +2,11 @@
 #include "tools/kinematics/jacobian.h"
 
 #include <Eigen/Geometry>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "tools/maths/decompositions.h"
 #include "tools/maths/factors.h"
 
 namespace vernier::kinematics {

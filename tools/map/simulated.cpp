@@ -2,7 +2,6 @@
 #include "tools/map/simulated.h"
 
 #include <Eigen/Geometry>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,6 +10,7 @@
 #include <optional>
 
 #include "tools/import/circular.h"
+#include "tools/maths/decompositions.h"
 #include "tools/maths/factors.h"
 #include "tools/text/csv.h"
 #include "tools/text/files.h"
@@ -35,7 +35,7 @@ Eigen::Vector2d line_fit(const Eigen::VectorXd& t, const Eigen::VectorXd& v) {
   Eigen::MatrixXd a(t.size(), 2);
   a.col(0) = t;
   a.col(1).setOnes();
-  return a.colPivHouseholderQr().solve(v);
+  return maths::least_squares(a, v);
 }
 
 /// Worst range across a line about its least-squares line, mm. `off`: actual - nominal.
@@ -268,7 +268,7 @@ Json cylinder_json(const Bench& bench) {
   Eigen::MatrixXd a(static_cast<Index>(rows.size()), 5);
   for (std::size_t i = 0; i < rows.size(); ++i) a.row(static_cast<Index>(i)) = rows[i].transpose();
   const Eigen::VectorXd r = Eigen::Map<const Eigen::VectorXd>(radii.data(), static_cast<Index>(radii.size()));
-  const Eigen::VectorXd fit = a.colPivHouseholderQr().solve(r);
+  const Eigen::VectorXd fit = maths::least_squares(a, r);
   return {{"radius_mm", *radius},
           {"height_mm", 2 * half},
           {"cylindricity_um", maths::kUmPerMm * range(r - a * fit)},

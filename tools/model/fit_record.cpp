@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/model/fit_record.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <pugixml.hpp>
 
+#include "tools/maths/decompositions.h"
 #include "tools/text/numbers.h"
 #include "tools/text/words.h"
 #include "tools/text/xml_text.h"

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tools/maths/decompositions.h"
 #include "tools/model/chain.h"
 
 namespace vernier::model {
@@ -24,7 +25,7 @@ Eigen::MatrixXd natural_curvature(const std::vector<double>& x) {
     right(i, i) = -1 / h0 - 1 / h1;
     right(i, i + 1) = 1 / h1;
   }
-  return left.partialPivLu().solve(right);
+  return maths::solve_square(left, right);
 }
 
 /// The same for a periodic spline; the last station repeats the first.
@@ -46,7 +47,7 @@ Eigen::MatrixXd periodic_curvature(const std::vector<double>& x) {
     right(i, i) += -1 / h0 - 1 / h1;
     right(i, after) += 1 / h1;
   }
-  const Eigen::MatrixXd inner = left.partialPivLu().solve(right);
+  const Eigen::MatrixXd inner = maths::solve_square(left, right);
   Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(n, n);
   whole.topLeftCorner(m, m) = inner;
   whole.row(m).head(m) = inner.row(0);

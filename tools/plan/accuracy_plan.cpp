@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/plan/accuracy_plan.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
 #include "tools/fit/reach.h"
 #include "tools/fit/statistics.h"
+#include "tools/maths/decompositions.h"
 #include "tools/maths/factors.h"
 #include "tools/maths/halton.h"
 #include "tools/model/chain.h"
@@ -167,7 +167,7 @@ class AccuracyPlanner {
       const MatrixXd gain = covariance * block.transpose();
       MatrixXd inner = block * gain;
       inner.diagonal().array() += variance() * better * better;
-      covariance -= gain * inner.llt().solve(gain.transpose());
+      covariance -= gain * maths::solve_positive(inner, gain.transpose());
       covariance = (0.5 * (covariance + covariance.transpose())).eval();
     }
     return covariance;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/plan/check_plan.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
 #include "tools/fit/reach.h"
+#include "tools/maths/decompositions.h"
 #include "tools/maths/factors.h"
 #include "tools/model/measurement.h"
 #include "tools/plan/offered_poses.h"
@@ -89,13 +89,13 @@ class CheckPlanner {
       constexpr double kFree = 1e-9;
       MatrixXd set_up = told.set_up;
       set_up.diagonal().array() += kFree * (1 + set_up.diagonal().maxCoeff());
-      gram -= told.with_set_up.transpose() * set_up.ldlt().solve(told.with_set_up);
+      gram -= told.with_set_up.transpose() * maths::solve_symmetric(set_up, told.with_set_up);
     }
     const auto p = static_cast<Index>(all_.parameters);
     const MatrixXd left = spread_.transpose() * gram.topRows(p);  // factors x suspects
     const MatrixXd inner = MatrixXd::Identity(spread_.cols(), spread_.cols()) + left.leftCols(p) * spread_;
     VectorXd amounts = gram.diagonal();
-    amounts -= left.cwiseProduct(inner.llt().solve(left)).colwise().sum().transpose();
+    amounts -= left.cwiseProduct(maths::solve_positive(inner, left)).colwise().sum().transpose();
     return amounts;
   }
 

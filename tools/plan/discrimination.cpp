@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/plan/discrimination.h"
 
-#include <Eigen/Cholesky>
 #include <cmath>
 #include <numbers>
+
+#include "tools/maths/decompositions.h"
 
 namespace vernier::plan {
 namespace {
@@ -62,7 +63,7 @@ Eigen::VectorXd Discrimination::gains() const {
     Eigen::MatrixXd covariance = spread.middleRows(at, size) * offered.middleRows(at, size).transpose();
     covariance.diagonal().array() += 1;
     const Eigen::VectorXd r = rest.segment(at, size);
-    gains[static_cast<Eigen::Index>(offer)] = std::max(0.0, r.dot(covariance.llt().solve(r)));
+    gains[static_cast<Eigen::Index>(offer)] = std::max(0.0, r.dot(maths::solve_positive(covariance, r)));
   }
   return gains;
 }

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/plan/first_plan.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
 #include "tools/fit/reach.h"
+#include "tools/maths/decompositions.h"
 #include "tools/maths/factors.h"
 #include "tools/maths/orthonormal.h"
 #include "tools/model/measurement.h"
@@ -54,7 +54,8 @@ class FirstPlanner {
         MatrixXd(model::linearise(machine_, rows, parameters).jacobian) * scale_.asDiagonal();
     const MatrixXd information =
         MatrixXd::Identity(columns.cols(), columns.cols()) + columns.transpose() * columns / variance();
-    return expanded_um(information.llt().solve(MatrixXd::Identity(columns.cols(), columns.cols())));
+    return expanded_um(
+        maths::solve_positive(information, MatrixXd::Identity(columns.cols(), columns.cols())));
   }
 
   FirstPlan plan() {
@@ -109,7 +110,7 @@ class FirstPlanner {
   MatrixXd after_all() const {
     const MatrixXd information = MatrixXd::Identity(jacobian_.cols(), jacobian_.cols()) +
                                  jacobian_.transpose() * jacobian_ / variance();
-    return information.llt().solve(MatrixXd::Identity(jacobian_.cols(), jacobian_.cols()));
+    return maths::solve_positive(information, MatrixXd::Identity(jacobian_.cols(), jacobian_.cols()));
   }
 
   MatrixXd after_random(std::size_t count) const {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/plan/rival.h"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
 #include "tools/diagnose/pool.h"
 #include "tools/fit/fit.h"
+#include "tools/maths/decompositions.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/machine_writer.h"
 #include "tools/text/error.h"

@@ -3,12 +3,11 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 
 #include "tools/maths/chance.h"
+#include "tools/maths/decompositions.h"
 #include "tools/text/error.h"
 
 namespace vernier::probe {
@@ -181,7 +180,7 @@ VectorXd algebraic_centre(const MatrixXd& points) {
   MatrixXd a(points.rows(), points.cols() + 1);
   a.leftCols(points.cols()) = 2 * points;
   a.col(points.cols()).setOnes();
-  VectorXd s = (a.transpose() * a).ldlt().solve(a.transpose() * points.rowwise().squaredNorm());
+  VectorXd s = maths::solve_symmetric(a.transpose() * a, a.transpose() * points.rowwise().squaredNorm());
   const double square = s(points.cols()) + s.head(points.cols()).squaredNorm();
   s(points.cols()) = std::sqrt(std::max(1e-12, square));
   return s;

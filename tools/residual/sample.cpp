@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/residual/sample.h"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
 
 #include "tools/maths/chance.h"
+#include "tools/maths/decompositions.h"
 
 namespace vernier::residual {
 namespace {
@@ -27,9 +27,7 @@ Eigen::MatrixXd fitted_directions(const std::vector<double>& scale, const Struct
   for (Eigen::Index i = 0; i < j.rows(); ++i) j.row(i) *= scale[static_cast<std::size_t>(i)];
   for (Eigen::Index k = 0; k < j.cols(); ++k)
     if (const double norm = j.col(k).norm(); norm > 0) j.col(k) /= norm;
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(j);
-  qr.setThreshold(kRankCutoff);
-  return qr.householderQ() * Eigen::MatrixXd::Identity(j.rows(), qr.rank());
+  return maths::range_of(j, kRankCutoff);
 }
 
 std::vector<std::size_t> thinned(const std::vector<std::size_t>& all) {

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,6 +11,7 @@
 #include "tools/fit/reach.h"
 #include "tools/kinematics/correction.h"
 #include "tools/kinematics/jacobian.h"
+#include "tools/maths/decompositions.h"
 #include "tools/maths/factors.h"
 #include "tools/model/chain.h"
 #include "tools/model/fit_record.h"
@@ -110,8 +110,7 @@ class Judge {
         model::nominal_machine(machine_), poses_.states, all, kinematics::Match::kPosition, poses_.extent_mm);
     for (Eigen::Index i = 0; i < count; ++i) {
       const Eigen::VectorXd move =
-          jacobians[static_cast<std::size_t>(i)].completeOrthogonalDecomposition().solve(
-              Eigen::VectorXd(deviation_.col(i)));
+          maths::least_norm(jacobians[static_cast<std::size_t>(i)], deviation_.col(i));
       for (std::size_t a = 0; a < all.size(); ++a) result[a][i] = -move[static_cast<Eigen::Index>(a)];
     }
     return result;

@@ -3,12 +3,12 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
 #include "tools/fit/reach.h"
 #include "tools/kinematics/inverse.h"
+#include "tools/maths/decompositions.h"
 #include "tools/model/chain.h"
 #include "tools/model/fit_record.h"
 #include "tools/model/prediction.h"
@@ -112,8 +112,7 @@ class ConformityRunner {
         without != nullptr ? without_source(reach_.machine(), *without) : reach_.machine();
     const Eigen::Matrix3Xd at = model::forward(model::nominal_machine(machine), poses.states).position;
     const Eigen::Matrix3Xd off = model::forward(machine, poses.states).position - at;
-    const VectorXd motion =
-        fit::rigid_motions(at).completeOrthogonalDecomposition().solve(VectorXd(off.reshaped()));
+    const VectorXd motion = maths::least_norm(fit::rigid_motions(at), off.reshaped());
     const VectorXd moved = fit::rigid_motions(part_.point) * motion;
     deviations -= moved.reshaped(3, deviations.cols());
   }

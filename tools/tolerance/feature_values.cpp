@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/tolerance/feature_values.h"
 
-#include <Eigen/QR>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <functional>
 
 #include "tools/fit/reach.h"
+#include "tools/maths/decompositions.h"
 #include "tools/text/error.h"
 
 namespace vernier::tolerance {
@@ -135,7 +134,7 @@ class ValueMaker {
       return;
     }
     const MatrixXd own = own_columns(one, part_);
-    const MatrixXd fit = own.completeOrthogonalDecomposition().solve(along);
+    const MatrixXd fit = maths::least_norm(own, along);
     const MatrixXd rest = along - own * fit;
     if (feature.kind == PartFeatureKind::kPlane) {
       add(f, PartCharacteristic::kPosition, along, 1, zone(feature.position_mm));

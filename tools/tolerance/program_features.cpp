@@ -4,12 +4,12 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 
 #include "tools/kinematics/inverse.h"
+#include "tools/maths/decompositions.h"
 #include "tools/model/chain.h"
 #include "tools/offline/part_program.h"
 #include "tools/text/error.h"
@@ -116,7 +116,7 @@ void make_circle(const Eigen::Matrix3Xd& points, PartFeature& feature, Eigen::Ma
   design.topRows(from.cols()) << 2 * from.transpose(), Eigen::VectorXd::Ones(from.cols());
   design.bottomRows(1) << feature.direction.transpose(), 0;  // in the plane of the points
   squares << from.colwise().squaredNorm().transpose(), 0;
-  const Eigen::Vector4d found = design.colPivHouseholderQr().solve(squares);
+  const Eigen::Vector4d found = maths::least_squares(design, squares);
   feature.at = middle + found.head<3>();
   from = points.colwise() - feature.at;
   feature.diameter_mm = 2 * from.colwise().norm().mean();

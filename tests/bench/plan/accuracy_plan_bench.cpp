@@ -5,7 +5,6 @@
 // region is a drawn third of every travel. Arguments: machines, seed.
 #include <fmt/format.h>
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -16,6 +15,7 @@
 #include "tests/bench/plan/drawn_machine.h"
 #include "tools/fit/fit.h"
 #include "tools/fit/reach.h"
+#include "tools/maths/decompositions.h"
 #include "tools/model/chain.h"
 #include "tools/model/prediction.h"
 #include "tools/plan/accuracy_aim.h"
@@ -49,7 +49,7 @@ double error_square(const Machine& fitted, const Machine& truth, const Machine& 
   const Eigen::Matrix3Xd off = forward(fitted, fresh).position - forward(truth, fresh).position;
   const Eigen::MatrixXd motions = rigid_motions(forward(region, fresh).position);
   Eigen::VectorXd rest = off.reshaped();
-  rest -= motions * motions.colPivHouseholderQr().solve(rest);
+  rest -= motions * maths::least_squares(motions, rest);
   return 1e6 * rest.squaredNorm() / static_cast<double>(off.cols());
 }
 

@@ -5,7 +5,6 @@
 // machines, seed.
 #include <fmt/format.h>
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -17,6 +16,7 @@
 #include "tests/bench/plan/drawn_machine.h"
 #include "tools/fit/fit.h"
 #include "tools/fit/reach.h"
+#include "tools/maths/decompositions.h"
 #include "tools/model/chain.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/prediction.h"
@@ -64,7 +64,7 @@ double realised(const Machine& machine, const FirstPlan& plan, const FirstPlanOp
   const Eigen::Matrix3Xd at = forward(machine, fresh).position;
   const Eigen::MatrixXd motions = rigid_motions(at);
   Eigen::VectorXd rest = Eigen::Map<const Eigen::VectorXd>(off.data(), off.size());
-  rest -= motions * motions.colPivHouseholderQr().solve(rest);
+  rest -= motions * maths::least_squares(motions, rest);
   return 1e6 * rest.squaredNorm() / static_cast<double>(off.cols());
 }
 

@@ -18,6 +18,7 @@
 #include "tests/support/hidden_survey_family.h"
 #include "tools/fit/fit.h"
 #include "tools/fit/reach.h"
+#include "tools/maths/alignment.h"
 #include "tools/model/chain.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/prediction.h"
@@ -67,14 +68,9 @@ struct Outcome {
   bool converged = false;
 };
 
-/// `from`, moved rigidly as near to `to` as it can be.
-Eigen::Matrix3Xd aligned(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to) {
-  const Eigen::Matrix4d motion = Eigen::umeyama(from, to, false);
-  return (motion.topLeftCorner<3, 3>() * from).colwise() + motion.topRightCorner<3, 1>();
-}
-
 double rms_aligned(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to) {
-  return 1000 * std::sqrt((aligned(from, to) - to).squaredNorm() / static_cast<double>(from.cols()));
+  return 1000 * std::sqrt(maths::aligned_error(maths::align(from, to), from, to).squaredNorm() /
+                          static_cast<double>(from.cols()));
 }
 
 double largest_angle(const Machine& machine) {
@@ -204,11 +200,12 @@ Outcome judge(const support::HiddenSurvey& survey, const Options& o, std::mt1993
   out.true_angle = largest_angle(truth);
 
   const auto covariance = Reach(result.machine).covariance(fresh);
-  const Eigen::Matrix3Xd said = aligned(forward(result.machine, fresh).position, real);
-  for (Eigen::Index i = 0; i < said.cols(); ++i)
+  const Eigen::Matrix3Xd said = forward(result.machine, fresh).position;
+  const Eigen::Matrix3Xd off = maths::aligned_error(maths::align(said, real), said, real);
+  for (Eigen::Index i = 0; i < off.cols(); ++i)
     for (Eigen::Index c = 0; c < 3; ++c) {
       const double std = std::sqrt(covariance[static_cast<std::size_t>(i)](c, c));
-      out.covered += std::abs(said(c, i) - real(c, i)) <= 1.959964 * std ? 1 : 0;
+      out.covered += std::abs(off(c, i)) <= 1.959964 * std ? 1 : 0;
       ++out.asked;
     }
   return out;

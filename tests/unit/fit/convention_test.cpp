@@ -12,6 +12,7 @@
 #include "tests/support/machines.h"
 #include "tools/fit/fit.h"
 #include "tools/fit/reach.h"
+#include "tools/maths/alignment.h"
 #include "tools/model/chain.h"
 #include "tools/model/fit_record.h"
 #include "tools/model/machine_reader.h"
@@ -228,9 +229,7 @@ double covered_share(std::uint64_t first, std::uint64_t count, bool bad_ram, boo
     const States poses = select_states(bridge.rows.states, some);
     const auto covariance = reach.covariance(poses);
     const Eigen::Matrix3Xd from = forward(said, poses).position, to = forward(is, poses).position;
-    const Eigen::Matrix4d motion = Eigen::umeyama(from, to, false);
-    const Eigen::Matrix3Xd off =
-        ((motion.topLeftCorner<3, 3>() * from).colwise() + motion.topRightCorner<3, 1>()) - to;
+    const Eigen::Matrix3Xd off = maths::aligned_error(maths::align(from, to), from, to);
     for (Eigen::Index i = 0; i < off.cols(); ++i)
       for (Eigen::Index c = 0; c < 3; ++c) {
         covered +=

@@ -3,8 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
 #include <set>
+
+#include "tools/maths/decompositions.h"
 
 namespace vernier::observability_test {
 

@@ -4,11 +4,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <Eigen/QR>
 #include <random>
 
 #include "tests/unit/plan/bridge.h"
 #include "tools/fit/reach.h"
+#include "tools/maths/decompositions.h"
 #include "tools/model/chain.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/prediction.h"
@@ -79,7 +79,7 @@ double error_square(const Machine& fitted, const Machine& truth) {
   const Eigen::Matrix3Xd off = forward(fitted, fresh).position - forward(truth, fresh).position;
   const Eigen::MatrixXd motions = rigid_motions(forward(fitted, fresh).position);
   Eigen::VectorXd rest = off.reshaped();
-  rest -= motions * motions.colPivHouseholderQr().solve(rest);
+  rest -= motions * maths::least_squares(motions, rest);
   return 4e6 * rest.squaredNorm() / static_cast<double>(off.cols());
 }
 

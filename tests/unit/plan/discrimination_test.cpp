@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
 
-#include <Eigen/QR>
 #include <cmath>
 #include <iostream>
 #include <random>
 
+#include "tools/maths/decompositions.h"
 #include "tools/plan/choice.h"
 #include "tools/plan/discrimination.h"
 
@@ -45,7 +45,7 @@ double left_over(const Problem& p, std::size_t existing, const std::vector<std::
       which.push_back(i);
   const Eigen::MatrixXd j = p.jacobian(which, Eigen::all);
   const Eigen::VectorXd d = p.difference(which);
-  return (d - j * j.colPivHouseholderQr().solve(d)).squaredNorm();
+  return (d - j * maths::least_squares(j, d)).squaredNorm();
 }
 
 TEST(Discrimination, NonCentralityIsWhatARefitOfTheRivalLeaves) {

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Times as the system's calls take them, and the patience with calls that a signal cuts short.
+#include <cstdint>
+#include <ctime>
+
+namespace vernier {
+
+inline constexpr std::int64_t kNsPerS = 1'000'000'000;
+/// A signal may interrupt a call; so many in one call are no accident.
+inline constexpr int kMostInterruptions = 1000;
+
+inline std::int64_t ns_of(const timespec& time) noexcept {
+  return std::int64_t{time.tv_sec} * kNsPerS + time.tv_nsec;
+}
+/// ns: at least 0.
+inline timespec timespec_of(std::int64_t ns) noexcept {
+  return {static_cast<time_t>(ns / kNsPerS), static_cast<long>(ns % kNsPerS)};
+}
+
+}  // namespace vernier
