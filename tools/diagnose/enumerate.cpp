@@ -7,6 +7,7 @@
 #include <numeric>
 #include <set>
 
+#include "tools/diagnose/pulls.h"
 #include "tools/effects/probe.h"
 #include "tools/model/chain.h"
 #include "tools/model/chain_rows.h"
@@ -70,7 +71,8 @@ class Enumerator {
         thresholds_(evidence.thresholds().candidates),
         machine_(evidence.machine()),
         axes_(machine_),
-        effects_(effects) {
+        effects_(effects),
+        pulls_(evidence) {
     for (std::size_t axis = 0; axis < machine_.axes.size(); ++axis) {
       own_.push_back(axes_.own(axis));
       range_.push_back(evidence.range_of(axis));
@@ -347,6 +349,10 @@ class Enumerator {
         if (!rotary || std::find(sag_.begin(), sag_.end(), *own) == sag_.end()) return;
         at_each({*own}, [](const effects::DofPlace&) { return true; });
         break;
+      case effects::PlaceRule::kLink:
+      case effects::PlaceRule::kBend:
+        at_each(distinct_, [&](const effects::DofPlace& p) { return pulls_.admits(form, p); });
+        break;
       case effects::PlaceRule::kNormal:
         if (has_normals_ && !effects::base_places(machine_).empty()) with_sum(choice);
         break;
@@ -360,6 +366,10 @@ class Enumerator {
   static bool needs_linear(const effects::EffectForm& form) { return form.asks_for("T"); }
 
   void with_sum(const effects::Choice& choice) {
+    if (Pulls::asks(*choice.form)) {
+      for (const effects::Choice& one : pulls_.variants(choice)) finish(one);
+      return;
+    }
     if (!choice.form->asks_for("sum")) return with_runs(choice);
     for (const std::string& sum : sums_[*choice.axis]) {
       // The two-link forms say the same as one link where the sum is the joint itself.
@@ -527,6 +537,7 @@ class Enumerator {
   const model::Machine& machine_;
   effects::AxisPlaces axes_;
   const std::vector<effects::Effect>& effects_;
+  Pulls pulls_;
   std::vector<std::optional<effects::DofPlace>> own_;
   std::vector<Evidence::Range> range_;
   std::vector<double> shortest_;             // period that the positions of an axis tell from longer ones

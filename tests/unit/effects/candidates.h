@@ -61,6 +61,12 @@ inline std::vector<DofPlace> places_for(const Machine& machine, const EffectForm
       case PlaceRule::kBaseTurn:
         admitted = angle;
         break;
+      case PlaceRule::kLink:
+        admitted = form.asks_for("along") != angle;
+        break;
+      case PlaceRule::kBend:
+        admitted = transform_at(machine, place).kind == TransformKind::kSixDof && place.dof == 4;
+        break;
       default:
         admitted = true;
     }
@@ -95,7 +101,8 @@ inline std::vector<Choice> choices_of(const Machine& machine, const Effect& effe
     return {base};
   }
   const bool driven = asks("{q}") || asks("{hats") || asks("{sum}") || form.place == PlaceRule::kOwn ||
-                      form.place == PlaceRule::kCross || form.place == PlaceRule::kTurn;
+                      form.place == PlaceRule::kJoint || form.place == PlaceRule::kCross ||
+                      form.place == PlaceRule::kTurn;
   std::vector<Choice> list;
   for (std::size_t axis = 0; axis < (driven ? machine.axes.size() : 1); ++axis) {
     Choice one = base;
