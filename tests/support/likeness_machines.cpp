@@ -154,7 +154,7 @@ const std::vector<LikenessMachine>& likeness_machines() {
        bed,
        0.003,
        6000,
-       {"straightness", "thermal-offset", "thermal-bend", "base-drift", "warmup-drift"}},
+       {"straightness", "thermal-offset", "thermal-bend", "base-drift", "lateral-play"}},
       {"turntable", turntable, 0.002, 6000, {"cyclic-error", "backlash", "base-drift"}},
       {"gear-train", turntable, 0.01, 6000, {"cyclic-error", "backlash"}},
       {"torso-arm",

@@ -91,6 +91,8 @@ struct CandidateThresholds {
   /// 1 - cosine below which two places do the same to all readings: sqrt of rounding, with three digits to
   /// spare.
   double same_place = 1e-7;
+  /// How much more strongly another place must do the same for a place to be none: a tilt of 6 degrees.
+  double outshone = 10;
   /// Share of a fit's range by which a scanned unknown may leave the range in which it was looked for.
   double driven_out = 2;
 
@@ -98,6 +100,7 @@ struct CandidateThresholds {
   void for_each(const Visit& visit) {
     visit("candidates.sag_share", sag_share);
     visit("candidates.parallel_cosine", parallel_cosine);
+    visit("candidates.outshone", outshone);
     visit("candidates.most_terms_of_gravity", most_terms_of_gravity);
     visit("candidates.same_moment", same_moment);
     visit("candidates.declared_range_share", declared_range_share);
