@@ -60,9 +60,9 @@ std::vector<effects::Choice> Pulls::variants(const effects::Choice& choice) cons
   std::vector<effects::Choice> list;
   const std::size_t own = effects::local_axis(machine_, place);
   const bool joint = form.place == PlaceRule::kJoint;
-  // About a joint, sums of parallel ones have their own forms.
+  // About a joint, the sine and the cosine of a sum of parallel ones have their own forms.
   const auto is_several = [&](const std::optional<effects::Wave>& wave) {
-    return is_told(wave, true) && (!joint || wave->phases().size() > 1);
+    return joint ? is_told(wave, false) && wave->terms() > 1 : is_told(wave, true);
   };
   if (form.place == PlaceRule::kBend) {
     for (std::size_t toward = 0; toward < 3; ++toward) {
