@@ -120,13 +120,12 @@ INSTANTIATE_TEST_SUITE_P(All, HiddenEffectOf, testing::ValuesIn([] {
                          }()),
                          name_of);
 
-// What gravity does to machines whose joints are not parallel, and what their readings see only across;
-// several causes of one axis. A likeness of real machines, drawn for the seed.
+// What gravity does to machines whose joints are not parallel; three causes of one axis. Machines in the
+// likeness of real ones, drawn for the seed.
 INSTANTIATE_TEST_SUITE_P(Likeness, HiddenEffectOf,
                          testing::Values(Single{Family::kSixJoint, "joint-compliance"},
                                          Single{Family::kTorsoArm, "joint-compliance"},
                                          Single{Family::kEquatorial, "gravity-sag"},
-                                         Single{Family::kBed, "thermal-offset"},
                                          Single{Family::kGearTrain, "cyclic-error"}),
                          name_of);
 
