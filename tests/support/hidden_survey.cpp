@@ -86,6 +86,12 @@ bool Attempt::choose_effect(const std::string& effect) {
   const Share share = [this] { return draw_.uniform(); };
   std::vector<Form> forms = forms_of(effect, g_, columns_, model_options_.runs, share, draw_);
   std::erase_if(forms, [&](const Form& f) { return !suits(effect, f, columns_); });
+  // Along z alone a move across is seen through the set-up's tilt: absurdly large where it shows.
+  if (options_.reading == Reading::kZ)
+    std::erase_if(forms, [](const Form& f) {
+      const std::string& dof = f.places.front().dof;
+      return dof != "Z" && dof != "rX" && dof != "rY";
+    });
   if (forms.empty()) return false;
   forms_.push_back(draw_.pick(forms));
   return true;

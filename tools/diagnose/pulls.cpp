@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tools/maths/orthonormal.h"
 #include "tools/model/chain.h"
 
 namespace vernier::diagnose {
@@ -121,7 +122,7 @@ void Pulls::with_masses(const effects::Choice& choice, std::vector<effects::Choi
   const bool beside_own = choice.form->asks_for("across1");
   const double alike = evidence_.thresholds().candidates.same_moment;
   std::vector<Eigen::VectorXd> own, seen;
-  for (const std::size_t turn : {1, 2}) {
+  for (const std::size_t turn : {std::size_t{1}, std::size_t{2}}) {
     const auto bar = gravity_.across(joint, (effects::local_axis(machine_, joint) + turn) % 3);
     if (is_told(bar, false)) own.push_back(column(*bar));
   }
