@@ -17,8 +17,17 @@ enum class Family : std::uint8_t {
   kRobot,          // six joints
   kBallBar,        // circles in XY, the length read
   kSingleAxis,     // ISO 230-2 cycles, one reading per row
+  // Machines drawn anew for each seed (likeness_machines.h): none of the reference ones.
+  kSixJoint,
+  kAltAz,
+  kEquatorial,
+  kBed,
+  kTurntable,
+  kGearTrain,
+  kTorsoArm,
 };
-inline constexpr std::size_t kFamilyCount = 9;
+inline constexpr std::size_t kFamilyCount = 9;    // of the reference machines
+inline constexpr std::size_t kLikenessCount = 7;  // behind them
 const char* family_name(Family family);
 /// Throws std::invalid_argument.
 Family family_named(const std::string& name);

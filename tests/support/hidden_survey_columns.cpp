@@ -53,7 +53,7 @@ Complement::Complement(const Machine& at, const Measurement& m) {
   weights_.resize(static_cast<Eigen::Index>(fit_.size()));
   for (std::size_t i = 0; i < fit_.size(); ++i) {
     const Observation& o = m.observations[static_cast<std::size_t>(fit_[i])];
-    weights_[static_cast<Eigen::Index>(i)] = 1 / m.uncertainty[static_cast<Eigen::Index>(o.row)];
+    weights_[static_cast<Eigen::Index>(i)] = 1 / uncertainty_of(m, o);
   }
   const ParameterSet parameters(at, m.states.run_names);
   parameters_ = parameters.size();

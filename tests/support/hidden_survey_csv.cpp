@@ -3,7 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
+
 #include <cmath>
+#include <numbers>
 
 #include "tests/support/hidden_survey_inputs.h"
 #include "tools/model/chain.h"
@@ -46,11 +49,23 @@ std::string header(const SurveyTable& t) {
     case Reading::kX:
       text += "x[mm]";
       break;
+    case Reading::kZ:
+      text += "z[mm]";
+      break;
+    case Reading::kDirection:
+      text += "ax,ay,az";
+      break;
+    case Reading::kTurn:
+      text += "rz[deg]";
+      break;
   }
-  return text + ",u[mm],run,role\n";
+  text += t.options.reading == Reading::kDirection ? ",ua[arcsec]"
+          : is_angular(t.options.reading)          ? ",u[arcsec]"
+                                                   : ",u[mm]";
+  return text + ",run,role\n";
 }
 
-Eigen::Matrix3Xd nominal_points(const SurveyTable& t) {
+Poses nominal_poses(const SurveyTable& t) {
   const Machine machine = nominal_machine(parse_machine(t.geometry.text, "family.xml"));
   std::vector<double> references;
   for (const Input& input : machine.inputs) references.push_back(input.hidden_axis ? 10 : input.reference);
@@ -58,11 +73,22 @@ Eigen::Matrix3Xd nominal_points(const SurveyTable& t) {
   for (std::size_t r = 0; r < t.rows.size(); ++r)
     for (std::size_t i = 0; i < machine.axes.size(); ++i)
       states.axis[i][static_cast<Eigen::Index>(r)] = t.rows[r].q[i];
-  return forward(machine, states).position;
+  return forward(machine, states);
+}
+
+/// The direction that is off the nominal one by two angles, deg, across it.
+std::string direction_text(const Eigen::Vector3d& along, double first, double second) {
+  const Eigen::Vector3d across = along.unitOrthogonal();
+  const Eigen::Vector3d turn =
+      (first * across + second * along.cross(across)) * std::numbers::pi / 180;  // the way it is off, rad
+  const double angle = turn.norm();
+  const Eigen::Vector3d off =
+      angle > 0 ? Eigen::Vector3d(std::cos(angle) * along + std::sin(angle) / angle * turn) : along;
+  return fmt::format("{},{},{}", number(off.x(), 11), number(off.y(), 11), number(off.z(), 11));
 }
 
 std::string reading_text(const SurveyTable& t, std::size_t row, const Eigen::VectorXd& readings,
-                         const Eigen::Matrix3Xd& nominal) {
+                         const Poses& nominal) {
   const auto at = [&](std::size_t i) {
     return readings.size() == 0 ? std::string("0") : number(readings[static_cast<Eigen::Index>(i)], 7);
   };
@@ -73,11 +99,19 @@ std::string reading_text(const SurveyTable& t, std::size_t row, const Eigen::Vec
     case Reading::kLength:
       return fmt::format("{},{},{},{}", at(row), r.centre[0], r.centre[1], r.centre[2]);
     case Reading::kD: {
-      const Eigen::Vector3d p = nominal.col(static_cast<Eigen::Index>(row));
+      const Eigen::Vector3d p = nominal.position.col(static_cast<Eigen::Index>(row));
       return fmt::format("{},{},{},{},{},{},{}", at(row), r.normal[0], r.normal[1], r.normal[2],
                          number(p.x(), 6), number(p.y(), 6), number(p.z(), 6));
     }
+    case Reading::kDirection: {
+      const auto angle = [&](std::size_t k) {
+        return readings.size() == 0 ? 0 : readings[static_cast<Eigen::Index>(2 * row + k)];
+      };
+      return direction_text(nominal.rotation[row].col(2), angle(0), angle(1));
+    }
     case Reading::kX:
+    case Reading::kZ:
+    case Reading::kTurn:
       break;
   }
   return at(row);
@@ -87,7 +121,9 @@ std::string reading_text(const SurveyTable& t, std::size_t row, const Eigen::Vec
 
 std::string survey_csv(const SurveyTable& t, const Eigen::VectorXd& readings) {
   std::string text = header(t);
-  const Eigen::Matrix3Xd nominal = t.options.reading == Reading::kD ? nominal_points(t) : Eigen::Matrix3Xd();
+  const bool by_nominal = t.options.reading == Reading::kD || t.options.reading == Reading::kDirection;
+  const Poses nominal = by_nominal ? nominal_poses(t) : Poses();
+  const double u = is_angular(t.options.reading) ? 3600 * angle_deg(t.u_mm) : t.u_mm;
   for (std::size_t i = 0; i < t.rows.size(); ++i) {
     const MotionRow& row = t.rows[i];
     for (const double q : row.q) text += number(q, 4) + ",";
@@ -101,7 +137,7 @@ std::string survey_csv(const SurveyTable& t, const Eigen::VectorXd& readings) {
     for (const auto& [name, value] : t.geometry.held) text += number(value, 0) + ",";
     for (const LoggedColumn& c : t.columns) text += number(c.value[i], 5) + ",";
     text += reading_text(t, i, readings, nominal);
-    text += fmt::format(",{},{},{}\n", t.u_mm, run_label(row.run), row.check ? "check" : "fit");
+    text += fmt::format(",{},{},{}\n", u, run_label(row.run), row.check ? "check" : "fit");
   }
   return text;
 }

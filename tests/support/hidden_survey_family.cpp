@@ -11,6 +11,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "tests/support/likeness_machines.h"
 #include "tools/model/chain.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/parameters.h"
@@ -224,11 +225,14 @@ void shape_shifts(pugi::xml_node statics, const ModelOptions& options) {
 
 }  // namespace
 
-const char* family_name(Family family) { return known()[static_cast<std::size_t>(family)].name; }
+const char* family_name(Family family) {
+  const auto at = static_cast<std::size_t>(family);
+  return at < kFamilyCount ? known()[at].name : likeness_machines().at(at - kFamilyCount).name;
+}
 
 Family family_named(const std::string& name) {
-  for (std::size_t i = 0; i < kFamilyCount; ++i)
-    if (name == known()[i].name) return static_cast<Family>(i);
+  for (std::size_t i = 0; i < kFamilyCount + kLikenessCount; ++i)
+    if (name == family_name(static_cast<Family>(i))) return static_cast<Family>(i);
   throw std::invalid_argument("no machine family '" + name + "'");
 }
 
@@ -242,10 +246,22 @@ const AxisPlace* Geometry::axis(const std::string& name) const {
   return found == axes.end() ? nullptr : &*found;
 }
 
-Geometry geometry_of(Family family) {
-  const Known& entry = known()[static_cast<std::size_t>(family)];
+namespace {
+
+/// What is known of a machine before its file is read.
+Geometry bare_geometry(Family family, std::uint64_t seed) {
   Geometry g;
   g.family = family;
+  const auto at = static_cast<std::size_t>(family);
+  if (at >= kFamilyCount) {
+    const LikenessMachine& entry = likeness_machines().at(at - kFamilyCount);
+    Draw draw(seed);
+    g.text = entry.file(draw);
+    g.u_mm = entry.u_mm;
+    g.feed = entry.feed;
+    return g;
+  }
+  const Known& entry = known()[at];
   g.u_mm = entry.u_mm;
   g.feed = entry.feed;
   g.bends = entry.bends;
@@ -254,6 +270,19 @@ Geometry geometry_of(Family family) {
                ? kBallBarCircle
                : read_file(std::string(VERNIER_SOURCE_DIR "/tables/machines/") + entry.file);
   set_ranges(entry, g.text);
+  return g;
+}
+
+}  // namespace
+
+std::vector<std::string> effects_in_likeness(Family family) {
+  const auto at = static_cast<std::size_t>(family);
+  if (at < kFamilyCount) return {};
+  return likeness_machines().at(at - kFamilyCount).effects;
+}
+
+Geometry geometry_of(Family family, std::uint64_t seed) {
+  Geometry g = bare_geometry(family, seed);
   const Machine machine = nominal_machine(parse_machine(g.text, "family.xml"));
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
     const Axis& axis = machine.axes[i];

@@ -48,7 +48,10 @@ struct Geometry {
   bool all_linear() const;
   const AxisPlace* axis(const std::string& name) const;
 };
-Geometry geometry_of(Family family);
+/// `seed`: of a machine that is drawn.
+Geometry geometry_of(Family family, std::uint64_t seed = 1);
+/// Effects that a machine in the likeness of a real one has; empty for the reference machines.
+std::vector<std::string> effects_in_likeness(Family family);
 
 /// Which errors the user's model leaves free.
 enum class ModelKind : std::uint8_t { kTables, kStatics, kBare };

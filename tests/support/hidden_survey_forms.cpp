@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tests/support/hidden_survey_forms.h"
 #include "tests/support/hidden_survey_inputs.h"
+#include "tests/support/likeness_machines.h"
 
 #include <fmt/format.h>
 
@@ -80,6 +81,7 @@ class Builder {
   void lateral_play();
   void spike();
   void cyclic();
+  void gear_train();
   void straightness();
   void angular();
   void positioning() {
@@ -89,6 +91,7 @@ class Builder {
   void thermal_offset();
   void thermal_bend();
   void warmup();
+  bool in_likeness();
   void sag();
   void compliance();
   void load();
@@ -198,7 +201,18 @@ void Builder::spike() {
     own(a, fmt::format("k1*dir{0}*exp(-since{0}/{1:.4g})", a.name, between(0.01, 0.08) * span(a)), {-1});
 }
 
+/// A worm, its wheel and a wave of one turn, all in one axis.
+void Builder::gear_train() {
+  const AxisPlace& a = g_.axes.front();
+  const double teeth = std::round(between(60, 120));
+  own(a,
+      fmt::format("(k1*sin({0}+{1:.0f})+k2*sin(2*{0}+{2:.0f})+k3*sin(360*{0}/{3:.6g}+{4:.0f}))", a.name,
+                  draw_.uniform(0, 360), draw_.uniform(0, 360), 360 / teeth, draw_.uniform(0, 360)),
+      {1, 0.7, 0.8});
+}
+
 void Builder::cyclic() {
+  if (g_.family == Family::kGearTrain) return gear_train();
   for (const AxisPlace& a : g_.axes) {
     const double period = between(0.03, 0.3) * span(a), phase = draw_.uniform(0, 6.283);
     const std::string text = fmt::format("(k1*sin(360*{0}/{1:.5g})+k2*cos(360*{0}/{1:.5g}))", a.name, period);
@@ -268,7 +282,19 @@ void Builder::warmup() {
   everywhere(false, text);
 }
 
+/// What gravity does on a machine in the likeness of a real one.
+bool Builder::in_likeness() {
+  if (effects_in_likeness(g_.family).empty()) return false;
+  for (const LikenessTerm& term : gravity_terms(family_name(g_.family), effect_, g_.text)) {
+    std::vector<Place> places;
+    for (const LikenessTerm::At& at : term.at) places.push_back({false, at.n, at.dof, at.text});
+    add(term.axis, std::move(places), {draw_.sign()});
+  }
+  return true;
+}
+
 void Builder::sag() {
+  if (in_likeness()) return;
   for (const auto& bend : g_.bends) {
     const std::string& name = bend.first;
     const AxisPlace& a = *g_.axis(name);
@@ -291,6 +317,7 @@ void Builder::sag() {
 /// Gravity torque about the robot's joints of an arm whose tool is the heavy part; for other machines the
 /// tilt of the rotary axis.
 void Builder::compliance() {
+  if (in_likeness()) return;
   if (g_.family != Family::kRobot) {
     for (const auto& [name, dof] : g_.bends)
       if (dof.empty())

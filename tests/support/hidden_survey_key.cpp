@@ -38,6 +38,7 @@ SurveyClass class_named(const std::string& name) {
 }
 
 std::vector<std::string> effects_of(Family family) {
+  if (const auto own = effects_in_likeness(family); !own.empty()) return own;
   const Geometry g = geometry_of(family);
   std::vector<std::string> effects;
   for (const EffectScan& scan : effect_scans()) {

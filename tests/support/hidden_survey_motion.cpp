@@ -50,7 +50,7 @@ class Walker {
   void begin_run() { t_ += run_ == 0 ? 60 : draw_.uniform(1800, 14400); }
 
   void step(double part) {
-    if (geometry_.family == Family::kSingleAxis) return cycle_point();
+    if (geometry_.axes.size() == 1 && geometry_.family != Family::kGearTrain) return cycle_point();
     if (options_.manner == Manner::kProbing) return probe();
     if (options_.manner == Manner::kAtRest) return rest(next_pose(part));
     const bool plane = linear_axes().size() >= 2;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 #include <array>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -14,7 +15,16 @@ enum class Manner : std::uint8_t {
   kMoving,   // read on the fly: lines with acceleration, arcs where two linear axes span a plane
   kProbing,  // touches surfaces along their normal and is latched while it moves
 };
-enum class Reading : std::uint8_t { kPoint, kLength, kD, kX };
+/// kDirection: of the tool's z axis, two angles; kTurn: about z, an autocollimator on a polygon.
+enum class Reading : std::uint8_t { kPoint, kLength, kD, kX, kZ, kDirection, kTurn };
+constexpr bool is_angular(Reading reading) {
+  return reading == Reading::kDirection || reading == Reading::kTurn;
+}
+/// What a length at the end of one metre is as an angle: the uncertainty of an angular reading.
+constexpr double angle_deg(double length_mm) { return length_mm / 1000 * 180 / std::numbers::pi; }
+constexpr bool is_by_direction(Family family) {
+  return family == Family::kAltAz || family == Family::kEquatorial;
+}
 
 struct MotionOptions {
   Manner manner = Manner::kAtRest;

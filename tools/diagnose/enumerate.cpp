@@ -7,6 +7,7 @@
 #include <numeric>
 #include <set>
 
+#include "tools/diagnose/pulls.h"
 #include "tools/effects/probe.h"
 #include "tools/model/chain.h"
 #include "tools/model/chain_rows.h"
@@ -70,12 +71,14 @@ class Enumerator {
         thresholds_(evidence.thresholds().candidates),
         machine_(evidence.machine()),
         axes_(machine_),
-        effects_(effects) {
+        effects_(effects),
+        pulls_(evidence) {
     for (std::size_t axis = 0; axis < machine_.axes.size(); ++axis) {
       own_.push_back(axes_.own(axis));
       range_.push_back(evidence.range_of(axis));
       shortest_.push_back(shortest_told_apart(evidence, axis));
     }
+    is_outshone_ = outshone_places(evidence);
     distinct_ = distinct_places(evidence, true);
     find_sag();
     find_sums();
@@ -104,7 +107,8 @@ class Enumerator {
   }
 
   bool answers(const effects::DofPlace& place) const {
-    return evidence_.response(evidence_.index_of(place)).squaredNorm() > 0;
+    const std::size_t at = evidence_.index_of(place);
+    return evidence_.response(at).squaredNorm() > 0 && !is_outshone_[at];
   }
 
   /// The row that stands in at the base takes what no row of the file can express, and nothing that an axis
@@ -347,6 +351,10 @@ class Enumerator {
         if (!rotary || std::find(sag_.begin(), sag_.end(), *own) == sag_.end()) return;
         at_each({*own}, [](const effects::DofPlace&) { return true; });
         break;
+      case effects::PlaceRule::kLink:
+      case effects::PlaceRule::kBend:
+        at_each(distinct_, [&](const effects::DofPlace& p) { return pulls_.admits(form, p); });
+        break;
       case effects::PlaceRule::kNormal:
         if (has_normals_ && !effects::base_places(machine_).empty()) with_sum(choice);
         break;
@@ -360,6 +368,10 @@ class Enumerator {
   static bool needs_linear(const effects::EffectForm& form) { return form.asks_for("T"); }
 
   void with_sum(const effects::Choice& choice) {
+    if (Pulls::asks(*choice.form)) {
+      for (const effects::Choice& one : pulls_.variants(choice)) finish(one);
+      return;
+    }
     if (!choice.form->asks_for("sum")) return with_runs(choice);
     for (const std::string& sum : sums_[*choice.axis]) {
       // The two-link forms say the same as one link where the sum is the joint itself.
@@ -527,10 +539,12 @@ class Enumerator {
   const model::Machine& machine_;
   effects::AxisPlaces axes_;
   const std::vector<effects::Effect>& effects_;
+  Pulls pulls_;
   std::vector<std::optional<effects::DofPlace>> own_;
   std::vector<Evidence::Range> range_;
   std::vector<double> shortest_;             // period that the positions of an axis tell from longer ones
   std::map<std::size_t, FinePeriods> fine_;  // of an axis, without carrier
+  std::vector<char> is_outshone_;            // by place
   std::vector<effects::DofPlace> distinct_, sag_;
   std::vector<std::vector<std::string>> sums_;
   bool has_normals_ = false;
@@ -546,6 +560,23 @@ bool ScannedCandidate::is_driven_out(std::size_t unknown, double found, double v
   return !(value >= range.front() / most_driven && value <= range.back() * most_driven);
 }
 
+std::vector<char> outshone_places(const Evidence& evidence) {
+  const std::vector<effects::DofPlace>& places = evidence.places();
+  const CandidateThresholds& to = evidence.thresholds().candidates;
+  std::vector<char> outshone(places.size(), 0);
+  for (std::size_t i = 0; i < places.size(); ++i)
+    for (std::size_t k = 0; k < places.size() && outshone[i] == 0; ++k) {
+      if (effects::is_angle(evidence.machine(), places[i]) !=
+          effects::is_angle(evidence.machine(), places[k]))
+        continue;
+      const auto weak = evidence.response(i), strong = evidence.response(k);
+      const double both = weak.norm() * strong.norm();
+      if (!(strong.norm() > to.outshone * weak.norm()) || both == 0) continue;
+      outshone[i] = 1 - std::abs(weak.dot(strong)) / both < to.same_place ? 1 : 0;
+    }
+  return outshone;
+}
+
 std::vector<effects::DofPlace> distinct_places(const Evidence& evidence, bool angles_apart) {
   std::vector<effects::DofPlace> places;
   std::vector<Eigen::VectorXd> seen;
@@ -554,7 +585,9 @@ std::vector<effects::DofPlace> distinct_places(const Evidence& evidence, bool an
   std::stable_partition(order.begin(), order.end(), [&](std::size_t i) {
     return !effects::is_stand_in(evidence.machine(), evidence.places()[i]);
   });
+  const std::vector<char> outshone = outshone_places(evidence);
   for (const std::size_t i : order) {
+    if (outshone[i] != 0) continue;
     Eigen::VectorXd column = evidence.response(i);
     const double norm = column.norm();
     if (norm == 0) continue;

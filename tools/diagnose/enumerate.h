@@ -38,6 +38,11 @@ struct Product {
 std::vector<ScannedCandidate> enumerate_products(const Evidence& evidence,
                                                  const std::vector<Product>& extend);
 
+/// Places, as Evidence::places(), that do to all observations what another one of their kind does many times
+/// as strongly: a length across the reading, seen through a tilt of the machine by minutes. What a survey
+/// shows there sits at the other one. tool.
+std::vector<char> outshone_places(const Evidence& evidence);
+
 /// The degrees of freedom that the observations can tell apart: of those that do the same to all observations
 /// (all but 1e-7 of the direction) the first one, rows of the file before one that stands in. `angles_apart`:
 /// the first angle and the first length. tool.

@@ -27,6 +27,7 @@ double rank_of(const effects::Candidate& candidate, double step) {
     case effects::PlaceRule::kTurn:
     case effects::PlaceRule::kBaseTurn:
     case effects::PlaceRule::kLength:
+    case effects::PlaceRule::kBend:
       return 3 * step;
     default:
       return 4 * step;

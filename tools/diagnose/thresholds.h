@@ -47,6 +47,12 @@ struct CandidateThresholds {
   double sag_share = 0.3;
   /// Cosine between joints that count as parallel: 2.6 degrees. Errors of assembly are a tenth of it.
   double parallel_cosine = 0.999;
+  /// Products of sines and cosines in a function that gravity has along the chain: a tick computes them all.
+  /// An arm of seven joints on a tilted base has 30.
+  std::size_t most_terms_of_gravity = 40;
+  /// Cosine between the moments of two masses over the rows from which on they are one: a hundredth of the
+  /// squares differs, below what any survey resolves.
+  double same_moment = 0.995;
   /// Share of the declared range from which on it stands for the range that was read, in terms that name it:
   /// then they read "200" and not "199.3".
   double declared_range_share = 0.8;
@@ -85,6 +91,8 @@ struct CandidateThresholds {
   /// 1 - cosine below which two places do the same to all readings: sqrt of rounding, with three digits to
   /// spare.
   double same_place = 1e-7;
+  /// How much more strongly another place must do the same for a place to be none: a tilt of 6 degrees.
+  double outshone = 10;
   /// Share of a fit's range by which a scanned unknown may leave the range in which it was looked for.
   double driven_out = 2;
 
@@ -92,6 +100,9 @@ struct CandidateThresholds {
   void for_each(const Visit& visit) {
     visit("candidates.sag_share", sag_share);
     visit("candidates.parallel_cosine", parallel_cosine);
+    visit("candidates.outshone", outshone);
+    visit("candidates.most_terms_of_gravity", most_terms_of_gravity);
+    visit("candidates.same_moment", same_moment);
     visit("candidates.declared_range_share", declared_range_share);
     visit("candidates.most_steps_of_runs", most_steps_of_runs);
     visit("candidates.like_a_clock", like_a_clock);

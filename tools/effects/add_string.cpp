@@ -69,6 +69,7 @@ class AddReader {
     read_axes();
     read_inputs();
     read_place();
+    read_pull();
     choose_form();
     fill_place();
     read_numbers();
@@ -197,6 +198,8 @@ class AddReader {
     if (inputs != choice_.inputs.size()) return false;
     const std::optional<std::size_t> axis = choice_.axis ? choice_.axis : default_axis_;
     if ((form.place == PlaceRule::kPair) != choice_.axis2.has_value()) return false;
+    if (form.asks_for("across") != choice_.toward.has_value()) return false;
+    if (form.asks_for("moment") != choice_.mass.has_value()) return false;
     // Once a turn means nothing on a slide: 360 mm would be a period that nobody has asked for.
     if (axis && !machine_.axes[*axis].rotary && form.term.find("sin({q})") != std::string::npos) return false;
     if (!choice_.place) return true;
@@ -212,12 +215,31 @@ class AddReader {
       case PlaceRule::kTurn:
       case PlaceRule::kAngle:
       case PlaceRule::kBaseTurn:
+      case PlaceRule::kBend:
         return angle;
+      case PlaceRule::kLink:
+        return form.asks_for("along") != angle;
       case PlaceRule::kLength:
       case PlaceRule::kBase:
         return !angle;
       default:
         return true;
+    }
+  }
+
+  /// Which way a bar points, and where a mass sits: what gravity's functions are worked out for.
+  void read_pull() {
+    if (const auto toward = take("toward")) {
+      const std::size_t found = std::string("XYZ").find(*toward);
+      if (toward->size() != 1 || found == std::string::npos) fail(*toward, "expected X, Y or Z");
+      choice_.toward = found;
+    }
+    if (const auto mass = take("mass")) {
+      const bool workpiece = choice_.place && choice_.place->workpiece;
+      const auto& branch = workpiece ? machine_.workpiece : machine_.tool;
+      for (std::size_t i = 0; i < branch.size(); ++i)
+        if (std::to_string(branch[i].n) == *mass) choice_.mass = i;
+      if (!choice_.mass) fail(*mass, "the branch has no such transform");
     }
   }
 
@@ -330,6 +352,9 @@ std::string add_string(const model::Machine& machine, const Choice& c) {
     if (!c.units[i].empty()) put(numbered("unit", i), quote(c.units[i]));
   if (!custom) put("form", c.form->label);
   if (!custom && c.form->asks_for("sum")) put("sum", c.sum);
+  if (c.toward) put("toward", std::string(1, "XYZ"[*c.toward]));
+  if (c.mass && c.place)
+    put("mass", std::to_string((c.place->workpiece ? machine.workpiece : machine.tool).at(*c.mass).n));
   if (!custom && has_range(*c.form)) {
     put("from", text::number_text(c.from));
     put("to", text::number_text(c.to));

@@ -7,6 +7,7 @@
 #include <functional>
 #include <set>
 
+#include "tools/effects/gravity.h"
 #include "tools/effects/input_class.h"
 #include "tools/effects/spoken.h"
 #include "tools/text/error.h"
@@ -138,6 +139,15 @@ class Maker {
           terms.push_back({base[i], form[0], std::nullopt, base[i].workpiece, kNormals.at(i)});
         break;
       }
+      case PlaceRule::kBend:
+        if (!choice_.place || !choice_.toward) missing("transform or toward");
+        if (transform_at(machine_, *choice_.place).kind != model::TransformKind::kSixDof)
+          missing("a sixdof, which bends about two axes,");
+        for (std::size_t d = 0; d < 3; ++d)
+          if (d != *choice_.toward)
+            terms.push_back(
+                {{choice_.place->workpiece, choice_.place->transform, 3 + d}, form[0], choice_.axis});
+        break;
       default:
         if (!choice_.place) missing("branch, transform or dof");
         terms.push_back({*choice_.place, form[0], choice_.axis});
@@ -183,7 +193,29 @@ class Maker {
       if (choice_.sum.empty()) missing("sum");
       return model::parse_expression(choice_.sum);
     }
+    if (const auto pull = gravity_of(mark, term.place)) return pull;
     return hats(axis_of(term));
+  }
+
+  /// What gravity does there, as a function of the axes; null for a mark that does not ask for it.
+  model::ExprPtr gravity_of(const std::string& mark, const DofPlace& place) const {
+    if (mark != "moment" && mark != "along" && mark.rfind("across", 0) != 0) return nullptr;
+    if (!gravity_) gravity_.emplace(machine_);
+    const std::size_t own = local_axis(machine_, place);
+    std::optional<Wave> wave;
+    if ((mark == "along") == is_angle(machine_, place)) missing(mark == "along" ? "a length" : "an angle");
+    if (mark == "along") {
+      wave = gravity_->along(place);
+    } else if (mark == "moment") {
+      if (!choice_.mass) missing("mass");
+      wave = gravity_->moment(place, *choice_.mass);
+    } else {
+      if (mark == "across" && !choice_.toward) missing("toward");
+      const std::size_t next = mark == "across2" ? 2 : 1;
+      wave = gravity_->across(place, mark == "across" ? *choice_.toward : (own + next) % 3);
+    }
+    if (!wave) missing("a chain of turns in proportion to axes, from the base to there,");
+    return wave->expression(machine_);
   }
 
   const std::string& axis_of(const TermAt& term) const {
@@ -355,6 +387,7 @@ class Maker {
   Candidate result_;
   std::set<std::string> taken_;
   std::map<std::string, std::string> final_name_;  // of an unknown, by its name in the form
+  mutable std::optional<GravityChain> gravity_;    // worked out once asked for
 };
 
 }  // namespace

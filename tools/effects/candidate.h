@@ -66,10 +66,12 @@ struct Choice {
   std::vector<std::string> inputs;         // {T} or {L} or {F}, then {S}
   std::vector<std::string> units;          // of the inputs
   std::optional<DofPlace> place;
-  std::string sum;                  // {sum}
-  std::optional<double> reference;  // {ref}; none: the declared one, 20 for one not declared
-  double from = 0, to = 0;          // {from} {to} {mid} {hats N}
-  std::vector<std::string> runs;    // {runs}
+  std::string sum;                    // {sum}
+  std::optional<std::size_t> toward;  // {across}: local axis of the bar, 0 to 2
+  std::optional<std::size_t> mass;    // {moment}: the transform of its branch behind which the mass sits
+  std::optional<double> reference;    // {ref}; none: the declared one, 20 for one not declared
+  double from = 0, to = 0;            // {from} {to} {mid} {hats N}
+  std::vector<std::string> runs;      // {runs}
   std::map<std::string, double> start;
   std::string term;  // of a found expression (effect `custom`)
 };

@@ -18,8 +18,9 @@ extern const char* const kBuiltInCatalogue;  // the text of catalogue.txt
 
 namespace {
 
-constexpr std::array<const char*, 12> kPlaceNames = {
-    "own", "cross", "turn", "length", "angle", "base", "baseturn", "sag", "joint", "each", "pair", "normal"};
+constexpr std::array<const char*, 14> kPlaceNames = {"own",  "cross",    "turn", "length", "angle",
+                                                     "base", "baseturn", "sag",  "joint",  "link",
+                                                     "bend", "each",     "pair", "normal"};
 
 /// N of "hats N".
 std::optional<std::size_t> hats_of(const std::string& mark) {
@@ -244,8 +245,9 @@ class CatalogueReader {
   }
 
   void check_mark(const std::string& mark, std::size_t line) const {
-    static constexpr std::array kMarks = {"q",   "T",    "S",  "L",    "F",   "V", "ref",
-                                          "mid", "from", "to", "span", "sum", "n", "runs"};
+    static constexpr std::array kMarks = {"q",      "T",       "S",       "L",     "F",     "V", "ref",
+                                          "mid",    "from",    "to",      "span",  "sum",   "n", "runs",
+                                          "across", "across1", "across2", "along", "moment"};
     const bool known = std::any_of(kMarks.begin(), kMarks.end(), [&](const char* m) { return mark == m; });
     if (!known && !hats_of(mark)) fail_at(line, "{" + mark + "}", "not a placeholder");
   }

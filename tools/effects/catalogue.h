@@ -23,6 +23,8 @@ enum class PlaceRule : std::uint8_t {
   kBaseTurn,  // its angles
   kSag,       // angles about a horizontal axis and lengths along gravity, of any transform
   kJoint,     // the angle that a rotary axis moves, where gravity has a moment about it
+  kLink,      // an angle or a length of a link that several axes turn against gravity
+  kBend,      // together at the two angles of such a link across one of its local axes
   kEachAxis,  // together at the own degree of freedom of every axis, one coefficient
   kPair,      // together at the own degrees of freedom of two linear axes
   kNormal,    // together at the three lengths of the measuring frame, along nx ny nz
@@ -49,7 +51,9 @@ struct UnknownRule {
 /// inputs that are temperatures, {L} a load, {F} an accelerometer feature, {V} any other logged quantity,
 /// {ref} the reference of {T}, {mid} {from} {to} {span} of the range of {q}, {hats N} a sum of N hat
 /// functions over that range, {runs} a sum of one step a run, {sum} the sum of parallel joints up to {q} and
-/// beyond, {n} nx, ny or nz.
+/// beyond, {n} nx, ny or nz. Worked out from the chain (gravity.h), 1 at most: {across} the moment of gravity
+/// about the angle of a bar that points along a local axis, {across1} {across2} of both such axes, {along}
+/// gravity along the length, {moment} the moment of a mass farther out.
 struct EffectForm {
   std::string label;
   PlaceRule place = PlaceRule::kOwn;

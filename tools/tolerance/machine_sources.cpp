@@ -217,7 +217,10 @@ class Namer {
         return angle == (rule == effects::PlaceRule::kBaseTurn) &&
                std::find(base_.begin(), base_.end(), term.place) != base_.end();
       case effects::PlaceRule::kSag:
+      case effects::PlaceRule::kLink:
         return true;
+      case effects::PlaceRule::kBend:
+        return angle;
       case effects::PlaceRule::kJoint:
         return own && machine_.axes[*axis].rotary;
       case effects::PlaceRule::kNormal:

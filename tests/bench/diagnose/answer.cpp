@@ -116,6 +116,8 @@ Outcome judge_one(const HiddenSurvey& survey, const json& answer) {
   // A clock that is off is the instrument's: naming it under that verdict is right too.
   if (verdict == "instrument" && !survey.effects.empty()) {
     const std::string& hidden = survey.effects[0].cause.effect;
+    // What shifts the one thing that is read, all at once, may be either.
+    if (hidden == "base-drift" && survey.spec.family == support::Family::kBed) return Outcome::kRight;
     if (hidden == "time-base" || (hidden == "time-sync" && first_right)) return Outcome::kRight;
   }
   return of_verdict(verdict);

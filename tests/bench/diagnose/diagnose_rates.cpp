@@ -5,14 +5,9 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <atomic>
-#include <filesystem>
-#include <mutex>
-#include <thread>
 
+#include "tests/bench/diagnose/cases.h"
 #include "tests/bench/diagnose/held_out.h"
-#include "tests/bench/diagnose/process.h"
-#include "tests/bench/diagnose/rates.h"
 #include "tests/support/hidden_survey_key.h"
 #include "tools/text/files.h"
 
@@ -101,78 +96,6 @@ std::vector<Case> cells(const Options& o) {
   return cases;
 }
 
-/// The survey of a case: the first of up to 40 seeds whose data can tell, where that is asked for.
-std::optional<HiddenSurvey> survey_of(Case& one, const Options& o) {
-  const bool must_tell = !o.any && !o.exact_seed && one.spec.kind != SurveyClass::kNoise &&
-                         one.spec.kind != SurveyClass::kConfusable;
-  for (int k = 0; k < (must_tell ? 40 : 1); ++k, ++one.spec.seed) {
-    HiddenSurvey survey = make_survey(one.spec);
-    if (must_tell && !survey.can_tell) continue;
-    one.can_tell = survey.can_tell;
-    for (const HiddenEffect& e : survey.effects)
-      one.hidden += fmt::format("{}{} axis={} input={} {}", one.hidden.empty() ? "" : " + ", e.cause.effect,
-                                e.cause.axis, e.cause.input, e.term);
-    return survey;
-  }
-  one.trouble = "no survey whose data can tell in 40 seeds";
-  return {};
-}
-
-void write(const HiddenSurvey& survey, const std::string& folder) {
-  std::filesystem::create_directories(folder);
-  write_file(folder + "/model.xml", survey.model);
-  write_file(folder + "/survey.csv", survey.csv);
-  write_file(folder + "/key.json", key_of(survey));
-  write_file(folder + "/truth.xml", survey.truth);
-}
-
-void diagnose(Case& one, const HiddenSurvey& survey, const Options& o, const std::string& folder) {
-  const ProcessResult run =
-      run_process({o.vernier, "diagnose", folder + "/model.xml", folder + "/survey.csv", "--json", "-"},
-                  folder + "/diagnose.err");
-  one.seconds = run.seconds;
-  if (!o.keep.empty()) write_file(folder + "/answer.json", run.output);
-  if (run.status != 0) {
-    one.judgement.said =
-        fmt::format("exit status {}: {}", run.status, read_file(folder + "/diagnose.err").substr(0, 200));
-    return;
-  }
-  one.judgement = judge(survey, run.output);
-  if (o.held_out && one.judgement.outcome == Outcome::kRight && !one.judgement.add.empty())
-    one.held_out = held_out_ratio(survey, one.judgement.add, o.vernier, folder, one.trouble);
-}
-
-void treat(Case& one, const Options& o, const std::string& scratch) {
-  const std::string folder = fmt::format("{}/case{}", o.keep.empty() ? scratch : o.keep, one.number);
-  try {
-    const std::optional<HiddenSurvey> survey = survey_of(one, o);
-    if (!survey) return;
-    write(*survey, folder);
-    if (!o.list) diagnose(one, *survey, o, folder);
-  } catch (const std::exception& wrong) {
-    one.trouble = wrong.what();
-  }
-  if (o.keep.empty()) std::filesystem::remove_all(folder);
-}
-
-void run_all(std::vector<Case>& cases, const Options& o, const std::string& scratch) {
-  std::atomic<std::size_t> next = 0, done = 0;
-  std::mutex print;
-  const auto work = [&] {
-    for (std::size_t i = 0; (i = next++) < cases.size();) {
-      treat(cases[i], o, scratch);
-      const std::size_t so_far = ++done;
-      if (so_far % 20 != 0 && so_far != cases.size()) continue;
-      const std::lock_guard<std::mutex> hold(print);
-      fmt::print(stderr, "\r{} of {}", so_far, cases.size());
-    }
-  };
-  std::vector<std::thread> workers;
-  for (std::size_t j = 0; j < o.jobs; ++j) workers.emplace_back(work);
-  for (std::thread& worker : workers) worker.join();
-  fmt::print(stderr, "\n");
-}
-
 void write_json(const std::vector<Case>& cases, const std::string& path) {
   nlohmann::json list = nlohmann::json::array();
   for (const Case& one : cases)
@@ -193,35 +116,19 @@ void write_json(const std::vector<Case>& cases, const std::string& path) {
   write_file(path, list.dump(1) + "\n");
 }
 
-/// Surveys that could not be made are no verdict on the diagnosis: listed, not counted.
-std::vector<Case> without_survey(std::vector<Case>& cases) {
-  std::vector<Case> missing;
-  std::erase_if(cases, [&](const Case& one) {
-    const bool none = one.hidden.empty() && one.spec.kind != SurveyClass::kNoise;
-    if (none) missing.push_back(one);
-    return none;
-  });
-  return missing;
-}
-
 int run(const Options& o) {
   std::vector<Case> cases = cells(o);
   if (o.only) std::erase_if(cases, [&](const Case& one) { return one.number != *o.only; });
-  if (!o.list && !std::filesystem::exists(o.vernier)) {
-    fmt::print(stderr, "{}: no such program\n", o.vernier);
-    return 1;
-  }
-  const std::string base = o.scratch.empty() ? std::filesystem::temp_directory_path().string() : o.scratch;
-  std::string scratch = base + "/diagnose_rates_XXXXXX";
-  if (mkdtemp(scratch.data()) == nullptr) throw std::runtime_error(scratch + ": cannot be made");
-  run_all(cases, o, scratch);
-  std::filesystem::remove_all(scratch);
+  const CaseOptions how{o.vernier, o.keep, o.scratch, o.jobs, o.any || o.exact_seed.has_value(), o.list};
+  run_cases(cases, how,
+            [&](Case& one, const HiddenSurvey& survey, const std::string& folder, const std::string&) {
+              if (o.held_out && one.judgement.outcome == Outcome::kRight && !one.judgement.add.empty())
+                one.held_out = held_out_ratio(survey, one.judgement.add, o.vernier, folder, one.trouble);
+            });
   const std::vector<Case> missing = without_survey(cases);
   fmt::print("{} surveys, seed {}{}\n", cases.size(), o.seed,
              missing.empty() ? "" : fmt::format("; {} cells without a survey:", missing.size()));
-  for (const Case& one : missing)
-    fmt::print("  {} {} ratio {:g}: {}\n", family_name(one.spec.family), one.spec.effect, one.spec.ratio,
-               one.trouble);
+  print_missing(missing);
   if (o.list)
     for (const Case& one : cases)
       fmt::print("{} {} {} {}\n", one.number, family_name(one.spec.family), class_name(one.spec.kind),

@@ -120,6 +120,15 @@ INSTANTIATE_TEST_SUITE_P(All, HiddenEffectOf, testing::ValuesIn([] {
                          }()),
                          name_of);
 
+// What gravity does to machines whose joints are not parallel; three causes of one axis. Machines in the
+// likeness of real ones, drawn for the seed.
+INSTANTIATE_TEST_SUITE_P(Likeness, HiddenEffectOf,
+                         testing::Values(Single{Family::kSixJoint, "joint-compliance"},
+                                         Single{Family::kTorsoArm, "joint-compliance"},
+                                         Single{Family::kEquatorial, "gravity-sag"},
+                                         Single{Family::kGearTrain, "cyclic-error"}),
+                         name_of);
+
 struct Misjudged {
   Family family;
   const char* effect;

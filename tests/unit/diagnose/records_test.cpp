@@ -125,6 +125,29 @@ TEST(Records, SetpointsAndCountersAreNoCauses) {
     for (const std::string& input : one.candidate.choice.inputs) EXPECT_EQ(input, "T_bed");
 }
 
+// A probed bed whose gantry leans by minutes: z sees lengths along X a three-hundredth as strongly, in the
+// very same pattern. What warms moves along Z.
+TEST(Records, APlaceThatAnotherOutshinesIsNone) {
+  const Machine machine = parse_machine(R"(<machine name="bed"><variables><static><z0 value="0" unit="mm"/>
+    <lean value="0.2" unit="deg" Hide="true"/></static><machineaxes><X min="0" max="200"/><Y min="0" max="200"/>
+    </machineaxes><inputs><T_bed unit="degC" reference="20"/></inputs></variables>
+    <transforms branch="tool"><sixdof n="1" Z="z0" rY="lean"/><sixdof n="2" Y="Y"/><sixdof n="3" X="X"/>
+    <sixdof n="4" Z="-20"/></transforms></machine>)",
+                                        "bed.xml");
+  std::string text = "X[mm],Y[mm],T_bed[degC],z[mm],u[mm]\n";
+  for (int i = 0; i < 60; ++i)
+    text += fmt::format("{},{},{},0,0.002\n", i * 37 % 200, i * 53 % 200, 20 + i % 7);
+  const Evidence evidence(machine, parse_measurement(text, "bed.csv", machine));
+  std::size_t along_z = 0;
+  for (const ScannedCandidate& one : enumerate_candidates(evidence, built_in_effects()))
+    for (const CandidateTerm& term : one.candidate.terms) {
+      if (one.candidate.terms.size() > 1 || is_angle(machine, term.place)) continue;
+      EXPECT_EQ(std::string(dof_name(machine, term.place)), "Z") << one.candidate.label;
+      ++along_z;
+    }
+  EXPECT_GT(along_z, 3U);
+}
+
 TEST(Records, AColumnWithoutAClassMayBeTheCause) {
   const auto tilt = [](int row) { return 2 * std::sin(0.7 * row) + std::sin(2.1 * row + 1); };
   int row = 0;

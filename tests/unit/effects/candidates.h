@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tools/effects/candidate.h"
+#include "tools/effects/gravity.h"
 #include "tools/model/measurement.h"
 #include "tools/text/files.h"
 
@@ -61,12 +62,35 @@ inline std::vector<DofPlace> places_for(const Machine& machine, const EffectForm
       case PlaceRule::kBaseTurn:
         admitted = angle;
         break;
+      case PlaceRule::kLink:
+        admitted = form.asks_for("along") != angle;
+        break;
+      case PlaceRule::kBend:
+        admitted = transform_at(machine, place).kind == TransformKind::kSixDof && place.dof == 4;
+        break;
       default:
         admitted = true;
     }
     if (admitted) places.push_back(place);
   }
   return places;
+}
+
+/// What a form asks of gravity said for a place, as diagnose would: a bar across, a mass at the end of the
+/// branch. False where the chain to there is no product of turns, or the form wants an angle.
+inline bool set_gravity(const Machine& machine, Choice& choice) {
+  const EffectForm& form = *choice.form;
+  const bool across = form.asks_for("across") || form.asks_for("across1"), moment = form.asks_for("moment");
+  if (!across && !moment && !form.asks_for("along")) return true;
+  const DofPlace& place = *choice.place;
+  const GravityChain gravity(machine);
+  if ((across || moment) != is_angle(machine, place) || !gravity.direction(place)) return false;
+  const std::size_t end = (place.workpiece ? machine.workpiece : machine.tool).size() - 1;
+  if (moment && !gravity.moment(place, end)) return false;
+  if (form.asks_for("across"))
+    choice.toward = form.place == PlaceRule::kBend ? 0 : (local_axis(machine, place) + 1) % 3;
+  if (moment) choice.mass = end;
+  return true;
 }
 
 /// Choices of one form: each axis at each place; of more than `most` places every k-th, a different one for
@@ -95,7 +119,8 @@ inline std::vector<Choice> choices_of(const Machine& machine, const Effect& effe
     return {base};
   }
   const bool driven = asks("{q}") || asks("{hats") || asks("{sum}") || form.place == PlaceRule::kOwn ||
-                      form.place == PlaceRule::kCross || form.place == PlaceRule::kTurn;
+                      form.place == PlaceRule::kJoint || form.place == PlaceRule::kCross ||
+                      form.place == PlaceRule::kTurn;
   std::vector<Choice> list;
   for (std::size_t axis = 0; axis < (driven ? machine.axes.size() : 1); ++axis) {
     Choice one = base;
@@ -116,7 +141,7 @@ inline std::vector<Choice> choices_of(const Machine& machine, const Effect& effe
     const std::size_t step = 1 + (places.empty() ? 0 : (places.size() - 1) / most);
     for (std::size_t i = axis % step; i < places.size(); i += step) {
       one.place = places[i];
-      list.push_back(one);
+      if (set_gravity(machine, one)) list.push_back(one);
     }
   }
   return list;
