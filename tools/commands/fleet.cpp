@@ -243,7 +243,7 @@ void register_fleet(CLI::App& vernier) {
   add_services(*fleet);
   // add_trends(*fleet);
   // add_rollout(*fleet);
-  // add_jobs(*fleet);
+  add_jobs(*fleet);
 }
 
 }  // namespace vernier::commands::fleet_cli
