@@ -41,7 +41,7 @@ struct ListArguments {
 
 Json or_text(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }
 
-Json machine_json(const fleet::FleetMachine& machine, const fleet::Calibration* runs) {
+Json machine_json(const fleet::FleetMachine& machine, const fleet::RecordedCalibration* runs) {
   Json json = {{"machine", machine.name},
                {"url", or_text(machine.url)},
                {"note", machine.note},
@@ -71,7 +71,7 @@ void run_list(const ListArguments& arguments) {
     if (!arguments.machine.empty() && machine.name != arguments.machine) continue;
     const auto runs = std::find_if(calibrations.begin(), calibrations.end(),
                                    [&](const auto& one) { return one.machine == machine.name; });
-    const fleet::Calibration* const newest = runs == calibrations.end() ? nullptr : &*runs;
+    const fleet::RecordedCalibration* const newest = runs == calibrations.end() ? nullptr : &*runs;
     all.push_back(machine_json(machine, newest));
     fmt::print(out, "{:<20} {:<28} {}\n", machine.name, machine.url,
                newest == nullptr ? machine.note
@@ -120,7 +120,7 @@ std::string hash_of_files(const std::vector<std::string>& files) {
 }
 
 void run_record(const RecordArguments& arguments) {
-  fleet::Calibration one;
+  fleet::RecordedCalibration one;
   one.machine = arguments.machine;
   one.model = arguments.model;
   one.model_hash = hash_of_files({arguments.model});
@@ -241,8 +241,8 @@ void register_fleet(CLI::App& vernier) {
   add_machine_kinds(*fleet);
   add_record_kinds(*fleet);
   add_services(*fleet);
-  // add_trends(*fleet);
-  // add_rollout(*fleet);
+  add_trends(*fleet);
+  add_rollout(*fleet);
   add_jobs(*fleet);
 }
 

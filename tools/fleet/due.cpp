@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kUsADay = 86'400e6;
 
-DueMachine judged(const FleetMachine& machine, const FleetCheck* last, const Calibration* runs) {
+DueMachine judged(const FleetMachine& machine, const FleetCheck* last, const RecordedCalibration* runs) {
   DueMachine one{machine.name, "", "", {}, {}};
   const std::int64_t begun = runs == nullptr ? machine.added_us : std::max(machine.added_us, runs->at_us);
   if (last != nullptr) one.last_us = last->at_us, one.verdict = last->verdict;
@@ -31,8 +31,8 @@ DueMachine judged(const FleetMachine& machine, const FleetCheck* last, const Cal
 std::vector<DueMachine> due_machines(Registry& registry, std::int64_t at_us) {
   std::map<std::string, FleetCheck> last;
   for (FleetCheck& check : registry.checks("")) last[check.machine] = std::move(check);
-  std::map<std::string, Calibration> runs;
-  for (Calibration& one : registry.calibrations("")) runs.try_emplace(one.machine, std::move(one));
+  std::map<std::string, RecordedCalibration> runs;
+  for (RecordedCalibration& one : registry.calibrations("")) runs.try_emplace(one.machine, std::move(one));
   std::vector<DueMachine> all;
   for (const FleetMachine& machine : registry.machines()) {
     const auto check = last.find(machine.name);

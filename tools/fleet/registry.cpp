@@ -128,14 +128,14 @@ FleetMachine Registry::machine(const std::string& name) {
   throw text::InputError({}, name, "no machine of this name in " + database_->name());
 }
 
-void Registry::put(const Calibration& c) {
+void Registry::put(const RecordedCalibration& c) {
   database_->run("INSERT INTO calibration VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10)",
                  {c.machine, cell(c.at_us), c.model, c.model_hash, c.image, c.data, c.data_hash, c.signed_by,
                   c.checked_against, c.checked_hash});
 }
 
-std::vector<Calibration> Registry::calibrations(const std::string& machine) {
-  std::vector<Calibration> all;
+std::vector<RecordedCalibration> Registry::calibrations(const std::string& machine) {
+  std::vector<RecordedCalibration> all;
   for (const Row& row : database_->run(
            "SELECT machine, at_us, model, model_hash, image, data, data_hash, signed_by, checked_against, "
            "checked_hash FROM calibration WHERE machine = $1 OR $1 = '' ORDER BY at_us DESC, machine",

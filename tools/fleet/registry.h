@@ -25,7 +25,7 @@ struct FleetMachine {
 };
 
 /// What runs on a machine and where it comes from.
-struct Calibration {
+struct RecordedCalibration {
   std::string machine, model, model_hash, image, data, data_hash, signed_by, checked_against, checked_hash;
   std::int64_t at_us = 0;
 };
@@ -67,9 +67,9 @@ class Registry {
   /// Throws InputError where there is none of that name.
   FleetMachine machine(const std::string& name);
 
-  void put(const Calibration& calibration);
+  void put(const RecordedCalibration& calibration);
   /// Newest first; of all machines where `machine` is empty.
-  std::vector<Calibration> calibrations(const std::string& machine);
+  std::vector<RecordedCalibration> calibrations(const std::string& machine);
 
   /// False: this check was there already.
   bool put(const FleetCheck& check, const std::vector<FleetReading>& readings);

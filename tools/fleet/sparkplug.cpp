@@ -5,7 +5,7 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
-#include "sparkplug_b.pb.h"
+#include <sparkplug_b.pb.h>
 #include "tools/text/words.h"
 
 namespace vernier::fleet {
