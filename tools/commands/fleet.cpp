@@ -192,6 +192,23 @@ void add_machine_kinds(CLI::App& fleet) {
   command->callback([status] { run_status(*status); });
 }
 
+void add_forget(CLI::App& fleet) {
+  struct ForgetArguments {
+    std::string registry;
+    double days = 0;
+  };
+  const auto forget = std::make_shared<ForgetArguments>();
+  CLI::App* command = fleet.add_subcommand("forget", "delete samples that are older; all else stays");
+  add_registry(*command, forget->registry);
+  command->add_option("--days", forget->days, "samples of so many days are kept")
+      ->required()
+      ->check(CLI::Range(0.0, 1e5));
+  command->callback([forget] {
+    const auto before = fleet::now_us() - static_cast<std::int64_t>(forget->days * 86'400e6);
+    fmt::print("{} samples deleted\n", open_registry(forget->registry).forget_samples(before));
+  });
+}
+
 void add_record_kinds(CLI::App& fleet) {
   const auto record = std::make_shared<RecordArguments>();
   CLI::App* command = fleet.add_subcommand(
@@ -240,6 +257,7 @@ void register_fleet(CLI::App& vernier) {
   fleet->require_subcommand(1);
   add_machine_kinds(*fleet);
   add_record_kinds(*fleet);
+  add_forget(*fleet);
   add_services(*fleet);
   add_trends(*fleet);
   add_rollout(*fleet);

@@ -196,4 +196,18 @@ std::vector<LiveState> Registry::live() {
   return live;
 }
 
+std::int64_t Registry::forget_samples(std::int64_t before_us) {
+  // In pieces, so that who writes never waits long.
+  constexpr std::int64_t kPiece = 10'000;
+  std::int64_t all = 0, last = kPiece;
+  while (last == kPiece) {
+    database_->run(
+        "DELETE FROM sample WHERE (spool, number) IN (SELECT spool, number FROM sample WHERE at_us < $1 "
+        "LIMIT $2)",
+        {cell(before_us), cell(kPiece)});
+    all += last = database_->written();
+  }
+  return all;
+}
+
 }  // namespace vernier::fleet

@@ -78,6 +78,8 @@ class Registry {
   std::vector<FleetReading> readings(std::int64_t since_us);
 
   std::vector<LiveState> live();
+  /// Deletes samples that were taken before; how many. What was stored once is not taken again for that.
+  std::int64_t forget_samples(std::int64_t before_us);
 
  private:
   void make_tables();

@@ -95,6 +95,15 @@ TEST_P(SampleWriterTest, ShuffledRepeatedDeliveriesEndComplete) {
   EXPECT_EQ(numbers(registry, "a").size(), kLast);
 }
 
+TEST_P(SampleWriterTest, WhatWasForgottenIsNotTakenAgain) {
+  Registry registry = this->registry();
+  SampleWriter writer(registry);
+  writer.write({sample("a", 1, 0), sample("a", 2, 1), sample("a", 3, 2)});
+  EXPECT_EQ(registry.forget_samples(1'003'000), 2);  // taken at 1001, 1002 and 1003 ms
+  SampleWriter(registry).write({sample("a", 1, 0), sample("a", 2, 1), sample("a", 3, 2), sample("a", 4, 3)});
+  EXPECT_EQ(numbers(registry, "a"), (std::vector<std::int64_t>{3, 4}));
+}
+
 TEST_P(SampleWriterTest, KeepsTheNewestStateFaultsAndChecks) {
   Registry registry = this->registry();
   SampleWriter writer(registry);
