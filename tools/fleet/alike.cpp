@@ -18,6 +18,8 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kUsEachDay = 86'400e6;
+// A scatter below a thousandth of what is stated is rounding, and no measure for anything.
+constexpr double kLeastVariance = 1e-6;
 constexpr std::size_t kFewest = 3;  // machines, times, and readings of a machine whose rate is asked for
 
 /// Readings of one quantity in units of their uncertainty, and the columns of a model of them.
@@ -128,7 +130,7 @@ Clearest clearest_own(const AdditiveModel& model, const MatrixXd& x, const Solve
     const double amount = column.squaredNorm() - through.dot(now.normal.solve(through));
     if (!(amount > 1e-9 * column.squaredNorm())) continue;
     const double gain = std::pow(column.dot(now.rest), 2) / amount;
-    const double left = std::max(now.sum - gain, 1e-300);
+    const double left = std::max(now.sum - gain, kLeastVariance * (now.freedom - 1));
     const double log_p = maths::log_f_tail(gain / (left / (now.freedom - 1)), 1, now.freedom - 1);
     if (log_p < best.log_p) best = {machine, log_p};
   }
@@ -162,7 +164,7 @@ Drift drift_of(const std::vector<FleetReading>& readings, const AlikeOptions& op
   const Solved still = solve(model.columns(false, own), y);
   const double bends = still.freedom - now.freedom;
   drift.common_p = std::exp(maths::log_f_tail(
-      std::max(still.sum - now.sum, 0.0) / bends / (std::max(now.sum, 1e-300) / now.freedom), bends,
+      std::max(still.sum - now.sum, 0.0) / bends / std::max(now.sum / now.freedom, kLeastVariance), bends,
       now.freedom));
   drift.common = drift.common_p < share;
   const auto levels = static_cast<Index>(drift.machines);

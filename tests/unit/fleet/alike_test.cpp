@@ -86,6 +86,17 @@ TEST(Alike, AMachinesOwnDriftIsToldBesideACommonCause) {
       << "one machine is no common cause";
 }
 
+TEST(Alike, ReadingsThatNeverChangeDriftNowhere) {
+  std::vector<FleetReading> readings;
+  for (const char* machine : {"a", "b", "c"})
+    for (int week = 0; week < 6; ++week)
+      readings.push_back({machine, "k", "", static_cast<std::int64_t>(7 * week * kUsADay), 1.0 / 3e5, 1e-7});
+  const Drift drift = drifts(readings, {}).at(0);
+  EXPECT_TRUE(drift.judged);
+  EXPECT_FALSE(drift.common);
+  EXPECT_TRUE(drift.own.empty());
+}
+
 TEST(Alike, TooLittleIsNotJudged) {
   DrawnFleet drawn;
   drawn.machines = 2;
