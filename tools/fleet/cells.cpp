@@ -22,9 +22,12 @@ std::int64_t whole(const Cell& cell) {
 
 double real(const Cell& cell) {
   if (!cell) return 0;
-  const auto value = text::parse_number(*cell);
-  if (!value) throw DatabaseError("\"" + *cell + "\" is no number");
-  return *value;
+  // Evidence may be beyond what the formats take for a number.
+  double value = 0;
+  const auto [end, error] = std::from_chars(cell->data(), cell->data() + cell->size(), value);
+  if (error != std::errc() || end != cell->data() + cell->size())
+    throw DatabaseError("\"" + *cell + "\" is no number");
+  return value;
 }
 
 }  // namespace vernier::fleet

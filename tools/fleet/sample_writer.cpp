@@ -75,7 +75,8 @@ bool SampleWriter::take(const DeviceData& one, Batch& batch) {
   const auto number = count_of(one.payload.find(kNumberMetric)),
              after = count_of(one.payload.find(kAfterMetric));
   if (!spool || !number || !after || *after >= *number) return true;  // of another make of node
-  if (*number > std::uint64_t{INT64_MAX}) return true;
+  constexpr std::uint64_t kLatestMs = 253'402'300'800'000;            // the year 10000
+  if (*number > std::uint64_t{INT64_MAX} || one.payload.find(kNumberMetric)->time_ms > kLatestMs) return true;
   const Cursor& kept = cursor(*spool, one.gateway);
   const auto [at, fresh] = batch.after.try_emplace(*spool, kept.stored);
   if (fresh) batch.before[*spool] = kept.stored;

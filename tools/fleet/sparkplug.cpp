@@ -32,6 +32,27 @@ constexpr std::array<std::string_view, 8> kKinds = {"NBIRTH", "NDEATH", "NDATA",
                                                     "DBIRTH", "DDEATH", "DDATA", "DCMD"};
 constexpr std::string_view kRoot = "spBv1.0";
 
+/// UTF-8 without NUL (RFC 3629): what every database takes as a text.
+bool is_text(std::string_view text) {
+  for (std::size_t at = 0; at < text.size();) {
+    const auto first = static_cast<unsigned char>(text[at++]);
+    const int more = first < 0x80                    ? 0
+                     : first >= 0xC2 && first < 0xE0 ? 1
+                     : (first & 0xF0u) == 0xE0       ? 2
+                     : first >= 0xF0 && first < 0xF5 ? 3
+                                                     : -1;
+    if (first == 0 || more < 0) return false;
+    std::uint32_t letter = more == 0 ? first : first & (0x3Fu >> static_cast<unsigned>(more));
+    for (int i = 0; i < more; ++i, ++at) {
+      if (at == text.size() || (static_cast<unsigned char>(text[at]) & 0xC0u) != 0x80u) return false;
+      letter = letter << 6 | (static_cast<unsigned char>(text[at]) & 0x3Fu);
+    }
+    constexpr std::uint32_t kLeast[] = {0, 0x80, 0x800, 0x10000};
+    if (letter < kLeast[more] || letter > 0x10FFFF || (letter >= 0xD800 && letter < 0xE000)) return false;
+  }
+  return true;
+}
+
 struct PutValue {
   Message::Metric& to;
   void operator()(double value) const { to.set_datatype(kDouble), to.set_double_value(value); }
@@ -61,6 +82,7 @@ std::optional<MetricValue> value_of(const Message::Metric& metric) {
     case Message::Metric::kBooleanValue:
       return metric.boolean_value();
     case Message::Metric::kStringValue:
+      if (!is_text(metric.string_value())) return {};
       return metric.string_value();
     case Message::Metric::kLongValue:
       if (type == kInt64) return static_cast<std::int64_t>(metric.long_value());
@@ -104,7 +126,7 @@ std::optional<SparkplugPayload> decode(std::string_view bytes) {
   if (message.has_seq()) payload.seq = message.seq();
   for (const Message::Metric& metric : message.metrics()) {
     std::optional<MetricValue> value = value_of(metric);
-    if (!value || metric.name().empty()) continue;
+    if (!value || metric.name().empty() || !is_text(metric.name())) continue;
     payload.metrics.push_back({metric.name(), std::move(*value),
                                metric.has_timestamp() ? metric.timestamp() : payload.time_ms,
                                metric.is_historical()});
@@ -164,7 +186,7 @@ std::optional<bool> online_of(std::string_view state) {
 }
 
 bool fits_a_topic(std::string_view name) {
-  if (name.empty() || name.size() > 200) return false;
+  if (name.empty() || name.size() > 200 || !is_text(name)) return false;
   return std::none_of(name.begin(), name.end(), [](char c) {
     return c == '+' || c == '/' || c == '#' || static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
   });

@@ -31,7 +31,7 @@ struct SparkplugPayload {
 };
 
 /// Bytes as they travel, and back; nothing where they are no payload. Metrics of types that are not read
-/// here, and those that are null, are left out. tool.
+/// here, that are null or whose text is none (UTF-8 without NUL) are left out. tool.
 std::string encode(const SparkplugPayload& payload);
 std::optional<SparkplugPayload> decode(std::string_view bytes);
 

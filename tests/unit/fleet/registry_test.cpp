@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/fleet/registry.h"
 
+#include <limits>
 #include <map>
 
 #include "tests/unit/fleet/databases.h"
@@ -39,12 +40,15 @@ TEST_P(RegistryTest, KeepsMachinesCalibrationsAndChecks) {
   one.machine = "nobody has added it", one.at_us = 300;
   EXPECT_EQ(registry.calibrations("other").size(), 0u);
 
-  const FleetCheck check{odd, "monday", "valid", "nothing", 0.25, 100, 1000};
+  FleetCheck check{odd, "monday", "valid", "nothing", 1.0440707723548708e268, 100, 1000};
   const std::vector<FleetReading> readings = {{odd, "sxy", "rad", 1000, 1.25e-6, 1e-7}};
   EXPECT_TRUE(registry.put(check, readings));
   EXPECT_FALSE(registry.put(check, readings)) << "a check counts once";
   ASSERT_EQ(registry.checks(odd).size(), 1u);
-  EXPECT_EQ(registry.checks(odd)[0].evidence, 0.25);
+  EXPECT_EQ(registry.checks(odd)[0].evidence, 1.0440707723548708e268);
+  check.label = "tuesday", check.evidence = std::numeric_limits<double>::max();
+  EXPECT_TRUE(registry.put(check, {}));
+  EXPECT_EQ(registry.checks(odd)[1].evidence, std::numeric_limits<double>::max());
   ASSERT_EQ(registry.readings(0).size(), 1u);
   EXPECT_EQ(registry.readings(0)[0].value, 1.25e-6);
   EXPECT_TRUE(registry.readings(1001).empty());

@@ -18,12 +18,26 @@ TEST(Sparkplug, PayloadComesBackAsItWas) {
                      {"b", std::int64_t{-3}, 1, true},
                      {"c", UINT64_MAX, 2},
                      {"d", true, 3},
-                     {"e", std::string("\u00b5 \0 x", 5), 4}};
+                     {"e", std::string("\u00b5 \u20ac \U0001F9ED x"), 4}};
   const auto back = decode(encode(payload));
   ASSERT_TRUE(back.has_value());
   EXPECT_EQ(back->time_ms, payload.time_ms);
   EXPECT_EQ(back->seq, payload.seq);
   EXPECT_EQ(back->metrics, payload.metrics);
+}
+
+TEST(Sparkplug, WhatIsNoTextIsLeftOut) {
+  for (const std::string& none :
+       {std::string("a\0b", 3), std::string("\xff"), std::string("\xc0\x80"), std::string("\xed\xa0\x80"),
+        std::string("\xe2\x82"), std::string("\xf5\x80\x80\x80"), std::string("\xc3x")}) {
+    SparkplugPayload payload;
+    payload.metrics = {{"good", none}, {none, 1.0}, {"kept", 2.0}};
+    const auto read = decode(encode(payload));
+    ASSERT_TRUE(read.has_value());
+    ASSERT_EQ(read->metrics.size(), 1u);
+    EXPECT_EQ(read->metrics[0].name, "kept");
+    EXPECT_FALSE(fits_a_topic("a" + none));
+  }
 }
 
 // Bytes by hand from the specification's table of fields: timestamp = 1, metrics = 2, seq = 3; name = 1,
