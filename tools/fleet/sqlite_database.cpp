@@ -5,6 +5,8 @@
 
 #include <unordered_map>
 
+#include "tools/text/numbers.h"
+
 namespace vernier::fleet {
 namespace {
 
@@ -71,9 +73,14 @@ class SqliteDatabase : public Database {
   static Row row_of(sqlite3_stmt* statement) {
     Row row;
     for (int i = 0; i < sqlite3_column_count(statement); ++i) {
-      const auto* const text = reinterpret_cast<const char*>(sqlite3_column_text(statement, i));
+      // As a text the library would give 15 digits.
+      if (sqlite3_column_type(statement, i) == SQLITE_FLOAT) {
+        row.emplace_back(text::number_text(sqlite3_column_double(statement, i)));
+        continue;
+      }
+      const auto* const word = reinterpret_cast<const char*>(sqlite3_column_text(statement, i));
       const auto bytes = static_cast<std::size_t>(sqlite3_column_bytes(statement, i));
-      row.push_back(text == nullptr ? Cell() : Cell(std::string(text, bytes)));
+      row.push_back(word == nullptr ? Cell() : Cell(std::string(word, bytes)));
     }
     return row;
   }
