@@ -58,6 +58,9 @@ void register_import_tables(CLI::App& vernier);
 namespace features_cli {
 void register_features(CLI::App& vernier);
 }  // namespace features_cli
+namespace fleet_cli {
+void register_fleet(CLI::App& vernier);
+}  // namespace fleet_cli
 namespace fit_cli {
 void register_fit(CLI::App& vernier);
 }  // namespace fit_cli

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "tools/commands/command.h"
+#include "tools/commands/upload_kinds.h"
 #include "tools/compile/compile.h"
 #include "tools/safety/safety_sheet.h"
 #include "tools/text/error.h"
@@ -84,8 +85,7 @@ std::uint32_t security_of(const Arguments& arguments, const SlotsReply& slots) {
 }
 
 void send(const Arguments& arguments, upload::Client& client) {
-  const std::vector<std::uint8_t> image = read_image(arguments.directory);
-  require_safe(arguments.directory);
+  const std::vector<std::uint8_t> image = safe_image(arguments.directory);
   const auto key = upload::given_key(arguments.key);
   if (!key)
     throw text::InputError(
@@ -124,6 +124,12 @@ void run(const Arguments& arguments) {
 }
 
 }  // namespace
+
+std::vector<std::uint8_t> safe_image(const std::string& directory) {
+  std::vector<std::uint8_t> image = read_image(directory);
+  require_safe(directory);
+  return image;
+}
 
 void register_upload(CLI::App& vernier) {
   const auto arguments = std::make_shared<Arguments>();

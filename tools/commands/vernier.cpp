@@ -46,6 +46,7 @@ constexpr vernier::commands::RegisterCommand kCommands[] = {
     vernier::commands::probe_cli::register_probe_cal,
     vernier::commands::probe_cli::register_feature,
     vernier::commands::check_cli::register_check,
+    vernier::commands::fleet_cli::register_fleet,
     vernier::commands::correct_cli::register_correct,
     vernier::commands::pose_cli::register_pose,
     vernier::commands::solve_cli::register_solve,

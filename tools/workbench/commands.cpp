@@ -6,12 +6,14 @@
 #include <algorithm>
 
 #include "tools/text/error.h"
+#include "tools/text/words.h"
 
 namespace vernier::workbench {
 namespace {
 
-enum class FieldKind : std::uint8_t { kIn, kInList, kOut, kText, kTextList, kNumber, kFlag };
-constexpr const char* kFieldKinds[] = {"file", "files", "output", "text", "texts", "number", "flag"};
+enum class FieldKind : std::uint8_t { kIn, kInList, kOut, kText, kTextList, kNumber, kFlag, kRegistry };
+constexpr const char* kFieldKinds[] = {"file",  "files",  "output", "text",
+                                       "texts", "number", "flag",   "registry"};
 
 /// A field of a request and where it stands in the command: behind `option`, or as a word of its own.
 struct Field {
@@ -19,6 +21,7 @@ struct Field {
   FieldKind kind;
   const char* option = "";
   bool required = false;
+  const char* words = "";  // the only ones that are taken, a blank between two; empty: any
 };
 
 struct Allowed {
@@ -139,6 +142,12 @@ const std::vector<Allowed>& allowed() {
         {"key", K::kIn, "--key"}}},
       {"board", true, false, {{"what", K::kText, "", true}, url, {"key", K::kIn, "--key"}}},
       {"status", true, false, {url}},
+      // Only what reads: a fleet is not changed from a page.
+      {"fleet",
+       false,
+       false,
+       {{"what", K::kText, "", true, "status due alike jobs list"},
+        {"registry", K::kRegistry, "--registry", true}}},
   };
   return kAll;
 }
@@ -171,11 +180,22 @@ std::string word_of(const Field& field, const nlohmann::json& value, const Proje
       project.writable(name);
       return name;
     }
+    case FieldKind::kRegistry: {
+      // A server, or a file of the project.
+      const std::string place = text_of(field, value);
+      if (!place.starts_with("postgresql://") && !place.starts_with("postgres://")) project.existing(place);
+      return place;
+    }
     case FieldKind::kNumber:
       if (!value.is_number()) refuse(field, "must be a number");
       return fmt::format("{}", value.get<double>());
-    default:
-      return text_of(field, value);
+    default: {
+      std::string text = text_of(field, value);
+      const std::vector<std::string> words = text::words_in(field.words, " ");
+      if (!words.empty() && std::find(words.begin(), words.end(), text) == words.end())
+        refuse(field, "is none of " + std::string(field.words));
+      return text;
+    }
   }
 }
 

@@ -59,6 +59,7 @@ const std::vector<Room>& rooms_of_tools() {
       {"upload", {"maths", "text"}},
       {"map", {"import", "kinematics", "maths", "model", "text"}},
       {"check", {"effects", "fit", "maths", "model", "text"}},
+      {"fleet", {"check", "maths", "text", "upload"}},
       {"offline", {"kinematics", "maths", "model", "text"}},
       {"tolerance", {"effects", "fit", "kinematics", "maths", "model", "offline", "text"}},
       {"plan", {"check", "diagnose", "effects", "fit", "maths", "model", "text", "tolerance"}},

@@ -58,6 +58,20 @@ TEST(WorkbenchCommand, IsWhatAPersonWouldType) {
       "vernier upload --confirm --to tcp://127.0.0.1:1502");
 }
 
+TEST(WorkbenchCommand, LooksAtAFleetAndChangesNothingOfIt) {
+  const Rig rig;
+  EXPECT_EQ(rig.typed({{"command", "fleet"}, {"what", "due"}, {"registry", "postgresql://u@h/fleet"}}),
+            "vernier fleet due --registry postgresql://u@h/fleet");
+  EXPECT_EQ(rig.typed({{"command", "fleet"}, {"what", "alike"}, {"registry", "m.xml"}}),
+            "vernier fleet alike --registry m.xml");
+  for (const char* what : {"rollout", "forget", "gateway", "work", "enqueue", "add", "", "status due"})
+    EXPECT_THROW(rig.typed({{"command", "fleet"}, {"what", what}, {"registry", "m.xml"}}), InputError)
+        << what;
+  for (const char* place : {"../fleet.db", "/tmp/fleet.db", "none.db", "--x", "postgresqlx://h"})
+    EXPECT_THROW(rig.typed({{"command", "fleet"}, {"what", "due"}, {"registry", place}}), InputError)
+        << place;
+}
+
 TEST(WorkbenchCommand, RefusesWhatIsNotInTheTable) {
   const Rig rig;
   const json good = {

@@ -131,7 +131,7 @@ async function exports(page) {
   );
   await press('PNG');
   await page.until("window.saved.type === 'image/png' && window.saved.size > 1000", 'the PNG');
-  for (const name of ['project', 'compare', 'diagnose', 'add', 'board']) {
+  for (const name of ['project', 'compare', 'diagnose', 'add', 'board', 'fleet']) {
     await view(page, name);
     assert.ok(await page.evaluate('document.documentElement.scrollWidth <= innerWidth'), `${name} fits 1280 px`);
   }

@@ -7,6 +7,7 @@ import { cancel, job, refresh } from './api.js';
 import { boardView } from './board.js';
 import { compareView } from './compare.js';
 import { diagnoseView } from './diagnose.js';
+import { fleetView } from './fleet.js';
 import { guide } from './guide.js';
 import { redrawAll } from './plot.js';
 import { choose, projectView } from './project.js';
@@ -18,6 +19,7 @@ const kViews = [
   ['diagnose', 'Diagnose', diagnoseView],
   ['add', 'Add and watch', addView],
   ['board', 'Compile and upload', boardView],
+  ['fleet', 'Fleet', fleetView],
 ];
 
 const views = new Map();

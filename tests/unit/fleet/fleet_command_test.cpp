@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `vernier fleet` as a user calls it, on a file.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "tools/text/files.h"
+
+namespace vernier::fleet_command_test {
+
+using namespace vernier::text;
+namespace {
+
+constexpr const char* kMachineFile = R"xml(<machine name="m"><variables>
+  <static><k value="0" nominal="0"/></static>
+  <machineaxes><X rotary="false" min="0" max="600" maxcorrection="0.2" maxslew="5"/></machineaxes></variables>
+  <transforms><sixdof n="1" X="X+k*X" Y="0" Z="0" rX="0" rY="0" rZ="0"/></transforms></machine>)xml";
+
+class FleetCommand : public testing::Test {
+ protected:
+  FleetCommand() { std::filesystem::create_directories(folder_); }
+  ~FleetCommand() override { std::filesystem::remove_all(folder_); }
+  int run(const std::string& words) const {
+    const int status = std::system(
+        ("cd '" + folder_ + "' && export VERNIER_REGISTRY=fleet.db PATH=" VERNIER_BIN_DIR ":$PATH && { " +
+         words + "; } >out.txt 2>&1")
+            .c_str());
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+  std::string said() const { return read_file(folder_ + "/out.txt"); }
+  nlohmann::json json(const std::string& words) const {
+    EXPECT_EQ(run(words + " --json answer.json"), 0) << said();
+    return nlohmann::json::parse(read_file(folder_ + "/answer.json"));
+  }
+  const std::string folder_ = testing::TempDir() + "fleet_command_" + std::to_string(getpid()) + "_" +
+                              testing::UnitTest::GetInstance()->current_test_info()->name();
+};
+
+TEST_F(FleetCommand, RecordsACalibrationAndItsChecks) {
+  // GIVEN a machine that was fitted, compiled and checked
+  write_file(folder_ + "/m.xml", kMachineFile);
+  std::string rows = "X[mm],x[mm],u[mm]\n";
+  for (int i = 0; i <= 20; ++i)
+    rows += std::to_string(30 * i) + "," + std::to_string(30 * i + 0.003 * i + (i % 3) * 1e-4) + ",0.0002\n";
+  write_file(folder_ + "/survey.csv", rows);
+  ASSERT_EQ(run("vernier fit m.xml survey.csv -o fitted.xml && vernier compile fitted.xml -o image && "
+                "vernier check fitted.xml survey.csv --history checks.json --label monday --json check.json"),
+            0)
+      << said();
+  // WHEN it is entered
+  ASSERT_EQ(run("vernier fleet add VMC-3 --url tcp://10.0.0.3 --check-days 7 && vernier fleet check VMC-3 "
+                "--result check.json "
+                "--history checks.json --at 2026-11-01 && vernier fleet record VMC-3 --model fitted.xml "
+                "--image image "
+                "--data survey.csv --signed-by inspector --against survey.csv"),
+            0)
+      << said();
+  // THEN it stands there with all that it rests on, and is due
+  const auto list = json("vernier fleet list")["machines"][0];
+  EXPECT_EQ(list["calibration"]["signed_by"], "inspector");
+  EXPECT_EQ(list["calibration"]["data_hash"], list["calibration"]["checked_hash"]);
+  EXPECT_EQ(list["calibration"]["image"].get<std::string>().size(), 16u);
+  EXPECT_EQ(json("vernier fleet due")["machines"][0]["why"], "not checked since its calibration");
+  EXPECT_EQ(run("vernier fleet check VMC-3 --result check.json --history checks.json --at 2026-11-01"), 2)
+      << "it is there";
+  const auto alike = json("vernier fleet alike")["quantities"];
+  ASSERT_FALSE(alike.empty());
+  EXPECT_FALSE(alike[0]["judged"]) << "one machine is no fleet";
+}
+
+TEST_F(FleetCommand, BadInputIsNamed) {
+  ASSERT_EQ(run("vernier fleet add a"), 0) << said();
+  for (const char* words :
+       {"vernier fleet add a/b", "vernier fleet add a --url nonsense://x",
+        "vernier fleet record b --model m.xml --signed-by w", "vernier fleet check a --result out.txt",
+        "vernier fleet check b --result out.txt", "vernier fleet status b",
+        "vernier fleet enqueue night true --machine b", "vernier fleet gateway none.toml",
+        "vernier fleet alike --since yesterday", "vernier fleet metrics --listen nowhere",
+        "vernier fleet list --registry /none/such/folder/f.db", "vernier fleet jobs --again"}) {
+    EXPECT_EQ(run(words), 1) << words << "\n" << said();
+    EXPECT_NE(said().find("vernier: "), std::string::npos) << words;
+  }
+  write_file(folder_ + "/text",
+             "this is no database, and long enough to be none in every way that there is of being one.");
+  EXPECT_EQ(run("vernier fleet list --registry text"), 1) << said();
+}
+
+TEST_F(FleetCommand, MassWorkSaysWhatFailed) {
+  ASSERT_EQ(run("vernier fleet add a && vernier fleet add b && vernier fleet enqueue night 'echo {machine} "
+                "says so; test {machine} = a'"),
+            0)
+      << said();
+  EXPECT_EQ(run("vernier fleet work night --workers 2"), 2) << said();
+  const auto batch = json("vernier fleet jobs night")["batches"][0];
+  EXPECT_EQ(batch["done"], 1);
+  EXPECT_EQ(batch["jobs"][1]["said"], "b says so");
+  EXPECT_EQ(run("vernier fleet jobs night --again && vernier fleet enqueue night true"), 0) << said();
+  EXPECT_NE(said().find("0 jobs added, 2 machines had theirs"), std::string::npos) << said();
+}
+
+TEST_F(FleetCommand, GatewayAndIngestEndWhenTheyAreTold) {
+  write_file(folder_ + "/g.toml",
+             "[gateway]\nname = \"g\"\nstore = \"g.db\"\nbroker = \"tcp://127.0.0.1:1\"\n[[board]]\nmachine "
+             "= \"m\"\nurl = \"tcp://127.0.0.1:1\"\n");
+  EXPECT_EQ(run("timeout -s TERM 3 vernier fleet gateway g.toml; test $? = 124"), 0) << said();
+  EXPECT_NE(said().find("no board answers"), std::string::npos) << said();
+  EXPECT_EQ(run("timeout -s TERM 2 vernier fleet ingest --broker tcp://127.0.0.1:1; test $? = 124"), 0)
+      << said();
+  EXPECT_NE(said().find("no broker there"), std::string::npos) << said();
+}
+
+}  // namespace
+}  // namespace vernier::fleet_command_test

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/fleet/sample_writer.h"
+
+#include <algorithm>
+#include <random>
+
+#include "tests/unit/fleet/databases.h"
+#include "tools/fleet/cells.h"
+
+namespace vernier::sample_writer_test {
+
+using namespace vernier::fleet;
+namespace {
+
+DeviceData sample(const std::string& spool, std::uint64_t number, std::uint64_t after,
+                  const std::string& machine = "m", const std::string& fault = "none") {
+  DeviceData one{"gateway of " + spool, machine, {}};
+  one.payload.metrics = {{"Board/Tick", number, 1000 + number},
+                         {"Board/Fault", fault, 1000 + number},
+                         {"Axes/X/Position", 0.5 * static_cast<double>(number), 1000 + number},
+                         {std::string(kSpoolMetric), spool, 1000 + number},
+                         {std::string(kNumberMetric), number, 1000 + number},
+                         {std::string(kAfterMetric), after, 1000 + number}};
+  return one;
+}
+
+class SampleWriterTest : public OnBothDatabases {
+ protected:
+  static std::vector<std::int64_t> numbers(Registry& registry, const std::string& spool) {
+    std::vector<std::int64_t> all;
+    for (const Row& row :
+         registry.database().run("SELECT number FROM sample WHERE spool = $1 ORDER BY number", {spool}))
+      all.push_back(whole(row[0]));
+    return all;
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Fleet, SampleWriterTest, testing::Values("sqlite", "postgres"), name_of_database);
+
+TEST_P(SampleWriterTest, RepeatedAndMissingRecordsComeOutEachOnce) {
+  Registry registry = this->registry();
+  SampleWriter writer(registry);
+  auto receipts =
+      writer.write({sample("a", 1, 0), sample("a", 2, 1), sample("a", 2, 1), sample("b", 1, 0, "n")});
+  EXPECT_EQ(receipts["gateway of a"].stored, 2u);
+  EXPECT_FALSE(receipts["gateway of a"].resend);
+  receipts = writer.write({sample("a", 4, 3)});
+  EXPECT_EQ(receipts["gateway of a"].stored, 2u);
+  EXPECT_TRUE(receipts["gateway of a"].resend) << "number 3 is missing";
+  // A writer that has just been started asks the database.
+  SampleWriter other(registry);
+  receipts = other.write({sample("a", 1, 0), sample("a", 2, 1), sample("a", 3, 2), sample("a", 4, 3)});
+  EXPECT_EQ(receipts["gateway of a"].stored, 4u);
+  EXPECT_EQ(numbers(registry, "a"), (std::vector<std::int64_t>{1, 2, 3, 4}));
+  EXPECT_EQ(numbers(registry, "b"), (std::vector<std::int64_t>{1}));
+  EXPECT_TRUE(registry.database().run("SELECT * FROM loss").empty());
+}
+
+TEST_P(SampleWriterTest, WhatAGatewayGaveUpIsWrittenDownAsLost) {
+  Registry registry = this->registry();
+  SampleWriter writer(registry);
+  writer.write({sample("a", 1, 0), sample("a", 5, 1), sample("a", 6, 5)});
+  const auto lost = registry.database().run("SELECT after_number, before_number FROM loss");
+  ASSERT_EQ(lost.size(), 1u);
+  EXPECT_EQ(whole(lost[0][0]), 1);
+  EXPECT_EQ(whole(lost[0][1]), 5);
+}
+
+TEST_P(SampleWriterTest, TwoWritersAtOnceDoNotDouble) {
+  Registry first_registry = this->registry(), second_registry = this->registry();
+  SampleWriter first(first_registry), second(second_registry);
+  first.write({sample("a", 1, 0)});
+  second.write({sample("a", 1, 0), sample("a", 2, 1)});
+  // The first still believes that 1 is the last.
+  EXPECT_THROW(first.write({sample("a", 2, 1), sample("a", 3, 2)}), DatabaseError);
+  const auto receipts = first.write({sample("a", 2, 1), sample("a", 3, 2)});
+  EXPECT_EQ(receipts.at("gateway of a").stored, 3u);
+  EXPECT_EQ(numbers(first_registry, "a"), (std::vector<std::int64_t>{1, 2, 3}));
+}
+
+TEST_P(SampleWriterTest, ShuffledRepeatedDeliveriesEndComplete) {
+  Registry registry = this->registry();
+  std::mt19937 random(11);
+  constexpr std::uint64_t kLast = 60;
+  std::uint64_t stored = 0;
+  for (int round = 0; round < 400 && stored < kLast; ++round) {
+    SampleWriter writer(registry);
+    std::vector<DeviceData> some;
+    for (std::uint64_t n = stored - std::min<std::uint64_t>(stored, random() % 5) + 1;
+         n <= kLast && random() % 8 != 0; ++n)
+      if (random() % 10 != 0) some.push_back(sample("a", n, n - 1));
+    if (random() % 3 == 0) std::shuffle(some.begin(), some.end(), random);
+    for (const auto& [gateway, receipt] : writer.write(some)) stored = receipt.stored;
+  }
+  EXPECT_EQ(stored, kLast);
+  EXPECT_EQ(numbers(registry, "a").size(), kLast);
+}
+
+TEST_P(SampleWriterTest, WhatWasForgottenIsNotTakenAgain) {
+  Registry registry = this->registry();
+  SampleWriter writer(registry);
+  writer.write({sample("a", 1, 0), sample("a", 2, 1), sample("a", 3, 2)});
+  EXPECT_EQ(registry.forget_samples(1'003'000), 2);  // taken at 1001, 1002 and 1003 ms
+  SampleWriter(registry).write({sample("a", 1, 0), sample("a", 2, 1), sample("a", 3, 2), sample("a", 4, 3)});
+  EXPECT_EQ(numbers(registry, "a"), (std::vector<std::int64_t>{3, 4}));
+}
+
+TEST_P(SampleWriterTest, KeepsTheNewestStateFaultsAndChecks) {
+  Registry registry = this->registry();
+  SampleWriter writer(registry);
+  writer.write(
+      {sample("a", 1, 0), sample("a", 2, 1, "m", "position-jump"), sample("a", 3, 2, "m", "position-jump")});
+  // Another gateway's store brings an older sample later.
+  DeviceData old = sample("b", 1, 0);
+  for (Metric& metric : old.payload.metrics) metric.time_ms = 5;
+  writer.write({old});
+  const auto live = registry.live();
+  ASSERT_EQ(live.size(), 1u);
+  EXPECT_EQ(live[0].fault, "position-jump");
+  EXPECT_EQ(live[0].samples, 4);
+  EXPECT_EQ(live[0].gateway, "gateway of a");
+  EXPECT_TRUE(live[0].online);
+  EXPECT_EQ(live[0].values.at(2), std::pair(std::string("Axes/X/Position"), std::string("1.5")));
+  EXPECT_EQ(registry.database().run("SELECT * FROM fault_event").size(), 1u) << "one that lasts is one";
+  writer.online("gateway of a", "", false);
+  EXPECT_FALSE(registry.live()[0].online);
+
+  DeviceData checked = sample("a", 4, 3);
+  checked.payload.metrics.push_back({"Check/Time", std::int64_t{77}});
+  checked.payload.metrics.push_back({"Check/Verdict", std::string("changed")});
+  writer.write({checked});
+  DeviceData again = sample("a", 5, 4);
+  again.payload.metrics.insert(again.payload.metrics.end(), checked.payload.metrics.end() - 2,
+                               checked.payload.metrics.end());
+  SampleWriter(registry).write({again});
+  ASSERT_EQ(registry.checks("m").size(), 1u);
+  EXPECT_EQ(registry.checks("m")[0].verdict, "changed");
+}
+
+}  // namespace
+}  // namespace vernier::sample_writer_test

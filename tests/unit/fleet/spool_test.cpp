@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/fleet/spool.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+
+namespace vernier::spool_test {
+
+using namespace vernier::fleet;
+namespace {
+
+class SpoolFile : public testing::Test {
+ protected:
+  SpoolFile() { std::filesystem::create_directories(folder_); }
+  ~SpoolFile() override { std::filesystem::remove_all(folder_); }
+  static void put(Spool& spool, int count) {
+    std::vector<SpoolRecord> records(static_cast<std::size_t>(count),
+                                     SpoolRecord{0, "m", 5, std::string("\0\xff'", 3)});
+    spool.take(records);
+  }
+  const std::string folder_ = testing::TempDir() + "spool_" + std::to_string(getpid()) + "_" +
+                              testing::UnitTest::GetInstance()->current_test_info()->name();
+  const std::string file_ = folder_ + "/store.db";
+};
+
+TEST_F(SpoolFile, NumbersGoOnAfterItsGatewayEnds) {
+  std::string id;
+  {
+    Spool spool(file_, "g", 100);
+    id = spool.id();
+    put(spool, 3);
+    EXPECT_EQ(spool.next_birth(), 0u);
+  }
+  Spool spool(file_, "g", 100);
+  EXPECT_EQ(spool.id(), id);
+  EXPECT_EQ(spool.next_birth(), 1u);
+  put(spool, 1);
+  const auto records = spool.after(1, 10);
+  ASSERT_EQ(records.size(), 3u);
+  EXPECT_EQ(records[0].number, 2u);
+  EXPECT_EQ(records[2].number, 4u);
+  EXPECT_EQ(records[2].payload, std::string("\0\xff'", 3));
+}
+
+TEST_F(SpoolFile, RecordsLeaveWhenTheyAreStored) {
+  Spool spool(file_, "g", 100);
+  put(spool, 5);
+  spool.stored(3);
+  spool.stored(2);  // an old answer changes nothing
+  put(spool, 1);
+  EXPECT_EQ(spool.after(0, 10).front().number, 4u);
+  EXPECT_EQ(spool.dropped(), 0u);
+}
+
+TEST_F(SpoolFile, WithoutRoomTheOldestGoAndAreCounted) {
+  Spool spool(file_, "g", 4);
+  put(spool, 3);
+  put(spool, 3);
+  EXPECT_EQ(spool.after(0, 10).front().number, 3u);
+  EXPECT_EQ(spool.after(0, 10).size(), 4u);
+  EXPECT_EQ(spool.dropped(), 2u);
+  EXPECT_EQ(spool.gone(), 2u);
+}
+
+TEST_F(SpoolFile, ACopyForAnotherGatewayGetsAnIdOfItsOwn) {
+  std::string id;
+  {
+    Spool spool(file_, "g", 100);
+    id = spool.id();
+    put(spool, 4);
+    spool.stored(2);
+    put(spool, 1);
+  }
+  Spool spool(file_, "h", 100);
+  EXPECT_NE(spool.id(), id);
+  EXPECT_EQ(spool.after(0, 10).front().number, 1u);
+  EXPECT_EQ(spool.last(), 3u);
+  EXPECT_EQ(spool.stored(), 0u);
+}
+
+}  // namespace
+}  // namespace vernier::spool_test

@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <memory>
+
+#include "tools/check/history.h"
+#include "tools/commands/command.h"
+#include "tools/commands/fleet_kinds.h"
+#include "tools/compile/compile.h"
+#include "tools/fleet/check_readings.h"
+#include "tools/fleet/digest.h"
+#include "tools/fleet/sparkplug.h"
+#include "tools/text/error.h"
+#include "tools/text/words.h"
+#include "tools/upload/url.h"
+
+namespace vernier::commands::fleet_cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct AddArguments {
+  std::string registry, name, url, note;
+  double check_days = 0;
+};
+
+void run_add(const AddArguments& arguments) {
+  if (!fleet::fits_a_topic(arguments.name))
+    throw text::InputError({}, arguments.name, "a machine's name has none of + / # and is not empty");
+  if (!arguments.url.empty()) upload::parse_url(arguments.url);
+  open_registry(arguments.registry)
+      .put(fleet::FleetMachine{arguments.name, arguments.url, arguments.note, arguments.check_days,
+                               fleet::now_us()});
+}
+
+struct ListArguments {
+  std::string registry, machine, json;
+};
+
+Json or_text(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }
+
+Json machine_json(const fleet::FleetMachine& machine, const fleet::RecordedCalibration* runs) {
+  Json json = {{"machine", machine.name},
+               {"url", or_text(machine.url)},
+               {"note", machine.note},
+               {"check_days", machine.check_days},
+               {"added", fleet::utc_text(machine.added_us)}};
+  json["calibration"] = nullptr;
+  if (runs != nullptr)
+    json["calibration"] = {{"at", fleet::utc_text(runs->at_us)},
+                           {"model", runs->model},
+                           {"model_hash", runs->model_hash},
+                           {"image", or_text(runs->image)},
+                           {"data", runs->data},
+                           {"data_hash", runs->data_hash},
+                           {"signed_by", runs->signed_by},
+                           {"checked_against", runs->checked_against},
+                           {"checked_hash", runs->checked_hash}};
+  return json;
+}
+
+void run_list(const ListArguments& arguments) {
+  fleet::Registry registry = open_registry(arguments.registry);
+  if (!arguments.machine.empty()) registry.machine(arguments.machine);
+  const auto calibrations = registry.calibrations(arguments.machine);
+  Json all = Json::array();
+  std::FILE* const out = human_stream(arguments.json);
+  for (const fleet::FleetMachine& machine : registry.machines()) {
+    if (!arguments.machine.empty() && machine.name != arguments.machine) continue;
+    const auto runs = std::find_if(calibrations.begin(), calibrations.end(),
+                                   [&](const auto& one) { return one.machine == machine.name; });
+    const fleet::RecordedCalibration* const newest = runs == calibrations.end() ? nullptr : &*runs;
+    all.push_back(machine_json(machine, newest));
+    fmt::print(out, "{:<20} {:<28} {}\n", machine.name, machine.url,
+               newest == nullptr ? machine.note
+                                 : fmt::format("{} {} signed by {} {}", newest->image, newest->model,
+                                               newest->signed_by, fleet::utc_text(newest->at_us)));
+  }
+  write_json(arguments.json, {{"machines", all}});
+}
+
+void run_status(const ListArguments& arguments) {
+  fleet::Registry registry = open_registry(arguments.registry);
+  Json all = Json::array();
+  std::FILE* const out = human_stream(arguments.json);
+  for (const fleet::LiveState& one : registry.live()) {
+    if (!arguments.machine.empty() && one.machine != arguments.machine) continue;
+    Json json = {{"machine", one.machine},
+                 {"online", one.online},
+                 {"gateway", one.gateway},
+                 {"mode", one.mode},
+                 {"fault", one.fault},
+                 {"image", or_text(one.image)},
+                 {"at", fleet::utc_text(one.at_us)},
+                 {"samples", one.samples}};
+    for (const auto& [name, value] : one.values) json["values"][name] = Json::parse(value);
+    all.push_back(json);
+    fmt::print(out, "{:<20} {:<8} {:<10} {:<18} {:<17} {} samples, the last {}\n", one.machine,
+               one.online ? "online" : "AWAY", one.mode, one.fault == "none" ? "" : one.fault, one.image,
+               one.samples, fleet::utc_text(one.at_us));
+    if (arguments.machine.empty()) continue;
+    for (const auto& [name, value] : one.values) fmt::print(out, "  {:<40} {}\n", name, value);
+  }
+  if (!arguments.machine.empty() && all.empty())
+    throw text::InputError({}, arguments.machine, "nothing was heard of this machine yet");
+  write_json(arguments.json, {{"machines", all}});
+}
+
+struct RecordArguments {
+  std::string registry, machine, model, image, signed_by;
+  std::vector<std::string> data, against;
+};
+
+std::string hash_of_files(const std::vector<std::string>& files) {
+  std::string all;
+  for (const std::string& file : files) all += fleet::digest_of(text::read_file(file));
+  return files.empty() ? "" : files.size() == 1 ? all : fleet::digest_of(all);
+}
+
+void run_record(const RecordArguments& arguments) {
+  fleet::RecordedCalibration one;
+  one.machine = arguments.machine;
+  one.model = arguments.model;
+  one.model_hash = hash_of_files({arguments.model});
+  if (!arguments.image.empty()) {
+    const auto image = compile::load_image_dir(arguments.image);
+    one.image = fmt::format("{:016x}", image->view.header().fingerprint);
+  }
+  one.data = text::joined(arguments.data, " ");
+  one.data_hash = hash_of_files(arguments.data);
+  one.signed_by = arguments.signed_by;
+  one.checked_against = text::joined(arguments.against, " ");
+  one.checked_hash = hash_of_files(arguments.against);
+  one.at_us = fleet::now_us();
+  fleet::Registry registry = open_registry(arguments.registry);
+  registry.machine(one.machine);
+  registry.put(one);
+}
+
+struct CheckArguments {
+  std::string registry, machine, result, history, at;
+};
+
+void run_check(const CheckArguments& arguments) {
+  std::int64_t at_us = fleet::now_us();
+  if (!arguments.at.empty()) {
+    const auto at = fleet::parse_utc(arguments.at);
+    if (!at) throw text::InputError({}, arguments.at, "a time such as 2026-11-23T13:05:00Z is wanted");
+    at_us = *at;
+  }
+  fleet::FleetCheck check = fleet::parse_check(text::read_file(arguments.result), arguments.result);
+  check.machine = arguments.machine, check.at_us = at_us;
+  std::vector<fleet::FleetReading> readings;
+  if (!arguments.history.empty()) {
+    const auto history = check::parse_history(text::read_file(arguments.history), arguments.history);
+    if (history.checks.empty()) throw text::InputError({arguments.history, 0}, "", "no check stands in it");
+    check.label = history.checks.back().label;
+    readings = fleet::readings_of(history.checks.back(), arguments.machine, at_us);
+  }
+  fleet::Registry registry = open_registry(arguments.registry);
+  registry.machine(arguments.machine);
+  if (!registry.put(check, readings)) throw text::LimitNotMet("this check is in the registry already");
+}
+
+void add_machine_kinds(CLI::App& fleet) {
+  const auto add = std::make_shared<AddArguments>();
+  CLI::App* command = fleet.add_subcommand("add", "enter a machine, or change what is entered of it");
+  command->add_option("MACHINE", add->name, "its name; also the device of its topics")->required();
+  add_registry(*command, add->registry);
+  command->add_option("--url", add->url, "its board: tcp://HOST[:1502], rtu://DEVICE, can://INTERFACE");
+  command
+      ->add_option("--check-days", add->check_days,
+                   "a check is due so many days after the last one; 0: never")
+      ->check(CLI::Range(0.0, 1e5));
+  command->add_option("--note", add->note, "for people");
+  command->callback([add] { run_add(*add); });
+
+  const auto list = std::make_shared<ListArguments>();
+  command = fleet.add_subcommand("list", "machines, and the calibration that was last recorded for each");
+  command->add_option("MACHINE", list->machine, "only this one");
+  add_registry(*command, list->registry);
+  command->add_option("--json", list->json, "result for programs; - for standard output");
+  command->callback([list] { run_list(*list); });
+
+  const auto status = std::make_shared<ListArguments>();
+  command = fleet.add_subcommand("status", "what was last heard of each machine: online, mode, fault, image");
+  command->add_option("MACHINE", status->machine, "only this one, with all values");
+  add_registry(*command, status->registry);
+  command->add_option("--json", status->json, "result for programs; - for standard output");
+  command->callback([status] { run_status(*status); });
+}
+
+void add_forget(CLI::App& fleet) {
+  struct ForgetArguments {
+    std::string registry;
+    double days = 0;
+  };
+  const auto forget = std::make_shared<ForgetArguments>();
+  CLI::App* command = fleet.add_subcommand("forget", "delete samples that are older; all else stays");
+  add_registry(*command, forget->registry);
+  command->add_option("--days", forget->days, "samples of so many days are kept")
+      ->required()
+      ->check(CLI::Range(0.0, 1e5));
+  command->callback([forget] {
+    const auto before = fleet::now_us() - static_cast<std::int64_t>(forget->days * 86'400e6);
+    fmt::print("{} samples deleted\n", open_registry(forget->registry).forget_samples(before));
+  });
+}
+
+void add_record_kinds(CLI::App& fleet) {
+  const auto record = std::make_shared<RecordArguments>();
+  CLI::App* command = fleet.add_subcommand(
+      "record",
+      "write down what runs on a machine: model, image, data, who signed, what it was checked against");
+  command->add_option("MACHINE", record->machine, "its name in the registry")->required();
+  add_registry(*command, record->registry);
+  command->add_option("--model", record->model, "machine file (XML)")->required();
+  command->add_option("--image", record->image, "directory that `vernier compile` wrote");
+  command->add_option("--data", record->data, "measurement files that the model was fitted to");
+  command->add_option("--signed-by", record->signed_by, "who answers for it")->required();
+  command->add_option("--against", record->against, "measurement files that it was checked against");
+  command->footer("Files are written down by name and BLAKE2b-256. Exit status 0 done, 1 bad input.");
+  command->callback([record] { run_record(*record); });
+
+  const auto check = std::make_shared<CheckArguments>();
+  command = fleet.add_subcommand("check", "write down what `vernier check` answered for a machine");
+  command->add_option("MACHINE", check->machine, "its name in the registry")->required();
+  add_registry(*command, check->registry);
+  command->add_option("--result", check->result, "file of `vernier check --json`")->required();
+  command->add_option(
+      "--history", check->history,
+      "file of `vernier check --history`: what its last check reads of each parameter, for `alike`");
+  command->add_option("--at", check->at, "when it was measured (UTC): 2026-11-23T13:05:00Z; default: now");
+  command->footer("Exit status 0 done, 1 bad input, 2 this check is there already.");
+  command->callback([check] { run_check(*check); });
+}
+
+}  // namespace
+
+void add_registry(CLI::App& command, std::string& place) {
+  command.add_option("--registry", place, "postgresql://… or a file (or VERNIER_REGISTRY)")
+      ->envname("VERNIER_REGISTRY");
+}
+
+fleet::Registry open_registry(const std::string& place) {
+  if (place.empty())
+    throw text::InputError("--registry is missing: postgresql://USER@HOST/NAME, or a file for one machine");
+  return fleet::Registry(fleet::open_database(place));
+}
+
+void register_fleet(CLI::App& vernier) {
+  CLI::App* fleet = vernier.add_subcommand(
+      "fleet",
+      "Many machines: what their boards say, what is due, what drifts alike, images by stages, mass work");
+  fleet->require_subcommand(1);
+  add_machine_kinds(*fleet);
+  add_record_kinds(*fleet);
+  add_forget(*fleet);
+  add_services(*fleet);
+  add_trends(*fleet);
+  add_rollout(*fleet);
+  add_jobs(*fleet);
+}
+
+}  // namespace vernier::commands::fleet_cli

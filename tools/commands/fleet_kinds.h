@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "tools/fleet/registry.h"
+
+namespace vernier::commands::fleet_cli {
+
+/// Adds `--registry`, which VERNIER_REGISTRY stands in for. tool.
+void add_registry(CLI::App& command, std::string& place);
+/// The registry that was named. Throws InputError where none was, or it is away. tool.
+fleet::Registry open_registry(const std::string& place);
+
+/// Runs something that goes on until SIGINT, SIGTERM or SIGHUP says stop. tool.
+void until_told(const std::function<void(const std::atomic<bool>& stop)>& run);
+/// A line on standard error, whole, from any thread. tool.
+void say_line(const std::string& line);
+
+/// The kinds of `vernier fleet`, a file each.
+void add_services(CLI::App& fleet);
+void add_jobs(CLI::App& fleet);
+void add_trends(CLI::App& fleet);
+void add_rollout(CLI::App& fleet);
+
+}  // namespace vernier::commands::fleet_cli

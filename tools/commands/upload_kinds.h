@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace vernier::commands::upload_cli {
+
+/// The image of a directory that `vernier compile` wrote, after the sheet "safe to run?" once more. Throws
+/// InputError where it is none, LimitNotMet where it may not run. tool.
+std::vector<std::uint8_t> safe_image(const std::string& directory);
+
+}  // namespace vernier::commands::upload_cli

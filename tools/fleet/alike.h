@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tools/fleet/registry.h"
+
+namespace vernier::fleet {
+
+struct AlikeOptions {
+  double every_days = 7;       // readings of one such span count as of one time
+  double false_alarms = 0.01;  // chance of telling any drift, common or own, where there is none
+};
+
+/// A machine that drifts beside the others; the quantity's unit.
+struct OwnDrift {
+  std::string machine;
+  double per_day = 0, std = 0;
+};
+
+/// What one quantity does over the fleet.
+struct Drift {
+  std::string quantity, unit;
+  std::size_t machines = 0, times = 0, readings = 0;
+  bool judged = false;      // false: fewer than three machines or times
+  bool common = false;      // all move together
+  double common_p = 1;      // chance of such a common movement of quiet machines
+  double common_swing = 0;  // largest less smallest of the common curve
+  double scatter = 1;       // of the readings about the answer, over their stated uncertainty
+  std::vector<std::pair<std::int64_t, double>> curve;  // of what is common: time, value (0 at the first)
+  std::vector<OwnDrift> own;                           // the clearest first
+};
+
+/// Tells what the machines of a fleet do alike from what one does alone: reading = level of the machine +
+/// common curve of time + own rate x time, least squares weighted by the stated uncertainties. Own rates are
+/// let in one by one, the clearest first, as long as an F test tells them at false_alarms / (2 x machines x
+/// quantities); the common curve by an F test at false_alarms / (2 x quantities). So what most machines do is
+/// common; a scatter beyond the stated uncertainty widens everything. Readings count as independent and
+/// normal. tool.
+std::vector<Drift> drifts(const std::vector<FleetReading>& readings, const AlikeOptions& options);
+
+}  // namespace vernier::fleet

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/fleet/database.h"
+
+#include <algorithm>
+
+#include "tools/fleet/postgres_database.h"
+#include "tools/fleet/sqlite_database.h"
+#include "tools/text/error.h"
+
+namespace vernier::fleet {
+
+Transaction::~Transaction() {
+  if (done_) return;
+  try {
+    database_.run("ROLLBACK");
+  } catch (const DatabaseError&) {
+    // A connection that is gone has taken its transaction with it.
+  }
+}
+
+bool is_server(const std::string& place) {
+  return place.starts_with("postgresql://") || place.starts_with("postgres://");
+}
+
+std::unique_ptr<Database> open_database(const std::string& place) {
+  try {
+    if (is_server(place)) return open_postgres(place);
+    return open_sqlite(place);
+  } catch (const DatabaseError& error) {
+    throw text::InputError({}, place, error.what());
+  }
+}
+
+void insert_rows(Database& database, const std::string& head, const std::vector<Row>& rows,
+                 const std::string& tail) {
+  constexpr std::size_t kRowsAStatement = 64;
+  for (std::size_t at = 0; at < rows.size(); at += kRowsAStatement) {
+    const std::size_t end = std::min(at + kRowsAStatement, rows.size());
+    std::string sql = head + " VALUES ";
+    std::vector<Cell> values;
+    for (std::size_t row = at; row < end; ++row) {
+      sql += row == at ? "(" : ",(";
+      for (std::size_t column = 0; column < rows[row].size(); ++column) {
+        values.push_back(rows[row][column]);
+        sql += (column == 0 ? "$" : ",$") + std::to_string(values.size());
+      }
+      sql += ")";
+    }
+    database.run(sql + " " + tail, values);
+  }
+}
+
+}  // namespace vernier::fleet

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace vernier::fleet {
+
+/// A value of a row as text; nothing: NULL.
+using Cell = std::optional<std::string>;
+using Row = std::vector<Cell>;
+
+/// The database has failed or is away; what was begun did not happen.
+class DatabaseError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// A database that holds the registry: statements are written once, in what SQLite (3.35 on) and PostgreSQL
+/// share. tool.
+class Database {
+ public:
+  virtual ~Database() = default;
+  /// One statement with values for $1, $2, ...; its rows. Throws DatabaseError.
+  virtual std::vector<Row> run(const std::string& sql, const std::vector<Cell>& values = {}) = 0;
+  /// Rows that the last statement wrote.
+  virtual std::int64_t written() const = 0;
+  /// What begins a transaction that writes.
+  virtual const char* begin() const = 0;
+  /// What makes a SELECT pass over rows that somebody else has in hand; empty where writers stand in line.
+  virtual const char* skip_locked() const = 0;
+  /// "PostgreSQL 15.8 at ..." for people.
+  virtual std::string name() const = 0;
+};
+
+/// A transaction that is undone unless commit() is reached.
+class Transaction {
+ public:
+  explicit Transaction(Database& database) : database_(database) { database_.run(database_.begin()); }
+  ~Transaction();
+  Transaction(const Transaction&) = delete;
+  Transaction& operator=(const Transaction&) = delete;
+  void commit() {
+    database_.run("COMMIT");
+    done_ = true;
+  }
+
+ private:
+  Database& database_;
+  bool done_ = false;
+};
+
+/// Opens a database: `postgresql://…` is a server, anything else a file, made where it is not. Throws
+/// InputError where it cannot be reached or is none.
+std::unique_ptr<Database> open_database(const std::string& place);
+
+/// Is this the address of a server, which may be away for a while?
+bool is_server(const std::string& place);
+
+/// Many rows in as few statements as fit: "INSERT INTO … (…)" + rows + tail. Rows are of one width.
+void insert_rows(Database& database, const std::string& head, const std::vector<Row>& rows,
+                 const std::string& tail);
+
+}  // namespace vernier::fleet

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/fleet/registry.h"
+
+namespace vernier::fleet {
+
+/// When a machine is to be checked, and why.
+struct DueMachine {
+  std::string machine, verdict, why;            // of the last check; why it is due, empty: it is not
+  std::optional<std::int64_t> last_us, due_us;  // none: never checked; none: nobody asked for checks
+};
+
+/// All machines, the most overdue first. A check is due when its time has come, when none was ever made, when
+/// the last one could not tell, or when what runs was put there after it. tool.
+std::vector<DueMachine> due_machines(Registry& registry, std::int64_t at_us);
+
+}  // namespace vernier::fleet

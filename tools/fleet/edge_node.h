@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <cstdint>
+#include <map>
+#include <string>
+
+#include "tools/fleet/mqtt.h"
+#include "tools/fleet/sparkplug.h"
+
+namespace vernier::fleet {
+
+/// One connection of a Sparkplug edge node: births before data, sequence numbers without a gap, a death as
+/// the will (Sparkplug 3.0.0, chapter 5). Every call returns false once the connection is gone. tool.
+class EdgeNode {
+ public:
+  /// Connects with the will, and asks to hear commands and whether `host` is there. Throws InputError.
+  EdgeNode(const Broker& broker, std::string group, std::string node, const std::string& host,
+           std::uint64_t death_number);
+
+  MqttConnection& connection() { return connection_; }
+  /// The node's birth with metrics beside bdSeq and Rebirth; devices are unborn after it.
+  bool birth(const std::vector<Metric>& metrics);
+  bool born() const { return born_; }
+  /// Data of a device, its birth before it where names or types are new.
+  bool data(const std::string& device, SparkplugPayload payload);
+  /// The device is away; nothing where it was never born.
+  bool death(const std::string& device);
+  /// Says that the node goes, as its will would, and parts.
+  void part();
+
+ private:
+  bool send(SparkplugKind kind, const std::string& device, SparkplugPayload payload);
+
+  std::string group_, node_;
+  std::uint64_t death_number_, next_seq_ = 0;
+  bool born_ = false;
+  std::map<std::string, std::string> shapes_;  // of the devices that are born
+  MqttConnection connection_;
+};
+
+}  // namespace vernier::fleet

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/fleet/registry.h"
+
+namespace vernier::fleet {
+
+/// A piece of mass work: one command for one machine of a batch.
+struct Job {
+  std::string batch, machine, command;
+  std::string state;  // "waiting", "taken", "done", "failed"
+  std::string worker, said;
+  std::int64_t attempt = 0, lease_us = 0, ended_us = 0, status = 0;
+};
+
+/// How many jobs of a batch stand where.
+struct JobCounts {
+  std::int64_t waiting = 0, taken = 0, done = 0, failed = 0;
+};
+
+/// The queue in the registry. A job is taken under a lease that its worker renews while it lives; one whose
+/// lease has run out is free again. What a job answered is written once, by the attempt that holds it:
+/// whoever lost it meanwhile is told so and writes nothing. tool.
+class JobQueue {
+ public:
+  explicit JobQueue(Registry& registry) : registry_(registry) {}
+
+  /// Adds a job for each machine that the batch has none for; how many were new. {machine} in the command
+  /// stands for the name, as one word of a shell.
+  std::int64_t add(const std::string& batch, const std::string& command,
+                   const std::vector<std::string>& machines);
+  /// The next job that is free, now this worker's for lease_s; nothing where none is.
+  std::optional<Job> take(const std::string& batch, const std::string& worker, double lease_s,
+                          std::int64_t most_attempts);
+  /// False: it is no longer this attempt's.
+  bool renew(const Job& job, double lease_s);
+  /// Writes down how it ended (status 0: done); false: it is no longer this attempt's, and nothing was
+  /// written.
+  bool finish(const Job& job, std::int64_t status, const std::string& said);
+  /// Is anything of the batch left that is not done or failed?
+  bool is_open(const std::string& batch);
+  /// Jobs that failed wait again; how many.
+  std::int64_t again(const std::string& batch);
+  JobCounts counts(const std::string& batch);
+  std::vector<Job> jobs(const std::string& batch);
+  std::vector<std::string> batches();
+
+ private:
+  Registry& registry_;
+};
+
+/// How a worker works.
+struct WorkOptions {
+  std::string registry, batch, worker;
+  double lease_s = 60;
+  std::int64_t most_attempts = 3;  // a command that takes its worker with it is not tried for ever
+};
+
+/// Takes jobs and runs their commands with the shell, one after the other, until none of the batch is open or
+/// `stop`; a command that runs then is ended and its job given back. `ended` hears of every job. How many
+/// were done. The registry may be away for a while. tool.
+std::int64_t work(const WorkOptions& options, const std::atomic<bool>& stop,
+                  const std::function<void(const Job&, const JobCounts&)>& ended);
+
+}  // namespace vernier::fleet

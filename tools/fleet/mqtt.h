@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace vernier::fleet {
+
+/// Where a broker is and who asks it.
+struct Broker {
+  std::string address = "tcp://localhost:1883";  // or ssl://HOST:8883
+  std::string user, password;                    // empty: none
+  std::string authority;  // file (PEM) of the authority that signs the broker; ssl only
+};
+
+struct MqttMessage {
+  std::string topic, payload;
+  bool retained = false;  // it was there before we came
+};
+
+/// What the broker says for us when we are gone without a farewell.
+struct MqttWill {
+  std::string topic, payload;
+  bool retained = false;
+};
+
+/// A connection to a broker (MQTT 3.1.1, clean session). What comes in is kept by a thread of the library
+/// until it is taken. tool.
+class MqttConnection {
+ public:
+  /// Connects. Throws InputError naming the address.
+  MqttConnection(const Broker& broker, const std::string& client, const MqttWill& will);
+  ~MqttConnection();  // without a farewell, unless part() was called: the will is said
+  MqttConnection(const MqttConnection&) = delete;
+  MqttConnection& operator=(const MqttConnection&) = delete;
+
+  bool connected() const;
+  void subscribe(const std::string& filter, int qos);
+  /// QoS 0 as Sparkplug wants it of data and births; 1 of STATE. False: the connection is gone.
+  bool publish(const std::string& topic, const std::string& payload, int qos = 0, bool retained = false);
+  /// What came, at most `most`; waits up to `patience` for the first.
+  std::vector<MqttMessage> take(std::chrono::milliseconds patience, std::size_t most = 1000);
+  /// Farewell: the will is not said.
+  void part();
+
+ private:
+  struct Inside;
+  std::unique_ptr<Inside> inside_;
+};
+
+}  // namespace vernier::fleet

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <memory>
+#include <string>
+
+#include "tools/fleet/database.h"
+
+namespace vernier::fleet {
+
+/// The registry on a server. address: libpq's `postgresql://…`. Throws DatabaseError.
+std::unique_ptr<Database> open_postgres(const std::string& address);
+
+}  // namespace vernier::fleet

@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/fleet/registry.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cstdio>
+#include <ctime>
+#include <nlohmann/json.hpp>
+
+#include "tools/fleet/cells.h"
+#include "tools/text/error.h"
+#include "tools/text/numbers.h"
+
+namespace vernier::fleet {
+namespace {
+
+// Raised with every change of the tables; an older program leaves a newer registry alone.
+constexpr std::int64_t kSchema = 1;
+
+// Time is microseconds since 1970. `spool` is the register of gateways' stores: `stored` is the last of its
+// numbers that is in `sample`, and moves in the transaction that puts it there.
+constexpr const char* kTables[] = {
+    "CREATE TABLE IF NOT EXISTS fleet_schema (version BIGINT NOT NULL)",
+    "CREATE TABLE IF NOT EXISTS machine (name TEXT PRIMARY KEY, url TEXT NOT NULL, note TEXT NOT NULL, "
+    "check_days DOUBLE PRECISION NOT NULL, added_us BIGINT NOT NULL)",
+    "CREATE TABLE IF NOT EXISTS calibration (machine TEXT NOT NULL REFERENCES machine(name), at_us BIGINT "
+    "NOT "
+    "NULL, model TEXT NOT NULL, model_hash TEXT NOT NULL, image TEXT NOT NULL, data TEXT NOT NULL, data_hash "
+    "TEXT NOT NULL, signed_by TEXT NOT NULL, checked_against TEXT NOT NULL, checked_hash TEXT NOT NULL, "
+    "PRIMARY KEY (machine, at_us))",
+    "CREATE TABLE IF NOT EXISTS check_result (machine TEXT NOT NULL REFERENCES machine(name), at_us BIGINT "
+    "NOT NULL, label TEXT NOT NULL, verdict TEXT NOT NULL, explanation TEXT NOT NULL, evidence DOUBLE "
+    "PRECISION NOT NULL, alarm DOUBLE PRECISION NOT NULL, PRIMARY KEY (machine, at_us, label))",
+    "CREATE TABLE IF NOT EXISTS reading (machine TEXT NOT NULL REFERENCES machine(name), quantity TEXT NOT "
+    "NULL, at_us BIGINT NOT NULL, unit TEXT NOT NULL, value DOUBLE PRECISION NOT NULL, std DOUBLE PRECISION "
+    "NOT NULL, PRIMARY KEY (machine, quantity, at_us))",
+    "CREATE TABLE IF NOT EXISTS spool (id TEXT PRIMARY KEY, gateway TEXT NOT NULL, stored BIGINT NOT NULL)",
+    "CREATE TABLE IF NOT EXISTS shape (id TEXT PRIMARY KEY, names TEXT NOT NULL)",
+    "CREATE TABLE IF NOT EXISTS sample (spool TEXT NOT NULL, number BIGINT NOT NULL, machine TEXT NOT NULL, "
+    "at_us BIGINT NOT NULL, historical BIGINT NOT NULL, shape TEXT NOT NULL, sample_values TEXT NOT NULL, "
+    "PRIMARY KEY (spool, number))",
+    "CREATE INDEX IF NOT EXISTS sample_by_machine ON sample (machine, at_us)",
+    "CREATE TABLE IF NOT EXISTS loss (spool TEXT NOT NULL, after_number BIGINT NOT NULL, before_number "
+    "BIGINT "
+    "NOT NULL, PRIMARY KEY (spool, after_number))",
+    "CREATE TABLE IF NOT EXISTS live (machine TEXT PRIMARY KEY, gateway TEXT NOT NULL, online BIGINT NOT "
+    "NULL, at_us BIGINT NOT NULL, samples BIGINT NOT NULL, mode TEXT NOT NULL, fault TEXT NOT NULL, image "
+    "TEXT NOT NULL, shape TEXT NOT NULL, sample_values TEXT NOT NULL)",
+    "CREATE TABLE IF NOT EXISTS fault_event (machine TEXT NOT NULL, at_us BIGINT NOT NULL, fault TEXT NOT "
+    "NULL, PRIMARY KEY (machine, at_us, fault))",
+    "CREATE TABLE IF NOT EXISTS job (batch TEXT NOT NULL, machine TEXT NOT NULL, command TEXT NOT NULL, "
+    "state "
+    "TEXT NOT NULL, attempt BIGINT NOT NULL, worker TEXT NOT NULL, lease_us BIGINT NOT NULL, ended_us BIGINT "
+    "NOT NULL, status BIGINT NOT NULL, said TEXT NOT NULL, PRIMARY KEY (batch, machine))",
+    "CREATE TABLE IF NOT EXISTS rollout (name TEXT NOT NULL, machine TEXT NOT NULL, stage BIGINT NOT NULL, "
+    "place BIGINT NOT NULL, image TEXT NOT NULL, state TEXT NOT NULL, said TEXT NOT NULL, at_us BIGINT NOT "
+    "NULL, PRIMARY KEY (name, machine))",
+};
+
+// Two programs that find no tables make them one after the other.
+constexpr std::int64_t kSchemaLock = 0x7665726e;
+
+}  // namespace
+
+std::int64_t now_us() {
+  return std::chrono::duration_cast<std::chrono::microseconds>(
+             std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
+
+std::string utc_text(std::int64_t time_us) {
+  const std::time_t seconds = time_us / 1'000'000;
+  std::tm parts{};
+  gmtime_r(&seconds, &parts);
+  return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}Z", parts.tm_year + 1900, parts.tm_mon + 1,
+                     parts.tm_mday, parts.tm_hour, parts.tm_min, parts.tm_sec);
+}
+
+std::optional<std::int64_t> parse_utc(const std::string& text) {
+  std::tm parts{};
+  for (const char* form : {"%Y-%m-%dT%H:%M:%SZ", "%Y-%m-%dT%H:%M:%S", "%Y-%m-%dT%H:%M", "%Y-%m-%d"}) {
+    parts = {};
+    const char* const end = strptime(text.c_str(), form, &parts);
+    if (end != nullptr && *end == '\0') return std::int64_t{timegm(&parts)} * 1'000'000;
+  }
+  return {};
+}
+
+Registry::Registry(std::unique_ptr<Database> database) : database_(std::move(database)) { make_tables(); }
+
+void Registry::make_tables() {
+  // Who finds the tables there writes nothing: readers of a file that others fill never stand in their way.
+  const bool server = database_->skip_locked()[0] != '\0';
+  const char* const found = server ? "SELECT 1 FROM pg_tables WHERE tablename = 'rollout' AND schemaname = "
+                                     "ANY (current_schemas(false))"
+                                   : "SELECT 1 FROM sqlite_master WHERE name = 'rollout'";
+  if (database_->run(found).empty()) {
+    Transaction transaction(*database_);
+    if (server) database_->run(fmt::format("SELECT pg_advisory_xact_lock({})", kSchemaLock));
+    for (const char* table : kTables) database_->run(table);
+    if (database_->run("SELECT version FROM fleet_schema").empty())
+      database_->run("INSERT INTO fleet_schema VALUES ($1)", {cell(kSchema)});
+    transaction.commit();
+  }
+  if (whole(database_->run("SELECT version FROM fleet_schema").at(0)[0]) > kSchema)
+    throw text::InputError({}, database_->name(), "a registry of a newer vernier");
+}
+
+void Registry::put(const FleetMachine& machine) {
+  database_->run(
+      "INSERT INTO machine VALUES ($1, $2, $3, $4, $5) ON CONFLICT (name) DO UPDATE SET url = excluded.url, "
+      "note = excluded.note, check_days = excluded.check_days",
+      {machine.name, machine.url, machine.note, cell(machine.check_days), cell(machine.added_us)});
+}
+
+std::vector<FleetMachine> Registry::machines() {
+  std::vector<FleetMachine> machines;
+  for (const Row& row :
+       database_->run("SELECT name, url, note, check_days, added_us FROM machine ORDER BY name"))
+    machines.push_back({words(row[0]), words(row[1]), words(row[2]), real(row[3]), whole(row[4])});
+  return machines;
+}
+
+FleetMachine Registry::machine(const std::string& name) {
+  for (FleetMachine& machine : machines())
+    if (machine.name == name) return std::move(machine);
+  throw text::InputError({}, name, "no machine of this name in " + database_->name());
+}
+
+void Registry::put(const RecordedCalibration& c) {
+  database_->run("INSERT INTO calibration VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10)",
+                 {c.machine, cell(c.at_us), c.model, c.model_hash, c.image, c.data, c.data_hash, c.signed_by,
+                  c.checked_against, c.checked_hash});
+}
+
+std::vector<RecordedCalibration> Registry::calibrations(const std::string& machine) {
+  std::vector<RecordedCalibration> all;
+  for (const Row& row : database_->run(
+           "SELECT machine, at_us, model, model_hash, image, data, data_hash, signed_by, checked_against, "
+           "checked_hash FROM calibration WHERE machine = $1 OR $1 = '' ORDER BY at_us DESC, machine",
+           {machine}))
+    all.push_back({words(row[0]), words(row[2]), words(row[3]), words(row[4]), words(row[5]), words(row[6]),
+                   words(row[7]), words(row[8]), words(row[9]), whole(row[1])});
+  return all;
+}
+
+bool Registry::put(const FleetCheck& check, const std::vector<FleetReading>& readings) {
+  Transaction transaction(*database_);
+  database_->run("INSERT INTO check_result VALUES ($1, $2, $3, $4, $5, $6, $7) ON CONFLICT DO NOTHING",
+                 {check.machine, cell(check.at_us), check.label, check.verdict, check.explanation,
+                  cell(check.evidence), cell(check.alarm)});
+  if (database_->written() == 0) return false;
+  for (const FleetReading& one : readings)
+    database_->run("INSERT INTO reading VALUES ($1, $2, $3, $4, $5, $6) ON CONFLICT DO NOTHING",
+                   {one.machine, one.quantity, cell(one.at_us), one.unit, cell(one.value), cell(one.std)});
+  transaction.commit();
+  return true;
+}
+
+std::vector<FleetCheck> Registry::checks(const std::string& machine) {
+  std::vector<FleetCheck> checks;
+  for (const Row& row :
+       database_->run("SELECT machine, label, verdict, explanation, evidence, alarm, at_us FROM check_result "
+                      "WHERE machine = $1 OR $1 = '' ORDER BY at_us, machine",
+                      {machine}))
+    checks.push_back({words(row[0]), words(row[1]), words(row[2]), words(row[3]), real(row[4]), real(row[5]),
+                      whole(row[6])});
+  return checks;
+}
+
+std::vector<FleetReading> Registry::readings(std::int64_t since_us) {
+  std::vector<FleetReading> readings;
+  for (const Row& row : database_->run(
+           "SELECT machine, quantity, unit, at_us, value, std FROM reading WHERE at_us >= $1 ORDER "
+           "BY quantity, machine, at_us",
+           {cell(since_us)}))
+    readings.push_back(
+        {words(row[0]), words(row[1]), words(row[2]), whole(row[3]), real(row[4]), real(row[5])});
+  return readings;
+}
+
+std::vector<LiveState> Registry::live() {
+  std::vector<LiveState> live;
+  for (const Row& row : database_->run(
+           "SELECT live.machine, gateway, mode, fault, image, online, at_us, samples, names, sample_values "
+           "FROM live JOIN shape ON shape.id = live.shape ORDER BY live.machine")) {
+    LiveState one{words(row[0]), words(row[1]), words(row[2]),
+                  words(row[3]), words(row[4]), whole(row[5]) != 0,
+                  whole(row[6]), whole(row[7]), {}};
+    const auto names = nlohmann::json::parse(words(row[8])), values = nlohmann::json::parse(words(row[9]));
+    for (std::size_t i = 0; i < names.size() && i < values.size(); ++i)
+      one.values.emplace_back(names[i].get<std::string>(), values[i].dump());
+    live.push_back(std::move(one));
+  }
+  return live;
+}
+
+std::int64_t Registry::forget_samples(std::int64_t before_us) {
+  // In pieces, so that who writes never waits long.
+  constexpr std::int64_t kPiece = 10'000;
+  std::int64_t all = 0, last = kPiece;
+  while (last == kPiece) {
+    database_->run(
+        "DELETE FROM sample WHERE (spool, number) IN (SELECT spool, number FROM sample WHERE at_us < $1 "
+        "LIMIT $2)",
+        {cell(before_us), cell(kPiece)});
+    all += last = database_->written();
+  }
+  return all;
+}
+
+}  // namespace vernier::fleet

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/fleet/database.h"
+
+namespace vernier::fleet {
+
+/// Microseconds since 1970, by this computer's clock.
+std::int64_t now_us();
+/// "2026-11-23T13:05:53Z", and back; nothing where it is none ("2026-11-23" is midnight).
+std::string utc_text(std::int64_t time_us);
+std::optional<std::int64_t> parse_utc(const std::string& text);
+
+/// A machine of the fleet.
+struct FleetMachine {
+  std::string name;  // also the device of its topics
+  std::string url;   // of its board; empty: none
+  std::string note;
+  double check_days = 0;  // a check is due so long after the last one; 0: never
+  std::int64_t added_us = 0;
+};
+
+/// What runs on a machine and where it comes from.
+struct RecordedCalibration {
+  std::string machine, model, model_hash, image, data, data_hash, signed_by, checked_against, checked_hash;
+  std::int64_t at_us = 0;
+};
+
+/// What `vernier check` answered for a machine.
+struct FleetCheck {
+  std::string machine, label, verdict, explanation;
+  double evidence = 0, alarm = 0;
+  std::int64_t at_us = 0;
+};
+
+/// A quantity of a machine as one check read it.
+struct FleetReading {
+  std::string machine, quantity, unit;
+  std::int64_t at_us = 0;
+  double value = 0, std = 0;
+};
+
+/// What the registry last heard of a machine.
+struct LiveState {
+  std::string machine, gateway, mode, fault, image;
+  bool online = false;
+  std::int64_t at_us = 0;                                   // when its newest sample was taken
+  std::int64_t samples = 0;                                 // stored
+  std::vector<std::pair<std::string, std::string>> values;  // names and JSON values of that sample
+};
+
+/// The fleet's registry: machines, what runs on them, what they said. The same on a server as in a file. All
+/// calls throw DatabaseError. tool.
+class Registry {
+ public:
+  /// Makes the tables where there are none. Throws InputError for a registry of a newer program.
+  explicit Registry(std::unique_ptr<Database> database);
+  Database& database() { return *database_; }
+
+  /// Adds a machine, or changes one of that name.
+  void put(const FleetMachine& machine);
+  std::vector<FleetMachine> machines();
+  /// Throws InputError where there is none of that name.
+  FleetMachine machine(const std::string& name);
+
+  void put(const RecordedCalibration& calibration);
+  /// Newest first; of all machines where `machine` is empty.
+  std::vector<RecordedCalibration> calibrations(const std::string& machine);
+
+  /// False: this check was there already.
+  bool put(const FleetCheck& check, const std::vector<FleetReading>& readings);
+  /// In the order of time.
+  std::vector<FleetCheck> checks(const std::string& machine);
+  std::vector<FleetReading> readings(std::int64_t since_us);
+
+  std::vector<LiveState> live();
+  /// Deletes samples that were taken before; how many. What was stored once is not taken again for that.
+  std::int64_t forget_samples(std::int64_t before_us);
+
+ private:
+  void make_tables();
+  std::unique_ptr<Database> database_;
+};
+
+}  // namespace vernier::fleet

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <cstdint>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "tools/fleet/registry.h"
+#include "tools/fleet/sparkplug.h"
+
+namespace vernier::fleet {
+
+/// A device's data as they came: whose, through which gateway, what.
+struct DeviceData {
+  std::string gateway, machine;
+  SparkplugPayload payload;
+};
+
+/// How far a gateway's store is in the registry, to be told to it.
+struct Receipt {
+  std::string spool;
+  std::uint64_t stored = 0;
+  bool resend = false;  // a record is missing: begin behind `stored`
+};
+
+/// Puts samples into the registry, each once: a store's records are taken in the order of their numbers, the
+/// number moves in the transaction that writes the records, and what was taken before is passed over. Two
+/// writers at once do no harm. tool.
+class SampleWriter {
+ public:
+  explicit SampleWriter(Registry& registry) : registry_(registry) {}
+  /// Receipts by gateway, for all that was written or must be sent again. Throws DatabaseError: nothing of it
+  /// was written.
+  std::map<std::string, Receipt> write(const std::vector<DeviceData>& data);
+  /// A machine, or all of a gateway's (machine empty), can be heard or not.
+  void online(const std::string& gateway, const std::string& machine, bool online);
+  /// Samples written so far.
+  std::uint64_t written() const { return written_; }
+
+ private:
+  struct Batch;
+  struct Cursor {
+    std::uint64_t stored = 0;
+    std::string gateway;
+  };
+  Cursor& cursor(const std::string& spool, const std::string& gateway);
+  bool take(const DeviceData& one, Batch& batch);
+  std::string shape(const SparkplugPayload& payload, Batch& batch);
+  void write(Batch& batch);
+  void write_live(const Batch& batch);
+
+  Registry& registry_;
+  std::map<std::string, Cursor> cursors_;
+  std::set<std::string> shapes_, machines_;
+  std::map<std::string, std::string> faults_;    // by machine: the last one
+  std::map<std::string, std::uint64_t> checks_;  // by machine: time of the last one
+  std::uint64_t written_ = 0;
+};
+
+}  // namespace vernier::fleet

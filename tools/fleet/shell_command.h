@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <sys/types.h>
+
+#include <chrono>
+#include <string>
+
+namespace vernier::fleet {
+
+/// A command with {machine} put in, as one word of a shell whatever stands in it. tool.
+std::string command_for(const std::string& command, const std::string& machine);
+
+/// A shell's command that runs, in a process group of its own; ended with whoever started it. Its output is
+/// read, and the last line of it kept. tool.
+class ShellCommand {
+ public:
+  /// Throws InputError where no process can be had.
+  explicit ShellCommand(const std::string& command);
+  ~ShellCommand() { end(); }
+  ShellCommand(const ShellCommand&) = delete;
+  ShellCommand& operator=(const ShellCommand&) = delete;
+
+  /// Waits; true once it has ended.
+  bool wait(std::chrono::milliseconds patience);
+  bool ended() const { return pid_ == 0; }
+  /// Exit status, or 128 + the signal that ended it.
+  int status() const { return status_; }
+  /// The last line that is not empty of what it printed, 400 letters at most.
+  std::string last_line() const;
+  /// Ends it, and all that it started, at once.
+  void end();
+
+ private:
+  void read();
+  pid_t pid_ = 0;
+  int output_ = -1, status_ = 0;
+  std::string tail_;
+};
+
+}  // namespace vernier::fleet

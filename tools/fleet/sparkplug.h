@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace vernier::fleet {
+
+/// A value of a metric; the alternative decides Sparkplug's datatype: Double, Int64, UInt64, Boolean, String.
+using MetricValue = std::variant<double, std::int64_t, std::uint64_t, bool, std::string>;
+
+/// A named value as it travels.
+struct Metric {
+  std::string name;
+  MetricValue value;
+  std::uint64_t time_ms = 0;  // since 1970; 0: as its payload
+  bool historical = false;    // it waited for the broker or the host
+  bool operator==(const Metric&) const = default;
+};
+
+/// What a message says (Sparkplug 3.0.0, 6.4).
+struct SparkplugPayload {
+  std::uint64_t time_ms = 0;
+  std::optional<std::uint64_t> seq;  // 0..255; absent in NDEATH and commands
+  std::vector<Metric> metrics;
+  /// The metric of that name; null where there is none.
+  const Metric* find(std::string_view name) const;
+};
+
+/// Bytes as they travel, and back; nothing where they are no payload. Metrics of types that are not read
+/// here, that are null or whose text is none (UTF-8 without NUL) are left out. tool.
+std::string encode(const SparkplugPayload& payload);
+std::optional<SparkplugPayload> decode(std::string_view bytes);
+
+/// A whole number, whichever integer type it came as; nothing for other values.
+std::optional<std::uint64_t> count_of(const Metric* metric);
+/// A text; nothing for other values.
+std::optional<std::string> text_of(const Metric* metric);
+
+enum class SparkplugKind : std::uint8_t { kNBirth, kNDeath, kNData, kNCmd, kDBirth, kDDeath, kDData, kDCmd };
+
+/// "spBv1.0/GROUP/KIND/NODE[/DEVICE]".
+struct SparkplugTopic {
+  std::string group, node, device;
+  SparkplugKind kind = SparkplugKind::kNData;
+};
+std::string topic_text(const SparkplugTopic& topic);
+/// Nothing where it is no topic of an edge node.
+std::optional<SparkplugTopic> parse_topic(std::string_view text);
+/// Where a host application says whether it is there.
+std::string state_topic(const std::string& host);
+/// What it says there: JSON of Sparkplug 3.0.0, 6.4.24.
+std::string state_text(bool online, std::uint64_t time_ms);
+/// Is the host there, by its own words? Nothing for any other text.
+std::optional<bool> online_of(std::string_view state);
+
+/// Is this a name that a topic can carry: not empty, none of + / #, printable?
+bool fits_a_topic(std::string_view name);
+
+/// Names of the metrics by which a gateway and the registry agree on what is stored (tools/docs/fleet.md).
+inline constexpr std::string_view kSpoolMetric = "Vernier/Spool", kNumberMetric = "Vernier/Number",
+                                  kAfterMetric = "Vernier/After", kStoredMetric = "Vernier/Stored",
+                                  kResendMetric = "Vernier/Resend", kRebirthMetric = "Node Control/Rebirth",
+                                  kDeathMetric = "bdSeq";
+
+}  // namespace vernier::fleet

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/fleet/spool.h"
+
+#include <sodium.h>
+
+#include <algorithm>
+
+#include "tools/fleet/cells.h"
+#include "tools/fleet/digest.h"
+
+namespace vernier::fleet {
+namespace {
+
+// Payloads are bytes; cells are text.
+std::string hex_of(const std::string& bytes) {
+  std::string text(2 * bytes.size() + 1, '\0');
+  sodium_bin2hex(text.data(), text.size(), reinterpret_cast<const unsigned char*>(bytes.data()),
+                 bytes.size());
+  text.pop_back();
+  return text;
+}
+
+std::string bytes_of(const std::string& hex) {
+  std::string bytes(hex.size() / 2, '\0');
+  std::size_t size = 0;
+  if (sodium_hex2bin(reinterpret_cast<unsigned char*>(bytes.data()), bytes.size(), hex.data(), hex.size(),
+                     nullptr, &size, nullptr) != 0 ||
+      2 * size != hex.size())
+    throw DatabaseError("a record of the spool is damaged");
+  return bytes;
+}
+
+std::uint64_t count(const Cell& cell) { return static_cast<std::uint64_t>(whole(cell)); }
+Cell counted(std::uint64_t value) { return cell(static_cast<std::int64_t>(value)); }
+
+}  // namespace
+
+Spool::Spool(const std::string& file, const std::string& owner, std::uint64_t most)
+    : database_(open_database(file)), most_(most) {
+  {
+    Transaction transaction(*database_);
+    database_->run(
+        "CREATE TABLE IF NOT EXISTS about (id TEXT NOT NULL, last BIGINT NOT NULL, stored BIGINT NOT NULL, "
+        "gone BIGINT NOT NULL, dropped BIGINT NOT NULL, birth BIGINT NOT NULL, owner TEXT NOT NULL)");
+    database_->run(
+        "CREATE TABLE IF NOT EXISTS record (number INTEGER PRIMARY KEY, machine TEXT NOT NULL, time_ms "
+        "BIGINT "
+        "NOT NULL, payload TEXT NOT NULL)");
+    if (database_->run("SELECT id FROM about").empty())
+      database_->run("INSERT INTO about VALUES ($1, 0, 0, 0, 0, 0, $2)", {fresh_id(), owner});
+    transaction.commit();
+  }
+  const Row row = database_->run("SELECT id, last, stored, gone, dropped, owner FROM about").at(0);
+  id_ = words(row[0]);
+  last_ = count(row[1]), stored_ = count(row[2]), gone_ = count(row[3]), dropped_ = count(row[4]);
+  if (words(row[5]) == owner) return;
+  begin_anew();
+  database_->run("UPDATE about SET owner = $1", {owner});
+}
+
+void Spool::take(std::vector<SpoolRecord>& records) {
+  const std::uint64_t stored = stored_;
+  std::uint64_t last = last_, gone = std::max(gone_, stored), dropped = dropped_;
+  for (SpoolRecord& record : records) record.number = ++last;
+  if (last - gone > most_) {
+    dropped += last - gone - most_;
+    gone = last - most_;
+  }
+  Transaction transaction(*database_);
+  for (const SpoolRecord& record : records)
+    database_->run("INSERT INTO record VALUES ($1, $2, $3, $4)",
+                   {counted(record.number), record.machine, counted(record.time_ms), hex_of(record.payload)});
+  database_->run("DELETE FROM record WHERE number <= $1", {counted(gone)});
+  database_->run("UPDATE about SET last = $1, stored = $2, gone = $3, dropped = $4",
+                 {counted(last), counted(stored), counted(gone), counted(dropped)});
+  transaction.commit();
+  last_ = last, gone_ = gone, dropped_ = dropped;
+}
+
+std::vector<SpoolRecord> Spool::after(std::uint64_t number, std::size_t most) {
+  std::vector<SpoolRecord> records;
+  for (const Row& row : database_->run(
+           "SELECT number, machine, time_ms, payload FROM record WHERE number > $1 ORDER BY number LIMIT $2",
+           {counted(number), counted(most)}))
+    records.push_back({count(row[0]), words(row[1]), count(row[2]), bytes_of(words(row[3]))});
+  return records;
+}
+
+void Spool::stored(std::uint64_t number) { stored_ = std::max(stored_, std::min(number, last_)); }
+
+void Spool::begin_anew() {
+  const std::string id = fresh_id();
+  const std::uint64_t last = last_ - gone_;
+  Transaction transaction(*database_);
+  // By way of negative numbers, so that no two rows meet.
+  database_->run("UPDATE record SET number = -(number - $1)", {counted(gone_)});
+  database_->run("UPDATE record SET number = -number");
+  database_->run("UPDATE about SET id = $1, last = $2, stored = 0, gone = 0", {id, counted(last)});
+  transaction.commit();
+  id_ = id, last_ = last, stored_ = gone_ = 0;
+}
+
+std::uint64_t Spool::next_birth() {
+  Transaction transaction(*database_);
+  const std::uint64_t birth = count(database_->run("SELECT birth FROM about").at(0)[0]);
+  database_->run("UPDATE about SET birth = $1", {counted((birth + 1) % 256)});
+  transaction.commit();
+  return birth;
+}
+
+}  // namespace vernier::fleet

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/fleet/database.h"
+
+namespace vernier::fleet {
+
+/// A sample of a machine that waits to be stored: payload as encode() made it.
+struct SpoolRecord {
+  std::uint64_t number = 0;  // 1, 2, 3 … in this spool
+  std::string machine;
+  std::uint64_t time_ms = 0;
+  std::string payload;
+};
+
+/// What a gateway has taken and no registry has confirmed yet, in a file: bounded, durable, numbered. A
+/// record leaves it when the registry has stored it, or, counted, when there is no room. tool.
+class Spool {
+ public:
+  /// owner: the gateway; a file of another one (a medium that was copied) gets an id of its own. most:
+  /// records that fit. Throws InputError where the file cannot be had.
+  Spool(const std::string& file, const std::string& owner, std::uint64_t most);
+
+  /// Of this spool among all: fresh where the file was made, so that numbers never mean two things.
+  const std::string& id() const { return id_; }
+  /// Writes records down with numbers, and forgets those up to stored(); all of it or nothing. Throws
+  /// DatabaseError.
+  void take(std::vector<SpoolRecord>& records);
+  /// The records after `number`, at most `most`, in order.
+  std::vector<SpoolRecord> after(std::uint64_t number, std::size_t most);
+  /// The registry has all up to here.
+  void stored(std::uint64_t number);
+  std::uint64_t stored() const { return stored_; }
+  /// The last number that was given; records that were forgotten unsent for want of room.
+  std::uint64_t last() const { return last_; }
+  std::uint64_t dropped() const { return dropped_; }
+  /// The last number that is no longer here.
+  std::uint64_t gone() const { return gone_; }
+  /// The registry has numbers that this spool never gave: the file is an older one, put back. What is here is
+  /// numbered anew, under a fresh id.
+  void begin_anew();
+  /// The number of this birth, one more at each call (Sparkplug's bdSeq, 0..255).
+  std::uint64_t next_birth();
+
+ private:
+  std::unique_ptr<Database> database_;
+  std::string id_;
+  std::uint64_t most_, last_ = 0, stored_ = 0, gone_ = 0, dropped_ = 0;
+};
+
+}  // namespace vernier::fleet
