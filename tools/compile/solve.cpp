@@ -8,6 +8,7 @@
 
 #include "tools/compile/calculus.h"
 #include "tools/compile/functions.h"
+#include "tools/maths/decompositions.h"
 
 namespace vernier::compile {
 namespace {
@@ -85,7 +86,7 @@ Solver solve_by_numbers(Derivation& d, const std::vector<AxisColumn>& columns, c
     for (std::size_t c = 0; c < 3; ++c)
       j(static_cast<Eigen::Index>(c), static_cast<Eigen::Index>(i)) =
           *d.graph.constant_value(columns[i].direction[c]);
-  const Eigen::MatrixXd to_axes = j.completeOrthogonalDecomposition().pseudoInverse();
+  const Eigen::MatrixXd to_axes = Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(j).pseudoInverse();
   std::vector<Eigen::RowVector3d> rows;
   for (std::size_t i = 0; i < columns.size(); ++i) {
     const Eigen::RowVector3d row = to_axes.row(static_cast<Eigen::Index>(i));

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/diagnose/acceptance.h"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <algorithm>
 
 #include "tools/diagnose/enumerate.h"
 #include "tools/diagnose/scan.h"
+#include "tools/maths/decompositions.h"
 
 namespace vernier::diagnose {
 namespace {
@@ -75,7 +74,7 @@ HeldOut leave_blocks_out(const Evidence& evidence, const Eigen::MatrixXd& column
   const Eigen::MatrixXd in_own = own.transpose() * columns;
   const auto watched_part = [&](const Eigen::VectorXd& theta) -> Eigen::VectorXd {
     if (watched_count == 0 || own.cols() < columns.cols()) return Eigen::VectorXd();
-    const Eigen::VectorXd coefficient = in_own.colPivHouseholderQr().solve(theta.tail(own.cols()));
+    const Eigen::VectorXd coefficient = maths::least_squares(in_own, theta.tail(own.cols()));
     return columns.middleCols(watched_first, watched_count) *
            coefficient.segment(watched_first, watched_count);
   };

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/diagnose/evidence.h"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -13,6 +11,7 @@
 #include "tools/fit/solve.h"
 #include "tools/fit/statistics.h"
 #include "tools/maths/chance.h"
+#include "tools/maths/decompositions.h"
 #include "tools/maths/orthonormal.h"
 #include "tools/model/evaluate.h"
 #include "tools/model/prediction.h"
@@ -274,7 +273,7 @@ fit::NoiseModel Evidence::estimate(const Eigen::MatrixXd& raw, std::vector<fit::
   share_poses(residual);
   share_poses(fitted);
   if (steps > 0) {
-    const Eigen::VectorXd heights = fitted.completeOrthogonalDecomposition().solve(Eigen::VectorXd(residual));
+    const Eigen::VectorXd heights = maths::least_norm(fitted, Eigen::VectorXd(residual));
     for (std::size_t k = 0; k < given.size(); ++k) given[k].height = heights[static_cast<Eigen::Index>(k)];
   }
   fitted = maths::orthonormal(fitted, 1e-6, nullptr);

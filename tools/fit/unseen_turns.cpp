@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/fit/unseen_turns.h"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
 
+#include "tools/maths/decompositions.h"
 #include "tools/maths/factors.h"
 #include "tools/model/prediction.h"
 
@@ -34,11 +34,10 @@ std::vector<bool> unseen_turns(const model::Machine& machine, const model::Measu
       return Eigen::VectorXd(linear.jacobian * unit);
     };
     for (std::size_t k = 0; k < 3; ++k) lengths.col(static_cast<Eigen::Index>(k)) = column(k);
-    const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver(lengths);
     const double rows_seen = std::max(1.0, lengths.squaredNorm());
     for (std::size_t k = 3; k < 6; ++k) {
       const Eigen::VectorXd turn = column(k) * maths::kDegPerRad;
-      const double left = (turn - lengths * solver.solve(turn)).norm() / std::sqrt(rows_seen);
+      const double left = (turn - lengths * maths::least_norm(lengths, turn)).norm() / std::sqrt(rows_seen);
       unseen[static_cast<std::size_t>(columns[k])] = left < kSeen * reach_mm;
     }
   }

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "tools/maths/decompositions.h"
 #include "tools/maths/factors.h"
 
 namespace vernier::importer {

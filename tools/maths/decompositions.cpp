@@ -7,6 +7,7 @@ namespace Eigen {
 template class LLT<MatrixXd>;
 template class LDLT<MatrixXd>;
 template class ColPivHouseholderQR<MatrixXd>;
+template class CompleteOrthogonalDecomposition<MatrixXd>;
 template class SelfAdjointEigenSolver<MatrixXd>;
 template class JacobiSVD<MatrixXd>;
 }  // namespace Eigen

@@ -62,6 +62,7 @@ namespace Eigen {
 extern template class LLT<MatrixXd>;
 extern template class LDLT<MatrixXd>;
 extern template class ColPivHouseholderQR<MatrixXd>;
+extern template class CompleteOrthogonalDecomposition<MatrixXd>;
 extern template class SelfAdjointEigenSolver<MatrixXd>;
 extern template class JacobiSVD<MatrixXd>;
 }  // namespace Eigen

@@ -6,7 +6,6 @@
 
 #include <CLI/CLI.hpp>
 #include <Eigen/Geometry>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -19,6 +18,7 @@
 #include "tools/fit/fit.h"
 #include "tools/fit/reach.h"
 #include "tools/maths/alignment.h"
+#include "tools/maths/decompositions.h"
 #include "tools/model/chain.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/prediction.h"
@@ -130,9 +130,9 @@ double oracle_rms(const Machine& truth, const Machine& nominal, const Measuremen
     places.col(column) /= length;
   }
   const Eigen::VectorXd noise = weight.cwiseProduct(residuals(truth, m));
-  Eigen::BDCSVD<Eigen::MatrixXd> solver(weight.asDiagonal() * rows,
-                                        Eigen::ComputeThinU | Eigen::ComputeThinV);
+  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
   solver.setThreshold(1e-7);
+  solver.compute(weight.asDiagonal() * rows);
   const Eigen::VectorXd moved = places * solver.solve(noise);
   const Eigen::Matrix3Xd real = forward(truth, fresh).position;
   return rms_aligned(real + moved.reshaped(3, real.cols()), real);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "tests/unit/compile/poses.h"
+#include "tools/maths/decompositions.h"
 
 namespace vernier {
 
@@ -114,7 +115,7 @@ inline void compare_poses(const TestMachine& test, const std::vector<CycleInput>
       there.axis[axes[static_cast<std::size_t>(k)]] -= exact.row(k).transpose().array();
     const Eigen::Matrix3Xd left_mm = left_over_mm(test.machine, there, nominal_mm);
     for (Eigen::Index i = 0; i < count; ++i)
-      exact.col(i) += directions_at(i).completeOrthogonalDecomposition().solve(left_mm.col(i));
+      exact.col(i) += maths::least_norm(directions_at(i), left_mm.col(i));
   }
   for (Eigen::Index i = 0; i < count; ++i) {
     // Of a rotary axis: as motion of the tool point.

@@ -130,5 +130,31 @@ TEST(Sources, OfARoomStandInItsNamespace) {
   EXPECT_GT(seen, 300u) << "the walk over the sources found next to nothing";
 }
 
+// What costs a compiler seconds stands in tools/maths once (decompositions.h); a matrix of a size that is
+// known when it is compiled is cheap and free.
+std::string decomposition_in(const std::string& text) {
+  for (const char* word : {"completeOrthogonalDecomposition", "colPivHouseholderQr", "householderQr()",
+                           "partialPivLu", "fullPivLu", "bdcSvd", "jacobiSvd", "BDCSVD", "umeyama"})
+    if (text.find(word) != std::string::npos) return word;
+  return "";
+}
+
+TEST(Sources, DecompositionIsDetected) {
+  EXPECT_EQ(decomposition_in("x = a.colPivHouseholderQr().solve(b);"), "colPivHouseholderQr");
+  EXPECT_EQ(decomposition_in("x = maths::least_squares(a, b);"), "");
+}
+
+TEST(Sources, DecompositionsOfAnySizeStandInMaths) {
+  std::size_t seen = 0;
+  for (const std::string& file : tracked_files()) {
+    if (!has_ending(file, {".h", ".cpp"}) || file.starts_with("tools/maths/") ||
+        file.starts_with("tests/unit/house/"))
+      continue;
+    ++seen;
+    EXPECT_EQ(decomposition_in(text_of(file)), "") << file;
+  }
+  if (seen == 0) GTEST_SKIP() << "not a git checkout: no list of tracked files";
+}
+
 }  // namespace
 }  // namespace vernier::house
