@@ -10,6 +10,7 @@
 #include "tools/commands/report_header.h"
 #include "tools/fit/fit.h"
 #include "tools/kinematics/at.h"
+#include "tools/model/fit_record.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/measurement.h"
 #include "tools/report/report.h"
