@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <memory>
+#include <optional>
 
 #include "tools/check/history.h"
 #include "tools/commands/command.h"
@@ -22,17 +23,34 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct AddArguments {
-  std::string registry, name, url, note;
-  double check_days = 0;
+  std::string registry, name;
+  std::optional<std::string> url, note;
+  std::optional<double> check_days;
 };
+
+/// A number from 0 on; "nan" compares with nothing and would pass a range.
+CLI::Validator days_up_to(double most) {
+  return CLI::Validator(
+      [most](const std::string& word) {
+        const double days = CLI::Range(0.0, most)(word).empty() ? std::strtod(word.c_str(), nullptr) : -1;
+        return days >= 0 && days <= most ? std::string() : "a number from 0 to " + fmt::format("{}", most);
+      },
+      "DAYS");
+}
 
 void run_add(const AddArguments& arguments) {
   if (!fleet::fits_a_topic(arguments.name))
     throw text::InputError({}, arguments.name, "a machine's name has none of + / # and is not empty");
-  if (!arguments.url.empty()) upload::parse_url(arguments.url);
-  open_registry(arguments.registry)
-      .put(fleet::FleetMachine{arguments.name, arguments.url, arguments.note, arguments.check_days,
-                               fleet::now_us()});
+  if (arguments.url && !arguments.url->empty()) upload::parse_url(*arguments.url);
+  fleet::Registry registry = open_registry(arguments.registry);
+  fleet::FleetMachine machine{arguments.name, {}, {}, 0, fleet::now_us()};
+  // What is entered of it and not said anew stays.
+  for (const fleet::FleetMachine& known : registry.machines())
+    if (known.name == arguments.name) machine = known;
+  if (arguments.url) machine.url = *arguments.url;
+  if (arguments.note) machine.note = *arguments.note;
+  if (arguments.check_days) machine.check_days = *arguments.check_days;
+  registry.put(machine);
 }
 
 struct ListArguments {
@@ -173,7 +191,7 @@ void add_machine_kinds(CLI::App& fleet) {
   command
       ->add_option("--check-days", add->check_days,
                    "a check is due so many days after the last one; 0: never")
-      ->check(CLI::Range(0.0, 1e5));
+      ->check(days_up_to(1e5));
   command->add_option("--note", add->note, "for people");
   command->callback([add] { run_add(*add); });
 
@@ -202,7 +220,7 @@ void add_forget(CLI::App& fleet) {
   add_registry(*command, forget->registry);
   command->add_option("--days", forget->days, "samples of so many days are kept")
       ->required()
-      ->check(CLI::Range(0.0, 1e5));
+      ->check(days_up_to(1e5));
   command->callback([forget] {
     const auto before = fleet::now_us() - static_cast<std::int64_t>(forget->days * 86'400e6);
     fmt::print("{} samples deleted\n", open_registry(forget->registry).forget_samples(before));

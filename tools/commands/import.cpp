@@ -6,8 +6,8 @@ namespace vernier::commands::import_cli {
 namespace {
 
 using AddKind = void (*)(CLI::App& import);
-constexpr AddKind kKinds[] = {add_table_kind, add_ballbar_kind, add_ballbar_trace_kind, add_tracker_kind,
-                              add_probe_kind};
+constexpr AddKind kKinds[] = {add_table_kind,   add_ballbar_kind, add_ballbar_trace_kind,
+                              add_tracker_kind, add_probe_kind,   add_laser_kind};
 
 }  // namespace
 

@@ -20,5 +20,6 @@ void add_ballbar_kind(CLI::App& import);
 void add_ballbar_trace_kind(CLI::App& import);
 void add_tracker_kind(CLI::App& import);
 void add_probe_kind(CLI::App& import);
+void add_laser_kind(CLI::App& import);
 
 }  // namespace vernier::commands::import_cli

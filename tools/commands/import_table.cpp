@@ -25,15 +25,21 @@ struct TableArguments {
 };
 
 void print_columns(std::FILE* out, const importer::SheetReading& reading) {
-  const auto& [wishes, sheet, table, columns] = reading;
+  const auto& [wishes, sheet, table, columns, runs] = reading;
   fmt::print(out, "{}: {}\n", sheet.file, importer::how_read(sheet));
   if (table.has_headings)
-    fmt::print(out, "headings in line {}{}, data from line {}\n", sheet.line[table.heading_row],
+    fmt::print(out, "headings in line {}{}{}, data from line {}\n",
+               table.upper_row ? fmt::format("{} and ", sheet.line[*table.upper_row]) : "",
+               sheet.line[table.heading_row],
                table.units_row > 0 ? fmt::format(", units in line {}", sheet.line[table.units_row]) : "",
                sheet.line[table.first_data]);
+  if (runs > 0) fmt::print(out, "{} columns, one a run and sense, are read as one\n", runs);
   for (std::size_t k = 0; k < columns.size(); ++k)
     fmt::print(out, "  {:>2}  {:<24} {:<26} {}\n", k + 1, table.headings[k].text,
                importer::becomes(columns[k]), columns[k].why);
+  for (const importer::SheetColumn& column : columns)
+    if (column.turned)
+      fmt::print(out, "deviation of {}: said to be nominal - actual, its sign is turned\n", column.name);
 }
 
 void print_rows(std::FILE* out, const std::string& csv) {
@@ -138,7 +144,9 @@ void add_table_kind(CLI::App& import) {
       ->type_name("FILE");
   kind->footer(
       "Headings are read in their usual forms: X [mm], X(mm), X soll, X ist in \u00b5m,\n"
-      "Abweichung X; a row of units below them too. What was guessed is printed; --preview\n"
+      "Abweichung X; in two lines or with a row of units too. A column a run and sense (1+ 1- 2+ 2-,\n"
+      "Run 1 fwd, hin 1, Messung 1 \u2191) becomes a row a reading. \"(Soll-Ist)\", \"(nominal-actual)\"\n"
+      "behind a deviation turns its sign, and that is said. What was guessed is printed; --preview\n"
       "prints it and writes nothing.");
   kind->callback([arguments] { run_table(*arguments); });
 }

@@ -189,9 +189,9 @@ Drift drift_of(const std::vector<FleetReading>& readings, const AlikeOptions& op
 std::vector<Drift> drifts(const std::vector<FleetReading>& readings, const AlikeOptions& options) {
   std::map<std::string, std::vector<FleetReading>> by_quantity;
   for (const FleetReading& one : readings)
-    if (one.std > 0) by_quantity[one.quantity].push_back(one);
+    if (one.std > 0) by_quantity[one.quantity + "\n" + one.unit].push_back(one);  // of one unit only
   std::vector<Drift> all;
-  for (const auto& [quantity, its] : by_quantity) all.push_back(drift_of(its, options, by_quantity.size()));
+  for (const auto& [name, its] : by_quantity) all.push_back(drift_of(its, options, by_quantity.size()));
   return all;
 }
 

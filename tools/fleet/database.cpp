@@ -31,6 +31,23 @@ std::unique_ptr<Database> open_database(const std::string& place) {
   }
 }
 
+void refuse_foreign(Database& database, const std::string& ours) {
+  const bool server = database.skip_locked()[0] != '\0';
+  // On a server others may stand beside; a file is one program's.
+  const std::string tables =
+      server ? "SELECT tablename FROM pg_tables WHERE schemaname = ANY (current_schemas(false)) AND "
+               "tablename IN ('machine', 'calibration', 'sample', 'live', 'job', 'rollout')"
+             : "SELECT name FROM sqlite_master WHERE type = 'table'";
+  const std::string own =
+      server ? "SELECT 1 FROM pg_tables WHERE schemaname = ANY (current_schemas(false)) AND tablename = $1"
+             : "SELECT 1 FROM sqlite_master WHERE name = $1";
+  const std::vector<Row> found = database.run(tables);
+  if (found.empty() || !database.run(own, {ours}).empty()) return;
+  throw text::InputError(
+      {}, database.name(),
+      "holds tables of something else (" + found[0][0].value_or("") + "): nothing is written");
+}
+
 void insert_rows(Database& database, const std::string& head, const std::vector<Row>& rows,
                  const std::string& tail) {
   constexpr std::size_t kRowsAStatement = 64;

@@ -56,6 +56,8 @@ class Transaction {
 /// Opens a database: `postgresql://…` is a server, anything else a file, made where it is not. Throws
 /// InputError where it cannot be reached or is none.
 std::unique_ptr<Database> open_database(const std::string& place);
+/// Throws InputError where a database has tables, and none of the name `ours`: it is something else's.
+void refuse_foreign(Database& database, const std::string& ours);
 
 /// Is this the address of a server, which may be away for a while?
 bool is_server(const std::string& place);

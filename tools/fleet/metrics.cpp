@@ -103,6 +103,16 @@ void serve_metrics(const std::string& registry, const std::string& address, cons
   const std::string host = address.substr(0, colon);
   { Registry there(open_database(registry)); }
   httplib::Server server;
+  // Not the library's default, which lets a second server take the same port.
+  server.set_socket_options([](socket_t socket) {
+    const int yes = 1;
+    ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+  });
+  // Connections that ask nothing hold a thread no longer than this, and not the last one.
+  constexpr int kPatience_s = 1, kThreads = 32;
+  server.set_read_timeout(kPatience_s);
+  server.set_keep_alive_timeout(kPatience_s);
+  server.new_task_queue = [] { return new httplib::ThreadPool(kThreads); };
   server.Get("/metrics", [&](const httplib::Request&, httplib::Response& response) {
     try {
       Registry here(open_database(registry));

@@ -96,6 +96,7 @@ void Registry::make_tables() {
                                      "ANY (current_schemas(false))"
                                    : "SELECT 1 FROM sqlite_master WHERE name = 'rollout'";
   if (database_->run(found).empty()) {
+    refuse_foreign(*database_, "fleet_schema");
     Transaction transaction(*database_);
     if (server) database_->run(fmt::format("SELECT pg_advisory_xact_lock({})", kSchemaLock));
     for (const char* table : kTables) database_->run(table);

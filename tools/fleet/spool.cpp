@@ -1,12 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/fleet/spool.h"
 
+#include <fcntl.h>
 #include <sodium.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 
 #include "tools/fleet/cells.h"
 #include "tools/fleet/digest.h"
+#include "tools/text/error.h"
 
 namespace vernier::fleet {
 namespace {
@@ -35,8 +41,18 @@ Cell counted(std::uint64_t value) { return cell(static_cast<std::int64_t>(value)
 
 }  // namespace
 
+Spool::Lock::Lock(const std::string& file) : fd_(::open(file.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0644)) {
+  if (fd_ < 0) throw text::InputError({}, file, std::strerror(errno));
+  if (::flock(fd_, LOCK_EX | LOCK_NB) == 0) return;
+  ::close(fd_);
+  throw text::InputError({}, file, "held by another process: a store is one gateway's");
+}
+
+Spool::Lock::~Lock() { ::close(fd_); }
+
 Spool::Spool(const std::string& file, const std::string& owner, std::uint64_t most)
-    : database_(open_database(file)), most_(most) {
+    : lock_(file + ".lock"), database_(open_database(file)), most_(most) {
+  refuse_foreign(*database_, "about");
   {
     Transaction transaction(*database_);
     database_->run(

@@ -48,6 +48,20 @@ class Spool {
   std::uint64_t next_birth();
 
  private:
+  /// Of a file beside the store (flock(2)), so that others may look into the store meanwhile.
+  class Lock {
+   public:
+    /// Throws InputError where another process, or this one, has it.
+    explicit Lock(const std::string& file);
+    ~Lock();
+    Lock(const Lock&) = delete;
+    Lock& operator=(const Lock&) = delete;
+
+   private:
+    int fd_;
+  };
+
+  Lock lock_;
   std::unique_ptr<Database> database_;
   std::string id_;
   std::uint64_t most_, last_ = 0, stored_ = 0, gone_ = 0, dropped_ = 0;

@@ -9,6 +9,7 @@
 #include <map>
 #include <set>
 
+#include "tools/import/sheet_words.h"
 #include "tools/sheet/sheet_number.h"
 #include "tools/text/numbers.h"
 #include "tools/text/units.h"
@@ -18,52 +19,6 @@ namespace vernier::importer {
 namespace {
 
 using Words = std::set<std::string>;
-
-std::string lower(std::string_view text) {
-  std::string result(text);
-  std::transform(result.begin(), result.end(), result.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return result;
-}
-
-/// The words of a heading; X_ist and X-ist are two.
-std::vector<std::string> words_of(const std::string& name) {
-  return text::words_in(name, " \t_-./:;,()[]#+");
-}
-
-// What headings say in the languages of shop floors.
-const Words kTarget = {"soll",    "sollwert",     "target",       "nominal",    "cmd",
-                       "command", "commanded",    "position",     "pos",        "set",
-                       "ziel",    "achse",        "axis",         "machine",    "maschine",
-                       "nom",     "sollposition", "zielposition", "istposition"};
-const Words kMeasured = {"ist",      "istwert",  "measured", "actual",  "act",   "meas", "mess",
-                         "messwert", "gemessen", "reading",  "tracker", "laser", "read", "mes"};
-const Words kDeviation = {"abweichung", "deviation", "dev", "error",     "fehler",     "err",
-                          "delta",      "diff",      "abw", "differenz", "difference", "ecart"};
-const Words kForth = {"1",        "+1",      "+",   "forward",  "fwd", "forth", "up",   "pos",
-                      "positive", "positiv", "vor", "vorwärts", "hin", "auf",   "plus", "cw"};
-const Words kBack = {"-1",
-                     "-",
-                     "backward",
-                     "backwards",
-                     "bwd",
-                     "back",
-                     "reverse",
-                     "rev",
-                     "down",
-                     "neg",
-                     "negative",
-                     "negativ",
-                     "zurück",
-                     "rück",
-                     "rückwärts",
-                     "her",
-                     "ab",
-                     "minus",
-                     "ccw",
-                     "\u2212",
-                     "\u2212"
-                     "1"};
 
 /// Names of the measurement file that are taken as they are written.
 bool is_known_name(const std::string& name) {
@@ -100,12 +55,12 @@ class Guess {
     if (is_axis(heading.name) || is_known_name(heading.name) || is_motion(heading.name)) return column;
     std::string axis;
     bool target = false, measured = false, deviation = false;
-    const std::vector<std::string> words = words_of(heading.name);
+    const std::vector<std::string> words = heading_words(heading.name);
     for (const std::string& word : words) {
-      const std::string small = lower(word);
-      target |= kTarget.contains(small);
-      measured |= kMeasured.contains(small);
-      deviation |= kDeviation.contains(small);
+      const std::string small = in_small_letters(word);
+      target |= says_target(small);
+      measured |= says_measured(small);
+      deviation |= says_deviation(small);
       // dX, ΔX: a deviation in one word.
       const std::string tail = word.starts_with("d")        ? word.substr(1)
                                : word.starts_with("\u0394") ? word.substr(2)
@@ -116,9 +71,10 @@ class Guess {
       }
       if (axis.empty() && is_axis(word)) axis = word;
     }
+    deviation |= says_nominal_less_actual(heading.text, true) || says_nominal_less_actual(heading.name, true);
     if (deviation) return {SheetColumn::Use::kDeviation, axis, heading.unit, "by its heading"};
     if (!axis.empty() && measured) {
-      column.name = lower(axis);
+      column.name = in_small_letters(axis);
       return column;
     }
     if (!axis.empty() && (target || words.size() == 1)) {
@@ -127,6 +83,23 @@ class Guess {
     }
     column.name = other(heading);
     return column;
+  }
+
+  /// What a heading says that names no axis and nothing else either: "Soll", "Pos", "Istposition".
+  enum class Bare { kOther, kTarget, kActual };
+  static Bare bare(const std::string& name) {
+    static const Words kActual = {"ist", "istwert", "istposition", "actual", "act"};
+    Bare found = Bare::kOther;
+    for (const std::string& word : heading_words(name)) {
+      const std::string small = in_small_letters(word);
+      if (kActual.contains(small))
+        found = Bare::kActual;
+      else if (!says_target(small))
+        return Bare::kOther;
+      else if (found == Bare::kOther)
+        found = Bare::kTarget;
+    }
+    return found;
   }
 
  private:
@@ -140,7 +113,7 @@ class Guess {
         {"dir", "dir"},        {"dir.", "dir"},      {"richtg", "dir"},        {"richtg.", "dir"},
         {"richt.", "dir"},     {"sinn", "dir"},      {"fahrtrichtung", "dir"}, {"anfahrrichtung", "dir"},
         {"approach", "dir"},   {"motion", "dir"}};
-    const auto found = kNames.find(lower(heading.name));
+    const auto found = kNames.find(in_small_letters(heading.name));
     return found == kNames.end() ? sheet::name_from_words(heading.name) : found->second;
   }
 
@@ -205,6 +178,8 @@ bool keeps_words(const SheetColumn& column, const Guess& guess) {
          !column.name.starts_with("dir") && !guess.is_axis(column.name) && !guess.is_motion(column.name);
 }
 
+bool is_linear(const std::string& axis) { return axis == "X" || axis == "Y" || axis == "Z"; }
+
 bool is_angle(const std::string& unit) {
   const auto found = text::find_unit(unit);
   return found && found->dimension == text::Dimension::kAngle;
@@ -225,8 +200,68 @@ std::set<std::string> measured_axes(const std::vector<SheetColumn>& columns,
   for (const SheetColumn& column : columns)
     if (column.use == SheetColumn::Use::kDeviation && axes.contains(column.name)) moved.insert(column.name);
   for (const std::string& axis : axes)
-    if (measured.contains(lower(axis))) moved.insert(axis);
+    if (measured.contains(in_small_letters(axis))) moved.insert(axis);
   return moved;
+}
+
+/// Where no heading names an axis and the titles do, a target or an actual position is along that one.
+void settle_axis(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::vector<SheetColumn>& columns,
+                 const Guess& guess) {
+  std::set<std::string> axes;
+  bool read = false;
+  for (const SheetColumn& column : columns) {
+    if (column.use == SheetColumn::Use::kDeviation && guess.is_axis(column.name)) axes.insert(column.name);
+    if (column.use != SheetColumn::Use::kColumn) continue;
+    if (guess.is_axis(column.name)) axes.insert(column.name);
+    read |= column.name == "x" || column.name == "y" || column.name == "z";
+  }
+  const std::string titled = axes.empty() ? axis_of_titles(sheet, table) : "";
+  const std::string axis = axes.size() == 1 ? *axes.begin() : guess.is_axis(titled) ? titled : "";
+  if (axis.empty() || read) return;
+  bool target = axes.contains(axis), actual = false;
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    SheetColumn& column = columns[k];
+    if (column.use != SheetColumn::Use::kColumn || column.why != "by its heading") continue;
+    const Guess::Bare bare = Guess::bare(table.headings[k].name);
+    if (bare == Guess::Bare::kActual && !actual && is_linear(axis)) {
+      column.name = in_small_letters(axis);
+      actual = true;
+    } else if (bare == Guess::Bare::kTarget && !target) {
+      column.name = axis;
+      target = true;
+    }
+  }
+}
+
+/// Two that were measured along an axis without a target: the position that the machine shows is what it was
+/// sent to, where another instrument read.
+void settle_display(const sheet::SheetTable& table, std::vector<SheetColumn>& columns, const Guess& guess) {
+  std::map<std::string, std::size_t> count;
+  for (const SheetColumn& column : columns)
+    if (column.use == SheetColumn::Use::kColumn) ++count[column.name];
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    SheetColumn& column = columns[k];
+    if (column.name.size() != 1 || count[column.name] < 2 || column.why != "by its heading") continue;
+    const std::string axis(1, static_cast<char>(std::toupper(static_cast<unsigned char>(column.name[0]))));
+    if (axis == column.name || !guess.is_axis(axis) || count[axis] > 0) continue;
+    if (in_small_letters(table.headings[k].name).find("istposition") == std::string::npos) continue;
+    --count[column.name];
+    ++count[axis];
+    column.name = axis;
+  }
+}
+
+/// A sign that is stated: in the heading of a deviation, or in a title for all of them.
+void settle_signs(const sheet::Sheet& sheet, const sheet::SheetTable& table,
+                  std::vector<SheetColumn>& columns) {
+  const std::vector<std::string> titles = title_cells(sheet, table);
+  const bool all = std::any_of(titles.begin(), titles.end(), [](const std::string& title) {
+    return says_nominal_less_actual(title, false);
+  });
+  for (std::size_t k = 0; k < columns.size(); ++k)
+    if (columns[k].use == SheetColumn::Use::kDeviation)
+      columns[k].turned = all || says_nominal_less_actual(table.headings[k].text, true) ||
+                          says_nominal_less_actual(table.headings[k].name, true);
 }
 
 /// Deviations and senses that name no axis belong to the only one; what stays open is left out and said.
@@ -236,7 +271,11 @@ void settle(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::vect
   for (const SheetColumn& column : columns)
     if (column.use == SheetColumn::Use::kColumn)
       (guess.is_axis(column.name) ? axes : measured).insert(column.name);
-  const std::set<std::string> moved = measured_axes(columns, axes, measured);
+  std::set<std::string> moved = measured_axes(columns, axes, measured), alone_measured;
+  for (const char* axis : {"X", "Y", "Z"})
+    if (guess.is_axis(axis) && !axes.contains(axis) && measured.contains(in_small_letters(axis)))
+      alone_measured.insert(axis);
+  if (moved.empty()) moved = alone_measured;
   for (std::size_t k = 0; k < columns.size(); ++k) {
     SheetColumn& column = columns[k];
     const Holds content = holds(sheet, table, k);
@@ -247,15 +286,19 @@ void settle(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::vect
     if (column.why != "by its heading") continue;
     const bool deviation = column.use == SheetColumn::Use::kDeviation;
     if (deviation && column.name.empty() && axes.size() == 1) column.name = *axes.begin();
+    if (deviation && column.name.empty() && axes.empty() && alone_measured.size() == 1)
+      column.name = *alone_measured.begin();
     const auto along = std::find_if(columns.begin(), columns.end(), [&](const SheetColumn& one) {
       return one.use == SheetColumn::Use::kColumn && one.name == column.name;
     });
     if (deviation && column.unit == "in" && along != columns.end() && is_angle(along->unit))
       column.unit = "arcsec";  // " beside degrees
-    if (deviation && (column.name.empty() || !axes.contains(column.name)))
+    if (deviation && !axes.contains(column.name) && alone_measured.contains(column.name))
+      column.to_target = true;
+    else if (deviation && (column.name.empty() || !axes.contains(column.name)))
       leave(column, "a deviation of which axis? Say it: --deviation \"X=" + table.headings[k].text + "\"");
-    else if (deviation && measured.contains(lower(column.name)))
-      leave(column, "the measured position is there as " + lower(column.name));
+    else if (deviation && measured.contains(in_small_letters(column.name)))
+      leave(column, "the measured position is there as " + in_small_letters(column.name));
     else if (column.name == "dir" && moved.size() == 1)
       column.name = "dir" + *moved.begin();
     else if (column.name == "dir")
@@ -285,11 +328,6 @@ void keep_names_apart(const sheet::SheetTable& table, std::vector<SheetColumn>& 
 bool wants_unit(const SheetColumn& column) {
   return column.use != SheetColumn::Use::kLeft && !column.words && !is_label(column.name) &&
          !is_pure(column.name);
-}
-
-std::string direction_word(const std::string& cell) {
-  const std::string small = lower(cell);
-  return kForth.contains(small) ? "1" : kBack.contains(small) ? "-1" : "";
 }
 
 /// Senses as numbers: 1 and -1, 0 where nothing moved. A heading of a shop that counts 1 and 0, or 1 and 2,
@@ -322,7 +360,7 @@ std::string cell_text(const sheet::Sheet& sheet, const SheetColumn& column, cons
   const text::Place place{sheet.file, sheet.line[row]};
   if (column.words) return cell;
   if (is_label(column.name)) {
-    const std::string small = lower(cell);
+    const std::string small = in_small_letters(cell);
     if (column.name != "role") return cell;
     if (small == "check" || small == "kontrolle" || small == "prüfen") return "check";
     if (small == "fit" || small.empty()) return small;
@@ -332,7 +370,7 @@ std::string cell_text(const sheet::Sheet& sheet, const SheetColumn& column, cons
     if (!column.name.starts_with("dir")) return "";
   }
   if (column.name.starts_with("dir"))
-    if (const std::string sense = direction_word(cell); !sense.empty()) return sense;
+    if (const int sense = sense_said(cell); sense != 0) return std::to_string(sense);
   if (const auto number = sheet::plain_number(cell, sheet.decimal_comma)) return *number;
   const bool other_sign = sheet::plain_number(cell, !sheet.decimal_comma).has_value();
   throw text::InputError(
@@ -456,7 +494,10 @@ std::vector<SheetColumn> columns_of_sheet(const sheet::Sheet& sheet, const sheet
     if (columns[at].unit.empty()) columns[at].unit = table.headings[at].unit;
     columns[at].why = wish.place.file.empty() ? "as said" : "by the profile";
   }
+  settle_axis(sheet, table, columns, guess);
+  settle_display(table, columns, guess);
   settle(sheet, table, columns, guess);
+  settle_signs(sheet, table, columns);
   keep_names_apart(table, columns);
   for (SheetColumn& column : columns) {
     if (!column.unit.empty() || wishes.unit.empty() || !wants_unit(column)) continue;
@@ -513,9 +554,11 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
     if (column.use == SheetColumn::Use::kLeft) continue;
     const bool deviation = column.use == SheetColumn::Use::kDeviation;
     ImportTable::Column made{
-        deviation ? lower(column.name) : column.name, deviation ? "mm" : column.unit, {}};
-    const std::size_t base =
-        deviation && axis_column.contains(column.name) ? axis_column[column.name] : columns.size();
+        deviation ? in_small_letters(column.name) : column.name, deviation ? "mm" : column.unit, {}};
+    const std::string beside = column.to_target ? in_small_letters(column.name) : column.name;
+    const std::size_t base = deviation && axis_column.contains(beside) ? axis_column[beside] : columns.size();
+    const double sign = column.turned != column.to_target ? -1 : 1;
+    if (column.to_target) made.name = column.name;
     if (deviation && base == columns.size())
       throw text::InputError(heading, column.name, "this axis has no column");
     if (deviation && is_angle(columns[base].unit)) {
@@ -539,8 +582,8 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
           throw text::InputError({sheet.file, sheet.line[row]}, column.name,
                                  "a deviation without its position");
         // Nine decimals are below every instrument: adding leaves no tail of binary digits.
-        text =
-            text::number_text(std::round((mm(at, columns[base].unit) + mm(text, column.unit)) * 1e9) / 1e9);
+        text = text::number_text(
+            std::round((mm(at, columns[base].unit) + sign * mm(text, column.unit)) * 1e9) / 1e9);
       }
       made.cells.push_back(std::move(text));
     }

@@ -17,6 +17,8 @@ struct SheetColumn {
   std::string name, unit;  // of the measurement file; of a deviation its axis
   std::string why;         // "by its heading", "--column", "the profile"; of one left out the reason
   bool words = false;      // kept as it stands, a label of its rows
+  bool turned = false;     // of a deviation: said to be nominal - actual, its sign is turned
+  bool to_target = false;  // of a deviation: the measured position is there, the target is what is made
 };
 
 /// What a person says of the columns: assignments by heading or number, constants, and the unit of headings

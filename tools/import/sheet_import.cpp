@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "tools/import/wide_sheet.h"
 #include "tools/text/error.h"
 
 namespace vernier::importer {
@@ -40,6 +41,7 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
   result.wishes = wishes_of(words, std::move(wishes));
   result.sheet = sheet::read_sheet(bytes, file, result.wishes.format);
   result.table = sheet::parts_of_sheet(result.sheet);
+  result.runs = unfold_runs(result.sheet, result.table);
   for (const std::string& one : words.columns) assign_column(result.wishes, result.table, one);
   for (const std::string& one : words.deviations) assign_deviation(result.wishes, one);
   for (const std::string& heading : words.left) {
@@ -65,7 +67,10 @@ std::string becomes(const SheetColumn& column) {
     case SheetColumn::Use::kColumn:
       return column.name + unit + (column.words ? " (words)" : "");
     case SheetColumn::Use::kDeviation:
-      return fmt::format("position of {} + this, {}", column.name, unit);
+      if (column.to_target)
+        return fmt::format("target of {}: position {} this, {}", column.name, column.turned ? "+" : "-",
+                           unit);
+      return fmt::format("position of {} {} this, {}", column.name, column.turned ? "-" : "+", unit);
     case SheetColumn::Use::kLeft:
       return "left out";
   }
@@ -84,6 +89,7 @@ nlohmann::ordered_json columns_json(const SheetReading& reading) {
                     {"name", column.name},
                     {"unit", column.unit},
                     {"why", column.why}});
+    if (column.turned) list.back()["sign"] = "nominal - actual";
   }
   return list;
 }

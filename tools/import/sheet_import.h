@@ -23,6 +23,7 @@ struct SheetReading {
   sheet::Sheet sheet;
   sheet::SheetTable table;
   std::vector<SheetColumn> columns;
+  std::size_t runs = 0;  // columns of runs that were made one (unfold_runs)
 };
 
 /// Reads text or workbook. `wishes`: what a profile said, over which `words` go. Throws InputError with file,
@@ -34,7 +35,7 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
 std::string how_read(const sheet::Sheet& sheet);
 /// "x[mm]", "position of X + this, [um]", "left out".
 std::string becomes(const SheetColumn& column);
-/// [{heading, use: column | deviation | left, name, unit, why}].
+/// [{heading, use: column | deviation | left, name, unit, why}], sign where a deviation's was turned.
 nlohmann::ordered_json columns_json(const SheetReading& reading);
 
 }  // namespace vernier::importer

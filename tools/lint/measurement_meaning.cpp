@@ -3,11 +3,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cctype>
 #include <cmath>
 #include <limits>
 #include <map>
+#include <vector>
 
 #include "tools/text/numbers.h"
 #include "tools/text/similar.h"
@@ -29,6 +31,8 @@ class Meaning {
     look_at_normals();
     look_at_repeats();
     look_at_scale();
+    look_at_sizes();
+    for (const LintColumn& column : table_.columns) look_for_wild_cells(column);
   }
 
  private:
@@ -223,6 +227,13 @@ class Meaning {
     std::string meaning;
     if (near(1e3)) meaning = "the readings are in µm, or the positions in m?";
     if (near(1e-3)) meaning = "the readings are in m, or the positions in µm?";
+    // The heading may be what is wrong: µm under mm, or mm under µm.
+    for (const char* name : {"x", "y", "z"})
+      if (const LintColumn* point = table_.find(name); point != nullptr) {
+        if (near(1e3) && point->unit == "mm") meaning += " " + wrong_heading(name, "µm", "mm", "um");
+        if (near(1e-3) && point->unit == "um") meaning += " " + wrong_heading(name, "mm", "µm", "mm");
+        break;
+      }
     if (near(25.4)) meaning = "the positions are in inch?";
     if (near(1 / 25.4)) meaning = "the readings are in inch?";
     if (meaning.empty() && ratio < 0.02)
@@ -232,6 +243,66 @@ class Meaning {
       findings_.warn(table_.header_line, "x",
                      fmt::format("what was measured spreads over {:.4g} of what the machine was sent", ratio),
                      meaning);
+  }
+
+  static std::string wrong_heading(const std::string& name, const char* holds, const char* heading,
+                                   const char* write) {
+    return fmt::format("{} under a heading of {}? Write {}[{}]", holds, heading, name, write);
+  }
+
+  /// Columns that are small by nature, corrections and uncertainties: µm under mm, or the other way.
+  void look_at_sizes() {
+    constexpr double kMostCorrection_mm = 2, kLeast_mm = 1e-5;  // of what a board adds; of what is measured
+    for (const LintColumn& column : table_.columns) {
+      const bool correction = !names_.axis_of(column.name, "correction").empty();
+      if (column.label || (!correction && column.name != "u")) continue;
+      if (correction && names_.is_rotary(names_.axis_of(column.name, "correction"))) continue;
+      double most = 0;
+      for (const double value : column.value)
+        most = std::isnan(value) ? most : std::max(most, std::abs(value));
+      const auto say = [&](const std::string& meaning) {
+        findings_.warn(
+            table_.header_line, column.name,
+            fmt::format("{:.4g} {} at most", most / text::find_unit(column.unit)->factor, column.unit),
+            meaning);
+      };
+      if (correction && column.unit == "mm" && most > kMostCorrection_mm)
+        say(wrong_heading(column.name, "µm", "mm", "um"));
+      if (column.unit == "um" && most > 0 && most < kLeast_mm)
+        say(wrong_heading(column.name, "mm", "µm", "mm"));
+    }
+  }
+
+  /// Cells further from the middle half of their column than a hundred times its width: 9999, a lost point.
+  /// A measured position is judged by what it differs from the commanded one.
+  void look_for_wild_cells(const LintColumn& column) {
+    constexpr double kWild = 100;
+    constexpr std::size_t kFewest = 8;
+    // What a machine logs of itself may well jump: a heater is at its set-point but for the first minutes.
+    if (!reading_names().contains(column.name) && !names_.is_axis(column.name)) return;
+    const LintColumn* position =
+        column.name.size() == 1
+            ? table_.find(
+                  std::string(1, static_cast<char>(std::toupper(static_cast<unsigned char>(column.name[0])))))
+            : nullptr;
+    if (position == &column) position = nullptr;
+    std::vector<double> values, sorted;
+    for (std::size_t row = 0; row < table_.rows.size(); ++row) {
+      values.push_back(column.value[row] - (position != nullptr ? position->value[row] : 0));
+      if (!std::isnan(values.back())) sorted.push_back(values.back());
+    }
+    if (sorted.size() < kFewest) return;
+    std::sort(sorted.begin(), sorted.end());
+    const double low = sorted[sorted.size() / 4], high = sorted[sorted.size() * 3 / 4], width = high - low;
+    // Readings that are the same to the last digit say nothing about how far they spread.
+    if (!(width > 0)) return;
+    for (std::size_t row = 0; row < values.size(); ++row)
+      if (values[row] > high + kWild * width || values[row] < low - kWild * width)
+        findings_.add_of_kind(
+            "wild " + column.name, LintWeight::kWarning, line(row), column.cell[row],
+            fmt::format("{} is {:.3g} times the spread of its column away from it", column.name,
+                        (values[row] > high ? values[row] - high : low - values[row]) / width),
+            "a slip, a lost point or a number for \"no reading\"? Leave the cell empty");
   }
 
   std::size_t line(std::size_t row) const { return table_.rows[row].line; }

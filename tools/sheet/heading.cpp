@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <set>
 #include <utility>
 
 #include "tools/sheet/sheet_number.h"
@@ -22,7 +23,7 @@ std::string lower(std::string_view text) {
 }
 
 /// Words for units in the languages of shop floors, in small letters, after the signs are spelled out.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 52> kUnitWords = {{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 58> kUnitWords = {{
     {"millimeter", "mm"},
     {"millimetre", "mm"},
     {"millimeters", "mm"},
@@ -40,6 +41,12 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 52> kUnitWor
     {"inches", "in"},
     {"zoll", "in"},
     {"\"", "in"},
+    {"mil", "thou"},
+    {"mils", "thou"},
+    {"thousandths", "thou"},
+    {"milliradian", "mrad"},
+    {"arc min", "arcmin"},
+    {"winkelminuten", "arcmin"},
     {"degree", "deg"},
     {"degrees", "deg"},
     {"grad", "deg"},
@@ -109,6 +116,49 @@ bool is_units(const std::vector<std::string>& row) {
     ++units;
   }
   return units >= std::min<std::size_t>(2, row.size());
+}
+
+/// Cells of a line that stand for those at their right until the next: what is merged in a workbook.
+std::vector<std::string> spread_to_the_right(const std::vector<std::string>& upper,
+                                             const std::vector<std::string>& lower) {
+  std::vector<std::string> spread = upper;
+  for (std::size_t k = 1; k < spread.size(); ++k)
+    if (spread[k].empty() && !lower[k].empty()) spread[k] = spread[k - 1];
+  return spread;
+}
+
+/// Does the line above go with this line of headings? Only where this one says too little by itself: a cell
+/// empty, a unit alone, or twice the same; and where the two together say it.
+bool is_second_line(const Sheet& sheet, std::size_t row) {
+  const std::vector<std::string>& lower = sheet.rows[row];
+  const std::vector<std::string>& upper = sheet.rows[row - 1];
+  if (std::count_if(upper.begin(), upper.end(), [](const auto& cell) { return !cell.empty(); }) < 2)
+    return false;
+  const std::vector<std::string> spread = spread_to_the_right(upper, lower);
+  std::set<std::string> seen;
+  std::set<std::pair<std::string, std::string>> pairs;
+  bool wanting = false;
+  for (std::size_t k = 0; k < lower.size(); ++k) {
+    // A letter alone is an axis: A and C are units as well.
+    const bool alone = lower[k].empty() || (lower[k].size() > 1 && unit_meant(lower[k]).has_value());
+    if (alone && spread[k].empty() && !lower[k].empty()) return false;
+    if (lower[k].empty() && spread[k].empty()) continue;
+    wanting |= alone || !seen.insert(lower[k]).second;
+    if (!pairs.emplace(spread[k], lower[k]).second) return false;
+  }
+  return wanting;
+}
+
+/// "Messung 1" above "hin [µm]" is "Messung 1 hin [µm]".
+Heading heading_of_two(const std::string& upper, const std::string& lower) {
+  const auto unit = lower.size() > 1 ? unit_meant(lower) : std::nullopt;
+  Heading above = parse_heading(upper), below = parse_heading(unit ? "" : lower);
+  Heading both;
+  both.text = text::trimmed(upper + " " + lower);
+  both.name = text::trimmed(above.name + " " + below.name);
+  both.unit = unit ? *unit : !below.unit.empty() ? below.unit : above.unit;
+  both.unknown_unit = below.unknown_unit.empty() ? above.unknown_unit : below.unknown_unit;
+  return both;
 }
 
 }  // namespace
@@ -191,9 +241,14 @@ SheetTable parts_of_sheet(const Sheet& sheet) {
           {sheet.file, sheet.line[first]}, text::joined(sheet.rows[first], ",").substr(0, 30),
           "more fields than headings: decimal commas in a table that commas part? Save it with semicolons");
   }
+  std::vector<std::string> upper;
+  if (table.has_headings && table.heading_row > 0 && is_second_line(sheet, table.heading_row)) {
+    table.upper_row = table.heading_row - 1;
+    upper = spread_to_the_right(sheet.rows[*table.upper_row], sheet.rows[table.heading_row]);
+  }
   for (std::size_t k = 0; k < sheet.rows.front().size(); ++k) {
     const std::string& cell = table.has_headings ? sheet.rows[table.heading_row][k] : "";
-    Heading one = parse_heading(cell);
+    Heading one = upper.empty() ? parse_heading(cell) : heading_of_two(upper[k], cell);
     if (one.text.empty()) one.text = one.name = std::to_string(k + 1);
     if (table.units_row != 0)
       if (const auto unit = unit_meant(sheet.rows[table.units_row][k])) one.unit = *unit;

@@ -23,13 +23,14 @@ struct Heading {
 };
 Heading parse_heading(std::string_view cell);
 
-/// A sheet by its parts: title lines, headings (from one line, or one with a line of units below), data.
+/// A sheet by its parts: title lines, headings (one line or two, a line of units below), data.
 struct SheetTable {
   std::vector<Heading> headings;  // one a column; named "1", "2" … where the sheet has no heading
   bool has_headings = false;
   std::size_t heading_row = 0;  // index into the sheet's rows, where has_headings
   std::size_t first_data = 0;
-  std::size_t units_row = 0;  // index, 0: none
+  std::size_t units_row = 0;             // index, 0: none
+  std::optional<std::size_t> upper_row;  // of headings in two lines the first
 };
 
 /// Finds the parts: the first row that is mostly numbers begins the data. Throws InputError where none does.

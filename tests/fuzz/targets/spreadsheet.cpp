@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tests/fuzz/target.h"
 #include "tools/import/sheet_columns.h"
+#include "tools/import/wide_sheet.h"
 #include "tools/text/csv.h"
 
 namespace vernier::fuzz {
@@ -18,8 +19,9 @@ void take(Bytes bytes) {
   try {
     SheetWishes wishes;
     read_sheet_profile(wishes, text.substr(0, split), "f.profile");
-    const Sheet sheet = read_sheet(text.substr(split + mark.size()), "f.txt", wishes.format);
-    const SheetTable table = parts_of_sheet(sheet);
+    Sheet sheet = read_sheet(text.substr(split + mark.size()), "f.txt", wishes.format);
+    SheetTable table = parts_of_sheet(sheet);
+    unfold_runs(sheet, table);
     parse_csv(measurement_csv(table_of_sheet(sheet, table, columns_of_sheet(sheet, table, wishes), wishes)),
               "f.csv");
   } catch (const InputError& error) {

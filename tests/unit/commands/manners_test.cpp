@@ -79,7 +79,7 @@ TEST_F(Manners, HelpFitsEightyColumns) {
       commands.push_back(line.substr(2, line.find(' ', 2) - 2));
   EXPECT_GT(commands.size(), 30u);
   commands.insert(commands.end(), {"import table", "import ballbar", "import ballbar-trace", "import tracker",
-                                   "import probe", "part s-shape"});
+                                   "import probe", "import laser", "part s-shape"});
   for (const std::string& command : commands) {
     EXPECT_EQ(run("vernier " + command + " --help"), 0) << command;
     std::istringstream help(said_);

@@ -72,6 +72,18 @@ TEST_F(FleetCommand, RecordsACalibrationAndItsChecks) {
   EXPECT_FALSE(alike[0]["judged"]) << "one machine is no fleet";
 }
 
+TEST_F(FleetCommand, AddChangesOnlyWhatIsSaid) {
+  ASSERT_EQ(run("vernier fleet add V --url tcp://1.2.3.4 --check-days 7 --note hello && "
+                "vernier fleet add V --check-days 3"),
+            0)
+      << said();
+  const auto machine = json("vernier fleet list")["machines"][0];
+  EXPECT_EQ(machine["url"], "tcp://1.2.3.4");
+  EXPECT_EQ(machine["note"], "hello");
+  EXPECT_EQ(machine["check_days"], 3);
+  EXPECT_EQ(run("vernier fleet add V --check-days nan"), 1) << said();
+}
+
 TEST_F(FleetCommand, BadInputIsNamed) {
   ASSERT_EQ(run("vernier fleet add a"), 0) << said();
   for (const char* words :

@@ -6,6 +6,9 @@
 
 #include <filesystem>
 
+#include "tools/fleet/registry.h"
+#include "tools/text/error.h"
+
 namespace vernier::spool_test {
 
 using namespace vernier::fleet;
@@ -42,6 +45,20 @@ TEST_F(SpoolFile, NumbersGoOnAfterItsGatewayEnds) {
   EXPECT_EQ(records[0].number, 2u);
   EXPECT_EQ(records[2].number, 4u);
   EXPECT_EQ(records[2].payload, std::string("\0\xff'", 3));
+}
+
+TEST_F(SpoolFile, IsOneGatewaysAndNoOtherProgramsFile) {
+  {
+    Spool spool(file_, "g", 100);
+    EXPECT_THROW(Spool(file_, "g", 100), text::InputError)
+        << "a second gateway would number the same samples";
+    put(spool, 1);
+  }
+  EXPECT_NO_THROW(Spool(file_, "g", 100)) << "the first has ended";
+  const std::string registry = folder_ + "/registry.db";
+  { Registry tables(open_database(registry)); }
+  EXPECT_THROW(Spool(registry, "g", 100), text::InputError);
+  EXPECT_THROW(Registry(open_database(file_)), text::InputError) << "a store is no registry";
 }
 
 TEST_F(SpoolFile, RecordsLeaveWhenTheyAreStored) {

@@ -6,6 +6,7 @@
 
 #include <functional>
 
+#include "tools/import/wide_sheet.h"
 #include "tools/text/files.h"
 
 namespace vernier::sheet_columns_test {
@@ -18,8 +19,9 @@ namespace {
 std::string import(const std::string& bytes, SheetWishes wishes = {},
                    const std::function<void(SheetWishes&, const SheetTable&)>& say = {}) {
   try {
-    const Sheet sheet = read_sheet(bytes, "s.csv", wishes.format);
-    const SheetTable table = parts_of_sheet(sheet);
+    Sheet sheet = read_sheet(bytes, "s.csv", wishes.format);
+    SheetTable table = parts_of_sheet(sheet);
+    unfold_runs(sheet, table);
     if (say) say(wishes, table);
     return measurement_csv(table_of_sheet(sheet, table, columns_of_sheet(sheet, table, wishes), wishes));
   } catch (const InputError& error) {
@@ -87,6 +89,57 @@ const Case kCases[] = {
     {"MissingReadings", "X[mm];x[mm]\n1;-\n2;3\n", "X[mm],x[mm]\n1,\n2,3\n"},
     {"QuotedCommas", "X[mm],x[mm]\n\"1,5\",\"2,5\"\n", "X[mm],x[mm]\n1.5,2.5\n"},
     {"Inches", "X (inch);x (inch)\n1;1.0001\n", "X[in],x[in]\n1,1.0001\n"},
+    {"Thou", "X [in];dX [thou]\n10;2\n", "X[in],x[mm]\n10,254.0508\n"},
+    {"Mil", "X [in];dX [mil]\n10;2\n", "X[in],x[mm]\n10,254.0508\n"},
+    {"MinutesOfArc", "C [°];Abweichung C [arcmin]\n90;3\n", "C[deg],rz[deg]\n90,90.05\n"},
+    {"Milliradians", "X[mm];rx [mrad]\n1;2,5\n2;3,5\n", "X[mm],rx[mrad]\n1,2.5\n2,3.5\n"},
+    {"ColumnARunAndSense", "X [mm];1+;1-;2+;2-\n0;1;2;3;4\n100;5;6;7;\n",
+     "refused: s.csv:1: no unit: say it for all (--unit mm) or for each, such as --deviation "
+     "\"X[um]=Deviation\""},
+    {"ColumnARunAndSenseWithUnits", "X [mm];1+ [µm];1- [µm];2+ [µm];2- [µm]\n0;1;2;3;4\n100;5;6;7;\n",
+     "X[mm],dirX,run,x[mm]\n0,1,1,0.001\n100,1,1,100.005\n0,-1,1,0.002\n100,-1,1,100.006\n0,1,2,0.003\n"
+     "100,1,2,100.007\n0,-1,2,0.004\n"},
+    {"RunsInWords", "Axis Y;;\nDeviations [um];;\nPos [mm];Run 1 fwd;Run 1 bwd\n0;1;2\n100;5;6\n",
+     "Y[mm],dirY,run,y[mm]\n0,1,1,0.001\n100,1,1,100.005\n0,-1,1,0.002\n100,-1,1,100.006\n"},
+    {"UnitAndSignInATitle", "Achse: X;;\nAbweichungen in µm (Soll-Ist);;\nPos [mm];1+;1-\n0;1;2\n100;5;6\n",
+     "X[mm],dirX,run,x[mm]\n0,1,1,-0.001\n100,1,1,99.995\n0,-1,1,-0.002\n100,-1,1,99.994\n"},
+    {"RunsInGerman", "Z soll [mm];hin 1 [µm];zurück 1 [µm]\n0;1;2\n100;5;6\n",
+     "Z[mm],dirZ,run,z[mm]\n0,1,1,0.001\n100,1,1,100.005\n0,-1,1,0.002\n100,-1,1,100.006\n"},
+    {"RunsWithArrows", "Z [mm];Messung 1 ↑ [µm];Messung 1 ↓ [µm]\n0;1;2\n100;5;6\n",
+     "Z[mm],dirZ,run,z[mm]\n0,1,1,0.001\n100,1,1,100.005\n0,-1,1,0.002\n100,-1,1,100.006\n"},
+    {"RunsOfPositions", "Z soll [mm];1+;1-\n0;0,001;0,002\n100;100,005;100,006\n",
+     "Z[mm],dirZ,run,z[mm]\n0,1,1,0.001\n100,1,1,100.005\n0,-1,1,0.002\n100,-1,1,100.006\n"},
+    {"SensesWithoutNumbers", "Z [mm];Abw. + [µm];Abw. - [µm];Abw. + [µm];Abw. - [µm]\n0;1;2;3;4\n9;1;2;3;4\n",
+     "Z[mm],dirZ,run,z[mm]\n0,1,1,0.001\n9,1,1,9.001\n0,-1,1,0.002\n9,-1,1,9.002\n0,1,2,0.003\n"
+     "9,1,2,9.003\n0,-1,2,0.004\n9,-1,2,9.004\n"},
+    {"TheSameRunTwice", "Z [mm];1+ [um];1+ [um]\n0;1;2\n9;1;2\n",
+     "refused: s.csv:1: \"1+ [um]\": this run stands twice in this sense"},
+    {"ThermometersAreNoRuns", "X[mm];x[mm];T1 [°C];T2 [°C]\n1;2;20;21\n2;3;20;21\n",
+     "X[mm],x[mm],T1[degC],T2[degC]\n1,2,20,21\n2,3,20,21\n"},
+    {"WordInARun", "X [mm];1+ [µm];1- [µm]\n0;1;2\n100;5;bad\n",
+     "refused: s.csv:3: \"bad\": not a number, for X"},
+    {"TwoLinesOfHeadings", "X;X;Y;Y\nSoll [mm];Ist [mm];Soll [mm];Ist [mm]\n1;1,1;2;2,1\n",
+     "X[mm],x[mm],Y[mm],y[mm]\n1,1.1,2,2.1\n"},
+    {"TwoLinesAndUnits", "X;X;Temp\nSoll;Ist;\nmm;mm;°C\n1;1,1;20\n", "X[mm],x[mm],Temp[degC]\n1,1.1,20\n"},
+    {"TwoLinesWithRunsAbove",
+     "X soll;Messung 1;;Messung 2;\nmm;hin µm;zurück µm;hin µm;zurück µm\n0;1;2;3;4\n9;1;2;3;4\n",
+     "X[mm],dirX,run,x[mm]\n0,1,1,0.001\n9,1,1,9.001\n0,-1,1,0.002\n9,-1,1,9.002\n0,1,2,0.003\n"
+     "9,1,2,9.003\n0,-1,2,0.004\n9,-1,2,9.004\n"},
+    {"TitleOfTwoCellsStaysATitle", "Maschine;DMU 50\nX[mm];x[mm]\n1;2\n", "X[mm],x[mm]\n1,2\n"},
+    {"ActualAndDeviation", "X Istposition [mm];Abweichung X [µm]\n100,0015;1,5\n",
+     "x[mm],X[mm]\n100.0015,100\n"},
+    {"ActualOfTheTitlesAxis", "X-Achse;\nActual [mm];Deviation [µm]\n100,0015;1,5\n",
+     "x[mm],X[mm]\n100.0015,100\n"},
+    {"DisplayAndReading", "Istposition X [mm];Messwert X [mm]\n100;100,5\n", "X[mm],x[mm]\n100,100.5\n"},
+    {"NominalLessActual", "X [mm];Deviation (nominal-actual) [µm]\n100;1,5\n", "X[mm],x[mm]\n100,99.9985\n"},
+    {"SollLessIst", "X [mm];Abw. X (Soll − Ist) [µm]\n100;1,5\n", "X[mm],x[mm]\n100,99.9985\n"},
+    {"SollLessIstInTheTitle", "Abweichung = Soll - Ist;\nX [mm];Abw. X [µm]\n100;1,5\n",
+     "X[mm],x[mm]\n100,99.9985\n"},
+    {"IstLessSoll", "X [mm];Abw. X (Ist-Soll) [µm]\n100;1,5\n", "X[mm],x[mm]\n100,100.0015\n"},
+    {"AComparisonSaysNoSign", "Soll-Ist-Vergleich;\nX [mm];Abw. X [µm]\n100;1,5\n",
+     "X[mm],x[mm]\n100,100.0015\n"},
+    {"RunsOfNominalLessActual", "X [mm];1+ (Soll-Ist) [µm];1- (Soll-Ist) [µm]\n0;1;2\n9;1;2\n",
+     "X[mm],dirX,run,x[mm]\n0,1,1,-0.001\n9,1,1,8.999\n0,-1,1,-0.002\n9,-1,1,8.998\n"},
     {"NoUnits", "X;x\n1;2\n", "refused: s.csv:1: no unit: say it for all (--unit mm)"},
     {"TwoSigns", "X[mm];x[mm]\n1,5;2\n3.5;2\n", "--decimal comma or point"},
     {"CommaInCommas", "X[mm],x[mm]\n0,5,1,5\n",

@@ -41,6 +41,15 @@ const std::string kRow1 = "0,0,-300,1,0,1,20,0,0,-300,a,fit\n",
                   kRow2 = "300,200,-100,1,0,2,21,300,200,-100,a,fit\n",
                   kRow3 = "600,400,0,-1,5,3,22,600,400,0,a,check\n";
 
+/// Ten rows along X, readings one to ten µm off; one cell said.
+std::string along_x(const std::string& reading, const std::string& unit = "mm", double factor = 1) {
+  std::string text = "X[mm],Y[mm],Z[mm],x[" + unit + "]\n";
+  for (int i = 0; i < 10; ++i)
+    text += std::to_string(60 * i) + ",0,0," +
+            (i == 7 && !reading.empty() ? reading : std::to_string((60 * i + 0.001 * i) * factor)) + "\n";
+  return text;
+}
+
 const Case kCases[] = {
     {"Semicolons", "X[mm];x[mm]\n1;2\n",
      "error: \"X[mm];x[mm]\": columns parted by semicolon, not by comma -- a spreadsheet"},
@@ -69,6 +78,13 @@ const Case kCases[] = {
     {"AxisMissing", "X[mm],Y[mm],x[mm]\n1,2,3\n", "\"Z\": the column of this axis is missing"},
     {"AxisInSmallLetters", "X[mm],Y[mm],z[mm],x[mm]\n1,2,3,4\n", "there is z: names have capitals"},
     {"NothingMeasured", "X[mm],Y[mm],Z[mm]\n1,2,3\n", "no measured column"},
+    {"WildCell", along_x("9999"), "s.csv:9: warning: \"9999\": x is "},
+    {"MicronsUnderMillimetres", along_x("", "mm", 1000), "µm under a heading of mm? Write x[um]"},
+    {"MillimetresUnderMicrons", along_x("", "um"), "mm under a heading of µm? Write x[mm]"},
+    {"CorrectionOfMillimetres", "X[mm],Y[mm],Z[mm],x[mm],correctionX[mm]\n0,0,0,0,12.5\n9,0,0,9,13.5\n",
+     "13.5 mm at most"},
+    {"UncertaintyOfMillimetresUnderMicrons", "X[mm],Y[mm],Z[mm],x[mm],u[um]\n0,0,0,0,0.002\n9,0,0,9,0.002\n",
+     "mm under a heading of µm? Write u[mm]"},
     {"NotFilledIn", kHead + "0,0,-300,1,0,1,20,,,,a,fit\n",
      "no reading in any row -- a template that is still to be filled in?"},
     {"NoHeader", "1,2,3,4\n5,6,7,8\n", "a row of numbers where the header should be"},

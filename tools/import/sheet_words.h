@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tools/sheet/heading.h"
+#include "tools/sheet/sheet.h"
+
+namespace vernier::importer {
+
+/// A to Z as a to z; other letters stay.
+std::string in_small_letters(std::string_view text);
+/// The words of a heading; X_ist and X-ist are two.
+std::vector<std::string> heading_words(const std::string& name);
+
+// What a word, in small letters, says of a column in the languages of shop floors.
+bool says_target(const std::string& word);
+bool says_measured(const std::string& word);
+bool says_deviation(const std::string& word);
+
+/// 1 for forward, +, hin …; -1 for back, -, zurück …; 0: no sense. tool.
+int sense_said(std::string_view word);
+
+/// Is a deviation said to be nominal - actual: "(nominal-actual)", "= Soll - Ist"? `whole`: also where the
+/// text is nothing else; "Soll-Ist-Vergleich" says no sign. tool.
+bool says_nominal_less_actual(std::string_view text, bool whole);
+
+/// The cells above the headings of a table. tool.
+std::vector<std::string> title_cells(const sheet::Sheet& sheet, const sheet::SheetTable& table);
+
+/// The only axis that the titles name ("Achse: X", "X-Achse", "Axis X"); empty: none or several. tool.
+std::string axis_of_titles(const sheet::Sheet& sheet, const sheet::SheetTable& table);
+
+}  // namespace vernier::importer
