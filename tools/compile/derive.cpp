@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/compile/derive.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -190,6 +192,15 @@ Solution position_only(const model::Machine& machine, double neglect_mm) {
     throw text::InputError({machine.file, 0}, machine.name,
                            "cannot be compiled: no axis moves the tool point");
   const Span whole = span_of(all.derivation(), all.columns());
+  const auto axes = static_cast<int>(all.columns().size());
+  if (whole.rank > axes)
+    throw text::InputError(
+        {machine.file, 0}, machine.name,
+        fmt::format(
+            "cannot be compiled: its {} axes move the tool point in {} directions over the declared "
+            "ranges, in other ones at each pose (as a telescope's do); an image is for machines whose "
+            "axes reach at every pose all directions that they reach anywhere",
+            axes, whole.rank));
   if (whole.rank <= reach.rank && reach.everywhere) return solved(machine, linear);
   return solved(machine, all);
 }
