@@ -13,6 +13,7 @@
 #include "comp/compensator.h"
 #include "tables/image_view.h"
 #include "tools/text/error.h"
+#include "tools/text/numbers.h"
 
 namespace vernier::workbench {
 namespace {
@@ -45,7 +46,7 @@ Json summary(const ImageView& image) {
   for (std::uint32_t i = 0; i < image.inputs().size; ++i) inputs.push_back(image.inputs()[i].name);
   const Equation& equation = image.program().equation;
   return {{"name", image.name()},
-          {"fingerprint", fmt::format("{:016x}", image.header().fingerprint)},
+          {"fingerprint", text::fingerprint_text(image.header().fingerprint)},
           {"bytes", image.header().image_bytes},
           {"operations", equation.instructions.size},
           {"tables", equation.tables.size},

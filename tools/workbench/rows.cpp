@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tools/effects/add_string.h"
 #include "tools/effects/fitted_effect.h"
 #include "tools/fit/convention.h"
 #include "tools/fit/fit.h"

@@ -186,6 +186,16 @@ async function shown(page) {
   await page.until("document.querySelectorAll('#safety tbody tr').length === 12", 'the sheet');
   assert.equal(await attribute(page, '#safety-words', 'ok'), 'true');
   assert.ok((await text(page, '#safety')).includes('Is the correction known well enough?'));
+  // A reload begins where one was.
+  const before = await steps(page);
+  await page.evaluate('location.reload(); 1');
+  await page.until(
+    "document.body.dataset.ready === 'yes' && document.getElementById('machine').value === 'model-fitted.xml'",
+    'the page again',
+  );
+  const kept = (path) => path.filter(([id, done]) => done && id === 'fall').length;
+  assert.equal(kept(before), 1, 'the fit is a step of the way');
+  assert.equal(kept(await steps(page)), 1, 'and still is after a reload');
   // The path can be left and come back to.
   await page.click('#guide-away');
   assert.ok(await page.evaluate("document.getElementById('guide').hidden"));

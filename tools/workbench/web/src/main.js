@@ -9,6 +9,7 @@ import { compareView } from './compare.js';
 import { diagnoseView } from './diagnose.js';
 import { fleetView } from './fleet.js';
 import { guide } from './guide.js';
+import { rememberTheWay } from './memory.js';
 import { redrawAll } from './plot.js';
 import { choose, projectView } from './project.js';
 import { emit, on, store } from './store.js';
@@ -136,6 +137,7 @@ async function start() {
     main.append(root);
     views.set(id, { root, link, view: build(root) });
   }
+  rememberTheWay();
   addEventListener('hashchange', () => show(location.hash.slice(1)));
   show(location.hash.slice(1));
   const old = remembered(),
