@@ -6,6 +6,26 @@ function(vernier_unity target)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${VERNIER_UNITY} UNITY_BUILD_BATCH_SIZE 16)
 endfunction()
 
+# Rooms that read, write and print, and nothing that a measurement waits for: an optimiser costs more there than it saves.
+set(VERNIER_ROOMS_OF_GLUE create lint exchange evaluate report results upload workbench fleet commands python)
+# The same under sanitizers, whose tests read small files only.
+set(VERNIER_ROOMS_OF_TEXT ${VERNIER_ROOMS_OF_GLUE} text sheet import)
+
+# vernier_effort(target room): how hard the compiler tries, and what it has read before.
+function(vernier_effort target room)
+  set(headers vernier_headers)
+  if(VERNIER_SANITIZE AND room IN_LIST VERNIER_ROOMS_OF_TEXT)
+    target_compile_options(${target} PRIVATE -O0)
+    set(headers vernier_headers_of_text)
+  elseif(room IN_LIST VERNIER_ROOMS_OF_GLUE)
+    # Seen without inlining, a number that is there on one condition "may be uninitialized" on the same one further down.
+    target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1> $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
+  endif()
+  if(TARGET ${headers})
+    target_precompile_headers(${target} REUSE_FROM ${headers})
+  endif()
+endfunction()
+
 # vernier_library(folder PUBLIC a b PRIVATE c SOURCES more.cpp): vernier_<folder>, a static library of all sources in this
 # folder and of those generated for it.
 function(vernier_library name)
@@ -14,7 +34,5 @@ function(vernier_library name)
   add_library(vernier_${name} STATIC ${sources} ${ARG_SOURCES})
   vernier_unity(vernier_${name})
   target_link_libraries(vernier_${name} PUBLIC vernier_warnings ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
-  if(VERNIER_SANITIZE AND "${name}" IN_LIST VERNIER_ROOMS_OF_TEXT)
-    target_compile_options(vernier_${name} PRIVATE -O0)
-  endif()
+  vernier_effort(vernier_${name} ${name})
 endfunction()
