@@ -136,14 +136,17 @@ class LeastSquaresBound {
     add("determinant", "rounding", error_of(least_.determinant, square) / least_.floor * size);
     add("adjugate", "rounding", least_.trace * error_of(least_.adjugate, square) / least_.floor * size);
     add("J J'", "rounding", error_of(least_.square, jacobian) * most * size);
-    add("J", "function", error_of(least_.jacobian, {}) * least_.gain * size);
+    // Of the nearest point the columns are met twice: what lies across them leaks in as they turn.
+    add("J", "function", (least_.nearest ? 2 : 1) * error_of(least_.jacobian, {}) * least_.gain * size);
     Registers last = jacobian;
     double weights = 0;
     for (const NodeId id : least_.weights) {
       weights += std::pow(error_of(id, pieces), 2);
       insert(last, id);
     }
-    add("weights", "rounding", least_.trace * std::sqrt(weights));
+    // J J' w, or J w where the weights are the motions.
+    add("weights", "rounding",
+        (least_.nearest ? std::sqrt(least_.trace) : least_.trace) * std::sqrt(weights));
     double solution = 0;
     for (std::size_t k = 0; k < outputs_.size(); ++k)
       solution += std::pow(least_.lever[k] * error_of(outputs_[k].value, last), 2);
@@ -185,15 +188,17 @@ class LeastSquaresBound {
       for (const NodeId id : row) sum += std::pow(error_of(id, given), 2);
     return std::sqrt(sum);
   }
-  /// What the deviation's own registers are wrong by, a term per register.
+  /// What the deviation's own registers are wrong by, a term per register: seen through the solution, which
+  /// turns a right side of the nearest point back into a length.
   void add_deviation(std::vector<Contribution>& terms) const {
+    const double back = least_.nearest ? least_.gain : 1;
     std::vector<double> square(p_.registers.size(), 0);
     for (const NodeId id : least_.deviation) {
       const auto at = place(id);
       if (!at) continue;
       const std::vector<double> gain = gains_to(p_, *at);
       for (std::size_t r = 0; r < gain.size(); ++r)
-        square[r] += std::pow(bare(id).first * gain[r] * p_.registers[r].own_error, 2);
+        square[r] += std::pow(back * bare(id).first * gain[r] * p_.registers[r].own_error, 2);
     }
     for (std::size_t r = 0; r < square.size(); ++r)
       if (square[r] > 0)
@@ -410,8 +415,9 @@ std::vector<OutputBound> bounds_of(const model::Machine& machine, const Derivati
   const std::vector<Remainder> remainders = remainders_of(d, p, least_mm);
   std::vector<OutputBound> bounds;
   if (d.least_squares) {
-    const double size =
-        d.before.empty() ? d.spread_mm : remainders[remainders.size() - 2].point_mm + least_mm;
+    // What lies across the axes is met again by every evaluation.
+    const bool whole = d.before.empty() || d.least_squares->nearest;
+    const double size = whole ? d.spread_mm : remainders[remainders.size() - 2].point_mm + least_mm;
     bounds = least_squares_bounds(machine, d, p, std::min(size, d.spread_mm));
   } else {
     for (std::size_t i = 0; i < p.outputs.size(); ++i)

@@ -11,7 +11,9 @@
 namespace vernier::compile {
 namespace {
 
+// Numbers of registers: constants below, then channels, then results.
 constexpr std::uint32_t kFirstChannel = 512, kFirstResult = kFirstChannel + kMaxRegisters;
+// Of a fraction: a register of 32 bits shifted by more holds nothing of either.
 constexpr int kMostBits = 50, kFewestBits = -30;
 
 std::string identifier(const std::string& name) {
@@ -94,7 +96,7 @@ namespace {
 
 // All digits of a constant, however small: a coefficient may meet a large register.
 int bits_of_constant(double value) {
-  constexpr int kMostDigits = 90;
+  constexpr int kMostDigits = 90;  // of a constant that meets the largest register
   const int bits = fraction_bits_for(std::abs(value));
   if (value == 0 || bits < kMostBits) return bits;
   return std::min(kMostDigits, static_cast<int>(std::log2(2147483647.0 / std::abs(value))));

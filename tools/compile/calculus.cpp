@@ -13,7 +13,7 @@
 namespace vernier::compile {
 namespace {
 
-constexpr unsigned kSeed = 20260701;
+constexpr unsigned kSeed = 20260701;  // any
 
 NodeId slope_node(Graph& g, Function f, NodeId a) {
   switch (f) {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/compile/derive.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -171,7 +169,11 @@ Solution solved(const model::Machine& machine, Attempt& attempt) {
   Derivation& d = result.derivation;
   result.solve = solve_axes(d);
   const Span span = span_of(d, d.columns);
-  if (span.rank < 3 && !holds(d.graph, span, d.deviation))
+  if (d.least_squares && d.least_squares->nearest)
+    d.notes.push_back("the axes " + names_of(machine, d) +
+                      " move the tool point in other directions at each pose: what lies across those of a "
+                      "pose is not corrected there");
+  else if (span.rank < 3 && !holds(d.graph, span, d.deviation))
     d.notes.push_back("the axes " + names_of(machine, d) +
                       " do not reach every direction: what lies across them is not corrected");
   return result;
@@ -192,15 +194,6 @@ Solution position_only(const model::Machine& machine, double neglect_mm) {
     throw text::InputError({machine.file, 0}, machine.name,
                            "cannot be compiled: no axis moves the tool point");
   const Span whole = span_of(all.derivation(), all.columns());
-  const auto axes = static_cast<int>(all.columns().size());
-  if (whole.rank > axes)
-    throw text::InputError(
-        {machine.file, 0}, machine.name,
-        fmt::format(
-            "cannot be compiled: its {} axes move the tool point in {} directions over the declared "
-            "ranges, in other ones at each pose (as a telescope's do); an image is for machines whose "
-            "axes reach at every pose all directions that they reach anywhere",
-            axes, whole.rank));
   if (whole.rank <= reach.rank && reach.everywhere) return solved(machine, linear);
   return solved(machine, all);
 }

@@ -33,14 +33,18 @@ struct AxisDeviation {
 /// The least squares x = J' w, w = adj(J J') deviation / max(det(J J'), floor) of a machine that is corrected
 /// by turning axes too. Rows of J: directions of the tool point; columns: axes, each divided by its lever.
 struct LeastSquares {
-  std::vector<std::vector<NodeId>> jacobian, square, adjugate;  // J, J J', adj(J J')
-  std::vector<NodeId> deviation, weights;
-  std::vector<double> lever;  // mm per axis unit
+  /// Fewer axes than directions that they move the tool point in, other ones at each pose (a telescope): then
+  /// K below is J', x = (J'J)^-1 J' deviation is what brings the tool point nearest, and what lies across the
+  /// axes stays. Else K is J, and x = J' (J J')^-1 deviation the least motion of all.
+  bool nearest = false;
+  std::vector<std::vector<NodeId>> jacobian, square, adjugate;  // K, K K', adj(K K')
+  std::vector<NodeId> deviation, weights;                       // what (K K')^-1 is taken of, and gives
+  std::vector<double> lever;                                    // mm per axis unit
   NodeId determinant = 0, reciprocal = 0;
-  double floor = 0;      // det(J J') below it: the correction fades
+  double floor = 0;      // det(K K') below it: the correction fades
   double trace = 0;      // sum of the squares of J's singular values, at most
-  double largest = 0;    // |adj(J J')| at most
-  double gain = 0;       // |J' (J J')^-1| at most, where the correction does not fade
+  double largest = 0;    // |adj(K K')| at most
+  double gain = 0;       // |K' (K K')^-1| at most, where the correction does not fade
   double spread_mm = 0;  // |deviation| at most
 };
 

@@ -145,7 +145,7 @@ void expand(const Graph& g, double k, NodeId id, double& number, std::map<NodeId
 // nothing of each other: where the two cancel, what is left of them is taken.
 NodeId Translator::actual(const Dual& a) {
   if (added_.empty() || g_.is_zero(a.delta)) return g_.add(a.nominal, a.delta);
-  constexpr double kRounding = 1e-12;
+  constexpr double kRounding = 1e-12;  // of a coefficient: what cancels to less is none
   double number = 0;
   std::map<NodeId, double> terms, sizes;
   expand(g_, 1, a.nominal, number, terms, sizes);

@@ -12,7 +12,7 @@ namespace vernier::compile {
 
 /// Where an error of the fixed-point program comes from.
 enum class ErrorSource : std::uint8_t { kRounding, kTable, kFunction, kChannel, kLag };
-constexpr std::size_t kErrorSourceCount = 5;
+constexpr std::size_t kErrorSourceCount = 5;  // of ErrorSource
 const char* name_of(ErrorSource source);
 
 /// What the compiler knows about one register: format, range and where its error comes from. The value it

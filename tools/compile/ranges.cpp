@@ -18,7 +18,7 @@ constexpr double kRotaryAcceleration = 10000;  // deg/s^2
 constexpr double kFeed = 60000;                // mm/min
 constexpr double kCurvature = 1;               // 1/mm
 constexpr double kTime = 1e6;                  // s
-constexpr double kVisits = 1e6;
+constexpr double kVisits = 1e6;                // rows of a clock: a day at ten a second
 
 double half_width_of(const std::string& unit) {
   if (unit == "degC" || unit == "K") return 50;

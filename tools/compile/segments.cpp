@@ -10,8 +10,8 @@
 namespace vernier::compile {
 namespace {
 
-constexpr double kRelativeTolerance = 1.0 / (1 << 26);
-constexpr std::size_t kMostPieces = 1024;
+constexpr double kRelativeTolerance = 1.0 / (1 << 26);  // of a function's range; a register has 31 bits
+constexpr std::size_t kMostPieces = 1024;               // of a table that a small board holds
 
 void split(Function f, std::int64_t low, std::int64_t high, double unit, double tolerance,
            std::vector<std::int64_t>& positions, double& error) {

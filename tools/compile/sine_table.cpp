@@ -8,7 +8,7 @@
 namespace vernier::compile {
 
 std::string print_sine_table() {
-  constexpr int kNodes = 512;
+  constexpr int kNodes = 512;  // in a turn
   constexpr long double kTurn = 6.28318530717958647692528676655900577L, kOne = 1073741824.0L;
   std::string text =
       "// SPDX-License-Identifier: Apache-2.0\n"

@@ -217,23 +217,64 @@ NodeId held_determinant(Derivation& d, Algebra& algebra, NodeId determinant, dou
   return g.choice(NodeKind::kMax, determinant, g.constant(floor));
 }
 
-// x = J' (J J')^-1 deviation, the columns scaled alike so that no axis is asked to move the tool point more
+/// What (K K')^-1 is taken of: the components of a vector in the directions; where the nearest point is
+/// sought, K times them.
+std::vector<NodeId> right_side(Graph& g, const LeastSquares& least, const std::vector<NodeId>& components) {
+  if (!least.nearest) return components;
+  std::vector<NodeId> along;
+  for (const std::vector<NodeId>& row : least.jacobian)
+    along.push_back(limited(g, product_sum(g, row, components), std::sqrt(least.trace) * least.spread_mm));
+  return along;
+}
+
+/// (K K')^-1 times a right side.
+std::vector<NodeId> weights_of(Graph& g, const LeastSquares& least, const std::vector<NodeId>& right) {
+  const double size = least.largest * least.spread_mm * (least.nearest ? std::sqrt(least.trace) : 1);
+  std::vector<NodeId> weights;
+  for (const std::vector<NodeId>& row : least.adjugate)
+    weights.push_back(g.product(least.reciprocal, limited(g, product_sum(g, row, right), size)));
+  return weights;
+}
+
+/// The motions of the axes: K' times the weights, or where the nearest point is sought the weights
+/// themselves.
+std::vector<NodeId> motions_of(Graph& g, const LeastSquares& least, const std::vector<NodeId>& weights) {
+  std::vector<NodeId> motions;
+  for (std::size_t k = 0; k < least.lever.size(); ++k) {
+    std::vector<NodeId> column;
+    for (const std::vector<NodeId>& row : least.jacobian)
+      if (!least.nearest) column.push_back(row[k]);
+    motions.push_back(
+        g.scale(1 / least.lever[k], least.nearest ? weights[k] : product_sum(g, column, weights)));
+  }
+  return motions;
+}
+
+Matrix transposed(const Matrix& m) {
+  Matrix result(m[0].size(), std::vector<NodeId>(m.size()));
+  for (std::size_t i = 0; i < m.size(); ++i)
+    for (std::size_t k = 0; k < m[i].size(); ++k) result[k][i] = m[i][k];
+  return result;
+}
+
+// x = K' (K K')^-1 deviation, the columns scaled alike so that no axis is asked to move the tool point more
 // than another. Known lengths limit what intervals overrate: a turn keeps a length, but not a component's
 // interval.
 Solver solve_least(Derivation& d, Algebra& algebra, const std::vector<AxisColumn>& columns,
                    const Reduced& r) {
   Graph& g = d.graph;
   LeastSquares least;
-  least.jacobian = r.rows;
+  least.nearest = r.rows.size() > columns.size();
   least.lever = r.lever;
-  least.deviation = r.deviation;
   least.spread_mm = d.spread_mm;
+  Matrix jacobian = r.rows;
   for (std::size_t k = 0; k < columns.size(); ++k)
     least.trace += columns[k].norm * columns[k].norm / (r.lever[k] * r.lever[k]);
-  const std::size_t rank = r.rows.size();
-  for (std::vector<NodeId>& row : least.jacobian)
+  for (std::vector<NodeId>& row : jacobian)
     for (std::size_t k = 0; k < columns.size(); ++k)
       row[k] = limited(g, row[k], columns[k].norm / r.lever[k]);
+  least.jacobian = least.nearest ? transposed(jacobian) : jacobian;
+  const std::size_t rank = least.jacobian.size();
   Matrix square(rank, std::vector<NodeId>(rank));
   for (std::size_t i = 0; i < rank; ++i)
     for (std::size_t k = i; k < rank; ++k)
@@ -251,44 +292,27 @@ Solver solve_least(Derivation& d, Algebra& algebra, const std::vector<AxisColumn
   const double most = std::pow(least.trace / static_cast<double>(rank), static_cast<double>(rank));
   least.determinant = limited(g, held_determinant(d, algebra, determinant, least.floor), most);
   least.reciprocal = g.function(Function::kReciprocal, least.determinant);
-  const auto weights_of = [&](const std::vector<NodeId>& deviation) {
-    std::vector<NodeId> weights;
-    for (const std::vector<NodeId>& row : least.adjugate)
-      weights.push_back(
-          g.product(least.reciprocal, limited(g, algebra.dot(row, deviation), least.largest * d.spread_mm)));
-    return weights;
-  };
-  least.weights = weights_of(r.deviation);
-  std::vector<std::vector<NodeId>> part_weights;
-  for (const std::vector<NodeId>& part : r.parts) part_weights.push_back(weights_of(part));
+  least.deviation = right_side(g, least, r.deviation);
+  least.weights = weights_of(g, least, least.deviation);
   least.gain = (rank == 3   ? least.trace / 2
                 : rank == 2 ? std::sqrt(least.trace)
                             : 1) /
                std::sqrt(least.floor);
+  const std::vector<NodeId> motions = motions_of(g, least, least.weights);
   for (std::size_t k = 0; k < columns.size(); ++k) {
-    std::vector<NodeId> column;
-    for (const std::vector<NodeId>& row : least.jacobian) column.push_back(row[k]);
-    const NodeId value = g.scale(1 / r.lever[k], algebra.dot(column, least.weights));
     const double gain = least.gain / r.lever[k];
-    d.outputs.push_back({columns[k].axis, value, {gain, gain, gain}, gain, columns[k].norm});
-    for (std::size_t p = 0; p < d.parts.size(); ++p)
-      d.parts[p].outputs.push_back(g.scale(1 / r.lever[k], algebra.dot(column, part_weights[p])));
+    d.outputs.push_back({columns[k].axis, motions[k], {gain, gain, gain}, gain, columns[k].norm});
   }
+  for (std::size_t p = 0; p < d.parts.size(); ++p)
+    d.parts[p].outputs = motions_of(g, least, weights_of(g, least, right_side(g, least, r.parts[p])));
   d.least_squares = least;
   return [least, basis = r.basis](Graph& graph, const NodeVector& v) {
+    std::vector<NodeId> seen = components(graph, basis, v);
+    for (NodeId& component : seen) component = limited(graph, component, least.spread_mm);
     Solved x;
-    x.components = components(graph, basis, v);
-    for (NodeId& component : x.components) component = limited(graph, component, least.spread_mm);
-    for (const std::vector<NodeId>& row : least.adjugate) {
-      const NodeId weight =
-          limited(graph, product_sum(graph, row, x.components), least.largest * least.spread_mm);
-      x.weights.push_back(graph.product(least.reciprocal, weight));
-    }
-    for (std::size_t k = 0; k < least.lever.size(); ++k) {
-      std::vector<NodeId> column;
-      for (const std::vector<NodeId>& row : least.jacobian) column.push_back(row[k]);
-      x.values.push_back(graph.scale(1 / least.lever[k], product_sum(graph, column, x.weights)));
-    }
+    x.components = right_side(graph, least, seen);
+    x.weights = weights_of(graph, least, x.components);
+    x.values = motions_of(graph, least, x.weights);
     return x;
   };
 }

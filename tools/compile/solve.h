@@ -10,7 +10,7 @@ namespace vernier::compile {
 /// Poses over the declared ranges at which a determinant is looked at, and boxes into which they are cut
 /// where a bound is wanted: more change the damping by less than a tenth.
 inline constexpr Eigen::Index kSamples = 512;
-inline constexpr std::size_t kBoxes = 4096;
+inline constexpr std::size_t kBoxes = 4096;  // as the line above says
 /// Where a determinant is below this share of its largest sampled value, the correction fades.
 inline constexpr double kFloorShare = 1.0 / 256;
 
@@ -32,7 +32,8 @@ using Solver = std::function<Solved(Graph&, const NodeVector& v)>;
 
 /// Solves J(q) x = deviation (derivation.columns, derivation.deviation) for the deviation along each axis and
 /// enters the outputs: by numbers where the directions are constant; by the inverse of a 3 x 3 J(q) that is
-/// proved regular over the declared ranges; else by the least squares of the motions, J' (J J')^-1, whose
+/// proved regular over the declared ranges; else by the least squares of the motions, J' (J J')^-1, or of
+/// what is left, (J'J)^-1 J', where the axes are fewer than the directions that they reach anywhere. The
 /// determinant is held at a floor, so that the correction fades where the axes no longer reach every
 /// direction. The solver serves a second evaluation of the deviation. tool.
 Solver solve_axes(Derivation& derivation);

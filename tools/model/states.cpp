@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "tools/model/machine.h"
+
 namespace vernier::model {
 namespace {
 
@@ -36,6 +38,12 @@ States make_states(std::size_t count, std::size_t axes, const std::vector<double
   states.run.assign(count, 0);
   states.run_names = {""};
   return states;
+}
+
+States make_states(std::size_t count, const Machine& machine) {
+  std::vector<double> references;
+  for (const Input& input : machine.inputs) references.push_back(input.reference);
+  return make_states(count, machine.axes.size(), references);
 }
 
 void make_one_run(States& states, const std::string& name) {

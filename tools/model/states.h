@@ -8,6 +8,8 @@
 
 namespace vernier::model {
 
+struct Machine;
+
 using Column = Eigen::ArrayXd;
 
 /// A label of each moment. Without any the label of its run stands for it.
@@ -64,6 +66,9 @@ inline constexpr double kLongWay = 1e9;
 /// States of `count` moments for a machine with these numbers of axes and inputs: all columns zero, `since`
 /// kLongWay, one run named "".
 States make_states(std::size_t count, std::size_t axes, const std::vector<double>& input_references);
+
+/// ... for the axes and inputs of a machine, each input at its reference.
+States make_states(std::size_t count, const Machine& machine);
 
 /// The rows `which` of `states`, in that order.
 States select_states(const States& states, const std::vector<std::size_t>& which);

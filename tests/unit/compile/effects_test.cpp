@@ -5,6 +5,7 @@
 
 #include "tests/unit/compile/agreement.h"
 #include "tests/unit/effects/candidates.h"
+#include "tools/effects/add.h"
 #include "tools/model/machine_reader.h"
 
 namespace vernier::effects_test {

@@ -110,9 +110,7 @@ struct TestMachine {
   }
 
   States states_of(const std::vector<CycleInput>& poses) const {
-    std::vector<double> references;
-    for (const Input& input : machine.inputs) references.push_back(input.reference);
-    States s = make_states(poses.size(), machine.axes.size(), references);
+    States s = make_states(poses.size(), machine);
     for (std::size_t n = 0; n < poses.size(); ++n) {
       const auto at = static_cast<Eigen::Index>(n);
       for (std::size_t i = 0; i < machine.axes.size(); ++i) {

@@ -53,22 +53,6 @@ TEST(Compile, RefusesInOneLineWithTheReason) {
   expect_one_line(refusal("Z=\"lYz\"", "Z=\"abs(X-100)\""), "X", "direction of motion with a step");
 }
 
-// GIVEN a telescope: two turns whose tip sweeps a sphere, a different plane at each pose
-TEST(Compile, RefusesAxesThatReachOtherDirectionsAtEachPose) {
-  const std::string text = R"xml(<machine name="mount"><variables>
-    <static><ih value="0.01" nominal="0" unit="deg"/></static><machineaxes>
-    <H rotary="true" min="-90" max="90" maxcorrection="1" maxslew="5"/>
-    <D rotary="true" min="-40" max="85" maxcorrection="1" maxslew="5"/></machineaxes></variables>
-    <transforms><sixdof n="1" rZ="H+ih"/><sixdof n="2" rY="-D"/><sixdof n="3" X="1500"/></transforms></machine>)xml";
-  std::string said;
-  try {
-    compile_text(text);
-  } catch (const InputError& error) {
-    said = error.what();
-  }
-  expect_one_line(said, "mount", "2 axes move the tool point in 3 directions");
-}
-
 TEST(Compile, TakesRunAndNormalAsZeroWithANote) {
   const std::string text = read_file(machine_path("bridge"));
   const auto program_with = [&](const std::string& term) {
