@@ -8,8 +8,10 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numeric>
 
 #include "tools/effects/probe.h"
+#include "tools/fit/noise.h"
 #include "tools/fit/solve.h"
 #include "tools/maths/chance.h"
 #include "tools/maths/decompositions.h"
@@ -43,6 +45,7 @@ class Collector {
       const double u = model::uncertainty_of(m, m.observations[i]);
       weight_[static_cast<Index>(i)] = 1 / (u > 0 ? u : fallback);
     }
+    take_noise();
   }
 
   CheckRecord collect(std::string label) {
@@ -70,6 +73,36 @@ class Collector {
   }
 
  private:
+  /// The noise of the survey, where it was more than each reading's stated own; nothing where one has u and
+  /// the other not.
+  void take_noise() {
+    const auto& kept = machine_.fitted->noise;
+    if (!kept) return;
+    std::vector<std::size_t> all(m_.observations.size());
+    std::iota(all.begin(), all.end(), 0);
+    const bool of_u = std::all_of(all.begin(), all.end(), [&](std::size_t i) {
+      return model::uncertainty_of(m_, m_.observations[i]) > 0;
+    });
+    if (of_u != kept->of_u) return;
+    // In mm it is the residual of the fit that readings without u are weighed by.
+    const double unit = kept->of_u ? 1 : 1 / std::max(machine_.fitted->rms_mm, 1e-9);
+    layout_ = fit::noise_layout(m_, all);
+    noise_.own = unit * kept->own, noise_.pose = unit * kept->pose, noise_.run = unit * kept->run;
+    noise_.drift = unit * kept->drift;
+    noise_.in_time = layout_.in_time;
+    // Where only one of both has a clock, its steps stand for the rows of the other.
+    noise_.time_constant = kept->time_constant;
+    if (kept->in_time && !layout_.in_time) noise_.time_constant /= std::max(kept->step, 1e-9);
+    if (!kept->in_time && layout_.in_time) noise_.time_constant *= layout_.step;
+  }
+
+  /// Over its uncertainty, as if readings were independent.
+  VectorXd weighed(const VectorXd& column) const {
+    MatrixXd own = weight_.cwiseProduct(column);
+    if (!layout_.series.empty()) fit::whiten(layout_, noise_, own);
+    return own;
+  }
+
   void take_all() {
     take_parameters();
     take_places();
@@ -77,7 +110,7 @@ class Collector {
   }
 
   VectorXd beside_set_up(const VectorXd& column) const {
-    VectorXd own = weight_.cwiseProduct(column);
+    VectorXd own = weighed(column);
     if (set_up_.cols() > 0) own -= set_up_ * (set_up_.transpose() * own);
     return own;
   }
@@ -91,7 +124,9 @@ class Collector {
       (parameters[i].kind == model::ParameterKind::kBaseShift ? shifts : others)
           .push_back(static_cast<Index>(i));
     raw_set_up_ = weight_.asDiagonal() * jacobian(Eigen::all, shifts);
-    set_up_ = maths::orthonormal(raw_set_up_, 1e-9, nullptr);
+    MatrixXd whitened = raw_set_up_;
+    if (!layout_.series.empty()) fit::whiten(layout_, noise_, whitened);
+    set_up_ = maths::orthonormal(whitened, 1e-9, nullptr);
     VectorXd left(weight_.size());
     for (std::size_t i = 0; i < m_.observations.size(); ++i)
       left[static_cast<Index>(i)] = m_.observations[i].value - linear.predicted[static_cast<Index>(i)];
@@ -108,7 +143,7 @@ class Collector {
 
   void offer(Suspect suspect, const VectorXd& raw) {
     const VectorXd column = beside_set_up(raw);
-    const double full = weight_.cwiseProduct(raw).norm();
+    const double full = weighed(raw).norm();
     if (!(column.norm() > kOwn * full) || full <= 0) return;
     const VectorXd unit = column.normalized();
     for (const VectorXd& other : known_)
@@ -171,6 +206,8 @@ class Collector {
   const model::Machine& machine_;
   const model::Measurement& m_;
   VectorXd weight_, residual_;
+  fit::NoiseLayout layout_;  // no series: readings are independent
+  fit::NoiseModel noise_;
   MatrixXd set_up_, raw_set_up_;
   std::vector<VectorXd> columns_, known_, raw_;
   CheckRecord record_;

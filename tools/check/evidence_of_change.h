@@ -74,7 +74,8 @@ struct CheckAnswer {
 /// which, of the likelihood ratios of a change against none (Robbins 1970; Grünwald, de Heide and Koolen
 /// 2024), with what the fit itself does not know of the parameters integrated out. If nothing changes it
 /// exceeds 1/false_alarms in the lifetime of a machine with that probability at most, however often one looks
-/// (Ville 1939), under independent normal readings of the stated uncertainty. checks: in the order of time,
+/// (Ville 1939), under normal readings of the stated uncertainty that hang together as those of the fit did
+/// (<fitted>'s noise; independent where it has none). checks: in the order of time,
 /// of one machine, at least one. tool.
 CheckAnswer judge(const model::Machine& machine, const std::vector<CheckRecord>& checks, double false_alarms);
 

@@ -16,7 +16,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Eigen::Index;
 
-constexpr int kVersion = 1;
+constexpr int kVersion = 1;  // of the file's form
 
 Json numbers(const Eigen::MatrixXd& matrix) {
   Json list = Json::array();

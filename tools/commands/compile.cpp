@@ -7,6 +7,7 @@
 #include "tools/model/machine_reader.h"
 #include "tools/results/safety_json.h"
 #include "tools/text/files.h"
+#include "tools/text/numbers.h"
 
 namespace vernier::commands::compile_cli {
 namespace {
@@ -96,7 +97,7 @@ nlohmann::ordered_json to_json(const compile::CompiledMachine& c, const model::M
           {"registers", c.program.registers.size()},
           {"tables", c.program.tables.size()},
           {"image_bytes", c.image.size()},
-          {"fingerprint", fmt::format("{:016x}", c.fingerprint)}};
+          {"fingerprint", text::fingerprint_text(c.fingerprint)}};
 }
 
 void print_for_people(std::FILE* out, const compile::CompiledMachine& c, const model::Machine& machine) {

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "tools/commands/command.h"
+#include "tools/effects/add_string.h"
 #include "tools/effects/candidate.h"
 #include "tools/effects/fitted_effect.h"
 #include "tools/model/machine_reader.h"

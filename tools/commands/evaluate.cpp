@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <memory>
 
@@ -14,6 +13,7 @@
 #include "tools/evaluate/positioning_page.h"
 #include "tools/report/report.h"
 #include "tools/text/error.h"
+#include "tools/text/words.h"
 
 namespace vernier::commands::evaluate_cli {
 namespace {
@@ -71,14 +71,9 @@ void run_positioning(const PositioningArguments& arguments) {
   evaluate::PositioningWords words;
   words.axis = arguments.axes.front();
   words.files = arguments.measurements;
-  for (const std::string& one : arguments.tolerances)
-    words.tolerance.insert(evaluate::limit_of(one, "--tolerance", kCharacteristics));
-  for (const std::string& one : arguments.uncertainties)
-    words.uncertainty.insert(evaluate::limit_of(one, "--uncertainty", kCharacteristics));
   words.header = arguments.header.entries();
-  std::string reading = arguments.reading;
-  if (reading.empty())
-    for (const char c : words.axis) reading += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const std::string reading =
+      arguments.reading.empty() ? text::in_small_letters(words.axis) : arguments.reading;
   evaluate::PositioningFile all;
   for (const std::string& path : arguments.measurements) {
     evaluate::PositioningFile one =
@@ -100,6 +95,10 @@ void run_positioning(const PositioningArguments& arguments) {
   }
   std::sort(all.readings.begin(), all.readings.end(),
             [](const auto& a, const auto& b) { return a.target < b.target; });
+  for (const std::string& one : arguments.tolerances)
+    words.tolerance.insert(evaluate::limit_of(one, "--tolerance", kCharacteristics, all.unit));
+  for (const std::string& one : arguments.uncertainties)
+    words.uncertainty.insert(evaluate::limit_of(one, "--uncertainty", kCharacteristics, all.unit));
   const evaluate::PositioningBudget budget = budget_of(arguments, all, words);
   nlohmann::ordered_json json =
       evaluate::positioning_json(evaluate::evaluate_positioning(all.readings), all, words);

@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdlib>
+#include <filesystem>
 #include <memory>
 #include <optional>
 
@@ -13,7 +13,10 @@
 #include "tools/fleet/check_readings.h"
 #include "tools/fleet/digest.h"
 #include "tools/fleet/sparkplug.h"
+#include "tools/model/machine_reader.h"
 #include "tools/text/error.h"
+#include "tools/text/numbers.h"
+#include "tools/text/wall_time.h"
 #include "tools/text/words.h"
 #include "tools/upload/url.h"
 
@@ -22,28 +25,21 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr double kMostDays = 1e5;
+
 struct AddArguments {
   std::string registry, name;
   std::optional<std::string> url, note;
   std::optional<double> check_days;
 };
 
-/// A number from 0 on; "nan" compares with nothing and would pass a range.
-CLI::Validator days_up_to(double most) {
-  return CLI::Validator(
-      [most](const std::string& word) {
-        const double days = CLI::Range(0.0, most)(word).empty() ? std::strtod(word.c_str(), nullptr) : -1;
-        return days >= 0 && days <= most ? std::string() : "a number from 0 to " + fmt::format("{}", most);
-      },
-      "DAYS");
-}
-
 void run_add(const AddArguments& arguments) {
   if (!fleet::fits_a_topic(arguments.name))
-    throw text::InputError({}, arguments.name, "a machine's name has none of + / # and is not empty");
+    throw text::InputError({}, arguments.name,
+                           "a machine's name is one line without + / #, of 1 to 200 bytes");
   if (arguments.url && !arguments.url->empty()) upload::parse_url(*arguments.url);
-  fleet::Registry registry = open_registry(arguments.registry);
-  fleet::FleetMachine machine{arguments.name, {}, {}, 0, fleet::now_us()};
+  fleet::Registry registry = make_registry(arguments.registry);
+  fleet::FleetMachine machine{arguments.name, {}, {}, 0, text::now_us()};
   // What is entered of it and not said anew stays.
   for (const fleet::FleetMachine& known : registry.machines())
     if (known.name == arguments.name) machine = known;
@@ -64,10 +60,10 @@ Json machine_json(const fleet::FleetMachine& machine, const fleet::RecordedCalib
                {"url", or_text(machine.url)},
                {"note", machine.note},
                {"check_days", machine.check_days},
-               {"added", fleet::utc_text(machine.added_us)}};
+               {"added", text::utc_text(machine.added_us)}};
   json["calibration"] = nullptr;
   if (runs != nullptr)
-    json["calibration"] = {{"at", fleet::utc_text(runs->at_us)},
+    json["calibration"] = {{"at", text::utc_text(runs->at_us)},
                            {"model", runs->model},
                            {"model_hash", runs->model_hash},
                            {"image", or_text(runs->image)},
@@ -94,7 +90,7 @@ void run_list(const ListArguments& arguments) {
     fmt::print(out, "{:<20} {:<28} {}\n", machine.name, machine.url,
                newest == nullptr ? machine.note
                                  : fmt::format("{} {} signed by {} {}", newest->image, newest->model,
-                                               newest->signed_by, fleet::utc_text(newest->at_us)));
+                                               newest->signed_by, text::utc_text(newest->at_us)));
   }
   write_json(arguments.json, {{"machines", all}});
 }
@@ -111,13 +107,13 @@ void run_status(const ListArguments& arguments) {
                  {"mode", one.mode},
                  {"fault", one.fault},
                  {"image", or_text(one.image)},
-                 {"at", fleet::utc_text(one.at_us)},
+                 {"at", text::utc_text(one.at_us)},
                  {"samples", one.samples}};
     for (const auto& [name, value] : one.values) json["values"][name] = Json::parse(value);
     all.push_back(json);
     fmt::print(out, "{:<20} {:<8} {:<10} {:<18} {:<17} {} samples, the last {}\n", one.machine,
                one.online ? "online" : "AWAY", one.mode, one.fault == "none" ? "" : one.fault, one.image,
-               one.samples, fleet::utc_text(one.at_us));
+               one.samples, text::utc_text(one.at_us));
     if (arguments.machine.empty()) continue;
     for (const auto& [name, value] : one.values) fmt::print(out, "  {:<40} {}\n", name, value);
   }
@@ -141,17 +137,18 @@ void run_record(const RecordArguments& arguments) {
   fleet::RecordedCalibration one;
   one.machine = arguments.machine;
   one.model = arguments.model;
+  model::read_machine(one.model);  // what is no machine file is refused here
   one.model_hash = hash_of_files({arguments.model});
   if (!arguments.image.empty()) {
     const auto image = compile::load_image_dir(arguments.image);
-    one.image = fmt::format("{:016x}", image->view.header().fingerprint);
+    one.image = text::fingerprint_text(image->view.header().fingerprint);
   }
   one.data = text::joined(arguments.data, " ");
   one.data_hash = hash_of_files(arguments.data);
   one.signed_by = arguments.signed_by;
   one.checked_against = text::joined(arguments.against, " ");
   one.checked_hash = hash_of_files(arguments.against);
-  one.at_us = fleet::now_us();
+  one.at_us = text::now_us();
   fleet::Registry registry = open_registry(arguments.registry);
   registry.machine(one.machine);
   registry.put(one);
@@ -162,12 +159,8 @@ struct CheckArguments {
 };
 
 void run_check(const CheckArguments& arguments) {
-  std::int64_t at_us = fleet::now_us();
-  if (!arguments.at.empty()) {
-    const auto at = fleet::parse_utc(arguments.at);
-    if (!at) throw text::InputError({}, arguments.at, "a time such as 2026-11-23T13:05:00Z is wanted");
-    at_us = *at;
-  }
+  const std::int64_t now_us = text::now_us(), at_us = time_of(arguments.at, now_us);
+  if (at_us > now_us) throw text::InputError({}, arguments.at, "this time is still to come");
   fleet::FleetCheck check = fleet::parse_check(text::read_file(arguments.result), arguments.result);
   check.machine = arguments.machine, check.at_us = at_us;
   std::vector<fleet::FleetReading> readings;
@@ -191,7 +184,7 @@ void add_machine_kinds(CLI::App& fleet) {
   command
       ->add_option("--check-days", add->check_days,
                    "a check is due so many days after the last one; 0: never")
-      ->check(days_up_to(1e5));
+      ->check(CLI::Range(0.0, kMostDays));
   command->add_option("--note", add->note, "for people");
   command->callback([add] { run_add(*add); });
 
@@ -220,9 +213,9 @@ void add_forget(CLI::App& fleet) {
   add_registry(*command, forget->registry);
   command->add_option("--days", forget->days, "samples of so many days are kept")
       ->required()
-      ->check(days_up_to(1e5));
+      ->check(CLI::Range(0.0, kMostDays));
   command->callback([forget] {
-    const auto before = fleet::now_us() - static_cast<std::int64_t>(forget->days * 86'400e6);
+    const auto before = text::now_us() - static_cast<std::int64_t>(forget->days * text::kUsADay);
     fmt::print("{} samples deleted\n", open_registry(forget->registry).forget_samples(before));
   });
 }
@@ -262,10 +255,23 @@ void add_registry(CLI::App& command, std::string& place) {
       ->envname("VERNIER_REGISTRY");
 }
 
-fleet::Registry open_registry(const std::string& place) {
+std::int64_t time_of(const std::string& text, std::int64_t otherwise) {
+  if (text.empty()) return otherwise;
+  const auto at = text::parse_utc(text);
+  if (!at) throw text::InputError({}, text, "a time such as 2026-11-23T13:05:00Z is wanted");
+  return *at;
+}
+
+fleet::Registry make_registry(const std::string& place) {
   if (place.empty())
     throw text::InputError("--registry is missing: postgresql://USER@HOST/NAME, or a file for one machine");
   return fleet::Registry(fleet::open_database(place));
+}
+
+fleet::Registry open_registry(const std::string& place) {
+  if (!place.empty() && !fleet::is_server(place) && !std::filesystem::exists(place))
+    throw text::InputError({}, place, "no registry there; `vernier fleet add` makes one");
+  return make_registry(place);
 }
 
 void register_fleet(CLI::App& vernier) {

@@ -12,8 +12,15 @@ namespace vernier::commands::fleet_cli {
 
 /// Adds `--registry`, which VERNIER_REGISTRY stands in for. tool.
 void add_registry(CLI::App& command, std::string& place);
-/// The registry that was named. Throws InputError where none was, or it is away. tool.
+/// The registry that was named; a file that is not there yet is made. Throws InputError where none was named,
+/// or it is away. tool.
+fleet::Registry make_registry(const std::string& place);
+/// ... which is there already: a misspelt file is refused. tool.
 fleet::Registry open_registry(const std::string& place);
+
+/// The time in us since 1970 that a user wrote, or `otherwise` where he wrote none. Throws InputError for
+/// what is no time. tool.
+std::int64_t time_of(const std::string& text, std::int64_t otherwise);
 
 /// Runs something that goes on until SIGINT, SIGTERM or SIGHUP says stop. tool.
 void until_told(const std::function<void(const std::atomic<bool>& stop)>& run);

@@ -11,6 +11,7 @@
 #include "tools/fleet/rollout.h"
 #include "tools/fleet/shell_command.h"
 #include "tools/text/error.h"
+#include "tools/text/wall_time.h"
 
 namespace vernier::commands::fleet_cli {
 namespace {
@@ -66,7 +67,7 @@ void write_kept(fleet::Registry& registry, const RolloutArguments& arguments,
   one.checked_against = arguments.options.judge.empty()
                             ? "watched by the rollout " + arguments.options.name
                             : fleet::command_for(arguments.options.judge, machine.name);
-  one.at_us = fleet::now_us();
+  one.at_us = text::now_us();
   registry.put(one);
 }
 

@@ -11,6 +11,7 @@
 #include "tools/fleet/ingest.h"
 #include "tools/fleet/metrics.h"
 #include "tools/text/error.h"
+#include "tools/text/wall_time.h"
 
 namespace vernier::commands::fleet_cli {
 namespace {
@@ -35,7 +36,7 @@ struct MetricsArguments {
 void run_metrics(const MetricsArguments& arguments) {
   if (arguments.listen.empty()) {
     fleet::Registry registry = open_registry(arguments.registry);
-    const std::string text = fleet::metrics_text(registry, fleet::now_us());
+    const std::string text = fleet::metrics_text(registry, text::now_us());
     if (!arguments.output.empty()) return text::write_file(arguments.output, text);
     if (std::fputs(text.c_str(), stdout) == EOF || std::fflush(stdout) != 0)
       throw text::InputError("standard output cannot be written");
@@ -107,7 +108,8 @@ void add_services(CLI::App& fleet) {
       "from\n"
       "VERNIER_MQTT_PASSWORD. Exit status 0 told to stop, 1 bad input.");
   ingest->callback([options] {
-    if (options->registry.empty()) open_registry(options->registry);
+    fleet::require_broker_address(options->broker.address);
+    if (options->registry.empty()) make_registry(options->registry);
     options->broker.password = password();
     until_told([&](const std::atomic<bool>& stop) { fleet::run_ingest(*options, stop, say_line); });
   });

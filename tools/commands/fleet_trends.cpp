@@ -7,6 +7,7 @@
 #include "tools/fleet/due.h"
 #include "tools/text/error.h"
 #include "tools/text/optional_json.h"
+#include "tools/text/wall_time.h"
 
 namespace vernier::commands::fleet_cli {
 namespace {
@@ -18,21 +19,14 @@ struct TrendArguments {
   fleet::AlikeOptions alike;
 };
 
-std::int64_t time_of(const std::string& text, std::int64_t otherwise) {
-  if (text.empty()) return otherwise;
-  const auto at = fleet::parse_utc(text);
-  if (!at) throw text::InputError({}, text, "a time such as 2026-11-23T13:05:00Z is wanted");
-  return *at;
-}
-
 void run_due(const TrendArguments& arguments) {
   fleet::Registry registry = open_registry(arguments.registry);
   Json all = Json::array();
   std::FILE* const out = human_stream(arguments.json);
   std::size_t due = 0;
-  for (const fleet::DueMachine& one : fleet::due_machines(registry, time_of(arguments.at, fleet::now_us()))) {
+  for (const fleet::DueMachine& one : fleet::due_machines(registry, time_of(arguments.at, text::now_us()))) {
     const auto text = [](const std::optional<std::int64_t>& time) {
-      return time ? Json(fleet::utc_text(*time)) : Json(nullptr);
+      return time ? Json(text::utc_text(*time)) : Json(nullptr);
     };
     all.push_back({{"machine", one.machine},
                    {"due", !one.why.empty()},
@@ -43,7 +37,7 @@ void run_due(const TrendArguments& arguments) {
     if (one.why.empty()) continue;
     ++due;
     fmt::print(out, "{:<20} {:<45} {}\n", one.machine, one.why,
-               one.last_us ? "last check " + fleet::utc_text(*one.last_us) : "");
+               one.last_us ? "last check " + text::utc_text(*one.last_us) : "");
   }
   fmt::print(out, "{} of {} machines due for a check\n", due, all.size());
   write_json(arguments.json, {{"machines", all}});
@@ -54,10 +48,10 @@ Json drift_json(const fleet::Drift& drift) {
       {"quantity", drift.quantity}, {"unit", drift.unit},         {"judged", drift.judged},
       {"machines", drift.machines}, {"times", drift.times},       {"readings", drift.readings},
       {"common", drift.common},     {"common_p", drift.common_p}, {"common_swing", drift.common_swing},
-      {"scatter", drift.scatter}};
+      {"scatter", drift.scatter},   {"wander", drift.wander},     {"wander_days", drift.wander_days}};
   json["curve"] = Json::array();
   for (const auto& [at, value] : drift.curve)
-    json["curve"].push_back({{"at", fleet::utc_text(at)}, {"value", value}});
+    json["curve"].push_back({{"at", text::utc_text(at)}, {"value", value}});
   json["own"] = Json::array();
   for (const fleet::OwnDrift& one : drift.own)
     json["own"].push_back({{"machine", one.machine}, {"per_day", one.per_day}, {"std", one.std}});
@@ -86,6 +80,10 @@ void run_alike(const TrendArguments& arguments) {
     if (!drift.common && drift.own.empty())
       fmt::print(out, "{}: nothing drifts ({} machines, {} times, scatter {:.2g} of what is stated)\n",
                  drift.quantity, drift.machines, drift.times, drift.scatter);
+    if (drift.wander > 0)
+      fmt::print(out,
+                 "{}: machines wander, each by itself, by {:.2g} of what is stated, over {:.3g} days or so\n",
+                 drift.quantity, drift.wander, drift.wander_days);
   }
   if (all.empty()) fmt::print(out, "no readings: `vernier fleet check --history` writes them down\n");
   write_json(arguments.json, {{"quantities", all}, {"false_alarms", arguments.alike.false_alarms}});

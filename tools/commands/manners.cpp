@@ -9,6 +9,7 @@
 #include "tools/lint/machine_lint.h"
 #include "tools/lint/measurement_lint.h"
 #include "tools/text/error.h"
+#include "tools/text/numbers.h"
 #include "tools/text/similar.h"
 #include "tools/text/words.h"
 
@@ -104,6 +105,26 @@ std::string option_meant(const CLI::App& vernier, const CLI::ParseError& error) 
       for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
   const auto meant = text::word_meant(word, names);
   return meant ? "\"" + word + "\": no option of this command; did you mean " + *meant + "?" : "";
+}
+
+void take_plain_numbers(CLI::App& vernier) {
+  const CLI::Validator number(
+      [](const std::string& word) {
+        return text::parse_number(word) ? std::string() : "\"" + word + "\" is no decimal number";
+      },
+      "");
+  const CLI::Validator count(
+      [](const std::string& word) {
+        return text::parse_count(word) ? std::string() : "\"" + word + "\" is no count (0, 1, 2, ...)";
+      },
+      "");
+  for (CLI::Option* option : vernier.get_options()) {
+    const std::string type = option->get_type_name();
+    if (type.rfind("FLOAT", 0) == 0) option->check(number);
+    if (type.rfind("UINT", 0) == 0) option->check(count);
+  }
+  for (CLI::App* command : vernier.get_subcommands([](const CLI::App*) { return true; }))
+    take_plain_numbers(*command);
 }
 
 void require_files_in_their_places(const CLI::App& vernier, const std::vector<std::string>& arguments) {

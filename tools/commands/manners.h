@@ -16,6 +16,10 @@ void require_known_commands(const CLI::App& vernier, const std::vector<std::stri
 /// What a parser's complaint of an unknown option probably means: "did you mean --json?"; else empty. tool.
 std::string option_meant(const CLI::App& vernier, const CLI::ParseError& error);
 
+/// Makes every option of a number take finite decimals only, and every count only what is not negative: the
+/// parser itself reads "nan", "0x1f" and -1, and no range catches nan. tool.
+void take_plain_numbers(CLI::App& vernier);
+
 /// Throws InputError where a measurement stands where a machine file is wanted, or the reverse, with the
 /// command as it was meant. tool.
 void require_files_in_their_places(const CLI::App& vernier, const std::vector<std::string>& arguments);

@@ -89,9 +89,11 @@ std::string manual_page(const CLI::App& command, const std::string& names, const
   const std::string positionals = items(command, true);
   if (!items(command, false).empty()) text += " [\\fIOPTIONS\\fR]";
   for (const CLI::Option* option : command.get_options())
-    if (option->get_positional())
-      text += " \\fI" + escaped(option->get_name(true, false)) +
-              (option->get_items_expected_max() > 1 ? "\\fR..." : "\\fR");
+    if (option->get_positional()) {
+      const std::string word = "\\fI" + escaped(option->get_name(true, false)) +
+                               (option->get_items_expected_max() > 1 ? "\\fR..." : "\\fR");
+      text += option->get_required() ? " " + word : " [" + word + "]";
+    }
   if (!below.empty()) text += " \\fICOMMAND\\fR";
   text += "\n";
   if (!positionals.empty()) text += ".SH ARGUMENTS\n" + positionals;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
-#include <chrono>
 #include <cstring>
 #include <memory>
 
@@ -10,6 +9,8 @@
 #include "tools/compile/compile.h"
 #include "tools/safety/safety_sheet.h"
 #include "tools/text/error.h"
+#include "tools/text/numbers.h"
+#include "tools/text/wall_time.h"
 #include "tools/upload/client.h"
 #include "tools/upload/live.h"
 #include "tools/upload/signing.h"
@@ -37,15 +38,10 @@ std::vector<std::uint8_t> read_image(const std::string& directory) {
   return bytes;
 }
 
-std::uint64_t now_us() {
-  const auto now = std::chrono::system_clock::now().time_since_epoch();
-  return static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::microseconds>(now).count());
-}
-
 nlohmann::ordered_json slots_json(const SlotsReply& slots) {
   const auto hex = [](std::uint8_t slot, std::uint64_t fingerprint) -> nlohmann::ordered_json {
     if (slot == kNoSlot) return nullptr;
-    return fmt::format("{:016x}", fingerprint);
+    return text::fingerprint_text(fingerprint);
   };
   return {{"confirmed", upload::confirmed_json(slots)},
           {"trial", hex(slots.trial, slots.trial_fingerprint)},
@@ -67,7 +63,7 @@ void require_safe(const std::string& directory) {
 /// An image must be newer than all that the board has ever tried. Where this computer's clock is behind them,
 /// it is signed right after the newest one, when that is wanted: the board's floor itself is never lowered.
 std::uint64_t time_of_signing(const Arguments& arguments, const SlotsReply& slots) {
-  const std::uint64_t now = now_us();
+  const auto now = static_cast<std::uint64_t>(text::now_us());
   if (now > slots.newest_issued) return now;
   if (!arguments.force)
     throw text::LimitNotMet(

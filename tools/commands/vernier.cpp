@@ -95,6 +95,7 @@ int run(const std::vector<std::string>& arguments) {
       "`vernier COMMAND --help` documents each command.");
   for (const auto command : kCommands) command(app);
   add_help_command(app);
+  vernier::commands::take_plain_numbers(app);
   app.require_subcommand(1);
   if (arguments.empty()) {
     std::fputs(app.help().c_str(), stdout);

@@ -249,7 +249,7 @@ MachinePlan plan_robot(std::vector<PlannedAxis> axes, const std::vector<DhRow>& 
 }
 
 std::vector<double> round_stations(double min, double max, bool rotary) {
-  constexpr double kMostParts = 7;
+  constexpr double kMostParts = 7;  // of a range, at most: eight stations to begin with
   static const std::vector<double> kTurns = {0.5, 1, 2, 5, 10, 15, 30, 45, 60, 90, 180, 360};
   double step = 0;
   if (rotary) {

@@ -94,7 +94,7 @@ std::vector<ElementaryMotion> nominal_motions(const model::Machine& machine,
                                               const std::vector<ElementaryMotion>& motions,
                                               const GiNaC::exmap& no_errors, SymbolBook& book,
                                               std::vector<Abbreviation>& abbreviations) {
-  constexpr std::size_t kLongSum = 3;
+  constexpr std::size_t kLongSum = 3;  // terms from which on a sum gets a name
   std::vector<ElementaryMotion> nominal = motions;
   for (ElementaryMotion& m : nominal) {
     const model::Transform& transform = transform_of(machine, m);

@@ -12,7 +12,7 @@ constexpr std::array<const char*, 9> kComponents = {"dX", "dY", "dZ", "dA", "dB"
 constexpr std::array<const char*, 9> kLatexComponents = {"\\Delta X", "\\Delta Y", "\\Delta Z",
                                                          "\\Delta A", "\\Delta B", "\\Delta C",
                                                          "\\Delta i", "\\Delta j", "\\Delta k"};
-constexpr std::size_t kLineLength = 110;
+constexpr std::size_t kLineLength = 110;  // letters in a line of a page
 
 ex sensitivity(const ErrorEquation& equation, std::size_t parameter, std::size_t component) {
   if (component < 6) return equation.sensitivity[parameter][component];

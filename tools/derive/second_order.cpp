@@ -186,11 +186,9 @@ std::optional<SecondOrder> sample_second_order(const ErrorEquation& equation, st
                                                std::uint64_t seed) {
   std::mt19937_64 random(seed);
   const model::Machine nominal = model::nominal_machine(equation.machine);
-  std::vector<double> references;
-  for (const model::Input& input : nominal.inputs) references.push_back(input.reference);
   SecondOrder largest;
   for (std::size_t i = 0; i < count; ++i) {
-    model::States states = model::make_states(1, nominal.axes.size(), references);
+    model::States states = model::make_states(1, nominal);
     for (std::size_t a = 0; a < nominal.axes.size(); ++a) {
       const auto range = axis_symbol_range(nominal, a);
       if (!range) return std::nullopt;

@@ -11,6 +11,7 @@
 #include "tools/diagnose/pieces.h"
 #include "tools/diagnose/proof.h"
 #include "tools/diagnose/shape.h"
+#include "tools/effects/add_string.h"
 #include "tools/effects/fitted_effect.h"
 #include "tools/effects/spoken.h"
 #include "tools/fit/noise.h"
@@ -433,7 +434,7 @@ class Diagnoser {
       text = fmt::format("{}: {}, with any of {} periods: the positions of {} do not tell them apart. {:.5g}",
                          choice.effect->title, pool_.candidate(item).spoken, aliases.size() + 1, axis.name,
                          pool_[item].scored.scanned.front());
-      constexpr std::size_t kListed = 20;
+      constexpr std::size_t kListed = 20;  // periods that a sentence bears
       for (std::size_t i = 0; i < std::min(kListed, aliases.size()); ++i)
         text += fmt::format(", {:.5g}", aliases[i]);
       text += fmt::format(" {}{}. Measure {} in uneven steps.", axis.rotary ? "deg" : "mm",
@@ -483,7 +484,7 @@ class Diagnoser {
   /// Where what is left fails, in up to three sentences.
   std::string where_left() const {
     std::string text;
-    constexpr std::size_t kSentences = 3;
+    constexpr std::size_t kSentences = 3;  // that a person follows
     for (std::size_t i = 0; i < std::min(kSentences, result_.left.findings.size()); ++i)
       text += " " + result_.left.findings[i].sentence + ".";
     return text;

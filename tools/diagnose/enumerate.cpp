@@ -165,9 +165,7 @@ class Enumerator {
     std::sort(rotary.begin(), rotary.end(),
               [&](std::size_t a, std::size_t b) { return own_[a]->transform < own_[b]->transform; });
     const model::Machine nominal = model::nominal_machine(machine_);
-    std::vector<double> references;
-    for (const model::Input& input : nominal.inputs) references.push_back(input.reference);
-    const model::States zero = model::make_states(1, nominal.axes.size(), references);
+    const model::States zero = model::make_states(1, nominal);
     model::Machine probed = nominal;
     std::vector<char> active(probed.statics.size(), 0);
     for (const std::size_t axis : rotary) effects::add_probe(probed, *own_[axis]);
@@ -563,16 +561,18 @@ bool ScannedCandidate::is_driven_out(std::size_t unknown, double found, double v
 std::vector<char> outshone_places(const Evidence& evidence) {
   const std::vector<effects::DofPlace>& places = evidence.places();
   const CandidateThresholds& to = evidence.thresholds().candidates;
+  std::vector<double> norm;
+  for (std::size_t i = 0; i < places.size(); ++i) norm.push_back(evidence.response(i).norm());
   std::vector<char> outshone(places.size(), 0);
   for (std::size_t i = 0; i < places.size(); ++i)
     for (std::size_t k = 0; k < places.size() && outshone[i] == 0; ++k) {
       if (effects::is_angle(evidence.machine(), places[i]) !=
           effects::is_angle(evidence.machine(), places[k]))
         continue;
-      const auto weak = evidence.response(i), strong = evidence.response(k);
-      const double both = weak.norm() * strong.norm();
-      if (!(strong.norm() > to.outshone * weak.norm()) || both == 0) continue;
-      outshone[i] = 1 - std::abs(weak.dot(strong)) / both < to.same_place ? 1 : 0;
+      const double both = norm[i] * norm[k];
+      if (!(norm[k] > to.outshone * norm[i]) || both == 0) continue;
+      outshone[i] =
+          1 - std::abs(evidence.response(i).dot(evidence.response(k))) / both < to.same_place ? 1 : 0;
     }
   return outshone;
 }

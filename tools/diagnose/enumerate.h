@@ -26,18 +26,6 @@ struct ScannedCandidate {
 std::vector<ScannedCandidate> enumerate_candidates(const Evidence& evidence,
                                                    const std::vector<effects::Effect>& effects);
 
-/// A product of recorded quantities at one degree of freedom: k*X*(T-20).
-struct Product {
-  effects::DofPlace place;
-  model::ExprPtr term;
-  std::vector<std::string> inputs, units;
-};
-
-/// The search beyond the catalogue: all products of one or two recorded quantities at every place where
-/// `extend` is empty, else each of `extend` with one factor more.
-std::vector<ScannedCandidate> enumerate_products(const Evidence& evidence,
-                                                 const std::vector<Product>& extend);
-
 /// Places, as Evidence::places(), that do to all observations what another one of their kind does many times
 /// as strongly: a length across the reading, seen through a tilt of the machine by minutes. What a survey
 /// shows there sits at the other one. tool.

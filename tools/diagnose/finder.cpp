@@ -201,7 +201,7 @@ double Finder::holders_of(std::size_t simple) const {
 void Finder::search() {
   scan_beside({}, 0.05, 0.3);
   select_again();
-  constexpr int kMostScans = 6;
+  constexpr int kMostScans = 6;  // of all candidates beside what is chosen, at most
   for (int round = 0; round < kMostScans && !chosen_.empty(); ++round) {
     const std::vector<std::size_t> before = chosen_;
     const double criterion = criterion_;
@@ -249,7 +249,7 @@ double Finder::priced_criterion() const {
 }
 
 double Finder::settle_noise_from(fit::NoiseModel noise) {
-  constexpr int kMostRounds = 4;
+  constexpr int kMostRounds = 4;  // at most
   for (int round = 0; round < kMostRounds; ++round) {
     search_under(noise);
     const fit::NoiseModel next = evidence_.estimate(raw_columns(chosen_), set_ups_in(noise));

@@ -8,6 +8,7 @@
 #include "tools/diagnose/enumerate.h"
 #include "tools/diagnose/evidence.h"
 #include "tools/diagnose/pool.h"
+#include "tools/diagnose/products.h"
 #include "tools/diagnose/scan.h"
 #include "tools/diagnose/selection.h"
 

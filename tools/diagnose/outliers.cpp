@@ -51,7 +51,7 @@ std::optional<Peeled> peel(const model::Machine& machine, const model::Measureme
   peeled.kept.resize(all.rows());
   std::iota(peeled.kept.begin(), peeled.kept.end(), std::size_t{0});
   peeled.fit.residual = of_all;
-  constexpr int kMostRounds = 5;
+  constexpr int kMostRounds = 5;  // of taking out what lies far off, at most
   for (int round = 0; round < kMostRounds; ++round) {
     const std::vector<std::size_t> found = far_rows(peeled.rows, peeled.fit.residual, far);
     if (found.empty()) break;

@@ -49,7 +49,7 @@ double power_at(const Positions& positions, Index column, double frequency) {
 /// The same of every column (one row each) at frequencies first + k * step. Sines follow from the ones before
 /// by a rotation; that loses a digit in a thousand steps.
 Eigen::MatrixXd powers(const Positions& positions, double first, double step, Index count) {
-  constexpr Index kBlock = 32;
+  constexpr Index kBlock = 32;  // frequencies in one product
   const Index size = positions.at.size();
   const Eigen::ArrayXd turn_cos = (kTurn * step * positions.at).cos(),
                        turn_sin = (kTurn * step * positions.at).sin();
@@ -74,7 +74,7 @@ Eigen::MatrixXd powers(const Positions& positions, double first, double step, In
 
 /// The frequency between two others where the power is largest.
 double peak_between(const Positions& positions, Index column, double low, double high) {
-  constexpr int kSections = 12;
+  constexpr int kSections = 12;  // of a golden search between two frequencies
   return maths::golden_peak([&](double frequency) { return power_at(positions, column, frequency); }, low,
                             high, kSections)
       .at;

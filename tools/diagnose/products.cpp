@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/diagnose/products.h"
 #include <algorithm>
 #include <cmath>
-
-#include "tools/diagnose/enumerate.h"
 
 namespace vernier::diagnose {
 namespace {
@@ -73,7 +72,7 @@ ScannedCandidate as_candidate(const model::Machine& machine, const effects::Axis
   return item;
 }
 
-constexpr std::size_t kMostFactors = 3;
+constexpr std::size_t kMostFactors = 3;  // a physical law of four quantities is not found by search
 
 std::size_t factors_in(const model::Expr& term) {
   std::size_t count = 0;

@@ -126,6 +126,8 @@ void Pulls::with_masses(const effects::Choice& choice, std::vector<effects::Choi
     const auto bar = gravity_.across(joint, (effects::local_axis(machine_, joint) + turn) % 3);
     if (is_told(bar, false)) own.push_back(column(*bar));
   }
+  if (beside_own && own.size() < 2)
+    return;  // a link that gravity does not turn both ways has no unknown for each
   if (!beside_own) seen = own;
   for (std::size_t m = machine_.tool.size(); m-- > joint.transform;) {
     const auto wave = gravity_.moment(joint, m);

@@ -46,7 +46,7 @@ namespace {
 
 /// Is a column nothing but rounding beside the others of its candidate: the sine of a wave of two even steps?
 bool vanishes(const Eigen::MatrixXd& raw, Eigen::Index column) {
-  constexpr double kRounding = 1e-9;
+  constexpr double kRounding = 1e-9;  // of the longest column of its candidate
   return raw.col(column).norm() <= kRounding * raw.colwise().norm().maxCoeff();
 }
 
@@ -204,7 +204,7 @@ void Scanner::refine(Scored& scored, const Eigen::MatrixXd& beside) const {
   for (std::size_t i = 0; i < item.grid.size(); ++i) {
     // In 1/value between the neighbours: phases of a period move evenly there.
     const auto [low, high] = neighbours(item, i, scored.scanned[i]);
-    constexpr int kSections = 14;
+    constexpr int kSections = 14;  // of a golden search: to a thousandth of the grid's step
     std::vector<double> point = scored.scanned;
     const maths::Peak best = maths::golden_peak(
         [&](double inverse) {

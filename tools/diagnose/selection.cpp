@@ -87,7 +87,7 @@ Selection best_addition(const SelectionProblem& p, const std::vector<std::size_t
 
 /// Forward steps, exchanges and backward steps until nothing lowers the criterion.
 Selection improve(const SelectionProblem& p, Selection now, std::size_t most) {
-  constexpr int kMostRounds = 50;
+  constexpr int kMostRounds = 50;  // of letting in and out, at most
   for (int round = 0; round < kMostRounds; ++round) {
     const double before = now.criterion;
     if (now.chosen.size() < most) now = best_addition(p, now.chosen, now);

@@ -88,7 +88,7 @@ Eigen::MatrixXd half_waves(const Evidence& evidence, const effects::DofPlace& pl
 /// change along the axis.
 Eigen::MatrixXd moved(const Evidence& evidence, const Pool& pool, std::size_t item) {
   // Small against the phase of a thousandth of a period at the end of the range.
-  constexpr double kStep = 1e-6;
+  constexpr double kStep = 1e-6;  // relative, of a difference
   const std::vector<double>& scanned = pool[item].scored.scanned;
   const effects::Candidate& candidate = pool.candidate(item);
   const Eigen::MatrixXd here = evidence.columns(candidate, scanned);

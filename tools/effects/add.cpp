@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/effects/add.h"
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <pugixml.hpp>
 
-#include "tools/effects/candidate.h"
 #include "tools/effects/input_class.h"
 #include "tools/fit/domain.h"
 #include "tools/text/error.h"

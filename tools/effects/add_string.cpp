@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/effects/add_string.h"
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cctype>
 
-#include "tools/effects/candidate.h"
+#include "tools/effects/gravity.h"
 #include "tools/text/error.h"
 #include "tools/text/numbers.h"
 #include "tools/text/xml_text.h"
@@ -72,6 +73,7 @@ class AddReader {
     read_pull();
     choose_form();
     fill_place();
+    if (choice_.form->place == PlaceRule::kJoint) require_moment();
     read_numbers();
     if (!used_all()) fail(unused(), "not a key of an effect to add");
     return choice_;
@@ -275,6 +277,14 @@ class AddReader {
     const bool own = choice_.form->place == PlaceRule::kOwn || choice_.form->place == PlaceRule::kJoint;
     if (own && choice_.axis) choice_.place = axes_.own(*choice_.axis);
     if (!choice_.place) fail(id_, "needs branch, transform and dof: where does it act?");
+  }
+
+  /// Gravity moves no slide, and has no moment about a joint that it points along at every pose.
+  void require_moment() const {
+    if (!choice_.place) return;
+    if (!is_angle(machine_, *choice_.place)) fail(id_, "acts at a rotary joint, and this axis is none");
+    if (!GravityChain(machine_).may_turn(*choice_.place))
+      fail(id_, "gravity points along this joint at every pose and has no moment about it");
   }
 
   double number(const std::string& key, const std::string& text) const {

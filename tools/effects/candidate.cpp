@@ -215,6 +215,9 @@ class Maker {
       wave = gravity_->across(place, mark == "across" ? *choice_.toward : (own + next) % 3);
     }
     if (!wave) missing("a chain of turns in proportion to axes, from the base to there,");
+    // A tube that gravity bends one way only is a tube.
+    if (wave->is_constant() && choice_.form->place != PlaceRule::kBend)
+      missing("a place where an axis changes what gravity does (here it is the same at every pose),");
     return wave->expression(machine_);
   }
 

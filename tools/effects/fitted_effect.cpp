@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/effects/fitted_effect.h"
 
+#include "tools/effects/add.h"
 #include "tools/fit/domain.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/machine_writer.h"

@@ -5,8 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "tools/maths/factors.h"
 #include "tools/model/chain.h"
 #include "tools/text/numbers.h"
 
@@ -49,16 +49,17 @@ std::string text_of(const std::vector<double>& by, const model::Machine& machine
   return text;
 }
 
+/// Where an axis stands when all stand somewhere.
+double somewhere(std::size_t axis) { return 17.3 + 3.7 * static_cast<double>(axis); }
+
 /// Values of an expression with all axes at zero, each in turn at 1, and all somewhere.
 Eigen::VectorXd samples(const model::Machine& nominal, const model::Expr& expr) {
   const std::size_t axes = nominal.axes.size();
-  std::vector<double> references;
-  for (const model::Input& input : nominal.inputs) references.push_back(input.reference);
-  model::States states = model::make_states(axes + 2, axes, references);
+  model::States states = model::make_states(axes + 2, nominal);
   for (std::size_t i = 0; i < axes; ++i) {
     states.axis[i].setZero();
     states.axis[i][static_cast<Eigen::Index>(i) + 1] = 1;
-    states.axis[i][static_cast<Eigen::Index>(axes) + 1] = 17.3 + 3.7 * static_cast<double>(i);
+    states.axis[i][static_cast<Eigen::Index>(axes) + 1] = somewhere(i);
   }
   return model::evaluate(nominal, expr, states).matrix();
 }
@@ -180,7 +181,7 @@ void GravityChain::build(const model::Machine& nominal, bool workpiece) {
       for (Eigen::Index i = 0; i < axes; ++i) {
         const double slope = value[i + 1] - value[0];
         motion.by.push_back(std::abs(slope) < kRounding ? 0 : std::round(slope / kRounding) * kRounding);
-        whole += slope * (17.3 + 3.7 * static_cast<double>(i));
+        whole += slope * somewhere(static_cast<std::size_t>(i));
       }
       known = known && value.allFinite() && std::abs(whole - value[axes + 1]) <= 1e-6 * (1 + std::abs(whole));
       motion.known = known;
@@ -193,8 +194,7 @@ void GravityChain::build(const model::Machine& nominal, bool workpiece) {
           else
             turns.push_back({axis, motion.by});
         }
-        constexpr double kRadPerDeg = std::numbers::pi / 180;
-        home = home * Eigen::AngleAxisd(kRadPerDeg * motion.constant, motion.local).toRotationMatrix();
+        home = home * Eigen::AngleAxisd(maths::kRadPerDeg * motion.constant, motion.local).toRotationMatrix();
       }
       motion.turns = turns;
       motion.home = home;
@@ -270,6 +270,15 @@ std::optional<Wave> GravityChain::across(const DofPlace& angle, std::size_t towa
   Wave wave;
   wave.add((*down).at(third), cyclic ? 1 : -1);
   return wave;
+}
+
+bool GravityChain::may_turn(const DofPlace& angle) const {
+  const auto down = direction(angle);
+  if (!down) return true;
+  Eigen::Index own = 0;
+  find(angle)->local.maxCoeff(&own);
+  const auto at = static_cast<std::size_t>(own);
+  return (*down).at((at + 1) % 3).terms() + (*down).at((at + 2) % 3).terms() > 0;
 }
 
 bool GravityChain::is_rigid(const DofPlace& transform) const {

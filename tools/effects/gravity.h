@@ -55,6 +55,8 @@ class GravityChain {
   /// Moment about an angle of a bar that points along local axis `toward` (0 to 2, not the angle's own), per
   /// length and weight: (toward x gravity) . axis.
   std::optional<Wave> across(const DofPlace& angle, std::size_t toward) const;
+  /// May gravity have a moment about an angle? Not where it points along it at every pose.
+  bool may_turn(const DofPlace& angle) const;
   /// Does no axis and no constant turn anything within this transform? Its angles then share one frame.
   bool is_rigid(const DofPlace& transform) const;
   /// Gravity along a length.

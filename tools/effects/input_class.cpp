@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <string>
 
 #include "tools/maths/factors.h"
 #include "tools/text/units.h"
+#include "tools/text/words.h"
 #include "tools/vibration/signal_features.h"
 
 namespace vernier::effects {
@@ -30,8 +30,7 @@ bool is_setpoint(const std::string& name) {
 
 InputClass class_of_input(const model::Input& input) {
   const std::string& unit = input.unit;
-  std::string lower;
-  for (const char c : input.name) lower += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const std::string lower = text::in_small_letters(input.name);
   if (is_setpoint(lower)) return InputClass::kSetpoint;
   if (const auto known = text::find_unit(unit); known && known->dimension == text::Dimension::kTemperature)
     return InputClass::kTemperature;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/effects/places.h"
 #include <cmath>
 
-#include "tools/effects/candidate.h"
 #include "tools/model/chain.h"
 
 namespace vernier::effects {
@@ -13,9 +13,7 @@ const std::vector<model::Transform>& branch_of(const model::Machine& machine, bo
 
 /// Value of a degree of freedom of the nominal chain, with one axis at `position` and the others at rest.
 double value_at(const model::Machine& nominal, const model::Expr& expr, std::size_t axis, double position) {
-  std::vector<double> references;
-  for (const model::Input& input : nominal.inputs) references.push_back(input.reference);
-  model::States one = model::make_states(1, nominal.axes.size(), references);
+  model::States one = model::make_states(1, nominal);
   for (std::size_t i = 0; i < nominal.axes.size(); ++i) {
     const model::Axis& item = nominal.axes[i];
     one.axis[i][0] = item.min && item.max ? *item.min + 0.37 * (*item.max - *item.min) : 1;

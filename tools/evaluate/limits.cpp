@@ -12,7 +12,8 @@
 namespace vernier::evaluate {
 
 std::pair<std::string, double> limit_of(const std::string& words, const std::string& option,
-                                        const std::vector<std::string>& names) {
+                                        const std::vector<std::string>& names,
+                                        const std::string& unit_wanted) {
   const auto at = words.find('=');
   const std::string name = words.substr(0, at);
   const std::string rest = at == std::string::npos ? "" : words.substr(at + 1);
@@ -21,11 +22,11 @@ std::pair<std::string, double> limit_of(const std::string& words, const std::str
     ++end;
   const auto number = text::parse_number(rest.substr(0, end));
   const auto unit = text::find_unit(rest.substr(end));
-  const bool fits =
-      unit && (unit->dimension == text::Dimension::kLength || unit->dimension == text::Dimension::kAngle);
+  const bool angle = unit_wanted == "deg";
+  const bool fits = unit && unit->dimension == (angle ? text::Dimension::kAngle : text::Dimension::kLength);
   if (!number || !fits || std::find(names.begin(), names.end(), name) == names.end())
-    throw text::InputError(option + " " + words + ": of the form " + names.front() + "=10um, for one of " +
-                           text::joined(names, " "));
+    throw text::InputError(option + " " + words + ": of the form " + names.front() +
+                           (angle ? "=0.01deg" : "=10um") + ", for one of " + text::joined(names, " "));
   return {name, *number * unit->factor};
 }
 

@@ -37,7 +37,7 @@ Vector3d turn(const Vector3d& from_deg, const Vector3d& to_deg) {
 /// The x that chi square of k degrees of freedom exceeds with chance p.
 double chi_square_point(double p, double k) {
   double low = 0, high = 10 * k + 100;
-  constexpr int kHalvings = 80;
+  constexpr int kHalvings = 80;  // to the last digit
   for (int i = 0; i < kHalvings; ++i) {
     const double middle = (low + high) / 2;
     (maths::chi_square_tail(middle, k) > p ? low : high) = middle;
@@ -93,7 +93,7 @@ void take_interval(const std::vector<Vector3d>& rest, PoseResult& result) {
   result.freedom = freedom_of(variances, n);
   // Readings lie nearer to their own barycentre than to the true one.
   const double centre = result.repeatability_mm * std::sqrt(n / (n - 1));
-  constexpr double kTail = 0.025;
+  constexpr double kTail = 0.025;  // on either side of 95 %
   result.low_mm = centre * std::sqrt(result.freedom / chi_square_point(kTail, result.freedom));
   result.high_mm = centre * std::sqrt(result.freedom / chi_square_point(1 - kTail, result.freedom));
   const double length = result.accuracy_mm;

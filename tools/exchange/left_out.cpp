@@ -10,7 +10,7 @@ namespace vernier::exchange {
 namespace {
 
 using Eigen::Index;
-constexpr std::size_t kSamples = 60;
+constexpr std::size_t kSamples = 60;  // poses at which two terms are compared
 constexpr unsigned long kSeed = 1;
 
 /// Where axes without a range and other quantities are tried.

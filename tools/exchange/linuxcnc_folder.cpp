@@ -7,6 +7,7 @@
 #include <cctype>
 
 #include "tools/model/machine_reader.h"
+#include "tools/text/words.h"
 
 namespace vernier::exchange {
 namespace {
@@ -36,11 +37,6 @@ void check_names(const model::Machine& machine) {
                            "more inputs than the component has");
   for (const model::Axis& axis : machine.axes) check(axis.name, axis.line);
   for (const model::Input* input : sensors(machine)) check(input->name, input->line);
-}
-
-std::string lower(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
 }
 
 // Only where the component would take another kind from the name.
@@ -96,8 +92,8 @@ std::string hal_file(const model::Machine& machine) {
     text += "\n# Sensors: until one is connected there is no correction. Put your pins here.\n";
   for (const model::Input* input : sensors(machine))
     text += fmt::format("# net {} YOUR-SENSOR.PIN => vernier.0.input.{}   # {}, reference {:g}\n",
-                        lower(input->name), input->name, input->unit.empty() ? "no unit" : input->unit,
-                        input->reference);
+                        text::in_small_letters(input->name), input->name,
+                        input->unit.empty() ? "no unit" : input->unit, input->reference);
   return text +
          "\n# 0 holds the correction at a joint's limit; 1 ends the program too: net vernier-abort "
          "vernier.0.abort halui.abort\n"
@@ -143,7 +139,8 @@ std::string ini_lines(const model::Machine& machine, const std::string& folder) 
       "them.\n",
       folder);
   for (std::size_t n = 0; n < machine.axes.size(); ++n)
-    text += fmt::format("CMD_{0} = {1}-pos-cmd\nFB_{0} = {1}-pos-fb\n", n, lower(machine.axes[n].name));
+    text += fmt::format("CMD_{0} = {1}-pos-cmd\nFB_{0} = {1}-pos-fb\n", n,
+                        text::in_small_letters(machine.axes[n].name));
   return text + narrower_limits(machine);
 }
 

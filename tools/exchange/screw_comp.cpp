@@ -184,10 +184,7 @@ std::string screw_into_machine(const std::string& text, const model::Machine& ma
   check_used(machine, table);
   const std::string result = set_table(model::update_machine_text(text, next, false), next, table);
   const model::Machine back = model::parse_machine(result, machine.file);
-  std::vector<double> references;
-  for (const model::Input& input : back.inputs) references.push_back(input.reference);
-  const std::vector<ScrewPoint> again =
-      trims_at(back, axis, model::make_states(1, back.axes.size(), references), positions);
+  const std::vector<ScrewPoint> again = trims_at(back, axis, model::make_states(1, back), positions);
   for (std::size_t i = 0; i < points.size(); ++i) {
     const double off = std::max(std::abs(again[i].forward_trim - points[i].forward_trim),
                                 std::abs(again[i].reverse_trim - points[i].reverse_trim));

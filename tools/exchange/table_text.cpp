@@ -12,7 +12,7 @@
 namespace vernier::exchange {
 namespace {
 
-constexpr std::size_t kNowhere = std::string::npos;
+constexpr std::size_t kNowhere = std::string::npos;  // not found
 
 /// Offset of a word in any case, from `at` on.
 std::size_t find_no_case(const std::string& text, const std::string& word, std::size_t at) {

@@ -278,6 +278,7 @@ model::Machine set_up(const model::Machine& machine, const model::Measurement& r
   SetUp plain = fitted_set_up(machine, shifts, problem, none);
   hold_at(problem, held, shifts.get(rigid));
   SetUp given = fitted_set_up(machine, shifts, problem, shifts.get(rigid));
+  // Of chi^2: a set-up that is given up for less would be given up for rounding.
   constexpr double kPlainly = 1e-3;
   return given.cost < (1 - kPlainly) * plain.cost ? std::move(given.machine) : std::move(plain.machine);
 }

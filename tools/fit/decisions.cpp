@@ -36,7 +36,7 @@ struct DecisionGroup {
 };
 
 std::string first_names(const std::vector<std::string>& names) {
-  constexpr std::size_t kMost = 6;
+  constexpr std::size_t kMost = 6;  // names a person reads in a line
   std::string text;
   for (std::size_t i = 0; i < names.size() && i < kMost; ++i) text += (i > 0 ? ", " : "") + names[i];
   return names.size() > kMost ? text + fmt::format(" and {} more", names.size() - kMost) : text;

@@ -14,8 +14,8 @@
 namespace vernier::fit {
 namespace {
 
-constexpr double kOpen = 1e9;
-constexpr double kFadeShare = 0.1;
+constexpr double kOpen = 1e9;       // stands for a bound that there is none of
+constexpr double kFadeShare = 0.1;  // of a measured range, over which a term fades beyond it
 
 model::Column values_of(const model::Machine& machine, const DomainRange& range,
                         const model::States& states) {

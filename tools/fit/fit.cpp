@@ -92,6 +92,7 @@ Settled nothing_free(const FitProblem& problem, std::size_t observations, bool w
 }
 
 std::vector<Correlation> strong_correlations(const Observability& seen) {
+  // Correlation from which on two std together say more than each: 1 - r^2 is below a fifth.
   constexpr double kStrong = 0.9;
   std::vector<Correlation> list;
   const Eigen::VectorXd std = seen.covariance.diagonal().cwiseMax(0).cwiseSqrt();
@@ -169,6 +170,22 @@ void find_disturbance(const FitResult& result, const model::Measurement& rows, c
   record.disturbance = move->words;
 }
 
+/// The noise that later checks of the machine are judged by; steps of the instrument were of that day.
+std::optional<model::FitRecord::Noise> kept_noise(const NoiseModel& noise, const model::Measurement& rows) {
+  std::vector<std::size_t> fitted;
+  bool of_u = false;
+  for (std::size_t i = 0; i < rows.observations.size(); ++i) {
+    if (rows.check[rows.observations[i].row] != 0) continue;
+    fitted.push_back(i);
+    of_u = of_u || model::uncertainty_of(rows, rows.observations[i]) > 0;
+  }
+  constexpr double kAsStated = 1.1;  // times u
+  if (noise.shared() <= 0 && (!of_u || noise.own <= kAsStated)) return std::nullopt;
+  return model::FitRecord::Noise{
+      noise.own,     noise.pose, noise.run, noise.drift, noise.time_constant, noise_layout(rows, fitted).step,
+      noise.in_time, of_u};
+}
+
 /// What the machine file keeps of the fit.
 void remember(FitResult& result, const model::Measurement& rows, const Convention& convention, bool robust) {
   auto record = std::make_shared<model::FitRecord>();
@@ -181,6 +198,7 @@ void remember(FitResult& result, const model::Measurement& rows, const Conventio
   record->check_ratio = result.check_ratio.value_or(0);
   record->worst_check = result.check_ratio ? result.worst_check.reading : "";
   find_disturbance(result, rows, convention, robust, *record);
+  record->noise = kept_noise(result.noise, rows);
   record->values.resize(static_cast<Eigen::Index>(result.estimates.size()));
   for (std::size_t i = 0; i < result.estimates.size(); ++i) {
     record->parameters.push_back(result.estimates[i].name);

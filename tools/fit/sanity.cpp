@@ -169,6 +169,8 @@ WorstReading worst_reading(const model::Measurement& measurement, const Eigen::V
 
 std::string likely_mistake(const model::Machine& machine, const model::Measurement& rows,
                            const WorstReading& worst) {
+  // Of chi^2 in one reading; what a mistake undone must leave at most; another that leaves so much is as
+  // likely.
   constexpr double kMostOfAll = 0.5, kFivefold = 0.2, kAsGood = 1.5;
   if (const std::string cell = cell_out_of_range(machine, rows); !cell.empty()) return cell;
   if (worst.share > kMostOfAll) return worst.reading + " stands alone against all others";

@@ -17,9 +17,10 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using Sparse = Eigen::SparseMatrix<double>;
 
+// Of scales and noise in turn, at most; fewer where each takes seconds.
 constexpr int kRounds = 6, kRoundsOfMany = 2;
-constexpr Index kMany = 400;  // above it an inverse takes a tenth of a second and more
-constexpr int kMostSteps = 12;
+constexpr Index kMany = 400;    // above it an inverse takes a tenth of a second and more
+constexpr int kMostSteps = 12;  // of Gauss and Newton, at most
 /// Times that the penalty is applied: iterated Tikhonov regularisation (Engl, Hanke, Neubauer, Regularization
 /// of inverse problems, 1996, section 5.1). A direction known to share r of its scale is moved by r^(2 n -
 /// 1).
@@ -241,7 +242,7 @@ class Settler {
   /// J^T W cov(readings) W J: `variance` times the normal matrix where errors are independent; where they
   /// hang together, what they do to a fit that took them for independent (White 1980).
   MatrixXd readings_covariance(const MatrixXd& data) {
-    constexpr double kMostNumbers = 5e7;
+    constexpr double kMostNumbers = 5e7;  // 400 MB of them: beyond, rows are taken as independent
     const model::Measurement& rows = problem_.measurement();
     const VectorXd& weights = problem_.weights();
     std::vector<std::size_t> fitted;

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/fleet/alike.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <set>
 
+#include "tools/fleet/wander.h"
 #include "tools/maths/chance.h"
+#include "tools/maths/decompositions.h"
+#include "tools/text/wall_time.h"
 
 namespace vernier::fleet {
 namespace {
@@ -17,10 +20,15 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kUsEachDay = 86'400e6;
 // A scatter below a thousandth of what is stated is rounding, and no measure for anything.
 constexpr double kLeastVariance = 1e-6;
 constexpr std::size_t kFewest = 3;  // machines, times, and readings of a machine whose rate is asked for
+// Machines that are asked how far they wander: more tell it no better, and cost as much as all else.
+constexpr std::size_t kMostAsked = 60;
+// Fall of -2 log likelihood at which wandering is no chance: chi^2 of two at 1e-3. It counts whatever it is.
+constexpr double kWorthSaying = 13;
+// A rate that one reading carries is no drift: without any of its readings it is still told at this level.
+const double kLogStillTold = std::log(0.05);
 
 /// Readings of one quantity in units of their uncertainty, and the columns of a model of them.
 class AdditiveModel {
@@ -30,14 +38,15 @@ class AdditiveModel {
     for (const FleetReading& one : readings) first = std::min(first, one.at_us);
     for (const FleetReading& one : readings) {
       machine_.try_emplace(one.machine, static_cast<Index>(machine_.size()));
-      const double days = static_cast<double>(one.at_us - first) / kUsEachDay;
+      const double days = static_cast<double>(one.at_us - first) / text::kUsADay;
       rows_.push_back({&one, days, static_cast<std::int64_t>(std::floor(days / every_days))});
       time_.try_emplace(rows_.back().bin, 0);
-      begin_of_[rows_.back().bin] =
-          first + static_cast<std::int64_t>(static_cast<double>(rows_.back().bin) * every_days * kUsEachDay);
+      begin_of_[rows_.back().bin] = first + static_cast<std::int64_t>(static_cast<double>(rows_.back().bin) *
+                                                                      every_days * text::kUsADay);
     }
     Index next = 0;
     for (auto& [bin, index] : time_) index = next++;
+    make_series();
   }
 
   std::size_t machines() const { return machine_.size(); }
@@ -55,10 +64,9 @@ class AdditiveModel {
       x(row, machine_.at(rows_[i].reading->machine)) = 1 / rows_[i].reading->std;
       const Index bend = time_.at(rows_[i].bin);
       if (curve && bend > 0) x(row, levels + bend - 1) = 1 / rows_[i].reading->std;
-      for (std::size_t k = 0; k < own.size(); ++k)
-        if (rows_[i].reading->machine == own[k])
-          x(row, levels + bends + static_cast<Index>(k)) = rows_[i].days / rows_[i].reading->std;
     }
+    for (std::size_t k = 0; k < own.size(); ++k)
+      x.col(levels + bends + static_cast<Index>(k)) = rate_of(own[k]).first;
     return x;
   }
   VectorXd values() const {
@@ -79,17 +87,42 @@ class AdditiveModel {
     return {column, count};
   }
   const std::map<std::string, Index>& machine_names() const { return machine_; }
+  /// Readings of a machine, or of all in the order of machine_names().
+  const WanderSeries& series_of(const std::string& machine) const {
+    return series_[static_cast<std::size_t>(machine_.at(machine))];
+  }
+  const std::vector<WanderSeries>& series() const { return series_; }
   std::int64_t begin_of(std::size_t time) const {
     return std::next(begin_of_.begin(), static_cast<std::ptrdiff_t>(time))->second;
   }
 
  private:
+  void make_series() {
+    std::vector<double> sorted;
+    for (const RowOfModel& row : rows_) sorted.push_back(row.reading->std);
+    std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2),
+                     sorted.end());
+    const double usual = sorted[sorted.size() / 2];
+    std::vector<std::size_t> order(rows_.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return rows_[a].days < rows_[b].days; });
+    series_.resize(machine_.size());
+    for (const std::size_t i : order) {
+      WanderSeries& series = series_[static_cast<std::size_t>(machine_.at(rows_[i].reading->machine))];
+      series.row.push_back(static_cast<Index>(i));
+      series.days.push_back(rows_[i].days);
+      series.weight.push_back(usual / rows_[i].reading->std);
+    }
+  }
+
   struct RowOfModel {
     const FleetReading* reading;
     double days;
     std::int64_t bin;
   };
   std::vector<RowOfModel> rows_;
+  std::vector<WanderSeries> series_;
   std::map<std::string, Index> machine_;
   std::map<std::int64_t, Index> time_;
   std::map<std::int64_t, std::int64_t> begin_of_;
@@ -117,25 +150,83 @@ struct Clearest {
   double log_p = 0;
 };
 
-/// The machine whose own rate would explain most of what is left.
-Clearest clearest_own(const AdditiveModel& model, const MatrixXd& x, const Solved& now,
-                      const std::vector<std::string>& own) {
-  Clearest best;
-  if (now.freedom < 2) return best;
-  for (const auto& [machine, index] : model.machine_names()) {
-    if (std::find(own.begin(), own.end(), machine) != own.end()) continue;
-    const auto [column, count] = model.rate_of(machine);
-    if (count < kFewest) continue;
+/// The fleet's readings as if they were independent: how each machine wanders is taken out.
+class FleetFit {
+ public:
+  explicit FleetFit(const AdditiveModel& model) : model_(model) {
+    // What is left beside what is common: a machine's own steady rate is no wandering.
+    const Solved plain = solve(model.columns(true, {}), model.values());
+    VectorXd left = model.values();
+    const auto levels = static_cast<Index>(model.machines());
+    const MatrixXd x = model.columns(true, {});
+    left -= x.rightCols(x.cols() - levels) * plain.solution.tail(x.cols() - levels);
+    std::vector<WanderSeries> asked = model.series();
+    asked.resize(std::min(asked.size(), kMostAsked));
+    wander_ = estimated_wander(asked, left);
+    fit({});
+  }
+
+  const Wander& wander() const { return wander_; }
+  const Solved& now() const { return now_; }
+  Solved solved(bool curve, const std::vector<std::string>& own) const {
+    return solve(whitened(model_.columns(curve, own)), whitened(model_.values()));
+  }
+  void fit(const std::vector<std::string>& own) {
+    own_ = own;
+    x_ = whitened(model_.columns(true, own));
+    now_ = solve(x_, whitened(model_.values()));
+  }
+
+  /// The machine whose own rate would explain most of what is left.
+  Clearest clearest_own() const {
+    Clearest best;
+    if (now_.freedom < 2) return best;
+    for (const auto& [machine, index] : model_.machine_names()) {
+      if (std::find(own_.begin(), own_.end(), machine) != own_.end()) continue;
+      const double log_p = log_p_of_rate(machine);
+      if (log_p < best.log_p) best = {machine, log_p};
+    }
+    return best;
+  }
+
+  /// Logarithm of the chance of a machine's rate when the reading is left out that carries most of it.
+  double without_its_best_reading(const std::string& machine) const {
+    double most = -1e300;
+    for (const Index row : model_.series_of(machine).row) {
+      MatrixXd one = MatrixXd::Zero(x_.rows(), 1);
+      one(row, 0) = 1;
+      MatrixXd x(x_.rows(), x_.cols() + 1);
+      x << x_, whitened(one);
+      const Solved without = solve(x, now_.rest);
+      most = std::max(most, log_p_of_rate(machine, x, without));
+    }
+    return most;
+  }
+
+ private:
+  MatrixXd whitened(MatrixXd columns) const {
+    whiten(model_.series(), wander_, columns);
+    return columns;
+  }
+  double log_p_of_rate(const std::string& machine) const { return log_p_of_rate(machine, x_, now_); }
+  double log_p_of_rate(const std::string& machine, const MatrixXd& x, const Solved& now) const {
+    const auto [plain, count] = model_.rate_of(machine);
+    if (count < kFewest || now.freedom < 2) return 0;
+    const VectorXd column = whitened(plain);
     const VectorXd through = x.transpose() * column;
     const double amount = column.squaredNorm() - through.dot(now.normal.solve(through));
-    if (!(amount > 1e-9 * column.squaredNorm())) continue;
+    if (!(amount > 1e-9 * column.squaredNorm())) return 0;
     const double gain = std::pow(column.dot(now.rest), 2) / amount;
     const double left = std::max(now.sum - gain, kLeastVariance * (now.freedom - 1));
-    const double log_p = maths::log_f_tail(gain / (left / (now.freedom - 1)), 1, now.freedom - 1);
-    if (log_p < best.log_p) best = {machine, log_p};
+    return maths::log_f_tail(gain / (left / (now.freedom - 1)), 1, now.freedom - 1);
   }
-  return best;
-}
+
+  const AdditiveModel& model_;
+  Wander wander_;
+  std::vector<std::string> own_;
+  MatrixXd x_;
+  Solved now_;
+};
 
 Drift drift_of(const std::vector<FleetReading>& readings, const AlikeOptions& options,
                std::size_t quantities) {
@@ -147,21 +238,25 @@ Drift drift_of(const std::vector<FleetReading>& readings, const AlikeOptions& op
       drift.readings < drift.machines + drift.times + kFewest)
     return drift;
   drift.judged = true;
-  const VectorXd y = model.values();
   const double share = options.false_alarms / (2 * static_cast<double>(quantities));
+  FleetFit fit(model);
   std::vector<std::string> own;
-  MatrixXd x = model.columns(true, own);
-  Solved now = solve(x, y);
   // Were all but two let go their own way, nobody would be left to be common.
   while (own.size() + 2 < drift.machines) {
-    const Clearest next = clearest_own(model, x, now, own);
-    if (next.machine.empty() || next.log_p > std::log(share / static_cast<double>(drift.machines))) break;
+    const Clearest next = fit.clearest_own();
+    if (next.machine.empty() || next.log_p > std::log(share / static_cast<double>(drift.machines)) ||
+        fit.without_its_best_reading(next.machine) > kLogStillTold)
+      break;
     own.push_back(next.machine);
-    x = model.columns(true, own);
-    now = solve(x, y);
+    fit.fit(own);
   }
+  const Solved& now = fit.now();
   drift.scatter = std::sqrt(now.sum / now.freedom);
-  const Solved still = solve(model.columns(false, own), y);
+  if (fit.wander().gain > kWorthSaying) {
+    drift.wander = drift.scatter * std::sqrt(fit.wander().ratio);
+    drift.wander_days = fit.wander().days;
+  }
+  const Solved still = fit.solved(false, own);
   const double bends = still.freedom - now.freedom;
   drift.common_p = std::exp(maths::log_f_tail(
       std::max(still.sum - now.sum, 0.0) / bends / std::max(now.sum / now.freedom, kLeastVariance), bends,
@@ -177,8 +272,8 @@ Drift drift_of(const std::vector<FleetReading>& readings, const AlikeOptions& op
   drift.common_swing = high->second - low->second;
   const double wide = std::max(drift.scatter, 1.0);
   for (std::size_t k = 0; k < own.size(); ++k) {
-    const Index at = x.cols() - static_cast<Index>(own.size() - k);
-    const VectorXd unit = VectorXd::Unit(x.cols(), at);
+    const Index at = now.solution.size() - static_cast<Index>(own.size() - k);
+    const VectorXd unit = VectorXd::Unit(now.solution.size(), at);
     drift.own.push_back({own[k], now.solution[at], wide * std::sqrt(now.normal.solve(unit)[at])});
   }
   return drift;

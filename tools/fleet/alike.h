@@ -29,6 +29,8 @@ struct Drift {
   double common_p = 1;      // chance of such a common movement of quiet machines
   double common_swing = 0;  // largest less smallest of the common curve
   double scatter = 1;       // of the readings about the answer, over their stated uncertainty
+  double wander = 0;        // how far each machine wanders by itself, over the same; 0: not at all
+  double wander_days = 0;   // ... and for how long
   std::vector<std::pair<std::int64_t, double>> curve;  // of what is common: time, value (0 at the first)
   std::vector<OwnDrift> own;                           // the clearest first
 };
@@ -37,8 +39,9 @@ struct Drift {
 /// common curve of time + own rate x time, least squares weighted by the stated uncertainties. Own rates are
 /// let in one by one, the clearest first, as long as an F test tells them at false_alarms / (2 x machines x
 /// quantities); the common curve by an F test at false_alarms / (2 x quantities). So what most machines do is
-/// common; a scatter beyond the stated uncertainty widens everything. Readings count as independent and
-/// normal. tool.
+/// common; a scatter beyond the stated uncertainty widens everything, and so does what the machines wander
+/// (wander.h): a drift is what wanders farther than the others do. A rate that falls to chance when one
+/// reading is left out is none. tool.
 std::vector<Drift> drifts(const std::vector<FleetReading>& readings, const AlikeOptions& options);
 
 }  // namespace vernier::fleet

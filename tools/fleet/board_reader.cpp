@@ -9,6 +9,7 @@
 
 #include "tools/text/error.h"
 #include "tools/text/files.h"
+#include "tools/text/numbers.h"
 #include "tools/text/words.h"
 
 namespace vernier::fleet {
@@ -45,7 +46,7 @@ void put_tick(std::vector<Metric>& to, const upload::BoardInfo& info, const uplo
 
 void put_state(std::vector<Metric>& to, const upload::BoardInfo& info, const upload::BoardState& state) {
   to.push_back({"Image/Fingerprint",
-                state.fingerprint == 0 ? std::string() : fmt::format("{:016x}", state.fingerprint)});
+                state.fingerprint == 0 ? std::string() : text::fingerprint_text(state.fingerprint)});
   to.push_back({"Image/State", std::string(upload::name_of(state.image))});
   to.push_back({"Image/Weight", state.weight});
   for (std::size_t i = 0; i < info.axes.size(); ++i) {

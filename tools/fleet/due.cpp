@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <map>
 
+#include "tools/text/wall_time.h"
+
 namespace vernier::fleet {
 namespace {
-
-constexpr double kUsADay = 86'400e6;
 
 DueMachine judged(const FleetMachine& machine, const FleetCheck* last, const RecordedCalibration* runs) {
   DueMachine one{machine.name, "", "", {}, {}};
@@ -15,7 +15,7 @@ DueMachine judged(const FleetMachine& machine, const FleetCheck* last, const Rec
   if (last != nullptr) one.last_us = last->at_us, one.verdict = last->verdict;
   if (machine.check_days <= 0) return one;
   const std::int64_t from = last == nullptr ? begun : last->at_us;
-  one.due_us = from + static_cast<std::int64_t>(machine.check_days * kUsADay);
+  one.due_us = from + static_cast<std::int64_t>(machine.check_days * text::kUsADay);
   if (last == nullptr) {
     one.due_us = begun, one.why = "never checked";
   } else if (runs != nullptr && runs->at_us > last->at_us) {

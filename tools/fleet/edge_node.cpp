@@ -1,17 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/fleet/edge_node.h"
 
-#include <chrono>
+#include "tools/text/wall_time.h"
 
 namespace vernier::fleet {
 namespace {
 
 constexpr std::uint64_t kSequence = 256;
 
-std::uint64_t clock_ms() {
-  const auto now = std::chrono::system_clock::now().time_since_epoch();
-  return static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::milliseconds>(now).count());
-}
+std::uint64_t clock_ms() { return static_cast<std::uint64_t>(text::now_ms()); }
 
 SparkplugPayload death_of(std::uint64_t number) {
   SparkplugPayload payload;

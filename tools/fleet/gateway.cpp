@@ -15,6 +15,7 @@
 #include "tools/fleet/edge_node.h"
 #include "tools/fleet/spool.h"
 #include "tools/text/error.h"
+#include "tools/text/wall_time.h"
 
 namespace vernier::fleet {
 namespace {
@@ -33,10 +34,7 @@ constexpr auto kLongestPause = 30s;
 // A sample that is older was not sent as it came.
 constexpr std::uint64_t kFreshMs = 5000;
 
-std::uint64_t wall_ms() {
-  const auto now = std::chrono::system_clock::now().time_since_epoch();
-  return static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::milliseconds>(now).count());
-}
+std::uint64_t wall_ms() { return static_cast<std::uint64_t>(text::now_ms()); }
 
 /// Between the threads that read boards, the one that writes the spool and the one that publishes.
 class GatewayDesk {

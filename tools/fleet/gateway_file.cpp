@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <set>
 
 #include "tools/fleet/sparkplug.h"
@@ -31,7 +32,7 @@ class Section {
   /// A name that stands in topics.
   std::string name(const char* key, const std::string& otherwise, bool needed = false) {
     std::string name = word(key, otherwise, needed);
-    if (!fits_a_topic(name)) wrong(key, "a name without + / # is wanted");
+    if (!fits_a_topic(name)) wrong(key, "one line without + / # is wanted, of 1 to 200 bytes");
     return name;
   }
   double number(const char* key, double otherwise, double low, double high) {
@@ -46,6 +47,14 @@ class Section {
   [[noreturn]] void wrong(const char* key, const std::string& what) const {
     const toml::node* const node = table_.get(key);
     throw text::InputError(place(node == nullptr ? table_ : *node), key, what);
+  }
+  /// What `judge` throws of a value stands at its line.
+  void require(const char* key, const std::function<void()>& judge) const {
+    try {
+      judge();
+    } catch (const text::InputError& error) {
+      wrong(key, error.what());
+    }
   }
   void end() const {
     for (const auto& [key, node] : table_)
@@ -88,11 +97,7 @@ GatewayBoard board_of(const toml::table& table, const std::string& path) {
   board.board = section.word("board", "");
   board.check = beside(path, section.word("check", ""));
   section.end();
-  try {
-    upload::parse_url(board.url);
-  } catch (const text::InputError& error) {
-    section.wrong("url", error.what());
-  }
+  section.require("url", [&] { upload::parse_url(board.url); });
   return board;
 }
 
@@ -123,6 +128,7 @@ GatewayFile parse_gateway_file(const std::string& text, const std::string& path)
   file.host = section.name("host", file.host);
   file.store = beside(path, section.word("store", "", true));
   file.broker.address = section.word("broker", file.broker.address);
+  section.require("broker", [&] { require_broker_address(file.broker.address); });
   file.broker.user = section.word("user", "");
   file.broker.authority = beside(path, section.word("authority", ""));
   file.period_s = section.number("period_s", file.period_s, 0.05, 3600);

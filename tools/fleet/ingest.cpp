@@ -7,6 +7,7 @@
 
 #include "tools/fleet/sample_writer.h"
 #include "tools/text/error.h"
+#include "tools/text/wall_time.h"
 
 namespace vernier::fleet {
 namespace {
@@ -19,7 +20,7 @@ constexpr std::size_t kMessagesABatch = 2000;
 constexpr auto kPauseBetweenTries = 500ms;
 constexpr auto kRebirthEvery = 5s;
 
-std::uint64_t ms_now() { return static_cast<std::uint64_t>(now_us() / 1000); }
+std::uint64_t ms_now() { return static_cast<std::uint64_t>(text::now_ms()); }
 
 /// What is known of an edge node on this connection.
 struct NodeState {

@@ -8,6 +8,7 @@
 #include "tools/fleet/cells.h"
 #include "tools/fleet/shell_command.h"
 #include "tools/text/error.h"
+#include "tools/text/wall_time.h"
 
 namespace vernier::fleet {
 namespace {
@@ -24,7 +25,7 @@ Job job_of(const Row& row) {
           words(row[5]), whole(row[6]), whole(row[7]), whole(row[8]), whole(row[9])};
 }
 
-std::int64_t until_us(double lease_s) { return now_us() + static_cast<std::int64_t>(lease_s * 1e6); }
+std::int64_t until_us(double lease_s) { return text::now_us() + static_cast<std::int64_t>(lease_s * 1e6); }
 
 /// A registry that is opened again whenever it has been away.
 class PatientQueue {
@@ -88,13 +89,13 @@ std::optional<Job> JobQueue::take(const std::string& batch, const std::string& w
       "UPDATE job SET state = 'failed', said = 'its workers ended without a word', status = -1, ended_us = "
       "$1 "
       "WHERE batch = $2 AND state = 'taken' AND lease_us < $1 AND attempt >= $3",
-      {cell(now_us()), batch, cell(most_attempts)});
+      {cell(text::now_us()), batch, cell(most_attempts)});
   const auto rows = database.run(std::string("SELECT ") + kJobColumns +
                                      " FROM job WHERE batch = $1 AND (state = 'waiting' OR (state = 'taken' "
                                      "AND lease_us < $2)) ORDER BY "
                                      "machine LIMIT 1" +
                                      database.skip_locked(),
-                                 {batch, cell(now_us())});
+                                 {batch, cell(text::now_us())});
   std::optional<Job> job;
   if (!rows.empty()) {
     job = job_of(rows[0]);
@@ -124,7 +125,7 @@ bool JobQueue::finish(const Job& job, std::int64_t status, const std::string& sa
       "UPDATE job SET state = $1, status = $2, said = $3, ended_us = $4 WHERE batch = $5 AND machine = $6 "
       "AND "
       "attempt = $7 AND state = 'taken'",
-      {status == 0 ? "done" : "failed", cell(status), said, cell(now_us()), job.batch, job.machine,
+      {status == 0 ? "done" : "failed", cell(status), said, cell(text::now_us()), job.batch, job.machine,
        cell(job.attempt)});
   return database.written() == 1;
 }

@@ -12,6 +12,7 @@
 #include "tools/fleet/due.h"
 #include "tools/text/error.h"
 #include "tools/text/numbers.h"
+#include "tools/text/wall_time.h"
 
 namespace vernier::fleet {
 namespace {
@@ -116,7 +117,7 @@ void serve_metrics(const std::string& registry, const std::string& address, cons
   server.Get("/metrics", [&](const httplib::Request&, httplib::Response& response) {
     try {
       Registry here(open_database(registry));
-      response.set_content(metrics_text(here, now_us()), "text/plain; version=0.0.4; charset=utf-8");
+      response.set_content(metrics_text(here, text::now_us()), "text/plain; version=0.0.4; charset=utf-8");
     } catch (const std::runtime_error& error) {
       response.status = 503;
       response.set_content(std::string(error.what()) + "\n", "text/plain");

@@ -3,12 +3,14 @@
 
 #include <MQTTClient.h>
 
+#include <algorithm>
 #include <atomic>
 #include <condition_variable>
 #include <deque>
 #include <mutex>
 
 #include "tools/text/error.h"
+#include "tools/text/numbers.h"
 
 namespace vernier::fleet {
 namespace {
@@ -48,6 +50,21 @@ struct MqttConnection::Inside {
     self.came.notify_one();
   }
 };
+
+void require_broker_address(const std::string& address) {
+  constexpr std::size_t kMostPort = 65535;
+  const std::size_t scheme = address.starts_with("tcp://") || address.starts_with("ssl://") ? 6 : 0;
+  const std::string place = address.substr(scheme);
+  // An IPv6 address stands in brackets, and its colons are no port's.
+  const std::size_t colon =
+      place.find(':', place.starts_with("[") ? std::min(place.find(']'), place.size()) : 0);
+  const std::string host = place.substr(0, colon);
+  const auto port = colon == std::string::npos ? std::optional<std::size_t>(1883)
+                                               : text::parse_count(std::string_view(place).substr(colon + 1));
+  const bool named = !host.empty() && host.find_first_of(" \t\n/@") == std::string::npos;
+  if (scheme == 0 || !named || !port || *port == 0 || *port > kMostPort)
+    throw text::InputError({}, address, "tcp://HOST:1883 or ssl://HOST:8883 is wanted");
+}
 
 MqttConnection::MqttConnection(const Broker& broker, const std::string& client, const MqttWill& will)
     : inside_(std::make_unique<Inside>()) {

@@ -15,6 +15,10 @@ struct Broker {
   std::string authority;  // file (PEM) of the authority that signs the broker; ssl only
 };
 
+/// Throws InputError where an address has not the form tcp://HOST[:PORT] or ssl://HOST[:PORT]: no patience
+/// would find such a broker.
+void require_broker_address(const std::string& address);
+
 struct MqttMessage {
   std::string topic, payload;
   bool retained = false;  // it was there before we came

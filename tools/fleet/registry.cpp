@@ -3,9 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <cstdio>
-#include <ctime>
 #include <nlohmann/json.hpp>
 
 #include "tools/fleet/cells.h"
@@ -62,30 +60,6 @@ constexpr const char* kTables[] = {
 constexpr std::int64_t kSchemaLock = 0x7665726e;
 
 }  // namespace
-
-std::int64_t now_us() {
-  return std::chrono::duration_cast<std::chrono::microseconds>(
-             std::chrono::system_clock::now().time_since_epoch())
-      .count();
-}
-
-std::string utc_text(std::int64_t time_us) {
-  const std::time_t seconds = time_us / 1'000'000;
-  std::tm parts{};
-  gmtime_r(&seconds, &parts);
-  return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}Z", parts.tm_year + 1900, parts.tm_mon + 1,
-                     parts.tm_mday, parts.tm_hour, parts.tm_min, parts.tm_sec);
-}
-
-std::optional<std::int64_t> parse_utc(const std::string& text) {
-  std::tm parts{};
-  for (const char* form : {"%Y-%m-%dT%H:%M:%SZ", "%Y-%m-%dT%H:%M:%S", "%Y-%m-%dT%H:%M", "%Y-%m-%d"}) {
-    parts = {};
-    const char* const end = strptime(text.c_str(), form, &parts);
-    if (end != nullptr && *end == '\0') return std::int64_t{timegm(&parts)} * 1'000'000;
-  }
-  return {};
-}
 
 Registry::Registry(std::unique_ptr<Database> database) : database_(std::move(database)) { make_tables(); }
 

@@ -9,12 +9,6 @@
 
 namespace vernier::fleet {
 
-/// Microseconds since 1970, by this computer's clock.
-std::int64_t now_us();
-/// "2026-11-23T13:05:53Z", and back; nothing where it is none ("2026-11-23" is midnight).
-std::string utc_text(std::int64_t time_us);
-std::optional<std::int64_t> parse_utc(const std::string& text);
-
 /// A machine of the fleet.
 struct FleetMachine {
   std::string name;  // also the device of its topics

@@ -16,6 +16,7 @@
 #include "tools/fleet/shell_command.h"
 #include "tools/text/error.h"
 #include "tools/text/numbers.h"
+#include "tools/text/wall_time.h"
 #include "tools/text/words.h"
 
 namespace vernier::fleet {
@@ -31,7 +32,7 @@ constexpr double kTrialMargin_s = 1;
 std::string fingerprint_of(const std::vector<std::uint8_t>& image) {
   ImageHeader header;
   std::memcpy(&header, image.data(), sizeof(header));
-  return fmt::format("{:016x}", header.fingerprint);
+  return text::fingerprint_text(header.fingerprint);
 }
 
 /// What a board is like before and while an image is on trial.
@@ -70,7 +71,7 @@ class Trial {
   bool is_kept() {
     const SlotsReply slots = board_.slots();
     return slots.confirmed != kNoSlot && slots.trial == kNoSlot &&
-           fmt::format("{:016x}", slots.confirmed_fingerprint) == fingerprint_of(machine_.image);
+           text::fingerprint_text(slots.confirmed_fingerprint) == fingerprint_of(machine_.image);
   }
   std::string run() {
     SlotsReply slots = board_.slots();
@@ -80,7 +81,7 @@ class Trial {
     }
     const Look before = look_at(board_);
     const auto issued =
-        std::max<std::uint64_t>(static_cast<std::uint64_t>(now_us()), slots.newest_issued + 1);
+        std::max<std::uint64_t>(static_cast<std::uint64_t>(text::now_us()), slots.newest_issued + 1);
     board_.upload(
         upload::make_upload(machine_.image, options_.key, issued, slots.security, board_.info().board),
         [](double) {});
@@ -142,13 +143,13 @@ class RolloutBook {
           "UPDATE "
           "SET stage = excluded.stage, place = excluded.place",
           {name_, machines[i].name, cell(machines[i].stage), cell(static_cast<std::int64_t>(i)),
-           fingerprint_of(machines[i].image), cell(now_us())});
+           fingerprint_of(machines[i].image), cell(text::now_us())});
     transaction.commit();
   }
   void write(const RolloutMachine& machine, const char* state, const std::string& said) {
     registry_.database().run(
         "UPDATE rollout SET state = $1, said = $2, at_us = $3, image = $4 WHERE name = $5 AND machine = $6",
-        {state, said, cell(now_us()), fingerprint_of(machine.image), name_, machine.name});
+        {state, said, cell(text::now_us()), fingerprint_of(machine.image), name_, machine.name});
   }
 
  private:

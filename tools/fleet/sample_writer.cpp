@@ -6,6 +6,7 @@
 
 #include "tools/fleet/cells.h"
 #include "tools/fleet/digest.h"
+#include "tools/text/wall_time.h"
 
 namespace vernier::fleet {
 namespace {
@@ -151,7 +152,7 @@ void SampleWriter::write(Batch& batch) {
     database.run("INSERT INTO shape VALUES ($1, $2) ON CONFLICT DO NOTHING", {id, names});
   for (const std::string& machine : batch.machines)
     database.run("INSERT INTO machine VALUES ($1, '', 'heard of, not added', 0, $2) ON CONFLICT DO NOTHING",
-                 {machine, cell(now_us())});
+                 {machine, cell(text::now_us())});
   insert_rows(database, "INSERT INTO sample", batch.samples, "");
   insert_rows(database, "INSERT INTO loss", batch.losses, "");
   insert_rows(database, "INSERT INTO fault_event", batch.faults, "ON CONFLICT DO NOTHING");

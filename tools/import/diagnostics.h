@@ -7,7 +7,7 @@
 
 namespace vernier::importer {
 
-inline constexpr std::size_t kDiagnosticsCount = 20;
+inline constexpr std::size_t kDiagnosticsCount = 20;  // names below
 
 /// Names of the linear diagnostics, as the instrument's file prints them (without AF_), in the order of the
 /// basis.

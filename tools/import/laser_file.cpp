@@ -45,7 +45,7 @@ class LaserReader {
       const std::string line = text::trimmed(raw);
       if (line.empty()) continue;
       if (line.ends_with("::"))
-        begin(in_small_letters(line.substr(0, line.size() - 2)));
+        begin(text::in_small_letters(line.substr(0, line.size() - 2)));
       else
         take(line);
     }
@@ -72,7 +72,7 @@ class LaserReader {
       if (section_ == "deviations" && collects_) return reading(line);
       return;  // free text
     }
-    const std::string key = in_small_letters(text::trimmed(line.substr(0, colon)));
+    const std::string key = text::in_small_letters(text::trimmed(line.substr(0, colon)));
     const std::string value = text::trimmed(line.substr(colon + 1));
     collects_ = (section_ == "target data" && key == "targets") ||
                 (section_ == "deviations" && key == "run target data");
@@ -193,7 +193,7 @@ LaserFile read_laser_file(const std::string& text, const std::string& file, cons
     const auto found = read.said.find(key);
     return found == read.said.end() ? std::string() : found->second;
   };
-  if (const std::string owner = said("owner"); !owner.empty() && in_small_letters(owner) != "linear")
+  if (const std::string owner = said("owner"); !owner.empty() && text::in_small_letters(owner) != "linear")
     throw text::InputError({file, 0}, owner,
                            "not of the linear measurement: its unit is not said in the file");
   LaserFile result{axis_of(read, axis, file),
@@ -212,7 +212,7 @@ LaserFile read_laser_file(const std::string& text, const std::string& file, cons
         {file, read.runs.begin()->second.front().line}, "Run Target Data",
         "both senses by the flags, and no run is listed backward: say --senses alternate (odd "
         "runs forward, even back) or --senses forward");
-  const std::string small = in_small_letters(result.axis);
+  const std::string small = text::in_small_letters(result.axis);
   std::vector<ImportTable::Column> columns = {
       {result.axis, "mm", {}}, {"dir" + result.axis, "", {}}, {"run", "", {}}, {small, "mm", {}}};
   std::map<int, std::size_t> passes;

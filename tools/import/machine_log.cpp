@@ -72,9 +72,7 @@ Eigen::Matrix3Xd points_of(const ImportTable& tracker) {
 /// Where the nominal machine stands in each dwell.
 Eigen::Matrix3Xd stands(const model::Machine& machine, const Eigen::MatrixXd& axes,
                         const std::vector<Dwell>& dwells) {
-  std::vector<double> references;
-  for (const auto& input : machine.inputs) references.push_back(input.reference);
-  model::States states = model::make_states(dwells.size(), machine.axes.size(), references);
+  model::States states = model::make_states(dwells.size(), machine);
   model::make_one_run(states, "log");
   for (std::size_t j = 0; j < dwells.size(); ++j)
     for (std::size_t a = 0; a < machine.axes.size(); ++a)

@@ -82,7 +82,7 @@ class Alignment {
 
   static constexpr std::size_t kReach = 8;  // neighbours looked back over: so many may be missing in a row
   static constexpr double kSkip = 4;        // leaving one out costs what two tolerances of misfit do
-  static constexpr double kWorst = 1e6;
+  static constexpr double kWorst = 1e6;     // no pair of a chain costs as much
   const PairingInput& in_;
 };
 
@@ -138,7 +138,7 @@ bool drop_by_place(const PairingInput& input, Pairing& result) {
   if (!maths::fixes_motion(from)) return false;
   const Eigen::VectorXd off = maths::aligned_error(maths::align(from, to), from, to).colwise().norm();
   result.rms_mm = std::sqrt(off.squaredNorm() / static_cast<double>(off.size()));
-  constexpr double kBeyond = 3;
+  constexpr double kBeyond = 3;  // tolerances: an unmatched point is farther
   Index worst = 0;
   if (off.maxCoeff(&worst) <= kBeyond * input.distance_tolerance_mm) return false;
   result.dwell[paired[static_cast<std::size_t>(worst)]] = std::nullopt;

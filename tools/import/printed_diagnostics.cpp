@@ -185,6 +185,7 @@ RecomputedResults recompute_diagnostics(const BallbarFile& file, const BallbarAn
   setup.pitch_a_mm = printed(analysis, "AF_CYCLIC_PITCH_A").value_or(0);
   setup.pitch_b_mm = printed(analysis, "AF_CYCLIC_PITCH_B").value_or(0);
   if (feed) results.values["readings"]["AF_CALCULATED_FEEDRATE"] = setup.feed_mm_min = *feed;
+  // Readings: four for each unknown of the model.
   constexpr std::size_t kFewest = 4 * (kDiagnosticsCount + 16);
   if (!feed || samples.size() < kFewest) return results;
   const DiagnosticsResult found = fit_diagnostics(samples, setup);

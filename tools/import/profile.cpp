@@ -13,7 +13,7 @@ namespace {
 
 using Index = Eigen::Index;
 
-constexpr double kStepDeg = 360.0 / static_cast<double>(kProfilePoints);
+constexpr double kStepDeg = 360.0 / static_cast<double>(kProfilePoints);  // from point to point
 
 Index wrapped(Index k) { return ((k % kProfilePoints) + kProfilePoints) % kProfilePoints; }
 

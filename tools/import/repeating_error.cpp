@@ -90,7 +90,7 @@ class Model {
 
   // A weak pull towards its neighbours' mean keeps a station that no sample touches from being undefined.
   void fit_table(const ErrorSamples& samples, const Eigen::VectorXd& reading_um) {
-    constexpr double kPull = 1e-3;
+    constexpr double kPull = 1e-3;  // of one reading's weight
     std::vector<Eigen::Triplet<double, Index>> entries;
     Eigen::VectorXd right = Eigen::VectorXd::Zero(table_.size());
     for (Index i = 0; i < samples.count(); ++i) {

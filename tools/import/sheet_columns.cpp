@@ -57,7 +57,7 @@ class Guess {
     bool target = false, measured = false, deviation = false;
     const std::vector<std::string> words = heading_words(heading.name);
     for (const std::string& word : words) {
-      const std::string small = in_small_letters(word);
+      const std::string small = text::in_small_letters(word);
       target |= says_target(small);
       measured |= says_measured(small);
       deviation |= says_deviation(small);
@@ -74,7 +74,7 @@ class Guess {
     deviation |= says_nominal_less_actual(heading.text, true) || says_nominal_less_actual(heading.name, true);
     if (deviation) return {SheetColumn::Use::kDeviation, axis, heading.unit, "by its heading"};
     if (!axis.empty() && measured) {
-      column.name = in_small_letters(axis);
+      column.name = text::in_small_letters(axis);
       return column;
     }
     if (!axis.empty() && (target || words.size() == 1)) {
@@ -91,7 +91,7 @@ class Guess {
     static const Words kActual = {"ist", "istwert", "istposition", "actual", "act"};
     Bare found = Bare::kOther;
     for (const std::string& word : heading_words(name)) {
-      const std::string small = in_small_letters(word);
+      const std::string small = text::in_small_letters(word);
       if (kActual.contains(small))
         found = Bare::kActual;
       else if (!says_target(small))
@@ -113,7 +113,7 @@ class Guess {
         {"dir", "dir"},        {"dir.", "dir"},      {"richtg", "dir"},        {"richtg.", "dir"},
         {"richt.", "dir"},     {"sinn", "dir"},      {"fahrtrichtung", "dir"}, {"anfahrrichtung", "dir"},
         {"approach", "dir"},   {"motion", "dir"}};
-    const auto found = kNames.find(in_small_letters(heading.name));
+    const auto found = kNames.find(text::in_small_letters(heading.name));
     return found == kNames.end() ? sheet::name_from_words(heading.name) : found->second;
   }
 
@@ -200,7 +200,7 @@ std::set<std::string> measured_axes(const std::vector<SheetColumn>& columns,
   for (const SheetColumn& column : columns)
     if (column.use == SheetColumn::Use::kDeviation && axes.contains(column.name)) moved.insert(column.name);
   for (const std::string& axis : axes)
-    if (measured.contains(in_small_letters(axis))) moved.insert(axis);
+    if (measured.contains(text::in_small_letters(axis))) moved.insert(axis);
   return moved;
 }
 
@@ -224,7 +224,7 @@ void settle_axis(const sheet::Sheet& sheet, const sheet::SheetTable& table, std:
     if (column.use != SheetColumn::Use::kColumn || column.why != "by its heading") continue;
     const Guess::Bare bare = Guess::bare(table.headings[k].name);
     if (bare == Guess::Bare::kActual && !actual && is_linear(axis)) {
-      column.name = in_small_letters(axis);
+      column.name = text::in_small_letters(axis);
       actual = true;
     } else if (bare == Guess::Bare::kTarget && !target) {
       column.name = axis;
@@ -244,7 +244,7 @@ void settle_display(const sheet::SheetTable& table, std::vector<SheetColumn>& co
     if (column.name.size() != 1 || count[column.name] < 2 || column.why != "by its heading") continue;
     const std::string axis(1, static_cast<char>(std::toupper(static_cast<unsigned char>(column.name[0]))));
     if (axis == column.name || !guess.is_axis(axis) || count[axis] > 0) continue;
-    if (in_small_letters(table.headings[k].name).find("istposition") == std::string::npos) continue;
+    if (text::in_small_letters(table.headings[k].name).find("istposition") == std::string::npos) continue;
     --count[column.name];
     ++count[axis];
     column.name = axis;
@@ -273,7 +273,7 @@ void settle(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::vect
       (guess.is_axis(column.name) ? axes : measured).insert(column.name);
   std::set<std::string> moved = measured_axes(columns, axes, measured), alone_measured;
   for (const char* axis : {"X", "Y", "Z"})
-    if (guess.is_axis(axis) && !axes.contains(axis) && measured.contains(in_small_letters(axis)))
+    if (guess.is_axis(axis) && !axes.contains(axis) && measured.contains(text::in_small_letters(axis)))
       alone_measured.insert(axis);
   if (moved.empty()) moved = alone_measured;
   for (std::size_t k = 0; k < columns.size(); ++k) {
@@ -297,8 +297,8 @@ void settle(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::vect
       column.to_target = true;
     else if (deviation && (column.name.empty() || !axes.contains(column.name)))
       leave(column, "a deviation of which axis? Say it: --deviation \"X=" + table.headings[k].text + "\"");
-    else if (deviation && measured.contains(in_small_letters(column.name)))
-      leave(column, "the measured position is there as " + in_small_letters(column.name));
+    else if (deviation && measured.contains(text::in_small_letters(column.name)))
+      leave(column, "the measured position is there as " + text::in_small_letters(column.name));
     else if (column.name == "dir" && moved.size() == 1)
       column.name = "dir" + *moved.begin();
     else if (column.name == "dir")
@@ -360,7 +360,7 @@ std::string cell_text(const sheet::Sheet& sheet, const SheetColumn& column, cons
   const text::Place place{sheet.file, sheet.line[row]};
   if (column.words) return cell;
   if (is_label(column.name)) {
-    const std::string small = in_small_letters(cell);
+    const std::string small = text::in_small_letters(cell);
     if (column.name != "role") return cell;
     if (small == "check" || small == "kontrolle" || small == "prüfen") return "check";
     if (small == "fit" || small.empty()) return small;
@@ -554,8 +554,8 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
     if (column.use == SheetColumn::Use::kLeft) continue;
     const bool deviation = column.use == SheetColumn::Use::kDeviation;
     ImportTable::Column made{
-        deviation ? in_small_letters(column.name) : column.name, deviation ? "mm" : column.unit, {}};
-    const std::string beside = column.to_target ? in_small_letters(column.name) : column.name;
+        deviation ? text::in_small_letters(column.name) : column.name, deviation ? "mm" : column.unit, {}};
+    const std::string beside = column.to_target ? text::in_small_letters(column.name) : column.name;
     const std::size_t base = deviation && axis_column.contains(beside) ? axis_column[beside] : columns.size();
     const double sign = column.turned != column.to_target ? -1 : 1;
     if (column.to_target) made.name = column.name;

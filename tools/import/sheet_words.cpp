@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <set>
 
 #include "tools/text/words.h"
@@ -52,7 +51,7 @@ const WordSet kBackWords = {"-1",
 
 /// Small letters without blanks, every dash a hyphen.
 std::string bare_signs(std::string_view text) {
-  std::string bare = in_small_letters(text);
+  std::string bare = text::in_small_letters(text);
   for (const std::string_view dash : {"\u2212", "\u2013", "\u2014"})
     for (std::size_t at = 0; (at = bare.find(dash, at)) != std::string::npos;)
       bare.replace(at, dash.size(), "-");
@@ -63,13 +62,6 @@ std::string bare_signs(std::string_view text) {
 
 }  // namespace
 
-std::string in_small_letters(std::string_view text) {
-  std::string result(text);
-  std::transform(result.begin(), result.end(), result.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return result;
-}
-
 std::vector<std::string> heading_words(const std::string& name) {
   return text::words_in(name, " \t_-./:;,()[]#+");
 }
@@ -79,7 +71,7 @@ bool says_measured(const std::string& word) { return kMeasuredWords.contains(wor
 bool says_deviation(const std::string& word) { return kDeviationWords.contains(word); }
 
 int sense_said(std::string_view word) {
-  const std::string small = in_small_letters(word);
+  const std::string small = text::in_small_letters(word);
   return kForthWords.contains(small) ? 1 : kBackWords.contains(small) ? -1 : 0;
 }
 
@@ -124,7 +116,7 @@ std::string axis_of_titles(const sheet::Sheet& sheet, const sheet::SheetTable& t
     return word.size() == 1 && std::string_view("XYZABCUVW").find(word) != std::string_view::npos;
   };
   for (std::size_t k = 0; k < words.size(); ++k) {
-    const std::string small = in_small_letters(words[k]);
+    const std::string small = text::in_small_letters(words[k]);
     if (small != "axis" && small != "achse") continue;
     // "Achse" and "X" may stand in cells of their own.
     const std::size_t next = k + 1 < words.size() && words[k + 1].empty() ? k + 2 : k + 1;

@@ -9,8 +9,6 @@
 
 namespace vernier::importer {
 
-/// A to Z as a to z; other letters stay.
-std::string in_small_letters(std::string_view text);
 /// The words of a heading; X_ist and X-ist are two.
 std::vector<std::string> heading_words(const std::string& name);
 

@@ -39,7 +39,7 @@ timebase::RepeatOptions repeat_options() {
 
 // The longest lag that a significant level has: gaps only make a lag shorter.
 bool find_turn(const std::vector<timebase::RepeatLevel>& levels, Found& found) {
-  constexpr double kSignificance = 1e-3;
+  constexpr double kSignificance = 1e-3;  // of the agreement: one chance in a thousand
   bool significant = false;
   for (const timebase::RepeatLevel& level : levels) {
     significant = significant || level.p_agreement < kSignificance;
@@ -194,7 +194,7 @@ void choose_turn(BallbarRun& run) {
 // Turns the angles of a run so that its repeating error agrees with the reference's.
 void anchor(const BallbarRun& reference, BallbarRun& run, RunRepair& repair) {
   const auto shift = profile_shift(angle_profile(reference), angle_profile(run));
-  constexpr double kLeast = 0.5;
+  constexpr double kLeast = 0.5;  // correlation of two profiles of one circle
   repair.start_correlation = shift.correlation;
   if (shift.correlation < kLeast) return;
   // A profile runs from +A towards +B whatever the sense.

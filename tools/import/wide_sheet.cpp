@@ -113,7 +113,7 @@ std::optional<RunColumn> run_column(const sheet::Heading& heading) {
   bool said = false;
   for (std::size_t k = 0; k < tokens.size(); ++k) {
     const Token& token = tokens[k];
-    const std::string small = in_small_letters(token.text);
+    const std::string small = text::in_small_letters(token.text);
     if (token.piece == Piece::kNumber) {
       if (!column.run.empty() || token.text.size() > 3) return std::nullopt;
       column.run = token.text;
@@ -197,7 +197,7 @@ sheet::Heading heading_of_readings(const sheet::Sheet& sheet, const sheet::Sheet
   for (const std::string& title : title_cells(sheet, table)) {
     const std::vector<std::string> words = heading_words(title);
     const bool deviation = std::any_of(words.begin(), words.end(), [](const std::string& word) {
-      return says_deviation(in_small_letters(word));
+      return says_deviation(text::in_small_letters(word));
     });
     if (!deviation) continue;
     all.deviation = all.deviation || !all.measured;
@@ -253,7 +253,7 @@ std::size_t unfold_runs(sheet::Sheet& sheet, sheet::SheetTable& table) {
   }
   if (others.empty() || !belong_together(runs)) return 0;
   number_runs(sheet, table, runs);
-  constexpr std::size_t kMostCells = 8u << 20;
+  constexpr std::size_t kMostCells = 8u << 20;  // 64 MB of numbers
   const std::size_t width = others.size() + 3, data = sheet.rows.size() - table.first_data;
   if (data > kMostCells / width / runs.size())
     throw text::InputError({sheet.file, sheet.line[table.heading_row]}, "",

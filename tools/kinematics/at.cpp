@@ -65,9 +65,7 @@ void set_word(const model::Machine& machine, model::States& states, std::set<std
 }  // namespace
 
 model::States state_at(const model::Machine& machine, const std::string& words) {
-  std::vector<double> references;
-  for (const model::Input& input : machine.inputs) references.push_back(input.reference);
-  model::States states = model::make_states(1, machine.axes.size(), references);
+  model::States states = model::make_states(1, machine);
   if (text::trimmed(words).empty()) return states;
   std::set<std::string> seen;
   for (const std::string& word : text::parts_of(words, ',')) set_word(machine, states, seen, word);

@@ -399,7 +399,7 @@ class Oddities {
 }  // namespace
 
 MachineLint lint_machine(const std::string& text, const std::string& file) {
-  constexpr std::size_t kMostProblems = 200;
+  constexpr std::size_t kMostProblems = 200;  // that anybody mends at a time
   MachineLint result;
   LintFindings findings(file);
   std::string mended = text;

@@ -26,7 +26,7 @@
 namespace vernier::lint {
 namespace {
 
-constexpr double kAbsent = std::numeric_limits<double>::quiet_NaN();
+constexpr double kAbsent = std::numeric_limits<double>::quiet_NaN();  // an empty cell
 
 std::string command(const std::string& file) {
   const auto slash = file.rfind('/'), dot = file.rfind('.');

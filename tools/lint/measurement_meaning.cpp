@@ -276,8 +276,8 @@ class Meaning {
   /// Cells further from the middle half of their column than a hundred times its width: 9999, a lost point.
   /// A measured position is judged by what it differs from the commanded one.
   void look_for_wild_cells(const LintColumn& column) {
-    constexpr double kWild = 100;
-    constexpr std::size_t kFewest = 8;
+    constexpr double kWild = 100;       // times the column's spread: a decimal point slips by ten
+    constexpr std::size_t kFewest = 8;  // cells: of fewer none is the odd one
     // What a machine logs of itself may well jump: a heater is at its set-point but for the first minutes.
     if (!reading_names().contains(column.name) && !names_.is_axis(column.name)) return;
     const LintColumn* position =

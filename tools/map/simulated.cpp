@@ -25,7 +25,7 @@ using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
 using Json = nlohmann::ordered_json;
 
-constexpr int kCirclePoints = 360;
+constexpr int kCirclePoints = 360;  // a degree each
 const char* const kPlaneNames[] = {"XY", "YZ", "ZX"};
 
 double range(const Eigen::VectorXd& v) { return v.maxCoeff() - v.minCoeff(); }
@@ -138,7 +138,7 @@ LineResult measure_line(const Bench& bench, const std::string& name, const Vecto
   const Vector3d along = (to - from).normalized();
   LineResult line{name, from, to, {}, {}, {}};
   const double start = along.dot(off.col(0));
-  constexpr double kBeyond = std::numeric_limits<double>::infinity();
+  constexpr double kBeyond = std::numeric_limits<double>::infinity();  // of every axis
   double mean_low = kBeyond, mean_high = -kBeyond, low = kBeyond, high = -kBeyond;
   for (int i = 0; i < positions; ++i) {
     const double f = maths::kUmPerMm * (along.dot(off.col(i)) - start);
@@ -210,7 +210,7 @@ Json squares_json(const Bench& bench) {
     const auto radius = fitting_radius(bench, centre, plane);
     if (!radius) continue;
     const double half = *radius / std::sqrt(2.0);  // its corners lie on the circle
-    constexpr int kSide = 21;
+    constexpr int kSide = 21;                      // points of a square's side, as ISO 230-1 draws it
     const double corner[5][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}, {-1, -1}};
     double slope[4] = {}, straight = 0;
     Json sides = Json::array();
@@ -250,7 +250,7 @@ Json cylinder_json(const Bench& bench) {
   const auto circle_at = [&](double z) { return circle_points(centre + Vector3d(0, 0, z), *radius, 0, 1); };
   while (half > 1e-3 && !(bench.reaches(circle_at(half)) && bench.reaches(circle_at(-half)))) half *= 0.9;
   if (half <= 1e-3) return nullptr;
-  constexpr int kHeights = 5;
+  constexpr int kHeights = 5;  // of a cylinder
   std::vector<Eigen::Matrix<double, 5, 1>> rows;
   std::vector<double> radii;
   for (int h = 0; h < kHeights; ++h) {

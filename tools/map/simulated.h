@@ -21,7 +21,7 @@ struct LineResult {
       0;  // range across the line about its least-squares line, the worse of two directions
 };
 
-constexpr int kLinePositions = 21;
+constexpr int kLinePositions = 21;  // of a line: every twentieth of it
 
 /// A line of `positions` points between two nominal points, forward then back. Source of E, M, B: ISO 230-6
 /// (diagonals), ISO 230-2 (single axes), here of one run a sense and so without repeatability. tool.

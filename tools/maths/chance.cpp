@@ -8,9 +8,9 @@
 namespace vernier::maths {
 namespace {
 
-constexpr int kMostTerms = 10000;
-constexpr double kDone = 1e-13;
-constexpr double kTiny = 1e-300;  // stands for 0 in a denominator (modified Lentz)
+constexpr int kMostTerms = 10000;  // of a fraction that converges in sqrt(n)
+constexpr double kDone = 1e-13;    // relative: a digit above rounding
+constexpr double kTiny = 1e-300;   // stands for 0 in a denominator (modified Lentz)
 
 /// Continued fraction of the incomplete beta function, x < (a + 1) / (a + b + 2).
 double beta_fraction(double a, double b, double x) {

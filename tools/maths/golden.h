@@ -11,7 +11,7 @@ struct Peak {
 /// The function has one peak there, else one of them is found. tool.
 template <typename Function>
 Peak golden_peak(const Function& value, double low, double high, int sections) {
-  constexpr double kGolden = 0.381966011250105;
+  constexpr double kGolden = 0.381966011250105;  // 2 - (1 + sqrt 5)/2
   double a = low + kGolden * (high - low), b = high - kGolden * (high - low);
   double at_a = value(a), at_b = value(b);
   for (int k = 0; k < sections; ++k) {

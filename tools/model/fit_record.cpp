@@ -77,6 +77,19 @@ double take_float(const std::vector<std::uint8_t>& bytes, std::size_t& at) {
   return static_cast<double>(value);
 }
 
+std::string noise_xml(const FitRecord::Noise& noise) {
+  std::string text = "    <noise";
+  for (const auto& [name, value] : {std::pair{"own", noise.own},
+                                    {"pose", noise.pose},
+                                    {"run", noise.run},
+                                    {"drift", noise.drift},
+                                    {"time", noise.time_constant},
+                                    {"step", noise.step}})
+    text += std::string(" ") + name + "=\"" + text::number_text(value) + "\"";
+  return text + " clock=\"" + (noise.in_time ? "s" : "row") + "\" unit=\"" + (noise.of_u ? "u" : "mm") +
+         "\"/>\n";
+}
+
 }  // namespace
 
 Eigen::MatrixXd open_factor(const Eigen::MatrixXd& part, const Eigen::MatrixXd& covariance) {
@@ -128,7 +141,9 @@ std::string fit_record_xml(const FitRecord& record) {
   for (const FitRecord::Range& range : record.measured)
     text += "<" + range.name + " min=\"" + text::number_text(range.min) + "\" max=\"" +
             text::number_text(range.max) + "\"/>";
-  text += "</measured>\n    <covariance parameters=\"";
+  text += "</measured>\n";
+  if (record.noise) text += noise_xml(*record.noise);
+  text += "    <covariance parameters=\"";
   for (std::size_t i = 0; i < record.parameters.size(); ++i)
     text += (i > 0 ? "|" : "") + text::escape_attribute(record.parameters[i]);
   if (!record.origins.empty()) text += "\" from=\"";

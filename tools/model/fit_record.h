@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,14 @@ struct FitRecord {
     std::string name;  // of an axis or input
     double min = 0, max = 0;
   };
+  /// How the errors of its readings hung together (fit::NoiseModel), in units of u, of mm where none was
+  /// given; kept where they did, or were larger than u.
+  struct Noise {
+    double own = 1, pose = 0, run = 0, drift = 0;
+    double time_constant = 0, step = 0;  // of the drift, and median from row to row: s or rows
+    bool in_time = false, of_u = true;
+  };
+  std::optional<Noise> noise;
   std::vector<std::string> parameters;  // names as in the JSON of `fit`
   Eigen::VectorXd values;               // as fitted: a value changed since then is not covered
   /// What each value rests on: data, convention, prior, as in the JSON of `fit`; empty in files that older

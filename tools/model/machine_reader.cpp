@@ -12,6 +12,7 @@
 #include "tools/text/files.h"
 #include "tools/text/numbers.h"
 #include "tools/text/units.h"
+#include "tools/text/words.h"
 #include "tools/text/xml_text.h"
 
 namespace vernier::model {
@@ -21,7 +22,7 @@ using Words = std::initializer_list<const char*>;
 
 /// Finds an element deeper than any of the format: who edits the text walks down its elements.
 struct TooDeep : pugi::xml_tree_walker {
-  static constexpr int kMostDepth = 16;
+  static constexpr int kMostDepth = 16;  // of elements; the format has five
   bool for_each(pugi::xml_node& node) override {
     if (depth() < kMostDepth) return true;
     found = node;
@@ -91,6 +92,28 @@ class Reader {
       fail(root, root.name(), "no <transforms> with a transform");
   }
 
+  FitRecord::Noise read_noise(const pugi::xml_node& node) {
+    FitRecord::Noise noise;
+    for (const auto& [name, value] : {std::pair{"own", &noise.own},
+                                      {"pose", &noise.pose},
+                                      {"run", &noise.run},
+                                      {"drift", &noise.drift},
+                                      {"time", &noise.time_constant},
+                                      {"step", &noise.step}}) {
+      *value = number(node, name, *value);
+      if (*value < 0) fail_attribute(node, name, name, "no negative number belongs here");
+    }
+    const std::string clock = attribute(node, "clock").value_or("row"),
+                      unit = attribute(node, "unit").value_or("u");
+    if (clock != "s" && clock != "row") fail_attribute(node, "clock", clock, "expected s or row");
+    if (unit != "u" && unit != "mm") fail_attribute(node, "unit", unit, "expected u or mm");
+    noise.in_time = clock == "s", noise.of_u = unit == "u";
+    if (!(noise.own > 0)) fail_attribute(node, "own", "own", "a reading's own noise is above 0");
+    if (noise.drift > 0 && !(noise.time_constant > 0))
+      fail_attribute(node, "time", "time", "a drift needs its time constant");
+    return noise;
+  }
+
   void read_fitted(const pugi::xml_node& fitted) {
     auto record = std::make_shared<FitRecord>();
     record->line = line(fitted);
@@ -110,6 +133,9 @@ class Reader {
           no_children(range);
           record->measured.push_back({range.name(), number(range, "min", 0), number(range, "max", 0)});
         }
+      } else if (is(node, "noise")) {
+        no_children(node);
+        record->noise = read_noise(node);
       } else if (is(node, "covariance")) {
         no_children(node);
         std::istringstream words(attribute(node, "parameters").value_or(""));
@@ -503,9 +529,7 @@ class Reader {
     std::set<std::string> seen;
     for (const pugi::xml_attribute item : node.attributes()) {
       const std::string name = item.name();
-      std::string lower = name;
-      std::transform(lower.begin(), lower.end(), lower.begin(),
-                     [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+      const std::string lower = text::in_small_letters(name);
       if (!seen.insert(lower).second) fail_attribute(node, item.name(), name, "this attribute stands twice");
       if (lower.find("multiply") != std::string::npos) {
         machine_.notes.push_back(machine_.file + ":" + std::to_string(line(node)) + ": " + name +

@@ -14,11 +14,12 @@
 #include "tools/text/files.h"
 #include "tools/text/numbers.h"
 #include "tools/text/units.h"
+#include "tools/text/words.h"
 
 namespace vernier::model {
 namespace {
 
-constexpr double kAbsent = std::numeric_limits<double>::quiet_NaN();
+constexpr double kAbsent = std::numeric_limits<double>::quiet_NaN();  // an empty cell
 /// Columns that say what a board had added: before an axis' name, and the image that ran.
 const std::string kCorrection = "correction", kCorrected = "corrected";
 
@@ -121,9 +122,7 @@ class FileReader {
 class Builder {
  public:
   Builder(const text::CsvFile& csv, const Machine& machine) : machine_(machine), reader_(csv) {
-    std::vector<double> references;
-    for (const Input& input : machine.inputs) references.push_back(input.reference);
-    result_.states = make_states(reader_.rows(), machine.axes.size(), references);
+    result_.states = make_states(reader_.rows(), machine);
     result_.files = {csv.file};
     result_.file.assign(reader_.rows(), 0);
     result_.line = csv.line;
@@ -211,8 +210,7 @@ class Builder {
       std::string& word = result_.corrected[row];
       if (word.empty()) continue;
       any = true;
-      std::transform(word.begin(), word.end(), word.begin(),
-                     [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+      word = text::in_small_letters(word);
       if (word.size() != 16 || word.find_first_not_of("0123456789abcdef") != std::string::npos)
         throw text::InputError(reader_.place(row), reader_.cell(kCorrected, row),
                                "the fingerprint of an image has 16 hexadecimal digits");

@@ -143,7 +143,7 @@ model::States solved(const PositionTable& table, const model::Machine& machine, 
     const model::Poses one{target.position.col(at), {target.rotation[row]}};
     // From where the row before stands: the nearest of several solutions.
     model::States start = model::select_states(states, {row > 0 ? row - 1 : row});
-    constexpr int kRestarts = 48;
+    constexpr int kRestarts = 48;  // as tolerance/placed_part.cpp
     const kinematics::InverseResult result =
         kinematics::solve_anywhere(nominal, one, start, options, kRestarts);
     if (!result.each[0].converged)

@@ -42,9 +42,7 @@ double error_value(const model::Static& target, const std::string& word, const s
 }  // namespace
 
 model::States BHeadMachine::states(const std::vector<JointPose>& joints) const {
-  std::vector<double> references;
-  for (const model::Input& input : machine.inputs) references.push_back(input.reference);
-  model::States result = model::make_states(joints.size(), machine.axes.size(), references);
+  model::States result = model::make_states(joints.size(), machine);
   for (std::size_t i = 0; i < joints.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
     const JointPose& q = joints[i];

@@ -10,7 +10,7 @@
 namespace vernier::part {
 namespace {
 
-constexpr int kSamplesPerSpan = 40;
+constexpr int kSamplesPerSpan = 40;  // between which a foot is sought
 constexpr double kRefinedTo = 1e-9;  // of u
 constexpr double kEnd = 1e-6;        // a foot so near an end of u is beyond it
 

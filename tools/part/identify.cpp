@@ -133,7 +133,7 @@ struct Solution {
 /// Newton with the inverse of the start kept: the errors are so small that the chain is all but linear in
 /// them, and the directions that the points cannot see stay as they are.
 Solution solve(const PartProblem& problem, const fit::Observability& seen) {
-  constexpr int kMost = 50;
+  constexpr int kMost = 50;           // Newton's steps, at most
   constexpr double kSettled = 1e-12;  // of the step that the first iteration made
   Solution solution{problem.start()};
   Eigen::MatrixXd normal;

@@ -73,6 +73,7 @@ PartPoint place_on_part(const Eigen::Vector3d& position, const text::Place& plac
     best_mm = apart_mm;
     best = {flank, foot->u, foot->v};
   }
+  // Of the part's height that a point may lie beyond its edges.
   constexpr double kEdge = kOnSurfaceMm / kPartHeightMm;
   if (best_mm < 0)
     throw text::InputError(place, point_text(position), "no point of the part: far from both flanks");

@@ -134,7 +134,7 @@ ordered_json observability_json(const PartJob& job, DefectReading reading) {
 }
 
 ordered_json correlated_json(const Identification& found) {
-  constexpr double kWorthSaying = 0.9;
+  constexpr double kWorthSaying = 0.9;  // correlation that makes one number of two (fit/fit.cpp)
   ordered_json list = ordered_json::array();
   for (std::size_t i = 0; i < found.errors.size(); ++i)
     for (std::size_t k = i + 1; k < found.errors.size(); ++k)

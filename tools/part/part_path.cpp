@@ -12,7 +12,7 @@
 namespace vernier::part {
 namespace {
 
-constexpr int kSamples = 2000;
+constexpr int kSamples = 2000;  // of the curve, among which the fastest is sought
 constexpr std::array<const char*, 5> kAxisNames = {"X", "Y", "Z", "B", "C"};
 
 std::array<double, 5> values(const JointPose& q) { return {q.x_mm, q.y_mm, q.z_mm, q.b_deg, q.c_deg}; }

@@ -9,9 +9,9 @@
 namespace vernier::part {
 namespace {
 
-constexpr int kMostSteps = 60;
-constexpr double kSettled = 1e-14;  // of u and v, which are 0..1
-constexpr std::size_t kSearchPoints = 400;
+constexpr int kMostSteps = 60;              // Gauss and Newton's, at most
+constexpr double kSettled = 1e-14;          // of u and v, which are 0..1
+constexpr std::size_t kSearchPoints = 400;  // from which the nearest begins
 
 Eigen::Vector2d step_towards(const SurfacePoint& s, const Eigen::Vector3d& offset) {
   const double e = s.by_u.squaredNorm(), f = s.by_u.dot(s.by_v), g = s.by_v.squaredNorm();

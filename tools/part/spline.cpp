@@ -41,7 +41,7 @@ constexpr std::array<double, 4> kNode = {0.1834346424956498, 0.5255324099163290,
                                          0.9602898564975363};
 constexpr std::array<double, 4> kWeight = {0.3626837833783620, 0.3137066458778873, 0.2223810344533745,
                                            0.1012285362903763};
-constexpr std::size_t kPiecesPerSpan = 8;
+constexpr std::size_t kPiecesPerSpan = 8;  // of the quadrature, eight nodes in each
 
 }  // namespace
 

@@ -161,7 +161,7 @@ class AccuracyPlanner {
   /// C - C J^T (J C J^T + s^2)^-1 J C, block by block: of any number of rows.
   MatrixXd after(const MatrixXd& rows, double better) const {
     MatrixXd covariance = prior_;
-    constexpr Index kAtOnce = 60;
+    constexpr Index kAtOnce = 60;  // poses of an offer whose gain is reckoned in one product
     for (Index first = 0; first < rows.rows(); first += kAtOnce) {
       const auto block = rows.middleRows(first, std::min(kAtOnce, rows.rows() - first));
       const MatrixXd gain = covariance * block.transpose();
@@ -219,6 +219,7 @@ class AccuracyPlanner {
   /// Lines of the table: the first few, then ever further apart, and the last.
   void note(AccuracyPlan& plan, const AccuracyOptions& options, const std::vector<std::size_t>& chosen,
             double now_um, bool last) const {
+    // Times the points, from one look at the promised uncertainty to the next.
     constexpr double kFurther = 1.4;
     const auto before = static_cast<double>(plan.steps.back().points);
     const auto count = static_cast<double>(chosen.size());
@@ -227,7 +228,7 @@ class AccuracyPlanner {
   }
 
   double random_um(std::size_t count) const {
-    constexpr std::size_t kDraws = 5;
+    constexpr std::size_t kDraws = 5;  // of other poses: the same search from other beginnings
     double squares = 0;
     for (std::size_t draw = 0; draw < kDraws; ++draw) {
       std::vector<std::size_t> rows(count);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/plan/bystanders.h"
+#include "tools/effects/add_string.h"
 
 #include <algorithm>
 #include <tuple>

@@ -17,7 +17,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr std::size_t kCheckOffered = 400;
+constexpr std::size_t kCheckOffered = 400;  // poses that a short check is chosen from
 /// Standard deviations from which a change shows.
 constexpr double kShown = 5;
 
@@ -110,7 +110,7 @@ class CheckPlanner {
 
   /// A change that moves the tool by a metre and more before it shows is not seen.
   bool seen(const VectorXd& amounts, Index j) const {
-    constexpr double kMost_um = 1e6;
+    constexpr double kMost_um = 1e6;  // a change that is larger is no change but another machine
     return amounts[j] > 0 && kShown / std::sqrt(amounts[j]) * moves_um_[j] < kMost_um;
   }
 
@@ -144,7 +144,7 @@ class CheckPlanner {
   }
 
   double random_um(std::size_t count) const {
-    constexpr std::size_t kDraws = 9;
+    constexpr std::size_t kDraws = 9;  // of other beginnings of the exchange
     std::vector<double> worst;
     for (std::size_t draw = 0; draw < kDraws; ++draw) {
       std::vector<std::size_t> poses;

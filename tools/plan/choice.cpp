@@ -8,7 +8,7 @@ namespace {
 
 /// What the worst side reaches with each offer; the others' sum, as far as they need it, breaks ties.
 std::size_t best_offer(const Sides& sides, double& value) {
-  constexpr double kTie = 1e-3;
+  constexpr double kTie = 1e-3;  // of a gain: nearer ones are the same, and the order decides
   Eigen::ArrayXd worst, sum;
   for (std::size_t i = 0; i < sides.side.size(); ++i) {
     const Eigen::ArrayXd one =

@@ -153,6 +153,7 @@ class FirstPlanner {
     const auto checks =
         static_cast<std::size_t>(std::ceil(options_.check_share * static_cast<double>(way.size())));
     const model::States extra = offered_poses(machine_, std::max<std::size_t>(1, checks), 104729);
+    // Poses from one visit of the reference to the next: a drift is followed by them.
     constexpr std::size_t kReferenceEvery = 25;
     std::vector<std::pair<const model::States*, std::size_t>> rows;
     const auto take = [&](const model::States& from, std::size_t at, bool check) {

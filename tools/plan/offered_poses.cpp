@@ -17,9 +17,7 @@ using Eigen::Index;
 
 model::States offered_poses(const model::Machine& machine, std::size_t count, std::size_t from) {
   constexpr std::size_t kPrimes[] = {2, 3, 5, 7, 11, 13, 17, 19, 23, 29};
-  std::vector<double> references;
-  for (const model::Input& input : machine.inputs) references.push_back(input.reference);
-  model::States states = model::make_states(count, machine.axes.size(), references);
+  model::States states = model::make_states(count, machine);
   for (std::size_t axis = 0; axis < machine.axes.size(); ++axis) {
     const auto range = model::work_range(machine, axis);
     if (!range)

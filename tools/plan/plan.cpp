@@ -216,7 +216,7 @@ class Planner {
     const std::size_t least = options_.points.value_or(kLeastPoints);
     std::vector<std::size_t> chosen;
     double goal = 1;
-    constexpr int kRounds = 4;
+    constexpr int kRounds = 4;  // of what the real order costs, at most
     for (int round = 0; round < kRounds; ++round) {
       choose_rows(sides, chosen, least, most, goal);
       exchange_rows(sides, chosen);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "tools/diagnose/pool.h"
+#include "tools/effects/add_string.h"
 #include "tools/fit/fit.h"
 #include "tools/maths/decompositions.h"
 #include "tools/model/machine_reader.h"
@@ -47,14 +48,14 @@ std::string best_of_effect(const diagnose::Evidence& evidence, const effects::Ef
     throw text::InputError("\"" + effect.id +
                            "\": these rows show nothing of it at any place (give an add string)");
   const auto value = [&](const diagnose::Scored& item) {
-    constexpr double kPriceOfDegenerate = 6;
+    constexpr double kPriceOfDegenerate = 6;  // as much evidence as a form that holds a simpler one needs
     return value_of(item, evidence) - (degenerate(item, list[item.candidate]) ? kPriceOfDegenerate : 0);
   };
   const auto worse = [&](const diagnose::Scored& a, const diagnose::Scored& b) {
     return value(a) < value(b);
   };
   std::sort(scored.rbegin(), scored.rend(), worse);
-  constexpr std::size_t kRefined = 6;
+  constexpr std::size_t kRefined = 6;  // best of a grid that are refined
   scored.resize(std::min(scored.size(), kRefined));
   for (diagnose::Scored& item : scored) scanner.refine(item, none);
   const diagnose::Scored& best = *std::max_element(scored.begin(), scored.end(), worse);

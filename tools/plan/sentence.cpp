@@ -43,7 +43,7 @@ std::string listed(const model::Column& column) {
   std::vector<std::string> words;
   for (const double value : sorted)
     if (seen.insert(fmt::format("{:.4g}", value)).second) words.push_back(fmt::format("{:.4g}", value));
-  constexpr std::size_t kListed = 3;
+  constexpr std::size_t kListed = 3;  // values that a sentence lists
   if (words.size() == 1) return words[0];
   if (words.size() > kListed) return words.front() + " to " + words.back();
   const std::string last = words.back();
@@ -109,7 +109,7 @@ Explanation::Contrast Explanation::speed() const {
 Explanation::Contrast Explanation::sense(std::size_t axis) const {
   Contrast c;
   const model::Column& old = existing_.states.direction[axis];
-  constexpr double kOneSided = 0.9;
+  constexpr double kOneSided = 0.9;  // mean of the senses from which on rows were taken in one sense
   const double usual = old.mean();
   if (std::abs(usual) < kOneSided) return c;
   std::vector<std::size_t> which;
@@ -133,7 +133,7 @@ Explanation::Contrast Explanation::level(const std::string& name, const std::str
   const double usual = median(old), range = std::max(old.maxCoeff() - old.minCoeff(), 1e-9);
   Eigen::Index at = 0;
   const double away = (planned - usual).abs().maxCoeff(&at);
-  constexpr double kOtherLevel = 0.2;
+  constexpr double kOtherLevel = 0.2;  // of the range: nearer is the same level
   if (away < kOtherLevel * range) return c;
   std::vector<std::size_t> which;
   for (std::size_t row = 0; row < plan_.rows.rows(); ++row)
@@ -211,7 +211,7 @@ std::string Explanation::sentence() const {
     if (!contrast.usable) continue;
     const Answer answers = answer(contrast);
     const double score = std::abs(answers.a - answers.b) / (1 + std::abs(answers.a) + std::abs(answers.b));
-    constexpr double kWorthSaying = 0.05;
+    constexpr double kWorthSaying = 0.05;  // of what both say: less no reading shows
     if (score < std::max(best + 1e-6, kWorthSaying)) continue;
     best = score;
     where = contrast.where;

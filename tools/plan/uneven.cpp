@@ -16,7 +16,7 @@ using Wave = std::complex<double>;
 
 constexpr double kMostPeriods = 1000;  // as a diagnosis looks for (FinePeriodThresholds::most_periods)
 constexpr std::size_t kPerRange = 2;   // frequencies looked at for each that the range tells apart
-constexpr std::size_t kFrequencies = static_cast<std::size_t>(kMostPeriods) * kPerRange;
+constexpr std::size_t kFrequencies = static_cast<std::size_t>(kMostPeriods) * kPerRange;  // looked at in all
 
 /// sum over the positions of exp(2 pi i f q) at f = k / (kPerRange * span), k = 0 ...
 std::vector<Wave> window(const std::vector<double>& positions, double low, double span) {
@@ -36,7 +36,7 @@ std::vector<Wave> window(const std::vector<double>& positions, double low, doubl
 
 std::vector<double> uneven_positions(double low, double high, const std::vector<double>& taken,
                                      std::size_t count) {
-  constexpr int kDraws = 60;
+  constexpr int kDraws = 60;                     // of positions, of which the best stand
   constexpr std::size_t kFirst = 3 * kPerRange;  // below, waves differ by less than three over the range
   const double span = high - low;
   std::vector<double> distinct = taken;
@@ -69,7 +69,7 @@ std::vector<double> uneven_positions(double low, double high, const std::vector<
 
 std::string uneven_sentence(const model::Machine& machine, const model::Measurement& measurement,
                             const diagnose::CandidateFinding& finding) {
-  constexpr std::size_t kPositions = 12;
+  constexpr std::size_t kPositions = 12;  // that are advised: six waves' worth
   const std::size_t axis = finding.axis.value();
   const model::Column at = model::commanded(measurement, axis);
   std::vector<double> taken;

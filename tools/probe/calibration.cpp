@@ -72,7 +72,7 @@ void add_spread(ProbeCalibration& result, const VectorXd& speed, double touches)
   const double lost = static_cast<double>(speed.size()) / std::max(1, result.fit.dof);
   Eigen::Vector2d variance(result.fit.sigma * result.fit.sigma, 0);
   Eigen::Matrix2d inverse = Eigen::Matrix2d::Zero();
-  constexpr int kRounds = 20;
+  constexpr int kRounds = 20;  // of weights and fit in turn, at most
   for (int round = 0; round < kRounds; ++round) {
     Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
     Eigen::Vector2d right = Eigen::Vector2d::Zero();
@@ -210,7 +210,7 @@ RoundTouches round_touches(TouchTable& table, const CalibrationSetup& setup) {
 void say_plane(const RoundTouches& touches, const CalibrationSetup& setup,
                std::vector<std::string>& findings) {
   if (setup.artefact != Artefact::kSphere || touches.sphere) return;
-  constexpr double kOff_mm = 0.5;
+  constexpr double kOff_mm = 0.5;  // what a person puts a sphere off by
   findings.push_back(
       fmt::format("The sphere was touched in one plane, taken to go through its centre: {} mm beside it "
                   "would make the effective tip radius {:.1f} um too small.",
@@ -319,6 +319,7 @@ namespace {
 
 // What no probe has comes from a column in another unit, from wrong rows or from another artefact.
 void refuse_absurd(const ProbeCalibration& result, const CalibrationSetup& setup, const TouchTable& table) {
+  // What a trigger can be late by; early only by rounding.
   constexpr double kLeastDelay_ms = -1, kMostDelay_ms = 100;
   const char* const kHint =
       "look at units and columns (--column \"name=meaning[unit]\"), at --size and --artefact";

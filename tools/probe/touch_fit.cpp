@@ -17,7 +17,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr int kMostSteps = 100;
+constexpr int kMostSteps = 100;  // Gauss and Newton's, at most
+// Of a parameter for a difference; of the cost for the end; of the largest singular value.
 constexpr double kStepRelative = 1e-6, kConverged = 1e-12, kSingular = 1e-9;
 
 MatrixXd jacobian(const TouchModel& model, const VectorXd& at) {

@@ -90,7 +90,7 @@ struct Side {
   Eigen::VectorXd error;
   std::vector<std::size_t> sample;  // of each row; kNone: left out
 };
-constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+constexpr std::size_t kNone = static_cast<std::size_t>(-1);  // no sample
 
 Side make_side(const model::Machine& machine, const model::Measurement& m) {
   Side side{as_commanded(m), errors_as_commanded(machine, m), {}};

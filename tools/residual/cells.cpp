@@ -12,7 +12,7 @@
 namespace vernier::residual {
 namespace {
 
-constexpr int kMostPerSide = 5;
+constexpr int kMostPerSide = 5;     // cells that a picture of a volume can show
 constexpr double kRowsPerCell = 6;  // wanted, so that a mean says more than a reading
 
 /// Nominal tool points of all rows in the measuring frame, mm.

@@ -93,6 +93,7 @@ class Search {
   /// Functions of the columns that change from row to row: taking them out leaves serial correlation as it
   /// is.
   maths::FunctionSet quick_functions() const {
+    // Correlation of neighbouring rows below which a column changes from row to row.
     constexpr double kQuick = 0.3;
     maths::FunctionSet set;
     const std::size_t most = sample_.rows.size() / 4;

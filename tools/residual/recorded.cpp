@@ -11,10 +11,11 @@
 namespace vernier::residual {
 namespace {
 
+// Of a polynomial: eight bends in a range are a curve, more are a wave and looked for as one.
 constexpr int kMostDegree = 8;
-constexpr std::size_t kMostRuns = 40;  // more are seen through `visit` and `t` only
-constexpr std::size_t kMostRunsOfProducts = 8;
-constexpr double kHalfTurn = 180;
+constexpr std::size_t kMostRuns = 40;           // more are seen through `visit` and `t` only
+constexpr std::size_t kMostRunsOfProducts = 8;  // a product for each run of more would outnumber the readings
+constexpr double kHalfTurn = 180;               // deg: an axis that travels it gets harmonics
 
 class Recorder {
  public:

@@ -44,7 +44,7 @@ struct BasisTerm {
   std::vector<Eigen::Index> subject;  // columns of the matrix
   std::vector<Eigen::Index> adjust;   // that have their chance first: a product's own two columns
 };
-inline constexpr std::size_t kNoColumn = static_cast<std::size_t>(-1);
+inline constexpr std::size_t kNoColumn = static_cast<std::size_t>(-1);  // none of them
 
 /// Smooth functions of the recorded columns on some rows: the constant first, then for each column Legendre
 /// polynomials (directions: odd and even part; runs: one indicator less than there are runs; turning axes:
@@ -56,6 +56,7 @@ struct Basis {
 
 /// At most kMostPairs pairs of columns get products. tool.
 Basis make_basis(const std::vector<RecordedColumn>& columns, const std::vector<std::size_t>& rows);
+// 22 columns in pairs; more pairs than readings prove anything.
 inline constexpr std::size_t kMostPairs = 250;
 
 }  // namespace vernier::residual

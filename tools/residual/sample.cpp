@@ -13,9 +13,11 @@ namespace vernier::residual {
 namespace {
 
 constexpr double kMadPerSpread = 1.4826;  // of a normal distribution
+// Robust spreads: what is beyond the first is held there, beyond the second
+// told.
 constexpr double kHeld = 4, kOutlier = 5;
 constexpr double kMostOutliers = 0.1;  // share of the readings
-constexpr std::size_t kLeastRows = 8;
+constexpr std::size_t kLeastRows = 8;  // a spread of fewer is known to no better than a quarter
 /// Directions of a Jacobian below this share of the largest were not determined by the fit.
 constexpr double kRankCutoff = 1e-5;
 
@@ -217,7 +219,7 @@ std::optional<Period> strongest_period(const KindSample& sample, const RecordedC
                                        const Eigen::VectorXd& residual) {
   constexpr double kOversampling =
       4;  // steps per cycle over the range: a peak loses at most 5 % between them
-  constexpr double kMostCycles = 100;
+  constexpr double kMostCycles = 100;  // over the range: shorter waves ask for more positions than are read
   const std::size_t values = value_count(sample, column), n = sample.rows.size();
   if (values < 12) return std::nullopt;
   double low = std::numeric_limits<double>::infinity(), high = -low;
@@ -285,6 +287,7 @@ PairTest serial_pairs(const KindSample& sample, const model::Measurement& m, con
 
 std::vector<std::pair<std::size_t, std::size_t>> neighbour_pairs(
     const KindSample& sample, const std::vector<const RecordedColumn*>& columns) {
+  // Rows whose neighbours are looked for (each with each), and neighbours of each.
   constexpr std::size_t kMostPaired = 3000, kNearest = 5;
   const std::size_t n = std::min(sample.rows.size(), kMostPaired);
   Eigen::MatrixXf place(static_cast<Eigen::Index>(columns.size()), static_cast<Eigen::Index>(n));

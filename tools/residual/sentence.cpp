@@ -97,7 +97,7 @@ std::string runs_clause(const Finding& f, const SentenceFacts& facts) {
   if (f.in_all_runs) return ", in all runs";
   if (f.runs < 2) return "";
   std::string names;
-  constexpr std::size_t kMostNamed = 3;
+  constexpr std::size_t kMostNamed = 3;  // that a sentence bears
   for (std::size_t i = 0; i < facts.disagreeing.size() && i < kMostNamed; ++i)
     names += (i > 0 ? ", " : "") + facts.disagreeing[i];
   if (facts.disagreeing.size() > kMostNamed) names += " ...";
@@ -110,7 +110,7 @@ std::string sentence_of(const Finding& f, const SentenceFacts& facts) {
   std::string text = statement(f, facts) + runs_clause(f, facts);
   if (f.alike.empty()) return text;
   std::string names;
-  constexpr std::size_t kMostNamed = 4;
+  constexpr std::size_t kMostNamed = 4;  // that a sentence bears
   for (std::size_t i = 0; i < f.alike.size() && i < kMostNamed; ++i)
     names += (i > 0 ? ", " : "") + f.alike[i];
   return text + "; " + names +

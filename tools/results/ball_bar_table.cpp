@@ -65,7 +65,7 @@ Json ball_bar_table(const Circle& circle, const model::Measurement& m) {
       samples.push_back(
           {run.angle_deg[i], run.direction, maths::kUmPerMm * (o.value - circle.nominal_radius_mm)});
     }
-  constexpr std::size_t kFewest = 4 * importer::kDiagnosticsCount;
+  constexpr std::size_t kFewest = 4 * importer::kDiagnosticsCount;  // readings: four for each unknown
   if (!senses[0] || !senses[1] || samples.size() < kFewest) return nullptr;
   const importer::DiagnosticsResult found = importer::fit_diagnostics(samples, setup);
   if (found.rank < found.columns) return nullptr;

@@ -15,7 +15,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr std::size_t kWorstRows = 25;
+constexpr std::size_t kWorstRows = 25;  // that a person looks up
 
 double in_report_unit(model::ObservationKind kind, double value) {
   return value * (model::is_rotation(kind) ? maths::kUradPerDeg : maths::kUmPerMm);

@@ -79,7 +79,7 @@ ordered_json one_column(const model::Measurement& m, const Eigen::VectorXd& resi
     kinds[o.kind][values[o.row]].take(unit * residual[static_cast<Eigen::Index>(i)]);
     seen[values[o.row]] = true;
   }
-  constexpr std::size_t kMostGroups = 50;
+  constexpr std::size_t kMostGroups = 50;  // rows of a table that a person reads
   if (seen.size() > kMostGroups)
     throw text::InputError({}, column,
                            fmt::format("{} different values: too many groups to be told apart", seen.size()));

@@ -24,7 +24,7 @@ enum class SafetyRule : std::uint8_t {
   kCheckRows = 10,     // rows that the fit has not seen, against the nominal machine
   kDisturbed = 11,     // what the instrument did by itself, or is left far above its noise
 };
-inline constexpr std::size_t kSafetyRuleCount = 12;
+inline constexpr std::size_t kSafetyRuleCount = 12;  // rules of the sheet
 const char* rule_name(SafetyRule rule);
 std::optional<SafetyRule> rule_named(const std::string& name);
 

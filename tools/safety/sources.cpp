@@ -8,7 +8,7 @@
 namespace vernier::safety {
 namespace {
 
-constexpr double kNothing_mm = 1e-12;
+constexpr double kNothing_mm = 1e-12;  // rounding of a chain of metres
 
 }  // namespace
 

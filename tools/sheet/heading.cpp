@@ -15,13 +15,6 @@
 namespace vernier::sheet {
 namespace {
 
-std::string lower(std::string_view text) {
-  std::string result(text);
-  std::transform(result.begin(), result.end(), result.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return result;
-}
-
 /// Words for units in the languages of shop floors, in small letters, after the signs are spelled out.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 58> kUnitWords = {{
     {"millimeter", "mm"},
@@ -167,7 +160,7 @@ std::optional<std::string> unit_meant(std::string_view word) {
   const std::string bare = without_brackets(text::usual_spelling(word));
   if (bare.empty()) return std::nullopt;
   if (const auto unit = text::find_unit(bare)) return std::string(unit->name);
-  std::string small = lower(bare);
+  std::string small = text::in_small_letters(bare);
   if (small.ends_with('.')) small.pop_back();
   for (const auto& [text, unit] : kUnitWords)
     if (small == text) return std::string(unit);
@@ -210,7 +203,8 @@ Heading parse_heading(std::string_view cell) {
     // Behind a blank or _ stands a name's own word more often than a unit: only what no name would end in.
     const std::string rest = at == std::string::npos ? "" : text::trimmed(text.substr(at + between.size()));
     const bool weak = between == " " || between == "_";
-    if (rest.empty() || at == 0 || (weak && (rest.size() < 2 || lower(rest) == "min"))) continue;
+    if (rest.empty() || at == 0 || (weak && (rest.size() < 2 || text::in_small_letters(rest) == "min")))
+      continue;
     if (take(at + between.size(), text.size(), at)) return heading;
   }
   return heading;

@@ -82,6 +82,7 @@ char separator_of_lines(const std::vector<Line>& lines) {
 
 /// As many cells in each row. One row far wider than the others would make a small file a large table.
 void make_even(Sheet& sheet) {
+  // Cells, and empty cells for each that is there: what a small file may grow to.
   constexpr std::size_t kMostEmpty = 4u << 20, kMostEmptyForOne = 2;
   std::size_t cells = 0, widest = 0;
   for (std::size_t i = 0; i < sheet.rows.size(); ++i) {

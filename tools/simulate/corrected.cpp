@@ -14,6 +14,7 @@
 #include "tools/simulate/counts.h"
 #include "tools/simulate/loop.h"
 #include "tools/text/files.h"
+#include "tools/text/numbers.h"
 
 namespace vernier::simulate {
 namespace {
@@ -23,8 +24,6 @@ namespace fs = std::filesystem;
 
 /// Half a day of a board's ticks; an equation takes about a microsecond of ours.
 constexpr double kMostTicks = 4e7;
-
-std::string fingerprint_text(std::uint64_t fingerprint) { return fmt::format("{:016x}", fingerprint); }
 
 /// The compiled directories below a folder, opened when a row asks for one.
 class ImageFolder {
@@ -61,7 +60,7 @@ class ImageFolder {
     ImageHeader header;
     if (bytes.size() < sizeof(header)) return;  // no image, and no row can mean it
     std::memcpy(&header, bytes.data(), sizeof(header));
-    directories_.emplace(fingerprint_text(header.fingerprint), directory.string());
+    directories_.emplace(text::fingerprint_text(header.fingerprint), directory.string());
   }
 
   std::string directory_;

@@ -13,7 +13,7 @@ inline constexpr double kCountsPerMm = 1e6, kCountsPerDeg = static_cast<double>(
 
 /// Nearest count, held well inside 64 bits.
 inline std::int64_t counts(double value) {
-  constexpr double kMost = 4e18;
+  constexpr double kMost = 4e18;  // below 2^62: sums of two stay within 64 bits
   return std::llround(std::clamp(value, -kMost, kMost));
 }
 

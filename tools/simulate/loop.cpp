@@ -54,7 +54,7 @@ class PathTrajectory : public Trajectory {
 };
 
 CycleLimits limits_off() {
-  constexpr std::int64_t kNever = std::int64_t{1} << 50;
+  constexpr std::int64_t kNever = std::int64_t{1} << 50;  // us: 36 years
   CycleLimits limits;
   limits.linear.step = limits.rotary.step = kNever;
   limits.linear.frozen_travel = limits.rotary.frozen_travel = kNever;

@@ -139,9 +139,7 @@ void fill_runs(const Path& path, const Ticks& ticks, model::States& states) {
 }  // namespace
 
 model::States path_states(const Path& path, const model::Machine& machine, const Ticks& ticks) {
-  std::vector<double> references;
-  for (const model::Input& input : machine.inputs) references.push_back(input.reference);
-  model::States states = model::make_states(ticks.count(), machine.axes.size(), references);
+  model::States states = model::make_states(ticks.count(), machine);
   states.time = ticks.time;
   for (std::size_t i = 0; i < machine.axes.size(); ++i) fill_axis(path, machine.axes[i], ticks, i, states);
   fill_path(path, machine, ticks, states);

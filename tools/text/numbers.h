@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -18,6 +19,9 @@ std::optional<std::size_t> parse_count(std::string_view text);
 
 /// Is this a name of the formats: letters, digits and _, beginning with a letter or _ (ASCII)?
 bool is_name(std::string_view text);
+
+/// Sixteen hexadecimal digits, as fingerprints of images are shown.
+std::string fingerprint_text(std::uint64_t fingerprint);
 
 /// The shortest decimal that reads back to the same double.
 std::string number_text(double value);

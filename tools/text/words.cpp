@@ -12,6 +12,13 @@ std::string trimmed(std::string_view text) {
   return std::string(text.substr(first, text.find_last_not_of(kBlanks) - first + 1));
 }
 
+std::string in_small_letters(std::string_view text) {
+  std::string small(text);
+  for (char& c : small)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return small;
+}
+
 std::vector<std::string> words_in(std::string_view text, std::string_view separators) {
   std::vector<std::string> words;
   for (std::size_t at = 0; (at = text.find_first_not_of(separators, at)) != std::string_view::npos;) {

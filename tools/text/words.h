@@ -9,6 +9,9 @@ namespace vernier::text {
 /// The text without blanks, tabs and ends of line around it. tool.
 std::string trimmed(std::string_view text);
 
+/// A to Z as a to z; all else stays. tool.
+std::string in_small_letters(std::string_view text);
+
 /// The words between any of the separators; several in a row count once. tool.
 std::vector<std::string> words_in(std::string_view text, std::string_view separators);
 

@@ -41,6 +41,7 @@ double best_elsewhere(const Eigen::MatrixXd& series, Index rows) {
 }  // namespace
 
 std::optional<Closure> examine_closure(const Eigen::MatrixXd& points, const Eigen::MatrixXd& series) {
+  // Readings of a clock, and of a run, that a test of repeats asks for.
   constexpr Index kFewest = 12, kShortestRun = 200;
   // A seventh of the turn: what is further off is no closing any more.
   const Index most = series.rows() / 7;

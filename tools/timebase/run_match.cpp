@@ -31,7 +31,7 @@ Eigen::MatrixXd window_means(const Eigen::MatrixXd& series, double width) {
 // What is shorter than four points differs with the sense of motion (ringing); what is longer than a third of
 // the run is what the fit makes of wrong positions (a centre that is none).
 Eigen::MatrixXd thin(const Eigen::MatrixXd& series) {
-  constexpr double kShortest = 4, kLongest = kPoints / 3.0;
+  constexpr double kShortest = 4, kLongest = kPoints / 3.0;  // points that a lost stretch may have
   return window_means(series, kShortest) - window_means(series, kLongest);
 }
 
@@ -52,7 +52,7 @@ double correlation_at(const Eigen::MatrixXd& first, const Eigen::MatrixXd& secon
     }
     ++n;
   }
-  constexpr double kLeastOverlap = 0.6;
+  constexpr double kLeastOverlap = 0.6;  // of the shorter run, that a match rests on
   if (static_cast<double>(n) < kLeastOverlap * static_cast<double>(first.rows()) || aa <= 0 || bb <= 0)
     return -1;
   return ab / std::sqrt(aa * bb);

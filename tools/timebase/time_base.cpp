@@ -32,7 +32,7 @@ std::vector<RecordSeries> rows_by_run(const model::Measurement& m) {
 
 // Kinds of lengths that nearly every row of the run has, of those rows that have any.
 Eigen::MatrixXd usual_kinds(const Eigen::MatrixXd& all) {
-  constexpr double kUsual = 0.95;
+  constexpr double kUsual = 0.95;  // of all steps of a clock: the rest are pauses
   std::vector<Index> keep;
   const auto rows = static_cast<double>((all.array().isFinite().rowwise().any()).count());
   for (Index c = 0; c < all.cols(); ++c) {

@@ -173,7 +173,7 @@ class ConformityRunner {
 
   /// Who moves what: exact at the fitted machine, linear in what is not known of it.
   void share_out(Normals& normals) {
-    constexpr Index kDraws = 1000;
+    constexpr Index kDraws = 1000;  // give a share to 3 %
     const MatrixXd z = normals.draw(spread_.cols(), kDraws);
     std::vector<MatrixXd> part(sources_.size()), open_part(sources_.size());
     for (std::size_t s = 0; s < sources_.size(); ++s) {

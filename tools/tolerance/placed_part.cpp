@@ -88,7 +88,7 @@ class PointSolver {
  private:
   void again(const PartFeature& feature, const model::Poses& target, std::size_t i,
              const kinematics::InverseOptions& options, kinematics::InverseResult& all) const {
-    constexpr int kRestarts = 48;
+    constexpr int kRestarts = 48;  // other starts from which a pose is sought
     const auto at = static_cast<Index>(i);
     const model::Poses one{target.position.col(at), {target.rotation[i]}};
     const model::States from = model::select_states(all.states, {i > 0 ? i - 1 : i});

@@ -20,8 +20,8 @@ namespace {
 
 constexpr double kNmPerMm = 1e6, kCountsPerDeg = static_cast<double>(kTurnCounts) / 360;
 constexpr std::uint32_t kPieceBytes = kMaxRequestBytes - kRequestHeaderBytes - 4;
-constexpr std::uint32_t kReadBytes = 232;
-constexpr int kTriesWhileNotReady = 300;  // five seconds: a medium may be slow
+constexpr std::uint32_t kReadBytes = 232;  // a reply of the link holds them (tables/link_messages.h)
+constexpr int kTriesWhileNotReady = 300;   // five seconds: a medium may be slow
 
 void append(std::vector<std::uint8_t>& bytes, const void* from, std::size_t size) {
   const std::size_t before = bytes.size();
@@ -247,7 +247,7 @@ BoardHistory Client::history(std::uint64_t first, std::uint16_t every) {
 }
 
 HealthRecord Client::health() {
-  constexpr std::size_t kCounters = sizeof(HealthRecord) / sizeof(std::uint64_t);
+  constexpr std::size_t kCounters = sizeof(HealthRecord) / sizeof(std::uint64_t);  // of a health record
   std::uint64_t words[kCounters] = {};
   for (std::size_t have = 0; have < kCounters;) {
     const auto reply = ask(LinkOp::kHealth, {static_cast<std::uint8_t>(have)});
@@ -380,7 +380,7 @@ BoardTouches Client::touches(std::uint64_t first) {
 }
 
 void Client::workpiece(const std::array<double, 3>& origin_mm, double angle_deg) {
-  constexpr double kMostMm = 1e8;
+  constexpr double kMostMm = 1e8;  // of a register: 100 km
   WorkpieceFrame frame;
   for (std::size_t i = 0; i < 3; ++i) {
     if (!(std::abs(origin_mm[i]) < kMostMm)) throw text::InputError("the workpiece lies beyond 100 km");

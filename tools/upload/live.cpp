@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/upload/live.h"
+#include "tools/text/numbers.h"
 
 #include <fmt/format.h>
 
@@ -40,7 +41,7 @@ nlohmann::ordered_json times_json(const std::int64_t (&ns)[4]) {
 
 nlohmann::ordered_json image_json(std::uint8_t slot, std::uint64_t fingerprint) {
   if (slot == kNoSlot) return nullptr;
-  return fmt::format("{:016x}", fingerprint);
+  return text::fingerprint_text(fingerprint);
 }
 
 // One that was given at the start is confirmed, and no slot holds it.
@@ -56,7 +57,7 @@ std::string times_text(const char* name, const std::int64_t (&ns)[4]) {
 
 // The largest first: what a person looks for.
 std::string shares_text(const BoardInfo& info, std::vector<BoardShare> shares) {
-  constexpr std::size_t kMostLines = 12;
+  constexpr std::size_t kMostLines = 12;  // of a screen
   std::erase_if(shares, [](const BoardShare& share) { return share.correction == 0; });
   std::stable_sort(shares.begin(), shares.end(), [](const BoardShare& a, const BoardShare& b) {
     return std::abs(a.correction) > std::abs(b.correction);
@@ -93,7 +94,7 @@ std::string confirmed_text(const SlotsReply& slots) {
 
 nlohmann::ordered_json confirmed_json(const SlotsReply& slots) {
   if (!has_confirmed(slots)) return nullptr;
-  return fmt::format("{:016x}", slots.confirmed_fingerprint);
+  return text::fingerprint_text(slots.confirmed_fingerprint);
 }
 
 nlohmann::ordered_json live_json(const BoardInfo& info, const BoardTick& tick, const HealthRecord& health,
@@ -110,7 +111,7 @@ nlohmann::ordered_json live_json(const BoardInfo& info, const BoardTick& tick, c
       {"trial_left_s", slots.trial_left_ms * 1e-3},
       {"image", name_of(state.image)},
       {"running", state.fingerprint == 0 ? nlohmann::ordered_json(nullptr)
-                                         : nlohmann::ordered_json(fmt::format("{:016x}", state.fingerprint))},
+                                         : nlohmann::ordered_json(text::fingerprint_text(state.fingerprint))},
       {"running_since_t", state.since_s},
       {"weight", state.weight}};
   for (std::size_t i = 0; i < info.axes.size(); ++i)

@@ -201,7 +201,7 @@ ClockFit align_clocks(const Series& reference, const Series& other) {
   check(reference), check(other);
   const double longest =
       std::max(reference.t_s.back() - reference.t_s.front(), other.t_s.back() - other.t_s.front());
-  constexpr double kMostSteps = 1 << 20;
+  constexpr double kMostSteps = 1 << 20;  // of a correlation: seconds of work and 100 MB
   const double step = std::max(std::min(median_step(reference), median_step(other)), longest / kMostSteps);
   ClockFit fit;
   const std::vector<Lagged> lags = correlations(resampled(reference, step), resampled(other, step));

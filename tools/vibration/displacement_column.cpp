@@ -17,9 +17,11 @@
 namespace vernier::vibration {
 namespace {
 
-constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();  // an empty cell
+// Of the corner: a filter of second order forgets 99.9 % in three, and six are left to read.
 constexpr double kSettlingPeriods = 3, kFewestPeriods = 6;
 constexpr double kLedShare = 0.1;  // of the record, at either end
+// Corners tried, and steps of a line between two of them.
 constexpr std::size_t kCorners = 60, kLineSteps = 200;
 
 /// mm/s^2 in the signal's unit.

@@ -25,9 +25,7 @@ constexpr std::size_t kPoses = 64;
 double unit_of(const Axis& axis) { return axis.rotary ? 360 / 4294967296.0 : 1e-6; }
 
 States states_of(const Machine& machine, const std::vector<CycleInput>& poses) {
-  std::vector<double> references;
-  for (const Input& input : machine.inputs) references.push_back(input.reference);
-  States s = make_states(poses.size(), machine.axes.size(), references);
+  States s = make_states(poses.size(), machine);
   for (std::size_t n = 0; n < poses.size(); ++n)
     for (std::size_t i = 0; i < machine.axes.size(); ++i)
       s.axis[i][static_cast<Eigen::Index>(n)] =

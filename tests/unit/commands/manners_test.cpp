@@ -56,6 +56,17 @@ TEST_F(Manners, MistypedCommandIsNamedWithTheOneMeant) {
   EXPECT_TRUE(said("\"--outptu\": no option of this command; did you mean --output?")) << said_;
 }
 
+TEST_F(Manners, NumbersOfOptionsAreFiniteDecimalsAndCountsCount) {
+  for (const char* line :
+       {"vernier correct m.xml rows.csv -o c.csv --deviation nan",
+        "vernier fit m.xml rows.csv --loss-scale 0x10", "vernier fit m.xml rows.csv --loss-scale inf"}) {
+    EXPECT_EQ(run(line), 1) << line;
+    EXPECT_TRUE(said("is no decimal number") || said("inf not in range")) << line << ": " << said_;
+  }
+  EXPECT_EQ(run("vernier simulate m.xml --seed -1"), 1);
+  EXPECT_TRUE(said("\"-1\" is no count")) << said_;
+}
+
 TEST_F(Manners, HelpIsACommandToo) {
   EXPECT_EQ(run("vernier help"), 0);
   const std::string all = said_;

@@ -51,6 +51,14 @@ TEST_F(Manual, HasAPageForEachCommandOfTheHelp) {
     EXPECT_NE(page.find(words), std::string::npos) << words << page.substr(0, 300);
 }
 
+TEST_F(Manual, WhatMayBeLeftOutStandsInBrackets) {
+  ASSERT_EQ(run("vernier manual -o man"), 0) << said();
+  EXPECT_NE(read_file(folder + "/man/vernier-compare.1").find("\\fIMACHINE\\fR [\\fIMEAS\\fR...]"),
+            std::string::npos);
+  EXPECT_NE(read_file(folder + "/man/vernier-fit.1").find("\\fIMACHINE\\fR \\fIMEAS\\fR..."),
+            std::string::npos);
+}
+
 TEST_F(Manual, IsGoodTroff) {
   if (std::system("command -v groff >/dev/null") != 0) GTEST_SKIP() << "no groff";
   ASSERT_EQ(run("vernier manual -o man; for page in man/*.1; do groff -man -Tutf8 -K utf8 -ww \\$page "

@@ -7,6 +7,8 @@
 
 #include "tools/diagnose/acceptance.h"
 #include "tools/diagnose/evidence.h"
+#include "tools/effects/add.h"
+#include "tools/effects/add_string.h"
 #include "tools/maths/chance.h"
 #include "tools/model/machine_reader.h"
 

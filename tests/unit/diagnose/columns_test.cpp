@@ -7,6 +7,7 @@
 
 #include "tests/unit/effects/candidates.h"
 #include "tools/diagnose/evidence.h"
+#include "tools/effects/add.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/prediction.h"
 #include "tools/model/rebind.h"

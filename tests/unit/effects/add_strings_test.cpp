@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "tests/unit/effects/candidates.h"
+#include "tools/effects/add.h"
+#include "tools/effects/add_string.h"
 #include "tools/model/machine_reader.h"
 #include "tools/text/error.h"
 
@@ -85,6 +87,26 @@ TEST(AddString, AnAxisNamedLikeAnUnknownStaysAnAxis) {
   EXPECT_EQ(term("straightness:axis=L,dof=d,form=square"), "tool 5 d: straightness_L_d5*L^2");
   EXPECT_EQ(term("load-deflection:input=k,unit=N,transform=2,branch=tool,dof=Y"),
             "tool 2 Y: load_deflection_k_Y2*k");
+}
+
+TEST(AddString, ComplianceIsForJointsThatGravityTurns) {
+  // GIVEN a slide, a turntable on a vertical axis and a level joint
+  const Machine machine = parse_machine(
+      "<machine gravity=\"0 0 -1\"><variables><machineaxes><X min=\"0\" max=\"600\"/><C rotary=\"true\" "
+      "min=\"0\" max=\"360\"/><A rotary=\"true\" min=\"-90\" max=\"90\"/></machineaxes></variables>"
+      "<transforms><sixdof X=\"X\"/><sixdof rZ=\"C\"/><sixdof rX=\"A\" Z=\"300\"/></transforms></machine>",
+      "m.xml");
+  const auto why_not = [&](const std::string& add) -> std::string {
+    try {
+      make_candidate(machine, parse_add_string(add, machine, built_in_effects()));
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_NE(why_not("joint-compliance:axis=X").find("rotary joint"), std::string::npos);
+  EXPECT_NE(why_not("joint-compliance:axis=C").find("no moment about it"), std::string::npos);
+  EXPECT_EQ(why_not("joint-compliance:axis=A"), "");
 }
 
 TEST(AddString, ACustomTermMayUseALoggedColumn) {

@@ -6,6 +6,8 @@
 
 #include "tests/unit/effects/candidates.h"
 #include "tools/diagnose/diagnosis.h"
+#include "tools/effects/add.h"
+#include "tools/effects/add_string.h"
 #include "tools/model/chain.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/prediction.h"

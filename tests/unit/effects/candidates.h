@@ -45,8 +45,10 @@ inline std::vector<DofPlace> places_for(const Machine& machine, const EffectForm
     bool admitted = false;
     switch (form.place) {
       case PlaceRule::kOwn:
-      case PlaceRule::kJoint:
         admitted = driven && place == own;
+        break;
+      case PlaceRule::kJoint:
+        admitted = driven && place == own && angle && GravityChain(machine).may_turn(place);
         break;
       case PlaceRule::kCross:
         admitted = beside && !angle;
@@ -86,7 +88,13 @@ inline bool set_gravity(const Machine& machine, Choice& choice) {
   const GravityChain gravity(machine);
   if ((across || moment) != is_angle(machine, place) || !gravity.direction(place)) return false;
   const std::size_t end = (place.workpiece ? machine.workpiece : machine.tool).size() - 1;
-  if (moment && !gravity.moment(place, end)) return false;
+  const auto is_told = [](const std::optional<Wave>& wave) { return wave && !wave->is_constant(); };
+  if (moment && !is_told(gravity.moment(place, end))) return false;
+  if (form.asks_for("along") && !is_told(gravity.along(place))) return false;
+  for (const std::size_t next : {1U, 2U}) {
+    const bool asked = (across && next == 1) || form.asks_for("across2");
+    if (asked && !is_told(gravity.across(place, (local_axis(machine, place) + next) % 3))) return false;
+  }
   if (form.asks_for("across"))
     choice.toward = form.place == PlaceRule::kBend ? 0 : (local_axis(machine, place) + 1) % 3;
   if (moment) choice.mass = end;

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "tests/unit/effects/candidates.h"
+#include "tools/effects/add_string.h"
 #include "tools/model/chain.h"
 #include "tools/model/machine_reader.h"
 #include "tools/text/error.h"
@@ -37,9 +38,7 @@ Machine machine_of(const std::string& name) {
 States random_states(const Machine& machine, std::size_t rows) {
   std::mt19937_64 random(20260401);
   std::uniform_real_distribution<double> unit(0, 1);
-  std::vector<double> references;
-  for (const Input& input : machine.inputs) references.push_back(input.reference);
-  States states = make_states(rows, machine.axes.size(), references);
+  States states = make_states(rows, machine);
   for (std::size_t a = 0; a < machine.axes.size(); ++a)
     for (double& q : states.axis[a]) {
       const double low = machine.axes[a].min.value_or(-180), high = machine.axes[a].max.value_or(180);

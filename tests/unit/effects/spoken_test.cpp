@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/unit/effects/candidates.h"
+#include "tools/effects/add_string.h"
 #include "tools/model/machine_reader.h"
 #include "tools/text/files.h"
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/evaluate/budget.h"
+#include "tools/evaluate/limits.h"
 
 #include <gtest/gtest.h>
 
@@ -64,6 +65,16 @@ TEST(Budget, RefusesWhatItDoesNotKnow) {
   for (const char* words : {"device", "device=", "device=-1", "laser=1", "=1"})
     EXPECT_THROW(add_to_budget(budget, words), InputError) << words;
   EXPECT_FALSE(budget.given);
+}
+
+TEST(Limits, AreInTheUnitOfWhatTheyLimit) {
+  const std::vector<std::string> names = {"A", "R"};
+  EXPECT_DOUBLE_EQ(limit_of("A=10um", "--tolerance", names).second, 0.01);
+  EXPECT_DOUBLE_EQ(limit_of("A=36arcsec", "--tolerance", names, "deg").second, 0.01);
+  EXPECT_THROW(limit_of("A=1um", "--tolerance", names, "deg"), text::InputError)
+      << "no length limits an angle";
+  EXPECT_THROW(limit_of("A=1deg", "--tolerance", names), text::InputError);
+  EXPECT_THROW(limit_of("B=1um", "--tolerance", names), text::InputError);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/fleet/alike.h"
+#include "tools/text/wall_time.h"
 
 #include <gtest/gtest.h>
 
@@ -12,14 +13,14 @@ namespace vernier::alike_test {
 using namespace vernier::fleet;
 namespace {
 
-constexpr double kUsADay = 86'400e6;
-
 /// A fleet's weekly readings: a hall that warms in summer, a machine (number 0) that drifts; in units of the
 /// noise.
 struct DrawnFleet {
   int machines = 8, weeks = 26;
   double hall = 0, own_per_day = 0, beyond_stated = 1;
   bool gaps = true;
+  double wander = 0, kept = 0;  // step of each week's wandering, and what is kept of it to the next; 1: all
+  double last_off = 0;          // by which the last reading of machine 1 is off
 
   std::vector<FleetReading> draw(std::mt19937_64& random) const {
     std::normal_distribution<double> normal(0, 1);
@@ -27,15 +28,18 @@ struct DrawnFleet {
     std::vector<FleetReading> readings;
     for (int machine = 0; machine < machines; ++machine) {
       const double level = 20 * normal(random);
+      double away = 0;
       for (int week = 0; week < weeks; ++week) {
+        if (wander > 0) away = kept * away + wander * normal(random);
         if (gaps && share(random) < 0.2) continue;
         const double day = 7 * week + 5 * share(random);
         const double common = hall * std::sin(2 * M_PI * day / 365);
         const double own = machine == 0 ? own_per_day * day : 0;
         readings.push_back({"m" + std::to_string(machine), "sxy", "um/m",
-                            static_cast<std::int64_t>(day * kUsADay),
-                            level + common + own + beyond_stated * normal(random), 1.0});
+                            static_cast<std::int64_t>(day * text::kUsADay),
+                            level + common + own + away + beyond_stated * normal(random), 1.0});
       }
+      if (machine == 1) readings.back().value += last_off;
     }
     return readings;
   }
@@ -56,6 +60,27 @@ TEST(Alike, QuietFleetsRaiseNoMoreAlarmsThanStated) {
   DrawnFleet noisier;
   noisier.beyond_stated = 3;
   EXPECT_LT(count(300, noisier, any, 2), 27) << "a scatter beyond what is stated is no drift";
+}
+
+TEST(Alike, WhatWandersDriftsNoMoreThanStated) {
+  const auto any = [](const Drift& drift) { return drift.common || !drift.own.empty(); };
+  DrawnFleet forgets, walks;
+  forgets.wander = 0.6, forgets.kept = 0.8;
+  walks.wander = 0.5, walks.kept = 1;
+  EXPECT_LT(count(300, forgets, any, 11), 27);
+  EXPECT_LT(count(300, walks, any, 12), 27);
+  walks.wander = 1.5;
+  std::mt19937_64 random(13);
+  const Drift told = drifts(walks.draw(random), {7, 0.05}).at(0);
+  EXPECT_GT(told.wander, 0.3);
+}
+
+TEST(Alike, OneReadingIsNoDrift) {
+  DrawnFleet off;
+  off.last_off = 12;
+  EXPECT_LE(count(
+                100, off, [](const Drift& drift) { return !drift.own.empty(); }, 14),
+            10);
 }
 
 TEST(Alike, ACommonCauseIsNoMachinesOwn) {
@@ -90,7 +115,8 @@ TEST(Alike, ReadingsThatNeverChangeDriftNowhere) {
   std::vector<FleetReading> readings;
   for (const char* machine : {"a", "b", "c"})
     for (int week = 0; week < 6; ++week)
-      readings.push_back({machine, "k", "", static_cast<std::int64_t>(7 * week * kUsADay), 1.0 / 3e5, 1e-7});
+      readings.push_back(
+          {machine, "k", "", static_cast<std::int64_t>(7 * week * text::kUsADay), 1.0 / 3e5, 1e-7});
   const Drift drift = drifts(readings, {}).at(0);
   EXPECT_TRUE(drift.judged);
   EXPECT_FALSE(drift.common);

@@ -67,6 +67,7 @@ TEST_F(FleetCommand, RecordsACalibrationAndItsChecks) {
   EXPECT_EQ(json("vernier fleet due")["machines"][0]["why"], "not checked since its calibration");
   EXPECT_EQ(run("vernier fleet check VMC-3 --result check.json --history checks.json --at 2026-11-01"), 2)
       << "it is there";
+  EXPECT_EQ(run("vernier fleet check VMC-3 --result check.json --at 2199-01-01"), 1) << "still to come";
   const auto alike = json("vernier fleet alike")["quantities"];
   ASSERT_FALSE(alike.empty());
   EXPECT_FALSE(alike[0]["judged"]) << "one machine is no fleet";
@@ -86,16 +87,29 @@ TEST_F(FleetCommand, AddChangesOnlyWhatIsSaid) {
 
 TEST_F(FleetCommand, BadInputIsNamed) {
   ASSERT_EQ(run("vernier fleet add a"), 0) << said();
-  for (const char* words :
-       {"vernier fleet add a/b", "vernier fleet add a --url nonsense://x",
-        "vernier fleet record b --model m.xml --signed-by w", "vernier fleet check a --result out.txt",
-        "vernier fleet check b --result out.txt", "vernier fleet status b",
-        "vernier fleet enqueue night true --machine b", "vernier fleet gateway none.toml",
-        "vernier fleet alike --since yesterday", "vernier fleet metrics --listen nowhere",
-        "vernier fleet list --registry /none/such/folder/f.db", "vernier fleet jobs --again"}) {
+  for (const char* words : {"vernier fleet add a/b",
+                            "vernier fleet add a --url nonsense://x",
+                            "vernier fleet record b --model m.xml --signed-by w",
+                            "vernier fleet check a --result out.txt",
+                            "vernier fleet check b --result out.txt",
+                            "vernier fleet status b",
+                            "vernier fleet enqueue night true --machine b",
+                            "vernier fleet gateway none.toml",
+                            "vernier fleet alike --since yesterday",
+                            "vernier fleet metrics --listen nowhere",
+                            "vernier fleet list --registry /none/such/folder/f.db",
+                            "vernier fleet jobs --again",
+                            "vernier fleet list --registry fleeet.db",
+                            "vernier fleet add 'a\nb'",
+                            "vernier fleet due --at 2026-02-30",
+                            "vernier fleet record a --model out.txt --signed-by w",
+                            "vernier fleet ingest --broker localhost",
+                            "vernier fleet ingest --broker tcp://localhost:mqtt"}) {
     EXPECT_EQ(run(words), 1) << words << "\n" << said();
     EXPECT_NE(said().find("vernier: "), std::string::npos) << words;
   }
+  EXPECT_EQ(run("vernier fleet work night --lease nan"), 1) << said();
+  EXPECT_FALSE(std::filesystem::exists(folder_ + "/fleeet.db")) << "a misspelt registry made a file";
   write_file(folder_ + "/text",
              "this is no database, and long enough to be none in every way that there is of being one.");
   EXPECT_EQ(run("vernier fleet list --registry text"), 1) << said();

@@ -8,6 +8,7 @@
 #include "tools/fleet/cells.h"
 #include "tools/fleet/due.h"
 #include "tools/text/error.h"
+#include "tools/text/wall_time.h"
 
 namespace vernier::registry_test {
 
@@ -102,12 +103,12 @@ TEST_P(RegistryTest, SaysWhichMachinesAreDueAndWhy) {
 }
 
 TEST(FleetTime, IsReadAndWrittenInUtc) {
-  EXPECT_EQ(utc_text(0), "1970-01-01T00:00:00Z");
-  EXPECT_EQ(parse_utc("2026-11-23T13:05:53Z"), 1795439153000000);
-  EXPECT_EQ(utc_text(1795439153000000), "2026-11-23T13:05:53Z");
-  EXPECT_EQ(parse_utc("1970-01-02"), kDay);
+  EXPECT_EQ(text::utc_text(0), "1970-01-01T00:00:00Z");
+  EXPECT_EQ(text::parse_utc("2026-11-23T13:05:53Z"), 1795439153000000);
+  EXPECT_EQ(text::utc_text(1795439153000000), "2026-11-23T13:05:53Z");
+  EXPECT_EQ(text::parse_utc("1970-01-02"), kDay);
   for (const char* none : {"", "yesterday", "2026-13-01", "2026-11-23 13:05 x"})
-    EXPECT_FALSE(parse_utc(none)) << none;
+    EXPECT_FALSE(text::parse_utc(none)) << none;
 }
 
 }  // namespace

@@ -47,13 +47,9 @@ TEST(Sources, HaveAHeaderOfTheirName) {
   const auto files = tracked_files();
   if (files.empty()) GTEST_SKIP() << "not a git checkout: no list of tracked files";
   const std::set<std::string> headers(files.begin(), files.end());
-  // Still under the header of a neighbour.
-  const std::set<std::string> waiting = {"tools/diagnose/products.cpp", "tools/diagnose/rebind.cpp",
-                                         "tools/effects/add.cpp", "tools/effects/add_string.cpp",
-                                         "tools/effects/places.cpp"};
   std::size_t seen = 0;
   for (const std::string& file : files) {
-    if (!wants_header(file) || waiting.contains(file)) continue;
+    if (!wants_header(file)) continue;
     ++seen;
     EXPECT_TRUE(is_paired(file, text_of(file), headers)) << file << " has no header of its name";
   }
@@ -137,6 +133,73 @@ std::string decomposition_in(const std::string& text) {
                            "partialPivLu", "fullPivLu", "bdcSvd", "jacobiSvd", "BDCSVD", "umeyama"})
     if (text.find(word) != std::string::npos) return word;
   return "";
+}
+
+/// "constexpr double", "inline constexpr std::size_t" ...
+bool is_number(std::string_view declared) {
+  for (const std::string_view word : {"static ", "inline "})
+    if (declared.starts_with(word)) declared.remove_prefix(word.size());
+  const std::vector<std::string_view> types = {"double",      "int",   "unsigned",
+                                               "std::size_t", "Index", "Eigen::Index"};
+  if (!declared.starts_with("constexpr ")) return false;
+  declared.remove_prefix(std::string_view("constexpr ").size());
+  return std::find(types.begin(), types.end(), declared) != types.end() ||
+         declared.starts_with("std::uint") || declared.starts_with("std::int");
+}
+
+/// The first line on which a number gets a name and nothing says what it stands for: no comment on it or
+/// above, nor above the constants that it follows. What converts units (kUmPerMm) says so itself; empty:
+/// none.
+std::string number_without_a_word(const std::string& text) {
+  bool said = false;
+  std::size_t begin = 0;
+  while (begin < text.size()) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    std::string line = text.substr(begin, end - begin);
+    begin = end + 1;
+    line.erase(0, line.find_first_not_of(' '));
+    const std::size_t name = line.find(" k"), equals = line.find(" = ");
+    const bool number = is_number(line.substr(0, std::min(name, line.size()))) &&
+                        equals != std::string::npos && name < equals &&
+                        line.find_first_of("0123456789", equals) != std::string::npos &&
+                        line.find('[', name) > equals;
+    if (!number) {
+      said = line.starts_with("//");
+      continue;
+    }
+    const bool converts = line.substr(name, equals - name).find("Per") != std::string::npos ||
+                          line.find("std::numbers::", equals) != std::string::npos;
+    // A long one is broken after its "=" or before its comment.
+    const bool goes_on = end < text.size() && line.find(';') == std::string::npos;
+    said = said || converts || goes_on || line.find("//") != std::string::npos;
+    if (!said) return line;
+  }
+  return "";
+}
+
+TEST(Sources, NumberWithoutAWordIsDetected) {
+  EXPECT_EQ(number_without_a_word("int a;\n  constexpr double kMost = 3;\n"), "constexpr double kMost = 3;");
+  EXPECT_EQ(number_without_a_word("  constexpr double kMost = 3;  // times the noise\n"), "");
+  EXPECT_EQ(number_without_a_word("// times\nconstexpr int kA = 1;\nconstexpr int kB = 2;\n"), "");
+  EXPECT_EQ(number_without_a_word("constexpr double kUmPerMm = 1e3;\n"), "");
+}
+
+TEST(Sources, NumbersThatWereChosenSayWhatTheyAre) {
+  // Rooms that measure and judge.
+  const std::vector<std::string> rooms = {
+      "check",      "compile",  "derive", "diagnose", "effects",  "evaluate",  "fit",      "import",
+      "kinematics", "lint",     "map",    "maths",    "model",    "offline",   "part",     "plan",
+      "probe",      "residual", "safety", "simulate", "timebase", "tolerance", "vibration"};
+  std::size_t seen = 0;
+  for (const std::string& file : tracked_files()) {
+    const bool judges = std::any_of(rooms.begin(), rooms.end(), [&](const std::string& room) {
+      return file.starts_with("tools/" + room + "/");
+    });
+    if (!judges || !has_ending(file, {".h", ".cpp"})) continue;
+    ++seen;
+    EXPECT_EQ(number_without_a_word(text_of(file)), "") << file;
+  }
+  if (seen == 0) GTEST_SKIP() << "not a git checkout: no list of tracked files";
 }
 
 TEST(Sources, DecompositionIsDetected) {

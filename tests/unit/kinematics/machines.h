@@ -71,9 +71,7 @@ inline Machine column_machine(std::mt19937_64& random) {
 /// `count` random states within the axis ranges; axes without a range within +-`reach`.
 inline States random_states(const Machine& machine, std::size_t count, std::mt19937_64& random,
                             double reach = 60) {
-  std::vector<double> references;
-  for (const Input& input : machine.inputs) references.push_back(input.reference);
-  States states = make_states(count, machine.axes.size(), references);
+  States states = make_states(count, machine);
   for (std::size_t a = 0; a < machine.axes.size(); ++a) {
     std::uniform_real_distribution<double> value(machine.axes[a].min.value_or(-reach),
                                                  machine.axes[a].max.value_or(reach));

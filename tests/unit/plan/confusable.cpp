@@ -7,6 +7,8 @@
 #include <random>
 
 #include "tools/diagnose/diagnosis.h"
+#include "tools/effects/add.h"
+#include "tools/effects/add_string.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/prediction.h"
 #include "tools/model/rebind.h"

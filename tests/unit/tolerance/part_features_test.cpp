@@ -87,9 +87,7 @@ TEST(PlacedPart, PointsStandOnTheSurface) {
 
 TEST(PlacedPart, ATiltedToolTurnsTheRotaryAxes) {
   const Machine machine = read_machine(VERNIER_SOURCE_DIR "/tables/machines/five_axis_bhead_ctable.xml");
-  std::vector<double> references;
-  for (const Input& input : machine.inputs) references.push_back(input.reference);
-  const States at = make_states(1, machine.axes.size(), references);
+  const States at = make_states(1, machine);
   const Eigen::Vector3d middle = forward(nominal_machine(machine), at).position.col(0);
   const Eigen::Vector3d tool = Eigen::Vector3d(0.3, 0.2, 1).normalized();
   PartDrawing part =

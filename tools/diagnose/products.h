@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <string>
+#include <vector>
+
+#include "tools/diagnose/enumerate.h"
+
+namespace vernier::diagnose {
+
+/// A product of recorded quantities at one degree of freedom: k*X*(T-20).
+struct Product {
+  effects::DofPlace place;
+  model::ExprPtr term;
+  std::vector<std::string> inputs, units;
+};
+
+/// The search beyond the catalogue: all products of one or two recorded quantities at every place where
+/// `extend` is empty, else each of `extend` with one factor more.
+std::vector<ScannedCandidate> enumerate_products(const Evidence& evidence,
+                                                 const std::vector<Product>& extend);
+
+}  // namespace vernier::diagnose
