@@ -14,6 +14,7 @@
 #include <filesystem>
 #include <map>
 
+#include "firmware/daemon/device_trials.h"
 #include "firmware/daemon/feature_settings.h"
 #include "firmware/daemon/open_devices.h"
 #include "firmware/daemon/routing.h"
@@ -21,6 +22,7 @@
 #include "hal/linux/can_axes.h"
 #include "hal/linux/file_lock.h"
 #include "hal/linux/hardware_watchdog.h"
+#include "hal/linux/iio_buffer.h"
 #include "hal/linux/monotonic_clock.h"
 #include "hal/linux/sampled_input.h"
 #include "hal/linux/wake_up.h"
@@ -34,30 +36,11 @@ constexpr double kShareOfRangePerS = 0.1;    // speed of a simulated axis
 constexpr std::int64_t kTicksToZero = 1000;  // at least, for what a drive holds at the start
 constexpr std::uint32_t kMostHandles = 64;   // of all links together
 constexpr int kWatchdogSeconds = 10;  // many drivers know whole seconds only; the unit's watchdog is quicker
-constexpr TimeUs kPatience(1'000'000), kTrialWait(5'000);
 
 struct AnalogueAxis {
   std::size_t axis;
   std::unique_ptr<AnalogueOutput> device;
 };
-
-/// Waits for one frame of an axis.
-std::string hear_axis(Clock& clock, CanAxes& bus, std::uint32_t axis) {
-  const InstantNs end = clock.now() + instant_ns(kPatience);
-  for (AxisReading reading; clock.now() < end; clock.sleep_until(clock.now() + instant_ns(kTrialWait))) {
-    bus.begin_tick();
-    if (bus.read_axis(axis, reading) == HalFault::kNone) return {};
-  }
-  return bus.counts().frames + bus.counts().invalid + bus.counts().stalled == 0
-             ? "no frame has come within 1 s"
-             : "no valid frame within 1 s";
-}
-
-std::string try_output(AnalogueOutput& output) {
-  const HalFault fault = output.rewrite();
-  if (fault == HalFault::kRefused) return "refuses the value that it has";
-  return fault == HalFault::kNone ? "" : "the value that it has cannot be read";
-}
 
 }  // namespace
 
@@ -70,6 +53,7 @@ struct Devices::Parts {
   std::vector<AnalogueAxis> analogue;
   ModbusLines lines;
   std::vector<std::unique_ptr<SampledInput>> sensors;
+  std::map<std::string, std::unique_ptr<IioBuffer>> buffers;  // by device
   std::unique_ptr<RoutedAxes> axes;
   std::unique_ptr<RoutedInputs> inputs;
   std::unique_ptr<FeatureInputs> features;  // in front of the inputs
@@ -93,6 +77,7 @@ struct Devices::Parts {
   std::vector<Route<AxisReader>> make_positions();
   std::vector<Route<CorrectionWriter>> make_outputs();
   std::vector<Route<InputReader>> make_inputs();
+  void make_buffer(const std::string& device, std::vector<Route<InputReader>>& routes);
   void vibrate(std::uint32_t input, const SignalSource& source);
   void make_features();
   void make_sync();
@@ -193,6 +178,11 @@ std::vector<Route<InputReader>> Devices::Parts::make_inputs() {
       continue;
     }
     if (source.kind == "feature") continue;  // served in front of the routes
+    if (source.kind == "iio-buffer") {
+      const std::string& device = source.text("device");
+      if (!buffers.contains(device)) make_buffer(device, routes);
+      continue;
+    }
     std::string error;
     auto input = open_sensor(source, lines, error);
     routes[i] = {input.get(), 0};
@@ -201,6 +191,27 @@ std::vector<Route<InputReader>> Devices::Parts::make_inputs() {
     if (input) sensors.push_back(std::move(input));
   }
   return routes;
+}
+
+/// One buffer for all inputs that name its device; their routes are filled in.
+void Devices::Parts::make_buffer(const std::string& device, std::vector<Route<InputReader>>& routes) {
+  std::vector<const SignalSource*> channels;
+  std::vector<std::size_t> served;
+  for (std::size_t i = 0; i < file.inputs.size(); ++i) {
+    const SignalSource& source = file.inputs[i].source;
+    if (source.kind != "iio-buffer" || source.text("device") != device) continue;
+    for (const SignalSource* const other : channels)
+      if (other->text("channel") == source.text("channel")) source.fail("another input has this channel");
+    served.push_back(i), channels.push_back(&source);
+  }
+  std::string error;
+  auto buffer = open_iio_buffer(channels, error);
+  for (std::uint32_t k = 0; k < served.size(); ++k) {
+    routes[served[k]] = {buffer.get(), k};
+    note("input." + file.inputs[served[k]].name + "  iio-buffer", error,
+         [this, buffer = buffer.get(), k] { return hear_scan(clock, *buffer, k); });
+  }
+  buffers[device] = std::move(buffer);
 }
 
 /// A simulated input that swings, as an accelerometer does.
@@ -395,6 +406,17 @@ void Devices::say_held() const {
       std::fprintf(stderr, "vernierd: axis.%s.output was held at the end of its range in %llu ticks\n",
                    parts_->file.axes[output.axis].wiring.name.c_str(),
                    static_cast<unsigned long long>(output.device->held_at_end()));
+  for (const auto& [device, buffer] : parts_->buffers) {
+    const IioBufferCounts& counts = buffer->counts();
+    if (counts.skipped + counts.missing + counts.malformed + counts.broken == 0) continue;
+    std::fprintf(
+        stderr,
+        "vernierd: buffer of %s: %llu scans, %llu skipped, %llu ticks without one, %llu malformed, %llu "
+        "ticks broken\n",
+        device.c_str(), static_cast<unsigned long long>(counts.scans),
+        static_cast<unsigned long long>(counts.skipped), static_cast<unsigned long long>(counts.missing),
+        static_cast<unsigned long long>(counts.malformed), static_cast<unsigned long long>(counts.broken));
+  }
 }
 
 }  // namespace vernier

@@ -3,11 +3,13 @@
 #include "firmware/daemon/open_devices.h"
 
 #include <cstdio>
+#include <filesystem>
 
 #include "firmware/daemon/device_settings.h"
 #include "hal/linux/analogue_output.h"
 #include "hal/linux/can_sync.h"
 #include "hal/linux/gpio_lines.h"
+#include "hal/linux/iio_buffer.h"
 #include "hal/linux/iio_device.h"
 #include "hal/linux/iio_input.h"
 #include "hal/linux/isotp_link.h"
@@ -112,6 +114,27 @@ std::unique_ptr<SampledInput> open_sensor(const SignalSource& source, ModbusLine
   const std::string device = find_iio_device(source.text("root", kIioRoot), source.text("device"), error);
   return device.empty() ? nullptr
                         : IioInput::open(device + "/" + attribute, scale, stale_ticks(source), error);
+}
+
+std::unique_ptr<IioBuffer> open_iio_buffer(const std::vector<const SignalSource*>& channels,
+                                           std::string& error) {
+  const SignalSource& first = *channels.front();
+  IioBufferSettings settings;
+  for (const SignalSource* const source : channels) {
+    source->only({"root", "devices", "device", "channel", "scale", "offset", "trigger", "rate_Hz"});
+    const std::string& channel = source->text("channel");
+    if (channel.empty() || channel.find('/') != std::string::npos)
+      source->fail("channel is no name of scan_elements, as accel_x is");
+    settings.channels.push_back({channel, {source->number("offset", 0), source->number("scale")}});
+  }
+  settings.trigger = first.text("trigger", "");
+  if (first.numbers.contains("rate_Hz"))
+    settings.frequency = std::to_string(first.whole("rate_Hz", 1, 100'000));
+  settings.directory = find_iio_device(first.text("root", kIioRoot), first.text("device"), error);
+  if (settings.directory.empty()) return nullptr;
+  settings.device =
+      first.text("devices", "/dev") + "/" + std::filesystem::path(settings.directory).filename().string();
+  return IioBuffer::open(settings, error);
 }
 
 std::unique_ptr<CommandLink> open_link(const SignalSource& source, std::string& error) {

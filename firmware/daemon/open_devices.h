@@ -13,6 +13,7 @@
 namespace vernier {
 
 class AnalogueOutput;
+class IioBuffer;
 class ModbusLine;
 class SampledInput;
 
@@ -26,6 +27,10 @@ using ModbusLines = std::map<std::string, std::shared_ptr<ModbusLine>>;
 std::unique_ptr<AnalogueOutput> open_analogue(const SignalSource& source, bool rotary, std::string& error);
 /// A sensor. lines: those that are open, and one more where it needs it.
 std::unique_ptr<SampledInput> open_sensor(const SignalSource& source, ModbusLines& lines, std::string& error);
+/// The buffer of a device that inputs of kind "iio-buffer" name, one channel each; its trigger and rate are
+/// those of the first.
+std::unique_ptr<IioBuffer> open_iio_buffer(const std::vector<const SignalSource*>& channels,
+                                           std::string& error);
 /// A way in from outside.
 std::unique_ptr<CommandLink> open_link(const SignalSource& source, std::string& error);
 /// The sync of kind "can".

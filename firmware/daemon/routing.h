@@ -16,15 +16,21 @@ struct Route {
   std::uint32_t index = 0;  // the backend's own
 };
 
+/// The backends of routes: one of several devices begins a tick once.
+template <class Port>
+std::vector<Port*> backends_of(const std::vector<Route<Port>>& routes) {
+  std::vector<Port*> backends;
+  for (const auto& route : routes)
+    if (route.port != nullptr && std::find(backends.begin(), backends.end(), route.port) == backends.end())
+      backends.push_back(route.port);
+  return backends;
+}
+
 /// The board's axes, spread over several backends. The first route's backend speaks for the path.
 class RoutedAxes : public AxisReader {
  public:
-  explicit RoutedAxes(std::vector<Route<AxisReader>> routes) : routes_(std::move(routes)) {
-    // A backend of several axes begins a tick once.
-    for (const auto& route : routes_)
-      if (std::find(backends_.begin(), backends_.end(), route.port) == backends_.end())
-        backends_.push_back(route.port);
-  }
+  explicit RoutedAxes(std::vector<Route<AxisReader>> routes)
+      : routes_(std::move(routes)), backends_(backends_of(routes_)) {}
   void begin_tick() noexcept override {
     for (AxisReader* const backend : backends_) backend->begin_tick();
   }
@@ -49,7 +55,11 @@ class RoutedAxes : public AxisReader {
 /// The board's inputs, spread over several backends.
 class RoutedInputs : public InputReader {
  public:
-  explicit RoutedInputs(std::vector<Route<InputReader>> routes) : routes_(std::move(routes)) {}
+  explicit RoutedInputs(std::vector<Route<InputReader>> routes)
+      : routes_(std::move(routes)), backends_(backends_of(routes_)) {}
+  void begin_tick() noexcept override {
+    for (InputReader* const backend : backends_) backend->begin_tick();
+  }
   HalFault read_input(std::uint32_t input, InputMicro& value) noexcept override {
     if (input >= routes_.size()) return HalFault::kNoDevice;
     return routes_[input].port->read_input(routes_[input].index, value);
@@ -57,6 +67,7 @@ class RoutedInputs : public InputReader {
 
  private:
   std::vector<Route<InputReader>> routes_;
+  std::vector<InputReader*> backends_;
 };
 
 /// The board's outputs. A correction for an axis without one is refused unless it is zero: an image that

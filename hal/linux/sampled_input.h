@@ -17,14 +17,15 @@ class SampledInput : public InputReader {
   /// for stale_reads reads. realtime.
   HalFault read_input(std::uint32_t input, InputMicro& value) noexcept override;
 
- protected:
   static constexpr double kPerUnit = 1e6;  // inputs count in millionths of their unit
+  /// (raw + offset) * scale of a value in 1e-6; false where that is no number, or too large for an input.
+  static bool scaled(double raw_micro, double offset, double scale, std::int64_t& micro) noexcept;
+
+ protected:
   /// stale_reads: reads without a new sample until the sensor counts as silent.
   explicit SampledInput(std::uint32_t stale_reads) : stale_reads_(stale_reads) {}
   /// One sample, 1e-6 of the unit of the input. kNoReading: there was none. Waits.
   virtual HalFault take(std::int64_t& micro) noexcept = 0;
-  /// (raw + offset) * scale of a value in 1e-6; false where that is no number, or too large for an input.
-  static bool scaled(double raw_micro, double offset, double scale, std::int64_t& micro) noexcept;
 
  private:
   std::uint32_t stale_reads_;

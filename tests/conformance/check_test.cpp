@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // `vernierd --check` as a process: every device is really tried, one line each, and what is missing is named;
 // and what a daemon does to a converter that holds a value from before.
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cstdio>
+#include <thread>
 
 #include "tests/conformance/linux_devices.h"
 
@@ -122,6 +126,40 @@ TEST_F(Check, NamesAPulseOutputThatIsNotExported) {
 TEST_F(Check, NamesASensorThatIsSilent) {
   files_.put("iio:device4/in_temp_input", "");
   expect_missing("missing  input.T  iio: gives no number");
+}
+
+TEST_F(Check, HearsASensorsBufferAndNamesOneThatIsSilent) {
+  files_.put("iio:device5/name", "adxl355"), files_.put("iio:device5/buffer/enable", "0");
+  files_.put("iio:device5/buffer/length", "2"), files_.put("iio:device5/scan_elements/in_accel_x_en", "0");
+  files_.put("iio:device5/scan_elements/in_accel_x_index", "0");
+  files_.put("iio:device5/scan_elements/in_accel_x_type", "le:s16/16>>0");
+  files_.put("dev/README", "a pipe stands for the device");
+  ASSERT_EQ(::mkfifo((files_.path() + "/dev/iio:device5").c_str(), 0600), 0);
+  const std::string buffered =
+      std::string(kBoard) +
+      "[input.a]\nunit = \"m/s^2\"\nsource = { kind = \"iio-buffer\", root = \"ROOT\", devices = "
+      "\"ROOT/dev\", device = \"adxl355\", channel = \"accel_x\", scale = 0.001 }\n";
+  write(buffered);
+  expect_missing("missing  input.a  iio-buffer: no scan has come within 1 s");
+  const int pipe = ::open((files_.path() + "/dev/iio:device5").c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
+  std::atomic<bool> stop{false};
+  std::thread feeder([&] {
+    for (; !stop; std::this_thread::sleep_for(std::chrono::milliseconds(1)))
+      static_cast<void>(::write(pipe, "ab", 2) == 2);
+  });
+  const Said heard = run("--check");
+  stop = true;
+  feeder.join();
+  ::close(pipe);
+  EXPECT_EQ(heard.status, 0) << heard.text;
+  EXPECT_NE(heard.text.find("ok       input.a  iio-buffer\n"), std::string::npos) << heard.text;
+  EXPECT_EQ(files_.get("iio:device5/buffer/enable"), "0") << "it is stopped again";
+  write(buffered +
+        "[input.b]\nunit = \"m/s^2\"\nsource = { kind = \"iio-buffer\", root = \"ROOT\", device = "
+        "\"adxl355\", channel = \"accel_x\", scale = 0.001 }\n");
+  const Said twice = run("--check");
+  EXPECT_EQ(twice.status, 1);
+  EXPECT_NE(twice.text.find("another input has this channel"), std::string::npos) << twice.text;
 }
 
 TEST_F(Check, NamesABusThatIsNotThere) {

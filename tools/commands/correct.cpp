@@ -20,7 +20,7 @@ namespace {
 struct CorrectArguments {
   std::string machine, path, output, json, at, zero, tool;
   double deviation_um = 0.5;
-  bool back = false, with_rotary = false;
+  bool back = false, with_rotary = false, chords = false;
 };
 
 /// Is this a list of positions? Its first line that is no comment is a header with commas or the name of a
@@ -65,12 +65,14 @@ void run_correct(const CorrectArguments& arguments) {
                              "goes with a CSV of positions, not with a part program");
     offline::PartProgramOptions program;
     program.deviation_mm = 1e-3 * arguments.deviation_um;
+    program.arcs = !arguments.chords;
     const model::States zero = kinematics::state_at(machine, arguments.zero);
     for (std::size_t i = 0; i < machine.axes.size(); ++i) program.zero.push_back(zero.axis[i][0]);
     offline::PartProgram corrected = offline::corrected_program(
         text, arguments.path, at, named_in(machine, arguments.at), program, corrector);
     json["moves"] = corrected.moves;
     json["moves_written"] = corrected.written;
+    json["arcs_written"] = corrected.arcs;
     result = std::move(corrected.text);
   }
   const offline::CorrectionSummary& summary = corrector.summary();
@@ -90,8 +92,8 @@ void run_correct(const CorrectArguments& arguments) {
   fmt::print(out, "{}: {} positions, corrections up to {:.4g} um", arguments.output, summary.positions,
              summary.largest_um(machine));
   if (json.contains("moves"))
-    fmt::print(out, "; {} moves as {}", json["moves"].get<std::size_t>(),
-               json["moves_written"].get<std::size_t>());
+    fmt::print(out, "; {} moves as {}, {} of them arcs", json["moves"].get<std::size_t>(),
+               json["moves_written"].get<std::size_t>(), json["arcs_written"].get<std::size_t>());
   fmt::print(out, "; left over {:.3g} um\n", 1000 * summary.left_mm);
 }
 
@@ -113,12 +115,14 @@ void register_correct(CLI::App& vernier) {
                       "a tool of the file's <tools>, or \"X,Y,Z\" in mm from the end of the chain");
   command
       ->add_option("--deviation", arguments->deviation_um,
-                   "how far a straight block may leave the path that is corrected at every moment, um")
+                   "how far a block may leave the path that is corrected at every moment, um")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   command->add_flag(
       "--back", arguments->back,
       "the other way: positions as commanded, to those of an ideal machine that would be there");
+  command->add_flag("--chords", arguments->chords,
+                    "write arcs as straight blocks, for a control that reads no G2 and G3");
   command->add_flag(
       "--rotary", arguments->with_rotary,
       "correct with all axes, tool point and tool direction; default: as the machine file says");

@@ -11,6 +11,7 @@
 #include "tools/commands/part_kinds.h"
 #include "tools/commands/report_header.h"
 #include "tools/evaluate/positioning.h"
+#include "tools/kinematics/at.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/machine_writer.h"
 #include "tools/part/gauge_block.h"
@@ -18,6 +19,7 @@
 #include "tools/part/part_json.h"
 #include "tools/part/part_report.h"
 #include "tools/part/s_part.h"
+#include "tools/part/spline_program.h"
 #include "tools/report/report.h"
 #include "tools/text/csv.h"
 #include "tools/text/error.h"
@@ -29,7 +31,9 @@ namespace {
 
 struct Arguments {
   std::string machine, errors, identify, free, output, json;
+  std::string recorded, recorded_zero;
   double tool_diameter_mm = 20, tool_length_mm = 35, feed_mm_min = 1000, step_mm = 0.5;
+  part::ToolPath tool_path = part::ToolPath::kAnalytical;
   part::DefectReading reading = part::DefectReading::kContact;
   ReportHeader header;
   part::RotarySolution solution = part::RotarySolution::kContinuous;
@@ -57,6 +61,13 @@ void free_only(model::Machine& machine, const std::string& names) {
   }
 }
 
+part::RecordedPath recorded_of(const Arguments& arguments, const part::BHeadMachine& machine) {
+  const model::States zero = kinematics::state_at(machine.machine, arguments.recorded_zero);
+  const auto at = [&](std::size_t k) { return zero.axis[machine.axis[k]][0]; };
+  return part::read_recorded(text::read_file(arguments.recorded), arguments.recorded,
+                             {at(0), at(1), at(2), at(3), at(4)});
+}
+
 part::PartJob make_job(const Arguments& arguments, const std::string& machine_text) {
   part::PartJob job;
   model::Machine machine =
@@ -65,7 +76,9 @@ part::PartJob make_job(const Arguments& arguments, const std::string& machine_te
   if (!arguments.free.empty()) free_only(machine, arguments.free);
   job.machine = part::b_head_machine(std::move(machine));
   job.options = {
-      {arguments.tool_diameter_mm / 2, arguments.tool_length_mm}, arguments.reading, arguments.solution};
+      {arguments.tool_diameter_mm / 2, arguments.tool_length_mm, part::touch_of(arguments.tool_path)},
+      arguments.reading,
+      arguments.solution};
   for (const part::RuledSurface& flank : part::s_part()) part::check_cutter(flank, job.options.cutter);
   const part::PathOptions path{job.options.cutter, arguments.step_mm, arguments.feed_mm_min,
                                arguments.solution};
@@ -81,6 +94,9 @@ part::PartJob make_job(const Arguments& arguments, const std::string& machine_te
     job.machine.machine = job.identified->machine;
   }
   job.defect = part::part_defect(job.machine, job.points, job.options);
+  if (!arguments.recorded.empty())
+    job.recorded = part::recorded_deviations(job.machine, recorded_of(arguments, job.machine), job.points,
+                                             job.options.cutter);
   return job;
 }
 
@@ -91,9 +107,16 @@ void print_summary(std::FILE* out, const nlohmann::ordered_json& result) {
   for (const auto& one : result["overcut"])
     fmt::print(out,
                "overcut of flank {} at its foot: formula {:.4f} mm as printed, {:.4f} mm with unit normal; "
-               "distance {:.4f} mm\n",
+               "distance {:.4f} mm, {:.4f} mm at its top\n",
                one["flank"].get<std::string>(), one["formula_as_printed"]["mm"].get<double>(),
-               one["formula_unit_normal"]["mm"].get<double>(), one["distance"][0]["mm"].get<double>());
+               one["formula_unit_normal"]["mm"].get<double>(), one["distance"][0]["mm"].get<double>(),
+               one["distance"].back()["mm"].get<double>());
+  if (result.contains("recorded"))
+    for (const char* kind : {"recorded", "path", "controller"})
+      fmt::print(out, "{} at {} points: {:+.4f} to {:+.4f} mm, rms {:.4g} um\n", kind,
+                 result["recorded"]["points"].get<int>(), result["recorded"][kind]["min_mm"].get<double>(),
+                 result["recorded"][kind]["max_mm"].get<double>(),
+                 result["recorded"][kind]["rms_um"].get<double>());
   for (const auto& path : result["paths"])
     for (const auto& beyond : path["beyond_limits"])
       fmt::print(out, "flank {}: {}\n", path["flank"].get<std::string>(), beyond.get<std::string>());
@@ -168,6 +191,13 @@ void run_s_shape(const Arguments& arguments) {
       {"defect.csv", part::defect_csv(job.points, job.defect)},
       {"machine.xml", model::update_machine_text(machine_text, written, true)},
       {"report.html", report::improvement_report_html(arguments.header.on(part::part_report(job, result)))}};
+  if (arguments.tool_path == part::ToolPath::kTp5c1)
+    files.emplace_back("TP5C1.mpf", part::spline_program(0, part::kPartHeightMm));
+  if (arguments.tool_path == part::ToolPath::kTp6c2)
+    files.emplace_back("TP6C2.mpf",
+                       part::spline_program(part::kMeasuredHeightsMm[0], part::kMeasuredHeightsMm[1]));
+  if (job.recorded)
+    files.emplace_back("recorded.csv", part::recorded_csv(job.points, job.defect, *job.recorded));
   for (const part::PartPath& one : job.paths) {
     const char flank = part::s_part()[one.flank].name;
     files.emplace_back(fmt::format("path_{}.csv", flank), part::path_csv(job.machine, one));
@@ -259,6 +289,20 @@ void add_s_shape(CLI::App& part) {
       ->transform(CLI::CheckedTransformer(
           std::map<std::string, part::RotarySolution>{{"continuous", part::RotarySolution::kContinuous},
                                                       {"positive-b", part::RotarySolution::kPositiveB}}));
+  command
+      ->add_option("--tool-path", a->tool_path,
+                   "analytical, TP5C1 or TP6C2: the cutter touches at the top, the foot or Z11")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, part::ToolPath>{{"analytical", part::ToolPath::kAnalytical},
+                                                {"TP5C1", part::ToolPath::kTp5c1},
+                                                {"TP6C2", part::ToolPath::kTp6c2}}));
+  CLI::Option* recorded_option = command->add_option(
+      "--recorded", a->recorded,
+      "positions that the controller recorded (CSV: X Y Z B C): what they leave at the points");
+  command
+      ->add_option("--recorded-zero", a->recorded_zero,
+                   "what the record shows where the paths' axes are at 0: \"X=120,Z=-40\"")
+      ->needs(recorded_option);
   CLI::Option* identify_option = command->add_option(
       "--identify", a->identify, "measured part (CSV: sx sy sz defect, u): fit the errors to it");
   command->add_option("--free", a->free, "only these statics are fitted, e.g. EA0B,EX0B");

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <map>
 #include <random>
+#include <tuple>
 
 #include "tools/maths/alignment.h"
 #include "tools/maths/chance.h"
@@ -32,17 +33,6 @@ Vector3d turn(const Vector3d& from_deg, const Vector3d& to_deg) {
   const Eigen::AngleAxisd way(rotation(to_deg) * rotation(from_deg).conjugate());
   const double angle = way.angle() > M_PI ? way.angle() - 2 * M_PI : way.angle();
   return maths::kDegPerRad * angle * way.axis();
-}
-
-/// The x that chi square of k degrees of freedom exceeds with chance p.
-double chi_square_point(double p, double k) {
-  double low = 0, high = 10 * k + 100;
-  constexpr int kHalvings = 80;  // to the last digit
-  for (int i = 0; i < kHalvings; ++i) {
-    const double middle = (low + high) / 2;
-    (maths::chi_square_tail(middle, k) > p ? low : high) = middle;
-  }
-  return (low + high) / 2;
 }
 
 /// Degrees of freedom of a chi square whose root varies as RP_l of n readings does: 1 / (2 relative
@@ -93,12 +83,10 @@ void take_interval(const std::vector<Vector3d>& rest, PoseResult& result) {
   result.freedom = freedom_of(variances, n);
   // Readings lie nearer to their own barycentre than to the true one.
   const double centre = result.repeatability_mm * std::sqrt(n / (n - 1));
-  constexpr double kTail = 0.025;  // on either side of 95 %
-  result.low_mm = centre * std::sqrt(result.freedom / chi_square_point(kTail, result.freedom));
-  result.high_mm = centre * std::sqrt(result.freedom / chi_square_point(1 - kTail, result.freedom));
+  std::tie(result.low_mm, result.high_mm) = spread_interval(centre, result.freedom);
   const double length = result.accuracy_mm;
   const Vector3d along = length > 0 ? Vector3d(result.deviation_mm / length) : Vector3d::UnitX();
-  result.accuracy_std_mm = std::sqrt(along.dot(covariance * along) / n);
+  result.scatter_std_mm = std::sqrt(along.dot(covariance * along) / n);
 }
 
 PoseResult pose_of(const std::vector<const PoseReading*>& readings) {
@@ -122,7 +110,7 @@ PoseResult pose_of(const std::vector<const PoseReading*>& readings) {
   result.repeatability_mm = result.mean_distance_mm + 3 * result.distance_spread_mm;
   take_interval(rest, result);
   // What the instrument errs by it errs by in every visit: no mean takes it away.
-  result.accuracy_std_mm = std::hypot(result.accuracy_std_mm, u);
+  result.accuracy_std_mm = std::hypot(result.scatter_std_mm, u);
   take_rotations(readings, result);
   return result;
 }
@@ -140,7 +128,15 @@ Key key_of(const PoseReading& reading) {
   return key;
 }
 
-std::vector<std::vector<const PoseReading*>> by_pose(const std::vector<PoseReading>& readings) {
+}  // namespace
+
+std::pair<double, double> spread_interval(double spread, double freedom) {
+  constexpr double kTail = 0.025;
+  return {spread * std::sqrt(freedom / maths::chi_square_point(kTail, freedom)),
+          spread * std::sqrt(freedom / maths::chi_square_point(1 - kTail, freedom))};
+}
+
+std::vector<std::vector<const PoseReading*>> visits_by_pose(const std::vector<PoseReading>& readings) {
   std::map<Key, std::size_t> place;
   std::vector<std::vector<const PoseReading*>> poses;
   for (const PoseReading& reading : readings) {
@@ -151,11 +147,9 @@ std::vector<std::vector<const PoseReading*>> by_pose(const std::vector<PoseReadi
   return poses;
 }
 
-}  // namespace
-
 std::vector<PoseResult> evaluate_poses(const std::vector<PoseReading>& readings) {
   std::vector<PoseResult> results;
-  for (const auto& pose : by_pose(readings)) {
+  for (const auto& pose : visits_by_pose(readings)) {
     const Vector3d& at = pose.front()->commanded_mm;
     if (pose.size() < 2)
       throw text::InputError(

@@ -2,8 +2,10 @@
 #pragma once
 #include <Eigen/Core>
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace vernier::evaluate {
@@ -15,22 +17,30 @@ struct PoseReading {
   Eigen::Vector3d commanded_mm, measured_mm;
   std::optional<Eigen::Vector3d> commanded_deg, measured_deg;
   double u_mm = 0;  // standard uncertainty of a measured coordinate; 0: not known
+  double time_s = std::numeric_limits<double>::quiet_NaN();  // not a number where it is not known
 };
 
 /// What ISO 9283:1998, 7.2 computes at one pose. mm, deg.
 struct PoseResult {
   Eigen::Vector3d commanded_mm;
   std::size_t count = 0;
-  Eigen::Vector3d deviation_mm;    // AP_x AP_y AP_z: barycentre - commanded
-  double accuracy_mm = 0;          // AP_P: its length
-  double accuracy_std_mm = 0;      // of it: scatter of the mean along it, and u of the instrument
-  double mean_distance_mm = 0;     // of the readings from their barycentre
-  double distance_spread_mm = 0;   // S_l, n - 1
-  double repeatability_mm = 0;     // RP_l: mean distance + 3 S_l
-  double low_mm = 0, high_mm = 0;  // 95 % interval of RP_l
-  double freedom = 0;              // of the chi square that it is from
+  Eigen::Vector3d deviation_mm;                                    // AP_x AP_y AP_z: barycentre - commanded
+  double accuracy_mm = 0;                                          // AP_P: its length
+  double scatter_std_mm = 0;                                       // of it: scatter of the mean along it
+  double accuracy_std_mm = 0;                                      // the same and u of the instrument
+  double mean_distance_mm = 0;                                     // of the readings from their barycentre
+  double distance_spread_mm = 0;                                   // S_l, n - 1
+  double repeatability_mm = 0;                                     // RP_l: mean distance + 3 S_l
+  double low_mm = 0, high_mm = 0;                                  // 95 % interval of RP_l
+  double freedom = 0;                                              // of the chi square that it is from
   std::optional<Eigen::Vector3d> accuracy_deg, repeatability_deg;  // AP_a b c; RP_a b c: 3 S of each
 };
+
+/// The visits of each pose, poses and visits in their order. What is pointed to is in `readings`. tool.
+std::vector<std::vector<const PoseReading*>> visits_by_pose(const std::vector<PoseReading>& readings);
+
+/// 95 % interval of a standard deviation, or a multiple of one, with so many degrees of freedom. tool.
+std::pair<double, double> spread_interval(double spread, double freedom);
 
 /// The poses of a test in the order of their first visit: readings with one commanded pose (within 1 nm and 1
 /// nrad) belong together. Throws InputError: a pose with fewer than two readings. The interval takes the

@@ -144,6 +144,7 @@ std::vector<PoseReading> read_pose_readings(const std::string& text, const std::
     }
     if (place.contains("run")) one.run = csv.rows[row][place["run"]];
     if (place.contains("u")) one.u_mm = number(row, "u").value_or(0);
+    if (place.contains("t")) one.time_s = number(row, "t").value_or(one.time_s);
     if (read) readings.push_back(one);
   }
   if (readings.empty()) throw text::InputError(header, "x", "no row has a reading");

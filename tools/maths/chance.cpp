@@ -76,6 +76,16 @@ double log_chi_square_tail(double x, double k) {
 
 double chi_square_tail(double x, double k) { return std::exp(log_chi_square_tail(x, k)); }
 
+double chi_square_point(double p, double k) {
+  double low = 0, high = 10 * k + 100;
+  constexpr int kHalvings = 80;
+  for (int i = 0; i < kHalvings; ++i) {
+    const double middle = (low + high) / 2;
+    (chi_square_tail(middle, k) > p ? low : high) = middle;
+  }
+  return (low + high) / 2;
+}
+
 double log_correlation_tail(double r, double pairs) {
   const double freedom = pairs - 2;
   if (freedom <= 0) return 0;

@@ -16,6 +16,10 @@ double log_chi_square_tail(double x, double k);
 /// The same as a probability; 1 for x <= 0, 0 below the smallest double. tool.
 double chi_square_tail(double x, double k);
 
+/// The x that chi square of k > 0 degrees of freedom exceeds with probability p, 0 < p < 1; to 1e-15 of
+/// 10 k + 100. tool.
+double chi_square_point(double p, double k);
+
 /// log P(R >= r) of the correlation coefficient of `pairs` independent pairs of normal numbers (one-sided).
 /// tool.
 double log_correlation_tail(double r, double pairs);

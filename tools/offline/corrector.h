@@ -19,7 +19,7 @@ struct CorrectorOptions {
 
 /// What was done to the positions of a list or program.
 struct CorrectionSummary {
-  std::size_t positions = 0;      // that were asked for
+  std::size_t positions = 0;      // of a list; of a program those that were looked at
   std::size_t not_converged = 0;  // of these
   std::vector<double> largest;    // by axis, mm or deg
   double left_mm = 0;             // largest distance between the corrected tool point and the ideal one
@@ -38,7 +38,7 @@ class Corrector {
   /// Axis positions (axes x states) to command for states that are as if the machine were ideal; motion and
   /// inputs count as they are. Throws InputError where the chain is not finite. tool.
   Eigen::MatrixXd commands(const model::States& states);
-  /// Adds positions that will be written to the summary.
+  /// Adds positions to the summary.
   void count(const model::States& states, const Eigen::MatrixXd& commands);
   const CorrectionSummary& summary() const { return summary_; }
 

@@ -22,18 +22,21 @@ struct PartProgramOptions {
   /// Machine position of the program's zero, by axis: 0 where the program's coordinates are the machine's.
   std::vector<double> zero;
   int digits = 5;                                    // behind the point
+  bool arcs = true;                                  // G2 and G3 are written; else chords alone
   std::function<void(const ProgramStretch&)> watch;  // is told every move in the order of the program
 };
 
 struct PartProgram {
   std::string text;
   std::size_t moves = 0, written = 0;  // blocks with a motion, before and after
+  std::size_t arcs = 0;                // of those written
 };
 
-/// A part program (RS-274: G0 G1 G2 G3, planes G17 to G19, G20/G21, G90/G91, G93/G94) with the correction in
-/// its positions. A block is split where the correction is no straight line along it; arcs become chords, in
-/// every plane, helices included; under G93 the parts share the block's time. Speeds and senses of a move are
-/// those of its direction and F word. What is no motion stays as it stands. `at`: where the axes stand before
+/// A part program (RS-274: G0 G1 G2 G3, planes G17 to G19, G20/G21, G90/G91, G90.1/G91.1, G93/G94) with the
+/// correction in its positions. A block is split where the correction along it is no straight line; an arc or
+/// helix is written as arcs in its plane, with I J K as steps, and as chords where these reach as far; under
+/// G93 the parts share the block's time. Speeds and senses of a move are those of its direction and F word.
+/// What is no motion stays as it stands. `at`: where the axes stand before
 /// the first block, and inputs. Throws InputError with file, line and word for what would be wrong if it were
 /// passed on: cycles, compensation of the cutter, other zeros and rotations, parameters, loops, an axis that
 /// was never commanded and that `at` does not name. tool.

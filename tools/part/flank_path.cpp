@@ -23,7 +23,8 @@ Direction direction(const Eigen::Vector3d& vector, const Eigen::Vector3d& vector
 FlankPose flank_pose(const RuledSurface& surface, const Cutter& cutter, double u, NormalReading reading) {
   const CurvePoint c0 = surface.bottom.at(u), c1 = surface.top.at(u);
   const Direction axis = direction(c1.position - c0.position, c1.first - c0.first);
-  const Direction tangent = direction(c1.first, c1.second);
+  const double v = cutter.touch;
+  const Direction tangent = direction((1 - v) * c0.first + v * c1.first, (1 - v) * c0.second + v * c1.second);
   const double sign = reading.outward ? surface.outward : -surface.outward;
   Eigen::Vector3d normal = sign * axis.unit.cross(tangent.unit);
   Eigen::Vector3d normal_du = sign * (axis.by_u.cross(tangent.unit) + axis.unit.cross(tangent.by_u));

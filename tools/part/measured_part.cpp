@@ -6,10 +6,10 @@
 #include <cmath>
 
 #include "tools/part/identify.h"
+#include "tools/part/part_column.h"
 #include "tools/part/s_part.h"
 #include "tools/text/csv.h"
 #include "tools/text/numbers.h"
-#include "tools/text/units.h"
 
 namespace vernier::part {
 namespace {
@@ -17,37 +17,6 @@ namespace {
 /// A nominal point so far from both flanks is none of theirs (the flanks are known to rounding; files have
 /// three or four decimals).
 constexpr double kOnSurfaceMm = 0.05;
-
-/// One column of lengths, in mm.
-class LengthColumn {
- public:
-  LengthColumn(const text::CsvFile& csv, const std::string& name, bool required) : csv_(csv) {
-    for (std::size_t i = 0; i < csv.columns.size(); ++i)
-      if (csv.columns[i].name == name) index_ = i;
-    if (!index_ && required)
-      throw text::InputError({csv.file, csv.header_line}, name, "a measured part needs this column");
-    if (!index_) return;
-    const std::optional<text::Unit> unit = text::find_unit(csv.columns[*index_].unit);
-    if (!unit || unit->dimension != text::Dimension::kLength)
-      throw text::InputError({csv.file, csv.header_line}, name,
-                             "needs a unit of length, as in " + name + "[mm]");
-    factor_ = unit->factor;
-  }
-  bool present() const { return index_.has_value(); }
-  double at(std::size_t row) const {
-    const std::string& text = csv_.rows[row][*index_];
-    const std::optional<double> number = text::parse_number(text);
-    if (!number)
-      throw text::InputError({csv_.file, csv_.line[row]}, text,
-                             "no number in column " + csv_.columns[*index_].name);
-    return *number * factor_;
-  }
-
- private:
-  const text::CsvFile& csv_;
-  std::optional<std::size_t> index_;
-  double factor_ = 1;
-};
 
 std::string point_text(const Eigen::Vector3d& p) {
   return fmt::format("({:g}, {:g}, {:g})", p.x(), p.y(), p.z());
@@ -89,8 +58,11 @@ PartPoint place_on_part(const Eigen::Vector3d& position, const text::Place& plac
 
 MeasuredPart read_measured_part(const std::string& text, const std::string& file) {
   const text::CsvFile csv = text::parse_csv(text, file);
-  const LengthColumn x(csv, "sx", true), y(csv, "sy", true), z(csv, "sz", true), defect(csv, "defect", true);
-  const LengthColumn u(csv, "u", false);
+  const auto length = [&](const char* name, bool required) {
+    return PartColumn(csv, name, text::Dimension::kLength, required);
+  };
+  const PartColumn x = length("sx", true), y = length("sy", true), z = length("sz", true),
+                   defect = length("defect", true), u = length("u", false);
   MeasuredPart part{file, {}};
   for (std::size_t row = 0; row < csv.rows.size(); ++row) {
     const text::Place place{file, csv.line[row]};

@@ -16,7 +16,8 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr std::array<double, 3> kOvercutHeightsMm = {0, kMeasuredHeightsMm[0], kMeasuredHeightsMm[1]};
+constexpr std::array<double, 4> kOvercutHeightsMm = {0, kMeasuredHeightsMm[0], kMeasuredHeightsMm[1],
+                                                     kPartHeightMm};
 constexpr std::size_t kAlongFlank = 521;  // every knot and 39 points between
 
 ordered_json worst_json(const Worst& worst) { return {{"mm", worst.value_mm}, {"u", worst.u}}; }
@@ -185,6 +186,7 @@ ordered_json part_json(const PartJob& job) {
       {"pivot_mm", job.machine.pivot_mm},
       {"tool_diameter_mm", 2 * job.options.cutter.radius_mm},
       {"tool_length_mm", job.options.cutter.length_mm},
+      {"touches_at_mm", job.options.cutter.touch * kPartHeightMm},
       {"curves", curves_json()},
       {"overcut", overcut_json(job.options.cutter)},
       {"paths", {path_json(job.machine, job.paths[0]), path_json(job.machine, job.paths[1])}},
@@ -192,6 +194,7 @@ ordered_json part_json(const PartJob& job) {
       {"defect", defect_json(job)},
       {"observability",
        {observability_json(job, job.options.reading), observability_json(job, DefectReading::kInPlane)}}};
+  if (job.recorded) result["recorded"] = recorded_json(*job.recorded);
   if (job.identified) add_identification(result, *job.identified);
   return result;
 }

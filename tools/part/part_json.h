@@ -6,6 +6,7 @@
 
 #include "tools/part/identify.h"
 #include "tools/part/part_path.h"
+#include "tools/part/recorded_path.h"
 
 namespace vernier::part {
 
@@ -17,6 +18,7 @@ struct PartJob {
   std::vector<PartPoint> points;  // the hundred, or the measured ones
   PartDefect defect;              // there
   std::optional<MeasuredPart> measured;
+  std::optional<RecordedDeviations> recorded;  // there too
   std::optional<Identification> identified;
 };
 

@@ -22,6 +22,7 @@ class Spline {
 
   /// u: 0..1; outside the end span continues. The second derivative is continuous, the third jumps at knots.
   CurvePoint at(double u) const;
+  const std::vector<Eigen::Vector3d>& control() const { return control_; }
   std::size_t spans() const { return control_.size() - 3; }
   /// Length of the whole curve, mm; Gauss-Legendre quadrature in each knot span, relative error below 1e-9.
   double length_mm() const;

@@ -21,12 +21,14 @@ using Eigen::Vector3d;
 
 constexpr double kDeviation_mm = 0.0005, kJump_mm = 0.01;
 
-PartProgram corrected(const std::string& text, const std::vector<char>& known = {0, 0, 0}) {
+PartProgram corrected(const std::string& text, const std::vector<char>& known = {0, 0, 0},
+                      bool arcs = false) {
   const Machine machine = bridge();
   Corrector corrector(machine);
   PartProgramOptions options;
   options.deviation_mm = kDeviation_mm;
   options.zero = {0, 0, 0};
+  options.arcs = arcs;
   return corrected_program(text, "part.ngc", at_rest(machine), known, options, corrector);
 }
 
@@ -147,7 +149,46 @@ TEST(PartPrograms, RefuseWhatTheyCannotFollow) {
   EXPECT_NE(error_of("G0 X#1 Y1 Z0\n").find("X"), std::string::npos);
   EXPECT_NE(error_of("G0 X1 Y1\n").find("\"Z\""), std::string::npos);
   EXPECT_NE(error_of("G0 X1 Y1 Z0\nG2 X5 Y1 I9 J9\n").find("centre"), std::string::npos);
+  EXPECT_NE(error_of("G90 G90.1\nG0 X1 Y1 Z0\nG2 X5 Y1 I3\n").find("\"J\""), std::string::npos);
   EXPECT_NE(error_of(corrected("G0 X1 Y1 Z0\n").text).find("part.ngc:1"), std::string::npos);
+  const std::string arcs = corrected("G0 X300 Y150 Z-50\nG2 X300 Y150 I0 J50 F900\n", {0, 0, 0}, true).text;
+  EXPECT_NE(arcs.find("G2 "), std::string::npos);
+  EXPECT_NE(error_of(arcs).find("part.ngc:1"), std::string::npos);
+}
+
+TEST(PartPrograms, ArcsInInchesAreThoseInMillimetres) {
+  const std::string head = "G90\nG0 X10 Y5 Z-2\nG2 X12 Y7 ";
+  const PartProgram inch = corrected("G20 " + head + "I2 F40\n", {0, 0, 0}, true);
+  const PartProgram mm =
+      corrected("G21 G90\nG0 X254 Y127 Z-50.8\nG2 X304.8 Y177.8 I50.8 F1016\n", {0, 0, 0}, true);
+  EXPECT_GT(inch.arcs, 0u);
+  const std::vector<Vector3d> a = points_of(inch.text), b = points_of(mm.text);
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t k = 0; k < a.size(); ++k) EXPECT_LT((25.4 * a[k] - b[k]).norm(), 5e-5) << k;
+}
+
+TEST(PartPrograms, ArcsKeepTheirBlocksWordsAndTheCentreIsAlwaysAStep) {
+  const PartProgram program = corrected(
+      "G21 G90 G90.1\nG0 X300 Y150 Z-50\n/N7 G18 G2 X350 Z-100 I350 K-50 F900 (slow)\nG93 G17 G3 X350 Y150 "
+      "I350 J200 F2\n",
+      {0, 0, 0}, true);
+  EXPECT_EQ(program.text.find("G90.1"), std::string::npos);
+  EXPECT_NE(program.text.find("\nG21 G91.1\n"), std::string::npos);
+  EXPECT_GT(program.arcs, 3u);
+  double minutes = 0;
+  bool timed = false;
+  std::istringstream lines(program.text);
+  for (std::string line; std::getline(lines, line);) {
+    timed = timed || line.find("G93") != std::string::npos;
+    if (line.find(" K") != std::string::npos) {
+      // A block that may be skipped is skipped whole, and its plane's letters are those of its centre.
+      EXPECT_EQ(line.front(), '/') << line;
+      EXPECT_EQ(line.find(" J"), std::string::npos) << line;
+    }
+    if (timed && line.find(" F") != std::string::npos)
+      minutes += 1 / std::stod(line.substr(line.find(" F") + 2));
+  }
+  EXPECT_NEAR(minutes, 0.5, 1e-4);
 }
 
 }  // namespace

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware/daemon/device_trials.h"
+
+#include "hal/linux/analogue_output.h"
+#include "hal/linux/can_axes.h"
+#include "hal/linux/iio_buffer.h"
+
+namespace vernier {
+namespace {
+
+constexpr TimeUs kTrialWait(5'000);
+
+}  // namespace
+
+std::string hear_axis(Clock& clock, CanAxes& bus, std::uint32_t axis) {
+  const InstantNs end = clock.now() + instant_ns(kPatience);
+  for (AxisReading reading; clock.now() < end; clock.sleep_until(clock.now() + instant_ns(kTrialWait))) {
+    bus.begin_tick();
+    if (bus.read_axis(axis, reading) == HalFault::kNone) return {};
+  }
+  return bus.counts().frames + bus.counts().invalid + bus.counts().stalled == 0
+             ? "no frame has come within 1 s"
+             : "no valid frame within 1 s";
+}
+
+std::string hear_scan(Clock& clock, IioBuffer& buffer, std::uint32_t channel) {
+  const InstantNs end = clock.now() + instant_ns(kPatience);
+  for (InputMicro value; clock.now() < end; clock.sleep_until(clock.now() + instant_ns(kTrialWait))) {
+    buffer.begin_tick();
+    if (buffer.read_input(channel, value) == HalFault::kNone) return {};
+  }
+  return "no scan has come within 1 s";
+}
+
+std::string try_output(AnalogueOutput& output) {
+  const HalFault fault = output.rewrite();
+  if (fault == HalFault::kRefused) return "refuses the value that it has";
+  return fault == HalFault::kNone ? "" : "the value that it has cannot be read";
+}
+
+}  // namespace vernier

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <string>
+
+#include "hal/clock.h"
+
+namespace vernier {
+
+class AnalogueOutput;
+class CanAxes;
+class IioBuffer;
+
+/// How long a trial waits for a device.
+inline constexpr TimeUs kPatience(1'000'000);
+
+// Each tries a device that is open: empty, or what is wrong. setup.
+
+/// Waits for one frame of an axis.
+std::string hear_axis(Clock& clock, CanAxes& bus, std::uint32_t axis);
+/// Waits for one scan of a sensor.
+std::string hear_scan(Clock& clock, IioBuffer& buffer, std::uint32_t channel);
+/// Writes the value that an output has.
+std::string try_output(AnalogueOutput& output);
+
+}  // namespace vernier

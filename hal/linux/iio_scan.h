@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+namespace vernier {
+
+/// How the kernel lays a channel out in the scans of an IIO buffer (scan_elements/*_type,
+/// Documentation/ABI/testing/sysfs-bus-iio).
+struct IioElement {
+  bool big_endian = false, is_signed = false;
+  std::uint32_t bits = 0, storage_bits = 0, shift = 0;
+  std::uint32_t repeat = 1;  // elements in a row, of which the first is taken
+
+  /// Bytes of all its elements; where a scan has it begins at a multiple of this.
+  std::uint32_t bytes() const noexcept { return storage_bits / 8 * repeat; }
+};
+
+/// Reads "le:s16/16>>0", "be:u24/32X2>>8" and the like. False where it is something else, or has no storage
+/// of 8, 16, 32 or 64 bits that holds its bits. setup.
+bool parse_iio_element(std::string_view text, IioElement& element) noexcept;
+
+/// Value of a channel whose storage begins here: turned to the host's order, shifted, cut to its bits, with
+/// its sign. An unsigned one of 64 bits is held at the largest int64. realtime.
+std::int64_t iio_value(const unsigned char* storage, const IioElement& element) noexcept;
+
+/// Where an element stands after so many bytes of a scan, elements aligned to their own size.
+constexpr std::size_t iio_aligned(std::size_t at, std::size_t size) noexcept {
+  return (at + size - 1) / size * size;
+}
+
+}  // namespace vernier

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tools/evaluate/robot_distance.h"
+#include "tools/evaluate/robot_drift.h"
+
+namespace vernier::commands::evaluate_cli {
+
+/// The largest of a characteristic, and how uncertain it is upwards (95 %).
+struct Judged {
+  std::string name;
+  double value_mm = 0, expanded_mm = 0;
+};
+
+/// What one kind of a robot's test comes to.
+struct RobotPage {
+  std::vector<Judged> characteristics;
+  std::string key;              // of the list in the JSON
+  nlohmann::ordered_json list;  // a pose, a station, a distance each
+  std::vector<std::string> lines;
+  std::size_t fewest = 0, wanted = 0;  // cycles that there are, and that the standard asks for
+  double least_spread_mm = 0;          // the least repeatability
+};
+
+RobotPage pose_page(const std::vector<evaluate::PoseResult>& poses, bool path);
+RobotPage distance_page(const std::vector<evaluate::DistanceResult>& distances);
+RobotPage drift_page(const std::vector<evaluate::DriftResult>& drifts);
+
+}  // namespace vernier::commands::evaluate_cli

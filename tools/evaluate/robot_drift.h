@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <string>
+#include <vector>
+
+#include "tools/evaluate/robot.h"
+
+namespace vernier::evaluate {
+
+/// A pose in one block of cycles of a long test, against the first block.
+struct DriftBlock {
+  std::string run;
+  double time_s = 0;  // middle of its readings since that of the first; not a number where no time is known
+  PoseResult pose;
+  double accuracy_drift_mm = 0, accuracy_drift_std_mm = 0;  // dAP, and what its scatter makes it uncertain by
+  double repeatability_drift_mm = 0, repeatability_drift_std_mm = 0;  // dRP, likewise
+  double shift_mm = 0;  // of the barycentre: dAP is 0 where it goes round the commanded point
+};
+
+/// A pose over the whole test.
+struct DriftResult {
+  std::vector<DriftBlock> blocks;                                   // the first is the reference
+  std::size_t accuracy_at = 0, repeatability_at = 0, shift_at = 0;  // blocks of the largest
+};
+
+/// Drift of the characteristics of each pose, from readings whose run is their block of cycles: dAP =
+/// |AP of the first block - AP of this one|, dRP = |RP of the first - RP of this one|; reported are the
+/// largest. Throws InputError: a block with fewer than two readings of a pose, a pose in one block only,
+/// blocks that go back in time. tool. Source: ISO 9283:1998, 7.6. The shift of the barycentre is not the
+/// standard's. What the instrument errs by in the same way in both blocks is no drift: uncertainties are of
+/// the scatter alone; an instrument that drifts itself is not told from the robot.
+std::vector<DriftResult> evaluate_drift(const std::vector<PoseReading>& readings);
+
+}  // namespace vernier::evaluate

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/offline/axis_motion.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace vernier::offline {
+
+using Eigen::Index, Eigen::VectorXd;
+
+VectorXd ProgramMove::at(double share) const { return arc ? arc->at(share) : from + share * (to - from); }
+
+AxisMotion::AxisMotion(const model::Machine& machine, const model::States& at)
+    : machine_(machine), at_(at), turn_(machine.axes.size(), std::nan("")), sense_(machine.axes.size(), 0) {}
+
+std::vector<double> AxisMotion::stretches(const ProgramMove& move) const {
+  std::vector<double> ends = {0};
+  constexpr int kLooks = 720, kHalvings = 40;
+  for (std::size_t i = 0; move.arc && i < machine_.axes.size(); ++i) {
+    const auto axis = static_cast<Index>(i);
+    const auto slope = [&](double s) {
+      constexpr double kStep = 1e-7;
+      return move.at(s + kStep)[axis] - move.at(s - kStep)[axis];
+    };
+    // A look may fall on the reversal itself, where there is no slope: it counts from the last that has one.
+    double last = 0, last_slope = 0;
+    for (int k = 0; k <= kLooks; ++k) {
+      double low = last, high = (k + 0.5) / (kLooks + 1);
+      const double here = slope(high), before = last_slope;
+      if (here == 0) continue;
+      last = high, last_slope = here;
+      if (before * here >= 0) continue;
+      for (int n = 0; n < kHalvings; ++n)
+        (before * slope((low + high) / 2) > 0 ? low : high) = (low + high) / 2;
+      ends.push_back(low);
+    }
+  }
+  ends.push_back(1);
+  std::sort(ends.begin(), ends.end());
+  return ends;
+}
+
+void AxisMotion::set_out(const VectorXd& from, const VectorXd& to) {
+  for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
+    const double way = to[static_cast<Index>(i)] - from[static_cast<Index>(i)];
+    const double sense = std::abs(way) > 1e-9 ? (way > 0 ? 1 : -1) : sense_[i];
+    if (sense != sense_[i] && sense_[i] != 0) turn_[i] = from[static_cast<Index>(i)];
+    sense_[i] = sense;
+  }
+}
+
+model::States AxisMotion::along(const ProgramMove& move, const std::vector<double>& shares) const {
+  model::States states = model::select_states(at_, std::vector<std::size_t>(shares.size(), 0));
+  constexpr double kStep = 1e-6;
+  for (std::size_t k = 0; k < shares.size(); ++k) {
+    const auto row = static_cast<Index>(k);
+    const double s = std::clamp(shares[k], kStep, 1 - kStep);
+    const VectorXd point = move.at(shares[k]),
+                   slope = (move.at(s + kStep) - move.at(s - kStep)) / (2 * kStep);
+    double path = 0;
+    for (std::size_t i = 0; i < machine_.axes.size(); ++i)
+      if (!machine_.axes[i].rotary) path += slope[static_cast<Index>(i)] * slope[static_cast<Index>(i)];
+    path = std::sqrt(path);
+    states.feed[row] = move.feed;
+    for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
+      const double way = slope[static_cast<Index>(i)];
+      states.axis[i][row] = point[static_cast<Index>(i)];
+      states.velocity[i][row] = path > 0 ? move.feed / 60 * way / path : 0;
+      // At a reversal the slope is 0 and its sign chance: the sense is that of the whole stretch.
+      states.direction[i][row] = sense_[i];
+      if (std::isfinite(turn_[i])) states.since[i][row] = std::abs(point[static_cast<Index>(i)] - turn_[i]);
+    }
+  }
+  return states;
+}
+
+int AxisMotion::looks(const ProgramMove& move, double from, double to, double deviation_mm) const {
+  constexpr double kStep_mm = 1, kStep_deg = 0.1;
+  constexpr int kFewest = 8, kMost = 200000, kChords = 64;
+  double length = 0, turn = 0, bend = 0;
+  VectorXd last = move.at(from), way;
+  for (int k = 1; k <= kChords; ++k) {
+    const VectorXd next = move.at(from + (to - from) * k / kChords), step = next - last;
+    double squares = 0;
+    for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
+      const double one = step[static_cast<Index>(i)];
+      if (machine_.axes[i].rotary)
+        turn += std::abs(one);
+      else
+        squares += one * one;
+    }
+    length += std::sqrt(squares);
+    if (k > 1) bend = std::max(bend, (step - way).norm());
+    way = step;
+    last = next;
+  }
+  // A chord of n parts of this one is off by its eighth over n^2.
+  const double chords = move.arc ? kChords * std::sqrt(bend / deviation_mm) : 0;
+  return static_cast<int>(std::clamp(std::max({length / kStep_mm, turn / kStep_deg, chords}),
+                                     static_cast<double>(kFewest), static_cast<double>(kMost)));
+}
+
+}  // namespace vernier::offline

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "tools/model/machine.h"
+#include "tools/model/states.h"
+#include "tools/offline/program_arc.h"
+
+namespace vernier::offline {
+
+/// A move of all axes at once from one place to another: straight, or along an arc.
+struct ProgramMove {
+  Eigen::VectorXd from, to;  // mm and deg
+  std::optional<ProgramArc> arc;
+  double feed = 0;  // of the linear axes together, mm/min; 0: nobody knows it (rapid, inverse time)
+
+  Eigen::VectorXd at(double share) const;
+};
+
+/// The motion that belongs to the places of a program's moves: speeds, senses, and how far each axis has come
+/// since it last turned round.
+class AxisMotion {
+ public:
+  /// at: one row, with the inputs.
+  AxisMotion(const model::Machine& machine, const model::States& at);
+
+  /// Shares at which the senses of all axes are the same from one to the next: 0, reversals, 1.
+  std::vector<double> stretches(const ProgramMove& move) const;
+  /// The axes set out from one place to another, none turning round between.
+  void set_out(const Eigen::VectorXd& from, const Eigen::VectorXd& to);
+  /// Positions with the motion at shares of a move, all within what was set out for.
+  model::States along(const ProgramMove& move, const std::vector<double>& shares) const;
+  /// How many equal parts of a stretch are looked at: a millimetre or a tenth of a degree each, and of an arc
+  /// so short that chords of them stay within an eighth of the deviation.
+  int looks(const ProgramMove& move, double from, double to, double deviation_mm) const;
+
+ private:
+  const model::Machine& machine_;
+  const model::States& at_;
+  std::vector<double> turn_, sense_;  // where an axis last turned round, and how it moves
+};
+
+}  // namespace vernier::offline

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <Eigen/Core>
+#include <array>
+#include <optional>
+#include <vector>
+
+namespace vernier::offline {
+
+/// Where along an arc of the program the points of a path lie: guides the arcs that are put in its place.
+struct ArcGuide {
+  std::array<Eigen::Index, 2> axis{};  // rows of the plane's axes
+  std::vector<double> angle;           // of each point about the program's centre, rad, in one sense
+};
+
+/// A block of a path: a straight line, or an arc about a centre in the plane of the guide, in its sense,
+/// along which all other axes move evenly with the angle.
+struct PathPiece {
+  Eigen::Index to = 0;  // the point that it ends in; it begins where the piece before ended
+  std::optional<Eigen::Vector2d> centre;
+  bool whole = false;  // a whole turn: ends where it began in its plane
+};
+
+/// As few blocks from the first point to the last as come out when each is as long as it can be: all points
+/// between its ends within `most` of it (norm over all axes, one point per column). Arcs pass through the
+/// points at their ends and turn by at most 270 degrees, or once round; where a line reaches as far, the line
+/// is taken. What lies along a line or an arc is a matter of time, not of the path. Without a guide lines
+/// alone. tool.
+std::vector<PathPiece> fit_path(const Eigen::MatrixXd& points, const std::optional<ArcGuide>& guide,
+                                double most);
+
+}  // namespace vernier::offline

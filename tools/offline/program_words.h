@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/text/error.h"
+
+namespace vernier::offline {
+
+/// One word of a block: X12.5, G1, (a remark), ;a remark.
+struct Word {
+  char letter = 0;  // upper case; ( for remarks, % and / for themselves
+  double value = 0;
+  std::string text;  // as it stands
+};
+
+/// The words of a block. Throws InputError for a remark without its end, and for what is neither a word nor a
+/// remark: parameters, expressions, loops. tool.
+std::vector<Word> words_of(const std::string& line, const text::Place& place);
+
+/// Value of the first word with this letter.
+std::optional<double> value_of(const std::vector<Word>& words, char letter);
+
+}  // namespace vernier::offline

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <optional>
+#include <string>
+
+#include "tools/text/csv.h"
+#include "tools/text/units.h"
+
+namespace vernier::part {
+
+/// One column of a file, in mm or deg. The file outlives it.
+class PartColumn {
+ public:
+  /// Throws InputError where it is missing though required, or has a unit of another dimension. tool.
+  PartColumn(const text::CsvFile& csv, const std::string& name, text::Dimension dimension, bool required);
+  bool present() const { return index_.has_value(); }
+  /// Throws InputError where the cell is no number. tool.
+  double at(std::size_t row) const;
+
+ private:
+  const text::CsvFile& csv_;
+  std::optional<std::size_t> index_;
+  double factor_ = 1;
+};
+
+}  // namespace vernier::part
