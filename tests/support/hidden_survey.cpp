@@ -13,6 +13,7 @@
 #include "tests/support/hidden_survey_csv.h"
 #include "tests/support/hidden_survey_inputs.h"
 #include "tests/support/hidden_survey_key.h"
+#include "tests/support/hidden_survey_noise.h"
 #include "tests/support/hidden_survey_outside.h"
 #include "tests/support/hidden_survey_rivals.h"
 #include "tools/model/machine_reader.h"
@@ -33,7 +34,7 @@ constexpr int kDraws = 80;
 class Attempt {
  public:
   Attempt(const SurveySpec& spec, std::uint64_t seed)
-      : spec_(spec), draw_(seed), g_(geometry_of(spec.family, spec.seed)) {}
+      : spec_(spec), draw_(seed), noise_draw_(~seed), g_(geometry_of(spec.family, spec.seed)) {}
 
   /// Nothing where this draw shows the effect too badly, or tells what it must not tell.
   std::optional<HiddenSurvey> survey();
@@ -54,10 +55,12 @@ class Attempt {
   void measure(HiddenSurvey& survey);
   void judge(HiddenSurvey& survey);
   HiddenEffect key_of(std::size_t effect) const;
-  SurveyTable table() const { return {g_, options_, rows_, columns_, u_}; }
+  SurveyTable table(bool with_u = true) const {
+    return {g_, options_, rows_, columns_, u_, with_u, growing_u_};
+  }
 
   SurveySpec spec_;
-  Draw draw_;
+  Draw draw_, noise_draw_;  // the second: of all noise that is not white
   Geometry g_;
   MotionOptions options_;
   ModelOptions model_options_;
@@ -67,8 +70,9 @@ class Attempt {
   std::vector<Form> forms_;
   std::vector<double> scale_, ratio_, remaining_;
   double u_ = 0;
-  std::string model_, base_;  // the user's file; the same with true values
-  Machine base_machine_;      // base_ with every logged column as an input
+  std::vector<double> growing_u_;  // of each row over u_; empty: 1
+  std::string model_, base_;       // the user's file; the same with true values
+  Machine base_machine_;           // base_ with every logged column as an input
   Measurement measurement_;
   std::optional<Complement> complement_;
 };
@@ -140,7 +144,7 @@ void Attempt::choose_motion() {
 void Attempt::choose_model() {
   const bool has_tables = g_.text.find("fit=\"") != std::string::npos;
   model_options_.kind = has_tables && draw_.chance(0.6) ? ModelKind::kTables : ModelKind::kStatics;
-  model_options_.shift_per_run = draw_.chance(0.7);
+  model_options_.shift_per_run = draw_.chance(0.7) && spec_.noise != NoiseLaw::kSetUps;
   model_options_.hold_shift = options_.reading == Reading::kD;
   for (std::size_t i = 0; i < effects_.size(); ++i) {
     const Demands demands = demands_of(effects_[i]);
@@ -179,6 +183,7 @@ bool Attempt::choose() {
     choose_motion();
   }
   rows_ = move(g_, options_, draw_);
+  if (spec_.noise == NoiseLaw::kPoses) repeat_poses(rows_, noise_draw_);
   columns_ = log_inputs(rows_, options_, draw_);
   for (std::size_t r = 0; r < spec_.runs; ++r) model_options_.runs.push_back(run_label(r));
   for (const std::string& effect : effects_)
@@ -189,6 +194,7 @@ bool Attempt::choose() {
   }
   choose_model();
   u_ = spec_.u_mm > 0 ? spec_.u_mm : g_.u_mm;
+  if (spec_.noise == NoiseLaw::kGrowing) growing_u_ = growing_u(nominal_points(table()));
   return true;
 }
 
@@ -240,22 +246,23 @@ bool Attempt::scale_effects() {
   scale_.assign(forms_.size(), 0);
   ratio_ = remaining_ = scale_;
   const FormColumns columns(base_machine_, measurement_, *complement_);
+  const double asked = spec_.ratio * whole_noise(spec_.noise);
   for (std::size_t e = 0; e < forms_.size(); ++e) {
     Eigen::VectorXd sizes(static_cast<Eigen::Index>(forms_[e].coefficients.size()));
     for (Eigen::Index k = 0; k < sizes.size(); ++k)
       sizes[k] = forms_[e].coefficients[static_cast<std::size_t>(k)];
     const double linear = rms(columns(forms_[e], false) * sizes);
     if (!(linear > 1e-9)) return false;
-    scale_[e] = spec_.ratio / linear;
+    scale_[e] = asked / linear;
     // Once more with the exact shift: an angle of some size is not quite linear.
     for (int again = 0; again < 2; ++again) {
       const Eigen::VectorXd shift = complement_->weighted(shift_of(e));
       ratio_[e] = rms(complement_->project(shift));
       remaining_[e] = ratio_[e] / rms(shift);
       if (remaining_[e] < kLeastRemaining || !std::isfinite(ratio_[e])) return false;
-      if (again == 0) scale_[e] *= spec_.ratio / ratio_[e];
+      if (again == 0) scale_[e] *= asked / ratio_[e];
     }
-    if (std::abs(ratio_[e] / spec_.ratio - 1) > 0.03) return false;
+    if (std::abs(ratio_[e] / asked - 1) > 0.03) return false;
   }
   return forms_.size() < 2 || far_apart();
 }
@@ -271,9 +278,18 @@ void Attempt::measure(HiddenSurvey& survey) {
   survey.truth = truth_text();
   const Machine truth = parse_machine(survey.truth, "truth.xml");
   Eigen::VectorXd readings = predict(truth, parse_measurement(survey.csv, "survey.csv", truth));
-  const double u = is_angular(options_.reading) ? angle_deg(u_) : u_;
-  for (Eigen::Index i = 0; i < readings.size(); ++i) readings[i] += u * draw_.normal();
-  survey.csv = survey_csv(table(), readings);
+  survey.u = is_angular(options_.reading) ? angle_deg(u_) : u_;
+  Eigen::VectorXd noise(readings.size());
+  for (double& one : noise) one = draw_.normal();
+  noise = noise_of(spec_.noise, measurement_, std::move(noise), noise_draw_, survey.wild);
+  for (Eigen::Index i = 0; i < readings.size(); ++i) {
+    const std::size_t row = measurement_.observations[static_cast<std::size_t>(i)].row;
+    readings[i] += survey.u * (growing_u_.empty() ? 1 : growing_u_[row]) * noise[i];
+    const double step = kQuantum * survey.u;
+    if (spec_.noise == NoiseLaw::kQuantised) readings[i] = step * std::round(readings[i] / step);
+  }
+  const bool without_u = spec_.noise == NoiseLaw::kNoU || spec_.noise == NoiseLaw::kWalkNoU;
+  survey.csv = survey_csv(table(!without_u), readings);
   for (std::size_t i = 0; i < measurement_.observations.size(); ++i)
     measurement_.observations[i].value = readings[static_cast<Eigen::Index>(i)];
 }
@@ -311,6 +327,7 @@ void Attempt::judge(HiddenSurvey& survey) {
   for (Eigen::Index i = 0; i < difference.size(); ++i)
     difference[i] = measurement_.observations[static_cast<std::size_t>(i)].value - expected[i];
   survey.can_tell = true;
+  const double tells = kTells * std::pow(whole_noise(spec_.noise), 2);
   for (std::size_t e = 0; e < forms_.size(); ++e) {
     Complement beside = *complement_;  // what the other effects explain is not for this one
     for (std::size_t other = 0; other < forms_.size(); ++other)
@@ -329,7 +346,7 @@ void Attempt::judge(HiddenSurvey& survey) {
                      is_by_speed(forms_[e])};
     court.truth_chi_square = chi_square_with(true_columns, court.residual);
     std::vector<Rival> rivals = find_rivals(court, survey.effects[e].accept, draw_);
-    survey.can_tell = survey.can_tell && (rivals.empty() || rivals.front().excess >= kTells);
+    survey.can_tell = survey.can_tell && (rivals.empty() || rivals.front().excess >= tells);
     survey.rivals.insert(
         survey.rivals.end(), rivals.begin(),
         rivals.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(5, rivals.size())));

@@ -41,12 +41,35 @@ enum class SurveyClass : std::uint8_t {
   kConfusable,  // one effect that the survey's design cannot tell from another
 };
 
+/// How the errors of the readings are made (hidden_survey_noise.h). u is what the file states.
+enum class NoiseLaw : std::uint8_t {
+  kWhite,           // independent, normal, u
+  kStudent,         // Student's t of 3 degrees of freedom, standard deviation u
+  kQuantised,       // u with the rounding to a display's steps of 2 u in it
+  kNoU,             // white, and the file states none
+  kTwice,           // white, twice u
+  kOutliers,        // 3 % of the rows off by 6 to 14 u
+  kSetUps,          // u, and an offset of u that each run has anew, which no BaseShift of the model takes
+  kAutoregressive,  // u, of which 0.95 goes from row to row
+  kWalk,            // u, and a random walk of rms u along the time in runs
+  kWalkNoU,         // the same, and the file states none
+  kPoses,           // u, and an error of u that the three readings of a pose share
+  kGrowing,         // white; u grows with the distance, and the file says so
+  // Disturbances of the instrument, twice u (where nothing is hidden):
+  kDrift,  // a random walk
+  kStep,   // from a row on
+  kJump,   // for a third of the rows
+};
+inline constexpr std::size_t kNoiseLaws = 15;
+inline constexpr std::size_t kLawsOfNoise = 12;  // before the disturbances
+
 struct SurveySpec {
   Family family = Family::kBridge;
   SurveyClass kind = SurveyClass::kSingle;
+  NoiseLaw noise = NoiseLaw::kWhite;
   std::string effect;  // id of FORMATS section 4; empty: any that the family can show
   /// rms over the fit observations of what is left of the weighted effect after projection on the complement
-  /// of the model's free parameters.
+  /// of the model's free parameters, over the whole standard deviation of the noise law.
   double ratio = 2;
   double u_mm = 0;  // standard uncertainty of a reading; 0: the family's own
   std::size_t rows = 400, runs = 4;
@@ -67,7 +90,7 @@ struct HiddenEffect {
   std::string branch, dof, term;    // of the first place of the term
   int transform = 0;
   std::vector<Cause> accept;         // the cause, its other names, and twins (one and the same column)
-  double ratio = 0;                  // reached
+  double ratio = 0;                  // reached, in u
   double remaining = 0;              // share of the effect's rms that the free parameters leave
   std::vector<std::string> statics;  // of the term, in the truth's machine file
 };
@@ -85,8 +108,10 @@ struct HiddenSurvey {
   std::string truth, model, csv;  // machine file with and without the effect, measurement file
   std::vector<HiddenEffect> effects;
   std::vector<Rival> rivals;  // best first, at most five; for kSingle and kConfusable
-  bool can_tell = false;      // the best rival's excess is 20 or more
+  bool can_tell = false;      // the best rival's excess is 20 times the noise law's variance or more
   std::size_t observations = 0, parameters = 0;
+  double u = 0;                   // rms of what the file states or would state of a reading, mm or deg
+  std::vector<std::size_t> wild;  // rows with an outlier of the noise
 };
 
 /// A survey, the same for the same specification. Throws std::runtime_error where the family cannot show the

@@ -59,9 +59,10 @@ std::string header(const SurveyTable& t) {
       text += "rz[deg]";
       break;
   }
-  text += t.options.reading == Reading::kDirection ? ",ua[arcsec]"
-          : is_angular(t.options.reading)          ? ",u[arcsec]"
-                                                   : ",u[mm]";
+  if (t.with_u)
+    text += t.options.reading == Reading::kDirection ? ",ua[arcsec]"
+            : is_angular(t.options.reading)          ? ",u[arcsec]"
+                                                     : ",u[mm]";
   return text + ",run,role\n";
 }
 
@@ -119,6 +120,8 @@ std::string reading_text(const SurveyTable& t, std::size_t row, const Eigen::Vec
 
 }  // namespace
 
+Eigen::Matrix3Xd nominal_points(const SurveyTable& t) { return nominal_poses(t).position; }
+
 std::string survey_csv(const SurveyTable& t, const Eigen::VectorXd& readings) {
   std::string text = header(t);
   const bool by_nominal = t.options.reading == Reading::kD || t.options.reading == Reading::kDirection;
@@ -137,7 +140,8 @@ std::string survey_csv(const SurveyTable& t, const Eigen::VectorXd& readings) {
     for (const auto& [name, value] : t.geometry.held) text += number(value, 0) + ",";
     for (const LoggedColumn& c : t.columns) text += number(c.value[i], 5) + ",";
     text += reading_text(t, i, readings, nominal);
-    text += fmt::format(",{},{},{}\n", u, run_label(row.run), row.check ? "check" : "fit");
+    if (t.with_u) text += fmt::format(",{}", t.growing_u.empty() ? u : u * t.growing_u[i]);
+    text += fmt::format(",{},{}\n", run_label(row.run), row.check ? "check" : "fit");
   }
   return text;
 }

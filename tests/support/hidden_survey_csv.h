@@ -16,7 +16,12 @@ struct SurveyTable {
   const std::vector<MotionRow>& rows;
   const std::vector<LoggedColumn>& columns;
   double u_mm;
+  bool with_u = true;
+  std::vector<double> growing_u = {};  // of each row over u_mm; empty: 1
 };
+
+/// Where the nominal tool point is in each row, mm.
+Eigen::Matrix3Xd nominal_points(const SurveyTable& table);
 
 /// The file; `readings`: per row in the order of the header, mm. Empty: all 0. Of a `d` reading the nominal
 /// point is where the nominal chain stands.

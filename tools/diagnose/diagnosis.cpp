@@ -108,6 +108,28 @@ class Diagnoser {
     return static_cast<double>(before.after.count) * std::log(before.chi_square / after.chi_square);
   }
 
+  /// What bears a step out, as a natural logarithm of a likelihood ratio.
+  struct StepEvidence {
+    double value = 0;
+    bool of_check_rows = false;  // 20 to 1; else of runs left out in turn
+  };
+
+  /// Nothing: rows that no fit saw do not bear it out. Check rows speak first, as far as the step shows on
+  /// them; runs that were left out where they do not reach 20 to 1.
+  std::optional<StepEvidence> borne_out_by(const fit::FitResult& before, const fit::FitResult& after,
+                                           std::size_t item) const {
+    const ProofThresholds& limits = options_.thresholds.proof;
+    const Proof proof = proof_of(before, after);
+    const std::optional<double> asked = proof.asked(limits);
+    if (asked && proof.evidence < *asked) return std::nullopt;
+    // A step of one run carries to no other: rows of others that grow by it are enough.
+    if (!pool_.candidate(item).choice.runs.empty() && proof.evidence < 0) return std::nullopt;
+    if (asked && proof.evidence >= limits.evidence) return StepEvidence{proof.evidence, true};
+    const double held_out = finder_.held_out_evidence(item);
+    if (held_out < limits.evidence) return std::nullopt;
+    return StepEvidence{held_out, false};
+  }
+
   Proof proof_of(const fit::FitResult& before, const fit::FitResult& after) const {
     const fit::NoiseModel noise = finder_.evidence().noise_of_file();
     double variance = 1;
@@ -145,20 +167,16 @@ class Diagnoser {
         chosen_.erase(chosen_.begin() + static_cast<std::ptrdiff_t>(count - 1));
         continue;
       }
-      const Proof proof = proof_of(result_.end, fitted.fit);
-      const bool proven =
-          proof.can_tell(options_.thresholds.proof) && proof.bears_out(options_.thresholds.proof);
-      // A step of one run carries to no other: rows of others that grow by it are enough.
-      const bool of_runs = !pool_.candidate(items.back()).choice.runs.empty();
-      if (proof.speaks_against(options_.thresholds.proof) || (of_runs && proof.evidence < 0)) {
+      const std::optional<StepEvidence> borne_out = borne_out_by(result_.end, fitted.fit, items.back());
+      if (!borne_out) {
         disproved_.push_back(pool_.candidate(items.back()).spoken);
         chosen_.erase(chosen_.begin() + static_cast<std::ptrdiff_t>(count - 1));
         continue;
       }
       LadderStep step;
       step.confirmed = true;
-      step.evidence = proven ? proof.evidence : finder_.held_out_evidence(items.back());
-      if (proven) proven_.insert(items.back());
+      step.evidence = borne_out->value;
+      if (borne_out->of_check_rows) proven_.insert(items.back());
       step.effect = pool_.candidate(items.back()).choice.effect->id;
       step.add = add_string_of(items.back());
       step.label = pool_.candidate(items.back()).label;
@@ -348,10 +366,12 @@ class Diagnoser {
       return;
     }
     if (chosen_.empty()) {
-      result_.verdict = noise_is_left ? Verdict::kConsistent : Verdict::kUnexplained;
+      const std::string why = noise_is_left ? does_not_carry() : "";
+      result_.verdict = noise_is_left && why.empty() ? Verdict::kConsistent : Verdict::kUnexplained;
       result_.explanation =
-          result_.verdict == Verdict::kConsistent
-              ? "The residual is noise: there is nothing to add."
+          result_.verdict == Verdict::kConsistent ? "The residual is noise: there is nothing to add."
+          : !why.empty()
+              ? why
               : "There is more than noise, and nothing in the catalogue explains it." + where_left();
       if (!not_borne_out_.empty()) result_.explanation += " " + not_borne_out_;
       return;
@@ -379,6 +399,9 @@ class Diagnoser {
       for (std::size_t i = 1; i < pieces.size(); ++i)
         result_.explanation += "; " + pool_.candidate(pieces[i]).spoken;
       result_.explanation += ".";
+    } else if (const std::string why = does_not_carry(); !why.empty()) {
+      result_.verdict = Verdict::kUnexplained;
+      result_.explanation = why;
     } else if (const std::size_t nameless = terms_without_standing(); nameless > 0) {
       result_.verdict = Verdict::kUnexplained;
       result_.explanation = fmt::format(
@@ -400,6 +423,25 @@ class Diagnoser {
       result_.verdict = Verdict::kMissingEffect;
       result_.explanation = in_words();
     }
+  }
+
+  /// Why what is named does not carry to the check rows; empty where it does, or where they cannot tell. They
+  /// are off by no more than the fit rows are, but for their own spread and for what the model's parameters
+  /// leave open.
+  std::string does_not_carry() const {
+    const auto& check = result_.end.normalised_check;
+    if (!check) return {};
+    const double with_u = fit::has_uncertainty(measurement_)
+                              ? std::max(1.0, result_.end.chi_square / std::max(1.0, result_.end.freedom))
+                              : 1;
+    const double ratio = check->rms * check->rms / with_u;
+    const double fitted = std::sqrt(2 / std::max(1.0, result_.end.freedom));
+    const double std = std::hypot(check->square_std / with_u, ratio * fitted);
+    if (ratio < 1 + options_.thresholds.proof.carries_sigmas * std) return {};
+    return fmt::format(
+        "It does not carry: the check rows, which nothing was fitted to, are off {:.2g} times as "
+        "far as the fit rows.",
+        std::sqrt(ratio));
   }
 
   /// How many terms that only a search found are more likely pieces of one thing: all of them, where there

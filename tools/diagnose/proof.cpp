@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/diagnose/proof.h"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
 namespace vernier::diagnose {
 
-bool Proof::speaks_against(const ProofThresholds& thresholds) const {
-  const double least = expected - thresholds.chance_sigmas * std::sqrt(2 * expected);
-  return can_tell(thresholds) && !bears_out(thresholds) && evidence < least;
+std::optional<double> Proof::asked(const ProofThresholds& thresholds) const {
+  if (expected < thresholds.least_expected) return std::nullopt;
+  return std::clamp(expected - thresholds.chance_sigmas * std::sqrt(2 * expected), 0.0, thresholds.evidence);
 }
 
 Proof proof_on_check_rows(const model::Measurement& rows, const Eigen::VectorXd& before,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 #include <Eigen/Core>
+#include <optional>
 
 #include "tools/diagnose/thresholds.h"
 #include "tools/fit/noise.h"
@@ -12,14 +13,11 @@ namespace vernier::diagnose {
 struct Proof {
   double evidence = 0;  // natural logarithm of the likelihood ratio (an e-value): how much likelier the step
                         // makes these rows
-  double expected = 0;  // what it would be on average if the step were true
-  /// Is the step large enough on these rows for them to speak?
-  bool can_tell(const ProofThresholds& thresholds) const { return expected >= thresholds.expected; }
-  /// They speak for it.
-  bool bears_out(const ProofThresholds& thresholds) const { return evidence >= thresholds.evidence; }
-  /// They speak against it: less than what bears it out, and less than one true step in so many brings by
-  /// chance. (Of a true step the evidence is normal with mean `expected` and twice that as variance.)
-  bool speaks_against(const ProofThresholds& thresholds) const;
+  double expected = 0;  // what it would be on average if the step were true; the opposite if it were not
+                        // there at all. Either way its variance is twice that.
+  /// What the step must bring: 20 to 1 where all but one true step in a hundred would, less where it is too
+  /// small on these rows for that, but never less than nothing. None where it hardly shows on them.
+  std::optional<double> asked(const ProofThresholds& thresholds) const;
 };
 
 /// The check rows under two models. before, after: residuals (measured - model) of all observations; noise:

@@ -278,23 +278,26 @@ struct AcceptanceThresholds {
   }
 };
 
-/// What check rows must say of a step.
+/// What rows that no fit and no selection saw must say of a step, and of the whole answer.
 struct ProofThresholds {
   /// log of 20: an e-value of 20 is wrong for one step in twenty at most that is not there, whatever was
   /// looked at before (Ville's inequality).
   double evidence = 2.996;
-  /// A step that is true brings its expectation within its spread, sqrt(2 expected): from here on that is
-  /// above the limit.
-  double expected = 8;
-  /// Spreads of that evidence below its mean from which on the rows speak against the step: one true step in
-  /// a hundred.
+  /// Expected evidence of a step below which the rows say nothing of it: a true one would be denied by chance
+  /// one time in six.
+  double least_expected = 2;
+  /// Spreads of that evidence below its mean that one true step in a hundred falls by.
   double chance_sigmas = 2.33;
+  /// Mean square of the check rows, over what reading and model explain: beyond so many of its own standard
+  /// deviations above 1 the answer does not carry to rows that it was not made from.
+  double carries_sigmas = 4;
 
   template <class Visit>
   void for_each(const Visit& visit) {
     visit("proof.evidence", evidence);
-    visit("proof.expected", expected);
+    visit("proof.least_expected", least_expected);
     visit("proof.chance_sigmas", chance_sigmas);
+    visit("proof.carries_sigmas", carries_sigmas);
   }
 };
 

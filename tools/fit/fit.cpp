@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -239,6 +240,21 @@ std::optional<double> check_ratio(const FitResult& result, const Eigen::VectorXd
   return *result.check.rms_um / nominal_um;
 }
 
+/// Standard uncertainty of the mean of numbers that may hang together: from the means of stretches.
+double std_of_mean(const std::vector<double>& numbers) {
+  constexpr std::size_t kStretches = 12, kLeast = 3;  // readings of a stretch
+  if (numbers.size() < kStretches * kLeast) return std::numeric_limits<double>::infinity();
+  std::array<double, kStretches> mean{};
+  double whole = 0, spread = 0;
+  for (std::size_t k = 0; k < kStretches; ++k) {
+    const std::size_t from = k * numbers.size() / kStretches, to = (k + 1) * numbers.size() / kStretches;
+    for (std::size_t i = from; i < to; ++i) mean[k] += numbers[i] / static_cast<double>(to - from);
+    whole += mean[k] / kStretches;
+  }
+  for (const double one : mean) spread += (one - whole) * (one - whole);
+  return std::sqrt(spread / (kStretches - 1) / kStretches);
+}
+
 /// residual / sqrt(u^2 + g C g^T) over the check rows; u is the reading's own, without it the fit's spread.
 std::optional<NormalisedError> normalised_error(const FitResult& result, const model::Measurement& m) {
   if (result.check.count == 0 || result.freedom < 0.5) return std::nullopt;
@@ -248,6 +264,7 @@ std::optional<NormalisedError> normalised_error(const FitResult& result, const m
   const model::Measurement rows = model::uses_lag(result.machine) ? m : model::select_rows(m, keep);
   const model::Linearisation linear = model::linearise(result.machine, rows, result.parameters);
   NormalisedError error;
+  std::vector<double> squares;
   for (std::size_t i = 0; i < rows.observations.size(); ++i) {
     const model::Observation& o = rows.observations[i];
     if (rows.check[o.row] == 0) continue;
@@ -259,6 +276,7 @@ std::optional<NormalisedError> normalised_error(const FitResult& result, const m
     const double u = model::uncertainty_of(rows, o);
     const double reading = u > 0 ? u * u : result.variance_factor;
     const double e = (o.value - linear.predicted[at]) / std::sqrt(reading + result.variance_factor * model);
+    squares.push_back(e * e);
     error.rms += e * e;
     error.within_3 += std::abs(e) <= 3 ? 1 : 0;
     ++error.count;
@@ -266,6 +284,7 @@ std::optional<NormalisedError> normalised_error(const FitResult& result, const m
   if (error.count == 0) return std::nullopt;
   error.rms = std::sqrt(error.rms / static_cast<double>(error.count));
   error.within_3 /= static_cast<double>(error.count);
+  error.square_std = std_of_mean(squares);
   return error;
 }
 

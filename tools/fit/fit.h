@@ -2,6 +2,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -64,6 +65,9 @@ struct NormalisedError {
   double rms = 0;       // 1 where model and uncertainties are right
   double within_3 = 0;  // share of the readings
   std::size_t count = 0;
+  /// Standard uncertainty of the square of `rms`, from stretches of rows that follow one another: tails and
+  /// errors that hang together are in it. Infinite where there are too few of them.
+  double square_std = std::numeric_limits<double>::infinity();
 };
 
 /// Two estimates that lean on one another.

@@ -9,6 +9,7 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <optional>
 
 #include "tools/maths/decompositions.h"
 #include "tools/maths/factors.h"
@@ -73,7 +74,14 @@ double pose_tolerance(const std::vector<double>& steps) {
 /// The parts of a model, relative to the own one: squares.
 struct Ratios {
   double pose = 0, run = 0, drift = 0, time_constant = 1;
+  bool in_time = false;  // else the time constant is a number of rows
 };
+
+/// What passes between a reading of a series and the one before it, s or rows.
+double passed(const NoiseSeries& series, std::size_t i, bool in_time) {
+  return in_time ? series.time[i] - series.time[i - 1]
+                 : static_cast<double>(series.row[i]) - static_cast<double>(series.row[i - 1]);
+}
 
 /// Kalman filter of three states (drift, run, pose) shared by all columns; the own part has variance 1.
 class Whitener {
@@ -99,7 +107,7 @@ class Whitener {
       if (i == 0 || series.clock[i] != series.clock[i - 1]) {
         begin(state, p, 0, ratios_.drift);
       } else if (ratios_.drift > 0) {
-        const double rho = std::exp(-(series.time[i] - series.time[i - 1]) / ratios_.time_constant);
+        const double rho = std::exp(-passed(series, i, ratios_.in_time) / ratios_.time_constant);
         state.col(0) *= rho;
         p.row(0) *= rho;
         p.col(0) *= rho;
@@ -132,15 +140,17 @@ class Whitener {
 Ratios ratios_of(const NoiseModel& model) {
   const double own = model.own * model.own;
   return {model.pose * model.pose / own, model.run * model.run / own, model.drift * model.drift / own,
-          std::max(model.time_constant, 1e-300)};
+          std::max(model.time_constant, 1e-300), model.in_time};
 }
 
 /// -2 log of the restricted likelihood as a function of the ratios, the own part at its best.
 class Likelihood {
  public:
   Likelihood(const NoiseLayout& layout, const Eigen::VectorXd& residual, const Eigen::MatrixXd& fitted,
-             bool with_u)
-      : layout_(layout), with_u_(with_u), freedom_(static_cast<double>(residual.size() - fitted.cols())) {
+             bool own_from_u)
+      : layout_(layout),
+        own_from_u_(own_from_u),
+        freedom_(static_cast<double>(residual.size() - fitted.cols())) {
     const auto n = static_cast<double>(residual.size()), k = static_cast<double>(fitted.cols());
     const bool whole = n * k * k < kMostNoiseProducts;
     const Eigen::Index columns = whole ? fitted.cols() : 0;
@@ -163,26 +173,26 @@ class Likelihood {
       value += 2 * factor.matrixLLT().diagonal().array().log().sum();
     }
     double variance = std::max(squares, 1e-300) / freedom_;
-    if (with_u_) variance = std::max(variance, 1.0);
+    if (own_from_u_) variance = std::max(variance, 1.0);
     if (own != nullptr) *own = std::sqrt(variance);
     return value + freedom_ * std::log(variance) + squares / variance;
   }
 
  private:
   const NoiseLayout& layout_;
-  bool with_u_;
+  bool own_from_u_;  // it is not below 1
   double freedom_;
   Eigen::MatrixXd readings_;
 };
 
 /// Which of the components are in, and the logarithms of their ratios and of the time constant.
 struct NoiseParts {
-  bool pose = false, run = false, drift = false;
+  bool pose = false, run = false, drift = false, in_time = false;
   std::array<double, 4> log = {0, 0, 0, 0};
 
   Ratios ratios() const {
     return {pose ? std::exp(log[0]) : 0, run ? std::exp(log[1]) : 0, drift ? std::exp(log[2]) : 0,
-            std::exp(log[3])};
+            std::exp(log[3]), in_time};
   }
 };
 
@@ -257,14 +267,15 @@ Eigen::VectorXd held(const Eigen::VectorXd& residual) {
 }
 
 NoiseModel estimate_components(const NoiseLayout& layout, const Eigen::VectorXd& residual,
-                               const Eigen::MatrixXd& fitted, bool with_u, bool& lacking) {
+                               const Eigen::MatrixXd& fitted, bool own_from_u) {
   NoiseModel model;
   model.in_time = layout.in_time;
   constexpr Eigen::Index kLeastFreedom = 30;
   if (residual.size() - fitted.cols() < kLeastFreedom || residual.squaredNorm() <= 0) return model;
-  const Likelihood likelihood(layout, held(residual), fitted, with_u);
+  const Likelihood likelihood(layout, held(residual), fitted, own_from_u);
   const double least_log_time = std::log(layout.step), most_log_time = std::log(10 * layout.span);
   NoiseParts parts;
+  parts.in_time = layout.in_time;
   const double white = likelihood(parts.ratios());
   double best = white;
   constexpr std::array<double, 5> kLogRatios = {-3, -1.5, 0, 1.5, 3};
@@ -326,23 +337,54 @@ NoiseModel estimate_components(const NoiseLayout& layout, const Eigen::VectorXd&
     parts = next;
     best = next_value;
   }
+  if (parts.drift && layout.in_time) {
+    // What goes from reading to reading, however long a move takes between them.
+    NoiseParts by_rows = parts;
+    by_rows.in_time = false;
+    by_rows.log[3] = std::clamp(parts.log[3] - std::log(layout.step), 0.0, std::log(10 * layout.row_span));
+    const double value =
+        descend(likelihood, by_rows, likelihood(by_rows.ratios()), 0, std::log(10 * layout.row_span));
+    if (value < best) {
+      parts = by_rows;
+      best = value;
+    }
+  }
+  model.in_time = parts.in_time;
   likelihood(parts.ratios(), &model.own);
   const Ratios ratios = parts.ratios();
   model.pose = model.own * std::sqrt(ratios.pose);
   model.run = model.own * std::sqrt(ratios.run);
   model.drift = model.own * std::sqrt(ratios.drift);
   model.time_constant = parts.drift ? ratios.time_constant : 0;
-  if (!with_u && model.own < kLeastOwnPart * model.shared()) {
-    lacking = true;
-    NoiseModel left;
-    left.in_time = layout.in_time;
-    likelihood({}, &left.own);
-    left.log_likelihood = -white / 2;
-    return left;
-  }
   model.support = white - best;
   model.log_likelihood = -best / 2;
   return model;
+}
+
+/// Independent readings of the size that is left.
+NoiseModel white_noise(const NoiseLayout& layout, const Eigen::VectorXd& residual,
+                       const Eigen::MatrixXd& fitted, bool own_from_u) {
+  const Likelihood likelihood(layout, held(residual), fitted, own_from_u);
+  NoiseModel model;
+  model.in_time = layout.in_time;
+  model.log_likelihood = -likelihood({}, &model.own) / 2;
+  return model;
+}
+
+/// Nothing: next to nothing is a reading's own, what is left is what the model lacks. Where u is given it
+/// states the whole of a reading, what it shares with others too; where the readings are far better than it
+/// says, u counts as each reading's own.
+std::optional<NoiseModel> estimate_beside(const NoiseLayout& layout, const Eigen::VectorXd& residual,
+                                          const Eigen::MatrixXd& fitted, bool with_u) {
+  constexpr double kNearU = 0.7;
+  NoiseModel free = estimate_components(layout, residual, fitted, false);
+  if (!with_u) return free.own < kLeastOwnPart * free.shared() ? std::nullopt : std::optional(free);
+  if (free.log_likelihood == 0) return free;  // too few readings, or nothing left of them
+  if (free.independent()) return white_noise(layout, residual, fitted, true);
+  if (free.total() < kNearU) return estimate_components(layout, residual, fitted, true);
+  const double scale = std::max(1.0, 1 / free.total());
+  for (double* part : {&free.own, &free.pose, &free.run, &free.drift}) *part *= scale;
+  return free;
 }
 
 }  // namespace
@@ -395,15 +437,18 @@ NoiseLayout noise_layout(const model::Measurement& measurement,
   std::vector<double> gaps;
   for (auto& [kind, series] : of_kind) {
     double begun = 0;
+    std::size_t first = 0;
     for (std::size_t i = 0; i < series.reading.size(); ++i) {
       layout.has_runs = layout.has_runs || (i > 0 && series.setup[i] != series.setup[i - 1]);
       if (i == 0 || series.clock[i] != series.clock[i - 1]) {
         begun = series.time[i];
+        first = series.row[i];
         continue;
       }
       layout.has_poses = layout.has_poses || series.pose[i] == series.pose[i - 1];
       gaps.push_back(series.time[i] - series.time[i - 1]);
       layout.span = std::max(layout.span, series.time[i] - begun);
+      layout.row_span = std::max(layout.row_span, static_cast<double>(series.row[i] - first));
     }
     layout.series.push_back(std::move(series));
   }
@@ -478,7 +523,7 @@ Eigen::MatrixXd covariance_times(const NoiseLayout& layout, const NoiseModel& mo
     if (model.drift <= 0) continue;
     // exp(-|t - t'| / tau): what came before, then what comes after, each by one recursion.
     const auto rho = [&](std::size_t i) {
-      return new_clock(i) ? 0 : std::exp(-(series.time[i] - series.time[i - 1]) / model.time_constant);
+      return new_clock(i) ? 0 : std::exp(-passed(series, i, model.in_time) / model.time_constant);
     };
     const double variance = model.drift * model.drift;
     Eigen::VectorXd sum = Eigen::VectorXd::Zero(x.rows());
@@ -499,9 +544,9 @@ Eigen::MatrixXd covariance_times(const NoiseLayout& layout, const NoiseModel& mo
 
 NoiseModel estimate_noise(const NoiseLayout& layout, const Eigen::VectorXd& residual,
                           const Eigen::MatrixXd& fitted, bool with_u) {
-  bool lacking = false;
-  const NoiseModel without = estimate_components(layout, residual, fitted, with_u, lacking);
-  if (lacking) return without;
+  const std::optional<NoiseModel> alone = estimate_beside(layout, residual, fitted, with_u);
+  if (!alone) return white_noise(layout, residual, fitted, false);
+  const NoiseModel& without = *alone;
   // Steps of the instrument, one after the other, each of which explains more than chance at so many places;
   // they stand only where the whole is better than a drift without them.
   constexpr std::size_t kMostSteps = 3;
@@ -523,8 +568,9 @@ NoiseModel estimate_noise(const NoiseLayout& layout, const Eigen::VectorXd& resi
     left -= column * column.dot(left);
   }
   if (steps.empty()) return without;
-  NoiseModel with = estimate_components(layout, left, all, with_u, lacking);
-  if (lacking) return without;
+  std::optional<NoiseModel> beside = estimate_beside(layout, left, all, with_u);
+  if (!beside) return without;
+  NoiseModel& with = *beside;
   for (NoiseStep& step : steps) step.std *= with.own;
   with.steps = std::move(steps);
   const auto criterion = [&](const NoiseModel& model) {

@@ -27,6 +27,7 @@ struct NoiseLayout {
   bool has_runs = false;      // more than one
   bool has_poses = false;     // some pose was read more than once in a row
   double step = 1, span = 1;  // median step from row to row, longest run, in the unit of time
+  double row_span = 1;        // longest run, rows
 };
 
 /// observations: indices into measurement.observations, in their order. Positions count as one pose where
@@ -52,8 +53,8 @@ struct NoiseStep {
 /// is given.
 struct NoiseModel {
   double own = 1, pose = 0, run = 0, drift = 0;
-  double time_constant = 0;  // of the drift, s or rows
-  bool in_time = false;
+  double time_constant = 0;      // of the drift, s or rows
+  bool in_time = false;          // else it counts rows, whatever time there is
   double support = 0;            // fall of -2 log likelihood (restricted) against independent readings
   double log_likelihood = 0;     // restricted
   std::vector<NoiseStep> steps;  // of the instrument: fitted, not random
@@ -89,8 +90,8 @@ inline constexpr double kMostNoiseProducts = 6e7;
 
 /// Restricted maximum likelihood (Patterson and Thompson 1971) of a residual beside what was fitted.
 /// residual: weighted, held at 4 robust spreads first; fitted: orthonormal columns that were fitted to it. A
-/// component enters where the likelihood falls by more than chance would make it. `with_u`: the own part is
-/// not below 1. tool.
+/// component enters where the likelihood falls by more than chance would make it. `with_u`: all parts
+/// together are not below 1. tool.
 NoiseModel estimate_noise(const NoiseLayout& layout, const Eigen::VectorXd& residual,
                           const Eigen::MatrixXd& fitted, bool with_u);
 

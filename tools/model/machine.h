@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tools/model/expression.h"
+#include "tools/model/reading_uncertainty.h"
 #include "tools/text/error.h"
 
 namespace vernier::model {
@@ -114,8 +115,9 @@ struct Machine {
   std::vector<Table> tables;
   std::vector<BaseShift> base_shifts;
   std::vector<Transform> tool, workpiece;
-  std::vector<Tool> tools;                  // besides the tool of the file
-  std::vector<WorkRange> volume;            // of the axes that <volume> names
+  std::vector<Tool> tools;                       // besides the tool of the file
+  std::vector<WorkRange> volume;                 // of the axes that <volume> names
+  std::optional<ReadingUncertainty> instrument;  // of files that state no u
   bool correct_orientation = false;         // correct="position orientation": the direction of the tool too
   std::shared_ptr<const FitRecord> fitted;  // what its last fit knew of it; null: never fitted
   std::vector<std::string> notes;           // what was read but ignored (`multiply` and the like)

@@ -175,7 +175,7 @@ class Reader {
   void read_variables(const pugi::xml_node& variables) {
     check_attributes(variables, {"note"});
     bool statics = false, axes = false, inputs = false, tables = false;
-    bool tools = false, volume = false;
+    bool tools = false, volume = false, instrument = false;
     pugi::xml_node table_node, volume_node;
     for (const pugi::xml_node node : children(variables)) {
       if (is(node, "static")) {
@@ -196,6 +196,9 @@ class Reader {
       } else if (is(node, "volume")) {
         once(node, volume);
         volume_node = node;
+      } else if (is(node, "instrument")) {
+        once(node, instrument);
+        read_instrument(node);
       } else {
         unknown(node);
       }
@@ -215,6 +218,19 @@ class Reader {
       for (std::size_t i = 0; i < 3; ++i) tool.point[i] = number(node, kSixDofNames[i], 0);
       machine_.tools.push_back(std::move(tool));
     }
+  }
+
+  void read_instrument(const pugi::xml_node& node) {
+    no_children(node);
+    check_attributes(node, {"u", "X", "Y", "Z", "note"});
+    const auto stated = attribute(node, "u");
+    if (!stated) fail(node, node.name(), "an instrument states its u: u=\"15um + 6um/m\"");
+    try {
+      machine_.instrument = parse_reading_uncertainty(*stated);
+    } catch (const text::InputError& wrong) {
+      fail_attribute(node, "u", *stated, wrong.what());
+    }
+    for (std::size_t i = 0; i < 3; ++i) machine_.instrument->at[i] = number(node, kSixDofNames[i], 0);
   }
 
   void read_volume(const pugi::xml_node& list) {

@@ -139,6 +139,7 @@ class Builder {
     read_directions();
     read_distances();
     read_observations();
+    if (machine_.instrument && !reader_.has("u")) state_uncertainty(*machine_.instrument);
     for (const text::CsvColumn& column : reader_.unused())
       if (reader_.is_text(column.name))
         result_.labels.push_back({column.name, reader_.words(column.name)});
@@ -309,6 +310,36 @@ class Builder {
     const Column read = reader_.numbers("ua", text::Dimension::kAngle, false);
     require_above_zero("ua", read);
     result_.angle_uncertainty = read.isNaN().select(0, read);
+  }
+
+  /// u of each row by what the machine file says of the instrument.
+  void state_uncertainty(const ReadingUncertainty& instrument) {
+    const Column far = lengths_from(instrument.at);
+    for (const Observation& o : result_.observations) {
+      const auto row = static_cast<Eigen::Index>(o.row);
+      const bool own_u = result_.angle_uncertainty.size() > 0 && result_.angle_uncertainty[row] > 0;
+      if (is_rotation(o.kind) && !own_u)
+        throw text::InputError(reader_.place(o.row), "ua",
+                               "the machine file states the u of lengths: a rotation needs one of its own");
+      if (is_rotation(o.kind)) continue;
+      const bool is_length = o.kind == ObservationKind::kLength || o.kind == ObservationKind::kDistance;
+      double& u = result_.uncertainty[row];
+      u = std::max(u, instrument.of_length(is_length ? o.value : far[row]));
+    }
+  }
+
+  /// How far the point of each row is from there, mm: as it was read, in the directions that were; of a
+  /// deviation its nominal point.
+  Column lengths_from(const std::array<double, 3>& at) const {
+    Column squares = Column::Zero(static_cast<Eigen::Index>(reader_.rows()));
+    for (const Observation& o : result_.observations) {
+      const auto row = static_cast<Eigen::Index>(o.row);
+      if (o.kind <= ObservationKind::kZ)
+        squares[row] += std::pow(o.value - at[static_cast<std::size_t>(o.kind)], 2);
+      if (o.kind == ObservationKind::kD)
+        squares[row] = (result_.nominal_point.col(row) - Eigen::Vector3d(at[0], at[1], at[2])).squaredNorm();
+    }
+    return squares.sqrt();
   }
 
   void require_above_zero(const std::string& name, const Column& values) const {

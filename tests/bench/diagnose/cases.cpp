@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <atomic>
 #include <filesystem>
 #include <mutex>
@@ -74,6 +75,17 @@ void treat(Case& one, const CaseOptions& o, const std::string& scratch, const Al
 }
 
 }  // namespace
+
+void declare(CLI::App& app, CaseOptions& o) {
+  app.add_option("--keep", o.keep, "write the surveys here, a folder each, and keep them");
+  app.add_option("-j,--jobs", o.jobs, "diagnoses at the same time")->check(CLI::Range(1, 64));
+  app.add_option("--vernier", o.vernier, "program to judge");
+  app.add_option("--scratch", o.scratch, "folder for files in between");
+}
+
+std::uint64_t seed_of_case(std::uint64_t table, std::size_t number) {
+  return (table * 1000003 + number) * 64;
+}
 
 void run_cases(std::vector<Case>& cases, const CaseOptions& o, const AlsoDone& also) {
   if (!o.only_written && !std::filesystem::exists(o.vernier))

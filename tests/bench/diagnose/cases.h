@@ -7,17 +7,27 @@
 
 #include "tests/bench/diagnose/rates.h"
 
+namespace CLI {
+class App;
+}
+
 namespace vernier::bench {
 
 /// How the surveys of a table are made and judged.
 struct CaseOptions {
   std::string vernier;        // the program to judge
-  std::string keep;           // a folder for every survey, which stay; empty: none stays
-  std::string scratch;        // where they stand in between; empty: the system's place
+  std::string keep{};         // a folder for every survey, which stay; empty: none stays
+  std::string scratch{};      // where they stand in between; empty: the system's place
   std::size_t jobs = 2;       // at the same time
   bool any = false;           // also surveys whose data cannot tell
   bool only_written = false;  // nothing is run
 };
+
+/// The options that every table has: --vernier, --keep, --scratch, --jobs.
+void declare(CLI::App& app, CaseOptions& options);
+
+/// Seed of a survey of a table: of its own, far from that of the next one, which may be tried in turn.
+std::uint64_t seed_of_case(std::uint64_t table, std::size_t number);
 
 /// Makes the survey of every case (of class single the first of up to 40 seeds whose data can tell), writes
 /// it, runs `vernier diagnose` on it and judges the answer; `also` is told the case, its survey, its folder

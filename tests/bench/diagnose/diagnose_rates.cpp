@@ -9,6 +9,7 @@
 #include "tests/bench/diagnose/cases.h"
 #include "tests/bench/diagnose/held_out.h"
 #include "tests/support/hidden_survey_key.h"
+#include "tests/support/hidden_survey_noise.h"
 #include "tools/text/files.h"
 
 namespace {
@@ -21,13 +22,14 @@ using namespace vernier::support;
 struct Options {
   std::vector<std::string> families, effects, classes{"single"};
   std::vector<double> ratios{2};
-  std::size_t count = 1, rows = 400, runs = 4, jobs = 2, failures = 50;
+  CaseOptions how{VERNIER_BIN_DIR "/vernier"};
+  std::size_t count = 1, rows = 400, runs = 4, failures = 50;
   std::vector<int> feeds{3};
   std::uint64_t seed = 1;
   std::optional<std::uint64_t> exact_seed;
   std::optional<std::size_t> only;
-  std::string keep, scratch, vernier = VERNIER_BIN_DIR "/vernier", json;
-  bool any = false, held_out = false, list = false;
+  std::string noise = "white", json;
+  bool held_out = false;
 };
 
 void declare(CLI::App& app, Options& o) {
@@ -42,16 +44,14 @@ void declare(CLI::App& app, Options& o) {
   app.add_option("--seed", o.seed, "of the whole table");
   app.add_option("--exact-seed", o.exact_seed, "of one survey, as the list of failures names it");
   app.add_option("--case", o.only, "only this number of the list");
-  app.add_option("--keep", o.keep, "write the surveys here, a folder each, and keep them");
-  app.add_option("-j,--jobs", o.jobs, "diagnoses at the same time")->check(CLI::Range(1, 64));
-  app.add_option("--vernier", o.vernier, "program to judge");
-  app.add_option("--scratch", o.scratch, "folder for files in between");
+  app.add_option("--noise", o.noise, "law of the noise, as noise_rates names it");
+  declare(app, o.how);
   app.add_option("--failures", o.failures, "how many failures to list");
   app.add_option("--json", o.json, "also write every case here");
-  app.add_flag("--any", o.any, "of class single: also surveys whose data cannot tell");
+  app.add_flag("--any", o.how.any, "of class single: also surveys whose data cannot tell");
   app.add_flag("--held-out", o.held_out,
                "add and fit what was named, compare the check rows with the truth's");
-  app.add_flag("--list", o.list, "only write (--keep) and count the surveys, run nothing");
+  app.add_flag("--list", o.how.only_written, "only write (--keep) and count the surveys, run nothing");
 }
 
 std::vector<Case> cells(const Options& o) {
@@ -65,7 +65,7 @@ std::vector<Case> cells(const Options& o) {
     for (std::size_t i = 0; i < o.count; ++i) {
       Case one;
       one.number = cases.size();
-      spec.seed = o.exact_seed ? *o.exact_seed : (o.seed * 1000003 + cases.size()) * 64;
+      spec.seed = o.exact_seed ? *o.exact_seed : seed_of_case(o.seed, cases.size());
       one.spec = spec;
       cases.push_back(one);
     }
@@ -78,6 +78,7 @@ std::vector<Case> cells(const Options& o) {
           spec.kind = class_named(kind);
           spec.family = family_named(family);
           spec.ratio = ratio;
+          spec.noise = noise_law_named(o.noise);
           spec.feeds = feeds;
           spec.rows = o.rows;
           spec.runs = o.runs;
@@ -96,46 +97,27 @@ std::vector<Case> cells(const Options& o) {
   return cases;
 }
 
-void write_json(const std::vector<Case>& cases, const std::string& path) {
-  nlohmann::json list = nlohmann::json::array();
-  for (const Case& one : cases)
-    list.push_back({{"case", one.number},
-                    {"seed", one.spec.seed},
-                    {"family", family_name(one.spec.family)},
-                    {"class", class_name(one.spec.kind)},
-                    {"effect", one.spec.effect},
-                    {"ratio", one.spec.ratio},
-                    {"feeds", one.spec.feeds},
-                    {"can_tell", one.can_tell},
-                    {"hidden", one.hidden},
-                    {"outcome", outcome_name(one.judgement.outcome)},
-                    {"said", one.judgement.said},
-                    {"seconds", one.seconds},
-                    {"trouble", one.trouble},
-                    {"held_out_ratio", one.held_out ? nlohmann::json(*one.held_out) : nlohmann::json()}});
-  write_file(path, list.dump(1) + "\n");
-}
-
 int run(const Options& o) {
   std::vector<Case> cases = cells(o);
   if (o.only) std::erase_if(cases, [&](const Case& one) { return one.number != *o.only; });
-  const CaseOptions how{o.vernier, o.keep, o.scratch, o.jobs, o.any || o.exact_seed.has_value(), o.list};
+  CaseOptions how = o.how;
+  how.any = how.any || o.exact_seed.has_value();
   run_cases(cases, how,
             [&](Case& one, const HiddenSurvey& survey, const std::string& folder, const std::string&) {
               if (o.held_out && one.judgement.outcome == Outcome::kRight && !one.judgement.add.empty())
-                one.held_out = held_out_ratio(survey, one.judgement.add, o.vernier, folder, one.trouble);
+                one.held_out = held_out_ratio(survey, one.judgement.add, o.how.vernier, folder, one.trouble);
             });
   const std::vector<Case> missing = without_survey(cases);
   fmt::print("{} surveys, seed {}{}\n", cases.size(), o.seed,
              missing.empty() ? "" : fmt::format("; {} cells without a survey:", missing.size()));
   print_missing(missing);
-  if (o.list)
+  if (o.how.only_written)
     for (const Case& one : cases)
       fmt::print("{} {} {} {}\n", one.number, family_name(one.spec.family), class_name(one.spec.kind),
                  one.hidden);
   else
     print_rates(cases, o.failures);
-  if (!o.json.empty()) write_json(cases, o.json);
+  if (!o.json.empty()) write_file(o.json, cases_json(cases).dump(1) + "\n");
   return 0;
 }
 

@@ -24,7 +24,7 @@ using namespace vernier::support;
 using nlohmann::json;
 
 struct Options {
-  CaseOptions how;
+  CaseOptions how{VERNIER_BIN_DIR "/vernier"};
   std::size_t count = 1, rows = 300, failures = 50;
   std::uint64_t seed = 1;
   double ratio = 2;
@@ -124,8 +124,7 @@ std::vector<Case> cells(const Options& o) {
         Case one;
         one.number = cases.size();
         spec.effect = effect;
-        // Machines of their own for every case, far from the seeds of the next.
-        spec.seed = (o.seed * 1000003 + cases.size()) * 64;
+        spec.seed = seed_of_case(o.seed, cases.size());
         one.spec = spec;
         cases.push_back(one);
       }
@@ -178,7 +177,6 @@ int run(const Options& o) {
 
 int main(int argc, char** argv) {
   Options o;
-  o.how.vernier = VERNIER_BIN_DIR "/vernier";
   CLI::App app("Recognition rates of `vernier diagnose` on machines in the likeness of real ones.",
                "likeness_rates");
   app.add_option("--kind", o.kinds, "six-joint, alt-az, equatorial, bed, turntable, gear-train, torso-arm")
@@ -188,10 +186,7 @@ int main(int argc, char** argv) {
   app.add_option("--ratio", o.ratio, "effect/noise")->check(CLI::PositiveNumber);
   app.add_option("--seed", o.seed, "of the whole table");
   app.add_flag("--nothing-hidden", o.nothing_hidden, "surveys that hide nothing: any name is false");
-  app.add_option("--keep", o.how.keep, "write the surveys here, a folder each, and keep them");
-  app.add_option("-j,--jobs", o.how.jobs, "diagnoses at the same time")->check(CLI::Range(1, 64));
-  app.add_option("--vernier", o.how.vernier, "program to judge");
-  app.add_option("--scratch", o.how.scratch, "folder for files in between");
+  declare(app, o.how);
   app.add_option("--failures", o.failures, "how many failures to list");
   CLI11_PARSE(app, argc, argv);
   try {

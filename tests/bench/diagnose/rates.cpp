@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tests/bench/diagnose/rates.h"
 #include "tests/support/hidden_survey_key.h"
+#include "tests/support/hidden_survey_noise.h"
 
 #include <fmt/format.h>
 
@@ -79,17 +80,45 @@ void print_failures(const std::vector<Case>& cases, std::size_t most) {
                outcome_name(one.judgement.outcome), one.hidden, one.judgement.said);
     if (far_off) fmt::print("  held-out ratio {:.3f}\n", *one.held_out);
     if (!one.trouble.empty()) fmt::print("  trouble: {}\n", one.trouble);
-    fmt::print(
-        "  diagnose_rates --exact-seed {} --family {} --class {} --ratio {:g} --feeds {} --rows {} --runs "
-        "{}{} --keep DIR\n",
-        one.spec.seed, support::family_name(one.spec.family), support::class_name(one.spec.kind),
-        one.spec.ratio, one.spec.feeds, one.spec.rows, one.spec.runs,
-        one.spec.effect.empty() ? "" : " --effect " + one.spec.effect);
+    fmt::print("  {}\n", again(one));
   }
   if (all > most) fmt::print("... and {} more (--failures)\n", all - most);
 }
 
 }  // namespace
+
+std::string again(const Case& one) {
+  return fmt::format(
+      "diagnose_rates --exact-seed {} --family {} --class {} --ratio {:g} --feeds {} --rows {} --runs {}{}{} "
+      "--keep DIR",
+      one.spec.seed, support::family_name(one.spec.family), support::class_name(one.spec.kind),
+      one.spec.ratio, one.spec.feeds, one.spec.rows, one.spec.runs,
+      one.spec.noise == support::NoiseLaw::kWhite
+          ? ""
+          : std::string(" --noise ") + support::noise_law_name(one.spec.noise),
+      one.spec.effect.empty() ? "" : " --effect " + one.spec.effect);
+}
+
+nlohmann::json cases_json(const std::vector<Case>& cases) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const Case& one : cases)
+    list.push_back({{"case", one.number},
+                    {"seed", one.spec.seed},
+                    {"family", support::family_name(one.spec.family)},
+                    {"class", support::class_name(one.spec.kind)},
+                    {"noise", support::noise_law_name(one.spec.noise)},
+                    {"effect", one.spec.effect},
+                    {"ratio", one.spec.ratio},
+                    {"feeds", one.spec.feeds},
+                    {"can_tell", one.can_tell},
+                    {"hidden", one.hidden},
+                    {"outcome", outcome_name(one.judgement.outcome)},
+                    {"said", one.judgement.said},
+                    {"seconds", one.seconds},
+                    {"trouble", one.trouble},
+                    {"held_out_ratio", one.held_out ? nlohmann::json(*one.held_out) : nlohmann::json()}});
+  return list;
+}
 
 std::size_t Tally::total() const { return std::accumulate(count.begin(), count.end(), std::size_t{0}); }
 

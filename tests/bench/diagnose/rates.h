@@ -35,6 +35,12 @@ std::string share_text(std::size_t part, std::size_t all);
 /// the command that writes each survey.
 void print_rates(const std::vector<Case>& cases, std::size_t most_failures);
 
+/// Every case, for programs.
+nlohmann::json cases_json(const std::vector<Case>& cases);
+
+/// The command that writes the survey of a case again.
+std::string again(const Case& one);
+
 /// Is this outcome what the issue asks for, given the class of the survey?
 bool is_good(const Case& one);
 /// Was something named with confidence that is not there?

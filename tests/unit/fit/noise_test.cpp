@@ -116,6 +116,34 @@ TEST(NoiseModel, IsFoundAgain) {
   EXPECT_NEAR(twice.own, 2, 0.2);
 }
 
+// Moves take between a second and minutes; what goes from one reading to the next does not ask how long.
+TEST(NoiseModel, DriftGoesByRowsWhereTimeDoesNotTellIt) {
+  std::mt19937_64 random(kSeed);
+  Measurement m = survey(600, 2, 1, random);
+  std::uniform_real_distribution<double> log_pause(0, std::log(600.0));
+  double time = 0;
+  for (Eigen::Index row = 0; row < 600; ++row) m.states.time[row] = time += std::exp(log_pause(random));
+  const NoiseLayout layout = noise_layout(m, all_of(m));
+  NoiseModel by_rows = model_of(0.3, 0, 0, 1, 20);
+  by_rows.in_time = false;
+  const NoiseModel found =
+      estimate_noise(layout, draw(layout, by_rows, 600, random), Eigen::MatrixXd(600, 0), true);
+  EXPECT_FALSE(found.in_time);
+  EXPECT_NEAR(std::log(found.time_constant / 20), 0, std::log(2.0));
+}
+
+// u states the whole of a reading, and nearly all of it hangs together here.
+TEST(NoiseModel, TheOwnPartMayBeBelowUWhereTheWholeIsNot) {
+  std::mt19937_64 random(kSeed);
+  const Measurement m = survey(600, 2, 1, random);
+  const NoiseLayout layout = noise_layout(m, all_of(m));
+  const NoiseModel found = estimate_noise(layout, draw(layout, model_of(0.1, 0, 0, 1, 200), 600, random),
+                                          Eigen::MatrixXd(600, 0), true);
+  EXPECT_LT(found.own, 0.3);
+  EXPECT_NEAR(found.total(), 1, 0.35);  // some thirty stretches of it
+  EXPECT_GE(found.total(), 1 - 1e-9);
+}
+
 TEST(NoiseModel, IndependentReadingsAreLeftAlone) {
   std::mt19937_64 random(kSeed);
   const Measurement m = survey(300, 3, 2, random);

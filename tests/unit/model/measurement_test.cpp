@@ -32,6 +32,56 @@ std::string error_of(const std::string& text) {
   return "accepted";
 }
 
+/// The same machine, measured by an instrument whose u grows with the length.
+Machine with_instrument(const std::string& u) {
+  return parse_machine(
+      "<machine><variables><machineaxes><X/></machineaxes><instrument u=\"" + u +
+          "\" X=\"100\" Z=\"-50\"/></variables><transforms><sixdof X=\"X\"/></transforms></machine>",
+      "m.xml");
+}
+
+TEST(MeasurementFile, UncertaintyGrowsWithTheLengthFromTheInstrument) {
+  const Machine tracker = with_instrument("15um + 6um/m");
+  // 3-4-5: 300 in x, 400 in z from (100, 0, -50).
+  const Measurement m =
+      parse_measurement("X[mm],x[mm],y[mm],z[mm]\n1,400,0,350\n2,100,,-50\n", "m.csv", tracker);
+  EXPECT_NEAR(m.uncertainty[0], 0.015 + 0.006 * 0.5, 1e-12);
+  EXPECT_NEAR(m.uncertainty[1], 0.015, 1e-12);
+  const Measurement bar = parse_measurement("X[mm],length[mm],cx[mm],cy[mm],cz[mm]\n1,600,0,0,0\n", "m.csv",
+                                            with_instrument("2.5 + L/300"));
+  EXPECT_NEAR(bar.uncertainty[0], (2.5 + 600 / 300.0) * 1e-3, 1e-12);
+}
+
+TEST(MeasurementFile, AColumnOfUncertaintyStandsBeforeTheInstruments) {
+  const Measurement m =
+      parse_measurement("X[mm],x[mm],u[um]\n1,400,2\n", "m.csv", with_instrument("15um+6um/m"));
+  EXPECT_DOUBLE_EQ(m.uncertainty[0], 0.002);
+}
+
+TEST(MeasurementFile, AnInstrumentWithoutALawIsRefusedByItsWord) {
+  for (const char* u : {"", "15", "6um/s", "-3um", "15um 6um/m", "L/0", "um"}) {
+    const bool bare = std::string_view(u) == "15";  // um, as in 2.5 + L/300
+    try {
+      with_instrument(u);
+      EXPECT_TRUE(bare) << u;
+    } catch (const InputError& error) {
+      EXPECT_FALSE(bare) << u;
+      EXPECT_NE(std::string(error.what()).find("15um + 6um/m"), std::string::npos) << error.what();
+    }
+  }
+  EXPECT_NE(
+      [] {
+        try {
+          parse_measurement("X[mm],x[mm],rx[deg]\n1,400,0\n", "m.csv", with_instrument("15um"));
+        } catch (const InputError& error) {
+          return std::string(error.what());
+        }
+        return std::string("accepted");
+      }()
+          .find("\"ua\""),
+      std::string::npos);
+}
+
 TEST(MeasurementFile, ConvertsUnitsToTheBaseUnits) {
   const Measurement m = read(
       "# a comment\nX[in],B[arcsec],vX[mm/min],aX[g],feed[m/s],t[min],T[K],x[um],u[um],run,role\n"

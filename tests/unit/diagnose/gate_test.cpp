@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What rows that nothing was fitted to must say before something is named.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "tools/diagnose/diagnosis.h"
+#include "tools/diagnose/proof.h"
+#include "tools/model/machine_reader.h"
+
+namespace vernier::gate_test {
+
+using namespace vernier::diagnose;
+using namespace vernier::model;
+namespace {
+
+constexpr std::uint64_t kSeed = 16;
+
+const char* const kAxis = R"(<machine name="m"><variables><static><c value="0" unit="mm"/></static>
+  <machineaxes><X rotary="false" min="0" max="500"/></machineaxes></variables>
+  <transforms branch="tool"><sixdof n="1" X="X+c" Y="0" Z="0" rX="0" rY="0" rZ="0"/></transforms></machine>)";
+
+/// Four runs of 120 rows along an axis, u 1 um, every `check_every`th a check row; reversal (mm) and noise
+/// (u) of fit rows and of check rows.
+struct Rows {
+  double reversal = 0, check_reversal = 0, check_noise = 1;
+  int check_every = 4;
+};
+
+std::string survey(const Rows& rows) {
+  std::mt19937_64 random(kSeed);
+  std::normal_distribution<double> noise(0, 0.001);
+  std::uniform_real_distribution<double> place(0, 500);
+  std::string text = "X[mm],dirX,x[mm],u[um],run,role\n";
+  for (int row = 0; row < 480; ++row) {
+    const bool check = row % rows.check_every == rows.check_every - 1;
+    const double x = place(random), dir = (row / 3) % 2 == 0 ? 1 : -1;
+    const double off =
+        dir * (check ? rows.check_reversal : rows.reversal) + (check ? rows.check_noise : 1) * noise(random);
+    text += fmt::format("{:.3f},{},{:.6f},1,r{},{}\n", x, dir, x + off, row / 120, check ? "check" : "fit");
+  }
+  return text;
+}
+
+Diagnosis diagnosed(const Rows& rows) {
+  const Machine machine = parse_machine(kAxis, "m.xml");
+  return diagnose::diagnose(kAxis, machine, parse_measurement(survey(rows), "m.csv", machine));
+}
+
+TEST(Gate, AsksWhatATrueStepBringsAndNeverLessThanNothing) {
+  const ProofThresholds limits;
+  EXPECT_FALSE((Proof{-5, 1.9}.asked(limits)));
+  EXPECT_DOUBLE_EQ(*(Proof{0, 2}.asked(limits)), 0);
+  EXPECT_DOUBLE_EQ(*(Proof{0, 8}.asked(limits)), 0);
+  // One true step in a hundred falls that far below its mean.
+  EXPECT_NEAR(*(Proof{0, 14}.asked(limits)), 14 - 2.33 * std::sqrt(28.0), 1e-12);
+  EXPECT_DOUBLE_EQ(*(Proof{0, 100}.asked(limits)), limits.evidence);
+}
+
+TEST(Gate, AStepThatCheckRowsBearOutIsConfirmedByThem) {
+  const Diagnosis answer = diagnosed({0.001, 0.001});
+
+  ASSERT_EQ(answer.verdict, Verdict::kMissingEffect) << "seed " << kSeed << ": " << answer.explanation;
+  EXPECT_EQ(answer.ladder.back().effect, "backlash");
+  EXPECT_TRUE(answer.ladder.back().confirmed.value_or(false));
+  EXPECT_GT(answer.ladder.back().evidence.value_or(0), ProofThresholds().evidence);
+}
+
+// Named and "confirmed" before: 24 check rows are too few to deny it at 100 to 1, and they get worse by it.
+TEST(Gate, AStepThatMakesFewCheckRowsWorseIsNotNamed) {
+  const Diagnosis answer = diagnosed({0.0006, -0.0006, 1, 20});
+
+  EXPECT_NE(answer.verdict, Verdict::kMissingEffect) << "seed " << kSeed << ": " << answer.explanation;
+  EXPECT_EQ(answer.ladder.size(), 1U);
+  EXPECT_NE(answer.explanation.find("do not bear out"), std::string::npos) << answer.explanation;
+}
+
+// Consistent, or named, before: the check rows entered no verdict as a whole.
+TEST(Gate, AnAnswerThatDoesNotCarryToCheckRowsIsNone) {
+  for (const double reversal : {0.0, 0.002}) {
+    const Diagnosis answer = diagnosed({reversal, reversal, 2});
+
+    EXPECT_EQ(answer.verdict, Verdict::kUnexplained) << "seed " << kSeed << ": " << answer.explanation;
+    EXPECT_NE(answer.explanation.find("does not carry"), std::string::npos) << answer.explanation;
+  }
+  EXPECT_EQ(diagnosed({}).verdict, Verdict::kConsistent);
+}
+
+}  // namespace
+}  // namespace vernier::gate_test

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <array>
+#include <string>
+
+namespace vernier::model {
+
+/// Standard uncertainty of a reading that grows with the length from the instrument, as a data sheet states
+/// it: of a tracker, a distance meter, a coordinate measuring machine.
+struct ReadingUncertainty {
+  double constant_mm = 0, per_mm = 0;
+  std::array<double, 3> at{0, 0, 0};  // of the instrument in the measuring frame, mm
+
+  double of_length(double length_mm) const { return constant_mm + per_mm * length_mm; }
+};
+
+/// From "15um + 6um/m", or in the words of ISO 10360-2 "2.5 + L/300" (um; L in mm): terms joined by +, each a
+/// length, a length per metre, or L/K. Throws InputError with the offending word. tool.
+ReadingUncertainty parse_reading_uncertainty(const std::string& text);
+
+}  // namespace vernier::model
