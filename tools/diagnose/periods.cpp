@@ -207,7 +207,7 @@ FinePeriods fine_periods(const Evidence& evidence, std::size_t axis, const std::
 
 Eigen::VectorXd carrier_of(const Evidence& evidence, const effects::Candidate& candidate,
                            const FinePeriods& fine) {
-  constexpr double kSame = 1e-9;
+  constexpr double kSame = 1e-9;  // relative: the same period but for rounding
   Eigen::VectorXd carrier;
   for (const double frequency : {fine.slowest, fine.fastest}) {
     const Eigen::MatrixXd columns = evidence.columns(candidate, {1 / frequency});

@@ -252,7 +252,7 @@ std::vector<double> Scanner::aliases(const Scored& scored, const Eigen::MatrixXd
     for (const double middle : {shift - own, shift + own}) {
       const double frequency = std::abs(middle);
       if (frequency > most || frequency * length < 0.5 || known(frequencies, frequency)) continue;
-      constexpr int kSections = 10;
+      constexpr int kSections = 10;  // of a golden search
       const double width = 0.25 / length;
       // The middle itself is right where positions are even to the last digit.
       const double there = gain_of(frequency);

@@ -131,7 +131,7 @@ Key key_of(const PoseReading& reading) {
 }  // namespace
 
 std::pair<double, double> spread_interval(double spread, double freedom) {
-  constexpr double kTail = 0.025;
+  constexpr double kTail = 0.025;  // on either side of 95 %
   return {spread * std::sqrt(freedom / maths::chi_square_point(kTail, freedom)),
           spread * std::sqrt(freedom / maths::chi_square_point(1 - kTail, freedom))};
 }

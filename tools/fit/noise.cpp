@@ -229,8 +229,8 @@ struct BestStep {
 };
 BestStep best_step(const NoiseLayout& layout, const Eigen::VectorXd& residual,
                    const Eigen::MatrixXd& fitted) {
-  constexpr std::size_t kLeastRows = 10;
-  constexpr double kLeastOwn = 0.02;  // of a step's rows that the model cannot take over
+  constexpr std::size_t kLeastRows = 10;  // on either side of a step: fewer show none beside their own noise
+  constexpr double kLeastOwn = 0.02;      // of a step's rows that the model cannot take over
   BestStep best;
   for (const NoiseSeries& series : layout.series) {
     // A step where a run begins is a set-up, which machine files have a name for.
@@ -270,7 +270,8 @@ NoiseModel estimate_components(const NoiseLayout& layout, const Eigen::VectorXd&
                                const Eigen::MatrixXd& fitted, bool own_from_u) {
   NoiseModel model;
   model.in_time = layout.in_time;
-  constexpr Eigen::Index kLeastFreedom = 30;
+  constexpr Eigen::Index kLeastFreedom =
+      30;  // readings beyond the parameters: of fewer a variance is known to no better than a quarter
   if (residual.size() - fitted.cols() < kLeastFreedom || residual.squaredNorm() <= 0) return model;
   const Likelihood likelihood(layout, held(residual), fitted, own_from_u);
   const double least_log_time = std::log(layout.step), most_log_time = std::log(10 * layout.span);
@@ -323,7 +324,7 @@ NoiseModel estimate_components(const NoiseLayout& layout, const Eigen::VectorXd&
     }
     if (!parts.drift) {
       starts.clear();
-      constexpr double kTimeSteps = 1.2;
+      constexpr double kTimeSteps = 1.2;  // of the logarithm of a time constant: a factor of 3.3
       for (double time = least_log_time + kTimeSteps; time <= most_log_time; time += kTimeSteps)
         for (const double log : kLogRatios) {
           starts.push_back(parts);
@@ -376,7 +377,7 @@ NoiseModel white_noise(const NoiseLayout& layout, const Eigen::VectorXd& residua
 /// says, u counts as each reading's own.
 std::optional<NoiseModel> estimate_beside(const NoiseLayout& layout, const Eigen::VectorXd& residual,
                                           const Eigen::MatrixXd& fitted, bool with_u) {
-  constexpr double kNearU = 0.7;
+  constexpr double kNearU = 0.7;  // of u: what readings far better than u scatter by is below it
   NoiseModel free = estimate_components(layout, residual, fitted, false);
   if (!with_u) return free.own < kLeastOwnPart * free.shared() ? std::nullopt : std::optional(free);
   if (free.log_likelihood == 0) return free;  // too few readings, or nothing left of them
@@ -480,7 +481,7 @@ std::vector<NoiseStep> set_up_steps(const NoiseLayout& layout) {
         for (int component = 0; component < 3; ++component)
           steps.push_back({series.kind, series.row[i], 0, 0, component});
   }
-  constexpr std::size_t kOneSetUp = 3;
+  constexpr std::size_t kOneSetUp = 3;  // components of a single set-up, which no other is told from
   return steps.size() > kOneSetUp ? steps : std::vector<NoiseStep>();
 }
 

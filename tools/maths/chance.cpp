@@ -78,7 +78,7 @@ double chi_square_tail(double x, double k) { return std::exp(log_chi_square_tail
 
 double chi_square_point(double p, double k) {
   double low = 0, high = 10 * k + 100;
-  constexpr int kHalvings = 80;
+  constexpr int kHalvings = 80;  // to the last digit
   for (int i = 0; i < kHalvings; ++i) {
     const double middle = (low + high) / 2;
     (chi_square_tail(middle, k) > p ? low : high) = middle;

@@ -15,11 +15,13 @@ AxisMotion::AxisMotion(const model::Machine& machine, const model::States& at)
 
 std::vector<double> AxisMotion::stretches(const ProgramMove& move) const {
   std::vector<double> ends = {0};
+  // Places at which the sense of an axis is looked at, half a degree of a circle each; halvings to the last
+  // digit.
   constexpr int kLooks = 720, kHalvings = 40;
   for (std::size_t i = 0; move.arc && i < machine_.axes.size(); ++i) {
     const auto axis = static_cast<Index>(i);
     const auto slope = [&](double s) {
-      constexpr double kStep = 1e-7;
+      constexpr double kStep = 1e-7;  // of the move, for a difference
       return move.at(s + kStep)[axis] - move.at(s - kStep)[axis];
     };
     // A look may fall on the reversal itself, where there is no slope: it counts from the last that has one.
@@ -51,7 +53,7 @@ void AxisMotion::set_out(const VectorXd& from, const VectorXd& to) {
 
 model::States AxisMotion::along(const ProgramMove& move, const std::vector<double>& shares) const {
   model::States states = model::select_states(at_, std::vector<std::size_t>(shares.size(), 0));
-  constexpr double kStep = 1e-6;
+  constexpr double kStep = 1e-6;  // of the move, for a difference
   for (std::size_t k = 0; k < shares.size(); ++k) {
     const auto row = static_cast<Index>(k);
     const double s = std::clamp(shares[k], kStep, 1 - kStep);
@@ -75,6 +77,7 @@ model::States AxisMotion::along(const ProgramMove& move, const std::vector<doubl
 }
 
 int AxisMotion::looks(const ProgramMove& move, double from, double to, double deviation_mm) const {
+  // What a table of stations does not hide between two looks; how many they are, and chords for the length.
   constexpr double kStep_mm = 1, kStep_deg = 0.1;
   constexpr int kFewest = 8, kMost = 200000, kChords = 64;
   double length = 0, turn = 0, bend = 0;

@@ -46,7 +46,7 @@ class ArcFit {
   }
 
  private:
-  static constexpr double kNoTurn = 1e-9;
+  static constexpr double kNoTurn = 1e-9;  // of a full turn: rounding
   /// A rounded end must not make a control take a nearly whole turn for none, or none for a whole one.
   static constexpr double kMostTurn = 0.75 * kTurn;
   static constexpr double kLeastChord = 1e-3;  // mm: a hundred times what is written
@@ -71,6 +71,7 @@ class ArcFit {
       return (p - middle - height * left).norm() - std::hypot(half, height);
     };
     double height = half / std::tan(turn / 2), width = 0;
+    // Newton's steps, and places at which the width is looked at.
     constexpr int kSteps = 3, kSections = 24;
     for (int n = 0; n < kSteps; ++n) {
       double product = 0, squares = 0, largest = 0, steepest = 0;
@@ -100,7 +101,7 @@ class ArcFit {
     if ((place(to) - begin).norm() > kClosed * most_) return std::nullopt;
     const Vector2d opposite = place(nearest(from, to, turn / 2));
     Vector2d centre = (begin + opposite) / 2;
-    constexpr int kSteps = 4;
+    constexpr int kSteps = 4;  // Gauss and Newton's
     for (int n = 0; n < kSteps; ++n) {
       std::vector<Vector2d> slopes;
       std::vector<double> rests;
