@@ -11,6 +11,7 @@
 #include "tools/evaluate/positioning.h"
 #include "tools/evaluate/robot_path.h"
 #include "tools/maths/factors.h"
+#include "tools/model/chain.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/measurement.h"
 #include "tools/text/error.h"
