@@ -258,7 +258,7 @@ BestStep best_step(const NoiseLayout& layout, const Eigen::VectorXd& residual,
 
 /// A residual with its values held at 4 robust spreads: one wild reading is no property of the noise.
 Eigen::VectorXd held(const Eigen::VectorXd& residual) {
-  constexpr double kHeld = 4, kMadPerSpread = 1.4826;
+  constexpr double kHeld = 4, kMadPerSpread = 1.4826;  // of a normal distribution
   std::vector<double> size(residual.data(), residual.data() + residual.size());
   for (double& value : size) value = std::abs(value);
   const double most = kHeld * kMadPerSpread * median(size);
