@@ -28,7 +28,8 @@ Series series_of(const model::Measurement& m) {
 /// An error that each kind draws anew where `begins` says so of a row and the row before.
 void add_shared(Eigen::VectorXd& noise, const model::Measurement& m,
                 const std::function<bool(std::size_t, std::size_t)>& begins, Draw& draw) {
-  for (const auto& [kind, readings] : series_of(m)) {
+  for (const auto& one : series_of(m)) {
+    const std::vector<Eigen::Index>& readings = one.second;
     double shared = draw.normal();
     for (std::size_t i = 0; i < readings.size(); ++i) {
       const auto row = [&](std::size_t k) {
