@@ -287,12 +287,12 @@ class Diagnoser {
            ".";
   }
 
-  /// Is one of the candidates, whether it passed the tests or not, more than chance beside noise of the size
-  /// that is left?
+  /// Is one of the candidates, whether it passed the tests or not, more than chance beside what was accepted
+  /// and noise of the size that is left?
   bool something_stands_out() const {
     for (std::size_t item = 0; item < pool_.size(); ++item) {
       const bool chosen = std::find(chosen_.begin(), chosen_.end(), item) != chosen_.end();
-      if (!chosen && finder_.p_value(item) < limits_.stands_out) return true;
+      if (!chosen && finder_.p_value_beside(item) < limits_.stands_out) return true;
     }
     return false;
   }
@@ -313,21 +313,27 @@ class Diagnoser {
     const bool told = !noise.independent() || noise.own != 1;
     const double reduced =
         (told ? weights.cwiseProduct(left).squaredNorm() : result_.end.chi_square) / freedom;
-    if (!fit::has_uncertainty(measurement_))
-      return !structured || (!chosen_.empty() && is_mostly_explained() &&
-                             finder_.growth_without(chosen_.front()) > limits_.larger_than_rest);
+    if (!fit::has_uncertainty(measurement_)) return !structured || stands_without_u();
     // More noise than stated is believed where nothing that was looked for stands out of it, and where there
     // are enough readings for structure to show.
     const double stated = result_.end.chi_square / freedom;
-    if (noise.independent() && stated > limits_.doubtful_uncertainty &&
-        (freedom < limits_.enough_readings || something_stands_out()))
-      return false;
+    if (noise.independent() && stated > limits_.doubtful_uncertainty) {
+      if (something_stands_out()) return false;
+      // Too few readings to show structure: no more is believed than without any u.
+      if (freedom < limits_.enough_readings) return !structured && stands_without_u();
+    }
     // The number alone is enough for one effect or two that hit the noise; what is near it only, or was put
     // together from more, must leave no structure either.
     const double sigmas = (reduced - 1) / std::sqrt(2 / freedom);
     if (sigmas < limits_.hit_sigmas && !chosen_.empty() && chosen_.size() <= limits_.few_effects) return true;
     if (sigmas < limits_.noise_sigmas) return !structured;
     return reduced < limits_.doubtful_uncertainty && !structured;
+  }
+
+  /// Is the first effect larger than all that is left beside it, and most explained?
+  bool stands_without_u() const {
+    return !chosen_.empty() && is_mostly_explained() &&
+           finder_.growth_without(chosen_.front()) > limits_.larger_than_rest;
   }
 
   bool is_mostly_explained() const {

@@ -523,14 +523,28 @@ double Finder::score_alone(std::size_t item) const {
 }
 
 double Finder::p_value(std::size_t item) const {
-  const Eigen::MatrixXd basis = maths::orthonormal(pool_[item].columns, 1e-6, nullptr);
-  const double gain = (basis.transpose() * evidence_.residual()).squaredNorm();
-  const double left = evidence_.chi_square() - gain;
-  double variance = left / std::max(1.0, evidence_.freedom() - static_cast<double>(basis.cols()));
+  return chance_of(item, pool_[item].columns, evidence_.residual(), evidence_.freedom());
+}
+
+double Finder::p_value_beside(std::size_t item) const {
+  const Eigen::MatrixXd beside = maths::orthonormal(pool_.columns(chosen_), 1e-6, nullptr);
+  const Eigen::VectorXd left = evidence_.residual() - beside * (beside.transpose() * evidence_.residual());
+  Eigen::MatrixXd own = pool_[item].columns - beside * (beside.transpose() * pool_[item].columns);
+  // What little a copy has beside its original is rounding, or the curvature of a period.
+  constexpr double kCopy = 1e-3;  // of its squares
+  if (own.squaredNorm() < kCopy * pool_[item].columns.squaredNorm()) return 1;
+  return chance_of(item, own, left, evidence_.freedom() - static_cast<double>(beside.cols()));
+}
+
+double Finder::chance_of(std::size_t item, const Eigen::MatrixXd& columns, const Eigen::VectorXd& residual,
+                         double freedom) const {
+  const Eigen::MatrixXd basis = maths::orthonormal(columns, 1e-6, nullptr);
+  const double gain = (basis.transpose() * residual).squaredNorm();
+  double variance =
+      (residual.squaredNorm() - gain) / std::max(1.0, freedom - static_cast<double>(basis.cols()));
   if (evidence_.noise_known()) variance = std::max(1.0, variance);
-  const double unknowns =
-      static_cast<double>(basis.cols()) + static_cast<double>(pool_[item].scored.scanned.size());
   const Scored& scored = pool_[item].scored;
+  const double unknowns = static_cast<double>(basis.cols()) + static_cast<double>(scored.scanned.size());
   const FinePeriods& fine = list_[scored.candidate].fine;
   const double tries = scored.scanned.size() == 1 && fine.holds(scored.scanned[0]) ? fine.tries() : 1;
   return std::min(1.0, tries * static_cast<double>(list_.size()) *

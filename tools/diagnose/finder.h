@@ -52,6 +52,8 @@ class Finder {
   double score_alone(std::size_t item) const;
   /// Chance of such a gain on noise alone, times the number of candidates looked at.
   double p_value(std::size_t item) const;
+  /// The same beside the accepted items; 1 for one that says what they say.
+  double p_value_beside(std::size_t item) const;
   /// Likelihood ratio (natural logarithm) of runs left out in turn, with an accepted item and without it,
   /// each predicted from the others.
   double held_out_evidence(std::size_t item) const;
@@ -128,6 +130,9 @@ class Finder {
   double largest_value(const effects::Candidate& candidate, std::size_t linear, std::size_t item,
                        const model::States& states) const;
   void accept();
+  /// Chance on noise alone of what columns take away of a residual, times the number of candidates.
+  double chance_of(std::size_t item, const Eigen::MatrixXd& columns, const Eigen::VectorXd& residual,
+                   double freedom) const;
 
   std::size_t most_effects_;
   std::function<void(double, const std::string&)> progress_;

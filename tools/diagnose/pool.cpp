@@ -82,7 +82,9 @@ double Pool::penalty(const Scored& scored) const {
                 rank_of(item.candidate, thresholds_.step_of_place);
   // A jump between runs follows any slow drift: it is named only where no continuous effect does as well.
   const effects::Choice& choice = item.candidate.choice;
-  if (choice.effect->rare || choice.form->rare || !choice.runs.empty()) cost += thresholds_.rare;
+  // A term without a name is met more seldom than the causes that have one.
+  const bool nameless = choice.effect == &effects::custom_effect();
+  if (choice.effect->rare || choice.form->rare || !choice.runs.empty() || nameless) cost += thresholds_.rare;
   if (carries_not(axes_, choice)) cost += 2 * thresholds_.rare;
   // A scanned unknown is as many tries as the grid has values that differ, where that is more than the price
   // of a coefficient.

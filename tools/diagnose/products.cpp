@@ -10,6 +10,7 @@ namespace {
 struct ProductFactor {
   model::ExprPtr value;
   std::string input, unit;  // name and unit where it is an input
+  bool is_sense = false;    // +1 or -1
 };
 
 bool varies(const model::Column& column, const std::vector<std::size_t>& rows) {
@@ -22,7 +23,7 @@ bool varies(const model::Column& column, const std::vector<std::size_t>& rows) {
 ProductFactor input_factor(const Evidence& evidence, std::size_t index) {
   const model::Input& input = evidence.machine().inputs[index];
   return {model::subtract_number(model::make_symbol(input.name), evidence.reference_of(index)), input.name,
-          input.unit};
+          input.unit, false};
 }
 
 std::vector<ProductFactor> factors_of(const Evidence& evidence) {
@@ -30,7 +31,7 @@ std::vector<ProductFactor> factors_of(const Evidence& evidence) {
   const model::States& s = evidence.measurement().states;
   std::vector<ProductFactor> list;
   const auto take = [&](const model::ExprPtr& value, const model::Column& column) {
-    if (varies(column, evidence.rows())) list.push_back({value, {}, {}});
+    if (varies(column, evidence.rows())) list.push_back({value, {}, {}, false});
   };
   const auto take_named = [&](const std::string& name, const model::Column& column) {
     take(model::make_symbol(name), column);
@@ -43,7 +44,8 @@ std::vector<ProductFactor> factors_of(const Evidence& evidence) {
     } else {
       take_named(name, evidence.position(i));
     }
-    take_named("dir" + name, s.direction[i]);
+    if (varies(s.direction[i], evidence.rows()))
+      list.push_back({model::make_symbol("dir" + name), {}, {}, true});
     take_named("v" + name, s.velocity[i]);
     take_named("a" + name, s.acceleration[i]);
   }
@@ -80,6 +82,17 @@ std::size_t factors_in(const model::Expr& term) {
   return count;
 }
 
+/// A sense times itself is 1: what that leaves is a simpler term.
+bool would_cancel(const model::Expr& term, const ProductFactor& factor) {
+  if (!factor.is_sense) return false;
+  const std::string name = model::to_text(*factor.value);
+  bool found = false;
+  model::walk(term, [&](const model::Expr& node) {
+    found = found || (node.op == model::Op::kSymbol && model::to_text(node) == name);
+  });
+  return found;
+}
+
 Product with_factor(Product product, const ProductFactor& factor) {
   product.term = model::make_node(model::Op::kMultiply, {product.term, factor.value});
   if (!factor.input.empty() &&
@@ -100,7 +113,7 @@ std::vector<ScannedCandidate> enumerate_products(const Evidence& evidence,
   if (!extend.empty()) {
     for (const Product& product : extend)
       for (const ProductFactor& factor : factors)
-        if (factors_in(*product.term) < kMostFactors)
+        if (factors_in(*product.term) < kMostFactors && !would_cancel(*product.term, factor))
           list.push_back(as_candidate(evidence.machine(), axes, with_factor(product, factor)));
     return list;
   }
@@ -109,7 +122,8 @@ std::vector<ScannedCandidate> enumerate_products(const Evidence& evidence,
       const Product one = with_factor({place, model::make_symbol("k"), {}, {}}, factors[i]);
       list.push_back(as_candidate(evidence.machine(), axes, one));
       for (std::size_t k = i; k < factors.size(); ++k)
-        list.push_back(as_candidate(evidence.machine(), axes, with_factor(one, factors[k])));
+        if (!would_cancel(*one.term, factors[k]))
+          list.push_back(as_candidate(evidence.machine(), axes, with_factor(one, factors[k])));
     }
   return list;
 }

@@ -317,8 +317,8 @@ struct VerdictThresholds {
   /// is left beside it.
   double larger_than_rest = 2;
   /// More noise than stated is believed from so many degrees of freedom on. Experiment: outside the
-  /// catalogue, 160 rows do not show structure, 400 do.
-  double enough_readings = 600;
+  /// catalogue, 160 rows of one reading do not show structure, 400 do.
+  double enough_readings = 300;
   /// ... and only where no candidate stands out of it at this level.
   double stands_out = 1e-3;
   /// The instrument does not hold still where what hangs together is this share of the readings' own noise,

@@ -10,6 +10,7 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <set>
 
 #include "tools/maths/decompositions.h"
 #include "tools/maths/factors.h"
@@ -23,9 +24,9 @@ constexpr double kSmallStep = 1e-2, kPoseGap = 20, kNoStep = 1e-9;
 /// Fall of -2 log likelihood at which a component is no chance: one parameter on its boundary, and two (chi^2
 /// tails of 1e-3).
 constexpr double kOneComponent = 9.5, kDriftComponent = 13;
-/// Price of a step in units of the logarithm of the readings: its height, and its place among all rows of all
-/// series.
-constexpr double kPriceOfStep = 3;
+/// Price of a step in units of the logarithm of the readings: its place among all rows, beside 1 for its
+/// height in each kind of reading.
+constexpr double kPriceOfPlace = 2;
 
 /// Where no u is given and next to nothing is a reading's own, what is left is smooth: what the model lacks,
 /// no noise.
@@ -221,37 +222,55 @@ double descend(const Likelihood& likelihood, NoiseParts& parts, double best, dou
   return best;
 }
 
-/// The step that lowers the sum of squares most, and by how much: of every series, at every row but the first
-/// and last few of a run.
-struct BestStep {
-  NoiseStep step;
-  double gain = 0;
+/// A step of the instrument at one row, in the kinds of reading that it shows in.
+struct StepsAtRow {
+  std::vector<NoiseStep> steps;
+  double net = 0;  // fall of the sum of squares beyond what the steps cost
 };
-BestStep best_step(const NoiseLayout& layout, const Eigen::VectorXd& residual,
-                   const Eigen::MatrixXd& fitted) {
+
+/// What a step at each row of a series would take off the sum of squares, but for the first and last few rows
+/// of a run.
+std::vector<std::pair<NoiseStep, double>> steps_of(const NoiseSeries& series, const Eigen::VectorXd& residual,
+                                                   const Eigen::MatrixXd& fitted) {
   constexpr std::size_t kLeastRows = 10;  // on either side of a step: fewer show none beside their own noise
   constexpr double kLeastOwn = 0.02;      // of a step's rows that the model cannot take over
-  BestStep best;
-  for (const NoiseSeries& series : layout.series) {
-    // A step where a run begins is a set-up, which machine files have a name for.
-    std::vector<char> near_set_up(series.reading.size(), 0);
-    for (std::size_t i = 1; i < series.reading.size(); ++i)
-      if (series.setup[i] != series.setup[i - 1])
-        for (std::size_t k = i - std::min(i, kLeastRows); k < std::min(i + kLeastRows, near_set_up.size());
-             ++k)
-          near_set_up[k] = 1;
-    double sum = 0, count = 0;
-    Eigen::RowVectorXd along = Eigen::RowVectorXd::Zero(fitted.cols());
-    for (std::size_t i = series.reading.size(); i-- > 0;) {
-      sum += residual[series.reading[i]];
-      along += fitted.row(series.reading[i]);
-      ++count;
-      if (i < kLeastRows || i + kLeastRows > series.reading.size() || near_set_up[i] != 0) continue;
-      const double own = count - along.squaredNorm();
-      if (own < kLeastOwn * count) continue;
-      const double gain = sum * sum / own;
-      if (gain > best.gain) best = {{series.kind, series.row[i], sum / own, 1 / std::sqrt(own)}, gain};
+  // A step where a run begins is a set-up, which machine files have a name for.
+  std::vector<char> near_set_up(series.reading.size(), 0);
+  for (std::size_t i = 1; i < series.reading.size(); ++i)
+    if (series.setup[i] != series.setup[i - 1])
+      for (std::size_t k = i - std::min(i, kLeastRows); k < std::min(i + kLeastRows, near_set_up.size()); ++k)
+        near_set_up[k] = 1;
+  std::vector<std::pair<NoiseStep, double>> list;
+  double sum = 0, count = 0;
+  Eigen::RowVectorXd along = Eigen::RowVectorXd::Zero(fitted.cols());
+  for (std::size_t i = series.reading.size(); i-- > 0;) {
+    sum += residual[series.reading[i]];
+    along += fitted.row(series.reading[i]);
+    ++count;
+    if (i < kLeastRows || i + kLeastRows > series.reading.size() || near_set_up[i] != 0) continue;
+    const double own = count - along.squaredNorm();
+    if (own < kLeastOwn * count) continue;
+    list.emplace_back(NoiseStep{series.kind, series.row[i], sum / own, 1 / std::sqrt(own)}, sum * sum / own);
+  }
+  return list;
+}
+
+/// The row at which a step lowers the sum of squares most beyond its price: who moves an instrument moves it
+/// in all directions at once. `unit`: price of one number.
+StepsAtRow best_steps(const NoiseLayout& layout, const Eigen::VectorXd& residual,
+                      const Eigen::MatrixXd& fitted, double unit) {
+  std::map<std::size_t, StepsAtRow> of_row;
+  for (const NoiseSeries& series : layout.series)
+    for (const auto& [step, gain] : steps_of(series, residual, fitted)) {
+      if (gain < unit) continue;
+      StepsAtRow& at = of_row[step.row];
+      at.steps.push_back(step);
+      at.net += gain - unit;
     }
+  StepsAtRow best;
+  for (auto& [row, at] : of_row) {
+    at.net -= kPriceOfPlace * unit;
+    if (at.net > best.net) best = std::move(at);
   }
   return best;
 }
@@ -394,7 +413,9 @@ double NoiseModel::shared() const { return std::sqrt(pose * pose + run * run + d
 
 double NoiseModel::price() const {
   double parameters = (pose > 0 ? 1 : 0) + (run > 0 ? 1 : 0) + (drift > 0 ? 2 : 0);
-  for (const NoiseStep& step : steps) parameters += step.of_set_up() ? 1 : kPriceOfStep;  // its row is told
+  std::set<std::size_t> places;  // of a set-up the row is told
+  for (const NoiseStep& step : steps)
+    parameters += step.of_set_up() || !places.insert(step.row).second ? 1 : 1 + kPriceOfPlace;
   return parameters;
 }
 
@@ -550,23 +571,25 @@ NoiseModel estimate_noise(const NoiseLayout& layout, const Eigen::VectorXd& resi
   const NoiseModel& without = *alone;
   // Steps of the instrument, one after the other, each of which explains more than chance at so many places;
   // they stand only where the whole is better than a drift without them.
-  constexpr std::size_t kMostSteps = 3;
+  constexpr std::size_t kMostPlaces = 4;
   const auto n = static_cast<double>(residual.size());
   std::vector<NoiseStep> steps;
   Eigen::VectorXd left = residual;
   Eigen::MatrixXd all = fitted;
-  while (steps.size() < kMostSteps) {
+  for (std::size_t place = 0; place < kMostPlaces; ++place) {
     const double variance = left.squaredNorm() / std::max(1.0, n - static_cast<double>(all.cols()));
-    const BestStep best = best_step(layout, left, all);
-    if (best.gain < kPriceOfStep * std::log(n) * std::max(variance, 1e-300)) break;
-    steps.push_back(best.step);
-    Eigen::VectorXd column = step_columns(layout, {best.step}, residual.size());
-    for (int pass = 0; pass < 2; ++pass) column -= all * (all.transpose() * column);
-    if (column.norm() < 1e-6) break;
-    column.normalize();
-    all.conservativeResize(Eigen::NoChange, all.cols() + 1);
-    all.rightCols(1) = column;
-    left -= column * column.dot(left);
+    const StepsAtRow best = best_steps(layout, left, all, std::log(n) * std::max(variance, 1e-300));
+    if (best.steps.empty()) break;
+    for (const NoiseStep& step : best.steps) {
+      Eigen::VectorXd column = step_columns(layout, {step}, residual.size());
+      for (int pass = 0; pass < 2; ++pass) column -= all * (all.transpose() * column);
+      if (column.norm() < 1e-6) continue;
+      steps.push_back(step);
+      column.normalize();
+      all.conservativeResize(Eigen::NoChange, all.cols() + 1);
+      all.rightCols(1) = column;
+      left -= column * column.dot(left);
+    }
   }
   if (steps.empty()) return without;
   std::optional<NoiseModel> beside = estimate_beside(layout, left, all, with_u);

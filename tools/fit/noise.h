@@ -64,7 +64,7 @@ struct NoiseModel {
   double shared() const;
   double total() const;
   /// What it costs in a criterion of selection, in units of the logarithm of the readings: a parameter 1, a
-  /// step its height and its place among all rows of all series.
+  /// step its height in each kind of reading, and its place among all rows.
   double price() const;
 };
 

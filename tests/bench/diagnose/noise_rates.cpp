@@ -12,6 +12,7 @@
 
 #include "tests/bench/diagnose/cases.h"
 #include "tests/bench/diagnose/oracle.h"
+#include "tests/support/hidden_survey_key.h"
 #include "tests/support/hidden_survey_noise.h"
 #include "tools/text/files.h"
 
@@ -60,8 +61,13 @@ std::vector<Case> cells(const Options& o) {
         one.spec = spec;
         one.spec.kind = ratio > 0 ? SurveyClass::kSingle : SurveyClass::kNoise;
         if (ratio > 0) one.spec.ratio = ratio;
-        one.spec.family = families[(i + o.seed) % families.size()];
+        one.spec.family = families[(cases.size() + o.seed) % families.size()];
         one.spec.seed = seed_of_case(o.seed, cases.size());
+        // Named, so that a failure can be made again; all in turn.
+        const std::vector<std::string> effects = effects_of(one.spec.family);
+        if (ratio > 0)
+          one.spec.effect =
+              effects[(cases.size() / families.size() + 5 * cases.size() + o.seed) % effects.size()];
         cases.push_back(one);
       }
   }

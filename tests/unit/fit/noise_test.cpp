@@ -5,6 +5,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
+#include <array>
 #include <cmath>
 #include <random>
 
@@ -168,6 +169,30 @@ TEST(NoiseModel, AStepOfTheInstrumentIsFoundWhereItIs) {
   EXPECT_NEAR(static_cast<double>(found.steps[0].row), 180, 5);
   EXPECT_NEAR(found.steps[0].height, 2, 4 * found.steps[0].std);
   EXPECT_EQ(found.drift, 0);
+}
+
+// Three of six before, and the rest a drift.
+TEST(NoiseModel, AJumpInAllDirectionsIsTwoStepsInEach) {
+  std::mt19937_64 random(kSeed);
+  std::string csv = "X[mm],x[mm],y[mm],z[mm],u[mm],run\n";
+  for (int row = 0; row < 240; ++row) csv += std::to_string(row % 100) + ",0,0,0,0.001,r\n";
+  const Measurement m = parse_measurement(csv, "survey.csv", machine());
+  const NoiseLayout layout = noise_layout(m, all_of(m));
+  Eigen::VectorXd residual = draw(layout, {}, 720, random);
+  const std::array<double, 3> height = {2, -1.5, 2.5};
+  for (std::size_t i = 0; i < m.observations.size(); ++i)
+    if (m.observations[i].row >= 80 && m.observations[i].row < 160)
+      residual[static_cast<Eigen::Index>(i)] += height[static_cast<std::size_t>(m.observations[i].kind)];
+  const NoiseModel found = estimate_noise(layout, residual, Eigen::MatrixXd(720, 0), true);
+  ASSERT_EQ(found.steps.size(), 6u);
+  EXPECT_EQ(found.drift, 0);
+  for (const NoiseStep& step : found.steps)
+    EXPECT_LT(
+        std::min(std::abs(static_cast<double>(step.row) - 80), std::abs(static_cast<double>(step.row) - 160)),
+        4)
+        << step.row;
+  // Two places, six heights.
+  EXPECT_DOUBLE_EQ(found.price(), 2 * 2 + 6);
 }
 
 TEST(NoiseModel, UncertaintyOfAParameterHasItIn) {
