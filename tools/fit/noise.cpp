@@ -364,7 +364,7 @@ NoiseModel estimate_components(const NoiseLayout& layout, const Eigen::VectorXd&
     by_rows.log[3] = std::clamp(parts.log[3] - std::log(layout.step), 0.0, std::log(10 * layout.row_span));
     const double value =
         descend(likelihood, by_rows, likelihood(by_rows.ratios()), 0, std::log(10 * layout.row_span));
-    if (value < best) {
+    if (value < best - kOneComponent) {
       parts = by_rows;
       best = value;
     }

@@ -87,24 +87,16 @@ TEST_F(FleetCommand, AddChangesOnlyWhatIsSaid) {
 
 TEST_F(FleetCommand, BadInputIsNamed) {
   ASSERT_EQ(run("vernier fleet add a"), 0) << said();
-  for (const char* words : {"vernier fleet add a/b",
-                            "vernier fleet add a --url nonsense://x",
-                            "vernier fleet record b --model m.xml --signed-by w",
-                            "vernier fleet check a --result out.txt",
-                            "vernier fleet check b --result out.txt",
-                            "vernier fleet status b",
-                            "vernier fleet enqueue night true --machine b",
-                            "vernier fleet gateway none.toml",
-                            "vernier fleet alike --since yesterday",
-                            "vernier fleet metrics --listen nowhere",
-                            "vernier fleet list --registry /none/such/folder/f.db",
-                            "vernier fleet jobs --again",
-                            "vernier fleet list --registry fleeet.db",
-                            "vernier fleet add 'a\nb'",
-                            "vernier fleet due --at 2026-02-30",
-                            "vernier fleet record a --model out.txt --signed-by w",
-                            "vernier fleet ingest --broker localhost",
-                            "vernier fleet ingest --broker tcp://localhost:mqtt"}) {
+  for (const char* words :
+       {"vernier fleet add a/b", "vernier fleet add a --url nonsense://x",
+        "vernier fleet record b --model m.xml --signed-by w", "vernier fleet check a --result out.txt",
+        "vernier fleet check b --result out.txt", "vernier fleet status b",
+        "vernier fleet enqueue night true --machine b", "vernier fleet gateway none.toml",
+        "vernier fleet alike --since yesterday", "vernier fleet metrics --listen nowhere",
+        "vernier fleet list --registry /none/such/folder/f.db", "vernier fleet jobs --again",
+        "vernier fleet list --registry fleeet.db", "vernier fleet add 'a\nb'",
+        "vernier fleet due --at 2026-02-30", "vernier fleet record a --model out.txt --signed-by w",
+        "vernier fleet ingest --broker localhost", "vernier fleet ingest --broker tcp://localhost:mqtt"}) {
     EXPECT_EQ(run(words), 1) << words << "\n" << said();
     EXPECT_NE(said().find("vernier: "), std::string::npos) << words;
   }
