@@ -95,9 +95,9 @@ inline void compare_poses(const TestMachine& test, const std::vector<CycleInput>
   if (least) {
     const Eigen::Matrix3Xd left_mm = left_over_mm(test.machine, corrected, nominal_mm);
     for (Eigen::Index i = 0; i < count; ++i) {
-      Eigen::Matrix3Xd scaled = directions_at(i);
+      Eigen::MatrixXd scaled = directions_at(i);
       for (Eigen::Index k = 0; k < n; ++k) scaled.col(k) /= least->lever[static_cast<std::size_t>(k)];
-      const Eigen::JacobiSVD<Eigen::Matrix3Xd> svd(scaled, Eigen::ComputeThinU);
+      const Eigen::JacobiSVD<Eigen::MatrixXd> svd(scaled, Eigen::ComputeThinU);
       const auto rank = static_cast<Eigen::Index>(least->jacobian.size());
       if (svd.singularValues().head(rank).array().square().prod() < least->floor * 1.001) continue;
       const Eigen::Matrix3Xd basis = svd.matrixU().leftCols(rank);
