@@ -10,6 +10,7 @@
 
 #include "tools/fit/fit.h"
 #include "tools/fit/statistics.h"
+#include "tools/maths/median.h"
 
 namespace vernier::diagnose {
 namespace {
@@ -23,9 +24,7 @@ std::vector<std::size_t> far_rows(const model::Measurement& rows, const Eigen::V
   for (Eigen::Index i = 0; i < weights.size(); ++i)
     if (weights[i] > 0) sizes.push_back(std::abs(weights[i] * residual[i]));
   if (sizes.empty()) return {};
-  std::nth_element(sizes.begin(), sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2), sizes.end());
-  // The median of |x| of a normal variable is 0.6745 of its standard deviation.
-  double spread = sizes[sizes.size() / 2] / 0.6745;
+  double spread = maths::robust_spread(std::move(sizes));
   if (fit::has_uncertainty(rows)) spread = std::max(spread, 1.0);
   std::vector<std::size_t> found;
   for (Eigen::Index i = 0; i < weights.size(); ++i)

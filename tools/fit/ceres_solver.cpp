@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "tools/maths/decompositions.h"
+#include "tools/maths/median.h"
 
 namespace vernier::fit {
 namespace {
@@ -99,14 +100,8 @@ void add_priors(const FitProblem& problem, Eigen::VectorXd& point, ceres::Proble
   }
 }
 
-/// Spread of weighted residuals, from their median size (1.4826: standard deviation of a normal
-/// distribution).
 double spread(const Eigen::VectorXd& residual) {
-  std::vector<double> sizes(residual.data(), residual.data() + residual.size());
-  for (double& size : sizes) size = std::abs(size);
-  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::nth_element(sizes.begin(), middle, sizes.end());
-  return sizes.empty() ? 1 : 1.4826 * *middle;
+  return residual.size() == 0 ? 1 : maths::robust_spread({residual.begin(), residual.end()});
 }
 
 ceres::LossFunction* loss_of(Loss loss, double scale) {

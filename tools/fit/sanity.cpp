@@ -11,6 +11,7 @@
 #include "tools/fit/convention.h"
 #include "tools/fit/statistics.h"
 #include "tools/maths/factors.h"
+#include "tools/maths/median.h"
 
 namespace vernier::fit {
 namespace {
@@ -158,11 +159,9 @@ WorstReading worst_reading(const model::Measurement& measurement, const Eigen::V
     worst.reading = reading_name(measurement, measurement.observations[i]);
   }
   if (sizes.empty() || largest <= 0) return worst;
-  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::nth_element(sizes.begin(), middle, sizes.end());
   // A spread below the stated uncertainty, or below what a file's digits hold, is none.
   const double least = with_u ? 1 : 1e-4;
-  worst.ratio = largest / std::max(1.4826 * *middle, least);
+  worst.ratio = largest / std::max(maths::robust_spread(std::move(sizes)), least);
   worst.share = largest * largest / squares;
   return worst;
 }

@@ -10,6 +10,7 @@
 
 #include "tools/import/ballbar_motion.h"
 #include "tools/maths/decompositions.h"
+#include "tools/maths/median.h"
 
 namespace vernier::importer {
 namespace {
@@ -134,9 +135,8 @@ std::optional<double> judged(const Model& model, const ErrorSamples& samples) {
 // Standard deviation of a normal law with this median size.
 std::optional<double> usual(const Model& model, const ErrorSamples& samples) {
   if (samples.count() == 0) return std::nullopt;
-  Eigen::VectorXd sizes = model.residual(samples).cwiseAbs();
-  std::nth_element(sizes.begin(), sizes.begin() + sizes.size() / 2, sizes.end());
-  return 1.4826 * sizes[sizes.size() / 2];
+  const Eigen::VectorXd residual = model.residual(samples);
+  return maths::robust_spread({residual.begin(), residual.end()});
 }
 
 ErrorSamples other_direction(const BallbarFile& file, const BallbarRun& run,

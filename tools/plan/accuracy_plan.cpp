@@ -9,6 +9,7 @@
 #include "tools/maths/decompositions.h"
 #include "tools/maths/factors.h"
 #include "tools/maths/halton.h"
+#include "tools/maths/median.h"
 #include "tools/model/chain.h"
 #include "tools/model/prediction.h"
 #include "tools/plan/accuracy_aim.h"
@@ -278,8 +279,7 @@ double usual_reading_mm(const model::Measurement& m) {
   for (const model::Observation& o : m.observations)
     if (o.kind <= model::ObservationKind::kZ) all.push_back(model::uncertainty_of(m, o));
   if (all.empty() || !fit::has_uncertainty(m)) return 1;
-  std::nth_element(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2), all.end());
-  return all[all.size() / 2];
+  return maths::median(std::move(all));
 }
 
 }  // namespace

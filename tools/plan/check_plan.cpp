@@ -7,6 +7,7 @@
 #include "tools/fit/reach.h"
 #include "tools/maths/decompositions.h"
 #include "tools/maths/factors.h"
+#include "tools/maths/median.h"
 #include "tools/model/measurement.h"
 #include "tools/plan/offered_poses.h"
 
@@ -151,8 +152,7 @@ class CheckPlanner {
       for (std::size_t i = 0; i < count; ++i) poses.push_back((i * 383 + draw * 71 + 11) % kCheckOffered);
       worst.push_back(worst_um(poses));
     }
-    std::nth_element(worst.begin(), worst.begin() + kDraws / 2, worst.end());
-    return worst[kDraws / 2];
+    return maths::median(std::move(worst));
   }
 
   const model::Machine& machine_;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "tools/effects/input_class.h"
+#include "tools/maths/median.h"
 
 namespace vernier::plan {
 namespace {
@@ -46,13 +47,6 @@ class Spread {
   double index_;
   int prime_ = 1;
 };
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 std::vector<double> values_of(const model::Column& column) { return {column.begin(), column.end()}; }
 
@@ -97,7 +91,7 @@ class Offerer {
 
   /// Levels of a column: its range, and beyond it what can be set; the middle alone where nobody uses it.
   std::vector<double> levels(const model::Column& column, const model::Input& input) {
-    const double middle = median(values_of(column));
+    const double middle = maths::median(values_of(column));
     if (!drivers_.inputs.contains(input.name)) return {middle};
     const double low = column.minCoeff(), high = column.maxCoeff();
     switch (effects::class_of_input(input)) {
@@ -150,7 +144,7 @@ class Offerer {
       which.push_back(std::min(
           old_.rows() - 1, static_cast<std::size_t>(Spread(i).next() * static_cast<double>(old_.rows()))));
     model::Measurement& rows = result_.rows = model::select_rows(old_, which);
-    const double u = median(values_of(old_.uncertainty));
+    const double u = maths::median(values_of(old_.uncertainty));
     plan_without_correction(rows);
     for (std::size_t row = result_.existing; row < rows.rows(); ++row) {
       rows.uncertainty[static_cast<Eigen::Index>(row)] = u;

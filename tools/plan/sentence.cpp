@@ -8,6 +8,7 @@
 #include <cmath>
 #include <set>
 
+#include "tools/maths/median.h"
 #include "tools/model/prediction.h"
 #include "tools/model/rebind.h"
 #include "tools/plan/offers.h"
@@ -18,12 +19,7 @@ namespace {
 /// A ratio beyond this says no more than that the effect appears.
 constexpr double kMostRatio = 20;
 
-double median(const model::Column& column) {
-  std::vector<double> values(column.begin(), column.end());
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
+double median(const model::Column& column) { return maths::median({column.begin(), column.end()}); }
 
 std::string behaves(double r) {
   if (std::abs(r) >= kMostRatio) return "appears";

@@ -8,11 +8,11 @@
 
 #include "tools/maths/chance.h"
 #include "tools/maths/decompositions.h"
+#include "tools/maths/median.h"
 
 namespace vernier::residual {
 namespace {
 
-constexpr double kMadPerSpread = 1.4826;  // of a normal distribution
 // Robust spreads: what is beyond the first is held there, beyond the second
 // told.
 constexpr double kHeld = 4, kOutlier = 5;
@@ -124,11 +124,7 @@ struct SineSums {
 }  // namespace
 
 std::size_t hold_outliers(Eigen::VectorXd& values) {
-  std::vector<double> sizes;
-  for (const double value : values) sizes.push_back(std::abs(value));
-  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::nth_element(sizes.begin(), middle, sizes.end());
-  const double spread = kMadPerSpread * *middle;
+  const double spread = maths::robust_spread({values.begin(), values.end()});
   // More than half of the readings exactly met: no spread to judge by.
   if (!(spread > 0)) return 0;
   std::size_t outliers = 0;

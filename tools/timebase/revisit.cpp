@@ -6,16 +6,12 @@
 #include <limits>
 #include <numeric>
 
+#include "tools/maths/median.h"
+
 namespace vernier::timebase {
 namespace {
 
 using Index = Eigen::Index;
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 // Finds the points of a path near a given one: sorted along the first coordinate.
 class Neighbours {
@@ -53,7 +49,7 @@ Eigen::RowVectorXd heading(const Eigen::MatrixXd& points, Index row) {
 double usual_step(const Eigen::MatrixXd& points) {
   std::vector<double> steps;
   for (Index i = 1; i < points.rows(); ++i) steps.push_back((points.row(i) - points.row(i - 1)).norm());
-  return steps.empty() ? 0 : median(steps);
+  return steps.empty() ? 0 : maths::median(steps);
 }
 
 // Poses set one by one are no path: nothing lies between them, and everything is near everything.
@@ -147,13 +143,13 @@ std::optional<PathMap> map_paths(const Eigen::MatrixXd& first, const Eigen::Matr
   if (slopes.size() < kSpan) return std::nullopt;
   PathMap map;
   // The median slope is coarse; the line between the ends of its inliers makes it exact.
-  map.rate = median(slopes);
+  map.rate = maths::median(slopes);
   for (int round = 0; round < 2; ++round) {
     offsets.clear();
     for (std::size_t i = 0; i < place.size(); ++i) {
       if (std::isfinite(place[i])) offsets.push_back(place[i] - map.rate * static_cast<double>(i));
     }
-    map.offset = median(offsets);
+    map.offset = maths::median(offsets);
     double n = 0, si = 0, sp = 0, sii = 0, sip = 0;
     const double allowed = round == 0 ? 0.02 * static_cast<double>(place.size()) + 2 : 2;
     for (std::size_t i = 0; i < place.size(); ++i) {

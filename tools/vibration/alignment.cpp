@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "tools/maths/median.h"
 #include "tools/text/error.h"
 #include "tools/vibration/fourier.h"
 
@@ -40,9 +41,8 @@ struct ValueAndSlope {
 double median_step(const Series& s) {
   std::vector<double> steps(s.t_s.size());
   std::adjacent_difference(s.t_s.begin(), s.t_s.end(), steps.begin());
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin() + 1, middle, steps.end());
-  return *middle;
+  steps.erase(steps.begin());  // the first time itself
+  return maths::median(std::move(steps));
 }
 
 /// Values at even steps from the first time on, mean taken off.

@@ -9,6 +9,7 @@
 #include <numeric>
 #include <utility>
 
+#include "tools/maths/median.h"
 #include "tools/text/error.h"
 #include "tools/vibration/fourier.h"
 
@@ -103,10 +104,8 @@ std::vector<double> integrate_twice(std::span<const double> x, double rate_Hz, C
 }
 
 double noise_floor_cutoff(std::span<const double> x, double records) {
-  std::vector<double> powers = line_powers(x);
-  const auto middle = powers.begin() + static_cast<std::ptrdiff_t>(powers.size() / 2);
-  std::nth_element(powers.begin(), middle, powers.end());
-  return *middle / std::log(2.0) * std::log(static_cast<double>(powers.size()) * records);
+  const std::vector<double> powers = line_powers(x);
+  return maths::median(powers) / std::log(2.0) * std::log(static_cast<double>(powers.size()) * records);
 }
 
 double mean_radial_um(const AcceleratedPass& pass, double cutoff, Constants constants) {
