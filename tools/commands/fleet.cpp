@@ -11,9 +11,9 @@
 #include "tools/commands/fleet_kinds.h"
 #include "tools/compile/compile.h"
 #include "tools/fleet/check_readings.h"
-#include "tools/fleet/digest.h"
 #include "tools/fleet/sparkplug.h"
 #include "tools/model/machine_reader.h"
+#include "tools/registry/digest.h"
 #include "tools/text/error.h"
 #include "tools/text/numbers.h"
 #include "tools/text/wall_time.h"
@@ -38,10 +38,10 @@ void run_add(const AddArguments& arguments) {
     throw text::InputError({}, arguments.name,
                            "a machine's name is one line without + / #, of 1 to 200 bytes");
   if (arguments.url && !arguments.url->empty()) upload::parse_url(*arguments.url);
-  fleet::Registry registry = make_registry(arguments.registry);
-  fleet::FleetMachine machine{arguments.name, {}, {}, 0, text::now_us()};
+  registry::Registry registry = make_registry(arguments.registry);
+  registry::FleetMachine machine{arguments.name, {}, {}, 0, text::now_us()};
   // What is entered of it and not said anew stays.
-  for (const fleet::FleetMachine& known : registry.machines())
+  for (const registry::FleetMachine& known : registry.machines())
     if (known.name == arguments.name) machine = known;
   if (arguments.url) machine.url = *arguments.url;
   if (arguments.note) machine.note = *arguments.note;
@@ -55,7 +55,7 @@ struct ListArguments {
 
 Json or_text(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }
 
-Json machine_json(const fleet::FleetMachine& machine, const fleet::RecordedCalibration* runs) {
+Json machine_json(const registry::FleetMachine& machine, const registry::RecordedCalibration* runs) {
   Json json = {{"machine", machine.name},
                {"url", or_text(machine.url)},
                {"note", machine.note},
@@ -76,16 +76,16 @@ Json machine_json(const fleet::FleetMachine& machine, const fleet::RecordedCalib
 }
 
 void run_list(const ListArguments& arguments) {
-  fleet::Registry registry = open_registry(arguments.registry);
+  registry::Registry registry = open_registry(arguments.registry);
   if (!arguments.machine.empty()) registry.machine(arguments.machine);
   const auto calibrations = registry.calibrations(arguments.machine);
   Json all = Json::array();
   std::FILE* const out = human_stream(arguments.json);
-  for (const fleet::FleetMachine& machine : registry.machines()) {
+  for (const registry::FleetMachine& machine : registry.machines()) {
     if (!arguments.machine.empty() && machine.name != arguments.machine) continue;
     const auto runs = std::find_if(calibrations.begin(), calibrations.end(),
                                    [&](const auto& one) { return one.machine == machine.name; });
-    const fleet::RecordedCalibration* const newest = runs == calibrations.end() ? nullptr : &*runs;
+    const registry::RecordedCalibration* const newest = runs == calibrations.end() ? nullptr : &*runs;
     all.push_back(machine_json(machine, newest));
     fmt::print(out, "{:<20} {:<28} {}\n", machine.name, machine.url,
                newest == nullptr ? machine.note
@@ -96,10 +96,10 @@ void run_list(const ListArguments& arguments) {
 }
 
 void run_status(const ListArguments& arguments) {
-  fleet::Registry registry = open_registry(arguments.registry);
+  registry::Registry registry = open_registry(arguments.registry);
   Json all = Json::array();
   std::FILE* const out = human_stream(arguments.json);
-  for (const fleet::LiveState& one : registry.live()) {
+  for (const registry::LiveState& one : registry.live()) {
     if (!arguments.machine.empty() && one.machine != arguments.machine) continue;
     Json json = {{"machine", one.machine},
                  {"online", one.online},
@@ -129,12 +129,12 @@ struct RecordArguments {
 
 std::string hash_of_files(const std::vector<std::string>& files) {
   std::string all;
-  for (const std::string& file : files) all += fleet::digest_of(text::read_file(file));
-  return files.empty() ? "" : files.size() == 1 ? all : fleet::digest_of(all);
+  for (const std::string& file : files) all += registry::digest_of(text::read_file(file));
+  return files.empty() ? "" : files.size() == 1 ? all : registry::digest_of(all);
 }
 
 void run_record(const RecordArguments& arguments) {
-  fleet::RecordedCalibration one;
+  registry::RecordedCalibration one;
   one.machine = arguments.machine;
   one.model = arguments.model;
   model::read_machine(one.model);  // what is no machine file is refused here
@@ -149,7 +149,7 @@ void run_record(const RecordArguments& arguments) {
   one.checked_against = text::joined(arguments.against, " ");
   one.checked_hash = hash_of_files(arguments.against);
   one.at_us = text::now_us();
-  fleet::Registry registry = open_registry(arguments.registry);
+  registry::Registry registry = open_registry(arguments.registry);
   registry.machine(one.machine);
   registry.put(one);
 }
@@ -161,16 +161,16 @@ struct CheckArguments {
 void run_check(const CheckArguments& arguments) {
   const std::int64_t now_us = text::now_us(), at_us = time_of(arguments.at, now_us);
   if (at_us > now_us) throw text::InputError({}, arguments.at, "this time is still to come");
-  fleet::FleetCheck check = fleet::parse_check(text::read_file(arguments.result), arguments.result);
+  registry::FleetCheck check = fleet::parse_check(text::read_file(arguments.result), arguments.result);
   check.machine = arguments.machine, check.at_us = at_us;
-  std::vector<fleet::FleetReading> readings;
+  std::vector<registry::FleetReading> readings;
   if (!arguments.history.empty()) {
     const auto history = check::parse_history(text::read_file(arguments.history), arguments.history);
     if (history.checks.empty()) throw text::InputError({arguments.history, 0}, "", "no check stands in it");
     check.label = history.checks.back().label;
     readings = fleet::readings_of(history.checks.back(), arguments.machine, at_us);
   }
-  fleet::Registry registry = open_registry(arguments.registry);
+  registry::Registry registry = open_registry(arguments.registry);
   registry.machine(arguments.machine);
   if (!registry.put(check, readings)) throw text::LimitNotMet("this check is in the registry already");
 }
@@ -262,14 +262,14 @@ std::int64_t time_of(const std::string& text, std::int64_t otherwise) {
   return *at;
 }
 
-fleet::Registry make_registry(const std::string& place) {
+registry::Registry make_registry(const std::string& place) {
   if (place.empty())
     throw text::InputError("--registry is missing: postgresql://USER@HOST/NAME, or a file for one machine");
-  return fleet::Registry(fleet::open_database(place));
+  return registry::Registry(registry::open_database(place));
 }
 
-fleet::Registry open_registry(const std::string& place) {
-  if (!place.empty() && !fleet::is_server(place) && !std::filesystem::exists(place))
+registry::Registry open_registry(const std::string& place) {
+  if (!place.empty() && !registry::is_server(place) && !std::filesystem::exists(place))
     throw text::InputError({}, place, "no registry there; `vernier fleet add` makes one");
   return make_registry(place);
 }

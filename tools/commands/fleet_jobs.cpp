@@ -7,7 +7,7 @@
 
 #include "tools/commands/command.h"
 #include "tools/commands/fleet_kinds.h"
-#include "tools/fleet/jobs.h"
+#include "tools/registry/jobs.h"
 #include "tools/text/error.h"
 
 namespace vernier::commands::fleet_cli {
@@ -19,20 +19,20 @@ struct EnqueueArguments {
 };
 
 void run_enqueue(const EnqueueArguments& arguments) {
-  fleet::Registry registry = open_registry(arguments.registry);
+  registry::Registry registry = open_registry(arguments.registry);
   std::vector<std::string> machines = arguments.machines;
   for (const std::string& machine : machines) registry.machine(machine);
   if (machines.empty())
-    for (const fleet::FleetMachine& machine : registry.machines()) machines.push_back(machine.name);
+    for (const registry::FleetMachine& machine : registry.machines()) machines.push_back(machine.name);
   if (machines.empty()) throw text::InputError("no machine in " + registry.database().name());
-  fleet::JobQueue queue(registry);
+  registry::JobQueue queue(registry);
   const std::int64_t added = queue.add(arguments.batch, arguments.command, machines);
   fmt::print("{} jobs added, {} machines had theirs in this batch\n", added,
              static_cast<std::int64_t>(machines.size()) - added);
 }
 
 struct WorkArguments {
-  fleet::WorkOptions options;
+  registry::WorkOptions options;
   std::string json;
   int workers = 1;
 };
@@ -53,11 +53,11 @@ void run_work(const WorkArguments& arguments) {
     std::vector<std::thread> threads;
     for (int i = 0; i < arguments.workers; ++i)
       threads.emplace_back([&, i] {
-        fleet::WorkOptions options = arguments.options;
+        registry::WorkOptions options = arguments.options;
         options.worker = worker_name(i);
         try {
           const std::int64_t mine =
-              fleet::work(options, stop, [&](const fleet::Job& job, const fleet::JobCounts& all) {
+              registry::work(options, stop, [&](const registry::Job& job, const registry::JobCounts& all) {
                 const std::lock_guard lock(mutex);
                 const std::int64_t ended = all.done + all.failed;
                 progress.update(
@@ -74,8 +74,8 @@ void run_work(const WorkArguments& arguments) {
     for (std::thread& thread : threads) thread.join();
   });
   if (failed) std::rethrow_exception(failed);
-  fleet::Registry registry = open_registry(arguments.options.registry);
-  const fleet::JobCounts all = fleet::JobQueue(registry).counts(arguments.options.batch);
+  registry::Registry registry = open_registry(arguments.options.registry);
+  const registry::JobCounts all = registry::JobQueue(registry).counts(arguments.options.batch);
   fmt::print(human_stream(arguments.json),
              "{} done here; the batch: {} done, {} failed, {} waiting, {} taken\n", done, all.done,
              all.failed, all.waiting, all.taken);
@@ -95,8 +95,8 @@ struct JobsArguments {
 };
 
 void run_jobs(const JobsArguments& arguments) {
-  fleet::Registry registry = open_registry(arguments.registry);
-  fleet::JobQueue queue(registry);
+  registry::Registry registry = open_registry(arguments.registry);
+  registry::JobQueue queue(registry);
   std::FILE* const out = human_stream(arguments.json);
   if (arguments.again) {
     if (arguments.batch.empty()) throw text::InputError("--again: of which batch?");
@@ -104,7 +104,7 @@ void run_jobs(const JobsArguments& arguments) {
   }
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
   for (const std::string& batch : arguments.batch.empty() ? queue.batches() : std::vector{arguments.batch}) {
-    const fleet::JobCounts all = queue.counts(batch);
+    const registry::JobCounts all = queue.counts(batch);
     fmt::print(out, "{}: {} done, {} failed, {} waiting, {} taken\n", batch, all.done, all.failed,
                all.waiting, all.taken);
     json.push_back({{"batch", batch},
@@ -114,7 +114,7 @@ void run_jobs(const JobsArguments& arguments) {
                     {"taken", all.taken}});
     if (arguments.batch.empty()) continue;
     json.back()["jobs"] = nlohmann::ordered_json::array();
-    for (const fleet::Job& job : queue.jobs(batch)) {
+    for (const registry::Job& job : queue.jobs(batch)) {
       json.back()["jobs"].push_back({{"machine", job.machine},
                                      {"state", job.state},
                                      {"attempt", job.attempt},

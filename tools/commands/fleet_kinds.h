@@ -6,7 +6,7 @@
 #include <memory>
 #include <string>
 
-#include "tools/fleet/registry.h"
+#include "tools/registry/registry.h"
 
 namespace vernier::commands::fleet_cli {
 
@@ -14,9 +14,9 @@ namespace vernier::commands::fleet_cli {
 void add_registry(CLI::App& command, std::string& place);
 /// The registry that was named; a file that is not there yet is made. Throws InputError where none was named,
 /// or it is away. tool.
-fleet::Registry make_registry(const std::string& place);
+registry::Registry make_registry(const std::string& place);
 /// ... which is there already: a misspelt file is refused. tool.
-fleet::Registry open_registry(const std::string& place);
+registry::Registry open_registry(const std::string& place);
 
 /// The time in us since 1970 that a user wrote, or `otherwise` where he wrote none. Throws InputError for
 /// what is no time. tool.

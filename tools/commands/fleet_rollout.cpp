@@ -7,9 +7,9 @@
 #include "tools/commands/command.h"
 #include "tools/commands/fleet_kinds.h"
 #include "tools/commands/upload_kinds.h"
-#include "tools/fleet/digest.h"
 #include "tools/fleet/rollout.h"
-#include "tools/fleet/shell_command.h"
+#include "tools/registry/digest.h"
+#include "tools/registry/shell_command.h"
 #include "tools/text/error.h"
 #include "tools/text/wall_time.h"
 
@@ -34,18 +34,19 @@ std::string folder_for(std::string pattern, const std::string& machine) {
 }
 
 /// Every image is read and judged before the first board is asked anything.
-std::vector<fleet::RolloutMachine> machines_of(const RolloutArguments& arguments, fleet::Registry& registry) {
+std::vector<fleet::RolloutMachine> machines_of(const RolloutArguments& arguments,
+                                               registry::Registry& registry) {
   std::vector<fleet::RolloutMachine> machines;
   std::vector<std::string> names = arguments.machines;
   if (names.empty())
-    for (const fleet::FleetMachine& one : registry.machines())
+    for (const registry::FleetMachine& one : registry.machines())
       if (!one.url.empty() && std::filesystem::is_directory(folder_for(arguments.images, one.name)))
         names.push_back(one.name);
   if (names.empty())
     throw text::InputError({}, arguments.images, "no machine with a board has an image there");
   const std::vector<std::size_t> ends = fleet::stage_ends(arguments.stages, names.size());
   for (std::size_t i = 0; i < names.size(); ++i) {
-    const fleet::FleetMachine one = registry.machine(names[i]);
+    const registry::FleetMachine one = registry.machine(names[i]);
     if (one.url.empty())
       throw text::InputError({}, one.name, "this machine has no board: vernier fleet add --url");
     const auto stage = std::upper_bound(ends.begin(), ends.end(), i) - ends.begin();
@@ -55,23 +56,23 @@ std::vector<fleet::RolloutMachine> machines_of(const RolloutArguments& arguments
   return machines;
 }
 
-void write_kept(fleet::Registry& registry, const RolloutArguments& arguments,
+void write_kept(registry::Registry& registry, const RolloutArguments& arguments,
                 const fleet::RolloutMachine& machine) {
   const std::string folder = folder_for(arguments.images, machine.name);
-  fleet::RecordedCalibration one;
+  registry::RecordedCalibration one;
   one.machine = machine.name, one.model = folder + "/machine.xml";
-  if (std::filesystem::exists(one.model)) one.model_hash = fleet::digest_of(text::read_file(one.model));
+  if (std::filesystem::exists(one.model)) one.model_hash = registry::digest_of(text::read_file(one.model));
   for (const fleet::RolloutState& state : fleet::rollout_states(registry, arguments.options.name))
     if (state.machine == machine.name) one.image = state.image;
   one.signed_by = arguments.signed_by;
   one.checked_against = arguments.options.judge.empty()
                             ? "watched by the rollout " + arguments.options.name
-                            : fleet::command_for(arguments.options.judge, machine.name);
+                            : registry::command_for(arguments.options.judge, machine.name);
   one.at_us = text::now_us();
   registry.put(one);
 }
 
-void tell(const RolloutArguments& arguments, fleet::Registry& registry) {
+void tell(const RolloutArguments& arguments, registry::Registry& registry) {
   Json all = Json::array();
   std::FILE* const out = human_stream(arguments.json);
   for (const fleet::RolloutState& one : fleet::rollout_states(registry, arguments.options.name)) {
@@ -87,7 +88,7 @@ void tell(const RolloutArguments& arguments, fleet::Registry& registry) {
 }
 
 void run_rollout(const RolloutArguments& arguments) {
-  fleet::Registry registry = open_registry(arguments.registry);
+  registry::Registry registry = open_registry(arguments.registry);
   if (arguments.images.empty()) {
     if (fleet::rollout_states(registry, arguments.options.name).empty())
       throw text::InputError({}, arguments.options.name, "no rollout of this name; --images begins one");

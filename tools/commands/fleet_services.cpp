@@ -35,7 +35,7 @@ struct MetricsArguments {
 
 void run_metrics(const MetricsArguments& arguments) {
   if (arguments.listen.empty()) {
-    fleet::Registry registry = open_registry(arguments.registry);
+    registry::Registry registry = open_registry(arguments.registry);
     const std::string text = fleet::metrics_text(registry, text::now_us());
     if (!arguments.output.empty()) return text::write_file(arguments.output, text);
     if (std::fputs(text.c_str(), stdout) == EOF || std::fflush(stdout) != 0)

@@ -3,8 +3,8 @@
 
 #include "tools/commands/command.h"
 #include "tools/commands/fleet_kinds.h"
-#include "tools/fleet/alike.h"
-#include "tools/fleet/due.h"
+#include "tools/registry/alike.h"
+#include "tools/registry/due.h"
 #include "tools/text/error.h"
 #include "tools/text/optional_json.h"
 #include "tools/text/wall_time.h"
@@ -16,15 +16,16 @@ using Json = nlohmann::ordered_json;
 
 struct TrendArguments {
   std::string registry, json, at, since;
-  fleet::AlikeOptions alike;
+  registry::AlikeOptions alike;
 };
 
 void run_due(const TrendArguments& arguments) {
-  fleet::Registry registry = open_registry(arguments.registry);
+  registry::Registry registry = open_registry(arguments.registry);
   Json all = Json::array();
   std::FILE* const out = human_stream(arguments.json);
   std::size_t due = 0;
-  for (const fleet::DueMachine& one : fleet::due_machines(registry, time_of(arguments.at, text::now_us()))) {
+  for (const registry::DueMachine& one :
+       registry::due_machines(registry, time_of(arguments.at, text::now_us()))) {
     const auto text = [](const std::optional<std::int64_t>& time) {
       return time ? Json(text::utc_text(*time)) : Json(nullptr);
     };
@@ -43,7 +44,7 @@ void run_due(const TrendArguments& arguments) {
   write_json(arguments.json, {{"machines", all}});
 }
 
-Json drift_json(const fleet::Drift& drift) {
+Json drift_json(const registry::Drift& drift) {
   Json json = {
       {"quantity", drift.quantity}, {"unit", drift.unit},         {"judged", drift.judged},
       {"machines", drift.machines}, {"times", drift.times},       {"readings", drift.readings},
@@ -53,17 +54,17 @@ Json drift_json(const fleet::Drift& drift) {
   for (const auto& [at, value] : drift.curve)
     json["curve"].push_back({{"at", text::utc_text(at)}, {"value", value}});
   json["own"] = Json::array();
-  for (const fleet::OwnDrift& one : drift.own)
+  for (const registry::OwnDrift& one : drift.own)
     json["own"].push_back({{"machine", one.machine}, {"per_day", one.per_day}, {"std", one.std}});
   return json;
 }
 
 void run_alike(const TrendArguments& arguments) {
-  fleet::Registry registry = open_registry(arguments.registry);
+  registry::Registry registry = open_registry(arguments.registry);
   Json all = Json::array();
   std::FILE* const out = human_stream(arguments.json);
-  for (const fleet::Drift& drift :
-       fleet::drifts(registry.readings(time_of(arguments.since, 0)), arguments.alike)) {
+  for (const registry::Drift& drift :
+       registry::drifts(registry.readings(time_of(arguments.since, 0)), arguments.alike)) {
     all.push_back(drift_json(drift));
     if (!drift.judged) {
       fmt::print(out, "{}: too little ({} machines, {} times)\n", drift.quantity, drift.machines,
@@ -74,7 +75,7 @@ void run_alike(const TrendArguments& arguments) {
       fmt::print(out, "{}: {} machines move alike, by {:.3g} {} (p {:.1e}): look for what they share\n",
                  drift.quantity, drift.machines - drift.own.size(), drift.common_swing, drift.unit,
                  drift.common_p);
-    for (const fleet::OwnDrift& one : drift.own)
+    for (const registry::OwnDrift& one : drift.own)
       fmt::print(out, "{}: {} drifts by itself, {:.3g} \u00b1 {:.2g} {} a day\n", drift.quantity, one.machine,
                  one.per_day, one.std, drift.unit);
     if (!drift.common && drift.own.empty())

@@ -8,12 +8,12 @@
 
 namespace vernier::fleet {
 
-FleetCheck parse_check(const std::string& json, const std::string& file) {
+registry::FleetCheck parse_check(const std::string& json, const std::string& file) {
   SparkplugPayload payload;
   payload.metrics = check_metrics(json, 0);
   const auto verdict = text_of(payload.find("Check/Verdict"));
   if (!verdict) throw text::InputError({file, 0}, "", "not what `vernier check --json` writes");
-  FleetCheck check;
+  registry::FleetCheck check;
   check.verdict = *verdict;
   check.label = file;
   check.explanation = text_of(payload.find("Check/Explanation")).value_or("");
@@ -22,9 +22,9 @@ FleetCheck parse_check(const std::string& json, const std::string& file) {
   return check;
 }
 
-std::vector<FleetReading> readings_of(const check::CheckRecord& record, const std::string& machine,
-                                      std::int64_t at_us) {
-  std::vector<FleetReading> readings;
+std::vector<registry::FleetReading> readings_of(const check::CheckRecord& record, const std::string& machine,
+                                                std::int64_t at_us) {
+  std::vector<registry::FleetReading> readings;
   for (std::size_t i = 0; i < record.suspects.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
     const double amount = record.gram(at, at);

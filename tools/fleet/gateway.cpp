@@ -200,7 +200,7 @@ class GatewayPublisher {
     });
     for (const SpoolRecord& record : records) {
       auto payload = decode(record.payload);
-      if (!payload) throw DatabaseError("a record of the spool is damaged");
+      if (!payload) throw registry::DatabaseError("a record of the spool is damaged");
       const bool old = record.time_ms + kFreshMs < wall_ms();
       for (Metric& metric : payload->metrics) metric.historical = old;
       payload->metrics.push_back({std::string(kSpoolMetric), id, record.time_ms, old});
@@ -239,7 +239,7 @@ void run_gateway(const GatewayFile& file, const std::atomic<bool>& stop, const S
         rest(kWriteEvery, end);
         desk.write();
       }
-    } catch (const DatabaseError& error) {
+    } catch (const registry::DatabaseError& error) {
       const std::lock_guard lock(failed_mutex);
       failed = error.what();
       end = true;
@@ -258,7 +258,7 @@ void run_gateway(const GatewayFile& file, const std::atomic<bool>& stop, const S
     } catch (const text::InputError& error) {
       if (before != error.what()) say(error.what());
       before = error.what();
-    } catch (const DatabaseError& error) {
+    } catch (const registry::DatabaseError& error) {
       const std::lock_guard lock(failed_mutex);
       failed = error.what();
       end = true;
@@ -267,7 +267,7 @@ void run_gateway(const GatewayFile& file, const std::atomic<bool>& stop, const S
   }
   for (std::thread& thread : threads) thread.join();
   watch.join();
-  if (!failed.empty()) throw DatabaseError(failed);
+  if (!failed.empty()) throw registry::DatabaseError(failed);
   desk.write();
 }
 

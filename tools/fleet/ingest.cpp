@@ -32,7 +32,7 @@ struct NodeState {
 /// One connection to the broker with one to the database.
 class Listener {
  public:
-  Listener(const IngestOptions& options, Registry& registry)
+  Listener(const IngestOptions& options, registry::Registry& registry)
       : options_(options),
         writer_(registry),
         connection_(options.broker, "vernier-host-" + options.host,
@@ -121,7 +121,7 @@ void run_ingest(const IngestOptions& options, const std::atomic<bool>& stop, con
   bool begun = false;
   while (!stop) {
     try {
-      Registry registry(open_database(options.registry));
+      registry::Registry registry(registry::open_database(options.registry));
       begun = true;
       Listener listener(options, registry);
       say("writes into " + registry.database().name());
@@ -130,13 +130,13 @@ void run_ingest(const IngestOptions& options, const std::atomic<bool>& stop, con
         while (!stop && listener.connected()) listener.step();
         say(stop ? "parted" : "the broker is gone");
         listener.part();
-      } catch (const DatabaseError&) {
+      } catch (const registry::DatabaseError&) {
         listener.part();
         throw;
       }
     } catch (const std::runtime_error& error) {
       // A server is away for a while; a file that is none at the beginning is a word wrongly typed.
-      if (!begun && !is_server(options.registry)) throw;
+      if (!begun && !registry::is_server(options.registry)) throw;
       if (before != error.what()) say(error.what());
       before = error.what();
     }

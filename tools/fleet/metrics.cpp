@@ -8,8 +8,8 @@
 #include <charconv>
 #include <thread>
 
-#include "tools/fleet/cells.h"
-#include "tools/fleet/due.h"
+#include "tools/registry/cells.h"
+#include "tools/registry/due.h"
 #include "tools/text/error.h"
 #include "tools/text/numbers.h"
 #include "tools/text/wall_time.h"
@@ -45,21 +45,23 @@ class Family {
   std::string name_;
 };
 
-void put_live(std::string& text, const std::vector<LiveState>& live) {
+void put_live(std::string& text, const std::vector<registry::LiveState>& live) {
   Family up(text, "vernier_machine_online", "gauge", "Whether a gateway hears the machine's board.");
-  for (const LiveState& one : live)
+  for (const registry::LiveState& one : live)
     up.add({{"machine", one.machine}, {"gateway", one.gateway}}, one.online ? 1 : 0);
   Family at(text, "vernier_machine_newest_sample_timestamp_seconds", "gauge",
             "When the newest stored sample was taken.");
-  for (const LiveState& one : live) at.add({{"machine", one.machine}}, static_cast<double>(one.at_us) * 1e-6);
+  for (const registry::LiveState& one : live)
+    at.add({{"machine", one.machine}}, static_cast<double>(one.at_us) * 1e-6);
   Family samples(text, "vernier_machine_samples_total", "counter", "Samples stored.");
-  for (const LiveState& one : live) samples.add({{"machine", one.machine}}, static_cast<double>(one.samples));
+  for (const registry::LiveState& one : live)
+    samples.add({{"machine", one.machine}}, static_cast<double>(one.samples));
   Family state(text, "vernier_machine_info", "gauge", "What the machine's board does and runs, as labels.");
-  for (const LiveState& one : live)
+  for (const registry::LiveState& one : live)
     state.add({{"machine", one.machine}, {"mode", one.mode}, {"fault", one.fault}, {"image", one.image}}, 1);
   Family value(text, "vernier_machine_value", "gauge",
                "A number of the newest sample, in the unit of the machine file.");
-  for (const LiveState& one : live)
+  for (const registry::LiveState& one : live)
     for (const auto& [name, json] : one.values)
       if (const auto number = text::parse_number(json))
         value.add({{"machine", one.machine}, {"name", name}}, *number);
@@ -67,30 +69,34 @@ void put_live(std::string& text, const std::vector<LiveState>& live) {
 
 }  // namespace
 
-std::string metrics_text(Registry& registry, std::int64_t at_us) {
+std::string metrics_text(registry::Registry& registry, std::int64_t at_us) {
   std::string text;
   put_live(text, registry.live());
-  Database& database = registry.database();
+  registry::Database& database = registry.database();
   Family faults(text, "vernier_machine_faults_total", "counter", "Faults heard of.");
-  for (const Row& row : database.run("SELECT machine, fault, COUNT(*) FROM fault_event GROUP BY machine, "
-                                     "fault ORDER BY machine, fault"))
-    faults.add({{"machine", words(row[0])}, {"fault", words(row[1])}}, real(row[2]));
-  const std::vector<DueMachine> due = due_machines(registry, at_us);
+  for (const registry::Row& row :
+       database.run("SELECT machine, fault, COUNT(*) FROM fault_event GROUP BY machine, "
+                    "fault ORDER BY machine, fault"))
+    faults.add({{"machine", registry::words(row[0])}, {"fault", registry::words(row[1])}},
+               registry::real(row[2]));
+  const std::vector<registry::DueMachine> due = registry::due_machines(registry, at_us);
   Family overdue(text, "vernier_machine_check_due_seconds", "gauge",
                  "Until the next check is due; negative: it is overdue.");
-  for (const DueMachine& one : due)
+  for (const registry::DueMachine& one : due)
     if (one.due_us) overdue.add({{"machine", one.machine}}, static_cast<double>(*one.due_us - at_us) * 1e-6);
   Family verdict(text, "vernier_machine_check_info", "gauge", "The last check's verdict, as a label.");
-  for (const DueMachine& one : due)
+  for (const registry::DueMachine& one : due)
     if (one.last_us) verdict.add({{"machine", one.machine}, {"verdict", one.verdict}}, 1);
   Family lost(text, "vernier_lost_samples_total", "counter",
               "Samples that a gateway had to give up for want of room.");
-  lost.add(
-      {}, real(database.run("SELECT COALESCE(SUM(before_number - after_number - 1), 0) FROM loss").at(0)[0]));
+  lost.add({},
+           registry::real(
+               database.run("SELECT COALESCE(SUM(before_number - after_number - 1), 0) FROM loss").at(0)[0]));
   Family jobs(text, "vernier_jobs", "gauge", "Jobs of a batch by state.");
-  for (const Row& row :
+  for (const registry::Row& row :
        database.run("SELECT batch, state, COUNT(*) FROM job GROUP BY batch, state ORDER BY batch, state"))
-    jobs.add({{"batch", words(row[0])}, {"state", words(row[1])}}, real(row[2]));
+    jobs.add({{"batch", registry::words(row[0])}, {"state", registry::words(row[1])}},
+             registry::real(row[2]));
   return text;
 }
 
@@ -102,7 +108,7 @@ void serve_metrics(const std::string& registry, const std::string& address, cons
     std::from_chars(address.data() + colon + 1, address.data() + address.size(), port);
   if (port < 0 || port > 65535) throw text::InputError({}, address, "HOST:PORT is wanted");
   const std::string host = address.substr(0, colon);
-  { Registry there(open_database(registry)); }
+  { registry::Registry there(registry::open_database(registry)); }
   httplib::Server server;
   // Not the library's default, which lets a second server take the same port.
   server.set_socket_options([](socket_t socket) {
@@ -116,7 +122,7 @@ void serve_metrics(const std::string& registry, const std::string& address, cons
   server.new_task_queue = [] { return new httplib::ThreadPool(kThreads); };
   server.Get("/metrics", [&](const httplib::Request&, httplib::Response& response) {
     try {
-      Registry here(open_database(registry));
+      registry::Registry here(registry::open_database(registry));
       response.set_content(metrics_text(here, text::now_us()), "text/plain; version=0.0.4; charset=utf-8");
     } catch (const std::runtime_error& error) {
       response.status = 503;

@@ -4,12 +4,12 @@
 #include <string>
 
 #include "tools/fleet/gateway.h"
-#include "tools/fleet/registry.h"
+#include "tools/registry/registry.h"
 
 namespace vernier::fleet {
 
 /// The fleet's state as Prometheus reads it (text format 0.0.4); names stand in tools/docs/fleet.md. tool.
-std::string metrics_text(Registry& registry, std::int64_t at_us);
+std::string metrics_text(registry::Registry& registry, std::int64_t at_us);
 
 /// Serves it as /metrics at HOST:PORT until `stop`. Throws InputError where it cannot listen there. tool.
 void serve_metrics(const std::string& registry, const std::string& address, const std::atomic<bool>& stop,

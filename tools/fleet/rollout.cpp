@@ -12,8 +12,8 @@
 #include <thread>
 
 #include "tables/image_format.h"
-#include "tools/fleet/cells.h"
-#include "tools/fleet/shell_command.h"
+#include "tools/registry/cells.h"
+#include "tools/registry/shell_command.h"
 #include "tools/text/error.h"
 #include "tools/text/numbers.h"
 #include "tools/text/wall_time.h"
@@ -112,8 +112,8 @@ class Trial {
   }
   std::string judge() {
     const double patience = left_s();
-    std::string command = command_for(options_.judge, machine_.name);
-    ShellCommand running(command);
+    std::string command = registry::command_for(options_.judge, machine_.name);
+    registry::ShellCommand running(command);
     const auto end = Clock::now() + std::chrono::duration<double>(patience);
     while (!running.wait(50ms)) {
       if (stop_) return "interrupted";
@@ -134,26 +134,27 @@ class Trial {
 /// The rollout's rows of the registry.
 class RolloutBook {
  public:
-  RolloutBook(Registry& registry, std::string name) : registry_(registry), name_(std::move(name)) {}
+  RolloutBook(registry::Registry& registry, std::string name) : registry_(registry), name_(std::move(name)) {}
   void enter(const std::vector<RolloutMachine>& machines) {
-    Transaction transaction(registry_.database());
+    registry::Transaction transaction(registry_.database());
     for (std::size_t i = 0; i < machines.size(); ++i)
       registry_.database().run(
           "INSERT INTO rollout VALUES ($1, $2, $3, $4, $5, 'waiting', '', $6) ON CONFLICT (name, machine) DO "
           "UPDATE "
           "SET stage = excluded.stage, place = excluded.place",
-          {name_, machines[i].name, cell(machines[i].stage), cell(static_cast<std::int64_t>(i)),
-           fingerprint_of(machines[i].image), cell(text::now_us())});
+          {name_, machines[i].name, registry::cell(machines[i].stage),
+           registry::cell(static_cast<std::int64_t>(i)), fingerprint_of(machines[i].image),
+           registry::cell(text::now_us())});
     transaction.commit();
   }
   void write(const RolloutMachine& machine, const char* state, const std::string& said) {
     registry_.database().run(
         "UPDATE rollout SET state = $1, said = $2, at_us = $3, image = $4 WHERE name = $5 AND machine = $6",
-        {state, said, cell(text::now_us()), fingerprint_of(machine.image), name_, machine.name});
+        {state, said, registry::cell(text::now_us()), fingerprint_of(machine.image), name_, machine.name});
   }
 
  private:
-  Registry& registry_;
+  registry::Registry& registry_;
   std::string name_;
 };
 
@@ -232,8 +233,8 @@ std::vector<std::size_t> stage_ends(const std::string& stages, std::size_t machi
   return ends;
 }
 
-void roll_out(Registry& registry, const std::vector<RolloutMachine>& machines, const RolloutOptions& options,
-              const std::atomic<bool>& stop, const Say& say,
+void roll_out(registry::Registry& registry, const std::vector<RolloutMachine>& machines,
+              const RolloutOptions& options, const std::atomic<bool>& stop, const Say& say,
               const std::function<void(const RolloutMachine&)>& kept) {
   RolloutBook book(registry, options.name);
   book.enter(machines);
@@ -262,17 +263,18 @@ void roll_out(Registry& registry, const std::vector<RolloutMachine>& machines, c
   if (away > 0) throw text::LimitNotMet(fmt::format("{} boards were away: call it again", away));
 }
 
-std::vector<RolloutState> rollout_states(Registry& registry, const std::string& name) {
+std::vector<RolloutState> rollout_states(registry::Registry& registry, const std::string& name) {
   std::vector<RolloutState> states;
-  for (const Row& row : registry.database().run("SELECT machine, state, said, image, stage, at_us FROM "
-                                                "rollout WHERE name = $1 ORDER BY place, machine",
-                                                {name}))
-    states.push_back(
-        {words(row[0]), words(row[1]), words(row[2]), words(row[3]), whole(row[4]), whole(row[5])});
+  for (const registry::Row& row :
+       registry.database().run("SELECT machine, state, said, image, stage, at_us FROM "
+                               "rollout WHERE name = $1 ORDER BY place, machine",
+                               {name}))
+    states.push_back({registry::words(row[0]), registry::words(row[1]), registry::words(row[2]),
+                      registry::words(row[3]), registry::whole(row[4]), registry::whole(row[5])});
   return states;
 }
 
-void allow_rollout(Registry& registry, const std::string& name) {
+void allow_rollout(registry::Registry& registry, const std::string& name) {
   registry.database().run("UPDATE rollout SET state = 'waiting' WHERE name = $1 AND state = 'taken-back'",
                           {name});
 }

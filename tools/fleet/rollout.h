@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "tools/fleet/gateway.h"
-#include "tools/fleet/registry.h"
+#include "tools/registry/registry.h"
 #include "tools/upload/client.h"
 
 namespace vernier::fleet {
@@ -39,14 +39,14 @@ struct RolloutOptions {
 /// stands in the registry: a rollout that was interrupted goes on where it was, and a board whose trial
 /// nobody confirms goes back by itself. kept: called for each machine that was kept. Throws LimitNotMet with
 /// the machine and why where it stopped. tool.
-void roll_out(Registry& registry, const std::vector<RolloutMachine>& machines, const RolloutOptions& options,
-              const std::atomic<bool>& stop, const Say& say,
+void roll_out(registry::Registry& registry, const std::vector<RolloutMachine>& machines,
+              const RolloutOptions& options, const std::atomic<bool>& stop, const Say& say,
               const std::function<void(const RolloutMachine&)>& kept);
 
 /// In the rollout's order; empty where there is none of that name.
-std::vector<RolloutState> rollout_states(Registry& registry, const std::string& name);
+std::vector<RolloutState> rollout_states(registry::Registry& registry, const std::string& name);
 /// A rollout that stopped may go on: machines that were taken back are tried again.
-void allow_rollout(Registry& registry, const std::string& name);
+void allow_rollout(registry::Registry& registry, const std::string& name);
 
 /// "1,10%,100%" as the last place (1 on) of each stage among so many machines. Throws InputError. tool.
 std::vector<std::size_t> stage_ends(const std::string& stages, std::size_t machines);

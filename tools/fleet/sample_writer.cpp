@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "tools/fleet/cells.h"
-#include "tools/fleet/digest.h"
+#include "tools/registry/cells.h"
+#include "tools/registry/digest.h"
 #include "tools/text/wall_time.h"
 
 namespace vernier::fleet {
@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Cell number_cell(std::uint64_t value) { return cell(static_cast<std::int64_t>(value)); }
+registry::Cell number_cell(std::uint64_t value) { return registry::cell(static_cast<std::int64_t>(value)); }
 
 // The three by which stores are kept, which are no values of the machine.
 bool is_bookkeeping(const Metric& metric) {
@@ -46,7 +46,7 @@ struct SampleWriter::Batch {
   };
   std::map<std::string, std::uint64_t> before, after;  // by spool: its cursor
   std::map<std::string, std::string> names_of_shape;
-  std::vector<Row> samples, losses, faults, checks;
+  std::vector<registry::Row> samples, losses, faults, checks;
   std::set<std::string> machines;
   std::map<std::string, std::string> last_fault;
   std::map<std::string, std::uint64_t> last_check;
@@ -56,17 +56,17 @@ struct SampleWriter::Batch {
 SampleWriter::Cursor& SampleWriter::cursor(const std::string& spool, const std::string& gateway) {
   const auto found = cursors_.find(spool);
   if (found != cursors_.end()) return found->second;
-  Database& database = registry_.database();
+  registry::Database& database = registry_.database();
   database.run("INSERT INTO spool VALUES ($1, $2, 0) ON CONFLICT DO NOTHING", {spool, gateway});
   const auto rows = database.run("SELECT stored FROM spool WHERE id = $1", {spool});
-  return cursors_[spool] = {static_cast<std::uint64_t>(whole(rows.at(0)[0])), gateway};
+  return cursors_[spool] = {static_cast<std::uint64_t>(registry::whole(rows.at(0)[0])), gateway};
 }
 
 std::string SampleWriter::shape(const SparkplugPayload& payload, Batch& batch) {
   Json names = Json::array();
   for (const Metric& metric : payload.metrics)
     if (!is_bookkeeping(metric)) names.push_back(metric.name);
-  const std::string text = dumped(names), id = digest_of(text).substr(0, 32);
+  const std::string text = dumped(names), id = registry::digest_of(text).substr(0, 32);
   if (!shapes_.contains(id)) batch.names_of_shape[id] = text;
   return id;
 }
@@ -89,8 +89,8 @@ bool SampleWriter::take(const DeviceData& one, Batch& batch) {
   const std::int64_t at_us = static_cast<std::int64_t>(one.payload.find(kNumberMetric)->time_ms) * 1000;
   const bool historical = one.payload.find(kNumberMetric)->historical;
   const std::string shape_id = shape(one.payload, batch), values = values_text(one.payload);
-  batch.samples.push_back({*spool, number_cell(*number), one.machine, cell(at_us),
-                           cell(std::int64_t{historical ? 1 : 0}), shape_id, values});
+  batch.samples.push_back({*spool, number_cell(*number), one.machine, registry::cell(at_us),
+                           registry::cell(std::int64_t{historical ? 1 : 0}), shape_id, values});
   if (!machines_.contains(one.machine)) batch.machines.insert(one.machine);
   Batch::Newest& newest = batch.newest[one.machine];
   ++newest.samples;
@@ -98,7 +98,7 @@ bool SampleWriter::take(const DeviceData& one, Batch& batch) {
   const auto last =
       batch.last_fault.contains(one.machine) ? batch.last_fault[one.machine] : faults_[one.machine];
   if (fault != last && !fault.empty() && fault != "none")
-    batch.faults.push_back({one.machine, cell(at_us), fault});
+    batch.faults.push_back({one.machine, registry::cell(at_us), fault});
   batch.last_fault[one.machine] = fault;
   if (const auto checked = count_of(one.payload.find("Check/Time"));
       checked && *checked != (batch.last_check.contains(one.machine) ? batch.last_check[one.machine]
@@ -107,8 +107,8 @@ bool SampleWriter::take(const DeviceData& one, Batch& batch) {
     batch.checks.push_back({one.machine, number_cell(*checked), "by " + one.gateway,
                             text_of(one.payload.find("Check/Verdict")).value_or(""),
                             text_of(one.payload.find("Check/Explanation")).value_or(""),
-                            cell(number_of(one.payload, "Check/Evidence")),
-                            cell(number_of(one.payload, "Check/Alarm"))});
+                            registry::cell(number_of(one.payload, "Check/Evidence")),
+                            registry::cell(number_of(one.payload, "Check/Alarm"))});
   }
   if (at_us < newest.at_us) return true;
   newest.at_us = at_us, newest.gateway = one.gateway, newest.fault = fault, newest.shape = shape_id;
@@ -140,23 +140,24 @@ std::map<std::string, Receipt> SampleWriter::write(const std::vector<DeviceData>
 
 void SampleWriter::write(Batch& batch) {
   if (batch.samples.empty()) return;
-  Database& database = registry_.database();
-  Transaction transaction(database);
+  registry::Database& database = registry_.database();
+  registry::Transaction transaction(database);
   for (const auto& [spool, stored] : batch.after) {
     if (stored == batch.before[spool]) continue;
     database.run("UPDATE spool SET stored = $1 WHERE id = $2 AND stored = $3",
                  {number_cell(stored), spool, number_cell(batch.before[spool])});
-    if (database.written() != 1) throw DatabaseError("another writer has stored records of " + spool);
+    if (database.written() != 1)
+      throw registry::DatabaseError("another writer has stored records of " + spool);
   }
   for (const auto& [id, names] : batch.names_of_shape)
     database.run("INSERT INTO shape VALUES ($1, $2) ON CONFLICT DO NOTHING", {id, names});
   for (const std::string& machine : batch.machines)
     database.run("INSERT INTO machine VALUES ($1, '', 'heard of, not added', 0, $2) ON CONFLICT DO NOTHING",
-                 {machine, cell(text::now_us())});
-  insert_rows(database, "INSERT INTO sample", batch.samples, "");
-  insert_rows(database, "INSERT INTO loss", batch.losses, "");
-  insert_rows(database, "INSERT INTO fault_event", batch.faults, "ON CONFLICT DO NOTHING");
-  insert_rows(database, "INSERT INTO check_result", batch.checks, "ON CONFLICT DO NOTHING");
+                 {machine, registry::cell(text::now_us())});
+  registry::insert_rows(database, "INSERT INTO sample", batch.samples, "");
+  registry::insert_rows(database, "INSERT INTO loss", batch.losses, "");
+  registry::insert_rows(database, "INSERT INTO fault_event", batch.faults, "ON CONFLICT DO NOTHING");
+  registry::insert_rows(database, "INSERT INTO check_result", batch.checks, "ON CONFLICT DO NOTHING");
   write_live(batch);
   transaction.commit();
   written_ += batch.samples.size();
@@ -168,10 +169,10 @@ void SampleWriter::write(Batch& batch) {
 }
 
 void SampleWriter::write_live(const Batch& batch) {
-  std::vector<Row> rows;
+  std::vector<registry::Row> rows;
   for (const auto& [machine, one] : batch.newest)
-    rows.push_back({machine, one.gateway, cell(std::int64_t{1}), cell(one.at_us), cell(one.samples), one.mode,
-                    one.fault, one.image, one.shape, one.values});
+    rows.push_back({machine, one.gateway, registry::cell(std::int64_t{1}), registry::cell(one.at_us),
+                    registry::cell(one.samples), one.mode, one.fault, one.image, one.shape, one.values});
   // A record from a store may be older than what is there: it counts, and no more.
   const auto newer = [](const std::string& column) {
     return column + " = CASE WHEN excluded.at_us >= live.at_us THEN excluded." + column + " ELSE live." +
@@ -181,13 +182,13 @@ void SampleWriter::write_live(const Batch& batch) {
       "ON CONFLICT (machine) DO UPDATE SET samples = live.samples + excluded.samples, online = 1";
   for (const char* column : {"gateway", "mode", "fault", "image", "shape", "sample_values", "at_us"})
     tail += ", " + newer(column);
-  insert_rows(registry_.database(), "INSERT INTO live", rows, tail);
+  registry::insert_rows(registry_.database(), "INSERT INTO live", rows, tail);
 }
 
 void SampleWriter::online(const std::string& gateway, const std::string& machine, bool online) {
   registry_.database().run(
       "UPDATE live SET online = $1 WHERE (gateway = $2 OR $2 = '') AND (machine = $3 OR $3 = '')",
-      {cell(std::int64_t{online ? 1 : 0}), gateway, machine});
+      {registry::cell(std::int64_t{online ? 1 : 0}), gateway, machine});
 }
 
 }  // namespace vernier::fleet

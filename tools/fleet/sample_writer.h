@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "tools/fleet/registry.h"
 #include "tools/fleet/sparkplug.h"
+#include "tools/registry/registry.h"
 
 namespace vernier::fleet {
 
@@ -29,7 +29,7 @@ struct Receipt {
 /// writers at once do no harm. tool.
 class SampleWriter {
  public:
-  explicit SampleWriter(Registry& registry) : registry_(registry) {}
+  explicit SampleWriter(registry::Registry& registry) : registry_(registry) {}
   /// Receipts by gateway, for all that was written or must be sent again. Throws DatabaseError: nothing of it
   /// was written.
   std::map<std::string, Receipt> write(const std::vector<DeviceData>& data);
@@ -50,7 +50,7 @@ class SampleWriter {
   void write(Batch& batch);
   void write_live(const Batch& batch);
 
-  Registry& registry_;
+  registry::Registry& registry_;
   std::map<std::string, Cursor> cursors_;
   std::set<std::string> shapes_, machines_;
   std::map<std::string, std::string> faults_;    // by machine: the last one

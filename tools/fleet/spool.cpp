@@ -10,8 +10,8 @@
 #include <cerrno>
 #include <cstring>
 
-#include "tools/fleet/cells.h"
-#include "tools/fleet/digest.h"
+#include "tools/registry/cells.h"
+#include "tools/registry/digest.h"
 #include "tools/text/error.h"
 
 namespace vernier::fleet {
@@ -32,12 +32,12 @@ std::string bytes_of(const std::string& hex) {
   if (sodium_hex2bin(reinterpret_cast<unsigned char*>(bytes.data()), bytes.size(), hex.data(), hex.size(),
                      nullptr, &size, nullptr) != 0 ||
       2 * size != hex.size())
-    throw DatabaseError("a record of the spool is damaged");
+    throw registry::DatabaseError("a record of the spool is damaged");
   return bytes;
 }
 
-std::uint64_t count(const Cell& cell) { return static_cast<std::uint64_t>(whole(cell)); }
-Cell counted(std::uint64_t value) { return cell(static_cast<std::int64_t>(value)); }
+std::uint64_t count(const registry::Cell& cell) { return static_cast<std::uint64_t>(registry::whole(cell)); }
+registry::Cell counted(std::uint64_t value) { return registry::cell(static_cast<std::int64_t>(value)); }
 
 }  // namespace
 
@@ -51,10 +51,10 @@ Spool::Lock::Lock(const std::string& file) : fd_(::open(file.c_str(), O_CREAT | 
 Spool::Lock::~Lock() { ::close(fd_); }
 
 Spool::Spool(const std::string& file, const std::string& owner, std::uint64_t most)
-    : lock_(file + ".lock"), database_(open_database(file)), most_(most) {
-  refuse_foreign(*database_, "about");
+    : lock_(file + ".lock"), database_(registry::open_database(file)), most_(most) {
+  registry::refuse_foreign(*database_, "about");
   {
-    Transaction transaction(*database_);
+    registry::Transaction transaction(*database_);
     database_->run(
         "CREATE TABLE IF NOT EXISTS about (id TEXT NOT NULL, last BIGINT NOT NULL, stored BIGINT NOT NULL, "
         "gone BIGINT NOT NULL, dropped BIGINT NOT NULL, birth BIGINT NOT NULL, owner TEXT NOT NULL)");
@@ -63,13 +63,13 @@ Spool::Spool(const std::string& file, const std::string& owner, std::uint64_t mo
         "BIGINT "
         "NOT NULL, payload TEXT NOT NULL)");
     if (database_->run("SELECT id FROM about").empty())
-      database_->run("INSERT INTO about VALUES ($1, 0, 0, 0, 0, 0, $2)", {fresh_id(), owner});
+      database_->run("INSERT INTO about VALUES ($1, 0, 0, 0, 0, 0, $2)", {registry::fresh_id(), owner});
     transaction.commit();
   }
-  const Row row = database_->run("SELECT id, last, stored, gone, dropped, owner FROM about").at(0);
-  id_ = words(row[0]);
+  const registry::Row row = database_->run("SELECT id, last, stored, gone, dropped, owner FROM about").at(0);
+  id_ = registry::words(row[0]);
   last_ = count(row[1]), stored_ = count(row[2]), gone_ = count(row[3]), dropped_ = count(row[4]);
-  if (words(row[5]) == owner) return;
+  if (registry::words(row[5]) == owner) return;
   begin_anew();
   database_->run("UPDATE about SET owner = $1", {owner});
 }
@@ -82,7 +82,7 @@ void Spool::take(std::vector<SpoolRecord>& records) {
     dropped += last - gone - most_;
     gone = last - most_;
   }
-  Transaction transaction(*database_);
+  registry::Transaction transaction(*database_);
   for (const SpoolRecord& record : records)
     database_->run("INSERT INTO record VALUES ($1, $2, $3, $4)",
                    {counted(record.number), record.machine, counted(record.time_ms), hex_of(record.payload)});
@@ -95,19 +95,20 @@ void Spool::take(std::vector<SpoolRecord>& records) {
 
 std::vector<SpoolRecord> Spool::after(std::uint64_t number, std::size_t most) {
   std::vector<SpoolRecord> records;
-  for (const Row& row : database_->run(
+  for (const registry::Row& row : database_->run(
            "SELECT number, machine, time_ms, payload FROM record WHERE number > $1 ORDER BY number LIMIT $2",
            {counted(number), counted(most)}))
-    records.push_back({count(row[0]), words(row[1]), count(row[2]), bytes_of(words(row[3]))});
+    records.push_back(
+        {count(row[0]), registry::words(row[1]), count(row[2]), bytes_of(registry::words(row[3]))});
   return records;
 }
 
 void Spool::stored(std::uint64_t number) { stored_ = std::max(stored_, std::min(number, last_)); }
 
 void Spool::begin_anew() {
-  const std::string id = fresh_id();
+  const std::string id = registry::fresh_id();
   const std::uint64_t last = last_ - gone_;
-  Transaction transaction(*database_);
+  registry::Transaction transaction(*database_);
   // By way of negative numbers, so that no two rows meet.
   database_->run("UPDATE record SET number = -(number - $1)", {counted(gone_)});
   database_->run("UPDATE record SET number = -number");
@@ -117,7 +118,7 @@ void Spool::begin_anew() {
 }
 
 std::uint64_t Spool::next_birth() {
-  Transaction transaction(*database_);
+  registry::Transaction transaction(*database_);
   const std::uint64_t birth = count(database_->run("SELECT birth FROM about").at(0)[0]);
   database_->run("UPDATE about SET birth = $1", {counted((birth + 1) % 256)});
   transaction.commit();

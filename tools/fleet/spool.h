@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/fleet/database.h"
+#include "tools/registry/database.h"
 
 namespace vernier::fleet {
 
@@ -62,7 +62,7 @@ class Spool {
   };
 
   Lock lock_;
-  std::unique_ptr<Database> database_;
+  std::unique_ptr<registry::Database> database_;
   std::string id_;
   std::uint64_t most_, last_ = 0, stored_ = 0, gone_ = 0, dropped_ = 0;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/fleet/alike.h"
+#include "tools/registry/alike.h"
 #include "tools/text/wall_time.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 
 namespace vernier::alike_test {
 
-using namespace vernier::fleet;
+using namespace vernier::registry;
 namespace {
 
 /// A fleet's weekly readings: a hall that warms in summer, a machine (number 0) that drifts; in units of the

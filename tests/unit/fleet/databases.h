@@ -11,7 +11,7 @@
 #include <memory>
 #include <string>
 
-#include "tools/fleet/registry.h"
+#include "tools/registry/registry.h"
 
 namespace vernier {
 
@@ -66,7 +66,7 @@ class OnBothDatabases : public testing::TestWithParam<std::string> {
     std::filesystem::remove_all("/tmp/vernier_pg_" + std::to_string(getpid()));
     std::filesystem::remove_all(folder_);
   }
-  fleet::Registry registry() const { return fleet::Registry(fleet::open_database(place_)); }
+  registry::Registry registry() const { return registry::Registry(registry::open_database(place_)); }
 
   const std::string folder_ = testing::TempDir() + "fleet_" + std::to_string(getpid());
   std::string place_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/fleet/jobs.h"
+#include "tools/registry/jobs.h"
 
 #include <atomic>
 #include <fstream>
@@ -7,12 +7,12 @@
 #include <thread>
 
 #include "tests/unit/fleet/databases.h"
-#include "tools/fleet/shell_command.h"
+#include "tools/registry/shell_command.h"
 #include "tools/text/files.h"
 
 namespace vernier::jobs_test {
 
-using namespace vernier::fleet;
+using namespace vernier::registry;
 namespace {
 
 class JobsTest : public OnBothDatabases {};

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/fleet/registry.h"
+#include "tools/registry/registry.h"
 
 #include <limits>
 #include <map>
 
 #include "tests/unit/fleet/databases.h"
-#include "tools/fleet/cells.h"
-#include "tools/fleet/due.h"
+#include "tools/registry/cells.h"
+#include "tools/registry/due.h"
 #include "tools/text/error.h"
 #include "tools/text/wall_time.h"
 
 namespace vernier::registry_test {
 
-using namespace vernier::fleet;
+using namespace vernier::registry;
 namespace {
 
 constexpr std::int64_t kDay = 86'400'000'000;

@@ -13,6 +13,7 @@
 namespace vernier::rollout_test {
 
 using namespace vernier::fleet;
+using namespace vernier::registry;
 namespace {
 
 TEST(Rollout, StagesAreNumbersOrShares) {

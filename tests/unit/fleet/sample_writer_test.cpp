@@ -5,11 +5,12 @@
 #include <random>
 
 #include "tests/unit/fleet/databases.h"
-#include "tools/fleet/cells.h"
+#include "tools/registry/cells.h"
 
 namespace vernier::sample_writer_test {
 
 using namespace vernier::fleet;
+using namespace vernier::registry;
 namespace {
 
 DeviceData sample(const std::string& spool, std::uint64_t number, std::uint64_t after,

@@ -6,12 +6,13 @@
 
 #include <filesystem>
 
-#include "tools/fleet/registry.h"
+#include "tools/registry/registry.h"
 #include "tools/text/error.h"
 
 namespace vernier::spool_test {
 
 using namespace vernier::fleet;
+using namespace vernier::registry;
 namespace {
 
 class SpoolFile : public testing::Test {

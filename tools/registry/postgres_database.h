@@ -3,11 +3,11 @@
 #include <memory>
 #include <string>
 
-#include "tools/fleet/database.h"
+#include "tools/registry/database.h"
 
-namespace vernier::fleet {
+namespace vernier::registry {
 
 /// The registry on a server. address: libpq's `postgresql://…`. Throws DatabaseError.
 std::unique_ptr<Database> open_postgres(const std::string& address);
 
-}  // namespace vernier::fleet
+}  // namespace vernier::registry

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "tools/fleet/database.h"
+#include "tools/registry/database.h"
 
-namespace vernier::fleet {
+namespace vernier::registry {
 
 /// A machine of the fleet.
 struct FleetMachine {
@@ -80,4 +80,4 @@ class Registry {
   std::unique_ptr<Database> database_;
 };
 
-}  // namespace vernier::fleet
+}  // namespace vernier::registry

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace vernier::fleet {
+namespace vernier::registry {
 
 /// Readings of one machine in the order of their time: rows of the model, days, and what their stated
 /// uncertainty is to that of the fleet.
@@ -31,4 +31,4 @@ Wander estimated_wander(const std::vector<WanderSeries>& machines, const Eigen::
 /// tool.
 void whiten(const std::vector<WanderSeries>& machines, const Wander& wander, Eigen::MatrixXd& columns);
 
-}  // namespace vernier::fleet
+}  // namespace vernier::registry

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/fleet/postgres_database.h"
+#include "tools/registry/postgres_database.h"
 
 #include <libpq-fe.h>
 
@@ -8,7 +8,7 @@
 
 #include "tools/text/words.h"
 
-namespace vernier::fleet {
+namespace vernier::registry {
 namespace {
 
 class PostgresDatabase : public Database {
@@ -67,4 +67,4 @@ std::unique_ptr<Database> open_postgres(const std::string& address) {
   return std::make_unique<PostgresDatabase>(address);
 }
 
-}  // namespace vernier::fleet
+}  // namespace vernier::registry

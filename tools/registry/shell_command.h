@@ -5,7 +5,7 @@
 #include <chrono>
 #include <string>
 
-namespace vernier::fleet {
+namespace vernier::registry {
 
 /// A command with {machine} put in, as one word of a shell whatever stands in it. tool.
 std::string command_for(const std::string& command, const std::string& machine);
@@ -37,4 +37,4 @@ class ShellCommand {
   std::string tail_;
 };
 
-}  // namespace vernier::fleet
+}  // namespace vernier::registry

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace vernier::fleet {
+namespace vernier::registry {
 
 /// A value of a row as text; nothing: NULL.
 using Cell = std::optional<std::string>;
@@ -66,4 +66,4 @@ bool is_server(const std::string& place);
 void insert_rows(Database& database, const std::string& head, const std::vector<Row>& rows,
                  const std::string& tail);
 
-}  // namespace vernier::fleet
+}  // namespace vernier::registry

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/fleet/registry.h"
+#include "tools/registry/registry.h"
 
 #include <fmt/format.h>
 
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "tools/fleet/cells.h"
+#include "tools/registry/cells.h"
 #include "tools/text/error.h"
 #include "tools/text/numbers.h"
 
-namespace vernier::fleet {
+namespace vernier::registry {
 namespace {
 
 // Raised with every change of the tables; an older program leaves a newer registry alone.
@@ -185,4 +185,4 @@ std::int64_t Registry::forget_samples(std::int64_t before_us) {
   return all;
 }
 
-}  // namespace vernier::fleet
+}  // namespace vernier::registry

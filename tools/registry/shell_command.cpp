@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/fleet/shell_command.h"
+#include "tools/registry/shell_command.h"
 
 #include <fcntl.h>
 #include <poll.h>
@@ -15,7 +15,7 @@
 #include "tools/text/error.h"
 #include "tools/text/words.h"
 
-namespace vernier::fleet {
+namespace vernier::registry {
 namespace {
 
 constexpr std::size_t kTailKept = 4000, kLongestLine = 400;
@@ -113,4 +113,4 @@ void ShellCommand::end() {
   output_ = -1;
 }
 
-}  // namespace vernier::fleet
+}  // namespace vernier::registry

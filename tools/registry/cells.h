@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <string>
 
-#include "tools/fleet/database.h"
+#include "tools/registry/database.h"
 
-namespace vernier::fleet {
+namespace vernier::registry {
 
 /// Values as cells of a row, and back. A cell that is NULL reads as nothing: "", 0. Throw DatabaseError for
 /// what is no number.
@@ -15,4 +15,4 @@ std::string words(const Cell& cell);
 std::int64_t whole(const Cell& cell);
 double real(const Cell& cell);
 
-}  // namespace vernier::fleet
+}  // namespace vernier::registry

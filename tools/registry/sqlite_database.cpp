@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/fleet/sqlite_database.h"
+#include "tools/registry/sqlite_database.h"
 
 #include <sqlite3.h>
 
@@ -7,7 +7,7 @@
 
 #include "tools/text/numbers.h"
 
-namespace vernier::fleet {
+namespace vernier::registry {
 namespace {
 
 constexpr int kBusyMs = 20'000;  // how long a writer stands in line
@@ -104,4 +104,4 @@ std::unique_ptr<Database> open_sqlite(const std::string& file) {
   return std::make_unique<SqliteDatabase>(file);
 }
 
-}  // namespace vernier::fleet
+}  // namespace vernier::registry

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/fleet/alike.h"
+#include "tools/registry/alike.h"
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -8,12 +8,13 @@
 #include <numeric>
 #include <set>
 
-#include "tools/fleet/wander.h"
 #include "tools/maths/chance.h"
 #include "tools/maths/decompositions.h"
+#include "tools/maths/median.h"
+#include "tools/registry/wander.h"
 #include "tools/text/wall_time.h"
 
-namespace vernier::fleet {
+namespace vernier::registry {
 namespace {
 
 using Eigen::Index;
@@ -98,11 +99,9 @@ class AdditiveModel {
 
  private:
   void make_series() {
-    std::vector<double> sorted;
-    for (const RowOfModel& row : rows_) sorted.push_back(row.reading->std);
-    std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2),
-                     sorted.end());
-    const double usual = sorted[sorted.size() / 2];
+    std::vector<double> stds;
+    for (const RowOfModel& row : rows_) stds.push_back(row.reading->std);
+    const double usual = maths::median(std::move(stds));
     std::vector<std::size_t> order(rows_.size());
     std::iota(order.begin(), order.end(), 0);
     std::stable_sort(order.begin(), order.end(),
@@ -290,4 +289,4 @@ std::vector<Drift> drifts(const std::vector<FleetReading>& readings, const Alike
   return all;
 }
 
-}  // namespace vernier::fleet
+}  // namespace vernier::registry

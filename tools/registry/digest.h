@@ -2,11 +2,11 @@
 #pragma once
 #include <string>
 
-namespace vernier::fleet {
+namespace vernier::registry {
 
 /// BLAKE2b-256 of a text, in hexadecimal digits. tool.
 std::string digest_of(const std::string& text);
 /// 32 hexadecimal digits from the system's random numbers. tool.
 std::string fresh_id();
 
-}  // namespace vernier::fleet
+}  // namespace vernier::registry

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/fleet/database.h"
+#include "tools/registry/database.h"
 
 #include <algorithm>
 
-#include "tools/fleet/postgres_database.h"
-#include "tools/fleet/sqlite_database.h"
+#include "tools/registry/postgres_database.h"
+#include "tools/registry/sqlite_database.h"
 #include "tools/text/error.h"
 
-namespace vernier::fleet {
+namespace vernier::registry {
 
 Transaction::~Transaction() {
   if (done_) return;
@@ -67,4 +67,4 @@ void insert_rows(Database& database, const std::string& head, const std::vector<
   }
 }
 
-}  // namespace vernier::fleet
+}  // namespace vernier::registry

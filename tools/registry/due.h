@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "tools/fleet/registry.h"
+#include "tools/registry/registry.h"
 
-namespace vernier::fleet {
+namespace vernier::registry {
 
 /// When a machine is to be checked, and why.
 struct DueMachine {
@@ -19,4 +19,4 @@ struct DueMachine {
 /// the last one could not tell, or when what runs was put there after it. tool.
 std::vector<DueMachine> due_machines(Registry& registry, std::int64_t at_us);
 
-}  // namespace vernier::fleet
+}  // namespace vernier::registry

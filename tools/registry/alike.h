@@ -5,9 +5,9 @@
 #include <utility>
 #include <vector>
 
-#include "tools/fleet/registry.h"
+#include "tools/registry/registry.h"
 
-namespace vernier::fleet {
+namespace vernier::registry {
 
 struct AlikeOptions {
   double every_days = 7;       // readings of one such span count as of one time
@@ -44,4 +44,4 @@ struct Drift {
 /// reading is left out is none. tool.
 std::vector<Drift> drifts(const std::vector<FleetReading>& readings, const AlikeOptions& options);
 
-}  // namespace vernier::fleet
+}  // namespace vernier::registry

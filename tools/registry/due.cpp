@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/fleet/due.h"
+#include "tools/registry/due.h"
 
 #include <algorithm>
 #include <map>
 
 #include "tools/text/wall_time.h"
 
-namespace vernier::fleet {
+namespace vernier::registry {
 namespace {
 
 DueMachine judged(const FleetMachine& machine, const FleetCheck* last, const RecordedCalibration* runs) {
@@ -47,4 +47,4 @@ std::vector<DueMachine> due_machines(Registry& registry, std::int64_t at_us) {
   return all;
 }
 
-}  // namespace vernier::fleet
+}  // namespace vernier::registry

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/fleet/cells.h"
+#include "tools/registry/cells.h"
 
 #include <charconv>
 
 #include "tools/text/numbers.h"
 
-namespace vernier::fleet {
+namespace vernier::registry {
 namespace {
 
 // Not text::parse_number: evidence may be beyond what the formats take for a number.
@@ -28,4 +28,4 @@ std::string words(const Cell& cell) { return cell.value_or(std::string()); }
 std::int64_t whole(const Cell& cell) { return read<std::int64_t>(cell, "whole number"); }
 double real(const Cell& cell) { return read<double>(cell, "number"); }
 
-}  // namespace vernier::fleet
+}  // namespace vernier::registry

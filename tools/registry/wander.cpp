@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/fleet/wander.h"
+#include "tools/registry/wander.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "tools/maths/decompositions.h"
 
-namespace vernier::fleet {
+namespace vernier::registry {
 namespace {
 
 using Eigen::Index;
@@ -110,4 +110,4 @@ void whiten(const std::vector<WanderSeries>& machines, const Wander& wander, Mat
   }
 }
 
-}  // namespace vernier::fleet
+}  // namespace vernier::registry

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "tools/fleet/registry.h"
+#include "tools/registry/registry.h"
 
-namespace vernier::fleet {
+namespace vernier::registry {
 
 /// A piece of mass work: one command for one machine of a batch.
 struct Job {
@@ -68,4 +68,4 @@ struct WorkOptions {
 std::int64_t work(const WorkOptions& options, const std::atomic<bool>& stop,
                   const std::function<void(const Job&, const JobCounts&)>& ended);
 
-}  // namespace vernier::fleet
+}  // namespace vernier::registry

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/fleet/digest.h"
+#include "tools/registry/digest.h"
 
 #include <sodium.h>
 
 #include <stdexcept>
 
-namespace vernier::fleet {
+namespace vernier::registry {
 
 std::string digest_of(const std::string& text) {
   unsigned char bytes[32];
@@ -23,4 +23,4 @@ std::string fresh_id() {
   return sodium_bin2hex(hex, sizeof(hex), bytes, sizeof(bytes));
 }
 
-}  // namespace vernier::fleet
+}  // namespace vernier::registry

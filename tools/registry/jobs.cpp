@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/fleet/jobs.h"
+#include "tools/registry/jobs.h"
 
 #include <chrono>
 #include <memory>
 #include <thread>
 
-#include "tools/fleet/cells.h"
-#include "tools/fleet/shell_command.h"
+#include "tools/registry/cells.h"
+#include "tools/registry/shell_command.h"
 #include "tools/text/error.h"
 #include "tools/text/wall_time.h"
 
-namespace vernier::fleet {
+namespace vernier::registry {
 namespace {
 
 using namespace std::chrono_literals;
@@ -213,4 +213,4 @@ std::int64_t work(const WorkOptions& options, const std::atomic<bool>& stop,
   return done;
 }
 
-}  // namespace vernier::fleet
+}  // namespace vernier::registry
