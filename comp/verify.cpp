@@ -292,7 +292,25 @@ std::uint64_t look_up_work(const ErrorTable& table) noexcept {
   return search + std::uint64_t{table.columns} * (table.degree == 3 ? 6 : 2);
 }
 
+// Lines that one look-up may find in no cache.
+std::uint64_t look_up_lines(const ErrorTable& table) noexcept {
+  constexpr std::uint64_t kLine = 64;  // bytes
+  const std::uint64_t record = std::uint64_t{4} * table.stride();
+  std::uint64_t lines = (record + kLine - 1) / kLine + 1;
+  if (table.grid_multiplier == 0)
+    for (std::uint32_t left = table.pieces; left > 1 && left * record > kLine; left -= left / 2) ++lines;
+  return lines;
+}
+
 }  // namespace
+
+std::uint64_t lines_of(const Equation& equation) noexcept {
+  std::uint64_t lines = 0;
+  for (const Instruction& step : equation.instructions)
+    if (step.op == OpCode::kLookUp && step.b < equation.tables.size)
+      lines += look_up_lines(equation.tables[step.b]);
+  return lines;
+}
 
 std::uint64_t work_of(const Equation& equation, std::uint32_t channels) noexcept {
   constexpr std::uint64_t kInstruction = 4, kChannel = 6, kSine = 30, kLagStep = 8;

@@ -37,6 +37,10 @@ ProgramFault verify_program(const Program& program, ValueRange* ranges) noexcept
 /// that they were measured to have against each other (tests/bench/weights). setup.
 std::uint64_t work_of(const Equation& equation, std::uint32_t channels) noexcept;
 
+/// Lines of memory (64 bytes) that the tables of one run may ask for, none of them in a cache: the steps of a
+/// search that lie further apart than a line, and the record found. setup.
+std::uint64_t lines_of(const Equation& equation) noexcept;
+
 /// Whether grid_piece finds every piece from one count after its start to one before its end; at a station
 /// both neighbours have the same value. The segments must be in order. setup.
 bool grid_finds_every_piece(const ErrorTable& table) noexcept;

@@ -104,12 +104,7 @@ TimeUs Uploader::trial_left(TimeUs now) const noexcept {
 
 // An image that the verifier passes may still be more than the board can do in its time.
 bool Uploader::within_budget(const ImageView& view) const noexcept {
-  const Program& program = view.program();
-  const std::uint64_t tick = work_of(program.equation, program.channels.size);
-  const std::uint64_t shares = work_of(view.shares().equation, 0) + view.shares().shares.size;
-  // Beyond 2^50 a budget is none.
-  const std::uint64_t budget = lower(options_.work_budget, std::uint64_t{1} << 50);
-  return tick <= budget && tick + shares <= kShareWorkFactor * budget;
+  return options_.budget.covers(view.program(), view.shares());
 }
 
 // A key that is retired vouches for what was confirmed with it while it was not, and for nothing else.

@@ -50,7 +50,7 @@ class Uploader {
     BoardIdentity identity;
     TimeUs trial_time{60'000'000};  // an image on trial is given up after that
     std::uint32_t places = Programs::kFewest;
-    std::uint64_t work_budget = kAnyWork;  // measured_work_budget()
+    WorkBudget budget{};  // measured_work_budget()
   };
   /// store, wiring, exchange: outlive the uploader. setup.
   Uploader(SlotStore& store, const Wiring& wiring, Exchange& exchange, const Options& options);

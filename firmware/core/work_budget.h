@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstddef>
 #include <cstdint>
+#include <span>
 
+#include "comp/compensator.h"
+#include "comp/shares.h"
 #include "hal/clock.h"
 
 namespace vernier {
@@ -10,10 +14,24 @@ constexpr std::uint64_t kAnyWork = UINT64_MAX;
 /// Shares are worked out outside the tick, for a display: they may be so many times as much work as a tick.
 constexpr std::uint64_t kShareWorkFactor = 20;
 
-/// Work (comp/verify.h, work_of) that this board does in a quarter of a tick: the rest is for devices, the
-/// link and what else its processor has to do. Measured on sums of products, for some milliseconds; the best
-/// of several tries counts, as the others were interrupted. Where the clock does not move, kAnyWork. Before
-/// the first tick. setup.
-std::uint64_t measured_work_budget(Clock& clock, TimeUs tick) noexcept;
+/// What a board does in its share of a tick.
+struct WorkBudget {
+  std::uint64_t work = kAnyWork;  // comp/verify.h, work_of
+  std::uint64_t of_line = 0;      // work that a line of memory costs which no cache holds (lines_of)
+
+  /// Whether an image does not ask for more: its tick, and with its shares kShareWorkFactor times as much.
+  /// setup.
+  bool covers(const Program& program, const ShareProgram& shares) const noexcept;
+};
+
+/// Work that this board does in a quarter of a tick: the rest is for devices, the link and what else its
+/// processor has to do. Measured on sums of products, for some milliseconds, and on jumps through `memory`
+/// (its words are written over), which no cache should hold whole; none: lines cost nothing, as where there
+/// are no caches. The best of several tries counts, as the others were interrupted. Where the clock does not
+/// move, kAnyWork. Before the first tick. setup.
+WorkBudget measured_work_budget(Clock& clock, TimeUs tick, std::span<std::uint32_t> memory = {}) noexcept;
+
+/// Words of `memory` that outgrow what boards have as caches: 16 MB.
+constexpr std::size_t kWordsBeyondCaches = std::size_t{1} << 22;
 
 }  // namespace vernier

@@ -11,6 +11,7 @@
 #include <iostream>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "firmware/core/runner.h"
 #include "firmware/core/service.h"
@@ -232,7 +233,10 @@ int run_board(const Arguments& arguments) {
   devices.sample();
   devices.take_left_overs_out(stop_asked);
   FileSlotStore store(file.store, file.slot_bytes);
-  file.service.upload.work_budget = measured_work_budget(devices.clock(), file.service.upload.tick);
+  {
+    std::vector<std::uint32_t> memory(kWordsBeyondCaches);
+    file.service.upload.budget = measured_work_budget(devices.clock(), file.service.upload.tick, memory);
+  }
   if (::getrandom(file.service.nonce.data(), file.service.nonce.size(), 0) !=
       static_cast<ssize_t>(file.service.nonce.size())) {
     std::fputs("vernierd: no random numbers: nothing could be signed for this start\n", stderr);

@@ -6,6 +6,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
+#include <vector>
 
 namespace vernier {
 namespace {
@@ -213,7 +214,8 @@ std::unique_ptr<Service> Component::make_service(const Introduction& introductio
   ServiceOptions options;
   options.wiring = wiring_;
   options.upload.tick = tick;
-  options.upload.work_budget = measured_work_budget(clock_, tick);
+  std::vector<std::uint32_t> memory(kWordsBeyondCaches);
+  options.upload.budget = measured_work_budget(clock_, tick, memory);
   options.upload.identity.board = introduction.board;
   options.upload.identity.board_class = introduction.board_class;
   for (std::uint32_t i = 0; i < introduction.keys; ++i)

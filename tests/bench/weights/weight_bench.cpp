@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "comp/verify.h"
+#include "firmware/core/work_budget.h"
 
 namespace vernier {
 namespace {
@@ -109,10 +110,12 @@ struct Run {
     }
     return best;
   }
-  double weight_of_one() const {
+  /// of_line: what a line of memory counts, beside the operations.
+  double weight_of_one(std::uint64_t of_line = 0) const {
     Equation counted = equation;
     counted.lag_count = 0;
-    return static_cast<double>(work_of(counted, 0)) / static_cast<double>(steps.size());
+    return static_cast<double>(work_of(counted, 0) + of_line * lines_of(counted)) /
+           static_cast<double>(steps.size());
   }
 };
 
@@ -141,7 +144,16 @@ void spread(Run& run, const std::vector<Columns>& each, std::vector<ErrorTable>&
   run.equation.result_count = static_cast<std::uint32_t>(tables.size());
 }
 
+class RealClock final : public Clock {
+ public:
+  InstantNs now() noexcept override {
+    return InstantNs(std::chrono::steady_clock::now().time_since_epoch().count());
+  }
+  HalFault sleep_until(InstantNs) noexcept override { return HalFault::kNone; }
+};
+
 int measure(int repeats) {
+  RealClock clock;
   const Columns line(64, 6, 1, true), cubic(64, 6, 3, true), uneven(64, 6, 1, false),
       long_one(4096, 1, 1, false), narrow(64, 1, 1, true);
   Instruction sum{OpCode::kDot, 4, 32, 32, 0, 1, 0}, short_sum{OpCode::kDot, 4, 2, 1, 0, 1, 0};
@@ -193,8 +205,15 @@ int measure(int repeats) {
   const std::vector<Columns> each(kMaxTables, Columns(2048, 1, 1, false));
   std::vector<ErrorTable> tables;
   spread(cold, each, tables);
-  print("cold: table, 2048 pieces", cold, cold.cold_ns_of_one(std::min(repeats, 20)));
+  const double cold_ns = cold.cold_ns_of_one(std::min(repeats, 20));
+  print("cold: table, 2048 pieces", cold, cold_ns);
   std::printf("an image is at most %.2f times as heavy as it is counted, where it is in the caches\n", worst);
+  std::vector<std::uint32_t> memory(kWordsBeyondCaches);
+  const std::uint64_t of_line = measured_work_budget(clock, TimeUs(1000), memory).of_line;
+  const double counted_cold = cold.weight_of_one(of_line);
+  std::printf(
+      "a line of memory counts %llu here: the cold table %.0f, of which it costs %.2f times as much\n",
+      static_cast<unsigned long long>(of_line), counted_cold, cold_ns / one_ns / counted_cold);
   return counted ? 0 : 1;
 }
 

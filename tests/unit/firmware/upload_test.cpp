@@ -350,8 +350,8 @@ TEST_F(Upload, ImageThatIsTooMuchWorkForTheBoardIsRefusedWithThatReason) {
   const Wiring wiring{{{"X"}, {"Y"}}, {"T"}};
   Exchange exchange;
   Uploader::Options options{.identity = key_.public_part()};
-  const auto send = [&](std::uint64_t budget) {
-    options.work_budget = budget;
+  const auto send = [&](const WorkBudget& budget) {
+    options.budget = budget;
     SimSlotStore store(1 << 16);
     Uploader uploader(store, wiring, exchange, options);
     const auto bytes = upload(2e-5);
@@ -363,9 +363,31 @@ TEST_F(Upload, ImageThatIsTooMuchWorkForTheBoardIsRefusedWithThatReason) {
   const auto image = small_image();
   const std::uint64_t work = work_of(image->view.program().equation, image->view.program().channels.size);
   EXPECT_GT(work, 20u);
-  EXPECT_EQ(send(work).fault, UploadFault::kNone);
-  EXPECT_EQ(send(work - 1).fault, UploadFault::kTooMuchWork);
-  EXPECT_STREQ(describe(send(1)), "more work than this board does in its share of a tick");
+  EXPECT_EQ(send({work}).fault, UploadFault::kNone);
+  EXPECT_EQ(send({work - 1}).fault, UploadFault::kTooMuchWork);
+  EXPECT_STREQ(describe(send({1})), "more work than this board does in its share of a tick");
+}
+
+TEST_F(Upload, LinesThatNoCacheHoldsAreWorkToo) {
+  // GIVEN a look-up in 2048 uneven pieces: a search through lines of memory, and the piece found
+  ErrorTable table;
+  table.pieces = 2048;
+  table.columns = 1;
+  Instruction look{OpCode::kLookUp, 0, 0, 0, 0, 0, 0};
+  Program program;
+  program.equation.instructions = {&look, 1};
+  program.equation.tables = {&table, 1};
+  const std::uint64_t work = work_of(program.equation, 0), lines = lines_of(program.equation);
+  EXPECT_GE(lines, 8u);
+  EXPECT_LE(lines, 13u);
+  // WHEN a line costs 7 THEN they count beside the operations
+  EXPECT_TRUE((WorkBudget{work}.covers(program, {})));
+  EXPECT_FALSE((WorkBudget{work, 7}.covers(program, {})));
+  EXPECT_TRUE((WorkBudget{work + 7 * lines, 7}.covers(program, {})));
+  EXPECT_FALSE((WorkBudget{work + 7 * lines - 1, 7}.covers(program, {})));
+  // AND even stations need no search
+  table.grid_multiplier = 1;
+  EXPECT_LE(lines_of(program.equation), 2u);
 }
 
 TEST_F(Upload, WorkCountsTermsSoThatNoImageStallsTheTick) {
@@ -383,11 +405,17 @@ TEST_F(Upload, WorkCountsTermsSoThatNoImageStallsTheTick) {
     }
     HalFault sleep_until(InstantNs) noexcept override { return HalFault::kNone; }
   } clock;
-  const std::uint64_t budget = measured_work_budget(clock, TimeUs(1000));
+  std::vector<std::uint32_t> memory(kWordsBeyondCaches);
+  const WorkBudget measured = measured_work_budget(clock, TimeUs(1000), memory);
+  const std::uint64_t budget = measured.work;
   std::printf("this computer: %llu a tick of 1 ms; the image of 3.7 million is %.1f quarters of one\n",
               static_cast<unsigned long long>(budget), 3.7e6 / static_cast<double>(budget));
   EXPECT_GT(budget, 2000u);
   EXPECT_LT(budget, 3'000'000u);
+  std::printf("a line that no cache holds is %llu of it\n",
+              static_cast<unsigned long long>(measured.of_line));
+  EXPECT_GT(measured.of_line, 2u);
+  EXPECT_LT(measured.of_line, budget / 10);
 }
 
 TEST_F(Upload, ConfirmedImageThatDoesNotLoadIsAFaultAndAnotherOneEndsIt) {
