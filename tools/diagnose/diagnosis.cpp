@@ -258,7 +258,7 @@ class Diagnoser {
     for (std::size_t i = 0; i < rows.observations.size(); ++i)
       if (weights[static_cast<Eigen::Index>(i)] > 0) fitted.push_back(i);
     Eigen::MatrixXd left = weights(fitted).cwiseProduct(residual(fitted));
-    const fit::NoiseLayout layout = fit::noise_layout(rows, fitted);
+    const fit::NoiseLayout layout = fit::noise_layout(rows, fitted, options_.thresholds.layout);
     fit::whiten(layout, noise, left);
     if (!noise.steps.empty()) {
       // The fit knew nothing of the steps and gave way to them: what it did is taken out with them.

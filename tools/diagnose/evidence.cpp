@@ -8,6 +8,7 @@
 
 #include "tools/effects/input_class.h"
 #include "tools/effects/probe.h"
+#include "tools/fit/noise_estimate.h"
 #include "tools/fit/solve.h"
 #include "tools/fit/statistics.h"
 #include "tools/maths/chance.h"
@@ -57,7 +58,7 @@ Evidence::Evidence(const model::Machine& fitted, const model::Measurement& measu
       rows_.push_back(measurement_.observations[i].row);
     }
   weight_ = weights(observation_);
-  layout_ = fit::noise_layout(measurement_, observation_);
+  layout_ = fit::noise_layout(measurement_, observation_, thresholds_.layout);
   respond();
   raw_residual_ = residual_;
   absorb();
@@ -278,7 +279,7 @@ fit::NoiseModel Evidence::estimate(const Eigen::MatrixXd& raw, std::vector<fit::
   }
   fitted = maths::orthonormal(fitted, 1e-6, nullptr);
   residual -= fitted * (fitted.transpose() * residual);
-  fit::NoiseModel noise = fit::estimate_noise(layout_, residual, fitted, with_u_);
+  fit::NoiseModel noise = fit::estimate_noise(layout_, residual, fitted, with_u_, thresholds_.noise);
   if (steps == 0) return noise;
   noise.steps.insert(noise.steps.begin(), given.begin(), given.end());
   Eigen::MatrixXd all(raw.rows(), raw.cols() + steps);

@@ -245,7 +245,8 @@ double Finder::priced_criterion() const {
   // selection's criterion.
   const auto readings = static_cast<double>(evidence_.residual().size());
   const double own = 2 * std::log(used.own) * (readings - evidence_.freedom());
-  return evidence_.log_determinant() - own + criterion_ + used.price() * std::log(readings);
+  return evidence_.log_determinant() - own + criterion_ +
+         used.price(evidence_.thresholds().noise.price_of_place) * std::log(readings);
 }
 
 double Finder::settle_noise_from(fit::NoiseModel noise) {

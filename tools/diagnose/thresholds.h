@@ -2,6 +2,8 @@
 #pragma once
 #include <cstddef>
 
+#include "tools/fit/noise_thresholds.h"
+
 namespace vernier::diagnose {
 
 // Every number of a diagnosis that was chosen and could have been chosen otherwise: one struct a concern,
@@ -412,6 +414,8 @@ struct ShapeThresholds {
 /// All of a diagnosis.
 struct DiagnoseThresholds {
   EvidenceThresholds evidence;
+  fit::LayoutThresholds layout;
+  fit::NoiseThresholds noise;
   CandidateThresholds candidates;
   FinePeriodThresholds fine;
   PoolThresholds pool;
@@ -424,6 +428,8 @@ struct DiagnoseThresholds {
   template <class Visit>
   void for_each(const Visit& visit) {
     evidence.for_each(visit);
+    layout.for_each(visit);
+    noise.for_each(visit);
     candidates.for_each(visit);
     fine.for_each(visit);
     pool.for_each(visit);

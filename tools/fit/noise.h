@@ -5,34 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "tools/model/measurement.h"
+#include "tools/fit/noise_layout.h"
 
 namespace vernier::fit {
-
-/// Readings of one kind in the order of the file: what an error that hangs together in time, run or pose is
-/// shared along.
-struct NoiseSeries {
-  std::vector<Eigen::Index> reading;  // positions in the list that the layout was made for
-  std::vector<double> time;  // s, or rows where no time tells them apart; never falling within a clock
-  int kind = 0;              // of ObservationKind
-  std::vector<std::size_t> row;
-  std::vector<int> setup, clock, pose;  // an index each; a pose: rows that follow one another at one place
-  std::vector<Eigen::Vector3d> normal;  // of readings along one
-};
-
-/// The readings of a list of observations, as a noise model sees them.
-struct NoiseLayout {
-  std::vector<NoiseSeries> series;
-  bool in_time = false;       // time is s, else rows
-  bool has_runs = false;      // more than one
-  bool has_poses = false;     // some pose was read more than once in a row
-  double step = 1, span = 1;  // median step from row to row, longest run, in the unit of time
-  double row_span = 1;        // longest run, rows
-};
-
-/// observations: indices into measurement.observations, in their order. Positions count as one pose where
-/// they differ by less than a tolerance that the gap between small and large steps gives. tool.
-NoiseLayout noise_layout(const model::Measurement& measurement, const std::vector<std::size_t>& observations);
 
 /// From this row on all readings of one kind are off by the same; or, where what is touched was set up anew,
 /// by that component of a shift along each reading's normal.
@@ -64,8 +39,8 @@ struct NoiseModel {
   double shared() const;
   double total() const;
   /// What it costs in a criterion of selection, in units of the logarithm of the readings: a parameter 1, a
-  /// step its height in each kind of reading, and its place among all rows.
-  double price() const;
+  /// step its height in each kind of reading, and its place among all rows, which costs `of_place`.
+  double price(double of_place = NoiseThresholds().price_of_place) const;
 };
 
 /// Columns of the steps, an entry a reading: 1 from the step on. tool.
@@ -83,17 +58,6 @@ double whiten(const NoiseLayout& layout, const NoiseModel& model, Eigen::MatrixX
 /// Covariance of the weighted readings times `columns`. Cost: rows times columns. tool.
 Eigen::MatrixXd covariance_times(const NoiseLayout& layout, const NoiseModel& model,
                                  const Eigen::MatrixXd& columns);
-
-/// Readings times the square of what was fitted, beyond which a look at the likelihood takes what was fitted
-/// by its number alone.
-inline constexpr double kMostNoiseProducts = 6e7;
-
-/// Restricted maximum likelihood (Patterson and Thompson 1971) of a residual beside what was fitted.
-/// residual: weighted, held at 4 robust spreads first; fitted: orthonormal columns that were fitted to it. A
-/// component enters where the likelihood falls by more than chance would make it. `with_u`: all parts
-/// together are not below 1. tool.
-NoiseModel estimate_noise(const NoiseLayout& layout, const Eigen::VectorXd& residual,
-                          const Eigen::MatrixXd& fitted, bool with_u);
 
 /// One sentence for people. unit_um: um that 1 stands for (rms of u; 1000 where none is given). tool.
 std::string in_words(const NoiseModel& model, double unit_um);

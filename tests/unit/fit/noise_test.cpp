@@ -10,6 +10,7 @@
 #include <random>
 
 #include "tools/fit/fit.h"
+#include "tools/fit/noise_estimate.h"
 #include "tools/model/machine_reader.h"
 
 namespace vernier::noise_test {
