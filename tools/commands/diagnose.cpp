@@ -6,6 +6,7 @@
 
 #include "tools/commands/command.h"
 #include "tools/commands/report_header.h"
+#include "tools/commands/survey.h"
 #include "tools/diagnose/diagnosis.h"
 #include "tools/fit/fit.h"
 #include "tools/model/machine_reader.h"
@@ -21,8 +22,9 @@ namespace vernier::commands::diagnose_cli {
 namespace {
 
 struct DiagnoseArguments {
-  std::string machine, output, json, write, images, residuals;
-  std::vector<std::string> measurements, effects;
+  SurveyArguments survey;
+  std::string output, json, write, residuals;
+  std::vector<std::string> effects;
   std::size_t most = 5;
   ReportHeader header;
 };
@@ -62,17 +64,14 @@ void print_candidates(std::FILE* out, const diagnose::Diagnosis& d) {
 
 /// What the machine of the last step leaves of the readings.
 void write_residuals(const DiagnoseArguments& arguments, const diagnose::Diagnosis& diagnosis) {
-  const model::Machine machine = model::parse_machine(diagnosis.machine_text, arguments.machine);
-  const model::Measurement m = model::read_measurement(arguments.measurements, machine,
-                                                       simulate::corrections_of_images(arguments.images));
+  const model::Machine machine = model::parse_machine(diagnosis.machine_text, arguments.survey.machine);
+  const model::Measurement m = model::read_measurement(
+      arguments.survey.measurements, machine, simulate::corrections_of_images(arguments.survey.images));
   text::write_file(arguments.residuals, results::residual_csv(m, fit::residuals(machine, m)));
 }
 
 void run_diagnose(const DiagnoseArguments& arguments) {
-  const std::string text = text::read_file(arguments.machine);
-  const model::Machine machine = model::parse_machine(text, arguments.machine);
-  const model::Measurement m = model::read_measurement(arguments.measurements, machine,
-                                                       simulate::corrections_of_images(arguments.images));
+  const auto [text, machine, m] = read_survey(arguments.survey);
   diagnose::DiagnoseOptions options;
   options.effects = effects::effect_catalogue(arguments.effects);
   options.most_effects = arguments.most;
@@ -84,7 +83,7 @@ void run_diagnose(const DiagnoseArguments& arguments) {
   if (!arguments.output.empty()) {
     nlohmann::ordered_json page = json;
     page["machine"] = machine.name;
-    page["files"] = arguments.measurements;
+    page["files"] = arguments.survey.measurements;
     text::write_file(arguments.output, report::diagnose_report_html(arguments.header.on(std::move(page))));
   }
   if (!arguments.write.empty()) text::write_file(arguments.write, diagnosis.machine_text);
@@ -104,8 +103,7 @@ void register_diagnose(CLI::App& vernier) {
   auto arguments = std::make_shared<DiagnoseArguments>();
   CLI::App* command =
       vernier.add_subcommand("diagnose", "Find which physical effect is missing from a model");
-  command->add_option("MACHINE", arguments->machine, "machine file (XML)")->required();
-  command->add_option("MEAS", arguments->measurements, "measurement files (CSV)")->required();
+  add_survey(*command, arguments->survey);
   command->add_option("-o,--output", arguments->output, "report (HTML)");
   add_report_header(*command, arguments->header);
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
@@ -113,7 +111,6 @@ void register_diagnose(CLI::App& vernier) {
   command->add_option("--machine-out", arguments->write,
                       "the machine file with the effects of the ladder, fitted");
   command->add_option("--effects", arguments->effects, "files with effects of your own; may be repeated");
-  command->add_option("--images", arguments->images, simulate::kImagesHelp);
   command->add_option("--most", arguments->most, "most effects in the ladder")
       ->check(CLI::Range(1, 10))
       ->capture_default_str();

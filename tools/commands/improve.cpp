@@ -6,6 +6,7 @@
 
 #include "tools/commands/command.h"
 #include "tools/commands/report_header.h"
+#include "tools/commands/survey.h"
 #include "tools/compile/compile.h"
 #include "tools/diagnose/diagnosis.h"
 #include "tools/model/machine_reader.h"
@@ -25,8 +26,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct ImproveArguments {
-  std::string machine, output, json, images;
-  std::vector<std::string> measurements, effects;
+  SurveyArguments survey;
+  std::string output, json;
+  std::vector<std::string> effects;
   bool yes = false;
   ReportHeader header;
 };
@@ -87,11 +89,11 @@ class Improver {
   explicit Improver(const ImproveArguments& arguments)
       : arguments_(arguments),
         out_(human_stream(arguments.json)),
-        text_(text::read_file(arguments.machine)),
-        machine_(model::parse_machine(text_, arguments.machine)),
+        survey_(read_survey(arguments.survey)),
+        text_(std::move(survey_.text)),
+        machine_(std::move(survey_.machine)),
         first_(machine_),
-        rows_(model::read_measurement(arguments.measurements, machine_,
-                                      simulate::corrections_of_images(arguments.images))),
+        rows_(std::move(survey_.rows)),
         all_rows_(rows_),
         effects_(effects::effect_catalogue(arguments.effects)) {}
 
@@ -129,7 +131,7 @@ class Improver {
     }
     const model::Machine before = machine_;
     text_ = rungs_.back().text;
-    machine_ = model::parse_machine(text_, arguments_.machine);
+    machine_ = model::parse_machine(text_, arguments_.survey.machine);
     rows_ = model::rebind(rows_, before, machine_);
     return true;
   }
@@ -143,7 +145,7 @@ class Improver {
 
   void finish() {
     Json json = {{"machine", first_.name},
-                 {"files", arguments_.measurements},
+                 {"files", arguments_.survey.measurements},
                  {"verdict", last_["verdict"]},
                  {"explanation", last_["explanation"]},
                  {"noise_um", last_["noise_um"]}};
@@ -208,6 +210,7 @@ class Improver {
 
   const ImproveArguments& arguments_;
   std::FILE* out_;
+  Survey survey_;
   std::string text_;
   model::Machine machine_, first_;
   model::Measurement rows_, all_rows_;
@@ -222,14 +225,12 @@ void register_improve(CLI::App& vernier) {
   auto arguments = std::make_shared<ImproveArguments>();
   CLI::App* command = vernier.add_subcommand(
       "improve", "Walk the whole ladder: diagnose, add, fit, until nothing is left to name");
-  command->add_option("MACHINE", arguments->machine, "machine file (XML)")->required();
-  command->add_option("MEAS", arguments->measurements, "measurement files (CSV)")->required();
+  add_survey(*command, arguments->survey);
   command
       ->add_option("-o,--output", arguments->output,
                    "folder for machine files, improve.json and improve.html")
       ->required();
   command->add_option("--effects", arguments->effects, "files with effects of your own; may be repeated");
-  command->add_option("--images", arguments->images, simulate::kImagesHelp);
   add_report_header(*command, arguments->header);
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->add_flag("--yes", arguments->yes, "add every effect that is found, without asking");

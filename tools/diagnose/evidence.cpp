@@ -90,14 +90,9 @@ void Evidence::take_inputs() {
 double Evidence::reference_of(std::size_t input) const {
   const model::Input& one = machine_.inputs[input];
   if (input < declared_) return one.reference;
-  if (effects::class_of_input(one) == effects::InputClass::kTemperature)
-    return effects::standard_reference(one.unit);
   double sum = 0;
   for (const std::size_t row : rows_) sum += measurement_.states.input[input][static_cast<Eigen::Index>(row)];
-  const double mean = rows_.empty() ? 0 : sum / static_cast<double>(rows_.size());
-  if (std::abs(mean) < 1e-9) return 0;
-  const double digit = std::pow(10, std::floor(std::log10(std::abs(mean))) - 1);
-  return std::round(mean / digit) * digit;
+  return effects::usual_reference(one, rows_.empty() ? 0 : sum / static_cast<double>(rows_.size()));
 }
 
 void Evidence::respond() {

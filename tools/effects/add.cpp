@@ -6,6 +6,7 @@
 #include <pugixml.hpp>
 
 #include "tools/effects/input_class.h"
+#include "tools/effects/insertion.h"
 #include "tools/fit/domain.h"
 #include "tools/text/error.h"
 #include "tools/text/numbers.h"
@@ -86,36 +87,8 @@ class Adder {
     return model::to_text(*model::make_node(model::Op::kMultiply, {weight, model::parse_expression(term)}));
   }
 
-  static std::size_t offset(const pugi::xml_node& node) {
-    return static_cast<std::size_t>(node.offset_debug());
-  }
-
-  /// Where `tag` ("</static") ends an element, from `at` on: not in a remark, nor of a longer name.
-  std::size_t closing_tag(std::size_t at, const std::string& tag) const {
-    for (at = text_.find('<', at); at != std::string::npos; at = text_.find('<', at + 1)) {
-      if (text_.compare(at, 4, "<!--") == 0)
-        at = text_.find("-->", at);
-      else if (text_.compare(at, tag.size(), tag) == 0 && !text::is_name(text_.substr(at + tag.size(), 1)))
-        break;
-    }
-    return at;
-  }
-
-  /// Puts `lines` at the end of an element's content; `name` for one that is closed at once.
   void append(const pugi::xml_node& node, const std::string& lines) {
-    const std::size_t end_of_start = text_.find('>', text::end_of_attributes(text_, offset(node)));
-    if (text_[end_of_start - 1] == '/') {
-      edits_.push_back({end_of_start - 1, 2, ">\n" + lines + "</" + std::string(node.name()) + ">"});
-      return;
-    }
-    std::size_t from = end_of_start;
-    for (const pugi::xml_node child : node.children())
-      if (child.offset_debug() >= 0) from = std::max(from, offset(child));
-    std::size_t close = closing_tag(from, "</" + std::string(node.name()));
-    const std::size_t line = text_.rfind('\n', close);
-    // In front of the line of the closing tag, where that stands alone.
-    if (line != std::string::npos && text_.find_first_not_of(" \t\r", line + 1) == close) close = line + 1;
-    edits_.push_back({close, 0, lines});
+    edits_.push_back(at_end_of(text_, node, lines));
   }
 
   std::string lines_of_statics() const {
@@ -195,7 +168,7 @@ class Adder {
     const DofPlace place = candidate_.terms[0].place;
     const std::string row = fmt::format("<sixdof n=\"{}\"{}/>", transform_at(machine_, place).n, base_row_);
     if (place.workpiece) return append(chain_of(true), "    " + row + "\n");
-    const std::size_t first = offset(node_of({false, 1, 0})) - 1;
+    const std::size_t first = offset_of(node_of({false, 1, 0})) - 1;
     const std::size_t line = text_.rfind('\n', first) + 1;  // 0 on the first line
     const bool alone = text_.find_first_not_of(" \t", line) == first;
     edits_.push_back({first, 0, row + (alone ? "\n" + text_.substr(line, first - line) : "")});
@@ -218,7 +191,7 @@ class Adder {
     const std::string name = dof_name(machine_, term.place);
     const std::string value = value_of(term);
     const bool closed = !is_comparison(*transform_at(machine_, term.place).dof[term.place.dof]);
-    for (const text::AttributeSpan& span : text::attribute_spans(text_, offset(node))) {
+    for (const text::AttributeSpan& span : text::attribute_spans(text_, offset_of(node))) {
       if (!text::equal_no_case(span.name, name)) continue;
       const std::string before = text_.substr(span.value_at, span.value_size);
       const auto number = text::parse_number(before);
@@ -231,7 +204,7 @@ class Adder {
       }
       return;
     }
-    edits_.push_back({text::end_of_attributes(text_, offset(node)), 0, " " + name + "=\"" + value + "\""});
+    edits_.push_back({text::end_of_attributes(text_, offset_of(node)), 0, " " + name + "=\"" + value + "\""});
   }
 
   const std::string& text_;

@@ -29,6 +29,20 @@ bool is_setpoint(const std::string& name) {
 }  // namespace
 
 InputClass class_of_input(const model::Input& input) {
+  switch (input.role) {
+    case model::InputRole::kTemperature:
+      return InputClass::kTemperature;
+    case model::InputRole::kLoad:
+      return InputClass::kLoad;
+    case model::InputRole::kVibration:
+      return InputClass::kFeature;
+    case model::InputRole::kSetpoint:
+      return InputClass::kSetpoint;
+    case model::InputRole::kOther:
+      return InputClass::kOther;
+    case model::InputRole::kGuessed:
+      break;
+  }
   const std::string& unit = input.unit;
   const std::string lower = text::in_small_letters(input.name);
   if (is_setpoint(lower)) return InputClass::kSetpoint;
@@ -44,6 +58,13 @@ InputClass class_of_input(const model::Input& input) {
   for (const char* feature : vibration::kFeatureNames)
     if (input.name.ends_with(std::string("_") + feature)) return InputClass::kFeature;
   return InputClass::kOther;
+}
+
+double usual_reference(const model::Input& input, double mean) {
+  if (class_of_input(input) == InputClass::kTemperature) return standard_reference(input.unit);
+  if (std::abs(mean) < 1e-9) return 0;
+  const double digit = std::pow(10, std::floor(std::log10(std::abs(mean))) - 1);
+  return std::round(mean / digit) * digit;
 }
 
 double standard_reference(std::string_view unit) {

@@ -59,6 +59,12 @@ ExprPtr resolve(const Machine& machine, const ExprPtr& expr) {
 
 }  // namespace
 
+std::optional<InputRole> input_role_named(std::string_view name) {
+  const auto known = std::find(kInputRoleNames.begin() + 1, kInputRoleNames.end(), name);
+  if (known == kInputRoleNames.end()) return std::nullopt;
+  return static_cast<InputRole>(known - kInputRoleNames.begin());
+}
+
 std::optional<std::size_t> Machine::find_static(std::string_view n) const { return find_named(statics, n); }
 std::optional<std::size_t> Machine::find_axis(std::string_view n) const { return find_named(axes, n); }
 std::optional<std::size_t> Machine::find_input(std::string_view n) const { return find_named(inputs, n); }

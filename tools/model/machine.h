@@ -41,12 +41,20 @@ struct Axis {
 };
 
 /// A measured quantity that is no axis. An axis with Hide is one of these too (`hidden_axis`).
+/// What a logged column is. kGuessed: what its unit says, or its name where it has none.
+enum class InputRole : std::uint8_t { kGuessed, kTemperature, kLoad, kVibration, kSetpoint, kOther };
+inline constexpr std::array<const char*, 6> kInputRoleNames = {"",          "temperature", "load",
+                                                               "vibration", "set-point",   "other"};
+/// The role of that name; nothing for a word that is none. tool.
+std::optional<InputRole> input_role_named(std::string_view name);
+
 struct Input {
   std::string name, unit;
   double reference = 0;
   std::optional<double> min, max;
   bool hidden_axis = false;
   std::size_t line = 0;
+  InputRole role = InputRole::kGuessed;
 };
 
 struct Station {

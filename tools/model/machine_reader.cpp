@@ -345,7 +345,8 @@ class Reader {
           fail_attribute(node, limit, attribute(node, limit).value_or(""), "a limit must be greater than 0");
       if (boolean(node, "Hide", false)) {
         machine_.inputs.push_back({axis.name, text::canonical_unit(attribute(node, "unit").value_or("")),
-                                   number(node, "reference", 0), axis.min, axis.max, true, axis.line});
+                                   number(node, "reference", 0), axis.min, axis.max, true, axis.line,
+                                   InputRole::kGuessed});
       } else {
         machine_.axes.push_back(axis);
       }
@@ -356,7 +357,7 @@ class Reader {
     check_attributes(list, {"note"});
     for (const pugi::xml_node node : children(list)) {
       no_children(node);
-      check_attributes(node, {"unit", "reference", "min", "max", "note"});
+      check_attributes(node, {"unit", "reference", "min", "max", "role", "note"});
       Input input;
       input.name = new_name(node);
       input.line = line(node);
@@ -364,6 +365,12 @@ class Reader {
       input.reference = number(node, "reference", 0);
       input.min = optional_number(node, "min");
       input.max = optional_number(node, "max");
+      if (const auto word = attribute(node, "role")) {
+        const auto role = input_role_named(*word);
+        if (!role)
+          fail_attribute(node, "role", *word, "a role is temperature, load, vibration, set-point or other");
+        input.role = *role;
+      }
       machine_.inputs.push_back(input);
     }
   }

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/commands/survey.h"
+
+#include "tools/effects/roles.h"
+#include "tools/model/machine_reader.h"
+#include "tools/simulate/corrected.h"
+#include "tools/text/files.h"
+
+namespace vernier::commands {
+
+void add_survey(CLI::App& command, SurveyArguments& arguments) {
+  command.add_option("MACHINE", arguments.machine, "machine file (XML)")->required();
+  command.add_option("MEAS", arguments.measurements, "measurement files (CSV)")->required();
+  command.add_option("--images", arguments.images, simulate::kImagesHelp);
+  command
+      .add_option("--column", arguments.columns,
+                  "NAME=ROLE: what a logged column is, where its unit and name mislead: temperature, load, "
+                  "vibration, set-point, other, ignore; may be repeated")
+      ->allow_extra_args(false)
+      ->type_name("NAME=ROLE");
+}
+
+Survey read_survey(const SurveyArguments& arguments) {
+  Survey survey;
+  survey.text = text::read_file(arguments.machine);
+  const auto read = [&] {
+    survey.machine = model::parse_machine(survey.text, arguments.machine);
+    survey.rows = model::read_measurement(arguments.measurements, survey.machine,
+                                          simulate::corrections_of_images(arguments.images));
+  };
+  read();
+  if (arguments.columns.empty()) return survey;
+  std::vector<effects::ColumnRole> roles;
+  for (const std::string& statement : arguments.columns)
+    roles.push_back(effects::parse_column_role(statement));
+  survey.text = effects::with_declared_columns(survey.text, survey.machine, survey.rows, roles);
+  read();
+  effects::leave_out(survey.rows, roles);
+  return survey;
+}
+
+}  // namespace vernier::commands

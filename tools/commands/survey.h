@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "tools/model/machine.h"
+#include "tools/model/measurement.h"
+
+namespace vernier::commands {
+
+/// What a search is asked to look at.
+struct SurveyArguments {
+  std::string machine, images;
+  std::vector<std::string> measurements, columns;
+};
+
+/// MACHINE, MEAS, --images and --column.
+void add_survey(CLI::App& command, SurveyArguments& arguments);
+
+/// The same, read: columns whose role is stated are inputs of the machine.
+struct Survey {
+  std::string text;
+  model::Machine machine;
+  model::Measurement rows;
+};
+/// Throws InputError. tool.
+Survey read_survey(const SurveyArguments& arguments);
+
+}  // namespace vernier::commands
