@@ -33,10 +33,15 @@ void print_ladder(std::FILE* out, const diagnose::Diagnosis& d) {
   fmt::print(out, "{:<58} {:>12} {:>12}\n", "ladder", "fit rows", "check rows");
   const diagnose::LadderStep* before = nullptr;
   for (const diagnose::LadderStep& step : d.ladder) {
-    const bool rises = before != nullptr && step.check_rms_um && *step.check_rms_um > *before->check_rms_um;
+    const bool lengths = step.rms_um.has_value();
+    const std::optional<double>&check = lengths ? step.check_rms_um : step.check_rms_urad,
+          &fit = lengths ? step.rms_um : step.rms_urad;
+    const bool rises =
+        before != nullptr && check && *check > (lengths ? before->check_rms_um : before->check_rms_urad);
+    const char* const unit = lengths ? "um" : "urad";
     fmt::print(out, "  {:<56} {:>12} {:>12}{}\n",
                step.effect.empty() ? "the model as given" : "+ " + step.said,
-               results::number_or_dash(step.rms_um, "um"), results::number_or_dash(step.check_rms_um, "um"),
+               results::number_or_dash(fit, unit), results::number_or_dash(check, unit),
                rises ? "  the check rows do not confirm this step" : "");
     before = &step;
   }

@@ -117,7 +117,7 @@ void print_result(std::FILE* out, const fit::FitResult& result, const model::Mea
   fmt::print(out, "noise           {}\n", results::number_or_dash(result.noise_um, "um"));
   if (!result.noise.independent())
     fmt::print(out, "errors that hang together, in every uncertainty below: {}\n",
-               fit::in_words(result.noise, fit::noise_unit_um(m)));
+               fit::in_words(result.noise, fit::noise_unit(m)));
   fmt::print(out, "{} observations, {} parameters, rank {}, {} rows excluded, {} iterations{}\n",
              result.before.count, result.parameters.size(), result.observability.rank, m.excluded,
              result.iterations, result.converged ? "" : ", NOT CONVERGED");

@@ -2,6 +2,7 @@
 #include "tools/diagnose/diagnosis.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -51,7 +52,7 @@ class Diagnoser {
     chosen_ = finder_.chosen();
     result_.searched = finder_.candidates().size();
     result_.noise = finder_.noise();
-    result_.noise_unit_um = fit::noise_unit_um(measurement_);
+    result_.noise_unit = fit::noise_unit(measurement_);
     walk_ladder();
     if (!chosen_.empty()) rivals_ = finder_.rivals_of(chosen_.front());
     list_candidates();
@@ -150,6 +151,8 @@ class Diagnoser {
     LadderStep start;
     start.rms_um = base_.after.rms_um;
     start.check_rms_um = base_.check.rms_um;
+    start.rms_urad = base_.after.rms_urad;
+    start.check_rms_urad = base_.check.rms_urad;
     start.chi_square_per_freedom = base_.chi_square / std::max(1.0, base_.freedom);
     start.text = first_rung();
     result_.ladder.push_back(start);
@@ -183,6 +186,8 @@ class Diagnoser {
       step.said = pool_.candidate(items.back()).spoken;
       step.rms_um = fitted.fit.after.rms_um;
       step.check_rms_um = fitted.fit.check.rms_um;
+      step.rms_urad = fitted.fit.after.rms_urad;
+      step.check_rms_urad = fitted.fit.check.rms_urad;
       step.chi_square_per_freedom = fitted.fit.chi_square / std::max(1.0, fitted.fit.freedom);
       step.text = fitted.text;
       result_.ladder.push_back(step);
@@ -283,8 +288,7 @@ class Diagnoser {
     double drift = std::hypot(noise.run, noise.drift);
     for (const fit::NoiseStep& step : noise.steps) drift = std::max(drift, std::abs(step.height));
     if (drift < limits_.drift_share * noise.own || noise.support < limits_.drift_support) return {};
-    return "The instrument does not hold still: " + ::vernier::fit::in_words(noise, result_.noise_unit_um) +
-           ".";
+    return "The instrument does not hold still: " + ::vernier::fit::in_words(noise, result_.noise_unit) + ".";
   }
 
   /// Is one of the candidates, whether it passed the tests or not, more than chance beside what was accepted
@@ -318,7 +322,7 @@ class Diagnoser {
     // are enough readings for structure to show.
     const double stated = result_.end.chi_square / freedom;
     if (noise.independent() && stated > limits_.doubtful_uncertainty) {
-      if (something_stands_out()) return false;
+      if (stated > limits_.implausible_uncertainty || something_stands_out()) return false;
       // Too few readings to show structure: no more is believed than without any u.
       if (freedom < limits_.enough_readings) return !structured && stands_without_u();
     }
@@ -498,25 +502,33 @@ class Diagnoser {
     if (rivals_.best)
       text += fmt::format(" The next best other cause, {}, is {:.0f} behind.",
                           pool_.candidate(*rivals_.best).spoken, rivals_.distance);
+    std::vector<std::string> beside;  // the ladder begins with the model as given
+    for (std::size_t i = 1; i < result_.ladder.size(); ++i)
+      if (result_.ladder[i].said != cause.candidate.spoken) beside.push_back(result_.ladder[i].said);
+    if (!beside.empty()) text += fmt::format(" Beside it: {}.", fmt::join(beside, "; "));
     return text + check_rows_in_words();
   }
 
   /// What the check rows do with every step, and which step makes them worse.
   std::string check_rows_in_words() const {
     std::string way, worse;
+    const bool lengths = result_.ladder[0].check_rms_um.has_value();
+    const auto left = [&](const LadderStep& step) {
+      return lengths ? step.check_rms_um : step.check_rms_urad;
+    };
     for (std::size_t i = 0; i < result_.ladder.size(); ++i) {
       const LadderStep& step = result_.ladder[i];
-      if (!step.check_rms_um) return {};
+      if (!left(step)) return {};
       way += fmt::format("{}{:.4g}",
                          i == 0                           ? ""
                          : i + 1 == result_.ladder.size() ? " to "
                                                           : ", ",
-                         *step.check_rms_um);
-      if (i > 0 && *step.check_rms_um > *result_.ladder[i - 1].check_rms_um)
+                         *left(step));
+      if (i > 0 && *left(step) > *left(result_.ladder[i - 1]))
         worse += (worse.empty() ? "" : ", ") + step.said;
     }
-    std::string text = fmt::format(" With {} effect{} the check rows go from {} um", chosen_.size(),
-                                   chosen_.size() == 1 ? "" : "s", way);
+    std::string text = fmt::format(" With {} effect{} the check rows go from {} {}", chosen_.size(),
+                                   chosen_.size() == 1 ? "" : "s", way, lengths ? "um" : "urad");
     if (!worse.empty()) text += "; worse by " + worse;
     return text + ".";
   }

@@ -47,10 +47,11 @@ struct CandidateFinding {
 std::string said_of(const CandidateFinding& finding);
 
 struct LadderStep {
-  std::string effect, add, label;  // empty: the model as given
-  std::string said;                // "Z carriage: lag"
-  std::string text;                // the machine file, fitted
-  std::optional<double> rms_um, check_rms_um;
+  std::string effect, add, label;                  // empty: the model as given
+  std::string said;                                // "Z carriage: lag"
+  std::string text;                                // the machine file, fitted
+  std::optional<double> rms_um, check_rms_um;      // of lengths
+  std::optional<double> rms_urad, check_rms_urad;  // of rotations
   double chi_square_per_freedom = 0;
   /// Do rows that neither fit nor selection saw bear it out, and by what likelihood ratio (natural
   /// logarithm): the check rows, where the step is large enough there to tell, else runs left out in turn.
@@ -75,7 +76,7 @@ struct Diagnosis {
   timebase::TimeBaseFinding time_base;   // `found` where the clock is the likelier cause
   std::size_t searched = 0;              // candidates looked at
   fit::NoiseModel noise;                 // how the errors of the readings hang together
-  double noise_unit_um = 1;              // um that 1 of it stands for
+  fit::NoiseUnit noise_unit;             // what 1 of it stands for
 };
 
 /// Which physical effect is missing? Fits the model, ranks the catalogue at every place, accepts what passes

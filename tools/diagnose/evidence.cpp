@@ -59,6 +59,7 @@ Evidence::Evidence(const model::Machine& fitted, const model::Measurement& measu
     }
   weight_ = weights(observation_);
   layout_ = fit::noise_layout(measurement_, observation_, thresholds_.layout);
+  place_ = fit::places_of_rows(measurement_, thresholds_.layout);
   respond();
   raw_residual_ = residual_;
   absorb();
@@ -201,13 +202,10 @@ void Evidence::split_blocks() {
 }
 
 std::vector<std::vector<Eigen::Index>> Evidence::readings_at_one_pose() const {
-  std::map<std::tuple<std::size_t, int, std::vector<double>>, std::vector<Eigen::Index>> poses;
+  std::map<std::pair<int, int>, std::vector<Eigen::Index>> poses;
   for (std::size_t i = 0; i < rows_.size(); ++i) {
-    std::vector<double> position;
-    for (const model::Column& axis : position_) position.push_back(axis[static_cast<Eigen::Index>(rows_[i])]);
     const auto kind = static_cast<int>(measurement_.observations[observation_[i]].kind);
-    poses[{measurement_.states.of(measurement_.states.setup, rows_[i]), kind, position}].push_back(
-        static_cast<Eigen::Index>(i));
+    poses[{kind, place_[rows_[i]]}].push_back(static_cast<Eigen::Index>(i));
   }
   std::vector<std::vector<Eigen::Index>> groups;
   for (auto& [pose, readings] : poses)

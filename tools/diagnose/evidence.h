@@ -116,7 +116,7 @@ class Evidence {
   std::size_t block_of(std::size_t row) const {
     return measurement_.states.of(measurement_.states.block, row);
   }
-  /// Fit observations of one kind, run and position of all axes, where there are two or more.
+  /// Fit observations of one kind and place, in whatever run, where there are two or more.
   std::vector<std::vector<Eigen::Index>> readings_at_one_pose() const;
 
   DiagnoseThresholds thresholds_;
@@ -130,6 +130,7 @@ class Evidence {
   std::vector<int> block_;
   std::vector<model::Column> position_;
   std::vector<std::vector<Eigen::Index>> poses_;  // observations that share an error
+  std::vector<int> place_;                        // of each row of the measurement
   double pose_share_ = 0;
   bool noise_known_ = false, with_u_ = false;
   double stride_ = 1;  // of the rows that were kept

@@ -272,11 +272,23 @@ fit::NoiseModel Finder::noise() const {
 void Finder::share_poses() {
   const Eigen::MatrixXd all = maths::orthonormal(pool_.columns(chosen_), 1e-6, nullptr);
   const Eigen::VectorXd left = evidence_.residual() - all * (all.transpose() * evidence_.residual());
-  const double share = evidence_.shared_pose_error(left, all);
+  const auto search_with = [this](double share) {
+    evidence_.weigh_poses(share);
+    pool_.clear();
+    chosen_.clear();
+    search();
+  };
+  if (const double share = evidence_.shared_pose_error(left, all); share > 0) return search_with(share);
+  if (chosen_.empty()) return;
+  // Few places that each have an error of their own, and effects enough to meet them all: what was named is a
+  // rival of that error, and it is the better account of the readings that stands.
+  const double share = evidence_.shared_pose_error(evidence_.residual(),
+                                                   Eigen::MatrixXd::Zero(evidence_.residual().size(), 0));
   if (share <= 0) return;
-  evidence_.weigh_poses(share);
-  pool_.clear();
-  search();
+  const double named = priced_criterion();
+  search_with(share);
+  const double readings = static_cast<double>(evidence_.residual().size());
+  if (priced_criterion() + std::log(readings) >= named) search_with(0);
 }
 
 void Finder::weigh_correlation() {
@@ -291,17 +303,28 @@ void Finder::weigh_correlation() {
   const double same = thresholds_.same_noise;
   const bool stands = hangs_alike(after_all, white, same);
   const std::optional<fit::NoiseModel> set_ups = touched_anew(after_all);
-  if (stands && !set_ups && hangs_alike(after_none, white, same)) return;
+  // What moves as slowly as a drift does takes it over: the drift that only the others leave is its rival.
+  const std::vector<std::size_t> quick = quick_ones();
+  const fit::NoiseModel after_quick =
+      quick.size() < chosen_.size() ? evidence_.estimate(raw_columns(quick)) : after_all;
+  if (stands && !set_ups && hangs_alike(after_none, white, same) && hangs_alike(after_quick, white, same))
+    return;
+  const Eigen::Index quick_columns = raw_columns(quick).cols();
   double best = stands ? priced_criterion() : std::numeric_limits<double>::infinity();
   fit::NoiseModel kept = white;
   bool is_current = true;  // do search and evidence stand as `kept` has them?
   std::vector<fit::NoiseModel> starts = {after_all};
   if (!is_alike(after_none, after_all, same)) starts.push_back(after_none);
+  if (!is_alike(after_quick, after_all, same) && !is_alike(after_quick, after_none, same))
+    starts.push_back(after_quick);
   if (set_ups) starts.push_back(*set_ups);
   for (const fit::NoiseModel& start : starts) {
     if (hangs_alike(start, white, same)) continue;
     double value = settle_noise_from(start);
-    if (chosen_.empty() && !is_one_offset(start)) value -= thresholds_.instrument_distance;
+    // ... against names that a drift could take over, that is: the others have to stand as they did.
+    const bool for_slow_ones = !chosen_.empty() && quick_ones().size() == chosen_.size() &&
+                               raw_columns(chosen_).cols() >= quick_columns;
+    if (for_slow_ones || (chosen_.empty() && !is_one_offset(start))) value -= thresholds_.instrument_distance;
     is_current = value < best;
     if (!is_current) continue;
     best = value;
@@ -313,6 +336,23 @@ void Finder::weigh_correlation() {
     search_products();
     accept();
   }
+}
+
+std::vector<std::size_t> Finder::quick_ones() const {
+  std::vector<std::size_t> quick;
+  for (const std::size_t item : chosen_) {
+    const Eigen::MatrixXd columns = raw_columns({item});
+    double steps = 0, all = 0;
+    for (const fit::NoiseSeries& series : evidence_.layout().series) {
+      const Eigen::MatrixXd own = columns(series.reading, Eigen::all);
+      if (own.rows() < 2) continue;
+      const Eigen::RowVectorXd mean = own.colwise().mean();
+      all += (own.rowwise() - mean).squaredNorm();
+      steps += (own.bottomRows(own.rows() - 1) - own.topRows(own.rows() - 1)).squaredNorm();
+    }
+    if (steps > 2 * thresholds_.slow_share * all) quick.push_back(item);
+  }
+  return quick;
 }
 
 std::optional<fit::NoiseModel> Finder::touched_anew(const fit::NoiseModel& explained) const {

@@ -99,6 +99,8 @@ class Finder {
   void search_under(const fit::NoiseModel& noise);
   /// Search and noise in turn until both stand still. Returns the criterion with the noise model's own price.
   double settle_noise_from(fit::NoiseModel noise);
+  /// Of the chosen those that move from row to row, not only as slowly as an instrument drifts.
+  std::vector<std::size_t> quick_ones() const;
   /// What is touched may stand elsewhere in each set-up, which no reading along a normal is free of: that as
   /// the instrument's part of a rival, where it takes more away than it costs. explained: what is left beside
   /// all that was chosen.

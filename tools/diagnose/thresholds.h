@@ -225,6 +225,10 @@ struct AcceptanceThresholds {
   double evidence = 6, distance = 6;
   /// How much better a name must do than the instrument alone. Kass and Raftery 1995: 10 is very strong.
   double instrument_distance = 10;
+  /// Share of what an effect moves in all that it moves from row to row, below which it is as slow as a drift
+  /// of the instrument (von Neumann 1941: 1 for rows at random). Experiment: temperatures in a survey of rows
+  /// at random are at 0.01 to 0.1, carried by an axis at 0.3 to 1.
+  double slow_share = 0.15;
   /// Of what an effect removes from the rows that it was fitted to, this much it removes from runs that were
   /// left out. An effect of the noise removes nothing there, a true one nearly all.
   double held_out_share = 0.2;
@@ -260,6 +264,7 @@ struct AcceptanceThresholds {
     visit("acceptance.evidence", evidence);
     visit("acceptance.distance", distance);
     visit("acceptance.instrument_distance", instrument_distance);
+    visit("acceptance.slow_share", slow_share);
     visit("acceptance.held_out_share", held_out_share);
     visit("acceptance.stable_runs", stable_runs);
     visit("acceptance.stable_cosine", stable_cosine);
@@ -313,6 +318,8 @@ struct VerdictThresholds {
   double structure = 1e-4;
   /// chi^2 per freedom up to which the stated uncertainty may be in doubt: 1.4 of u.
   double doubtful_uncertainty = 2;
+  /// ... and beyond which it is not: nobody states a third of his uncertainty.
+  double implausible_uncertainty = 9;
   /// Without u: share of chi^2 that an accepted ladder explains, for its name to be believed.
   double mostly_explained = 0.5;
   /// ... and how many times chi^2 must grow without the effect that is named: then it is larger than all that
@@ -342,6 +349,7 @@ struct VerdictThresholds {
     visit("verdict.few_effects", few_effects);
     visit("verdict.structure", structure);
     visit("verdict.doubtful_uncertainty", doubtful_uncertainty);
+    visit("verdict.implausible_uncertainty", implausible_uncertainty);
     visit("verdict.mostly_explained", mostly_explained);
     visit("verdict.larger_than_rest", larger_than_rest);
     visit("verdict.enough_readings", enough_readings);

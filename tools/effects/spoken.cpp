@@ -8,6 +8,8 @@
 #include <cmath>
 #include <string_view>
 
+#include "tools/maths/factors.h"
+
 namespace vernier::effects {
 namespace {
 
@@ -16,15 +18,15 @@ struct ShopUnit {
   const char *unit, *said;
   double factor;
 };
-constexpr double kArcsecPerDeg = 3600, kUmPerMm = 1000, kMsPerS = 1000, kMmPerM = 1000, kUmPerM = 1e6;
+constexpr double kUmPerMm = 1000, kMsPerS = 1000, kMmPerM = 1000, kUmPerM = 1e6;
 constexpr std::array<ShopUnit, 13> kShopUnits = {{
     {"mm", "um", kUmPerMm},
-    {"deg", "arcsec", kArcsecPerDeg},
+    {"deg", "arcsec", maths::kArcsecPerDeg},
     {"s", "ms", kMsPerS},
     {"", "um/m", kUmPerM},
-    {"deg/mm", "arcsec/m", kArcsecPerDeg* kMmPerM},
+    {"deg/mm", "arcsec/m", maths::kArcsecPerDeg* kMmPerM},
     {"mm/degC", "um/degC", kUmPerMm},
-    {"deg/degC", "arcsec/degC", kArcsecPerDeg},
+    {"deg/degC", "arcsec/degC", maths::kArcsecPerDeg},
     {"1/degC", "um/(m degC)", kUmPerM},
     {"mm/degC/mm", "um/(m degC)", kUmPerM},
     {"mm/s", "um/s", kUmPerMm},

@@ -142,16 +142,17 @@ void find_disturbance(const FitResult& result, const model::Measurement& rows, c
     record.disturbed = mm / result.misfit_mm;
     record.disturbance = std::move(words);
   };
-  const double unit_um = noise_unit_um(rows);
+  const NoiseUnit unit = noise_unit(rows);
   for (const NoiseStep& step : result.noise.steps) {
     const auto kind = static_cast<model::ObservationKind>(step.kind);
     if (model::is_rotation(kind)) continue;
-    offer(1e-3 * std::abs(step.height) * unit_um,
-          fmt::format("a step of {:.3g} um in {} from row {} on", std::abs(step.height) * unit_um,
+    offer(1e-3 * std::abs(step.height) * unit.um,
+          fmt::format("a step of {:.3g} um in {} from row {} on", std::abs(step.height) * unit.um,
                       model::kObservationNames[static_cast<std::size_t>(step.kind)], step.row + 1));
   }
-  offer(1e-3 * result.noise.drift * unit_um,
-        fmt::format("a drift of {:.3g} um", result.noise.drift * unit_um));
+  const double drift = result.noise.drift * unit.of_all();
+  offer(unit.angles_only ? drift / maths::kArcsecPerDeg * maths::kRadPerDeg * result.reach_mm : 1e-3 * drift,
+        fmt::format("a drift of {:.3g} {}", drift, unit_name(unit.angles_only)));
   constexpr double kFarAbove = 5;  // times the noise
   if (!robust && result.noise_um && 1e3 * left_mm(result) > kFarAbove * *result.noise_um)
     offer(left_mm(result), fmt::format("{:.3g} um are left of the readings, whose noise is {:.3g} um",

@@ -117,13 +117,15 @@ Eigen::MatrixXd covariance_times(const NoiseLayout& layout, const NoiseModel& mo
   return y.transpose();
 }
 
-std::string in_words(const NoiseModel& model, double unit_um) {
-  std::string text = fmt::format("each reading {:.3g} um", model.own * unit_um);
+std::string in_words(const NoiseModel& model, const NoiseUnit& unit) {
+  const double size = unit.of_all();
+  const char* const name = unit_name(unit.angles_only);
+  std::string text = fmt::format("each reading {:.3g} {}", model.own * size, name);
   if (model.pose > 0)
-    text += fmt::format(", shared by the readings of a pose {:.3g} um", model.pose * unit_um);
-  if (model.run > 0) text += fmt::format(", by a run {:.3g} um", model.run * unit_um);
+    text += fmt::format(", shared by the readings of a pose {:.3g} {}", model.pose * size, name);
+  if (model.run > 0) text += fmt::format(", by a run {:.3g} {}", model.run * size, name);
   if (model.drift > 0)
-    text += fmt::format(", a drift of {:.3g} um that lasts {:.3g} {}", model.drift * unit_um,
+    text += fmt::format(", a drift of {:.3g} {} that lasts {:.3g} {}", model.drift * size, name,
                         model.time_constant, model.in_time ? "s" : "rows");
   double set_ups = 0, count = 0;
   for (const NoiseStep& step : model.steps) {
@@ -133,12 +135,15 @@ std::string in_words(const NoiseModel& model, double unit_um) {
   }
   if (count > 0)
     text += fmt::format(", what is touched shifts by {:.3g} um from set-up to set-up",
-                        std::sqrt(set_ups / count) * unit_um);
-  for (const NoiseStep& step : model.steps)
-    if (!step.of_set_up())
-      text += fmt::format(", a step of {:.3g} +- {:.2g} um in {} from row {} on", step.height * unit_um,
-                          step.std * unit_um, model::kObservationNames[static_cast<std::size_t>(step.kind)],
-                          step.row + 1);
+                        std::sqrt(set_ups / count) * unit.um);
+  for (const NoiseStep& step : model.steps) {
+    if (step.of_set_up()) continue;
+    const auto kind = static_cast<model::ObservationKind>(step.kind);
+    const bool rotation = model::is_rotation(kind);
+    text += fmt::format(", a step of {:.3g} +- {:.2g} {} in {} from row {} on",
+                        step.height * unit.of(rotation), step.std * unit.of(rotation), unit_name(rotation),
+                        model::kObservationNames[static_cast<std::size_t>(step.kind)], step.row + 1);
+  }
   return text;
 }
 

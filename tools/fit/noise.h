@@ -59,7 +59,20 @@ double whiten(const NoiseLayout& layout, const NoiseModel& model, Eigen::MatrixX
 Eigen::MatrixXd covariance_times(const NoiseLayout& layout, const NoiseModel& model,
                                  const Eigen::MatrixXd& columns);
 
-/// One sentence for people. unit_um: um that 1 stands for (rms of u; 1000 where none is given). tool.
-std::string in_words(const NoiseModel& model, double unit_um);
+/// What 1 of a weighted reading stands for: rms of u of lengths and of rotations; 1 mm and 1 deg where none
+/// is given.
+struct NoiseUnit {
+  double um = 1000, arcsec = 3600;
+  bool angles_only = false;  // no length was read
+
+  /// Of a reading of that kind.
+  double of(bool rotation) const { return rotation ? arcsec : um; }
+  /// Of the parts that all kinds share: of lengths, unless there are none.
+  double of_all() const { return of(angles_only); }
+};
+constexpr const char* unit_name(bool rotation) { return rotation ? "arcsec" : "um"; }
+
+/// One sentence for people. tool.
+std::string in_words(const NoiseModel& model, const NoiseUnit& unit);
 
 }  // namespace vernier::fit

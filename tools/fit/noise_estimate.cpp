@@ -68,6 +68,9 @@ struct NoiseParts {
   }
 };
 
+/// Of variances: a part that is 3e5 times another is all there is.
+constexpr double kMostLogRatio = 25;
+
 /// Downhill along each coordinate in turn with shrinking steps: few parameters, a smooth valley.
 double descend(const Likelihood& likelihood, NoiseParts& parts, double best, double least_log_time,
                double most_log_time) {
@@ -79,7 +82,7 @@ double descend(const Likelihood& likelihood, NoiseParts& parts, double best, dou
         if (!free[i]) continue;
         for (const double sign : {step, -step}) {
           NoiseParts trial = parts;
-          trial.log[i] += sign;
+          trial.log[i] = std::clamp(trial.log[i] + sign, -kMostLogRatio, kMostLogRatio);
           trial.log[3] = std::clamp(trial.log[3], least_log_time, most_log_time);
           const double value = likelihood(trial.ratios());
           if (value > best - 1e-3) continue;
@@ -266,6 +269,10 @@ NoiseModel white_noise(const NoiseLayout& layout, const Eigen::VectorXd& residua
 std::optional<NoiseModel> estimate_beside(const NoiseLayout& layout, const Eigen::VectorXd& residual,
                                           const Eigen::MatrixXd& fitted, bool with_u,
                                           const NoiseThresholds& limits) {
+  // Readings without noise: a likelihood would follow their rounding.
+  const double scatter =
+      residual.norm() / std::sqrt(static_cast<double>(std::max<Eigen::Index>(1, residual.size())));
+  if (with_u && scatter < limits.far_below_u) return white_noise(layout, residual, fitted, true, limits);
   NoiseModel free = estimate_components(layout, residual, fitted, false, limits);
   if (!with_u) return free.own < limits.least_own_part * free.shared() ? std::nullopt : std::optional(free);
   if (free.log_likelihood == 0) return free;  // too few readings, or nothing left of them

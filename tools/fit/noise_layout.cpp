@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 
 #include "tools/maths/median.h"
 
@@ -28,13 +29,15 @@ std::vector<double> relative_steps(const model::Measurement& m, const std::vecto
   return steps;
 }
 
-/// Below it a step is none: where the sizes of steps have their widest gap; 0 where they have none.
-double pose_tolerance(const std::vector<double>& steps, const LayoutThresholds& limits) {
+/// Below it a step is none: where the sizes of steps have their widest gap, of a factor above `gap`, with
+/// at least so many below it; 0 where they have none. Steps below `least` count as that.
+double tolerance_of(const std::vector<double>& steps, double gap_asked, double least, std::size_t below,
+                    const LayoutThresholds& limits) {
   std::vector<double> sorted = steps;
-  for (double& step : sorted) step = std::max(step, limits.no_step);
+  for (double& step : sorted) step = std::max(step, least);
   std::sort(sorted.begin(), sorted.end());
-  double widest = limits.pose_gap, tolerance = 0;
-  for (std::size_t i = 1; i < sorted.size(); ++i) {
+  double widest = gap_asked, tolerance = 0;
+  for (std::size_t i = std::max<std::size_t>(1, below); i < sorted.size(); ++i) {
     if (sorted[i - 1] > limits.small_step) break;
     const double gap = sorted[i] / sorted[i - 1];
     if (gap <= widest) continue;
@@ -44,7 +47,42 @@ double pose_tolerance(const std::vector<double>& steps, const LayoutThresholds& 
   return tolerance;
 }
 
+/// The value of each row on one axis, as the number of a group of values that are alike.
+std::vector<int> groups_along(const model::Column& axis, const LayoutThresholds& limits) {
+  std::vector<Eigen::Index> order(static_cast<std::size_t>(axis.size()));
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) { return axis[a] < axis[b]; });
+  std::vector<double> steps;
+  double least = 1;  // digits: a step of none is as good as one of the last
+  const double range = order.empty() ? 1 : std::max(axis[order.back()] - axis[order.front()], 1e-12);
+  for (std::size_t i = 1; i < order.size(); ++i) {
+    steps.push_back((axis[order[i]] - axis[order[i - 1]]) / range);
+    if (steps.back() > limits.no_step) least = std::min(least, steps.back());
+  }
+  const auto below = static_cast<std::size_t>(limits.least_revisits * static_cast<double>(steps.size()));
+  const double tolerance =
+      std::max(tolerance_of(steps, limits.revisit_gap, least, below, limits), limits.no_step);
+  std::vector<int> group(order.size(), 0);
+  for (std::size_t i = 1; i < order.size(); ++i)
+    group[static_cast<std::size_t>(order[i])] =
+        group[static_cast<std::size_t>(order[i - 1])] + (steps[i - 1] > tolerance ? 1 : 0);
+  return group;
+}
+
 }  // namespace
+
+std::vector<int> places_of_rows(const model::Measurement& measurement, const LayoutThresholds& limits) {
+  std::vector<std::vector<int>> key(measurement.rows());
+  for (const model::Column& axis : model::commanded_states(measurement).axis) {
+    const std::vector<int> group = groups_along(axis, limits);
+    for (std::size_t row = 0; row < key.size(); ++row) key[row].push_back(group[row]);
+  }
+  std::map<std::vector<int>, int> number;
+  std::vector<int> places;
+  for (const std::vector<int>& one : key)
+    places.push_back(number.try_emplace(one, static_cast<int>(number.size())).first->second);
+  return places;
+}
 
 double passed(const NoiseSeries& series, std::size_t i, bool in_time) {
   return in_time ? series.time[i] - series.time[i - 1]
@@ -56,7 +94,7 @@ NoiseLayout noise_layout(const model::Measurement& measurement, const std::vecto
   NoiseLayout layout;
   const model::States& states = measurement.states;
   const std::vector<double> steps = relative_steps(measurement, model::commanded_states(measurement).axis);
-  const double tolerance = pose_tolerance(steps, limits);
+  const double tolerance = tolerance_of(steps, limits.pose_gap, limits.no_step, 1, limits);
   std::vector<int> pose(measurement.rows(), 0);
   for (std::size_t row = 1; row < pose.size(); ++row)
     pose[row] = pose[row - 1] + (steps[row] > tolerance ? 1 : 0);

@@ -35,6 +35,11 @@ struct NoiseLayout {
 NoiseLayout noise_layout(const model::Measurement& measurement, const std::vector<std::size_t>& observations,
                          const LayoutThresholds& limits = {});
 
+/// The place of each row, numbered: where all axes stand alike, whenever that was. On each axis positions
+/// count as alike where they differ by less than a tolerance that the gap between small and large distances
+/// of neighbours gives; equal ones always. tool.
+std::vector<int> places_of_rows(const model::Measurement& measurement, const LayoutThresholds& limits = {});
+
 /// What passes between a reading of a series and the one before it: s, or rows.
 double passed(const NoiseSeries& series, std::size_t i, bool in_time);
 

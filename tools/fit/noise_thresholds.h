@@ -17,8 +17,17 @@ struct LayoutThresholds {
   /// Share of a range below which a step is rounding.
   double no_step = 1e-9;
 
+  /// Share of the rows that has to come back to a place before distances of neighbours are told apart into
+  /// small and large ones: of positions at random a few are close by chance.
+  double least_revisits = 0.1;
+  /// Factor between the two. Of positions at random neighbours in the order of distances, but for those few,
+  /// are within 1.5 of each other.
+  double revisit_gap = 3;
+
   template <class Visit>
   void for_each(const Visit& visit) {
+    visit("layout.least_revisits", least_revisits);
+    visit("layout.revisit_gap", revisit_gap);
     visit("layout.small_step", small_step);
     visit("layout.pose_gap", pose_gap);
     visit("layout.no_step", no_step);
@@ -49,6 +58,8 @@ struct NoiseThresholds {
   double held = 4;
   /// Readings that scatter by less than this share of u are far better than it says: u counts as their own.
   double near_u = 0.7;
+  /// Readings that scatter by less than this share of u have no noise to speak of: simulated ones.
+  double far_below_u = 0.01;
   /// Steps of the instrument that are looked for. More of them are a drift.
   std::size_t most_steps = 4;
 
@@ -63,6 +74,7 @@ struct NoiseThresholds {
     visit("noise.own_of_step", own_of_step);
     visit("noise.held", held);
     visit("noise.near_u", near_u);
+    visit("noise.far_below_u", far_below_u);
     visit("noise.most_steps", most_steps);
   }
 };

@@ -121,8 +121,20 @@ std::optional<double> noise_um(const model::Measurement& m) {
   return pool.rms();
 }
 
-double noise_unit_um(const model::Measurement& m) {
-  return has_uncertainty(m) ? noise_um(m).value_or(maths::kUmPerMm) : maths::kUmPerMm;
+NoiseUnit noise_unit(const model::Measurement& m) {
+  const bool with_u = has_uncertainty(m);
+  RepeatPool lengths, angles;
+  for (const model::Observation& o : m.observations)
+    if (m.check[o.row] == 0) {
+      const bool rotation = model::is_rotation(o.kind);
+      const double u = with_u ? model::uncertainty_of(m, o) : 1;
+      (rotation ? angles : lengths).add(u * (rotation ? maths::kArcsecPerDeg : maths::kUmPerMm));
+    }
+  NoiseUnit unit;
+  unit.um = lengths.rms().value_or(unit.um);
+  unit.arcsec = angles.rms().value_or(unit.arcsec);
+  unit.angles_only = angles.rms() && !lengths.rms();
+  return unit;
 }
 
 Eigen::VectorXd fit_weights(const model::Measurement& m) {

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "tools/fit/noise.h"
 #include "tools/model/measurement.h"
 
 namespace vernier::fit {
@@ -27,8 +28,8 @@ std::vector<double> row_conditions(const model::Measurement& m, std::size_t row)
 /// deviation, at least 5 degrees of freedom); else nothing.
 std::optional<double> noise_um(const model::Measurement& m);
 
-/// um that 1 of a weighted reading stands for: rms of u, 1000 where none is given (readings are mm then).
-double noise_unit_um(const model::Measurement& m);
+/// What 1 of a weighted reading stands for.
+NoiseUnit noise_unit(const model::Measurement& m);
 
 /// Weight of each observation in a fit: 1/u, 1 where u is absent, 0 for check rows. Multiplies the residual.
 Eigen::VectorXd fit_weights(const model::Measurement& m);

@@ -9,6 +9,7 @@ namespace vernier::maths {
 inline constexpr double kRadPerDeg = std::numbers::pi / 180;
 inline constexpr double kDegPerRad = 180 / std::numbers::pi;
 inline constexpr double kUmPerMm = 1e3;
+inline constexpr double kArcsecPerDeg = 3600;
 inline constexpr double kUradPerDeg = kRadPerDeg * 1e6;
 inline constexpr double kSecondsPerMinute = 60;
 inline constexpr double kMmPerInch = 25.4;  // exact by definition

@@ -66,7 +66,7 @@ Json diagnosis_json(const diagnose::Diagnosis& diagnosis, const model::Measureme
   json["rms_um"] = text::or_null(diagnosis.base.after.rms_um);
   json["check_rms_um"] = text::or_null(diagnosis.base.check.rms_um);
   json["noise_um"] = text::or_null(diagnosis.base.noise_um);
-  json["noise_model"] = noise_json(diagnosis.noise, diagnosis.noise_unit_um);
+  json["noise_model"] = noise_json(diagnosis.noise, diagnosis.noise_unit);
   json["n_obs"] = diagnosis.base.before.count;
   json["n_params"] = diagnosis.base.parameters.size();
   json["n_excluded"] = measurement.excluded;
@@ -83,6 +83,8 @@ Json diagnosis_json(const diagnose::Diagnosis& diagnosis, const model::Measureme
                               {"said", given ? "the model as given" : step.said},
                               {"rms_um", text::or_null(step.rms_um)},
                               {"check_rms_um", text::or_null(step.check_rms_um)},
+                              {"rms_urad", text::or_null(step.rms_urad)},
+                              {"check_rms_urad", text::or_null(step.check_rms_urad)},
                               {"confirmed", step.confirmed ? Json(*step.confirmed) : Json(nullptr)},
                               {"evidence", text::or_null(step.evidence)},
                               {"chi2_per_dof", step.chi_square_per_freedom}});

@@ -81,7 +81,7 @@ ordered_json fit_json(const fit::FitResult& result, const model::Measurement& m)
                                   {"unit", item.unit},
                                   {"from", fit::origin_name(item.from)},
                                   {"scale", item.scale}});
-  json["noise_model"] = noise_json(result.noise, fit::noise_unit_um(m));
+  json["noise_model"] = noise_json(result.noise, fit::noise_unit(m));
   json["unidentifiable"] = ordered_json::array();
   for (const auto& group : result.observability.unidentifiable) {
     ordered_json names = ordered_json::array();
@@ -211,25 +211,29 @@ std::string number_or_dash(const std::optional<double>& value, const char* unit)
   return value ? fmt::format("{:.4g} {}", *value, unit) : std::string("-");
 }
 
-ordered_json noise_json(const fit::NoiseModel& noise, double unit_um) {
+ordered_json noise_json(const fit::NoiseModel& noise, const fit::NoiseUnit& unit) {
   ordered_json steps = ordered_json::array();
   for (const fit::NoiseStep& step : noise.steps) {
+    const bool rotation = model::is_rotation(static_cast<model::ObservationKind>(step.kind));
+    const std::string name = fit::unit_name(rotation);
     steps.push_back({{"row", step.row + 1},
                      {"observation", model::kObservationNames[static_cast<std::size_t>(step.kind)]},
-                     {"height_um", step.height * unit_um},
-                     {"std_um", step.std * unit_um}});
+                     {"height_" + name, step.height * unit.of(rotation)},
+                     {"std_" + name, step.std * unit.of(rotation)}});
     if (step.of_set_up())
       steps.back()["along"] = std::array{"x", "y", "z"}[static_cast<std::size_t>(step.component)];
   }
+  const double size = unit.of_all();
+  const std::string name = fit::unit_name(unit.angles_only);
   return {{"steps", steps},
-          {"own_um", noise.own * unit_um},
-          {"pose_um", noise.pose * unit_um},
-          {"run_um", noise.run * unit_um},
-          {"drift_um", noise.drift * unit_um},
+          {"own_" + name, noise.own * size},
+          {"pose_" + name, noise.pose * size},
+          {"run_" + name, noise.run * size},
+          {"drift_" + name, noise.drift * size},
           {"drift_time", noise.drift > 0 ? ordered_json(noise.time_constant) : ordered_json(nullptr)},
           {"drift_time_unit", noise.in_time ? "s" : "rows"},
           {"support", noise.support},
-          {"sentence", fit::in_words(noise, unit_um)}};
+          {"sentence", fit::in_words(noise, unit)}};
 }
 
 }  // namespace vernier::results

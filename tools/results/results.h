@@ -26,8 +26,8 @@ nlohmann::ordered_json domains_json(const model::Machine& machine, const model::
 void print_domains(std::FILE* out, const nlohmann::ordered_json& domains);
 
 /// A noise model: {own_um, pose_um, run_um, drift_um, drift_time, drift_time_unit, support, sentence}.
-/// unit_um: um that 1 of it stands for.
-nlohmann::ordered_json noise_json(const fit::NoiseModel& noise, double unit_um);
+/// Parts in um, in arcsec where no length was read.
+nlohmann::ordered_json noise_json(const fit::NoiseModel& noise, const fit::NoiseUnit& unit);
 
 /// A number for people: four significant digits, "-" for none.
 std::string number_or_dash(const std::optional<double>& value, const char* unit);
