@@ -321,7 +321,8 @@ void Finder::weigh_correlation() {
   for (const fit::NoiseModel& start : starts) {
     if (hangs_alike(start, white, same)) continue;
     double value = settle_noise_from(start);
-    // ... against names that a drift could take over, that is: the others have to stand as they did.
+    // The instrument is preferred to names that a drift could take over; the others have to stand as they
+    // did.
     const bool for_slow_ones = !chosen_.empty() && quick_ones().size() == chosen_.size() &&
                                raw_columns(chosen_).cols() >= quick_columns;
     if (for_slow_ones || (chosen_.empty() && !is_one_offset(start))) value -= thresholds_.instrument_distance;
