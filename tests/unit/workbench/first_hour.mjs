@@ -188,9 +188,10 @@ async function shown(page) {
   assert.ok((await text(page, '#safety')).includes('Is the correction known well enough?'));
   // A reload begins where one was.
   const before = await steps(page);
-  await page.evaluate('location.reload(); 1');
+  // The page before it is ready too, and stays for a moment longer.
+  await page.evaluate("document.body.dataset.before = 'yes'; location.reload(); 1");
   await page.until(
-    "document.body.dataset.ready === 'yes' && document.getElementById('machine').value === 'model-fitted.xml'",
+    "!document.body.dataset.before && document.body.dataset.ready === 'yes' && document.getElementById('machine').value === 'model-fitted.xml'",
     'the page again',
   );
   const kept = (path) => path.filter(([id, done]) => done && id === 'fall').length;
