@@ -14,6 +14,7 @@
 
 #include "comp/verify.h"
 #include "firmware/core/work_budget.h"
+#include "tests/support/steady_clock.h"
 
 namespace vernier {
 namespace {
@@ -144,16 +145,8 @@ void spread(Run& run, const std::vector<Columns>& each, std::vector<ErrorTable>&
   run.equation.result_count = static_cast<std::uint32_t>(tables.size());
 }
 
-class RealClock final : public Clock {
- public:
-  InstantNs now() noexcept override {
-    return InstantNs(std::chrono::steady_clock::now().time_since_epoch().count());
-  }
-  HalFault sleep_until(InstantNs) noexcept override { return HalFault::kNone; }
-};
-
 int measure(int repeats) {
-  RealClock clock;
+  SteadyClock clock;
   const Columns line(64, 6, 1, true), cubic(64, 6, 3, true), uneven(64, 6, 1, false),
       long_one(4096, 1, 1, false), narrow(64, 1, 1, true);
   Instruction sum{OpCode::kDot, 4, 32, 32, 0, 1, 0}, short_sum{OpCode::kDot, 4, 2, 1, 0, 1, 0};

@@ -2,14 +2,13 @@
 #include <gtest/gtest.h>
 #include <sodium.h>
 
-#include <chrono>
-
 #include <algorithm>
 #include <cstdio>
 #include <cstring>
 #include <random>
 
 #include "tables/checksum.h"
+#include "tests/support/steady_clock.h"
 #include "tests/unit/firmware/upload_rig.h"
 
 namespace vernier::upload_test {
@@ -399,12 +398,7 @@ TEST_F(Upload, WorkCountsTermsSoThatNoImageStallsTheTick) {
   equation.terms = {terms.data(), kMaxTerms};
   equation.result_count = 900;
   EXPECT_GT(work_of(equation, 1), 3'600'000u);
-  struct RealClock : Clock {
-    InstantNs now() noexcept override {
-      return InstantNs(std::chrono::steady_clock::now().time_since_epoch().count());
-    }
-    HalFault sleep_until(InstantNs) noexcept override { return HalFault::kNone; }
-  } clock;
+  SteadyClock clock;
   std::vector<std::uint32_t> memory(kWordsBeyondCaches);
   const WorkBudget measured = measured_work_budget(clock, TimeUs(1000), memory);
   const std::uint64_t budget = measured.work;
