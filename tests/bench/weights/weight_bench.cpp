@@ -14,7 +14,7 @@
 
 #include "comp/verify.h"
 #include "firmware/core/work_budget.h"
-#include "tests/support/steady_clock.h"
+#include "hal/linux/monotonic_clock.h"
 
 namespace vernier {
 namespace {
@@ -146,7 +146,7 @@ void spread(Run& run, const std::vector<Columns>& each, std::vector<ErrorTable>&
 }
 
 int measure(int repeats) {
-  SteadyClock clock;
+  MonotonicClock clock;
   const Columns line(64, 6, 1, true), cubic(64, 6, 3, true), uneven(64, 6, 1, false),
       long_one(4096, 1, 1, false), narrow(64, 1, 1, true);
   Instruction sum{OpCode::kDot, 4, 32, 32, 0, 1, 0}, short_sum{OpCode::kDot, 4, 2, 1, 0, 1, 0};
