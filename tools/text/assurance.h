@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace vernier::text {
+
+/// The value, where it is finite. Every comparison that leads to a verdict reads its numbers through here.
+/// what: name of the number, for the message. Throws std::logic_error for NaN and infinity (exit status 70:
+/// no verdict is better than a wrong one). tool.
+double decisive(double value, std::string_view what);
+
+/// What a result vouches for; the names are those of tools/docs/assurances.md.
+enum class AssuranceKind : std::uint8_t {
+  kFit,
+  kDiagnose,
+  kCheck,
+  kCompile,
+  kExport,
+  kUpload,
+  kRollout,
+  kConformity,
+  kEvaluate,
+  kSolve,
+  kPlan,
+};
+const char* assurance_name(AssuranceKind kind);
+
+/// One rule that was looked at. `value` and `limit` are finite; a question of yes or no counts what is wrong
+/// (limit 0).
+struct AssuranceRule {
+  std::string rule;  // short name with hyphens
+  double value = 0, limit = 0;
+  std::string text;  // one sentence for people
+  bool ok = true;
+};
+
+/// A result's word of assurance: it holds where every rule that was looked at is met. With no rule it does
+/// not hold. tool.
+class Assurance {
+ public:
+  explicit Assurance(AssuranceKind kind) : kind_(kind) {}
+
+  /// The rule is met where value <= limit. Throws std::logic_error where either is not finite.
+  void at_most(std::string rule, double value, double limit, std::string text);
+  /// The rule is met where value >= limit. Throws as `at_most`.
+  void at_least(std::string rule, double value, double limit, std::string text);
+  /// The rule is met where `ok` is true: value is 0 where it is, else 1; the limit is 0.
+  void require(std::string rule, bool ok, std::string text);
+  /// Something that nobody has looked at, as a sentence.
+  void not_covered(std::string text);
+
+  AssuranceKind kind() const { return kind_; }
+  bool holds() const;
+  /// The rules that are not met; where all are, all of them.
+  std::vector<AssuranceRule> because() const;
+  const std::vector<std::string>& uncovered() const { return uncovered_; }
+
+  /// {"kind", "holds", "because": [{"rule", "value", "limit", "text"}], "not_covered": []}
+  nlohmann::ordered_json json() const;
+
+ private:
+  AssuranceKind kind_;
+  std::vector<AssuranceRule> rules_;
+  std::vector<std::string> uncovered_;
+};
+
+}  // namespace vernier::text
