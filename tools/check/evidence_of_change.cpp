@@ -9,15 +9,18 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <optional>
 
 #include "tools/effects/probe.h"
 #include "tools/fit/noise.h"
+#include "tools/fit/set_up.h"
 #include "tools/fit/solve.h"
 #include "tools/maths/chance.h"
 #include "tools/maths/decompositions.h"
 #include "tools/maths/orthonormal.h"
 #include "tools/model/fit_record.h"
 #include "tools/model/prediction.h"
+#include "tools/text/assurance.h"
 
 namespace vernier::check {
 namespace {
@@ -31,6 +34,8 @@ using Eigen::VectorXd;
 constexpr double kOwn = 1e-3;
 /// Part of the readings' information on a suspect that the fit's own doubt must leave for it to be seen.
 constexpr double kSeen = 1e-6;
+/// Standard deviations of a change that a check is sure to show.
+constexpr double kShown = 5;
 /// Sizes of a change, in standard deviations of the first check that could show it, that are mixed with equal
 /// weight.
 constexpr std::array kSizes = {2.0, 4.0, 8.0, 16.0, 32.0, 64.0};
@@ -38,8 +43,8 @@ constexpr std::array kSizes = {2.0, 4.0, 8.0, 16.0, 32.0, 64.0};
 /// Collects the columns of suspects, weighted, with the set-up projected out.
 class Collector {
  public:
-  Collector(const model::Machine& machine, const model::Measurement& m) : machine_(machine), m_(m) {
-    const double fallback = std::max(machine.fitted->rms_mm, 1e-9);
+  Collector(model::Machine machine, const model::Measurement& m) : machine_(std::move(machine)), m_(m) {
+    const double fallback = std::max(machine_.fitted->rms_mm, 1e-9);
     weight_.resize(static_cast<Index>(m.observations.size()));
     for (std::size_t i = 0; i < m.observations.size(); ++i) {
       const double u = model::uncertainty_of(m, m.observations[i]);
@@ -203,7 +208,7 @@ class Collector {
             column);
   }
 
-  const model::Machine& machine_;
+  model::Machine machine_;
   const model::Measurement& m_;
   VectorXd weight_, residual_;
   fit::NoiseLayout layout_;  // no series: readings are independent
@@ -239,8 +244,9 @@ double log_sum(const std::vector<double>& logs) {
 
 class Judge {
  public:
-  Judge(const model::Machine& machine, const std::vector<CheckRecord>& checks, double false_alarms)
-      : checks_(checks), last_(checks.back()), false_alarms_(false_alarms) {
+  Judge(const model::Machine& machine, const std::vector<CheckRecord>& checks,
+        std::vector<std::string> left_out, double false_alarms)
+      : checks_(checks), last_(checks.back()), left_out_(std::move(left_out)), false_alarms_(false_alarms) {
     answer_.alarm = 1 / false_alarms;
     const MatrixXd spread = spread_of_fit(machine, last_.suspects, last_.parameters);
     const auto p = static_cast<Index>(last_.parameters);
@@ -297,32 +303,59 @@ class Judge {
     return full > 0 && one.amount > kSeen * full;
   }
 
+  /// The first check from `since` on that could show a change of this suspect; nothing: none has yet.
+  std::optional<std::size_t> first_look(std::size_t since, Index suspect) const {
+    for (std::size_t k = since; k < checks_.size(); ++k) {
+      const MatrixXd& gram = checks_[k].gram;
+      const double full = gram(suspect, suspect);
+      if (full > 0 && amount_beside(gram, suspect, doubt_after_[k]) > kSeen * full) return k;
+    }
+    return std::nullopt;
+  }
+
+  /// A change since a check, of a suspect that this check or an earlier one looked at: weights are fixed
+  /// before the readings that they weigh, so that a suspect that a later check brings changes none of them.
+  std::vector<Index> suspects_at(std::size_t since) const {
+    std::vector<Index> known;
+    for (Index j = 0; j < static_cast<Index>(last_.suspects.size()); ++j)
+      for (std::size_t k = 0; k <= since; ++k)
+        if (checks_[k].gram(j, j) > 0) {
+          known.push_back(j);
+          break;
+        }
+    return known;
+  }
+
   void weigh() {
-    const auto count = static_cast<Index>(last_.suspects.size());
     std::vector<double> all;
     std::map<Index, std::vector<std::pair<double, std::size_t>>> of_suspect;
     for (std::size_t since = 0; since < checks_.size(); ++since) {
       const auto k = static_cast<double>(since + 1);
+      const std::vector<Index> known = suspects_at(since);
       // A change at any later check has its share: 1/2, 1/6, 1/12 ...
-      const double share = std::log(1 / (k * (k + 1)) / static_cast<double>(std::max<Index>(1, count)));
-      for (Index j = 0; j < count; ++j) {
+      const double whole = -std::log(k * (k + 1));
+      if (known.empty()) all.push_back(whole);  // no information: a ratio of one
+      const double share = whole - std::log(static_cast<double>(std::max<std::size_t>(1, known.size())));
+      for (const Index j : known) {
         const Information one = information(since, j);
-        if (!is_seen(since, j, one)) {
-          all.push_back(share);  // no information: a ratio of one
+        const auto first = first_look(since, j);
+        if (!first || !is_seen(since, j, one)) {
+          all.push_back(share);
           continue;
         }
         std::vector<double> sizes;
         for (const double size : kSizes)
-          sizes.push_back(one.log_ratio(size / std::sqrt(first_amount(since, j))));
+          sizes.push_back(one.log_ratio(size / std::sqrt(first_amount(*first, j))));
         const double ratio = share + log_sum(sizes) - std::log(static_cast<double>(kSizes.size()));
-        all.push_back(ratio);
+        all.push_back(text::decisive(
+            ratio, "the evidence for a change of " + last_.suspects[static_cast<std::size_t>(j)].name));
         of_suspect[j].emplace_back(ratio, since);
       }
     }
     // What is left of the weight is on changes that are still to come.
     all.push_back(-std::log(static_cast<double>(checks_.size() + 1)));
     const double total = log_sum(all);
-    answer_.evidence = std::exp(std::min(total, 700.0));
+    answer_.evidence = text::decisive(std::exp(std::min(total, 700.0)), "the evidence for a change");
     for (const auto& [j, ratios] : of_suspect) {
       std::vector<double> logs;
       for (const auto& one : ratios) logs.push_back(one.first);
@@ -345,54 +378,83 @@ class Judge {
 
   /// Information of the first check alone that could show a change since then: what is known before its
   /// readings are, as the size of a change that is looked for must be.
-  double first_amount(std::size_t since, Index suspect) const {
-    const MatrixXd& gram = checks_[since].gram;
-    return std::max(amount_beside(gram, suspect, doubt_after_[since]),
-                    kSeen * gram(suspect, suspect) + 1e-300);
+  double first_amount(std::size_t first, Index suspect) const {
+    return amount_beside(checks_[first].gram, suspect, doubt_after_[first]);
   }
 
   void look_at_noise() {
     if (last_.freedom < 1) return;
-    answer_.noise_p = maths::chi_square_tail(last_.rest, last_.freedom);
+    answer_.noise_p = text::decisive(maths::chi_square_tail(last_.rest, last_.freedom),
+                                     "the chance of the readings' scatter");
+  }
+
+  /// Numbers beyond the set-up of all checks: with fewer than three any of them may be any suspect's.
+  void state_rules() {
+    double beyond = 0;
+    for (const CheckRecord& check : checks_) beyond += check.beyond_set_up;
+    const bool any_of_machine = std::any_of(ranked_.begin(), ranked_.end(),
+                                            [](const Change& one) { return !one.suspect.of_instrument; });
+    const auto k = static_cast<double>(checks_.size());
+    constexpr double kFewest = 3;
+    text::Assurance& word = answer_.assurance;
+    word.at_least("scatter", answer_.noise_p, false_alarms_ / (k * (k + 1)),
+                  "Chance that readings of the stated uncertainty scatter as much as those of this check.");
+    word.at_least("readings", beyond, kFewest, "Readings of all checks beyond those that the set-up takes.");
+    word.require("sensitivity", any_of_machine, "The readings depend on at least one error of the machine.");
+    word.at_most("evidence", answer_.evidence, answer_.alarm,
+                 "Evidence (e-value) for a change of the machine or the instrument.");
+    if (!answer_.not_seen.empty())
+      word.not_covered(
+          fmt::format("These readings do not depend on: {}.", fmt::join(answer_.not_seen, ", ")));
+    for (const Change& one : answer_.resolved)
+      word.not_covered(fmt::format("A change of {} by less than about {:.2g} {} (five standard deviations).",
+                                   one.suspect.name, kShown * one.std, one.suspect.unit));
+    for (const std::string& label : left_out_)
+      word.not_covered(fmt::format("Check \"{}\": its readings scatter more than stated.", label));
+  }
+
+  bool fails(const char* rule) const {
+    const auto failed = answer_.assurance.because();
+    return !answer_.assurance.holds() &&
+           std::any_of(failed.begin(), failed.end(), [&](const auto& one) { return one.rule == rule; });
   }
 
   void decide() {
-    const auto k = static_cast<double>(checks_.size());
-    const bool loud = answer_.noise_p < false_alarms_ / (k * (k + 1));
-    const bool any_of_machine = std::any_of(ranked_.begin(), ranked_.end(),
-                                            [](const Change& one) { return !one.suspect.of_instrument; });
-    double beyond = 0;
-    for (const CheckRecord& check : checks_) beyond += check.beyond_set_up;
-    constexpr double kFewest = 3;  // numbers: with fewer any of them may be any suspect's
-    if (beyond < kFewest || !any_of_machine) {
+    state_rules();
+    const bool alarm = fails("evidence");
+    if (fails("scatter") || (alarm && !ranked_.empty() && ranked_.front().suspect.of_instrument))
+      return report_instrument();
+    if (fails("readings") || fails("sensitivity")) {
       answer_.verdict = CheckVerdict::kTooLittle;
       answer_.explanation =
-          "The readings tell of the set-up of the instrument and of nothing else: more of them, further "
+          "The readings determine the set-up of the instrument and nothing else. Measure more points, "
+          "further "
           "apart.";
       return;
     }
-    const bool alarm = answer_.evidence >= answer_.alarm;
-    if (loud || (alarm && ranked_.front().suspect.of_instrument)) {
-      answer_.verdict = CheckVerdict::kInstrument;
-      answer_.explanation =
-          loud ? fmt::format(
-                     "The readings scatter by {:.2g} times their stated uncertainty, whatever may have "
-                     "changed "
-                     "in the machine (chance {:.1g}).",
-                     std::sqrt(last_.rest / last_.freedom), answer_.noise_p)
-               : fmt::format("{} by {:.3g} {} +- {:.2g}.", ranked_.front().suspect.name,
-                             ranked_.front().change, ranked_.front().suspect.unit, ranked_.front().std);
-      return;
-    }
-    if (!alarm) {
-      answer_.verdict = CheckVerdict::kValid;
-      answer_.explanation = fmt::format("Nothing speaks for a change (evidence {:.3g}, told from {:g}).",
-                                        answer_.evidence, answer_.alarm);
-      if (!answer_.not_seen.empty())
-        answer_.explanation +=
-            fmt::format(" These readings could not see: {}.", fmt::join(answer_.not_seen, ", "));
-      return;
-    }
+    if (alarm) return report_change();
+    answer_.verdict = CheckVerdict::kValid;
+    answer_.explanation = fmt::format("No evidence for a change ({:.3g}, alarm threshold {:g}).",
+                                      answer_.evidence, answer_.alarm);
+    if (!answer_.not_seen.empty())
+      answer_.explanation +=
+          fmt::format(" These readings do not depend on: {}. A change there is not covered.",
+                      fmt::join(answer_.not_seen, ", "));
+  }
+
+  void report_instrument() {
+    answer_.verdict = CheckVerdict::kInstrument;
+    answer_.explanation =
+        fails("scatter")
+            ? fmt::format(
+                  "The readings scatter by {:.2g} times their stated uncertainty, whatever may have "
+                  "changed in the machine (chance {:.1g}).",
+                  std::sqrt(last_.rest / last_.freedom), answer_.noise_p)
+            : fmt::format("{} by {:.3g} {} +- {:.2g}.", ranked_.front().suspect.name, ranked_.front().change,
+                          ranked_.front().suspect.unit, ranked_.front().std);
+  }
+
+  void report_change() {
     answer_.verdict = CheckVerdict::kChanged;
     const Change& best = ranked_.front();
     answer_.changed.push_back(best);
@@ -404,12 +466,13 @@ class Judge {
         fmt::format("{} has changed by {:.4g} +- {:.2g} {} since check {} ({}).", best.suspect.name,
                     best.change, best.std, best.suspect.unit, best.since + 1, checks_[best.since].label);
     if (!answer_.not_told_apart.empty())
-      answer_.explanation +=
-          fmt::format(" Not told apart from: {}.", fmt::join(answer_.not_told_apart, ", "));
+      answer_.explanation += fmt::format(" These readings do not distinguish it from: {}.",
+                                         fmt::join(answer_.not_told_apart, ", "));
   }
 
   const std::vector<CheckRecord>& checks_;
   const CheckRecord& last_;
+  std::vector<std::string> left_out_;
   double false_alarms_;
   std::vector<Sum> from_;  // over the checks from each on
   std::vector<MatrixXd> doubt_after_;
@@ -444,7 +507,7 @@ MatrixXd spread_of_fit(const model::Machine& machine, const std::vector<Suspect>
 CheckRecord record_of(const model::Machine& machine, const model::Measurement& measurement,
                       std::string label) {
   require_fit(machine);
-  return Collector(machine, measurement).collect(std::move(label));
+  return Collector(fit::set_up_anywhere(machine, measurement), measurement).collect(std::move(label));
 }
 
 namespace {
@@ -475,8 +538,19 @@ std::vector<CheckRecord> aligned(const std::vector<CheckRecord>& checks) {
 
 CheckAnswer judge(const model::Machine& machine, const std::vector<CheckRecord>& checks,
                   double false_alarms) {
-  const std::vector<CheckRecord> all = aligned(checks);
-  return Judge(machine, all, false_alarms).answer();
+  std::vector<CheckRecord> all = aligned(checks);
+  std::vector<std::string> left_out;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const auto k = static_cast<double>(i + 1);
+    if (all[i].freedom < 1 ||
+        maths::chi_square_tail(all[i].rest, all[i].freedom) >= false_alarms / (k * (k + 1)))
+      continue;
+    // Scatter and evidence come from different parts of the readings: leaving it out favours no suspect.
+    all[i].gram.setZero();
+    all[i].moment.setZero();
+    if (i + 1 < all.size()) left_out.push_back(all[i].label);
+  }
+  return Judge(machine, all, std::move(left_out), false_alarms).answer();
 }
 
 }  // namespace vernier::check

@@ -6,6 +6,7 @@
 
 #include "tools/model/machine.h"
 #include "tools/model/measurement.h"
+#include "tools/text/assurance.h"
 
 namespace vernier::check {
 
@@ -29,14 +30,16 @@ struct CheckRecord {
   double beyond_set_up = 0;  // readings less what the set-up takes
 };
 
-/// Reads what a measurement says of a fitted machine; fit and check rows alike. Suspects are the free
-/// parameters, and where the chain has them and they are not the same: reversal and scale of every axis, a
-/// tilt and an offset of every transform, a drift of the instrument along each direction that it reads.
-/// Throws InputError where the machine was never fitted. tool.
+/// Reads what a measurement says of a fitted machine; fit and check rows alike. The set-up of the instrument
+/// is fitted anew, however it is turned, and its columns are taken there. Suspects are the free parameters,
+/// and where the chain has them and they are not the same: reversal and scale of every axis, a tilt and an
+/// offset of every transform, a drift of the instrument along each direction that it reads. Throws InputError
+/// where the machine was never fitted. tool.
 CheckRecord record_of(const model::Machine& machine, const model::Measurement& measurement,
                       std::string label);
 
-/// The same suspects as columns: what a change by 1 does to each reading, over its uncertainty.
+/// The same suspects as columns at the set-up of the machine file: what a change by 1 does to each reading,
+/// over its uncertainty.
 struct SuspectColumns {
   std::vector<Suspect> suspects;
   std::size_t parameters = 0;
@@ -61,13 +64,14 @@ struct Change {
 struct CheckAnswer {
   CheckVerdict verdict = CheckVerdict::kValid;
   double evidence = 1;  // e-value: by how much the checks speak for a change, whatever was looked at before
-  double alarm = 100;   // at which a change is told: 1 / false alarms
-  double noise_p = 1;   // chance of the last check's noise, told at false alarms / (k (k+1))
+  double alarm = 100;   // above which a change is reported: 1 / false alarms
+  double noise_p = 1;   // chance of the last check's noise, reported below false alarms / (k (k+1))
   std::vector<Change> changed;              // the likeliest first; nothing where none is told
   std::vector<std::string> not_told_apart;  // that explain it nearly as well
   std::vector<std::string> not_seen;        // suspects that these readings do not move by
   std::vector<Change> resolved;  // how small a change of each seen parameter the last check would show: std
   std::string explanation;
+  text::Assurance assurance{text::AssuranceKind::kCheck};  // holds where the verdict is valid
 };
 
 /// The whole history as one sequential test: the mixture, over the check since which and the suspect by
@@ -75,8 +79,10 @@ struct CheckAnswer {
 /// 2024), with what the fit itself does not know of the parameters integrated out. If nothing changes it
 /// exceeds 1/false_alarms in the lifetime of a machine with that probability at most, however often one looks
 /// (Ville 1939), under normal readings of the stated uncertainty that hang together as those of the fit did
-/// (<fitted>'s noise; independent where it has none). checks: in the order of time,
-/// of one machine, at least one. tool.
+/// (<fitted>'s noise; independent where it has none). A suspect that an earlier check did not look at has a
+/// ratio of 1 there, and its weights are fixed before its first reading. A check whose readings scatter more
+/// than stated is left out of the evidence. checks: in the order of time, of one machine, at least one.
+/// Throws std::logic_error where a figure that decides is not finite. tool.
 CheckAnswer judge(const model::Machine& machine, const std::vector<CheckRecord>& checks, double false_alarms);
 
 }  // namespace vernier::check

@@ -16,7 +16,8 @@ struct CheckHistory {
 /// What `machine` of a history must be for a fitted machine: other numbers make another history.
 std::string identity_of(const model::Machine& machine);
 
-/// The file as text, and back. Throws InputError naming the file and what is wrong in it. tool.
+/// The file as text, and back; a file of version 1 has no record that can be used and reads as one of no
+/// machine. Throws InputError naming the file and what is wrong in it. tool.
 std::string history_text(const CheckHistory& history);
 CheckHistory parse_history(const std::string& text, const std::string& file);
 

@@ -32,6 +32,7 @@ Json change_json(const check::Change& one) {
 Json answer_json(const check::CheckAnswer& answer, const check::CheckHistory& history) {
   Json json = {{"verdict", check::verdict_name(answer.verdict)},
                {"explanation", answer.explanation},
+               {"assurance", answer.assurance.json()},
                {"evidence", answer.evidence},
                {"alarm", answer.alarm},
                {"noise_p", answer.noise_p},
@@ -80,19 +81,19 @@ void run_check(const CheckArguments& arguments) {
   }
   history.checks.push_back(std::move(now));
   const check::CheckAnswer answer = check::judge(machine, history.checks, arguments.false_alarms);
-  std::string text;
-  if (!arguments.output.empty() && answer.verdict == check::CheckVerdict::kChanged)
-    text = put_right(arguments, machine, rows, answer);
   if (!arguments.history.empty()) text::write_file(arguments.history, check::history_text(history));
-  if (!text.empty()) text::write_file(arguments.output, text);
   Json json = answer_json(answer, history);
   json["history_begun_anew"] = anew;
   write_json(arguments.json, json);
   std::FILE* out = human_stream(arguments.json);
-  if (anew) fmt::print(out, "note: the history was of another fit of this machine; it begins anew\n");
+  if (anew)
+    fmt::print(out, "note: {} holds checks of another fit, or of an older version; the history begins anew\n",
+               arguments.history);
   fmt::print(out, "verdict: {}. {}\n", check::verdict_name(answer.verdict), answer.explanation);
-  fmt::print(out, "evidence {:.3g} over {} check{}; a change is told from {:g}\n", answer.evidence,
+  fmt::print(out, "evidence for a change: {:.3g} over {} check{}, alarm threshold {:g}\n", answer.evidence,
              history.checks.size(), history.checks.size() == 1 ? "" : "s", answer.alarm);
+  if (!arguments.output.empty() && answer.verdict == check::CheckVerdict::kChanged)
+    text::write_file(arguments.output, put_right(arguments, machine, rows, answer));
 }
 
 }  // namespace
@@ -115,9 +116,10 @@ void register_check(CLI::App& vernier) {
   command->add_option("--images", arguments->images, "folder of images, for rows measured with one running");
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->footer(
-      "The set-up of the instrument is new in every check. Readings count as independent, normal, and as\n"
+      "Each check fits the set-up of the instrument anew. Readings count as independent, normal, and as\n"
       "uncertain as their u says (without u: as the fit's own residual). Exit status 0 done, whatever the\n"
-      "finding; 1 bad input (nothing written); 2 -o was asked, and what has changed is no parameter.");
+      "finding; 1 bad input (nothing written); 2 -o was asked, and what has changed is no parameter (the\n"
+      "verdict and the history are written, the machine file is not).");
   command->callback([arguments] { run_check(*arguments); });
 }
 

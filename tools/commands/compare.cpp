@@ -8,6 +8,7 @@
 #include "tools/commands/report_header.h"
 #include "tools/fit/convention.h"
 #include "tools/fit/fit.h"
+#include "tools/fit/set_up.h"
 #include "tools/model/machine.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/measurement.h"

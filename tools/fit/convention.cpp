@@ -10,8 +10,8 @@
 #include "tools/fit/fit.h"
 #include "tools/fit/levenberg.h"
 #include "tools/fit/problem.h"
+#include "tools/fit/set_up.h"
 #include "tools/fit/solve.h"
-#include "tools/fit/unseen_turns.h"
 #include "tools/maths/decompositions.h"
 #include "tools/maths/factors.h"
 #include "tools/model/chain_rows.h"
@@ -25,8 +25,6 @@ namespace {
 constexpr double kTimesMisfit = 3;
 /// The least misfit that scales are made from, mm: a tenth of the finest resolution of any instrument here.
 constexpr double kLeastMisfit_mm = 1e-5;
-/// Reach where nothing moves, mm.
-constexpr double kLeastReach_mm = 10;
 /// Set-ups: anywhere in a hall, turned any way.
 constexpr double kAnywhere_mm = 1e5, kAnyTurn_deg = 360;
 
@@ -92,18 +90,6 @@ Misfit misfit_of(const model::Machine& machine, const model::Measurement& m) {
   misfit.length_mm = lengths > 0 ? std::sqrt(misfit.length_mm / lengths) : 0;
   misfit.turn_rad = turns > 0 ? std::sqrt(misfit.turn_rad / turns) : 0;
   return misfit;
-}
-
-double reach_of(const model::Machine& machine, const model::Measurement& m) {
-  const model::ChainRows chain(machine, m.states);
-  Eigen::Vector3d low = Eigen::Vector3d::Constant(1e300), high = -low;
-  for (std::size_t row = 0; row < m.rows(); ++row) {
-    if (m.check[row] != 0) continue;
-    const Eigen::Vector3d point = chain.pose(row).origin;
-    low = low.cwiseMin(point);
-    high = high.cwiseMax(point);
-  }
-  return std::max(kLeastReach_mm, 0.5 * (high - low).norm());
 }
 
 /// A static's scale by what it does: the value that moves the degrees of freedom in which it stands by a
@@ -235,52 +221,6 @@ void correlate(const model::Machine& machine, const model::ParameterSet& paramet
 Eigen::SparseMatrix<double> scaled_precision(const Convention& convention, const Eigen::VectorXd& scale) {
   const Eigen::VectorXd shrink = scale.cwiseInverse();
   return shrink.asDiagonal() * convention.precision * shrink.asDiagonal();
-}
-
-namespace {
-
-struct SetUp {
-  model::Machine machine;
-  double cost = 0;
-};
-
-SetUp fitted_set_up(const model::Machine& machine, const model::ParameterSet& shifts,
-                    const FitProblem& problem, const Eigen::VectorXd& start) {
-  LevenbergOptions options;
-  options.negligible = [](double cost) { return 1e-10 * cost; };
-  options.slope = [&](const Eigen::VectorXd& x) { return problem.slope(x); };
-  SetUp result{machine, 0};
-  const LevenbergResult end = minimise(
-      start, [&](const Eigen::VectorXd& x) { return problem.equations(x); },
-      [&](const Eigen::VectorXd& x) { return problem.cost(x); }, options);
-  shifts.set(result.machine, end.point);
-  result.cost = end.cost;
-  return result;
-}
-
-}  // namespace
-
-model::Machine set_up(const model::Machine& machine, const model::Measurement& rows) {
-  model::Machine rigid = machine;
-  for (model::Freedom& one : model::freedoms_of(rigid))
-    if (one.kind() != model::ParameterKind::kBaseShift) one.set_free(false);
-  const model::ParameterSet shifts(rigid, setups_of_fit_rows(rows));
-  if (shifts.size() == 0) return machine;
-  FitProblem problem(rigid, rows, shifts);
-  const Eigen::VectorXd none = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(shifts.size()));
-  model::Machine at_zero = rigid;
-  shifts.set(at_zero, none);
-  const std::vector<bool> held = unseen_turns(at_zero, rows, shifts, reach_of(at_zero, rows));
-  // From the measuring frame itself, so that what no reading sees (the tilt of a flat bar's circle) is 0
-  // whatever the file says; from the file's where that ends plainly lower (a frame turned by more than a
-  // quarter).
-  hold_at(problem, held, none);
-  SetUp plain = fitted_set_up(machine, shifts, problem, none);
-  hold_at(problem, held, shifts.get(rigid));
-  SetUp given = fitted_set_up(machine, shifts, problem, shifts.get(rigid));
-  // Of chi^2: a set-up that is given up for less would be given up for rounding.
-  constexpr double kPlainly = 1e-3;
-  return given.cost < (1 - kPlainly) * plain.cost ? std::move(given.machine) : std::move(plain.machine);
 }
 
 Convention convention_of(const model::Machine& machine, const model::Measurement& rows,

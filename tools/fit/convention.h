@@ -48,7 +48,4 @@ Eigen::SparseMatrix<double> scaled_precision(const Convention& convention, const
 Convention convention_of(const model::Machine& machine, const model::Measurement& rows,
                          const model::ParameterSet& parameters);
 
-/// The machine with its free BaseShifts fitted to the fit rows and nothing else changed. tool.
-model::Machine set_up(const model::Machine& machine, const model::Measurement& rows);
-
 }  // namespace vernier::fit

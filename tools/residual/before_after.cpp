@@ -8,8 +8,8 @@
 #include <random>
 #include <set>
 
-#include "tools/fit/convention.h"
 #include "tools/fit/fit.h"
+#include "tools/fit/set_up.h"
 #include "tools/maths/factors.h"
 
 namespace vernier::residual {

@@ -9,7 +9,8 @@
 namespace vernier::text {
 
 double decisive(double value, std::string_view what) {
-  if (!std::isfinite(value)) throw std::logic_error(std::string(what) + " is not a finite number: no verdict");
+  if (!std::isfinite(value))
+    throw std::logic_error(std::string(what) + " is not a finite number: no verdict");
   return value;
 }
 

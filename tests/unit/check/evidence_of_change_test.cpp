@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+#include <cmath>
 #include <functional>
 #include <random>
 
@@ -69,6 +71,51 @@ std::string rows(int count, const std::function<void(Machine&)>& change, std::mt
 }
 
 void nothing(Machine& /*machine*/) {}
+
+/// Where one check measures: points along a line, or anywhere; in one approach direction or in both; the
+/// instrument turned by an angle about a random direction.
+struct Visit {
+  enum class Where : std::uint8_t { kLineX, kLineY, kLineZ, kVolume } where = Where::kVolume;
+  bool both_directions = true;
+  double turned_deg = 0;
+  int points = 10;
+};
+
+std::string rows_of(const Visit& visit, const std::function<void(Machine&)>& change,
+                    std::mt19937_64& random) {
+  Machine truth = parse_machine(kBridge, "m.xml");
+  truth.statics[*truth.find_static("sxy")].value = 20e-6;
+  truth.statics[*truth.find_static("szx")].value = -15e-6;
+  truth.statics[*truth.find_static("kx")].value = 10e-6;
+  change(truth);
+  std::uniform_real_distribution<double> share(0, 1);
+  std::normal_distribution<double> normal(0, 1);
+  States states = make_states(static_cast<std::size_t>(visit.points), 3, {});
+  const double from[3] = {0, 0, -300}, length[3] = {600, 400, 300};
+  const double still[3] = {share(random), share(random), share(random)};
+  for (int i = 0; i < visit.points; ++i)
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const bool along =
+          visit.where == Visit::Where::kVolume || static_cast<std::size_t>(visit.where) == axis;
+      const double at = visit.where == Visit::Where::kVolume ? share(random)
+                        : along                              ? static_cast<double>(i) / (visit.points - 1)
+                                                             : still[axis];
+      states.axis[axis][i] = std::round(from[axis] + length[axis] * at);
+    }
+  const Eigen::Vector3d about = Eigen::Vector3d(normal(random), normal(random), normal(random)).normalized();
+  const Eigen::Matrix3d turn = Eigen::AngleAxisd(visit.turned_deg / 57.29577951308232, about).matrix();
+  const Eigen::Vector3d shift(100 * normal(random), 100 * normal(random), 100 * normal(random));
+  const Eigen::Matrix3Xd points = (turn * forward(truth, states).position).colwise() + shift;
+  std::string text = "X[mm],Y[mm],Z[mm],dirX,dirY,dirZ,x[mm],y[mm],z[mm],u[mm]\n";
+  for (Eigen::Index i = 0; i < visit.points; ++i) {
+    const int sense = visit.both_directions && i % 2 != 0 ? -1 : 1;
+    text += fmt::format("{},{},{},{},{},{},{:.6f},{:.6f},{:.6f},{}\n", states.axis[0][i], states.axis[1][i],
+                        states.axis[2][i], sense, sense, sense, points(0, i) + kNoise_mm * normal(random),
+                        points(1, i) + kNoise_mm * normal(random), points(2, i) + kNoise_mm * normal(random),
+                        kNoise_mm);
+  }
+  return text;
+}
 
 Machine fitted(std::mt19937_64& random, int count = 40, double wander_mm = 0) {
   const Machine machine = parse_machine(kBridge, "m.xml");
@@ -153,6 +200,97 @@ TEST(Checks, AChangeIsNamedWithItsSize) {
     EXPECT_EQ(answer.changed.front().since, 3U);
   }
   EXPECT_GE(named, 38);
+}
+
+/// The scale of X by so much over its travel.
+std::function<void(Machine&)> longer_x(double mm) {
+  return [mm](Machine& m) { m.statics[*m.find_static("kx")].value += mm / 600; };
+}
+
+TEST(Checks, AChangeIsReportedAlthoughEarlierChecksDidNotLookThere) {
+  // GIVEN histories whose last check depends on an error that no check before it depended on
+  using Where = Visit::Where;
+  const std::vector<std::vector<Visit>> histories = {
+      {{Where::kLineY}, {Where::kLineX}},
+      {{Where::kLineY}, {Where::kLineZ}, {Where::kVolume}},
+      {{Where::kLineX, false}, {Where::kLineX, true}},
+      {{Where::kVolume, false}, {Where::kVolume, true}},
+  };
+  std::mt19937_64 random(47);
+  for (const auto& visits : histories)
+    for (int k = 0; k < 10; ++k) {
+      const Machine machine = fitted(random);
+      std::vector<CheckRecord> history;
+      for (std::size_t i = 0; i + 1 < visits.size(); ++i)
+        history.push_back(check(machine, rows_of(visits[i], nothing, random)));
+      EXPECT_TRUE(std::isfinite(judge(machine, history, kFalseAlarms).evidence));
+      // WHEN the scale of X has changed by 20 um over its travel
+      history.push_back(check(machine, rows_of(visits.back(), longer_x(0.02), random)));
+      const CheckAnswer answer = judge(machine, history, kFalseAlarms);
+      // THEN the check says so
+      EXPECT_TRUE(std::isfinite(answer.evidence));
+      EXPECT_EQ(answer.verdict, CheckVerdict::kChanged) << answer.explanation;
+      EXPECT_FALSE(answer.assurance.holds());
+    }
+}
+
+TEST(Checks, AQuietMachineUnderATurnedInstrumentAndNewPosesRaisesFewerAlarmsThanStated) {
+  using Where = Visit::Where;
+  std::mt19937_64 random(48);
+  std::uniform_real_distribution<double> angle(0, 180);
+  std::uniform_int_distribution<int> where(0, 3), coin(0, 1);
+  constexpr int kHistories = 60, kWeeks = 8;
+  int alarms = 0, shown_10 = 0, shown_20 = 0;
+  for (int k = 0; k < kHistories; ++k) {
+    const Machine machine = fitted(random);
+    std::vector<CheckRecord> history;
+    bool alarm = false;
+    for (int week = 0; week < kWeeks; ++week) {
+      const Visit visit{static_cast<Where>(where(random)), coin(random) == 1, angle(random)};
+      history.push_back(check(machine, rows_of(visit, nothing, random)));
+      const CheckAnswer answer = judge(machine, history, kFalseAlarms);
+      ASSERT_TRUE(std::isfinite(answer.evidence));
+      alarm =
+          alarm || answer.verdict == CheckVerdict::kChanged || answer.verdict == CheckVerdict::kInstrument;
+    }
+    alarms += alarm ? 1 : 0;
+    for (const double change_mm : {0.01, 0.02}) {
+      std::vector<CheckRecord> changed = history;
+      changed.push_back(
+          check(machine, rows_of({Where::kVolume, true, angle(random)}, longer_x(change_mm), random)));
+      if (judge(machine, changed, kFalseAlarms).verdict == CheckVerdict::kChanged)
+        ++(change_mm < 0.015 ? shown_10 : shown_20);
+    }
+  }
+  std::printf("%d alarms in %d quiet histories; of as many changes reported: 10 um %d, 20 um %d\n", alarms,
+              kHistories, shown_10, shown_20);
+  // Two tests of 5 % each: 6 expected at most, four standard deviations above.
+  EXPECT_LE(alarms, 6 + 9);
+  // A scale known to 1 um / sqrt(10) / 0.3 of its travel shows by three to six times that.
+  EXPECT_GE(shown_20, kHistories - 1);
+  EXPECT_GE(shown_10, kHistories * 2 / 3);
+}
+
+TEST(Checks, AnInstrumentTurnedByHalfADegreeOrAnyAngleIsNoChange) {
+  std::mt19937_64 random(49);
+  const Machine machine = fitted(random);
+  for (const double turned_deg : {0.0, 0.4, 1.0, 10.0, 90.0, 135.0, 179.0, 180.0}) {
+    const CheckAnswer answer = judge(
+        machine, {check(machine, rows_of({Visit::Where::kVolume, true, turned_deg}, nothing, random))}, 0.01);
+    EXPECT_EQ(answer.verdict, CheckVerdict::kValid) << turned_deg << " deg: " << answer.explanation;
+    EXPECT_TRUE(answer.assurance.holds());
+  }
+}
+
+TEST(Checks, ACheckWithLoudReadingsIsLeftOutOfTheEvidence) {
+  std::mt19937_64 random(50);
+  const Machine machine = fitted(random);
+  std::vector<CheckRecord> history = {check(machine, rows(12, nothing, random, 30 * kNoise_mm))};
+  EXPECT_EQ(judge(machine, history, 0.01).verdict, CheckVerdict::kInstrument);
+  history.push_back(check(machine, rows(12, nothing, random, kNoise_mm)));
+  const CheckAnswer answer = judge(machine, history, 0.01);
+  EXPECT_EQ(answer.verdict, CheckVerdict::kValid) << answer.explanation;
+  EXPECT_FALSE(answer.assurance.uncovered().empty());
 }
 
 TEST(Checks, TheInstrumentIsTold) {

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/fit/set_up.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "tools/fit/levenberg.h"
+#include "tools/fit/problem.h"
+#include "tools/fit/solve.h"
+#include "tools/fit/unseen_turns.h"
+#include "tools/maths/alignment.h"
+#include "tools/maths/factors.h"
+#include "tools/model/chain_rows.h"
+#include "tools/model/prediction.h"
+
+namespace vernier::fit {
+namespace {
+
+/// Reach where nothing moves, mm.
+constexpr double kLeastReach_mm = 10;
+
+struct SetUp {
+  model::Machine machine;
+  double cost = 0;
+};
+
+SetUp fitted_set_up(const model::Machine& machine, const model::ParameterSet& shifts,
+                    const FitProblem& problem, const Eigen::VectorXd& start) {
+  LevenbergOptions options;
+  options.negligible = [](double cost) { return 1e-10 * cost; };
+  options.slope = [&](const Eigen::VectorXd& x) { return problem.slope(x); };
+  SetUp result{machine, 0};
+  const LevenbergResult end = minimise(
+      start, [&](const Eigen::VectorXd& x) { return problem.equations(x); },
+      [&](const Eigen::VectorXd& x) { return problem.cost(x); }, options);
+  shifts.set(result.machine, end.point);
+  result.cost = end.cost;
+  return result;
+}
+
+/// The free BaseShifts of a machine as a problem of their own.
+struct SetUpProblem {
+  model::Machine rigid, at_zero;
+  model::ParameterSet shifts;
+  Eigen::VectorXd none;
+
+  SetUpProblem(const model::Machine& machine, const model::Measurement& rows) : rigid(machine) {
+    for (model::Freedom& one : model::freedoms_of(rigid))
+      if (one.kind() != model::ParameterKind::kBaseShift) one.set_free(false);
+    shifts = model::ParameterSet(rigid, setups_of_fit_rows(rows));
+    none = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(shifts.size()));
+    at_zero = rigid;
+    shifts.set(at_zero, none);
+  }
+};
+
+/// Angles of Rx(a) Ry(b) Rz(c), deg.
+Eigen::Vector3d angles_of(const Eigen::Matrix3d& r) {
+  return maths::kDegPerRad * Eigen::Vector3d(std::atan2(-r(1, 2), r(2, 2)),
+                                             std::asin(std::clamp(r(0, 2), -1.0, 1.0)),
+                                             std::atan2(-r(0, 1), r(0, 0)));
+}
+
+/// Points of one BaseShift as the machine has them without it, and as they were read: rows with x, y and z.
+struct PointPairs {
+  std::vector<Eigen::Vector3d> from, to;
+};
+
+std::map<std::size_t, PointPairs> points_of(const SetUpProblem& problem, const model::Measurement& rows) {
+  std::map<std::size_t, PointPairs> pairs;
+  const Eigen::VectorXd predicted = model::predict(problem.at_zero, rows);
+  for (std::size_t i = 0; i + 2 < rows.observations.size(); ++i) {
+    const auto* three = &rows.observations[i];
+    if (three[0].kind != model::ObservationKind::kX || three[1].kind != model::ObservationKind::kY ||
+        three[2].kind != model::ObservationKind::kZ || three[2].row != three[0].row)
+      continue;
+    const std::string& name =
+        rows.states.names(rows.states.setup)[rows.states.of(rows.states.setup, three[0].row)];
+    const auto shift = model::base_shift_of(problem.rigid, name);
+    if (!shift) continue;
+    pairs[*shift].from.push_back(predicted.segment<3>(static_cast<Eigen::Index>(i)));
+    pairs[*shift].to.emplace_back(three[0].value, three[1].value, three[2].value);
+  }
+  return pairs;
+}
+
+/// Where the points themselves put each set-up (Umeyama 1991); 0 for one without three points.
+Eigen::VectorXd aligned_start(const SetUpProblem& problem, const model::Measurement& rows) {
+  Eigen::VectorXd start = problem.none;
+  for (const auto& [shift, pairs] : points_of(problem, rows)) {
+    Eigen::Matrix3Xd from(3, pairs.from.size()), to(3, pairs.to.size());
+    for (std::size_t k = 0; k < pairs.from.size(); ++k) {
+      from.col(static_cast<Eigen::Index>(k)) = pairs.from[k];
+      to.col(static_cast<Eigen::Index>(k)) = pairs.to[k];
+    }
+    if (!maths::fixes_motion(from)) continue;
+    const maths::RigidMotion motion = maths::align(from, to);
+    Eigen::Matrix<double, 6, 1> six;
+    six << motion.translation, angles_of(motion.rotation);
+    for (std::size_t i = 0; i < problem.shifts.size(); ++i)
+      if (problem.shifts[i].item == shift)
+        start[static_cast<Eigen::Index>(i)] = six[static_cast<Eigen::Index>(problem.shifts[i].column)];
+  }
+  return start;
+}
+
+/// All set-ups turned by the same quarters about two axes: the 24 ways in which an instrument's axes can lie
+/// along the machine's.
+std::vector<Eigen::VectorXd> quarter_turns(const SetUpProblem& problem) {
+  std::vector<Eigen::VectorXd> starts;
+  const auto add = [&](const Eigen::Vector3d& angles) {
+    Eigen::VectorXd start = problem.none;
+    for (std::size_t i = 0; i < problem.shifts.size(); ++i)
+      if (problem.shifts[i].column >= 3)
+        start[static_cast<Eigen::Index>(i)] = angles[static_cast<Eigen::Index>(problem.shifts[i].column) - 3];
+    starts.push_back(start);
+  };
+  constexpr double kQuarter_deg = 90;
+  for (int c = 0; c < 4; ++c) {
+    for (int a = 0; a < 4; ++a) add({kQuarter_deg * a, 0, kQuarter_deg * c});
+    for (const int b : {1, 3}) add({0, kQuarter_deg * b, kQuarter_deg * c});
+  }
+  return starts;
+}
+
+}  // namespace
+
+double reach_of(const model::Machine& machine, const model::Measurement& m) {
+  const model::ChainRows chain(machine, m.states);
+  Eigen::Vector3d low = Eigen::Vector3d::Constant(1e300), high = -low;
+  for (std::size_t row = 0; row < m.rows(); ++row) {
+    if (m.check[row] != 0) continue;
+    const Eigen::Vector3d point = chain.pose(row).origin;
+    low = low.cwiseMin(point);
+    high = high.cwiseMax(point);
+  }
+  return std::max(kLeastReach_mm, 0.5 * (high - low).norm());
+}
+
+model::Machine set_up(const model::Machine& machine, const model::Measurement& rows) {
+  const SetUpProblem own(machine, rows);
+  if (own.shifts.size() == 0) return machine;
+  FitProblem problem(own.rigid, rows, own.shifts);
+  const std::vector<bool> held = unseen_turns(own.at_zero, rows, own.shifts, reach_of(own.at_zero, rows));
+  // From the measuring frame itself, so that what no reading sees (the tilt of a flat bar's circle) is 0
+  // whatever the file says; from the file's where that ends plainly lower (a frame turned by more than a
+  // quarter).
+  hold_at(problem, held, own.none);
+  SetUp plain = fitted_set_up(machine, own.shifts, problem, own.none);
+  const Eigen::VectorXd file = own.shifts.get(own.rigid);
+  hold_at(problem, held, file);
+  SetUp given = fitted_set_up(machine, own.shifts, problem, file);
+  // Of chi^2: a set-up that is given up for less would be given up for rounding.
+  constexpr double kPlainly = 1e-3;
+  return given.cost < (1 - kPlainly) * plain.cost ? std::move(given.machine) : std::move(plain.machine);
+}
+
+model::Machine set_up_anywhere(const model::Machine& machine, const model::Measurement& measured) {
+  model::Measurement rows = measured;
+  rows.check.assign(rows.check.size(), 0);
+  SetUp best{set_up(machine, rows), 0};
+  const SetUpProblem own(machine, rows);
+  if (own.shifts.size() == 0) return machine;
+  FitProblem problem(own.rigid, rows, own.shifts);
+  best.cost = problem.cost(own.shifts.get(best.machine));
+  const auto attempt = [&](const Eigen::VectorXd& start) {
+    model::Machine there = own.rigid;
+    own.shifts.set(there, start);
+    hold_at(problem, unseen_turns(there, rows, own.shifts, reach_of(there, rows)), start);
+    const SetUp end = fitted_set_up(machine, own.shifts, problem, start);
+    problem.clear_priors();
+    const double cost = problem.cost(own.shifts.get(end.machine));
+    // Of chi^2: as in set_up().
+    constexpr double kPlainly = 1e-3;
+    if (cost < (1 - kPlainly) * best.cost) best = {end.machine, cost};
+  };
+  attempt(aligned_start(own, rows));
+  // Readings that fit to ten times their uncertainty have found their set-up.
+  constexpr double kFound = 100;
+  if (best.cost > kFound * static_cast<double>(rows.observations.size()))
+    for (const Eigen::VectorXd& start : quarter_turns(own)) attempt(start);
+  return best.machine;
+}
+
+}  // namespace vernier::fit
