@@ -12,6 +12,7 @@
 #include "tools/fit/problem.h"
 #include "tools/fit/set_up.h"
 #include "tools/fit/solve.h"
+#include "tools/fit/unseen_turns.h"
 #include "tools/maths/decompositions.h"
 #include "tools/maths/factors.h"
 #include "tools/model/chain_rows.h"
