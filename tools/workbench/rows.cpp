@@ -6,8 +6,8 @@
 
 #include "tools/effects/add_string.h"
 #include "tools/effects/fitted_effect.h"
-#include "tools/fit/convention.h"
 #include "tools/fit/fit.h"
+#include "tools/fit/set_up.h"
 #include "tools/maths/factors.h"
 #include "tools/model/chain.h"
 #include "tools/model/fit_record.h"
