@@ -34,6 +34,8 @@ using Eigen::VectorXd;
 constexpr double kOwn = 1e-3;
 /// Part of the readings' information on a suspect that the fit's own doubt must leave for it to be seen.
 constexpr double kSeen = 1e-6;
+/// Part of the rate of false alarms that the test of the readings' scatter has; the evidence has the rest.
+constexpr double kScatterShare = 0.2;
 /// Standard deviations of a change that a check is sure to show.
 constexpr double kShown = 5;
 /// Sizes of a change, in standard deviations of the first check that could show it, that are mixed with equal
@@ -234,6 +236,9 @@ struct Information {
   }
 };
 
+/// Chance below which the scatter of the k-th check (from 1) is reported.
+double scatter_limit(double false_alarms, double k) { return kScatterShare * false_alarms / (k * (k + 1)); }
+
 double log_sum(const std::vector<double>& logs) {
   if (logs.empty()) return -1e300;
   const double most = *std::max_element(logs.begin(), logs.end());
@@ -247,7 +252,7 @@ class Judge {
   Judge(const model::Machine& machine, const std::vector<CheckRecord>& checks,
         std::vector<std::string> left_out, double false_alarms)
       : checks_(checks), last_(checks.back()), left_out_(std::move(left_out)), false_alarms_(false_alarms) {
-    answer_.alarm = 1 / false_alarms;
+    answer_.alarm = 1 / ((1 - kScatterShare) * false_alarms);
     const MatrixXd spread = spread_of_fit(machine, last_.suspects, last_.parameters);
     const auto p = static_cast<Index>(last_.parameters);
     from_.resize(checks.size());
@@ -397,7 +402,7 @@ class Judge {
     const auto k = static_cast<double>(checks_.size());
     constexpr double kFewest = 3;
     text::Assurance& word = answer_.assurance;
-    word.at_least("scatter", answer_.noise_p, false_alarms_ / (k * (k + 1)),
+    word.at_least("scatter", answer_.noise_p, scatter_limit(false_alarms_, k),
                   "Chance that readings of the stated uncertainty scatter as much as those of this check.");
     word.at_least("readings", beyond, kFewest, "Readings of all checks beyond those that the set-up takes.");
     word.require("sensitivity", any_of_machine, "The readings depend on at least one error of the machine.");
@@ -543,7 +548,7 @@ CheckAnswer judge(const model::Machine& machine, const std::vector<CheckRecord>&
   for (std::size_t i = 0; i < all.size(); ++i) {
     const auto k = static_cast<double>(i + 1);
     if (all[i].freedom < 1 ||
-        maths::chi_square_tail(all[i].rest, all[i].freedom) >= false_alarms / (k * (k + 1)))
+        maths::chi_square_tail(all[i].rest, all[i].freedom) >= scatter_limit(false_alarms, k))
       continue;
     // Scatter and evidence come from different parts of the readings: leaving it out favours no suspect.
     all[i].gram.setZero();

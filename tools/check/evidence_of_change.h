@@ -64,8 +64,8 @@ struct Change {
 struct CheckAnswer {
   CheckVerdict verdict = CheckVerdict::kValid;
   double evidence = 1;  // e-value: by how much the checks speak for a change, whatever was looked at before
-  double alarm = 100;   // above which a change is reported: 1 / false alarms
-  double noise_p = 1;   // chance of the last check's noise, reported below false alarms / (k (k+1))
+  double alarm = 100;   // above which a change is reported: 1 / (0.8 false alarms)
+  double noise_p = 1;   // chance of the last check's noise, reported below 0.2 false alarms / (k (k+1))
   std::vector<Change> changed;              // the likeliest first; nothing where none is told
   std::vector<std::string> not_told_apart;  // that explain it nearly as well
   std::vector<std::string> not_seen;        // suspects that these readings do not move by
@@ -77,7 +77,7 @@ struct CheckAnswer {
 /// The whole history as one sequential test: the mixture, over the check since which and the suspect by
 /// which, of the likelihood ratios of a change against none (Robbins 1970; Grünwald, de Heide and Koolen
 /// 2024), with what the fit itself does not know of the parameters integrated out. If nothing changes it
-/// exceeds 1/false_alarms in the lifetime of a machine with that probability at most, however often one looks
+/// exceeds `alarm` in the lifetime of a machine with that probability at most, however often one looks
 /// (Ville 1939), under normal readings of the stated uncertainty that hang together as those of the fit did
 /// (<fitted>'s noise; independent where it has none). A suspect that an earlier check did not look at has a
 /// ratio of 1 there, and its weights are fixed before its first reading. A check whose readings scatter more

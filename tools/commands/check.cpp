@@ -6,7 +6,7 @@
 
 #include "tools/check/history.h"
 #include "tools/commands/command.h"
-#include "tools/model/machine_reader.h"
+#include "tools/commands/fit_findings.h"
 #include "tools/model/machine_writer.h"
 #include "tools/model/parameters.h"
 #include "tools/simulate/corrected.h"
@@ -67,7 +67,7 @@ void run_check(const CheckArguments& arguments) {
   if (!(arguments.false_alarms > 0 && arguments.false_alarms < 1))
     throw text::InputError({}, fmt::format("{}", arguments.false_alarms),
                            "a rate of false alarms is between 0 and 1");
-  const model::Machine machine = model::read_machine(arguments.machine);
+  const model::Machine machine = read_model(arguments.machine);
   const model::Measurement rows = model::read_measurement(arguments.measurements, machine,
                                                           simulate::corrections_of_images(arguments.images));
   check::CheckRecord now = check::record_of(

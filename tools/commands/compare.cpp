@@ -5,12 +5,12 @@
 #include <memory>
 
 #include "tools/commands/command.h"
+#include "tools/commands/fit_findings.h"
 #include "tools/commands/report_header.h"
 #include "tools/fit/convention.h"
 #include "tools/fit/fit.h"
 #include "tools/fit/set_up.h"
 #include "tools/model/machine.h"
-#include "tools/model/machine_reader.h"
 #include "tools/model/measurement.h"
 #include "tools/report/report.h"
 #include "tools/results/before_after_result.h"
@@ -187,7 +187,7 @@ void run_before_after(const CompareArguments& arguments) {
   if (!arguments.by.empty()) throw text::InputError("--by: of MEAS, not of --before and --after");
   if (!arguments.residuals.empty())
     throw text::InputError("--residuals: of MEAS, not of --before and --after");
-  const model::Machine machine = model::read_machine(arguments.machine);
+  const model::Machine machine = read_model(arguments.machine);
   const model::ImageCorrection images = simulate::corrections_of_images(arguments.images);
   const residual::BeforeAfter result =
       residual::compare_before_after(machine, model::read_measurement(arguments.before, machine, images),
@@ -207,7 +207,7 @@ void run_compare(const CompareArguments& arguments) {
   if (!arguments.before.empty() || !arguments.after.empty()) return run_before_after(arguments);
   if (arguments.measurements.empty())
     throw text::InputError("compare needs measurement files: MEAS, or --before and --after");
-  const model::Machine as_given = model::read_machine(arguments.machine);
+  const model::Machine as_given = read_model(arguments.machine);
   const model::Measurement m = model::read_measurement(arguments.measurements, as_given,
                                                        simulate::corrections_of_images(arguments.images));
   const model::Machine machine = arguments.datum ? fit::set_up(as_given, m) : as_given;

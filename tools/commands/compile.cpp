@@ -3,8 +3,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
+#include "tools/commands/fit_findings.h"
 #include "tools/compile/compile.h"
 #include "tools/model/machine_reader.h"
+#include "tools/results/fit_findings.h"
 #include "tools/results/safety_json.h"
 #include "tools/text/files.h"
 #include "tools/text/numbers.h"
@@ -138,19 +142,38 @@ void print_for_people(std::FILE* out, const compile::CompiledMachine& c, const m
   for (const std::string& note : c.notes) fmt::print(out, "note: {}\n", note);
 }
 
+/// The proved error of each axis against the largest correction that it makes; below a micrometre nobody
+/// asks.
+void judge_bound(safety::SafetySheet& sheet, const compile::CompiledMachine& compiled,
+                 const std::vector<safety::SafetyRule>& accepted) {
+  constexpr double kLeast_um = 1;
+  double worst = 0;
+  std::string of;
+  for (const compile::OutputBound& b : compiled.bounds) {
+    if (b.deviation_deg) continue;
+    const double share = b.total_um / std::max(b.deviation_um, kLeast_um);
+    if (share > worst) worst = share, of = "axis " + b.axis;
+  }
+  sheet.judge(safety::SafetyRule::kBound, worst, of, accepted);
+}
+
 void run_compile(const Arguments& arguments) {
   const std::string text = text::read_file(arguments.machine);
   compile::CompileOptions options;
   if (!arguments.budget.empty()) options.budget_um = parse_length_um(arguments.budget);
   const model::Machine machine = model::parse_machine(text, arguments.machine);
+  repeat_findings(machine);
   const std::vector<safety::SafetyRule> accepted = safety::rules_named(arguments.accept);
   compile::CompiledMachine compiled = compile::compile_machine(machine, text, options);
-  const safety::SafetySheet sheet = safety::safety_sheet(machine, accepted);
+  safety::SafetySheet sheet = safety::safety_sheet(machine, accepted);
+  judge_bound(sheet, compiled, accepted);
   if (!sheet.ok()) throw text::LimitNotMet(sheet.refusal());
   if (options.accepted_rules = sheet.accepted_mask(); options.accepted_rules != 0)
     compiled = compile::compile_machine(machine, text, options);
   nlohmann::ordered_json result = to_json(compiled, machine);
   result["safe_to_run"] = results::safety_json(sheet);
+  result["findings"] = results::findings_json(machine);
+  result["assurance"] = results::assurance_of(sheet, machine, text::AssuranceKind::kCompile).json();
   text::make_folder(arguments.directory);
   text::write_file(arguments.directory + "/machine.xml", text);
   text::write_file(arguments.directory + "/equation.h", compiled.header);

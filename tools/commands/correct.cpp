@@ -7,8 +7,8 @@
 #include <memory>
 
 #include "tools/commands/command.h"
+#include "tools/commands/fit_findings.h"
 #include "tools/kinematics/at.h"
-#include "tools/model/machine_reader.h"
 #include "tools/offline/part_program.h"
 #include "tools/offline/positions.h"
 #include "tools/text/error.h"
@@ -47,7 +47,7 @@ std::vector<char> named_in(const model::Machine& machine, const std::string& wor
 }
 
 void run_correct(const CorrectArguments& arguments) {
-  const model::Machine read = model::read_machine(arguments.machine);
+  const model::Machine read = read_model(arguments.machine);
   const model::Machine machine = arguments.tool.empty() ? read : kinematics::tooled(read, arguments.tool);
   const std::string text = text::read_file(arguments.path);
   const model::States at = kinematics::state_at(machine, arguments.at);

@@ -65,18 +65,13 @@ void print_weakest(std::FILE* out, const fit::FitResult& result) {
   }
 }
 
-/// Is what is left noise? Said only where the noise is known.
-void print_verdict(std::FILE* out, const fit::FitResult& result) {
+/// What later commands will repeat.
+void print_findings(std::FILE* out, const fit::FitResult& result) {
   if (result.normalised_check)
     fmt::print(out, "check rows over the uncertainty of reading and model: rms {:.3f}, {:.1f} % within 3\n",
                result.normalised_check->rms, 100 * result.normalised_check->within_3);
-  if (!result.noise_um || !result.after.rms_um || result.freedom < 0.5) return;
-  // chi^2 / dof has a standard deviation of sqrt(2 / dof) where the residual is noise.
-  const double reduced = std::pow(*result.after.rms_um / *result.noise_um, 2) *
-                         static_cast<double>(result.before.count) / result.freedom;
-  if (reduced > 1 + 5 * std::sqrt(2.0 / result.freedom))
-    fmt::print(out, "the residual is {:.2g} times the noise: something is missing from this model\n",
-               std::sqrt(reduced));
+  for (const model::FitRecord::Finding& one : result.machine.fitted->findings)
+    fmt::print(out, "found: {} ({})\n", one.text, one.code);
 }
 
 /// Thermometers whose readings are none of a workshop.
@@ -121,15 +116,11 @@ void print_result(std::FILE* out, const fit::FitResult& result, const model::Mea
   fmt::print(out, "{} observations, {} parameters, rank {}, {} rows excluded, {} iterations{}\n",
              result.before.count, result.parameters.size(), result.observability.rank, m.excluded,
              result.iterations, result.converged ? "" : ", NOT CONVERGED");
-  print_verdict(out, result);
+  print_findings(out, result);
   constexpr double kWild = 20;  // as the rule `outlier` of tools/docs/safety.md, which looks at the fit rows
   if (result.worst_check.ratio > kWild)
     fmt::print(out, "check reading {} is {:.3g} spreads off: look at it before you trust the check rows\n",
                result.worst_check.reading, result.worst_check.ratio);
-  if (result.check_ratio && *result.check_ratio > 1)
-    fmt::print(out,
-               "check rows are {:.3g} times as far off as from the nominal machine: this model is no gain\n",
-               *result.check_ratio);
 }
 
 std::vector<std::string> split_all(const std::vector<std::string>& texts) {

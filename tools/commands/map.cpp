@@ -6,9 +6,9 @@
 #include <memory>
 
 #include "tools/commands/command.h"
+#include "tools/commands/fit_findings.h"
 #include "tools/commands/report_header.h"
 #include "tools/map/simulated.h"
-#include "tools/model/machine_reader.h"
 #include "tools/report/report.h"
 #include "tools/results/field_json.h"
 
@@ -153,7 +153,7 @@ Json page_of(const Json& json) {
 }
 
 void run_map(const MapArguments& arguments) {
-  const model::Machine machine = model::read_machine(arguments.machine);
+  const model::Machine machine = read_model(arguments.machine);
   const model::States at = results::middle_state(machine, arguments.at);
   std::vector<std::size_t> axes = kinematics::linear_axes(machine);
   if (!arguments.over.empty()) axes.clear();

@@ -6,14 +6,15 @@
 #include <memory>
 
 #include "tools/commands/command.h"
+#include "tools/commands/fit_findings.h"
 #include "tools/commands/part_kinds.h"
 #include "tools/commands/report_header.h"
 #include "tools/fit/fit.h"
 #include "tools/kinematics/at.h"
 #include "tools/model/fit_record.h"
-#include "tools/model/machine_reader.h"
 #include "tools/model/measurement.h"
 #include "tools/report/report.h"
+#include "tools/results/fit_findings.h"
 #include "tools/simulate/corrected.h"
 #include "tools/text/error.h"
 #include "tools/text/optional_json.h"
@@ -59,6 +60,8 @@ Json characteristic_json(const tolerance::CharacteristicResult& one, const toler
                {"dominant", one.dominant},
                {"never_measured", one.open},
                {"process", one.process},
+               {"misfit", one.misfit},
+               {"outside_measured", one.outside},
                {"sources", Json::array()}};
   if (one.limits_mm) json["limits_um"] = {kUm * (*one.limits_mm)[0], kUm * (*one.limits_mm)[1]};
   for (const tolerance::SourceShare& source : one.sources)
@@ -71,20 +74,49 @@ Json characteristic_json(const tolerance::CharacteristicResult& one, const toler
   return json;
 }
 
+/// Does the part conform, of what was asked? Every characteristic with a tolerance, and the fit's findings.
+text::Assurance assurance_of(const model::Machine& machine, const tolerance::PartConformity& result,
+                             const ConformityArguments& arguments) {
+  text::Assurance word(text::AssuranceKind::kConformity);
+  std::size_t asked = 0, open = 0;
+  for (const tolerance::CharacteristicResult& one : result.characteristics) {
+    const auto& verdict = arguments.uncorrected ? one.off.verdict : one.on.verdict;
+    if (!verdict) continue;
+    ++asked;
+    open += *verdict == tolerance::PartVerdict::kConforms ? 0 : 1;
+  }
+  word.at_least("tolerances", static_cast<double>(asked), 1, "Characteristics with a tolerance.");
+  word.at_most(
+      "not-conforming", static_cast<double>(open), 0,
+      "Characteristics whose probability of conformity is below 95 %, or that were not measured there.");
+  results::add_findings(word, machine);
+  word.require("settled", result.settled, "The ends of the intervals have settled.");
+  for (const std::string& range : result.outside)
+    word.not_covered("The part is outside the measured range: " + range + ".");
+  for (const std::string& name : result.stale) word.not_covered(name + " was set by hand since the fit.");
+  if (arguments.process_um <= 0) word.not_covered("Repeatability, tool and cutting: no --process was given.");
+  if (!result.open_known) word.not_covered("What the readings left open: the machine file does not say.");
+  return word;
+}
+
 Json conformity_json(const model::Machine& machine, const ConformityArguments& arguments,
                      const tolerance::PlacedPart& part, const tolerance::PartConformity& result) {
-  Json json = {{"machine", machine.name},
-               {"part", arguments.part.path},
-               {"trials", result.trials},
-               {"seed", result.seed},
-               {"settled", result.settled},
-               {"trials_through", result.exact ? "chain" : "linear"},
-               {"linear_error_um", kUm * result.linear_mm},
-               {"never_measured_known", result.open_known},
-               {"stale", result.stale},
-               {"outside_measured", result.outside},
-               {"disturbance", machine.fitted->disturbance},
-               {"characteristics", Json::array()}};
+  Json json = {
+      {"machine", machine.name},
+      {"part", arguments.part.path},
+      {"trials", result.trials},
+      {"seed", result.seed},
+      {"settled", result.settled},
+      {"trials_through", result.exact ? "chain" : "linear"},
+      {"linear_error_um", kUm * result.linear_mm},
+      {"never_measured_known", result.open_known},
+      {"stale", result.stale},
+      {"outside_measured", result.outside},
+      {"disturbance", machine.fitted->disturbance},
+      {"misfit_um", {kUm * result.misfit_mm[0], kUm * result.misfit_mm[1], kUm * result.misfit_mm[2]}},
+      {"findings", results::findings_json(machine)},
+      {"assurance", assurance_of(machine, result, arguments).json()},
+      {"characteristics", Json::array()}};
   for (const tolerance::CharacteristicResult& one : result.characteristics)
     json["characteristics"].push_back(characteristic_json(one, part));
   return json;
@@ -115,6 +147,8 @@ std::string why(const tolerance::CharacteristicResult& one) {
 std::string least_known(const tolerance::CharacteristicResult& one) {
   const auto most = std::max_element(one.sources.begin(), one.sources.end(),
                                      [](const auto& a, const auto& b) { return a.variance < b.variance; });
+  if (one.misfit > one.process && (most == one.sources.end() || one.misfit > most->variance))
+    return fmt::format("what the model lacks ({:.0f} %)", 100 * one.misfit);
   if (most == one.sources.end() || most->variance <= 0) return one.process > 0 ? "process" : "";
   if (one.process > most->variance) return fmt::format("process ({:.0f} %)", 100 * one.process);
   return fmt::format("{} ({:.0f} %)", most->name, 100 * most->variance);
@@ -127,7 +161,12 @@ void print_conformity(std::FILE* out, const tolerance::PlacedPart& part,
   if (!result.settled) fmt::print(out, "stopped before the ends of the intervals had settled\n");
   for (const std::string& name : result.stale) fmt::print(out, "set by hand since the fit: {}\n", name);
   for (const std::string& range : result.outside)
-    fmt::print(out, "the part is where nobody measured: {}\n", range);
+    fmt::print(out, "the part is outside the measured range: {}. No verdict is given there\n", range);
+  if (const double most = *std::max_element(result.misfit_mm.begin(), result.misfit_mm.end()); most > 0)
+    fmt::print(out,
+               "what the model lacks is in every interval: {:.2g}, {:.2g}, {:.2g} um (standard deviation in "
+               "x, y, z)\n",
+               kUm * result.misfit_mm[0], kUm * result.misfit_mm[1], kUm * result.misfit_mm[2]);
   for (const tolerance::CharacteristicResult& one : result.characteristics) {
     const tolerance::PartFeature& feature = part.features[one.feature].feature;
     fmt::print(out, "\n{}: {}", feature.name, tolerance::characteristic_name(one.what));
@@ -162,7 +201,10 @@ std::string conformity_page(const model::Machine& machine, const ConformityArgum
          fmt::format("{:.0f} %", 100 * one.open)});
   Json notes = Json::array();
   for (const std::string& range : result.outside)
-    notes.push_back("the part is where nobody measured: " + range);
+    notes.push_back("The part is outside the measured range: " + range + ". No verdict is given there.");
+  if (machine.fitted)
+    for (const model::FitRecord::Finding& one : machine.fitted->findings)
+      notes.push_back("Found by the fit: " + one.text);
   return report::improvement_report_html(arguments.header.on(
       {{"title", "Will the part be in tolerance?"},
        {"machine", machine.name},
@@ -177,7 +219,7 @@ std::string conformity_page(const model::Machine& machine, const ConformityArgum
 }
 
 model::Machine machine_of(const ConformityArguments& arguments) {
-  model::Machine machine = model::read_machine(arguments.machine);
+  model::Machine machine = read_model(arguments.machine);
   if (!arguments.measurements.empty()) {
     const model::Measurement rows = model::read_measurement(
         arguments.measurements, machine, simulate::corrections_of_images(arguments.images));
@@ -185,10 +227,12 @@ model::Machine machine_of(const ConformityArguments& arguments) {
     if (!fitted.absurd.empty()) throw text::LimitNotMet(fitted.absurd);
     if (!fitted.converged) throw text::LimitNotMet("the fit did not converge");
     machine = std::move(fitted.machine);
+    repeat_findings(machine);
   }
   if (!machine.fitted)
     throw text::InputError({machine.file, 0}, machine.name,
                            "was never fitted (no <fitted>): give measurements, or what `vernier fit` wrote");
+  if (!machine.fitted->converged) throw text::LimitNotMet("the fit of this machine file did not converge");
   return arguments.tool.empty() ? machine : kinematics::tooled(machine, arguments.tool);
 }
 
@@ -223,9 +267,6 @@ void run_conformity(const ConformityArguments& arguments) {
     text::write_file(arguments.output, conformity_page(machine, arguments, part, result));
   write_json(arguments.json, conformity_json(machine, arguments, part, result));
   std::FILE* out = human_stream(arguments.json);
-  if (!machine.fitted->disturbance.empty())
-    fmt::print(out, "what the model lacks is in none of these figures, and the fit found something: {}\n",
-               machine.fitted->disturbance);
   print_conformity(out, part, result);
   judge(part, result, arguments.uncorrected);
 }

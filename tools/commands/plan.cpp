@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "tools/commands/command.h"
+#include "tools/commands/fit_findings.h"
 #include "tools/commands/plan_kinds.h"
 #include "tools/effects/catalogue.h"
 #include "tools/model/machine_reader.h"
@@ -74,7 +75,7 @@ Json plan_json(const plan::Plan& plan, double confidence) {
 
 /// A short measurement that sees the likeliest changes.
 void run_check_plan(const PlanArguments& arguments) {
-  const model::Machine machine = model::read_machine(arguments.machine);
+  const model::Machine machine = read_model(arguments.machine);
   plan::CheckPlanOptions options;
   options.reading_um = arguments.reading_um.value_or(options.reading_um);
   if (arguments.expected_um > 0) options.expected_um = arguments.expected_um;

@@ -2,9 +2,9 @@
 #include <fmt/format.h>
 
 #include "tools/commands/command.h"
+#include "tools/commands/fit_findings.h"
 #include "tools/commands/plan_kinds.h"
 #include "tools/kinematics/at.h"
-#include "tools/model/machine_reader.h"
 #include "tools/plan/accuracy_plan.h"
 #include "tools/plan/sheets.h"
 #include "tools/simulate/corrected.h"
@@ -129,7 +129,7 @@ void run_accuracy_plan(const PlanArguments& arguments) {
                            "the U95 to reach (or --points), or --separate A,B: two effects to tell apart");
   if (!arguments.part.path.empty() && !arguments.region.empty())
     throw text::InputError({}, "--region", "either a part or a region");
-  const model::Machine machine = model::read_machine(arguments.machine);
+  const model::Machine machine = read_model(arguments.machine);
   plan::AccuracyAim aim;
   aim.words = machine.volume.empty() ? "the axes' ranges" : "the volume";
   if (!arguments.region.empty()) {

@@ -4,10 +4,11 @@
 #include <memory>
 
 #include "tools/commands/command.h"
+#include "tools/commands/fit_findings.h"
 #include "tools/fit/reach.h"
 #include "tools/kinematics/at.h"
 #include "tools/kinematics/correction.h"
-#include "tools/model/machine_reader.h"
+#include "tools/results/fit_findings.h"
 #include "tools/results/result_json.h"
 
 namespace vernier::commands::pose_cli {
@@ -19,7 +20,7 @@ struct PoseArguments {
 };
 
 void run_pose(const PoseArguments& arguments) {
-  const model::Machine machine = kinematics::tooled(model::read_machine(arguments.machine), arguments.tool);
+  const model::Machine machine = kinematics::tooled(read_model(arguments.machine), arguments.tool);
   const model::States states = kinematics::state_at(machine, arguments.at);
   const model::Poses actual = model::forward(machine, states),
                      nominal = model::forward(model::nominal_machine(machine), states);
@@ -33,9 +34,10 @@ void run_pose(const PoseArguments& arguments) {
   json["std_um"] = nullptr;
   const fit::Reach reach(machine);
   if (reach.known()) {
-    const Eigen::Vector3d std_um = 1000 * reach.covariance(states)[0].diagonal().cwiseSqrt();
+    const Eigen::Vector3d std_um = 1000 * reach.covariance_of_machine(states)[0].diagonal().cwiseSqrt();
     json["std_um"] = {std_um.x(), std_um.y(), std_um.z()};
   }
+  json["findings"] = results::findings_json(machine);
   const double tilt_deg = kinematics::tilt_between(actual, nominal)[0];
   json["tilt_deg"] = tilt_deg;
   json["correction"] = nullptr;
@@ -45,7 +47,7 @@ void run_pose(const PoseArguments& arguments) {
              1000 * deviation.z());
   if (reach.known())
     fmt::print(
-        out, "known to   {:10.4f} {:10.4f} {:10.4f} um (standard uncertainty, measured there or not)\n",
+        out, "known to   {:10.4f} {:10.4f} {:10.4f} um (standard uncertainty, with what the model lacks)\n",
         json["std_um"][0].get<double>(), json["std_um"][1].get<double>(), json["std_um"][2].get<double>());
   fmt::print(out, "tilt       {:10.6f} deg\n", tilt_deg);
   const bool with_rotary = arguments.with_rotary || machine.correct_orientation;

@@ -5,9 +5,9 @@
 #include <memory>
 
 #include "tools/commands/command.h"
+#include "tools/commands/fit_findings.h"
 #include "tools/kinematics/at.h"
 #include "tools/kinematics/closed.h"
-#include "tools/model/machine_reader.h"
 #include "tools/results/result_json.h"
 
 namespace vernier::commands::solve_cli {
@@ -71,7 +71,7 @@ std::string failure_text(const model::Machine& machine, const kinematics::Invers
 }
 
 void run_solve(const SolveArguments& arguments) {
-  const model::Machine read = model::read_machine(arguments.machine);
+  const model::Machine read = read_model(arguments.machine);
   const model::Machine machine = arguments.nominal ? model::nominal_machine(read) : read;
   const std::vector<double> numbers =
       kinematics::number_list(arguments.target, {3, 6}, "a target x,y,z or x,y,z,rx,ry,rz");

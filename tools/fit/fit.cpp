@@ -7,12 +7,16 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
 
 #include "tools/fit/convention.h"
+#include "tools/fit/findings.h"
 #include "tools/fit/moved.h"
 #include "tools/fit/problem.h"
 #include "tools/fit/settle.h"
 #include "tools/fit/solve.h"
+#include "tools/fit/unmeasured.h"
+#include "tools/maths/factors.h"
 #include "tools/model/evaluate.h"
 #include "tools/model/fit_record.h"
 #include "tools/model/prediction.h"
@@ -188,8 +192,29 @@ std::optional<model::FitRecord::Noise> kept_noise(const NoiseModel& noise, const
       noise.in_time, of_u};
 }
 
-/// What the machine file keeps of the fit.
-void remember(FitResult& result, const model::Measurement& rows, const Convention& convention, bool robust) {
+/// Measured ranges of axes, with the step of their targets, and of inputs.
+std::vector<model::FitRecord::Range> measured_ranges(const model::Machine& machine,
+                                                     const model::Measurement& rows) {
+  std::vector<std::size_t> fitted;
+  for (std::size_t row = 0; row < rows.rows(); ++row)
+    if (rows.check[row] == 0) fitted.push_back(row);
+  std::vector<model::FitRecord::Range> list;
+  if (fitted.empty()) return list;
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    const model::Column q = model::commanded(rows, i)(fitted);
+    const TargetStep targets = target_step(q);
+    list.push_back({machine.axes[i].name, q.minCoeff(), q.maxCoeff(), targets.step, targets.from});
+  }
+  for (std::size_t i = 0; i < machine.inputs.size(); ++i) {
+    const model::Column value = rows.states.input[i](fitted);
+    list.push_back({machine.inputs[i].name, value.minCoeff(), value.maxCoeff(), 0, 0});
+  }
+  return list;
+}
+
+/// What the machine file keeps of the fit; all: check rows too.
+void remember(FitResult& result, const model::Measurement& rows, const model::Measurement& all,
+              const Convention& convention, bool robust) {
   auto record = std::make_shared<model::FitRecord>();
   record->converged = result.converged;
   record->rms_mm = left_mm(result);
@@ -210,21 +235,12 @@ void remember(FitResult& result, const model::Measurement& rows, const Conventio
   record->factor = model::covariance_factor(result.covariance);
   record->open = model::open_factor(result.open, result.covariance);
   record->open_known = true;
-  const auto add = [&](const std::string& name, const model::Column& column) {
-    model::FitRecord::Range range{name, std::numeric_limits<double>::infinity(),
-                                  -std::numeric_limits<double>::infinity()};
-    for (std::size_t row = 0; row < rows.rows(); ++row) {
-      if (rows.check[row] != 0) continue;
-      range.min = std::min(range.min, column[static_cast<Eigen::Index>(row)]);
-      range.max = std::max(range.max, column[static_cast<Eigen::Index>(row)]);
-    }
-    if (range.min <= range.max) record->measured.push_back(range);
-  };
-  for (std::size_t i = 0; i < result.machine.axes.size(); ++i)
-    add(result.machine.axes[i].name, model::commanded(rows, i));
-  for (std::size_t i = 0; i < result.machine.inputs.size(); ++i)
-    add(result.machine.inputs[i].name, rows.states.input[i]);
-  result.machine.fitted = std::move(record);
+  record->measured = measured_ranges(result.machine, rows);
+  const Eigen::Vector3d misfit_mm = misfit_of_model(result, all);
+  record->misfit_mm = {misfit_mm.x(), misfit_mm.y(), misfit_mm.z()};
+  result.machine.fitted = record;
+  record->unvaried = unvaried_dependences(result.machine, rows, result.variance_factor);
+  record->findings = findings_of(result, *record, all);
 }
 
 /// The fitted machine against the nominal one, set up as well as it can be (`centre`), on rows that the fit
@@ -342,7 +358,7 @@ FitResult fit(const model::Machine& machine, const model::Measurement& measureme
   estimate(result, end);
   judge(result, machine, measurement);
   result.check_ratio = check_ratio(result, convention.centre, measurement);
-  remember(result, rows, convention, options.loss != Loss::kSquared);
+  remember(result, rows, measurement, convention, options.loss != Loss::kSquared);
   result.correlations = strong_correlations(result.observability);
   result.normalised_check = normalised_error(result, measurement);
   return result;

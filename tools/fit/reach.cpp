@@ -5,6 +5,7 @@
 #include <array>
 #include <map>
 
+#include "tools/fit/unmeasured.h"
 #include "tools/maths/decompositions.h"
 #include "tools/model/chain.h"
 #include "tools/model/fit_record.h"
@@ -73,6 +74,8 @@ Reach::Reach(const model::Machine& machine)
     : machine_(without_set_up(machine)), known_(machine.fitted != nullptr) {
   if (!known_) return;
   const model::FitRecord& record = *machine.fitted;
+  record_ = record;
+  misfit_mm_ = Eigen::Vector3d(record.misfit_mm[0], record.misfit_mm[1], record.misfit_mm[2]);
   parameters_ = model::ParameterSet(machine_, {});
   std::map<std::string, Eigen::Index> place;
   for (std::size_t i = 0; i < record.parameters.size(); ++i)
@@ -107,22 +110,19 @@ Reach::Reach(const model::Machine& machine)
   measured_ = model::poses_over(machine_, measured_ranges(machine)).states;
 }
 
-Eigen::MatrixXd Reach::rigid_part(const model::States& like, Eigen::Index row,
-                                  const Eigen::MatrixXd& change) const {
+Eigen::MatrixXd Reach::rigid_part(const model::States& like, Eigen::Index row, const Columns& columns) const {
   model::States over = measured_;
   for (std::size_t i = 0; i < machine_.inputs.size(); ++i)
     if (machine_.inputs[i].hidden_axis) over.input[i].setConstant(like.input[i][row]);
-  return maths::least_norm(rigid_motions(model::forward(machine_, over).position), moved_at(over, change));
+  return maths::least_norm(rigid_motions(model::forward(machine_, over).position), columns(over));
 }
 
 Eigen::MatrixXd Reach::moved_at(const model::States& states, const Eigen::MatrixXd& change) const {
   return model::linearise(machine_, point_readings(states), parameters_).jacobian * change;  // 3 N x k
 }
 
-Eigen::MatrixXd Reach::moved(const model::States& states, const Eigen::MatrixXd& change) const {
-  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(3 * static_cast<Eigen::Index>(states.count), change.cols());
-  if (!known_ || parameters_.size() == 0) return result;
-  result = moved_at(states, change);
+Eigen::MatrixXd Reach::without_rigid_part(const model::States& states, const Columns& columns) const {
+  Eigen::MatrixXd result = columns(states);
   const Eigen::MatrixXd motions = rigid_motions(model::forward(machine_, states).position);
   std::map<std::vector<double>, Eigen::MatrixXd> rigid;
   for (std::size_t i = 0; i < states.count; ++i) {
@@ -131,21 +131,50 @@ Eigen::MatrixXd Reach::moved(const model::States& states, const Eigen::MatrixXd&
     for (std::size_t k = 0; k < machine_.inputs.size(); ++k)
       if (machine_.inputs[k].hidden_axis) tool.push_back(states.input[k][row]);
     auto found = rigid.find(tool);
-    if (found == rigid.end()) found = rigid.emplace(tool, rigid_part(states, row, change)).first;
+    if (found == rigid.end()) found = rigid.emplace(tool, rigid_part(states, row, columns)).first;
     result.middleRows(3 * row, 3) -= motions.middleRows(3 * row, 3) * found->second;
   }
   return result;
 }
 
+Eigen::MatrixXd Reach::moved(const model::States& states, const Eigen::MatrixXd& change) const {
+  if (!known_ || parameters_.size() == 0)
+    return Eigen::MatrixXd::Zero(3 * static_cast<Eigen::Index>(states.count), change.cols());
+  return without_rigid_part(states, [&](const model::States& at) { return moved_at(at, change); });
+}
+
+Eigen::MatrixXd Reach::unmeasured(const model::States& states) const {
+  if (!known_ || parameters_.size() == 0)
+    return Eigen::MatrixXd::Zero(3 * static_cast<Eigen::Index>(states.count), 0);
+  return unmeasured_columns(machine_, parameters_, record_, states);
+}
+
+Eigen::MatrixXd Reach::moved_unmeasured(const model::States& states) const {
+  if (!known_ || parameters_.size() == 0) return unmeasured(states);
+  return without_rigid_part(states, [&](const model::States& at) { return unmeasured(at); });
+}
+
 std::vector<Eigen::Matrix3d> Reach::covariance(const model::States& states) const {
   std::vector<Eigen::Matrix3d> result(states.count, Eigen::Matrix3d::Zero());
   if (!known_ || parameters_.size() == 0) return result;
-  const Eigen::MatrixXd spread = moved(states, factor_);
+  const Eigen::MatrixXd spread = moved(states, factor_), unmeasured = moved_unmeasured(states);
   for (std::size_t i = 0; i < states.count; ++i) {
-    const auto rows = spread.middleRows(3 * static_cast<Eigen::Index>(i), 3);
-    result[i] = rows * rows.transpose();
+    const auto rows = spread.middleRows(3 * static_cast<Eigen::Index>(i), 3),
+               more = unmeasured.middleRows(3 * static_cast<Eigen::Index>(i), 3);
+    result[i] = rows * rows.transpose() + more * more.transpose();
   }
   return result;
+}
+
+std::vector<Eigen::Matrix3d> Reach::covariance_of_machine(const model::States& states) const {
+  std::vector<Eigen::Matrix3d> result = covariance(states);
+  for (Eigen::Matrix3d& one : result) one.diagonal() += misfit_mm_.cwiseAbs2();
+  return result;
+}
+
+Eigen::VectorXd Reach::std_of_machine_um(const model::States& states) const {
+  const Eigen::VectorXd model = std_um(states);
+  return (model.array().square() + 1e6 * misfit_mm_.squaredNorm()).sqrt();
 }
 
 Eigen::VectorXd Reach::std_um(const model::States& states) const {

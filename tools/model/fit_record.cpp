@@ -90,6 +90,29 @@ std::string noise_xml(const FitRecord::Noise& noise) {
          "\"/>\n";
 }
 
+std::string range_xml(const FitRecord::Range& range) {
+  std::string text = "<" + range.name + " min=\"" + text::number_text(range.min) + "\" max=\"" +
+                     text::number_text(range.max) + "\"";
+  if (range.step > 0)
+    text += " step=\"" + text::number_text(range.step) + "\" from=\"" + text::number_text(range.from) + "\"";
+  return text + "/>";
+}
+
+std::string warnings_xml(const FitRecord& record) {
+  std::string text;
+  for (const FitRecord::Finding& one : record.findings)
+    text += "    <finding code=\"" + text::escape_attribute(one.code) + "\" value=\"" +
+            text::number_text(one.value) + "\" text=\"" + text::escape_attribute(one.text) + "\"/>\n";
+  const auto& misfit = record.misfit_mm;
+  if (misfit[0] > 0 || misfit[1] > 0 || misfit[2] > 0)
+    text += "    <misfit x=\"" + text::number_text(misfit[0]) + "\" y=\"" + text::number_text(misfit[1]) +
+            "\" z=\"" + text::number_text(misfit[2]) + "\"/>\n";
+  for (const FitRecord::Unvaried& one : record.unvaried)
+    text += "    <unvaried coefficient=\"" + text::escape_attribute(one.coefficient) + "\" variable=\"" +
+            text::escape_attribute(one.variable) + "\" at=\"" + text::number_text(one.at) + "\"/>\n";
+  return text;
+}
+
 }  // namespace
 
 Eigen::MatrixXd open_factor(const Eigen::MatrixXd& part, const Eigen::MatrixXd& covariance) {
@@ -138,10 +161,8 @@ std::string fit_record_xml(const FitRecord& record) {
     text += " disturbed=\"" + text::number_text(record.disturbed) + "\" disturbance=\"" +
             text::escape_attribute(record.disturbance) + "\"";
   text += ">\n    <measured>";
-  for (const FitRecord::Range& range : record.measured)
-    text += "<" + range.name + " min=\"" + text::number_text(range.min) + "\" max=\"" +
-            text::number_text(range.max) + "\"/>";
-  text += "</measured>\n";
+  for (const FitRecord::Range& range : record.measured) text += range_xml(range);
+  text += "</measured>\n" + warnings_xml(record);
   if (record.noise) text += noise_xml(*record.noise);
   text += "    <covariance parameters=\"";
   for (std::size_t i = 0; i < record.parameters.size(); ++i)

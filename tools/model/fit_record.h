@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 #include <Eigen/Core>
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,7 +16,28 @@ struct FitRecord {
   struct Range {
     std::string name;  // of an axis or input
     double min = 0, max = 0;
+    /// The targets of an axis are at `from` and multiples of `step` from there (unit of the axis); 0: they
+    /// have no common step.
+    double step = 0, from = 0;
   };
+  /// Something that the fit found and that every later command repeats (FORMATS 7). Codes:
+  /// tools/fit/findings.h.
+  struct Finding {
+    std::string code;
+    double value = 0;
+    std::string text;  // one sentence
+  };
+  std::vector<Finding> findings;
+  /// What the model lacks, as far as the readings showed it: standard deviation of the tool point's deviation
+  /// beyond the noise, along x, y, z of workpiece coordinates, mm (Kennedy and O'Hagan 2001). 0: none seen.
+  std::array<double, 3> misfit_mm{};
+  /// A coefficient whose rows all had nearly one value of an axis or input that its effect depends on: that
+  /// dependence is the model's word, no reading's.
+  struct Unvaried {
+    std::string coefficient, variable;  // `k_heat` or `table.X.rY`; an axis or an input
+    double at = 0;                      // value of the variable, in its unit
+  };
+  std::vector<Unvaried> unvaried;
   /// How the errors of its readings hung together (fit::NoiseModel), in units of u, of mm where none was
   /// given; kept where they did, or were larger than u.
   struct Noise {

@@ -131,8 +131,20 @@ class Reader {
       if (is(node, "measured")) {
         for (const pugi::xml_node range : children(node)) {
           no_children(range);
-          record->measured.push_back({range.name(), number(range, "min", 0), number(range, "max", 0)});
+          record->measured.push_back({range.name(), number(range, "min", 0), number(range, "max", 0),
+                                      number(range, "step", 0), number(range, "from", 0)});
         }
+      } else if (is(node, "finding")) {
+        no_children(node);
+        record->findings.push_back({attribute(node, "code").value_or(""), number(node, "value", 0),
+                                    attribute(node, "text").value_or("")});
+      } else if (is(node, "misfit")) {
+        no_children(node);
+        record->misfit_mm = {number(node, "x", 0), number(node, "y", 0), number(node, "z", 0)};
+      } else if (is(node, "unvaried")) {
+        no_children(node);
+        record->unvaried.push_back({attribute(node, "coefficient").value_or(""),
+                                    attribute(node, "variable").value_or(""), number(node, "at", 0)});
       } else if (is(node, "noise")) {
         no_children(node);
         record->noise = read_noise(node);

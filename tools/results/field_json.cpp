@@ -39,7 +39,7 @@ Json field_json(const model::Machine& machine, const map::ErrorField& field) {
                {"deviation_um", vectors(field.deviation, 1000)}};
   json["std_um"] = nullptr;
   if (const fit::Reach reach(machine); reach.known()) {
-    const Eigen::VectorXd std_um = reach.std_um(field.states);
+    const Eigen::VectorXd std_um = reach.std_of_machine_um(field.states);
     json["std_um"] = std::vector<double>(std_um.begin(), std_um.end());
     json["max_std_um"] = std_um.maxCoeff();
     json["rms_std_um"] = std::sqrt(std_um.squaredNorm() / static_cast<double>(std_um.size()));

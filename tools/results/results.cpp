@@ -12,6 +12,7 @@
 #include "tools/fit/reach.h"
 #include "tools/kinematics/correction.h"
 #include "tools/results/detail.h"
+#include "tools/results/fit_findings.h"
 #include "tools/text/optional_json.h"
 
 namespace vernier::results {
@@ -52,7 +53,7 @@ ordered_json shared(const model::Machine& machine, const model::Measurement& m,
 ordered_json prediction_std_json(const model::Machine& machine, const model::Measurement& m) {
   const fit::Reach reach(machine);
   if (!reach.known() || m.rows() == 0) return nullptr;
-  const Eigen::VectorXd std_um = reach.std_um(m.states);
+  const Eigen::VectorXd std_um = reach.std_of_machine_um(m.states);
   return {{"rms", std::sqrt(std_um.squaredNorm() / static_cast<double>(std_um.size()))},
           {"max", std_um.maxCoeff()}};
 }
@@ -88,6 +89,8 @@ ordered_json fit_json(const fit::FitResult& result, const model::Measurement& m)
     for (const std::size_t i : group) names.push_back(result.parameters[i].name);
     json["unidentifiable"].push_back(names);
   }
+  json["assurance"] = assurance_of(result).json();
+  json["findings"] = findings_json(result.machine);
   json["convention"] = ordered_json::array();
   for (const fit::Decision& decision : fit::decisions_of(result))
     json["convention"].push_back({{"parameters", decision.parameters},

@@ -17,6 +17,7 @@
 #include "tools/model/fit_record.h"
 #include "tools/model/work_poses.h"
 #include "tools/safety/sources.h"
+#include "tools/text/assurance.h"
 
 namespace vernier::safety {
 namespace {
@@ -37,7 +38,7 @@ const RuleText& text_of(SafetyRule rule) {
       {"uncertainty", "of the correction",
        "a correction known to no better than half of itself may do as much harm as good", 0.5},
       {"measured-range", "of the measured range",
-       "tables hold their ends and terms go on: further out nobody has looked", 0.25},
+       "outside the measured range the last value of a table is used and terms are extrapolated", 0.25},
       {"input-range", "of the measured range", "a term in an input is a line through what was measured", 1},
       {"set-up", "um", "a shift that is the same at every pose belongs to how the instrument stood", 2},
       {"converged", "", "numbers on the way to an answer are none", 1},
@@ -46,10 +47,11 @@ const RuleText& text_of(SafetyRule rule) {
       {"outlier", "times the residual's spread",
        "one reading that stands so far from all others has bent the fit", 20},
       {"check-rows", "times the nominal machine's",
-       "rows that the fit has not seen are further off than without any correction", 1.25},
+       "held-out rows are further off than without any correction: the model is no gain", 1},
       {"disturbed", "of what the machine shows",
        "something that the model does not hold, as large as the errors of the machine, has bent the fit",
        0.75},
+      {"bound", "of the correction", "an image may be off by no more than what it corrects", 1},
   }};
   return kTexts[static_cast<std::size_t>(rule)];
 }
@@ -76,12 +78,7 @@ class Judge {
 
  private:
   void add(SafetyRule rule, std::optional<double> value, std::string culprit) {
-    const RuleText& text = text_of(rule);
-    SafetyFinding finding{rule, value, text.limit, text.unit, true, false, std::move(culprit), text.reason};
-    finding.ok = !value || *value <= text.limit;
-    if (!finding.ok)
-      finding.accepted = std::find(accepted_.begin(), accepted_.end(), rule) != accepted_.end();
-    sheet_.findings.push_back(std::move(finding));
+    sheet_.judge(rule, value, std::move(culprit), accepted_);
   }
 
   /// The source that moves the tool most, of those that the machine has.
@@ -159,25 +156,36 @@ class Judge {
     }
     double worst = 0;
     std::string of = "the tool of the file";
-    const auto judge_tool = [&](const model::Machine& machine, const std::string& name) {
+    const auto judge_at = [&](const model::Machine& machine, const model::States& states,
+                              const std::string& name) {
       const fit::Reach with(machine);
-      const double rms_um =
-          std::sqrt(with.std_um(poses_.states).squaredNorm() / static_cast<double>(poses_.states.count));
-      const double share = rms_um / std::max(maths::kUmPerMm * correction_rms_mm(machine), 0.1);
+      const double rms_um = std::sqrt(with.std_um(states).squaredNorm() / static_cast<double>(states.count));
+      const double share = rms_um / std::max(maths::kUmPerMm * correction_rms_mm(machine, states), 0.1);
       if (share <= worst) return;
       worst = share;
       of = name;
     };
-    judge_tool(machine_, of);
+    judge_at(machine_, poses_.states, of);
     for (const model::Tool& tool : machine_.tools)
-      judge_tool(model::with_tool(machine_, tool.point), "tool " + tool.name);
+      judge_at(model::with_tool(machine_, tool.point), poses_.states, "tool " + tool.name);
+    for (const model::FitRecord::Range& measured : machine_.fitted->measured) {
+      const auto input = machine_.find_input(measured.name);
+      if (!input || machine_.inputs[*input].hidden_axis ||
+          !acts(machine_, {model::SymbolKind::kInput, *input}))
+        continue;
+      for (const double value : {measured.min, measured.max}) {
+        model::States states = poses_.states;
+        states.input[*input].setConstant(value);
+        judge_at(machine_, states, fmt::format("{} at {:.4g}", measured.name, value));
+      }
+    }
     add(SafetyRule::kUncertainty, worst, of);
     sheet_.stale = reach.stale();
   }
 
   /// What there is to correct with this tool, and what the noise of a good fit may leave of nothing.
-  double correction_rms_mm(const model::Machine& machine) const {
-    const Eigen::Matrix3Xd d = model::deviation(machine, poses_.states);
+  static double correction_rms_mm(const model::Machine& machine, const model::States& states) {
+    const Eigen::Matrix3Xd d = model::deviation(machine, states);
     const Eigen::Matrix3Xd off = d.colwise() - d.rowwise().mean();
     return std::sqrt(off.squaredNorm() / static_cast<double>(off.cols()));
   }
@@ -274,6 +282,15 @@ std::vector<SafetyRule> rules_named(const std::vector<std::string>& names) {
     rules.push_back(*rule);
   }
   return rules;
+}
+
+void SafetySheet::judge(SafetyRule rule, std::optional<double> value, std::string culprit,
+                        const std::vector<SafetyRule>& accepted) {
+  const RuleText& text = text_of(rule);
+  SafetyFinding finding{rule, value, text.limit, text.unit, true, false, std::move(culprit), text.reason};
+  finding.ok = !value || text::decisive(*value, text.name) <= text.limit;
+  if (!finding.ok) finding.accepted = std::find(accepted.begin(), accepted.end(), rule) != accepted.end();
+  findings.push_back(std::move(finding));
 }
 
 bool SafetySheet::ok() const {

@@ -23,8 +23,9 @@ enum class SafetyRule : std::uint8_t {
   kOutlier = 9,        // one reading against all the others
   kCheckRows = 10,     // rows that the fit has not seen, against the nominal machine
   kDisturbed = 11,     // what the instrument did by itself, or is left far above its noise
+  kBound = 12,         // proved error of the image against what it corrects; judged by `compile` alone
 };
-inline constexpr std::size_t kSafetyRuleCount = 12;  // rules of the sheet
+inline constexpr std::size_t kSafetyRuleCount = 13;  // rules of the sheet
 const char* rule_name(SafetyRule rule);
 std::optional<SafetyRule> rule_named(const std::string& name);
 
@@ -44,6 +45,9 @@ struct SafetySheet {
   std::vector<SafetyFinding> findings;  // one a rule, in the order of their numbers
   /// Parameters that were added or set by hand since the fit: uncertain by as much as they were moved.
   std::vector<std::string> stale;
+  /// Adds a rule's finding. Throws std::logic_error for a value that is not finite.
+  void judge(SafetyRule rule, std::optional<double> value, std::string culprit,
+             const std::vector<SafetyRule>& accepted);
   bool ok() const;
   std::uint32_t accepted_mask() const;  // bit n: rule n
   /// One line: the rule that fails by most, its value, limit and culprit. Empty where all is well.
@@ -51,7 +55,8 @@ struct SafetySheet {
 };
 
 /// Judges a machine over its <volume> (else its axes' ranges) and with its <tools>, at the references of its
-/// inputs. `accepted`: rules that the user overrides. Throws InputError for an axis without a range. tool.
+/// inputs, its uncertainty also at both ends of what each input was measured at. `accepted`: rules that the
+/// user overrides. Throws InputError for an axis without a range. tool.
 SafetySheet safety_sheet(const model::Machine& machine, const std::vector<SafetyRule>& accepted = {});
 
 /// Rules by their names. Throws InputError for one that does not exist, naming those that do.

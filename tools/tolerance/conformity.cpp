@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "tools/fit/reach.h"
@@ -29,6 +30,12 @@ using Eigen::VectorXd;
 constexpr Index kBlock = 10000, kAtOnce = 1000;
 /// Trials through the whole chain that the linear ones are held against.
 constexpr int kTried = 12;
+/// Lengths of what a model may lack, mm: an encoder's period, a screw's pitch, the way between stations. One
+/// class is as good as another; each gives an interval of its own.
+struct Wavelengths {
+  double shortest_mm, longest_mm;
+};
+constexpr std::array<Wavelengths, 3> kWavelengths = {{{1, 10}, {10, 60}, {60, 600}}};
 /// What is smaller is nobody's concern: a nanometre.
 constexpr double kNothing_mm = 1e-6;
 /// A linear trial may be off by this share of the standard deviation.
@@ -46,6 +53,8 @@ class ConformityRunner {
     find_columns();
     find_means(machine);
     result_.seed = options.seed;
+    for (std::size_t k = 0; k < 3; ++k) result_.misfit_mm[k] = reach_.misfit_mm()[static_cast<Index>(k)];
+    classes_ = reach_.misfit_mm().maxCoeff() > 0 ? kWavelengths.size() : 1;
     result_.stale = reach_.stale();
     result_.open_known = reach_.open_known();
     result_.outside = outside(machine);
@@ -55,9 +64,11 @@ class ConformityRunner {
     Normals normals(options_.seed);
     try_chain(normals);
     for (const CharacteristicValue& value : values_.values) {
-      CharacteristicResult one{value.feature, value.what, value.limits_mm, {}, {}, {}, {}, 0, 0};
+      CharacteristicResult one{value.feature, value.what, value.limits_mm, {}, {}, {}, {}, 0, 0, 0, false};
+      one.outside = outside_[value.feature];
       result_.characteristics.push_back(std::move(one));
     }
+    draw_lacks(normals);
     share_out(normals);
     simulate(normals);
     return std::move(result_);
@@ -81,7 +92,20 @@ class ConformityRunner {
         options_.frame == PartFrame::kMachine ? reach_.moved(part_.states, MatrixXd::Identity(n, n)) : raw_;
     columns_ = values_.map * columns;
     rigid_ = values_.map * (raw_ - columns);  // what the machine's frame takes out of each
-    spread_ = columns_ * reach_.factor();
+    const MatrixXd unmeasured = options_.frame == PartFrame::kMachine ? reach_.moved_unmeasured(part_.states)
+                                                                      : reach_.unmeasured(part_.states);
+    own_ = reach_.factor().cols();
+    spread_.resize(values_.map.rows(), own_ + unmeasured.cols());
+    spread_ << columns_ * reach_.factor(), values_.map * unmeasured;
+  }
+
+  /// Draws of what the model lacks, a class of wavelengths each.
+  void draw_lacks(Normals& normals) {
+    lacks_.assign(classes_, MatrixXd::Zero(values_.map.rows(), kAtOnce));
+    if (classes_ == 1) return;
+    for (std::size_t c = 0; c < classes_; ++c)
+      lacks_[c] = values_.map * draw_misfit(normals, part_.point, reach_.misfit_mm(),
+                                            kWavelengths[c].shortest_mm, kWavelengths[c].longest_mm, kAtOnce);
   }
 
   /// Deviations of the points as the fitted machine makes them.
@@ -117,24 +141,33 @@ class ConformityRunner {
     deviations -= moved.reshaped(3, deviations.cols());
   }
 
-  std::vector<std::string> outside(const model::Machine& machine) const {
+  /// Where the part is and no axis was measured; marks the features of it.
+  std::vector<std::string> outside(const model::Machine& machine) {
     std::vector<std::string> list;
+    outside_.assign(part_.features.size(), false);
     for (const model::FitRecord::Range& range : machine.fitted->measured) {
       const auto axis = machine.find_axis(range.name);
       if (!axis) continue;
       const double slack = 0.01 * (range.max - range.min);
-      const double least = part_.states.axis[*axis].minCoeff(), most = part_.states.axis[*axis].maxCoeff();
-      if (least < range.min - slack)
-        list.push_back(fmt::format("{} {:g} to {:g}", range.name, least, range.min));
-      if (most > range.max + slack)
-        list.push_back(fmt::format("{} {:g} to {:g}", range.name, range.max, most));
+      const model::Column& q = part_.states.axis[*axis];
+      if (q.minCoeff() < range.min - slack)
+        list.push_back(fmt::format("{} {:g} to {:g}", range.name, q.minCoeff(), range.min));
+      if (q.maxCoeff() > range.max + slack)
+        list.push_back(fmt::format("{} {:g} to {:g}", range.name, range.max, q.maxCoeff()));
+      for (std::size_t f = 0; f < part_.features.size(); ++f) {
+        const auto own = q.segment(static_cast<Index>(part_.features[f].first),
+                                   static_cast<Index>(part_.features[f].count));
+        if (own.size() > 0 && (own.minCoeff() < range.min - slack || own.maxCoeff() > range.max + slack))
+          outside_[f] = true;
+      }
     }
     return list;
   }
 
   /// Rows of one draw of the parameters, through the whole chain, without and with the correction.
   std::pair<VectorXd, VectorXd> through_chain(const VectorXd& z) {
-    const VectorXd change = reach_.factor() * z;
+    const VectorXd change = reach_.factor() * z.head(own_);
+    const VectorXd more = spread_.rightCols(spread_.cols() - own_) * z.tail(spread_.cols() - own_);
     model::Machine drawn = reach_.machine();
     reach_.parameters().set(drawn, reach_.parameters().get(drawn) + change);
     const VectorXd rigid = rigid_ * change;
@@ -147,7 +180,7 @@ class ConformityRunner {
       const Eigen::Matrix3Xd off = model::forward(reach_.machine(), part_.states).position - part_.point;
       base_ = values_.map * off.reshaped();
     }
-    return {off_ + rows(part_.states) - base_, rows(corrected_)};
+    return {off_ + rows(part_.states) - base_ + more, rows(corrected_) + more};
   }
 
   /// A few trials both ways: is the machine linear in what is not known of it?
@@ -181,7 +214,7 @@ class ConformityRunner {
       open_part[s] = MatrixXd::Zero(spread_.rows(), reach_.open().cols());
       for (const std::size_t p : sources_[s].parameters) {
         const auto column = columns_.col(static_cast<Index>(p));
-        part[s] += column * reach_.factor().row(static_cast<Index>(p));
+        part[s].leftCols(own_) += column * reach_.factor().row(static_cast<Index>(p));
         open_part[s] += column * reach_.open().row(static_cast<Index>(p));
       }
     }
@@ -191,8 +224,12 @@ class ConformityRunner {
       CharacteristicResult& one = result_.characteristics[v];
       const auto own = [&](const MatrixXd& all) { return all.middleRows(value.first, value.count); };
       const double process = std::pow(options_.process_mm, 2) * own(values_.map).squaredNorm();
-      const double total = std::max(own(spread_).squaredNorm() + process, 1e-300);
+      double lack = 0;
+      for (const MatrixXd& all : lacks_)
+        lack += own(all).squaredNorm() / static_cast<double>(all.cols()) / static_cast<double>(classes_);
+      const double total = std::max(own(spread_).squaredNorm() + process + lack, 1e-300);
       one.process = process / total;
+      one.misfit = lack / total;
       one.open = own(open).squaredNorm() / total;
       std::vector<std::size_t> won(sources_.size(), 0);
       for (Index k = 0; k < kDraws; ++k) ++won[first_of(value, drawn.col(k), part, z.col(k))];
@@ -238,26 +275,29 @@ class ConformityRunner {
                      [](const auto& a, const auto& b) { return a.fall_mm > b.fall_mm; });
   }
 
+  using Tallies = std::vector<TrialTally>;
+
   void simulate(Normals& normals) {
-    std::vector<TrialTally> off(values_.values.size()), on(values_.values.size());
+    std::vector<Tallies> off(classes_, Tallies(values_.values.size())), on = off;
     const std::size_t least = 2 * static_cast<std::size_t>(kBlock);
-    while (true) {
+    while (!off.front().empty()) {
       block(normals, off, on);
-      result_.trials = off.empty() ? 0 : off.front().trials();
-      if (off.empty() || result_.trials >= options_.most_trials) break;
+      result_.trials = off.front().front().trials();
+      if (result_.trials >= options_.most_trials) break;
       if (result_.trials >= least && settled(off) && settled(on)) break;
       if (result_.trials >= least) expected_ = needed(off, on);
     }
-    result_.settled = off.empty() || (settled(off) && settled(on));
+    result_.settled = off.front().empty() || (settled(off) && settled(on));
     for (std::size_t v = 0; v < values_.values.size(); ++v) {
-      const CharacteristicValue& value = values_.values[v];
-      result_.characteristics[v].off = expectation(off[v], value, off_);
-      result_.characteristics[v].on = expectation(on[v], value, on_);
+      result_.characteristics[v].off = expectation(off, v, off_);
+      result_.characteristics[v].on = expectation(on, v, on_);
     }
   }
 
-  void block(Normals& normals, std::vector<TrialTally>& off, std::vector<TrialTally>& on) {
-    std::vector<std::vector<double>> off_values(off.size()), on_values(on.size());
+  void block(Normals& normals, std::vector<Tallies>& off, std::vector<Tallies>& on) {
+    using Values = std::vector<std::vector<double>>;
+    std::vector<Values> off_values(classes_, Values(values_.values.size())), on_values = off_values;
+    if (result_.trials > 0) draw_lacks(normals);
     for (Index done = 0; done < kBlock; done += kAtOnce) {
       const MatrixXd z = normals.draw(spread_.cols(), kAtOnce);
       MatrixXd own = MatrixXd::Zero(values_.map.rows(), kAtOnce);
@@ -271,19 +311,25 @@ class ConformityRunner {
           without = chain_off + own.col(k);
           with = chain_on + own.col(k);
         }
-        for (std::size_t v = 0; v < off.size(); ++v) {
-          off_values[v].push_back(values_.values[v].of(without));
-          on_values[v].push_back(values_.values[v].of(with));
-        }
+        for (std::size_t c = 0; c < classes_; ++c)
+          for (std::size_t v = 0; v < values_.values.size(); ++v) {
+            off_values[c][v].push_back(values_.values[v].of(without + lacks_[c].col(k)));
+            on_values[c][v].push_back(values_.values[v].of(with + lacks_[c].col(k)));
+          }
       }
       if (options_.progress)
         options_.progress(
             std::min(1.0, static_cast<double>(result_.trials + static_cast<std::size_t>(done)) / expected_));
     }
-    for (std::size_t v = 0; v < off.size(); ++v) {
-      off[v].take(off_values[v], values_.values[v].limits_mm);
-      on[v].take(on_values[v], values_.values[v].limits_mm);
-    }
+    for (std::size_t c = 0; c < classes_; ++c)
+      for (std::size_t v = 0; v < values_.values.size(); ++v) {
+        off[c][v].take(off_values[c][v], values_.values[v].limits_mm);
+        on[c][v].take(on_values[c][v], values_.values[v].limits_mm);
+      }
+  }
+
+  bool settled(const std::vector<Tallies>& classes) const {
+    return std::all_of(classes.begin(), classes.end(), [&](const Tallies& all) { return settled(all); });
   }
 
   bool settled(const std::vector<TrialTally>& tallies) const {
@@ -293,24 +339,36 @@ class ConformityRunner {
   }
 
   /// Trials that it will take, as far as those so far tell: the doubt falls with the root of their number.
-  double needed(const std::vector<TrialTally>& off, const std::vector<TrialTally>& on) const {
+  double needed(const std::vector<Tallies>& off, const std::vector<Tallies>& on) const {
     double worst = 1;
-    for (const auto* list : {&off, &on})
-      for (const TrialTally& one : *list)
-        worst = std::max(worst, one.doubt() / (options_.tolerance * one.std() + kNothing_mm));
+    for (const auto* classes : {&off, &on})
+      for (const Tallies& list : *classes)
+        for (const TrialTally& one : list)
+          worst = std::max(worst, one.doubt() / (options_.tolerance * one.std() + kNothing_mm));
     return std::min(static_cast<double>(options_.most_trials),
                     static_cast<double>(result_.trials) * worst * worst + static_cast<double>(kBlock));
   }
 
-  Expectation expectation(const TrialTally& tally, const CharacteristicValue& value,
-                          const VectorXd& mean) const {
-    Expectation e{value.of(mean), tally.mean(), tally.std(), tally.low(), tally.high(), 0, {}, {}};
+  /// The widest of the classes' intervals, and the chance that is least favourable to a verdict.
+  Expectation expectation(const std::vector<Tallies>& classes, std::size_t v, const VectorXd& mean) const {
+    const CharacteristicValue& value = values_.values[v];
+    const TrialTally& first = classes.front()[v];
+    Expectation e{value.of(mean), first.mean(), first.std(), first.low(), first.high(), 0, {}, {}};
+    double least = first.conforming(), most = least;
+    for (const Tallies& one : classes) {
+      e.std = std::max(e.std, one[v].std());
+      e.low = std::min(e.low, one[v].low());
+      e.high = std::max(e.high, one[v].high());
+      least = std::min(least, one[v].conforming());
+      most = std::max(most, one[v].conforming());
+    }
     e.u95 = (e.high - e.low) / 2;
     if (!value.limits_mm) return e;
-    e.probability = tally.conforming();
-    e.verdict = *e.probability >= options_.confidence       ? PartVerdict::kConforms
-                : *e.probability <= 1 - options_.confidence ? PartVerdict::kDoesNotConform
-                                                            : PartVerdict::kCannotBeSaid;
+    e.verdict = least >= options_.confidence      ? PartVerdict::kConforms
+                : most <= 1 - options_.confidence ? PartVerdict::kDoesNotConform
+                                                  : PartVerdict::kCannotBeSaid;
+    e.probability = *e.verdict == PartVerdict::kDoesNotConform ? most : least;
+    if (outside_[value.feature]) e.verdict = PartVerdict::kCannotBeSaid;
     return e;
   }
 
@@ -320,7 +378,11 @@ class ConformityRunner {
   PartValues values_;
   std::vector<MachineSource> sources_;
   MatrixXd raw_;                       // 3 N x p: of the points, by parameter
-  MatrixXd columns_, rigid_, spread_;  // of the map's rows, by parameter; by column of the factor
+  MatrixXd columns_, rigid_, spread_;  // of the map's rows, by parameter; by column of the factor and more
+  std::vector<bool> outside_;          // a feature
+  Index own_ = 0;                      // columns of the factor; the others are what no reading supports
+  std::size_t classes_ = 1;            // of wavelengths of what the model lacks
+  std::vector<MatrixXd> lacks_;        // a class: rows of the map, draws
   model::States corrected_;
   VectorXd off_, on_, base_;     // rows of the map at the fitted machine, without and with its correction
   std::vector<VectorXd> alone_;  // of each source

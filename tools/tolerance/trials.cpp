@@ -19,6 +19,30 @@ double Normals::next() {
   return radius * std::cos(2 * std::numbers::pi * uniform());
 }
 
+Eigen::MatrixXd draw_misfit(Normals& normals, const Eigen::Matrix3Xd& points, const Eigen::Vector3d& std_mm,
+                            double shortest_mm, double longest_mm, Eigen::Index draws) {
+  constexpr int kWaves = 3;  // of a field
+  Eigen::MatrixXd fields = Eigen::MatrixXd::Zero(3 * points.cols(), draws);
+  for (Eigen::Index k = 0; k < draws; ++k)
+    for (Eigen::Index direction = 0; direction < 3; ++direction) {
+      if (!(std_mm[direction] > 0)) continue;
+      for (int wave = 0; wave < kWaves; ++wave) {
+        Eigen::Vector3d along(normals.next(), normals.next(), normals.next());
+        if (normals.uniform() < 0.5)
+          along = Eigen::Vector3d::Unit(
+              std::min<Eigen::Index>(2, static_cast<Eigen::Index>(3 * normals.uniform())));
+        const double length_mm = shortest_mm * std::pow(longest_mm / shortest_mm, normals.uniform());
+        const Eigen::Vector3d turn = 2 * std::numbers::pi / length_mm * along.normalized();
+        const double size = std_mm[direction] / std::sqrt(static_cast<double>(kWaves));
+        const double a = size * normals.next(), b = size * normals.next();
+        const Eigen::ArrayXd phase = (turn.transpose() * points).transpose().array();
+        const Eigen::VectorXd field = (a * phase.cos() + b * phase.sin()).matrix();
+        for (Eigen::Index i = 0; i < points.cols(); ++i) fields(3 * i + direction, k) += field[i];
+      }
+    }
+  return fields;
+}
+
 void TrialTally::take(std::vector<double>& block, const std::optional<std::array<double, 2>>& limits) {
   std::sort(block.begin(), block.end());
   const auto at = [&](double share) {

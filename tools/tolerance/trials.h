@@ -15,12 +15,19 @@ class Normals {
  public:
   explicit Normals(std::uint64_t seed) : engine_(seed) {}
   Eigen::MatrixXd draw(Eigen::Index rows, Eigen::Index columns);
+  double uniform();  // in (0, 1)
+  double next();
 
  private:
-  double uniform();
-  double next();
   std::mt19937_64 engine_;
 };
+
+/// Draws of what a model lacks at points (3 x N, mm): smooth random fields along each direction, standard
+/// deviation std_mm (x, y, z), made of waves whose lengths are even in logarithm between two bounds (mm),
+/// half of them along an axis. The same field at a point for all points of a draw. 3 N x draws, mm. Random
+/// Fourier features, Rahimi and Recht 2007.
+Eigen::MatrixXd draw_misfit(Normals& normals, const Eigen::Matrix3Xd& points, const Eigen::Vector3d& std_mm,
+                            double shortest_mm, double longest_mm, Eigen::Index draws);
 
 /// Blocks of trials of one value, summed up.
 class TrialTally {

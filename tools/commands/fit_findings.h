@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <string>
+
+#include "tools/model/machine.h"
+
+namespace vernier::commands {
+
+/// Repeats what the last fit of a machine file found, a line each on standard error.
+void repeat_findings(const model::Machine& machine);
+
+/// Reads a machine file and repeats what its last fit found. Throws InputError. tool.
+model::Machine read_model(const std::string& path);
+
+}  // namespace vernier::commands

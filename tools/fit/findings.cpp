@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/fit/findings.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+
+#include "tools/maths/chance.h"
+#include "tools/maths/factors.h"
+
+namespace vernier::fit {
+namespace {
+
+using Eigen::Index;
+using Eigen::Vector3d;
+
+/// Chance at most for a residual that is only noise.
+constexpr double kChance = 0.01;
+/// A residual counts for so many spreads at most: one bad reading is no property of the machine.
+constexpr double kMostSpreads = 5;
+
+/// Measuring frame <- workpiece of a row's set-up.
+Eigen::Matrix3d frame_of(const model::Machine& machine, const model::Measurement& m, std::size_t row) {
+  const auto shift =
+      model::base_shift_of(machine, m.states.names(m.states.setup)[m.states.of(m.states.setup, row)]);
+  if (!shift) return Eigen::Matrix3d::Identity();
+  const auto& value = machine.base_shifts[*shift].value;
+  return (Eigen::AngleAxisd(maths::kRadPerDeg * value[3], Vector3d::UnitX()) *
+          Eigen::AngleAxisd(maths::kRadPerDeg * value[4], Vector3d::UnitY()) *
+          Eigen::AngleAxisd(maths::kRadPerDeg * value[5], Vector3d::UnitZ()))
+      .toRotationMatrix();
+}
+
+/// Direction that a length reading looks along, workpiece coordinates; zero for one of no single direction.
+Vector3d direction_of(const FitResult& result, const model::Measurement& m, const model::Observation& o) {
+  const auto row = static_cast<Index>(o.row);
+  if (o.kind <= model::ObservationKind::kZ)
+    return frame_of(result.machine, m, o.row).transpose() * Vector3d::Unit(static_cast<Index>(o.kind));
+  if (o.kind == model::ObservationKind::kD)
+    return {m.states.normal[0][row], m.states.normal[1][row], m.states.normal[2][row]};
+  return Vector3d::Zero();
+}
+
+/// Squares of one direction's residuals, and of what noise explains.
+struct Squares {
+  double residual = 0, noise = 0, chi = 0;
+  std::size_t count = 0;
+};
+
+/// 1.4826 times the median size: the spread that outliers do not move.
+double robust_spread(std::vector<double> sizes) {
+  if (sizes.empty()) return 0;
+  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+  std::nth_element(sizes.begin(), middle, sizes.end());
+  return 1.4826 * *middle;
+}
+
+/// Of one role; the last of the four: readings of no single direction.
+std::array<Squares, 4> squares_of(const FitResult& result, const model::Measurement& m, bool check) {
+  std::array<Squares, 4> all;
+  std::array<std::vector<double>, 4> sizes;
+  const double repeats_mm = 1e-3 * result.noise_um.value_or(0);
+  const auto each = [&](const auto& visit) {
+    for (std::size_t i = 0; i < m.observations.size(); ++i) {
+      const model::Observation& o = m.observations[i];
+      if (model::is_rotation(o.kind) || (m.check[o.row] != 0) != check) continue;
+      const Vector3d direction = direction_of(result, m, o);
+      Index along = 3;
+      if (direction.norm() > 0) direction.cwiseAbs().maxCoeff(&along);
+      const double u = model::uncertainty_of(m, o) > 0 ? model::uncertainty_of(m, o) : repeats_mm;
+      visit(static_cast<std::size_t>(along), result.residual[static_cast<Index>(i)], u);
+    }
+  };
+  each([&](std::size_t along, double residual, double) { sizes[along].push_back(std::abs(residual)); });
+  std::array<double, 4> spread{};
+  for (std::size_t k = 0; k < 4; ++k) spread[k] = robust_spread(sizes[k]);
+  each([&](std::size_t along, double residual, double u) {
+    if (!(u > 0)) return;
+    const double most = kMostSpreads * std::max(u, spread[along]);
+    const double square = std::pow(std::min(std::abs(residual), most), 2);
+    all[along].residual += square;
+    all[along].noise += u * u;
+    all[along].chi += square / (u * u);
+    ++all[along].count;
+  });
+  return all;
+}
+
+/// Variance beyond the noise; 0 where chance explains it. kept: share of the readings' freedom that the fit
+/// left.
+double excess(const Squares& one, double kept) {
+  const double freedom = kept * static_cast<double>(one.count);
+  if (freedom < 1 || maths::chi_square_tail(one.chi, freedom) > kChance / 3) return 0;
+  return std::max(0.0, one.residual / freedom - one.noise / static_cast<double>(one.count));
+}
+
+/// Share of the check rows whose commanded pose is that of a fit row.
+double repeated_poses(const model::Measurement& m) {
+  std::vector<model::Column> axes;
+  for (std::size_t a = 0; a < m.states.axis.size(); ++a) axes.push_back(model::commanded(m, a));
+  const auto pose = [&](std::size_t row) {
+    std::vector<std::int64_t> key;
+    constexpr double kSame = 1e4;  // 0.1 um, 0.0001 deg
+    for (const model::Column& q : axes) key.push_back(std::llround(kSame * q[static_cast<Index>(row)]));
+    return key;
+  };
+  std::set<std::vector<std::int64_t>> fitted;
+  for (std::size_t row = 0; row < m.rows(); ++row)
+    if (m.check[row] == 0) fitted.insert(pose(row));
+  std::size_t checks = 0, repeats = 0;
+  for (std::size_t row = 0; row < m.rows(); ++row) {
+    if (m.check[row] == 0) continue;
+    ++checks;
+    repeats += fitted.count(pose(row));
+  }
+  return checks > 0 ? static_cast<double>(repeats) / static_cast<double>(checks) : 0;
+}
+
+std::string unvaried_text(const model::FitRecord& record) {
+  std::string text;
+  constexpr std::size_t kMost = 3;
+  for (std::size_t i = 0; i < record.unvaried.size() && i < kMost; ++i)
+    text += fmt::format("{}{} was determined at {} = {:.6g} only", i > 0 ? "; " : "",
+                        record.unvaried[i].coefficient, record.unvaried[i].variable, record.unvaried[i].at);
+  if (record.unvaried.size() > kMost) text += fmt::format("; and {} more", record.unvaried.size() - kMost);
+  return text + ". What it does elsewhere was not measured.";
+}
+
+}  // namespace
+
+Vector3d misfit_of_model(const FitResult& result, const model::Measurement& m) {
+  const double count = static_cast<double>(result.before.count);
+  const double kept = count > 0 ? std::clamp(result.freedom / count, 0.0, 1.0) : 0;
+  const auto fitted = squares_of(result, m, false), checked = squares_of(result, m, true);
+  Vector3d variance = Vector3d::Zero();
+  double seen = 0, sum = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (fitted[k].count + checked[k].count == 0) continue;
+    variance[static_cast<Index>(k)] = std::max(excess(fitted[k], kept), excess(checked[k], 1));
+    sum += variance[static_cast<Index>(k)];
+    ++seen;
+  }
+  // Readings of no single direction (ball bar, distances) tell of all directions alike.
+  const double any = std::max(excess(fitted[3], kept), excess(checked[3], 1));
+  for (std::size_t k = 0; k < 3; ++k) {
+    double& own = variance[static_cast<Index>(k)];
+    if (fitted[k].count + checked[k].count == 0) own = seen > 0 ? sum / seen : 0;
+    own = std::max(own, any);
+  }
+  return variance.cwiseSqrt();
+}
+
+std::vector<model::FitRecord::Finding> findings_of(const FitResult& result, const model::FitRecord& record,
+                                                   const model::Measurement& m) {
+  std::vector<model::FitRecord::Finding> list;
+  if (!result.converged) list.push_back({"not-converged", 1, "The fit did not converge."});
+  if (!result.absurd.empty()) list.push_back({"absurd", 1, result.absurd});
+  const Vector3d misfit_um(1e3 * record.misfit_mm[0], 1e3 * record.misfit_mm[1], 1e3 * record.misfit_mm[2]);
+  if (misfit_um.maxCoeff() > 0)
+    list.push_back(
+        {"something-missing", result.after.rms_um.value_or(0) / std::max(result.noise_um.value_or(1), 1e-9),
+         fmt::format("Something is missing from this model: the residual exceeds the noise by {:.3g}, "
+                     "{:.3g}, {:.3g} um in x, y, z.",
+                     misfit_um.x(), misfit_um.y(), misfit_um.z())});
+  if (!result.noise_um && result.before.rms_um)
+    list.push_back({"noise-unknown", 0,
+                    "The readings have no uncertainty u and no repeats: what the model lacks cannot be "
+                    "distinguished from their noise."});
+  if (result.check_ratio && *result.check_ratio > 1)
+    list.push_back(
+        {"no-gain", *result.check_ratio,
+         fmt::format("This model is no gain: it leaves {:.3g} times as much of the check rows as the "
+                     "nominal machine.",
+                     *result.check_ratio)});
+  if (!record.disturbance.empty())
+    list.push_back({"disturbed", record.disturbed, "The survey was disturbed: " + record.disturbance + "."});
+  if (const double share = repeated_poses(m); share >= 0.5)
+    list.push_back(
+        {"check-not-independent", share,
+         fmt::format("{:.0f} % of the check rows repeat poses of fit rows: they cannot show errors "
+                     "between these poses.",
+                     100 * share)});
+  if (!record.unvaried.empty())
+    list.push_back({"not-varied", static_cast<double>(record.unvaried.size()), unvaried_text(record)});
+  return list;
+}
+
+}  // namespace vernier::fit

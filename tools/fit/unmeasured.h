@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "tools/model/fit_record.h"
+#include "tools/model/machine.h"
+#include "tools/model/measurement.h"
+#include "tools/model/parameters.h"
+
+namespace vernier::fit {
+
+/// What one number stands for in a model's claim: a static, a scale factor, a column of a table.
+struct Coefficient {
+  std::string name;                     // `alpha`, `scalefactor.X`, `table.X.rY`
+  std::vector<std::size_t> parameters;  // of a ParameterSet without set-ups
+};
+std::vector<Coefficient> coefficients_of(const model::ParameterSet& parameters);
+
+/// The coefficients whose effect depends on an axis or input that did not vary where the effect was seen, to
+/// within the noise of the readings. Heat that was measured at one place of an axis is the example: a
+/// rotation about a far point and a shift are the same there. For each coefficient and variable the effect
+/// with the variable held at its mean there (weighted by the effect's square) is compared with the effect
+/// itself on the fit rows, beside a free set-up; it counts as unvaried where they differ by less than three
+/// standard deviations in all. Rows that read rotations distinguish a rotation from a shift, and a single
+/// axis that never moved is the sheet's rule `measured-range`. rows: those of the fit; variance: of a
+/// weighted reading. tool.
+std::vector<model::FitRecord::Unvaried> unvaried_dependences(const model::Machine& fitted,
+                                                             const model::Measurement& rows, double variance);
+
+/// The common step of the targets of an axis: commanded positions, axis unit. step 0: there is none, or fewer
+/// than four different targets. tool.
+struct TargetStep {
+  double step = 0, from = 0;
+};
+TargetStep target_step(const model::Column& commanded);
+
+/// Two kinds of claim that no reading supports, as what they may move the tool point by at each state, one
+/// standard uncertainty: 3 N x e, mm. An unvaried dependence may be as the model says or not be there. A term
+/// that bends faster between the targets of an axis than they can show may be any curve through its values at
+/// the targets; the smooth one is taken (band-limited interpolation, Lanczos). e depends on machine and
+/// record alone. bare: without BaseShifts, fitted; parameters: its own. tool.
+Eigen::MatrixXd unmeasured_columns(const model::Machine& bare, const model::ParameterSet& parameters,
+                                   const model::FitRecord& record, const model::States& states);
+
+}  // namespace vernier::fit

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/results/fit_findings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "tools/model/fit_record.h"
+
+namespace vernier::results {
+namespace {
+
+/// Findings with which no later result holds.
+bool forbids(const model::FitRecord::Finding& finding) {
+  constexpr std::array kForbid = {"not-converged", "absurd", "no-gain"};
+  return std::any_of(kForbid.begin(), kForbid.end(), [&](const char* code) { return finding.code == code; });
+}
+
+/// Findings with which a fit itself does not hold.
+bool speaks_against_fit(const model::FitRecord::Finding& finding) {
+  return forbids(finding) || finding.code == "something-missing" || finding.code == "disturbed" ||
+         finding.code == "not-varied";
+}
+
+}  // namespace
+
+nlohmann::ordered_json findings_json(const model::Machine& machine) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  if (machine.fitted)
+    for (const model::FitRecord::Finding& one : machine.fitted->findings)
+      list.push_back({{"code", one.code}, {"value", one.value}, {"text", one.text}});
+  return list;
+}
+
+void add_findings(text::Assurance& word, const model::Machine& machine) {
+  word.require("fitted", machine.fitted != nullptr,
+               "The machine file holds a fit: how well its numbers are known is in it.");
+  if (!machine.fitted) return;
+  word.require("converged", machine.fitted->converged, "The fit converged.");
+  for (const model::FitRecord::Finding& one : machine.fitted->findings) {
+    if (forbids(one))
+      word.require(one.code, false, one.text);
+    else
+      word.not_covered(one.text);
+  }
+}
+
+text::Assurance assurance_of(const fit::FitResult& result) {
+  text::Assurance word(text::AssuranceKind::kFit);
+  word.require("converged", result.converged, "The fit converged.");
+  word.require("sensible", result.absurd.empty(),
+               result.absurd.empty() ? "The readings are those of this machine." : result.absurd);
+  if (result.check_ratio)
+    word.at_most("check-rows", *result.check_ratio, 1,
+                 "What check rows leave of the fitted machine over what they leave of the nominal one.");
+  else
+    word.not_covered("Held-out rows: there are fewer than twelve check readings.");
+  for (const model::FitRecord::Finding& one : result.machine.fitted->findings) {
+    if (one.code == "no-gain" || one.code == "not-converged" || one.code == "absurd") continue;
+    if (speaks_against_fit(one))
+      word.require(one.code, false, one.text);
+    else
+      word.not_covered(one.text);
+  }
+  std::string open;
+  for (const fit::ParameterEstimate& item : result.estimates)
+    if (item.from == fit::Origin::kPrior) open += (open.empty() ? "" : ", ") + item.name;
+  if (!open.empty()) word.not_covered("Not measured, stay at nominal +- scale: " + open + ".");
+  return word;
+}
+
+text::Assurance assurance_of(const safety::SafetySheet& sheet, const model::Machine& machine,
+                             text::AssuranceKind kind) {
+  text::Assurance word(kind);
+  add_findings(word, machine);
+  for (const safety::SafetyFinding& one : sheet.findings) {
+    const std::string name = safety::rule_name(one.rule);
+    const std::string culprit = one.culprit.empty() ? "" : fmt::format(" ({})", one.culprit);
+    if (!one.value)
+      word.not_covered(fmt::format("Rule {}: the machine file has no figure for it.", name));
+    else
+      word.at_most(name, *one.value, one.limit, fmt::format("{} {}{}.", name, one.unit, culprit));
+  }
+  for (const std::string& name : sheet.stale)
+    word.not_covered(name + " was added or set by hand since the fit.");
+  return word;
+}
+
+}  // namespace vernier::results

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tools/fit/fit.h"
+#include "tools/model/machine.h"
+#include "tools/safety/safety_sheet.h"
+#include "tools/text/assurance.h"
+
+namespace vernier::results {
+
+/// [{"code", "value", "text"}]: what the last fit of a machine file found; empty where it was never fitted.
+nlohmann::ordered_json findings_json(const model::Machine& machine);
+
+/// Puts the findings into a word of assurance: it does not hold for a machine that was never fitted, or whose
+/// fit did not converge, was absurd or no gain; the others are things that it does not cover.
+void add_findings(text::Assurance& word, const model::Machine& machine);
+
+/// Does a fit describe its readings? Converged, sensible, gain on the check rows where there are some,
+/// nothing missing and nothing disturbed.
+text::Assurance assurance_of(const fit::FitResult& result);
+
+/// May this correction run? The rules of the sheet; those that the machine file cannot answer are not
+/// covered.
+text::Assurance assurance_of(const safety::SafetySheet& sheet, const model::Machine& machine,
+                             text::AssuranceKind kind);
+
+}  // namespace vernier::results
