@@ -100,6 +100,22 @@ bool input_ok(const InputRecord& input) {
          input.low <= input.high;
 }
 
+bool same_text(const char* a, const char* b, std::uint32_t size) {
+  for (std::uint32_t i = 0; i < size; ++i)
+    if (a[i] != b[i]) return false;
+  return true;
+}
+
+/// Does a name stand in two records? More records than a board has room for are the verifier's to refuse.
+template <class Record>
+bool named_twice(View<Record> records, std::uint32_t most) {
+  if (records.size > most) return false;
+  for (std::uint32_t i = 0; i < records.size; ++i)
+    for (std::uint32_t k = 0; k < i; ++k)
+      if (same_text(records[i].name, records[k].name, kImageNameBytes)) return true;
+  return false;
+}
+
 template <class T>
 View<T> section(const std::uint8_t* bytes, SectionType type) {
   const SectionEntry& entry = at<SectionEntry>(bytes, sizeof(ImageHeader))[static_cast<std::uint32_t>(type)];
@@ -147,6 +163,8 @@ ImageFault ImageView::read_sections(const std::uint8_t* bytes) noexcept {
     if (!axis_ok(axis)) return ImageFault::kAxis;
   for (const InputRecord& input : inputs_)
     if (!input_ok(input)) return ImageFault::kInput;
+  if (named_twice(axes_, kMaxAxes)) return ImageFault::kAxis;
+  if (named_twice(inputs_, kMaxInputs)) return ImageFault::kInput;
 
   program_.axis_count = axes_.size;
   program_.input_count = inputs_.size;
@@ -231,7 +249,7 @@ const char* describe(ImageFault fault) noexcept {
     case ImageFault::kFingerprint:
       return "fingerprint: the equation is not the one the header names";
     case ImageFault::kAxis:
-      return "axis record: name, flags or range";
+      return "axis record: name (also one that stands twice), flags or range";
     case ImageFault::kInput:
       return "input record: name, unit or range";
     case ImageFault::kRange:

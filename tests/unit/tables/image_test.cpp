@@ -131,6 +131,26 @@ TEST_P(Image, RunsWithinItsProvedRangesOnHostileInputs) {
   for (int i = 0; i < 3000; ++i) ASSERT_EQ(open_and_run(bytes, random), ImageFault::kNone);
 }
 
+TEST(ImageNames, ANameThatStandsTwiceIsRefused) {
+  const TestMachine test("bridge");
+  for (const SectionType type : {SectionType::kAxes, SectionType::kInputs}) {
+    Bytes bytes(test.compiled.image);
+    SectionEntry entry;
+    std::memcpy(&entry, bytes.data() + sizeof(ImageHeader) + static_cast<std::size_t>(type) * sizeof(entry),
+                sizeof(entry));
+    if (entry.count < 2) continue;
+    // WHEN the second record takes the name of the first
+    std::memcpy(bytes.data() + entry.offset + entry.record_bytes, bytes.data() + entry.offset,
+                kImageNameBytes);
+    bytes.repair();
+    static ImageWorkspace workspace;
+    ImageView view;
+    // THEN no view is given
+    EXPECT_EQ(view.open(bytes.data(), bytes.size(), workspace),
+              type == SectionType::kAxes ? ImageFault::kAxis : ImageFault::kInput);
+  }
+}
+
 TEST_P(Image, IsNeverAcceptedOnceChanged) {
   const TestMachine test(GetParam());
   std::mt19937_64 random(kSeed);
