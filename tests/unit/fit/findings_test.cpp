@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a fit found: misfit beyond the noise, dependences that nobody measured, and what Reach makes of them.
+#include "tools/fit/findings.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "tools/fit/fit.h"
+#include "tools/fit/reach.h"
+#include "tools/fit/unmeasured.h"
+#include "tools/model/chain.h"
+#include "tools/model/fit_record.h"
+#include "tools/model/machine_reader.h"
+#include "tools/model/machine_writer.h"
+#include "tools/model/work_poses.h"
+
+namespace vernier::findings_test {
+
+using namespace vernier::fit;
+using namespace vernier::model;
+namespace {
+
+constexpr double kU_mm = 1e-3;
+
+/// A machine of three axes and one thermometer with terms of its own along x and along z.
+std::string text_of(const std::string& statics, const std::string& x, const std::string& z) {
+  return "<machine name=\"m\"><variables><static>" + statics +
+         "<BaseShift X=\"0\" Y=\"0\" Z=\"0\" rX=\"0\" rY=\"0\" rZ=\"0\"/></static>"
+         "<machineaxes><X min=\"0\" max=\"600\"/><Y min=\"0\" max=\"400\"/><Z min=\"-300\" max=\"0\"/>"
+         "</machineaxes><inputs><T unit=\"degC\" reference=\"20\"/></inputs></variables>"
+         "<transforms branch=\"tool\"><sixdof X=\"X" +
+         x + "\" Y=\"Y\" Z=\"Z" + z + "\"/></transforms></machine>";
+}
+
+Machine machine_of(const std::string& statics, const std::string& x, const std::string& z) {
+  return parse_machine(text_of(statics, x, z), "m.xml");
+}
+
+const char* const kSquareness = "<a value=\"0\" nominal=\"0\" unit=\"rad\"/>";
+const char* const kHeat =
+    "<a value=\"0\" nominal=\"0\" unit=\"rad\"/><k value=\"0\" nominal=\"0\" unit=\"rad/K\"/>";
+
+struct Row {
+  double x, y, z, t;
+  bool check = false;
+};
+
+std::vector<Row> anywhere(int count, std::mt19937_64& random, double t = 20) {
+  std::uniform_real_distribution<double> share(0, 1);
+  std::vector<Row> rows;
+  for (int i = 0; i < count; ++i)
+    rows.push_back({600 * share(random), 400 * share(random), -300 * share(random), t});
+  return rows;
+}
+
+/// Readings of x, y and z: the nominal point, what `error` adds to it (mm), and noise.
+Measurement readings(const Machine& machine, const std::vector<Row>& rows,
+                     const std::function<Eigen::Vector3d(const Row&)>& error, std::mt19937_64& random,
+                     bool with_u = true) {
+  std::normal_distribution<double> normal(0, kU_mm);
+  std::string csv = "X[mm],Y[mm],Z[mm],T[degC],x[mm],y[mm],z[mm],role";
+  csv += with_u ? ",u[mm]\n" : "\n";
+  for (const Row& row : rows) {
+    const Eigen::Vector3d e = error(row);
+    csv += fmt::format("{:.6f},{:.6f},{:.6f},{},{:.7f},{:.7f},{:.7f},{}{}\n", row.x, row.y, row.z, row.t,
+                       row.x + e.x() + normal(random), row.y + e.y() + normal(random),
+                       row.z + e.z() + normal(random), row.check ? "check" : "fit",
+                       with_u ? fmt::format(",{}", kU_mm) : "");
+  }
+  return parse_measurement(csv, "s.csv", machine);
+}
+
+bool has(const Machine& machine, const std::string& code) {
+  return std::any_of(machine.fitted->findings.begin(), machine.fitted->findings.end(),
+                     [&](const FitRecord::Finding& one) { return one.code == code; });
+}
+
+/// The machine file as it is written and read again.
+Machine through_file(const Machine& fitted, const std::string& statics, const std::string& x,
+                     const std::string& z) {
+  return parse_machine(update_machine_text(text_of(statics, x, z), fitted, true), "m.xml");
+}
+
+TEST(FitFindings, AMisfitIsMeasuredAlongItsDirection) {
+  std::mt19937_64 random(1);
+  const Machine machine = machine_of(kSquareness, "+a*Y", "");
+  // GIVEN a wave of 2 um that the model lacks, along x
+  const Measurement m = readings(
+      machine, anywhere(150, random),
+      [](const Row& row) { return Eigen::Vector3d(0.002 * std::sin(row.x / 3), 0, 0); }, random);
+  const Machine fitted = through_file(fit::fit(machine, m).machine, kSquareness, "+a*Y", "");
+  // THEN its root mean square of 1.41 um is found along x, and nothing along y and z
+  EXPECT_NEAR(fitted.fitted->misfit_mm[0], 0.002 / std::sqrt(2), 0.0003);
+  EXPECT_EQ(fitted.fitted->misfit_mm[1], 0);
+  EXPECT_EQ(fitted.fitted->misfit_mm[2], 0);
+  EXPECT_TRUE(has(fitted, "something-missing"));
+  const States states = work_poses(fitted).states;
+  const Reach reach(fitted);
+  EXPECT_NEAR(1e-3 * reach.std_of_machine_um(states).minCoeff(), fitted.fitted->misfit_mm[0], 2e-4);
+  EXPECT_LT(1e-3 * reach.std_um(states).maxCoeff(), 5e-4);
+}
+
+TEST(FitFindings, ARightModelHasNone) {
+  const Machine machine = machine_of(kSquareness, "+a*Y", "");
+  int something = 0;
+  constexpr int kSurveys = 60;
+  for (int k = 0; k < kSurveys; ++k) {
+    std::mt19937_64 random(100 + static_cast<unsigned>(k));
+    const Measurement m = readings(
+        machine, anywhere(60, random), [](const Row& row) { return Eigen::Vector3d(5e-5 * row.y, 0, 0); },
+        random);
+    const FitResult result = fit::fit(machine, m);
+    something += has(result.machine, "something-missing") ? 1 : 0;
+    EXPECT_TRUE(result.machine.fitted->unvaried.empty());
+  }
+  EXPECT_LE(something, 4);  // one in a hundred of each survey: 0.6 expected
+}
+
+TEST(FitFindings, HeatMeasuredAtOnePlaceIsNoSquareness) {
+  std::mt19937_64 random(2);
+  const std::string z = "+a*X+k*(T-20)*Y";
+  const Machine machine = machine_of(kHeat, "", z);
+  // GIVEN a survey of the cold machine, and heat with X and Y standing still; the column really grows
+  std::vector<Row> rows = anywhere(80, random);
+  for (int i = 0; i <= 20; ++i) rows.push_back({300, 200, -150, 20 + 0.5 * i});
+  const auto growth = [](const Row& row) { return Eigen::Vector3d(0, 0, 0.003 * (row.t - 20)); };
+  const Machine fitted =
+      through_file(fit::fit(machine, readings(machine, rows, growth, random)).machine, kHeat, "", z);
+  // THEN the dependence on Y counts as unmeasured
+  ASSERT_EQ(fitted.fitted->unvaried.size(), 1U);
+  EXPECT_EQ(fitted.fitted->unvaried[0].coefficient, "k");
+  EXPECT_EQ(fitted.fitted->unvaried[0].variable, "Y");
+  EXPECT_NEAR(fitted.fitted->unvaried[0].at, 200, 1);
+  EXPECT_TRUE(has(fitted, "not-varied"));
+  // and the uncertainty at the end of Y holds the truth: 30 um of growth where the model says 0
+  States far = make_states(1, fitted);
+  far.axis[0][0] = 300, far.axis[1][0] = 0, far.axis[2][0] = -150;
+  far.input[0][0] = 30;
+  const double off = std::abs(0.03 - deviation(fitted, far)(2, 0));
+  EXPECT_GT(off, 0.02);
+  EXPECT_LT(off, 2 * std::sqrt(Reach(fitted).covariance(far)[0](2, 2)));
+  // WHEN heat is measured all over, the same model is measured
+  std::vector<Row> all = anywhere(80, random);
+  for (const Row& hot : anywhere(40, random, 28)) all.push_back(hot);
+  const auto tilt = [](const Row& row) { return Eigen::Vector3d(0, 0, 1e-5 * (row.t - 20) * row.y); };
+  EXPECT_TRUE(fit::fit(machine, readings(machine, all, tilt, random)).machine.fitted->unvaried.empty());
+}
+
+TEST(FitFindings, AWaveBetweenTargetsIsUncertainAndOneThatTargetsFollowIsNot) {
+  const std::string statics =
+      "<k1 value=\"0\" nominal=\"0\" unit=\"mm\"/><k2 value=\"0\" nominal=\"0\" unit=\"mm\"/>";
+  const std::string x = "+k1*sin(360*X/18)+k2*cos(360*X/18)";
+  const Machine machine = machine_of(statics, x, "");
+  const auto wave = [](const Row& row) {
+    return Eigen::Vector3d(0.005 * std::sin(2 * 3.14159265358979 * row.x / 18), 0, 0);
+  };
+  for (const double step : {20.0, 3.0}) {
+    std::mt19937_64 random(3);
+    std::vector<Row> rows;
+    for (int pass = 0; pass < 3; ++pass)
+      for (double at = 0; at <= 600; at += step) rows.push_back({at, 133.0 * pass, -100.0 * pass, 20});
+    const Machine fitted =
+        through_file(fit::fit(machine, readings(machine, rows, wave, random)).machine, statics, x, "");
+    EXPECT_DOUBLE_EQ(fitted.fitted->measured[0].step, step);
+    const States states = work_poses(fitted).states;
+    const double std_um = Reach(fitted).std_um(states).norm() / std::sqrt(states.count);
+    if (step > 10)
+      EXPECT_GT(std_um, 2.5) << "targets every 20 mm do not show a wave of 18 mm between them";
+    else
+      EXPECT_LT(std_um, 0.6);
+  }
+  // Positions of no common step: what is between them is measured by the others.
+  std::mt19937_64 random(4);
+  const Machine fitted = through_file(
+      fit::fit(machine, readings(machine, anywhere(150, random), wave, random)).machine, statics, x, "");
+  EXPECT_EQ(fitted.fitted->measured[0].step, 0);
+  EXPECT_LT(Reach(fitted).std_um(work_poses(fitted).states).maxCoeff(), 1);
+}
+
+TEST(FitFindings, CheckRowsAtPosesOfFitRowsAreNotIndependent) {
+  std::mt19937_64 random(5);
+  const Machine machine = machine_of(kSquareness, "+a*Y", "");
+  const auto none = [](const Row&) { return Eigen::Vector3d(0, 0, 0); };
+  std::vector<Row> rows = anywhere(40, random), same = rows, other = anywhere(40, random);
+  for (Row& row : same) row.check = true;
+  for (Row& row : other) row.check = true;
+  std::vector<Row> repeated = rows, fresh = rows;
+  repeated.insert(repeated.end(), same.begin(), same.end());
+  fresh.insert(fresh.end(), other.begin(), other.end());
+  EXPECT_TRUE(
+      has(fit::fit(machine, readings(machine, repeated, none, random)).machine, "check-not-independent"));
+  EXPECT_FALSE(
+      has(fit::fit(machine, readings(machine, fresh, none, random)).machine, "check-not-independent"));
+}
+
+TEST(FitFindings, NoiseThatNobodyStatedIsSaid) {
+  std::mt19937_64 random(6);
+  const Machine machine = machine_of(kSquareness, "+a*Y", "");
+  const auto none = [](const Row&) { return Eigen::Vector3d(0, 0, 0); };
+  EXPECT_TRUE(has(fit::fit(machine, readings(machine, anywhere(40, random), none, random, false)).machine,
+                  "noise-unknown"));
+}
+
+TEST(TargetStep, IsFoundOnGridsAndNowhereElse) {
+  const auto of = [](std::vector<double> list) {
+    return target_step(Eigen::Map<Column>(list.data(), static_cast<Eigen::Index>(list.size()))).step;
+  };
+  EXPECT_DOUBLE_EQ(of({0, 50, 100, 150, 150, 100, 50, 0}), 50);
+  EXPECT_DOUBLE_EQ(of({0, 20, 50, 70, 100}), 10);
+  EXPECT_DOUBLE_EQ(of({0, 50, 50}), 0);
+  EXPECT_DOUBLE_EQ(of({0.13, 47.77, 101.31, 149.02, 203.9}), 0);
+  EXPECT_DOUBLE_EQ(of({}), 0);
+}
+
+}  // namespace
+}  // namespace vernier::findings_test
