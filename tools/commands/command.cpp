@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <stdexcept>
 #include <string_view>
 
 #include "tools/commands/command.h"
@@ -28,11 +31,53 @@ double now_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
+/// Keys under which tools/docs/formats.md promises a figure: one that is not finite is our bug, no answer.
+constexpr std::array kFigures = {"rms_before_um",
+                                 "rms_um",
+                                 "check_rms_um",
+                                 "max_um",
+                                 "check_max_um",
+                                 "noise_um",
+                                 "value",
+                                 "std",
+                                 "evidence",
+                                 "p_value",
+                                 "share",
+                                 "change",
+                                 "limit",
+                                 "rms_after_um",
+                                 "interval_um",
+                                 "deviation_um",
+                                 "std_um",
+                                 "reduction",
+                                 "interval",
+                                 "before_um",
+                                 "after_um",
+                                 "bound_um",
+                                 "total_um",
+                                 "mean_um",
+                                 "probability",
+                                 "max_after_um",
+                                 "check_rms_before_um",
+                                 "check_rms_after_um"};
+
+/// Throws std::logic_error naming the key. The library writes numbers that are not finite as null.
+void require_figures(const nlohmann::ordered_json& json, bool figure, const std::string& name) {
+  if (json.is_number_float() && figure && !std::isfinite(json.get<double>()))
+    throw std::logic_error("the figure \"" + name + "\" is not finite");
+  if (json.is_object())
+    for (const auto& [key, value] : json.items())
+      require_figures(
+          value, std::find(kFigures.begin(), kFigures.end(), std::string_view(key)) != kFigures.end(), key);
+  else if (json.is_array())
+    for (const auto& value : json) require_figures(value, figure, name);
+}
+
 }  // namespace
 
 void write_json(const std::string& path, const nlohmann::ordered_json& result) {
   if (path.empty()) return;
-  // The library writes numbers that are not finite as null.
+  require_figures(result, false, "");
   const std::string text =
       result.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
   if (path != "-") return text::write_file(path, text);

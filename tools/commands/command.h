@@ -127,7 +127,7 @@ void register_image_diff(CLI::App& vernier);
 }  // namespace workbench_cli
 
 /// Writes the result for programs: to a file, or to standard output for "-"; nothing for an empty path.
-/// Numbers that are not finite become null.
+/// Throws std::logic_error where a figure that tools/docs/formats.md promises is not finite.
 void write_json(const std::string& path, const nlohmann::ordered_json& result);
 
 /// What `--help` says of the option `--residuals`.
