@@ -7,7 +7,9 @@
 
 #include "tools/commands/fit_findings.h"
 #include "tools/compile/compile.h"
+#include "tools/model/chain.h"
 #include "tools/model/machine_reader.h"
+#include "tools/model/work_poses.h"
 #include "tools/results/fit_findings.h"
 #include "tools/results/safety_json.h"
 #include "tools/text/files.h"
@@ -142,16 +144,18 @@ void print_for_people(std::FILE* out, const compile::CompiledMachine& c, const m
   for (const std::string& note : c.notes) fmt::print(out, "note: {}\n", note);
 }
 
-/// The proved error of each axis against the largest correction that it makes; below a micrometre nobody
-/// asks.
+/// The proved error of each axis against the largest deviation over the working volume; below a micrometre
+/// nobody asks. A bound of intervals alone would be measured by itself.
 void judge_bound(safety::SafetySheet& sheet, const compile::CompiledMachine& compiled,
-                 const std::vector<safety::SafetyRule>& accepted) {
+                 const model::Machine& machine, const std::vector<safety::SafetyRule>& accepted) {
   constexpr double kLeast_um = 1;
+  const double seen_um =
+      1000 * model::deviation(machine, model::work_poses(machine).states).colwise().norm().maxCoeff();
   double worst = 0;
   std::string of;
   for (const compile::OutputBound& b : compiled.bounds) {
     if (b.deviation_deg) continue;
-    const double share = b.total_um / std::max(b.deviation_um, kLeast_um);
+    const double share = b.total_um / std::max(seen_um, kLeast_um);
     if (share > worst) worst = share, of = "axis " + b.axis;
   }
   sheet.judge(safety::SafetyRule::kBound, worst, of, accepted);
@@ -166,7 +170,7 @@ void run_compile(const Arguments& arguments) {
   const std::vector<safety::SafetyRule> accepted = safety::rules_named(arguments.accept);
   compile::CompiledMachine compiled = compile::compile_machine(machine, text, options);
   safety::SafetySheet sheet = safety::safety_sheet(machine, accepted);
-  judge_bound(sheet, compiled, accepted);
+  judge_bound(sheet, compiled, machine, accepted);
   if (!sheet.ok()) throw text::LimitNotMet(sheet.refusal());
   if (options.accepted_rules = sheet.accepted_mask(); options.accepted_rules != 0)
     compiled = compile::compile_machine(machine, text, options);

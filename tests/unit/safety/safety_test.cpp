@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
 #include <random>
+#include <stdexcept>
 
 #include "tests/support/machines.h"
 #include "tools/fit/fit.h"
@@ -55,7 +60,7 @@ TEST(SafetySheet, PassesAMachineOfSmallErrors) {
   const Machine machine = small_machine("<alpha value=\"1e-4\" nominal=\"0\" unit=\"rad\"/>");
   const SafetySheet sheet = safety_sheet(machine);
   EXPECT_TRUE(sheet.ok()) << sheet.refusal();
-  ASSERT_EQ(sheet.findings.size(), kSafetyRuleCount);
+  ASSERT_EQ(sheet.findings.size(), kSafetyRuleCount - 1);                     // `bound` is the image's
   EXPECT_FALSE(finding(sheet, SafetyRule::kUncertainty).value.has_value());   // never fitted: not known
   EXPECT_NEAR(*finding(sheet, SafetyRule::kMaxCorrection).value, 0.4, 0.02);  // 400 mm * 1e-4 of 0.1 mm
 }
@@ -185,11 +190,93 @@ TEST(SafetySheet, RefusesASurveyInWhichSomethingElseMoved) {
   EXPECT_NE(sheet.refusal().find("moved before survey.csv:62"), std::string::npos) << sheet.refusal();
 }
 
+/// A machine with a term of its own along x or z and a thermometer, surveyed at the rows given.
+Machine surveyed(const std::string& statics, const std::string& x, const std::string& z,
+                 const std::vector<std::array<double, 4>>& rows,
+                 const std::function<Eigen::Vector3d(const std::array<double, 4>&)>& error) {
+  const Machine model = small_machine(statics, "<inputs><T unit=\"degC\" reference=\"20\"/></inputs>", x, z);
+  std::mt19937_64 random(kSeed);
+  std::normal_distribution<double> normal(0, 5e-4);
+  std::string csv = "X[mm],Y[mm],Z[mm],T[degC],x[mm],y[mm],z[mm],u[mm]\n";
+  for (const auto& row : rows) {
+    const Eigen::Vector3d e = error(row);
+    csv += std::to_string(row[0]) + "," + std::to_string(row[1]) + "," + std::to_string(row[2]) + "," +
+           std::to_string(row[3]);
+    for (Eigen::Index k = 0; k < 3; ++k)
+      csv += "," + std::to_string(row[static_cast<std::size_t>(k)] + e[k] + normal(random));
+    csv += ",0.0005\n";
+  }
+  return fit::fit(model, parse_measurement(csv, "survey.csv", model)).machine;
+}
+
+std::vector<std::array<double, 4>> everywhere(int count, double t) {
+  std::mt19937_64 random(kSeed + 1);
+  std::uniform_real_distribution<double> place(0, 1);
+  std::vector<std::array<double, 4>> rows;
+  for (int i = 0; i < count; ++i)
+    rows.push_back({600 * place(random), 400 * place(random), -300 * place(random), t});
+  return rows;
+}
+
+TEST(SafetySheet, RefusesHeatThatWasMeasuredAtOnePlaceAsARotation) {
+  const std::string statics =
+      "<k value=\"0\" nominal=\"0\" unit=\"1/K\"/><s value=\"0\" nominal=\"0\" unit=\"rad\"/>";
+  // GIVEN a cold survey all over, and heat with X, Y and Z standing still
+  std::vector<std::array<double, 4>> rows = everywhere(80, 20);
+  for (int i = 0; i <= 20; ++i) rows.push_back({300, 200, -150, 20 + 0.5 * i});
+  const auto growth = [](const std::array<double, 4>& row) {
+    return Eigen::Vector3d(-2e-5 * row[1], 0, 0.004 * (row[3] - 20));
+  };
+  const SafetySheet sheet = safety_sheet(surveyed(statics, "X-s*Y", "Z+k*(T-20)*Y", rows, growth));
+  EXPECT_FALSE(sheet.ok());
+  EXPECT_FALSE(finding(sheet, SafetyRule::kUncertainty).ok)
+      << *finding(sheet, SafetyRule::kUncertainty).value;
+  EXPECT_EQ(finding(sheet, SafetyRule::kUncertainty).culprit, "T at 30");
+  // WHEN the heat is measured all over THEN the sheet passes
+  std::vector<std::array<double, 4>> all = everywhere(80, 20);
+  for (const auto& hot : everywhere(60, 30)) all.push_back(hot);
+  const auto tilt = [](const std::array<double, 4>& row) {
+    return Eigen::Vector3d(-2e-5 * row[1], 0, 2e-5 * (row[3] - 20) * row[1] / 10);
+  };
+  const SafetySheet good = safety_sheet(surveyed(statics, "X-s*Y", "Z+k*(T-20)*Y", all, tilt));
+  EXPECT_TRUE(good.ok()) << good.refusal();
+}
+
+TEST(SafetySheet, RefusesAWaveThatTargetsDoNotShow) {
+  const std::string statics =
+      "<k1 value=\"0\" nominal=\"0\" unit=\"mm\"/><k2 value=\"0\" nominal=\"0\" unit=\"mm\"/>";
+  // GIVEN a slow wave of 200 mm, which targets every 50 mm show as one of 40 mm too: the model has the short
+  // one
+  std::vector<std::array<double, 4>> rows;
+  for (int pass = 0; pass < 4; ++pass)
+    for (int i = 0; i <= 12; ++i) rows.push_back({50.0 * i, 130.0 * pass, -100.0 * pass, 20});
+  const auto slow = [](const std::array<double, 4>& row) {
+    return Eigen::Vector3d(0.006 * std::sin(2 * 3.14159265358979 * row[0] / 200), 0, 0);
+  };
+  const auto along = [&](const char* period) {
+    return std::string("X+k1*sin(360*X/") + period + ")+k2*cos(360*X/" + period + ")";
+  };
+  EXPECT_FALSE(
+      finding(safety_sheet(surveyed(statics, along("40"), "Z", rows, slow)), SafetyRule::kUncertainty).ok);
+  const SafetySheet good = safety_sheet(surveyed(statics, along("200"), "Z", rows, slow));
+  EXPECT_TRUE(finding(good, SafetyRule::kUncertainty).ok) << *finding(good, SafetyRule::kUncertainty).value;
+}
+
+TEST(SafetySheet, AFigureThatIsNotFiniteDecidesNothing) {
+  SafetySheet sheet;
+  EXPECT_THROW(sheet.judge(SafetyRule::kBound, std::nan(""), "axis X", {}), std::logic_error);
+  EXPECT_THROW(sheet.judge(SafetyRule::kBound, std::numeric_limits<double>::infinity(), "axis X", {}),
+               std::logic_error);
+  sheet.judge(SafetyRule::kBound, 1.5e7, "axis X", {});
+  EXPECT_FALSE(sheet.ok());
+}
+
 TEST(SafetySheet, RulesHaveTheirNamesAndNumbers) {
   // These numbers stand in images: they stay.
   const char* const kNames[] = {"correction",     "max-correction", "cancellation", "uncertainty",
                                 "measured-range", "input-range",    "set-up",       "converged",
-                                "residual",       "outlier",        "check-rows",   "disturbed"};
+                                "residual",       "outlier",        "check-rows",   "disturbed",
+                                "bound"};
   for (std::size_t i = 0; i < kSafetyRuleCount; ++i) {
     EXPECT_STREQ(rule_name(static_cast<SafetyRule>(i)), kNames[i]);
     EXPECT_EQ(rule_named(kNames[i]), static_cast<SafetyRule>(i));
