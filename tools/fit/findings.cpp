@@ -120,6 +120,13 @@ double repeated_poses(const model::Measurement& m) {
   return checks > 0 ? static_cast<double>(repeats) / static_cast<double>(checks) : 0;
 }
 
+/// Root of chi square over its freedom, of the fit rows' lengths.
+double times_the_noise(const FitResult& result) {
+  if (!result.after.rms_um || !result.noise_um || result.freedom <= 0) return 0;
+  return *result.after.rms_um / *result.noise_um *
+         std::sqrt(static_cast<double>(result.before.count) / result.freedom);
+}
+
 std::string unvaried_text(const model::FitRecord& record) {
   std::string text;
   constexpr std::size_t kMost = 3;
@@ -160,12 +167,14 @@ std::vector<model::FitRecord::Finding> findings_of(const FitResult& result, cons
   if (!result.converged) list.push_back({"not-converged", 1, "The fit did not converge."});
   if (!result.absurd.empty()) list.push_back({"absurd", 1, result.absurd});
   const Vector3d misfit_um(1e3 * record.misfit_mm[0], 1e3 * record.misfit_mm[1], 1e3 * record.misfit_mm[2]);
-  if (misfit_um.maxCoeff() > 0)
+  if (misfit_um.maxCoeff() > 0) {
+    const double times = times_the_noise(result);
     list.push_back(
-        {"something-missing", result.after.rms_um.value_or(0) / std::max(result.noise_um.value_or(1), 1e-9),
-         fmt::format("Something is missing from this model: the residual exceeds the noise by {:.3g}, "
-                     "{:.3g}, {:.3g} um in x, y, z.",
-                     misfit_um.x(), misfit_um.y(), misfit_um.z())});
+        {"something-missing", times,
+         fmt::format("The residual is {:.2g} times the noise: something is missing from this model, "
+                     "{:.3g}, {:.3g}, {:.3g} um in x, y, z.",
+                     times, misfit_um.x(), misfit_um.y(), misfit_um.z())});
+  }
   if (!result.noise_um && result.before.rms_um)
     list.push_back({"noise-unknown", 0,
                     "The readings have no uncertainty u and no repeats: what the model lacks cannot be "
