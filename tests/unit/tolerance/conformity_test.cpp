@@ -56,6 +56,43 @@ TEST(PartConformity, OfOneScaleErrorIsTheClosedForm) {
   EXPECT_THAT(size.dominant, testing::ElementsAre("scale-error of X in X"));
 }
 
+TEST(PartConformity, AMisfitWidensEveryInterval) {
+  Machine machine = plate_machine(0, 0);
+  set_known(machine, 1e-9, 1e-9);
+  const PartConformity before = judged(machine);
+  EXPECT_EQ(*size_of(before, 2).on.verdict, PartVerdict::kConforms);
+  // GIVEN a fit that saw 4 um that the model lacks along x and y
+  auto record = std::make_shared<FitRecord>(*machine.fitted);
+  record->misfit_mm = {0.004, 0.004, 0};
+  machine.fitted = record;
+  const PartConformity after = judged(machine);
+  // THEN the interval of a bore's position holds that error in both directions: zone about 2 x 1.96 x 4 um x
+  // sqrt 2 for one that is as wide as the bore, less for a short one, and nothing conforms to 10 um any more
+  for (const CharacteristicResult& one : after.characteristics) {
+    if (!one.limits_mm) continue;
+    EXPECT_GT(one.on.high - one.on.low, 0.004) << characteristic_name(one.what);
+    EXPECT_NE(*one.on.verdict, PartVerdict::kConforms) << characteristic_name(one.what);
+    EXPECT_GT(one.misfit, 0.99);
+  }
+}
+
+TEST(PartConformity, AFeatureOutsideTheMeasuredRangeGetsNoVerdict) {
+  Machine machine = plate_machine(0, 0);
+  set_known(machine, 1e-9, 1e-9);
+  auto record = std::make_shared<FitRecord>(*machine.fitted);
+  record->measured[0].max = 200;
+  machine.fitted = record;
+  const PartConformity all = judged(machine);
+  ASSERT_FALSE(all.outside.empty());
+  bool inside = false, outside = false;
+  for (const CharacteristicResult& one : all.characteristics) {
+    if (!one.on.verdict) continue;
+    (one.outside ? outside : inside) = true;
+    EXPECT_EQ(*one.on.verdict, one.outside ? PartVerdict::kCannotBeSaid : PartVerdict::kConforms);
+  }
+  EXPECT_TRUE(inside && outside);
+}
+
 TEST(PartConformity, SaysYesNoAndNeither) {
   const auto verdict = [](double scale) {
     Machine machine = plate_machine(scale, 0);
