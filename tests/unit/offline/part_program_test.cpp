@@ -113,6 +113,8 @@ TEST(PartPrograms, AWaveShorterThanTheStepOfTheLooksIsCorrected) {
       worst = std::max(worst, (tool - tool.dot(Vector3d(20, 10, 0)) / 500 * Vector3d(20, 10, 0)).norm());
     }
   EXPECT_LE(worst, kDeviation_mm + 2e-5);  // and the digits of the program
+  EXPECT_LE(program.worst_mm, kDeviation_mm);
+  EXPECT_GE(program.worst_mm, 0.2 * worst);
 }
 
 TEST(PartPrograms, ArcsOfEveryPlaneStayOnTheirCircle) {
