@@ -5,12 +5,14 @@
 #include <cctype>
 #include <cmath>
 #include <memory>
+#include <optional>
 
 #include "tools/commands/command.h"
 #include "tools/commands/fit_findings.h"
 #include "tools/kinematics/at.h"
 #include "tools/offline/part_program.h"
 #include "tools/offline/positions.h"
+#include "tools/text/assurance.h"
 #include "tools/text/error.h"
 #include "tools/text/optional_json.h"
 
@@ -46,6 +48,20 @@ std::vector<char> named_in(const model::Machine& machine, const std::string& wor
   return named;
 }
 
+/// Every position was corrected, and the blocks of a program follow.
+text::Assurance assurance_of(const CorrectArguments& arguments, const offline::CorrectionSummary& summary,
+                             const std::optional<double>& path_um) {
+  text::Assurance assurance(text::AssuranceKind::kExport);
+  assurance.at_most("not-converged", static_cast<double>(summary.not_converged), 0,
+                    fmt::format("Positions of {} that cannot be corrected.", summary.positions));
+  if (path_um)
+    assurance.at_most(
+        "off-the-path", *path_um, arguments.deviation_um,
+        "Largest distance of the blocks from the corrected path, um, between all places looked at.");
+  assurance.not_covered("Errors that depend on what is not logged (time, inputs) count as --at says.");
+  return assurance;
+}
+
 void run_correct(const CorrectArguments& arguments) {
   const model::Machine read = read_model(arguments.machine);
   const model::Machine machine = arguments.tool.empty() ? read : kinematics::tooled(read, arguments.tool);
@@ -57,6 +73,7 @@ void run_correct(const CorrectArguments& arguments) {
   offline::Corrector corrector(machine, options);
   nlohmann::ordered_json json = {{"machine", machine.name}, {"path", arguments.path}};
   std::string result;
+  std::optional<double> path_um;  // of a program: how far its blocks leave the corrected path
   if (is_table(arguments.path, text)) {
     result = offline::corrected_positions(text, arguments.path, at, corrector);
   } else {
@@ -73,6 +90,8 @@ void run_correct(const CorrectArguments& arguments) {
     json["moves"] = corrected.moves;
     json["moves_written"] = corrected.written;
     json["arcs_written"] = corrected.arcs;
+    path_um = 1000 * corrected.worst_mm;
+    json["path_um"] = *path_um;
     result = std::move(corrected.text);
   }
   const offline::CorrectionSummary& summary = corrector.summary();
@@ -83,9 +102,15 @@ void run_correct(const CorrectArguments& arguments) {
     json["max_correction"][machine.axes[i].name] = summary.largest[i];
   json["left_um"] = 1000 * summary.left_mm;
   json["not_converged"] = summary.not_converged;
+  json["assurance"] = assurance_of(arguments, summary, path_um).json();
   if (summary.not_converged > 0)
     throw text::LimitNotMet(fmt::format("{} of {} positions cannot be corrected with these axes",
                                         summary.not_converged, summary.positions));
+  if (path_um && *path_um > arguments.deviation_um)
+    throw text::LimitNotMet(
+        fmt::format("the blocks leave the corrected path by {:.4g} um, --deviation allows {} "
+                    "um; nothing is written",
+                    *path_um, arguments.deviation_um));
   text::write_file(arguments.output, result);
   write_json(arguments.json, json);
   std::FILE* out = human_stream(arguments.json);
@@ -94,6 +119,7 @@ void run_correct(const CorrectArguments& arguments) {
   if (json.contains("moves"))
     fmt::print(out, "; {} moves as {}, {} of them arcs", json["moves"].get<std::size_t>(),
                json["moves_written"].get<std::size_t>(), json["arcs_written"].get<std::size_t>());
+  if (path_um) fmt::print(out, "; off the corrected path by {:.3g} um at most", *path_um);
   fmt::print(out, "; left over {:.3g} um\n", 1000 * summary.left_mm);
 }
 
@@ -129,7 +155,8 @@ void register_correct(CLI::App& vernier) {
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->footer(
       "What was corrected is marked, and refused a second time. Exit status 0 done, 1 bad input (nothing\n"
-      "written), 2 some position cannot be corrected with these axes or a target cannot be reached.");
+      "written), 2 some position cannot be corrected with these axes, a target cannot be reached, or the\n"
+      "blocks of a program leave the corrected path by more than --deviation.");
   command->callback([arguments] { run_correct(*arguments); });
 }
 

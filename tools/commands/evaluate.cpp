@@ -33,11 +33,19 @@ void print_result(std::FILE* out, const nlohmann::ordered_json& json) {
   const std::string unit = json["unit"];
   for (const auto& one : json["characteristics"]) {
     if (one["value"].is_null()) continue;
-    fmt::print(out, "  {:<7} {:>10.3f} {:<7}{}", one["name"].get<std::string>(), one["value"].get<double>(),
-               unit, one["meaning"].get<std::string>());
-    if (!one["uncertainty"].is_null()) fmt::print(out, ", U {:.3g}", one["uncertainty"].get<double>());
-    if (one.contains("conformity"))
-      fmt::print(out, "; tolerance {:.3g}: {}", one["tolerance"].get<double>(),
+    const auto judged = evaluate::judged_of(one);
+    const std::string value =
+        judged ? evaluate::judged_text(*judged, evaluate::kPrintedDigits).value
+               : fmt::format("{:.{}f}", one["value"].get<double>(), evaluate::kPrintedDigits);
+    fmt::print(out, "  {:<7} {:>10} {:<7}{}", one["name"].get<std::string>(), value, unit,
+               one["meaning"].get<std::string>());
+    if (!one["uncertainty"].is_null())
+      fmt::print(out, ", U {}",
+                 judged ? evaluate::judged_text(*judged, evaluate::kPrintedDigits).uncertainty
+                        : fmt::format("{:.3g}", one["uncertainty"].get<double>()));
+    if (judged)
+      fmt::print(out, "; tolerance {}: {}",
+                 evaluate::judged_text(*judged, evaluate::kPrintedDigits).tolerance,
                  one["conformity"].get<std::string>());
     fmt::print(out, "\n");
   }

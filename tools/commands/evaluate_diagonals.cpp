@@ -53,8 +53,13 @@ Json page_of(const Json& json, const std::vector<Json>& each, const std::vector<
   for (const Json& one : json["machine"]) {
     tiles.push_back(
         {{"label", one["name"]}, {"value", one["value"]}, {"unit", "µm"}, {"strong", one["name"] == "E_d"}});
-    rows.push_back({one["name"], one["value"], one["uncertainty"], one.value("tolerance", Json(nullptr)),
-                    one.value("conformity", Json(nullptr))});
+    Json row = {one["name"], one["value"], one["uncertainty"], nullptr,
+                one.value("conformity", Json(nullptr))};
+    if (const auto judged = evaluate::judged_of(one)) {
+      const evaluate::JudgedText text = evaluate::judged_text(*judged, evaluate::kPrintedDigits);
+      row[1] = text.value, row[2] = text.uncertainty, row[3] = text.tolerance;
+    }
+    rows.push_back(std::move(row));
   }
   if (!rows.empty())
     sections.push_back({{"title", "The machine (ISO 230-6)"},
@@ -82,13 +87,27 @@ void print(std::FILE* out, const Json& json) {
     }
     fmt::print(out, " um\n");
   }
-  for (const Json& one : json["machine"])
+  for (const Json& one : json["machine"]) {
+    const auto judged = evaluate::judged_of(one);
+    const auto text =
+        judged ? evaluate::judged_text(*judged, evaluate::kPrintedDigits) : evaluate::JudgedText{};
     fmt::print(
-        out, "{:<8} {:>9.3f} um{}{}\n", one["name"].get<std::string>(), one["value"].get<double>(),
-        one["uncertainty"].is_null() ? "" : fmt::format(", U {:.3g}", one["uncertainty"].get<double>()),
-        one.contains("conformity") ? fmt::format("; tolerance {:.3g}: {}", one["tolerance"].get<double>(),
-                                                 one["conformity"].get<std::string>())
-                                   : "");
+        out, "{:<8} {:>9} um", one["name"].get<std::string>(),
+        judged ? text.value : fmt::format("{:.{}f}", one["value"].get<double>(), evaluate::kPrintedDigits));
+    if (!one["uncertainty"].is_null())
+      fmt::print(out, ", U {}",
+                 judged ? text.uncertainty : fmt::format("{:.3g}", one["uncertainty"].get<double>()));
+    if (judged) fmt::print(out, "; tolerance {}: {}", text.tolerance, one["conformity"].get<std::string>());
+    fmt::print(out, "\n");
+  }
+}
+
+/// What the machine's values are judged by.
+text::Assurance assurance_of(const Json& machine) {
+  std::vector<evaluate::JudgedValue> all;
+  for (const Json& one : machine)
+    if (auto judged = evaluate::judged_of(one)) all.push_back(std::move(*judged));
+  return evaluate::assurance_of(all, "um");
 }
 
 void run_diagonals(const DiagonalArguments& arguments) {
@@ -115,10 +134,11 @@ void run_diagonals(const DiagonalArguments& arguments) {
       pages.push_back(evaluate::positioning_page(evaluated, along));
       pages.back()["sections"][0]["title"] = "Diagonal " + one.name;
       for (const auto& [key, value] : evaluated.items())
-        if (key != "standard" && key != "axis") each[key] = value;
+        if (key != "standard" && key != "axis" && key != "assurance") each[key] = value;
       json["diagonals"].push_back(each);
     }
   json["machine"] = machine_json(evaluate::machine_values(body), words);
+  json["assurance"] = assurance_of(json["machine"]).json();
   if (!arguments.output.empty())
     text::write_file(
         arguments.output,

@@ -7,6 +7,7 @@
 #include "tools/commands/command.h"
 #include "tools/commands/evaluate_kinds.h"
 #include "tools/commands/evaluate_robot_pages.h"
+#include "tools/evaluate/judgement.h"
 #include "tools/evaluate/limits.h"
 #include "tools/evaluate/positioning.h"
 #include "tools/evaluate/robot_path.h"
@@ -97,6 +98,22 @@ RobotPage page_of(const RobotArguments& arguments, const std::vector<evaluate::P
   return pose_page(evaluate::evaluate_poses(readings), false);
 }
 
+evaluate::JudgedValue judged_of(const Json& one) {
+  return {one["name"], one["value_um"].get<double>(), one["u95_um"].get<double>(),
+          one["tolerance_um"].get<double>()};
+}
+
+void print_characteristic(std::FILE* out, const Json& one) {
+  if (!one.contains("conformity")) {
+    fmt::print(out, "{} {:.3f} um, U {:.2g} um\n", one["name"].get<std::string>(),
+               one["value_um"].get<double>(), one["u95_um"].get<double>());
+    return;
+  }
+  const evaluate::JudgedText text = evaluate::judged_text(judged_of(one), evaluate::kPrintedDigits);
+  fmt::print(out, "{} {} um, U {} um; tolerance {} um: {}\n", one["name"].get<std::string>(), text.value,
+             text.uncertainty, text.tolerance, one["conformity"].get<std::string>());
+}
+
 void run_robot(const RobotArguments& arguments) {
   std::vector<std::pair<std::string, double>> limits;
   const std::vector<std::string> names = arguments.path       ? std::vector<std::string>{"AT", "RT"}
@@ -113,6 +130,7 @@ void run_robot(const RobotArguments& arguments) {
                {"n_rows", readings.size()},
                {"characteristics", Json::array()}};
   std::string failed;
+  std::vector<evaluate::JudgedValue> judged;
   for (const Judged& one : page.characteristics) {
     Json entry = {{"name", one.name},
                   {"value_um", one.value_mm * maths::kUmPerMm},
@@ -122,22 +140,18 @@ void run_robot(const RobotArguments& arguments) {
       const evaluate::Conformity answer = evaluate::conformity(one.value_mm, limit, one.expanded_mm);
       entry["tolerance_um"] = limit * maths::kUmPerMm;
       entry["conformity"] = evaluate::conformity_text(answer);
+      judged.push_back(judged_of(entry));
       if (answer == evaluate::Conformity::kNotMet) failed += (failed.empty() ? "" : ", ") + one.name;
     }
     json["characteristics"].push_back(std::move(entry));
   }
   json[page.key] = page.list;
   json["notes"] = shortcomings(readings, page);
+  json["assurance"] = evaluate::assurance_of(judged, "um").json();
   write_json(arguments.json, json);
   std::FILE* out = human_stream(arguments.json);
   for (const std::string& line : page.lines) fmt::print(out, "{}\n", line);
-  for (const Json& one : json["characteristics"])
-    fmt::print(out, "{} {:.3f} um, U {:.2g} um{}\n", one["name"].get<std::string>(),
-               one["value_um"].get<double>(), one["u95_um"].get<double>(),
-               one.contains("conformity")
-                   ? fmt::format("; tolerance {:g} um: {}", one["tolerance_um"].get<double>(),
-                                 one["conformity"].get<std::string>())
-                   : "");
+  for (const Json& one : json["characteristics"]) print_characteristic(out, one);
   for (const Json& note : json["notes"]) fmt::print(out, "note: {}\n", note.get<std::string>());
   if (!failed.empty()) throw text::LimitNotMet("the tolerance of " + failed + " is not met");
 }

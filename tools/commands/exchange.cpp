@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 
@@ -14,6 +15,7 @@
 #include "tools/kinematics/at.h"
 #include "tools/model/machine_reader.h"
 #include "tools/safety/safety_sheet.h"
+#include "tools/text/assurance.h"
 
 namespace vernier::commands::exchange_cli {
 namespace {
@@ -40,12 +42,47 @@ void require_safe(const model::Machine& machine, const ExchangeArguments& argume
   if (!sheet.ok()) throw text::LimitNotMet(sheet.refusal());
 }
 
+/// How well the lines of one axis hold its errors.
+struct AxisLines {
+  std::string axis;
+  std::size_t lines = 0, probed = 0;
+  double worst_um = 0;
+};
+
+/// What an export vouches for: the machine may run so, all of its errors are in the files, and between their
+/// lines no more is lost than was allowed.
+text::Assurance assurance_of(const ExchangeArguments& arguments,
+                             const std::vector<exchange::LeftOut>& left_out,
+                             const std::vector<AxisLines>& axes) {
+  text::Assurance assurance(text::AssuranceKind::kExport);
+  assurance.require("safe-to-run", true, "Every rule of the sheet \"safe to run?\" is met or accepted.");
+  double left_um = 0;
+  for (const exchange::LeftOut& one : left_out) left_um = std::max(left_um, one.um);
+  assurance.at_most("left-out", left_um, exchange::kNothing_um,
+                    "Largest error that the format cannot hold, um.");
+  for (const AxisLines& one : axes)
+    assurance.at_most(
+        "between-lines-" + one.axis, one.worst_um, arguments.tolerance_um,
+        fmt::format("Largest error between the lines of {}, um, at {} positions.", one.axis, one.probed));
+  for (const std::string& rule : arguments.accept)
+    assurance.not_covered("The rule " + rule + " of the sheet was accepted by the user.");
+  return assurance;
+}
+
 void finish(const ExchangeArguments& arguments, const char* format,
-            const std::vector<exchange::LeftOut>& left_out, const Json& files) {
+            const std::vector<exchange::LeftOut>& left_out, const Json& files,
+            const std::vector<AxisLines>& axes = {}, bool exported = true) {
   Json left = Json::array();
   for (const exchange::LeftOut& one : left_out) left.push_back({{"what", one.what}, {"um", one.um}});
-  write_json(arguments.json, {{"format", format}, {"files", files}, {"left_out", left}});
+  Json json = {{"format", format}, {"files", files}, {"left_out", left}};
+  for (const AxisLines& one : axes)
+    json["axes"][one.axis] = {{"lines", one.lines}, {"worst_um", one.worst_um}, {"probed", one.probed}};
+  if (exported) json["assurance"] = assurance_of(arguments, left_out, axes).json();
+  write_json(arguments.json, json);
   std::FILE* out = human_stream(arguments.json);
+  for (const AxisLines& one : axes)
+    fmt::print(out, "{}: {} lines, off by {:.3g} um at most between them ({} positions looked at)\n",
+               one.axis, one.lines, one.worst_um, one.probed);
   for (const exchange::LeftOut& one : left_out)
     fmt::print(out, "left out: {}: up to {:.4g} um\n", one.what, one.um);
   for (const Json& file : files) fmt::print(out, "{}\n", file.get<std::string>());
@@ -120,9 +157,12 @@ void export_screw(const ExchangeArguments& arguments) {
   exchange::refuse(machine, "a screw-compensation file", left_out, arguments.leave_out);
   require_safe(machine, arguments);
   std::vector<std::string> texts;
-  for (const std::size_t axis : axes)
-    texts.push_back(
-        exchange::screw_text(exchange::screw_points(machine, axis, at, arguments.tolerance_um), type));
+  std::vector<AxisLines> lines;
+  for (const std::size_t axis : axes) {
+    const exchange::ScrewTable table = exchange::screw_table(machine, axis, at, arguments.tolerance_um);
+    texts.push_back(exchange::screw_text(table.points, type));
+    lines.push_back({machine.axes[axis].name, table.points.size(), table.probed, table.worst_um});
+  }
   Json files = Json::array();
   if (!arguments.axis.empty()) {
     files = {arguments.output};
@@ -141,7 +181,7 @@ void export_screw(const ExchangeArguments& arguments) {
   for (std::size_t i = 0; i < axes.size(); ++i) text::write_file(files[i].get<std::string>(), texts[i]);
   if (!outputs.empty()) write_configuration(outputs, arguments, files);
   if (!without.empty()) fmt::print(stderr, "note: no configuration of the component: {}\n", without);
-  finish(arguments, "linuxcnc", left_out, files);
+  finish(arguments, "linuxcnc", left_out, files, lines);
 }
 
 void export_tables(const ExchangeArguments& arguments, bool isg) {
@@ -188,7 +228,7 @@ void import_tables(const ExchangeArguments& arguments, const std::string& kind) 
     }
   }
   text::write_file(arguments.output, result);
-  finish(arguments, kind.c_str(), {}, Json::array({arguments.output}));
+  finish(arguments, kind.c_str(), {}, Json::array({arguments.output}), {}, false);
 }
 
 void add_type(CLI::App* command, ExchangeArguments& arguments) {
@@ -231,7 +271,10 @@ CLI::App* add_import(CLI::App* parent, const char* kind, const char* what,
 void register_export(CLI::App& vernier) {
   CLI::App* parent = vernier.add_subcommand("export", "Write tables that a controller reads");
   parent->require_subcommand(1);
-  parent->footer("What a format cannot express is refused with the reason; --leave-out writes the rest.");
+  parent->footer(
+      "What a format cannot express is refused with the reason; --leave-out writes the rest. Exit status 0\n"
+      "done, 1 bad input, 2 the sheet \"safe to run?\" fails or the tolerance takes more lines than the\n"
+      "controller keeps: nothing written.");
   auto screw = std::make_shared<ExchangeArguments>();
   CLI::App* linuxcnc = add_export(
       parent, "linuxcnc", "LinuxCNC: screw compensation (COMP_FILE), and a configuration of its component",

@@ -98,7 +98,6 @@ class Improver {
         effects_(effects::effect_catalogue(arguments.effects)) {}
 
   void run() {
-    text::make_folder(arguments_.output);
     constexpr int kMostRounds = 4;
     for (int round = 0; round < kMostRounds; ++round)
       if (!climb(round)) break;
@@ -113,8 +112,10 @@ class Improver {
     Progress progress("diagnose");
     options.progress = [&](double share, const std::string& step) { progress.update(share, step); };
     const diagnose::Diagnosis d = diagnose::diagnose(text_, machine_, rows_, options);
+    if (round == 0 && !d.end.absurd.empty()) throw text::LimitNotMet(d.end.absurd + "; nothing is written");
     last_ = results::diagnosis_json(d, rows_);
     if (round == 0) {
+      text::make_folder(arguments_.output);
       first_diagnosis_ = last_;
       take({"the model as given, fitted", "", "", "", d.ladder[0].text, d.ladder[0].rms_um,
             d.ladder[0].check_rms_um});
@@ -239,7 +240,8 @@ void register_improve(CLI::App& vernier) {
       "last line\n"
       "of figures is what the measurement would have read with the 1 kHz correction running. Exit status 0 "
       "done\n"
-      "(whatever was found), 1 bad input.");
+      "(whatever was found), 1 bad input, 2 the readings are not those of this machine or the fit did not\n"
+      "converge: nothing written.");
   command->callback([arguments] { Improver(*arguments).run(); });
 }
 

@@ -10,7 +10,7 @@
 #include "tools/commands/command.h"
 #include "tools/commands/part_kinds.h"
 #include "tools/commands/report_header.h"
-#include "tools/evaluate/positioning.h"
+#include "tools/evaluate/judgement.h"
 #include "tools/kinematics/at.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/machine_writer.h"

@@ -9,9 +9,12 @@
 #include "tools/kinematics/at.h"
 #include "tools/kinematics/closed.h"
 #include "tools/results/result_json.h"
+#include "tools/text/assurance.h"
 
 namespace vernier::commands::solve_cli {
 namespace {
+
+constexpr double kRangeSlack = 1e-9;  // mm or deg: a target on the limit itself
 
 struct SolveArguments {
   std::string machine, target, start, match = "auto", json;
@@ -41,15 +44,43 @@ kinematics::InverseOptions options_of(const SolveArguments& arguments, const mod
   return options;
 }
 
+/// The axes found bring the tool to the target, and may be there. tool.
+text::Assurance assurance_of(const model::Machine& machine, const kinematics::InverseResult& result,
+                             const kinematics::InverseOptions& options) {
+  const kinematics::Inverse& proof = result.each[0];
+  text::Assurance assurance(text::AssuranceKind::kSolve);
+  assurance.at_most("residual-mm", proof.residual_mm, options.tolerance_mm,
+                    "Distance of the tool point from the target, mm.");
+  if (options.match != kinematics::Match::kPosition)
+    assurance.at_most("residual-deg", proof.residual_deg, options.tolerance_deg,
+                      "Angle between the tool and the target, deg.");
+  assurance.require("solved", proof.converged, "The answer is no singular pose and within all ranges.");
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    const model::Axis& axis = machine.axes[i];
+    const double value = result.states.axis[i][0];
+    if (axis.min)
+      assurance.at_least("min-" + axis.name, value, *axis.min - kRangeSlack, "Lower end of its range.");
+    if (axis.max)
+      assurance.at_most("max-" + axis.name, value, *axis.max + kRangeSlack, "Upper end of its range.");
+    if (!axis.min || !axis.max)
+      assurance.not_covered("The machine file has no min and max of " + axis.name +
+                            ": its range is not known.");
+  }
+  assurance.not_covered("Collisions are not looked at.");
+  return assurance;
+}
+
 /// What a Newton iteration found, and whether the closed form says the same.
 nlohmann::ordered_json solution_json(const model::Machine& machine, const kinematics::InverseResult& result,
                                      const model::States& start, const model::Poses& target,
-                                     bool position_only) {
+                                     const kinematics::InverseOptions& options) {
   nlohmann::ordered_json json = {{"machine", machine.name},
                                  {"axes", results::axes_json(machine, result.states)},
                                  {"reached", results::pose_json(model::forward(machine, result.states))},
                                  {"proof", results::inverse_json(machine, result.each[0])},
-                                 {"closed_form", nullptr}};
+                                 {"closed_form", nullptr},
+                                 {"assurance", assurance_of(machine, result, options).json()}};
+  const bool position_only = options.match == kinematics::Match::kPosition;
   const auto closed = position_only ? kinematics::closed_solution(machine, start) : std::nullopt;
   if (!closed) return json;
   const Eigen::MatrixXd q = kinematics::solve_closed(*closed, target.position);
@@ -84,8 +115,7 @@ void run_solve(const SolveArguments& arguments) {
   const kinematics::InverseResult result =
       kinematics::solve_anywhere(machine, target, start, options, arguments.restarts);
   const kinematics::Inverse& proof = result.each[0];
-  write_json(arguments.json,
-             solution_json(machine, result, start, target, options.match == kinematics::Match::kPosition));
+  write_json(arguments.json, solution_json(machine, result, start, target, options));
   if (!proof.converged) throw text::LimitNotMet(failure_text(machine, proof));
   std::FILE* out = human_stream(arguments.json);
   for (std::size_t i = 0; i < machine.axes.size(); ++i)

@@ -42,8 +42,10 @@ std::string interface_comment(const model::Machine& machine, const LoweredProgra
   }
   for (std::size_t i = 0; i < p.outputs.size(); ++i) {
     const Register& r = p.registers[p.outputs[i].source];
-    text += fmt::format("/// deviation[{}]: axis {}, mm, {} fraction bits, error <= {:.3g} mm.\n", i,
-                        machine.axes[p.outputs[i].axis].name, r.fraction_bits, r.error);
+    const model::Axis& axis = machine.axes[p.outputs[i].axis];
+    const char* const unit = axis.rotary ? "deg" : "mm";
+    text += fmt::format("/// deviation[{}]: axis {}, {}, {} fraction bits, error <= {:.3g} {}.\n", i,
+                        axis.name, unit, r.fraction_bits, r.error, unit);
   }
   return text +
          fmt::format("/// lag: {} states; starting: puts them on their inputs. realtime.\n", p.lag_count);

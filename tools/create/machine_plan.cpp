@@ -6,6 +6,7 @@
 #include <set>
 
 #include "tools/model/expression.h"
+#include "tools/model/measurement_names.h"
 #include "tools/text/numbers.h"
 #include "tools/text/words.h"
 
@@ -44,21 +45,25 @@ double end_of(const std::string& text, const std::string& words) {
 }
 
 void check_name(const std::string& name) {
-  static const std::set<std::string> kMeasured = {"x",  "y",  "z",  "rx", "ry", "rz", "length", "cx",  "cy",
-                                                  "cz", "px", "py", "pz", "d",  "u",  "run",    "role"};
   if (!text::is_name(name))
     throw text::InputError("\"" + name +
                            "\": a name is letters, digits and _, and begins with a letter or _");
-  if (model::is_reserved_word(name) || kMeasured.contains(name))
+  if (model::is_reserved_word(name) || model::is_no_axis_name({}, name))
     throw text::InputError("\"" + name +
                            "\": the formats use this name for something else; axes are X, Y, B, J1 …");
 }
 
 void check_names(const std::vector<PlannedAxis>& axes) {
   std::set<std::string> seen;
-  for (const PlannedAxis& axis : axes)
+  model::Machine machine;
+  for (const PlannedAxis& axis : axes) {
     if (!seen.insert(axis.name).second)
       throw text::InputError("\"" + axis.name + "\": this axis is given twice");
+    machine.axes.emplace_back().name = axis.name;
+  }
+  for (const PlannedAxis& axis : axes)
+    if (model::is_no_axis_name(machine, axis.name))
+      throw text::InputError("\"" + axis.name + "\": " + model::kMeasuredName);
 }
 
 const MachineType& type_of(const std::string& name) {

@@ -13,6 +13,7 @@
 #include <set>
 
 #include "tools/model/expression.h"
+#include "tools/model/measurement_names.h"
 #include "tools/text/error.h"
 #include "tools/text/numbers.h"
 #include "tools/text/words.h"
@@ -290,7 +291,8 @@ std::string axis_name(const std::string& joint) {
   for (char& c : name)
     if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '_';
   const bool is_name = !name.empty() && std::isdigit(static_cast<unsigned char>(name.front())) == 0;
-  return !is_name || model::is_reserved_word(name) || is_static_of_arm(name) ? "J" + name : name;
+  const bool taken = model::is_reserved_word(name) || model::is_no_axis_name({}, name);
+  return !is_name || taken || is_static_of_arm(name) ? "J" + name : name;
 }
 
 PlannedAxis axis_of(const Joint& joint, const std::string& file) {

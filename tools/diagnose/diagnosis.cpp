@@ -48,6 +48,7 @@ class Diagnoser {
     residual::StructureOptions structure;
     structure.fitted_parameters = static_cast<std::size_t>(base_.observability.rank);
     result_.failure = residual::failure_picture(base_.machine, measurement_, base_.residual, structure);
+    if (!base_.mistake.empty()) return refused();
     finder_.find();
     chosen_ = finder_.chosen();
     result_.searched = finder_.candidates().size();
@@ -71,6 +72,19 @@ class Diagnoser {
     fit::FitOptions options;
     options.noise = fit::NoiseModel{};
     return options;
+  }
+
+  /// The answer where the readings are not those of this machine, as `fit` has it: a search would only find
+  /// effects that imitate the mistake.
+  Diagnosis refused() {
+    result_.noise = base_.noise;
+    result_.noise_unit = fit::noise_unit(measurement_);
+    result_.left = result_.failure;
+    walk_ladder();
+    result_.verdict = Verdict::kInstrument;
+    result_.explanation = "The readings are not those of this machine: " + base_.absurd +
+                          ". Correct the measurement file or the machine file first; no effect was searched.";
+    return std::move(result_);
   }
 
   /// With the noise that the search settled on.
@@ -252,8 +266,8 @@ class Diagnoser {
     }
   }
 
-  /// The residual at the end of the ladder with the errors that hang together taken out of the fit rows: what
-  /// an independent reading would have left.
+  /// The residual at the end of the ladder (mm, deg) with the errors that hang together taken out of the fit
+  /// rows: what an independent reading would have left.
   Eigen::VectorXd independent_residual(const model::Measurement& rows) const {
     const fit::NoiseModel& noise = result_.noise;
     Eigen::VectorXd residual = result_.end.residual;
@@ -277,7 +291,9 @@ class Diagnoser {
       }
       left -= columns * maths::least_norm(columns, left);
     }
-    residual(fitted) = left.col(0).cwiseQuotient(weights(fitted));
+    // Whitened readings are in units of the readings' own noise. Where no u is given, 1 of it is no length.
+    const double unit = fit::has_uncertainty(rows) ? 1 : noise.own;
+    residual(fitted) = unit * left.col(0).cwiseQuotient(weights(fitted));
     return residual;
   }
 
@@ -617,11 +633,13 @@ const char* verdict_name(Verdict verdict) {
   return "consistent";
 }
 
-Diagnosis diagnose(const std::string& text, const model::Machine& given,
+namespace {
+
+/// The search, and once more without gross outliers where these may be the cause.
+Diagnosis searched(const std::string& text, const model::Machine& machine,
                    const model::Measurement& measurement, const DiagnoseOptions& options) {
-  model::require_time_order(measurement);
-  const model::Machine machine = effects::with_base_row(given);
   Diagnosis all = Diagnoser(text, machine, measurement, options).run();
+  if (!all.base.mistake.empty()) return all;
   // Outliers beside effects that were found are not the whole answer either.
   const bool more_than_outliers =
       all.verdict == Verdict::kInstrument && all.ladder.size() > 1 && !all.time_base.found;
@@ -644,6 +662,30 @@ Diagnosis diagnose(const std::string& text, const model::Machine& given,
   }
   if (by_spread) all.explanation += " " + rest->sentence;
   return all;
+}
+
+/// No good verdict that the fit itself contradicts: it did not converge, or it leaves more of the readings
+/// than any machine does.
+void heed_the_fit(Diagnosis& answer) {
+  if (answer.end.absurd.empty() && answer.end.converged) return;
+  const std::string why = answer.end.absurd.empty() ? "the fit did not converge" : answer.end.absurd;
+  if (answer.verdict == Verdict::kConsistent) {
+    answer.verdict = answer.end.converged ? Verdict::kInstrument : Verdict::kUnexplained;
+    answer.explanation = "Nothing is vouched for: " + why + ".";
+  } else if (is_named(answer.verdict)) {
+    answer.verdict = Verdict::kUnexplained;
+    answer.explanation = "No cause is named: " + why + ". " + answer.explanation;
+  }
+}
+
+}  // namespace
+
+Diagnosis diagnose(const std::string& text, const model::Machine& given,
+                   const model::Measurement& measurement, const DiagnoseOptions& options) {
+  model::require_time_order(measurement);
+  Diagnosis answer = searched(text, effects::with_base_row(given), measurement, options);
+  heed_the_fit(answer);
+  return answer;
 }
 
 }  // namespace vernier::diagnose

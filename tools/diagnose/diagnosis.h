@@ -80,9 +80,10 @@ struct Diagnosis {
 };
 
 /// Which physical effect is missing? Fits the model, ranks the catalogue at every place, accepts what passes
-/// all tests, and says which of the five answers the data give (FORMATS section 3). `text`: of the machine
-/// file. Check rows enter nothing but the figures that judge. The candidates point
-/// into options.effects, which must outlive them. Throws InputError. tool.
+/// all tests, and says which of the five answers the data give (FORMATS section 3). Readings that `fit`
+/// refuses by name (FitResult::mistake) are searched for nothing: kInstrument, with `end` = `base`. `text`:
+/// of the machine file. Check rows enter nothing but the figures that judge. The candidates point into
+/// options.effects, which must outlive them. Throws InputError. tool.
 Diagnosis diagnose(const std::string& text, const model::Machine& given,
                    const model::Measurement& measurement, const DiagnoseOptions& options = {});
 

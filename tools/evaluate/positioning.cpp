@@ -191,21 +191,4 @@ PositioningFile read_positioning(const std::string& text, const std::string& fil
   return result;
 }
 
-Conformity conformity(double value, double tolerance, double expanded_uncertainty) {
-  if (value + expanded_uncertainty <= tolerance) return Conformity::kMet;
-  return value - expanded_uncertainty > tolerance ? Conformity::kNotMet : Conformity::kUndecided;
-}
-
-const char* conformity_text(Conformity conformity) {
-  switch (conformity) {
-    case Conformity::kMet:
-      return "met";
-    case Conformity::kNotMet:
-      return "not met";
-    case Conformity::kUndecided:
-      return "not decided (within the uncertainty)";
-  }
-  return "";
-}
-
 }  // namespace vernier::evaluate

@@ -50,11 +50,4 @@ struct PositioningFile {
 PositioningFile read_positioning(const std::string& text, const std::string& file, const std::string& axis,
                                  const std::string& reading);
 
-/// Decision rule of ISO 14253-1: a tolerance is met where the value with its expanded uncertainty stays
-/// within, not met where it is beyond even without it.
-enum class Conformity { kMet, kNotMet, kUndecided };
-Conformity conformity(double value, double tolerance, double expanded_uncertainty);
-/// "met", "not met", "not decided (within the uncertainty)".
-const char* conformity_text(Conformity conformity);
-
 }  // namespace vernier::evaluate

@@ -33,9 +33,11 @@ Json or_none(const std::optional<double>& value, double factor) {
   return value ? Json(*value * factor) : Json(nullptr);
 }
 
+constexpr int kDigits = 2;  // behind the point, um or arcsec
+
 Json cell(const Json& value) {
   return value.is_null()     ? Json("–")
-         : value.is_number() ? Json(fmt::format("{:.2f}", value.get<double>()))
+         : value.is_number() ? Json(fmt::format("{:.{}f}", value.get<double>(), kDigits))
                              : value;
 }
 
@@ -63,6 +65,15 @@ std::optional<double> characteristic(const PositioningResult& result, const std:
   return std::nullopt;
 }
 
+std::optional<JudgedValue> judged_of(const Json& characteristic) {
+  if (!characteristic.contains("tolerance")) return std::nullopt;
+  const auto number = [&](const char* key) {
+    const Json& one = characteristic[key];
+    return one.is_null() ? std::nullopt : std::optional<double>(one.get<double>());
+  };
+  return JudgedValue{characteristic["name"], number("value"), number("uncertainty"), *number("tolerance")};
+}
+
 Json positioning_json(const PositioningResult& result, const PositioningFile& file,
                       const PositioningWords& words) {
   const double factor = file.unit == "mm" ? 1e3 : 3600;
@@ -88,6 +99,7 @@ Json positioning_json(const PositioningResult& result, const PositioningFile& fi
     one["R_both"] = both ? Json(at.repeatability_both * factor) : Json(nullptr);
     json["targets"].push_back(std::move(one));
   }
+  std::vector<JudgedValue> judged;
   for (const Characteristic& known : kCharacteristics) {
     const auto value = characteristic(result, known.name);
     Json one = {{"name", known.name}, {"meaning", known.meaning}, {"value", or_none(value, factor)}};
@@ -98,9 +110,11 @@ Json positioning_json(const PositioningResult& result, const PositioningFile& fi
       const double expanded = u == words.uncertainty.end() ? 0 : u->second;
       one["conformity"] =
           value ? Json(conformity_text(conformity(*value, limit->second, expanded))) : Json(nullptr);
+      judged.push_back(*judged_of(one));
     }
     json["characteristics"].push_back(std::move(one));
   }
+  json["assurance"] = assurance_of(judged, json["unit"]).json();
   return json;
 }
 
@@ -115,8 +129,9 @@ Json positioning_page(const Json& json, const PositioningWords& words) {
                        {"unit", unit},
                        {"hint", one["meaning"]},
                        {"strong", name == "A"}});
-    table.push_back({name, one["meaning"], cell(one["value"]), cell(one["uncertainty"]),
-                     cell(one.value("tolerance", Json(nullptr))),
+    JudgedText texts{cell(one["value"]).get<std::string>(), cell(one["uncertainty"]).get<std::string>(), "–"};
+    if (const auto judged = judged_of(one)) texts = judged_text(*judged, kDigits);
+    table.push_back({name, one["meaning"], texts.value, texts.uncertainty, texts.tolerance,
                      cell(one.value("conformity", Json(nullptr)))});
   }
   for (const Json& at : json["targets"])

@@ -2,10 +2,12 @@
 #pragma once
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "tools/evaluate/judgement.h"
 #include "tools/evaluate/positioning.h"
 
 namespace vernier::evaluate {
@@ -22,8 +24,11 @@ struct PositioningWords {
 /// measured.
 std::optional<double> characteristic(const PositioningResult& result, const std::string& name);
 
-/// {axis, unit, factor, targets[…], characteristics[{name, value, tolerance, uncertainty, conformity}], …};
-/// values in um (linear) or arcsec (rotary), as `unit` says. tool.
+/// An entry of `characteristics` as a judgement; nothing where it has no tolerance.
+std::optional<JudgedValue> judged_of(const nlohmann::ordered_json& characteristic);
+
+/// {axis, unit, factor, targets[…], characteristics[{name, value, tolerance, uncertainty, conformity}],
+/// assurance, …}; values in um (linear) or arcsec (rotary), as `unit` says. tool.
 nlohmann::ordered_json positioning_json(const PositioningResult& result, const PositioningFile& file,
                                         const PositioningWords& words);
 

@@ -5,13 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <sstream>
 
 #include "tools/exchange/table_text.h"
 #include "tools/kinematics/correction.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/machine_writer.h"
+#include "tools/model/periods.h"
 #include "tools/text/numbers.h"
 
 namespace vernier::exchange {
@@ -36,19 +36,6 @@ std::vector<ScrewPoint> trims_at(const model::Machine& machine, std::size_t axis
   return points;
 }
 
-/// How far trims at the quarters of a segment are from its straight line, mm.
-double bend_of(const std::vector<ScrewPoint>& five) {
-  double worst = 0;
-  for (std::size_t k = 1; k < 4; ++k) {
-    const double f = static_cast<double>(k) / 4;
-    const auto off = [&](double ScrewPoint::*trim) {
-      return std::abs(five[k].*trim - (1 - f) * five[0].*trim - f * five[4].*trim);
-    };
-    worst = std::max({worst, off(&ScrewPoint::forward_trim), off(&ScrewPoint::reverse_trim)});
-  }
-  return worst;
-}
-
 std::vector<double> first_positions(const model::Machine& machine, std::size_t axis) {
   const model::Axis& one = machine.axes[axis];
   std::vector<double> result;
@@ -65,48 +52,113 @@ std::vector<double> first_positions(const model::Machine& machine, std::size_t a
   return result;
 }
 
-/// Positions between which straight lines stay within the tolerance; none where that takes too many.
-std::optional<std::vector<double>> positions_within(const model::Machine& machine, std::size_t axis,
-                                                    const model::States& at, double tolerance_um) {
-  std::vector<double> positions = first_positions(machine, axis);
-  for (bool split = true; split;) {
-    split = false;
-    if (positions.size() > kMostScrewPoints) return std::nullopt;
-    std::vector<double> next = {positions.front()};
-    for (std::size_t i = 0; i + 1 < positions.size(); ++i) {
-      const double a = positions[i], w = positions[i + 1] - a;
-      if (1000 * bend_of(trims_at(machine, axis, at, {a, a + w / 4, a + w / 2, a + 0.75 * w, a + w})) >
-          tolerance_um) {
-        next.push_back(a + w / 2);
-        split = true;
-      }
-      next.push_back(positions[i + 1]);
-    }
-    positions = std::move(next);
+double rounded(double value) { return std::round(value * 1e6) / 1e6; }  // as files have it, mm
+
+/// The lines of a file, put where the trims bend, against trims at positions all over the axis.
+class LinePlacer {
+ public:
+  LinePlacer(const model::Machine& machine, std::size_t axis, const model::States& at)
+      : machine_(machine), axis_(axis), at_(at) {
+    const std::vector<double> first = first_positions(machine, axis);
+    probes_ = look(first.front(), first.back());
+    lines_ = trims_of(first);
+    for (std::size_t i = 0; i + 1 < lines_.size(); ++i) worst_.push_back(worst_between(i));
   }
-  return positions;
-}
+
+  /// Splits the worst segment until all are within the tolerance or the file is full.
+  ScrewTable place(double tolerance_um) {
+    while (lines_.size() < kMostScrewPoints && 1000 * worst() > tolerance_um && split_worst()) {
+    }
+    return {lines_, 1000 * worst(), probes_.size()};
+  }
+
+ private:
+  double worst() const { return worst_.empty() ? 0 : *std::max_element(worst_.begin(), worst_.end()); }
+
+  /// Trims at positions that no period is a multiple of: one in each of many equal parts, at a place of its
+  /// own there (golden section: no two parts alike).
+  std::vector<ScrewPoint> look(double low, double high) const {
+    constexpr double kFewest = 4096, kMost = 65536, kPerPeriod = 32, kPerStation = 8;
+    constexpr double kGolden = 0.6180339887498949;
+    const model::Detail detail = model::detail_along(machine_, axis_, at_);
+    const double wanted = (high - low) * std::max(kPerPeriod / detail.period, kPerStation / detail.station);
+    const auto count = static_cast<std::size_t>(std::clamp(wanted, kFewest, kMost));
+    std::vector<double> positions;
+    for (std::size_t i = 0; i < count; ++i) {
+      const double place = static_cast<double>(i) * kGolden;
+      positions.push_back(low + (high - low) * (static_cast<double>(i) + place - std::floor(place)) /
+                                    static_cast<double>(count));
+    }
+    return trims_of(positions);
+  }
+
+  std::vector<ScrewPoint> trims_of(const std::vector<double>& positions) const {
+    constexpr std::size_t kAtATime = 4096;  // states of a forward solution: what memory bears
+    std::vector<ScrewPoint> all;
+    for (std::size_t from = 0; from < positions.size(); from += kAtATime) {
+      const auto to = std::min(from + kAtATime, positions.size());
+      const std::vector<ScrewPoint> part = trims_at(machine_, axis_, at_,
+                                                    {positions.begin() + static_cast<std::ptrdiff_t>(from),
+                                                     positions.begin() + static_cast<std::ptrdiff_t>(to)});
+      all.insert(all.end(), part.begin(), part.end());
+    }
+    return all;
+  }
+
+  /// How far the trims between two lines are from the straight line that the controller draws, mm.
+  double worst_between(std::size_t segment) const {
+    const ScrewPoint &a = lines_[segment], &b = lines_[segment + 1];
+    const auto before = [](const ScrewPoint& probe, double x) { return probe.nominal < x; };
+    double worst = 0;
+    for (auto probe = std::lower_bound(probes_.begin(), probes_.end(), a.nominal, before);
+         probe != probes_.end() && probe->nominal <= b.nominal; ++probe) {
+      const double f = (probe->nominal - a.nominal) / (b.nominal - a.nominal);
+      const auto off = [&](double ScrewPoint::*trim) {
+        return std::abs((*probe).*trim - (1 - f) * rounded(a.*trim) - f * rounded(b.*trim));
+      };
+      worst = std::max({worst, off(&ScrewPoint::forward_trim), off(&ScrewPoint::reverse_trim)});
+    }
+    return worst;
+  }
+
+  /// False where the segment is too short to be split.
+  bool split_worst() {
+    const auto at = std::max_element(worst_.begin(), worst_.end()) - worst_.begin();
+    const auto segment = static_cast<std::size_t>(at);
+    const double a = lines_[segment].nominal, b = lines_[segment + 1].nominal, middle = rounded((a + b) / 2);
+    if (!(middle > a && middle < b)) return false;
+    lines_.insert(lines_.begin() + at + 1, trims_of({middle})[0]);
+    worst_[segment] = worst_between(segment);
+    worst_.insert(worst_.begin() + at + 1, worst_between(segment + 1));
+    return true;
+  }
+
+  const model::Machine& machine_;
+  std::size_t axis_;
+  const model::States& at_;
+  std::vector<ScrewPoint> probes_, lines_;
+  std::vector<double> worst_;  // of each segment, mm
+};
 
 /// What would do instead.
-std::string way_out(const model::Machine& machine, std::size_t axis, const model::States& at,
-                    double tolerance_um) {
+std::string way_out(double reached_um) {
   for (const double wider : {0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0})
-    if (wider > tolerance_um && positions_within(machine, axis, at, wider))
+    if (reached_um <= wider)
       return fmt::format("; --tolerance {} would do, --component holds all of it", wider);
   return "; --component holds all of it";
 }
 
 }  // namespace
 
-std::vector<ScrewPoint> screw_points(const model::Machine& machine, std::size_t axis, const model::States& at,
-                                     double tolerance_um) {
-  const auto positions = positions_within(machine, axis, at, tolerance_um);
-  if (!positions)
-    throw text::InputError(
-        {machine.file, 0}, machine.axes[axis].name,
-        fmt::format("more than {} lines are needed to stay within {} um{}", kMostScrewPoints, tolerance_um,
-                    way_out(machine, axis, at, tolerance_um)));
-  return trims_at(machine, axis, at, *positions);
+ScrewTable screw_table(const model::Machine& machine, std::size_t axis, const model::States& at,
+                       double tolerance_um) {
+  ScrewTable table = LinePlacer(machine, axis, at).place(tolerance_um);
+  if (table.points.size() > kMostScrewPoints || table.worst_um > tolerance_um)
+    throw text::LimitNotMet(fmt::format(
+        "{}: {}: {} lines (the controller keeps {}) leave {:.4g} um between them, the tolerance is {} um{}",
+        machine.file, machine.axes[axis].name, table.points.size(), kMostScrewPoints, table.worst_um,
+        tolerance_um, way_out(table.worst_um)));
+  return table;
 }
 
 std::string screw_text(const std::vector<ScrewPoint>& points, ScrewType type) {

@@ -21,12 +21,21 @@ enum class ScrewType { kActual = 0, kTrim = 1 };
 /// Lines that the controller keeps at most (EMCMOT_COMP_SIZE).
 inline constexpr std::size_t kMostScrewPoints = 256;
 
+/// The lines of one axis, and how well they hold its errors.
+struct ScrewTable {
+  std::vector<ScrewPoint> points;
+  double worst_um = 0;     // largest distance between the trims and the lines, rounding of the file included
+  std::size_t probed = 0;  // positions that were looked at, in both senses
+};
+
 /// Trims of one linear axis in both senses, at the stations of its table and wherever it takes to stay within
 /// tolerance_um between them; other axes, motion and inputs as in `at` (count 1). They are first-order
 /// offsets, as if measured at the commanded positions, so an axis that carries the workpiece has the right
-/// sign. Throws InputError: no min and max, or more lines than the controller keeps. tool.
-std::vector<ScrewPoint> screw_points(const model::Machine& machine, std::size_t axis, const model::States& at,
-                                     double tolerance_um);
+/// sign. Looked at are at least 4096 positions at uneven distances, 32 in each period and 8 between stations
+/// (65536 at most). Throws InputError: no min and max; LimitNotMet, with the error reached: more lines than
+/// the controller keeps. tool.
+ScrewTable screw_table(const model::Machine& machine, std::size_t axis, const model::States& at,
+                       double tolerance_um);
 
 /// Text of a file: three numbers a line, nothing else (the controller stops reading at any other line).
 std::string screw_text(const std::vector<ScrewPoint>& points, ScrewType type);

@@ -126,8 +126,10 @@ void judge(FitResult& result, const model::Machine& machine, const model::Measur
   // Free tables can follow two swapped columns: the nominal machine, which cannot, is asked too.
   const bool far_off = result.misfit_mm > kFarOff * result.reach_mm;
   if (result.converged && !misses && !far_off) return;
-  const std::string mistake = likely_mistake(machine, measurement, result.worst);
+  const LikelyMistake likely = likely_mistake(machine, measurement, result.worst);
+  const std::string& mistake = likely.sentence;
   if (result.converged && !misses && mistake.empty()) return;
+  if (!likely.one_reading) result.mistake = mistake;
   result.absurd =
       !result.converged ? fmt::format("the fit did not converge in {} iterations", result.iterations)
       : misses ? fmt::format("the fit leaves {:.3g} mm of a measured box of +- {:.3g} mm", left_mm(result),
@@ -322,10 +324,22 @@ Eigen::VectorXd residuals(const model::Machine& machine, const model::Measuremen
   return result;
 }
 
+namespace {
+
+/// The nominal chain of the fitted machine is that of the given one: where a free static has no `nominal`,
+/// its start value is it, in memory as in the file that is written.
+void keep_start_as_nominal(model::Machine& machine) {
+  for (model::Static& item : machine.statics)
+    if (!item.hidden && !item.nominal) item.nominal = item.value;
+}
+
+}  // namespace
+
 FitResult fit(const model::Machine& machine, const model::Measurement& measurement,
               const FitOptions& options) {
   FitResult result;
   result.machine = machine;
+  keep_start_as_nominal(result.machine);
   result.parameters = model::ParameterSet(machine, setups_of_fit_rows(measurement));
   const Eigen::VectorXd start_residual = residuals(machine, measurement);
   result.before = role_statistics(measurement, start_residual, false);

@@ -85,7 +85,8 @@ struct StageFigures {
 };
 
 struct FitResult {
-  model::Machine machine;  // with the fitted values
+  model::Machine
+      machine;  // with the fitted values; a free static without `nominal` has its start value there
   model::ParameterSet parameters;
   std::vector<ParameterEstimate> estimates;
   Observability observability;
@@ -109,6 +110,9 @@ struct FitResult {
   std::optional<double> check_ratio;
   /// Why the readings are not those of this machine; empty where they are.
   std::string absurd;
+  /// The part of `absurd` that names a mistake of all rows (a unit, a sign, columns swapped); empty where
+  /// none was found.
+  std::string mistake;
   int iterations = 0;
   bool converged = false;
   Eigen::VectorXd residual;  // measured - model per observation, mm or deg

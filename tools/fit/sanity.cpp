@@ -166,13 +166,13 @@ WorstReading worst_reading(const model::Measurement& measurement, const Eigen::V
   return worst;
 }
 
-std::string likely_mistake(const model::Machine& machine, const model::Measurement& rows,
-                           const WorstReading& worst) {
+LikelyMistake likely_mistake(const model::Machine& machine, const model::Measurement& rows,
+                             const WorstReading& worst) {
   // Of chi^2 in one reading; what a mistake undone must leave at most; another that leaves so much is as
   // likely.
   constexpr double kMostOfAll = 0.5, kFivefold = 0.2, kAsGood = 1.5;
-  if (const std::string cell = cell_out_of_range(machine, rows); !cell.empty()) return cell;
-  if (worst.share > kMostOfAll) return worst.reading + " stands alone against all others";
+  if (const std::string cell = cell_out_of_range(machine, rows); !cell.empty()) return {cell, false};
+  if (worst.share > kMostOfAll) return {worst.reading + " stands alone against all others", true};
   const model::ParameterSet none;
   const double misfit_mm = convention_of(machine, rows, none).misfit_mm;
   struct Found {
@@ -198,7 +198,7 @@ std::string likely_mistake(const model::Machine& machine, const model::Measureme
   std::string sentence;
   for (const Found& one : found)
     if (one.outside == outside) sentence += (sentence.empty() ? "" : ", or ") + one.sentence;
-  return sentence;
+  return {sentence, false};
 }
 
 }  // namespace vernier::fit

@@ -25,10 +25,14 @@ struct WorstReading {
 WorstReading worst_reading(const model::Measurement& measurement, const Eigen::VectorXd& residual,
                            bool check);
 
+struct LikelyMistake {
+  std::string sentence;      // empty: nothing found
+  bool one_reading = false;  // a gross reading among good ones, no mistake of all rows
+};
+
 /// Why readings are not those of this machine, in a sentence: one gross reading, two columns swapped, a unit,
-/// a sign. Each is tried; what lowers the misfit of the nominal machine fivefold is it. Empty: nothing found.
-/// tool.
-std::string likely_mistake(const model::Machine& machine, const model::Measurement& rows,
-                           const WorstReading& worst);
+/// a sign. Each is tried; what lowers the misfit of the nominal machine fivefold is it. tool.
+LikelyMistake likely_mistake(const model::Machine& machine, const model::Measurement& rows,
+                             const WorstReading& worst);
 
 }  // namespace vernier::fit

@@ -10,6 +10,8 @@
 #include <set>
 
 #include "tools/import/sheet_words.h"
+#include "tools/model/measurement_names.h"
+#include "tools/sheet/dates.h"
 #include "tools/sheet/sheet_number.h"
 #include "tools/text/numbers.h"
 #include "tools/text/units.h"
@@ -159,16 +161,23 @@ std::pair<std::string, std::string> halves(const std::string& words, bool last, 
   return two;
 }
 
-enum class Holds { kNothing, kNumbers, kWords };  // words: in most of the cells that are filled
+enum class Holds {
+  kNothing,
+  kNumbers,
+  kWords,
+  kDates
+};  // words, dates: in most of the cells that are filled
 
 Holds holds(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::size_t column) {
-  std::size_t words = 0, filled = 0;
+  std::size_t words = 0, dates = 0, filled = 0;
   for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
     const std::string& cell = sheet.rows[row][column];
     filled += cell.empty() ? 0 : 1;
+    dates += sheet::is_date(cell) ? 1 : 0;
     words += !cell.empty() && !sheet::plain_number(cell, sheet.decimal_comma) ? 1 : 0;
   }
   if (filled == 0) return Holds::kNothing;
+  if (2 * dates > filled) return Holds::kDates;
   return 2 * words > filled ? Holds::kWords : Holds::kNumbers;
 }
 
@@ -279,7 +288,8 @@ void settle(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::vect
   for (std::size_t k = 0; k < columns.size(); ++k) {
     SheetColumn& column = columns[k];
     const Holds content = holds(sheet, table, k);
-    if (content == Holds::kWords && keeps_words(column, guess)) {
+    const bool no_numbers = content == Holds::kWords || content == Holds::kDates;
+    if (no_numbers && keeps_words(column, guess)) {
       column.words = true;
       column.unit.clear();
     }
@@ -303,8 +313,11 @@ void settle(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::vect
       column.name = "dir" + *moved.begin();
     else if (column.name == "dir")
       leave(column, "the sense of which axis? Say it: --column \"dirX=" + table.headings[k].text + "\"");
+    else if (column.name == "t" && content == Holds::kDates)
+      leave(column, "dates or times of day, no seconds");
+    // Dates where a position or a reading should be are refused with their row.
     else if (!column.words && !is_label(column.name) && !column.name.starts_with("dir") &&
-             content != Holds::kNumbers)
+             content != Holds::kNumbers && content != Holds::kDates)
       leave(column, content == Holds::kNothing ? "empty" : "no numbers");
   }
 }
@@ -328,6 +341,43 @@ void keep_names_apart(const sheet::SheetTable& table, std::vector<SheetColumn>& 
 bool wants_unit(const SheetColumn& column) {
   return column.use != SheetColumn::Use::kLeft && !column.words && !is_label(column.name) &&
          !is_pure(column.name);
+}
+
+/// The quantities that a column of this role may hold; empty: any. A machine's axes are linear or rotary, and
+/// so are its deviations and uncertainties.
+std::vector<text::Dimension> quantities_of(const SheetColumn& column, const Guess& guess) {
+  using text::Dimension;
+  const std::string& name = column.name;
+  const std::vector<Dimension> either = {Dimension::kLength, Dimension::kAngle};
+  if (column.use == SheetColumn::Use::kDeviation || guess.is_axis(name)) return either;
+  if (guess.is_motion(name)) {
+    if (name.starts_with("dir")) return {Dimension::kNone};
+    if (name.starts_with("since") || name.starts_with("correction")) return either;
+    if (name.starts_with("v")) return {Dimension::kSpeed, Dimension::kAngularSpeed};
+    return {Dimension::kAcceleration, Dimension::kAngularAcceleration};
+  }
+  if (name == "u") return either;
+  const model::KnownColumn* const known = model::find_known_column(name);
+  if (known == nullptr || known->since || known->label) return {};
+  return {text::find_unit(known->unit)->dimension};
+}
+
+/// A length in bar, an angle in seconds of time: refused, with what the column needs.
+void check_quantity(const SheetColumn& column, const Guess& guess, const std::string& heading,
+                    const text::Place& place) {
+  if (column.use == SheetColumn::Use::kLeft || column.words || column.unit.empty()) return;
+  const std::vector<text::Dimension> allowed = quantities_of(column, guess);
+  const auto unit = text::find_unit(column.unit);
+  if (allowed.empty() || !unit) return;
+  if (std::find(allowed.begin(), allowed.end(), unit->dimension) != allowed.end()) return;
+  std::string needs;
+  for (const text::Dimension one : allowed)
+    needs += (needs.empty() ? "" : " or ") + std::string(text::base_unit(one));
+  const bool pure = needs.empty();
+  throw text::InputError(place, heading,
+                         fmt::format("[{}] is no unit of {}{}, which needs {}", column.unit,
+                                     column.use == SheetColumn::Use::kDeviation ? "a deviation of " : "",
+                                     column.name, pure ? "a pure number" : "a unit like " + needs));
 }
 
 /// Senses as numbers: 1 and -1, 0 where nothing moved. A heading of a shop that counts 1 and 0, or 1 and 2,
@@ -372,6 +422,10 @@ std::string cell_text(const sheet::Sheet& sheet, const SheetColumn& column, cons
   if (column.name.starts_with("dir"))
     if (const int sense = sense_said(cell); sense != 0) return std::to_string(sense);
   if (const auto number = sheet::plain_number(cell, sheet.decimal_comma)) return *number;
+  if (sheet::is_date(cell))
+    throw text::InputError(place, cell,
+                           "a date or a time of day, not a number, for " + column.name +
+                               "; give the cells of this column the number format of the spreadsheet");
   const bool other_sign = sheet::plain_number(cell, !sheet.decimal_comma).has_value();
   throw text::InputError(
       place, cell,
@@ -536,6 +590,8 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
         "nothing measured among the columns (x y z rx ry rz length d, or a deviation of an axis): say which "
         "it is, such as --column \"x[mm]=HEADING\" or --deviation \"X[um]=HEADING\"; --preview shows what "
         "was understood");
+  for (std::size_t k = 0; k < columns.size(); ++k)
+    check_quantity(columns[k], guess, table.headings[k].text, heading);
   for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
     const auto& cells = sheet.rows[row];
     if (std::all_of(cells.begin(), cells.end(), [](const std::string& cell) { return cell.empty(); }))
@@ -567,6 +623,9 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
       if (!is_angle(column.unit))
         throw text::InputError(heading, table.headings[k].text,
                                "a length, where " + column.name + " is an angle");
+    } else if (deviation && is_angle(column.unit)) {
+      throw text::InputError(heading, table.headings[k].text,
+                             "an angle, where " + column.name + " is a length");
     }
     if (result.find(made.name) != nullptr)
       throw text::InputError(heading, table.headings[k].text,

@@ -49,12 +49,20 @@ class InverseSolver {
         proofs_(start.count) {}
 
   InverseResult run() {
-    measure(model::forward(machine_, states_), true);
-    for (int i = 0; i < options_.most_iterations && step(); ++i) continue;
-    return {states_, finish()};
+    iterate();
+    // A chain may know how often an axis has turned (a wound cable): after whole turns it is solved anew.
+    if (options_.keep_ranges && turn_into_ranges()) iterate();
+    std::vector<Inverse> proofs = finish();
+    return {std::move(states_), std::move(proofs)};
   }
 
  private:
+  void iterate() {
+    walkers_.assign(walkers_.size(), Walker{});
+    measure(model::forward(machine_, states_));
+    for (int i = 0; i < options_.most_iterations && step(); ++i) continue;
+  }
+
   double length_of(const VectorXd& residual) const { return residual.norm(); }
 
   VectorXd residual_at(const model::Poses& poses, std::size_t i) const {
@@ -67,10 +75,10 @@ class InverseSolver {
                options_.tolerance_deg;
   }
 
-  void measure(const model::Poses& poses, bool first) {
+  void measure(const model::Poses& poses) {
     for (std::size_t i = 0; i < walkers_.size(); ++i) {
-      if (first) walkers_[i].residual = residual_at(poses, i);
-      walkers_[i].done = walkers_[i].done || small(walkers_[i].residual);
+      walkers_[i].residual = residual_at(poses, i);
+      walkers_[i].done = small(walkers_[i].residual);
     }
   }
 
@@ -145,33 +153,40 @@ class InverseSolver {
     if (!met) return InverseFault::kUnreachable;
     if (!options_.keep_ranges) return InverseFault::kNone;
     for (const std::size_t axis : axes_) {
-      if (into_range(states_.axis[axis][static_cast<Index>(row)], machine_.axes[axis])) continue;
+      if (is_inside(states_.axis[axis][static_cast<Index>(row)], machine_.axes[axis])) continue;
       proof.axis = axis;
       return InverseFault::kBeyondRange;
     }
     return InverseFault::kNone;
   }
 
-  /// Turns a rotary axis by whole turns into its range; false where it (or a linear one) cannot stand there.
-  static bool into_range(double& value, const model::Axis& axis) {
-    if (axis.rollover && axis.rotary) {
-      value = std::remainder(value, 360.0);  // a rotary axis that rolls over knows no other turn
-      if (axis.min && value < *axis.min) value += 360;
-      return true;
-    }
-    constexpr double kSlack = 1e-9;  // of a target on the limit itself, mm or deg
-    const auto inside = [&](double v) {
-      return (!axis.min || v >= *axis.min - kSlack) && (!axis.max || v <= *axis.max + kSlack);
-    };
-    if (inside(value)) return true;
-    if (!axis.rotary) return false;
-    const double near = std::remainder(value, 360.0);
-    for (const double turn : {0.0, 360.0, -360.0, 720.0, -720.0})
-      if (inside(near + turn)) {
-        value = near + turn;
-        return true;
+  /// Turns rotary axes by whole turns into their ranges. False where none had to be turned.
+  bool turn_into_ranges() {
+    bool any = false;
+    for (const std::size_t axis : axes_)
+      for (double& value : states_.axis[axis]) {
+        const double turned = turned_into_range(value, machine_.axes[axis]);
+        any = any || turned != value;
+        value = turned;
       }
-    return false;
+    return any;
+  }
+
+  static bool is_inside(double value, const model::Axis& axis) {
+    constexpr double kSlack = 1e-9;                 // of a target on the limit itself, mm or deg
+    if (axis.rollover && axis.rotary) return true;  // it has every position within a turn
+    return (!axis.min || value >= *axis.min - kSlack) && (!axis.max || value <= *axis.max + kSlack);
+  }
+
+  /// The position a whole number of turns away that is within the range; the same where there is none.
+  static double turned_into_range(double value, const model::Axis& axis) {
+    if (!axis.rotary) return value;
+    const double near = std::remainder(value, 360.0);
+    if (axis.rollover) return axis.min && near < *axis.min ? near + 360 : near;  // it knows no other turn
+    if (is_inside(value, axis)) return value;
+    for (const double turn : {0.0, 360.0, -360.0, 720.0, -720.0})
+      if (is_inside(near + turn, axis)) return near + turn;
+    return value;
   }
 
   const model::Machine& machine_;

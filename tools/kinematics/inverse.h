@@ -57,7 +57,8 @@ struct InverseResult {
 };
 
 /// Newton iteration with damping (Levenberg-Marquardt, Marquardt 1963) on the forward solution, for all
-/// states at once. `target`: one pose a state, workpiece coordinates (rotation unused for kPosition).
+/// states at once. A rotary axis is turned by whole turns into its range; the proof is of what is returned.
+/// `target`: one pose a state, workpiece coordinates (rotation unused for kPosition).
 /// `start`: first guess, and motion, inputs, runs and time as they are. Jacobian by central differences, so
 /// that every expression of the chain counts. Throws InputError where the chain is not finite. tool.
 InverseResult solve(const model::Machine& machine, const model::Poses& target, const model::States& start,

@@ -2,15 +2,12 @@
 #include "tools/lint/lint_table.h"
 
 #include <cctype>
-#include <map>
 #include <tuple>
 
-namespace vernier::lint {
+#include "tools/model/measurement_names.h"
+#include "tools/text/units.h"
 
-const std::set<std::string>& reading_names() {
-  static const std::set<std::string> kNames = {"x", "y", "z", "rx", "ry", "rz", "length", "d"};
-  return kNames;
-}
+namespace vernier::lint {
 
 std::string quoted_for_shell(const std::string& file) {
   return file.find_first_of(" '\"$()&;*?") == std::string::npos ? file : "'" + file + "'";
@@ -20,6 +17,17 @@ const LintColumn* LintTable::find(const std::string& name) const {
   for (const LintColumn& column : columns)
     if (column.name == name) return &column;
   return nullptr;
+}
+
+bool is_reading(const LintTable& table, const LintColumn& column) {
+  const model::KnownColumn* const known = model::find_known_column(column.name);
+  if (known == nullptr || !known->reading) return false;
+  if (!known->since) return true;
+  if (column.name == "distance") return table.find("from") != nullptr;
+  const auto unit = text::find_unit(column.unit);
+  if (column.name.front() == 'i') return unit && unit->dimension == text::Dimension::kAngle;
+  return column.unit.empty() && table.find("ax") != nullptr && table.find("ay") != nullptr &&
+         table.find("az") != nullptr;
 }
 
 bool LintNames::is_axis(const std::string& name) const {
@@ -45,19 +53,15 @@ std::string LintNames::needed_unit(const std::string& name) const {
     if (const std::string axis = axis_of(name, prefix); !axis.empty())
       return is_rotary(axis) ? angle : length;
   if (!axis_of(name, "dir").empty()) return "";
-  static const std::map<std::string, std::string> kUnits = {
-      {"x", "mm"},      {"y", "mm"},  {"z", "mm"},   {"rx", "deg"},    {"ry", "deg"},    {"rz", "deg"},
-      {"length", "mm"}, {"d", "mm"},  {"cx", "mm"},  {"cy", "mm"},     {"cz", "mm"},     {"px", "mm"},
-      {"py", "mm"},     {"pz", "mm"}, {"nx", ""},    {"ny", ""},       {"nz", ""},       {"t", "s"},
-      {"run", ""},      {"role", ""}, {"visit", ""}, {"feed", "mm/s"}, {"curv", "1/mm"}, {"corrected", ""}};
-  const auto found = kUnits.find(name);
-  return found == kUnits.end() ? "?" : found->second;
+  const model::KnownColumn* const known = model::find_known_column(name);
+  // With another unit a word of a later version is a column of one's own; u is a length or an angle.
+  const bool any = known == nullptr || name == "u" || (known->since && !known->label);
+  return any ? "?" : known->unit;
 }
 
 std::vector<std::string> LintNames::known() const {
-  std::vector<std::string> names = {"x",   "y",    "z",    "rx",   "ry", "rz",    "length",   "d",  "cx",
-                                    "cy",  "cz",   "px",   "py",   "pz", "nx",    "ny",       "nz", "t",
-                                    "run", "role", "feed", "curv", "u",  "visit", "corrected"};
+  std::vector<std::string> names;
+  for (const model::KnownColumn& column : model::known_columns()) names.emplace_back(column.name);
   if (machine_ == nullptr) return names;
   for (const model::Axis& axis : machine_->axes)
     for (const char* prefix : {"", "dir", "since", "v", "a", "correction"})

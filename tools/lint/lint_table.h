@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 #include <cstddef>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -50,8 +49,9 @@ class LintNames {
   const model::Machine* machine_;
 };
 
-/// x y z rx ry rz length d.
-const std::set<std::string>& reading_names();
+/// Is this column a reading in this table? One of a later version of the format is so only with what belongs
+/// to it: `distance` with `from`, `ix` and `iy` with an angle's unit, `ax ay az` all three without a unit.
+bool is_reading(const LintTable& table, const LintColumn& column);
 
 /// A file's name as it may stand in a command.
 std::string quoted_for_shell(const std::string& file);

@@ -13,6 +13,7 @@
 #include "tools/lint/lint_table.h"
 #include "tools/lint/measurement_meaning.h"
 #include "tools/model/measurement.h"
+#include "tools/model/measurement_names.h"
 #include "tools/sheet/encoding.h"
 #include "tools/sheet/heading.h"
 #include "tools/sheet/sheet.h"
@@ -185,7 +186,8 @@ class Look {
       }
       if (!seen.insert(column.name).second)
         findings_.error(table_.header_line, column.name, "this column stands twice");
-      column.label = column.name == "run" || column.name == "role" || column.name == "corrected";
+      const model::KnownColumn* const of_formats = model::find_known_column(column.name);
+      column.label = of_formats != nullptr && of_formats->label;
       if (names_.needed_unit(column.name) == "?" && column.name != "u" &&
           std::find(known.begin(), known.end(), column.name) == known.end()) {
         const auto meant = text::word_meant(column.name, known);
@@ -210,9 +212,9 @@ class Look {
   /// What the header lacks.
   void look_for_columns() {
     const bool any = std::any_of(table_.columns.begin(), table_.columns.end(),
-                                 [](const LintColumn& c) { return reading_names().contains(c.name); });
+                                 [&](const LintColumn& c) { return is_reading(table_, c); });
     if (!any)
-      findings_.error(table_.header_line, "", "no measured column (x y z rx ry rz length d)",
+      findings_.error(table_.header_line, "", "no measured column (" + model::reading_names() + ")",
                       "small letters are what was measured, capitals where the machine was sent");
     for (const char* name : {"length", "d"}) {
       if (table_.find(name) == nullptr) continue;

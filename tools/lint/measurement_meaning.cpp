@@ -38,7 +38,7 @@ class Meaning {
  private:
   void look_at_column(const LintColumn& column) {
     if (column.label) return;
-    const bool reading = reading_names().contains(column.name);
+    const bool reading = is_reading(table_, column);
     double least = std::numeric_limits<double>::infinity(), most = -least;
     std::size_t filled = 0;
     for (std::size_t row = 0; row < table_.rows.size(); ++row) {
@@ -59,7 +59,7 @@ class Meaning {
       if (column.name == "u" && value <= 0)
         findings_.add_of_kind("u", LintWeight::kError, line(row), column.cell[row],
                               "an uncertainty is greater than 0");
-      if (column.name == "length" && value < 0)
+      if ((column.name == "length" || (reading && column.name == "distance")) && value < 0)
         findings_.add_of_kind("length", LintWeight::kError, line(row), column.cell[row],
                               "a length is not negative");
     }
@@ -279,7 +279,7 @@ class Meaning {
     constexpr double kWild = 100;       // times the column's spread: a decimal point slips by ten
     constexpr std::size_t kFewest = 8;  // cells: of fewer none is the odd one
     // What a machine logs of itself may well jump: a heater is at its set-point but for the first minutes.
-    if (!reading_names().contains(column.name) && !names_.is_axis(column.name)) return;
+    if (!is_reading(table_, column) && !names_.is_axis(column.name)) return;
     const LintColumn* position =
         column.name.size() == 1
             ? table_.find(

@@ -54,7 +54,15 @@ class Writer {
     const std::string before = text_of(node, "value");
     if (item.hidden) return;
     set(node, "value", text::number_text(item.value));
-    if (set_nominal_ && !item.nominal) set(node, "nominal", before);
+    if (set_nominal_) set_nominal(node, item, before);
+  }
+
+  /// Where the text has no nominal: the machine's, else the value that the text had. The number as it was
+  /// written is kept.
+  void set_nominal(const pugi::xml_node& node, const Static& item, const std::string& before) {
+    if (!text_of(node, "nominal").empty()) return;
+    const bool as_written = !item.nominal || text::parse_number(before) == item.nominal;
+    set(node, "nominal", as_written ? before : text::number_text(*item.nominal));
   }
 
   void edit_axis(const pugi::xml_node& node) {

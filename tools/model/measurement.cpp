@@ -10,6 +10,7 @@
 #include <map>
 #include <set>
 
+#include "tools/model/measurement_names.h"
 #include "tools/text/csv.h"
 #include "tools/text/files.h"
 #include "tools/text/numbers.h"
@@ -21,7 +22,7 @@ namespace {
 
 constexpr double kAbsent = std::numeric_limits<double>::quiet_NaN();  // an empty cell
 /// Columns that say what a board had added: before an axis' name, and the image that ran.
-const std::string kCorrection = "correction", kCorrected = "corrected";
+const std::string kCorrection(kCorrectionColumn), kCorrected = "corrected";
 
 /// One file's columns as numbers in their base units; NaN for an empty cell.
 class FileReader {
@@ -153,28 +154,12 @@ class Builder {
 
  private:
   void check_names() {
-    const auto reserved = [this](const std::string& name) {
-      for (const Axis& axis : machine_.axes)
-        if (name == kCorrection + axis.name) return true;
-      for (const char* word : {"x", "y", "z", "rx", "ry", "rz", "length", "cx", "cy", "cz", "d", "px", "py",
-                               "pz", "u", "run", "role", "corrected"})
-        if (name == word) return true;
-      return false;
-    };
-    const auto reserved_since = [](const std::string& name) {
-      for (const char* word :
-           {"setup", "clock", "block", "ax", "ay", "az", "ua", "distance", "from", "ix", "iy"})
-        if (name == word) return true;
-      return false;
-    };
     for (const Axis& axis : machine_.axes)
-      if (reserved(axis.name) || reserved_since(axis.name))
-        throw text::InputError({machine_.file, axis.line}, axis.name,
-                               "measurement files use this name for a measured column");
+      if (is_no_axis_name(machine_, axis.name))
+        throw text::InputError({machine_.file, axis.line}, axis.name, kMeasuredName);
     for (const Input& input : machine_.inputs)
-      if (reserved(input.name))
-        throw text::InputError({machine_.file, input.line}, input.name,
-                               "measurement files use this name for a measured column");
+      if (is_no_input_name(machine_, input.name))
+        throw text::InputError({machine_.file, input.line}, input.name, kMeasuredName);
   }
 
   void read_axes() {
@@ -464,9 +449,7 @@ class Builder {
       }
       any = any || values[k].size() > 0;
     }
-    if (!any)
-      throw text::InputError(reader_.header(), "",
-                             "no measured column (x y z rx ry rz length d ax ay az distance ix iy)");
+    if (!any) throw text::InputError(reader_.header(), "", "no measured column (" + reading_names() + ")");
     for (std::size_t row = 0; row < reader_.rows(); ++row)
       for (std::size_t k = 0; k < values.size(); ++k) {
         const auto at = static_cast<Eigen::Index>(row);

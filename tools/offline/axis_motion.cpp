@@ -11,7 +11,10 @@ using Eigen::Index, Eigen::VectorXd;
 VectorXd ProgramMove::at(double share) const { return arc ? arc->at(share) : from + share * (to - from); }
 
 AxisMotion::AxisMotion(const model::Machine& machine, const model::States& at)
-    : machine_(machine), at_(at), turn_(machine.axes.size(), std::nan("")), sense_(machine.axes.size(), 0) {}
+    : machine_(machine), at_(at), turn_(machine.axes.size(), std::nan("")), sense_(machine.axes.size(), 0) {
+  for (std::size_t i = 0; i < machine.axes.size(); ++i)
+    detail_.push_back(model::detail_along(machine, i, at));
+}
 
 std::vector<double> AxisMotion::stretches(const ProgramMove& move) const {
   std::vector<double> ends = {0};
@@ -80,13 +83,17 @@ int AxisMotion::looks(const ProgramMove& move, double from, double to, double de
   // What a table of stations does not hide between two looks; how many they are, and chords for the length.
   constexpr double kStep_mm = 1, kStep_deg = 0.1;
   constexpr int kFewest = 8, kMost = 200000, kChords = 64;
-  double length = 0, turn = 0, bend = 0;
+  constexpr double kPerPeriod = 32, kPerStation = 4;
+  double length = 0, turn = 0, bend = 0, detail = 0;
+  VectorXd reached =
+      VectorXd::Zero(static_cast<Index>(machine_.axes.size()));  // by each axis, along the move
   VectorXd last = move.at(from), way;
   for (int k = 1; k <= kChords; ++k) {
     const VectorXd next = move.at(from + (to - from) * k / kChords), step = next - last;
     double squares = 0;
     for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
       const double one = step[static_cast<Index>(i)];
+      reached[static_cast<Index>(i)] += std::abs(one);
       if (machine_.axes[i].rotary)
         turn += std::abs(one);
       else
@@ -97,9 +104,12 @@ int AxisMotion::looks(const ProgramMove& move, double from, double to, double de
     way = step;
     last = next;
   }
+  for (std::size_t i = 0; i < machine_.axes.size(); ++i)
+    detail = std::max(detail, reached[static_cast<Index>(i)] *
+                                  std::max(kPerPeriod / detail_[i].period, kPerStation / detail_[i].station));
   // A chord of n parts of this one is off by its eighth over n^2.
   const double chords = move.arc ? kChords * std::sqrt(bend / deviation_mm) : 0;
-  return static_cast<int>(std::clamp(std::max({length / kStep_mm, turn / kStep_deg, chords}),
+  return static_cast<int>(std::clamp(std::max({length / kStep_mm, turn / kStep_deg, chords, detail}),
                                      static_cast<double>(kFewest), static_cast<double>(kMost)));
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "tools/model/machine.h"
+#include "tools/model/periods.h"
 #include "tools/model/states.h"
 #include "tools/offline/program_arc.h"
 
@@ -32,14 +33,16 @@ class AxisMotion {
   void set_out(const Eigen::VectorXd& from, const Eigen::VectorXd& to);
   /// Positions with the motion at shares of a move, all within what was set out for.
   model::States along(const ProgramMove& move, const std::vector<double>& shares) const;
-  /// How many equal parts of a stretch are looked at: a millimetre or a tenth of a degree each, and of an arc
-  /// so short that chords of them stay within an eighth of the deviation.
+  /// How many equal parts of a stretch are looked at: a millimetre or a tenth of a degree each at most, 32
+  /// in each period of a wave of the chain and 4 between stations, and of an arc so short that chords of them
+  /// stay within an eighth of the deviation.
   int looks(const ProgramMove& move, double from, double to, double deviation_mm) const;
 
  private:
   const model::Machine& machine_;
   const model::States& at_;
-  std::vector<double> turn_, sense_;  // where an axis last turned round, and how it moves
+  std::vector<double> turn_, sense_;   // where an axis last turned round, and how it moves
+  std::vector<model::Detail> detail_;  // of each axis
 };
 
 }  // namespace vernier::offline

@@ -38,6 +38,7 @@ struct CorrectedStretch {
   std::vector<double> shares;
   model::States states;
   Eigen::MatrixXd commands;
+  Eigen::MatrixXd between;  // at one place between every two of them, which nothing is laid through
 };
 
 bool is_one_of(const Word& word, std::initializer_list<double> codes) {
@@ -218,6 +219,15 @@ class Translator {
     return {{1, there.col(0), {}}};
   }
 
+  /// A place between every two, no simple part of the way.
+  static std::vector<double> between(const std::vector<double>& shares) {
+    constexpr double kGolden = 0.6180339887498949;
+    std::vector<double> places;
+    for (std::size_t k = 0; k + 1 < shares.size(); ++k)
+      places.push_back(shares[k] + kGolden * (shares[k + 1] - shares[k]));
+    return places;
+  }
+
   CorrectedStretch stretch(const ProgramMove& move, double from, double to) {
     CorrectedStretch result;
     const int count = motion_of_.looks(move, from, to, options_.deviation_mm);
@@ -229,6 +239,7 @@ class Translator {
           {place_.line, false, move.arc && (move.at(1) - move.at(0)).norm() < 1e-6, result.states});
     result.commands = corrector_.commands(result.states);
     corrector_.count(result.states, result.commands);
+    result.between = corrector_.commands(motion_of_.along(move, between(result.shares)));
     return result;
   }
 
@@ -253,7 +264,15 @@ class Translator {
       points.col(0) = last;
     else if (last.size() > 0 || guide)
       list.push_back({run.front().shares[0], points.col(0), {}});
+    Index from = 0;
     for (const PathPiece& piece : fit_path(points, guide, kBlock * options_.deviation_mm)) {
+      for (Index k = from; k < piece.to; ++k) {
+        const auto [part, place] = of[static_cast<std::size_t>(k)];
+        if (place >= run[part].between.cols()) continue;  // from one stretch to the next
+        result_.worst_mm = std::max(result_.worst_mm,
+                                    distance_from(piece, points, from, guide, run[part].between.col(place)));
+      }
+      from = piece.to;
       VectorXd end = points.col(piece.to);
       // A whole turn ends on the very figures that it began with.
       if (piece.whole)

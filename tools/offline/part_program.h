@@ -30,6 +30,9 @@ struct PartProgram {
   std::string text;
   std::size_t moves = 0, written = 0;  // blocks with a motion, before and after
   std::size_t arcs = 0;                // of those written
+  /// Largest distance found between the written path and the one that is corrected at every moment, mm,
+  /// before the digits of the program: between every two places that the blocks were laid through.
+  double worst_mm = 0;
 };
 
 /// A part program (RS-274: G0 G1 G2 G3, planes G17 to G19, G20/G21, G90/G91, G90.1/G91.1, G93/G94) with the

@@ -203,4 +203,36 @@ std::vector<PathPiece> fit_path(const MatrixXd& points, const std::optional<ArcG
   return pieces;
 }
 
+double distance_from(const PathPiece& piece, const MatrixXd& points, Index from,
+                     const std::optional<ArcGuide>& guide, const VectorXd& place) {
+  const VectorXd begin = points.col(from);
+  VectorXd way = points.col(piece.to) - begin, rest = place - begin;
+  if (!piece.centre || !guide) {
+    const double length = way.squaredNorm();
+    const double share = length > 0 ? std::clamp(rest.dot(way) / length, 0.0, 1.0) : 0;
+    return (rest - share * way).norm();
+  }
+  const auto from_centre = [&](const VectorXd& at) -> Vector2d {
+    return Vector2d(at[guide->axis[0]], at[guide->axis[1]]) - *piece.centre;
+  };
+  const Vector2d start = from_centre(begin), out = from_centre(place);
+  const double radius = start.norm();
+  const double turn =
+      guide->angle[static_cast<std::size_t>(piece.to)] - guide->angle[static_cast<std::size_t>(from)];
+  const double sense = std::copysign(1, turn);
+  const auto forward = [&](const Vector2d& at) {  // 0 to a turn, in the sense of the arc
+    const double angle = sense * std::atan2(cross(start, at), start.dot(at));
+    return angle < 0 ? angle + kTurn : angle;
+  };
+  const double sweep = piece.whole ? kTurn : forward(from_centre(points.col(piece.to)));
+  double angle = forward(out);
+  if (angle > (sweep + kTurn) / 2) angle -= kTurn;  // just before the begin
+  const double share = sweep > 0 ? std::clamp(angle / sweep, 0.0, 1.0) : 0;
+  way[guide->axis[0]] = way[guide->axis[1]] = 0;
+  rest -= share * way;
+  rest[guide->axis[0]] = out.norm() - radius;
+  rest[guide->axis[1]] = radius * (angle - share * sweep);
+  return rest.norm();
+}
+
 }  // namespace vernier::offline

@@ -57,8 +57,14 @@ void add_motion(Recorder& recorder, const model::Machine& machine, const model::
   if (m.has_recorded("curv")) recorder.add("curv", "1/mm", ColumnKind::kMotion, s.curvature);
 }
 
+bool is_recorded(const RecordedColumn& column, const std::vector<std::size_t>& rows) {
+  return std::any_of(rows.begin(), rows.end(), [&](std::size_t row) {
+    return !std::isnan(column.value[static_cast<Eigen::Index>(row)]);
+  });
+}
+
 /// Values of a column on some rows, scaled to -1..1; 0 where not recorded. By rank where they crowd at one
-/// end.
+/// end. At least one of the rows has a value.
 Eigen::VectorXd scaled(const RecordedColumn& column, const std::vector<std::size_t>& rows, bool may_rank) {
   std::vector<double> known;
   for (const std::size_t row : rows) {
@@ -105,6 +111,9 @@ class Builder {
 
   void add_column(std::size_t at) {
     const RecordedColumn& column = columns_[at];
+    // One of several files may lack the column: readings of a kind that only that file has know nothing of
+    // it.
+    if (!is_recorded(column, rows_)) return;
     if (column.kind == ColumnKind::kRun) return add_runs(at);
     if (column.kind == ColumnKind::kDirection) return add_direction(at);
     add_curves(at, scaled(column, rows_, false), scaled(column, rows_, true));
@@ -213,7 +222,7 @@ class Builder {
   void add_runs(std::size_t at) {
     std::set<double> labels;
     for (const std::size_t row : rows_) labels.insert(columns_[at].value[static_cast<Eigen::Index>(row)]);
-    if (labels.size() > std::min(kMostRuns, rows_.size() / 4)) return;
+    if (labels.size() < 2 || labels.size() > std::min(kMostRuns, rows_.size() / 4)) return;
     BasisTerm term{Shape::kJumps, at, {}, 1, {}, {}};
     for (auto label = std::next(labels.begin()); label != labels.end(); ++label) {
       Eigen::VectorXd f(static_cast<Eigen::Index>(rows_.size()));

@@ -1,9 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/results/diagnosis_json.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 #include "tools/effects/candidate.h"
+#include "tools/fit/statistics.h"
 #include "tools/results/results.h"
 #include "tools/results/structure_json.h"
+#include "tools/text/assurance.h"
 #include "tools/text/optional_json.h"
 
 namespace vernier::results {
@@ -57,6 +65,68 @@ Json candidate_json(const diagnose::CandidateFinding& finding, const model::Mach
   return json;
 }
 
+/// The value of a quantity that is one and the same in all fit rows; nothing where it varies.
+std::optional<double> constant_value(const model::Measurement& m, const model::Column& column) {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (std::size_t row = 0; row < m.rows(); ++row) {
+    const double value = column[static_cast<Eigen::Index>(row)];
+    if (m.check[row] != 0 || std::isnan(value)) continue;
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+  return low == high ? std::optional<double>(low) : std::nullopt;
+}
+
+/// Do the fit rows have both approach directions of an axis?
+bool shows_a_reversal(const model::Measurement& m, std::size_t axis) {
+  bool forward = false, back = false;
+  for (std::size_t row = 0; row < m.rows(); ++row) {
+    const double sense = m.states.direction[axis][static_cast<Eigen::Index>(row)];
+    forward = forward || (m.check[row] == 0 && sense > 0);
+    back = back || (m.check[row] == 0 && sense < 0);
+  }
+  return forward && back;
+}
+
+/// What these rows cannot show, whatever the verdict.
+void add_not_covered(text::Assurance& assurance, const model::Machine& machine, const model::Measurement& m) {
+  std::string one_way;
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    const model::Axis& axis = machine.axes[i];
+    if (const auto at = constant_value(m, model::commanded(m, i)))
+      assurance.not_covered(fmt::format("{} is at {:.6g} {} in every row: errors along {} are not covered.",
+                                        axis.name, *at, axis.rotary ? "deg" : "mm", axis.name));
+    else if (!shows_a_reversal(m, i))
+      one_way += (one_way.empty() ? "" : ", ") + axis.name;
+  }
+  if (!one_way.empty())
+    assurance.not_covered("The rows do not have both approach directions of " + one_way +
+                          ": reversal errors are not covered.");
+  for (std::size_t i = 0; i < machine.inputs.size(); ++i)
+    if (const auto at = constant_value(m, m.states.input[i]))
+      assurance.not_covered(fmt::format("{0} is {1:.6g} {2} in every row: errors with {0} are not covered.",
+                                        machine.inputs[i].name, *at, machine.inputs[i].unit));
+  if (!fit::has_uncertainty(m))
+    assurance.not_covered("The rows have no u: the size of the noise is not known, only its structure.");
+}
+
+/// Vouched for is one verdict only: there is nothing to add.
+text::Assurance assurance_of(const diagnose::Diagnosis& diagnosis, const model::Measurement& m) {
+  text::Assurance assurance(text::AssuranceKind::kDiagnose);
+  assurance.require("verdict-consistent", diagnosis.verdict == diagnose::Verdict::kConsistent,
+                    std::string("The verdict is ") + diagnose::verdict_name(diagnosis.verdict) + ".");
+  assurance.require("fit-converged", diagnosis.end.converged,
+                    diagnosis.end.converged ? "The fit converged." : "The fit did not converge.");
+  assurance.require(
+      "readings-of-this-machine", diagnosis.end.absurd.empty(),
+      diagnosis.end.absurd.empty() ? "The readings are those of this machine." : diagnosis.end.absurd + ".");
+  assurance.at_least("residual-is-noise", diagnosis.left.omnibus_p,
+                     diagnose::DiagnoseThresholds().verdict.structure,
+                     "Probability that noise alone leaves a residual with as much structure.");
+  add_not_covered(assurance, diagnosis.base.machine, m);
+  return assurance;
+}
+
 }  // namespace
 
 Json diagnosis_json(const diagnose::Diagnosis& diagnosis, const model::Measurement& measurement) {
@@ -100,6 +170,7 @@ Json diagnosis_json(const diagnose::Diagnosis& diagnosis, const model::Measureme
   add_failure(json, diagnosis.failure);
   json["left_p_value"] = diagnosis.left.omnibus_p;
   json["next_measurement"] = diagnosis.next_measurement;
+  json["assurance"] = assurance_of(diagnosis, measurement).json();
   return json;
 }
 

@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "tools/sheet/dates.h"
 #include "tools/sheet/sheet_number.h"
 #include "tools/text/error.h"
 #include "tools/text/units.h"
@@ -90,11 +91,11 @@ bool is_numeric(const std::string& cell, const Sheet& sheet) {
   return plain_number(cell, sheet.decimal_comma).has_value();
 }
 
-/// A row of data: as many numbers as words, and at least one.
+/// A row of data: as many numbers as words, and at least one. Dates are neither.
 bool is_data(const Sheet& sheet, std::size_t row) {
   std::size_t numbers = 0, filled = 0;
   for (const std::string& cell : sheet.rows[row]) {
-    filled += cell.empty() ? 0 : 1;
+    filled += cell.empty() || is_date(cell) ? 0 : 1;
     numbers += !cell.empty() && is_numeric(cell, sheet) ? 1 : 0;
   }
   return numbers > 0 && 2 * numbers >= filled && (numbers > 1 || filled == 1 || sheet.rows[row].size() <= 2);

@@ -4,10 +4,12 @@
 #include <fmt/format.h>
 #include <zip.h>
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <pugixml.hpp>
 
+#include "tools/sheet/dates.h"
 #include "tools/text/error.h"
 #include "tools/text/numbers.h"
 #include "tools/text/words.h"
@@ -91,6 +93,8 @@ class Reader {
       for (const pugi::xml_node item : document.document_element().children())
         if (local(item) == "si") strings_.push_back(text_of(item));
     }
+    from_1904_ = child(workbook_.document_element(), "workbookPr").attribute("date1904").as_bool();
+    if (const auto styles = package_.part("xl/styles.xml")) read_styles(*styles);
   }
 
   WorkbookSheet read(const std::string& wanted) {
@@ -118,6 +122,25 @@ class Reader {
     const auto text = package_.part(name);
     if (!text) throw text::InputError({file_, 0}, name, "this zip is no workbook: a part is missing");
     load(document, *text, name);
+  }
+
+  /// Which cell styles show a number as a date.
+  void read_styles(const std::string& text) {
+    pugi::xml_document document;
+    load(document, text, "xl/styles.xml");
+    std::map<unsigned, std::string> formats;
+    for (const pugi::xml_node format : child(document.document_element(), "numFmts").children())
+      formats[format.attribute("numFmtId").as_uint()] = format.attribute("formatCode").value();
+    for (const pugi::xml_node style : child(document.document_element(), "cellXfs").children()) {
+      const unsigned id = style.attribute("numFmtId").as_uint();
+      const auto own = formats.find(id);
+      is_date_.push_back(own == formats.end() ? is_date_format(id) : is_date_format(own->second));
+    }
+  }
+
+  bool shows_date(const pugi::xml_node& cell) const {
+    const auto style = static_cast<std::size_t>(cell.attribute("s").as_uint());
+    return style < is_date_.size() && is_date_[style];
   }
 
   /// A sheet names its part by a relation.
@@ -195,6 +218,7 @@ class Reader {
     // Stored with 17 digits, shown and meant with the 15 that a spreadsheet has: 200.00509999999997 is
     // 200.0051.
     const auto number = type.empty() || type == "n" ? text::parse_number(value) : std::nullopt;
+    if (number && shows_date(cell)) return date_text(*number, from_1904_);
     return number ? text::number_text(*text::parse_number(fmt::format("{:.15g}", *number))) : value;
   }
 
@@ -202,6 +226,8 @@ class Reader {
   Package package_;
   pugi::xml_document workbook_;
   std::vector<std::string> strings_;
+  std::vector<bool> is_date_;  // of each cell style
+  bool from_1904_ = false;
 };
 
 }  // namespace

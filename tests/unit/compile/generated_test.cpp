@@ -102,6 +102,18 @@ TEST_P(Generated, HasTheSameBytesForTheSameInput) {
   EXPECT_EQ(first.compiled.header, second.compiled.header);
 }
 
+TEST(GeneratedHeader, UnitOfADeviationIsThatOfItsAxis) {
+  const Machine robot = parse_machine(
+      R"(<machine name="arm"><variables><static><k value="0.01" nominal="0"/></static><machineaxes>
+      <J1 rotary="true" min="-90" max="90"/><J2 rotary="true" min="10" max="90"/></machineaxes></variables>
+      <transforms branch="tool"><DH n="1" theta="J1+k" d="0" a="300" alpha="0"/>
+      <DH n="2" theta="J2" d="0" a="200" alpha="0"/></transforms></machine>)",
+      "arm.xml");
+  const std::string header = compile_machine(robot, "", {}).header;
+  EXPECT_NE(header.find("axis J1, deg, "), std::string::npos) << header;
+  EXPECT_EQ(header.find(", mm, "), std::string::npos) << header;
+}
+
 TEST(SineTable, IsWhatItsGeneratorPrints) {
   const std::string path = std::string(VERNIER_SOURCE_DIR) + "/comp/generated/sine_table.h";
   if (std::getenv("VERNIER_UPDATE_GOLDEN") != nullptr) write_file(path, print_sine_table());

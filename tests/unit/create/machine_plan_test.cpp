@@ -125,6 +125,19 @@ TEST(MachinePlan, RefusalsSayWhatToDo) {
   EXPECT_TRUE(has(refusal([] { parse_dh_row("1,2,3"); }), "theta,d,a,alpha"));
 }
 
+TEST(MachinePlan, NamesOfMeasuredColumnsAreRefused) {
+  for (const char* name :
+       {"setup", "clock", "block", "distance", "ix", "from", "corrected", "run", "x", "ua"})
+    EXPECT_NE(
+        refusal([&] { parse_planned_axis(std::string(name) + ":0:600:X"); }).find("formats use this name"),
+        std::string::npos)
+        << name;
+  EXPECT_EQ(refusal([&] {
+              plan("gantry", {"X:0:600", "Y:0:400", "correctionX:-300:0:Z"});
+            }),
+            "\"correctionX\": measurement files use this name for a measured column");
+}
+
 TEST(MachinePlan, StationsAreRoundAndFew) {
   EXPECT_EQ(round_stations(0, 600, false), (std::vector<double>{0, 100, 200, 300, 400, 500, 600}));
   EXPECT_EQ(round_stations(-12.5, 330, false),

@@ -9,6 +9,7 @@
 #include <random>
 
 #include "tools/diagnose/diagnosis.h"
+#include "tools/model/chain.h"
 #include "tools/model/machine_reader.h"
 
 namespace vernier::verdict_test {
@@ -272,6 +273,104 @@ TEST(Verdict, RowsOutOfTheOrderOfTimeAreToldWithTheirLine) {
   } catch (const InputError& error) {
     EXPECT_EQ(std::string(error.what()).find("m.csv:5: \"t\": falls from 5 to 4"), 0U) << error.what();
   }
+}
+
+/// An axis and a turning table under it, both read in x and y.
+const char* const kTable = R"(<machine name="m"><variables><static><c value="0" unit="mm"/></static>
+  <machineaxes><X min="0" max="500"/><C rotary="true" min="0" max="360"/></machineaxes></variables>
+  <transforms branch="workpiece"><sixdof n="1" rZ="C"/></transforms>
+  <transforms branch="tool"><sixdof n="1" X="X+c"/></transforms></machine>)";
+
+/// Readings of kTable; `turned`: of C; `unit`: what 1 mm is written as.
+std::string survey_of_table(double turned, double unit) {
+  std::mt19937_64 random(kSeed);
+  std::normal_distribution<double> noise(0, 0.001);
+  std::uniform_real_distribution<double> place(0, 500), angle(0, 360);
+  std::string text = "X[mm],C[deg],x[mm],y[mm],u[um],run\n";
+  for (int i = 0; i < 240; ++i) {
+    const double x = place(random), c = angle(random), turn = -turned * c * 3.14159265358979 / 180;
+    text +=
+        fmt::format("{:.3f},{:.3f},{:.6f},{:.6f},1,r{}\n", x, c, unit * (x * std::cos(turn) + noise(random)),
+                    unit * (x * std::sin(turn) + noise(random)), i % 4);
+  }
+  return text;
+}
+
+TEST(Verdict, ReadingsThatAFitRefusesByNameAreTheInstrumentsAndNothingIsSearched) {
+  const Machine machine = parse_machine(kTable, "m.xml");
+  const auto answer_of = [&](double turned, double unit) {
+    return diagnose::diagnose(kTable, machine,
+                              parse_measurement(survey_of_table(turned, unit), "m.csv", machine));
+  };
+
+  const Diagnosis good = answer_of(1, 1);
+  EXPECT_EQ(good.verdict, Verdict::kConsistent) << good.explanation;
+  EXPECT_EQ(good.end.absurd, "");
+
+  const Diagnosis metres = answer_of(1, 0.001);
+  EXPECT_EQ(metres.verdict, Verdict::kInstrument) << metres.explanation;
+  EXPECT_NE(metres.explanation.find("a thousand times too"), std::string::npos) << metres.explanation;
+  EXPECT_TRUE(metres.candidates.empty());
+  EXPECT_FALSE(metres.end.absurd.empty());
+
+  const Diagnosis other_way = answer_of(-1, 1);
+  EXPECT_EQ(other_way.verdict, Verdict::kInstrument) << other_way.explanation;
+  EXPECT_NE(other_way.explanation.find("sign"), std::string::npos) << other_way.explanation;
+}
+
+/// An arm that leans, whose statics have no nominal: at the fitted lean gravity acts about the upright joint,
+/// in the nominal chain it does not.
+TEST(Verdict, CandidatesOfAChainWithoutNominalValuesAreThoseOfItsStart) {
+  const char* const arm = R"(<machine name="arm" gravity="0 0 -1"><variables><static>
+    <lean value="0" unit="deg"/><l2 value="400" unit="mm"/><l3 value="300" unit="mm"/></static>
+    <machineaxes><J1 rotary="true" min="-170" max="170"/><J2 rotary="true" min="-90" max="90"/>
+    <J3 rotary="true" min="-120" max="120"/></machineaxes></variables>
+    <transforms branch="tool"><sixdof n="1" Z="200" rX="lean"/><sixdof n="2" rZ="J1"/><sixdof n="3" rY="J2"/>
+    <sixdof n="4" Z="l2" rY="J3"/><sixdof n="5" Z="l3"/></transforms></machine>)";
+  const Machine machine = parse_machine(arm, "arm.xml");
+  Machine truth = machine;
+  truth.statics[0].value = 0.3;
+  truth.statics[1].value = 400.4;
+  std::mt19937_64 random(kSeed);
+  std::normal_distribution<double> noise(0, 0.01);
+  States states = make_states(200, truth);
+  for (std::size_t a = 0; a < 3; ++a)
+    for (double& q : states.axis[a])
+      q = std::uniform_real_distribution<double>(*truth.axes[a].min, *truth.axes[a].max)(random);
+  const Eigen::Matrix3Xd p = forward(truth, states).position;
+  std::string text = "J1[deg],J2[deg],J3[deg],x[mm],y[mm],z[mm],run\n";
+  for (Eigen::Index i = 0; i < p.cols(); ++i) {
+    // A joint that gives way under the arm, and one that does so about the upright.
+    const double sag = 0.2 * std::sin((states.axis[1][i] + states.axis[2][i]) * 3.14159265358979 / 180);
+    text += fmt::format("{:.4f},{:.4f},{:.4f},{:.6f},{:.6f},{:.6f},r{}\n", states.axis[0][i],
+                        states.axis[1][i], states.axis[2][i], p(0, i) + noise(random),
+                        p(1, i) + sag + noise(random), p(2, i) + sag + noise(random), i % 4);
+  }
+  const Measurement rows = parse_measurement(text, "arm.csv", machine);
+
+  Diagnosis answer;
+  ASSERT_NO_THROW(answer = diagnose::diagnose(arm, machine, rows)) << "seed " << kSeed;
+
+  EXPECT_EQ(answer.base.machine.statics[0].nominal, 0.0);
+  EXPECT_EQ(parse_machine(answer.machine_text, "arm.xml").statics[0].nominal, 0.0);
+}
+
+/// Without u the noise itself has a length: what is said of the rest is in um, as the tables beside it have
+/// it.
+TEST(Verdict, SizesInTheExplanationAreLengthsWithoutUToo) {
+  std::string text = reversal_and_chirp();
+  for (auto at = text.find(",1,r"); at != std::string::npos; at = text.find(",1,r", at + 2))
+    text.erase(at, 2);
+  text.replace(text.find(",u[um]"), 6, "");
+  const Machine machine = parse_machine(kAxis, "m.xml");
+
+  const Diagnosis answer = diagnose::diagnose(kAxis, machine, parse_measurement(text, "m.csv", machine));
+
+  double largest_um = 0;
+  for (const residual::Finding& finding : answer.left.findings)
+    largest_um = std::max({largest_um, finding.rms_um, std::abs(finding.low_um), finding.high_um});
+  ASSERT_FALSE(answer.left.findings.empty()) << answer.explanation;
+  EXPECT_LT(largest_um, 30) << answer.explanation;  // the errors are 10 and 6 um
 }
 
 }  // namespace

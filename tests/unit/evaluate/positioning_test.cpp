@@ -9,10 +9,12 @@
 #include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <random>
 
 #include "tools/evaluate/positioning_page.h"
 #include "tools/text/error.h"
 #include "tools/text/files.h"
+#include "tools/text/numbers.h"
 
 namespace vernier::positioning_test {
 
@@ -143,6 +145,39 @@ TEST(Conformity, UncertaintyDecidesForNobody) {
   EXPECT_EQ(conformity(11.5, 10, 1), Conformity::kNotMet);
 }
 
+TEST(Conformity, PrintedNumbersSayWhatTheVerdictSays) {
+  // Once "12.099 … tolerance 12.1: not met".
+  const JudgedText text = judged_text({"A", 12.0991, {}, 12.0985}, 3);
+  EXPECT_LT(*parse_number(text.tolerance), *parse_number(text.value)) << text.value << " " << text.tolerance;
+  EXPECT_EQ(judged_text({"A", 12.0999, {}, 12.0998}, 3).value, "12.0999");
+  EXPECT_EQ(judged_text({"A", 12.0999, {}, 12.0998}, 3).tolerance, "12.0998");
+  EXPECT_EQ(judged_text({"A", 3, 0.5, 10}, 2).uncertainty, "0.50");
+  EXPECT_EQ(judged_text({"A", {}, {}, 10}, 2).value, "–");
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> near(0, 1e-4);
+  for (int i = 0; i < 2000; ++i) {
+    const double tolerance = 10 + near(random), value = 9.5 + near(random), u = 0.5 + near(random);
+    const JudgedText three = judged_text({"A", value, u, tolerance}, 3);
+    EXPECT_EQ(conformity(*parse_number(three.value), *parse_number(three.tolerance),
+                         *parse_number(three.uncertainty)),
+              conformity(value, tolerance, u))
+        << value << " " << u << " " << tolerance << " seed 7";
+  }
+}
+
+TEST(Conformity, SameNumbersInAnotherUnitAreEqual) {
+  EXPECT_EQ(conformity(0.1 + 0.2, 0.3, 0), Conformity::kMet);
+  EXPECT_THROW(conformity(std::nan(""), 1, 0), std::logic_error);
+}
+
+TEST(Conformity, AssuranceHoldsWhereEveryToleranceIsMet) {
+  EXPECT_TRUE(assurance_of({{"A", 3, 0.5, 10}, {"R", 2, {}, 2}}, "um").holds());
+  EXPECT_FALSE(assurance_of({{"A", 9.8, 0.5, 10}}, "um").holds()) << "not decided";
+  EXPECT_FALSE(assurance_of({{"A", {}, {}, 10}}, "um").holds()) << "not measured";
+  EXPECT_FALSE(assurance_of({}, "um").holds()) << "nothing judged";
+  EXPECT_EQ(assurance_of({{"R", 2, {}, 2}}, "um").uncovered().size(), 1u);
+}
+
 TEST(EvaluateCommand, WritesNumbersReportAndVerdict) {
   namespace fs = std::filesystem;
   const std::string folder = testing::TempDir() + "evaluate_" + std::to_string(getpid());
@@ -162,6 +197,8 @@ TEST(EvaluateCommand, WritesNumbersReportAndVerdict) {
   EXPECT_NEAR(json["characteristics"][0]["value"].get<double>(), 0.08881, 1e-5);
   EXPECT_EQ(json["characteristics"][0]["conformity"], "met");
   EXPECT_NE(read_file(folder + "/r.html").find("4711"), std::string::npos);
+  EXPECT_TRUE(json["assurance"]["holds"]);
+  EXPECT_EQ(json["assurance"]["because"][0]["rule"], "tolerance-A");
   EXPECT_EQ(run("--tolerance A=0.08um --uncertainty A=0.005um"), 2);
   EXPECT_EQ(run("--tolerance A=0.09um --uncertainty A=0.005um"), 0) << "undecided is no failure";
   EXPECT_EQ(run("--tolerance A=much"), 1);

@@ -148,6 +148,18 @@ const Case kCases[] = {
     {"NothingMeasured", "X[mm];Y[mm]\n1;2\n", "nothing measured among the columns"},
     {"OldWorkbook", "\xD0\xCF\x11\xE0\xA1\xB1\x1A\xE1", "save it as .xlsx or as CSV"},
     {"NoNumbers", "only;words\nhere;too\n", "no row of this table holds numbers"},
+    {"PressureIsNoDeviation", "X [mm];Abweichung [bar]\n100;1\n200;2\n",
+     "refused: s.csv:1: \"Abweichung [bar]\": [bar] is no unit of a deviation of X, which needs a unit like "
+     "mm "
+     "or deg"},
+    {"VoltageIsNoReading", "X[mm];x[V]\n1;2\n", "[V] is no unit of x, which needs a unit like mm"},
+    {"MassIsNoPosition", "X[kg];x[mm]\n1;2\n", "[kg] is no unit of X"},
+    {"DegreesOfTemperatureAreNoAngle", "C[deg];rz[degC]\n1;2\n", "[degC] is no unit of rz"},
+    {"SecondsAreNoUncertainty", "X[mm];x[mm];u[s]\n1;2;3\n", "[s] is no unit of u"},
+    {"AngleOfALength", "X [mm];Abweichung X [arcsec]\n90;3,6\n", "an angle, where X is a length"},
+    {"DateIsNoReading", "X[mm];x[mm]\n1;2026-03-04\n2;2026-03-05\n",
+     "refused: s.csv:2: \"2026-03-04\": a date or a time of day, not a number, for x"},
+    {"DatesLabelTheirRows", "X[mm];x[mm];Datum\n1;2;2026-03-04\n", "X[mm],x[mm],Datum\n1,2,2026-03-04\n"},
     {"OpenQuote", "X[mm];x[mm]\n1;\"2\n", "a closing quote is missing"},
 };
 

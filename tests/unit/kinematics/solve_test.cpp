@@ -137,6 +137,51 @@ TEST(Inverse, TargetBeyondTheTravelNamesTheAxis) {
   EXPECT_NEAR(found.states.axis[1][0], 300.5, 1e-8);
 }
 
+/// Robots turn further than a turn: what is returned is the position that was turned back, and proved there.
+TEST(Inverse, AnswersAreWithinTheRangesThatTheyWereTurnedInto) {
+  const Machine machine = read_machine(VERNIER_SOURCE_DIR "/tables/machines/ur10e.xml");
+  std::mt19937_64 random(kSeed);
+  std::size_t solved = 0;
+  for (int i = 0; i < 44; ++i) {
+    const States there = random_states(machine, 1, random);
+    const Poses target = forward(machine, there);
+    InverseOptions options;
+    const InverseResult found =
+        solve_anywhere(machine, target, random_states(machine, 1, random), options, 48);
+    if (!found.each[0].converged) continue;
+    ++solved;
+    for (std::size_t a = 0; a < machine.axes.size(); ++a) {
+      EXPECT_GE(found.states.axis[a][0], *machine.axes[a].min - 1e-9) << "pose " << i << " J" << a + 1;
+      EXPECT_LE(found.states.axis[a][0], *machine.axes[a].max + 1e-9) << "pose " << i << " J" << a + 1;
+    }
+    const Poses again = forward(machine, found.states);
+    EXPECT_LE((again.position.col(0) - target.position.col(0)).norm(), 2e-9);
+  }
+  EXPECT_GE(solved, 40u);
+}
+
+/// A start whole turns away, and an error that grows with the turns (a cable that winds up).
+TEST(Inverse, WholeTurnsThatTheChainKnowsAreSolvedAnew) {
+  const Machine machine = parse_machine(
+      R"(<machine name="winder"><variables><static><k value="0.001" nominal="0"/></static><machineaxes>
+      <X min="0" max="500"/><C rotary="true" min="-180" max="180"/></machineaxes></variables>
+      <transforms branch="tool"><sixdof n="1" rZ="C"/><sixdof n="2" X="X+k*C"/></transforms></machine>)",
+      "winder.xml");
+  States states = make_states(1, machine);
+  states.axis[0][0] = 200;
+  states.axis[1][0] = 30;
+  const Poses target = forward(machine, states);
+  InverseOptions options;
+  options.match = Match::kPosition;
+  options.only_reachable = true;
+  states.axis[1][0] = 760;
+  const InverseResult found = solve(machine, target, states, options);
+  ASSERT_TRUE(found.each[0].converged) << name_of(found.each[0].fault);
+  EXPECT_NEAR(found.states.axis[1][0], 30, 1e-7);
+  EXPECT_NEAR(found.states.axis[0][0], 200, 1e-7);
+  EXPECT_LE((forward(machine, found.states).position - target.position).norm(), 2e-9);
+}
+
 TEST(Inverse, OppositeDirectionIsNoSolution) {
   // A tool that can only tilt by 30 deg shall point the other way: the residual is an angle, never a sine.
   const Machine machine = parse_machine(

@@ -111,5 +111,16 @@ TEST(MachineLint, ReferenceMachinesHaveNothingWorseThanARemark) {
   EXPECT_GE(seen, 12u);
 }
 
+TEST(MachineLint, NameOfAMeasuredColumnIsAnError) {
+  const auto lines = lines_of(
+      R"(<machine name="m"><variables><machineaxes>
+<setup min="0" max="600"/>
+<X min="0" max="400"/></machineaxes><inputs>
+<correctionX unit="degC" reference="20"/></inputs></variables>
+<transforms><sixdof X="X+0*correctionX" Y="setup"/></transforms></machine>)");
+  some_line_has(lines, "m.xml:2: error: \"setup\": measurement files use this name for a measured column");
+  some_line_has(lines, "m.xml:4: error: \"correctionX\": measurement files use this name");
+}
+
 }  // namespace
 }  // namespace vernier::machine_lint_test

@@ -11,6 +11,7 @@
 #include "tools/model/measurement.h"
 #include "tools/text/error.h"
 #include "tools/text/files.h"
+#include "tools/text/words.h"
 
 namespace vernier::measurement_lint_test {
 
@@ -165,6 +166,29 @@ TEST(MeasurementLintOf, WhatItCallsUsableAFitReads) {
     }
     EXPECT_TRUE(error || !refused) << one.name;
   }
+}
+
+/// Whatever a fit reads has a measured column for `lint` too.
+TEST(MeasurementLintOf, EveryKindOfReadingOfTheFormatsIsOne) {
+  const Machine simple = parse_machine(
+      R"(<machine><variables><machineaxes><X min="0" max="9"/></machineaxes></variables>
+      <transforms><sixdof X="X"/></transforms></machine>)",
+      "m.xml");
+  for (const std::string beside :
+       {"x[mm]|1|2", "ix[arcsec]|1|2", "distance[mm],from|5,2|5,1", "ax,ay,az|0,0,1|0,0,1",
+        "length[mm],cx[mm],cy[mm],cz[mm]|5,0,0,0|6,0,0,0"}) {
+    const auto cells = parts_of(beside, '|');
+    const std::string text = "X[mm],setup," + cells[0] + "\n1,a," + cells[1] + "\n8,a," + cells[2] + "\n";
+    EXPECT_NO_THROW(parse_measurement(text, "s.csv", simple)) << text;
+    for (const LintFinding& finding : lint_measurement(text, "s.csv", &simple)) {
+      EXPECT_NE(finding.weight, LintWeight::kError) << text << in_one_line(finding);
+      EXPECT_EQ(finding.what.find("does not know"), std::string::npos) << in_one_line(finding);
+    }
+  }
+  // A distance without its other end is a column of one's own.
+  const auto alone = lint_measurement("X[mm],distance[mm]\n1,5\n8,5\n", "s.csv", &simple);
+  ASSERT_FALSE(alone.empty());
+  EXPECT_NE(in_one_line(alone.front()).find("no measured column (x y z"), std::string::npos);
 }
 
 TEST(MeasurementLintOf, FilesOfBothKindsAreLookedAtTogether) {

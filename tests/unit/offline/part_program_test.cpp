@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "tests/unit/offline/machine.h"
+#include "tools/model/chain.h"
 #include "tools/text/error.h"
 
 namespace vernier::offline_test {
@@ -85,6 +86,35 @@ TEST(PartPrograms, LinesStayWithinTheDeviation) {
     }
   EXPECT_LT(worst, kDeviation_mm + 2e-5);  // the digits that are written
   EXPECT_GT((points.back() - Vector3d(580, 320, -50)).norm(), 0.01);
+}
+
+/// A ball screw of a small machine: looks a whole millimetre apart would never see its wave.
+TEST(PartPrograms, AWaveShorterThanTheStepOfTheLooksIsCorrected) {
+  const Machine machine = parse_machine(
+      R"XML(<machine name="small"><variables><static><cyc value="0.004" nominal="0" unit="mm"/></static>
+      <machineaxes><X min="0" max="100"/><Y min="0" max="100"/><Z min="0" max="100"/></machineaxes></variables>
+      <transforms branch="tool"><sixdof n="1" X="X+cyc*sin(360*X/1)" Y="Y" Z="Z"/></transforms></machine>)XML",
+      "small.xml");
+  Corrector corrector(machine);
+  PartProgramOptions options;
+  options.deviation_mm = kDeviation_mm;
+  options.zero = {0, 0, 0};
+  const PartProgram program = corrected_program("G21 G90\nG0 X0 Y0 Z0\nG1 X20 Y10 F600\n", "small.ngc",
+                                                at_rest(machine), {0, 0, 0}, options, corrector);
+  const std::vector<Vector3d> points = points_of(program.text);
+  ASSERT_GT(points.size(), 38U);  // two chords a period: the path is crossed at an angle
+  double worst = 0;
+  for (std::size_t k = 2; k < points.size(); ++k)
+    for (const double share : {0.3, 0.5, 1.0}) {
+      const Vector3d at = points[k - 1] + share * (points[k] - points[k - 1]);
+      States states = at_rest(machine);
+      for (Eigen::Index i = 0; i < 3; ++i) states.axis[static_cast<std::size_t>(i)][0] = at[i];
+      const Vector3d tool = forward(machine, states).position.col(0);
+      worst = std::max(worst, (tool - tool.dot(Vector3d(20, 10, 0)) / 500 * Vector3d(20, 10, 0)).norm());
+    }
+  EXPECT_LE(worst, kDeviation_mm + 2e-5);  // and the digits of the program
+  EXPECT_LE(program.worst_mm, kDeviation_mm);
+  EXPECT_GE(program.worst_mm, 0.2 * worst);
 }
 
 TEST(PartPrograms, ArcsOfEveryPlaneStayOnTheirCircle) {

@@ -129,6 +129,16 @@ TEST(PathFit, WhateverIsAddedTheBoundHolds) {
     const auto pieces = fit_path(path.points, path.guide, kMost_mm);
     for (const PathPiece& piece : pieces) arcs += piece.centre ? 1 : 0;
     EXPECT_LT(farthest(path, pieces), kMost_mm + 1e-5) << trial;
+    // The distance that the program states, of the points themselves: along the arc it counts as well.
+    Index from = 0;
+    double stated = 0;
+    for (const PathPiece& piece : pieces) {
+      for (Index k = from; k <= piece.to; ++k)
+        stated = std::max(stated, distance_from(piece, path.points, from, path.guide, path.points.col(k)));
+      from = piece.to;
+    }
+    EXPECT_LT(stated, kMost_mm + 1e-9) << trial;
+    EXPECT_GT(stated, farthest(path, pieces) - 1e-5) << trial;
   }
   EXPECT_GT(arcs, 100u);
 }

@@ -425,5 +425,31 @@ TEST(FailurePicture, NothingToTestIsNoError) {
   EXPECT_LT(p.picture().omnibus_p, 1e-12);
 }
 
+/// Several files: each reads a direction of its own in a run of its own, and one has a thermometer that the
+/// others lack.
+TEST(FailurePicture, ColumnAndRunOfOneFileOnlyAreNoneOfTheOthers) {
+  const Machine machine = parse_machine(kMachine, "m.xml");
+  std::mt19937_64 random(kSeed);
+  std::uniform_real_distribution<double> unit(0, 1);
+  Measurement all;
+  for (const std::string name : {"x", "y"}) {
+    std::string text = "X[mm],Y[mm],Z[mm]," + name + "[mm],run" + (name == "x" ? ",room[degC]" : "") + "\n";
+    for (int i = 0; i < 60; ++i)
+      text += std::to_string(600 * unit(random)) + "," + std::to_string(400 * unit(random)) + ",0,0," + name +
+              (name == "x" ? "," + std::to_string(20 + unit(random)) : "") + "\n";
+    Measurement one = parse_measurement(text, name + ".csv", machine);
+    if (name == "x")
+      all = std::move(one);
+    else
+      append_measurement(all, std::move(one));
+  }
+  Eigen::VectorXd residual = white(all, 1e-3, random);
+  EXPECT_GT(failure_picture(machine, all, residual).omnibus_p, 1e-3);
+  // What the thermometer does say of its own file is found.
+  plant(residual, all, ObservationKind::kX,
+        [&](Eigen::Index row) { return 0.01 * (all.candidates.at(0).value[row] - 20.5); });
+  EXPECT_EQ(first(failure_picture(machine, all, residual)).column, "room");
+}
+
 }  // namespace
 }  // namespace vernier::structure_test

@@ -6,6 +6,7 @@
 
 #include <map>
 
+#include "tools/sheet/dates.h"
 #include "tools/text/error.h"
 #include "tools/text/files.h"
 
@@ -28,14 +29,15 @@ std::string refusal(const std::string& bytes, const std::string& sheet) {
 }
 
 /// A workbook of one sheet with these texts and rows.
-std::string workbook_of(const std::string& strings, const std::string& rows) {
-  const std::map<std::string, std::string> parts = {
+std::string workbook_of(const std::string& strings, const std::string& rows, const std::string& styles = "") {
+  std::map<std::string, std::string> parts = {
       {"xl/workbook.xml",
        "<workbook><sheets><sheet name=\"S\" sheetId=\"1\" r:id=\"rId1\"/></sheets></workbook>"},
       {"xl/_rels/workbook.xml.rels",
        "<Relationships><Relationship Id=\"rId1\" Target=\"worksheets/sheet1.xml\"/></Relationships>"},
       {"xl/sharedStrings.xml", "<sst>" + strings + "</sst>"},
       {"xl/worksheets/sheet1.xml", "<worksheet><sheetData>" + rows + "</sheetData></worksheet>"}};
+  if (!styles.empty()) parts["xl/styles.xml"] = "<styleSheet>" + styles + "</styleSheet>";
   zip_error_t error;
   zip_error_init(&error);
   zip_source_t* const medium = zip_source_buffer_create(nullptr, 0, 0, &error);
@@ -73,6 +75,28 @@ TEST(Workbook, SheetIsTakenByNameOrNumber) {
   EXPECT_TRUE(read_workbook(bytes_of("survey.xlsx"), "b.xlsx", "Deckblatt").rows.empty());
   EXPECT_EQ(refusal(bytes_of("survey.xlsx"), "Tabelle9"),
             "b.xlsx: \"Tabelle9\": no sheet of this name; there are Deckblatt, Messung");
+}
+
+/// 46085 days are the fourth of March 2026: shown as a date, a date it is.
+TEST(Workbook, WhatIsShownAsADateIsADate) {
+  const std::string styles =
+      "<numFmts><numFmt numFmtId=\"164\" formatCode=\"dd\\.mm\\.yyyy\"/>"
+      "<numFmt numFmtId=\"165\" formatCode=\"0.000&quot; mm&quot;\"/>"
+      "<numFmt numFmtId=\"166\" formatCode=\"[h]:mm\"/><numFmt numFmtId=\"167\" "
+      "formatCode=\"[Red]#,##0.00\"/></numFmts>"
+      "<cellXfs><xf numFmtId=\"0\"/><xf numFmtId=\"14\"/><xf numFmtId=\"164\"/><xf numFmtId=\"165\"/>"
+      "<xf numFmtId=\"166\"/><xf numFmtId=\"167\"/></cellXfs>";
+  std::string row = "<row>";
+  for (const char* style : {"0", "1", "2", "3", "4", "5", "9"})
+    row += std::string("<c s=\"") + style + "\"><v>46085.5</v></c>";
+  const WorkbookSheet sheet = read_workbook(workbook_of("", row + "</row>", styles), "b.xlsx", "");
+  EXPECT_EQ(sheet.rows.at(0),
+            (std::vector<std::string>{"46085.5", "2026-03-04T12:00:00", "2026-03-04T12:00:00", "46085.5",
+                                      "2026-03-04T12:00:00", "46085.5", "46085.5"}));
+  EXPECT_EQ(date_text(0.5, false), "12:00:00");
+  EXPECT_EQ(date_text(1, true), "1904-01-02");
+  for (const double serial : {0.5, 1.0, 46085.0, 46085.25}) EXPECT_TRUE(is_date(date_text(serial, false)));
+  EXPECT_FALSE(is_date("46085.5"));
 }
 
 TEST(Workbook, PrefixedElementsInlineTextAndMissingReferencesAreRead) {

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/text/assurance.h"
+
+namespace vernier::evaluate {
+
+/// Decision rule of ISO 14253-1: a tolerance is met where the value with its expanded uncertainty stays
+/// within, not met where it is beyond even without it. Numbers that differ by rounding (1e-12 of the
+/// tolerance) are equal.
+enum class Conformity { kMet, kNotMet, kUndecided };
+/// One unit for all three. Throws std::logic_error where one is not finite.
+Conformity conformity(double value, double tolerance, double expanded_uncertainty);
+/// "met", "not met", "not decided (within the uncertainty)".
+const char* conformity_text(Conformity conformity);
+
+/// A characteristic that a tolerance was given for; all numbers in the unit that is printed.
+struct JudgedValue {
+  std::string name;
+  std::optional<double> value;     // nothing: these readings do not have it
+  std::optional<double> expanded;  // uncertainty, k = 2; nothing: none is known, the value alone is judged
+  double tolerance = 0;
+};
+
+/// Digits behind the point of what commands print, um or arcsec.
+inline constexpr int kPrintedDigits = 3;
+
+struct JudgedText {
+  std::string value, uncertainty, tolerance;
+};
+/// The numbers of a judgement with `least` digits behind the point, or with as many more as it takes until
+/// the printed numbers say what the verdict says. A value that is not there is "–".
+JudgedText judged_text(const JudgedValue& one, int least);
+
+/// Holds where every tolerance that was given is met. unit: of the numbers, for the sentences. tool.
+text::Assurance assurance_of(const std::vector<JudgedValue>& all, const std::string& unit);
+
+}  // namespace vernier::evaluate
