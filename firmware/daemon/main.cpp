@@ -17,6 +17,7 @@
 #include "firmware/core/service.h"
 #include "firmware/daemon/arguments.h"
 #include "firmware/daemon/board_file.h"
+#include "firmware/daemon/board_key.h"
 #include "firmware/daemon/calibrate_output.h"
 #include "firmware/daemon/device_settings.h"
 #include "firmware/daemon/devices.h"
@@ -162,6 +163,18 @@ void say_image(const UploadResult& result, const Service& service) {
                  static_cast<unsigned long long>(service.uploader().record().confirmed_fingerprint));
 }
 
+/// A board whose key cannot be had corrects its machine all the same; it only cannot prove who it is.
+std::unique_ptr<BoardKey> key_of_board(const std::string& store) {
+  try {
+    auto key = std::make_unique<BoardKey>(store);
+    std::fprintf(stderr, "vernierd: key of this board: %s\n", key->text().c_str());
+    return key;
+  } catch (const BoardError& error) {
+    std::fprintf(stderr, "vernierd: note: this board cannot prove who it is: %s\n", error.what.c_str());
+    return nullptr;
+  }
+}
+
 /// A daemon that ends leaves no correction in the drives: it is ramped out first, within the limits of the
 /// axes.
 void take_correction_out(Service& service, Devices& devices) {
@@ -232,6 +245,7 @@ int run_board(const Arguments& arguments) {
   if (!all_there(devices)) return kAnswerIsNo;
   devices.sample();
   devices.take_left_overs_out(stop_asked);
+  const std::unique_ptr<BoardKey> own_key = key_of_board(file.store);
   FileSlotStore store(file.store, file.slot_bytes);
   {
     std::vector<std::uint32_t> memory(kWordsBeyondCaches);
@@ -242,7 +256,9 @@ int run_board(const Arguments& arguments) {
     std::fputs("vernierd: no random numbers: nothing could be signed for this start\n", stderr);
     return kAnswerIsNo;
   }
-  const auto service = std::make_unique<Service>(file.service, devices.board(), store);
+  Board board = devices.board();
+  board.identity = own_key.get();
+  const auto service = std::make_unique<Service>(file.service, board, store);
   say_image(service->boot(), *service);
   ServiceManager manager;
   keep_stacks_small();
