@@ -116,18 +116,24 @@ int run_image(const Arguments& arguments) {
 // ---- a board
 
 int check_devices(Devices& devices) {
-  int missing = 0;
+  int missing = 0, missing_files = 0;
+  const auto files = static_cast<std::size_t>(std::count_if(
+      devices.findings().begin(), devices.findings().end(), [](const auto& one) { return one.is_file; }));
   for (DeviceFinding& finding : devices.findings()) {
     if (finding.missing.empty() && finding.attempt) finding.missing = finding.attempt();
     const bool there = finding.missing.empty();
     std::printf("%s  %s%s%s\n", there ? "ok     " : "missing", finding.device.c_str(), there ? "" : ": ",
                 finding.missing.c_str());
-    missing += there ? 0 : 1;
+    (finding.is_file ? missing_files : missing) += there ? 0 : 1;
   }
   for (const std::string& line : devices.output_budget()) std::printf("budget   %s\n", line.c_str());
-  std::printf(missing == 0 ? "%zu devices: all there\n" : "%zu devices: %d missing\n",
-              devices.findings().size(), missing);
-  return missing == 0 ? kDone : kAnswerIsNo;
+  for (const std::string& line : devices.not_looked_at()) std::printf("not looked at  %s\n", line.c_str());
+  const auto total = [](std::size_t count, const char* what, int away) {
+    std::printf(away == 0 ? "%zu %s: all there\n" : "%zu %s: %d missing\n", count, what, away);
+  };
+  if (files > 0) total(files, files == 1 ? "file" : "files", missing_files);
+  total(devices.findings().size() - files, "devices", missing);
+  return missing + missing_files == 0 ? kDone : kAnswerIsNo;
 }
 
 /// What outputs a daemon that is gone left behind is taken out, as far as they are there.
