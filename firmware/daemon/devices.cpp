@@ -88,7 +88,7 @@ struct Devices::Parts {
   void make_links();
   void make_store();
   void look_at_files();
-  bool find_calibration(const AxisEntry& axis);
+  void look_for_calibration(const AxisEntry& axis);
 };
 
 void Devices::Parts::make_plant(unsigned long seed) {
@@ -161,10 +161,7 @@ std::vector<Route<CorrectionWriter>> Devices::Parts::make_outputs() {
       note(name, "");
       continue;
     }
-    if (!find_calibration(axis)) {
-      note(name, "not opened, as its calibration is missing");
-      continue;
-    }
+    look_for_calibration(axis);
     std::string error;
     auto output = open_analogue(axis.output, axis.wiring.rotary, error);
     if (output && !output->lock()) error = "in use by another axis or another process";
@@ -175,17 +172,16 @@ std::vector<Route<CorrectionWriter>> Devices::Parts::make_outputs() {
   return routes;
 }
 
-/// Looks for the calibration that an output names. False: the output cannot be opened without it. Where the
-/// board file has a span of its own the output is opened all the same, to be taken to zero; nothing runs, as
-/// the calibration is missing.
-bool Devices::Parts::find_calibration(const AxisEntry& axis) {
+/// The calibration that an output names. Where the board file has a span of its own the output is opened all
+/// the same, so that --zero can take it out; nothing runs, as the calibration is missing.
+void Devices::Parts::look_for_calibration(const AxisEntry& axis) {
   const std::string path = axis.output.text("calibration", "");
-  if (path.empty()) return true;
-  const bool there = std::filesystem::is_regular_file(path);
+  if (path.empty()) return;
   const std::string name = axis.wiring.name.c_str();
   note_file("axis." + name + ".output  calibration " + path,
-            there ? "" : "no such file; vernierd --calibrate " + name + " makes it");
-  return there || axis.output.numbers.contains("span");
+            std::filesystem::is_regular_file(path)
+                ? ""
+                : "no such file; vernierd --calibrate " + name + " makes it");
 }
 
 std::vector<Route<InputReader>> Devices::Parts::make_inputs() {

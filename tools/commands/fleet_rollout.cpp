@@ -172,6 +172,17 @@ void run_rollout(const RolloutArguments& arguments) {
     throw text::LimitNotMet("not every machine of this rollout keeps its image and has it in effect");
 }
 
+/// Without its registry a rollout stops: nothing that it did could be written down.
+void run_or_stand(const RolloutArguments& arguments) {
+  try {
+    run_rollout(arguments);
+  } catch (const registry::DatabaseError& error) {
+    throw text::LimitNotMet(
+        std::string("the registry failed: ") + error.what() +
+        ": the rollout stands; an image on trial goes back by itself; call again when the registry is back");
+  }
+}
+
 }  // namespace
 
 void add_rollout(CLI::App& fleet) {
@@ -225,7 +236,7 @@ void add_rollout(CLI::App& fleet) {
       "Exit status 0 all kept and in effect (without --images: told), 1 bad input (no board was asked), 2 it "
       "stands: a machine was worse, away,\nanother board or not in effect, or another caller has one of the "
       "machines.");
-  command->callback([arguments] { run_rollout(*arguments); });
+  command->callback([arguments] { run_or_stand(*arguments); });
 }
 
 }  // namespace vernier::commands::fleet_cli

@@ -126,7 +126,7 @@ class Run:
         self.boards = [Board(options, self.folder, name, "board" if same else "board-" + name) for name in NAMES]
         self.registry = options.registry or os.path.join(self.folder, "fleet.db")
         self.names = [f"s{seed}-{name}" for name in NAMES]
-        self.faults = []
+        self.faults, self.took = [], True
 
     def vernier(self, *words, patience=120):
         return run([os.path.join(self.options.bin, "vernier"), *words], self.folder, patience)
@@ -187,7 +187,8 @@ class Run:
         if self.kind == "kill":
             target.kill()
         if self.kind in ("deactivate", "hold"):
-            self.told(target, "board", self.kind)
+            # A board that has no image yet refuses both: then nothing was disturbed.
+            self.took = self.told(target, "board", self.kind)[0] == 0
         if self.kind == "weight":
             self.told(target, "board", "weight", "--axis", "Y", "--weight", "0.5")
         if self.kind == "trial-by-hand":
@@ -252,7 +253,7 @@ class Run:
         status, said, answer = self.call("second.json")
         other = first.wait(timeout=120)
         first_said = open(os.path.join(self.folder, "first.out")).read()
-        if self.draw is not None and sorted((status, other)) == [0, 0]:  # one after the other: nothing was at once
+        if sorted((status, other)) == [0, 0]:  # one after the other: nothing was at once
             return self.judge_truth(0, said, answer, False)
         self.expect(sorted((status, other)) == [0, 2], f"two callers ended with {other} and {status}: {first_said} {said}")
         refused = said if status == 2 else first_said
@@ -280,7 +281,7 @@ class Run:
             else:
                 status, said, answer = self.call()
                 self.expect(answer is not None, f"no answer, exit status {status}: {said}")
-                kept = self.judge_truth(status, said, answer, self.kind != "none") if answer else 0
+                kept = self.judge_truth(status, said, answer, self.kind != "none" and self.took) if answer else 0
         except Exception as error:  # a run that cannot be judged is a run that failed
             self.faults.append(f"seed {self.seed} ({self.kind}): {error!r}")
             kept = 0
