@@ -4,6 +4,7 @@
 #include "hal/clock.h"
 #include "hal/correction_writer.h"
 #include "hal/digital_line.h"
+#include "hal/identity_key.h"
 #include "hal/input_reader.h"
 #include "hal/probe_line.h"
 #include "hal/tick_sync.h"
@@ -21,6 +22,7 @@ struct Board {
   TickSync* sync = nullptr;        // starts the ticks; null: the clock does
   DigitalInput* enable = nullptr;  // off: no correction is let in
   DigitalOutput* healthy = nullptr;  // on: devices answer and no fault is latched
+  IdentityKey* identity = nullptr;   // proves who the board is; null: the board has no key of its own
 };
 
 }  // namespace vernier

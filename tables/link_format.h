@@ -40,8 +40,9 @@ enum class LinkOp : std::uint8_t {
   kSigned = 21,  // SignedRequest, then op and payload of the request; the reply is that of the request, with
                  // this op
   kState = 19,   // -> LinkState, LinkAxisState each: what runs, and what of it arrives
+  kIdentify = 22,  // u8[32] nonce of the asker -> IdentifyReply; kUnknownOp where the board has no own key
 };
-constexpr std::uint8_t kLinkOpCount = static_cast<std::uint8_t>(LinkOp::kSigned) + 1;
+constexpr std::uint8_t kLinkOpCount = static_cast<std::uint8_t>(LinkOp::kIdentify) + 1;
 
 enum class LinkStatus : std::uint8_t {
   kDone = 0,
@@ -98,6 +99,12 @@ struct ChallengeReply {
   std::uint8_t access;    // LinkAccess of the link that it came over
   std::uint8_t keys;      // that the board trusts; 0: nothing needs a signature
   std::uint8_t reserved[2];
+};
+/// Who a board is, proved: the signature is over IdentityHead with the name in HelloReply.
+struct IdentifyReply {
+  std::uint8_t start_nonce[16];  // of this start of the board, as in ChallengeReply
+  std::uint8_t key[32];          // public half of the board's own key
+  std::uint8_t signature[64];    // Ed25519ph
 };
 struct SignedRequest {
   std::uint8_t key[8];  // first bytes of the public key
@@ -166,6 +173,9 @@ static_assert(sizeof(ChallengeReply) == 24);
 static_assert(offsetof(ChallengeReply, nonce) == 0 && offsetof(ChallengeReply, counter) == 16 &&
               offsetof(ChallengeReply, access) == 20 && offsetof(ChallengeReply, keys) == 21 &&
               offsetof(ChallengeReply, reserved) == 22);
+static_assert(sizeof(IdentifyReply) == 112);
+static_assert(offsetof(IdentifyReply, start_nonce) == 0 && offsetof(IdentifyReply, key) == 16 &&
+              offsetof(IdentifyReply, signature) == 48);
 static_assert(sizeof(SignedRequest) == 76);
 static_assert(offsetof(SignedRequest, key) == 0 && offsetof(SignedRequest, counter) == 8 &&
               offsetof(SignedRequest, signature) == 12);

@@ -69,4 +69,16 @@ constexpr std::uint8_t kRequestMagic[8] = {'V', 'E', 'R', 'N', 'C', 'M', 'D', '1
 
 constexpr std::uint32_t kPublicKeyBytes = 32;
 
+/// What a board signs with its own key to prove who it is: Ed25519ph of these 80 bytes.
+struct IdentityHead {
+  std::uint8_t magic[8];         // kIdentityMagic
+  std::uint8_t asked_nonce[32];  // of whoever asks, new with each question
+  std::uint8_t start_nonce[16];  // of this start of the board: signed requests name the same one
+  char board[kBoardNameBytes];   // name in its board file
+};
+static_assert(sizeof(IdentityHead) == 80);
+static_assert(offsetof(IdentityHead, magic) == 0 && offsetof(IdentityHead, asked_nonce) == 8 &&
+              offsetof(IdentityHead, start_nonce) == 40 && offsetof(IdentityHead, board) == 56);
+constexpr std::uint8_t kIdentityMagic[8] = {'V', 'E', 'R', 'N', 'I', 'D', '1', '\n'};
+
 }  // namespace vernier

@@ -43,6 +43,25 @@ ChallengeReply Gate::challenge(LinkAccess access, TimeUs now) noexcept {
   return reply;
 }
 
+bool Gate::is_identify(const std::uint8_t* request, std::uint32_t size) noexcept {
+  return size >= kRequestHeaderBytes && request[0] == static_cast<std::uint8_t>(LinkOp::kIdentify);
+}
+
+LinkStatus Gate::identify(const std::uint8_t* request, std::uint32_t size, IdentifyReply& reply) noexcept {
+  if (own_key_ == nullptr) return LinkStatus::kUnknownOp;
+  IdentityHead head{};
+  if (size != kRequestHeaderBytes + sizeof(head.asked_nonce)) return LinkStatus::kBadLength;
+  std::memcpy(head.magic, kIdentityMagic, sizeof(head.magic));
+  std::memcpy(head.asked_nonce, request + kRequestHeaderBytes, sizeof(head.asked_nonce));
+  std::memcpy(head.start_nonce, nonce_.data(), nonce_.size());
+  std::memcpy(head.board, identity_.board.c_str(), identity_.board.size());
+  const auto* const message = reinterpret_cast<const std::uint8_t*>(&head);
+  if (own_key_->sign(message, sizeof(head), reply.signature) != HalFault::kNone) return LinkStatus::kNotReady;
+  std::memcpy(reply.start_nonce, nonce_.data(), nonce_.size());
+  std::memcpy(reply.key, own_key_->public_half(), sizeof(reply.key));
+  return LinkStatus::kDone;
+}
+
 Gate::Challenge* Gate::find(std::uint32_t counter, TimeUs now) noexcept {
   Challenge& challenge = open_[counter % kMostOpen];
   const bool good = counter != 0 && challenge.counter == counter && now - challenge.given <= kOpenFor;

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "firmware/core/identity.h"
+#include "hal/identity_key.h"
 #include "tables/link_format.h"
 
 namespace vernier {
@@ -16,8 +17,9 @@ using Nonce = std::array<std::uint8_t, sizeof(ChallengeReply::nonce)>;
 /// back on its way is worth nothing later.
 class Gate {
  public:
-  /// identity: outlives this; nonce: nobody can foretell it. setup.
-  Gate(const BoardIdentity& identity, const Nonce& nonce) noexcept : identity_(identity), nonce_(nonce) {}
+  /// identity, own_key: outlive this; own_key null: the board has none; nonce: nobody can foretell it. setup.
+  Gate(const BoardIdentity& identity, const Nonce& nonce, IdentityKey* own_key = nullptr) noexcept
+      : identity_(identity), nonce_(nonce), own_key_(own_key) {}
 
   /// The request that may be carried out, or why none may. It lives until the next call.
   struct Opened {
@@ -30,6 +32,12 @@ class Gate {
   /// Is it the request for a challenge? Its payload then; each can be used once.
   static bool is_challenge(const std::uint8_t* request, std::uint32_t size) noexcept;
   ChallengeReply challenge(LinkAccess access, TimeUs now) noexcept;
+  /// Is it the request to prove who the board is? Everybody may ask for that.
+  static bool is_identify(const std::uint8_t* request, std::uint32_t size) noexcept;
+  /// Signs the asker's nonce, the nonce of this start and the board's name with the board's own key.
+  /// kUnknownOp: the board has no key of its own; kBadLength: the request has no nonce; kNotReady: the
+  /// library failed. `reply` is filled in with kDone only. setup.
+  LinkStatus identify(const std::uint8_t* request, std::uint32_t size, IdentifyReply& reply) noexcept;
   /// May a master that knows nothing but registers give commands over this link?
   bool lets_plain_commands(LinkAccess access, bool trusted_line) const noexcept {
     return access >= LinkAccess::kCommand && (identity_.keys.empty() || trusted_line);
@@ -48,6 +56,7 @@ class Gate {
 
   const BoardIdentity& identity_;
   Nonce nonce_;
+  IdentityKey* own_key_;
   std::uint32_t counter_ = 0;  // of the newest challenge
   Challenge open_[kMostOpen];
   std::uint8_t inner_[kMaxRequestBytes] = {};

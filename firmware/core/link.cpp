@@ -133,6 +133,7 @@ LinkStatus Link::run(LinkOp op, Reader& in, Writer& out, TimeUs now) {
       return touches(in, out);
     case LinkOp::kWorkpiece:
       return workpiece(in);
+    case LinkOp::kIdentify:
     case LinkOp::kChallenge:
     case LinkOp::kSigned:
       return LinkStatus::kUnknownOp;  // the gate's

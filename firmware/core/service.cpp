@@ -34,7 +34,7 @@ Service::Service(ServiceOptions options, const Board& board, SlotStore& store)
       runner_(cycle_, board_.clock, options_.upload.tick, board_.sync, options_.sync_patience,
               options_.overruns),
       link_(exchange_, uploader_, options_.wiring, options_.upload.tick, options_.upload.identity),
-      gate_(options_.upload.identity, options_.nonce) {
+      gate_(options_.upload.identity, options_.nonce, board_.identity) {
   if (board_.probe != nullptr) probing_.emplace(*board_.probe, probe_settings(options_), board_.actual);
   if (options_.in_controller) runner_.follow_caller();
 }
@@ -230,6 +230,14 @@ std::uint32_t Service::answer(const std::uint8_t* request, std::uint32_t size, s
     std::memcpy(reply + kReplyHeaderBytes, &challenge, sizeof(challenge));
     return Link::answer_with(LinkStatus::kDone, request, reply) +
            static_cast<std::uint32_t>(sizeof(challenge));
+  }
+  if (Gate::is_identify(request, size)) {
+    IdentifyReply proof{};
+    const LinkStatus status = gate_.identify(request, size, proof);
+    const std::uint32_t head = Link::answer_with(status, request, reply);
+    if (status != LinkStatus::kDone) return head;
+    std::memcpy(reply + kReplyHeaderBytes, &proof, sizeof(proof));
+    return head + static_cast<std::uint32_t>(sizeof(proof));
   }
   // Before the gate: a request that is turned away now comes again as it is, with its signature not yet used.
   const bool may_need_store = options_.store_beside && Link::may_need_store(request, size);

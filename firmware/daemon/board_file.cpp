@@ -144,8 +144,8 @@ std::string beside(const std::string& board_path, const std::string& path) {
   return (std::filesystem::path(board_path).parent_path() / given).string();
 }
 
-/// What a calibration has found counts instead of the board file's own settings. A file that is not there yet
-/// is missed only where the output is opened.
+/// What a calibration has found counts instead of the board file's own settings. A file that is not there is
+/// missed by Devices: without it the output would be driven with other numbers than were measured.
 void apply_calibration(const std::string& board_path, SignalSource& output) {
   const std::string path = output.text("calibration", "");
   if (path.empty()) return;
@@ -268,7 +268,8 @@ void read_key(BoardFile& board, const toml::table& table) {
   if (role != "all" && role != "command" && role != "upload" && role != "retired")
     settings.fail("role: '" + role + "' is none of all, command, upload, retired");
   key.name = std::string_view(name);
-  key.key = read_public_key(beside(board.path, file));
+  board.key_files.push_back(beside(board.path, file));
+  key.key = read_public_key(board.key_files.back());
   key.command = role != "upload", key.upload = role != "command";
   key.retired = role == "retired";
   settings.nothing_else();
@@ -309,7 +310,10 @@ void read_board(BoardFile& board, const toml::table& table) {
   identity.board = board_name(settings, "name");
   identity.board_class = board_name(settings, "class");
   const std::string key = settings.text("public_key", "");
-  if (!key.empty()) identity.keys.push_back({read_public_key(beside(board.path, key)), "public_key"});
+  if (!key.empty()) {
+    board.key_files.push_back(beside(board.path, key));
+    identity.keys.push_back({read_public_key(board.key_files.back()), "public_key"});
+  }
   settings.nothing_else();
 }
 

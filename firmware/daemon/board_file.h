@@ -58,12 +58,13 @@ struct BoardFile {
   ServiceOptions service;
   std::vector<AxisEntry> axes;
   std::vector<InputEntry> inputs;
-  SignalSource probe;            // line of the touch probe; how late it is stands in `service`
-  SignalSource sync;             // of the ticks
-  SignalSource enable, healthy;  // digital lines from and to the machine's controller
-  std::vector<LinkEntry> links;  // kind: "modbus-tcp", "modbus-rtu", "isotp"
-  int priority = 80;             // SCHED_FIFO
-  std::string watchdog;          // device of a hardware watchdog; empty: none
+  SignalSource probe;                  // line of the touch probe; how late it is stands in `service`
+  SignalSource sync;                   // of the ticks
+  SignalSource enable, healthy;        // digital lines from and to the machine's controller
+  std::vector<LinkEntry> links;        // kind: "modbus-tcp", "modbus-rtu", "isotp"
+  int priority = 80;                   // SCHED_FIFO
+  std::string watchdog;                // device of a hardware watchdog; empty: none
+  std::vector<std::string> key_files;  // public keys, read already
 };
 
 /// Reads and checks a board file; key files are read too. Throws BoardError. setup.

@@ -72,6 +72,9 @@ struct Devices::Parts {
             std::function<std::string()> attempt = {}) {
     findings.push_back({device, missing, std::move(attempt)});
   }
+  void note_file(const std::string& name, const std::string& missing) {
+    findings.push_back({name, missing, {}, true});
+  }
   void make_plant(unsigned long seed);
   void make_bus(const std::string& interface, std::vector<Route<AxisReader>>& routes);
   std::vector<Route<AxisReader>> make_positions();
@@ -84,6 +87,8 @@ struct Devices::Parts {
   void make_lines();
   void make_links();
   void make_store();
+  void look_at_files();
+  void look_for_calibration(const AxisEntry& axis);
 };
 
 void Devices::Parts::make_plant(unsigned long seed) {
@@ -156,6 +161,7 @@ std::vector<Route<CorrectionWriter>> Devices::Parts::make_outputs() {
       note(name, "");
       continue;
     }
+    look_for_calibration(axis);
     std::string error;
     auto output = open_analogue(axis.output, axis.wiring.rotary, error);
     if (output && !output->lock()) error = "in use by another axis or another process";
@@ -164,6 +170,18 @@ std::vector<Route<CorrectionWriter>> Devices::Parts::make_outputs() {
     if (output) analogue.push_back({i, std::move(output)});
   }
   return routes;
+}
+
+/// The calibration that an output names. Where the board file has a span of its own the output is opened all
+/// the same, so that --zero can take it out; nothing runs, as the calibration is missing.
+void Devices::Parts::look_for_calibration(const AxisEntry& axis) {
+  const std::string path = axis.output.text("calibration", "");
+  if (path.empty()) return;
+  const std::string name = axis.wiring.name.c_str();
+  note_file("axis." + name + ".output  calibration " + path,
+            std::filesystem::is_regular_file(path)
+                ? ""
+                : "no such file; vernierd --calibrate " + name + " makes it");
 }
 
 std::vector<Route<InputReader>> Devices::Parts::make_inputs() {
@@ -287,6 +305,19 @@ void Devices::Parts::make_store() {
   note("store  " + file.store, missing);
 }
 
+/// Files and devices that are named and not opened here. A watchdog begins to count when it is opened.
+void Devices::Parts::look_at_files() {
+  for (const std::string& key : file.key_files) note_file("key  " + key, "");
+  if (file.watchdog.empty()) return;
+  std::error_code failed;
+  std::string missing;
+  if (std::filesystem::is_directory(file.watchdog, failed))
+    missing = "is a directory";
+  else if (::access(file.watchdog.c_str(), W_OK) != 0)
+    missing = std::strerror(errno);
+  note("board.watchdog  " + file.watchdog, missing);
+}
+
 Devices::Devices(const BoardFile& file, unsigned long seed) : parts_(std::make_unique<Parts>(file)) {
   parts_->make_store();
   parts_->make_plant(seed);
@@ -297,6 +328,28 @@ Devices::Devices(const BoardFile& file, unsigned long seed) : parts_(std::make_u
   parts_->make_sync();
   parts_->make_lines();
   parts_->make_links();
+  parts_->look_at_files();
+}
+
+std::vector<std::string> Devices::not_looked_at() const {
+  std::vector<std::string> lines;
+  const BoardFile& file = parts_->file;
+  for (const AxisEntry& axis : file.axes) {
+    const std::string name = std::string("axis.") + axis.wiring.name.c_str();
+    if (axis.position.kind != "sim")
+      lines.push_back(name + ".position: whether the position is right; one reading came");
+    if (!axis.output.kind.empty() && axis.output.kind != "sim")
+      lines.push_back(name + ".output: what reaches the drive; only the value that it has was written again");
+  }
+  if (!file.probe.kind.empty()) lines.emplace_back("probe.line: whether the line changes at a touch");
+  if (!file.enable.kind.empty()) lines.emplace_back("digital.enable: whether the line changes");
+  if (!file.healthy.kind.empty()) lines.emplace_back("digital.healthy: whether the controller reads it");
+  if (!file.watchdog.empty())
+    lines.emplace_back("board.watchdog: whether it resets the computer; opening it would start it");
+  if (!file.links.empty()) lines.emplace_back("link: whether a client reaches it");
+  lines.emplace_back("store: whether the confirmed image can be loaded");
+  lines.emplace_back("priority: whether the system grants it");
+  return lines;
 }
 
 Devices::~Devices() = default;

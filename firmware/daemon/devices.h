@@ -14,11 +14,12 @@ namespace vernier {
 
 class WakeUp;
 
-/// What `--check` says of a device.
+/// What `--check` says of a device or a file.
 struct DeviceFinding {
   std::string device;                    // "axis.X.output  pwm"
   std::string missing;                   // empty: it is there
   std::function<std::string()> attempt;  // tries it once more; what is missing, or empty
+  bool is_file = false;                  // a file that is read; else a device
 };
 
 struct OpenLink {
@@ -42,8 +43,10 @@ class Devices {
   std::vector<OpenLink>& links() noexcept;
   /// Waits until a request comes over one of the links or somebody wakes it, at most `wait`. setup.
   void wait_for_request(TimeUs wait, WakeUp& wake_up) noexcept;
-  /// One of each device, in the order of the board file. setup.
+  /// One of each device and each file, in the order of the board file. setup.
   std::vector<DeviceFinding>& findings() noexcept;
+  /// What opening and trying all of them does not tell, a sentence each. setup.
+  std::vector<std::string> not_looked_at() const;
 
   /// A correction that a killed daemon left in a drive, or the value that a converter wakes up with, is taken
   /// out before the first tick: within the limits of the axis, and over a second at least. stop: ends it

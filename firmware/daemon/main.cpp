@@ -17,6 +17,7 @@
 #include "firmware/core/service.h"
 #include "firmware/daemon/arguments.h"
 #include "firmware/daemon/board_file.h"
+#include "firmware/daemon/board_key.h"
 #include "firmware/daemon/calibrate_output.h"
 #include "firmware/daemon/device_settings.h"
 #include "firmware/daemon/devices.h"
@@ -115,18 +116,24 @@ int run_image(const Arguments& arguments) {
 // ---- a board
 
 int check_devices(Devices& devices) {
-  int missing = 0;
+  int missing = 0, missing_files = 0;
+  const auto files = static_cast<std::size_t>(std::count_if(
+      devices.findings().begin(), devices.findings().end(), [](const auto& one) { return one.is_file; }));
   for (DeviceFinding& finding : devices.findings()) {
     if (finding.missing.empty() && finding.attempt) finding.missing = finding.attempt();
     const bool there = finding.missing.empty();
     std::printf("%s  %s%s%s\n", there ? "ok     " : "missing", finding.device.c_str(), there ? "" : ": ",
                 finding.missing.c_str());
-    missing += there ? 0 : 1;
+    (finding.is_file ? missing_files : missing) += there ? 0 : 1;
   }
   for (const std::string& line : devices.output_budget()) std::printf("budget   %s\n", line.c_str());
-  std::printf(missing == 0 ? "%zu devices: all there\n" : "%zu devices: %d missing\n",
-              devices.findings().size(), missing);
-  return missing == 0 ? kDone : kAnswerIsNo;
+  for (const std::string& line : devices.not_looked_at()) std::printf("not looked at  %s\n", line.c_str());
+  const auto total = [](std::size_t count, const char* what, int away) {
+    std::printf(away == 0 ? "%zu %s: all there\n" : "%zu %s: %d missing\n", count, what, away);
+  };
+  if (files > 0) total(files, files == 1 ? "file" : "files", missing_files);
+  total(devices.findings().size() - files, "devices", missing);
+  return missing + missing_files == 0 ? kDone : kAnswerIsNo;
 }
 
 /// What outputs a daemon that is gone left behind is taken out, as far as they are there.
@@ -160,6 +167,18 @@ void say_image(const UploadResult& result, const Service& service) {
   else
     std::fprintf(stderr, "vernierd: image %016llx\n",
                  static_cast<unsigned long long>(service.uploader().record().confirmed_fingerprint));
+}
+
+/// A board whose key cannot be had corrects its machine all the same; it only cannot prove who it is.
+std::unique_ptr<BoardKey> key_of_board(const std::string& store) {
+  try {
+    auto key = std::make_unique<BoardKey>(store);
+    std::fprintf(stderr, "vernierd: key of this board: %s\n", key->text().c_str());
+    return key;
+  } catch (const BoardError& error) {
+    std::fprintf(stderr, "vernierd: note: this board cannot prove who it is: %s\n", error.what.c_str());
+    return nullptr;
+  }
 }
 
 /// A daemon that ends leaves no correction in the drives: it is ramped out first, within the limits of the
@@ -232,6 +251,7 @@ int run_board(const Arguments& arguments) {
   if (!all_there(devices)) return kAnswerIsNo;
   devices.sample();
   devices.take_left_overs_out(stop_asked);
+  const std::unique_ptr<BoardKey> own_key = key_of_board(file.store);
   FileSlotStore store(file.store, file.slot_bytes);
   {
     std::vector<std::uint32_t> memory(kWordsBeyondCaches);
@@ -242,7 +262,9 @@ int run_board(const Arguments& arguments) {
     std::fputs("vernierd: no random numbers: nothing could be signed for this start\n", stderr);
     return kAnswerIsNo;
   }
-  const auto service = std::make_unique<Service>(file.service, devices.board(), store);
+  Board board = devices.board();
+  board.identity = own_key.get();
+  const auto service = std::make_unique<Service>(file.service, board, store);
   say_image(service->boot(), *service);
   ServiceManager manager;
   keep_stacks_small();

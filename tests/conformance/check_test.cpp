@@ -118,6 +118,38 @@ TEST_F(Check, NamesAConverterThatRefuses) {
   expect_missing("missing  axis.Y.output  iio-dac: the value that it has cannot be read");
 }
 
+// The board file's own span does not stand in for a calibration that is named and not there.
+TEST_F(Check, NamesACalibrationThatIsNotThere) {
+  write(replaced(kBoard, "span = 0.25 }", "span = 0.25, calibration = \"typo.toml\" }"));
+  const Said said = run("--check");
+  EXPECT_EQ(said.status, 2) << said.text;
+  EXPECT_NE(said.text.find("missing  axis.X.output  calibration " + files_.path() +
+                           "/typo.toml: no such file; vernierd --calibrate X makes it\n"),
+            std::string::npos)
+      << said.text;
+  EXPECT_NE(said.text.find("1 file: 1 missing\n"), std::string::npos) << said.text;
+  EXPECT_EQ(run("--seconds 0.1").status, 2) << "it does not run uncalibrated";
+  files_.put("typo.toml", "span = 0.25\nzero = 25000\npolarity = \"normal\"\n");
+  EXPECT_EQ(run("--check").status, 0) << run("--check").text;
+}
+
+TEST_F(Check, NamesAWatchdogThatIsNotThereAndOpensNone) {
+  write(replaced(kBoard, "store = ", "watchdog = \"ROOT/watchdog\"\nstore = "));
+  expect_missing("missing  board.watchdog  " + files_.path() + "/watchdog: No such file or directory\n");
+  EXPECT_EQ(run("--seconds 0.1").status, 2) << "it does not run without it";
+  files_.put("watchdog", "");
+  const Said said = run("--check");
+  EXPECT_EQ(said.status, 0) << said.text;
+  EXPECT_NE(said.text.find("not looked at  board.watchdog: "), std::string::npos) << said.text;
+  EXPECT_EQ(files_.get("watchdog"), "") << "it was not fed";
+}
+
+TEST_F(Check, SaysWhatItDoesNotLookAt) {
+  const Said said = run("--check");
+  for (const char* line : {"not looked at  axis.X.output: ", "not looked at  store: "})
+    EXPECT_NE(said.text.find(line), std::string::npos) << line << said.text;
+}
+
 TEST_F(Check, NamesAPulseOutputThatIsNotExported) {
   std::filesystem::remove_all(files_.path() + "/pwm0");
   expect_missing("/pwm0/period: No such file or directory");

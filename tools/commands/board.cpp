@@ -5,6 +5,7 @@
 #include <chrono>
 #include <thread>
 
+#include "tools/commands/board_claim.h"
 #include "tools/commands/command.h"
 #include "tools/text/error.h"
 #include "tools/upload/client.h"
@@ -14,6 +15,7 @@ namespace {
 
 struct Arguments {
   std::string url, what, axis, key, json;
+  ClaimWords claim;
   double weight = 1;
 };
 
@@ -38,9 +40,22 @@ void set_weight(const Arguments& arguments, upload::Client& client) {
   client.weight(static_cast<std::uint8_t>(found - axes.begin()), arguments.weight);
 }
 
+/// Who the board is, for `vernier fleet add --board NAME --board-key KEY`.
+void identify(const Arguments& arguments, upload::Client& client) {
+  const auto key = client.proved_key();
+  const std::string& name = client.info().board;
+  fmt::print(human_stream(arguments.json), "board {}, {}\n", name.empty() ? "without a name" : name,
+             key ? "key " + upload::board_key_text(*key) : "no key of its own: it cannot prove who it is");
+  nlohmann::ordered_json json = {{"board", name}, {"board_key", nullptr}};
+  if (key) json["board_key"] = upload::board_key_text(*key);
+  write_json(arguments.json, json);
+}
+
 void run(const Arguments& arguments) {
   upload::Client client(upload::open_transport(upload::parse_url(arguments.url)));
   client.sign_with(upload::given_key(arguments.key));
+  require_claim(client, arguments.claim);
+  if (arguments.what == "identify") return identify(arguments, client);
   if (arguments.what == "weight") {
     set_weight(arguments, client);
   } else {
@@ -55,30 +70,35 @@ void run(const Arguments& arguments) {
   const upload::BoardTick tick = client.newest();
   fmt::print(human_stream(arguments.json), "mode {}{}, fault {}\n", name_of(tick.mode),
              tick.holding ? " (held)" : "", name_of(tick.fault));
-  write_json(arguments.json,
-             {{"mode", name_of(tick.mode)}, {"fault", name_of(tick.fault)}, {"holding", tick.holding}});
+  write_json(arguments.json, {{"board", client.info().board},
+                              {"mode", name_of(tick.mode)},
+                              {"fault", name_of(tick.fault)},
+                              {"holding", tick.holding}});
 }
 
 }  // namespace
 
 void register_board(CLI::App& vernier) {
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App* const command =
-      vernier.add_subcommand("board", "tell a board: activate, deactivate, clear, hold, release, weight");
+  CLI::App* const command = vernier.add_subcommand(
+      "board", "tell a board: activate, deactivate, clear, hold, release, weight; ask who it is: identify");
   command
       ->add_option("WHAT", arguments->what,
-                   "activate | deactivate | clear (a latched fault) | hold | release | weight")
+                   "activate | deactivate | clear (a latched fault) | hold | release | weight | identify")
       ->required()
-      ->check(CLI::IsMember({"activate", "deactivate", "clear", "hold", "release", "weight"}));
+      ->check(CLI::IsMember({"activate", "deactivate", "clear", "hold", "release", "weight", "identify"}));
   command->add_option("--to", arguments->url, "board: tcp://HOST[:1502], rtu://DEVICE, can://INTERFACE")
       ->required();
   command->add_option("--key", arguments->key,
                       "secret key of `vernier keys` (or VERNIER_KEY), where the board has keys");
+  add_board_claim(*command, arguments->claim);
   command->add_option("--axis", arguments->axis, "axis of a weight");
   command->add_option("--weight", arguments->weight, "share of its correction that is applied")
       ->check(CLI::Range(0.0, 1.0));
   command->add_option("--json", arguments->json, "result for programs; - is standard output");
-  command->footer("Exit status: 0 done, 1 bad input or no board, 2 the board refuses.");
+  command->footer(
+      "Exit status: 0 done, 1 bad input or no board, 2 the board refuses, or is another board (nothing was "
+      "sent).");
   command->callback([arguments] { run(*arguments); });
 }
 

@@ -18,6 +18,7 @@
 #include "tools/text/numbers.h"
 #include "tools/text/wall_time.h"
 #include "tools/text/words.h"
+#include "tools/upload/client.h"
 #include "tools/upload/url.h"
 
 namespace vernier::commands::fleet_cli {
@@ -29,9 +30,48 @@ constexpr double kMostDays = 1e5;
 
 struct AddArguments {
   std::string registry, name;
-  std::optional<std::string> url, note;
+  std::optional<std::string> url, note, board, board_key;
   std::optional<double> check_days;
+  bool trust = false;
 };
+
+/// The name and key of the board that answers at the machine's address, which the user takes for the right
+/// one.
+void trust_board(registry::FleetMachine& machine) {
+  if (machine.url.empty())
+    throw text::InputError({}, machine.name, "--trust asks the board: enter its address with --url");
+  upload::Client board(upload::open_transport(upload::parse_url(machine.url)));
+  if (board.info().board.empty())
+    throw text::LimitNotMet(machine.url +
+                            ": this board has no name (name in its board file): nothing was entered");
+  machine.board = board.info().board;
+  const auto key = board.proved_key();
+  machine.board_key = key ? upload::board_key_text(*key) : "";
+}
+
+/// What the user says of the board; another name than before is another board, whose key is not known yet.
+void enter_board(const AddArguments& arguments, registry::FleetMachine& machine) {
+  if (arguments.trust && (arguments.board || arguments.board_key))
+    throw text::InputError(
+        "--trust takes name and key from the board; --board and --board-key state them: give one");
+  if (arguments.board && *arguments.board != machine.board)
+    machine.board = *arguments.board, machine.board_key.clear();
+  if (arguments.board && arguments.board->size() >= kBoardNameBytes)
+    throw text::InputError({}, *arguments.board, "too long for the name of a board");
+  if (arguments.board_key)
+    machine.board_key = arguments.board_key->empty()
+                            ? ""
+                            : upload::board_key_text(upload::parse_board_key(*arguments.board_key));
+  if (!machine.board_key.empty() && machine.board.empty())
+    throw text::InputError("--board-key needs --board, the name of the board");
+  if (arguments.trust) trust_board(machine);
+}
+
+void refuse_known_key(const registry::FleetMachine& machine, const std::vector<registry::FleetMachine>& all) {
+  for (const registry::FleetMachine& other : all)
+    if (!machine.board_key.empty() && other.name != machine.name && other.board_key == machine.board_key)
+      throw text::LimitNotMet("this is the board of " + other.name + ", by its key: nothing was entered");
+}
 
 void run_add(const AddArguments& arguments) {
   if (!fleet::fits_a_topic(arguments.name))
@@ -46,11 +86,18 @@ void run_add(const AddArguments& arguments) {
   if (arguments.url) machine.url = *arguments.url;
   if (arguments.note) machine.note = *arguments.note;
   if (arguments.check_days) machine.check_days = *arguments.check_days;
+  enter_board(arguments, machine);
+  refuse_known_key(machine, registry.machines());
   registry.put(machine);
+  if (arguments.trust)
+    fmt::print(stderr, "{}: board {} with {} is entered, on the word of the board that answers at {}\n",
+               machine.name, machine.board,
+               machine.board_key.empty() ? "no key of its own" : "key " + machine.board_key, machine.url);
 }
 
 struct ListArguments {
   std::string registry, machine, json;
+  double stale_s = registry::kStaleAfter_s;
 };
 
 Json or_text(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }
@@ -58,6 +105,8 @@ Json or_text(const std::string& text) { return text.empty() ? Json(nullptr) : Js
 Json machine_json(const registry::FleetMachine& machine, const registry::RecordedCalibration* runs) {
   Json json = {{"machine", machine.name},
                {"url", or_text(machine.url)},
+               {"board", or_text(machine.board)},
+               {"board_key", or_text(machine.board_key)},
                {"note", machine.note},
                {"check_days", machine.check_days},
                {"added", text::utc_text(machine.added_us)}};
@@ -95,25 +144,51 @@ void run_list(const ListArguments& arguments) {
   write_json(arguments.json, {{"machines", all}});
 }
 
+Json live_json(const registry::LiveState& one, const registry::LiveAge& age) {
+  Json json = {{"machine", one.machine},
+               {"state", registry::name_of(age.state)},
+               {"online", age.state == registry::LiveAge::State::kOnline},
+               {"age_s", one.received_us == 0 ? Json(nullptr) : Json(age.age_s)},
+               {"gateway", one.gateway},
+               {"mode", one.mode},
+               {"fault", one.fault},
+               {"image", or_text(one.image)},
+               {"at", text::utc_text(one.at_us)},
+               {"gateway_clock_off", age.clock_off},
+               {"gateway_clock_offset_s", one.historical ? Json(nullptr) : Json(age.clock_s)},
+               {"waited_in_store", one.historical},
+               {"samples", one.samples}};
+  for (const auto& [name, value] : one.values) json["values"][name] = Json::parse(value);
+  return json;
+}
+
+/// One line for people. Mode and fault of a state that is not of now are told as the last that was heard.
+std::string live_line(const registry::LiveState& one, const registry::LiveAge& age) {
+  using State = registry::LiveAge::State;
+  const char* const word = age.state == State::kOnline  ? "online"
+                           : age.state == State::kStale ? "STALE"
+                                                        : "AWAY";
+  std::string said = one.fault == "none" || one.fault.empty() ? one.mode : one.mode + ", fault " + one.fault;
+  if (age.state != State::kOnline) said = "last heard: " + said;
+  std::string line =
+      fmt::format("{:<20} {:<8} {:<32} {:<17} {} samples", one.machine, word, said, one.image, one.samples);
+  if (one.received_us != 0) line += fmt::format(", the last {:.0f} s ago", age.age_s);
+  if (one.historical) line += ", which had waited in the gateway's store since " + text::utc_text(one.at_us);
+  if (age.clock_off)
+    line += fmt::format("; the clock of gateway {} is off by {:+.0f} s", one.gateway, age.clock_s);
+  return line;
+}
+
 void run_status(const ListArguments& arguments) {
   registry::Registry registry = open_registry(arguments.registry);
   Json all = Json::array();
   std::FILE* const out = human_stream(arguments.json);
+  const std::int64_t now_us = registry.database().now_us();
   for (const registry::LiveState& one : registry.live()) {
     if (!arguments.machine.empty() && one.machine != arguments.machine) continue;
-    Json json = {{"machine", one.machine},
-                 {"online", one.online},
-                 {"gateway", one.gateway},
-                 {"mode", one.mode},
-                 {"fault", one.fault},
-                 {"image", or_text(one.image)},
-                 {"at", text::utc_text(one.at_us)},
-                 {"samples", one.samples}};
-    for (const auto& [name, value] : one.values) json["values"][name] = Json::parse(value);
-    all.push_back(json);
-    fmt::print(out, "{:<20} {:<8} {:<10} {:<18} {:<17} {} samples, the last {}\n", one.machine,
-               one.online ? "online" : "AWAY", one.mode, one.fault == "none" ? "" : one.fault, one.image,
-               one.samples, text::utc_text(one.at_us));
+    const registry::LiveAge age = registry::live_age(one, now_us, arguments.stale_s);
+    all.push_back(live_json(one, age));
+    fmt::print(out, "{}\n", live_line(one, age));
     if (arguments.machine.empty()) continue;
     for (const auto& [name, value] : one.values) fmt::print(out, "  {:<40} {}\n", name, value);
   }
@@ -181,6 +256,14 @@ void add_machine_kinds(CLI::App& fleet) {
   command->add_option("MACHINE", add->name, "its name; also the device of its topics")->required();
   add_registry(*command, add->registry);
   command->add_option("--url", add->url, "its board: tcp://HOST[:1502], rtu://DEVICE, can://INTERFACE");
+  command->add_option("--board", add->board, "the name that its board must have (name in the board file)");
+  command->add_option(
+      "--board-key", add->board_key,
+      "key of its board: 64 hexadecimal digits (vernier board identify), or its file identity.pub");
+  command->add_flag(
+      "--trust", add->trust,
+      "ask the board at the address now, and enter its name and key: only where you know that it "
+      "is the right board");
   command
       ->add_option("--check-days", add->check_days,
                    "a check is due so many days after the last one; 0: never")
@@ -196,9 +279,17 @@ void add_machine_kinds(CLI::App& fleet) {
   command->callback([list] { run_list(*list); });
 
   const auto status = std::make_shared<ListArguments>();
-  command = fleet.add_subcommand("status", "what was last heard of each machine: online, mode, fault, image");
+  command = fleet.add_subcommand(
+      "status", "what was last heard of each machine: online, stale or away; mode, fault, image");
   command->add_option("MACHINE", status->machine, "only this one, with all values");
   add_registry(*command, status->registry);
+  command
+      ->add_option(
+          "--stale", status->stale_s,
+          "s; a machine whose newest sample is older is stale, not online (a multiple of the gateway's "
+          "period_s)")
+      ->check(CLI::Range(0.1, 1e6))
+      ->capture_default_str();
   command->add_option("--json", status->json, "result for programs; - for standard output");
   command->callback([status] { run_status(*status); });
 }

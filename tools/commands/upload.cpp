@@ -3,7 +3,9 @@
 
 #include <cstring>
 #include <memory>
+#include <optional>
 
+#include "tools/commands/board_claim.h"
 #include "tools/commands/command.h"
 #include "tools/commands/upload_kinds.h"
 #include "tools/compile/compile.h"
@@ -19,7 +21,8 @@ namespace vernier::commands::upload_cli {
 namespace {
 
 struct Arguments {
-  std::string directory, url, key, board, json, output;
+  std::string directory, url, key, json, output;
+  ClaimWords claim;
   std::int64_t security = -1;  // the board's
   bool confirm = false, revert = false, force = false;
 };
@@ -80,43 +83,96 @@ std::uint32_t security_of(const Arguments& arguments, const SlotsReply& slots) {
   return static_cast<std::uint32_t>(arguments.security);
 }
 
-void send(const Arguments& arguments, upload::Client& client) {
+/// Sends the image; its fingerprint.
+std::uint64_t send(const Arguments& arguments, upload::Client& client) {
   const std::vector<std::uint8_t> image = safe_image(arguments.directory);
   const auto key = upload::given_key(arguments.key);
   if (!key)
     throw text::InputError(
         "--key is missing: the secret key that signs the image (`vernier keys` makes one)");
-  const std::string& board = client.info().board;
-  if (!arguments.board.empty() && arguments.board != board)
-    throw text::LimitNotMet(
-        fmt::format("this board is {}, not {}", board.empty() ? "without a name" : board, arguments.board));
   const SlotsReply slots = client.slots();
   const auto upload = upload::make_upload(image, *key, time_of_signing(arguments, slots),
-                                          security_of(arguments, slots), board);
+                                          security_of(arguments, slots), client.info().board);
   Progress progress("upload");
   client.upload(upload, [&](double share) { progress.update(share); });
+  ImageHeader header;
+  std::memcpy(&header, image.data(), sizeof(header));
+  return header.fingerprint;
+}
+
+/// What was done to the board, by what it says afterwards.
+struct Done {
+  std::optional<std::uint64_t> sent, kept;  // fingerprints
+  bool given_up = false;
+};
+
+text::Assurance vouch(const Arguments& arguments, upload::Client& client, const Done& done,
+                      const SlotsReply& slots) {
+  text::Assurance assurance(text::AssuranceKind::kUpload);
+  vouch_for_board(assurance, arguments.claim, client.info().board);
+  const auto require = [&](const char* rule, bool ok, const std::string& image, const char* state) {
+    assurance.require(rule, ok, fmt::format("{} is {}{} on the board", image, ok ? "" : "not ", state));
+  };
+  if (done.kept)
+    require("kept", slots.trial == kNoSlot && slots.confirmed_fingerprint == *done.kept,
+            text::fingerprint_text(*done.kept), "confirmed");
+  else if (done.sent)
+    require("on-trial", slots.trial != kNoSlot && slots.trial_fingerprint == *done.sent,
+            text::fingerprint_text(*done.sent), "on trial");
+  if (done.given_up) require("given-up", slots.trial == kNoSlot, "the image that was on trial", "given up");
+  const upload::BoardTick tick = client.newest();
+  const upload::BoardState state = client.state();
+  if (tick.mode != Mode::kActive || tick.fault != Fault::kNone || state.weight < 1)
+    assurance.not_covered(
+        fmt::format("that the image is in effect: the board is in mode {}, fault {}, with {:.0f} "
+                    "% of the correction in",
+                    name_of(tick.mode), name_of(tick.fault), 100 * state.weight));
+  assurance.not_covered("whether the machine is more accurate: nothing was measured");
+  return assurance;
+}
+
+void tell(const Arguments& arguments, upload::Client& client, const Done& done) {
+  const SlotsReply slots = client.slots();
+  const text::Assurance assurance = vouch(arguments, client, done, slots);
+  std::FILE* const people = human_stream(arguments.json);
+  const std::string& board = client.info().board;
+  const std::string on = board.empty() ? "a board without a name" : "board " + board;
+  if (slots.trial != kNoSlot)
+    fmt::print(people,
+               "{}: {:016x} runs on trial for {:.0f} s more, then the board goes back to what it ran before\n"
+               "keep it: vernier upload --confirm --to {}{}\n",
+               on, slots.trial_fingerprint, slots.trial_left_ms * 1e-3, arguments.url,
+               board.empty() ? "" : " --board " + board);
+  else
+    fmt::print(people, "{}: {}\n", on, upload::confirmed_text(slots));
+  for (const std::string& one : assurance.uncovered()) fmt::print(people, "not looked at: {}\n", one);
+  nlohmann::ordered_json json = slots_json(slots);
+  json["board"] = board;
+  json["assurance"] = assurance.json();
+  write_json(arguments.json, json);
+  for (const text::AssuranceRule& rule : assurance.because())
+    if (!rule.ok) throw text::LimitNotMet("the board did not do what it was told: " + rule.text);
 }
 
 void run(const Arguments& arguments) {
   if (arguments.directory.empty() && !arguments.confirm && !arguments.revert)
     throw text::InputError("nothing to do: name a compiled directory, --confirm or --revert");
   if (arguments.revert && (arguments.confirm || !arguments.directory.empty()))
-    throw text::InputError("--revert stands alone");
+    throw text::InputError("--revert cannot be combined with DIR or --confirm");
   upload::Client client(upload::open_transport(upload::parse_url(arguments.url)));
   client.sign_with(upload::given_key(arguments.key));
-  if (!arguments.directory.empty()) send(arguments, client);
-  if (arguments.confirm) client.confirm();
-  if (arguments.revert) client.revert();
-  const SlotsReply slots = client.slots();
-  std::FILE* const people = human_stream(arguments.json);
-  if (slots.trial != kNoSlot)
-    fmt::print(people,
-               "{:016x} runs on trial for {:.0f} s more, then the board goes back to what it ran before\n"
-               "keep it: vernier upload --confirm --to {}\n",
-               slots.trial_fingerprint, slots.trial_left_ms * 1e-3, arguments.url);
-  else
-    fmt::print(people, "{}\n", upload::confirmed_text(slots));
-  write_json(arguments.json, slots_json(slots));
+  require_claim(client, arguments.claim);
+  Done done;
+  if (!arguments.directory.empty()) done.sent = send(arguments, client);
+  if (arguments.confirm) {
+    const SlotsReply slots = client.slots();
+    if (slots.trial != kNoSlot) done.kept = slots.trial_fingerprint;
+    if (done.sent && done.kept != done.sent)
+      throw text::LimitNotMet("another image is on trial than the one that was sent: nothing was confirmed");
+    client.confirm();
+  }
+  if (arguments.revert) client.revert(), done.given_up = true;
+  tell(arguments, client, done);
 }
 
 }  // namespace
@@ -144,13 +200,15 @@ void register_upload(CLI::App& vernier) {
   command->add_flag(
       "--force", arguments->force,
       "where this computer's clock is behind the newest image of the board: sign right after that");
-  command->add_option("--board", arguments->board, "only where the board has this name");
+  add_board_claim(*command, arguments->claim);
   command
       ->add_option("--security", arguments->security,
                    "raise the board's security counter: images below it are never taken again")
       ->check(CLI::Range(std::int64_t{0}, std::int64_t{UINT32_MAX}));
   command->add_option("--json", arguments->json, "result for programs; - is standard output");
-  command->footer("Exit status: 0 done, 1 bad input or no board, 2 the board refuses (and says why).");
+  command->footer(
+      "Exit status: 0 done, 1 bad input or no board, 2 the board refuses (and says why), is another board "
+      "(nothing was sent), or did not do what it was told.");
   command->callback([arguments] { run(*arguments); });
 }
 

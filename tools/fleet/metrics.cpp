@@ -45,10 +45,24 @@ class Family {
   std::string name_;
 };
 
-void put_live(std::string& text, const std::vector<registry::LiveState>& live) {
-  Family up(text, "vernier_machine_online", "gauge", "Whether a gateway hears the machine's board.");
+void put_live(std::string& text, const std::vector<registry::LiveState>& live, std::int64_t now_us) {
+  const auto age_of = [&](const registry::LiveState& one) {
+    return registry::live_age(one, now_us, registry::kStaleAfter_s);
+  };
+  Family up(text, "vernier_machine_online", "gauge",
+            "Whether a gateway hears the machine's board: 0 too where the newest sample is older than 30 s.");
   for (const registry::LiveState& one : live)
-    up.add({{"machine", one.machine}, {"gateway", one.gateway}}, one.online ? 1 : 0);
+    up.add({{"machine", one.machine}, {"gateway", one.gateway}},
+           age_of(one).state == registry::LiveAge::State::kOnline ? 1 : 0);
+  Family age(text, "vernier_machine_sample_age_seconds", "gauge",
+             "Since the registry took the newest sample, by the registry's clock.");
+  for (const registry::LiveState& one : live)
+    if (one.received_us != 0) age.add({{"machine", one.machine}}, age_of(one).age_s);
+  Family clock(text, "vernier_gateway_clock_offset_seconds", "gauge",
+               "The gateway's clock less the registry's, from the machine's newest sample.");
+  for (const registry::LiveState& one : live)
+    if (one.received_us != 0 && !one.historical)
+      clock.add({{"machine", one.machine}, {"gateway", one.gateway}}, age_of(one).clock_s);
   Family at(text, "vernier_machine_newest_sample_timestamp_seconds", "gauge",
             "When the newest stored sample was taken.");
   for (const registry::LiveState& one : live)
@@ -71,7 +85,7 @@ void put_live(std::string& text, const std::vector<registry::LiveState>& live) {
 
 std::string metrics_text(registry::Registry& registry, std::int64_t at_us) {
   std::string text;
-  put_live(text, registry.live());
+  put_live(text, registry.live(), registry.database().now_us());
   registry::Database& database = registry.database();
   Family faults(text, "vernier_machine_faults_total", "counter", "Faults heard of.");
   for (const registry::Row& row :

@@ -4,217 +4,162 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <cstring>
 #include <map>
 #include <memory>
-#include <thread>
+#include <utility>
 
-#include "tables/image_format.h"
-#include "tools/registry/cells.h"
-#include "tools/registry/shell_command.h"
 #include "tools/text/error.h"
 #include "tools/text/numbers.h"
-#include "tools/text/wall_time.h"
 #include "tools/text/words.h"
 
 namespace vernier::fleet {
 namespace {
 
-using namespace std::chrono_literals;
-using Clock = std::chrono::steady_clock;
-
-constexpr auto kLookEvery = 200ms;
-// So much of a trial's time stays for the answer to reach the board.
-constexpr double kTrialMargin_s = 1;
-
-std::string fingerprint_of(const std::vector<std::uint8_t>& image) {
-  ImageHeader header;
-  std::memcpy(&header, image.data(), sizeof(header));
-  return text::fingerprint_text(header.fingerprint);
+std::vector<std::string> names_of(const std::vector<RolloutMachine>& machines) {
+  std::vector<std::string> names;
+  for (const RolloutMachine& one : machines) names.push_back(one.name);
+  return names;
 }
 
-/// What a board is like before and while an image is on trial.
-struct Look {
-  Mode mode;
-  Fault fault;
-  std::uint64_t faults;
-};
-
-Look look_at(upload::Client& board) {
-  const upload::BoardTick tick = board.newest();
-  return {tick.mode, tick.fault, board.health().faults};
-}
-
-/// Why the board is worse than it was; empty: it is not.
-std::string worse(const Look& before, const Look& now) {
-  if (now.fault != Fault::kNone && now.fault != before.fault)
-    return fmt::format("fault {}", name_of(now.fault));
-  if (now.faults > before.faults) return "a fault came and went";
-  if (before.mode == Mode::kActive && now.mode == Mode::kFaulted) return "it left the active mode";
-  return {};
-}
-
-/// One machine's trial; what is wrong with it, or empty.
-class Trial {
+/// One call of a rollout.
+class RolloutCall {
  public:
-  Trial(const RolloutMachine& machine, const RolloutOptions& options, const std::atomic<bool>& stop)
-      : machine_(machine),
+  RolloutCall(registry::Registry& registry, std::vector<RolloutMachine> machines,
+              const RolloutOptions& options, const std::atomic<bool>& stop, const Say& say,
+              const std::function<void(const RolloutMachine&)>& kept)
+      : registry_(registry),
+        machines_(std::move(machines)),
         options_(options),
         stop_(stop),
-        board_(upload::open_transport(upload::parse_url(machine.url))) {
-    board_.sign_with(options.key);
-  }
+        say_(say),
+        kept_(kept),
+        locks_(registry, names_of(machines_), "rollout " + options.name, options.lease_s),
+        book_(registry, options.name, locks_) {}
 
-  /// Does the board run and keep the image already (an answer that was lost with an earlier attempt)?
-  bool is_kept() {
-    const SlotsReply slots = board_.slots();
-    return slots.confirmed != kNoSlot && slots.trial == kNoSlot &&
-           text::fingerprint_text(slots.confirmed_fingerprint) == fingerprint_of(machine_.image);
-  }
-  std::string run() {
-    SlotsReply slots = board_.slots();
-    if (slots.trial != kNoSlot) {  // of an attempt that was interrupted
-      board_.revert();
-      slots = board_.slots();
+  RolloutEnd run() {
+    book_.enter(machines_);
+    if (options_.go_on) book_.allow();
+    for (RolloutState& state : rollout_states(registry_, options_.name)) states_[state.machine] = state;
+    try {
+      stages();
+      if (end_.stood.empty()) look_again();
+    } catch (const registry::LockLost& lost) {
+      end_.stood = lost.what();
+      end_.in_effect.clear();
     }
-    const Look before = look_at(board_);
-    const auto issued =
-        std::max<std::uint64_t>(static_cast<std::uint64_t>(text::now_us()), slots.newest_issued + 1);
-    board_.upload(
-        upload::make_upload(machine_.image, options_.key, issued, slots.security, board_.info().board),
-        [](double) {});
-    std::string wrong = watch(before);
-    if (wrong.empty() && !options_.judge.empty()) wrong = judge();
-    if (wrong.empty()) wrong = worse(before, look_at(board_));
-    if (wrong.empty() && board_.slots().trial == kNoSlot) wrong = "the board has given it up by itself";
-    return wrong;
-  }
-  void keep() { board_.confirm(); }
-  void take_back() {
-    if (board_.slots().trial != kNoSlot) board_.revert();
+    return std::move(end_);
   }
 
  private:
-  double left_s() { return board_.slots().trial_left_ms * 1e-3 - kTrialMargin_s; }
-
-  std::string watch(const Look& before) {
-    if (left_s() < options_.watch_s)
-      return fmt::format("the board's trial is {:.0f} s long, shorter than it is to be watched", left_s());
-    const auto end = Clock::now() + std::chrono::duration<double>(options_.watch_s);
-    while (Clock::now() < end) {
-      if (stop_) return "interrupted";
-      std::this_thread::sleep_for(kLookEvery);
-      if (std::string wrong = worse(before, look_at(board_)); !wrong.empty()) return wrong;
-    }
-    return {};
-  }
-  std::string judge() {
-    const double patience = left_s();
-    std::string command = registry::command_for(options_.judge, machine_.name);
-    registry::ShellCommand running(command);
-    const auto end = Clock::now() + std::chrono::duration<double>(patience);
-    while (!running.wait(50ms)) {
-      if (stop_) return "interrupted";
-      if (Clock::now() > end) return "nobody judged it within the board's trial";
-    }
-    if (running.status() == 0) return {};
-    return fmt::format("judged {}: {}",
-                       running.status() == 2 ? "worse" : "with status " + std::to_string(running.status()),
-                       running.last_line());
+  bool is_kept(const RolloutMachine& machine) const {
+    const RolloutState& state = states_.at(machine.name);
+    return state.state == "kept" && state.image == text::fingerprint_text(fingerprint_of(machine));
   }
 
-  const RolloutMachine& machine_;
-  const RolloutOptions& options_;
-  const std::atomic<bool>& stop_;
-  upload::Client board_;
-};
+  void stages() {
+    for (const auto& [machine, state] : states_)
+      if (state.state == "taken-back")
+        return stand("this rollout stands since " + machine + " (" + state.said + "): --go-on lets it go on");
+    look_again();
+    std::size_t away = 0;
+    for (std::size_t i = 0; i < machines_.size() && end_.stood.empty(); ++i) {
+      if (i > 0 && machines_[i].stage != machines_[i - 1].stage && !next_stage(away)) return;
+      if (stop_) return stand("interrupted");
+      if (!is_kept(machines_[i]) && !bring_to(machines_[i])) ++away;
+    }
+    // Who stopped elsewhere must not be called kept on the word of an earlier look.
+    if (!end_.stood.empty() && !stop_) return look_again();
+    if (away > 0) stand(fmt::format("{} boards were away: call it again", away));
+  }
 
-/// The rollout's rows of the registry.
-class RolloutBook {
- public:
-  RolloutBook(registry::Registry& registry, std::string name) : registry_(registry), name_(std::move(name)) {}
-  void enter(const std::vector<RolloutMachine>& machines) {
-    registry::Transaction transaction(registry_.database());
-    for (std::size_t i = 0; i < machines.size(); ++i)
-      registry_.database().run(
-          "INSERT INTO rollout VALUES ($1, $2, $3, $4, $5, 'waiting', '', $6) ON CONFLICT (name, machine) DO "
-          "UPDATE "
-          "SET stage = excluded.stage, place = excluded.place",
-          {name_, machines[i].name, registry::cell(machines[i].stage),
-           registry::cell(static_cast<std::int64_t>(i)), fingerprint_of(machines[i].image),
-           registry::cell(text::now_us())});
-    transaction.commit();
+  bool next_stage(std::size_t away) {
+    if (away > 0) stand(fmt::format("{} boards of this stage are away: the next stage waits for them", away));
+    look_again();
+    return end_.stood.empty();
+  }
+
+  void stand(const std::string& why) {
+    if (end_.stood.empty()) end_.stood = why;
   }
   void write(const RolloutMachine& machine, const char* state, const std::string& said) {
-    registry_.database().run(
-        "UPDATE rollout SET state = $1, said = $2, at_us = $3, image = $4 WHERE name = $5 AND machine = $6",
-        {state, said, registry::cell(text::now_us()), fingerprint_of(machine.image), name_, machine.name});
+    book_.write(machine, state, said);
+    states_[machine.name].state = state;
+    states_[machine.name].image = text::fingerprint_text(fingerprint_of(machine));
+    say_(machine.name + ": " + state + (said.empty() ? "" : ": " + said));
   }
 
- private:
-  registry::Registry& registry_;
-  std::string name_;
-};
-
-[[noreturn]] void stop_at(const std::string& machine, const std::string& why) {
-  throw text::LimitNotMet(machine + ": " + why + ": taken back, and the rollout stands");
-}
-
-/// Brings it to one machine; true: kept, false: the board is away.
-bool bring_to(const RolloutMachine& machine, const RolloutOptions& options, RolloutBook& book,
-              const std::atomic<bool>& stop, const Say& say) {
-  std::unique_ptr<Trial> trial;
-  try {
-    trial = std::make_unique<Trial>(machine, options, stop);
-    if (trial->is_kept()) {
-      book.write(machine, "kept", "");
-      return true;
+  /// Looks at every kept machine; the first that is not well any more stops the rollout.
+  void look_again() {
+    end_.in_effect.clear();
+    for (const RolloutMachine& machine : machines_) {
+      if (!is_kept(machine) || stop_) continue;
+      const KeptLook look = look_at_kept(machine, options_, locks_, stop_);
+      if (look.why.empty()) {
+        end_.in_effect.insert(machine.name);
+        continue;
+      }
+      write(machine, look.away ? "away" : "not-in-effect", "was kept, but now: " + look.why);
+      stand(machine.name + ": was kept, but now: " + look.why + ": the rollout stands");
     }
-  } catch (const text::InputError& error) {
-    book.write(machine, "away", error.what());
-    say(machine.name + ": away: " + error.what());
-    return false;
   }
-  book.write(machine, "trial", "");
-  std::string wrong;
-  try {
-    wrong = trial->run();
-  } catch (const std::runtime_error& error) {
-    wrong = error.what();
-  }
-  if (wrong.empty()) {
-    trial->keep();
-    book.write(machine, "kept", "");
-    say(machine.name + ": kept");
-    return true;
-  }
-  try {
-    trial->take_back();
-  } catch (const std::runtime_error& error) {
-    wrong += fmt::format(" (the board does not answer, {}: it goes back by itself when its trial is over)",
-                         error.what());
-  }
-  // Who interrupts has not judged: the machine waits.
-  book.write(machine, wrong == "interrupted" ? "waiting" : "taken-back", wrong);
-  stop_at(machine.name, wrong);
-}
 
-/// Are machines that were kept still well? Throws LimitNotMet at the first that is not.
-void look_again(const std::vector<RolloutMachine>& machines, std::size_t count, const Say& say) {
-  for (std::size_t i = 0; i < count; ++i) {
+  /// Enters the board's own key where none is entered. Throws LimitNotMet where another machine has this key.
+  void learn_key(RolloutMachine& machine) {
+    if (machine.claim.key) return;
+    upload::Client board(upload::open_transport(upload::parse_url(machine.url)));
+    board.require_board(machine.claim);
+    const auto key = board.proved_key();
+    if (!key) {
+      end_.notes.push_back(machine.name +
+                           ": only the name of the board was compared: it has no key of its own, "
+                           "and a board that says the same name would pass");
+      return;
+    }
+    const std::string text = upload::board_key_text(*key);
+    if (!registry_.trust_board_key(machine.name, text) && registry_.machine(machine.name).board_key != text)
+      throw text::LimitNotMet(
+          "this board has the key that is entered for another machine: is the address right?");
+    machine.claim.key = key;
+    end_.notes.push_back(machine.name +
+                         ": the key of its board was not known before and was trusted on first use");
+    say_(machine.name + ": the key of its board is entered in the registry (first use): " + text);
+  }
+
+  /// One machine's turn. False: the board is away, and the stage may go on.
+  bool bring_to(RolloutMachine& machine) {
+    TrialEnd end{TrialEnd::Kind::kAway, {}};
     try {
-      upload::Client board(upload::open_transport(upload::parse_url(machines[i].url)));
-      const Look now = look_at(board);
-      if (now.fault != Fault::kNone)
-        throw text::LimitNotMet(fmt::format("{}: fault {} since it was kept: the rollout stands",
-                                            machines[i].name, name_of(now.fault)));
+      learn_key(machine);
+      ImageTrial trial(machine, options_, book_, locks_, stop_);
+      end = trial.run(states_.at(machine.name).issued);
+    } catch (const registry::LockLost&) {
+      throw;
     } catch (const text::InputError& error) {
-      say(machines[i].name + ": cannot be looked at again: " + error.what());
+      end = {TrialEnd::Kind::kAway, error.what()};
+    } catch (const text::LimitNotMet& error) {
+      end = {TrialEnd::Kind::kRefused, std::string(error.what()) + "; nothing was sent"};
     }
+    write(machine, name_of(end.kind), end.why);
+    if (end.kind == TrialEnd::Kind::kKept) kept_(machine);
+    if (end.kind == TrialEnd::Kind::kTakenBack)
+      stand(machine.name + ": " + end.why + ": taken back, and the rollout stands");
+    else if (end.kind != TrialEnd::Kind::kKept && end.kind != TrialEnd::Kind::kAway)
+      stand(machine.name + ": " + end.why + ": the rollout stands");
+    return end.kind != TrialEnd::Kind::kAway;
   }
-}
+
+  registry::Registry& registry_;
+  std::vector<RolloutMachine> machines_;
+  const RolloutOptions& options_;
+  const std::atomic<bool>& stop_;
+  const Say& say_;
+  const std::function<void(const RolloutMachine&)>& kept_;
+  registry::MachineLocks locks_;
+  RolloutBook book_;
+  std::map<std::string, RolloutState> states_;
+  RolloutEnd end_;
+};
 
 }  // namespace
 
@@ -233,50 +178,10 @@ std::vector<std::size_t> stage_ends(const std::string& stages, std::size_t machi
   return ends;
 }
 
-void roll_out(registry::Registry& registry, const std::vector<RolloutMachine>& machines,
-              const RolloutOptions& options, const std::atomic<bool>& stop, const Say& say,
-              const std::function<void(const RolloutMachine&)>& kept) {
-  RolloutBook book(registry, options.name);
-  book.enter(machines);
-  std::map<std::string, RolloutState> states;
-  for (RolloutState& state : rollout_states(registry, options.name)) states[state.machine] = state;
-  for (const auto& [machine, state] : states)
-    if (state.state == "taken-back")
-      throw text::LimitNotMet("this rollout stands since " + machine + " (" + state.said +
-                              "): --go-on lets it go on");
-  std::size_t away = 0;
-  for (std::size_t i = 0; i < machines.size(); ++i) {
-    if (i > 0 && machines[i].stage != machines[i - 1].stage) {
-      if (away > 0)
-        throw text::LimitNotMet(
-            fmt::format("{} boards of this stage are away: the next stage waits for them", away));
-      look_again(machines, i, say);
-    }
-    if (stop) throw text::LimitNotMet("interrupted");
-    const RolloutState& state = states[machines[i].name];
-    if (state.state == "kept" && state.image == fingerprint_of(machines[i].image)) continue;
-    if (bring_to(machines[i], options, book, stop, say))
-      kept(machines[i]);
-    else
-      ++away;
-  }
-  if (away > 0) throw text::LimitNotMet(fmt::format("{} boards were away: call it again", away));
-}
-
-std::vector<RolloutState> rollout_states(registry::Registry& registry, const std::string& name) {
-  std::vector<RolloutState> states;
-  for (const registry::Row& row :
-       registry.database().run("SELECT machine, state, said, image, stage, at_us FROM "
-                               "rollout WHERE name = $1 ORDER BY place, machine",
-                               {name}))
-    states.push_back({registry::words(row[0]), registry::words(row[1]), registry::words(row[2]),
-                      registry::words(row[3]), registry::whole(row[4]), registry::whole(row[5])});
-  return states;
-}
-
-void allow_rollout(registry::Registry& registry, const std::string& name) {
-  registry.database().run("UPDATE rollout SET state = 'waiting' WHERE name = $1 AND state = 'taken-back'",
-                          {name});
+RolloutEnd roll_out(registry::Registry& registry, std::vector<RolloutMachine> machines,
+                    const RolloutOptions& options, const std::atomic<bool>& stop, const Say& say,
+                    const std::function<void(const RolloutMachine&)>& kept) {
+  return RolloutCall(registry, std::move(machines), options, stop, say, kept).run();
 }
 
 }  // namespace vernier::fleet

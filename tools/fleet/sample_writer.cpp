@@ -42,7 +42,8 @@ double number_of(const SparkplugPayload& payload, const char* name) {
 struct SampleWriter::Batch {
   struct Newest {
     std::int64_t at_us = 0, samples = 0;
-    std::string gateway, mode, fault, image, shape, values;
+    bool historical = false;
+    std::string spool, gateway, mode, fault, image, shape, values;
   };
   std::map<std::string, std::uint64_t> before, after;  // by spool: its cursor
   std::map<std::string, std::string> names_of_shape;
@@ -110,8 +111,12 @@ bool SampleWriter::take(const DeviceData& one, Batch& batch) {
                             registry::cell(number_of(one.payload, "Check/Evidence")),
                             registry::cell(number_of(one.payload, "Check/Alarm"))});
   }
-  if (at_us < newest.at_us) return true;
+  // The order of receipt counts, never a gateway's clock: a store's records come in the order of their
+  // numbers, and what waited in one store says nothing after a sample that has just been taken by another.
+  const bool same_store = newest.spool.empty() || newest.spool == *spool;
+  if (!same_store && historical && (!newest.historical || at_us < newest.at_us)) return true;
   newest.at_us = at_us, newest.gateway = one.gateway, newest.fault = fault, newest.shape = shape_id;
+  newest.spool = *spool, newest.historical = historical;
   newest.values = values;
   newest.mode = text_of(one.payload.find("Board/Mode")).value_or("");
   newest.image = text_of(one.payload.find("Image/Fingerprint")).value_or("");
@@ -152,8 +157,11 @@ void SampleWriter::write(Batch& batch) {
   for (const auto& [id, names] : batch.names_of_shape)
     database.run("INSERT INTO shape VALUES ($1, $2) ON CONFLICT DO NOTHING", {id, names});
   for (const std::string& machine : batch.machines)
-    database.run("INSERT INTO machine VALUES ($1, '', 'heard of, not added', 0, $2) ON CONFLICT DO NOTHING",
-                 {machine, registry::cell(text::now_us())});
+    database.run(
+        "INSERT INTO machine (name, url, note, check_days, added_us) VALUES ($1, '', 'heard of, not added', "
+        "0, "
+        "$2) ON CONFLICT DO NOTHING",
+        {machine, registry::cell(text::now_us())});
   registry::insert_rows(database, "INSERT INTO sample", batch.samples, "");
   registry::insert_rows(database, "INSERT INTO loss", batch.losses, "");
   registry::insert_rows(database, "INSERT INTO fault_event", batch.faults, "ON CONFLICT DO NOTHING");
@@ -170,19 +178,28 @@ void SampleWriter::write(Batch& batch) {
 
 void SampleWriter::write_live(const Batch& batch) {
   std::vector<registry::Row> rows;
+  const registry::Cell now = registry::cell(registry_.database().now_us());
   for (const auto& [machine, one] : batch.newest)
     rows.push_back({machine, one.gateway, registry::cell(std::int64_t{1}), registry::cell(one.at_us),
-                    registry::cell(one.samples), one.mode, one.fault, one.image, one.shape, one.values});
-  // A record from a store may be older than what is there: it counts, and no more.
+                    registry::cell(one.samples), one.mode, one.fault, one.image, one.shape, one.values, now,
+                    one.spool, registry::cell(std::int64_t{one.historical ? 1 : 0})});
+  // As in take(): a record that waited in another store than the one last heard counts, and no more.
   const auto newer = [](const std::string& column) {
-    return column + " = CASE WHEN excluded.at_us >= live.at_us THEN excluded." + column + " ELSE live." +
-           column + " END";
+    return column +
+           " = CASE WHEN excluded.spool = live.spool OR live.spool = '' OR excluded.historical = 0 OR "
+           "(live.historical = 1 AND excluded.at_us >= live.at_us) THEN excluded." +
+           column + " ELSE live." + column + " END";
   };
   std::string tail =
       "ON CONFLICT (machine) DO UPDATE SET samples = live.samples + excluded.samples, online = 1";
-  for (const char* column : {"gateway", "mode", "fault", "image", "shape", "sample_values", "at_us"})
+  for (const char* column : {"gateway", "mode", "fault", "image", "shape", "sample_values", "at_us",
+                             "received_us", "spool", "historical"})
     tail += ", " + newer(column);
-  registry::insert_rows(registry_.database(), "INSERT INTO live", rows, tail);
+  registry::insert_rows(
+      registry_.database(),
+      "INSERT INTO live (machine, gateway, online, at_us, samples, mode, fault, image, shape, "
+      "sample_values, received_us, spool, historical)",
+      rows, tail);
 }
 
 void SampleWriter::online(const std::string& gateway, const std::string& machine, bool online) {

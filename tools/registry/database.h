@@ -32,6 +32,9 @@ class Database {
   virtual const char* begin() const = 0;
   /// What makes a SELECT pass over rows that somebody else has in hand; empty where writers stand in line.
   virtual const char* skip_locked() const = 0;
+  /// Microseconds since 1970 by the database's own clock (a file's: that of this computer): one clock for all
+  /// who use it. Throws DatabaseError.
+  virtual std::int64_t now_us() = 0;
   /// "PostgreSQL 15.8 at ..." for people.
   virtual std::string name() const = 0;
 };

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <string_view>
 
+#include "tools/registry/cells.h"
 #include "tools/text/words.h"
 
 namespace vernier::registry {
@@ -42,6 +43,10 @@ class PostgresDatabase : public Database {
   std::int64_t written() const override { return written_; }
   const char* begin() const override { return "BEGIN"; }
   const char* skip_locked() const override { return " FOR UPDATE SKIP LOCKED"; }
+  std::int64_t now_us() override {
+    const auto rows = run("SELECT CAST(EXTRACT(EPOCH FROM clock_timestamp()) * 1000000 AS BIGINT)", {});
+    return whole(rows.at(0).at(0));
+  }
   std::string name() const override {
     return "PostgreSQL " + std::string(PQparameterStatus(connection_.get(), "server_version")) + ", " +
            PQdb(connection_.get());

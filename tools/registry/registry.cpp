@@ -14,7 +14,7 @@ namespace vernier::registry {
 namespace {
 
 // Raised with every change of the tables; an older program leaves a newer registry alone.
-constexpr std::int64_t kSchema = 1;
+constexpr std::int64_t kSchema = 2;
 
 // Time is microseconds since 1970. `spool` is the register of gateways' stores: `stored` is the last of its
 // numbers that is in `sample`, and moves in the transaction that puts it there.
@@ -56,8 +56,22 @@ constexpr const char* kTables[] = {
     "NULL, PRIMARY KEY (name, machine))",
 };
 
+// Version 2, on top of version 1: who a machine's board is, one caller per machine, when a sample was heard.
+constexpr const char* kSecondVersion[] = {
+    "ALTER TABLE machine ADD COLUMN board TEXT NOT NULL DEFAULT ''",
+    "ALTER TABLE machine ADD COLUMN board_key TEXT NOT NULL DEFAULT ''",
+    "ALTER TABLE live ADD COLUMN received_us BIGINT NOT NULL DEFAULT 0",
+    "ALTER TABLE live ADD COLUMN spool TEXT NOT NULL DEFAULT ''",
+    "ALTER TABLE live ADD COLUMN historical BIGINT NOT NULL DEFAULT 0",
+    "ALTER TABLE rollout ADD COLUMN issued BIGINT NOT NULL DEFAULT 0",
+    "CREATE TABLE machine_lock (machine TEXT PRIMARY KEY, holder TEXT NOT NULL, purpose TEXT NOT NULL, "
+    "until_us BIGINT NOT NULL)",
+};
+
 // Two programs that find no tables make them one after the other.
 constexpr std::int64_t kSchemaLock = 0x7665726e;
+
+constexpr double kClockAhead_s = 2, kClockBehind_s = 10;
 
 }  // namespace
 
@@ -75,25 +89,50 @@ void Registry::make_tables() {
     if (server) database_->run(fmt::format("SELECT pg_advisory_xact_lock({})", kSchemaLock));
     for (const char* table : kTables) database_->run(table);
     if (database_->run("SELECT version FROM fleet_schema").empty())
-      database_->run("INSERT INTO fleet_schema VALUES ($1)", {cell(kSchema)});
+      database_->run("INSERT INTO fleet_schema VALUES ($1)", {cell(std::int64_t{1})});
     transaction.commit();
   }
-  if (whole(database_->run("SELECT version FROM fleet_schema").at(0)[0]) > kSchema)
-    throw text::InputError({}, database_->name(), "a registry of a newer vernier");
+  const std::int64_t version = whole(database_->run("SELECT version FROM fleet_schema").at(0)[0]);
+  if (version > kSchema) throw text::InputError({}, database_->name(), "a registry of a newer vernier");
+  if (version < kSchema) upgrade(version);
+}
+
+// Two programs that find an older registry change it one after the other.
+void Registry::upgrade(std::int64_t version) {
+  Transaction transaction(*database_);
+  if (database_->skip_locked()[0] != '\0')
+    database_->run(fmt::format("SELECT pg_advisory_xact_lock({})", kSchemaLock));
+  version = whole(database_->run("SELECT version FROM fleet_schema").at(0)[0]);
+  if (version < 2)
+    for (const char* statement : kSecondVersion) database_->run(statement);
+  database_->run("UPDATE fleet_schema SET version = $1", {cell(kSchema)});
+  transaction.commit();
 }
 
 void Registry::put(const FleetMachine& machine) {
   database_->run(
-      "INSERT INTO machine VALUES ($1, $2, $3, $4, $5) ON CONFLICT (name) DO UPDATE SET url = excluded.url, "
-      "note = excluded.note, check_days = excluded.check_days",
-      {machine.name, machine.url, machine.note, cell(machine.check_days), cell(machine.added_us)});
+      "INSERT INTO machine (name, url, note, check_days, added_us, board, board_key) VALUES ($1, $2, $3, $4, "
+      "$5, $6, $7) ON CONFLICT (name) DO UPDATE SET url = excluded.url, note = excluded.note, check_days = "
+      "excluded.check_days, board = excluded.board, board_key = excluded.board_key",
+      {machine.name, machine.url, machine.note, cell(machine.check_days), cell(machine.added_us),
+       machine.board, machine.board_key});
+}
+
+bool Registry::trust_board_key(const std::string& machine, const std::string& key) {
+  database_->run(
+      "UPDATE machine SET board_key = $1 WHERE name = $2 AND board_key = '' AND NOT EXISTS (SELECT 1 FROM "
+      "machine other WHERE other.board_key = $1)",
+      {key, machine});
+  return database_->written() == 1;
 }
 
 std::vector<FleetMachine> Registry::machines() {
   std::vector<FleetMachine> machines;
   for (const Row& row :
-       database_->run("SELECT name, url, note, check_days, added_us FROM machine ORDER BY name"))
-    machines.push_back({words(row[0]), words(row[1]), words(row[2]), real(row[3]), whole(row[4])});
+       database_->run("SELECT name, url, note, check_days, added_us, board, board_key FROM machine ORDER BY "
+                      "name"))
+    machines.push_back({words(row[0]), words(row[1]), words(row[2]), real(row[3]), whole(row[4]),
+                        words(row[5]), words(row[6])});
   return machines;
 }
 
@@ -158,17 +197,43 @@ std::vector<FleetReading> Registry::readings(std::int64_t since_us) {
 std::vector<LiveState> Registry::live() {
   std::vector<LiveState> live;
   for (const Row& row : database_->run(
-           "SELECT live.machine, gateway, mode, fault, image, online, at_us, samples, names, sample_values "
-           "FROM live JOIN shape ON shape.id = live.shape ORDER BY live.machine")) {
-    LiveState one{words(row[0]), words(row[1]), words(row[2]),
-                  words(row[3]), words(row[4]), whole(row[5]) != 0,
-                  whole(row[6]), whole(row[7]), {}};
+           "SELECT live.machine, gateway, mode, fault, image, online, at_us, samples, names, sample_values, "
+           "received_us, historical FROM live JOIN shape ON shape.id = live.shape ORDER BY live.machine")) {
+    LiveState one{words(row[0]),  words(row[1]),      words(row[2]),
+                  words(row[3]),  words(row[4]),      whole(row[5]) != 0,
+                  whole(row[6]),  whole(row[7]),      {},
+                  whole(row[10]), whole(row[11]) != 0};
     const auto names = nlohmann::json::parse(words(row[8])), values = nlohmann::json::parse(words(row[9]));
     for (std::size_t i = 0; i < names.size() && i < values.size(); ++i)
       one.values.emplace_back(names[i].get<std::string>(), values[i].dump());
     live.push_back(std::move(one));
   }
   return live;
+}
+
+LiveAge live_age(const LiveState& live, std::int64_t now_us, double stale_s) {
+  LiveAge age;
+  age.age_s = static_cast<double>(now_us - live.received_us) * 1e-6;
+  const bool known = live.received_us != 0;  // not in a registry of the version before
+  if (known && !live.historical) {
+    age.clock_s = static_cast<double>(live.at_us - live.received_us) * 1e-6;
+    age.clock_off = age.clock_s > kClockAhead_s || age.clock_s < -kClockBehind_s;
+  }
+  const bool fresh = known && !live.historical && age.age_s <= stale_s;
+  age.state = !live.online ? LiveAge::State::kAway : fresh ? LiveAge::State::kOnline : LiveAge::State::kStale;
+  return age;
+}
+
+const char* name_of(LiveAge::State state) {
+  switch (state) {
+    case LiveAge::State::kOnline:
+      return "online";
+    case LiveAge::State::kStale:
+      return "stale";
+    case LiveAge::State::kAway:
+      return "away";
+  }
+  return "unknown";
 }
 
 std::int64_t Registry::forget_samples(std::int64_t before_us) {

@@ -16,6 +16,8 @@ struct FleetMachine {
   std::string note;
   double check_days = 0;  // a check is due so long after the last one; 0: never
   std::int64_t added_us = 0;
+  std::string board{};      // name that its board must have; empty: not entered
+  std::string board_key{};  // public half of the board's own key, 64 hexadecimal digits; empty: not entered
 };
 
 /// What runs on a machine and where it comes from.
@@ -38,14 +40,31 @@ struct FleetReading {
   double value = 0, std = 0;
 };
 
-/// What the registry last heard of a machine.
+/// What the registry last heard of a machine. `at_us` is the gateway's clock; `received_us` is the
+/// registry's.
 struct LiveState {
   std::string machine, gateway, mode, fault, image;
   bool online = false;
   std::int64_t at_us = 0;                                   // when its newest sample was taken
   std::int64_t samples = 0;                                 // stored
   std::vector<std::pair<std::string, std::string>> values;  // names and JSON values of that sample
+  std::int64_t received_us = 0;  // when the registry took that sample; 0: not known
+  bool historical = false;       // the sample had waited in the gateway's store
 };
+
+/// How far a live state may be believed at a moment.
+struct LiveAge {
+  enum class State : std::uint8_t { kOnline, kStale, kAway } state = State::kAway;
+  double age_s = 0;    // since the registry took the newest sample
+  double clock_s = 0;  // gateway's clock less the registry's, where the sample had not waited
+  bool clock_off = false;
+};
+/// now_us: of the registry's clock (Database::now_us); stale_s: a state that is older is not believed. A
+/// gateway's clock is off where its stamp is more than 2 s ahead or 10 s behind. tool.
+LiveAge live_age(const LiveState& live, std::int64_t now_us, double stale_s);
+/// "online", "stale" or "away".
+const char* name_of(LiveAge::State state);
+inline constexpr double kStaleAfter_s = 30;
 
 /// The fleet's registry: machines, what runs on them, what they said. The same on a server as in a file. All
 /// calls throw DatabaseError. tool.
@@ -60,6 +79,9 @@ class Registry {
   std::vector<FleetMachine> machines();
   /// Throws InputError where there is none of that name.
   FleetMachine machine(const std::string& name);
+  /// Enters the key of a machine's board where none is entered. False: another machine's board has this key,
+  /// or one was entered meanwhile.
+  bool trust_board_key(const std::string& machine, const std::string& key);
 
   void put(const RecordedCalibration& calibration);
   /// Newest first; of all machines where `machine` is empty.
@@ -77,6 +99,7 @@ class Registry {
 
  private:
   void make_tables();
+  void upgrade(std::int64_t version);
   std::unique_ptr<Database> database_;
 };
 

@@ -6,6 +6,7 @@
 #include <unordered_map>
 
 #include "tools/text/numbers.h"
+#include "tools/text/wall_time.h"
 
 namespace vernier::registry {
 namespace {
@@ -50,6 +51,7 @@ class SqliteDatabase : public Database {
   std::int64_t written() const override { return sqlite3_changes(handle_); }
   const char* begin() const override { return "BEGIN IMMEDIATE"; }
   const char* skip_locked() const override { return ""; }
+  std::int64_t now_us() override { return text::now_us(); }
   std::string name() const override { return std::string("SQLite ") + sqlite3_libversion() + ", " + file_; }
 
  private:

@@ -74,6 +74,7 @@ std::vector<std::uint8_t> Client::request_of(LinkOp op, const std::vector<std::u
     return request;
   }
   const auto challenge = get<ChallengeReply>(ask(LinkOp::kChallenge), 0);
+  require_same_start(challenge);
   SignedRequestHead head{};
   std::memcpy(head.magic, kRequestMagic, sizeof(head.magic));
   std::memcpy(head.nonce, challenge.nonce, sizeof(head.nonce));
@@ -119,16 +120,63 @@ std::vector<std::uint8_t> Client::ask(LinkOp op, const std::vector<std::uint8_t>
   }
 }
 
+std::optional<IdentifyReply> Client::proof_of(const std::string& name) {
+  IdentityHead head{};
+  const auto nonce = fresh_nonce();
+  std::memcpy(head.magic, kIdentityMagic, sizeof(head.magic));
+  std::memcpy(head.asked_nonce, nonce.data(), nonce.size());
+  std::memcpy(head.board, name.data(), std::min(name.size(), sizeof(head.board)));
+  const std::vector<std::uint8_t> payload(nonce.begin(), nonce.end());
+  const auto first = ask_once(request_of(LinkOp::kIdentify, payload));
+  if (static_cast<LinkStatus>(first[2]) == LinkStatus::kUnknownOp) return std::nullopt;
+  const bool done = static_cast<LinkStatus>(first[2]) == LinkStatus::kDone;
+  const auto proof = done ? get<IdentifyReply>(first, kReplyHeaderBytes)
+                          : get<IdentifyReply>(ask(LinkOp::kIdentify, payload), 0);
+  std::memcpy(head.start_nonce, proof.start_nonce, sizeof(head.start_nonce));
+  PublicKey key{};
+  std::memcpy(key.data(), proof.key, key.size());
+  if (!signature_fits(bytes_of_head(head), {}, proof.signature, key))
+    throw text::LimitNotMet("the board's proof of who it is does not fit: its signature is wrong");
+  return proof;
+}
+
+std::optional<BoardPublicKey> Client::proved_key() {
+  const auto proof = proof_of(info_.board);
+  if (!proof) return std::nullopt;
+  BoardPublicKey key{};
+  std::memcpy(key.data(), proof->key, key.size());
+  return key;
+}
+
+void Client::require_board(const BoardClaim& claim) {
+  claim_ = {};
+  if (claim.empty()) return;
+  read_hello();
+  if (!claim.name.empty() && info_.board != claim.name)
+    throw text::LimitNotMet(fmt::format("this board is {}, not {}",
+                                        info_.board.empty() ? "without a name" : info_.board, claim.name));
+  if (claim.key) {
+    const auto proof = proof_of(info_.board);
+    if (!proof)
+      throw text::LimitNotMet("this board has no key of its own and cannot prove that it is the right one");
+    if (std::memcmp(proof->key, claim.key->data(), claim.key->size()) != 0)
+      throw text::LimitNotMet(
+          "this board has another key than the one that is expected: it is another board");
+    std::memcpy(proved_start_.data(), proof->start_nonce, proved_start_.size());
+  }
+  claim_ = claim;
+}
+
+// A signed request is worth something only to the start of a board whose nonce stands in it.
+void Client::require_same_start(const ChallengeReply& challenge) {
+  if (!claim_.key || std::memcmp(challenge.nonce, proved_start_.data(), proved_start_.size()) == 0) return;
+  require_board(BoardClaim(claim_));
+  if (std::memcmp(challenge.nonce, proved_start_.data(), proved_start_.size()) != 0)
+    throw text::LimitNotMet("the board that gave the challenge is not the one that proved who it is");
+}
+
 Client::Client(std::unique_ptr<Transport> transport) : transport_(std::move(transport)) {
-  const auto hello = ask(LinkOp::kHello);
-  const auto version = get<std::uint16_t>(hello, 0);
-  if (version != kLinkVersion)
-    throw text::InputError(
-        fmt::format("the board speaks version {} of the link, this tool {}", version, kLinkVersion));
-  info_.hello = get<HelloReply>(hello, 0);
-  info_.board = std::string(info_.hello.board, strnlen(info_.hello.board, sizeof(info_.hello.board)));
-  if (info_.hello.axes > kMaxAxes || info_.hello.inputs > kMaxInputs)
-    throw text::InputError("the board claims more axes or inputs than there can be");
+  read_hello();
   const auto name = [this](std::uint8_t kind, std::uint8_t index, std::uint8_t& flags) {
     const auto reply = ask(LinkOp::kName, {kind, index});
     if (reply.size() != kImageNameBytes + 1) throw text::InputError("the board's reply is of the wrong size");
@@ -145,6 +193,18 @@ Client::Client(std::unique_ptr<Transport> transport) : transport_(std::move(tran
     info_.axes.push_back(axis);
   }
   for (std::uint8_t i = 0; i < info_.hello.inputs; ++i) info_.inputs.push_back(name(1, i, flags));
+}
+
+void Client::read_hello() {
+  const auto hello = ask(LinkOp::kHello);
+  const auto version = get<std::uint16_t>(hello, 0);
+  if (version != kLinkVersion)
+    throw text::InputError(
+        fmt::format("the board speaks version {} of the link, this tool {}", version, kLinkVersion));
+  info_.hello = get<HelloReply>(hello, 0);
+  info_.board = std::string(info_.hello.board, strnlen(info_.hello.board, sizeof(info_.hello.board)));
+  if (info_.hello.axes > kMaxAxes || info_.hello.inputs > kMaxInputs)
+    throw text::InputError("the board claims more axes or inputs than there can be");
 }
 
 std::size_t Client::tick_bytes() const {

@@ -98,6 +98,13 @@ struct BoardTouches {
   std::uint32_t lost = 0;
 };
 
+/// Who a board must be; an empty name and no key ask for nothing.
+struct BoardClaim {
+  std::string name;                   // in its board file
+  std::optional<BoardPublicKey> key;  // of the board's own key pair
+  bool empty() const { return name.empty() && !key; }
+};
+
 /// Talks to a board. Every call throws InputError where no or a senseless reply comes, and LimitNotMet with
 /// the board's reason where the board refuses. tool.
 class Client {
@@ -105,6 +112,14 @@ class Client {
   explicit Client(std::unique_ptr<Transport> transport);
   /// What the board wants signed is signed with this key from now on; nothing is where there is none.
   void sign_with(const std::optional<SigningKey>& key) { key_ = key; }
+
+  /// Asks the board who it is, now. With a key in the claim the board must sign a fresh nonce and its name
+  /// with that key; from then on every signed request is for the start of the board that proved it, and a
+  /// board that was started again meanwhile must prove it again first. Without a key only the name is
+  /// compared. Throws LimitNotMet where the board is another one or cannot prove it.
+  void require_board(const BoardClaim& claim);
+  /// The board's own key, after it signed a fresh nonce with it; nothing where the board has none.
+  std::optional<BoardPublicKey> proved_key();
 
   const BoardInfo& info() const { return info_; }
   BoardTick newest();
@@ -133,6 +148,9 @@ class Client {
 
  private:
   std::vector<std::uint8_t> ask(LinkOp op, const std::vector<std::uint8_t>& payload = {});
+  void read_hello();
+  std::optional<IdentifyReply> proof_of(const std::string& name);
+  void require_same_start(const ChallengeReply& challenge);
   std::vector<std::uint8_t> request_of(LinkOp op, const std::vector<std::uint8_t>& payload);
   std::vector<std::uint8_t> ask_once(const std::vector<std::uint8_t>& request);
   std::string share_name(std::uint16_t index, std::uint32_t programs);
@@ -141,6 +159,8 @@ class Client {
 
   std::unique_ptr<Transport> transport_;
   std::optional<SigningKey> key_;
+  BoardClaim claim_;
+  std::array<std::uint8_t, 16> proved_start_{};  // nonce of the start that proved the claim
   std::uint8_t sequence_ = 0;
   std::uint32_t named_program_ = 0;  // whose share names are kept
   std::vector<std::string> share_names_;

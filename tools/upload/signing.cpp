@@ -18,6 +18,7 @@ namespace {
 
 constexpr const char* kSecretTitle = "vernier board secret key";
 constexpr const char* kPublicTitle = "vernier board public key";
+constexpr const char* kIdentityTitle = "vernier board identity";
 
 std::string base64(const std::uint8_t* bytes, std::size_t size) {
   std::string text(sodium_base64_ENCODED_LEN(size, sodium_base64_VARIANT_ORIGINAL), '\0');
@@ -36,6 +37,40 @@ std::array<std::uint8_t, kPublicKeyBytes> SigningKey::public_part() const {
   std::array<std::uint8_t, kPublicKeyBytes> key{};
   crypto_sign_ed25519_sk_to_pk(key.data(), secret.data());
   return key;
+}
+
+std::string board_key_text(const BoardPublicKey& key) {
+  char hex[2 * kPublicKeyBytes + 1];
+  return sodium_bin2hex(hex, sizeof(hex), key.data(), key.size());
+}
+
+BoardPublicKey parse_board_key(const std::string& text) {
+  const auto digits_of = [](const std::string& digits) -> std::optional<BoardPublicKey> {
+    BoardPublicKey key{};
+    std::size_t size = 0;
+    const char* end = nullptr;
+    const bool whole =
+        digits.size() == 2 * kPublicKeyBytes &&
+        sodium_hex2bin(key.data(), key.size(), digits.data(), digits.size(), nullptr, &size, &end) == 0 &&
+        size == key.size() && end == digits.data() + digits.size();
+    return whole ? std::optional(key) : std::nullopt;
+  };
+  if (const auto key = digits_of(text)) return *key;
+  std::istringstream file(text::read_file(text));
+  std::string title, line;
+  std::getline(file, title);
+  std::getline(file, line);
+  const auto key = title == kIdentityTitle ? digits_of(line) : std::nullopt;
+  if (!key)
+    throw text::InputError({text, 0}, "", "not the key of a board: 64 hexadecimal digits, or identity.pub");
+  return *key;
+}
+
+std::array<std::uint8_t, 32> fresh_nonce() {
+  start_sodium();
+  std::array<std::uint8_t, 32> nonce{};
+  randombytes_buf(nonce.data(), nonce.size());
+  return nonce;
 }
 
 SigningKey new_key() {

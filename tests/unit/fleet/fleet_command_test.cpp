@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "tools/fleet/sample_writer.h"
 #include "tools/text/files.h"
 
 namespace vernier::fleet_command_test {
@@ -83,6 +84,54 @@ TEST_F(FleetCommand, AddChangesOnlyWhatIsSaid) {
   EXPECT_EQ(machine["note"], "hello");
   EXPECT_EQ(machine["check_days"], 3);
   EXPECT_EQ(run("vernier fleet add V --check-days nan"), 1) << said();
+}
+
+TEST_F(FleetCommand, BoardOfAMachineIsEntered) {
+  const std::string key(64, 'a'), other(64, 'b');
+  ASSERT_EQ(run("vernier fleet add V --board mill-1 --board-key " + key + " && vernier fleet add V --note x"),
+            0)
+      << said();
+  auto machine = json("vernier fleet list")["machines"][0];
+  EXPECT_EQ(machine["board"], "mill-1");
+  EXPECT_EQ(machine["board_key"], key);
+  // Another name is another board, whose key is not known.
+  ASSERT_EQ(run("vernier fleet add V --board mill-2"), 0) << said();
+  EXPECT_TRUE(json("vernier fleet list")["machines"][0]["board_key"].is_null());
+  ASSERT_EQ(run("vernier fleet add V --board-key " + other), 0) << said();
+  EXPECT_EQ(run("vernier fleet add W --board mill-9 --board-key " + other), 2) << "the key is V's";
+  EXPECT_EQ(run("vernier fleet add W --board-key " + key), 1) << "a key without a name";
+  EXPECT_EQ(run("vernier fleet add W --board w --board-key 0123"), 1) << said();
+  EXPECT_EQ(run("vernier fleet add W --board w --trust"), 1) << "stated and asked";
+  EXPECT_EQ(run("vernier fleet add W --trust"), 1) << "no address";
+}
+
+// A state that nobody has refreshed never reads as one of now.
+TEST_F(FleetCommand, StatusSaysHowOldAStateIsAndWhoseClockIsOff) {
+  ASSERT_EQ(run("vernier fleet add m"), 0) << said();
+  const auto hear = [&](std::uint64_t number, std::int64_t ahead_ms) {
+    registry::Registry registry(registry::open_database(folder_ + "/fleet.db"));
+    const auto ms = static_cast<std::uint64_t>(registry.database().now_us() / 1000 + ahead_ms);
+    fleet::DeviceData one{"g", "m", {}};
+    one.payload.metrics = {{"Board/Mode", std::string("active"), ms},
+                           {"Board/Fault", std::string("none"), ms},
+                           {std::string(fleet::kSpoolMetric), std::string("s"), ms},
+                           {std::string(fleet::kNumberMetric), number, ms},
+                           {std::string(fleet::kAfterMetric), number - 1, ms}};
+    fleet::SampleWriter(registry).write({one});
+  };
+  hear(1, 0);
+  EXPECT_EQ(json("vernier fleet status")["machines"][0]["state"], "online");
+  EXPECT_FALSE(json("vernier fleet status")["machines"][0]["gateway_clock_off"]);
+  hear(2, 6000);
+  EXPECT_TRUE(json("vernier fleet status")["machines"][0]["gateway_clock_off"]);
+  ASSERT_EQ(run("vernier fleet status"), 0);
+  EXPECT_NE(said().find("the clock of gateway g is off by +"), std::string::npos) << said();
+  ASSERT_EQ(run("sleep 1; vernier fleet status --stale 0.5"), 0);
+  EXPECT_NE(said().find("STALE    last heard: active"), std::string::npos) << said();
+  EXPECT_EQ(said().find("online"), std::string::npos) << said();
+  const auto stale = json("vernier fleet status --stale 0.5")["machines"][0];
+  EXPECT_FALSE(stale["online"]);
+  EXPECT_GT(stale["age_s"], 0.5);
 }
 
 TEST_F(FleetCommand, BadInputIsNamed) {

@@ -25,7 +25,8 @@ for name in ("plain", odd):
 with sqlite3.connect(registry) as file:
     file.execute("INSERT INTO shape VALUES ('s', ?)", (json.dumps(["Axes/X/Position", "Board/Mode", "Shares/X/a \"b\"\nc"]),))
     for name in ("plain", odd):
-        file.execute("INSERT INTO live VALUES (?, 'g', 1, 1700000000000000, 12, 'active', 'none', '0123', 's', ?)",
+        file.execute("INSERT INTO live (machine, gateway, online, at_us, samples, mode, fault, image, shape, sample_values) "
+                     "VALUES (?, 'g', 1, 1700000000000000, 12, 'active', 'none', '0123', 's', ?)",
                      (name, json.dumps([1.5e-7, "active", -3])))
         file.execute("INSERT INTO fault_event VALUES (?, 5, 'position-jump')", (name,))
     file.execute("INSERT INTO loss VALUES ('x', 3, 9)")
@@ -43,6 +44,7 @@ for one in (text, served):
     result = subprocess.run(["promtool", "check", "metrics"], input=one, capture_output=True)
     print(result.stdout.decode(), result.stderr.decode())
     good = good and result.returncode == 0 and not result.stderr and b'vernier_lost_samples_total 5' in one
+    good = good and b'vernier_machine_online{machine="plain",gateway="g"} 0' in one  # nothing was heard lately
     good = good and b'vernier_machine_value{machine="plain",name="Axes/X/Position"} 1.5e-07' in one or b"1.5e-7" in one
 shutil.rmtree(folder)
 print("good" if good else text.decode())

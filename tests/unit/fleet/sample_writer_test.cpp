@@ -78,6 +78,59 @@ TEST_P(SampleWriterTest, TwoWritersAtOnceDoNotDouble) {
   EXPECT_EQ(numbers(first_registry, "a"), (std::vector<std::int64_t>{1, 2, 3}));
 }
 
+DeviceData stamped(DeviceData one, std::uint64_t time_ms, bool historical = false) {
+  for (Metric& metric : one.payload.metrics) metric.time_ms = time_ms, metric.historical = historical;
+  return one;
+}
+
+// The gateway's clock was 6 s ahead and was set back: what it says afterwards counts at once.
+TEST_P(SampleWriterTest, GatewaysClockThatWasAheadDoesNotFreezeTheState) {
+  Registry registry = this->registry();
+  SampleWriter writer(registry);
+  const auto now_ms = static_cast<std::uint64_t>(registry.database().now_us() / 1000);
+  writer.write({stamped(sample("a", 1, 0), now_ms + 6000)});
+  const LiveState ahead = registry.live().at(0);
+  const LiveAge age = live_age(ahead, registry.database().now_us(), 30);
+  EXPECT_TRUE(age.clock_off);
+  EXPECT_NEAR(age.clock_s, 6, 2) << "the time that this test takes is in it";
+  writer.write({stamped(sample("a", 2, 1, "m", "position-jump"), now_ms + 100)});
+  EXPECT_EQ(registry.live().at(0).fault, "position-jump");
+  // In one batch, too.
+  writer.write({stamped(sample("a", 3, 2), now_ms + 9000),
+                stamped(sample("a", 4, 3, "m", "input-missing"), now_ms + 200)});
+  EXPECT_EQ(registry.live().at(0).fault, "input-missing");
+  EXPECT_FALSE(live_age(registry.live().at(0), registry.database().now_us(), 30).clock_off);
+}
+
+// A second gateway takes the board over; its clock is right, the first one's was ahead.
+TEST_P(SampleWriterTest, FreshSampleOfAnotherGatewayCountsWhateverTheClocks) {
+  Registry registry = this->registry();
+  SampleWriter writer(registry);
+  writer.write({stamped(sample("a", 1, 0), 9'000'000)});
+  writer.write({stamped(sample("b", 1, 0, "m", "position-jump"), 5'000)});
+  EXPECT_EQ(registry.live().at(0).fault, "position-jump");
+  // What then comes out of the first one's store is of before.
+  writer.write({stamped(sample("a", 2, 1), 9'000'001, true)});
+  EXPECT_EQ(registry.live().at(0).fault, "position-jump");
+  EXPECT_EQ(registry.live().at(0).samples, 3);
+}
+
+TEST_P(SampleWriterTest, StateThatIsOldIsStaleAndNotOnline) {
+  Registry registry = this->registry();
+  SampleWriter writer(registry);
+  const auto now_us = registry.database().now_us();
+  writer.write({stamped(sample("a", 1, 0), static_cast<std::uint64_t>(now_us / 1000))});
+  const LiveState live = registry.live().at(0);
+  EXPECT_EQ(live_age(live, live.received_us + 29'000'000, 30).state, LiveAge::State::kOnline);
+  EXPECT_EQ(live_age(live, live.received_us + 31'000'000, 30).state, LiveAge::State::kStale);
+  writer.write({stamped(sample("a", 2, 1), static_cast<std::uint64_t>(now_us / 1000) - 60'000, true)});
+  const LiveState waited = registry.live().at(0);
+  EXPECT_EQ(live_age(waited, waited.received_us, 30).state, LiveAge::State::kStale) << "it had waited";
+  EXPECT_FALSE(live_age(waited, waited.received_us, 30).clock_off) << "waiting is no clock";
+  writer.online("", "m", false);
+  EXPECT_EQ(live_age(registry.live().at(0), now_us, 30).state, LiveAge::State::kAway);
+}
+
 TEST_P(SampleWriterTest, ShuffledRepeatedDeliveriesEndComplete) {
   Registry registry = this->registry();
   std::mt19937 random(11);
@@ -110,9 +163,9 @@ TEST_P(SampleWriterTest, KeepsTheNewestStateFaultsAndChecks) {
   SampleWriter writer(registry);
   writer.write(
       {sample("a", 1, 0), sample("a", 2, 1, "m", "position-jump"), sample("a", 3, 2, "m", "position-jump")});
-  // Another gateway's store brings an older sample later.
+  // Another gateway's store brings an older sample later, which had waited there.
   DeviceData old = sample("b", 1, 0);
-  for (Metric& metric : old.payload.metrics) metric.time_ms = 5;
+  for (Metric& metric : old.payload.metrics) metric.time_ms = 5, metric.historical = true;
   writer.write({old});
   const auto live = registry.live();
   ASSERT_EQ(live.size(), 1u);

@@ -187,6 +187,7 @@ std::string message_codes() {
   VERNIER_CODE(LinkOp, kState);
   VERNIER_CODE(LinkOp, kChallenge);
   VERNIER_CODE(LinkOp, kSigned);
+  VERNIER_CODE(LinkOp, kIdentify);
   VERNIER_CODE(LinkAccess, kRead);
   VERNIER_CODE(LinkAccess, kCommand);
   VERNIER_CODE(LinkAccess, kUpload);

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Every message of the link, request and reply, byte for byte: tests/golden/link_v2.txt.
 #include <gtest/gtest.h>
+#include <sodium.h>
 
+#include <array>
 #include <cstring>
 
 #include "comp/probing/latch.h"
 #include "comp/probing/touch_filter.h"
 #include "firmware/core/gate.h"
 #include "firmware/core/link.h"
+#include "firmware/core/signature.h"
 #include "hal/sim/sim_slot_store.h"
 #include "tests/unit/tables/golden_listing.h"
 #include "tests/unit/tables/golden_machine.h"
@@ -76,6 +79,23 @@ TouchRecord touch_record() {
   return touch;
 }
 
+/// A key of the board that is the same in every run.
+class GoldenIdentity : public IdentityKey {
+ public:
+  const std::uint8_t* public_half() const noexcept override { return public_.data(); }
+  HalFault sign(const std::uint8_t* message, std::uint32_t size, std::uint8_t* signature) noexcept override {
+    crypto_sign_state state;
+    crypto_sign_init(&state);
+    crypto_sign_update(&state, message, size);
+    return crypto_sign_final_create(&state, signature, nullptr, key_.secret.data()) == 0 ? HalFault::kNone
+                                                                                         : HalFault::kRefused;
+  }
+
+ private:
+  SigningKey key_ = golden_key();
+  std::array<std::uint8_t, kPublicKeyBytes> public_ = key_.public_part();
+};
+
 /// A board of the golden machine that stands still, with everything published that can be asked for.
 class Board {
  public:
@@ -101,6 +121,12 @@ class Board {
       const ChallengeReply challenge = gate_.challenge(LinkAccess::kUpload, TimeUs{});
       reply.resize(Link::answer_with(LinkStatus::kDone, request.data(), reply.data()));
       return reply + bytes_of(challenge);
+    }
+    if (Gate::is_identify(request.data(), size)) {
+      IdentifyReply proof{};
+      const LinkStatus status = gate_.identify(request.data(), size, proof);
+      reply.resize(Link::answer_with(status, request.data(), reply.data()));
+      return status == LinkStatus::kDone ? reply + bytes_of(proof) : reply;
     }
     Gate::Opened opened{LinkStatus::kDone, request.data(), size};
     if (request[0] == static_cast<std::uint8_t>(LinkOp::kSigned))
@@ -150,7 +176,8 @@ class Board {
   std::unique_ptr<Exchange> exchange_ = std::make_unique<Exchange>();
   Uploader uploader_{store_, wiring_, *exchange_, {TimeUs(1000), golden_identity(), TimeUs(60'000'000)}};
   BoundProgram before_;
-  Gate gate_{identity_, nonce()};
+  GoldenIdentity own_key_;
+  Gate gate_{identity_, nonce(), &own_key_};
   Link link_{*exchange_, uploader_, wiring_, TimeUs(1000), identity_};
   static BoardIdentity golden_identity() {
     BoardIdentity identity(golden_key().public_part());
@@ -276,6 +303,27 @@ void talk_of_signatures(Talk& talk) {
   talk.say("the same once more", LinkOp::kSigned, request, fields, {});
 }
 
+/// What a board signs with its own key; the same bytes are checked as the asker checks them.
+void talk_of_identity(Talk& talk) {
+  Bytes nonce;
+  for (int i = 0; i < 32; ++i) nonce.push_back(static_cast<std::uint8_t>(0xc0 + i));
+  talk.say("who the board is, proved", LinkOp::kIdentify, nonce, {{"nonce", 32}},
+           {{"start nonce", 16}, {"key", 32}, {"signature", 64}});
+  const Bytes reply = talk.board.ask(Bytes{static_cast<std::uint8_t>(LinkOp::kIdentify), 0} + nonce);
+  IdentifyReply proof;
+  ASSERT_EQ(reply.size(), kReplyHeaderBytes + sizeof(proof));
+  std::memcpy(&proof, reply.data() + kReplyHeaderBytes, sizeof(proof));
+  IdentityHead head{};
+  std::memcpy(head.magic, kIdentityMagic, sizeof(head.magic));
+  std::memcpy(head.asked_nonce, nonce.data(), nonce.size());
+  std::memcpy(head.start_nonce, Board::nonce().data(), sizeof(head.start_nonce));
+  std::memcpy(head.board, "mill-1", 6);
+  EXPECT_TRUE(signature_fits(bytes_of_head(head), {}, proof.signature, golden_key().public_part()));
+  head.asked_nonce[0] ^= 1;
+  EXPECT_FALSE(signature_fits(bytes_of_head(head), {}, proof.signature, golden_key().public_part()));
+  talk.say("who the board is, without a nonce", LinkOp::kIdentify, {}, {}, {});
+}
+
 void talk_of_upload(Talk& talk) {
   const Bytes image = bytes_in(golden_text("image_v" + std::to_string(kImageFormatVersion) + ".txt"));
   const Bytes upload = make_upload(image, golden_key(), 0x0002030405060708, 5, "mill-1");
@@ -334,6 +382,7 @@ TEST(GoldenBytes, EveryMessageOfTheLinkIsAsBefore) {
   talk.say("a request that is too long", LinkOp::kHello, {0}, {{"too much", 1}}, {});
   talk.say("an axis that there is not", LinkOp::kName, {0, 3}, {{"kind", 1}, {"index", 1}}, {});
   talk.say("a second command before the first was taken", LinkOp::kCommand, {1}, {{"command", 1}}, {});
+  talk_of_identity(talk);
   // Every operation has been asked for.
   for (int op = 1; op < kLinkOpCount; ++op) {
     char begin[32];

@@ -8,6 +8,9 @@ import { on, store } from './store.js';
 const left = (name) => ({ name, left: true });
 const day = (time) => (time ? time.replace('T', ' ').replace('Z', '') : '');
 
+// Of the state that `vernier fleet status` tells.
+const heardWord = { online: 'online', stale: 'STALE', away: 'AWAY' };
+
 function machinesTable(status, due) {
   const heard = new Map(status.machines.map((one) => [one.machine, one]));
   // Those that are only heard of stand in both lists: what is heard enters a machine.
@@ -15,8 +18,8 @@ function machinesTable(status, due) {
     const live = heard.get(one.machine);
     return [
       one.machine,
-      live ? (live.online ? 'online' : 'AWAY') : 'never heard',
-      live?.mode ?? '',
+      live ? heardWord[live.state] ?? live.state : 'never heard',
+      live ? (live.online ? live.mode : `last: ${live.mode}`) : '',
       live && live.fault !== 'none' ? live.fault : '',
       live?.image ?? '',
       live ? day(live.at) : '',

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include "hal/identity_key.h"
+
+namespace vernier {
+
+/// The board's own key in two files of the store: `identity.key` (64 bytes, for its owner alone) and
+/// `identity.pub` (for people and for `vernier fleet add --board-key`).
+class BoardKey final : public IdentityKey {
+ public:
+  /// Reads the key of a store, or makes one where the store has none yet: the secret half is on the medium
+  /// before this returns. store: directory that can be written. Throws BoardError where the key cannot be
+  /// read or made, is no key, or others than its owner may read it. setup.
+  explicit BoardKey(const std::string& store);
+  ~BoardKey() override;
+  BoardKey(const BoardKey&) = delete;
+  BoardKey& operator=(const BoardKey&) = delete;
+
+  const std::uint8_t* public_half() const noexcept override { return public_.data(); }
+  HalFault sign(const std::uint8_t* message, std::uint32_t size, std::uint8_t* signature) noexcept override;
+  /// The public half as 64 hexadecimal digits. setup.
+  std::string text() const;
+
+ private:
+  void read(const std::string& path);
+  void make(const std::string& path);
+  std::array<std::uint8_t, kPublicBytes> public_{};
+  std::array<std::uint8_t, 64> secret_{};
+};
+
+}  // namespace vernier

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "tools/text/assurance.h"
+#include "tools/upload/client.h"
+
+namespace vernier::commands {
+
+/// The words of `--board` and `--board-key`; empty: not given.
+struct ClaimWords {
+  std::string board, board_key;
+};
+
+/// Adds `--board` and `--board-key` to a command that tells a board something. tool.
+void add_board_claim(CLI::App& command, ClaimWords& words);
+/// What the words ask of the board. Throws InputError where the key is none. tool.
+upload::BoardClaim claim_of(const ClaimWords& words);
+/// Compares the board with the words before anything is signed or sent. Throws LimitNotMet with the words
+/// "nothing was sent" where it is another board. tool.
+void require_claim(upload::Client& client, const ClaimWords& words);
+/// Writes down what was compared, and what was not. tool.
+void vouch_for_board(text::Assurance& assurance, const ClaimWords& words, const std::string& board);
+
+}  // namespace vernier::commands

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <cstdint>
+#include <string>
+
+#include "tools/upload/client.h"
+
+namespace vernier::fleet {
+
+/// What a board says of itself within a few milliseconds.
+struct BoardLook {
+  upload::BoardTick tick;
+  upload::BoardState state;
+  SlotsReply slots;
+  std::uint64_t faults = 0;  // counted since the start of the board
+};
+
+/// Throws as upload::Client. tool.
+BoardLook look_at(upload::Client& board);
+
+/// Why the image with this fingerprint is not in effect, as a sentence; empty: it is. In effect means: the
+/// image runs, the board is active, no fault is latched, nothing is held, and the whole correction of every
+/// axis is in. tool.
+std::string not_in_effect(const BoardLook& look, const upload::BoardInfo& info, std::uint64_t fingerprint);
+
+/// Why no image can come into effect on this board before somebody does something to it; empty: one can. A
+/// fault is latched, the corrections are held, or an axis has a weight below 1. tool.
+std::string blocked(const BoardLook& look, const upload::BoardInfo& info);
+
+}  // namespace vernier::fleet

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <atomic>
+#include <cstdint>
+#include <string>
+
+#include "tools/fleet/board_look.h"
+#include "tools/fleet/rollout_book.h"
+#include "tools/upload/client.h"
+
+namespace vernier::fleet {
+
+struct RolloutOptions {
+  std::string name;
+  upload::SigningKey key;
+  double watch_s = 10;   // on trial and in effect without a break, before the image is judged
+  double settle_s = 10;  // until an image must be in effect
+  double lease_s = 60;   // of the lock of a machine; a killed caller's lock ends after it
+  std::string judge;     // a shell's command: 0 not worse, anything else worse or not known; empty: only the
+                         // board is watched
+  bool go_on = false;    // machines that were taken back are tried again
+  bool take_over_trial = false;  // a trial that somebody else began is given up
+};
+
+/// How one machine's turn ended.
+struct TrialEnd {
+  enum class Kind : std::uint8_t { kKept, kTakenBack, kRefused, kNotInEffect, kAway, kInterrupted } kind;
+  std::string why;
+};
+/// "kept", "taken-back", ...: the state in the registry.
+const char* name_of(TrialEnd::Kind kind);
+
+/// One machine's turn: the image on trial, watched to be in effect, judged, then kept or taken back. Nothing
+/// is signed or sent before the board has proved that it is the machine's, and the proof is asked for again
+/// before each look, before the image is kept and before it is taken back. tool.
+class ImageTrial {
+ public:
+  /// Opens the board. Throws InputError where it does not answer, LimitNotMet where it is another board. All
+  /// arguments outlive the trial.
+  ImageTrial(const RolloutMachine& machine, const RolloutOptions& options, RolloutBook& book,
+             registry::MachineLocks& locks, const std::atomic<bool>& stop);
+  /// own_issued: RolloutState::issued, by which a trial that this rollout left is told from that of somebody
+  /// else. Throws LockLost: nothing more was done to the board.
+  TrialEnd run(std::uint64_t own_issued);
+
+ private:
+  struct Interrupted {};
+  bool is_kept(const SlotsReply& slots) const;
+  TrialEnd of_kept();
+  std::string clear_trial(const SlotsReply& slots, std::uint64_t own_issued);
+  TrialEnd try_image();
+  void send(const SlotsReply& slots);
+  void breathe();
+  std::string broken(const BoardLook& look) const;
+  std::string why_not();
+  std::string settle();
+  std::string watch();
+  std::string judge();
+  TrialEnd keep();
+  TrialEnd take_back(TrialEnd end);
+
+  const RolloutMachine& machine_;
+  const RolloutOptions& options_;
+  RolloutBook& book_;
+  registry::MachineLocks& locks_;
+  const std::atomic<bool>& stop_;
+  upload::Client board_;
+  std::uint64_t fingerprint_, issued_ = 0, faults_before_ = 0;
+};
+
+/// Is a machine that was kept still well? Looks until it is or options.settle_s are over. The board must
+/// prove who it is, have the image confirmed and have it in effect.
+struct KeptLook {
+  std::string why;  // why not; empty: it is
+  bool away = false;
+};
+/// Throws LockLost. tool.
+KeptLook look_at_kept(const RolloutMachine& machine, const RolloutOptions& options,
+                      registry::MachineLocks& locks, const std::atomic<bool>& stop);
+
+}  // namespace vernier::fleet

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "tools/registry/machine_lock.h"
+#include "tools/registry/registry.h"
+#include "tools/upload/client.h"
+
+namespace vernier::fleet {
+
+/// A machine of a rollout, in its order.
+struct RolloutMachine {
+  std::string name, url;
+  upload::BoardClaim claim;  // who its board must be; a name at least
+  std::vector<std::uint8_t> image;
+  std::int64_t stage = 0;
+};
+/// Of the image of a machine.
+std::uint64_t fingerprint_of(const RolloutMachine& machine);
+
+/// Where a machine stands in a rollout.
+struct RolloutState {
+  std::string machine;
+  std::string state;  // "waiting", "trial", "kept", "taken-back", "refused", "not-in-effect", "away"
+  std::string said;   // why
+  std::string image;  // fingerprint, 16 hexadecimal digits
+  std::int64_t stage = 0, at_us = 0;
+  std::uint64_t issued = 0;  // time of signing of the last trial that this rollout began; 0: none
+};
+
+/// A rollout's rows of the registry. They are written while the lock of the machine is held, and else not.
+/// All calls throw DatabaseError; those that write throw LockLost. tool.
+class RolloutBook {
+ public:
+  RolloutBook(registry::Registry& registry, std::string name, const registry::MachineLocks& locks)
+      : registry_(registry), name_(std::move(name)), locks_(locks) {}
+  void enter(const std::vector<RolloutMachine>& machines);
+  void write(const RolloutMachine& machine, const char* state, const std::string& said);
+  /// A trial begins; issued: time of signing, by which the board names it.
+  void begin_trial(const RolloutMachine& machine, std::uint64_t issued);
+  /// Machines that were taken back are tried again.
+  void allow();
+
+ private:
+  void run(const std::string& set, const std::string& machine, std::vector<registry::Cell> values);
+  registry::Registry& registry_;
+  std::string name_;
+  const registry::MachineLocks& locks_;
+};
+
+/// In the rollout's order; empty where there is none of that name.
+std::vector<RolloutState> rollout_states(registry::Registry& registry, const std::string& name);
+
+}  // namespace vernier::fleet

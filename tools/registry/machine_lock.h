@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "tools/registry/registry.h"
+#include "tools/text/error.h"
+
+namespace vernier::registry {
+
+/// The lock of a machine has gone to another caller: nothing more may be done to the machine.
+class LockLost : public text::LimitNotMet {
+ public:
+  using text::LimitNotMet::LimitNotMet;
+};
+
+/// Locks of machines in the registry: one caller at a time does something to a machine, from any computer.
+/// A lock is a lease by the database's clock. Its holder renews the lease; the lease of a caller that was
+/// killed ends by itself, and then the next caller may take the machine. tool.
+class MachineLocks {
+ public:
+  /// Takes the locks of all machines, or of none. purpose: for people, e.g. "rollout spring". lease_s: 1 s at
+  /// least. Throws LimitNotMet naming the machine that another caller holds, and until when at the longest.
+  MachineLocks(Registry& registry, std::vector<std::string> machines, std::string purpose, double lease_s);
+  /// Gives back what is still held.
+  ~MachineLocks();
+  MachineLocks(const MachineLocks&) = delete;
+  MachineLocks& operator=(const MachineLocks&) = delete;
+
+  /// Prolongs the leases where a third of one has passed. Throws LockLost where a lease has ended or another
+  /// caller has taken the machine.
+  void renew();
+  /// As renew(), at once: asked right before something that cannot be undone.
+  void require();
+  /// Who holds them, for statements that are only carried out while the lock is held.
+  const std::string& holder() const { return holder_; }
+
+ private:
+  Registry& registry_;
+  std::vector<std::string> machines_;
+  std::string holder_;
+  double lease_s_;
+  std::int64_t renewed_us_ = 0;  // by this computer's steady clock
+};
+
+}  // namespace vernier::registry
