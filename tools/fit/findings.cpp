@@ -71,7 +71,10 @@ std::array<Squares, 4> squares_of(const FitResult& result, const model::Measurem
       const Vector3d direction = direction_of(result, m, o);
       Index along = 3;
       if (direction.norm() > 0) direction.cwiseAbs().maxCoeff(&along);
-      const double u = model::uncertainty_of(m, o) > 0 ? model::uncertainty_of(m, o) : repeats_mm;
+      double u = model::uncertainty_of(m, o) > 0 ? model::uncertainty_of(m, o) : repeats_mm;
+      // What the fit does not know is in the residual of check rows too.
+      if (u > 0 && check && result.check_variance.size() > 0)
+        u = std::hypot(u, std::sqrt(result.check_variance[static_cast<Index>(i)]));
       visit(static_cast<std::size_t>(along), result.residual[static_cast<Index>(i)], u);
     }
   };

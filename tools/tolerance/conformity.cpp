@@ -311,11 +311,13 @@ class ConformityRunner {
           without = chain_off + own.col(k);
           with = chain_on + own.col(k);
         }
-        for (std::size_t c = 0; c < classes_; ++c)
+        for (std::size_t c = 0; c < classes_; ++c) {
+          const VectorXd off_rows = without + lacks_[c].col(k), on_rows = with + lacks_[c].col(k);
           for (std::size_t v = 0; v < values_.values.size(); ++v) {
-            off_values[c][v].push_back(values_.values[v].of(without + lacks_[c].col(k)));
-            on_values[c][v].push_back(values_.values[v].of(with + lacks_[c].col(k)));
+            off_values[c][v].push_back(values_.values[v].of(off_rows));
+            on_values[c][v].push_back(values_.values[v].of(on_rows));
           }
+        }
       }
       if (options_.progress)
         options_.progress(
