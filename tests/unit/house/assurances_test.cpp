@@ -100,7 +100,10 @@ TEST(Assurances, EveryAssuringTextIsOnThePage) {
   for (const std::string& file : files) {
     if (!speaks(file)) continue;
     for (const std::string& literal : literals_of(text_of(file))) {
+      // Help texts and statements of a database are longer than any verdict.
+      constexpr std::size_t kLongest = 120;
       if (!std::regex_search(literal, assuring()) || literal.ends_with(".h")) continue;
+      if (plain(literal).size() > kLongest) continue;
       seen.insert(plain(literal));
       EXPECT_TRUE(page.contains(plain(literal))) << file << ": `" << plain(literal) << "` is not on " << kPage
                                                  << ": list when it is said, what it does not cover and the "
