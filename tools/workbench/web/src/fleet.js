@@ -18,7 +18,7 @@ function machinesTable(status, due) {
     const live = heard.get(one.machine);
     return [
       one.machine,
-      live ? heardWord[live.state] ?? live.state : 'never heard',
+      live ? (heardWord[live.state] ?? live.state) : 'never heard',
       live ? (live.online ? live.mode : `last: ${live.mode}`) : '',
       live && live.fault !== 'none' ? live.fault : '',
       live?.image ?? '',
