@@ -42,7 +42,7 @@ JudgedText judged_text(const JudgedValue& one, int least) {
   for (int digits = least; digits <= kMost; ++digits) {
     const auto print = [&](double number) { return fmt::format("{:.{}f}", number, digits); };
     const auto read = [](const std::string& word) { return *text::parse_number(word); };
-    words = {print(value), print(expanded), print(one.tolerance)};
+    words = {print(value), print(expanded), text::number_text(read(print(one.tolerance)))};
     if (!one.value || conformity(read(words.value), read(words.tolerance), read(words.uncertainty)) == answer)
       break;
   }

@@ -46,6 +46,11 @@ class Guess {
            std::isdigit(static_cast<unsigned char>(word[1])) != 0;
   }
 
+  /// Taken for an axis by its letter alone: U may be a voltage, A a current.
+  bool may_be_no_axis(const std::string& word) const {
+    return wishes_.axes.empty() && is_axis(word) && word != "X" && word != "Y" && word != "Z";
+  }
+
   bool is_motion(const std::string& name) const {
     for (const char* prefix : {"dir", "since", "v", "a", "correction"})
       if (name.starts_with(prefix) && is_axis(name.substr(std::string(prefix).size()))) return true;
@@ -349,7 +354,9 @@ std::vector<text::Dimension> quantities_of(const SheetColumn& column, const Gues
   using text::Dimension;
   const std::string& name = column.name;
   const std::vector<Dimension> either = {Dimension::kLength, Dimension::kAngle};
-  if (column.use == SheetColumn::Use::kDeviation || guess.is_axis(name)) return either;
+  if (column.use == SheetColumn::Use::kDeviation) return either;
+  if (guess.may_be_no_axis(name)) return {};
+  if (guess.is_axis(name)) return either;
   if (guess.is_motion(name)) {
     if (name.starts_with("dir")) return {Dimension::kNone};
     if (name.starts_with("since") || name.starts_with("correction")) return either;

@@ -20,8 +20,8 @@ struct Slopes {
   double step = 0;
 
   Slopes(const Machine& machine, std::size_t axis, const States& at) {
-    constexpr std::size_t kPlaces = 32;
-    constexpr double kStep = 1e-6;  // of the range
+    constexpr std::size_t kPlaces = 32;  // over the range, at which slopes are taken
+    constexpr double kStep = 1e-6;       // of the range
     const double low = machine.axes[axis].min.value_or(-kReach);
     const double high = machine.axes[axis].max.value_or(kReach);
     step = kStep * std::max(high - low, 1.0);

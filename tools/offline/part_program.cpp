@@ -221,7 +221,7 @@ class Translator {
 
   /// A place between every two, no simple part of the way.
   static std::vector<double> between(const std::vector<double>& shares) {
-    constexpr double kGolden = 0.6180339887498949;
+    constexpr double kGolden = 0.6180339887498949;  // golden section: the least rational share
     std::vector<double> places;
     for (std::size_t k = 0; k + 1 < shares.size(); ++k)
       places.push_back(shares[k] + kGolden * (shares[k + 1] - shares[k]));

@@ -153,6 +153,7 @@ const Case kCases[] = {
      "mm "
      "or deg"},
     {"VoltageIsNoReading", "X[mm];x[V]\n1;2\n", "[V] is no unit of x, which needs a unit like mm"},
+    {"AVoltageCalledUIsNoAxis", "X[mm];x[mm];U[V];A[A]\n1;2;3;4\n", "X[mm],x[mm],U[V],A[A]\n1,2,3,4\n"},
     {"MassIsNoPosition", "X[kg];x[mm]\n1;2\n", "[kg] is no unit of X"},
     {"DegreesOfTemperatureAreNoAngle", "C[deg];rz[degC]\n1;2\n", "[degC] is no unit of rz"},
     {"SecondsAreNoUncertainty", "X[mm];x[mm];u[s]\n1;2;3\n", "[s] is no unit of u"},
