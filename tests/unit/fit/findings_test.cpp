@@ -167,10 +167,11 @@ TEST(FitFindings, AWaveBetweenTargetsIsUncertainAndOneThatTargetsFollowIsNot) {
     EXPECT_DOUBLE_EQ(fitted.fitted->measured[0].step, step);
     const States states = work_poses(fitted).states;
     const double std_um = Reach(fitted).std_um(states).norm() / std::sqrt(states.count);
-    if (step > 10)
+    if (step > 10) {
       EXPECT_GT(std_um, 2.5) << "targets every 20 mm do not show a wave of 18 mm between them";
-    else
+    } else {
       EXPECT_LT(std_um, 0.6);
+    }
   }
   // Positions of no common step: what is between them is measured by the others.
   std::mt19937_64 random(4);

@@ -70,8 +70,9 @@ TEST(PartConformity, AMisfitWidensEveryInterval) {
   for (const CharacteristicResult& one : after.characteristics) {
     if (!one.limits_mm) continue;
     EXPECT_GT(one.on.high - one.on.low, 0.02) << characteristic_name(one.what);
-    if (one.what != PartCharacteristic::kPosition)
+    if (one.what != PartCharacteristic::kPosition) {
       EXPECT_NE(*one.on.verdict, PartVerdict::kConforms) << characteristic_name(one.what);
+    }
     EXPECT_GT(one.misfit, 0.99);
   }
 }
