@@ -244,7 +244,7 @@ Machine with_lack(const std::string& text, const std::string& lack, Random& rand
         *along += "+" + wave(axis, between(0.5, 1.5, random), between(60, 160, random));
   }
   const std::size_t at = text.find('>', text.find("<transforms")) + 1;
-  const std::string row = fmt::format("<sixdof n=\"90\" X=\"{}\" Y=\"{}\" Z=\"{}\"/>", x, y, z);
+  const std::string row = fmt::format("<sixdof X=\"{}\" Y=\"{}\" Z=\"{}\"/>", x, y, z);
   return parse_machine(text.substr(0, at) + row + text.substr(at), "truth.xml");
 }
 
