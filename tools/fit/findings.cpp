@@ -47,7 +47,8 @@ Vector3d direction_of(const FitResult& result, const model::Measurement& m, cons
 
 /// Squares of one direction's residuals, and of what noise explains.
 struct Squares {
-  double residual = 0, noise = 0, chi = 0;
+  double residual = 0, noise = 0;  // mm^2; the noise as much of it as the fit leaves
+  double chi = 0, freedom = 0;     // residual over u, and what it is by noise alone
   std::size_t count = 0;
 };
 
@@ -71,34 +72,38 @@ std::array<Squares, 4> squares_of(const FitResult& result, const model::Measurem
       const Vector3d direction = direction_of(result, m, o);
       Index along = 3;
       if (direction.norm() > 0) direction.cwiseAbs().maxCoeff(&along);
-      double u = model::uncertainty_of(m, o) > 0 ? model::uncertainty_of(m, o) : repeats_mm;
-      // What the fit does not know is in the residual of check rows too.
-      if (u > 0 && check && result.check_variance.size() > 0)
-        u = std::hypot(u, std::sqrt(result.check_variance[static_cast<Index>(i)]));
-      visit(static_cast<std::size_t>(along), result.residual[static_cast<Index>(i)], u);
+      const double u = model::uncertainty_of(m, o) > 0 ? model::uncertainty_of(m, o) : repeats_mm;
+      visit(static_cast<std::size_t>(along), i, u);
     }
   };
-  each([&](std::size_t along, double residual, double) { sizes[along].push_back(std::abs(residual)); });
+  each([&](std::size_t along, std::size_t i, double) {
+    sizes[along].push_back(std::abs(result.residual[static_cast<Index>(i)]));
+  });
   std::array<double, 4> spread{};
   for (std::size_t k = 0; k < 4; ++k) spread[k] = robust_spread(sizes[k]);
-  each([&](std::size_t along, double residual, double u) {
+  each([&](std::size_t along, std::size_t i, double u) {
     if (!(u > 0)) return;
+    const double predicted =
+        result.prediction_variance.size() > 0 ? result.prediction_variance[static_cast<Index>(i)] : 0;
+    // A fit takes its own prediction's share of the noise out of the rows that it has; in check rows what the
+    // fit does not know is added to the noise.
+    const double taken = std::min(1.0, predicted / (u * u * std::max(1.0, result.variance_factor)));
+    const double unit = check ? u * u + predicted : u * u, left = check ? 1 : 1 - taken;
     const double most = kMostSpreads * std::max(u, spread[along]);
-    const double square = std::pow(std::min(std::abs(residual), most), 2);
+    const double square = std::pow(std::min(std::abs(result.residual[static_cast<Index>(i)]), most), 2);
     all[along].residual += square;
-    all[along].noise += u * u;
-    all[along].chi += square / (u * u);
+    all[along].noise += left * unit;
+    all[along].chi += square / unit;
+    all[along].freedom += left;
     ++all[along].count;
   });
   return all;
 }
 
-/// Variance beyond the noise; 0 where chance explains it. kept: share of the readings' freedom that the fit
-/// left.
-double excess(const Squares& one, double kept) {
-  const double freedom = kept * static_cast<double>(one.count);
-  if (freedom < 1 || maths::chi_square_tail(one.chi, freedom) > kChance / 3) return 0;
-  return std::max(0.0, one.residual / freedom - one.noise / static_cast<double>(one.count));
+/// Variance beyond the noise; 0 where chance explains it.
+double excess(const Squares& one) {
+  if (one.freedom < 1 || maths::chi_square_tail(one.chi, one.freedom) > kChance / 3) return 0;
+  return std::max(0.0, (one.residual - one.noise) / one.freedom);
 }
 
 /// Share of the check rows whose commanded pose is that of a fit row.
@@ -143,19 +148,17 @@ std::string unvaried_text(const model::FitRecord& record) {
 }  // namespace
 
 Vector3d misfit_of_model(const FitResult& result, const model::Measurement& m) {
-  const double count = static_cast<double>(result.before.count);
-  const double kept = count > 0 ? std::clamp(result.freedom / count, 0.0, 1.0) : 0;
   const auto fitted = squares_of(result, m, false), checked = squares_of(result, m, true);
   Vector3d variance = Vector3d::Zero();
   double seen = 0, sum = 0;
   for (std::size_t k = 0; k < 3; ++k) {
     if (fitted[k].count + checked[k].count == 0) continue;
-    variance[static_cast<Index>(k)] = std::max(excess(fitted[k], kept), excess(checked[k], 1));
+    variance[static_cast<Index>(k)] = std::max(excess(fitted[k]), excess(checked[k]));
     sum += variance[static_cast<Index>(k)];
     ++seen;
   }
   // Readings of no single direction (ball bar, distances) tell of all directions alike.
-  const double any = std::max(excess(fitted[3], kept), excess(checked[3], 1));
+  const double any = std::max(excess(fitted[3]), excess(checked[3]));
   for (std::size_t k = 0; k < 3; ++k) {
     double& own = variance[static_cast<Index>(k)];
     if (fitted[k].count + checked[k].count == 0) own = seen > 0 ? sum / seen : 0;

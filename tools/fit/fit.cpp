@@ -274,24 +274,21 @@ double std_of_mean(const std::vector<double>& numbers) {
   return std::sqrt(spread / (kStretches - 1) / kStretches);
 }
 
-/// g C g^T of each check reading, C the covariance of the parameters; 0 for the others.
-Eigen::VectorXd check_variance(const FitResult& result, const model::Measurement& m) {
-  if (result.check.count == 0 || result.freedom < 0.5) return {};
+/// g C g^T of each reading, C the covariance of the parameters.
+Eigen::VectorXd prediction_variance(const FitResult& result, const model::Measurement& m) {
+  if (result.freedom < 0.5) return {};
   const model::Linearisation linear = model::linearise(result.machine, m, result.parameters);
   Eigen::VectorXd variance = Eigen::VectorXd::Zero(linear.predicted.size());
-  for (std::size_t i = 0; i < m.observations.size(); ++i) {
-    if (m.check[m.observations[i].row] == 0) continue;
-    const auto at = static_cast<Eigen::Index>(i);
-    for (model::SparseRows::InnerIterator a(linear.jacobian, at); a; ++a)
-      for (model::SparseRows::InnerIterator b(linear.jacobian, at); b; ++b)
-        variance[at] += a.value() * b.value() * result.covariance(a.col(), b.col());
-  }
+  for (Eigen::Index i = 0; i < variance.size(); ++i)
+    for (model::SparseRows::InnerIterator a(linear.jacobian, i); a; ++a)
+      for (model::SparseRows::InnerIterator b(linear.jacobian, i); b; ++b)
+        variance[i] += a.value() * b.value() * result.covariance(a.col(), b.col());
   return variance;
 }
 
 /// residual / sqrt(u^2 + g C g^T) over the check rows; u is the reading's own, without it the fit's spread.
 std::optional<NormalisedError> normalised_error(const FitResult& result, const model::Measurement& m) {
-  if (result.check_variance.size() == 0) return std::nullopt;
+  if (result.check.count == 0 || result.prediction_variance.size() == 0) return std::nullopt;
   NormalisedError error;
   std::vector<double> squares;
   for (std::size_t i = 0; i < m.observations.size(); ++i) {
@@ -300,7 +297,7 @@ std::optional<NormalisedError> normalised_error(const FitResult& result, const m
     const auto at = static_cast<Eigen::Index>(i);
     const double u = model::uncertainty_of(m, o);
     const double reading = u > 0 ? u * u : result.variance_factor;
-    const double e = result.residual[at] / std::sqrt(reading + result.check_variance[at]);
+    const double e = result.residual[at] / std::sqrt(reading + result.prediction_variance[at]);
     squares.push_back(e * e);
     error.rms += e * e;
     error.within_3 += std::abs(e) <= 3 ? 1 : 0;
@@ -378,7 +375,7 @@ FitResult fit(const model::Machine& machine, const model::Measurement& measureme
   estimate(result, end);
   judge(result, machine, measurement);
   result.check_ratio = check_ratio(result, convention.centre, measurement);
-  result.check_variance = check_variance(result, measurement);
+  result.prediction_variance = prediction_variance(result, measurement);
   remember(result, rows, measurement, convention, options.loss != Loss::kSquared);
   result.correlations = strong_correlations(result.observability);
   result.normalised_check = normalised_error(result, measurement);

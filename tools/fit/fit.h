@@ -116,9 +116,9 @@ struct FitResult {
   int iterations = 0;
   bool converged = false;
   Eigen::VectorXd residual;  // measured - model per observation, mm or deg
-  /// Variance of the prediction of each check reading (mm^2, deg^2), 0 for the others; empty where no reading
-  /// has a freedom left.
-  Eigen::VectorXd check_variance;
+  /// Variance of the prediction of each reading from the covariance (mm^2, deg^2); empty where no reading has
+  /// a freedom left.
+  Eigen::VectorXd prediction_variance;
 };
 
 /// Weighted least squares on the fit rows: residual / u (1 where u is absent), and the convention of

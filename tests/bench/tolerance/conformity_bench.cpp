@@ -230,9 +230,9 @@ void print(const std::string& name, const Figures& f) {
 
 /// The truth with an error in x, y and z that no model of the bench has: a wave of 1 to 2 um of a screw's
 /// pitch along X, or smooth errors of some stations' length along all three axes. For chains of linear axes.
-Machine with_lack(const std::string& text, const std::string& lack, Random& random) {
+Machine with_lack(const std::string& text, const std::string& lack, double u_um, Random& random) {
   const auto wave = [&](const char* axis, double size_um, double length_mm) {
-    return fmt::format("{:.7f}*sin(360*{}/{:.3f}+{:.1f})", 1e-3 * size_um, axis, length_mm,
+    return fmt::format("{:.7f}*sin(360*{}/{:.3f}+{:.1f})", 1e-3 * size_um * u_um, axis, length_mm,
                        between(0, 360, random));
   };
   std::string x = "0", y = "0", z = "0";
@@ -243,7 +243,7 @@ Machine with_lack(const std::string& text, const std::string& lack, Random& rand
       for (std::string* along : {&x, &y, &z})
         *along += "+" + wave(axis, between(0.5, 1.5, random), between(60, 160, random));
   }
-  const std::size_t at = text.find('>', text.find("<transforms")) + 1;
+  const std::size_t at = text.find("</transforms>", text.find("branch=\"tool\""));
   const std::string row = fmt::format("<sixdof X=\"{}\" Y=\"{}\" Z=\"{}\"/>", x, y, z);
   return parse_machine(text.substr(0, at) + row + text.substr(at), "truth.xml");
 }
@@ -291,7 +291,7 @@ int main(int argc, char** argv) {
       Measurement m = parse_measurement(survey.csv, "survey.csv", model);
       if (!lack.empty()) {
         const Measurement of_truth = parse_measurement(survey.csv, "survey.csv", truth);
-        const Machine lacking = with_lack(survey.truth, lack, random);
+        const Machine lacking = with_lack(survey.truth, lack, 1e3 * g.u_mm, random);
         const Eigen::VectorXd more = predict(lacking, of_truth) - predict(truth, of_truth);
         for (std::size_t k = 0; k < m.observations.size(); ++k)
           m.observations[k].value += more[static_cast<Eigen::Index>(k)];
