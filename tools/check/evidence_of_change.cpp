@@ -400,7 +400,7 @@ class Judge {
     const bool any_of_machine = std::any_of(ranked_.begin(), ranked_.end(),
                                             [](const Change& one) { return !one.suspect.of_instrument; });
     const auto k = static_cast<double>(checks_.size());
-    constexpr double kFewest = 3;
+    constexpr double kFewest = 3;  // readings
     text::Assurance& word = answer_.assurance;
     word.at_least("scatter", answer_.noise_p, scatter_limit(false_alarms_, k),
                   "Chance that readings of the stated uncertainty scatter as much as those of this check.");

@@ -137,7 +137,7 @@ double times_the_noise(const FitResult& result) {
 
 std::string unvaried_text(const model::FitRecord& record) {
   std::string text;
-  constexpr std::size_t kMost = 3;
+  constexpr std::size_t kMost = 3;  // that a sentence names
   for (std::size_t i = 0; i < record.unvaried.size() && i < kMost; ++i)
     text += fmt::format("{}{} was determined at {} = {:.6g} only", i > 0 ? "; " : "",
                         record.unvaried[i].coefficient, record.unvaried[i].variable, record.unvaried[i].at);

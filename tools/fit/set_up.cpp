@@ -116,7 +116,7 @@ std::vector<Eigen::VectorXd> quarter_turns(const SetUpProblem& problem) {
         start[static_cast<Eigen::Index>(i)] = angles[static_cast<Eigen::Index>(problem.shifts[i].column) - 3];
     starts.push_back(start);
   };
-  constexpr double kQuarter_deg = 90;
+  constexpr double kQuarter_deg = 90;  // of a turn
   for (int c = 0; c < 4; ++c) {
     for (int a = 0; a < 4; ++a) add({kQuarter_deg * a, 0, kQuarter_deg * c});
     for (const int b : {1, 3}) add({0, kQuarter_deg * b, kQuarter_deg * c});

@@ -170,7 +170,7 @@ class UnvariedFinder {
     if (std::find(rows_.rotations.begin(), rows_.rotations.end(), 1) == rows_.rotations.end()) return false;
     const model::Poses with = model::forward(machine_, rows_.states),
                        less = model::forward(other, rows_.states);
-    constexpr double kTurned_rad = 1e-9;
+    constexpr double kTurned_rad = 1e-9;  // above rounding
     for (std::size_t i = 0; i < rows_.states.count; ++i)
       if (rows_.rotations[i] != 0 && all.segment<3>(3 * static_cast<Index>(i)).norm() > 0 &&
           (with.rotation[i] - less.rotation[i]).norm() > kTurned_rad)
