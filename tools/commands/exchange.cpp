@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "tools/commands/command.h"
+#include "tools/commands/fit_findings.h"
 #include "tools/compile/compile.h"
 #include "tools/exchange/component_csv.h"
 #include "tools/exchange/left_out.h"
@@ -14,6 +15,7 @@
 #include "tools/exchange/table_text.h"
 #include "tools/kinematics/at.h"
 #include "tools/model/machine_reader.h"
+#include "tools/results/fit_findings.h"
 #include "tools/safety/safety_sheet.h"
 #include "tools/text/assurance.h"
 
@@ -51,10 +53,11 @@ struct AxisLines {
 
 /// What an export vouches for: the machine may run so, all of its errors are in the files, and between their
 /// lines no more is lost than was allowed.
-text::Assurance assurance_of(const ExchangeArguments& arguments,
+text::Assurance assurance_of(const model::Machine& machine, const ExchangeArguments& arguments,
                              const std::vector<exchange::LeftOut>& left_out,
                              const std::vector<AxisLines>& axes) {
   text::Assurance assurance(text::AssuranceKind::kExport);
+  results::add_findings(assurance, machine);
   assurance.require("safe-to-run", true, "Every rule of the sheet \"safe to run?\" is met or accepted.");
   double left_um = 0;
   for (const exchange::LeftOut& one : left_out) left_um = std::max(left_um, one.um);
@@ -69,7 +72,7 @@ text::Assurance assurance_of(const ExchangeArguments& arguments,
   return assurance;
 }
 
-void finish(const ExchangeArguments& arguments, const char* format,
+void finish(const model::Machine& machine, const ExchangeArguments& arguments, const char* format,
             const std::vector<exchange::LeftOut>& left_out, const Json& files,
             const std::vector<AxisLines>& axes = {}, bool exported = true) {
   Json left = Json::array();
@@ -77,7 +80,7 @@ void finish(const ExchangeArguments& arguments, const char* format,
   Json json = {{"format", format}, {"files", files}, {"left_out", left}};
   for (const AxisLines& one : axes)
     json["axes"][one.axis] = {{"lines", one.lines}, {"worst_um", one.worst_um}, {"probed", one.probed}};
-  if (exported) json["assurance"] = assurance_of(arguments, left_out, axes).json();
+  if (exported) json["assurance"] = assurance_of(machine, arguments, left_out, axes).json();
   write_json(arguments.json, json);
   std::FILE* out = human_stream(arguments.json);
   for (const AxisLines& one : axes)
@@ -133,17 +136,17 @@ void write_configuration(const std::vector<Output>& outputs, const ExchangeArgum
 }
 
 void export_component(const ExchangeArguments& arguments) {
-  const model::Machine machine = model::read_machine(arguments.machine);
+  const model::Machine machine = read_model(arguments.machine);
   require_safe(machine, arguments);
   const std::vector<Output> outputs = configuration(machine, arguments);
   Json files = Json::array();
   write_configuration(outputs, arguments, files);
-  finish(arguments, "linuxcnc", {}, files);
+  finish(machine, arguments, "linuxcnc", {}, files);
 }
 
 void export_screw(const ExchangeArguments& arguments) {
   if (arguments.component) return export_component(arguments);
-  const model::Machine machine = model::read_machine(arguments.machine);
+  const model::Machine machine = read_model(arguments.machine);
   const model::States at = state_of(machine, arguments);
   const auto type = static_cast<exchange::ScrewType>(arguments.type);
   std::vector<std::size_t> axes = kinematics::linear_axes(machine);
@@ -181,11 +184,11 @@ void export_screw(const ExchangeArguments& arguments) {
   for (std::size_t i = 0; i < axes.size(); ++i) text::write_file(files[i].get<std::string>(), texts[i]);
   if (!outputs.empty()) write_configuration(outputs, arguments, files);
   if (!without.empty()) fmt::print(stderr, "note: no configuration of the component: {}\n", without);
-  finish(arguments, "linuxcnc", left_out, files, lines);
+  finish(machine, arguments, "linuxcnc", left_out, files, lines);
 }
 
 void export_tables(const ExchangeArguments& arguments, bool isg) {
-  const model::Machine machine = model::read_machine(arguments.machine);
+  const model::Machine machine = read_model(arguments.machine);
   if (machine.tables.empty())
     throw text::InputError({machine.file, 0}, "", "this machine has no table to export");
   const std::vector<exchange::LeftOut> left_out =
@@ -204,7 +207,7 @@ void export_tables(const ExchangeArguments& arguments, bool isg) {
       text::write_file(files.back().get<std::string>(), exchange::axis_csv(machine, table));
     }
   }
-  finish(arguments, isg ? "isg-csv" : "axis-csv", left_out, files);
+  finish(machine, arguments, isg ? "isg-csv" : "axis-csv", left_out, files);
 }
 
 void import_tables(const ExchangeArguments& arguments, const std::string& kind) {
@@ -228,7 +231,7 @@ void import_tables(const ExchangeArguments& arguments, const std::string& kind) 
     }
   }
   text::write_file(arguments.output, result);
-  finish(arguments, kind.c_str(), {}, Json::array({arguments.output}), {}, false);
+  finish(machine, arguments, kind.c_str(), {}, Json::array({arguments.output}), {}, false);
 }
 
 void add_type(CLI::App* command, ExchangeArguments& arguments) {

@@ -7,6 +7,7 @@
 
 #include "tools/commands/board_claim.h"
 #include "tools/commands/command.h"
+#include "tools/commands/fit_findings.h"
 #include "tools/commands/upload_kinds.h"
 #include "tools/compile/compile.h"
 #include "tools/safety/safety_sheet.h"
@@ -55,6 +56,7 @@ nlohmann::ordered_json slots_json(const SlotsReply& slots) {
 /// was accepted at compilation stands in the image.
 void require_safe(const std::string& directory) {
   const auto image = compile::load_image_dir(directory);
+  repeat_findings(image->machine);
   std::vector<safety::SafetyRule> accepted;
   for (std::size_t rule = 0; rule < safety::kSafetyRuleCount; ++rule)
     if ((image->view.header().accepted_rules >> rule & 1U) != 0)
