@@ -60,7 +60,7 @@ Json characteristic_json(const tolerance::CharacteristicResult& one, const toler
                {"dominant", one.dominant},
                {"never_measured", one.open},
                {"process", one.process},
-               {"misfit", one.misfit},
+               {"discrepancy", one.discrepancy},
                {"outside_measured", one.outside},
                {"sources", Json::array()}};
   if (one.limits_mm) json["limits_um"] = {kUm * (*one.limits_mm)[0], kUm * (*one.limits_mm)[1]};
@@ -113,7 +113,8 @@ Json conformity_json(const model::Machine& machine, const ConformityArguments& a
       {"stale", result.stale},
       {"outside_measured", result.outside},
       {"disturbance", machine.fitted->disturbance},
-      {"misfit_um", {kUm * result.misfit_mm[0], kUm * result.misfit_mm[1], kUm * result.misfit_mm[2]}},
+      {"discrepancy_um",
+       {kUm * result.discrepancy_mm[0], kUm * result.discrepancy_mm[1], kUm * result.discrepancy_mm[2]}},
       {"findings", results::findings_json(machine)},
       {"assurance", assurance_of(machine, result, arguments).json()},
       {"characteristics", Json::array()}};
@@ -147,8 +148,8 @@ std::string why(const tolerance::CharacteristicResult& one) {
 std::string least_known(const tolerance::CharacteristicResult& one) {
   const auto most = std::max_element(one.sources.begin(), one.sources.end(),
                                      [](const auto& a, const auto& b) { return a.variance < b.variance; });
-  if (one.misfit > one.process && (most == one.sources.end() || one.misfit > most->variance))
-    return fmt::format("what the model lacks ({:.0f} %)", 100 * one.misfit);
+  if (one.discrepancy > one.process && (most == one.sources.end() || one.discrepancy > most->variance))
+    return fmt::format("what the model lacks ({:.0f} %)", 100 * one.discrepancy);
   if (most == one.sources.end() || most->variance <= 0) return one.process > 0 ? "process" : "";
   if (one.process > most->variance) return fmt::format("process ({:.0f} %)", 100 * one.process);
   return fmt::format("{} ({:.0f} %)", most->name, 100 * most->variance);
@@ -162,11 +163,13 @@ void print_conformity(std::FILE* out, const tolerance::PlacedPart& part,
   for (const std::string& name : result.stale) fmt::print(out, "set by hand since the fit: {}\n", name);
   for (const std::string& range : result.outside)
     fmt::print(out, "the part is outside the measured range: {}. No verdict is given there\n", range);
-  if (const double most = *std::max_element(result.misfit_mm.begin(), result.misfit_mm.end()); most > 0)
+  if (const double most = *std::max_element(result.discrepancy_mm.begin(), result.discrepancy_mm.end());
+      most > 0)
     fmt::print(out,
                "what the model lacks is in every interval: {:.2g}, {:.2g}, {:.2g} um (standard deviation in "
                "x, y, z)\n",
-               kUm * result.misfit_mm[0], kUm * result.misfit_mm[1], kUm * result.misfit_mm[2]);
+               kUm * result.discrepancy_mm[0], kUm * result.discrepancy_mm[1],
+               kUm * result.discrepancy_mm[2]);
   for (const tolerance::CharacteristicResult& one : result.characteristics) {
     const tolerance::PartFeature& feature = part.features[one.feature].feature;
     fmt::print(out, "\n{}: {}", feature.name, tolerance::characteristic_name(one.what));

@@ -147,7 +147,7 @@ std::string unvaried_text(const model::FitRecord& record) {
 
 }  // namespace
 
-Vector3d misfit_of_model(const FitResult& result, const model::Measurement& m) {
+Vector3d model_discrepancy(const FitResult& result, const model::Measurement& m) {
   const auto fitted = squares_of(result, m, false), checked = squares_of(result, m, true);
   Vector3d variance = Vector3d::Zero();
   double seen = 0, sum = 0;
@@ -172,14 +172,15 @@ std::vector<model::FitRecord::Finding> findings_of(const FitResult& result, cons
   std::vector<model::FitRecord::Finding> list;
   if (!result.converged) list.push_back({"not-converged", 1, "The fit did not converge."});
   if (!result.absurd.empty()) list.push_back({"absurd", 1, result.absurd});
-  const Vector3d misfit_um(1e3 * record.misfit_mm[0], 1e3 * record.misfit_mm[1], 1e3 * record.misfit_mm[2]);
-  if (misfit_um.maxCoeff() > 0) {
+  const Vector3d lack_um(1e3 * record.discrepancy_mm[0], 1e3 * record.discrepancy_mm[1],
+                         1e3 * record.discrepancy_mm[2]);
+  if (lack_um.maxCoeff() > 0) {
     const double times = times_the_noise(result);
     list.push_back(
         {"something-missing", times,
          fmt::format("The residual is {:.2g} times the noise: something is missing from this model, "
                      "{:.3g}, {:.3g}, {:.3g} um in x, y, z.",
-                     times, misfit_um.x(), misfit_um.y(), misfit_um.z())});
+                     times, lack_um.x(), lack_um.y(), lack_um.z())});
   }
   if (!result.noise_um && result.before.rms_um)
     list.push_back({"noise-unknown", 0,

@@ -15,7 +15,7 @@ namespace vernier::fit {
 /// chance explains it one time in a hundred at most, and one that no reading looks along gets the mean of the
 /// others. Readings along a direction are those whose own direction is nearest to it. Zero where the noise is
 /// not known. tool.
-Eigen::Vector3d misfit_of_model(const FitResult& result, const model::Measurement& measurement);
+Eigen::Vector3d model_discrepancy(const FitResult& result, const model::Measurement& measurement);
 
 /// What every later command repeats. Codes: `something-missing` (value: residual over noise), `noise-unknown`
 /// (the readings have neither u nor repeats), `no-gain` (check rows against the nominal machine), `disturbed`

@@ -238,8 +238,8 @@ void remember(FitResult& result, const model::Measurement& rows, const model::Me
   record->open = model::open_factor(result.open, result.covariance);
   record->open_known = true;
   record->measured = measured_ranges(result.machine, rows);
-  const Eigen::Vector3d misfit_mm = misfit_of_model(result, all);
-  record->misfit_mm = {misfit_mm.x(), misfit_mm.y(), misfit_mm.z()};
+  const Eigen::Vector3d lack_mm = model_discrepancy(result, all);
+  record->discrepancy_mm = {lack_mm.x(), lack_mm.y(), lack_mm.z()};
   result.machine.fitted = record;
   record->unvaried = unvaried_dependences(result.machine, rows, result.variance_factor);
   record->findings = findings_of(result, *record, all);

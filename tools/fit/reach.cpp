@@ -75,7 +75,8 @@ Reach::Reach(const model::Machine& machine)
   if (!known_) return;
   const model::FitRecord& record = *machine.fitted;
   record_ = record;
-  misfit_mm_ = Eigen::Vector3d(record.misfit_mm[0], record.misfit_mm[1], record.misfit_mm[2]);
+  discrepancy_mm_ =
+      Eigen::Vector3d(record.discrepancy_mm[0], record.discrepancy_mm[1], record.discrepancy_mm[2]);
   parameters_ = model::ParameterSet(machine_, {});
   std::map<std::string, Eigen::Index> place;
   for (std::size_t i = 0; i < record.parameters.size(); ++i)
@@ -168,13 +169,13 @@ std::vector<Eigen::Matrix3d> Reach::covariance(const model::States& states) cons
 
 std::vector<Eigen::Matrix3d> Reach::covariance_of_machine(const model::States& states) const {
   std::vector<Eigen::Matrix3d> result = covariance(states);
-  for (Eigen::Matrix3d& one : result) one.diagonal() += misfit_mm_.cwiseAbs2();
+  for (Eigen::Matrix3d& one : result) one.diagonal() += discrepancy_mm_.cwiseAbs2();
   return result;
 }
 
 Eigen::VectorXd Reach::std_of_machine_um(const model::States& states) const {
   const Eigen::VectorXd model = std_um(states);
-  return (model.array().square() + 1e6 * misfit_mm_.squaredNorm()).sqrt();
+  return (model.array().square() + 1e6 * discrepancy_mm_.squaredNorm()).sqrt();
 }
 
 Eigen::VectorXd Reach::std_um(const model::States& states) const {

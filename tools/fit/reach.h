@@ -42,12 +42,12 @@ class Reach {
 
   /// Root of the trace, um.
   Eigen::VectorXd std_um(const model::States& states) const;
-  /// The same with what the readings showed the model to lack (`<misfit>` of the record): how far the real
-  /// machine may be from the model.
+  /// The same with what the readings showed the model to lack (`<discrepancy>` of the record): how far the
+  /// real machine may be from the model.
   std::vector<Eigen::Matrix3d> covariance_of_machine(const model::States& states) const;
   Eigen::VectorXd std_of_machine_um(const model::States& states) const;
   /// Standard deviation of what the model lacks, along x, y, z of workpiece coordinates, mm.
-  const Eigen::Vector3d& misfit_mm() const { return misfit_mm_; }
+  const Eigen::Vector3d& discrepancy_mm() const { return discrepancy_mm_; }
 
   /// The machine in workpiece coordinates alone, and its free parameters: what the factors below go with.
   const model::Machine& machine() const { return machine_; }
@@ -84,7 +84,7 @@ class Reach {
   Eigen::MatrixXd factor_, open_;  // n x k, n x m: rows of the record's factors, by parameter
   bool open_known_ = false;
   model::FitRecord record_;
-  Eigen::Vector3d misfit_mm_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d discrepancy_mm_ = Eigen::Vector3d::Zero();
   model::States measured_;  // poses over the measured ranges
   std::vector<std::string> stale_;
 };

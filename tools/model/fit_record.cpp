@@ -103,10 +103,10 @@ std::string warnings_xml(const FitRecord& record) {
   for (const FitRecord::Finding& one : record.findings)
     text += "    <finding code=\"" + text::escape_attribute(one.code) + "\" value=\"" +
             text::number_text(one.value) + "\" text=\"" + text::escape_attribute(one.text) + "\"/>\n";
-  const auto& misfit = record.misfit_mm;
-  if (misfit[0] > 0 || misfit[1] > 0 || misfit[2] > 0)
-    text += "    <misfit x=\"" + text::number_text(misfit[0]) + "\" y=\"" + text::number_text(misfit[1]) +
-            "\" z=\"" + text::number_text(misfit[2]) + "\"/>\n";
+  const auto& discrepancy = record.discrepancy_mm;
+  if (discrepancy[0] > 0 || discrepancy[1] > 0 || discrepancy[2] > 0)
+    text += "    <discrepancy x=\"" + text::number_text(discrepancy[0]) + "\" y=\"" +
+            text::number_text(discrepancy[1]) + "\" z=\"" + text::number_text(discrepancy[2]) + "\"/>\n";
   for (const FitRecord::Unvaried& one : record.unvaried)
     text += "    <unvaried coefficient=\"" + text::escape_attribute(one.coefficient) + "\" variable=\"" +
             text::escape_attribute(one.variable) + "\" at=\"" + text::number_text(one.at) + "\"/>\n";

@@ -30,7 +30,7 @@ struct FitRecord {
   std::vector<Finding> findings;
   /// What the model lacks, as far as the readings showed it: standard deviation of the tool point's deviation
   /// beyond the noise, along x, y, z of workpiece coordinates, mm (Kennedy and O'Hagan 2001). 0: none seen.
-  std::array<double, 3> misfit_mm{};
+  std::array<double, 3> discrepancy_mm{};
   /// A coefficient whose rows all had nearly one value of an axis or input that its effect depends on: that
   /// dependence is the model's word, no reading's.
   struct Unvaried {

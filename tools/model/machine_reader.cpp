@@ -138,9 +138,9 @@ class Reader {
         no_children(node);
         record->findings.push_back({attribute(node, "code").value_or(""), number(node, "value", 0),
                                     attribute(node, "text").value_or("")});
-      } else if (is(node, "misfit")) {
+      } else if (is(node, "discrepancy")) {
         no_children(node);
-        record->misfit_mm = {number(node, "x", 0), number(node, "y", 0), number(node, "z", 0)};
+        record->discrepancy_mm = {number(node, "x", 0), number(node, "y", 0), number(node, "z", 0)};
       } else if (is(node, "unvaried")) {
         no_children(node);
         record->unvaried.push_back({attribute(node, "coefficient").value_or(""),

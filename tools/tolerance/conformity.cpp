@@ -53,8 +53,9 @@ class ConformityRunner {
     find_columns();
     find_means(machine);
     result_.seed = options.seed;
-    for (std::size_t k = 0; k < 3; ++k) result_.misfit_mm[k] = reach_.misfit_mm()[static_cast<Index>(k)];
-    classes_ = reach_.misfit_mm().maxCoeff() > 0 ? kWavelengths.size() : 1;
+    for (std::size_t k = 0; k < 3; ++k)
+      result_.discrepancy_mm[k] = reach_.discrepancy_mm()[static_cast<Index>(k)];
+    classes_ = reach_.discrepancy_mm().maxCoeff() > 0 ? kWavelengths.size() : 1;
     result_.stale = reach_.stale();
     result_.open_known = reach_.open_known();
     result_.outside = outside(machine);
@@ -104,8 +105,9 @@ class ConformityRunner {
     lacks_.assign(classes_, MatrixXd::Zero(values_.map.rows(), kAtOnce));
     if (classes_ == 1) return;
     for (std::size_t c = 0; c < classes_; ++c)
-      lacks_[c] = values_.map * draw_misfit(normals, part_.point, reach_.misfit_mm(),
-                                            kWavelengths[c].shortest_mm, kWavelengths[c].longest_mm, kAtOnce);
+      lacks_[c] =
+          values_.map * draw_discrepancy(normals, part_.point, reach_.discrepancy_mm(),
+                                         kWavelengths[c].shortest_mm, kWavelengths[c].longest_mm, kAtOnce);
   }
 
   /// Deviations of the points as the fitted machine makes them.
@@ -229,7 +231,7 @@ class ConformityRunner {
         lack += own(all).squaredNorm() / static_cast<double>(all.cols()) / static_cast<double>(classes_);
       const double total = std::max(own(spread_).squaredNorm() + process + lack, 1e-300);
       one.process = process / total;
-      one.misfit = lack / total;
+      one.discrepancy = lack / total;
       one.open = own(open).squaredNorm() / total;
       std::vector<std::size_t> won(sources_.size(), 0);
       for (Index k = 0; k < kDraws; ++k) ++won[first_of(value, drawn.col(k), part, z.col(k))];

@@ -67,10 +67,10 @@ struct CharacteristicResult {
   /// The sources of which one falls most with the confidence asked for: one where it is told, none where no
   /// fall is above a nanometre.
   std::vector<std::string> dominant;
-  double open = 0;       // part of the variance that no reading bears on
-  double process = 0;    // part of the points' own errors
-  double misfit = 0;     // part of what the model lacks
-  bool outside = false;  // the feature reaches to where no axis was measured: no verdict
+  double open = 0;         // part of the variance that no reading bears on
+  double process = 0;      // part of the points' own errors
+  double discrepancy = 0;  // part of what the model lacks
+  bool outside = false;    // the feature reaches to where no axis was measured: no verdict
 };
 
 struct PartConformity {
@@ -81,9 +81,9 @@ struct PartConformity {
   bool exact = false;      // every trial through the whole chain; else linear in the parameters
   double linear_mm = 0;    // by how much the linear trials were off in those that were tried with the chain
   bool open_known = true;  // the machine file says what its readings left open
-  std::array<double, 3> misfit_mm{};  // what the fit saw the model lack, in every interval; x, y, z
-  std::vector<std::string> stale;     // parameters that were changed since the fit
-  std::vector<std::string> outside;   // "Z -350..-300": where the part is and nobody measured
+  std::array<double, 3> discrepancy_mm{};  // what the fit saw the model lack, in every interval; x, y, z
+  std::vector<std::string> stale;          // parameters that were changed since the fit
+  std::vector<std::string> outside;        // "Z -350..-300": where the part is and nobody measured
 };
 
 /// Monte Carlo over the covariance that the last fit left in the machine file (JCGM 101:2008): what every

@@ -19,8 +19,9 @@ double Normals::next() {
   return radius * std::cos(2 * std::numbers::pi * uniform());
 }
 
-Eigen::MatrixXd draw_misfit(Normals& normals, const Eigen::Matrix3Xd& points, const Eigen::Vector3d& std_mm,
-                            double shortest_mm, double longest_mm, Eigen::Index draws) {
+Eigen::MatrixXd draw_discrepancy(Normals& normals, const Eigen::Matrix3Xd& points,
+                                 const Eigen::Vector3d& std_mm, double shortest_mm, double longest_mm,
+                                 Eigen::Index draws) {
   constexpr int kWaves = 3;  // of a field
   Eigen::MatrixXd fields = Eigen::MatrixXd::Zero(3 * points.cols(), draws);
   for (Eigen::Index k = 0; k < draws; ++k)

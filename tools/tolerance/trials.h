@@ -26,8 +26,9 @@ class Normals {
 /// deviation std_mm (x, y, z), made of waves whose lengths are even in logarithm between two bounds (mm),
 /// half of them along an axis. The same field at a point for all points of a draw. 3 N x draws, mm. Random
 /// Fourier features, Rahimi and Recht 2007.
-Eigen::MatrixXd draw_misfit(Normals& normals, const Eigen::Matrix3Xd& points, const Eigen::Vector3d& std_mm,
-                            double shortest_mm, double longest_mm, Eigen::Index draws);
+Eigen::MatrixXd draw_discrepancy(Normals& normals, const Eigen::Matrix3Xd& points,
+                                 const Eigen::Vector3d& std_mm, double shortest_mm, double longest_mm,
+                                 Eigen::Index draws);
 
 /// Blocks of trials of one value, summed up.
 class TrialTally {

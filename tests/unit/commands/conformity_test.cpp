@@ -62,8 +62,8 @@ TEST_F(PartCommands, ConformityOfAPlate) {
       EXPECT_EQ(one[how]["probability"].is_null(), one["limits_um"].is_null());
     }
     // The model lacks two effects of two micrometres: the fit has seen that.
-    EXPECT_GT(one["misfit"], 0.5);
-    double sum = one["process"].get<double>() + one["misfit"].get<double>();
+    EXPECT_GT(one["discrepancy"], 0.5);
+    double sum = one["process"].get<double>() + one["discrepancy"].get<double>();
     for (const auto& source : one["sources"]) sum += source["share_of_variance"].get<double>();
     EXPECT_NEAR(sum, 1, 1e-6);
   }

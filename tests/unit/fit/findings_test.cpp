@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a fit found: misfit beyond the noise, dependences that nobody measured, and what Reach makes of them.
+// What a fit found: model discrepancy beyond the noise, dependences that nobody measured, and what Reach makes of them.
 #include "tools/fit/findings.h"
 
 #include <fmt/format.h>
@@ -84,7 +84,7 @@ Machine through_file(const Machine& fitted, const std::string& statics, const st
   return parse_machine(update_machine_text(text_of(statics, x, z), fitted, true), "m.xml");
 }
 
-TEST(FitFindings, AMisfitIsMeasuredAlongItsDirection) {
+TEST(FitFindings, ADiscrepancyIsMeasuredAlongItsDirection) {
   std::mt19937_64 random(1);
   const Machine machine = machine_of(kSquareness, "+a*Y", "");
   // GIVEN a wave of 2 um that the model lacks, along x
@@ -93,13 +93,13 @@ TEST(FitFindings, AMisfitIsMeasuredAlongItsDirection) {
       [](const Row& row) { return Eigen::Vector3d(0.002 * std::sin(row.x / 3), 0, 0); }, random);
   const Machine fitted = through_file(fit::fit(machine, m).machine, kSquareness, "+a*Y", "");
   // THEN its root mean square of 1.41 um is found along x, and nothing along y and z
-  EXPECT_NEAR(fitted.fitted->misfit_mm[0], 0.002 / std::sqrt(2), 0.0003);
-  EXPECT_EQ(fitted.fitted->misfit_mm[1], 0);
-  EXPECT_EQ(fitted.fitted->misfit_mm[2], 0);
+  EXPECT_NEAR(fitted.fitted->discrepancy_mm[0], 0.002 / std::sqrt(2), 0.0003);
+  EXPECT_EQ(fitted.fitted->discrepancy_mm[1], 0);
+  EXPECT_EQ(fitted.fitted->discrepancy_mm[2], 0);
   EXPECT_TRUE(has(fitted, "something-missing"));
   const States states = work_poses(fitted).states;
   const Reach reach(fitted);
-  EXPECT_NEAR(1e-3 * reach.std_of_machine_um(states).minCoeff(), fitted.fitted->misfit_mm[0], 2e-4);
+  EXPECT_NEAR(1e-3 * reach.std_of_machine_um(states).minCoeff(), fitted.fitted->discrepancy_mm[0], 2e-4);
   EXPECT_LT(1e-3 * reach.std_um(states).maxCoeff(), 5e-4);
 }
 

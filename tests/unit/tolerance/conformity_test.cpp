@@ -56,14 +56,14 @@ TEST(PartConformity, OfOneScaleErrorIsTheClosedForm) {
   EXPECT_THAT(size.dominant, testing::ElementsAre("scale-error of X in X"));
 }
 
-TEST(PartConformity, AMisfitWidensEveryInterval) {
+TEST(PartConformity, ADiscrepancyWidensEveryInterval) {
   Machine machine = plate_machine(0, 0);
   set_known(machine, 1e-9, 1e-9);
   const PartConformity before = judged(machine);
   EXPECT_EQ(*size_of(before, 2).on.verdict, PartVerdict::kConforms);
   // GIVEN a fit that saw 20 um that the model lacks along x and y
   auto record = std::make_shared<FitRecord>(*machine.fitted);
-  record->misfit_mm = {0.02, 0.02, 0};
+  record->discrepancy_mm = {0.02, 0.02, 0};
   machine.fitted = record;
   const PartConformity after = judged(machine);
   // THEN every interval is at least as wide as that, and no size or form conforms to 10 um any more
@@ -73,7 +73,7 @@ TEST(PartConformity, AMisfitWidensEveryInterval) {
     if (one.what != PartCharacteristic::kPosition) {
       EXPECT_NE(*one.on.verdict, PartVerdict::kConforms) << characteristic_name(one.what);
     }
-    EXPECT_GT(one.misfit, 0.99);
+    EXPECT_GT(one.discrepancy, 0.99);
   }
 }
 
