@@ -33,15 +33,20 @@ const char* const kBridge = R"XML(<machine name="bridge"><variables><static>
     <transforms branch="tool"><sixdof n="1" X="X+kx*X"/><sixdof n="2" Y="Y" X="sxy*Y"/><sixdof n="3" Z="Z" X="szx*Z"/>
     </transforms></machine>)XML";
 
-/// Points of a machine with the values given, in a set-up of their own, with noise; `wander_mm`: of the
-/// instrument in each direction, of which nine tenths are kept from row to row.
-std::string rows(int count, const std::function<void(Machine&)>& change, std::mt19937_64& random,
-                 double noise_mm, double drift_mm = 0, double wander_mm = 0) {
+Machine true_machine(const std::function<void(Machine&)>& change) {
   Machine truth = parse_machine(kBridge, "m.xml");
   truth.statics[*truth.find_static("sxy")].value = 20e-6;
   truth.statics[*truth.find_static("szx")].value = -15e-6;
   truth.statics[*truth.find_static("kx")].value = 10e-6;
   change(truth);
+  return truth;
+}
+
+/// Points of a machine with the values given, in a set-up of their own, with noise; `wander_mm`: of the
+/// instrument in each direction, of which nine tenths are kept from row to row.
+std::string rows(int count, const std::function<void(Machine&)>& change, std::mt19937_64& random,
+                 double noise_mm, double drift_mm = 0, double wander_mm = 0) {
+  const Machine truth = true_machine(change);
   std::uniform_real_distribution<double> share(0, 1);
   std::normal_distribution<double> normal(0, 1);
   States states = make_states(static_cast<std::size_t>(count), 3, {});
@@ -83,11 +88,7 @@ struct Visit {
 
 std::string rows_of(const Visit& visit, const std::function<void(Machine&)>& change,
                     std::mt19937_64& random) {
-  Machine truth = parse_machine(kBridge, "m.xml");
-  truth.statics[*truth.find_static("sxy")].value = 20e-6;
-  truth.statics[*truth.find_static("szx")].value = -15e-6;
-  truth.statics[*truth.find_static("kx")].value = 10e-6;
-  change(truth);
+  const Machine truth = true_machine(change);
   std::uniform_real_distribution<double> share(0, 1);
   std::normal_distribution<double> normal(0, 1);
   States states = make_states(static_cast<std::size_t>(visit.points), 3, {});

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "tools/model/machine.h"
+#include "tools/model/measurement.h"
+
+namespace vernier::check {
+
+/// Something that may be other than it was when the machine was fitted.
+struct Suspect {
+  std::string name, unit;
+  bool of_instrument = false;
+  bool operator==(const Suspect&) const = default;
+};
+
+/// All that is kept of one check: its readings as they bear on the suspects, in units of their uncertainty,
+/// with what its own set-ups take up projected out.
+struct CheckRecord {
+  std::string label;              // when or what it was
+  std::vector<Suspect> suspects;  // the machine's free parameters first, in their order
+  std::size_t parameters = 0;     // how many of them are
+  Eigen::MatrixXd gram;           // suspects x suspects
+  Eigen::VectorXd moment;
+  double rest = 0, freedom = 0;  // chi^2 beside all suspects, and its degrees of freedom
+  std::size_t readings = 0;
+  double beyond_set_up = 0;  // readings less what the set-up takes
+};
+
+/// Reads what a measurement says of a fitted machine; fit and check rows alike. The set-up of the instrument
+/// is fitted anew, however it is turned, and its columns are taken there. Suspects are the free parameters,
+/// and where the chain has them and they are not the same: reversal and scale of every axis, a tilt and an
+/// offset of every transform, a drift of the instrument along each direction that it reads. Throws InputError
+/// where the machine was never fitted. tool.
+CheckRecord record_of(const model::Machine& machine, const model::Measurement& measurement,
+                      std::string label);
+
+/// The same suspects as columns at the set-up of the machine file: what a change by 1 does to each reading,
+/// over its uncertainty.
+struct SuspectColumns {
+  std::vector<Suspect> suspects;
+  std::size_t parameters = 0;
+  Eigen::MatrixXd columns, set_up;  // readings x suspects, readings x numbers of the set-ups
+};
+SuspectColumns suspect_columns(const model::Machine& machine, const model::Measurement& measurement);
+
+/// The fit's covariance of a record's parameters as L L^T: rows of L, 0 for what the fit does not name.
+Eigen::MatrixXd spread_of_fit(const model::Machine& machine, const std::vector<Suspect>& suspects,
+                              std::size_t parameters);
+
+}  // namespace vernier::check
