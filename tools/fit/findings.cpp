@@ -3,14 +3,13 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <set>
 
+#include "tools/fit/reading_direction.h"
 #include "tools/maths/chance.h"
-#include "tools/maths/factors.h"
 
 namespace vernier::fit {
 namespace {
@@ -22,28 +21,6 @@ using Eigen::Vector3d;
 constexpr double kChance = 0.01;
 /// A residual counts for so many spreads at most: one bad reading is no property of the machine.
 constexpr double kMostSpreads = 5;
-
-/// Measuring frame <- workpiece of a row's set-up.
-Eigen::Matrix3d frame_of(const model::Machine& machine, const model::Measurement& m, std::size_t row) {
-  const auto shift =
-      model::base_shift_of(machine, m.states.names(m.states.setup)[m.states.of(m.states.setup, row)]);
-  if (!shift) return Eigen::Matrix3d::Identity();
-  const auto& value = machine.base_shifts[*shift].value;
-  return (Eigen::AngleAxisd(maths::kRadPerDeg * value[3], Vector3d::UnitX()) *
-          Eigen::AngleAxisd(maths::kRadPerDeg * value[4], Vector3d::UnitY()) *
-          Eigen::AngleAxisd(maths::kRadPerDeg * value[5], Vector3d::UnitZ()))
-      .toRotationMatrix();
-}
-
-/// Direction that a length reading looks along, workpiece coordinates; zero for one of no single direction.
-Vector3d direction_of(const FitResult& result, const model::Measurement& m, const model::Observation& o) {
-  const auto row = static_cast<Index>(o.row);
-  if (o.kind <= model::ObservationKind::kZ)
-    return frame_of(result.machine, m, o.row).transpose() * Vector3d::Unit(static_cast<Index>(o.kind));
-  if (o.kind == model::ObservationKind::kD)
-    return {m.states.normal[0][row], m.states.normal[1][row], m.states.normal[2][row]};
-  return Vector3d::Zero();
-}
 
 /// Squares of one direction's residuals, and of what noise explains.
 struct Squares {
@@ -69,7 +46,7 @@ std::array<Squares, 4> squares_of(const FitResult& result, const model::Measurem
     for (std::size_t i = 0; i < m.observations.size(); ++i) {
       const model::Observation& o = m.observations[i];
       if (model::is_rotation(o.kind) || (m.check[o.row] != 0) != check) continue;
-      const Vector3d direction = direction_of(result, m, o);
+      const Vector3d direction = reading_direction(result.machine, m, o);
       Index along = 3;
       if (direction.norm() > 0) direction.cwiseAbs().maxCoeff(&along);
       const double u = model::uncertainty_of(m, o) > 0 ? model::uncertainty_of(m, o) : repeats_mm;
@@ -145,6 +122,18 @@ std::string unvaried_text(const model::FitRecord& record) {
   return text + ". What it does elsewhere was not measured.";
 }
 
+std::string alternatives_text(const model::FitRecord& record) {
+  const model::FitRecord::Alternative& one = record.alternatives.front();
+  const std::string place = fmt::format("{} of transform {}", model::kSixDofNames[one.dof], one.transform);
+  std::string text =
+      one.axis.empty()
+          ? fmt::format("The readings do not distinguish the turn {} from a shift: one tool was used.", place)
+          : fmt::format("The readings do not distinguish the wave in {} from one of period {:.4g} along {}.",
+                        place, one.period, one.axis);
+  if (record.alternatives.size() > 1) text += fmt::format(" And {} more.", record.alternatives.size() - 1);
+  return text;
+}
+
 }  // namespace
 
 Vector3d model_discrepancy(const FitResult& result, const model::Measurement& m) {
@@ -202,6 +191,9 @@ std::vector<model::FitRecord::Finding> findings_of(const FitResult& result, cons
                      100 * share)});
   if (!record.unvaried.empty())
     list.push_back({"not-varied", static_cast<double>(record.unvaried.size()), unvaried_text(record)});
+  if (!record.alternatives.empty())
+    list.push_back(
+        {"not-distinguished", static_cast<double>(record.alternatives.size()), alternatives_text(record)});
   return list;
 }
 

@@ -20,8 +20,8 @@ Eigen::Vector3d model_discrepancy(const FitResult& result, const model::Measurem
 /// What every later command repeats. Codes: `something-missing` (value: residual over noise), `noise-unknown`
 /// (the readings have neither u nor repeats), `no-gain` (check rows against the nominal machine), `disturbed`
 /// (share of what the nominal machine leaves), `check-not-independent` (share of the check rows at poses of
-/// fit rows), `not-varied` (number of dependences), `absurd`, `not-converged`. record: with everything else
-/// in it. tool.
+/// fit rows), `not-varied` (number of dependences), `not-distinguished` (number of alternatives), `absurd`,
+/// `not-converged`. record: with everything else in it. tool.
 std::vector<model::FitRecord::Finding> findings_of(const FitResult& result, const model::FitRecord& record,
                                                    const model::Measurement& measurement);
 

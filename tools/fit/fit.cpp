@@ -9,6 +9,7 @@
 #include <limits>
 #include <memory>
 
+#include "tools/fit/alternatives.h"
 #include "tools/fit/convention.h"
 #include "tools/fit/findings.h"
 #include "tools/fit/moved.h"
@@ -194,7 +195,7 @@ std::optional<model::FitRecord::Noise> kept_noise(const NoiseModel& noise, const
       noise.in_time, of_u};
 }
 
-/// Measured ranges of axes, with the step of their targets, and of inputs.
+/// Measured ranges of axes and inputs.
 std::vector<model::FitRecord::Range> measured_ranges(const model::Machine& machine,
                                                      const model::Measurement& rows) {
   std::vector<std::size_t> fitted;
@@ -204,12 +205,11 @@ std::vector<model::FitRecord::Range> measured_ranges(const model::Machine& machi
   if (fitted.empty()) return list;
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
     const model::Column q = model::commanded(rows, i)(fitted);
-    const TargetStep targets = target_step(q);
-    list.push_back({machine.axes[i].name, q.minCoeff(), q.maxCoeff(), targets.step, targets.from});
+    list.push_back({machine.axes[i].name, q.minCoeff(), q.maxCoeff()});
   }
   for (std::size_t i = 0; i < machine.inputs.size(); ++i) {
     const model::Column value = rows.states.input[i](fitted);
-    list.push_back({machine.inputs[i].name, value.minCoeff(), value.maxCoeff(), 0, 0});
+    list.push_back({machine.inputs[i].name, value.minCoeff(), value.maxCoeff()});
   }
   return list;
 }
@@ -242,6 +242,7 @@ void remember(FitResult& result, const model::Measurement& rows, const model::Me
   record->discrepancy_mm = {lack_mm.x(), lack_mm.y(), lack_mm.z()};
   result.machine.fitted = record;
   record->unvaried = unvaried_dependences(result.machine, rows, result.variance_factor);
+  record->alternatives = find_alternatives(result.machine, all, result.residual, result.variance_factor);
   record->findings = findings_of(result, *record, all);
 }
 

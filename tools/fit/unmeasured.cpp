@@ -4,8 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
+#include <optional>
 
+#include "tools/fit/alternatives.h"
 #include "tools/fit/reach.h"
 #include "tools/maths/orthonormal.h"
 #include "tools/model/chain.h"
@@ -237,61 +238,6 @@ std::optional<Variable> variable_named(const model::Machine& machine, const std:
   return std::nullopt;
 }
 
-/// Does a static of this coefficient stand in an expression that bends with the axis (a sine, an
-/// exponential)?
-bool bends_along(const model::Machine& machine, const model::ParameterSet& parameters,
-                 const Coefficient& coefficient, std::size_t axis) {
-  const model::Parameter& p = parameters[coefficient.parameters.front()];
-  if (p.kind != model::ParameterKind::kStatic) return false;
-  const model::Symbol own{model::SymbolKind::kStatic, p.item}, moving{model::SymbolKind::kAxis, axis};
-  const auto has = [](const model::Expr& expr, const model::Symbol& symbol) {
-    return model::any_node(expr, [&](const model::Expr& node) {
-      return node.op == model::Op::kSymbol && node.symbol == symbol;
-    });
-  };
-  const auto bends = [&](const model::Expr& node) {
-    const bool curve = node.op == model::Op::kSin || node.op == model::Op::kCos ||
-                       node.op == model::Op::kTan || node.op == model::Op::kExp;
-    return curve && has(node, moving);
-  };
-  for (const auto* branch : {&machine.tool, &machine.workpiece})
-    for (const model::Transform& transform : *branch)
-      for (std::size_t d = 0; d < transform.dof_count(); ++d)
-        if (has(*transform.dof[d], own) && model::any_node(*transform.dof[d], bends)) return true;
-  return false;
-}
-
-constexpr int kLobes = 8;  // of the interpolation: what bends slower than 2.3 steps is followed to 1 %
-
-double lanczos(double x) {
-  if (std::abs(x) >= kLobes) return 0;
-  if (std::abs(x) < 1e-9) return 1;
-  const double a = std::numbers::pi * x;
-  return kLobes * std::sin(a) * std::sin(a / kLobes) / (a * a);
-}
-
-/// The effect through its values at the targets of an axis, 3 N.
-VectorXd through_targets(const model::Machine& machine, const model::Machine& other,
-                         const model::FitRecord::Range& targets, std::size_t axis,
-                         const model::States& states) {
-  const model::Column place = (states.axis[axis] - targets.from) / targets.step;
-  VectorXd sum = VectorXd::Zero(3 * place.size());
-  VectorXd weights = VectorXd::Zero(place.size());
-  for (int lobe = 1 - kLobes; lobe <= kLobes; ++lobe) {
-    model::States at = states;
-    const model::Column node = place.floor() + lobe;
-    at.axis[axis] = targets.from + targets.step * node;
-    const VectorXd there = effect(machine, other, at);
-    for (Index i = 0; i < place.size(); ++i) {
-      const double weight = lanczos(place[i] - node[i]);
-      sum.segment<3>(3 * i) += weight * there.segment<3>(3 * i);
-      weights[i] += weight;
-    }
-  }
-  for (Index i = 0; i < place.size(); ++i) sum.segment<3>(3 * i) /= weights[i];
-  return sum;
-}
-
 void append(MatrixXd& columns, const VectorXd& one) {
   columns.conservativeResize(one.size(), columns.cols() + 1);
   columns.rightCols<1>() = one;
@@ -323,53 +269,22 @@ std::vector<model::FitRecord::Unvaried> unvaried_dependences(const model::Machin
   return UnvariedFinder(fitted, rows, variance).run();
 }
 
-TargetStep target_step(const model::Column& commanded) {
-  std::vector<double> targets(commanded.begin(), commanded.end());
-  std::sort(targets.begin(), targets.end());
-  if (targets.empty()) return {};
-  const double range = targets.back() - targets.front();
-  constexpr double kSame = 1e-6;    // of the range: one target
-  constexpr double kFinest = 2e-4;  // of the range: finer steps are the readout's
-  constexpr double kOff = 0.02;     // of the step
-  std::vector<double> gaps;
-  for (std::size_t i = 1; i < targets.size(); ++i)
-    if (targets[i] - targets[i - 1] > kSame * range) gaps.push_back(targets[i] - targets[i - 1]);
-  constexpr std::size_t kFewest = 3;
-  if (gaps.size() < kFewest) return {};
-  const double least = *std::min_element(gaps.begin(), gaps.end());
-  for (const double step : {least, least / 2, least / 3}) {
-    if (step < kFinest * range) break;
-    if (std::all_of(gaps.begin(), gaps.end(),
-                    [&](double gap) { return std::abs(gap / step - std::round(gap / step)) < kOff; }))
-      return {step, targets.front()};
-  }
-  return {};
-}
-
 MatrixXd unmeasured_columns(const model::Machine& bare, const model::ParameterSet& parameters,
                             const model::FitRecord& record, const model::States& states) {
   MatrixXd columns(3 * static_cast<Index>(states.count), 0);
-  for (const Coefficient& coefficient : coefficients_of(parameters)) {
-    const auto is_this = [&](const auto& one) { return one.coefficient == coefficient.name; };
-    const bool unvaried = std::any_of(record.unvaried.begin(), record.unvaried.end(), is_this);
-    std::vector<std::pair<std::size_t, const model::FitRecord::Range*>> bends;
-    for (const model::FitRecord::Range& range : record.measured)
-      if (const auto axis = range.step > 0 ? bare.find_axis(range.name) : std::nullopt;
-          axis && bends_along(bare, parameters, coefficient, *axis))
-        bends.emplace_back(*axis, &range);
-    if (!unvaried && bends.empty()) continue;
-    const model::Machine other = without(bare, parameters, coefficient);
-    const VectorXd all = effect(bare, other, states);
-    for (const model::FitRecord::Unvaried& one : record.unvaried) {
-      const auto variable = is_this(one) ? variable_named(bare, one.variable) : std::nullopt;
-      if (!variable) continue;
-      model::States held = states;
-      variable->of(held).setConstant(one.at);
-      append(columns, all - effect(bare, other, held));
-    }
-    for (const auto& [axis, range] : bends)
-      append(columns, all - through_targets(bare, other, *range, axis, states));
+  const std::vector<Coefficient> coefficients = coefficients_of(parameters);
+  for (const model::FitRecord::Unvaried& one : record.unvaried) {
+    const auto coefficient = std::find_if(coefficients.begin(), coefficients.end(),
+                                          [&](const auto& item) { return item.name == one.coefficient; });
+    const auto variable = variable_named(bare, one.variable);
+    if (coefficient == coefficients.end() || !variable) continue;
+    const model::Machine other = without(bare, parameters, *coefficient);
+    model::States held = states;
+    variable->of(held).setConstant(one.at);
+    append(columns, effect(bare, other, states) - effect(bare, other, held));
   }
+  for (const model::FitRecord::Alternative& one : record.alternatives)
+    append(columns, alternative_column(bare, one, states));
   return columns;
 }
 

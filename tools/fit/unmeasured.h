@@ -29,18 +29,10 @@ std::vector<Coefficient> coefficients_of(const model::ParameterSet& parameters);
 std::vector<model::FitRecord::Unvaried> unvaried_dependences(const model::Machine& fitted,
                                                              const model::Measurement& rows, double variance);
 
-/// The common step of the targets of an axis: commanded positions, axis unit. step 0: there is none, or fewer
-/// than four different targets. tool.
-struct TargetStep {
-  double step = 0, from = 0;
-};
-TargetStep target_step(const model::Column& commanded);
-
-/// Two kinds of claim that no reading supports, as what they may move the tool point by at each state, one
-/// standard uncertainty: 3 N x e, mm. An unvaried dependence may be as the model says or not be there. A term
-/// that bends faster between the targets of an axis than they can show may be any curve through its values at
-/// the targets; the smooth one is taken (band-limited interpolation, Lanczos). e depends on machine and
-/// record alone. bare: without BaseShifts, fitted; parameters: its own. tool.
+/// Claims that no reading supports, as what they may move the tool point by at each state, one standard
+/// uncertainty: 3 N x e, mm. An unvaried dependence may be as the model says or not be there; an alternative
+/// term may be the true one (tools/fit/alternatives.h). e depends on machine and record alone. bare: without
+/// BaseShifts, fitted; parameters: its own. tool.
 Eigen::MatrixXd unmeasured_columns(const model::Machine& bare, const model::ParameterSet& parameters,
                                    const model::FitRecord& record, const model::States& states);
 

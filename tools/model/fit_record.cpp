@@ -8,6 +8,7 @@
 #include <pugixml.hpp>
 
 #include "tools/maths/decompositions.h"
+#include "tools/model/machine.h"
 #include "tools/text/numbers.h"
 #include "tools/text/words.h"
 #include "tools/text/xml_text.h"
@@ -90,14 +91,6 @@ std::string noise_xml(const FitRecord::Noise& noise) {
          "\"/>\n";
 }
 
-std::string range_xml(const FitRecord::Range& range) {
-  std::string text = "<" + range.name + " min=\"" + text::number_text(range.min) + "\" max=\"" +
-                     text::number_text(range.max) + "\"";
-  if (range.step > 0)
-    text += " step=\"" + text::number_text(range.step) + "\" from=\"" + text::number_text(range.from) + "\"";
-  return text + "/>";
-}
-
 std::string warnings_xml(const FitRecord& record) {
   std::string text;
   for (const FitRecord::Finding& one : record.findings)
@@ -110,6 +103,16 @@ std::string warnings_xml(const FitRecord& record) {
   for (const FitRecord::Unvaried& one : record.unvaried)
     text += "    <unvaried coefficient=\"" + text::escape_attribute(one.coefficient) + "\" variable=\"" +
             text::escape_attribute(one.variable) + "\" at=\"" + text::number_text(one.at) + "\"/>\n";
+  for (const FitRecord::Alternative& one : record.alternatives) {
+    text += "    <alternative branch=\"" + std::string(one.workpiece ? "workpiece" : "tool") +
+            "\" transform=\"" + std::to_string(one.transform) + "\" dof=\"" + kSixDofNames[one.dof] + "\"";
+    if (!one.axis.empty())
+      text += " axis=\"" + text::escape_attribute(one.axis) + "\" period=\"" + text::number_text(one.period) +
+              "\"";
+    for (std::size_t i = 0; i < 3; ++i)
+      text += std::string(" ") + "abc"[i] + "=\"" + text::number_text(one.size[i]) + "\"";
+    text += "/>\n";
+  }
   return text;
 }
 
@@ -161,7 +164,9 @@ std::string fit_record_xml(const FitRecord& record) {
     text += " disturbed=\"" + text::number_text(record.disturbed) + "\" disturbance=\"" +
             text::escape_attribute(record.disturbance) + "\"";
   text += ">\n    <measured>";
-  for (const FitRecord::Range& range : record.measured) text += range_xml(range);
+  for (const FitRecord::Range& range : record.measured)
+    text += "<" + range.name + " min=\"" + text::number_text(range.min) + "\" max=\"" +
+            text::number_text(range.max) + "\"/>";
   text += "</measured>\n" + warnings_xml(record);
   if (record.noise) text += noise_xml(*record.noise);
   text += "    <covariance parameters=\"";

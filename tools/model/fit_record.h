@@ -16,9 +16,6 @@ struct FitRecord {
   struct Range {
     std::string name;  // of an axis or input
     double min = 0, max = 0;
-    /// The targets of an axis are at `from` and multiples of `step` from there (unit of the axis); 0: they
-    /// have no common step.
-    double step = 0, from = 0;
   };
   /// Something that the fit found and that every later command repeats (FORMATS 7). Codes:
   /// tools/fit/findings.h.
@@ -38,6 +35,18 @@ struct FitRecord {
     double at = 0;                      // value of the variable, in its unit
   };
   std::vector<Unvaried> unvaried;
+  /// Another term that explains the readings as well as one that the model has, in the same degree of freedom
+  /// or, a shift in place of a turn, in the three lengths of the same transform.
+  struct Alternative {
+    bool workpiece = false;
+    int transform = 0;    // its number n
+    std::size_t dof = 0;  // of the model's term, 0..5 = X Y Z rX rY rZ
+    std::string axis;     // a wave along it; empty: a shift
+    double period = 0;    // of the wave, axis unit
+    /// Of the wave sine and cosine, mm or deg; of the shift mm in X, Y, Z for one unit of the model's term.
+    std::array<double, 3> size{};
+  };
+  std::vector<Alternative> alternatives;
   /// How the errors of its readings hung together (fit::NoiseModel), in units of u, of mm where none was
   /// given; kept where they did, or were larger than u.
   struct Noise {

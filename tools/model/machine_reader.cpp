@@ -114,6 +114,21 @@ class Reader {
     return noise;
   }
 
+  FitRecord::Alternative read_alternative(const pugi::xml_node& node) {
+    FitRecord::Alternative one;
+    one.workpiece = attribute(node, "branch").value_or("tool") == "workpiece";
+    one.transform = static_cast<int>(number(node, "transform", 0));
+    const std::string dof = attribute(node, "dof").value_or("");
+    while (one.dof < 6 && dof != kSixDofNames[one.dof]) ++one.dof;
+    if (one.dof == 6) fail_attribute(node, "dof", dof, "expected X, Y, Z, rX, rY or rZ");
+    one.axis = attribute(node, "axis").value_or("");
+    one.period = number(node, "period", 0);
+    if (!one.axis.empty() && !(one.period > 0))
+      fail_attribute(node, "period", "period", "a wave has a period");
+    one.size = {number(node, "a", 0), number(node, "b", 0), number(node, "c", 0)};
+    return one;
+  }
+
   void read_fitted(const pugi::xml_node& fitted) {
     auto record = std::make_shared<FitRecord>();
     record->line = line(fitted);
@@ -131,8 +146,7 @@ class Reader {
       if (is(node, "measured")) {
         for (const pugi::xml_node range : children(node)) {
           no_children(range);
-          record->measured.push_back({range.name(), number(range, "min", 0), number(range, "max", 0),
-                                      number(range, "step", 0), number(range, "from", 0)});
+          record->measured.push_back({range.name(), number(range, "min", 0), number(range, "max", 0)});
         }
       } else if (is(node, "finding")) {
         no_children(node);
@@ -145,6 +159,9 @@ class Reader {
         no_children(node);
         record->unvaried.push_back({attribute(node, "coefficient").value_or(""),
                                     attribute(node, "variable").value_or(""), number(node, "at", 0)});
+      } else if (is(node, "alternative")) {
+        no_children(node);
+        record->alternatives.push_back(read_alternative(node));
       } else if (is(node, "noise")) {
         no_children(node);
         record->noise = read_noise(node);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a fit found: model discrepancy beyond the noise, dependences that nobody measured, and what Reach makes of them.
+// What a fit found: model discrepancy beyond the noise, dependences that nobody measured, and what Reach
+// makes of them.
 #include "tools/fit/findings.h"
 
 #include <fmt/format.h>
@@ -164,10 +165,12 @@ TEST(FitFindings, AWaveBetweenTargetsIsUncertainAndOneThatTargetsFollowIsNot) {
       for (double at = 0; at <= 600; at += step) rows.push_back({at, 133.0 * pass, -100.0 * pass, 20});
     const Machine fitted =
         through_file(fit::fit(machine, readings(machine, rows, wave, random)).machine, statics, x, "");
-    EXPECT_DOUBLE_EQ(fitted.fitted->measured[0].step, step);
+    ASSERT_EQ(fitted.fitted->alternatives.size(), step > 10 ? 1U : 0U);
     const States states = work_poses(fitted).states;
     const double std_um = Reach(fitted).std_um(states).norm() / std::sqrt(states.count);
     if (step > 10) {
+      EXPECT_NEAR(fitted.fitted->alternatives[0].period, 180, 5);  // 1 / (1 / 18 - 1 / 20)
+      EXPECT_TRUE(has(fitted, "not-distinguished"));
       EXPECT_GT(std_um, 2.5) << "targets every 20 mm do not show a wave of 18 mm between them";
     } else {
       EXPECT_LT(std_um, 0.6);
@@ -177,7 +180,7 @@ TEST(FitFindings, AWaveBetweenTargetsIsUncertainAndOneThatTargetsFollowIsNot) {
   std::mt19937_64 random(4);
   const Machine fitted = through_file(
       fit::fit(machine, readings(machine, anywhere(150, random), wave, random)).machine, statics, x, "");
-  EXPECT_EQ(fitted.fitted->measured[0].step, 0);
+  EXPECT_TRUE(fitted.fitted->alternatives.empty());
   EXPECT_LT(Reach(fitted).std_um(work_poses(fitted).states).maxCoeff(), 1);
 }
 
@@ -205,15 +208,40 @@ TEST(FitFindings, NoiseThatNobodyStatedIsSaid) {
                   "noise-unknown"));
 }
 
-TEST(TargetStep, IsFoundOnGridsAndNowhereElse) {
-  const auto of = [](std::vector<double> list) {
-    return target_step(Eigen::Map<Column>(list.data(), static_cast<Eigen::Index>(list.size()))).step;
+TEST(FitFindings, ATurnThatOneToolShowsIsUncertainWithAnother) {
+  // GIVEN a nose that shifts along X with its heat, a model in which it turns, and one tool
+  const auto text = [](const std::string& dof) {
+    return "<machine name=\"m\"><variables><static><k value=\"0\" nominal=\"0\" unit=\"mm/K\"/>"
+           "<BaseShift X=\"0\" Y=\"0\" Z=\"0\" rX=\"0\" rY=\"0\" rZ=\"0\"/></static>"
+           "<machineaxes><X min=\"0\" max=\"600\"/><Y min=\"0\" max=\"400\"/><Z min=\"-300\" max=\"0\"/>"
+           "</machineaxes><inputs><T unit=\"degC\" reference=\"20\"/></inputs></variables>"
+           "<transforms branch=\"tool\"><sixdof X=\"X\" Y=\"Y\" Z=\"Z\" " +
+           dof + "=\"k*(T-20)*X/300\"/><sixdof Z=\"-50\"/></transforms></machine>";
   };
-  EXPECT_DOUBLE_EQ(of({0, 50, 100, 150, 150, 100, 50, 0}), 50);
-  EXPECT_DOUBLE_EQ(of({0, 20, 50, 70, 100}), 10);
-  EXPECT_DOUBLE_EQ(of({0, 50, 50}), 0);
-  EXPECT_DOUBLE_EQ(of({0.13, 47.77, 101.31, 149.02, 203.9}), 0);
-  EXPECT_DOUBLE_EQ(of({}), 0);
+  std::mt19937_64 random(7);
+  std::vector<Row> rows = anywhere(100, random);
+  for (std::size_t i = 0; i < rows.size(); ++i) rows[i].t = 20 + 0.1 * static_cast<double>(i);
+  for (const bool turn : {true, false}) {
+    const std::string file = text(turn ? "rY" : "Y");
+    const Machine machine = parse_machine(file, "m.xml");
+    const auto shift = [&](const Row& row) {
+      const double size = 0.002 * (row.t - 20) * row.x / 300;
+      return Eigen::Vector3d(turn ? size : 0, turn ? 0 : size, -50);
+    };
+    const Machine fitted = parse_machine(
+        update_machine_text(file, fit::fit(machine, readings(machine, rows, shift, random)).machine, true),
+        "m.xml");
+    ASSERT_EQ(fitted.fitted->alternatives.size(), turn ? 1U : 0U);
+    if (!turn) continue;
+    // THEN the turn is as certain as before with the tool that was used, and wholly uncertain with a longer
+    // one
+    States hot = make_states(1, fitted);
+    hot.axis[0][0] = 600, hot.axis[1][0] = 200, hot.axis[2][0] = -100;
+    hot.input[0][0] = 30;
+    EXPECT_LT(Reach(fitted).std_um(hot)[0], 3);
+    const Machine longer = with_tool(fitted, {0, 0, -200});
+    EXPECT_GT(Reach(longer).std_um(hot)[0], 100) << "the turn claims 160 um more than the shift";
+  }
 }
 
 }  // namespace

@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/fit/alternatives.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+
+#include "tools/fit/reach.h"
+#include "tools/fit/reading_direction.h"
+#include "tools/maths/decompositions.h"
+#include "tools/maths/orthonormal.h"
+#include "tools/model/chain.h"
+#include "tools/model/work_poses.h"
+
+namespace vernier::fit {
+namespace {
+
+using Alternative = model::FitRecord::Alternative;
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// Rise of chi square at which an explanation is worse: three standard deviations.
+constexpr double kWorse = 9;
+/// What moves the tool by less is nobody's concern, mm.
+constexpr double kNothing_mm = 5e-5;
+/// Spectral window of the positions from which a wave has an alias: 1 on a grid, 1/sqrt(N) at random.
+constexpr double kAliased = 0.7;
+/// Steps of the frequency a period over the whole range; far enough from the model's own wave, in these
+/// periods.
+constexpr double kFrequencySteps = 8, kOtherWave = 0.75;
+/// A length of tool that distinguishes a turn from a shift, mm.
+constexpr double kOtherTool_mm = 100;
+
+model::Transform* transform_at(model::Machine& machine, const Alternative& place) {
+  for (model::Transform& one : place.workpiece ? machine.workpiece : machine.tool)
+    if (one.n == place.transform && one.kind == model::TransformKind::kSixDof) return &one;
+  return nullptr;
+}
+
+/// What one unit (mm, deg) of a degree of freedom moves the tool point by: 3 N.
+VectorXd response(const model::Machine& machine, Alternative place, std::size_t dof,
+                  const model::States& states) {
+  constexpr double kProbe = 1e-3;  // mm or deg: linear, and far above rounding
+  model::Machine moved = machine;
+  model::Transform* const transform = transform_at(moved, place);
+  transform->dof[dof] = model::make_node(model::Op::kAdd, {transform->dof[dof], model::make_number(kProbe)});
+  const Eigen::Matrix3Xd off =
+      (model::forward(moved, states).position - model::forward(machine, states).position) / kProbe;
+  return off.reshaped();
+}
+
+/// The part of a degree of freedom that its free statics make: its value less that with them at nominal.
+VectorXd term(const model::Machine& machine, const Alternative& place, const model::States& states) {
+  model::Machine with = machine, nominal = machine;
+  for (model::Static& item : nominal.statics)
+    if (!item.hidden) item.value = item.nominal.value_or(item.value);
+  const model::Expr& expr = *transform_at(with, place)->dof[place.dof];
+  return (model::evaluate(machine, expr, states) - model::evaluate(nominal, expr, states)).matrix();
+}
+
+VectorXd times_rows(VectorXd points, const VectorXd& factor) {
+  for (Index i = 0; i < factor.size(); ++i) points.segment<3>(3 * i) *= factor[i];
+  return points;
+}
+
+bool has_symbol(const model::Expr& expr, model::SymbolKind kind, std::size_t index) {
+  return model::any_node(expr, [&](const model::Expr& node) {
+    return node.op == model::Op::kSymbol && node.symbol == model::Symbol{kind, index};
+  });
+}
+
+bool has_free_static(const model::Machine& machine, const model::Expr& expr) {
+  return model::any_node(expr, [&](const model::Expr& node) {
+    return node.op == model::Op::kSymbol && node.symbol.kind == model::SymbolKind::kStatic &&
+           !machine.statics[node.symbol.index].hidden;
+  });
+}
+
+bool waves_along(const model::Expr& expr, std::size_t axis) {
+  return model::any_node(expr, [&](const model::Expr& node) {
+    return (node.op == model::Op::kSin || node.op == model::Op::kCos) &&
+           has_symbol(node, model::SymbolKind::kAxis, axis);
+  });
+}
+
+/// Readings along one direction each, weighted, beside a free set-up.
+class Readings {
+ public:
+  Readings(const model::Machine& bare, const model::Machine& fitted, const model::Measurement& m,
+           const VectorXd& residual, double variance)
+      : states_(m.states) {
+    const double rms_mm = fitted.fitted ? std::max(fitted.fitted->rms_mm, 1e-9) : 1;
+    std::vector<double> left;
+    std::vector<std::size_t> setups;
+    for (std::size_t i = 0; i < m.observations.size(); ++i) {
+      const model::Observation& o = m.observations[i];
+      if (m.check[o.row] != 0) continue;
+      rotations_ = rotations_ || model::is_rotation(o.kind);
+      const Eigen::Vector3d along =
+          model::is_rotation(o.kind) ? Eigen::Vector3d::Zero().eval() : reading_direction(fitted, m, o);
+      if (along.norm() <= 0) continue;
+      const double u = model::uncertainty_of(m, o);
+      const double weight = u > 0 ? 1 / (u * std::sqrt(variance)) : 1 / rms_mm;
+      row_.push_back(static_cast<Index>(o.row));
+      along_.push_back(weight * along);
+      left.push_back(weight * residual[static_cast<Index>(i)]);
+      setups.push_back(m.states.of(m.states.setup, o.row));
+    }
+    if (row_.empty()) return;
+    find_set_ups(bare, setups);
+    left_ = beside_set_up(Eigen::Map<VectorXd>(left.data(), static_cast<Index>(left.size())));
+  }
+
+  bool empty() const { return row_.empty(); }
+  bool rotations() const { return rotations_; }
+  const model::States& states() const { return states_; }
+  const VectorXd& left() const { return left_; }
+  const std::vector<Index>& rows() const { return row_; }
+  /// What the readings make of movements of the tool point (3 N), weighted, beside the set-up.
+  VectorXd of(const VectorXd& points) const {
+    VectorXd column(static_cast<Index>(row_.size()));
+    for (std::size_t i = 0; i < row_.size(); ++i)
+      column[static_cast<Index>(i)] = along_[i].dot(points.segment<3>(3 * row_[i]));
+    return beside_set_up(column);
+  }
+
+ private:
+  void find_set_ups(const model::Machine& bare, const std::vector<std::size_t>& setups) {
+    const MatrixXd rigid = rigid_motions(model::forward(bare, states_).position);
+    std::map<std::size_t, Index> place;
+    for (const std::size_t name : setups) place.emplace(name, static_cast<Index>(place.size()));
+    MatrixXd columns = MatrixXd::Zero(static_cast<Index>(row_.size()), 6 * static_cast<Index>(place.size()));
+    for (std::size_t i = 0; i < row_.size(); ++i)
+      columns.block<1, 6>(static_cast<Index>(i), 6 * place[setups[i]]) =
+          along_[i].transpose() * rigid.middleRows<3>(3 * row_[i]);
+    set_up_ = maths::orthonormal(columns, 1e-9, nullptr);
+  }
+  VectorXd beside_set_up(const VectorXd& column) const {
+    return column - set_up_ * (set_up_.transpose() * column);
+  }
+
+  model::States states_;
+  std::vector<Index> row_;
+  std::vector<Eigen::Vector3d> along_;
+  MatrixXd set_up_;
+  VectorXd left_;
+  bool rotations_ = false;
+};
+
+class Finder {
+ public:
+  Finder(const model::Machine& fitted, const model::Measurement& m, const VectorXd& residual, double variance)
+      : bare_(without_set_ups(fitted)), readings_(bare_, fitted, m, residual, variance) {}
+
+  std::vector<Alternative> run() {
+    if (readings_.empty()) return {};
+    for (const bool workpiece : {false, true})
+      for (const model::Transform& one : workpiece ? bare_.workpiece : bare_.tool)
+        for (std::size_t d = 0; one.kind == model::TransformKind::kSixDof && d < 6; ++d)
+          if (has_free_static(bare_, *one.dof[d])) look_at({workpiece, one.n, d, "", 0, {}}, *one.dof[d]);
+    return std::move(found_);
+  }
+
+ private:
+  static model::Machine without_set_ups(const model::Machine& fitted) {
+    model::Machine bare = fitted;
+    bare.base_shifts.clear();
+    return bare;
+  }
+
+  void look_at(const Alternative& place, const model::Expr& expr) {
+    const VectorXd own = term(bare_, place, readings_.states());
+    if (own.size() == 0 || own.cwiseAbs().maxCoeff() <= 0) return;
+    for (std::size_t axis = 0; axis < bare_.axes.size(); ++axis)
+      if (waves_along(expr, axis)) look_for_wave(place, axis, own);
+    if (place.dof >= 3 && !readings_.rotations()) look_for_shift(place, own);
+  }
+
+  /// Of the term along the axis, from its sign changes; 1/unit.
+  double frequency(const Alternative& place, std::size_t axis, double low, double range) const {
+    constexpr Index kPoints = 4096;  // over the range: waves of 500 of its parts
+    model::States line = model::select_states(readings_.states(), std::vector<std::size_t>(kPoints, 0));
+    line.axis[axis] = Eigen::ArrayXd::LinSpaced(kPoints, low, low + range);
+    VectorXd value = term(bare_, place, line);
+    value.array() -= value.mean();
+    int changes = 0;
+    for (Index i = 1; i < kPoints; ++i) changes += value[i] * value[i - 1] < 0 ? 1 : 0;
+    return changes / (2 * range);
+  }
+
+  void look_for_wave(Alternative place, std::size_t axis, const VectorXd& own) {
+    const model::Column& q = readings_.states().axis[axis];
+    const double low = q.minCoeff(), range = q.maxCoeff() - low;
+    if (!(range > 0)) return;
+    const double own_frequency = frequency(place, axis, low, range), step = 1 / (kFrequencySteps * range);
+    constexpr Index kMostPositions = 2000;  // of the spectral window
+    const Eigen::ArrayXd window = q(Eigen::seq(Index{0}, q.size() - 1, 1 + q.size() / kMostPositions)) - low;
+    const VectorXd unit = response(bare_, place, place.dof, readings_.states());
+    const VectorXd data = readings_.left() + readings_.of(times_rows(unit, own));
+    double least = readings_.left().squaredNorm() + kWorse;
+    bool found = false;
+    double tried_to = -1;  // each frequency once
+    for (double shift = step; shift < own_frequency + step; shift += step) {
+      const Eigen::ArrayXd phase = 2 * std::numbers::pi * shift * window;
+      if (std::hypot(phase.cos().mean(), phase.sin().mean()) < kAliased) continue;
+      for (int k = -4; k <= 4; ++k) {
+        const double frequency = std::abs(own_frequency - shift) + 0.5 * k * step;
+        if (frequency < step || frequency > own_frequency - kOtherWave / range || frequency == tried_to)
+          continue;
+        tried_to = frequency;
+        const Eigen::ArrayXd turn = 2 * std::numbers::pi * frequency * q;
+        MatrixXd waves(data.size(), 2);
+        waves << readings_.of(times_rows(unit, turn.sin().matrix())),
+            readings_.of(times_rows(unit, turn.cos().matrix()));
+        const VectorXd size = maths::least_norm(waves, data);
+        const double rest = (data - waves * size).squaredNorm();
+        if (rest >= least) continue;
+        least = rest;
+        found = true;
+        place.axis = bare_.axes[axis].name;
+        place.period = 1 / frequency;
+        place.size = {size[0], size[1], 0};
+      }
+    }
+    if (found) found_.push_back(place);
+  }
+
+  void look_for_shift(Alternative place, const VectorXd& own) {
+    const VectorXd turned =
+        readings_.of(times_rows(response(bare_, place, place.dof, readings_.states()), own));
+    if (turned.squaredNorm() < kWorse) return;  // not seen: the covariance says so
+    const VectorXd data = readings_.left() + turned;
+    MatrixXd shifts(data.size(), 3);
+    for (Index d = 0; d < 3; ++d)
+      shifts.col(d) = readings_.of(
+          times_rows(response(bare_, place, static_cast<std::size_t>(d), readings_.states()), own));
+    const VectorXd size = maths::least_norm(shifts, data);
+    if ((data - shifts * size).squaredNorm() >= readings_.left().squaredNorm() + kWorse) return;
+    place.size = {size[0], size[1], size[2]};
+    // The same with every tool: nothing to distinguish.
+    for (const std::array<double, 3>& tool :
+         {std::array{kOtherTool_mm, 0.0, 0.0}, {0.0, 0.0, kOtherTool_mm}}) {
+      const model::Machine other = model::with_tool(bare_, tool);
+      if (alternative_column(other, place, readings_.states()).cwiseAbs().maxCoeff() <= kNothing_mm) continue;
+      found_.push_back(place);
+      return;
+    }
+  }
+
+  model::Machine bare_;
+  Readings readings_;
+  std::vector<Alternative> found_;
+};
+
+}  // namespace
+
+std::vector<Alternative> find_alternatives(const model::Machine& fitted, const model::Measurement& rows,
+                                           const VectorXd& residual, double variance) {
+  return Finder(fitted, rows, residual, variance).run();
+}
+
+VectorXd alternative_column(const model::Machine& bare, const Alternative& alternative,
+                            const model::States& states) {
+  model::Machine machine = bare;
+  if (transform_at(machine, alternative) == nullptr)
+    return VectorXd::Zero(3 * static_cast<Index>(states.count));
+  const VectorXd own = term(machine, alternative, states);
+  const VectorXd as_modelled = times_rows(response(machine, alternative, alternative.dof, states), own);
+  if (alternative.axis.empty()) {
+    VectorXd shifted = VectorXd::Zero(as_modelled.size());
+    for (std::size_t d = 0; d < 3; ++d)
+      shifted += times_rows(response(machine, alternative, d, states), alternative.size[d] * own);
+    return as_modelled - shifted;
+  }
+  const auto axis = machine.find_axis(alternative.axis);
+  if (!axis) return VectorXd::Zero(as_modelled.size());
+  const Eigen::ArrayXd turn = 2 * std::numbers::pi / alternative.period * states.axis[*axis];
+  const VectorXd wave = (alternative.size[0] * turn.sin() + alternative.size[1] * turn.cos()).matrix();
+  return as_modelled - times_rows(response(machine, alternative, alternative.dof, states), wave);
+}
+
+}  // namespace vernier::fit
