@@ -225,6 +225,7 @@ void remember(FitResult& result, const model::Measurement& rows, const model::Me
   record->worst_reading = result.worst.reading;
   record->culprit = result.absurd;
   record->check_ratio = result.check_ratio.value_or(0);
+  record->check_count = result.check_ratio ? result.check.count : 0;
   record->worst_check = result.check_ratio ? result.worst_check.reading : "";
   find_disturbance(result, rows, convention, robust, *record);
   record->noise = kept_noise(result.noise, rows);

@@ -158,7 +158,8 @@ std::string fit_record_xml(const FitRecord& record) {
                      "\" reading=\"" + text::escape_attribute(record.worst_reading) + "\"";
   if (!record.culprit.empty()) text += " culprit=\"" + text::escape_attribute(record.culprit) + "\"";
   if (record.check_ratio > 0)
-    text += " check=\"" + text::number_text(record.check_ratio) + "\" check-reading=\"" +
+    text += " check=\"" + text::number_text(record.check_ratio) + "\" check-count=\"" +
+            std::to_string(record.check_count) + "\" check-reading=\"" +
             text::escape_attribute(record.worst_check) + "\"";
   if (record.disturbed > 0)
     text += " disturbed=\"" + text::number_text(record.disturbed) + "\" disturbance=\"" +

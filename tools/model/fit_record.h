@@ -76,7 +76,8 @@ struct FitRecord {
   /// What check rows leave of this machine, over what they leave of the nominal one in the same set-up; 0:
   /// too few of them to tell.
   double check_ratio = 0;
-  std::string worst_check;  // the check reading that is left furthest off
+  std::size_t check_count = 0;  // readings that it is from; 0 in files of older versions
+  std::string worst_check;      // the check reading that is left furthest off
   /// What the instrument did by itself (a step, a drift), or what is left far above its noise, over what the
   /// nominal machine leaves of the readings; 0: nothing of the kind.
   double disturbed = 0;

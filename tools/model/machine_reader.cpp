@@ -139,6 +139,7 @@ class Reader {
     record->worst_reading = attribute(fitted, "reading").value_or("");
     record->culprit = attribute(fitted, "culprit").value_or("");
     record->check_ratio = number(fitted, "check", 0);
+    record->check_count = static_cast<std::size_t>(std::max(0.0, number(fitted, "check-count", 0)));
     record->worst_check = attribute(fitted, "check-reading").value_or("");
     record->disturbed = number(fitted, "disturbed", 0);
     record->disturbance = attribute(fitted, "disturbance").value_or("");

@@ -47,7 +47,7 @@ const RuleText& text_of(SafetyRule rule) {
       {"outlier", "times the residual's spread",
        "one reading that stands so far from all others has bent the fit", 20},
       {"check-rows", "times the nominal machine's",
-       "held-out rows are further off than without any correction: the model is no gain", 1},
+       "held-out rows must show a gain against no correction at all (95 %)", 1},
       {"disturbed", "of what the machine shows",
        "something that the model does not hold, as large as the errors of the machine, has bent the fit",
        0.75},
@@ -238,6 +238,14 @@ class Judge {
     add(SafetyRule::kSetUp, worst_um, of);
   }
 
+  /// Upper end (95 %, one-sided) of what check rows leave of this machine over what they leave of the nominal
+  /// one: a spread of n readings is known to 1 / sqrt(2 n).
+  static double upper_ratio(const model::FitRecord& record) {
+    constexpr double kOneSided = 1.645;  // standard deviations
+    if (record.check_count == 0) return record.check_ratio;
+    return record.check_ratio * (1 + kOneSided / std::sqrt(2 * static_cast<double>(record.check_count)));
+  }
+
   void judge_fit() {
     const model::FitRecord* record = machine_.fitted.get();
     const auto known = [&](double value) { return record ? std::optional(value) : std::nullopt; };
@@ -246,7 +254,7 @@ class Judge {
         record ? record->culprit : "");
     add(SafetyRule::kOutlier, known(record ? record->worst : 0), record ? record->worst_reading : "");
     const bool checked = record != nullptr && record->check_ratio > 0;
-    add(SafetyRule::kCheckRows, checked ? std::optional(record->check_ratio) : std::nullopt,
+    add(SafetyRule::kCheckRows, checked ? std::optional(upper_ratio(*record)) : std::nullopt,
         checked ? record->worst_check : "");
     add(SafetyRule::kDisturbed, known(record ? record->disturbed : 0), record ? record->disturbance : "");
   }
