@@ -28,6 +28,9 @@ using Eigen::VectorXd;
 /// Share of a column's square that must be its own beside the set-up and the suspects before it: less is the
 /// same suspect under another name.
 constexpr double kOwn = 1e-3;
+/// Share of a column's length beside the set-up below which it is rounding: no direction of its own, and no
+/// degree of freedom.
+constexpr double kRounding = 1e-7;
 
 /// Collects the columns of suspects, weighted, with the set-up projected out.
 class Collector {
@@ -105,7 +108,9 @@ class Collector {
 
   VectorXd beside_set_up(const VectorXd& column) const {
     VectorXd own = weighed(column);
+    const double full = own.norm();
     if (set_up_.cols() > 0) own -= set_up_ * (set_up_.transpose() * own);
+    if (own.norm() <= kRounding * full) own.setZero();
     return own;
   }
 

@@ -283,6 +283,19 @@ TEST(Checks, AnInstrumentTurnedByHalfADegreeOrAnyAngleIsNoChange) {
   }
 }
 
+TEST(Checks, TheChanceOfTheScatterIsEvenWhateverTheSetUpTakes) {
+  // Along a line the set-up takes up nearly all that the parameters do: none of them is a degree of freedom.
+  std::mt19937_64 random(51);
+  constexpr int kChecks = 200;
+  int below = 0;
+  for (int k = 0; k < kChecks; ++k) {
+    const Machine machine = fitted(random);
+    const Visit visit{static_cast<Visit::Where>(k % 3), true, 20.0 * (k % 9), 6};
+    below += judge(machine, {check(machine, rows_of(visit, nothing, random))}, 0.01).noise_p < 0.1 ? 1 : 0;
+  }
+  EXPECT_NEAR(below, 0.1 * kChecks, 4 * std::sqrt(0.1 * 0.9 * kChecks));
+}
+
 TEST(Checks, ACheckWithLoudReadingsIsLeftOutOfTheEvidence) {
   std::mt19937_64 random(50);
   const Machine machine = fitted(random);
