@@ -21,13 +21,15 @@ std::vector<Coefficient> coefficients_of(const model::ParameterSet& parameters);
 /// The coefficients whose effect depends on an axis or input that did not vary where the effect was seen, to
 /// within the noise of the readings. Heat that was measured at one place of an axis is the example: a
 /// rotation about a far point and a shift are the same there. For each coefficient and variable the effect
-/// with the variable held at its mean there (weighted by the effect's square) is compared with the effect
-/// itself on the fit rows, beside a free set-up; it counts as unvaried where they differ by less than three
-/// standard deviations in all. Rows that read rotations distinguish a rotation from a shift, and a single
-/// axis that never moved is the sheet's rule `measured-range`. rows: those of the fit; variance: of a
-/// weighted reading. tool.
+/// with the variable held at its mean there (weighted by the effect's square) takes the place of the effect
+/// itself; it counts as unvaried where that explains the fit rows as well, to within three standard
+/// deviations in all, beside a free set-up. Rows that read rotations distinguish a rotation from a shift, a
+/// station table is not asked about its own axis, and a single axis that never moved is the sheet's rule
+/// `measured-range`. residual: measured - model of each reading; variance: of a weighted reading. tool.
 std::vector<model::FitRecord::Unvaried> unvaried_dependences(const model::Machine& fitted,
-                                                             const model::Measurement& rows, double variance);
+                                                             const model::Measurement& rows,
+                                                             const Eigen::VectorXd& residual,
+                                                             double variance);
 
 /// Claims that no reading supports, as what they may move the tool point by at each state, one standard
 /// uncertainty: 3 N x e, mm. An unvaried dependence may be as the model says or not be there; an alternative
