@@ -273,8 +273,9 @@ std::string tables_text(const MachinePlan& plan) {
 
 std::string signs_remark(const MachinePlan& plan) {
   if (plan.arm == default_arm())
-    return "     No rows were given: the lengths are those of a UR10e, put yours in their place (or --dh, "
-           "--joint).\n"
+    return "     No rows were given: the lengths are those of a UR10e, put yours in their place (or by the "
+           "options dh, "
+           "joint).\n"
            "     Each DH row is Tz(d) Rz(theta) Tx(a) Rx(alpha); positions of turning joints are in deg.\n";
   if (!plan.arm.empty())
     return "     Each DH row is Tz(d) Rz(theta) Tx(a) Rx(alpha); positions of turning joints are in deg.\n";

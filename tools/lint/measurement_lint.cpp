@@ -318,12 +318,14 @@ class Look {
   void read_column(std::size_t k) {
     LintColumn& column = table_.columns[k];
     const auto unit = text::find_unit(column.unit);
-    std::size_t words = 0;
-    for (const LintRow& row : table_.rows)
+    std::size_t words = 0, filled = 0;
+    for (const LintRow& row : table_.rows) {
+      filled += row.cells[k].empty() ? 0 : 1;
       words += !row.cells[k].empty() && !text::parse_number(row.cells[k]) ? 1 : 0;
-    // Words in most rows of a column of one's own: labels, not numbers gone wrong.
+    }
+    // Words in most cells that hold anything of a column of one's own: labels, not numbers gone wrong.
     const bool own = names_.needed_unit(column.name) == "?" && column.name != "u";
-    if (own && 2 * words > table_.rows.size()) {
+    if (own && 2 * words > filled) {
       column.label = true;
       findings_.remark(table_.header_line, column.name, "a column of words",
                        "numbers can explain an error, words only tell rows apart");

@@ -18,6 +18,15 @@ struct Line {
   std::size_t number = 0;
 };
 
+/// Does a line begin with what a spreadsheet writes where a formula failed, in English or German? It is a
+/// row.
+bool begins_with_error_value(const std::string& line) {
+  for (const char* word : {"#REF!", "#N/A", "#DIV/0!", "#VALUE!", "#NAME?", "#NUM!", "#NULL!", "#NV",
+                           "#BEZUG!", "#WERT!", "#ZAHL!"})
+    if (line.starts_with(word)) return true;
+  return false;
+}
+
 std::vector<Line> lines_of(const std::string& text, std::size_t skip, const std::string& comment) {
   std::vector<Line> lines;
   std::size_t number = 0;
@@ -28,7 +37,9 @@ std::vector<Line> lines_of(const std::string& text, std::size_t skip, const std:
     at = end + (text.compare(end, 2, "\r\n") == 0 ? 2 : 1);
     ++number;
     const std::string bare = text::trimmed(line);
-    if (number <= skip || bare.empty() || (!comment.empty() && bare.starts_with(comment))) continue;
+    if (number <= skip || bare.empty() ||
+        (!comment.empty() && bare.starts_with(comment) && !begins_with_error_value(bare)))
+      continue;
     lines.push_back({line, number});
   }
   return lines;
@@ -188,7 +199,9 @@ Sheet read_sheet(const std::string& bytes, const std::string& file, const SheetF
     sheet.sheet = read.name;
     for (std::size_t i = 0; i < read.rows.size(); ++i) {
       if (read.line[i] <= format.skip) continue;
-      if (!format.comment.empty() && read.rows[i].front().starts_with(format.comment)) continue;
+      if (!format.comment.empty() && read.rows[i].front().starts_with(format.comment) &&
+          !begins_with_error_value(read.rows[i].front()))
+        continue;
       sheet.rows.push_back(std::move(read.rows[i]));
       sheet.line.push_back(read.line[i]);
     }

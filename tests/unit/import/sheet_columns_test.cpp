@@ -161,6 +161,7 @@ const Case kCases[] = {
     {"DateIsNoReading", "X[mm];x[mm]\n1;2026-03-04\n2;2026-03-05\n",
      "refused: s.csv:2: \"2026-03-04\": a date or a time of day, not a number, for x"},
     {"DatesLabelTheirRows", "X[mm];x[mm];Datum\n1;2;2026-03-04\n", "X[mm],x[mm],Datum\n1,2,2026-03-04\n"},
+    {"ErrorValueBeginsARow", "X[mm];x[mm]\n1;2\n#REF!;3\n3;4\n", "refused: s.csv:3: \"#REF!\": not a number"},
     {"OpenQuote", "X[mm];x[mm]\n1;\"2\n", "a closing quote is missing"},
 };
 
