@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstring>
 #include <memory>
 #include <optional>
@@ -124,11 +125,18 @@ text::Assurance vouch(const Arguments& arguments, upload::Client& client, const 
   if (done.given_up) require("given-up", slots.trial == kNoSlot, "the image that was on trial", "given up");
   const upload::BoardTick tick = client.newest();
   const upload::BoardState state = client.state();
-  if (tick.mode != Mode::kActive || tick.fault != Fault::kNone || tick.holding || state.weight < 1)
-    assurance.not_covered(fmt::format(
-        "that the image is in effect: the board is in mode {}, fault {}{}, with {:.0f} "
-        "% of the correction in",
-        name_of(tick.mode), name_of(tick.fault), tick.holding ? ", on hold" : "", 100 * state.weight));
+  const bool all_axes = std::all_of(state.axes.begin(), state.axes.end(),
+                                    [](const upload::BoardState::Axis& axis) { return axis.weight >= 1; });
+  if (tick.mode != Mode::kActive || tick.fault != Fault::kNone || tick.holding || state.weight < 1 ||
+      !all_axes)
+    assurance.not_covered(
+        fmt::format("that the image is in effect: the board is in mode {}, fault {}{}, with {:.0f} "
+                    "% of the correction in",
+                    name_of(tick.mode), name_of(tick.fault),
+                    tick.holding ? ", on hold"
+                    : all_axes   ? ""
+                                 : ", an axis below its full weight",
+                    100 * state.weight));
   assurance.not_covered("whether the machine is more accurate: nothing was measured");
   return assurance;
 }

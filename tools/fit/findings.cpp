@@ -164,12 +164,15 @@ std::vector<model::FitRecord::Finding> findings_of(const FitResult& result, cons
   const Vector3d lack_um(1e3 * record.discrepancy_mm[0], 1e3 * record.discrepancy_mm[1],
                          1e3 * record.discrepancy_mm[2]);
   if (lack_um.maxCoeff() > 0) {
+    constexpr double kPlainly = 1.1;  // times the noise: what two digits show
     const double times = times_the_noise(result);
+    const std::string what = times > kPlainly
+                                 ? fmt::format("The residual is {:.2g} times the noise", times)
+                                 : "Readings along one direction, or check rows, exceed their noise";
     list.push_back(
         {"something-missing", times,
-         fmt::format("The residual is {:.2g} times the noise: something is missing from this model, "
-                     "{:.3g}, {:.3g}, {:.3g} um in x, y, z.",
-                     times, lack_um.x(), lack_um.y(), lack_um.z())});
+         fmt::format("{}: something is missing from this model, {:.3g}, {:.3g}, {:.3g} um in x, y, z.", what,
+                     lack_um.x(), lack_um.y(), lack_um.z())});
   }
   if (!result.noise_um && result.before.rms_um)
     list.push_back({"noise-unknown", 0,

@@ -14,6 +14,7 @@
 #include "tools/fit/findings.h"
 #include "tools/fit/moved.h"
 #include "tools/fit/problem.h"
+#include "tools/fit/set_up.h"
 #include "tools/fit/settle.h"
 #include "tools/fit/solve.h"
 #include "tools/fit/unmeasured.h"
@@ -247,18 +248,35 @@ void remember(FitResult& result, const model::Measurement& rows, const model::Me
   record->findings = findings_of(result, *record, all);
 }
 
-/// The fitted machine against the nominal one, set up as well as it can be (`centre`), on rows that the fit
-/// has not seen.
+/// rms of a machine's check rows in the set-up that suits them best, um.
+std::optional<double> check_rms_set_up_anew(const model::Machine& machine, const model::Measurement& m) {
+  std::vector<std::size_t> keep;
+  for (std::size_t row = 0; row < m.rows(); ++row)
+    if (m.check[row] != 0) keep.push_back(row);
+  model::Measurement rows = model::select_rows(m, keep);
+  rows.check.assign(rows.check.size(), 0);
+  return role_statistics(rows, residuals(set_up(machine, rows), rows), false).rms_um;
+}
+
+/// The fitted machine against the nominal one on rows that the fit has not seen: both as the fit rows set
+/// them up
+/// (`centre` has the nominal one), and where there are enough check rows both set up anew on these, whichever
+/// says more against the fit. A set-up that suits a wrong machine is no measure of the nominal one.
 std::optional<double> check_ratio(const FitResult& result, const Eigen::VectorXd& centre,
                                   const model::Measurement& m) {
   constexpr std::size_t kEnough = 12;  // readings: the ratio of two spreads of twelve stays below 1.25 or so
+  constexpr std::size_t kEnoughForSetUp = 24;  // readings: four times the numbers of a set-up
   if (result.check.count < kEnough || !result.check.rms_um) return std::nullopt;
   model::Machine nominal = result.machine;
   result.parameters.set(nominal, centre);
   const Eigen::VectorXd left = residuals(nominal, m);
   const double nominal_um = role_statistics(m, left, true).rms_um.value_or(0);
   if (nominal_um <= 0) return std::nullopt;
-  return *result.check.rms_um / nominal_um;
+  const double as_fitted = *result.check.rms_um / nominal_um;
+  if (result.check.count < kEnoughForSetUp || model::uses_lag(result.machine)) return as_fitted;
+  const auto anew = check_rms_set_up_anew(nominal, m), fitted = check_rms_set_up_anew(result.machine, m);
+  if (!anew || !fitted || *anew <= 0) return as_fitted;
+  return std::max(as_fitted, *fitted / *anew);
 }
 
 /// Standard uncertainty of the mean of numbers that may hang together: from the means of stretches.

@@ -37,7 +37,7 @@ void add_findings(text::Assurance& word, const model::Machine& machine) {
   word.require("fitted", machine.fitted != nullptr,
                "The machine file holds a fit: how well its numbers are known is in it.");
   if (!machine.fitted) return;
-  word.require("converged", machine.fitted->converged, "The fit converged.");
+  word.require("fit-converged", machine.fitted->converged, "The fit of the machine file converged.");
   for (const model::FitRecord::Finding& one : machine.fitted->findings) {
     if (forbids(one))
       word.require(one.code, false, one.text);
@@ -80,7 +80,9 @@ text::Assurance assurance_of(const safety::SafetySheet& sheet, const model::Mach
     if (!one.value)
       word.not_covered(fmt::format("Rule {}: the machine file has no figure for it.", name));
     else
-      word.at_most(name, *one.value, one.limit, fmt::format("{} {}{}.", name, one.unit, culprit));
+      word.at_most(name, *one.value, one.limit,
+                   fmt::format("Rule {}: {:.3g} {}, limit {:g}{}; {}.", name, *one.value, one.unit, one.limit,
+                               culprit, one.reason));
   }
   for (const std::string& name : sheet.stale)
     word.not_covered(name + " was added or set by hand since the fit.");
