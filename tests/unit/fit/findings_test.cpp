@@ -210,23 +210,24 @@ TEST(FitFindings, NoiseThatNobodyStatedIsSaid) {
 
 TEST(FitFindings, ATurnThatOneToolShowsIsUncertainWithAnother) {
   // GIVEN a nose that shifts along X with its heat, a model in which it turns, and one tool
-  const auto text = [](const std::string& dof) {
+  const auto text = [](bool turn) {
+    const std::string term = "k*(T-20)*X/300";
     return "<machine name=\"m\"><variables><static><k value=\"0\" nominal=\"0\" unit=\"mm/K\"/>"
            "<BaseShift X=\"0\" Y=\"0\" Z=\"0\" rX=\"0\" rY=\"0\" rZ=\"0\"/></static>"
            "<machineaxes><X min=\"0\" max=\"600\"/><Y min=\"0\" max=\"400\"/><Z min=\"-300\" max=\"0\"/>"
            "</machineaxes><inputs><T unit=\"degC\" reference=\"20\"/></inputs></variables>"
-           "<transforms branch=\"tool\"><sixdof X=\"X\" Y=\"Y\" Z=\"Z\" " +
-           dof + "=\"k*(T-20)*X/300\"/><sixdof Z=\"-50\"/></transforms></machine>";
+           "<transforms branch=\"tool\"><sixdof X=\"X\" Y=\"Y\" Z=\"Z\" rY=\"" +
+           (turn ? term : "0") + "\"/><sixdof X=\"" + (turn ? "0" : term) +
+           "\" Z=\"-50\"/></transforms></machine>";
   };
   std::mt19937_64 random(7);
   std::vector<Row> rows = anywhere(100, random);
   for (std::size_t i = 0; i < rows.size(); ++i) rows[i].t = 20 + 0.1 * static_cast<double>(i);
   for (const bool turn : {true, false}) {
-    const std::string file = text(turn ? "rY" : "Y");
+    const std::string file = text(turn);
     const Machine machine = parse_machine(file, "m.xml");
-    const auto shift = [&](const Row& row) {
-      const double size = 0.002 * (row.t - 20) * row.x / 300;
-      return Eigen::Vector3d(turn ? size : 0, turn ? 0 : size, -50);
+    const auto shift = [](const Row& row) {
+      return Eigen::Vector3d(0.002 * (row.t - 20) * row.x / 300, 0, -50);
     };
     const Machine fitted = parse_machine(
         update_machine_text(file, fit::fit(machine, readings(machine, rows, shift, random)).machine, true),
