@@ -18,7 +18,7 @@ using Eigen::Index;
 using Eigen::Vector3d;
 
 /// Chance at most for a residual that is only noise.
-constexpr double kChance = 0.01;
+constexpr double kChanceOfSurvey = 0.001;
 /// A residual counts for so many spreads at most: one bad reading is no property of the machine.
 constexpr double kMostSpreads = 5;
 
@@ -79,7 +79,7 @@ std::array<Squares, 4> squares_of(const FitResult& result, const model::Measurem
 
 /// Variance beyond the noise; 0 where chance explains it.
 double excess(const Squares& one) {
-  if (one.freedom < 1 || maths::chi_square_tail(one.chi, one.freedom) > kChance / 3) return 0;
+  if (one.freedom < 1 || maths::chi_square_tail(one.chi, one.freedom) > kChanceOfSurvey / 3) return 0;
   return std::max(0.0, (one.residual - one.noise) / one.freedom);
 }
 

@@ -19,7 +19,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 /// Standard deviations, squared, by which two explanations must differ on the readings to be distinguished.
-constexpr double kSeen = 9;
+constexpr double kDistinct = 9;
 /// The same for a coefficient to be looked at: five. What is seen less has its covariance.
 constexpr double kPlain = 25;
 /// A variable whose weighted standard deviation is above this share of its range has varied (an even spread
@@ -131,10 +131,10 @@ class UnvariedFinder {
       model::States held = readings_.states();
       one.variable.of(held).setConstant(mean);
       const VectorXd alone = readings_.of(effect(machine_, other, held));
-      if (alone.squaredNorm() < kSeen) continue;
+      if (alone.squaredNorm() < kDistinct) continue;
       const VectorXd data = readings_.left() + own;
       const VectorXd rest = data - alone * (alone.dot(data) / alone.squaredNorm());
-      if (rest.squaredNorm() >= as_modelled + kSeen) continue;
+      if (rest.squaredNorm() >= as_modelled + kDistinct) continue;
       if (moves_the_tool(one, other, mean, mass)) found_.push_back({coefficient.name, one.name, mean});
     }
   }

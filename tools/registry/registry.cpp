@@ -64,8 +64,8 @@ constexpr const char* kSecondVersion[] = {
     "ALTER TABLE live ADD COLUMN spool TEXT NOT NULL DEFAULT ''",
     "ALTER TABLE live ADD COLUMN historical BIGINT NOT NULL DEFAULT 0",
     "ALTER TABLE rollout ADD COLUMN issued BIGINT NOT NULL DEFAULT 0",
-    "CREATE TABLE machine_lock (machine TEXT PRIMARY KEY, holder TEXT NOT NULL, purpose TEXT NOT NULL, "
-    "until_us BIGINT NOT NULL)",
+    ("CREATE TABLE machine_lock (machine TEXT PRIMARY KEY, holder TEXT NOT NULL, purpose TEXT NOT NULL, "
+     "until_us BIGINT NOT NULL)"),
 };
 
 // Two programs that find no tables make them one after the other.
