@@ -10,7 +10,7 @@ endfunction()
 set(VERNIER_ROOMS_OF_GLUE create lint exchange evaluate report results upload workbench fleet commands python)
 # Under sanitizers an object costs half without an optimiser (measured with clang 14: diagnose 15.8 s of 39.4). Only where tests multiply
 # matrices and walk records, it earns that back.
-set(VERNIER_ROOMS_OF_NUMBERS maths model fit kinematics vibration timebase)
+set(VERNIER_ROOMS_OF_NUMBERS maths model fit kinematics vibration timebase tolerance)
 
 # vernier_effort(target room): how hard the compiler tries, and what it has read before.
 function(vernier_effort target room)

@@ -105,8 +105,8 @@ struct FitResult {
   std::vector<std::pair<std::string, double>> priors;  // parameter, standard uncertainty
   std::vector<StageFigures> stages;                    // as asked for, then one of all together
   WorstReading worst, worst_check;                     // of the fit rows; of the check rows
-  /// rms that check rows leave of the fitted machine over what they leave of the nominal one, in the set-up of
-  /// the fit rows or set up anew, whichever is larger; nothing where there are too few of them.
+  /// rms that check rows leave of the fitted machine over what they leave of the nominal one, in the set-up
+  /// of the fit rows or set up anew, whichever is larger; nothing where there are too few of them.
   std::optional<double> check_ratio;
   /// Why the readings are not those of this machine; empty where they are.
   std::string absurd;
