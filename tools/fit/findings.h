@@ -12,9 +12,9 @@ namespace vernier::fit {
 /// What the model lacks, as far as the residual shows it: for each direction of workpiece coordinates the
 /// root of the mean squared residual beyond the noise (stated u; without u repeats), mm; of fit rows
 /// (corrected for what the fit took up) and of check rows, whichever is larger. A direction counts where
-/// chance explains it one time in a thousand at most, and one that no reading looks along gets the mean of the
-/// others. Readings along a direction are those whose own direction is nearest to it. Zero where the noise is
-/// not known. tool.
+/// chance explains it one time in a thousand at most, and one that no reading looks along gets the mean of
+/// the others. Readings along a direction are those whose own direction is nearest to it. Zero where the
+/// noise is not known. tool.
 Eigen::Vector3d model_discrepancy(const FitResult& result, const model::Measurement& measurement);
 
 /// What every later command repeats. Codes: `something-missing` (value: residual over noise), `noise-unknown`
