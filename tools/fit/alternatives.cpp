@@ -136,7 +136,7 @@ class Finder {
     double least = readings_.left().squaredNorm() + kWorse;
     bool found = false;
     double tried_to = -1;  // each frequency once
-    for (double shift = step; shift < own_frequency + step; shift += step) {
+    for (double shift = step; shift < 2 * own_frequency; shift += step) {
       const Eigen::ArrayXd phase = 2 * std::numbers::pi * shift * window;
       if (std::hypot(phase.cos().mean(), phase.sin().mean()) < kAliased) continue;
       for (int k = -4; k <= 4; ++k) {

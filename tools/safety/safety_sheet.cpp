@@ -165,20 +165,23 @@ class Judge {
       worst = share;
       of = name;
     };
-    judge_at(machine_, poses_.states, of);
-    for (const model::Tool& tool : machine_.tools)
-      judge_at(model::with_tool(machine_, tool.point), poses_.states, "tool " + tool.name);
-    for (const model::FitRecord::Range& measured : machine_.fitted->measured) {
-      const auto input = machine_.find_input(measured.name);
-      if (!input || machine_.inputs[*input].hidden_axis ||
-          !acts(machine_, {model::SymbolKind::kInput, *input}))
-        continue;
-      for (const double value : {measured.min, measured.max}) {
-        model::States states = poses_.states;
-        states.input[*input].setConstant(value);
-        judge_at(machine_, states, fmt::format("{} at {:.4g}", measured.name, value));
+    const auto judge_tool = [&](const model::Machine& machine, const std::string& tool) {
+      judge_at(machine, poses_.states, tool);
+      for (const model::FitRecord::Range& measured : machine_.fitted->measured) {
+        const auto input = machine_.find_input(measured.name);
+        if (!input || machine_.inputs[*input].hidden_axis ||
+            !acts(machine_, {model::SymbolKind::kInput, *input}))
+          continue;
+        for (const double value : {measured.min, measured.max}) {
+          model::States states = poses_.states;
+          states.input[*input].setConstant(value);
+          judge_at(machine, states, fmt::format("{}, {} at {:.4g}", tool, measured.name, value));
+        }
       }
-    }
+    };
+    judge_tool(machine_, of);
+    for (const model::Tool& tool : machine_.tools)
+      judge_tool(model::with_tool(machine_, tool.point), "tool " + tool.name);
     add(SafetyRule::kUncertainty, worst, of);
     sheet_.stale = reach.stale();
   }

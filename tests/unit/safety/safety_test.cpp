@@ -231,7 +231,7 @@ TEST(SafetySheet, RefusesHeatThatWasMeasuredAtOnePlaceAsARotation) {
   EXPECT_FALSE(sheet.ok());
   EXPECT_FALSE(finding(sheet, SafetyRule::kUncertainty).ok)
       << *finding(sheet, SafetyRule::kUncertainty).value;
-  EXPECT_EQ(finding(sheet, SafetyRule::kUncertainty).culprit, "T at 30");
+  EXPECT_EQ(finding(sheet, SafetyRule::kUncertainty).culprit, "the tool of the file, T at 30");
   // WHEN the heat is measured all over THEN the sheet passes
   std::vector<std::array<double, 4>> all = everywhere(80, 20);
   for (const auto& hot : everywhere(60, 30)) all.push_back(hot);
