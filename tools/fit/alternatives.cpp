@@ -133,32 +133,43 @@ class Finder {
     const Eigen::ArrayXd window = q(Eigen::seq(Index{0}, q.size() - 1, 1 + q.size() / kMostPositions)) - low;
     const VectorXd unit = response(bare_, place, place.dof, readings_.states());
     const VectorXd data = readings_.left() + readings_.of(times_rows(unit, own));
-    double least = readings_.left().squaredNorm() + kWorse;
-    bool found = false;
-    double tried_to = -1;  // each frequency once
+    const double limit = readings_.left().squaredNorm() + kWorse;
+    std::vector<Wave> waves;
     for (double shift = step; shift < 2 * own_frequency; shift += step) {
       const Eigen::ArrayXd phase = 2 * std::numbers::pi * shift * window;
       if (std::hypot(phase.cos().mean(), phase.sin().mean()) < kAliased) continue;
       for (int k = -4; k <= 4; ++k) {
         const double frequency = std::abs(own_frequency - shift) + 0.5 * k * step;
-        if (frequency < step || frequency > own_frequency - kOtherWave / range || frequency == tried_to)
-          continue;
-        tried_to = frequency;
-        const Eigen::ArrayXd turn = 2 * std::numbers::pi * frequency * q;
-        MatrixXd waves(data.size(), 2);
-        waves << readings_.of(times_rows(unit, turn.sin().matrix())),
-            readings_.of(times_rows(unit, turn.cos().matrix()));
-        const VectorXd size = maths::least_norm(waves, data);
-        const double rest = (data - waves * size).squaredNorm();
-        if (rest >= least) continue;
-        least = rest;
-        found = true;
-        place.axis = bare_.axes[axis].name;
-        place.period = 1 / frequency;
-        place.size = {size[0], size[1], 0};
+        if (frequency < step || frequency > own_frequency - kOtherWave / range) continue;
+        if (Wave wave = fitted_wave(unit, q, frequency, data); wave.rest < limit) waves.push_back(wave);
       }
     }
-    if (found) found_.push_back(place);
+    if (waves.empty()) return;
+    // Of several the slowest is the one that nobody would call a wave between the targets.
+    const double slowest = std::min_element(waves.begin(), waves.end(), [](const Wave& a, const Wave& b) {
+                             return a.frequency < b.frequency;
+                           })->frequency;
+    std::erase_if(waves, [&](const Wave& one) { return one.frequency > slowest + 4 * step; });
+    const Wave& best = *std::min_element(waves.begin(), waves.end(),
+                                         [](const Wave& a, const Wave& b) { return a.rest < b.rest; });
+    place.axis = bare_.axes[axis].name;
+    place.period = 1 / best.frequency;
+    place.size = {best.sine, best.cosine, 0};
+    found_.push_back(place);
+  }
+
+  struct Wave {
+    double frequency = 0, sine = 0, cosine = 0, rest = 0;  // rest: chi square
+  };
+
+  Wave fitted_wave(const VectorXd& unit, const model::Column& q, double frequency,
+                   const VectorXd& data) const {
+    const Eigen::ArrayXd turn = 2 * std::numbers::pi * frequency * q;
+    MatrixXd waves(data.size(), 2);
+    waves << readings_.of(times_rows(unit, turn.sin().matrix())),
+        readings_.of(times_rows(unit, turn.cos().matrix()));
+    const VectorXd size = maths::least_norm(waves, data);
+    return {frequency, size[0], size[1], (data - waves * size).squaredNorm()};
   }
 
   void look_for_shift(Alternative place, const VectorXd& own) {
