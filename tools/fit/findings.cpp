@@ -10,6 +10,7 @@
 
 #include "tools/fit/reading_direction.h"
 #include "tools/maths/chance.h"
+#include "tools/maths/median.h"
 
 namespace vernier::fit {
 namespace {
@@ -28,14 +29,6 @@ struct Squares {
   double chi = 0, freedom = 0;     // residual over u, and what it is by noise alone
   std::size_t count = 0;
 };
-
-/// 1.4826 times the median size: the spread that outliers do not move.
-double robust_spread(std::vector<double> sizes) {
-  if (sizes.empty()) return 0;
-  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::nth_element(sizes.begin(), middle, sizes.end());
-  return 1.4826 * *middle;
-}
 
 /// Of one role; the last of the four: readings of no single direction.
 std::array<Squares, 4> squares_of(const FitResult& result, const model::Measurement& m, bool check) {
@@ -57,7 +50,7 @@ std::array<Squares, 4> squares_of(const FitResult& result, const model::Measurem
     sizes[along].push_back(std::abs(result.residual[static_cast<Index>(i)]));
   });
   std::array<double, 4> spread{};
-  for (std::size_t k = 0; k < 4; ++k) spread[k] = robust_spread(sizes[k]);
+  for (std::size_t k = 0; k < 4; ++k) spread[k] = maths::robust_spread(sizes[k]);
   each([&](std::size_t along, std::size_t i, double u) {
     if (!(u > 0)) return;
     const double predicted =
