@@ -2,14 +2,12 @@
 #include "tools/fit/alternatives.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
-#include "tools/fit/readings_beside_set_up.h"
 #include "tools/maths/decompositions.h"
 #include "tools/model/chain.h"
-#include "tools/model/work_poses.h"
 
 namespace vernier::fit {
 namespace {
@@ -31,14 +29,18 @@ constexpr double kFrequencySteps = 8, kOtherWave = 0.75;
 /// A length of tool that distinguishes a turn from a shift, mm.
 constexpr double kOtherTool_mm = 100;
 
-model::Transform* transform_at(model::Machine& machine, const Alternative& place) {
-  for (model::Transform& one : place.workpiece ? machine.workpiece : machine.tool)
-    if (one.n == place.transform && one.kind == model::TransformKind::kSixDof) return &one;
-  return nullptr;
+/// machine: const or not, as the transform is wanted.
+template <class Machine>
+auto* transform_at(Machine& machine, const Alternative& place) {
+  auto& branch = place.workpiece ? machine.workpiece : machine.tool;
+  const auto found = std::find_if(branch.begin(), branch.end(), [&](const model::Transform& one) {
+    return one.n == place.transform && one.kind == model::TransformKind::kSixDof;
+  });
+  return found == branch.end() ? nullptr : &*found;
 }
 
 /// What one unit (mm, deg) of a degree of freedom moves the tool point by: 3 N.
-VectorXd response(const model::Machine& machine, Alternative place, std::size_t dof,
+VectorXd response(const model::Machine& machine, const Alternative& place, std::size_t dof,
                   const model::States& states) {
   constexpr double kProbe = 1e-3;  // mm or deg: linear, and far above rounding
   model::Machine moved = machine;
@@ -51,10 +53,10 @@ VectorXd response(const model::Machine& machine, Alternative place, std::size_t 
 
 /// The part of a degree of freedom that its free statics make: its value less that with them at nominal.
 VectorXd term(const model::Machine& machine, const Alternative& place, const model::States& states) {
-  model::Machine with = machine, nominal = machine;
+  model::Machine nominal = machine;
   for (model::Static& item : nominal.statics)
     if (!item.hidden) item.value = item.nominal.value_or(item.value);
-  const model::Expr& expr = *transform_at(with, place)->dof[place.dof];
+  const model::Expr& expr = *transform_at(machine, place)->dof[place.dof];
   return (model::evaluate(machine, expr, states) - model::evaluate(nominal, expr, states)).matrix();
 }
 
@@ -85,8 +87,7 @@ bool waves_along(const model::Expr& expr, std::size_t axis) {
 
 class Finder {
  public:
-  Finder(const model::Machine& fitted, const model::Measurement& m, const VectorXd& residual, double variance)
-      : bare_(without_set_ups(fitted)), readings_(bare_, fitted, m, residual, variance) {}
+  explicit Finder(const ReadingsBesideSetUp& readings) : bare_(readings.bare()), readings_(readings) {}
 
   std::vector<Alternative> run() {
     if (readings_.empty()) return {};
@@ -98,12 +99,6 @@ class Finder {
   }
 
  private:
-  static model::Machine without_set_ups(const model::Machine& fitted) {
-    model::Machine bare = fitted;
-    bare.base_shifts.clear();
-    return bare;
-  }
-
   void look_at(const Alternative& place, const model::Expr& expr) {
     const VectorXd own = term(bare_, place, readings_.states());
     if (own.size() == 0 || own.cwiseAbs().maxCoeff() <= 0) return;
@@ -194,21 +189,19 @@ class Finder {
     }
   }
 
-  model::Machine bare_;
-  ReadingsBesideSetUp readings_;
+  const model::Machine& bare_;
+  const ReadingsBesideSetUp& readings_;
   std::vector<Alternative> found_;
 };
 
 }  // namespace
 
-std::vector<Alternative> find_alternatives(const model::Machine& fitted, const model::Measurement& rows,
-                                           const VectorXd& residual, double variance) {
-  return Finder(fitted, rows, residual, variance).run();
+std::vector<Alternative> find_alternatives(const ReadingsBesideSetUp& readings) {
+  return Finder(readings).run();
 }
 
-VectorXd alternative_column(const model::Machine& bare, const Alternative& alternative,
+VectorXd alternative_column(const model::Machine& machine, const Alternative& alternative,
                             const model::States& states) {
-  model::Machine machine = bare;
   if (transform_at(machine, alternative) == nullptr)
     return VectorXd::Zero(3 * static_cast<Index>(states.count));
   const VectorXd own = term(machine, alternative, states);

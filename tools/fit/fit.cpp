@@ -243,8 +243,9 @@ void remember(FitResult& result, const model::Measurement& rows, const model::Me
   const Eigen::Vector3d lack_mm = model_discrepancy(result, all);
   record->discrepancy_mm = {lack_mm.x(), lack_mm.y(), lack_mm.z()};
   result.machine.fitted = record;
-  record->unvaried = unvaried_dependences(result.machine, all, result.residual, result.variance_factor);
-  record->alternatives = find_alternatives(result.machine, all, result.residual, result.variance_factor);
+  const ReadingsBesideSetUp readings(result.machine, all, result.residual, result.variance_factor);
+  record->unvaried = unvaried_dependences(readings);
+  record->alternatives = find_alternatives(readings);
   record->findings = findings_of(result, *record, all);
 }
 

@@ -17,10 +17,10 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-ReadingsBesideSetUp::ReadingsBesideSetUp(const model::Machine& bare, const model::Machine& fitted,
-                                         const model::Measurement& m, const VectorXd& residual,
-                                         double variance)
-    : states_(m.states) {
+ReadingsBesideSetUp::ReadingsBesideSetUp(const model::Machine& fitted, const model::Measurement& m,
+                                         const VectorXd& residual, double variance)
+    : bare_(fitted), states_(m.states), check_(m.check) {
+  bare_.base_shifts.clear();
   const double rms_mm = fitted.fitted ? std::max(fitted.fitted->rms_mm, 1e-9) : 1;
   std::vector<double> left;
   std::vector<std::size_t> setups;
@@ -39,7 +39,7 @@ ReadingsBesideSetUp::ReadingsBesideSetUp(const model::Machine& bare, const model
     setups.push_back(m.states.of(m.states.setup, o.row));
   }
   if (row_.empty()) return;
-  find_set_ups(bare, setups);
+  find_set_ups(setups);
   left_ = beside_set_up(Eigen::Map<VectorXd>(left.data(), static_cast<Index>(left.size())));
 }
 
@@ -50,8 +50,8 @@ VectorXd ReadingsBesideSetUp::of(const VectorXd& points) const {
   return beside_set_up(column);
 }
 
-void ReadingsBesideSetUp::find_set_ups(const model::Machine& bare, const std::vector<std::size_t>& setups) {
-  const MatrixXd rigid = rigid_motions(model::forward(bare, states_).position);
+void ReadingsBesideSetUp::find_set_ups(const std::vector<std::size_t>& setups) {
+  const MatrixXd rigid = rigid_motions(model::forward(bare_, states_).position);
   std::map<std::size_t, Index> place;
   for (const std::size_t name : setups) place.emplace(name, static_cast<Index>(place.size()));
   MatrixXd columns = MatrixXd::Zero(static_cast<Index>(row_.size()), 6 * static_cast<Index>(place.size()));

@@ -19,6 +19,8 @@ namespace {
 
 /// Reach where nothing moves, mm.
 constexpr double kLeastReach_mm = 10;
+/// Of chi^2: a set-up that is given up for less would be given up for rounding.
+constexpr double kSetUpGain = 1e-3;
 
 struct SetUp {
   model::Machine machine;
@@ -151,9 +153,7 @@ model::Machine set_up(const model::Machine& machine, const model::Measurement& r
   const Eigen::VectorXd file = own.shifts.get(own.rigid);
   hold_at(problem, held, file);
   SetUp given = fitted_set_up(machine, own.shifts, problem, file);
-  // Of chi^2: a set-up that is given up for less would be given up for rounding.
-  constexpr double kPlainly = 1e-3;
-  return given.cost < (1 - kPlainly) * plain.cost ? std::move(given.machine) : std::move(plain.machine);
+  return given.cost < (1 - kSetUpGain) * plain.cost ? std::move(given.machine) : std::move(plain.machine);
 }
 
 model::Machine set_up_anywhere(const model::Machine& machine, const model::Measurement& measured) {
@@ -171,9 +171,7 @@ model::Machine set_up_anywhere(const model::Machine& machine, const model::Measu
     const SetUp end = fitted_set_up(machine, own.shifts, problem, start);
     problem.clear_priors();
     const double cost = problem.cost(own.shifts.get(end.machine));
-    // Of chi^2: as in set_up().
-    constexpr double kPlainly = 1e-3;
-    if (cost < (1 - kPlainly) * best.cost) best = {end.machine, cost};
+    if (cost < (1 - kSetUpGain) * best.cost) best = {end.machine, cost};
   };
   attempt(aligned_start(own, rows));
   // Readings that fit to ten times their uncertainty have found their set-up.

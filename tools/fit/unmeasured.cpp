@@ -7,7 +7,6 @@
 #include <optional>
 
 #include "tools/fit/alternatives.h"
-#include "tools/fit/readings_beside_set_up.h"
 #include "tools/model/chain.h"
 #include "tools/model/work_poses.h"
 
@@ -62,15 +61,10 @@ VectorXd effect(const model::Machine& machine, const model::Machine& other, cons
 
 class UnvariedFinder {
  public:
-  UnvariedFinder(const model::Machine& fitted, const model::Measurement& m, const VectorXd& residual,
-                 double variance)
-      : machine_(without_set_ups(fitted)),
-        parameters_(machine_, {}),
-        readings_(machine_, fitted, m, residual, variance) {
+  explicit UnvariedFinder(const ReadingsBesideSetUp& readings)
+      : machine_(readings.bare()), parameters_(machine_, {}), readings_(readings) {
     for (std::size_t a = 0; a < machine_.axes.size(); ++a) add_axis(a);
     for (std::size_t i = 0; i < machine_.inputs.size(); ++i) add_input(i);
-    fit_row_.assign(m.check.begin(), m.check.end());
-    for (char& one : fit_row_) one = one == 0 ? 1 : 0;
   }
 
   std::vector<model::FitRecord::Unvaried> run() {
@@ -85,12 +79,6 @@ class UnvariedFinder {
     std::string name;
     double range = 0;
   };
-
-  static model::Machine without_set_ups(const model::Machine& fitted) {
-    model::Machine bare = fitted;
-    bare.base_shifts.clear();
-    return bare;
-  }
 
   void add_axis(std::size_t a) {
     const model::Column& q = readings_.states().axis[a];
@@ -118,7 +106,7 @@ class UnvariedFinder {
     if (own.squaredNorm() < kPlain || turns_where_read(other)) return;
     VectorXd mass(all.size() / 3);
     for (Index i = 0; i < mass.size(); ++i)
-      mass[i] = fit_row_[static_cast<std::size_t>(i)] != 0 ? all.segment<3>(3 * i).squaredNorm() : 0;
+      mass[i] = readings_.check()[static_cast<std::size_t>(i)] == 0 ? all.segment<3>(3 * i).squaredNorm() : 0;
     if (!(mass.sum() > 0)) return;
     mass /= mass.sum();
     const double as_modelled = readings_.left().squaredNorm();
@@ -178,11 +166,10 @@ class UnvariedFinder {
     return false;
   }
 
-  model::Machine machine_;
+  const model::Machine& machine_;
   model::ParameterSet parameters_;
-  ReadingsBesideSetUp readings_;
+  const ReadingsBesideSetUp& readings_;
   std::vector<Candidate> candidates_;
-  std::vector<char> fit_row_;
   std::vector<model::FitRecord::Unvaried> found_;
 };
 
@@ -217,10 +204,8 @@ std::vector<Coefficient> coefficients_of(const model::ParameterSet& parameters) 
   return list;
 }
 
-std::vector<model::FitRecord::Unvaried> unvaried_dependences(const model::Machine& fitted,
-                                                             const model::Measurement& rows,
-                                                             const VectorXd& residual, double variance) {
-  return UnvariedFinder(fitted, rows, residual, variance).run();
+std::vector<model::FitRecord::Unvaried> unvaried_dependences(const ReadingsBesideSetUp& readings) {
+  return UnvariedFinder(readings).run();
 }
 
 MatrixXd unmeasured_columns(const model::Machine& bare, const model::ParameterSet& parameters,

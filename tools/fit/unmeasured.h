@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "tools/fit/readings_beside_set_up.h"
 #include "tools/model/fit_record.h"
 #include "tools/model/machine.h"
-#include "tools/model/measurement.h"
 #include "tools/model/parameters.h"
 
 namespace vernier::fit {
@@ -25,11 +25,8 @@ std::vector<Coefficient> coefficients_of(const model::ParameterSet& parameters);
 /// itself; it counts as unvaried where that explains the fit rows as well, to within three standard
 /// deviations in all, beside a free set-up. Rows that read rotations distinguish a rotation from a shift, a
 /// station table is not asked about its own axis, and a single axis that never moved is the sheet's rule
-/// `measured-range`. residual: measured - model of each reading; variance: of a weighted reading. tool.
-std::vector<model::FitRecord::Unvaried> unvaried_dependences(const model::Machine& fitted,
-                                                             const model::Measurement& rows,
-                                                             const Eigen::VectorXd& residual,
-                                                             double variance);
+/// `measured-range`. tool.
+std::vector<model::FitRecord::Unvaried> unvaried_dependences(const ReadingsBesideSetUp& readings);
 
 /// Claims that no reading supports, as what they may move the tool point by at each state, one standard
 /// uncertainty: 3 N x e, mm. An unvaried dependence may be as the model says or not be there; an alternative

@@ -17,10 +17,9 @@ bool forbids(const model::FitRecord::Finding& finding) {
   return std::any_of(kForbid.begin(), kForbid.end(), [&](const char* code) { return finding.code == code; });
 }
 
-/// Findings with which a fit itself does not hold.
+/// Further findings with which a fit itself does not hold.
 bool speaks_against_fit(const model::FitRecord::Finding& finding) {
-  return forbids(finding) || finding.code == "something-missing" || finding.code == "disturbed" ||
-         finding.code == "not-varied";
+  return finding.code == "something-missing" || finding.code == "disturbed" || finding.code == "not-varied";
 }
 
 }  // namespace
@@ -57,7 +56,7 @@ text::Assurance assurance_of(const fit::FitResult& result) {
   else
     word.not_covered("Held-out rows: there are fewer than twelve check readings.");
   for (const model::FitRecord::Finding& one : result.machine.fitted->findings) {
-    if (one.code == "no-gain" || one.code == "not-converged" || one.code == "absurd") continue;
+    if (forbids(one)) continue;  // the rules above
     if (speaks_against_fit(one))
       word.require(one.code, false, one.text);
     else

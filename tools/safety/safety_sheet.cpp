@@ -156,9 +156,8 @@ class Judge {
     }
     double worst = 0;
     std::string of = "the tool of the file";
-    const auto judge_at = [&](const model::Machine& machine, const model::States& states,
-                              const std::string& name) {
-      const fit::Reach with(machine);
+    const auto judge_at = [&](const model::Machine& machine, const fit::Reach& with,
+                              const model::States& states, const std::string& name) {
       const double rms_um = std::sqrt(with.std_um(states).squaredNorm() / static_cast<double>(states.count));
       const double share = rms_um / std::max(maths::kUmPerMm * correction_rms_mm(machine, states), 0.1);
       if (share <= worst) return;
@@ -166,7 +165,8 @@ class Judge {
       of = name;
     };
     const auto judge_tool = [&](const model::Machine& machine, const std::string& tool) {
-      judge_at(machine, poses_.states, tool);
+      const fit::Reach with(machine);
+      judge_at(machine, with, poses_.states, tool);
       for (const model::FitRecord::Range& measured : machine_.fitted->measured) {
         const auto input = machine_.find_input(measured.name);
         if (!input || machine_.inputs[*input].hidden_axis ||
@@ -175,7 +175,7 @@ class Judge {
         for (const double value : {measured.min, measured.max}) {
           model::States states = poses_.states;
           states.input[*input].setConstant(value);
-          judge_at(machine, states, fmt::format("{}, {} at {:.4g}", tool, measured.name, value));
+          judge_at(machine, with, states, fmt::format("{}, {} at {:.4g}", tool, measured.name, value));
         }
       }
     };

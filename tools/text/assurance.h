@@ -50,7 +50,7 @@ class Assurance {
   void at_least(std::string rule, double value, double limit, std::string text);
   /// The rule is met where `ok` is true: value is 0 where it is, else 1; the limit is 0.
   void require(std::string rule, bool ok, std::string text);
-  /// Something that nobody has looked at, as a sentence.
+  /// Something that the result does not cover, as a sentence.
   void not_covered(std::string text);
 
   AssuranceKind kind() const { return kind_; }
