@@ -23,13 +23,14 @@ Eigen::Matrix3d frame_of(const model::Machine& machine, const model::Measurement
 
 }  // namespace
 
-Eigen::Vector3d reading_direction(const model::Machine& machine, const model::Measurement& m,
-                                  const model::Observation& o) {
-  const auto row = static_cast<Eigen::Index>(o.row);
-  if (o.kind <= model::ObservationKind::kZ)
-    return frame_of(machine, m, o.row).transpose() * Eigen::Vector3d::Unit(static_cast<Eigen::Index>(o.kind));
-  if (o.kind == model::ObservationKind::kD)
-    return {m.states.normal[0][row], m.states.normal[1][row], m.states.normal[2][row]};
+Eigen::Vector3d reading_direction(const model::Machine& machine, const model::Measurement& rows,
+                                  const model::Observation& reading) {
+  const auto row = static_cast<Eigen::Index>(reading.row);
+  if (reading.kind <= model::ObservationKind::kZ)
+    return frame_of(machine, rows, reading.row).transpose() *
+           Eigen::Vector3d::Unit(static_cast<Eigen::Index>(reading.kind));
+  if (reading.kind == model::ObservationKind::kD)
+    return {rows.states.normal[0][row], rows.states.normal[1][row], rows.states.normal[2][row]};
   return Eigen::Vector3d::Zero();
 }
 

@@ -17,26 +17,26 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-ReadingsBesideSetUp::ReadingsBesideSetUp(const model::Machine& fitted, const model::Measurement& m,
+ReadingsBesideSetUp::ReadingsBesideSetUp(const model::Machine& fitted, const model::Measurement& rows,
                                          const VectorXd& residual, double variance)
-    : bare_(fitted), states_(m.states), check_(m.check) {
+    : bare_(fitted), states_(rows.states), check_(rows.check) {
   bare_.base_shifts.clear();
   const double rms_mm = fitted.fitted ? std::max(fitted.fitted->rms_mm, 1e-9) : 1;
   std::vector<double> left;
   std::vector<std::size_t> setups;
-  for (std::size_t i = 0; i < m.observations.size(); ++i) {
-    const model::Observation& o = m.observations[i];
-    if (m.check[o.row] != 0) continue;
+  for (std::size_t i = 0; i < rows.observations.size(); ++i) {
+    const model::Observation& o = rows.observations[i];
+    if (rows.check[o.row] != 0) continue;
     rotations_ = rotations_ || model::is_rotation(o.kind);
     const Eigen::Vector3d along =
-        model::is_rotation(o.kind) ? Eigen::Vector3d::Zero().eval() : reading_direction(fitted, m, o);
+        model::is_rotation(o.kind) ? Eigen::Vector3d::Zero().eval() : reading_direction(fitted, rows, o);
     if (along.norm() <= 0) continue;
-    const double u = model::uncertainty_of(m, o);
+    const double u = model::uncertainty_of(rows, o);
     const double weight = u > 0 ? 1 / (u * std::sqrt(variance)) : 1 / rms_mm;
     row_.push_back(static_cast<Index>(o.row));
     along_.push_back(weight * along);
     left.push_back(weight * residual[static_cast<Index>(i)]);
-    setups.push_back(m.states.of(m.states.setup, o.row));
+    setups.push_back(rows.states.of(rows.states.setup, o.row));
   }
   if (row_.empty()) return;
   find_set_ups(setups);

@@ -128,11 +128,11 @@ std::vector<Eigen::VectorXd> quarter_turns(const SetUpProblem& problem) {
 
 }  // namespace
 
-double reach_of(const model::Machine& machine, const model::Measurement& m) {
-  const model::ChainRows chain(machine, m.states);
+double reach_of(const model::Machine& machine, const model::Measurement& rows) {
+  const model::ChainRows chain(machine, rows.states);
   Eigen::Vector3d low = Eigen::Vector3d::Constant(1e300), high = -low;
-  for (std::size_t row = 0; row < m.rows(); ++row) {
-    if (m.check[row] != 0) continue;
+  for (std::size_t row = 0; row < rows.rows(); ++row) {
+    if (rows.check[row] != 0) continue;
     const Eigen::Vector3d point = chain.pose(row).origin;
     low = low.cwiseMin(point);
     high = high.cwiseMax(point);

@@ -17,6 +17,6 @@ model::Machine set_up(const model::Machine& machine, const model::Measurement& r
 /// off by ten times their uncertainty all 24 ways in which the axes can lie. For readings of a machine that
 /// is known; a survey that is to be fitted keeps set_up(), since a turned set-up can hide swapped columns of
 /// a flat survey. tool.
-model::Machine set_up_anywhere(const model::Machine& machine, const model::Measurement& rows);
+model::Machine set_up_anywhere(const model::Machine& machine, const model::Measurement& measured);
 
 }  // namespace vernier::fit
