@@ -108,9 +108,13 @@ double times_the_noise(const FitResult& result) {
 std::string unvaried_text(const model::FitRecord& record) {
   std::string text;
   constexpr std::size_t kMost = 3;  // that a sentence names
-  for (std::size_t i = 0; i < record.unvaried.size() && i < kMost; ++i)
-    text += fmt::format("{}{} was determined at {} = {:.6g} only", i > 0 ? "; " : "",
-                        record.unvaried[i].coefficient, record.unvaried[i].variable, record.unvaried[i].at);
+  for (std::size_t i = 0; i < record.unvaried.size() && i < kMost; ++i) {
+    const model::FitRecord::Unvaried& one = record.unvaried[i];
+    text += fmt::format("{}{} was determined ", i > 0 ? "; " : "", one.coefficient);
+    text += one.follows.empty()
+                ? fmt::format("at {} = {:.6g} only", one.variable, one.at)
+                : fmt::format("only where {} changed together with {}", one.variable, one.follows);
+  }
   if (record.unvaried.size() > kMost) text += fmt::format("; and {} more", record.unvaried.size() - kMost);
   return text + ". What it does elsewhere was not measured.";
 }

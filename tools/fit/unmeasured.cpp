@@ -40,6 +40,22 @@ struct Variable {
   }
 };
 
+/// Where a variable is held: at one value, or on a line along another variable.
+struct Line {
+  double at = 0;
+  std::optional<Variable> follows;
+  double slope = 0, about = 0;
+};
+
+model::States held_on(const Line& line, const Variable& variable, const model::States& states) {
+  model::States held = states;
+  if (line.follows)
+    variable.of(held) = line.at + line.slope * (line.follows->of(states) - line.about);
+  else
+    variable.of(held).setConstant(line.at);
+  return held;
+}
+
 /// The machine without one coefficient: at nominal, a table's column and a scale factor at 0.
 model::Machine without(const model::Machine& machine, const model::ParameterSet& parameters,
                        const Coefficient& coefficient) {
@@ -112,19 +128,46 @@ class UnvariedFinder {
     const double as_modelled = readings_.left().squaredNorm();
     for (const Candidate& one : candidates_) {
       if (is_table_of(coefficient, one)) continue;
-      const model::Column& value = one.variable.of(readings_.states());
-      const double mean = mass.dot(value.matrix());
-      const double spread = std::sqrt(mass.dot((value - mean).square().matrix()));
-      if (spread > kVaried * one.range) continue;
-      model::States held = readings_.states();
-      one.variable.of(held).setConstant(mean);
-      const VectorXd alone = readings_.of(effect(machine_, other, held));
-      if (alone.squaredNorm() < kDistinct) continue;
-      const VectorXd data = readings_.left() + own;
-      const VectorXd rest = data - alone * (alone.dot(data) / alone.squaredNorm());
-      if (rest.squaredNorm() >= as_modelled + kDistinct) continue;
-      if (moves_the_tool(one, other, mean, mass)) found_.push_back({coefficient.name, one.name, mean});
+      for (const Held& held : ways_to_hold(one, mass)) {
+        const VectorXd alone =
+            readings_.of(effect(machine_, other, held_on(held.line, one.variable, readings_.states())));
+        if (alone.squaredNorm() < kDistinct) continue;
+        const VectorXd data = readings_.left() + own;
+        const VectorXd rest = data - alone * (alone.dot(data) / alone.squaredNorm());
+        if (rest.squaredNorm() >= as_modelled + kDistinct) continue;
+        if (moves_the_tool(one, other, held.line, mass))
+          found_.push_back(
+              {coefficient.name, one.name, held.line.at, held.follows, held.line.slope, held.line.about});
+      }
     }
+  }
+
+  struct Held {
+    Line line;
+    std::string follows;  // name
+  };
+
+  /// mass: weight of each state, sum 1. At its mean where it did not vary; else on the line along each other
+  /// variable from which it hardly departed.
+  std::vector<Held> ways_to_hold(const Candidate& one, const VectorXd& mass) const {
+    const model::Column& value = one.variable.of(readings_.states());
+    const double mean = mass.dot(value.matrix());
+    const VectorXd off = (value - mean).matrix();
+    const double variance = mass.dot(off.cwiseAbs2()), still = kVaried * one.range;
+    if (variance <= still * still) return {{{mean, {}, 0, 0}, ""}};
+    std::vector<Held> ways;
+    for (const Candidate& other : candidates_) {
+      if (&other == &one) continue;
+      const model::Column& leading = other.variable.of(readings_.states());
+      const double about = mass.dot(leading.matrix());
+      const VectorXd lead = (leading - about).matrix();
+      const double lead_variance = mass.dot(lead.cwiseAbs2());
+      if (lead_variance <= std::pow(kVaried * other.range, 2)) continue;
+      const double slope = mass.dot(off.cwiseProduct(lead)) / lead_variance;
+      if (variance - slope * slope * lead_variance <= still * still)
+        ways.push_back({{mean, other.variable, slope, about}, other.name});
+    }
+    return ways;
   }
 
   /// A station table and its own axis: that is what a table is.
@@ -146,7 +189,7 @@ class UnvariedFinder {
   }
 
   /// Over its working volume, with inputs where the effect was seen and at their references.
-  bool moves_the_tool(const Candidate& one, const model::Machine& other, double at,
+  bool moves_the_tool(const Candidate& one, const model::Machine& other, const Line& line,
                       const VectorXd& mass) const {
     std::vector<std::array<double, 2>> ranges;
     for (std::size_t a = 0; a < machine_.axes.size(); ++a) {
@@ -158,9 +201,8 @@ class UnvariedFinder {
       for (std::size_t i = 0; i < machine_.inputs.size(); ++i)
         states.input[i].setConstant(at_reference ? machine_.inputs[i].reference
                                                  : mass.dot(readings_.states().input[i].matrix()));
-      model::States held = states;
-      one.variable.of(held).setConstant(at);
-      const VectorXd difference = effect(machine_, other, states) - effect(machine_, other, held);
+      const VectorXd difference =
+          effect(machine_, other, states) - effect(machine_, other, held_on(line, one.variable, states));
       if (difference.cwiseAbs().maxCoeff() > kNothing_mm) return true;
     }
     return false;
@@ -217,10 +259,13 @@ MatrixXd unmeasured_columns(const model::Machine& bare, const model::ParameterSe
                                           [&](const auto& item) { return item.name == one.coefficient; });
     const auto variable = variable_named(bare, one.variable);
     if (coefficient == coefficients.end() || !variable) continue;
+    Line line{one.at, {}, one.slope, one.about};
+    if (!one.follows.empty()) {
+      line.follows = variable_named(bare, one.follows);
+      if (!line.follows) continue;
+    }
     const model::Machine other = without(bare, parameters, *coefficient);
-    model::States held = states;
-    variable->of(held).setConstant(one.at);
-    append(columns, effect(bare, other, states) - effect(bare, other, held));
+    append(columns, effect(bare, other, states) - effect(bare, other, held_on(line, *variable, states)));
   }
   for (const model::FitRecord::Alternative& one : record.alternatives)
     append(columns, alternative_column(bare, one, states));

@@ -23,7 +23,8 @@ std::vector<Coefficient> coefficients_of(const model::ParameterSet& parameters);
 /// rotation about a far point and a shift are the same there. For each coefficient and variable the effect
 /// with the variable held at its mean there (weighted by the effect's square) takes the place of the effect
 /// itself; it counts as unvaried where that explains the fit rows as well, to within three standard
-/// deviations in all, beside a free set-up. Rows that read rotations distinguish a rotation from a shift, a
+/// deviations in all, beside a free set-up. A variable that changed only together with another one is held on
+/// the line along which it did (weighted regression): heat that was measured on a diagonal of X and Y. Rows that read rotations distinguish a rotation from a shift, a
 /// station table is not asked about its own axis, and a single axis that never moved is the sheet's rule
 /// `measured-range`. tool.
 std::vector<model::FitRecord::Unvaried> unvaried_dependences(const ReadingsBesideSetUp& readings);

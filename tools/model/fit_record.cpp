@@ -100,9 +100,14 @@ std::string warnings_xml(const FitRecord& record) {
   if (discrepancy[0] > 0 || discrepancy[1] > 0 || discrepancy[2] > 0)
     text += "    <discrepancy x=\"" + text::number_text(discrepancy[0]) + "\" y=\"" +
             text::number_text(discrepancy[1]) + "\" z=\"" + text::number_text(discrepancy[2]) + "\"/>\n";
-  for (const FitRecord::Unvaried& one : record.unvaried)
+  for (const FitRecord::Unvaried& one : record.unvaried) {
     text += "    <unvaried coefficient=\"" + text::escape_attribute(one.coefficient) + "\" variable=\"" +
-            text::escape_attribute(one.variable) + "\" at=\"" + text::number_text(one.at) + "\"/>\n";
+            text::escape_attribute(one.variable) + "\" at=\"" + text::number_text(one.at);
+    if (!one.follows.empty())
+      text += "\" follows=\"" + text::escape_attribute(one.follows) + "\" slope=\"" +
+              text::number_text(one.slope) + "\" about=\"" + text::number_text(one.about);
+    text += "\"/>\n";
+  }
   for (const FitRecord::Alternative& one : record.alternatives) {
     text += "    <alternative branch=\"" + std::string(one.workpiece ? "workpiece" : "tool") +
             "\" transform=\"" + std::to_string(one.transform) + "\" dof=\"" + kSixDofNames[one.dof] + "\"";

@@ -28,11 +28,13 @@ struct FitRecord {
   /// What the model lacks, as far as the readings showed it: standard deviation of the tool point's deviation
   /// beyond the noise, along x, y, z of workpiece coordinates, mm (Kennedy and O'Hagan 2001). 0: none seen.
   std::array<double, 3> discrepancy_mm{};
-  /// A coefficient whose rows all had nearly one value of an axis or input that its effect depends on: that
-  /// dependence is the model's word, no reading's.
+  /// A coefficient whose rows all had nearly one value of an axis or input that its effect depends on, or one
+  /// that followed another variable along a line: the readings do not show that dependence.
   struct Unvaried {
     std::string coefficient, variable;  // `k_heat` or `table.X.rY`; an axis or an input
     double at = 0;                      // value of the variable, in its unit
+    std::string follows;                // the variable that it followed; empty: none
+    double slope = 0, about = 0;        // variable = at + slope * (follows - about), in their units
   };
   std::vector<Unvaried> unvaried;
   /// Another term that explains the readings as well as one that the model has, in the same degree of freedom

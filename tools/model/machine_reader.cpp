@@ -159,7 +159,9 @@ class Reader {
       } else if (is(node, "unvaried")) {
         no_children(node);
         record->unvaried.push_back({attribute(node, "coefficient").value_or(""),
-                                    attribute(node, "variable").value_or(""), number(node, "at", 0)});
+                                    attribute(node, "variable").value_or(""), number(node, "at", 0),
+                                    attribute(node, "follows").value_or(""), number(node, "slope", 0),
+                                    number(node, "about", 0)});
       } else if (is(node, "alternative")) {
         no_children(node);
         record->alternatives.push_back(read_alternative(node));

@@ -18,8 +18,10 @@ bool forbids(const model::FitRecord::Finding& finding) {
 }
 
 /// Further findings with which a fit itself does not hold.
-bool speaks_against_fit(const model::FitRecord::Finding& finding) {
-  return finding.code == "something-missing" || finding.code == "disturbed" || finding.code == "not-varied";
+bool contradicts_fit(const model::FitRecord::Finding& finding) {
+  constexpr std::array kContradict = {"something-missing", "disturbed", "not-varied", "not-distinguished"};
+  return std::any_of(kContradict.begin(), kContradict.end(),
+                     [&](const char* code) { return finding.code == code; });
 }
 
 }  // namespace
@@ -51,13 +53,14 @@ text::Assurance assurance_of(const fit::FitResult& result) {
   word.require("sensible", result.absurd.empty(),
                result.absurd.empty() ? "The readings are those of this machine." : result.absurd);
   if (result.check_ratio)
-    word.at_most("check-rows", *result.check_ratio, 1,
-                 "What check rows leave of the fitted machine over what they leave of the nominal one.");
+    word.at_most(
+        "check-rows", *result.check_ratio, 1,
+        "Residual of the check rows with the fitted machine, over the same with the nominal machine.");
   else
     word.not_covered("Held-out rows: there are fewer than twelve check readings.");
   for (const model::FitRecord::Finding& one : result.machine.fitted->findings) {
     if (forbids(one)) continue;  // the rules above
-    if (speaks_against_fit(one))
+    if (contradicts_fit(one))
       word.require(one.code, false, one.text);
     else
       word.not_covered(one.text);

@@ -150,6 +150,33 @@ TEST(FitFindings, HeatMeasuredAtOnePlaceIsNoSquareness) {
   EXPECT_TRUE(fit::fit(machine, readings(machine, all, tilt, random)).machine.fitted->unvaried.empty());
 }
 
+TEST(FitFindings, HeatMeasuredOnADiagonalOfTwoAxesDoesNotShowWhichOneItDependsOn) {
+  std::mt19937_64 random(3);
+  const std::string z = "+a*X+k*(T-20)*X";
+  const Machine machine = machine_of(kHeat, "", z);
+  // GIVEN heat with X and Y on a diagonal of the table; the beam really tilts along Y, the model says along X
+  std::vector<Row> rows = anywhere(80, random);
+  for (int i = 0; i <= 30; ++i) rows.push_back({20.0 * i, 400 - 40.0 / 3 * i, -150, 28});
+  const auto tilt = [](const Row& row) { return Eigen::Vector3d(0, 0, 1e-5 * (row.t - 20) * (400 - row.y)); };
+  const Machine fitted =
+      through_file(fit::fit(machine, readings(machine, rows, tilt, random)).machine, kHeat, "", z);
+  // THEN the dependence on X counts as unmeasured beside that on Y
+  ASSERT_EQ(fitted.fitted->unvaried.size(), 1U);
+  const FitRecord::Unvaried& one = fitted.fitted->unvaried[0];
+  EXPECT_EQ(one.coefficient, "k");
+  EXPECT_EQ(one.variable, "X");
+  EXPECT_EQ(one.follows, "Y");
+  EXPECT_NEAR(one.slope, -1.5, 0.01);
+  EXPECT_NEAR(one.at + one.slope * (400 - one.about), 0, 1);
+  // and the uncertainty holds the truth at the corner that the diagonal does not visit
+  States corner = make_states(1, fitted);
+  corner.axis[0][0] = 600, corner.axis[1][0] = 400, corner.axis[2][0] = -150;
+  corner.input[0][0] = 28;
+  const double off = std::abs(deviation(fitted, corner)(2, 0));
+  EXPECT_GT(off, 0.03);
+  EXPECT_LT(off, 2 * std::sqrt(Reach(fitted).covariance(corner)[0](2, 2)));
+}
+
 TEST(FitFindings, AWaveBetweenTargetsIsUncertainAndOneThatTargetsFollowIsNot) {
   const std::string statics =
       "<k1 value=\"0\" nominal=\"0\" unit=\"mm\"/><k2 value=\"0\" nominal=\"0\" unit=\"mm\"/>";
