@@ -10,6 +10,7 @@
 #include "tools/fit/convention.h"
 #include "tools/fit/fit.h"
 #include "tools/fit/set_up.h"
+#include "tools/fit/statistics.h"
 #include "tools/model/machine.h"
 #include "tools/model/measurement.h"
 #include "tools/report/report.h"
