@@ -14,11 +14,13 @@
 #include "tools/fleet/sparkplug.h"
 #include "tools/model/machine_reader.h"
 #include "tools/registry/digest.h"
+#include "tools/registry/open_database.h"
 #include "tools/text/error.h"
 #include "tools/text/numbers.h"
 #include "tools/text/wall_time.h"
 #include "tools/text/words.h"
 #include "tools/upload/client.h"
+#include "tools/upload/open_transport.h"
 #include "tools/upload/url.h"
 
 namespace vernier::commands::fleet_cli {

@@ -11,6 +11,7 @@
 #include "tools/model/machine_reader.h"
 #include "tools/text/error.h"
 #include "tools/upload/client.h"
+#include "tools/upload/open_transport.h"
 
 namespace vernier::commands::record_cli {
 namespace {

@@ -8,6 +8,7 @@
 #include "tools/commands/fit_findings.h"
 #include "tools/kinematics/at.h"
 #include "tools/kinematics/closed.h"
+#include "tools/kinematics/rotations.h"
 #include "tools/results/result_json.h"
 #include "tools/text/assurance.h"
 

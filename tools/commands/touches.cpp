@@ -10,6 +10,7 @@
 #include "tools/commands/command.h"
 #include "tools/text/error.h"
 #include "tools/upload/client.h"
+#include "tools/upload/open_transport.h"
 
 namespace vernier::commands::touches_cli {
 namespace {

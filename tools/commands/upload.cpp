@@ -17,6 +17,7 @@
 #include "tools/text/wall_time.h"
 #include "tools/upload/client.h"
 #include "tools/upload/live.h"
+#include "tools/upload/open_transport.h"
 #include "tools/upload/signing.h"
 
 namespace vernier::commands::upload_cli {

@@ -8,6 +8,7 @@
 
 #include "tools/commands/command.h"
 #include "tools/upload/live.h"
+#include "tools/upload/open_transport.h"
 
 namespace vernier::commands::watch_cli {
 namespace {

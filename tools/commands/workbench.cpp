@@ -13,6 +13,7 @@
 #include "tools/text/error.h"
 #include "tools/text/files.h"
 #include "tools/upload/client.h"
+#include "tools/upload/open_transport.h"
 #include "tools/workbench/file_reader.h"
 #include "tools/workbench/image_diff.h"
 #include "tools/workbench/process.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/upload/transport.h"
+#include "tools/upload/open_transport.h"
 
 #include <modbus.h>
 #include <netdb.h>
