@@ -19,6 +19,7 @@
 
 #include "hal/linux/modbus_server.h"
 #include "tables/link_format.h"
+#include "tools/upload/open_transport.h"
 #include "tools/upload/transport.h"
 
 namespace vernier::link_conformance_test {

@@ -14,6 +14,7 @@
 
 #include "tables/serial_frame.h"
 #include "tools/text/error.h"
+#include "tools/upload/open_transport.h"
 
 namespace vernier {
 

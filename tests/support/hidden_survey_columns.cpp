@@ -6,6 +6,7 @@
 
 #include "tools/maths/decompositions.h"
 #include "tools/model/chain.h"
+#include "tools/model/evaluate.h"
 #include "tools/model/parameters.h"
 #include "tools/model/prediction.h"
 

@@ -10,7 +10,7 @@ namespace vernier::commands {
 
 /// Adds one subcommand to `vernier`. Its callback does the job; it throws InputError (exit 1) or LimitNotMet
 /// (exit 2) and returns normally otherwise (exit 0). Anything else that escapes is our bug (exit 70). One
-/// function a command, listed in the order of the journey in tools/commands/vernier.cpp.
+/// function a command, listed by topic in tools/commands/vernier.cpp.
 using RegisterCommand = void (*)(CLI::App& vernier);
 
 namespace ballbar_path_cli {

@@ -77,7 +77,8 @@ std::string fish(const CLI::App& vernier) {
 
 void register_completion(CLI::App& vernier) {
   const auto shell = std::make_shared<std::string>();
-  CLI::App* command = vernier.add_subcommand("completion", "Words for a shell to complete: bash, zsh, fish");
+  CLI::App* command =
+      vernier.add_subcommand("completion", "Print completion words for a shell: bash, zsh, fish");
   command->add_option("SHELL", *shell, "bash, zsh or fish")
       ->required()
       ->check(CLI::IsMember({"bash", "zsh", "fish"}));

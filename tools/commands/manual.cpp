@@ -114,8 +114,7 @@ namespace manual_cli {
 
 void register_manual(CLI::App& vernier) {
   const auto directory = std::make_shared<std::string>();
-  CLI::App* command =
-      vernier.add_subcommand("manual", "The manual pages of all commands (troff), from the words of --help");
+  CLI::App* command = vernier.add_subcommand("manual", "Write the manual pages of all commands (troff)");
   command->add_option("-o,--output", *directory, "folder for vernier.1, vernier-fit.1 …")->required();
   command->footer("  vernier manual -o build/man && man build/man/vernier-fit.1");
   command->callback([directory, &vernier] {

@@ -16,51 +16,53 @@ namespace {
 
 constexpr int kDone = 0, kBadInput = 1, kAnswerIsNo = 2, kOurBug = 70;
 
-/// In the order of the journey; `vernier` alone prints them so.
-constexpr vernier::commands::RegisterCommand kCommands[] = {
-    vernier::commands::new_cli::register_new,
-    vernier::commands::import_cli::register_import,
-    vernier::commands::lint_cli::register_lint,
-    vernier::commands::features_cli::register_features,
-    vernier::commands::fit_cli::register_fit,
-    vernier::commands::compare_cli::register_compare,
-    vernier::commands::evaluate_cli::register_evaluate,
-    vernier::commands::diagnose_cli::register_diagnose,
-    vernier::commands::effects_cli::register_add,
-    vernier::commands::effects_cli::register_effects,
-    vernier::commands::plan_cli::register_plan,
-    vernier::commands::ballbar_path_cli::register_ballbar_path,
-    vernier::commands::improve_cli::register_improve,
-    vernier::commands::derive_cli::register_derive,
-    vernier::commands::compile_cli::register_compile,
-    vernier::commands::simulate_cli::register_simulate,
-    vernier::commands::replay_cli::register_replay,
-    vernier::commands::keys_cli::register_keys,
-    vernier::commands::upload_cli::register_upload,
-    vernier::commands::board_cli::register_board,
-    vernier::commands::watch_cli::register_status,
-    vernier::commands::watch_cli::register_watch,
-    vernier::commands::record_cli::register_record,
-    vernier::commands::touches_cli::register_touches,
-    vernier::commands::probe_cli::register_probe_path,
-    vernier::commands::probe_cli::register_probe_cal,
-    vernier::commands::probe_cli::register_feature,
-    vernier::commands::check_cli::register_check,
-    vernier::commands::fleet_cli::register_fleet,
-    vernier::commands::correct_cli::register_correct,
-    vernier::commands::pose_cli::register_pose,
-    vernier::commands::solve_cli::register_solve,
-    vernier::commands::exchange_cli::register_export,
-    vernier::commands::exchange_cli::register_import_tables,
-    vernier::commands::map_cli::register_map,
-    vernier::commands::part_cli::register_part,
-    vernier::commands::edit_cli::register_set,
-    vernier::commands::edit_cli::register_exclude,
-    vernier::commands::workbench_cli::register_image_diff,
-    vernier::commands::workbench_cli::register_workbench,
-    vernier::commands::completion_cli::register_completion,
-    vernier::commands::manual_cli::register_manual,
+/// Commands of one topic, in the order of the workflow.
+struct Topic {
+  const char* name;
+  std::vector<vernier::commands::RegisterCommand> commands;
 };
+
+/// In the order of the workflow; `vernier` alone prints them so.
+const std::vector<Topic>& topics() {
+  using namespace vernier::commands;
+  static const std::vector<Topic> kTopics = {
+      {"Measure",
+       {new_cli::register_new, plan_cli::register_plan, ballbar_path_cli::register_ballbar_path,
+        import_cli::register_import, lint_cli::register_lint, features_cli::register_features,
+        edit_cli::register_exclude}},
+      {"Model",
+       {fit_cli::register_fit, compare_cli::register_compare, diagnose_cli::register_diagnose,
+        effects_cli::register_add, improve_cli::register_improve, effects_cli::register_effects,
+        edit_cli::register_set, map_cli::register_map, pose_cli::register_pose, solve_cli::register_solve,
+        derive_cli::register_derive}},
+      {"Judge", {check_cli::register_check, evaluate_cli::register_evaluate, part_cli::register_part}},
+      {"Run on a board",
+       {compile_cli::register_compile, simulate_cli::register_simulate, replay_cli::register_replay,
+        workbench_cli::register_image_diff, keys_cli::register_keys, upload_cli::register_upload,
+        board_cli::register_board, watch_cli::register_status, watch_cli::register_watch,
+        record_cli::register_record}},
+      {"Touch probe",
+       {probe_cli::register_probe_path, touches_cli::register_touches, probe_cli::register_probe_cal,
+        probe_cli::register_feature}},
+      {"Other controllers",
+       {exchange_cli::register_export, exchange_cli::register_import_tables, correct_cli::register_correct}},
+      {"Many machines", {fleet_cli::register_fleet}},
+      {"This program",
+       {workbench_cli::register_workbench, completion_cli::register_completion, manual_cli::register_manual}},
+  };
+  return kTopics;
+}
+
+/// Adds all commands, each in the group of its topic.
+void add_commands(CLI::App& app) {
+  for (const Topic& topic : topics())
+    for (const auto command : topic.commands) {
+      const auto before = app.get_subcommands([](const CLI::App*) { return true; }).size();
+      command(app);
+      const auto all = app.get_subcommands([](const CLI::App*) { return true; });
+      for (std::size_t i = before; i < all.size(); ++i) all[i]->group(topic.name);
+    }
+}
 
 /// Before a command works: is there a place for the result that it writes last?
 void require_places(const CLI::App& app) {
@@ -72,9 +74,10 @@ void require_places(const CLI::App& app) {
   }
 }
 
-/// Added last: `vernier help` stands in the list as a command, though it is read as --help before.
+/// `vernier help` is in the list as a command, though it is read as --help before. Added last.
 void add_help_command(CLI::App& app) {
-  app.add_subcommand("help", "This list, or what a command does: vernier help fit");
+  app.add_subcommand("help", "Print this list, or the help of a command: vernier help fit")
+      ->group(topics().back().name);
   const auto formatter = std::make_shared<vernier::commands::HelpText>();
   app.formatter(formatter);
   for (CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
@@ -86,14 +89,14 @@ void add_help_command(CLI::App& app) {
 
 int run(const std::vector<std::string>& arguments) {
   CLI::App app{
-      "Vernier makes real machines accurate: from measurements to a model of the errors to a running "
-      "correction.",
+      "Vernier makes machine tools, measuring machines and robots more accurate. It fits a model of the "
+      "machine's errors to measurements and corrects the axes with it.",
       "vernier"};
   app.set_version_flag("-V,--version", "vernier " VERNIER_VERSION " (" VERNIER_COMMIT ")");
   app.footer(
       "Exit status: 0 done, 1 bad input or usage (nothing written), 2 the answer is no, 70 internal error.\n"
       "`vernier COMMAND --help` documents each command.");
-  for (const auto command : kCommands) command(app);
+  add_commands(app);
   add_help_command(app);
   vernier::commands::take_plain_numbers(app);
   app.require_subcommand(1);

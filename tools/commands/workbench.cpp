@@ -13,6 +13,7 @@
 #include "tools/text/error.h"
 #include "tools/text/files.h"
 #include "tools/upload/client.h"
+#include "tools/upload/open_transport.h"
 #include "tools/workbench/file_reader.h"
 #include "tools/workbench/image_diff.h"
 #include "tools/workbench/process.h"
@@ -118,7 +119,7 @@ void run_diff(const DiffArguments& arguments) {
 void register_workbench(CLI::App& vernier) {
   auto arguments = std::make_shared<WorkbenchArguments>();
   CLI::App* command =
-      vernier.add_subcommand("workbench", "The whole journey in a browser: a page for this computer only");
+      vernier.add_subcommand("workbench", "Open the workflow in a browser: a page for this computer only");
   command->add_option("DIR", arguments->directory, "folder with machines, measurements, images")
       ->capture_default_str();
   command->add_option("--port", arguments->port, "of 127.0.0.1 (0: any free one)")->capture_default_str();
@@ -134,8 +135,8 @@ void register_workbench(CLI::App& vernier) {
 
 void register_image_diff(CLI::App& vernier) {
   auto arguments = std::make_shared<DiffArguments>();
-  CLI::App* command =
-      vernier.add_subcommand("image-diff", "What a compiled image changes against another one or a board's");
+  CLI::App* command = vernier.add_subcommand(
+      "image-diff", "Show the differences of a compiled image to another one or to that of a board");
   command->add_option("DIR", arguments->directory, "directory that `vernier compile` wrote")->required();
   command->add_option("--with", arguments->with, "another such directory");
   command->add_option("--to", arguments->url, "the board whose confirmed image it is compared with");

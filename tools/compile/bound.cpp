@@ -404,6 +404,22 @@ double sum_um(const std::vector<Contribution>& terms) {
 
 }  // namespace
 
+const char* name_of(ErrorSource source) {
+  switch (source) {
+    case ErrorSource::kRounding:
+      return "rounding";
+    case ErrorSource::kTable:
+      return "table";
+    case ErrorSource::kFunction:
+      return "function";
+    case ErrorSource::kChannel:
+      return "input";
+    case ErrorSource::kLag:
+      return "lag";
+  }
+  return "";
+}
+
 std::vector<OutputBound> bounds_of(const model::Machine& machine, const Derivation& d,
                                    const LoweredProgram& p) {
   if (d.outputs.empty()) return {};

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/compile/lower.h"
+#include "tools/compile/types.h"
 
 namespace vernier::compile {
 

@@ -9,7 +9,9 @@
 
 #include "tables/checksum.h"
 #include "tools/compile/bound.h"
+#include "tools/compile/derive.h"
 #include "tools/compile/image_writer.h"
+#include "tools/compile/lower.h"
 #include "tools/compile/print.h"
 #include "tools/model/machine_reader.h"
 #include "tools/text/files.h"

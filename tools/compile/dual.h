@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include "tools/compile/derive.h"
+#include "tools/compile/types.h"
 
 namespace vernier::compile {
 

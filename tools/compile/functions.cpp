@@ -5,7 +5,6 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "tools/compile/graph.h"
 #include "tools/maths/factors.h"
 
 namespace vernier::compile {

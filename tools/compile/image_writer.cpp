@@ -6,7 +6,7 @@
 #include <cstring>
 
 #include "tables/checksum.h"
-#include "tools/compile/compile.h"
+#include "tables/image_format.h"
 #include "tools/compile/ranges.h"
 
 namespace vernier::compile {

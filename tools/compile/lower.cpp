@@ -600,22 +600,6 @@ class Lowering {
 
 }  // namespace
 
-const char* name_of(ErrorSource source) {
-  switch (source) {
-    case ErrorSource::kRounding:
-      return "rounding";
-    case ErrorSource::kTable:
-      return "table";
-    case ErrorSource::kFunction:
-      return "function";
-    case ErrorSource::kChannel:
-      return "input";
-    case ErrorSource::kLag:
-      return "lag";
-  }
-  return "";
-}
-
 namespace {
 
 /// Instructions that the arithmetic takes, about (x86-64, printed form): what tells two forms of one equation

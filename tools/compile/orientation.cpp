@@ -8,7 +8,6 @@
 #include <stdexcept>
 
 #include "tools/compile/calculus.h"
-#include "tools/compile/compile.h"
 #include "tools/compile/functions.h"
 #include "tools/compile/ranges.h"
 #include "tools/compile/solve.h"

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "tools/compile/walk.h"
+#include "tools/model/states.h"
 
 namespace vernier::compile {
 
@@ -27,5 +28,9 @@ std::optional<Tilting> solve_direction(const model::Machine& machine, Derivation
 /// A value as a node of its own that stays within +-limit: what is corrected elsewhere with it is corrected
 /// for what the axis does.
 NodeId held_within(Graph& graph, NodeId value, double limit);
+
+/// Of each state: does it stand where two axes tilt the tool nearly the same way, so that the correction of
+/// its direction is damped? All false where no direction is corrected. tool.
+std::vector<bool> damped_poses(const model::Machine& machine, const model::States& states);
 
 }  // namespace vernier::compile

@@ -7,7 +7,7 @@
 #include <set>
 #include <string_view>
 
-#include "tools/compile/compile.h"
+#include "tables/image_format.h"
 
 namespace vernier::compile {
 namespace {

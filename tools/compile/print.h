@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-#include "tools/compile/lower.h"
+#include "tools/compile/types.h"
 #include "tools/model/machine.h"
 
 namespace vernier::compile {

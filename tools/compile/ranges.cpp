@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "tools/compile/derive.h"
 #include "tools/model/fit_record.h"
 
 namespace vernier::compile {

@@ -6,7 +6,7 @@
 #include "comp/error_table.h"
 #include "tools/compile/functions.h"
 #include "tools/compile/graph.h"
-#include "tools/compile/lower.h"
+#include "tools/compile/types.h"
 
 namespace vernier::compile {
 

@@ -5,7 +5,7 @@
 #include <array>
 #include <vector>
 
-#include "tools/derive/error_equation.h"
+#include "tools/derive/types.h"
 
 namespace vernier::derive {
 

@@ -5,6 +5,7 @@
 
 #include "tools/derive/interval.h"
 #include "tools/model/chain.h"
+#include "tools/model/evaluate.h"
 
 namespace vernier::derive {
 namespace {

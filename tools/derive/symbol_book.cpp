@@ -8,6 +8,7 @@
 #include "tools/derive/tidy.h"
 #include "tools/maths/factors.h"
 #include "tools/model/chain.h"
+#include "tools/model/station_table.h"
 
 namespace vernier::derive {
 namespace {
@@ -247,10 +248,6 @@ void SymbolBook::settle_sizes(const ErrorSizes& sizes) {
     if (p.from_file) continue;
     p.magnitude = p.unit == "mm" ? sizes.length_mm : p.unit == "rad" ? sizes.angle_rad : sizes.number;
   }
-}
-
-bool is_call(const GiNaC::ex& e, const char* name) {
-  return GiNaC::is_a<GiNaC::function>(e) && GiNaC::ex_to<GiNaC::function>(e).get_name() == name;
 }
 
 }  // namespace vernier::derive

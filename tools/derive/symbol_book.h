@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "tools/derive/error_equation.h"
+#include "tools/derive/types.h"
 
 namespace vernier::derive {
 
@@ -59,8 +59,5 @@ class SymbolBook {
   std::vector<std::pair<GiNaC::realsymbol, std::string>>
       rough_;  // stands for a derivative that does not exist
 };
-
-/// Is it a call of the function of this name?
-bool is_call(const GiNaC::ex& e, const char* name);
 
 }  // namespace vernier::derive

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/derive/tidy.h"
-#include "tools/derive/symbol_book.h"
 
 namespace vernier::derive {
 namespace {
@@ -46,6 +45,10 @@ ex factored(const ex& sum) {
 }
 
 }  // namespace
+
+bool is_call(const GiNaC::ex& e, const char* name) {
+  return GiNaC::is_a<GiNaC::function>(e) && GiNaC::ex_to<GiNaC::function>(e).get_name() == name;
+}
 
 ex expand_inside(const ex& expr) { return expr.expand(GiNaC::expand_options::expand_function_args); }
 

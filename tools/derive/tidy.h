@@ -6,6 +6,9 @@
 
 namespace vernier::derive {
 
+/// Is it a call of the function of this name?
+bool is_call(const GiNaC::ex& e, const char* name);
+
 /// Expanded, the arguments of functions too.
 GiNaC::ex expand_inside(const GiNaC::ex& expr);
 

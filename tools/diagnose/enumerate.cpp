@@ -11,6 +11,7 @@
 #include "tools/effects/probe.h"
 #include "tools/model/chain.h"
 #include "tools/model/chain_rows.h"
+#include "tools/model/evaluate.h"
 #include "tools/vibration/signal_features.h"
 
 namespace vernier::diagnose {

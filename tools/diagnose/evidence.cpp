@@ -9,6 +9,7 @@
 #include "tools/effects/input_class.h"
 #include "tools/effects/probe.h"
 #include "tools/fit/noise_estimate.h"
+#include "tools/fit/selection.h"
 #include "tools/fit/solve.h"
 #include "tools/fit/statistics.h"
 #include "tools/maths/chance.h"

@@ -12,6 +12,7 @@
 #include "tools/maths/chance.h"
 #include "tools/maths/decompositions.h"
 #include "tools/model/chain.h"
+#include "tools/model/evaluate.h"
 
 namespace vernier::diagnose {
 namespace {

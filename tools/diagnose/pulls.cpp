@@ -6,6 +6,7 @@
 
 #include "tools/maths/orthonormal.h"
 #include "tools/model/chain.h"
+#include "tools/model/evaluate.h"
 
 namespace vernier::diagnose {
 namespace {

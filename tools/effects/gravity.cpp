@@ -8,6 +8,7 @@
 
 #include "tools/maths/factors.h"
 #include "tools/model/chain.h"
+#include "tools/model/evaluate.h"
 #include "tools/text/numbers.h"
 
 namespace vernier::effects {

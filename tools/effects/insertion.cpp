@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/effects/insertion.h"
+#include "tools/text/numbers.h"
 
 #include <algorithm>
 

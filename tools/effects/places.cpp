@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "tools/model/chain.h"
+#include "tools/model/evaluate.h"
 
 namespace vernier::effects {
 namespace {

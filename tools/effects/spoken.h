@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/effects/candidate.h"
+#include "tools/effects/types.h"
 
 namespace vernier::effects {
 

@@ -8,6 +8,7 @@
 
 #include "tools/maths/decompositions.h"
 #include "tools/model/chain.h"
+#include "tools/model/evaluate.h"
 
 namespace vernier::fit {
 namespace {

@@ -2,8 +2,8 @@
 #pragma once
 #include <Eigen/Core>
 
-#include "tools/fit/fit.h"
 #include "tools/fit/problem.h"
+#include "tools/fit/types.h"
 
 namespace vernier::fit {
 

@@ -7,11 +7,10 @@
 #include <map>
 #include <set>
 
-#include "tools/fit/fit.h"
 #include "tools/fit/levenberg.h"
 #include "tools/fit/problem.h"
 #include "tools/fit/set_up.h"
-#include "tools/fit/solve.h"
+#include "tools/fit/statistics.h"
 #include "tools/fit/unseen_turns.h"
 #include "tools/maths/decompositions.h"
 #include "tools/maths/factors.h"

@@ -8,6 +8,7 @@
 #include <pugixml.hpp>
 
 #include "tools/model/chain.h"
+#include "tools/model/evaluate.h"
 #include "tools/text/numbers.h"
 #include "tools/text/xml_text.h"
 

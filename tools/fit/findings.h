@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "tools/fit/fit.h"
+#include "tools/fit/types.h"
 #include "tools/model/fit_record.h"
 #include "tools/model/measurement.h"
 

@@ -14,9 +14,12 @@
 #include "tools/fit/findings.h"
 #include "tools/fit/moved.h"
 #include "tools/fit/problem.h"
+#include "tools/fit/sanity.h"
+#include "tools/fit/selection.h"
 #include "tools/fit/set_up.h"
 #include "tools/fit/settle.h"
 #include "tools/fit/solve.h"
+#include "tools/fit/statistics.h"
 #include "tools/fit/unmeasured.h"
 #include "tools/maths/factors.h"
 #include "tools/model/evaluate.h"
@@ -336,16 +339,6 @@ std::optional<NormalisedError> normalised_error(const FitResult& result, const m
 const char* origin_name(Origin origin) {
   constexpr const char* kNames[] = {"data", "convention", "prior"};
   return kNames[static_cast<std::size_t>(origin)];
-}
-
-Eigen::VectorXd residuals(const model::Machine& machine, const model::Measurement& m) {
-  const Eigen::VectorXd predicted = model::predict(machine, m);
-  Eigen::VectorXd result(predicted.size());
-  for (std::size_t i = 0; i < m.observations.size(); ++i) {
-    const auto at = static_cast<Eigen::Index>(i);
-    result[at] = m.observations[i].value - predicted[at];
-  }
-  return result;
 }
 
 namespace {

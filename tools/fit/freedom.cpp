@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/fit/freedom.h"
 
+#include "tools/fit/selection.h"
 #include "tools/fit/solve.h"
 #include "tools/model/parameters.h"
 

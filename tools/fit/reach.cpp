@@ -5,6 +5,7 @@
 #include <array>
 #include <map>
 
+#include "tools/fit/point_readings.h"
 #include "tools/fit/unmeasured.h"
 #include "tools/maths/decompositions.h"
 #include "tools/model/chain.h"
@@ -43,32 +44,6 @@ model::Machine without_set_up(const model::Machine& machine) {
 }
 
 }  // namespace
-
-model::Measurement point_readings(const model::States& states) {
-  model::Measurement m;
-  m.states = states;
-  m.uncertainty = model::Column::Zero(static_cast<Eigen::Index>(states.count));
-  m.check.assign(states.count, 0);
-  m.centre = m.nominal_point = Eigen::Matrix3Xd::Zero(3, static_cast<Eigen::Index>(states.count));
-  m.files = {"point"};
-  m.file.assign(states.count, 0);
-  for (std::size_t row = 0; row < states.count; ++row) m.line.push_back(row + 1);
-  for (std::size_t row = 0; row < states.count; ++row)
-    for (const model::ObservationKind kind :
-         {model::ObservationKind::kX, model::ObservationKind::kY, model::ObservationKind::kZ})
-      m.observations.push_back({kind, row, 0});
-  return m;
-}
-
-Eigen::MatrixXd rigid_motions(const Eigen::Matrix3Xd& points) {
-  Eigen::MatrixXd motions = Eigen::MatrixXd::Zero(3 * points.cols(), 6);
-  for (Eigen::Index i = 0; i < points.cols(); ++i) {
-    motions.block<3, 3>(3 * i, 0).setIdentity();
-    const Eigen::Vector3d p = points.col(i);
-    motions.block<3, 3>(3 * i, 3) << 0, p.z(), -p.y(), -p.z(), 0, p.x(), p.y(), -p.x(), 0;
-  }
-  return motions;
-}
 
 Reach::Reach(const model::Machine& machine)
     : machine_(without_set_up(machine)), known_(machine.fitted != nullptr) {

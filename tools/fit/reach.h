@@ -13,13 +13,6 @@
 
 namespace vernier::fit {
 
-/// Readings x, y, z of the tool point at every state, of value 0: for what a machine makes of them, not for a
-/// fit. In messages a row is "point:N", N from 1.
-model::Measurement point_readings(const model::States& states);
-
-/// Velocity of each point under the six rigid motions about the origin, 3 N x 6.
-Eigen::MatrixXd rigid_motions(const Eigen::Matrix3Xd& points);
-
 /// How well the last fit of a machine knows where its tool is: anywhere, with any tool and input, whether it
 /// was measured there or not. From the covariance that the machine file keeps (`<fitted>`), in which what the
 /// readings left open has the spread of its scale.

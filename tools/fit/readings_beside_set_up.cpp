@@ -5,7 +5,7 @@
 #include <cmath>
 #include <map>
 
-#include "tools/fit/reach.h"
+#include "tools/fit/point_readings.h"
 #include "tools/fit/reading_direction.h"
 #include "tools/maths/orthonormal.h"
 #include "tools/model/chain.h"

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <string>
 
+#include "tools/fit/types.h"
 #include "tools/model/machine.h"
 #include "tools/model/measurement.h"
 
@@ -15,12 +16,6 @@ inline constexpr double kAbsurdResidual = 0.02;
 /// Beyond this share of the reach the nominal machine is asked whether a known mistake explains it.
 inline constexpr double kFarOff = 0.05;
 
-/// The reading that stands furthest from the others after a fit.
-struct WorstReading {
-  double ratio = 0;     // its weighted residual over the spread of all (from their median)
-  double share = 0;     // of the sum of squares
-  std::string reading;  // "survey.csv:57 z"
-};
 /// `check`: of which role.
 WorstReading worst_reading(const model::Measurement& measurement, const Eigen::VectorXd& residual,
                            bool check);

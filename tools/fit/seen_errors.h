@@ -4,7 +4,7 @@
 #include <map>
 #include <utility>
 
-#include "tools/fit/convention.h"
+#include "tools/fit/types.h"
 
 namespace vernier::fit {
 

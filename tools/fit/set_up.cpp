@@ -7,7 +7,7 @@
 
 #include "tools/fit/levenberg.h"
 #include "tools/fit/problem.h"
-#include "tools/fit/solve.h"
+#include "tools/fit/selection.h"
 #include "tools/fit/unseen_turns.h"
 #include "tools/maths/alignment.h"
 #include "tools/maths/factors.h"

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "tools/fit/convention.h"
 #include "tools/fit/noise_estimate.h"
 #include "tools/fit/seen_errors.h"
 #include "tools/fit/statistics.h"

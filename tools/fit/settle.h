@@ -4,9 +4,9 @@
 #include <optional>
 #include <vector>
 
-#include "tools/fit/convention.h"
 #include "tools/fit/noise.h"
 #include "tools/fit/problem.h"
+#include "tools/fit/types.h"
 
 namespace vernier::fit {
 

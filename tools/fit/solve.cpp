@@ -8,7 +8,10 @@
 #include <set>
 
 #include "tools/fit/ceres_solver.h"
+#include "tools/fit/convention.h"
 #include "tools/fit/levenberg.h"
+#include "tools/fit/selection.h"
+#include "tools/fit/set_up.h"
 #include "tools/fit/statistics.h"
 #include "tools/text/words.h"
 
@@ -117,26 +120,6 @@ Eigen::VectorXd with_shapes_of(const Eigen::VectorXd& given, const Convention& c
 }
 
 }  // namespace
-
-std::vector<std::string> setups_of_fit_rows(const model::Measurement& m) {
-  const std::vector<std::string>& names = m.states.names(m.states.setup);
-  std::vector<char> seen(names.size(), 0);
-  for (const model::Observation& o : m.observations)
-    if (m.check[o.row] == 0) seen[m.states.of(m.states.setup, o.row)] = 1;
-  std::vector<std::string> setups;
-  for (std::size_t i = 0; i < seen.size(); ++i)
-    if (seen[i] != 0) setups.push_back(names[i]);
-  return setups;
-}
-
-bool matches_pattern(std::string_view pattern, std::string_view name) {
-  if (pattern.empty()) return name.empty();
-  if (pattern.front() == '*')
-    return matches_pattern(pattern.substr(1), name) ||
-           (!name.empty() && matches_pattern(pattern, name.substr(1)));
-  return !name.empty() && (pattern.front() == '?' || pattern.front() == name.front()) &&
-         matches_pattern(pattern.substr(1), name.substr(1));
-}
 
 Eigen::VectorXd solve(FitProblem& problem, const model::Machine& machine, const Convention& convention,
                       const StatedPriors& stated, const FitOptions& options, FitResult& result) {

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "tools/maths/factors.h"
+#include "tools/model/prediction.h"
 
 namespace vernier::fit {
 
@@ -81,6 +82,16 @@ std::optional<double> repeat_noise_um(const model::Measurement& m) {
 }
 
 }  // namespace
+
+Eigen::VectorXd residuals(const model::Machine& machine, const model::Measurement& measurement) {
+  const Eigen::VectorXd predicted = model::predict(machine, measurement);
+  Eigen::VectorXd result(predicted.size());
+  for (std::size_t i = 0; i < measurement.observations.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    result[at] = measurement.observations[i].value - predicted[at];
+  }
+  return result;
+}
 
 RoleStatistics role_statistics(const model::Measurement& m, const Eigen::VectorXd& residual, bool check) {
   RepeatPool lengths, rotations;

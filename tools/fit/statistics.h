@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "tools/fit/noise.h"
+#include "tools/model/machine.h"
 #include "tools/model/measurement.h"
 
 namespace vernier::fit {
@@ -15,6 +16,9 @@ struct RoleStatistics {
   std::optional<double> rms_um, max_um, rms_urad, max_urad;
   std::size_t count = 0;  // lengths and rotations
 };
+
+/// residual = measured - predicted, one per observation, mm or deg.
+Eigen::VectorXd residuals(const model::Machine& machine, const model::Measurement& measurement);
 
 /// residual: measured - model, one per observation of `m`, mm or deg. `check`: which role to look at.
 RoleStatistics role_statistics(const model::Measurement& m, const Eigen::VectorXd& residual, bool check);

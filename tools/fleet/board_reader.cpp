@@ -11,6 +11,7 @@
 #include "tools/text/files.h"
 #include "tools/text/numbers.h"
 #include "tools/text/words.h"
+#include "tools/upload/open_transport.h"
 
 namespace vernier::fleet {
 namespace {

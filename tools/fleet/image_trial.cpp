@@ -11,6 +11,7 @@
 #include "tools/text/error.h"
 #include "tools/text/numbers.h"
 #include "tools/text/wall_time.h"
+#include "tools/upload/open_transport.h"
 
 namespace vernier::fleet {
 namespace {

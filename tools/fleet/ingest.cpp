@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "tools/fleet/sample_writer.h"
+#include "tools/registry/open_database.h"
 #include "tools/text/error.h"
 #include "tools/text/wall_time.h"
 

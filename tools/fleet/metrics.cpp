@@ -10,6 +10,7 @@
 
 #include "tools/registry/cells.h"
 #include "tools/registry/due.h"
+#include "tools/registry/open_database.h"
 #include "tools/text/error.h"
 #include "tools/text/numbers.h"
 #include "tools/text/wall_time.h"

@@ -12,6 +12,7 @@
 #include "tools/text/error.h"
 #include "tools/text/numbers.h"
 #include "tools/text/words.h"
+#include "tools/upload/open_transport.h"
 
 namespace vernier::fleet {
 namespace {

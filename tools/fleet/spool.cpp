@@ -12,6 +12,7 @@
 
 #include "tools/registry/cells.h"
 #include "tools/registry/digest.h"
+#include "tools/registry/open_database.h"
 #include "tools/text/error.h"
 
 namespace vernier::fleet {

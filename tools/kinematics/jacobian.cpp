@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "tools/kinematics/rotations.h"
 #include "tools/maths/decompositions.h"
 #include "tools/maths/factors.h"
 

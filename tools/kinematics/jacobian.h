@@ -3,7 +3,9 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "tools/kinematics/inverse.h"
+#include "tools/kinematics/types.h"
+#include "tools/model/chain.h"
+#include "tools/model/machine.h"
 
 namespace vernier::kinematics {
 

@@ -21,10 +21,4 @@ Poses forward(const Machine& machine, const States& states);
 /// Deviation of each state: position of `machine` minus position of its nominal chain, mm.
 Eigen::Matrix3Xd deviation(const Machine& machine, const States& states);
 
-/// Values of a table at a raw axis position, mm and deg; node, edge and periodic rules of FORMATS.
-std::array<double, 6> table_values(const Table& table, double raw);
-
-/// Value of an expression of the machine at every state.
-Column evaluate(const Machine& machine, const Expr& expr, const States& states);
-
 }  // namespace vernier::model

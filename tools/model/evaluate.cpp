@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "tools/maths/factors.h"
-#include "tools/model/chain.h"
 
 namespace vernier::model {
 namespace {

@@ -64,6 +64,9 @@ class Evaluator {
   std::unordered_map<std::size_t, std::vector<Column>> table_columns_;  // axis -> six columns
 };
 
+/// Value of an expression of the machine at every state.
+Column evaluate(const Machine& machine, const Expr& expr, const States& states);
+
 /// Does any expression of the machine use lag? Then rows must be evaluated together, in time order.
 bool uses_lag(const Machine& machine);
 

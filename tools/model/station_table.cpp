@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "tools/maths/decompositions.h"
-#include "tools/model/chain.h"
 
 namespace vernier::model {
 namespace {

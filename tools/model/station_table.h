@@ -37,4 +37,7 @@ class StationTable {
   std::vector<std::array<double, 6>> bend_;  // cubic: second derivative of the six columns at every station
 };
 
+/// Values of a table at a raw axis position, mm and deg; node, edge and periodic rules of FORMATS.
+std::array<double, 6> table_values(const Table& table, double raw);
+
 }  // namespace vernier::model

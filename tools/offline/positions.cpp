@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "tools/kinematics/inverse.h"
+#include "tools/kinematics/rotations.h"
 #include "tools/text/csv.h"
 #include "tools/text/error.h"
 #include "tools/text/numbers.h"

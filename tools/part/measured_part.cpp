@@ -5,7 +5,6 @@
 
 #include <cmath>
 
-#include "tools/part/identify.h"
 #include "tools/part/part_column.h"
 #include "tools/part/s_part.h"
 #include "tools/text/csv.h"

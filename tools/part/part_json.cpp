@@ -8,7 +8,6 @@
 
 #include "tools/maths/factors.h"
 #include "tools/part/envelope.h"
-#include "tools/part/part_report.h"
 #include "tools/part/s_part.h"
 
 namespace vernier::part {

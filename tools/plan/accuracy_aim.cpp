@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tools/fit/point_readings.h"
 #include "tools/fit/reach.h"
 #include "tools/maths/orthonormal.h"
 #include "tools/model/chain.h"

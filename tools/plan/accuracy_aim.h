@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/plan/accuracy_plan.h"
+#include "tools/plan/types.h"
 
 namespace vernier::plan {
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tools/fit/point_readings.h"
 #include "tools/fit/reach.h"
 #include "tools/maths/decompositions.h"
 #include "tools/maths/factors.h"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "tools/model/measurement.h"
-#include "tools/plan/plan.h"
+#include "tools/plan/types.h"
 
 namespace vernier::plan {
 

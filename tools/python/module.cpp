@@ -11,6 +11,7 @@
 #include "tools/diagnose/diagnosis.h"
 #include "tools/fit/domain.h"
 #include "tools/fit/fit.h"
+#include "tools/fit/statistics.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/machine_writer.h"
 #include "tools/plan/advice.h"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -56,14 +55,8 @@ class Transaction {
   bool done_ = false;
 };
 
-/// Opens a database: `postgresql://…` is a server, anything else a file, made where it is not. Throws
-/// InputError where it cannot be reached or is none.
-std::unique_ptr<Database> open_database(const std::string& place);
 /// Throws InputError where a database has tables, and none of the name `ours`: it is something else's.
 void refuse_foreign(Database& database, const std::string& ours);
-
-/// Is this the address of a server, which may be away for a while?
-bool is_server(const std::string& place);
 
 /// Many rows in as few statements as fit: "INSERT INTO … (…)" + rows + tail. Rows are of one width.
 void insert_rows(Database& database, const std::string& head, const std::vector<Row>& rows,

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "tools/registry/cells.h"
+#include "tools/registry/open_database.h"
 #include "tools/registry/shell_command.h"
 #include "tools/text/error.h"
 #include "tools/text/wall_time.h"

@@ -10,6 +10,7 @@
 
 #include "tools/fit/fit.h"
 #include "tools/fit/set_up.h"
+#include "tools/fit/statistics.h"
 #include "tools/maths/factors.h"
 
 namespace vernier::residual {

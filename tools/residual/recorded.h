@@ -6,7 +6,7 @@
 
 #include "tools/model/machine.h"
 #include "tools/model/measurement.h"
-#include "tools/residual/structure.h"
+#include "tools/residual/types.h"
 
 namespace vernier::residual {
 

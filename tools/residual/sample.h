@@ -8,7 +8,7 @@
 
 #include "tools/maths/moments.h"
 #include "tools/residual/recorded.h"
-#include "tools/residual/structure.h"
+#include "tools/residual/types.h"
 
 namespace vernier::residual {
 

@@ -5,7 +5,6 @@
 
 #include <cmath>
 
-#include "tools/residual/findings.h"
 
 namespace vernier::residual {
 namespace {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/residual/sample.h"
+#include "tools/residual/types.h"
 
 namespace vernier::residual {
 

@@ -7,7 +7,6 @@
 
 #include "tools/maths/factors.h"
 #include "tools/results/circles.h"
-#include "tools/results/results.h"
 #include "tools/text/optional_json.h"
 
 namespace vernier::results {

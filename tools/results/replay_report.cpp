@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "tools/fit/fit.h"
+#include "tools/fit/statistics.h"
 #include "tools/results/detail.h"
 #include "tools/results/results.h"
 #include "tools/text/optional_json.h"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/results/result_json.h"
+#include "tools/kinematics/rotations.h"
 
 #include <fmt/format.h>
 

@@ -8,6 +8,7 @@
 
 #include "hal/sim/analogue_chain.h"
 #include "tools/compile/functions.h"
+#include "tools/compile/orientation.h"
 #include "tools/kinematics/correction.h"
 #include "tools/model/chain.h"
 #include "tools/simulate/motion.h"

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "tools/fit/point_readings.h"
 #include "tools/fit/reach.h"
 #include "tools/kinematics/inverse.h"
 #include "tools/maths/decompositions.h"

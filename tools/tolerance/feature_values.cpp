@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 
+#include "tools/fit/point_readings.h"
 #include "tools/fit/reach.h"
 #include "tools/maths/decompositions.h"
 #include "tools/text/error.h"

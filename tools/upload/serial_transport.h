@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "tools/upload/transport.h"
+#include "tools/upload/url.h"
 
 namespace vernier::upload {
 

@@ -2,12 +2,8 @@
 #pragma once
 #include <chrono>
 #include <cstdint>
-#include <memory>
-#include <string>
 #include <thread>
 #include <vector>
-
-#include "tools/upload/url.h"
 
 namespace vernier::upload {
 
@@ -21,8 +17,5 @@ class Transport {
   /// Waits before a board that was busy is asked again.
   virtual void pause(std::chrono::milliseconds time) { std::this_thread::sleep_for(time); }
 };
-
-/// Opens the way to a board. Throws InputError naming the address. tool.
-std::unique_ptr<Transport> open_transport(const BoardUrl& url);
 
 }  // namespace vernier::upload

@@ -8,6 +8,7 @@
 #include "tools/effects/fitted_effect.h"
 #include "tools/fit/fit.h"
 #include "tools/fit/set_up.h"
+#include "tools/fit/statistics.h"
 #include "tools/maths/factors.h"
 #include "tools/model/chain.h"
 #include "tools/model/fit_record.h"

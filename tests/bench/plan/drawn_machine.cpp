@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/fit/point_readings.h"
 #include "tools/fit/reach.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/prediction.h"

@@ -15,6 +15,7 @@
 
 #include "tests/bench/plan/drawn_machine.h"
 #include "tools/fit/fit.h"
+#include "tools/fit/point_readings.h"
 #include "tools/fit/reach.h"
 #include "tools/maths/decompositions.h"
 #include "tools/model/chain.h"

@@ -24,6 +24,7 @@
 #include "tests/unit/firmware/upload_rig.h"
 #include "tools/text/files.h"
 #include "tools/upload/client.h"
+#include "tools/upload/open_transport.h"
 
 extern char** environ;
 

@@ -11,6 +11,7 @@
 
 #include "tests/support/machines.h"
 #include "tools/fit/fit.h"
+#include "tools/fit/point_readings.h"
 #include "tools/fit/reach.h"
 #include "tools/maths/alignment.h"
 #include "tools/model/chain.h"

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "tools/fit/fit.h"
+#include "tools/fit/selection.h"
 #include "tools/fit/solve.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/measurement.h"

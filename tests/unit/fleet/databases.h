@@ -11,6 +11,7 @@
 #include <memory>
 #include <string>
 
+#include "tools/registry/open_database.h"
 #include "tools/registry/registry.h"
 
 namespace vernier {

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/fleet/sample_writer.h"
+#include "tools/registry/open_database.h"
 #include "tools/text/files.h"
 
 namespace vernier::fleet_command_test {

@@ -6,6 +6,7 @@
 
 #include "tests/unit/fleet/databases.h"
 #include "tools/registry/cells.h"
+#include "tools/registry/open_database.h"
 
 namespace vernier::machine_lock_test {
 

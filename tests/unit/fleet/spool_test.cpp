@@ -6,6 +6,7 @@
 
 #include <filesystem>
 
+#include "tools/registry/open_database.h"
 #include "tools/registry/registry.h"
 #include "tools/text/error.h"
 

@@ -31,8 +31,8 @@ TEST(OutputsOfTheHouse, AreWrittenByOneFunction) {
   namespace fs = std::filesystem;
   // A secret key is made where nothing stands, and never over anything; a lock holds nothing, and what stands
   // in its place is opened and left as it is.
-  const std::map<std::string, std::vector<std::string>> allowed = {{"tools/commands/keys.cpp", {"O_CREAT"}},
-                                                                   {"tools/fleet/spool.cpp", {"O_CREAT"}}};
+  const std::map<std::string, std::vector<std::string>> allowed = {
+      {"tools/commands/run/keys.cpp", {"O_CREAT"}}, {"tools/fleet/spool.cpp", {"O_CREAT"}}};
   const fs::path root = VERNIER_SOURCE_DIR;
   std::size_t files = 0;
   for (const char* folder : {"firmware", "tools"}) {

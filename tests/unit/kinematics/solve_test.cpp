@@ -7,6 +7,7 @@
 #include "tests/support/machines.h"
 #include "tests/unit/kinematics/machines.h"
 #include "tools/kinematics/inverse.h"
+#include "tools/kinematics/rotations.h"
 #include "tools/model/machine_reader.h"
 
 namespace vernier::solve_test {

@@ -10,6 +10,7 @@
 
 #include "tests/unit/part/part_data.h"
 #include "tools/model/chain.h"
+#include "tools/model/evaluate.h"
 #include "tools/part/s_part.h"
 
 namespace vernier::defect_test {

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "tests/unit/plan/bridge.h"
+#include "tools/fit/point_readings.h"
 #include "tools/fit/reach.h"
 #include "tools/maths/decompositions.h"
 #include "tools/model/chain.h"

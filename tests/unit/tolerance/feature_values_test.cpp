@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/unit/tolerance/plate.h"
+#include "tools/fit/point_readings.h"
 #include "tools/fit/reach.h"
 #include "tools/model/chain.h"
 #include "tools/text/error.h"

@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "tools/commands/command.h"
+#include "tools/commands/fleet/fleet_kinds.h"
+#include "tools/commands/run/upload_kinds.h"
+#include "tools/fleet/rollout.h"
+#include "tools/registry/digest.h"
+#include "tools/registry/shell_command.h"
+#include "tools/text/assurance.h"
+#include "tools/text/error.h"
+#include "tools/text/wall_time.h"
+
+namespace vernier::commands::fleet_cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct RolloutArguments {
+  std::string registry, images, key, stages = "1,10%,50%,100%", signed_by, json;
+  std::vector<std::string> machines;
+  fleet::RolloutOptions options;
+};
+
+std::string folder_for(std::string pattern, const std::string& machine) {
+  const std::string mark = "{machine}";
+  for (std::size_t at = pattern.find(mark); at != std::string::npos;
+       at = pattern.find(mark, at + machine.size()))
+    pattern.replace(at, mark.size(), machine);
+  return pattern;
+}
+
+/// Who the board of a machine must be. Without a name in the registry nothing can be proved of it.
+upload::BoardClaim claim_of(const registry::FleetMachine& one) {
+  if (one.board.empty())
+    throw text::InputError({}, one.name,
+                           "no board name is entered for this machine: vernier fleet add " + one.name +
+                               " --board NAME --board-key KEY, or --trust to enter those of the board that "
+                               "answers at its address");
+  upload::BoardClaim claim{one.board, std::nullopt};
+  if (!one.board_key.empty()) claim.key = upload::parse_board_key(one.board_key);
+  return claim;
+}
+
+/// Two machines with one board would be one image over another.
+void refuse_shared_boards(const std::vector<fleet::RolloutMachine>& machines) {
+  for (std::size_t i = 0; i < machines.size(); ++i)
+    for (std::size_t k = 0; k < i; ++k) {
+      const bool same_key = machines[i].claim.key && machines[i].claim.key == machines[k].claim.key;
+      if (!same_key && machines[i].url != machines[k].url) continue;
+      throw text::InputError({}, machines[i].name,
+                             std::string(same_key ? "has the board key of " : "has the address of ") +
+                                 machines[k].name + ": each machine has a board of its own");
+    }
+}
+
+/// Every image is read and judged before the first board is asked anything.
+std::vector<fleet::RolloutMachine> machines_of(const RolloutArguments& arguments,
+                                               registry::Registry& registry) {
+  std::vector<fleet::RolloutMachine> machines;
+  std::vector<std::string> names = arguments.machines;
+  if (names.empty())
+    for (const registry::FleetMachine& one : registry.machines())
+      if (!one.url.empty() && std::filesystem::is_directory(folder_for(arguments.images, one.name)))
+        names.push_back(one.name);
+  if (names.empty())
+    throw text::InputError({}, arguments.images, "no machine with a board has an image there");
+  const std::vector<std::size_t> ends = fleet::stage_ends(arguments.stages, names.size());
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const registry::FleetMachine one = registry.machine(names[i]);
+    if (one.url.empty())
+      throw text::InputError({}, one.name, "this machine has no board: vernier fleet add --url");
+    const auto stage = std::upper_bound(ends.begin(), ends.end(), i) - ends.begin();
+    machines.push_back({one.name, one.url, claim_of(one),
+                        upload_cli::safe_image(folder_for(arguments.images, one.name)), stage});
+  }
+  refuse_shared_boards(machines);
+  return machines;
+}
+
+void write_kept(registry::Registry& registry, const RolloutArguments& arguments,
+                const fleet::RolloutMachine& machine) {
+  const std::string folder = folder_for(arguments.images, machine.name);
+  registry::RecordedCalibration one;
+  one.machine = machine.name, one.model = folder + "/machine.xml";
+  if (std::filesystem::exists(one.model)) one.model_hash = registry::digest_of(text::read_file(one.model));
+  for (const fleet::RolloutState& state : fleet::rollout_states(registry, arguments.options.name))
+    if (state.machine == machine.name) one.image = state.image;
+  one.signed_by = arguments.signed_by;
+  one.checked_against = arguments.options.judge.empty()
+                            ? "watched by the rollout " + arguments.options.name
+                            : registry::command_for(arguments.options.judge, machine.name);
+  one.at_us = text::now_us();
+  registry.put(one);
+}
+
+/// What the call vouches for; end null: no board was asked.
+text::Assurance vouch(const RolloutArguments& arguments, const std::vector<fleet::RolloutState>& states,
+                      const fleet::RolloutEnd* end) {
+  text::Assurance assurance(text::AssuranceKind::kRollout);
+  if (end == nullptr) {
+    assurance.not_covered("no board was asked: this is what the registry says of earlier calls");
+    return assurance;
+  }
+  const auto total = static_cast<double>(states.size());
+  const auto kept =
+      std::count_if(states.begin(), states.end(), [](const auto& s) { return s.state == "kept"; });
+  assurance.at_least("kept", static_cast<double>(kept), total,
+                     fmt::format("{} of {} machines keep their image", kept, states.size()));
+  assurance.at_least(
+      "in-effect", static_cast<double>(end->in_effect.size()), total,
+      fmt::format("{} of {} boards answered at the end of the call as the board of their machine, "
+                  "with the image in effect",
+                  end->in_effect.size(), states.size()));
+  assurance.require("not-stopped", end->stood.empty(),
+                    end->stood.empty() ? "the rollout reached its end" : "the rollout stands: " + end->stood);
+  for (const std::string& note : end->notes) assurance.not_covered(note);
+  if (arguments.options.judge.empty())
+    assurance.not_covered("whether the machines are more accurate: no --judge was given");
+  assurance.not_covered("what happens to a board after this call");
+  return assurance;
+}
+
+/// Exit status 0 only where this is true, or no board was asked.
+bool tell(const RolloutArguments& arguments, registry::Registry& registry, const fleet::RolloutEnd* end) {
+  Json all = Json::array();
+  const std::vector<fleet::RolloutState> states = fleet::rollout_states(registry, arguments.options.name);
+  std::FILE* const out = human_stream(arguments.json);
+  for (const fleet::RolloutState& one : states) {
+    all.push_back({{"machine", one.machine},
+                   {"stage", one.stage + 1},
+                   {"state", one.state},
+                   {"said", one.said},
+                   {"image", one.image},
+                   {"at", text::utc_text(one.at_us)}});
+    fmt::print(out, "{:<20} stage {:<3} {:<13} {} {} {}\n", one.machine, one.stage + 1, one.state, one.image,
+               text::utc_text(one.at_us), one.said);
+  }
+  const text::Assurance assurance = vouch(arguments, states, end);
+  for (const std::string& one : assurance.uncovered()) fmt::print(out, "not looked at: {}\n", one);
+  write_json(arguments.json,
+             {{"rollout", arguments.options.name}, {"machines", all}, {"assurance", assurance.json()}});
+  return assurance.holds();
+}
+
+void run_rollout(const RolloutArguments& arguments) {
+  registry::Registry registry = open_registry(arguments.registry);
+  if (arguments.images.empty()) {
+    if (fleet::rollout_states(registry, arguments.options.name).empty())
+      throw text::InputError({}, arguments.options.name, "no rollout of this name; --images begins one");
+    tell(arguments, registry, nullptr);
+    return;
+  }
+  const auto key = upload::given_key(arguments.key);
+  if (!key) throw text::InputError("--key is missing: the secret key that signs the images");
+  if (arguments.signed_by.empty())
+    throw text::InputError("--signed-by is missing: who answers for the images");
+  RolloutArguments mine = arguments;
+  mine.options.key = *key;
+  const std::vector<fleet::RolloutMachine> machines = machines_of(mine, registry);
+  fleet::RolloutEnd end;
+  until_told([&](const std::atomic<bool>& stop) {
+    end = fleet::roll_out(registry, machines, mine.options, stop, say_line,
+                          [&](const fleet::RolloutMachine& one) { write_kept(registry, mine, one); });
+  });
+  const bool holds = tell(mine, registry, &end);
+  if (!end.stood.empty()) throw text::LimitNotMet(end.stood);
+  if (!holds)
+    throw text::LimitNotMet("not every machine of this rollout keeps its image and has it in effect");
+}
+
+/// Without its registry a rollout stops: nothing that it did could be written down.
+void run_or_stand(const RolloutArguments& arguments) {
+  try {
+    run_rollout(arguments);
+  } catch (const registry::DatabaseError& error) {
+    throw text::LimitNotMet(
+        std::string("the registry failed: ") + error.what() +
+        ": the rollout stands; an image on trial goes back by itself; call again when the registry is back");
+  }
+}
+
+}  // namespace
+
+void add_rollout(CLI::App& fleet) {
+  const auto arguments = std::make_shared<RolloutArguments>();
+  CLI::App* command =
+      fleet.add_subcommand("rollout",
+                           "images to boards by stages: tried, watched to be in effect, "
+                           "judged, kept; stops at the first worse machine and takes it back");
+  command
+      ->add_option("NAME", arguments->options.name, "of this rollout; called again it goes on where it was")
+      ->required();
+  add_registry(*command, arguments->registry);
+  command->add_option(
+      "--images", arguments->images,
+      "directories that `vernier compile` wrote, {machine} in the name; without it: how far it is");
+  command->add_option("--key", arguments->key, "secret key of `vernier keys` (or VERNIER_KEY)");
+  command->add_option("--signed-by", arguments->signed_by,
+                      "who answers for the images; stands in the registry");
+  command->add_option("--machine", arguments->machines,
+                      "these, in this order; default: all that have a board and an image");
+  command->add_option("--stages", arguments->stages, "how many machines until the end of each stage")
+      ->capture_default_str();
+  command
+      ->add_option("--watch", arguments->options.watch_s,
+                   "s on trial and in effect, without a break, before it is judged")
+      ->check(CLI::Range(0.0, 86400.0))
+      ->capture_default_str();
+  command->add_option(
+      "--judge", arguments->options.judge,
+      "command for a shell, {machine} for the name: 0 not worse; anything else takes the image back");
+  command
+      ->add_option("--settle", arguments->options.settle_s, "s within which an image must come into effect")
+      ->check(CLI::Range(0.0, 3600.0))
+      ->capture_default_str();
+  command
+      ->add_option(
+          "--lease", arguments->options.lease_s,
+          "s after which the lock of a caller that was killed ends; more than a board may take to answer")
+      ->check(CLI::Range(1.0, 86400.0))
+      ->capture_default_str();
+  command->add_flag("--go-on", arguments->options.go_on,
+                    "a rollout that stands goes on, with the machine where it stopped");
+  command->add_flag("--take-over-trial", arguments->options.take_over_trial,
+                    "give up a trial that somebody else began on a board; without it that board is refused");
+  command->add_option("--json", arguments->json,
+                      "where each machine stands, for programs; - for standard output");
+  command->footer(
+      "The judge must answer within the board's own trial time, e.g. measure and `vernier compare --limit`.\n"
+      "Before anything is signed or sent, each board must give its name and prove its key (vernier fleet add "
+      "--board, --board-key, --trust).\n"
+      "Exit status 0 all kept and in effect (without --images: told), 1 bad input (no board was asked), 2 it "
+      "stands: a machine was worse, away,\nanother board or not in effect, or another caller has one of the "
+      "machines.");
+  command->callback([arguments] { run_or_stand(*arguments); });
+}
+
+}  // namespace vernier::commands::fleet_cli

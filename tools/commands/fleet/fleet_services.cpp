@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+#include <signal.h>
+
+#include <cstdlib>
+#include <mutex>
+#include <thread>
+
+#include "tools/commands/command.h"
+#include "tools/commands/fleet/fleet_kinds.h"
+#include "tools/fleet/ingest.h"
+#include "tools/fleet/metrics.h"
+#include "tools/text/error.h"
+#include "tools/text/wall_time.h"
+
+namespace vernier::commands::fleet_cli {
+namespace {
+
+constexpr const char* kPasswordVariable = "VERNIER_MQTT_PASSWORD";
+
+std::string password() {
+  const char* const word = std::getenv(kPasswordVariable);
+  return word == nullptr ? "" : word;
+}
+
+void run_gateway_command(const std::string& path) {
+  fleet::GatewayFile file = fleet::parse_gateway_file(text::read_file(path), path);
+  file.broker.password = password();
+  until_told([&](const std::atomic<bool>& stop) { fleet::run_gateway(file, stop, say_line); });
+}
+
+struct MetricsArguments {
+  std::string registry, output, listen;
+};
+
+void run_metrics(const MetricsArguments& arguments) {
+  if (arguments.listen.empty()) {
+    registry::Registry registry = open_registry(arguments.registry);
+    const std::string text = fleet::metrics_text(registry, text::now_us());
+    if (!arguments.output.empty()) return text::write_file(arguments.output, text);
+    if (std::fputs(text.c_str(), stdout) == EOF || std::fflush(stdout) != 0)
+      throw text::InputError("standard output cannot be written");
+    return;
+  }
+  until_told([&](const std::atomic<bool>& stop) {
+    fleet::serve_metrics(arguments.registry, arguments.listen, stop, say_line);
+  });
+}
+
+}  // namespace
+
+void say_line(const std::string& line) {
+  static std::mutex mutex;
+  const std::lock_guard lock(mutex);
+  fmt::print(stderr, "{}\n", line);
+}
+
+void until_told(const std::function<void(const std::atomic<bool>& stop)>& run) {
+  std::atomic<bool> stop{false};
+  sigset_t set;
+  sigemptyset(&set);
+  for (const int one : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&set, one);
+  pthread_sigmask(SIG_BLOCK, &set, nullptr);  // before any thread, so that all have it
+  ::signal(SIGPIPE, SIG_IGN);
+  std::thread wait([&] {
+    int which = 0;
+    sigwait(&set, &which);
+    stop = true;
+  });
+  const auto end = [&] {
+    pthread_kill(wait.native_handle(), SIGTERM);  // where something else than a signal ended it
+    wait.join();
+  };
+  try {
+    run(stop);
+  } catch (...) {
+    end();
+    throw;
+  }
+  end();
+}
+
+void add_services(CLI::App& fleet) {
+  const auto file = std::make_shared<std::string>();
+  CLI::App* gateway = fleet.add_subcommand(
+      "gateway",
+      "read boards and publish what they say (Sparkplug B), kept here while broker or registry is away");
+  gateway->add_option("FILE", *file, "gateway file (TOML): name, broker, store, boards")->required();
+  gateway->footer(
+      "Runs until interrupted. The broker's password is taken from VERNIER_MQTT_PASSWORD.\n"
+      "Exit status 0 told to stop, 1 bad input, 70 the store fails (full or broken medium).");
+  gateway->callback([file] { run_gateway_command(*file); });
+
+  const auto options = std::make_shared<fleet::IngestOptions>();
+  CLI::App* ingest =
+      fleet.add_subcommand("ingest", "write what gateways publish into the registry, each sample once");
+  add_registry(*ingest, options->registry);
+  ingest->add_option("--broker", options->broker.address, "tcp://HOST:1883 or ssl://HOST:8883")
+      ->capture_default_str();
+  ingest->add_option("--user", options->broker.user, "at the broker");
+  ingest->add_option("--authority", options->broker.authority,
+                     "file (PEM) of the authority that signs the broker");
+  ingest->add_option("--group", options->group, "Sparkplug group of the gateways")->capture_default_str();
+  ingest->add_option("--host", options->host, "name of this host application, as the gateways wait for it")
+      ->capture_default_str();
+  ingest->footer(
+      "Runs until interrupted; broker and database may go and come back. The broker's password is taken "
+      "from\n"
+      "VERNIER_MQTT_PASSWORD. Exit status 0 told to stop, 1 bad input.");
+  ingest->callback([options] {
+    fleet::require_broker_address(options->broker.address);
+    if (options->registry.empty()) make_registry(options->registry);
+    options->broker.password = password();
+    until_told([&](const std::atomic<bool>& stop) { fleet::run_ingest(*options, stop, say_line); });
+  });
+
+  const auto metrics = std::make_shared<MetricsArguments>();
+  CLI::App* command = fleet.add_subcommand("metrics", "the fleet's state for Prometheus: printed, or served");
+  add_registry(*command, metrics->registry);
+  command->add_option("-o,--output", metrics->output, "file, as node_exporter's textfile collector reads it");
+  command->add_option("--listen", metrics->listen, "serve /metrics at HOST:PORT until interrupted");
+  command->footer("Exit status 0 done, 1 bad input or no registry.");
+  command->callback([metrics] { run_metrics(*metrics); });
+}
+
+}  // namespace vernier::commands::fleet_cli

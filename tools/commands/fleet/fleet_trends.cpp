@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include "tools/commands/command.h"
+#include "tools/commands/fleet/fleet_kinds.h"
+#include "tools/registry/alike.h"
+#include "tools/registry/due.h"
+#include "tools/text/error.h"
+#include "tools/text/optional_json.h"
+#include "tools/text/wall_time.h"
+
+namespace vernier::commands::fleet_cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct TrendArguments {
+  std::string registry, json, at, since;
+  registry::AlikeOptions alike;
+};
+
+void run_due(const TrendArguments& arguments) {
+  registry::Registry registry = open_registry(arguments.registry);
+  Json all = Json::array();
+  std::FILE* const out = human_stream(arguments.json);
+  std::size_t due = 0;
+  for (const registry::DueMachine& one :
+       registry::due_machines(registry, time_of(arguments.at, text::now_us()))) {
+    const auto text = [](const std::optional<std::int64_t>& time) {
+      return time ? Json(text::utc_text(*time)) : Json(nullptr);
+    };
+    all.push_back({{"machine", one.machine},
+                   {"due", !one.why.empty()},
+                   {"why", one.why},
+                   {"due_at", text(one.due_us)},
+                   {"checked_at", text(one.last_us)},
+                   {"verdict", one.verdict}});
+    if (one.why.empty()) continue;
+    ++due;
+    fmt::print(out, "{:<20} {:<45} {}\n", one.machine, one.why,
+               one.last_us ? "last check " + text::utc_text(*one.last_us) : "");
+  }
+  fmt::print(out, "{} of {} machines due for a check\n", due, all.size());
+  write_json(arguments.json, {{"machines", all}});
+}
+
+Json drift_json(const registry::Drift& drift) {
+  Json json = {
+      {"quantity", drift.quantity}, {"unit", drift.unit},         {"judged", drift.judged},
+      {"machines", drift.machines}, {"times", drift.times},       {"readings", drift.readings},
+      {"common", drift.common},     {"common_p", drift.common_p}, {"common_swing", drift.common_swing},
+      {"scatter", drift.scatter},   {"wander", drift.wander},     {"wander_days", drift.wander_days}};
+  json["curve"] = Json::array();
+  for (const auto& [at, value] : drift.curve)
+    json["curve"].push_back({{"at", text::utc_text(at)}, {"value", value}});
+  json["own"] = Json::array();
+  for (const registry::OwnDrift& one : drift.own)
+    json["own"].push_back({{"machine", one.machine}, {"per_day", one.per_day}, {"std", one.std}});
+  return json;
+}
+
+void run_alike(const TrendArguments& arguments) {
+  registry::Registry registry = open_registry(arguments.registry);
+  Json all = Json::array();
+  std::FILE* const out = human_stream(arguments.json);
+  for (const registry::Drift& drift :
+       registry::drifts(registry.readings(time_of(arguments.since, 0)), arguments.alike)) {
+    all.push_back(drift_json(drift));
+    if (!drift.judged) {
+      fmt::print(out, "{}: too little ({} machines, {} times)\n", drift.quantity, drift.machines,
+                 drift.times);
+      continue;
+    }
+    if (drift.common)
+      fmt::print(out, "{}: {} machines move alike, by {:.3g} {} (p {:.1e}): look for what they share\n",
+                 drift.quantity, drift.machines - drift.own.size(), drift.common_swing, drift.unit,
+                 drift.common_p);
+    for (const registry::OwnDrift& one : drift.own)
+      fmt::print(out, "{}: {} drifts by itself, {:.3g} \u00b1 {:.2g} {} a day\n", drift.quantity, one.machine,
+                 one.per_day, one.std, drift.unit);
+    if (!drift.common && drift.own.empty())
+      fmt::print(out, "{}: nothing drifts ({} machines, {} times, scatter {:.2g} of what is stated)\n",
+                 drift.quantity, drift.machines, drift.times, drift.scatter);
+    if (drift.wander > 0)
+      fmt::print(out,
+                 "{}: machines wander, each by itself, by {:.2g} of what is stated, over {:.3g} days or so\n",
+                 drift.quantity, drift.wander, drift.wander_days);
+  }
+  if (all.empty()) fmt::print(out, "no readings: `vernier fleet check --history` writes them down\n");
+  write_json(arguments.json, {{"quantities", all}, {"false_alarms", arguments.alike.false_alarms}});
+}
+
+}  // namespace
+
+void add_trends(CLI::App& fleet) {
+  const auto due = std::make_shared<TrendArguments>();
+  CLI::App* command = fleet.add_subcommand("due", "machines that are due for a check, and why");
+  add_registry(*command, due->registry);
+  command->add_option("--at", due->at, "as of this time (UTC); default: now");
+  command->add_option("--json", due->json, "result for programs; - for standard output");
+  command->callback([due] { run_due(*due); });
+
+  const auto alike = std::make_shared<TrendArguments>();
+  command = fleet.add_subcommand(
+      "alike", "what the machines' parameters do alike (a common cause), and who drifts alone");
+  add_registry(*command, alike->registry);
+  command->add_option("--since", alike->since, "readings from this time on (UTC); default: all");
+  command->add_option("--every", alike->alike.every_days, "days that count as one time")
+      ->check(CLI::Range(0.001, 3660.0))
+      ->capture_default_str();
+  command
+      ->add_option("--false-alarms", alike->alike.false_alarms,
+                   "chance of telling any drift where there is none")
+      ->check(CLI::Range(1e-9, 0.5))
+      ->capture_default_str();
+  command->add_option("--json", alike->json, "result for programs; - for standard output");
+  command->footer(
+      "reading = level of the machine + common curve of time + own rate x time, weighted by the stated\n"
+      "uncertainties; own rates are let in one by one as far as an F test tells them. Readings count as\n"
+      "independent and normal. Exit status 0 done, whatever the finding; 1 bad input.");
+  command->callback([alike] { run_alike(*alike); });
+}
+
+}  // namespace vernier::commands::fleet_cli

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "tools/check/history.h"
+#include "tools/commands/command.h"
+#include "tools/commands/fit_findings.h"
+#include "tools/model/machine_writer.h"
+#include "tools/model/parameters.h"
+#include "tools/simulate/corrected.h"
+#include "tools/text/error.h"
+#include "tools/text/words.h"
+
+namespace vernier::commands::check_cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct CheckArguments {
+  std::string machine, history, output, label, json, images;
+  std::vector<std::string> measurements;
+  double false_alarms = 0.01;
+};
+
+Json change_json(const check::Change& one) {
+  return {{"name", one.suspect.name}, {"change", one.change}, {"std", one.std},
+          {"unit", one.suspect.unit}, {"weight", one.weight}, {"since", one.since + 1}};
+}
+
+Json answer_json(const check::CheckAnswer& answer, const check::CheckHistory& history) {
+  Json json = {{"verdict", check::verdict_name(answer.verdict)},
+               {"explanation", answer.explanation},
+               {"assurance", answer.assurance.json()},
+               {"evidence", answer.evidence},
+               {"alarm", answer.alarm},
+               {"noise_p", answer.noise_p},
+               {"checks", history.checks.size()},
+               {"readings", history.checks.back().readings}};
+  json["changed"] = Json::array();
+  for (const check::Change& one : answer.changed) json["changed"].push_back(change_json(one));
+  json["not_told_apart"] = answer.not_told_apart;
+  json["not_seen"] = answer.not_seen;
+  json["resolved"] = Json::array();
+  for (const check::Change& one : answer.resolved)
+    json["resolved"].push_back({{"name", one.suspect.name}, {"std", one.std}, {"unit", one.suspect.unit}});
+  return json;
+}
+
+/// The machine file with what has changed put right. Throws LimitNotMet where it is none of its parameters.
+std::string put_right(const CheckArguments& arguments, model::Machine machine, const model::Measurement& rows,
+                      const check::CheckAnswer& answer) {
+  const model::ParameterSet parameters(machine, rows.states.names(rows.states.setup));
+  Eigen::VectorXd values = parameters.get(machine);
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    if (parameters[i].name != answer.changed.front().suspect.name) continue;
+    values[static_cast<Eigen::Index>(i)] += answer.changed.front().change;
+    parameters.set(machine, values);
+    return model::update_machine_text(text::read_file(arguments.machine), machine, false);
+  }
+  throw text::LimitNotMet("\"" + answer.changed.front().suspect.name +
+                          "\" is no parameter of this machine file: diagnose a longer measurement, and fit");
+}
+
+void run_check(const CheckArguments& arguments) {
+  if (!(arguments.false_alarms > 0 && arguments.false_alarms < 1))
+    throw text::InputError({}, fmt::format("{}", arguments.false_alarms),
+                           "a rate of false alarms is between 0 and 1");
+  const model::Machine machine = read_model(arguments.machine);
+  const model::Measurement rows = model::read_measurement(arguments.measurements, machine,
+                                                          simulate::corrections_of_images(arguments.images));
+  check::CheckRecord now = check::record_of(
+      machine, rows, arguments.label.empty() ? text::joined(arguments.measurements, " ") : arguments.label);
+  check::CheckHistory history{check::identity_of(machine), {}};
+  bool anew = false;
+  if (!arguments.history.empty() && std::filesystem::exists(arguments.history)) {
+    check::CheckHistory before = check::parse_history(text::read_file(arguments.history), arguments.history);
+    anew = before.machine != history.machine;
+    if (!anew) history = std::move(before);
+  }
+  history.checks.push_back(std::move(now));
+  const check::CheckAnswer answer = check::judge(machine, history.checks, arguments.false_alarms);
+  if (!arguments.history.empty()) text::write_file(arguments.history, check::history_text(history));
+  Json json = answer_json(answer, history);
+  json["history_begun_anew"] = anew;
+  write_json(arguments.json, json);
+  std::FILE* out = human_stream(arguments.json);
+  if (anew)
+    fmt::print(out, "note: {} holds checks of another fit, or of an older version; the history begins anew\n",
+               arguments.history);
+  fmt::print(out, "verdict: {}. {}\n", check::verdict_name(answer.verdict), answer.explanation);
+  fmt::print(out, "evidence for a change: {:.3g} over {} check{}, alarm threshold {:g}\n", answer.evidence,
+             history.checks.size(), history.checks.size() == 1 ? "" : "s", answer.alarm);
+  if (!arguments.output.empty() && answer.verdict == check::CheckVerdict::kChanged)
+    text::write_file(arguments.output, put_right(arguments, machine, rows, answer));
+}
+
+}  // namespace
+
+void register_check(CLI::App& vernier) {
+  auto arguments = std::make_shared<CheckArguments>();
+  CLI::App* command =
+      vernier.add_subcommand("check", "Check with a short measurement whether a calibration is still valid");
+  command->add_option("MACHINE", arguments->machine, "machine file (XML) as `fit` wrote it")->required();
+  command->add_option("MEAS", arguments->measurements, "measurement files (CSV) of this check")->required();
+  command->add_option("--history", arguments->history,
+                      "file of all checks so far; this one is added (made where there is none)");
+  command
+      ->add_option("--false-alarms", arguments->false_alarms,
+                   "chance of ever telling a change where there is none, over all checks together")
+      ->capture_default_str();
+  command->add_option("--label", arguments->label, "name of this check; default: its files");
+  command->add_option("-o,--output", arguments->output,
+                      "the machine file with the changed parameter put right, where one has changed");
+  command->add_option("--images", arguments->images, "folder of images, for rows measured with one running");
+  command->add_option("--json", arguments->json, "result for programs; - for standard output");
+  command->footer(
+      "Each check fits the set-up of the instrument anew. Readings count as independent, normal, and as\n"
+      "uncertain as their u says (without u: as the fit's own residual). Exit status 0 done, whatever the\n"
+      "finding; 1 bad input (nothing written); 2 -o was asked, and what has changed is no parameter (the\n"
+      "verdict and the history are written, the machine file is not).");
+  command->callback([arguments] { run_check(*arguments); });
+}
+
+}  // namespace vernier::commands::check_cli

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <memory>
+#include <set>
+
+#include "tools/commands/command.h"
+#include "tools/commands/measure/import_kinds.h"
+#include "tools/import/machine_log.h"
+#include "tools/import/survey.h"
+#include "tools/model/machine_reader.h"
+#include "tools/model/measurement.h"
+#include "tools/text/optional_json.h"
+
+namespace vernier::commands::import_cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct SurveyArguments {
+  std::string file, map, machine, separator, decimal, comment;
+  std::vector<std::string> columns, constants;
+  std::size_t skip = 0, check_every = 0;
+  double radius_mm = 0;
+  std::string log;  // of the machine, tracker only
+  importer::LogOptions log_options;
+  bool header = false;
+  ImportOutput output;
+};
+
+/// The map file first, then what the command line says over it.
+importer::ColumnMap map_of(const SurveyArguments& arguments, const CLI::App& kind) {
+  importer::ColumnMap map;
+  if (!arguments.map.empty()) importer::read_column_map(map, text::read_file(arguments.map), arguments.map);
+  for (const std::string& words : arguments.columns) importer::add_column(map, words);
+  for (const std::string& words : arguments.constants) importer::add_constant(map, words);
+  if (kind.count("--separator") > 0) map.format.separator = importer::separator_of(arguments.separator);
+  if (kind.count("--decimal") > 0) map.format.decimal_comma = arguments.decimal == "comma";
+  if (kind.count("--comment") > 0) map.format.comment = arguments.comment == "none" ? "" : arguments.comment;
+  if (kind.count("--skip") > 0) map.format.skip = arguments.skip;
+  if (arguments.header) map.format.header = true;
+  if (map.columns.empty())
+    throw text::InputError("no column is mapped: give --map FILE or --column \"3=x[mm]\"");
+  return map;
+}
+
+Json summary(const std::string& kind, const importer::ImportTable& table) {
+  Json columns = Json::array();
+  for (const auto& column : table.columns)
+    columns.push_back(column.name + (column.unit.empty() ? "" : "[" + column.unit + "]"));
+  std::set<std::string> runs;
+  if (const auto* run = table.find("run")) runs.insert(run->cells.begin(), run->cells.end());
+  std::size_t check = 0;
+  if (const auto* role = table.find("role"))
+    for (const std::string& cell : role->cells) check += cell == "check" ? 1 : 0;
+  return {
+      {"kind", kind}, {"n_rows", table.line.size()}, {"n_fit", table.line.size() - check}, {"n_check", check},
+      {"runs", runs}, {"columns", columns}};
+}
+
+Json pairing_json(const importer::LoggedTable& logged) {
+  const importer::Pairing& pairing = logged.pairing;
+  Json unused = Json::array();
+  for (const std::size_t j : pairing.unused)
+    unused.push_back({{"begin_s", logged.dwells[j].begin_s}, {"end_s", logged.dwells[j].end_s}});
+  return {{"dwells", logged.dwells.size()},
+          {"paired", logged.table.line.size()},
+          {"unmatched_lines", logged.unmatched_line},
+          {"unused_dwells", unused},
+          {"clock_offset_s", text::or_null(pairing.offset_s)},
+          {"clock_offset_std_s", text::or_null(pairing.offset_std_s)},
+          {"clock_drift", text::or_null(pairing.drift)},
+          {"clock_drift_std", text::or_null(pairing.drift_std)},
+          {"rms_mm", text::or_null(pairing.rms_mm)}};
+}
+
+void print_pairing(std::FILE* out, const importer::LoggedTable& logged, const std::string& file) {
+  const importer::Pairing& pairing = logged.pairing;
+  fmt::print(out, "{} of {} points paired with {} dwells", logged.table.line.size(), pairing.dwell.size(),
+             logged.dwells.size());
+  if (pairing.rms_mm)
+    fmt::print(out, "; {:.3g} mm rms from where the nominal machine stood", *pairing.rms_mm);
+  fmt::print(out, "\n");
+  if (pairing.offset_s)
+    fmt::print(out, "clock of the log = {:.3f} +- {:.2g} s + (1 {:+.2g} +- {:.1g}) x the tracker's\n",
+               *pairing.offset_s, *pairing.offset_std_s, *pairing.drift, *pairing.drift_std);
+  for (const std::size_t line : logged.unmatched_line)
+    fmt::print(out, "not paired: {}:{}, which fits no dwell\n", file, line);
+  for (const std::size_t j : pairing.unused)
+    fmt::print(out, "no point for the dwell from {:.2f} to {:.2f} s\n", logged.dwells[j].begin_s,
+               logged.dwells[j].end_s);
+}
+
+void write_survey(const std::string& kind, const SurveyArguments& arguments,
+                  const importer::ImportTable& table, const std::optional<importer::LoggedTable>& logged) {
+  const std::string text = importer::measurement_csv(table);
+  Json result = summary(kind, table);
+  if (logged) result["pairing"] = pairing_json(*logged);
+  if (!arguments.machine.empty()) {
+    // The same reading that a fit will do, with the machine's axes and inputs.
+    const model::Measurement read =
+        model::parse_measurement(text, arguments.output.csv_path, model::read_machine(arguments.machine));
+    result["n_obs"] = read.observations.size();
+    result["n_excluded"] = read.excluded;
+  }
+  text::write_file(arguments.output.csv_path, text);
+  write_json(arguments.output.json_path, result);
+  if (logged) print_pairing(human_stream(arguments.output.json_path), *logged, arguments.file);
+  fmt::print(human_stream(arguments.output.json_path), "{}: {} rows ({} fit, {} check)\n",
+             arguments.output.csv_path, table.line.size(), result["n_fit"].get<std::size_t>(),
+             result["n_check"].get<std::size_t>());
+}
+
+void run_survey(const std::string& kind_name, const SurveyArguments& arguments, const CLI::App& kind) {
+  importer::ImportTable table =
+      importer::mapped_table(text::read_file(arguments.file), arguments.file, map_of(arguments, kind));
+  if (kind_name == "tracker")
+    importer::finish_tracker(table);
+  else
+    importer::finish_probe(table, arguments.radius_mm);
+  std::optional<importer::LoggedTable> logged;
+  if (!arguments.log.empty()) {
+    if (arguments.machine.empty())
+      throw text::InputError({}, "--log", "needs --machine: which columns are axes, and where it stood");
+    logged = importer::with_log(table, text::read_file(arguments.log), arguments.log,
+                                model::read_machine(arguments.machine), arguments.log_options);
+    table = logged->table;
+  }
+  if (arguments.check_every > 0) importer::set_roles(table, arguments.check_every);
+  write_survey(kind_name, arguments, table, logged);
+}
+
+CLI::App* add_survey_kind(CLI::App& import, const std::string& name, const std::string& what,
+                          const std::shared_ptr<SurveyArguments>& arguments) {
+  CLI::App* kind = import.add_subcommand(name, what);
+  kind->add_option("file", arguments->file, "table of the instrument (text)")->required()->type_name("FILE");
+  kind->add_option("--map", arguments->map, "column map: what the columns are")->type_name("FILE");
+  kind->add_option("--column", arguments->columns,
+                   "one column: \"3=x[mm]\" or \"Name=x[mm]\"; again for each")
+      ->allow_extra_args(false);
+  kind->add_option("--set", arguments->constants, "the same in every row: \"run=s1\", \"u[um]=5\"")
+      ->allow_extra_args(false);
+  kind->add_option("--separator", arguments->separator,
+                   "comma, semicolon, tab, space (blanks); default: auto");
+  kind->add_option("--decimal", arguments->decimal, "decimal sign")->check(CLI::IsMember({"point", "comma"}));
+  kind->add_option("--skip", arguments->skip, "lines at the top to leave out");
+  kind->add_option("--comment", arguments->comment,
+                   "lines that begin so are left out; none for none; default: #");
+  kind->add_flag("--header", arguments->header, "the first line names columns (implied by a column by name)");
+  kind->add_option("--check-every", arguments->check_every, "every Nth row gets the role check")
+      ->check(CLI::Range(2, 1000000));
+  kind->add_option("--machine", arguments->machine, "machine file: read the result as a fit of it would")
+      ->type_name("FILE");
+  add_import_output(*kind, arguments->output);
+  kind->callback([name, arguments, kind] { run_survey(name, *arguments, *kind); });
+  return kind;
+}
+
+}  // namespace
+
+void add_tracker_kind(CLI::App& import) {
+  const auto arguments = std::make_shared<SurveyArguments>();
+  CLI::App* kind = add_survey_kind(
+      import, "tracker", "Laser tracker or photogrammetry: points, with orientation or without", arguments);
+  importer::LogOptions& log = arguments->log_options;
+  kind->add_option(
+          "--log", arguments->log,
+          "log of the machine (CSV: t and its axes): points are paired with its dwells, by order, ways and "
+          "time; with --machine")
+      ->type_name("FILE");
+  kind->add_option("--dwell", log.dwell_s, "--log: least standstill, s")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  kind->add_option("--still", log.still, "--log: an axis stands that stays within, mm or deg")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  kind->add_option("--tolerance", log.tolerance_mm,
+                   "--log: ways of machine and nominal machine differ by, mm")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  kind->footer(
+      "Columns by the names of the measurement file, with the unit that the table has: axes, inputs, x y "
+      "z,\n"
+      "u, run, role … Orientation: rx ry rz (rotation vector), or rX rY rZ (angles of Rx*Ry*Rz), or\n"
+      "qw qx qy qz (quaternion); the latter two become rx ry rz.");
+}
+
+void add_probe_kind(CLI::App& import) {
+  const auto arguments = std::make_shared<SurveyArguments>();
+  CLI::App* kind = add_survey_kind(import, "probe", "Touches of a probe on a surface", arguments);
+  kind->add_option(
+      "--radius", arguments->radius_mm,
+      "of the stylus ball (mm), where recorded points are its centre and nominal ones on the surface");
+  kind->footer(
+      "Each touch: the normal nx ny nz, the nominal point px py pz, and the deviation d or the recorded "
+      "point\n"
+      "mx my mz (then d = n*(m - p)), workpiece coordinates; and the axes where it touched.");
+}
+
+}  // namespace vernier::commands::import_cli

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "tools/commands/command.h"
+#include "tools/commands/measure/import_kinds.h"
+#include "tools/import/sheet_import.h"
+#include "tools/import/survey.h"
+#include "tools/model/machine_reader.h"
+#include "tools/model/measurement.h"
+#include "tools/text/error.h"
+
+namespace vernier::commands::import_cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct TableArguments {
+  std::string file, profile, save_profile, machine, output, json;
+  importer::SheetWords words;
+  std::size_t check_every = 0;
+  bool preview = false;
+};
+
+void print_columns(std::FILE* out, const importer::SheetReading& reading) {
+  const auto& [wishes, sheet, table, columns, runs] = reading;
+  fmt::print(out, "{}: {}\n", sheet.file, importer::how_read(sheet));
+  if (table.has_headings)
+    fmt::print(out, "headings in line {}{}{}, data from line {}\n",
+               table.upper_row ? fmt::format("{} and ", sheet.line[*table.upper_row]) : "",
+               sheet.line[table.heading_row],
+               table.units_row > 0 ? fmt::format(", units in line {}", sheet.line[table.units_row]) : "",
+               sheet.line[table.first_data]);
+  if (runs > 0) fmt::print(out, "{} columns, one a run and sense, are read as one\n", runs);
+  for (std::size_t k = 0; k < columns.size(); ++k)
+    fmt::print(out, "  {:>2}  {:<24} {:<26} {}\n", k + 1, table.headings[k].text,
+               importer::becomes(columns[k]), columns[k].why);
+  for (const importer::SheetColumn& column : columns)
+    if (column.turned)
+      fmt::print(out, "deviation of {}: said to be nominal - actual, its sign is turned\n", column.name);
+}
+
+void print_rows(std::FILE* out, const std::string& csv) {
+  constexpr std::size_t kShown = 6;
+  std::size_t at = 0;
+  for (std::size_t line = 0; line < kShown && at < csv.size(); ++line) {
+    const std::size_t end = std::min(csv.find('\n', at), csv.size());
+    fmt::print(out, "{}\n", csv.substr(at, end - at));
+    at = end + 1;
+  }
+}
+
+void run_table(const TableArguments& arguments) {
+  importer::SheetWishes wishes;
+  if (!arguments.profile.empty())
+    importer::read_sheet_profile(wishes, text::read_file(arguments.profile), arguments.profile);
+  importer::SheetWords words = arguments.words;
+  if (!arguments.machine.empty())
+    for (const model::Axis& axis : model::read_machine(arguments.machine).axes)
+      words.axes.push_back(axis.name);
+  const importer::SheetReading reading =
+      importer::read_as_sheet(text::read_file(arguments.file), arguments.file, words, std::move(wishes));
+  const sheet::Sheet& sheet = reading.sheet;
+  std::FILE* out = human_stream(arguments.json);
+  if (arguments.preview) print_columns(out, reading);
+  importer::ImportTable read = [&] {
+    try {
+      return importer::table_of_sheet(sheet, reading.table, reading.columns, reading.wishes);
+    } catch (const text::InputError&) {
+      // What was understood is where the mend begins.
+      if (!arguments.preview) print_columns(stderr, reading);
+      throw;
+    }
+  }();
+  if (arguments.check_every > 0) importer::set_roles(read, arguments.check_every);
+  const std::string csv = importer::measurement_csv(read);
+  Json result = {{"kind", "table"},
+                 {"encoding", sheet.workbook ? "workbook" : sheet::encoding_name(sheet.encoding)},
+                 {"separator", sheet.workbook ? Json(nullptr) : Json(sheet::separator_word(sheet.separator))},
+                 {"decimal", sheet.decimal_comma ? "comma" : "point"},
+                 {"n_rows", read.line.size()},
+                 {"columns", importer::columns_json(reading)}};
+  if (!arguments.machine.empty()) {
+    const model::Measurement m =
+        model::parse_measurement(csv, arguments.file, model::read_machine(arguments.machine));
+    result["n_obs"] = m.observations.size();
+    result["n_excluded"] = m.excluded;
+  }
+  if (arguments.preview) {
+    print_rows(out, csv);
+    write_json(arguments.json, result);
+    fmt::print(out, "preview of {} rows: nothing is written\n", read.line.size());
+    return;
+  }
+  if (arguments.output.empty()) throw text::InputError("where to? -o MEAS.csv (or --preview)");
+  text::write_file(arguments.output, csv);
+  if (!arguments.save_profile.empty())
+    text::write_file(arguments.save_profile,
+                     importer::sheet_profile(sheet, reading.table, reading.columns, reading.wishes));
+  write_json(arguments.json, result);
+  print_columns(out, reading);
+  fmt::print(out, "{}: {} rows\n", arguments.output, read.line.size());
+}
+
+}  // namespace
+
+void add_table_kind(CLI::App& import) {
+  const auto arguments = std::make_shared<TableArguments>();
+  CLI::App* kind = import.add_subcommand("table", "A spreadsheet: CSV of any kind, or .xlsx");
+  kind->add_option("file", arguments->file, "the table")->required()->type_name("FILE");
+  kind->add_option("-o,--output", arguments->output, "Measurement file to write (CSV)")->type_name("FILE");
+  kind->add_flag("--preview", arguments->preview, "say how the table was understood, write nothing");
+  kind->add_option("--column", arguments->words.columns,
+                   "what a column is: \"x[mm]=X ist\" (heading or number); again for each")
+      ->allow_extra_args(false);
+  kind->add_option("--deviation", arguments->words.deviations,
+                   "\"X[um]=Abweichung\": position of X plus this was measured; again for each")
+      ->allow_extra_args(false);
+  kind->add_option("--leave", arguments->words.left, "heading of a column to leave out; again for each")
+      ->allow_extra_args(false);
+  kind->add_option("--set", arguments->words.constants, "the same in every row: \"run=s1\", \"u[um]=5\"")
+      ->allow_extra_args(false);
+  kind->add_option("--unit", arguments->words.unit, "unit of lengths and angles whose heading has none");
+  kind->add_option("--separator", arguments->words.separator,
+                   "comma, semicolon, tab, space; default: guessed and said");
+  kind->add_option("--decimal", arguments->words.decimal, "decimal sign; default: guessed and said")
+      ->check(CLI::IsMember({"point", "comma"}));
+  kind->add_option("--sheet", arguments->words.sheet,
+                   "sheet of a workbook, name or number; default: the first with cells");
+  kind->add_option("--skip", arguments->words.skip, "lines at the top to leave out");
+  kind->add_option("--comment", arguments->words.comment,
+                   "lines that begin so are left out; none for none; default: #");
+  kind->add_option("--profile", arguments->profile, "read it as this profile says")->type_name("FILE");
+  kind->add_option("--save-profile", arguments->save_profile, "write how it was read, for the next one")
+      ->type_name("FILE");
+  kind->add_option("--check-every", arguments->check_every, "every Nth row gets the role check")
+      ->check(CLI::Range(2, 1000000));
+  kind->add_option("--machine", arguments->machine,
+                   "machine file: its axes are found, the result is read as a fit would")
+      ->type_name("FILE");
+  kind->add_option("--json", arguments->json, "result for programs; - for standard output")
+      ->type_name("FILE");
+  kind->footer(
+      "Headings are read in their usual forms: X [mm], X(mm), X soll, X ist in \u00b5m,\n"
+      "Abweichung X; in two lines or with a row of units too. A column a run and sense (1+ 1- 2+ 2-,\n"
+      "Run 1 fwd, hin 1, Messung 1 \u2191) becomes a row a reading. \"(Soll-Ist)\", \"(nominal-actual)\"\n"
+      "behind a deviation turns its sign, and that is said. What was guessed is printed; --preview\n"
+      "prints it and writes nothing.");
+  kind->callback([arguments] { run_table(*arguments); });
+}
+
+}  // namespace vernier::commands::import_cli

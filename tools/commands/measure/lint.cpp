@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/lint/lint.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "tools/commands/command.h"
+#include "tools/text/error.h"
+
+namespace vernier::commands::lint_cli {
+namespace {
+
+struct LintArguments {
+  std::vector<std::string> files;
+  std::string json;
+};
+
+nlohmann::ordered_json result_json(const std::vector<lint::LintedFile>& files) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array(), findings = nlohmann::ordered_json::array();
+  for (const lint::LintedFile& file : files) {
+    list.push_back(
+        {{"file", file.file}, {"kind", lint::linted_kind_name(file.kind)}, {"usable", file.usable}});
+    for (const lint::LintFinding& finding : file.findings)
+      findings.push_back({{"file", finding.file},
+                          {"line", finding.line > 0 ? nlohmann::ordered_json(finding.line)
+                                                    : nlohmann::ordered_json(nullptr)},
+                          {"weight", lint::weight_name(finding.weight)},
+                          {"word", finding.word},
+                          {"what", finding.what},
+                          {"meaning", finding.meaning}});
+  }
+  return {{"files", list}, {"findings", findings}};
+}
+
+void run_lint(const LintArguments& arguments) {
+  const std::vector<lint::LintedFile> files = lint::lint_files(arguments.files);
+  write_json(arguments.json, result_json(files));
+  std::FILE* out = human_stream(arguments.json);
+  std::size_t useless = 0;
+  for (const lint::LintedFile& file : files) {
+    for (const lint::LintFinding& finding : file.findings)
+      fmt::print(out, "{}\n", lint::in_one_line(finding));
+    if (file.findings.empty())
+      fmt::print(out, "{}: nothing odd about this {} file\n", file.file, lint::linted_kind_name(file.kind));
+    useless += file.usable ? 0 : 1;
+  }
+  if (useless > 0)
+    throw text::InputError(useless == 1 ? std::string("one file cannot be used as it is")
+                                        : fmt::format("{} files cannot be used as they are", useless));
+}
+
+}  // namespace
+
+void register_lint(CLI::App& vernier) {
+  auto arguments = std::make_shared<LintArguments>();
+  CLI::App* command =
+      vernier.add_subcommand("lint", "Report errors and unusual entries in machine and measurement files");
+  command->add_option("FILE", arguments->files, "machine files (XML) and measurement files (CSV) in any mix")
+      ->required();
+  command->add_option("--json", arguments->json, "result for programs; - for standard output");
+  command->footer(
+      "error: the file cannot be used; warning: it can, and says perhaps something else than was\n"
+      "meant; remark: good to know. With a machine file among them the measurements are looked\n"
+      "at with its eyes. Exit status 0 where no file has an error, 1 else.");
+  command->callback([arguments] { run_lint(*arguments); });
+}
+
+}  // namespace vernier::commands::lint_cli

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "tools/commands/command.h"
+#include "tools/create/machine_file.h"
+#include "tools/create/survey_template.h"
+#include "tools/create/urdf.h"
+#include "tools/model/machine_reader.h"
+#include "tools/text/numbers.h"
+#include "tools/text/words.h"
+
+namespace vernier::commands::new_cli {
+namespace {
+
+struct NewArguments {
+  std::string type, output, measurements, json, name, tool, dh, urdf, tip, reading = "point", errors = "all";
+  std::string tool_side, work_side;
+  std::vector<std::string> axes, centres, joints;
+};
+
+std::array<double, 3> point_of(const std::string& text, char separator, const std::string& what) {
+  const std::vector<std::string> parts = text::parts_of(text, separator);
+  std::array<double, 3> point{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto number = k < parts.size() ? text::parse_number(parts[k]) : std::nullopt;
+    if (!number || parts.size() != 3)
+      throw text::InputError(what + " " + text + ": three lengths in mm, such as " +
+                             (separator == ',' ? "0,0,-120" : "C:250:200:0"));
+    point[k] = *number;
+  }
+  return point;
+}
+
+std::vector<create::DhRow> arm_of(const NewArguments& arguments) {
+  if (!arguments.dh.empty() && !arguments.joints.empty())
+    throw text::InputError("the arm is given twice: --dh and --joint");
+  if (!arguments.dh.empty()) return create::parse_dh_table(text::read_file(arguments.dh), arguments.dh);
+  std::vector<create::DhRow> rows;
+  for (const std::string& words : arguments.joints) rows.push_back(create::parse_dh_row(words));
+  return rows.empty() ? create::default_arm() : rows;
+}
+
+std::vector<create::PlannedAxis> axes_of(const NewArguments& arguments) {
+  std::vector<create::PlannedAxis> axes;
+  for (const std::string& words : arguments.axes) axes.push_back(create::parse_planned_axis(words));
+  return axes;
+}
+
+create::MachinePlan plan_of_urdf(const NewArguments& arguments, const CLI::App& command) {
+  if (arguments.type != "robot") throw text::InputError("--urdf: only a robot has one");
+  for (const char* option : {"--dh", "--joint", "--axis"})
+    if (command.count(option) > 0)
+      throw text::InputError(std::string(option) + ": the arm stands in the URDF");
+  const create::UrdfArm arm =
+      create::parse_urdf(text::read_file(arguments.urdf), arguments.urdf, arguments.tip);
+  create::MachinePlan plan = create::plan_robot(arm.axes, arm.rows);
+  plan.name = arm.name;
+  plan.base = arm.base;
+  plan.tool =
+      arm.tool(arguments.tool.empty() ? std::array<double, 3>{} : point_of(arguments.tool, ',', "--tool"));
+  return plan;
+}
+
+create::MachinePlan plan_of_words(const NewArguments& arguments, const CLI::App& command) {
+  std::vector<create::PlannedAxis> axes = axes_of(arguments);
+  const auto order = [&](const char* option, const std::string& names) {
+    return command.count(option) > 0 ? std::optional(text::parts_of(names, ',')) : std::nullopt;
+  };
+  create::MachinePlan plan;
+  if (arguments.type == "robot") {
+    for (const char* option : {"--tool-side", "--work-side", "--centre"})
+      if (command.count(option) > 0)
+        throw text::InputError(std::string(option) + ": a robot's chain is its table (--dh, --joint)");
+    plan = create::plan_robot(std::move(axes), arm_of(arguments));
+  } else {
+    for (const char* option : {"--dh", "--joint"})
+      if (command.count(option) > 0)
+        throw text::InputError(std::string(option) + ": only a robot has such a table");
+    plan = create::plan_machine(arguments.type, std::move(axes), order("--tool-side", arguments.tool_side),
+                                order("--work-side", arguments.work_side));
+  }
+  // A tool of some length in the usual direction: without one, angles of the last axis would do nothing.
+  plan.tool = {0, 0, plan.arm.empty() ? -100.0 : 100.0};
+  if (!arguments.tool.empty()) plan.tool = point_of(arguments.tool, ',', "--tool");
+  for (const std::string& words : arguments.centres) {
+    const auto colon = words.find(':');
+    const std::string name = words.substr(0, colon);
+    bool found = false;
+    for (create::PlannedAxis& axis : plan.axes)
+      if (axis.name == name && axis.rotary() && colon != std::string::npos) {
+        axis.centre = point_of(words.substr(colon + 1), ':', "--centre");
+        found = true;
+      }
+    if (!found) throw text::InputError("--centre " + words + ": NAME:X:Y:Z of a turning axis");
+  }
+  return plan;
+}
+
+create::MachinePlan plan_of(const NewArguments& arguments, const CLI::App& command) {
+  if (arguments.urdf.empty() && !arguments.tip.empty()) throw text::InputError("--tip: a link of --urdf");
+  create::MachinePlan plan =
+      arguments.urdf.empty() ? plan_of_words(arguments, command) : plan_of_urdf(arguments, command);
+  if (!arguments.name.empty()) plan.name = arguments.name;
+  plan.positioning_only = arguments.errors == "positioning";
+  if (plan.positioning_only && !plan.arm.empty())
+    throw text::InputError("--errors positioning: of machines with slides; a robot's rows are all it has");
+  return plan;
+}
+
+void run_new(const NewArguments& arguments, const CLI::App& command) {
+  const create::MachinePlan plan = plan_of(arguments, command);
+  const std::string text = create::machine_file(plan);
+  const model::Machine machine = model::parse_machine(text, arguments.output);
+  if (!arguments.measurements.empty()) text::require_place(arguments.measurements);
+  const std::string survey = create::survey_template(machine, create::reading_of(arguments.reading));
+  text::write_file(arguments.output, text);
+  if (!arguments.measurements.empty())
+    text::write_file(arguments.measurements,
+                     arguments.measurements.ends_with(".xlsx") ? create::survey_workbook(survey) : survey);
+  nlohmann::ordered_json json = {
+      {"type", plan.type}, {"machine", arguments.output}, {"drawing", create::drawing(plan)}};
+  for (const model::Axis& axis : machine.axes) json["axes"].push_back(axis.name);
+  json["measurements"] = arguments.measurements.empty() ? nlohmann::ordered_json(nullptr)
+                                                        : nlohmann::ordered_json(arguments.measurements);
+  write_json(arguments.json, json);
+  std::FILE* out = human_stream(arguments.json);
+  fmt::print(out, "{}\n", create::drawing(plan));
+  fmt::print(out, "{}: {} axes, {} tables, tool {} {} {} mm\n", arguments.output, machine.axes.size(),
+             machine.tables.size(), plan.tool[0], plan.tool[1], plan.tool[2]);
+  if (plan.arm == create::default_arm())
+    fmt::print(out, "the arm has the lengths of a UR10e: give those of yours with --dh FILE or --joint\n");
+  const std::string meas = arguments.measurements.empty() ? "MEAS.csv" : arguments.measurements;
+  if (!arguments.measurements.empty())
+    fmt::print(out, "{}: rows to be measured, with empty cells for the readings\n", meas);
+  if (meas.ends_with(".xlsx"))
+    fmt::print(out, "next: fill it in, then vernier import table {} -o survey.csv --machine {}\n", meas,
+               arguments.output);
+  else
+    fmt::print(out, "next: vernier lint {0} {1}, then vernier fit {0} {1} -o fitted.xml\n", arguments.output,
+               meas);
+}
+
+}  // namespace
+
+void register_new(CLI::App& vernier) {
+  auto arguments = std::make_shared<NewArguments>();
+  CLI::App* command =
+      vernier.add_subcommand("new", "Create a machine file and an empty table for its survey");
+  command
+      ->add_option("TYPE", arguments->type,
+                   "gantry bridge column c-frame head-head head-table table-table arm robot")
+      ->required();
+  command
+      ->add_option("--axis", arguments->axes,
+                   "NAME:MIN:MAX in mm or deg; again for each. Behind it, where the name does not tell: X Y "
+                   "Z (along) or "
+                   "A B C (about); wrap (turns without end)")
+      ->allow_extra_args(false);
+  command->add_option("-o,--output", arguments->output, "the machine file (XML)")->required();
+  command->add_option("--measurements", arguments->measurements,
+                      "also a measurement file to be filled in: CSV, or a workbook (.xlsx)");
+  command
+      ->add_option("--errors", arguments->errors,
+                   "what a fit may find: all; positioning (along each axis, what an interferometer or a dial "
+                   "gauge sees)")
+      ->check(CLI::IsMember({"all", "positioning"}))
+      ->capture_default_str();
+  command
+      ->add_option("--reading", arguments->reading,
+                   "what the survey reads: point (x y z), length (ball bar), touch (dial gauge, probe), pose")
+      ->capture_default_str();
+  command->add_option("--tool", arguments->tool,
+                      "tool point in the frame of the last axis that carries it, mm: 0,0,-120");
+  command->add_option("--name", arguments->name, "name of the machine");
+  command->add_option("--tool-side", arguments->tool_side, "axes from the bed to the tool: Y,X,Z");
+  command->add_option("--work-side", arguments->work_side, "axes from the bed to the workpiece: A,C");
+  command
+      ->add_option("--centre", arguments->centres,
+                   "NAME:X:Y:Z: where the line of a turning axis is, mm; again for each")
+      ->allow_extra_args(false);
+  command->add_option("--dh", arguments->dh,
+                      "robot: its rows as CSV, theta[deg],d[mm],a[mm],alpha[deg] (type R or P)");
+  command
+      ->add_option("--joint", arguments->joints,
+                   "robot: a row, theta,d,a,alpha (P, before it where it slides); again for each")
+      ->allow_extra_args(false);
+  command->add_option("--urdf", arguments->urdf,
+                      "robot: its description (URDF); rows, names and limits of the joints come from it");
+  command->add_option("--tip", arguments->tip,
+                      "the URDF's link that ends the arm (default: the only one); --tool is in its frame");
+  command->add_option("--json", arguments->json, "result for programs; - for standard output");
+  command->footer(
+      "Which side carries which axis is the type's habit, printed as a line; --tool-side and\n"
+      "--work-side say otherwise. A robot without rows is six joints with the lengths of a\n"
+      "UR10e. A delta or hexapod cannot be written: its chain closes loops.");
+  command->callback([arguments, command] { run_new(*arguments, *command); });
+}
+
+}  // namespace vernier::commands::new_cli

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "tools/commands/command.h"
+#include "tools/commands/report_header.h"
+#include "tools/commands/survey.h"
+#include "tools/diagnose/diagnosis.h"
+#include "tools/fit/fit.h"
+#include "tools/fit/statistics.h"
+#include "tools/model/machine_reader.h"
+#include "tools/plan/advice.h"
+#include "tools/report/report.h"
+#include "tools/results/diagnosis_json.h"
+#include "tools/results/residual_csv.h"
+#include "tools/results/results.h"
+#include "tools/simulate/corrected.h"
+#include "tools/text/files.h"
+
+namespace vernier::commands::diagnose_cli {
+namespace {
+
+struct DiagnoseArguments {
+  SurveyArguments survey;
+  std::string output, json, write, residuals;
+  std::vector<std::string> effects;
+  std::size_t most = 5;
+  ReportHeader header;
+};
+
+void print_ladder(std::FILE* out, const diagnose::Diagnosis& d) {
+  fmt::print(out, "{:<58} {:>12} {:>12}\n", "ladder", "fit rows", "check rows");
+  const diagnose::LadderStep* before = nullptr;
+  for (const diagnose::LadderStep& step : d.ladder) {
+    const bool lengths = step.rms_um.has_value();
+    const std::optional<double>&check = lengths ? step.check_rms_um : step.check_rms_urad,
+          &fit = lengths ? step.rms_um : step.rms_urad;
+    const bool rises =
+        before != nullptr && check && *check > (lengths ? before->check_rms_um : before->check_rms_urad);
+    const char* const unit = lengths ? "um" : "urad";
+    fmt::print(out, "  {:<56} {:>12} {:>12}{}\n",
+               step.effect.empty() ? "the model as given" : "+ " + step.said,
+               results::number_or_dash(fit, unit), results::number_or_dash(check, unit),
+               rises ? "  the check rows do not confirm this step" : "");
+    before = &step;
+  }
+  fmt::print(out, "  {:<56} {:>12}\n", "noise", results::number_or_dash(d.base.noise_um, "um"));
+}
+
+void print_candidates(std::FILE* out, const diagnose::Diagnosis& d) {
+  if (d.candidates.empty()) return;
+  fmt::print(out, "{:<58} {:>8} {:>12} {:>12} {:>9}\n", "candidates, each alone", "score", "fit rows",
+             "check rows", "p");
+  for (const diagnose::CandidateFinding& c : d.candidates) {
+    fmt::print(out, "{} {:<56} {:>8.1f} {:>12} {:>12} {:>9.2g}\n", c.accepted ? "*" : " ", c.candidate.spoken,
+               c.score, results::number_or_dash(c.rms_after_um, "um"),
+               results::number_or_dash(c.check_rms_after_um, "um"), c.p_value);
+    if (!c.why_not.empty()) fmt::print(out, "    not accepted: {}\n", c.why_not);
+    if (!c.confounded_with.empty())
+      fmt::print(out, "    alike in these data: {}\n", fmt::join(c.confounded_with, ", "));
+    if (!c.accepted) continue;
+    fmt::print(out, "    {}; in the chain: {}\n", diagnose::said_of(c), c.candidate.label);
+    for (const fit::ParameterEstimate& p : c.parameters)
+      fmt::print(out, "    {} = {:.6g} +- {} {}\n", p.name, p.value, fmt::format("{:.2g}", p.std), p.unit);
+    fmt::print(out, "    vernier add '{}' MACHINE -o NEW\n", c.add);
+  }
+}
+
+/// What the machine of the last step leaves of the readings.
+void write_residuals(const DiagnoseArguments& arguments, const diagnose::Diagnosis& diagnosis) {
+  const model::Machine machine = model::parse_machine(diagnosis.machine_text, arguments.survey.machine);
+  const model::Measurement m = model::read_measurement(
+      arguments.survey.measurements, machine, simulate::corrections_of_images(arguments.survey.images));
+  text::write_file(arguments.residuals, results::residual_csv(m, fit::residuals(machine, m)));
+}
+
+void run_diagnose(const DiagnoseArguments& arguments) {
+  const auto [text, machine, m] = read_survey(arguments.survey);
+  diagnose::DiagnoseOptions options;
+  options.effects = effects::effect_catalogue(arguments.effects);
+  options.most_effects = arguments.most;
+  Progress progress("diagnose");
+  options.progress = [&](double fraction, const std::string& step) { progress.update(fraction, step); };
+  diagnose::Diagnosis diagnosis = diagnose::diagnose(text, machine, m, options);
+  diagnosis.next_measurement = plan::advice_for(text, machine, m, diagnosis, options.effects);
+  const nlohmann::ordered_json json = results::diagnosis_json(diagnosis, m);
+  if (!arguments.output.empty()) {
+    nlohmann::ordered_json page = json;
+    page["machine"] = machine.name;
+    page["files"] = arguments.survey.measurements;
+    text::write_file(arguments.output, report::diagnose_report_html(arguments.header.on(std::move(page))));
+  }
+  if (!arguments.write.empty()) text::write_file(arguments.write, diagnosis.machine_text);
+  if (!arguments.residuals.empty()) write_residuals(arguments, diagnosis);
+  write_json(arguments.json, json);
+  std::FILE* out = human_stream(arguments.json);
+  fmt::print(out, "verdict: {}\n{}\n\n", diagnose::verdict_name(diagnosis.verdict), diagnosis.explanation);
+  print_ladder(out, diagnosis);
+  fmt::print(out, "\n");
+  print_candidates(out, diagnosis);
+  for (const std::string& next : diagnosis.next_measurement) fmt::print(out, "measure next: {}\n", next);
+}
+
+}  // namespace
+
+void register_diagnose(CLI::App& vernier) {
+  auto arguments = std::make_shared<DiagnoseArguments>();
+  CLI::App* command =
+      vernier.add_subcommand("diagnose", "Find which physical effect is missing from a model");
+  add_survey(*command, arguments->survey);
+  command->add_option("-o,--output", arguments->output, "report (HTML)");
+  add_report_header(*command, arguments->header);
+  command->add_option("--json", arguments->json, "result for programs; - for standard output");
+  command->add_option("--residuals", arguments->residuals, kResidualsHelp);
+  command->add_option("--machine-out", arguments->write,
+                      "the machine file with the effects of the ladder, fitted");
+  command->add_option("--effects", arguments->effects, "files with effects of your own; may be repeated");
+  command->add_option("--most", arguments->most, "most effects in the ladder")
+      ->check(CLI::Range(1, 10))
+      ->capture_default_str();
+  command->footer(
+      "Fits the model first, then looks for what explains the residual beyond what its free parameters can\n"
+      "absorb. Verdict: missing-effect, ambiguous, unexplained, instrument or consistent. Check rows judge, "
+      "they\n"
+      "enter nothing. Exit status 0 whatever the finding, 1 bad input.");
+  command->callback([arguments] { run_diagnose(*arguments); });
+}
+
+}  // namespace vernier::commands::diagnose_cli

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "tools/commands/command.h"
+#include "tools/model/machine.h"
+#include "tools/model/machine_reader.h"
+#include "tools/model/machine_writer.h"
+#include "tools/model/parameters.h"
+#include "tools/text/numbers.h"
+#include "tools/workbench/excluded.h"
+#include "tools/workbench/values.h"
+
+namespace vernier::commands::edit_cli {
+namespace {
+
+struct ExcludeArguments {
+  std::string measurement, output, lines, reason = "by hand", json;
+  bool restore = false;
+};
+
+void run_exclude(const ExcludeArguments& arguments) {
+  std::string text = text::read_file(arguments.measurement);
+  if (!arguments.lines.empty()) {
+    if (arguments.output.empty()) throw text::InputError("-o is missing: where the measurement goes");
+    const auto lines = workbench::parse_lines(arguments.lines);
+    text = arguments.restore ? workbench::restore_rows(text, arguments.measurement, lines)
+                             : workbench::exclude_rows(text, arguments.measurement, lines, arguments.reason);
+    text::write_file(arguments.output, text);
+  }
+  nlohmann::ordered_json json = {{"excluded", nlohmann::ordered_json::array()}};
+  std::FILE* const out = human_stream(arguments.json);
+  for (const workbench::ExcludedRow& row : workbench::excluded_rows(text)) {
+    json["excluded"].push_back({{"line", row.line}, {"reason", row.reason}});
+    fmt::print(out, "line {}: {}\n", row.line, row.reason);
+  }
+  fmt::print(out, "{} rows excluded by hand\n", json["excluded"].size());
+  write_json(arguments.json, json);
+}
+
+struct SetArguments {
+  std::string machine, output, json;
+  std::vector<std::string> values;
+};
+
+void run_set(const SetArguments& arguments) {
+  const std::string text = text::read_file(arguments.machine);
+  model::Machine machine = model::parse_machine(text, arguments.machine);
+  std::map<std::string, double> values;
+  for (const std::string& word : arguments.values) {
+    const auto at = word.rfind('=');
+    const auto value = at == std::string::npos ? std::nullopt : text::parse_number(word.substr(at + 1));
+    if (!value) throw text::InputError("\"" + word + "\": a value is NAME=NUMBER");
+    values[word.substr(0, at)] = *value;
+  }
+  workbench::set_values(machine, values);
+  text::write_file(arguments.output, model::update_machine_text(text, machine, true));
+  nlohmann::ordered_json json = {{"machine", arguments.output}, {"values", values}};
+  write_json(arguments.json, json);
+  for (const auto& [name, value] : values)
+    fmt::print(human_stream(arguments.json), "{} = {:.10g}\n", name, value);
+}
+
+}  // namespace
+
+void register_exclude(CLI::App& vernier) {
+  auto arguments = std::make_shared<ExcludeArguments>();
+  CLI::App* command = vernier.add_subcommand(
+      "exclude", "Exclude rows of a measurement by hand, with a reason; or include them again");
+  command->add_option("MEAS", arguments->measurement, "measurement file (CSV)")->required();
+  command->add_option("-o,--output", arguments->output, "the new measurement file (may be the same)");
+  command->add_option("--lines", arguments->lines,
+                      "lines of the rows: 12,15-20; none: list what is excluded");
+  command->add_option("--reason", arguments->reason, "why, kept with each row")->capture_default_str();
+  command->add_flag("--restore", arguments->restore, "put the rows on these lines back");
+  command->add_option("--json", arguments->json, "result for programs; - for standard output");
+  command->footer(
+      "An excluded row stays in its place as a comment with its reason, so every other row keeps its line\n"
+      "and all commands take the file as it is. Exit status 0 done, 1 bad input (nothing written).");
+  command->callback([arguments] { run_exclude(*arguments); });
+}
+
+void register_set(CLI::App& vernier) {
+  auto arguments = std::make_shared<SetArguments>();
+  CLI::App* command = vernier.add_subcommand("set", "Set parameters of a machine by hand");
+  command->add_option("MACHINE", arguments->machine, "machine file (XML)")->required();
+  command->add_option("VALUES", arguments->values, "NAME=NUMBER, names as in the result of fit")->required();
+  command->add_option("-o,--output", arguments->output, "the new machine file")->required();
+  command->add_option("--json", arguments->json, "result for programs; - for standard output");
+  command->footer("Exit status 0 done, 1 bad input (nothing written).");
+  command->callback([arguments] { run_set(*arguments); });
+}
+
+}  // namespace vernier::commands::edit_cli

@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <iostream>
+#include <memory>
+
+#include "tools/commands/command.h"
+#include "tools/commands/report_header.h"
+#include "tools/commands/survey.h"
+#include "tools/compile/compile.h"
+#include "tools/diagnose/diagnosis.h"
+#include "tools/model/machine_reader.h"
+#include "tools/model/rebind.h"
+#include "tools/report/report.h"
+#include "tools/results/diagnosis_json.h"
+#include "tools/results/results.h"
+#include "tools/results/safety_json.h"
+#include "tools/simulate/corrected.h"
+#include "tools/simulate/replay.h"
+#include "tools/text/error.h"
+#include "tools/text/optional_json.h"
+
+namespace vernier::commands::improve_cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct ImproveArguments {
+  SurveyArguments survey;
+  std::string output, json;
+  std::vector<std::string> effects;
+  bool yes = false;
+  ReportHeader header;
+};
+
+/// A rung of the ladder that was taken, and the machine file that stands on it.
+struct Rung {
+  std::string label, effect, add, file, text;
+  std::optional<double> rms_um, check_rms_um;
+};
+
+bool agreed(const ImproveArguments& arguments, const diagnose::LadderStep& step, std::FILE* out) {
+  fmt::print(out, "+ {}: fit rows {}, check rows {}\n", step.said, results::number_or_dash(step.rms_um, "um"),
+             results::number_or_dash(step.check_rms_um, "um"));
+  if (arguments.yes) return true;
+  fmt::print(out, "  add it? [y/n] ");
+  std::fflush(out);
+  std::string answer;
+  if (!std::getline(std::cin, answer)) {
+    fmt::print(out, "no answer: stopping here (--yes adds without asking)\n");
+    return false;
+  }
+  return !answer.empty() && (answer[0] == 'y' || answer[0] == 'Y');
+}
+
+/// What the measurement would have read with the correction of a machine running, or why that is unknown.
+Json replayed(const Rung& rung, const model::Measurement& rows, const model::Machine& from) {
+  // Four days of a machine and a minute or two of ours.
+  constexpr double kMostTicks = 4e8;
+  try {
+    const model::Machine machine = model::parse_machine(rung.text, rung.file);
+    const model::Measurement m = model::rebind(rows, from, machine);
+    if (m.rows() > 0 && (m.states.time.maxCoeff() - m.states.time.minCoeff()) * 1000 > kMostTicks)
+      return {{"label", rung.label},
+              {"why_not", "the measurement is longer than four hundred million ticks"}};
+    const compile::CompiledMachine compiled = compile::compile_machine(machine, rung.text, {});
+    const auto image = compile::load_image(compiled.image, machine);
+    const simulate::ReplayResult r = simulate::replay(*image, m, {});
+    const auto rms = [&](const Eigen::VectorXd& residual, bool check) {
+      return text::or_null(fit::role_statistics(m, residual, check).rms_um);
+    };
+    return {{"label", rung.label},
+            {"ticks", r.ticks},
+            {"saturated", r.saturated},
+            {"rms_before_um", rms(r.before, false)},
+            {"rms_after_um", rms(r.after, false)},
+            {"check_rms_before_um", rms(r.before, true)},
+            {"check_rms_after_um", rms(r.after, true)}};
+  } catch (const text::InputError& error) {
+    return {{"label", rung.label}, {"why_not", error.what()}};
+  } catch (const text::LimitNotMet& error) {
+    return {{"label", rung.label}, {"why_not", error.what()}};
+  }
+}
+
+/// One walk up the ladder.
+class Improver {
+ public:
+  explicit Improver(const ImproveArguments& arguments)
+      : arguments_(arguments),
+        out_(human_stream(arguments.json)),
+        survey_(read_survey(arguments.survey)),
+        text_(std::move(survey_.text)),
+        machine_(std::move(survey_.machine)),
+        first_(machine_),
+        rows_(std::move(survey_.rows)),
+        all_rows_(rows_),
+        effects_(effects::effect_catalogue(arguments.effects)) {}
+
+  void run() {
+    constexpr int kMostRounds = 4;
+    for (int round = 0; round < kMostRounds; ++round)
+      if (!climb(round)) break;
+    finish();
+  }
+
+ private:
+  /// Diagnoses the machine as it stands and adds what is found. False where nothing more is to be added.
+  bool climb(int round) {
+    diagnose::DiagnoseOptions options;
+    options.effects = effects_;
+    Progress progress("diagnose");
+    options.progress = [&](double share, const std::string& step) { progress.update(share, step); };
+    const diagnose::Diagnosis d = diagnose::diagnose(text_, machine_, rows_, options);
+    if (round == 0 && !d.end.absurd.empty()) throw text::LimitNotMet(d.end.absurd + "; nothing is written");
+    last_ = results::diagnosis_json(d, rows_);
+    if (round == 0) {
+      text::make_folder(arguments_.output);
+      first_diagnosis_ = last_;
+      take({"the model as given, fitted", "", "", "", d.ladder[0].text, d.ladder[0].rms_um,
+            d.ladder[0].check_rms_um});
+      fmt::print(out_, "the model as given, fitted: fit rows {}, check rows {}\n",
+                 results::number_or_dash(d.ladder[0].rms_um, "um"),
+                 results::number_or_dash(d.ladder[0].check_rms_um, "um"));
+    }
+    fmt::print(out_, "verdict: {}. {}\n", diagnose::verdict_name(d.verdict), d.explanation);
+    if (d.verdict != diagnose::Verdict::kMissingEffect) return false;
+    for (std::size_t i = 1; i < d.ladder.size(); ++i) {
+      const diagnose::LadderStep& step = d.ladder[i];
+      if (!agreed(arguments_, step, out_)) return false;
+      take({"+ " + step.said, step.effect, step.add, "", step.text, step.rms_um, step.check_rms_um});
+    }
+    const model::Machine before = machine_;
+    text_ = rungs_.back().text;
+    machine_ = model::parse_machine(text_, arguments_.survey.machine);
+    rows_ = model::rebind(rows_, before, machine_);
+    return true;
+  }
+
+  void take(Rung rung) {
+    rung.file = fmt::format("{}/{}{}.xml", arguments_.output, rungs_.size(),
+                            rung.effect.empty() ? "_model" : "_" + rung.effect);
+    text::write_file(rung.file, rung.text);
+    rungs_.push_back(std::move(rung));
+  }
+
+  void finish() {
+    Json json = {{"machine", first_.name},
+                 {"files", arguments_.survey.measurements},
+                 {"verdict", last_["verdict"]},
+                 {"explanation", last_["explanation"]},
+                 {"noise_um", last_["noise_um"]}};
+    json["rms_before_um"] = first_diagnosis_["rms_um"];
+    json["check_rms_before_um"] = first_diagnosis_["check_rms_um"];
+    json["rms_um"] = last_["rms_um"];
+    json["check_rms_um"] = last_["check_rms_um"];
+    json["candidates"] = first_diagnosis_["candidates"];
+    json["next_measurement"] = last_["next_measurement"];
+    for (const Rung& rung : rungs_) {
+      Json step = {{"effect", rung.effect.empty() ? Json(nullptr) : Json(rung.effect)},
+                   {"add", rung.add.empty() ? Json(nullptr) : Json(rung.add)},
+                   {"label", rung.label},
+                   {"machine", rung.file}};
+      step["rms_um"] = text::or_null(rung.rms_um);
+      step["check_rms_um"] = text::or_null(rung.check_rms_um);
+      json["ladder"].push_back(step);
+    }
+    simulate(json);
+    judge(json);
+    const std::string page = arguments_.output + "/improve.html";
+    text::write_file(page, report::improve_report_html(arguments_.header.on(json)));
+    text::write_file(arguments_.output + "/improve.json", json.dump(1) + "\n");
+    write_json(arguments_.json, json);
+    fmt::print(out_, "left in {}: {} machine files, improve.json, improve.html\n", arguments_.output,
+               rungs_.size());
+  }
+
+  /// The same fall in the 1 kHz loop: the correction of the first and of the last machine.
+  void simulate(Json& json) {
+    json["loop"] = Json::array();
+    for (const Rung* rung : {&rungs_.front(), &rungs_.back()}) {
+      const Json r = replayed(*rung, all_rows_, first_);
+      json["loop"].push_back(r);
+      if (r.contains("why_not")) {
+        fmt::print(out_, "1 kHz loop, {}: not run: {}\n", rung->label, r["why_not"].get<std::string>());
+        continue;
+      }
+      const auto um = [&](const char* key) {
+        return r[key].is_null() ? std::string("-") : fmt::format("{:.4g} um", r[key].get<double>());
+      };
+      fmt::print(out_, "1 kHz loop, {}: fit rows {} -> {}, check rows {} -> {}\n", rung->label,
+                 um("rms_before_um"), um("rms_after_um"), um("check_rms_before_um"),
+                 um("check_rms_after_um"));
+      json["simulation"] = r;
+      if (rungs_.size() == 1) break;
+    }
+  }
+
+  /// May the last machine run? Said, not decided: nothing runs yet.
+  void judge(Json& json) {
+    json["safe_to_run"] = nullptr;
+    try {
+      const safety::SafetySheet sheet =
+          safety::safety_sheet(model::parse_machine(rungs_.back().text, rungs_.back().file));
+      json["safe_to_run"] = results::safety_json(sheet);
+      fmt::print(out_, "{}\n", sheet.ok() ? "safe to run: every rule of the sheet holds" : sheet.refusal());
+    } catch (const text::InputError& error) {
+      fmt::print(out_, "safe to run: not judged: {}\n", error.what());
+    }
+  }
+
+  const ImproveArguments& arguments_;
+  std::FILE* out_;
+  Survey survey_;
+  std::string text_;
+  model::Machine machine_, first_;
+  model::Measurement rows_, all_rows_;
+  std::vector<effects::Effect> effects_;
+  std::vector<Rung> rungs_;
+  Json first_diagnosis_, last_;
+};
+
+}  // namespace
+
+void register_improve(CLI::App& vernier) {
+  auto arguments = std::make_shared<ImproveArguments>();
+  CLI::App* command =
+      vernier.add_subcommand("improve", "Repeat diagnose, add and fit until no further effect is named");
+  add_survey(*command, arguments->survey);
+  command
+      ->add_option("-o,--output", arguments->output,
+                   "folder for machine files, improve.json and improve.html")
+      ->required();
+  command->add_option("--effects", arguments->effects, "files with effects of your own; may be repeated");
+  add_report_header(*command, arguments->header);
+  command->add_option("--json", arguments->json, "result for programs; - for standard output");
+  command->add_flag("--yes", arguments->yes, "add every effect that is found, without asking");
+  command->footer(
+      "Only effects of a verdict missing-effect are added. Each rung leaves its fitted machine file; the "
+      "last line\n"
+      "of figures is what the measurement would have read with the 1 kHz correction running. Exit status 0 "
+      "done\n"
+      "(whatever was found), 1 bad input, 2 the readings are not those of this machine or the fit did not\n"
+      "converge: nothing written.");
+  command->callback([arguments] { Improver(*arguments).run(); });
+}
+
+}  // namespace vernier::commands::improve_cli

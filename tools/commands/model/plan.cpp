@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "tools/commands/command.h"
+#include "tools/commands/fit_findings.h"
+#include "tools/commands/model/plan_kinds.h"
+#include "tools/effects/catalogue.h"
+#include "tools/model/machine_reader.h"
+#include "tools/model/measurement.h"
+#include "tools/plan/check_plan.h"
+#include "tools/plan/first_plan.h"
+#include "tools/plan/plan.h"
+#include "tools/plan/sheets.h"
+#include "tools/simulate/corrected.h"
+#include "tools/text/files.h"
+#include "tools/text/words.h"
+
+namespace vernier::commands::plan_cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json row_json(const plan::Plan& plan, std::size_t row) {
+  const auto at = static_cast<Eigen::Index>(row);
+  const model::States& s = plan.rows.states;
+  Json json;
+  for (std::size_t a = 0; a < plan.machine.axes.size(); ++a) {
+    const std::string& name = plan.machine.axes[a].name;
+    json["axes"][name] = s.axis[a][at];
+    json["dir"][name] = s.direction[a][at];
+    json["v"][name] = s.velocity[a][at];
+    if (s.since[a][at] < model::kLongWay) json["since"][name] = s.since[a][at];
+  }
+  json["feed"] = s.feed[at];
+  json["t"] = s.time[at];
+  json["inputs"] = Json::object();
+  for (std::size_t i = 0; i < plan.machine.inputs.size(); ++i)
+    json["inputs"][plan.machine.inputs[i].name] = s.input[i][at];
+  const plan::Drivers drivers = plan::drivers_of(std::vector<const plan::FittedRival*>{&plan.a, &plan.b});
+  for (const model::CandidateInput& candidate : plan.rows.candidates)
+    if (drivers.inputs.contains(candidate.name)) json["inputs"][candidate.name] = candidate.value[at];
+  return json;
+}
+
+Json plan_json(const plan::Plan& plan, double confidence) {
+  const auto side = [](const plan::Separation& s) -> Json {
+    return {{"now", s.now}, {"planned", s.planned}, {"needed", s.needed}};
+  };
+  const plan::Separation& worse = plan.worse();
+  Json json;
+  json["separate"] = {{{"effect", plan.a.candidate.choice.effect->id}, {"add", plan.a.add}},
+                      {{"effect", plan.b.candidate.choice.effect->id}, {"add", plan.b.add}}};
+  json["non_centrality_now"] = worse.now;
+  json["non_centrality_planned"] = plan.rows.rows() == 0 ? worse.now : worse.planned;
+  json["non_centrality_needed"] = worse.needed;
+  json["first_true"] = side(plan.a_true);
+  json["second_true"] = side(plan.b_true);
+  json["confidence"] = confidence;
+  json["separable"] = plan.separable || plan.told_already;
+  json["lead_of_first"] = plan.lead_of_a;
+  json["told_already"] = plan.told_already;
+  json["points"] = plan.rows.rows();
+  json["rows"] = Json::array();
+  for (std::size_t row = 0; row < plan.rows.rows(); ++row) json["rows"].push_back(row_json(plan, row));
+  json["not_settable"] = plan.not_settable;
+  json["ruled_out"] = plan.ruled_out;
+  json["not_ruled_out"] = plan.not_ruled_out;
+  json["sentence"] = plan.sentence;
+  return json;
+}
+
+/// A short measurement that sees the likeliest changes.
+void run_check_plan(const PlanArguments& arguments) {
+  const model::Machine machine = read_model(arguments.machine);
+  plan::CheckPlanOptions options;
+  options.reading_um = arguments.reading_um.value_or(options.reading_um);
+  if (arguments.expected_um > 0) options.expected_um = arguments.expected_um;
+  if (arguments.points > 0) options.points = arguments.points;
+  const plan::CheckPlan plan = plan::check_plan(machine, options);
+  Json json = {{"machine", machine.name},   {"points", plan.states.count},      {"shows", Json::array()},
+               {"not_seen", plan.not_seen}, {"tool_random_um", plan.random_um}, {"rows", Json::array()}};
+  for (const plan::Shown& one : plan.shows)
+    json["shows"].push_back({{"name", one.suspect.name},
+                             {"change", one.change},
+                             {"unit", one.suspect.unit},
+                             {"tool_um", one.tool_um}});
+  for (std::size_t row = 0; row < plan.states.count; ++row)
+    json["rows"].push_back(pose_json(machine, plan.states, row));
+  const double worst = plan.shows.empty() ? 0 : plan.shows.front().tool_um;
+  if (arguments.accuracy_um > 0 && (worst > arguments.accuracy_um || plan.shows.empty()))
+    throw text::LimitNotMet(
+        fmt::format("{} poses show {} only where it moves the tool by {:.3g} um: more --points, or readings "
+                    "surer than {:g} um",
+                    plan.states.count, plan.shows.empty() ? "nothing" : plan.shows.front().suspect.name,
+                    worst, options.reading_um));
+  if (!arguments.output.empty())
+    text::write_file(arguments.output, plan::check_plan_csv(machine, plan, options.reading_um));
+  if (!arguments.gcode.empty())
+    text::write_file(arguments.gcode, plan::poses_gcode(machine, plan.states, "check of " + machine.name));
+  write_json(arguments.json, json);
+  std::FILE* out = human_stream(arguments.json);
+  fmt::print(out, "{} poses of {:g} um show from which change on:\n", plan.states.count, options.reading_um);
+  for (const plan::Shown& one : plan.shows)
+    fmt::print(out, "  {:<36} {:>10.3g} {:<4} ({:.3g} um at the tool)\n", one.suspect.name, one.change,
+               one.suspect.unit, one.tool_um);
+  if (!plan.not_seen.empty()) fmt::print(out, "not seen at all: {}\n", text::joined(plan.not_seen, ", "));
+  fmt::print(out, "as many poses at random: {:.3g} um where these show {:.3g}\n", plan.random_um, worst);
+}
+
+/// Without measurements: where to measure a machine for the first time.
+void run_first_plan(const PlanArguments& arguments) {
+  if (!arguments.separate.empty())
+    throw text::InputError({}, "MEAS", "telling two effects apart builds on measurements: name their files");
+  const model::Machine machine = model::parse_machine(text::read_file(arguments.machine), arguments.machine);
+  plan::FirstPlanOptions options;
+  options.reading_um = arguments.reading_um.value_or(options.reading_um);
+  if (arguments.accuracy_um > 0) options.accuracy_um = arguments.accuracy_um;
+  if (arguments.points > 0) options.most = arguments.points;
+  if (arguments.expected_um > 0) options.expected_um = arguments.expected_um;
+  const plan::FirstPlan plan = plan::first_plan(machine, options);
+  const auto count = static_cast<std::size_t>(std::count(plan.check.begin(), plan.check.end(), 0));
+  Json json = {{"machine", machine.name},       {"points", plan.check.size()},
+               {"fit_points", count},           {"check_points", plan.check.size() - count},
+               {"references", plan.references}, {"u95_before_um", plan.before_um},
+               {"u95_um", plan.after_um},       {"u95_random_um", plan.random_um},
+               {"u95_least_um", plan.least_um}, {"reached", plan.reached},
+               {"rows", Json::array()}};
+  for (std::size_t row = 0; row < plan.check.size(); ++row) {
+    Json one = {{"role", plan.check[row] != 0 ? "check" : "fit"}};
+    one.update(pose_json(machine, plan.states, row));
+    json["rows"].push_back(std::move(one));
+  }
+  if (!plan.reached)
+    throw text::LimitNotMet(fmt::format(
+        "{:g} um cannot be reached: {} poses lead to {:.3g} um, all that were looked at to {:.3g} um",
+        arguments.accuracy_um, count, plan.after_um, plan.least_um));
+  if (!arguments.output.empty())
+    text::write_file(arguments.output, plan::first_plan_csv(machine, plan, options.reading_um));
+  if (!arguments.gcode.empty())
+    text::write_file(arguments.gcode,
+                     plan::poses_gcode(machine, plan.states, "first measurement of " + machine.name));
+  write_json(arguments.json, json);
+  fmt::print(human_stream(arguments.json),
+             "{} poses to fit, {} of them the first one again, and {} to check: tool point known to {:.3g} "
+             "um (k = 2, mean over "
+             "the volume) where now it is {:.3g} um; as many poses at random: {:.3g} um\n",
+             count, plan.references, plan.check.size() - count, plan.after_um, plan.before_um,
+             plan.random_um);
+}
+
+void run_plan(const PlanArguments& arguments) {
+  if (arguments.check && !(arguments.measurements.empty() && arguments.separate.empty()))
+    throw text::InputError({}, "--check", "goes with the fitted machine alone");
+  if (arguments.check) return run_check_plan(arguments);
+  const bool aimed = !arguments.part.path.empty() || !arguments.region.empty() || !arguments.tool.empty();
+  if (aimed && !arguments.separate.empty())
+    throw text::InputError({}, "--separate",
+                           "tells two effects apart; --part, --region and --tool say where accuracy matters");
+  if (arguments.measurements.empty() && !aimed) return run_first_plan(arguments);
+  if (arguments.separate.empty()) return run_accuracy_plan(arguments);
+  const std::string text = text::read_file(arguments.machine);
+  const model::Machine machine = model::parse_machine(text, arguments.machine);
+  const model::Measurement m = model::read_measurement(arguments.measurements, machine,
+                                                       simulate::corrections_of_images(arguments.images));
+  const std::vector<effects::Effect> effects = effects::effect_catalogue(arguments.effects);
+  const std::vector<std::string> rivals = plan::split_rivals(arguments.separate, effects);
+  plan::PlanOptions options;
+  options.confidence = arguments.confidence;
+  if (arguments.points > 0) options.points = arguments.points;
+  const plan::Plan plan = plan::plan_next(text, machine, m, rivals[0], rivals[1], effects, options);
+  if (!arguments.output.empty()) text::write_file(arguments.output, plan::plan_csv(plan));
+  if (!arguments.gcode.empty()) text::write_file(arguments.gcode, plan::plan_gcode(plan));
+  write_json(arguments.json, plan_json(plan, arguments.confidence));
+  std::FILE* out = human_stream(arguments.json);
+  fmt::print(out, "{}\n\n", plan.sentence);
+  for (const auto& [rival, side] : {std::pair(&plan.a, &plan.a_true), std::pair(&plan.b, &plan.b_true)})
+    fmt::print(out, "if {} is true: non-centrality now {:.3g}, planned {:.3g}, needed {:.3g}\n",
+               rival->candidate.label, side->now, plan.rows.rows() > 0 ? side->planned : side->now,
+               side->needed);
+  for (const std::string& other : plan.ruled_out) fmt::print(out, "rules out as well: {}\n", other);
+  for (const std::string& other : plan.not_ruled_out) fmt::print(out, "does not rule out: {}\n", other);
+  if (plan.rows.rows() > 0) fmt::print(out, "\n{}", plan::plan_table(plan));
+}
+
+}  // namespace
+
+nlohmann::ordered_json pose_json(const model::Machine& machine, const model::States& states,
+                                 std::size_t row) {
+  Json json = Json::object();
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    json["axes"][machine.axes[i].name] = states.axis[i][static_cast<Eigen::Index>(row)];
+    json["dir"][machine.axes[i].name] = states.direction[i][static_cast<Eigen::Index>(row)];
+  }
+  return json;
+}
+
+void register_plan(CLI::App& vernier) {
+  auto arguments = std::make_shared<PlanArguments>();
+  CLI::App* command = vernier.add_subcommand(
+      "plan",
+      "Plan the next measurement: a first survey, poses for accuracy, or poses that distinguish two effects");
+  command->add_option("MACHINE", arguments->machine, "machine file (XML)")->required();
+  command->add_option("MEAS", arguments->measurements, "measurement files (CSV); none: the first plan");
+  // One value each time: what follows it may be a measurement file.
+  command
+      ->add_option("--separate", arguments->separate,
+                   "A,B: effect ids or `add` strings; or twice, once for each")
+      ->expected(1)
+      ->allow_extra_args(false)
+      ->take_all();
+  command->add_option("-o,--output", arguments->output, "the rows, readings to be filled in (CSV)");
+  command->add_option("--gcode", arguments->gcode, "the rows as G-code");
+  command
+      ->add_option("--points", arguments->points,
+                   "exactly so many points (default: as few as needed; accuracy: 200 at most)")
+      ->check(CLI::Range(1, 500));
+  command->add_option("--confidence", arguments->confidence, "that the measurement will name the right one")
+      ->check(CLI::Range(0.5001, 0.9999))
+      ->capture_default_str();
+  command->add_option("--effects", arguments->effects, "files with effects of your own; may be repeated");
+  command
+      ->add_option("--accuracy", arguments->accuracy_um,
+                   "U95 to reach, um: of the tool point over the volume, or where --part and --region say; "
+                   "--check: largest change of the tool that may go unseen")
+      ->check(CLI::PositiveNumber);
+  command
+      ->add_option("--reading", arguments->reading_um,
+                   "u of a coordinate that will be read, um (default 5; with MEAS: as it was there)")
+      ->check(CLI::PositiveNumber);
+  command
+      ->add_option(
+          "--expected", arguments->expected_um,
+          "first plan: what a parameter may move the tool by, um (default 100); --check: change of the "
+          "tool from which one wants to know, um (default 20)")
+      ->check(CLI::PositiveNumber);
+  command->add_flag("--check", arguments->check,
+                    "the few poses of a `vernier check` of a fitted machine (default: 10 points)");
+  command->add_option("--part", arguments->part.path,
+                      "accuracy for the features of this part (CSV, or a part program)");
+  command->add_option("--place", arguments->part.place,
+                      "where the part's zero stands in workpiece coordinates: \"X,Y,Z\" or \"X,Y,Z,TURN\"");
+  command->add_option("--zero", arguments->part.zero, "machine position of a part program's zero");
+  command->add_option("--at", arguments->part.at,
+                      "inputs, and where axes stand that the part does not ask for");
+  command->add_option("--region", arguments->region,
+                      "accuracy for this part of the volume: \"X=100:200,Y=0:50\"");
+  command->add_option(
+      "--tool", arguments->tool,
+      "accuracy for this tool alone: one of <tools>, or \"X,Y,Z\" in mm from the end of the chain");
+  command->add_option("--feed", arguments->feed_mm_min, "from pose to pose, mm/min: for the minutes")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command->add_option("--dwell", arguments->dwell_s, "to settle and read one pose, s: for the minutes")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command->add_option("--images", arguments->images, simulate::kImagesHelp);
+  command->add_option("--json", arguments->json, "result for programs; - for standard output");
+  command->footer(
+      "With MEAS and --accuracy: fits, then chooses the next poses one by one that lower U95 (k = 2) over "
+      "the\n"
+      "volume, a region or a part's features most, until it is reached; exit status 2 where it cannot be.\n"
+      "--separate: fits the model with either effect, then chooses the rows whose readings differ most after "
+      "the wrong\n"
+      "one and all free parameters were fitted again (T-optimal, the worse of both directions). Points: as\n"
+      "many as bring the non-centrality to (z + sqrt(z^2 + 6))^2, z the normal quantile of the confidence.\n"
+      "Exit status 0 done (also where nothing separates them: the sentence says so), 1 bad input or usage\n"
+      "(nothing written), 2 the accuracy asked for cannot be reached (nothing written), 70 internal error. "
+      "See tools/docs/plan.md.");
+  command->callback([arguments] { run_plan(*arguments); });
+}
+
+}  // namespace vernier::commands::plan_cli

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/commands/judge/part_kinds.h"
+#include "tools/model/machine.h"
+#include "tools/model/states.h"
+
+namespace vernier::commands::plan_cli {
+
+struct PlanArguments {
+  std::string machine, output, gcode, json, images, region, tool;
+  std::vector<std::string> measurements, separate, effects;
+  part_cli::PartSource part;
+  std::size_t points = 0;
+  double confidence = 0.95;
+  std::optional<double> reading_um;
+  double accuracy_um = 0, expected_um = 0;
+  double feed_mm_min = 5000, dwell_s = 5;
+  bool check = false;
+};
+
+/// One pose of a plan: axes and senses.
+nlohmann::ordered_json pose_json(const model::Machine& machine, const model::States& states, std::size_t row);
+
+/// The next poses for accuracy where it matters. Throws LimitNotMet where it cannot be reached.
+void run_accuracy_plan(const PlanArguments& arguments);
+
+}  // namespace vernier::commands::plan_cli

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <memory>
+#include <optional>
+
+#include "tools/commands/command.h"
+#include "tools/commands/fit_findings.h"
+#include "tools/kinematics/at.h"
+#include "tools/offline/part_program.h"
+#include "tools/offline/positions.h"
+#include "tools/text/assurance.h"
+#include "tools/text/error.h"
+#include "tools/text/optional_json.h"
+
+namespace vernier::commands::correct_cli {
+namespace {
+
+struct CorrectArguments {
+  std::string machine, path, output, json, at, zero, tool;
+  double deviation_um = 0.5;
+  bool back = false, with_rotary = false, chords = false;
+};
+
+/// Is this a list of positions? Its first line that is no comment is a header with commas or the name of a
+/// column; a part program's is a block.
+bool is_table(const std::string& path, const std::string& text) {
+  if (path.ends_with(".csv")) return true;
+  std::size_t at = 0;
+  while (at < text.size()) {
+    const auto end = std::min(text.find('\n', at), text.size());
+    const std::string line = text.substr(at, end - at);
+    at = end + 1;
+    if (line.empty() || line[0] == '#' || line[0] == '\r') continue;
+    return line.find(',') != std::string::npos && line.find('[') != std::string::npos;
+  }
+  return false;
+}
+
+/// Which axes a user's words name.
+std::vector<char> named_in(const model::Machine& machine, const std::string& words) {
+  std::vector<char> named(machine.axes.size(), 0);
+  for (std::size_t i = 0; i < machine.axes.size(); ++i)
+    named[i] = ("," + words).find("," + machine.axes[i].name + "=") != std::string::npos ? 1 : 0;
+  return named;
+}
+
+/// Every position was corrected, and the blocks of a program follow.
+text::Assurance assurance_of(const CorrectArguments& arguments, const offline::CorrectionSummary& summary,
+                             const std::optional<double>& path_um) {
+  text::Assurance assurance(text::AssuranceKind::kExport);
+  assurance.at_most("not-converged", static_cast<double>(summary.not_converged), 0,
+                    fmt::format("Positions of {} that cannot be corrected.", summary.positions));
+  if (path_um)
+    assurance.at_most(
+        "off-the-path", *path_um, arguments.deviation_um,
+        "Largest distance of the blocks from the corrected path, um, between all places looked at.");
+  assurance.not_covered("Errors that depend on what is not logged (time, inputs) count as --at says.");
+  return assurance;
+}
+
+void run_correct(const CorrectArguments& arguments) {
+  const model::Machine read = read_model(arguments.machine);
+  const model::Machine machine = arguments.tool.empty() ? read : kinematics::tooled(read, arguments.tool);
+  const std::string text = text::read_file(arguments.path);
+  const model::States at = kinematics::state_at(machine, arguments.at);
+  offline::CorrectorOptions options;
+  options.back = arguments.back;
+  options.with_rotary = arguments.with_rotary || machine.correct_orientation;
+  offline::Corrector corrector(machine, options);
+  nlohmann::ordered_json json = {{"machine", machine.name}, {"path", arguments.path}};
+  std::string result;
+  std::optional<double> path_um;  // of a program: how far its blocks leave the corrected path
+  if (is_table(arguments.path, text)) {
+    result = offline::corrected_positions(text, arguments.path, at, corrector);
+  } else {
+    if (arguments.back)
+      throw text::InputError({arguments.path, 0}, "--back",
+                             "goes with a CSV of positions, not with a part program");
+    offline::PartProgramOptions program;
+    program.deviation_mm = 1e-3 * arguments.deviation_um;
+    program.arcs = !arguments.chords;
+    const model::States zero = kinematics::state_at(machine, arguments.zero);
+    for (std::size_t i = 0; i < machine.axes.size(); ++i) program.zero.push_back(zero.axis[i][0]);
+    offline::PartProgram corrected = offline::corrected_program(
+        text, arguments.path, at, named_in(machine, arguments.at), program, corrector);
+    json["moves"] = corrected.moves;
+    json["moves_written"] = corrected.written;
+    json["arcs_written"] = corrected.arcs;
+    path_um = 1000 * corrected.worst_mm;
+    json["path_um"] = *path_um;
+    result = std::move(corrected.text);
+  }
+  const offline::CorrectionSummary& summary = corrector.summary();
+  json["positions"] = summary.positions;
+  json["max_correction_um"] = summary.largest_um(machine);
+  json["max_correction"] = nlohmann::ordered_json::object();
+  for (std::size_t i = 0; i < machine.axes.size(); ++i)
+    json["max_correction"][machine.axes[i].name] = summary.largest[i];
+  json["left_um"] = 1000 * summary.left_mm;
+  json["not_converged"] = summary.not_converged;
+  json["assurance"] = assurance_of(arguments, summary, path_um).json();
+  if (summary.not_converged > 0)
+    throw text::LimitNotMet(fmt::format("{} of {} positions cannot be corrected with these axes",
+                                        summary.not_converged, summary.positions));
+  if (path_um && *path_um > arguments.deviation_um)
+    throw text::LimitNotMet(
+        fmt::format("the blocks leave the corrected path by {:.4g} um, --deviation allows {} "
+                    "um; nothing is written",
+                    *path_um, arguments.deviation_um));
+  text::write_file(arguments.output, result);
+  write_json(arguments.json, json);
+  std::FILE* out = human_stream(arguments.json);
+  fmt::print(out, "{}: {} positions, corrections up to {:.4g} um", arguments.output, summary.positions,
+             summary.largest_um(machine));
+  if (json.contains("moves"))
+    fmt::print(out, "; {} moves as {}, {} of them arcs", json["moves"].get<std::size_t>(),
+               json["moves_written"].get<std::size_t>(), json["arcs_written"].get<std::size_t>());
+  if (path_um) fmt::print(out, "; off the corrected path by {:.3g} um at most", *path_um);
+  fmt::print(out, "; left over {:.3g} um\n", 1000 * summary.left_mm);
+}
+
+}  // namespace
+
+void register_correct(CLI::App& vernier) {
+  auto arguments = std::make_shared<CorrectArguments>();
+  CLI::App* command = vernier.add_subcommand(
+      "correct", "Write positions or a part program with the correction, for a controller without a board");
+  command->add_option("MACHINE", arguments->machine, "machine file (XML), fitted")->required();
+  command->add_option("PATH", arguments->path, "CSV of positions or targets, or a part program (RS-274)")
+      ->required();
+  command->add_option("-o,--output", arguments->output, "the same, corrected")->required();
+  command->add_option("--at", arguments->at,
+                      "inputs, and where the axes stand before a program begins: \"T=25,X=0,Z=100\"");
+  command->add_option("--zero", arguments->zero,
+                      "machine position of the program's zero, tool length included: \"X=120,Y=80,Z=-40\"");
+  command->add_option("--tool", arguments->tool,
+                      "a tool of the file's <tools>, or \"X,Y,Z\" in mm from the end of the chain");
+  command
+      ->add_option("--deviation", arguments->deviation_um,
+                   "how far a block may leave the path that is corrected at every moment, um")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command->add_flag(
+      "--back", arguments->back,
+      "the other way: positions as commanded, to those of an ideal machine that would be there");
+  command->add_flag("--chords", arguments->chords,
+                    "write arcs as straight blocks, for a control that reads no G2 and G3");
+  command->add_flag(
+      "--rotary", arguments->with_rotary,
+      "correct with all axes, tool point and tool direction; default: as the machine file says");
+  command->add_option("--json", arguments->json, "result for programs; - for standard output");
+  command->footer(
+      "What was corrected is marked, and refused a second time. Exit status 0 done, 1 bad input (nothing\n"
+      "written), 2 some position cannot be corrected with these axes, a target cannot be reached, or the\n"
+      "blocks of a program leave the corrected path by more than --deviation.");
+  command->callback([arguments] { run_correct(*arguments); });
+}
+
+}  // namespace vernier::commands::correct_cli

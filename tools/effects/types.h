@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// An effect at a place of a machine: values, no algorithm.
+#pragma once
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/effects/catalogue.h"
+#include "tools/effects/places.h"
+
+namespace vernier::effects {
+
+/// What has to be said to put a form of an effect into a machine: the content of an `add` string.
+struct Choice {
+  const Effect* effect = nullptr;
+  const EffectForm* form = nullptr;
+  std::optional<std::size_t> axis, axis2;  // {q}, and the second one of a pair
+  std::vector<std::string> inputs;         // {T} or {L} or {F}, then {S}
+  std::vector<std::string> units;          // of the inputs
+  std::optional<DofPlace> place;
+  std::string sum;                    // {sum}
+  std::optional<std::size_t> toward;  // {across}: local axis of the bar, 0 to 2
+  std::optional<std::size_t> mass;    // {moment}: the transform of its branch behind which the mass sits
+  std::optional<double> reference;    // {ref}; none: the declared one, 20 for one not declared
+  double from = 0, to = 0;            // {from} {to} {mid} {hats N}
+  std::vector<std::string> runs;      // {runs}
+  std::map<std::string, double> start;
+  std::string term;  // of a found expression (effect `custom`)
+};
+
+/// A term that an effect adds to one degree of freedom; names are the final ones.
+struct CandidateTerm {
+  DofPlace place;
+  std::string text;
+};
+
+/// A static that an effect brings along.
+struct CandidateUnknown {
+  std::string name, unit;
+  std::string rule;  // name in the catalogue: k, p, tau ...
+  UnknownKind kind = UnknownKind::kLinear;
+  double start = 0;
+  double limit = 0;  // linear: largest plausible size of the term, mm or deg; 0: none
+};
+
+/// An effect at a place of a machine, ready to be evaluated or written.
+struct Candidate {
+  Choice choice;
+  std::vector<CandidateTerm> terms;
+  std::vector<CandidateUnknown> unknowns;
+  std::string label;   // where it stands: "backlash of X in X of transform 2"
+  std::string spoken;  // for people: "X carriage: backlash" (spoken.h)
+};
+
+/// The unknowns that are coefficients, in their order: what the term is linear in.
+inline std::vector<CandidateUnknown> linear_unknowns(const Candidate& candidate) {
+  std::vector<CandidateUnknown> unknowns;
+  for (const CandidateUnknown& unknown : candidate.unknowns)
+    if (unknown.kind == UnknownKind::kLinear) unknowns.push_back(unknown);
+  return unknowns;
+}
+/// The others: periods, time constants, decay lengths. Lists of their values are in this order.
+inline std::vector<CandidateUnknown> scanned_unknowns(const Candidate& candidate) {
+  std::vector<CandidateUnknown> unknowns;
+  for (const CandidateUnknown& unknown : candidate.unknowns)
+    if (unknown.kind != UnknownKind::kLinear) unknowns.push_back(unknown);
+  return unknowns;
+}
+
+}  // namespace vernier::effects

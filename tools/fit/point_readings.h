@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <Eigen/Core>
+
+#include "tools/model/measurement.h"
+#include "tools/model/states.h"
+
+namespace vernier::fit {
+
+/// Readings x, y, z of the tool point at every state, of value 0: for what a machine makes of them, not for a
+/// fit. In messages a row is "point:N", N from 1.
+model::Measurement point_readings(const model::States& states);
+
+/// Velocity of each point under the six rigid motions about the origin, 3 N x 6.
+Eigen::MatrixXd rigid_motions(const Eigen::Matrix3Xd& points);
+
+}  // namespace vernier::fit

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <Eigen/Core>
+
+namespace vernier::kinematics {
+
+/// Rotation vector of a matrix, rad.
+Eigen::Vector3d rotation_vector(const Eigen::Matrix3d& rotation);
+/// Matrix of a rotation vector, deg.
+Eigen::Matrix3d rotation_of(const Eigen::Vector3d& vector_deg);
+
+}  // namespace vernier::kinematics

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a plan is asked for and what it holds: values, no algorithm.
+#pragma once
+#include <Eigen/Core>
+#include <array>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/model/machine.h"
+#include "tools/model/measurement.h"
+#include "tools/model/parameters.h"
+#include "tools/plan/rival.h"
+#include "tools/tolerance/placed_part.h"
+
+namespace vernier::plan {
+
+struct PlanOptions {
+  double confidence = 0.95;           // that the chi^2 difference names the right one
+  std::optional<std::size_t> points;  // exactly so many; none: as few as the confidence needs
+  std::size_t most_points = 60;       // more are no plan
+  std::size_t most_bystanders = 4;    // other effects that a diagnosis would weigh beside the two
+  std::size_t offers = 1000;          // rows to choose from
+};
+
+/// One direction: how far the rival's best refit stays away while `truth` is true, in units of u^2.
+struct Separation {
+  double now = 0, planned = 0, needed = 0;
+};
+
+/// The next measurement.
+struct Plan {
+  FittedRival a, b;
+  model::Machine machine;   // that `rows` is bound to
+  model::Measurement rows;  // planned rows in time order, readings 0; empty: nothing helps
+  Separation a_true, b_true;
+  double lead_of_a = 0;                    // by how much B explains the rows so far worse than A (BIC)
+  bool told_already = false;               // that, or what they could show, is enough to name one of them
+  bool separable = false;                  // the planned rows reach what the confidence needs
+  std::vector<std::string> not_settable;   // inputs that a rival uses and nobody can set
+  std::vector<std::string> ruled_out;      // other effects that explain the rows so far, and will no more
+  std::vector<std::string> not_ruled_out;  // ... and that no such plan tells from the two
+  std::string sentence;                    // for people
+  const Separation& worse() const;
+};
+
+/// What is known of a machine before the next reading.
+struct Knowledge {
+  model::Machine machine;
+  model::ParameterSet parameters;
+  Eigen::MatrixXd covariance;  // of them, convention included
+  double reading_mm = 0.005;   // standard deviation of a coordinate that will be read, all that is its own
+  double run_mm = 0;           // ... of what all readings of a run share
+  bool new_set_up = true;      // the next readings are in a set-up that nothing is known of
+  std::array<bool, 3> reads{true, true, true};  // x, y, z
+};
+
+/// Where the machine has to be accurate: a part's features, else where its axes work (`<volume>`), with all
+/// tools of the file.
+struct AccuracyAim {
+  std::string words;  // "the volume"
+  std::optional<tolerance::PlacedPart> part;
+  std::vector<model::WorkRange> region;  // in place of the volume; an axis that is not named keeps its own
+  /// The machine with the one tool that counts, else that of the file and those of <tools>.
+  std::optional<model::Machine> tooled;
+};
+
+struct AccuracyOptions {
+  double accuracy_um = 0;                          // U95 (k = 2) asked for; 0: all of `most`
+  std::size_t most = 200;                          // poses
+  double feed_mm_min = 5000, turn_deg_min = 3600;  // between poses
+  double reading_s = 5;                            // to settle and read
+  std::function<void(double)> progress;
+};
+
+/// Points and time against what they are expected to bring.
+struct AccuracyStep {
+  std::size_t points = 0;
+  double minutes = 0, u95_um = 0;
+};
+
+/// What the uncertainty rests on.
+struct AccuracyLimit {
+  std::string name;  // of a source, as tools/tolerance names it
+  double share = 0;  // of the variance that is left
+};
+
+/// What is expected of one characteristic of a part, or of the whole.
+struct AccuracyOf {
+  std::string name;
+  double now_um = 0, after_um = 0;  // U95
+};
+
+struct AccuracyPlan {
+  model::States states;             // in the order in which they are measured
+  double now_um = 0, after_um = 0;  // U95, rms over the aim
+  double floor_um = 0;              // what no number of such readings goes below
+  double random_um = 0;  // after as many poses drawn evenly over the volume (rms over several draws)
+  bool reached = true;
+  std::vector<AccuracyStep> steps;
+  std::vector<AccuracyLimit> limits;  // of what is left at the end, largest first
+  std::vector<AccuracyLimit> unseen;  // of the floor: what such readings cannot tell
+  std::vector<AccuracyOf> parts;
+};
+
+}  // namespace vernier::plan
