@@ -9,11 +9,12 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "tools/text/csv.h"
+#include "tools/format/csv_file.h"
 #include "tools/text/files.h"
 
 namespace vernier::command_test {
 
+using namespace vernier::format;
 using namespace vernier::text;
 namespace {
 

@@ -12,6 +12,7 @@
 #include "tools/fit/noise.h"
 #include "tools/fit/set_up.h"
 #include "tools/fit/solve.h"
+#include "tools/format/readings.h"
 #include "tools/maths/orthonormal.h"
 #include "tools/model/fit_record.h"
 #include "tools/model/parameters.h"
@@ -196,8 +197,7 @@ class Collector {
       column[static_cast<Index>(i)] = static_cast<double>(m_.observations[i].row) / last;
     }
     for (const auto& [kind, column] : of_kind)
-      offer({fmt::format("drift of the instrument in {}",
-                         model::kObservationNames[static_cast<std::size_t>(kind)]),
+      offer({fmt::format("drift of the instrument in {}", format::name_of(kind)),
              model::is_rotation(kind) ? "deg" : "mm", true},
             column);
   }

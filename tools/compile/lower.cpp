@@ -9,6 +9,7 @@
 #include "tools/compile/builder.h"
 #include "tools/compile/functions.h"
 #include "tools/compile/segments.h"
+#include "tools/format/columns.h"
 #include "tools/model/station_table.h"
 
 namespace vernier::compile {
@@ -53,13 +54,13 @@ std::string channel_name(const model::Machine& machine, ChannelKind kind, std::s
     case ChannelKind::kInput:
       return machine.inputs[index].name;
     case ChannelKind::kFeed:
-      return "feed";
+      return format::columns::kFeed;
     case ChannelKind::kCurvature:
-      return "curv";
+      return format::columns::kCurvature;
     case ChannelKind::kTime:
       return "time_s";
     case ChannelKind::kVisit:
-      return "visit";
+      return format::columns::kVisit;
   }
   return "channel";
 }

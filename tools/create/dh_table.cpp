@@ -4,9 +4,9 @@
 #include <cmath>
 #include <optional>
 
-#include "tools/text/csv.h"
+#include "tools/format/csv_file.h"
+#include "tools/format/units.h"
 #include "tools/text/numbers.h"
-#include "tools/text/units.h"
 #include "tools/text/words.h"
 
 namespace vernier::create {
@@ -19,16 +19,16 @@ double number_in(const std::string& text, const text::Place& place, const std::s
 }
 
 /// The cells of one column in mm or deg; nothing where the table has no such column.
-std::optional<std::vector<double>> column(const text::CsvFile& csv, const std::string& name,
-                                          text::Dimension dimension) {
+std::optional<std::vector<double>> column(const format::CsvFile& csv, const std::string& name,
+                                          format::Dimension dimension) {
   for (std::size_t k = 0; k < csv.columns.size(); ++k) {
     if (csv.columns[k].name != name) continue;
-    const text::Unit unit = *text::find_unit(csv.columns[k].unit);
+    const format::Unit unit = *format::find_unit(csv.columns[k].unit);
     // Published tables leave the units out; mm and deg are theirs.
-    const bool bare = unit.dimension == text::Dimension::kNone;
+    const bool bare = unit.dimension == format::Dimension::kNone;
     if (!bare && unit.dimension != dimension)
       throw text::InputError({csv.file, csv.header_line}, name + "[" + unit.name + "]",
-                             std::string("this column needs a unit like ") + text::base_unit(dimension));
+                             std::string("this column needs a unit like ") + format::base_unit(dimension));
     std::vector<double> values;
     for (std::size_t row = 0; row < csv.rows.size(); ++row)
       values.push_back((bare ? 1 : unit.factor) *
@@ -57,16 +57,17 @@ const std::vector<DhRow>& default_arm() {
 }
 
 std::vector<DhRow> parse_dh_table(const std::string& text, const std::string& file) {
-  const text::CsvFile csv = text::parse_csv(text, file);
-  for (const text::CsvColumn& known : csv.columns) {
+  const format::CsvFile csv = format::parse_csv(text, file);
+  for (const format::CsvColumn& known : csv.columns) {
     const std::string& name = known.name;
     if (name != "theta" && name != "d" && name != "a" && name != "alpha" && name != "type" && name != "joint")
       throw text::InputError({file, csv.header_line}, name,
                              "the columns are theta, d, a, alpha, type and joint");
   }
-  const auto theta = column(csv, "theta", text::Dimension::kAngle),
-             d = column(csv, "d", text::Dimension::kLength), a = column(csv, "a", text::Dimension::kLength),
-             alpha = column(csv, "alpha", text::Dimension::kAngle);
+  const auto theta = column(csv, "theta", format::Dimension::kAngle),
+             d = column(csv, "d", format::Dimension::kLength),
+             a = column(csv, "a", format::Dimension::kLength),
+             alpha = column(csv, "alpha", format::Dimension::kAngle);
   if (!d || !a || !alpha)
     throw text::InputError({file, csv.header_line}, !d ? "d" : !a ? "a" : "alpha", "this column is missing");
   std::vector<DhRow> rows;

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "tools/create/machine_plan.h"
+#include "tools/format/columns.h"
 #include "tools/model/work_poses.h"
 #include "tools/sheet/workbook_writer.h"
 #include "tools/text/numbers.h"
@@ -15,37 +16,52 @@
 namespace vernier::create {
 namespace {
 
-struct ReadingColumns {
-  const char* header;
-  const char* remark;
-};
+/// Columns of a survey: of its readings, and what stands beside them.
+std::vector<const format::ColumnGroup*> groups_of(const format::SurveyReading& reading) {
+  std::vector<const format::ColumnGroup*> groups;
+  for (const format::ReadingForm form : reading.list()) groups.push_back(&format::reading_columns(form));
+  for (const format::ReadingForm form : reading.list())
+    for (const format::ColumnGroup* const beside : format::columns_beside(form)) groups.push_back(beside);
+  return groups;
+}
 
-ReadingColumns columns_of(Reading reading) {
-  switch (reading) {
-    case Reading::kPoint:
-      return {"x[mm],y[mm],z[mm]",
-              "# x y z         what the instrument read: the tool point in its own frame. One or two of the "
-              "three will do;\n"
-              "#               take the columns of the others away or leave their cells empty.\n"};
-    case Reading::kLength:
-      return {"length[mm],cx[mm],cy[mm],cz[mm]",
-              "# length        distance of the tool point from a fixed centre, as the bar read it (its full "
-              "length).\n"
-              "# cx cy cz      that centre, in the measuring frame.\n"};
-    case Reading::kTouch:
-      return {
-          "d[mm],nx,ny,nz,px[mm],py[mm],pz[mm]",
-          "# d             reading along the normal: how far the tool point was from the nominal point, out "
-          "of the\n"
-          "#               material positive.\n"
-          "# nx ny nz      that normal, a unit vector in workpiece coordinates (dial gauge along X: 1 0 0).\n"
-          "# px py pz      the nominal point, workpiece coordinates.\n"};
-    case Reading::kPose:
-      return {"x[mm],y[mm],z[mm],rx[deg],ry[deg],rz[deg]",
-              "# x y z         the tool point in the instrument's frame.\n"
-              "# rx ry rz      its rotation there, as a rotation vector.\n"};
+std::string header_of(const format::SurveyReading& reading) {
+  std::string header;
+  for (const format::ColumnGroup* const group : groups_of(reading))
+    for (const char* const name : group->list())
+      header += (header.empty() ? "" : ",") + format::heading(name, group->unit);
+  return header;
+}
+
+/// "# x y z         what they hold", in lines of bounded length.
+std::string remark_line(const std::string& names, const std::string& meaning) {
+  constexpr std::size_t kIndent = 14, kWidth = 104;  // letters: of the names, of a line
+  std::string text, line = "# " + names;
+  line.resize(std::max(kIndent + 2, line.size() + 1), ' ');
+  for (const std::string& word : text::words_in(meaning, " ")) {
+    if (line.size() + 1 + word.size() > kWidth) {
+      text += text::trimmed(line) + "\n";
+      line = "#";
+      line.resize(kIndent + 2, ' ');
+    }
+    line += (line.back() == ' ' ? "" : " ") + word;
   }
-  return {"", ""};
+  return text + line + "\n";
+}
+
+std::string remarks_of(const format::SurveyReading& reading) {
+  std::string text;
+  for (const format::ColumnGroup* const group : groups_of(reading)) {
+    // What several columns of one form leave out is said once.
+    const bool some_will_do = group->use == format::ColumnUse::kReading && group->count > 1 &&
+                              !format::entry_of(group->form).together;
+    text += remark_line(format::words_of(group->list()),
+                        std::string(group->meaning) +
+                            (some_will_do ? ". Take away the columns that the instrument does not read, or "
+                                            "leave their cells empty."
+                                          : "."));
+  }
+  return text;
 }
 
 /// The rows: positions of all axes, the sense of the axis that moves alone, run and role.
@@ -68,7 +84,7 @@ class Rows {
   void row(const std::vector<double>& at, std::size_t moving, int sense, const std::string& run, bool check) {
     for (const double position : at) text_ += text::number_text(position) + ",";
     for (std::size_t a = 0; a < at.size(); ++a) text_ += (a == moving ? std::to_string(sense) : "0") + ",";
-    text_ += empty_ + run + "," + (check ? "check" : "fit") + "\n";
+    text_ += empty_ + run + "," + (check ? format::kCheckRole : format::kFitRole) + "\n";
   }
 
   /// One axis over its travel and back, the others in the middle.
@@ -107,7 +123,7 @@ class Rows {
   std::string text_;
 };
 
-std::string remarks(const model::Machine& machine, Reading reading) {
+std::string remarks(const model::Machine& machine, const format::SurveyReading& reading) {
   std::string axes;
   for (const model::Axis& axis : machine.axes) axes += axis.name + " ";
   axes.resize(std::max<std::size_t>(14, axes.size()), ' ');
@@ -123,35 +139,43 @@ std::string remarks(const model::Machine& machine, Reading reading) {
          "where the machine was sent: positions as the control shows them.\n"
          "# dir...        the sense of the last motion of an axis, 1 or -1: come from that side. 0: it does "
          "not matter.\n" +
-         columns_of(reading).remark +
+         remarks_of(reading) +
          "# run           which pass it was. Stood the instrument elsewhere in some run, give the machine "
          "file a BaseShift\n"
          "#               with that run=\"label\".\n"
          "# role          fit, or check: rows that a fit does not see and that judge it.\n"
-         "# More columns are welcome, in any place: u[mm] standard uncertainty of the reading, t[s] time, "
-         "feed[mm/min],\n"
-         "# T_name[degC] a temperature, load[%], whatever was logged; `vernier diagnose` asks them what they "
-         "explain.\n"
+         "# More columns are welcome, in any place: " +
+         format::heading(format::columns::kUncertainty) + " standard uncertainty of the reading, " +
+         format::heading(format::columns::kTime) + " time,\n# " + format::heading(format::columns::kFeed) +
+         ", T_name[degC] a temperature, load[%], whatever was logged; `vernier diagnose` asks them what "
+         "they\n"
+         "# explain.\n"
          "# `vernier lint` says what is wrong with the file, `vernier import table` reads a spreadsheet "
          "instead.\n";
 }
 
 }  // namespace
 
-Reading reading_of(const std::string& name) {
-  if (name == "point") return Reading::kPoint;
-  if (name == "length") return Reading::kLength;
-  if (name == "touch") return Reading::kTouch;
-  if (name == "pose") return Reading::kPose;
-  throw text::InputError("\"" + name + "\": a reading is point, length, touch or pose");
+const format::SurveyReading& reading_of(const std::string& word) {
+  const format::SurveyReading* const reading = format::survey_reading(word);
+  if (reading == nullptr)
+    throw text::InputError("\"" + word + "\": a reading is " + format::survey_words("or"));
+  return *reading;
 }
 
-std::string survey_template(const model::Machine& machine, Reading reading) {
-  const std::string header = columns_of(reading).header;
+std::string survey_template(const model::Machine& machine, const format::SurveyReading& reading) {
+  using format::AxisQuantity;
+  for (const format::ReadingForm form : reading.list())
+    if (form == format::ReadingForm::kInclination && !machine.workpiece.empty())
+      throw text::InputError(
+          std::string("--reading ") + reading.word +
+          ": an inclination is read on the tool of a machine whose workpiece stands still");
+  const std::string header = header_of(reading);
   std::string text = remarks(machine, reading);
-  for (const model::Axis& axis : machine.axes) text += axis.name + (axis.rotary ? "[deg]," : "[mm],");
-  for (const model::Axis& axis : machine.axes) text += "dir" + axis.name + ",";
-  text += header + ",run,role\n";
+  for (const AxisQuantity quantity : {AxisQuantity::kPosition, AxisQuantity::kSense})
+    for (const model::Axis& axis : machine.axes)
+      text += format::axis_heading(quantity, axis.name, axis.rotary) + ",";
+  text += header + "," + format::columns::kRun + "," + format::columns::kRole + "\n";
   const std::string empty(static_cast<std::size_t>(std::count(header.begin(), header.end(), ',')) + 1, ',');
   return text + Rows(machine, empty).text();
 }

@@ -12,6 +12,7 @@
 #include "tools/fit/selection.h"
 #include "tools/fit/solve.h"
 #include "tools/fit/statistics.h"
+#include "tools/format/columns.h"
 #include "tools/maths/chance.h"
 #include "tools/maths/decompositions.h"
 #include "tools/maths/orthonormal.h"
@@ -417,7 +418,8 @@ std::vector<double> Evidence::places_read(std::size_t axis, int sense, double ap
 int Evidence::sense_of(std::size_t axis, std::size_t row) const {
   const auto at = static_cast<Eigen::Index>(row);
   const model::Column& direction = measurement_.states.direction[axis];
-  if (measurement_.has_recorded("dir" + machine_.axes[axis].name)) return static_cast<int>(direction[at]);
+  if (measurement_.has_recorded(format::axis_column(format::AxisQuantity::kSense, machine_.axes[axis].name)))
+    return static_cast<int>(direction[at]);
   // Not told: the way from the row before, over repeats at one place.
   for (Eigen::Index before = at; before-- > 0;) {
     const double step = position_[axis][at] - position_[axis][before];

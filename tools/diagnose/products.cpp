@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/diagnose/products.h"
+
 #include <algorithm>
 #include <cmath>
+
+#include "tools/format/columns.h"
 
 namespace vernier::diagnose {
 namespace {
@@ -45,14 +48,15 @@ std::vector<ProductFactor> factors_of(const Evidence& evidence) {
       take_named(name, evidence.position(i));
     }
     if (varies(s.direction[i], evidence.rows()))
-      list.push_back({model::make_symbol("dir" + name), {}, {}, true});
-    take_named("v" + name, s.velocity[i]);
-    take_named("a" + name, s.acceleration[i]);
+      list.push_back(
+          {model::make_symbol(format::axis_column(format::AxisQuantity::kSense, name)), {}, {}, true});
+    take_named(format::axis_column(format::AxisQuantity::kSpeed, name), s.velocity[i]);
+    take_named(format::axis_column(format::AxisQuantity::kAcceleration, name), s.acceleration[i]);
   }
-  take_named("feed", s.feed);
-  take_named("curv", s.curvature);
-  take_named("t", s.time);
-  take_named("visit", s.visit);
+  take_named(format::columns::kFeed, s.feed);
+  take_named(format::columns::kCurvature, s.curvature);
+  take_named(format::columns::kTime, s.time);
+  take_named(format::columns::kVisit, s.visit);
   for (std::size_t i = 0; i < machine.inputs.size(); ++i)
     if (varies(s.input[i], evidence.rows()) &&
         effects::class_of_input(machine.inputs[i]) != effects::InputClass::kSetpoint)

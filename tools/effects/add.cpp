@@ -8,6 +8,7 @@
 #include "tools/effects/input_class.h"
 #include "tools/effects/insertion.h"
 #include "tools/fit/domain.h"
+#include "tools/format/columns.h"
 #include "tools/text/error.h"
 #include "tools/text/numbers.h"
 #include "tools/text/xml_text.h"
@@ -65,9 +66,9 @@ class Adder {
     bool feed = false;
     for (const CandidateTerm& term : candidate_.terms)
       model::walk(*model::parse_expression(term.text), [&feed](const model::Expr& e) {
-        feed = feed || (e.op == model::Op::kSymbol && e.name == "feed");
+        feed = feed || (e.op == model::Op::kSymbol && e.name == format::columns::kFeed);
       });
-    if (feed) domain_.emplace_back("feed", "mm/min");
+    if (feed) domain_.emplace_back(format::columns::kFeed, format::column_unit(format::columns::kFeed));
     for (const model::Input& input : machine_.inputs) {
       const bool listed =
           std::any_of(domain_.begin(), domain_.end(), [&](const auto& q) { return q.first == input.name; });

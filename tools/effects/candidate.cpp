@@ -10,6 +10,7 @@
 #include "tools/effects/gravity.h"
 #include "tools/effects/input_class.h"
 #include "tools/effects/spoken.h"
+#include "tools/format/columns.h"
 #include "tools/text/error.h"
 #include "tools/text/numbers.h"
 
@@ -132,11 +133,11 @@ class Maker {
         if (terms.size() != 2) missing("the degree of freedom of an axis");
         break;
       case PlaceRule::kNormal: {
-        static constexpr std::array<const char*, 3> kNormals = {"nx", "ny", "nz"};
         const std::vector<DofPlace> base = base_places(machine_);
         // The workpiece branch enters inverted: what moves it forward moves the point back.
         for (std::size_t i = 0; i < base.size(); ++i)
-          terms.push_back({base[i], form[0], std::nullopt, base[i].workpiece, kNormals.at(i)});
+          terms.push_back(
+              {base[i], form[0], std::nullopt, base[i].workpiece, format::columns::kNormal.at(i)});
         break;
       }
       case PlaceRule::kBend:

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <string>
 
+#include "tools/format/units.h"
 #include "tools/maths/factors.h"
-#include "tools/text/units.h"
 #include "tools/text/words.h"
 #include "tools/vibration/signal_features.h"
 
@@ -46,7 +46,8 @@ InputClass class_of_input(const model::Input& input) {
   const std::string& unit = input.unit;
   const std::string lower = text::in_small_letters(input.name);
   if (is_setpoint(lower)) return InputClass::kSetpoint;
-  if (const auto known = text::find_unit(unit); known && known->dimension == text::Dimension::kTemperature)
+  if (const auto known = format::find_unit(unit);
+      known && known->dimension == format::Dimension::kTemperature)
     return InputClass::kTemperature;
   if (unit == "N" || unit == "kg") return InputClass::kLoad;
   if (unit == "mm/s^2" || unit == "m/s^2" || unit == "deg/s^2" || unit == "g") return InputClass::kFeature;
@@ -68,8 +69,8 @@ double usual_reference(const model::Input& input, double mean) {
 }
 
 double standard_reference(std::string_view unit) {
-  const auto known = text::find_unit(unit);
-  if (!known || known->dimension != text::Dimension::kTemperature) return maths::kReferenceDegC;
+  const auto known = format::find_unit(unit);
+  if (!known || known->dimension != format::Dimension::kTemperature) return maths::kReferenceDegC;
   return std::round(1e6 * (maths::kReferenceDegC - known->offset) / known->factor) / 1e6;
 }
 

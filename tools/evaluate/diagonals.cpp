@@ -6,10 +6,11 @@
 #include <cmath>
 
 #include "tools/evaluate/positioning_page.h"
-#include "tools/text/csv.h"
+#include "tools/format/columns.h"
+#include "tools/format/csv_file.h"
+#include "tools/model/column_reader.h"
 #include "tools/text/error.h"
 #include "tools/text/numbers.h"
-#include "tools/text/units.h"
 
 namespace vernier::evaluate {
 namespace {
@@ -26,39 +27,32 @@ struct Row {
   std::size_t line = 0;
 };
 
+/// What a file has of diagonals: positions of its linear axes, readings, the largest uncertainty; mm.
 struct Columns {
-  std::array<std::optional<std::size_t>, 3> axis;
-  std::size_t reading = 0;
-  std::optional<std::size_t> u;
+  std::array<model::Column, 3> axis;  // empty: the file has none
+  model::Column reading, u;
 };
 
-double in_mm(const text::CsvFile& csv, std::size_t row, std::size_t column) {
-  const auto value = text::parse_number(csv.rows[row][column]);
-  if (!value)
-    throw text::InputError({csv.file, csv.line[row]}, csv.rows[row][column],
-                           "not a number, in column " + csv.columns[column].name);
-  return text::find_unit(csv.columns[column].unit)->factor * *value;
+bool is_length(const model::ColumnReader& reader, const std::string& name) {
+  return reader.has(name) && reader.dimension(name) == format::Dimension::kLength;
 }
 
-Columns columns_of(const text::CsvFile& csv, const std::string& reading) {
+Columns columns_of(model::ColumnReader& reader, const std::string& reading) {
   Columns columns;
-  bool found = false;
-  for (std::size_t k = 0; k < csv.columns.size(); ++k) {
-    const std::string& name = csv.columns[k].name;
-    const bool length = text::find_unit(csv.columns[k].unit)->dimension == text::Dimension::kLength;
-    if (name.size() == 1 && name[0] >= 'X' && name[0] <= 'Z' && length)
-      columns.axis[static_cast<std::size_t>(name[0] - 'X')] = k;
-    if (name == "u" && length) columns.u = k;
-    if (name != reading) continue;
-    if (!length)
-      throw text::InputError({csv.file, csv.header_line}, name, "a displacement needs a unit of length");
-    columns.reading = k;
-    found = true;
-  }
-  const text::Place header{csv.file, csv.header_line};
-  if (!found) throw text::InputError(header, reading, "this column is missing");
-  if (std::count(columns.axis.begin(), columns.axis.end(), std::nullopt) > 1)
-    throw text::InputError(header, "X", "a diagonal needs columns of two linear axes at least");
+  std::size_t axes = 0;
+  for (std::size_t k = 0; k < 3; ++k)
+    if (const std::string name(1, "XYZ"[k]); is_length(reader, name)) {
+      columns.axis[k] = reader.numbers(name, format::Dimension::kLength, false);
+      ++axes;
+    }
+  reader.require(reading, "this column is missing");
+  if (!is_length(reader, reading))
+    throw text::InputError(reader.header(), reading, "a displacement needs a unit of length");
+  columns.reading = reader.numbers(reading, format::Dimension::kLength, false);
+  if (const std::string u = format::columns::kUncertainty; is_length(reader, u))
+    columns.u = reader.numbers(u, format::Dimension::kLength, false);
+  if (axes < 2)
+    throw text::InputError(reader.header(), "X", "a diagonal needs columns of two linear axes at least");
   return columns;
 }
 
@@ -162,18 +156,23 @@ DiagonalFile diagonal_of(const std::vector<Line>& passes, const std::string& nam
 
 std::vector<DiagonalFile> read_diagonals(const std::string& text, const std::string& file,
                                          const std::string& reading) {
-  const text::CsvFile csv = text::parse_csv(text, file);
-  const Columns columns = columns_of(csv, reading);
+  const format::CsvFile csv = format::parse_csv(text, file);
+  model::ColumnReader reader(csv);
+  const Columns columns = columns_of(reader, reading);
   std::vector<Row> rows;
   std::optional<double> u;
-  for (std::size_t i = 0; i < csv.rows.size(); ++i) {
-    if (csv.rows[i][columns.reading].empty()) continue;
+  for (Eigen::Index i = 0; i < columns.reading.size(); ++i) {
+    if (std::isnan(columns.reading[i])) continue;
     Row row;
-    row.line = csv.line[i];
-    row.reading = in_mm(csv, i, columns.reading);
-    for (std::size_t k = 0; k < 3; ++k)
-      if (columns.axis[k]) row.at[static_cast<Eigen::Index>(k)] = in_mm(csv, i, *columns.axis[k]);
-    if (columns.u && !csv.rows[i][*columns.u].empty()) u = std::max(u.value_or(0), in_mm(csv, i, *columns.u));
+    row.line = csv.line[static_cast<std::size_t>(i)];
+    row.reading = columns.reading[i];
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (columns.axis[k].size() == 0) continue;
+      row.at[static_cast<Eigen::Index>(k)] = columns.axis[k][i];
+      if (std::isnan(columns.axis[k][i]))
+        throw text::InputError({file, row.line}, std::string(1, "XYZ"[k]), "this column may not be empty");
+    }
+    if (columns.u.size() > 0 && !std::isnan(columns.u[i])) u = std::max(u.value_or(0), columns.u[i]);
     rows.push_back(row);
   }
   std::map<std::string, std::vector<Line>> by_name;

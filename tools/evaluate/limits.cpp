@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cctype>
 
+#include "tools/format/units.h"
 #include "tools/text/error.h"
 #include "tools/text/numbers.h"
-#include "tools/text/units.h"
 #include "tools/text/words.h"
 
 namespace vernier::evaluate {
@@ -21,9 +21,10 @@ std::pair<std::string, double> limit_of(const std::string& words, const std::str
   while (end < rest.size() && (std::isdigit(static_cast<unsigned char>(rest[end])) != 0 || rest[end] == '.'))
     ++end;
   const auto number = text::parse_number(rest.substr(0, end));
-  const auto unit = text::find_unit(rest.substr(end));
+  const auto unit = format::find_unit(rest.substr(end));
   const bool angle = unit_wanted == "deg";
-  const bool fits = unit && unit->dimension == (angle ? text::Dimension::kAngle : text::Dimension::kLength);
+  const bool fits =
+      unit && unit->dimension == (angle ? format::Dimension::kAngle : format::Dimension::kLength);
   if (!number || !fits || std::find(names.begin(), names.end(), name) == names.end())
     throw text::InputError(option + " " + words + ": of the form " + names.front() +
                            (angle ? "=0.01deg" : "=10um") + ", for one of " + text::joined(names, " "));

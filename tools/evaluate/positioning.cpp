@@ -6,9 +6,11 @@
 #include <map>
 #include <numeric>
 
-#include "tools/text/csv.h"
+#include "tools/format/columns.h"
+#include "tools/format/csv_file.h"
+#include "tools/model/column_reader.h"
+#include "tools/text/error.h"
 #include "tools/text/numbers.h"
-#include "tools/text/units.h"
 
 namespace vernier::evaluate {
 namespace {
@@ -60,43 +62,13 @@ TargetResult result_at(const TargetReadings& readings) {
   return result;
 }
 
-class Table {
- public:
-  Table(const std::string& text, const std::string& file) : csv_(text::parse_csv(text, file)) {}
-
-  std::optional<std::size_t> find(const std::string& name) const {
-    for (std::size_t k = 0; k < csv_.columns.size(); ++k)
-      if (csv_.columns[k].name == name) return k;
-    return std::nullopt;
-  }
-  std::size_t need(const std::string& name) const {
-    const auto column = find(name);
-    if (!column) throw text::InputError({csv_.file, csv_.header_line}, name, "this column is missing");
-    return *column;
-  }
-  text::Unit unit(std::size_t column) const { return *text::find_unit(csv_.columns[column].unit); }
-  /// In the base unit; nothing for an empty cell.
-  std::optional<double> number(std::size_t row, std::size_t column) const {
-    const std::string& cell = csv_.rows[row][column];
-    if (cell.empty()) return std::nullopt;
-    const auto value = text::parse_number(cell);
-    if (!value)
-      throw text::InputError({csv_.file, csv_.line[row]}, cell,
-                             "not a number, in column " + csv_.columns[column].name);
-    return unit(column).factor * *value + unit(column).offset;
-  }
-  const text::CsvFile& csv() const { return csv_; }
-
- private:
-  text::CsvFile csv_;
-};
-
-/// Of a rotary axis the angle about it serves where no column has its name: rz of C.
-std::size_t reading_column(const Table& table, const std::string& axis, const std::string& reading) {
-  if (const auto own = table.find(reading)) return *own;
-  if (const auto about = text::angle_about(axis))
-    if (const auto angle = table.find(*about)) return *angle;
-  return table.need(reading);
+/// Of a rotary axis the angle about it is the reading where no column has its name: rz of C.
+std::string reading_column(const model::ColumnReader& file, const std::string& axis,
+                           const std::string& reading) {
+  const auto about = format::angle_about(axis);
+  if (!file.has(reading) && about && file.has(*about)) return *about;
+  file.require(reading, "this column is missing");
+  return reading;
 }
 
 }  // namespace
@@ -144,50 +116,53 @@ PositioningResult evaluate_positioning(const std::vector<TargetReadings>& readin
 
 PositioningFile read_positioning(const std::string& text, const std::string& file, const std::string& axis,
                                  const std::string& reading) {
-  const Table table(text, file);
-  const std::size_t position = table.need(axis), actual = reading_column(table, axis, reading);
+  const format::CsvFile csv = format::parse_csv(text, file);
+  model::ColumnReader reader(csv);
+  reader.require(axis, "this column is missing");
+  const std::string actual = reading_column(reader, axis, reading);
   PositioningFile result;
-  const text::Dimension dimension = table.unit(position).dimension;
-  if (dimension != text::Dimension::kLength && dimension != text::Dimension::kAngle)
-    throw text::InputError({file, table.csv().header_line}, axis,
-                           "an axis position needs a unit like mm or deg");
-  if (table.unit(actual).dimension != dimension)
-    throw text::InputError({file, table.csv().header_line}, reading, "of another kind of unit than " + axis);
-  result.unit = text::base_unit(dimension);
-  const auto dir = table.find("dir" + axis), u = table.find("u");
-  result.sense_from_order = !dir;
+  const format::Dimension dimension = reader.dimension(axis);
+  if (dimension != format::Dimension::kLength && dimension != format::Dimension::kAngle)
+    throw text::InputError(reader.header(), axis, "an axis position needs a unit like mm or deg");
+  if (reader.dimension(actual) != dimension)
+    throw text::InputError(reader.header(), reading, "of another kind of unit than " + axis);
+  result.unit = format::base_unit(dimension);
+  const model::Column position = reader.numbers(axis, dimension, true),
+                      readings = reader.numbers(actual, dimension, false);
+  const std::string dir = format::axis_column(format::AxisQuantity::kSense, axis);
+  result.sense_from_order = !reader.has(dir);
+  const model::Column senses =
+      result.sense_from_order ? model::Column() : reader.numbers(dir, format::Dimension::kNone, false);
+  const std::string uncertainty = format::columns::kUncertainty;
+  const model::Column u = reader.has(uncertainty)
+                              ? reader.numbers(uncertainty, reader.dimension(uncertainty), false)
+                              : model::Column();
   // Targets are what was commanded: a thousandth of a micrometre apart they are the same.
   std::map<long long, TargetReadings> targets;
-  std::optional<double> before;
-  double sense = 0;
-  for (std::size_t row = 0; row < table.csv().rows.size(); ++row) {
-    const auto at = table.number(row, position);
-    if (!at) throw text::InputError({file, table.csv().line[row]}, axis, "this column may not be empty");
-    if (dir) {
-      sense = table.number(row, *dir).value_or(0);
+  double sense = 1;
+  for (Eigen::Index row = 0; row < position.size(); ++row) {
+    const double at = position[row];
+    if (!result.sense_from_order) {
+      sense = std::isnan(senses[row]) ? 0 : senses[row];
       if (sense != 0 && std::abs(sense) != 1)
-        throw text::InputError({file, table.csv().line[row]}, text::number_text(sense),
+        throw text::InputError(reader.place(static_cast<std::size_t>(row)), text::number_text(sense),
                                "a sense of approach is 1 or -1 (0: nothing moved)");
-    } else if (before) {
+    } else if (row > 0) {
       // At the far end the same target is approached again from the other side.
-      sense = *at > *before ? 1 : *at < *before ? -1 : -sense;
-    } else {
-      sense = 1;
+      const double before = position[row - 1];
+      sense = at > before ? 1 : at < before ? -1 : -sense;
     }
-    before = at;
-    const auto value = table.number(row, actual);
-    if (!value || sense == 0) continue;
-    TargetReadings& target = targets[std::llround(*at * 1e6)];
-    target.target = *at;
-    target.deviation[sense > 0 ? 0 : 1].push_back(*value - *at);
+    if (std::isnan(readings[row]) || sense == 0) continue;
+    TargetReadings& target = targets[std::llround(at * 1e6)];
+    target.target = at;
+    target.deviation[sense > 0 ? 0 : 1].push_back(readings[row] - at);
     ++result.rows;
-    if (u)
-      if (const auto one = table.number(row, *u)) raise(result.u, *one);
+    if (u.size() > 0 && !std::isnan(u[row])) raise(result.u, u[row]);
   }
   for (auto& [key, target] : targets) result.readings.push_back(std::move(target));
   if (result.rows == 0)
-    throw text::InputError({file, table.csv().header_line}, axis,
-                           "no row has a reading and a sense of approach (dir" + axis + " of 1 or -1)");
+    throw text::InputError(reader.header(), axis,
+                           "no row has a reading and a sense of approach (" + dir + " of 1 or -1)");
   return result;
 }
 

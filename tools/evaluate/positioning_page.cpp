@@ -5,6 +5,8 @@
 
 #include <array>
 
+#include "tools/format/columns.h"
+
 namespace vernier::evaluate {
 namespace {
 
@@ -77,13 +79,15 @@ std::optional<JudgedValue> judged_of(const Json& characteristic) {
 Json positioning_json(const PositioningResult& result, const PositioningFile& file,
                       const PositioningWords& words) {
   const double factor = file.unit == "mm" ? 1e3 : 3600;
-  Json json = {{"standard", "ISO 230-2"},
-               {"axis", words.axis},
-               {"unit", file.unit == "mm" ? "um" : "arcsec"},
-               {"position_unit", file.unit},
-               {"n_rows", file.rows},
-               {"n_targets", result.targets.size()},
-               {"sense", file.sense_from_order ? "from the order of the rows" : "dir" + words.axis}};
+  Json json = {
+      {"standard", "ISO 230-2"},
+      {"axis", words.axis},
+      {"unit", file.unit == "mm" ? "um" : "arcsec"},
+      {"position_unit", file.unit},
+      {"n_rows", file.rows},
+      {"n_targets", result.targets.size()},
+      {"sense", file.sense_from_order ? "from the order of the rows"
+                                      : format::axis_column(format::AxisQuantity::kSense, words.axis)}};
   for (const auto& [key, value] : words.header) json["header"][key] = value;
   for (const TargetResult& at : result.targets) {
     Json one = {{"target", at.target}, {"n", {at.count[0], at.count[1]}}};

@@ -7,10 +7,10 @@
 #include <cmath>
 #include <map>
 
-#include "tools/text/csv.h"
+#include "tools/format/csv_file.h"
+#include "tools/format/units.h"
 #include "tools/text/error.h"
 #include "tools/text/numbers.h"
-#include "tools/text/units.h"
 
 namespace vernier::evaluate {
 namespace {
@@ -112,42 +112,41 @@ PathResult evaluate_path(const std::vector<PoseReading>& readings, std::size_t s
 }
 
 std::vector<PoseReading> read_pose_readings(const std::string& text, const std::string& file) {
-  const text::CsvFile csv = text::parse_csv(text, file);
-  std::map<std::string, std::size_t> place;
-  for (std::size_t k = 0; k < csv.columns.size(); ++k) place[csv.columns[k].name] = k;
-  const text::Place header{file, csv.header_line};
-  for (const char* name : {"px", "py", "pz", "x", "y", "z"}) {
-    if (!place.contains(name))
-      throw text::InputError(
-          header, name, "this column is missing: px py pz commanded, x y z measured (or give --machine)");
-    if (text::find_unit(csv.columns[place[name]].unit)->dimension != text::Dimension::kLength)
-      throw text::InputError(header, name, "this column needs a unit like mm");
-  }
-  const auto number = [&](std::size_t row, const std::string& name) -> std::optional<double> {
-    const std::string& cell = csv.rows[row][place[name]];
-    if (cell.empty()) return std::nullopt;
-    const auto value = text::parse_number(cell);
-    if (!value) throw text::InputError({file, csv.line[row]}, cell, "not a number");
-    return *value * text::find_unit(csv.columns[place[name]].unit)->factor;
-  };
-  std::vector<PoseReading> readings;
-  for (std::size_t row = 0; row < csv.rows.size(); ++row) {
-    PoseReading one;
-    bool read = true;
-    const std::string commanded[] = {"px", "py", "pz"}, measured[] = {"x", "y", "z"};
-    for (int k = 0; k < 3; ++k) {
-      const auto value = number(row, commanded[k]), found = number(row, measured[k]);
-      if (!value) throw text::InputError({file, csv.line[row]}, commanded[k], "this column may not be empty");
-      read = read && found;
-      one.commanded_mm[k] = *value;
-      one.measured_mm[k] = found.value_or(0);
+  const format::CsvFile csv = format::parse_csv(text, file);
+  namespace columns = format::columns;
+  model::ColumnReader reader(csv);
+  std::array<model::Column, 3> commanded, measured;
+  const auto read = [&](const std::array<const char*, 3>& names, std::array<model::Column, 3>& values,
+                        bool filled) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      reader.require(names[k], "this column is missing: " + format::words_of(columns::kNominalPoint) +
+                                   " commanded, " + format::words_of(columns::kPoint) +
+                                   " measured (or give --machine)");
+      values[k] = reader.numbers(names[k], format::Dimension::kLength, filled);
     }
-    if (place.contains("run")) one.run = csv.rows[row][place["run"]];
-    if (place.contains("u")) one.u_mm = number(row, "u").value_or(0);
-    if (place.contains("t")) one.time_s = number(row, "t").value_or(one.time_s);
-    if (read) readings.push_back(one);
+  };
+  read(columns::kNominalPoint, commanded, true);
+  read(columns::kPoint, measured, false);
+  const auto beside = [&](const char* name) {
+    return reader.has(name) ? reader.numbers(name, reader.dimension(name), false) : model::Column();
+  };
+  const model::Column u = beside(columns::kUncertainty), time = beside(columns::kTime);
+  const std::vector<std::string> runs =
+      reader.has(columns::kRun) ? reader.words(columns::kRun) : std::vector<std::string>(reader.rows());
+  std::vector<PoseReading> readings;
+  for (Eigen::Index row = 0; row < commanded[0].size(); ++row) {
+    PoseReading one;
+    for (std::size_t k = 0; k < 3; ++k) {
+      one.commanded_mm[static_cast<Eigen::Index>(k)] = commanded[k][row];
+      one.measured_mm[static_cast<Eigen::Index>(k)] = measured[k][row];
+    }
+    one.run = runs[static_cast<std::size_t>(row)];
+    if (u.size() > 0 && !std::isnan(u[row])) one.u_mm = u[row];
+    if (time.size() > 0 && !std::isnan(time[row])) one.time_s = time[row];
+    if (one.measured_mm.allFinite()) readings.push_back(one);
   }
-  if (readings.empty()) throw text::InputError(header, "x", "no row has a reading");
+  if (readings.empty())
+    throw text::InputError(reader.header(), columns::kPoint.front(), "no row has a reading");
   return readings;
 }
 

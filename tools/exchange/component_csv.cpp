@@ -9,10 +9,10 @@
 #include <sstream>
 
 #include "tools/exchange/table_text.h"
+#include "tools/format/csv_file.h"
+#include "tools/format/units.h"
 #include "tools/maths/factors.h"
-#include "tools/text/csv.h"
 #include "tools/text/numbers.h"
-#include "tools/text/units.h"
 
 namespace vernier::exchange {
 namespace {
@@ -151,16 +151,16 @@ std::string axis_csv(const model::Machine& machine, const model::Table& table) {
 }
 
 model::Table parse_axis_csv(const std::string& text, const std::string& file, const model::Machine& machine) {
-  const text::CsvFile csv = text::parse_csv(text, file);
+  const format::CsvFile csv = format::parse_csv(text, file);
   const text::Place place{file, csv.header_line};
   const auto axis = machine.find_axis(csv.columns[0].name);
   if (!axis)
     throw text::InputError(place, csv.columns[0].name, "the first column is no axis of this machine");
-  const auto numbers = [&](std::size_t column, text::Dimension dimension) {
-    const text::Unit unit = *text::find_unit(csv.columns[column].unit);
+  const auto numbers = [&](std::size_t column, format::Dimension dimension) {
+    const format::Unit unit = *format::find_unit(csv.columns[column].unit);
     if (unit.dimension != dimension)
       throw text::InputError(place, csv.columns[column].name,
-                             std::string("this column needs a unit like ") + text::base_unit(dimension));
+                             std::string("this column needs a unit like ") + format::base_unit(dimension));
     std::vector<double> result;
     for (std::size_t i = 0; i < csv.rows.size(); ++i)
       result.push_back(unit.factor * number_of(csv.rows[i][column], {file, csv.line[i]}));
@@ -169,7 +169,7 @@ model::Table parse_axis_csv(const std::string& text, const std::string& file, co
   const std::string& name = machine.axes[*axis].name;
   model::Table table = empty_table(
       machine, *axis,
-      numbers(0, machine.axes[*axis].rotary ? text::Dimension::kAngle : text::Dimension::kLength));
+      numbers(0, machine.axes[*axis].rotary ? format::Dimension::kAngle : format::Dimension::kLength));
   for (std::size_t c = 1; c < csv.columns.size(); ++c) {
     std::size_t k = 0;
     while (k < 6 && csv.columns[c].name != own_name(machine, *axis, k) &&
@@ -179,7 +179,8 @@ model::Table parse_axis_csv(const std::string& text, const std::string& file, co
       throw text::InputError(place, csv.columns[c].name,
                              "no error of axis " + name + "; known are " + own_name(machine, *axis, 0) +
                                  " … or " + iso_name(0, name) + " …");
-    const std::vector<double> values = numbers(c, k < 3 ? text::Dimension::kLength : text::Dimension::kAngle);
+    const std::vector<double> values =
+        numbers(c, k < 3 ? format::Dimension::kLength : format::Dimension::kAngle);
     for (std::size_t i = 0; i < values.size(); ++i) table.stations[i].value[k] = values[i];
   }
   check_increasing(table, file, csv.line);

@@ -12,11 +12,11 @@
 #include "tools/fit/set_up.h"
 #include "tools/fit/statistics.h"
 #include "tools/fit/unseen_turns.h"
+#include "tools/format/units.h"
 #include "tools/maths/decompositions.h"
 #include "tools/maths/factors.h"
 #include "tools/model/chain_rows.h"
 #include "tools/model/evaluate.h"
-#include "tools/text/units.h"
 
 namespace vernier::fit {
 namespace {
@@ -153,10 +153,10 @@ void find_slopes(const model::Machine& machine, const model::Measurement& m,
 double scale_by_unit(const std::string& unit, double length_mm, double reach_mm) {
   if (unit == "urad") return length_mm / reach_mm * 1e6;
   if (unit == "mrad") return length_mm / reach_mm * 1e3;
-  const auto known = text::find_unit(unit);
+  const auto known = format::find_unit(unit);
   if (!known) return 0;
-  if (known->dimension == text::Dimension::kLength) return length_mm / known->factor;
-  if (known->dimension == text::Dimension::kAngle)
+  if (known->dimension == format::Dimension::kLength) return length_mm / known->factor;
+  if (known->dimension == format::Dimension::kAngle)
     return length_mm / reach_mm * maths::kDegPerRad / known->factor;
   return 0;
 }

@@ -21,6 +21,7 @@
 #include "tools/fit/solve.h"
 #include "tools/fit/statistics.h"
 #include "tools/fit/unmeasured.h"
+#include "tools/format/readings.h"
 #include "tools/maths/factors.h"
 #include "tools/model/evaluate.h"
 #include "tools/model/fit_record.h"
@@ -159,7 +160,7 @@ void find_disturbance(const FitResult& result, const model::Measurement& rows, c
     if (model::is_rotation(kind)) continue;
     offer(1e-3 * std::abs(step.height) * unit.um,
           fmt::format("a step of {:.3g} um in {} from row {} on", std::abs(step.height) * unit.um,
-                      model::kObservationNames[static_cast<std::size_t>(step.kind)], step.row + 1));
+                      format::name_of(static_cast<format::ReadingKind>(step.kind)), step.row + 1));
   }
   const double drift = result.noise.drift * unit.of_all();
   offer(unit.angles_only ? drift / maths::kArcsecPerDeg * maths::kRadPerDeg * result.reach_mm : 1e-3 * drift,

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "tools/fit/whitener.h"
+#include "tools/format/readings.h"
 
 namespace vernier::fit {
 namespace {
@@ -142,7 +143,7 @@ std::string in_words(const NoiseModel& model, const NoiseUnit& unit) {
     const bool rotation = model::is_rotation(kind);
     text += fmt::format(", a step of {:.3g} +- {:.2g} {} in {} from row {} on",
                         step.height * unit.of(rotation), step.std * unit.of(rotation), unit_name(rotation),
-                        model::kObservationNames[static_cast<std::size_t>(step.kind)], step.row + 1);
+                        format::name_of(static_cast<format::ReadingKind>(step.kind)), step.row + 1);
   }
   return text;
 }

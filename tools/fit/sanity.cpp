@@ -10,6 +10,7 @@
 
 #include "tools/fit/convention.h"
 #include "tools/fit/statistics.h"
+#include "tools/format/readings.h"
 #include "tools/maths/factors.h"
 #include "tools/maths/median.h"
 
@@ -17,8 +18,7 @@ namespace vernier::fit {
 namespace {
 
 std::string reading_name(const model::Measurement& m, const model::Observation& o) {
-  return fmt::format("{}:{} {}", m.files[m.file[o.row]], m.line[o.row],
-                     model::kObservationNames[static_cast<std::size_t>(o.kind)]);
+  return fmt::format("{}:{} {}", m.files[m.file[o.row]], m.line[o.row], format::name_of(o.kind));
 }
 
 struct Mistake {
@@ -47,9 +47,7 @@ constexpr std::array<std::pair<const char*, double>, 6> kLengthUnits = {
 void add_mistakes_of_readings(const model::Measurement& rows, std::vector<Mistake>& list) {
   constexpr std::array kKinds = {model::ObservationKind::kX, model::ObservationKind::kY,
                                  model::ObservationKind::kZ};
-  const auto name = [](model::ObservationKind kind) {
-    return model::kObservationNames[static_cast<std::size_t>(kind)];
-  };
+  const auto name = [](model::ObservationKind kind) { return format::name_of(kind); };
   for (std::size_t a = 0; a < 3; ++a)
     for (std::size_t b = a + 1; b < 3; ++b)
       list.push_back({fmt::format("the columns {} and {} look swapped", name(kKinds[a]), name(kKinds[b])),

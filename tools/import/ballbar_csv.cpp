@@ -8,12 +8,14 @@
 #include <iterator>
 #include <set>
 
+#include "tools/format/columns.h"
 #include "tools/import/ballbar_motion.h"
 
 namespace vernier::importer {
 namespace {
 
-constexpr const char* kMotionColumns[] = {"v{}[mm/s]", "a{}[mm/s^2]", "dir{}", "since{}[mm]"};
+constexpr std::array kMotionColumns = {format::AxisQuantity::kSpeed, format::AxisQuantity::kAcceleration,
+                                       format::AxisQuantity::kSense, format::AxisQuantity::kSince};
 
 // Positions to 0.1 nm, so that an angle computed from them is good to 1e-7 deg; a reading keeps its five
 // decimals.
@@ -33,11 +35,15 @@ std::vector<std::string> axes_of(const std::vector<BallbarFile>& files) {
 // With repaired time bases the path angle is a column too: what repeats can be a table of it.
 std::string header(const std::vector<std::string>& axes, bool repaired) {
   std::string text = repaired ? "phi[deg]," : "";
-  for (const auto& axis : axes) text += axis + "[mm],";
-  for (const char* column : kMotionColumns) {
-    for (const auto& axis : axes) text += fmt::format(fmt::runtime(column), axis) + ",";
-  }
-  return text + "feed[mm/min],curv[1/mm],t[s],cx[mm],cy[mm],cz[mm],length[mm],sense,run,role\n";
+  const auto each = [&](format::AxisQuantity quantity) {
+    for (const auto& axis : axes) text += format::axis_heading(quantity, axis, false) + ",";
+  };
+  each(format::AxisQuantity::kPosition);
+  for (const format::AxisQuantity quantity : kMotionColumns) each(quantity);
+  namespace columns = format::columns;
+  return text + format::headings(std::array{columns::kFeed, columns::kCurvature, columns::kTime}) + "," +
+         format::headings(columns::kCentre) + "," + format::heading(columns::kLength) + ",sense," +
+         format::headings(std::array{columns::kRun, columns::kRole}) + "\n";
 }
 
 // A field that a comma or a line end in a file's name could break.

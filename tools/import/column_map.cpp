@@ -4,15 +4,21 @@
 #include <algorithm>
 #include <optional>
 
+#include "tools/format/columns.h"
+#include "tools/format/csv_file.h"
+#include "tools/format/units.h"
 #include "tools/text/csv.h"
 #include "tools/text/numbers.h"
-#include "tools/text/units.h"
 #include "tools/text/words.h"
 
 namespace vernier::importer {
 namespace {
 
-bool is_word(const std::string& name) { return name == "run" || name == "role"; }
+/// Does the format keep words in this column?
+bool is_word(const std::string& name) {
+  const format::ColumnGroup* const column = format::find_column(name);
+  return column != nullptr && column->words;
+}
 
 /// "left = right", both trimmed; split at the last sign where the right side is a column, at the first else.
 std::pair<std::string, std::string> sides(const std::string& words, bool last, const text::Place& place,
@@ -32,9 +38,9 @@ void set_target(MappedColumn& column, const std::string& target) {
   if (open == std::string::npos) return;
   if (target.back() != ']') throw text::InputError(column.place, target, "a column is name[unit]");
   column.unit = text::trimmed(target.substr(open + 1, target.size() - open - 2));
-  if (column.unit.empty() || !text::find_unit(column.unit))
-    throw text::InputError(column.place, column.unit, "unknown unit; known are " + text::known_units());
-  column.unit = text::canonical_unit(column.unit);
+  if (column.unit.empty() || !format::find_unit(column.unit))
+    throw text::InputError(column.place, column.unit, "unknown unit; known are " + format::known_units());
+  column.unit = format::canonical_unit(column.unit);
 }
 
 void add(ColumnMap& map, MappedColumn column) {
@@ -92,8 +98,8 @@ std::size_t source_index(const DelimitedFile& file, const MappedColumn& column) 
 
 std::string cell_of(const std::string& text, const MappedColumn& column, bool decimal_comma,
                     const text::Place& place) {
-  if (column.name == "role" && text != "fit" && text != "check" && !text.empty())
-    throw text::InputError(place, text, "a role is fit or check");
+  if (column.name == format::columns::kRole && !text.empty() && !format::is_role(text))
+    throw text::InputError(place, text, format::kRoleRule);
   if (is_word(column.name) || text.empty()) return text;
   const auto number = number_cell(text, decimal_comma);
   if (!number) throw text::InputError(place, text, "not a number, for " + column.name);
@@ -143,7 +149,7 @@ const ImportTable::Column* ImportTable::find(const std::string& name) const {
 
 std::vector<double> ImportTable::numbers(const std::string& name) const {
   const Column& column = *find(name);
-  const text::Unit unit = *text::find_unit(column.unit);
+  const format::Unit unit = *format::find_unit(column.unit);
   std::vector<double> result;
   for (std::size_t i = 0; i < line.size(); ++i) {
     if (column.cells[i].empty()) throw text::InputError({file, line[i]}, "", "an empty cell, for " + name);
@@ -190,7 +196,7 @@ std::string measurement_csv(const ImportTable& table) {
       text += (k > 0 ? "," : "") + text::csv_cell(table.columns[k].cells[i]);
     text += "\n";
   }
-  const text::CsvFile back = text::parse_csv(text, table.file);
+  const format::CsvFile back = format::parse_csv(text, table.file);
   if (back.rows.size() != table.line.size())
     throw text::InputError({table.file, 0}, "", "some row has only empty cells");
   return text;

@@ -51,9 +51,9 @@ struct ImportTable {
   void add(const std::string& name, const std::string& unit, const std::vector<double>& values);
 };
 
-/// The columns of a file that the map names, every number read and written with a decimal point. `run` and
-/// `role` are words. Throws InputError with file, line and word: no such column, not a number, an unknown
-/// unit, a name twice. tool.
+/// The columns of a file that the map names, every number read and written with a decimal point. Columns
+/// in which the format keeps words stay as they are. Throws InputError with file, line and word: no such
+/// column, not a number, an unknown unit, a name twice. tool.
 ImportTable mapped_table(const std::string& text, const std::string& file, const ColumnMap& map);
 
 /// The table as a measurement file; reads it back as one. Throws InputError where that fails. tool.

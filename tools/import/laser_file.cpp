@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "tools/format/columns.h"
 #include "tools/import/sheet_words.h"
 #include "tools/text/error.h"
 #include "tools/text/numbers.h"
@@ -214,7 +215,10 @@ LaserFile read_laser_file(const std::string& text, const std::string& file, cons
         "runs forward, even back) or --senses forward");
   const std::string small = text::in_small_letters(result.axis);
   std::vector<ImportTable::Column> columns = {
-      {result.axis, "mm", {}}, {"dir" + result.axis, "", {}}, {"run", "", {}}, {small, "mm", {}}};
+      {result.axis, "mm", {}},
+      {format::axis_column(format::AxisQuantity::kSense, result.axis), "", {}},
+      {format::columns::kRun, "", {}},
+      {small, "mm", {}}};
   std::map<int, std::size_t> passes;
   for (const auto& [number, run] : read.runs) {
     if (is_filler(read, number, run)) {

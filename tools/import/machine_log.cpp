@@ -3,11 +3,12 @@
 
 #include <cmath>
 
+#include "tools/format/columns.h"
+#include "tools/format/csv_file.h"
+#include "tools/format/units.h"
 #include "tools/model/chain.h"
-#include "tools/text/csv.h"
 #include "tools/text/error.h"
 #include "tools/text/numbers.h"
-#include "tools/text/units.h"
 
 namespace vernier::importer {
 namespace {
@@ -16,9 +17,9 @@ using Index = Eigen::Index;
 
 class Log {
  public:
-  Log(const std::string& text, const std::string& file) : csv_(text::parse_csv(text, file)) {}
+  Log(const std::string& text, const std::string& file) : csv_(format::parse_csv(text, file)) {}
 
-  const text::CsvFile& csv() const { return csv_; }
+  const format::CsvFile& csv() const { return csv_; }
 
   std::size_t need(const std::string& name) const {
     for (std::size_t k = 0; k < csv_.columns.size(); ++k)
@@ -32,7 +33,7 @@ class Log {
     if (!value)
       throw text::InputError({csv_.file, csv_.line[row]}, cell,
                              "not a number, for " + csv_.columns[column].name);
-    const text::Unit unit = *text::find_unit(csv_.columns[column].unit);
+    const format::Unit unit = *format::find_unit(csv_.columns[column].unit);
     return *value * unit.factor + unit.offset;
   }
   Eigen::VectorXd numbers(std::size_t column) const {
@@ -54,13 +55,13 @@ class Log {
   }
 
  private:
-  text::CsvFile csv_;
+  format::CsvFile csv_;
 };
 
 Eigen::Matrix3Xd points_of(const ImportTable& tracker) {
   Eigen::Matrix3Xd points(3, static_cast<Index>(tracker.line.size()));
   Index k = 0;
-  for (const char* name : {"x", "y", "z"}) {
+  for (const char* name : format::columns::kPoint) {
     if (tracker.find(name) == nullptr)
       throw text::InputError({tracker.file, 0}, name, "not mapped: --log pairs points of x, y and z");
     const std::vector<double> values = tracker.numbers(name);
@@ -91,8 +92,8 @@ ImportTable paired_table(const ImportTable& tracker, const Log& log, const Pairi
   for (std::size_t i = 0; i < pairing.dwell.size(); ++i)
     if (pairing.dwell[i]) kept.push_back(i), table.line.push_back(tracker.line[i]);
   for (std::size_t k = 0; k < log.csv().columns.size(); ++k) {
-    const text::CsvColumn& column = log.csv().columns[k];
-    if (column.name != "t" && tracker.find(column.name) != nullptr)
+    const format::CsvColumn& column = log.csv().columns[k];
+    if (column.name != format::columns::kTime && tracker.find(column.name) != nullptr)
       throw text::InputError({log.csv().file, log.csv().header_line}, column.name,
                              "the tracker's table has this column too");
     ImportTable::Column made{column.name, column.unit, {}};
@@ -100,7 +101,7 @@ ImportTable paired_table(const ImportTable& tracker, const Log& log, const Pairi
     table.columns.push_back(std::move(made));
   }
   for (const auto& column : tracker.columns) {
-    if (column.name == "t") continue;  // by the log's clock now
+    if (column.name == format::columns::kTime) continue;  // by the log's clock now
     ImportTable::Column made{column.name, column.unit, {}};
     for (const std::size_t i : kept) made.cells.push_back(column.cells[i]);
     table.columns.push_back(std::move(made));
@@ -113,11 +114,11 @@ ImportTable paired_table(const ImportTable& tracker, const Log& log, const Pairi
 LoggedTable with_log(const ImportTable& tracker, const std::string& text, const std::string& log_file,
                      const model::Machine& machine, const LogOptions& options) {
   const Log log(text, log_file);
-  const Eigen::VectorXd time = log.numbers(log.need("t"));
+  const Eigen::VectorXd time = log.numbers(log.need(format::columns::kTime));
   for (Index row = 1; row < time.size(); ++row)
     if (time[row] < time[row - 1])
-      throw text::InputError({log_file, log.csv().line[static_cast<std::size_t>(row)]}, "t",
-                             "falls: a log is in time order");
+      throw text::InputError({log_file, log.csv().line[static_cast<std::size_t>(row)]},
+                             format::columns::kTime, "falls: a log is in time order");
   Eigen::MatrixXd axes(time.size(), static_cast<Index>(machine.axes.size()));
   for (std::size_t a = 0; a < machine.axes.size(); ++a)
     axes.col(static_cast<Index>(a)) = log.numbers(log.need(machine.axes[a].name));
@@ -130,8 +131,8 @@ LoggedTable with_log(const ImportTable& tracker, const std::string& text, const 
   input.stand = stands(machine, axes, input.dwells);
   input.point = points_of(tracker);
   input.distance_tolerance_mm = options.tolerance_mm;
-  if (tracker.find("t") != nullptr) {
-    const std::vector<double> clock = tracker.numbers("t");
+  if (tracker.find(format::columns::kTime) != nullptr) {
+    const std::vector<double> clock = tracker.numbers(format::columns::kTime);
     input.time = Eigen::Map<const Eigen::VectorXd>(clock.data(), static_cast<Index>(clock.size()));
   }
   result.pairing = pair_points(input);

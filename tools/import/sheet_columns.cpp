@@ -6,32 +6,52 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <deque>
 #include <map>
 #include <set>
 
+#include "tools/format/columns.h"
+#include "tools/format/units.h"
 #include "tools/import/sheet_words.h"
-#include "tools/model/measurement_names.h"
 #include "tools/sheet/dates.h"
 #include "tools/sheet/sheet_number.h"
 #include "tools/text/numbers.h"
-#include "tools/text/units.h"
 #include "tools/text/words.h"
 
 namespace vernier::importer {
 namespace {
 
 using Words = std::set<std::string>;
+namespace columns = format::columns;
 
-/// Names of the measurement file that are taken as they are written.
+const std::string kSensePrefix = format::entry_of(format::AxisQuantity::kSense).prefix;
+
+/// Names of the measurement file that are taken as they are written. Numbers under a name of a later version
+/// of the format may be a person's own.
 bool is_known_name(const std::string& name) {
-  static const Words kNames = {"x",  "y",  "z",   "rx",   "ry",   "rz",   "length", "d",
-                               "cx", "cy", "cz",  "px",   "py",   "pz",   "nx",     "ny",
-                               "nz", "u",  "run", "role", "feed", "curv", "t",      "corrected"};
-  return kNames.contains(name);
+  const format::ColumnGroup* const column = format::find_column(name);
+  return column != nullptr && (!column->later || column->words);
 }
-bool is_label(const std::string& name) { return name == "run" || name == "role" || name == "corrected"; }
+bool is_label(const std::string& name) {
+  const format::ColumnGroup* const column = format::find_column(name);
+  return column != nullptr && column->words;
+}
+bool is_sense(const std::string& name) { return name.starts_with(kSensePrefix); }
 bool is_pure(const std::string& name) {
-  return name == "nx" || name == "ny" || name == "nz" || name == "curv" || name.starts_with("dir");
+  const format::ColumnGroup* const column = format::find_column(name);
+  return is_sense(name) || (column != nullptr && !column->words && *column->unit == '\0');
+}
+
+/// Is a column a reading among these?
+bool is_reading(const SheetColumn& column, const std::vector<SheetColumn>& columns) {
+  std::deque<format::CsvColumn> header;
+  return format::is_reading({column.name, column.unit},
+                            [&](std::string_view name) -> const format::CsvColumn* {
+                              for (const SheetColumn& one : columns)
+                                if (one.use == SheetColumn::Use::kColumn && one.name == name)
+                                  return &header.emplace_back(format::CsvColumn{one.name, one.unit});
+                              return nullptr;
+                            });
 }
 
 class Guess {
@@ -51,10 +71,12 @@ class Guess {
     return wishes_.axes.empty() && is_axis(word) && word != "X" && word != "Y" && word != "Z";
   }
 
+  std::optional<format::AxisColumnName> of_axis(const std::string& name) const {
+    return format::axis_column_named(name, [&](const std::string& axis) { return is_axis(axis); });
+  }
   bool is_motion(const std::string& name) const {
-    for (const char* prefix : {"dir", "since", "v", "a", "correction"})
-      if (name.starts_with(prefix) && is_axis(name.substr(std::string(prefix).size()))) return true;
-    return false;
+    const auto column = of_axis(name);
+    return column && column->quantity != format::AxisQuantity::kPosition;
   }
 
   SheetColumn column(const sheet::Heading& heading) const {
@@ -69,7 +91,7 @@ class Guess {
       measured |= says_measured(small);
       deviation |= says_deviation(small);
       // dX, ΔX: a deviation in one word.
-      const std::string tail = word.starts_with("d")        ? word.substr(1)
+      const std::string tail = word.starts_with('d')        ? word.substr(1)
                                : word.starts_with("\u0394") ? word.substr(2)
                                                             : "";
       if (is_axis(tail)) {
@@ -111,15 +133,36 @@ class Guess {
 
  private:
   static std::string other(const sheet::Heading& heading) {
-    static const std::map<std::string, std::string> kNames = {
-        {"zeit", "t"},         {"time", "t"},        {"vorschub", "feed"},     {"feedrate", "feed"},
-        {"feed rate", "feed"}, {"lauf", "run"},      {"pass", "run"},          {"durchgang", "run"},
-        {"messreihe", "run"},  {"run", "run"},       {"cycle", "run"},         {"zyklus", "run"},
-        {"unsicherheit", "u"}, {"uncertainty", "u"}, {"rolle", "role"},        {"richtung", "dir"},
-        {"direction", "dir"},  {"sense", "dir"},     {"länge", "length"},      {"laenge", "length"},
-        {"dir", "dir"},        {"dir.", "dir"},      {"richtg", "dir"},        {"richtg.", "dir"},
-        {"richt.", "dir"},     {"sinn", "dir"},      {"fahrtrichtung", "dir"}, {"anfahrrichtung", "dir"},
-        {"approach", "dir"},   {"motion", "dir"}};
+    static const std::map<std::string, std::string> kNames = {{"zeit", columns::kTime},
+                                                              {"time", columns::kTime},
+                                                              {"vorschub", columns::kFeed},
+                                                              {"feedrate", columns::kFeed},
+                                                              {"feed rate", columns::kFeed},
+                                                              {"lauf", columns::kRun},
+                                                              {"pass", columns::kRun},
+                                                              {"durchgang", columns::kRun},
+                                                              {"messreihe", columns::kRun},
+                                                              {columns::kRun, columns::kRun},
+                                                              {"cycle", columns::kRun},
+                                                              {"zyklus", columns::kRun},
+                                                              {"unsicherheit", columns::kUncertainty},
+                                                              {"uncertainty", columns::kUncertainty},
+                                                              {"rolle", columns::kRole},
+                                                              {"richtung", kSensePrefix},
+                                                              {"direction", kSensePrefix},
+                                                              {"sense", kSensePrefix},
+                                                              {"länge", columns::kLength},
+                                                              {"laenge", columns::kLength},
+                                                              {kSensePrefix, kSensePrefix},
+                                                              {"dir.", kSensePrefix},
+                                                              {"richtg", kSensePrefix},
+                                                              {"richtg.", kSensePrefix},
+                                                              {"richt.", kSensePrefix},
+                                                              {"sinn", kSensePrefix},
+                                                              {"fahrtrichtung", kSensePrefix},
+                                                              {"anfahrrichtung", kSensePrefix},
+                                                              {"approach", kSensePrefix},
+                                                              {"motion", kSensePrefix}};
     const auto found = kNames.find(text::in_small_letters(heading.name));
     return found == kNames.end() ? sheet::name_from_words(heading.name) : found->second;
   }
@@ -147,7 +190,7 @@ SheetColumn target_of(const std::string& words, const text::Place& place) {
   if (open != std::string::npos) {
     const std::string unit = words.substr(open);
     if (!unit.ends_with(']') || !sheet::unit_meant(unit))
-      throw text::InputError(place, unit, "unknown unit; known are " + text::known_units());
+      throw text::InputError(place, unit, "unknown unit; known are " + format::known_units());
     column.unit = *sheet::unit_meant(unit);
   }
   if (!text::is_name(column.name))
@@ -188,15 +231,15 @@ Holds holds(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::size
 
 /// A column of words that no known name claims labels its rows.
 bool keeps_words(const SheetColumn& column, const Guess& guess) {
-  return column.use == SheetColumn::Use::kColumn && !is_known_name(column.name) &&
-         !column.name.starts_with("dir") && !guess.is_axis(column.name) && !guess.is_motion(column.name);
+  return column.use == SheetColumn::Use::kColumn && !is_known_name(column.name) && !is_sense(column.name) &&
+         !guess.is_axis(column.name) && !guess.is_motion(column.name);
 }
 
 bool is_linear(const std::string& axis) { return axis == "X" || axis == "Y" || axis == "Z"; }
 
 bool is_angle(const std::string& unit) {
-  const auto found = text::find_unit(unit);
-  return found && found->dimension == text::Dimension::kAngle;
+  const auto found = format::find_unit(unit);
+  return found && found->dimension == format::Dimension::kAngle;
 }
 
 void leave(SheetColumn& column, const std::string& why) {
@@ -227,7 +270,7 @@ void settle_axis(const sheet::Sheet& sheet, const sheet::SheetTable& table, std:
     if (column.use == SheetColumn::Use::kDeviation && guess.is_axis(column.name)) axes.insert(column.name);
     if (column.use != SheetColumn::Use::kColumn) continue;
     if (guess.is_axis(column.name)) axes.insert(column.name);
-    read |= column.name == "x" || column.name == "y" || column.name == "z";
+    read |= std::find(columns::kPoint.begin(), columns::kPoint.end(), column.name) != columns::kPoint.end();
   }
   const std::string titled = axes.empty() ? axis_of_titles(sheet, table) : "";
   const std::string axis = axes.size() == 1 ? *axes.begin() : guess.is_axis(titled) ? titled : "";
@@ -314,14 +357,14 @@ void settle(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::vect
       leave(column, "a deviation of which axis? Say it: --deviation \"X=" + table.headings[k].text + "\"");
     else if (deviation && measured.contains(text::in_small_letters(column.name)))
       leave(column, "the measured position is there as " + text::in_small_letters(column.name));
-    else if (column.name == "dir" && moved.size() == 1)
-      column.name = "dir" + *moved.begin();
-    else if (column.name == "dir")
+    else if (column.name == kSensePrefix && moved.size() == 1)
+      column.name = format::axis_column(format::AxisQuantity::kSense, *moved.begin());
+    else if (column.name == kSensePrefix)
       leave(column, "the sense of which axis? Say it: --column \"dirX=" + table.headings[k].text + "\"");
-    else if (column.name == "t" && content == Holds::kDates)
+    else if (column.name == columns::kTime && content == Holds::kDates)
       leave(column, "dates or times of day, no seconds");
     // Dates where a position or a reading should be are refused with their row.
-    else if (!column.words && !is_label(column.name) && !column.name.starts_with("dir") &&
+    else if (!column.words && !is_label(column.name) && !is_sense(column.name) &&
              content != Holds::kNumbers && content != Holds::kDates)
       leave(column, content == Holds::kNothing ? "empty" : "no numbers");
   }
@@ -343,6 +386,12 @@ void keep_names_apart(const sheet::SheetTable& table, std::vector<SheetColumn>& 
   }
 }
 
+/// A unit to say for a column that has none: the format's, of an axis mm.
+std::string unit_to_say(const std::string& name) {
+  const std::string unit = format::column_unit(name);
+  return unit.empty() ? "mm" : unit;
+}
+
 bool wants_unit(const SheetColumn& column) {
   return column.use != SheetColumn::Use::kLeft && !column.words && !is_label(column.name) &&
          !is_pure(column.name);
@@ -350,36 +399,37 @@ bool wants_unit(const SheetColumn& column) {
 
 /// The quantities that a column of this role may hold; empty: any. A machine's axes are linear or rotary, and
 /// so are its deviations and uncertainties.
-std::vector<text::Dimension> quantities_of(const SheetColumn& column, const Guess& guess) {
-  using text::Dimension;
+std::vector<format::Dimension> quantities_of(const SheetColumn& column, const Guess& guess) {
+  using format::Dimension;
   const std::string& name = column.name;
   const std::vector<Dimension> either = {Dimension::kLength, Dimension::kAngle};
   if (column.use == SheetColumn::Use::kDeviation) return either;
   if (guess.may_be_no_axis(name)) return {};
   if (guess.is_axis(name)) return either;
   if (guess.is_motion(name)) {
-    if (name.starts_with("dir")) return {Dimension::kNone};
-    if (name.starts_with("since") || name.starts_with("correction")) return either;
-    if (name.starts_with("v")) return {Dimension::kSpeed, Dimension::kAngularSpeed};
-    return {Dimension::kAcceleration, Dimension::kAngularAcceleration};
+    const format::AxisQuantity quantity = guess.of_axis(name)->quantity;
+    const Dimension linear = format::dimension_of(quantity, false),
+                    rotary = format::dimension_of(quantity, true);
+    return linear == rotary ? std::vector{linear} : std::vector{linear, rotary};
   }
-  if (name == "u") return either;
-  const model::KnownColumn* const known = model::find_known_column(name);
-  if (known == nullptr || known->since || known->label) return {};
-  return {text::find_unit(known->unit)->dimension};
+  const format::ColumnGroup* const known = format::find_column(name);
+  if (known == nullptr || known->later || known->words) return {};
+  std::vector<Dimension> list = {format::dimension_of(*known)};
+  if (const auto other = format::other_dimension_of(*known)) list.push_back(*other);
+  return list;
 }
 
 /// A length in bar, an angle in seconds of time: refused, with what the column needs.
 void check_quantity(const SheetColumn& column, const Guess& guess, const std::string& heading,
                     const text::Place& place) {
   if (column.use == SheetColumn::Use::kLeft || column.words || column.unit.empty()) return;
-  const std::vector<text::Dimension> allowed = quantities_of(column, guess);
-  const auto unit = text::find_unit(column.unit);
+  const std::vector<format::Dimension> allowed = quantities_of(column, guess);
+  const auto unit = format::find_unit(column.unit);
   if (allowed.empty() || !unit) return;
   if (std::find(allowed.begin(), allowed.end(), unit->dimension) != allowed.end()) return;
   std::string needs;
-  for (const text::Dimension one : allowed)
-    needs += (needs.empty() ? "" : " or ") + std::string(text::base_unit(one));
+  for (const format::Dimension one : allowed)
+    needs += (needs.empty() ? "" : " or ") + std::string(format::base_unit(one));
   const bool pure = needs.empty();
   throw text::InputError(place, heading,
                          fmt::format("[{}] is no unit of {}{}, which needs {}", column.unit,
@@ -404,7 +454,7 @@ void settle_senses(const sheet::Sheet& sheet, const std::vector<std::size_t>& ro
 
 /// The angle that a rotary axis turns by, as the measurement file names it.
 std::string angle_of(const std::string& axis, const text::Place& place) {
-  if (auto angle = text::angle_about(axis)) return *angle;
+  if (auto angle = format::angle_about(axis)) return *angle;
   throw text::InputError(
       place, axis,
       "a deviation in degrees: about which direction does it turn? Say it: --column \"rz[deg]=HEADING\" "
@@ -418,15 +468,15 @@ std::string cell_text(const sheet::Sheet& sheet, const SheetColumn& column, cons
   if (column.words) return cell;
   if (is_label(column.name)) {
     const std::string small = text::in_small_letters(cell);
-    if (column.name != "role") return cell;
-    if (small == "check" || small == "kontrolle" || small == "prüfen") return "check";
-    if (small == "fit" || small.empty()) return small;
-    throw text::InputError(place, cell, "a role is fit or check");
+    if (column.name != columns::kRole) return cell;
+    if (small == "kontrolle" || small == "prüfen") return format::kCheckRole;
+    if (format::is_role(small) || small.empty()) return small;
+    throw text::InputError(place, cell, format::kRoleRule);
   }
   if (cell.empty() || cell == "-" || cell == "--" || cell == "n/a" || cell == "#NV" || cell == "#N/A") {
-    if (!column.name.starts_with("dir")) return "";
+    if (!is_sense(column.name)) return "";
   }
-  if (column.name.starts_with("dir"))
+  if (is_sense(column.name))
     if (const int sense = sense_said(cell); sense != 0) return std::to_string(sense);
   if (const auto number = sheet::plain_number(cell, sheet.decimal_comma)) return *number;
   if (sheet::is_date(cell))
@@ -527,16 +577,14 @@ std::string sheet_profile(const sheet::Sheet& sheet, const sheet::SheetTable& ta
   for (std::size_t k = 0; k < columns.size(); ++k) {
     const SheetColumn& column = columns[k];
     const std::string& heading = table.headings[k].text;
-    const std::string unit = column.unit.empty() ? "" : "[" + column.unit + "]";
     if (column.use == SheetColumn::Use::kLeft)
       text += "leave " + heading + "\n";
     else
       text += (column.use == SheetColumn::Use::kDeviation ? "deviation " : "column ") + heading + " = " +
-              column.name + unit + "\n";
+              format::heading(column.name, column.unit) + "\n";
   }
   for (const MappedColumn& constant : wishes.constants)
-    text += "set " + constant.name + (constant.unit.empty() ? "" : "[" + constant.unit + "]") + " = " +
-            constant.constant + "\n";
+    text += "set " + format::heading(constant.name, constant.unit) + " = " + constant.constant + "\n";
   return text;
 }
 
@@ -565,7 +613,7 @@ std::vector<SheetColumn> columns_of_sheet(const sheet::Sheet& sheet, const sheet
     // A unit for all headings without one is for lengths or angles, not for temperatures and loads.
     const std::string& name = column.name;
     const bool length = guess.is_axis(name) || column.use == SheetColumn::Use::kDeviation ||
-                        (name.size() <= 2 && name != "t") || name == "length";
+                        (name.size() <= 2 && name != columns::kTime) || name == columns::kLength;
     if (length) column.unit = wishes.unit;
   }
   return columns;
@@ -579,24 +627,25 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
   bool measured = false;
   for (std::size_t k = 0; k < columns.size(); ++k) {
     const SheetColumn& column = columns[k];
-    const bool geometry = guess.is_axis(column.name) || (is_known_name(column.name) && wants_unit(column));
+    const bool geometry = guess.is_axis(column.name) ||
+                          ((is_known_name(column.name) || is_reading(column, columns)) && wants_unit(column));
     if (wants_unit(column) && column.unit.empty() && column.use == SheetColumn::Use::kDeviation)
       without += fmt::format(" --deviation \"{}[um]={}\"", column.name, table.headings[k].text);
     else if (wants_unit(column) && column.unit.empty() && geometry)
-      without += fmt::format(" --column \"{}[mm]={}\"", column.name, table.headings[k].text);
+      without += fmt::format(" --column \"{}={}\"", format::heading(column.name, unit_to_say(column.name)),
+                             table.headings[k].text);
     if (column.use == SheetColumn::Use::kLeft) continue;
-    static const Words kReadings = {"x", "y", "z", "rx", "ry", "rz", "length", "d"};
-    measured |= column.use == SheetColumn::Use::kDeviation || kReadings.contains(column.name);
+    measured |= column.use == SheetColumn::Use::kDeviation || is_reading(column, columns);
   }
   const text::Place heading{sheet.file, sheet.line[table.heading_row]};
   if (!without.empty())
     throw text::InputError(heading, "", "no unit: say it for all (--unit mm) or for each, such as" + without);
   if (!measured)
-    throw text::InputError(
-        heading, "",
-        "nothing measured among the columns (x y z rx ry rz length d, or a deviation of an axis): say which "
-        "it is, such as --column \"x[mm]=HEADING\" or --deviation \"X[um]=HEADING\"; --preview shows what "
-        "was understood");
+    throw text::InputError(heading, "",
+                           "nothing measured among the columns (" + format::reading_column_names() +
+                               ", or a deviation of an axis): say which it is, such as --column "
+                               "\"x[mm]=HEADING\" or --deviation \"X[um]=HEADING\"; --preview shows what "
+                               "was understood");
   for (std::size_t k = 0; k < columns.size(); ++k)
     check_quantity(columns[k], guess, table.headings[k].text, heading);
   for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
@@ -609,7 +658,7 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
   for (std::size_t k = 0; k < columns.size(); ++k)
     if (columns[k].use == SheetColumn::Use::kColumn) axis_column.emplace(columns[k].name, k);
   const auto mm = [](const std::string& text, const std::string& unit) {
-    const text::Unit found = *text::find_unit(unit);
+    const format::Unit found = *format::find_unit(unit);
     return *text::parse_number(text) * found.factor;
   };
   for (std::size_t k = 0; k < columns.size(); ++k) {
@@ -653,7 +702,7 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
       }
       made.cells.push_back(std::move(text));
     }
-    if (made.name.starts_with("dir"))
+    if (is_sense(made.name))
       settle_senses(sheet, result.line, table.headings[k].text == made.name, made.cells);
     result.columns.push_back(std::move(made));
   }

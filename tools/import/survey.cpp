@@ -2,13 +2,18 @@
 #include "tools/import/survey.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
+#include <deque>
 
+#include "tools/format/columns.h"
+#include "tools/format/units.h"
 #include "tools/maths/factors.h"
-#include "tools/text/units.h"
 
 namespace vernier::importer {
 namespace {
+
+namespace columns = format::columns;
 
 /// How far a direction or quaternion may be from length 1: rounding of four printed digits.
 constexpr double kLengthOff = 1e-3;
@@ -41,20 +46,33 @@ bool has_all(const ImportTable& table, const std::string& names) {
   return found > 0;
 }
 
-void check_dimension(const ImportTable& table, const std::string& names, text::Dimension dimension) {
+/// Is one of the columns a reading?
+bool has_reading(const ImportTable& table) {
+  std::deque<format::CsvColumn> header;
+  const auto find = [&](std::string_view name) -> const format::CsvColumn* {
+    const ImportTable::Column* const found = table.find(std::string(name));
+    return found == nullptr ? nullptr : &header.emplace_back(format::CsvColumn{found->name, found->unit});
+  };
+  return std::any_of(table.columns.begin(), table.columns.end(), [&](const ImportTable::Column& column) {
+    return format::is_reading({column.name, column.unit}, find);
+  });
+}
+
+void check_dimension(const ImportTable& table, const std::string& names, format::Dimension dimension) {
   for (const std::string& name : words(names)) {
     const std::string& unit = table.find(name)->unit;
-    if (text::find_unit(unit)->dimension == dimension) continue;
-    throw text::InputError({table.file, 0}, name + (unit.empty() ? "" : "[" + unit + "]"),
-                           dimension == text::Dimension::kNone
-                               ? std::string("this column is a pure number, it has no unit")
-                               : std::string("this column needs a unit like ") + text::base_unit(dimension));
+    if (format::find_unit(unit)->dimension == dimension) continue;
+    throw text::InputError(
+        {table.file, 0}, name + (unit.empty() ? "" : "[" + unit + "]"),
+        dimension == format::Dimension::kNone
+            ? std::string("this column is a pure number, it has no unit")
+            : std::string("this column needs a unit like ") + format::base_unit(dimension));
   }
 }
 
 /// The columns `names` as rows of numbers in their base units.
 std::vector<Eigen::VectorXd> rows(const ImportTable& table, const std::string& names,
-                                  text::Dimension dimension) {
+                                  format::Dimension dimension) {
   check_dimension(table, names, dimension);
   const std::vector<std::string> list = words(names);
   std::vector<Eigen::VectorXd> result(table.line.size(),
@@ -112,63 +130,63 @@ Eigen::Vector3d rotation_vector_of_quaternion(const std::array<double, 4>& wxyz)
 void finish_tracker(ImportTable& table) {
   const std::string angles = "rX rY rZ", quaternion = "qw qx qy qz";
   const bool by_angles = has_all(table, angles), by_quaternion = has_all(table, quaternion);
-  const bool by_vector =
-      table.find("rx") != nullptr || table.find("ry") != nullptr || table.find("rz") != nullptr;
+  const bool by_vector = std::any_of(columns::kRotation.begin(), columns::kRotation.end(),
+                                     [&](const char* name) { return table.find(name) != nullptr; });
   if (by_angles + by_quaternion + by_vector > 1)
     throw text::InputError({table.file, 0}, by_quaternion ? "qw" : "rX",
                            "the orientation is mapped in two ways");
   std::vector<Eigen::VectorXd> vectors;
   if (by_angles) {
-    for (const Eigen::VectorXd& row : rows(table, angles, text::Dimension::kAngle))
+    for (const Eigen::VectorXd& row : rows(table, angles, format::Dimension::kAngle))
       vectors.emplace_back(rotation_vector_of_angles({row[0], row[1], row[2]}));
-    replace(table, angles, "rx ry rz", "deg", vectors);
+    replace(table, angles, format::words_of(columns::kRotation), "deg", vectors);
   }
   if (by_quaternion) {
-    std::vector<Eigen::VectorXd> values = rows(table, quaternion, text::Dimension::kNone);
+    std::vector<Eigen::VectorXd> values = rows(table, quaternion, format::Dimension::kNone);
     normalise(table, values, quaternion);
     for (const Eigen::VectorXd& row : values)
       vectors.emplace_back(rotation_vector_of_quaternion({row[0], row[1], row[2], row[3]}));
-    replace(table, quaternion, "rx ry rz", "deg", vectors);
+    replace(table, quaternion, format::words_of(columns::kRotation), "deg", vectors);
   }
-  for (const char* name : {"x", "y", "z", "rx", "ry", "rz", "length"})
-    if (table.find(name) != nullptr) return;
+  if (has_reading(table)) return;
   throw text::InputError({table.file, 0}, "",
                          "nothing measured: map at least one of x y z, rX rY rZ, qw qx qy qz, rx ry rz");
 }
 
 void finish_probe(ImportTable& table, double radius_mm) {
-  if (!has_all(table, "nx ny nz"))
-    throw text::InputError({table.file, 0}, "nx ny nz", "a touch needs its normal");
-  if (!has_all(table, "px py pz"))
-    throw text::InputError({table.file, 0}, "px py pz", "a touch needs its nominal point");
-  const bool recorded = has_all(table, "mx my mz"), given = table.find("d") != nullptr;
+  const std::string normals = format::words_of(columns::kNormal),
+                    nominals = format::words_of(columns::kNominalPoint);
+  if (!has_all(table, normals)) throw text::InputError({table.file, 0}, normals, "a touch needs its normal");
+  if (!has_all(table, nominals))
+    throw text::InputError({table.file, 0}, nominals, "a touch needs its nominal point");
+  const bool recorded = has_all(table, "mx my mz"), given = table.find(columns::kDeviation) != nullptr;
   if (recorded == given)
-    throw text::InputError({table.file, 0}, "d",
+    throw text::InputError({table.file, 0}, columns::kDeviation,
                            recorded ? "both d and the recorded point mx my mz are mapped"
                                     : "neither d nor the recorded point mx my mz is mapped");
-  std::vector<Eigen::VectorXd> normal = rows(table, "nx ny nz", text::Dimension::kNone);
-  std::vector<Eigen::VectorXd> nominal = rows(table, "px py pz", text::Dimension::kLength);
-  normalise(table, normal, "nx ny nz");
+  std::vector<Eigen::VectorXd> normal = rows(table, normals, format::Dimension::kNone);
+  std::vector<Eigen::VectorXd> nominal = rows(table, nominals, format::Dimension::kLength);
+  normalise(table, normal, normals);
   for (std::size_t i = 0; i < nominal.size(); ++i) nominal[i] += radius_mm * normal[i];
   if (recorded) {
     std::vector<Eigen::VectorXd> d;
-    const std::vector<Eigen::VectorXd> point = rows(table, "mx my mz", text::Dimension::kLength);
+    const std::vector<Eigen::VectorXd> point = rows(table, "mx my mz", format::Dimension::kLength);
     for (std::size_t i = 0; i < point.size(); ++i)
       d.emplace_back(Eigen::VectorXd::Constant(1, normal[i].dot(point[i] - nominal[i])));
-    replace(table, "mx my mz", "d", "mm", d);
+    replace(table, "mx my mz", columns::kDeviation, "mm", d);
   } else {
-    check_dimension(table, "d", text::Dimension::kLength);
+    check_dimension(table, columns::kDeviation, format::Dimension::kLength);
   }
-  replace(table, "nx ny nz", "nx ny nz", "", normal);
-  replace(table, "px py pz", "px py pz", "mm", nominal);
+  replace(table, normals, normals, "", normal);
+  replace(table, nominals, nominals, "mm", nominal);
 }
 
 void set_roles(ImportTable& table, std::size_t every) {
-  if (table.find("role") != nullptr)
-    throw text::InputError({table.file, 0}, "role", "the role is mapped already");
-  ImportTable::Column role{"role", "", {}};
+  if (table.find(columns::kRole) != nullptr)
+    throw text::InputError({table.file, 0}, columns::kRole, "the role is mapped already");
+  ImportTable::Column role{columns::kRole, "", {}};
   for (std::size_t i = 0; i < table.line.size(); ++i)
-    role.cells.emplace_back((i + 1) % every == 0 ? "check" : "fit");
+    role.cells.emplace_back((i + 1) % every == 0 ? format::kCheckRole : format::kFitRole);
   table.columns.push_back(std::move(role));
 }
 

@@ -9,11 +9,12 @@
 #include <string>
 #include <vector>
 
+#include "tools/format/columns.h"
+#include "tools/format/units.h"
 #include "tools/import/sheet_words.h"
 #include "tools/sheet/sheet_number.h"
 #include "tools/text/error.h"
 #include "tools/text/numbers.h"
-#include "tools/text/units.h"
 #include "tools/text/words.h"
 
 namespace vernier::importer {
@@ -177,8 +178,8 @@ std::string unit_in(const std::string& title) {
     const auto unit = sheet::unit_meant(word);
     // "in" and "as" are words of a sentence.
     if (!unit || word == "in" || word == "as" || word.size() < 2) continue;
-    const auto dimension = text::find_unit(*unit)->dimension;
-    if (dimension == text::Dimension::kLength || dimension == text::Dimension::kAngle) return *unit;
+    const auto dimension = format::find_unit(*unit)->dimension;
+    if (dimension == format::Dimension::kLength || dimension == format::Dimension::kAngle) return *unit;
   }
   return sheet::parse_heading(title).unit;
 }
@@ -262,7 +263,7 @@ std::size_t unfold_runs(sheet::Sheet& sheet, sheet::SheetTable& table) {
   std::vector<sheet::Heading> headings;
   for (const std::size_t k : others) headings.push_back(table.headings[k]);
   headings.push_back({"sense", "sense", "", ""});
-  headings.push_back({"run", "run", "", ""});
+  headings.push_back({format::columns::kRun, format::columns::kRun, "", ""});
   headings.push_back(readings);
   std::vector<std::vector<std::string>> rows;
   std::vector<std::size_t> line;

@@ -5,6 +5,7 @@
 #include <optional>
 #include <set>
 
+#include "tools/format/columns.h"
 #include "tools/text/numbers.h"
 #include "tools/text/words.h"
 
@@ -49,7 +50,7 @@ void set_word(const model::Machine& machine, model::States& states, std::set<std
   const std::string value = equals == std::string::npos ? "" : text::trimmed(word.substr(equals + 1));
   if (name.empty() || value.empty()) throw text::InputError({}, word, "a state is NAME=NUMBER,NAME=NUMBER…");
   if (!seen.insert(name).second) throw text::InputError({}, name, "stands twice in one state");
-  if (name == "run") {
+  if (name == format::columns::kRun) {
     states.run_names = {value};
     return;
   }

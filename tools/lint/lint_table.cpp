@@ -2,10 +2,9 @@
 #include "tools/lint/lint_table.h"
 
 #include <cctype>
-#include <tuple>
+#include <deque>
 
-#include "tools/model/measurement_names.h"
-#include "tools/text/units.h"
+#include "tools/format/columns.h"
 
 namespace vernier::lint {
 
@@ -19,15 +18,15 @@ const LintColumn* LintTable::find(const std::string& name) const {
   return nullptr;
 }
 
-bool is_reading(const LintTable& table, const LintColumn& column) {
-  const model::KnownColumn* const known = model::find_known_column(column.name);
-  if (known == nullptr || !known->reading) return false;
-  if (!known->since) return true;
-  if (column.name == "distance") return table.find("from") != nullptr;
-  const auto unit = text::find_unit(column.unit);
-  if (column.name.front() == 'i') return unit && unit->dimension == text::Dimension::kAngle;
-  return column.unit.empty() && table.find("ax") != nullptr && table.find("ay") != nullptr &&
-         table.find("az") != nullptr;
+bool LintNames::is_reading(const LintTable& table, const LintColumn& column) const {
+  // Found columns outlive the call: the format looks at one header at a time.
+  std::deque<format::CsvColumn> header;
+  return format::is_reading({column.name, column.unit},
+                            [&](std::string_view name) -> const format::CsvColumn* {
+                              const LintColumn* const found = table.find(std::string(name));
+                              if (found == nullptr || is_input(found->name)) return nullptr;
+                              return &header.emplace_back(format::CsvColumn{found->name, found->unit});
+                            });
 }
 
 bool LintNames::is_axis(const std::string& name) const {
@@ -39,33 +38,31 @@ bool LintNames::is_rotary(const std::string& name) const {
   if (machine_ != nullptr) return machine_->axes[*machine_->find_axis(name)].rotary;
   return std::string("ABCJ").find(name[0]) != std::string::npos;
 }
-std::string LintNames::axis_of(const std::string& name, const std::string& prefix) const {
-  if (!name.starts_with(prefix) || name.size() == prefix.size()) return "";
-  const std::string axis = name.substr(prefix.size());
-  return is_axis(axis) ? axis : "";
+std::optional<format::AxisColumnName> LintNames::of_axis(const std::string& name) const {
+  return format::axis_column_named(name, [&](const std::string& axis) { return is_axis(axis); });
+}
+
+bool LintNames::is_of_axis(const std::string& name, format::AxisQuantity quantity) const {
+  const auto column = of_axis(name);
+  return column && column->quantity == quantity;
 }
 
 std::string LintNames::needed_unit(const std::string& name) const {
-  if (is_axis(name)) return is_rotary(name) ? "deg" : "mm";
-  for (const auto& [prefix, length, angle] :
-       {std::tuple("v", "mm/s", "deg/s"), std::tuple("a", "mm/s^2", "deg/s^2"),
-        std::tuple("since", "mm", "deg"), std::tuple("correction", "mm", "deg")})
-    if (const std::string axis = axis_of(name, prefix); !axis.empty())
-      return is_rotary(axis) ? angle : length;
-  if (!axis_of(name, "dir").empty()) return "";
-  const model::KnownColumn* const known = model::find_known_column(name);
-  // With another unit a word of a later version is a column of one's own; u is a length or an angle.
-  const bool any = known == nullptr || name == "u" || (known->since && !known->label);
+  if (const auto column = of_axis(name)) return format::unit_of(column->quantity, is_rotary(column->axis));
+  const format::ColumnGroup* const known = format::find_column(name);
+  // With another unit a column of a later version is a person's own; u is a length or an angle.
+  const bool any = known == nullptr || known->or_unit != nullptr || (known->later && !known->words);
   return any ? "?" : known->unit;
 }
 
 std::vector<std::string> LintNames::known() const {
   std::vector<std::string> names;
-  for (const model::KnownColumn& column : model::known_columns()) names.emplace_back(column.name);
+  for (const format::ColumnGroup& group : format::column_groups())
+    names.insert(names.end(), group.list().begin(), group.list().end());
   if (machine_ == nullptr) return names;
   for (const model::Axis& axis : machine_->axes)
-    for (const char* prefix : {"", "dir", "since", "v", "a", "correction"})
-      names.push_back(prefix + axis.name);
+    for (const format::AxisColumnEntry& column : format::kAxisColumns)
+      names.push_back(format::axis_column(column.quantity, axis.name));
   for (const model::Input& input : machine_->inputs) names.push_back(input.name);
   return names;
 }

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "tools/format/columns.h"
 #include "tools/model/machine.h"
 
 namespace vernier::lint {
@@ -38,8 +40,14 @@ class LintNames {
   bool is_axis(const std::string& name) const;
   /// Of a name that is an axis.
   bool is_rotary(const std::string& name) const;
-  /// The axis behind a prefix ("dirX"); empty where it is none.
-  std::string axis_of(const std::string& name, const std::string& prefix) const;
+  /// The axis and the quantity of a column such as "dirX" or "X"; nullopt: a column of no axis.
+  std::optional<format::AxisColumnName> of_axis(const std::string& name) const;
+  bool is_of_axis(const std::string& name, format::AxisQuantity quantity) const;
+  bool is_input(const std::string& name) const {
+    return machine_ != nullptr && machine_->find_input(name).has_value();
+  }
+  /// Is a column of this table a reading (format::is_reading)?
+  bool is_reading(const LintTable& table, const LintColumn& column) const;
   /// The unit that a column of this name needs, as a base unit; "" none; "?" any.
   std::string needed_unit(const std::string& name) const;
   /// All names that mean something.
@@ -48,10 +56,6 @@ class LintNames {
  private:
   const model::Machine* machine_;
 };
-
-/// Is this column a reading in this table? One of a later version of the format is so only with what belongs
-/// to it: `distance` with `from`, `ix` and `iy` with an angle's unit, `ax ay az` all three without a unit.
-bool is_reading(const LintTable& table, const LintColumn& column);
 
 /// A file's name as it may stand in a command.
 std::string quoted_for_shell(const std::string& file);

@@ -8,11 +8,12 @@
 #include <cmath>
 #include <set>
 
+#include "tools/format/columns.h"
+#include "tools/format/units.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/measurement_names.h"
 #include "tools/text/numbers.h"
 #include "tools/text/similar.h"
-#include "tools/text/units.h"
 
 namespace vernier::lint {
 namespace {
@@ -158,9 +159,9 @@ class Mend {
 
 /// Names that a file declares, for "did you mean".
 std::vector<std::string> names_in(const std::string& text) {
-  std::vector<std::string> names = {"sin", "cos",  "tan", "atan2", "sqrt", "abs",  "exp",
-                                    "log", "sign", "min", "max",   "lag",  "feed", "curv",
-                                    "nx",  "ny",   "nz",  "visit", "run",  "t"};
+  std::vector<std::string> names = model::function_names();
+  for (const format::ColumnGroup& group : format::column_groups())
+    if (group.in_terms) names.insert(names.end(), group.list().begin(), group.list().end());
   for (std::size_t at = 0; (at = text.find('<', at)) != std::string::npos;) {
     std::size_t end = ++at;
     while (end < text.size() &&
@@ -271,10 +272,10 @@ class Oddities {
  private:
   void look_at_unit(const std::string& name, const std::string& unit, std::size_t line, bool scales) {
     if (unit.empty()) return;
-    const auto known = text::find_unit(unit);
+    const auto known = format::find_unit(unit);
     if (!known) {
       std::vector<std::string> units;
-      const std::string all = text::known_units();
+      const std::string all = format::known_units();
       for (std::size_t at = 0; at < all.size();) {
         const std::size_t end = std::min(all.find(' ', at), all.size());
         units.push_back(all.substr(at, end - at));
@@ -291,11 +292,11 @@ class Oddities {
     }
     const bool base = known->factor == 1 && known->offset == 0;
     if (scales || base || unit == "rad" || unit == "um/m" || unit == "%") return;
-    if (known->dimension == text::Dimension::kLength || known->dimension == text::Dimension::kAngle)
+    if (known->dimension == format::Dimension::kLength || known->dimension == format::Dimension::kAngle)
       findings_.warn(line, unit,
                      "a unit never scales the value of " + name + ": the chain takes it as " +
-                         text::base_unit(known->dimension),
-                     std::string("write the value in ") + text::base_unit(known->dimension) +
+                         format::base_unit(known->dimension),
+                     std::string("write the value in ") + format::base_unit(known->dimension) +
                          ", or the factor in the term");
   }
 

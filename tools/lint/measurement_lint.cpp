@@ -10,10 +10,11 @@
 #include <map>
 #include <set>
 
+#include "tools/format/columns.h"
+#include "tools/format/units.h"
 #include "tools/lint/lint_table.h"
 #include "tools/lint/measurement_meaning.h"
 #include "tools/model/measurement.h"
-#include "tools/model/measurement_names.h"
 #include "tools/sheet/encoding.h"
 #include "tools/sheet/heading.h"
 #include "tools/sheet/sheet.h"
@@ -21,7 +22,6 @@
 #include "tools/text/csv.h"
 #include "tools/text/numbers.h"
 #include "tools/text/similar.h"
-#include "tools/text/units.h"
 #include "tools/text/words.h"
 
 namespace vernier::lint {
@@ -165,11 +165,11 @@ class Look {
                                                    heading.unit + "]? " + command(file_) + " reads it so");
         column.name = sheet::name_from_words(heading.name);
         column.unit = heading.unit;
-      } else if (!column.unit.empty() && !text::find_unit(column.unit)) {
+      } else if (!column.unit.empty() && !format::find_unit(column.unit)) {
         const auto meant = sheet::unit_meant(column.unit);
         findings_.error(table_.header_line, column.unit, "nobody knows this unit",
                         meant ? "meant is " + *meant + "? " + command(file_) + " reads it so"
-                              : "known are " + text::known_units());
+                              : "known are " + format::known_units());
         column.unit = meant.value_or("");
       } else if (!bracket && !names_.needed_unit(column.name).empty() &&
                  names_.needed_unit(column.name) != "?") {
@@ -181,14 +181,14 @@ class Look {
         const std::string needs = names_.needed_unit(column.name);
         if (needs.empty())
           findings_.error(table_.header_line, cell, "a pure number or a word: it has no unit");
-        else if (text::find_unit(needs)->dimension != text::find_unit(column.unit)->dimension)
+        else if (format::find_unit(needs)->dimension != format::find_unit(column.unit)->dimension)
           findings_.error(table_.header_line, cell, "this column needs a unit like " + needs);
       }
       if (!seen.insert(column.name).second)
         findings_.error(table_.header_line, column.name, "this column stands twice");
-      const model::KnownColumn* const of_formats = model::find_known_column(column.name);
-      column.label = of_formats != nullptr && of_formats->label;
-      if (names_.needed_unit(column.name) == "?" && column.name != "u" &&
+      const format::ColumnGroup* const of_formats = format::find_column(column.name);
+      column.label = of_formats != nullptr && of_formats->words;
+      if (names_.needed_unit(column.name) == "?" &&
           std::find(known.begin(), known.end(), column.name) == known.end()) {
         const auto meant = text::word_meant(column.name, known);
         const bool nearly = meant && column.name.size() > 2 && text::letters_apart(column.name, *meant) <= 1;
@@ -212,18 +212,18 @@ class Look {
   /// What the header lacks.
   void look_for_columns() {
     const bool any = std::any_of(table_.columns.begin(), table_.columns.end(),
-                                 [&](const LintColumn& c) { return is_reading(table_, c); });
+                                 [&](const LintColumn& c) { return names_.is_reading(table_, c); });
     if (!any)
-      findings_.error(table_.header_line, "", "no measured column (" + model::reading_names() + ")",
+      findings_.error(table_.header_line, "", "no measured column (" + format::reading_column_names() + ")",
                       "small letters are what was measured, capitals where the machine was sent");
-    for (const char* name : {"length", "d"}) {
-      if (table_.find(name) == nullptr) continue;
-      for (const char* beside : name[0] == 'l' ? std::array{"cx", "cy", "cz", "cz", "cz", "cz"}
-                                               : std::array{"nx", "ny", "nz", "px", "py", "pz"})
-        if (table_.find(beside) == nullptr) {
-          findings_.add_of_kind(std::string("beside ") + beside, LintWeight::kError, table_.header_line, name,
-                                std::string("this column needs ") + beside + " beside it");
-        }
+    for (const LintColumn& column : table_.columns) {
+      if (!names_.is_reading(table_, column)) continue;
+      for (const format::ColumnGroup* const group :
+           format::columns_beside(format::find_column(column.name)->form))
+        for (const char* const beside : group->list())
+          if (table_.find(beside) == nullptr)
+            findings_.add_of_kind(std::string("beside ") + beside, LintWeight::kError, table_.header_line,
+                                  column.name, std::string("this column needs ") + beside + " beside it");
     }
     if (machine_ == nullptr) return;
     for (const model::Axis& axis : machine_->axes)
@@ -264,7 +264,7 @@ class Look {
                 break;
             }
           });
-    if (lag) wanted.insert("t");
+    if (lag) wanted.insert(format::columns::kTime);
     for (const std::string& name : wanted)
       if (table_.find(name) == nullptr)
         findings_.warn(
@@ -317,14 +317,15 @@ class Look {
 
   void read_column(std::size_t k) {
     LintColumn& column = table_.columns[k];
-    const auto unit = text::find_unit(column.unit);
+    const auto unit = format::find_unit(column.unit);
     std::size_t words = 0, filled = 0;
     for (const LintRow& row : table_.rows) {
       filled += row.cells[k].empty() ? 0 : 1;
       words += !row.cells[k].empty() && !text::parse_number(row.cells[k]) ? 1 : 0;
     }
     // Words in most cells that hold anything of a column of one's own: labels, not numbers gone wrong.
-    const bool own = names_.needed_unit(column.name) == "?" && column.name != "u";
+    const format::ColumnGroup* const known = format::find_column(column.name);
+    const bool own = names_.needed_unit(column.name) == "?" && (known == nullptr || known->later);
     if (own && 2 * words > filled) {
       column.label = true;
       findings_.remark(table_.header_line, column.name, "a column of words",
@@ -345,7 +346,7 @@ class Look {
         meaning = "decimal comma? " + command(file_) + " reads it";
       else if (sheet::plain_number(cell, false))
         meaning = "a sign between thousands? Write the number without";
-      else if (!names_.axis_of(column.name, "dir").empty())
+      else if (names_.is_of_axis(column.name, format::AxisQuantity::kSense))
         meaning = "a direction is 1, -1 or 0";
       findings_.add_of_kind("number " + column.name, LintWeight::kError, row.line, cell,
                             "not a number, in column " + column.name, meaning);
@@ -398,7 +399,7 @@ std::string import_command_for(const std::string& bytes, const std::string& file
       const std::string name = text::trimmed(cell.substr(0, open));
       odd |= !text::is_name(name) ||
              (open != std::string::npos &&
-              !text::find_unit(text::trimmed(cell.substr(open + 1, cell.size() - open - 2))));
+              !format::find_unit(text::trimmed(cell.substr(open + 1, cell.size() - open - 2))));
       odd |= open == std::string::npos && !sheet::parse_heading(cell).unit.empty();
     }
     // Trailing separators leave columns that a sheet has dropped already.

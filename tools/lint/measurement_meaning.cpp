@@ -11,12 +11,15 @@
 #include <map>
 #include <vector>
 
+#include "tools/format/columns.h"
+#include "tools/format/units.h"
 #include "tools/text/numbers.h"
 #include "tools/text/similar.h"
-#include "tools/text/units.h"
 
 namespace vernier::lint {
 namespace {
+
+namespace columns = format::columns;
 
 class Meaning {
  public:
@@ -38,7 +41,18 @@ class Meaning {
  private:
   void look_at_column(const LintColumn& column) {
     if (column.label) return;
-    const bool reading = is_reading(table_, column);
+    const bool reading = names_.is_reading(table_, column);
+    const format::ColumnGroup* const known = format::find_column(column.name);
+    const auto of_axis = names_.of_axis(column.name);
+    // What a board added may be left out of a row; no other quantity of an axis.
+    const bool filled_column = (known != nullptr && known->filled) ||
+                               (of_axis && of_axis->quantity != format::AxisQuantity::kPosition &&
+                                of_axis->quantity != format::AxisQuantity::kCorrection);
+    const bool sense = of_axis && of_axis->quantity == format::AxisQuantity::kSense;
+    const auto unit = format::find_unit(column.unit);
+    const bool uncertainty = known != nullptr && known->use == format::ColumnUse::kUncertainty &&
+                             (!known->later || (unit && unit->dimension == format::dimension_of(*known)));
+    const bool never_negative = reading && format::entry_of(known->form).never_negative;
     double least = std::numeric_limits<double>::infinity(), most = -least;
     std::size_t filled = 0;
     for (std::size_t row = 0; row < table_.rows.size(); ++row) {
@@ -46,21 +60,21 @@ class Meaning {
       if (column.cell[row].empty() && names_.is_axis(column.name))
         findings_.add_of_kind("empty " + column.name, LintWeight::kError, line(row), column.name,
                               "an axis position may not be empty");
-      if (column.cell[row].empty() && (column.name == "u" || column.name == "t"))
+      if (column.cell[row].empty() && filled_column)
         findings_.add_of_kind("empty " + column.name, LintWeight::kError, line(row), column.name,
                               "this column may not have empty cells");
       if (std::isnan(value)) continue;
       ++filled;
       least = std::min(least, value);
       most = std::max(most, value);
-      if (!names_.axis_of(column.name, "dir").empty() && value != -1 && value != 0 && value != 1)
+      if (sense && value != -1 && value != 0 && value != 1)
         findings_.add_of_kind("dir " + column.name, LintWeight::kError, line(row), column.cell[row],
                               "a direction is 1, -1 or 0");
-      if (column.name == "u" && value <= 0)
-        findings_.add_of_kind("u", LintWeight::kError, line(row), column.cell[row],
+      if (uncertainty && value <= 0)
+        findings_.add_of_kind("uncertainty " + column.name, LintWeight::kError, line(row), column.cell[row],
                               "an uncertainty is greater than 0");
-      if ((column.name == "length" || (reading && column.name == "distance")) && value < 0)
-        findings_.add_of_kind("length", LintWeight::kError, line(row), column.cell[row],
+      if (never_negative && value < 0)
+        findings_.add_of_kind("negative", LintWeight::kError, line(row), column.cell[row],
                               "a length is not negative");
     }
     if (filled == 0) {
@@ -71,14 +85,13 @@ class Meaning {
     }
     if (reading) any_reading_ = true;
     if (names_.is_axis(column.name)) look_at_axis(column, least, most);
-    if (column.name == "feed" && most <= 0)
-      findings_.warn(table_.header_line, "feed", "the feed is 0 in all rows",
+    if (column.name == columns::kFeed && most <= 0)
+      findings_.warn(table_.header_line, column.name, "the feed is 0 in all rows",
                      "lag and dynamic effects show only while the machine moves");
-    if (column.name == "u" && most > 1)
-      findings_.warn(table_.header_line, "u", fmt::format("an uncertainty of {} mm", text::number_text(most)),
-                     "µm? Write u[um]");
-    if (text::find_unit(column.unit) &&
-        text::find_unit(column.unit)->dimension == text::Dimension::kTemperature)
+    if (column.name == columns::kUncertainty && most > 1)
+      findings_.warn(table_.header_line, column.name,
+                     fmt::format("an uncertainty of {} mm", text::number_text(most)), "µm? Write u[um]");
+    if (unit && unit->dimension == format::Dimension::kTemperature)
       if (const std::string doubt = temperature_doubt(least, most); !doubt.empty())
         findings_.warn(table_.header_line, column.name,
                        fmt::format("from {:.4g} to {:.4g} degC", least, most), doubt);
@@ -127,23 +140,24 @@ class Meaning {
 
   void look_at_labels() {
     std::size_t check = 0;
-    if (const LintColumn* role = table_.find("role"))
+    if (const LintColumn* role = table_.find(columns::kRole))
       for (std::size_t row = 0; row < table_.rows.size(); ++row) {
         const std::string& word = role->cell[row];
-        if (word != "fit" && word != "check" && !word.empty()) {
-          const auto meant = text::word_meant(word, {"fit", "check"});
-          findings_.add_of_kind("role", LintWeight::kError, line(row), word, "a role is fit or check",
+        if (!word.empty() && !format::is_role(word)) {
+          const auto meant = text::word_meant(word, {format::kRoles.begin(), format::kRoles.end()});
+          findings_.add_of_kind("role", LintWeight::kError, line(row), word, format::kRoleRule,
                                 meant ? "did you mean " + *meant + "?" : "");
         }
-        check += word == "check" ? 1 : 0;
+        check += word == format::kCheckRole ? 1 : 0;
       }
     if (check == table_.rows.size())
-      findings_.warn(table_.header_line, "role", "all rows are check rows: nothing is left for a fit");
+      findings_.warn(table_.header_line, columns::kRole,
+                     "all rows are check rows: nothing is left for a fit");
     if (check == 0)
-      findings_.remark(table_.header_line, "role", "no check rows: nothing will judge the fit",
+      findings_.remark(table_.header_line, columns::kRole, "no check rows: nothing will judge the fit",
                        "give some rows the role check, spread over the volume");
-    if (table_.find("u") == nullptr)
-      findings_.remark(table_.header_line, "u",
+    if (table_.find(columns::kUncertainty) == nullptr)
+      findings_.remark(table_.header_line, columns::kUncertainty,
                        "no standard uncertainty: the noise is taken from repeats, else from the residual",
                        "a column u[um], the instrument's");
     if (!any_reading_)
@@ -152,7 +166,7 @@ class Meaning {
   }
 
   void look_at_time() {
-    const LintColumn *time = table_.find("t"), *run = table_.find("run");
+    const LintColumn *time = table_.find(columns::kTime), *run = table_.find(columns::kRun);
     if (time == nullptr) return;
     std::map<std::string, std::size_t> last;
     for (std::size_t row = 0; row < table_.rows.size(); ++row) {
@@ -171,8 +185,8 @@ class Meaning {
   }
 
   void look_at_normals() {
-    const LintColumn *nx = table_.find("nx"), *ny = table_.find("ny"), *nz = table_.find("nz"),
-                     *d = table_.find("d");
+    const LintColumn *nx = table_.find(columns::kNormal[0]), *ny = table_.find(columns::kNormal[1]),
+                     *nz = table_.find(columns::kNormal[2]), *d = table_.find(columns::kDeviation);
     if (nx == nullptr || ny == nullptr || nz == nullptr) return;
     for (std::size_t row = 0; row < table_.rows.size(); ++row) {
       if (d != nullptr && std::isnan(d->value[row])) continue;
@@ -199,9 +213,9 @@ class Meaning {
   void look_at_scale() {
     double measured = 0, sent = 0;
     std::size_t used = 0;
-    for (const char letter : {'x', 'y', 'z'}) {
-      const LintColumn* point = table_.find(std::string(1, letter));
-      const LintColumn* position = table_.find(std::string(1, static_cast<char>(std::toupper(letter))));
+    for (const char* const name : columns::kPoint) {
+      const LintColumn* point = table_.find(name);
+      const LintColumn* position = table_.find(std::string(1, static_cast<char>(std::toupper(*name))));
       if (point == nullptr || position == nullptr) continue;
       double mean_p = 0, mean_q = 0, count = 0;
       for (std::size_t row = 0; row < table_.rows.size(); ++row)
@@ -228,7 +242,7 @@ class Meaning {
     if (near(1e3)) meaning = "the readings are in µm, or the positions in m?";
     if (near(1e-3)) meaning = "the readings are in m, or the positions in µm?";
     // The heading may be what is wrong: µm under mm, or mm under µm.
-    for (const char* name : {"x", "y", "z"})
+    for (const char* name : columns::kPoint)
       if (const LintColumn* point = table_.find(name); point != nullptr) {
         if (near(1e3) && point->unit == "mm") meaning += " " + wrong_heading(name, "µm", "mm", "um");
         if (near(1e-3) && point->unit == "um") meaning += " " + wrong_heading(name, "mm", "µm", "mm");
@@ -240,7 +254,7 @@ class Meaning {
       meaning = "deviations instead of positions? vernier import table " + quoted_for_shell(file_) +
                 " --deviation \"X[mm]=x\" … adds them to the positions";
     if (!meaning.empty())
-      findings_.warn(table_.header_line, "x",
+      findings_.warn(table_.header_line, columns::kPoint.front(),
                      fmt::format("what was measured spreads over {:.4g} of what the machine was sent", ratio),
                      meaning);
   }
@@ -254,16 +268,17 @@ class Meaning {
   void look_at_sizes() {
     constexpr double kMostCorrection_mm = 2, kLeast_mm = 1e-5;  // of what a board adds; of what is measured
     for (const LintColumn& column : table_.columns) {
-      const bool correction = !names_.axis_of(column.name, "correction").empty();
-      if (column.label || (!correction && column.name != "u")) continue;
-      if (correction && names_.is_rotary(names_.axis_of(column.name, "correction"))) continue;
+      const auto of_axis = names_.of_axis(column.name);
+      const bool correction = of_axis && of_axis->quantity == format::AxisQuantity::kCorrection;
+      if (column.label || (!correction && column.name != columns::kUncertainty)) continue;
+      if (correction && names_.is_rotary(of_axis->axis)) continue;
       double most = 0;
       for (const double value : column.value)
         most = std::isnan(value) ? most : std::max(most, std::abs(value));
       const auto say = [&](const std::string& meaning) {
         findings_.warn(
             table_.header_line, column.name,
-            fmt::format("{:.4g} {} at most", most / text::find_unit(column.unit)->factor, column.unit),
+            fmt::format("{:.4g} {} at most", most / format::find_unit(column.unit)->factor, column.unit),
             meaning);
       };
       if (correction && column.unit == "mm" && most > kMostCorrection_mm)
@@ -279,7 +294,7 @@ class Meaning {
     constexpr double kWild = 100;       // times the column's spread: a decimal point slips by ten
     constexpr std::size_t kFewest = 8;  // cells: of fewer none is the odd one
     // What a machine logs of itself may well jump: a heater is at its set-point but for the first minutes.
-    if (!is_reading(table_, column) && !names_.is_axis(column.name)) return;
+    if (!names_.is_reading(table_, column) && !names_.is_axis(column.name)) return;
     const LintColumn* position =
         column.name.size() == 1
             ? table_.find(

@@ -9,13 +9,14 @@
 #include <numbers>
 #include <optional>
 
+#include "tools/format/columns.h"
+#include "tools/format/csv_file.h"
+#include "tools/format/units.h"
 #include "tools/import/circular.h"
 #include "tools/maths/decompositions.h"
 #include "tools/maths/factors.h"
-#include "tools/text/csv.h"
 #include "tools/text/files.h"
 #include "tools/text/numbers.h"
-#include "tools/text/units.h"
 
 namespace vernier::map {
 namespace {
@@ -277,7 +278,7 @@ Json cylinder_json(const Bench& bench) {
 }
 
 Json free_lines_json(const Bench& bench, const std::string& path) {
-  const text::CsvFile csv = text::parse_csv(text::read_file(path), path);
+  const format::CsvFile csv = format::parse_csv(text::read_file(path), path);
   std::map<std::string, std::size_t> column;
   for (std::size_t i = 0; i < csv.columns.size(); ++i) column[csv.columns[i].name] = i;
   std::map<std::string, std::vector<Vector3d>> lines;
@@ -287,15 +288,18 @@ Json free_lines_json(const Bench& bench, const std::string& path) {
       const std::string name(1, "xyz"[c]);
       const auto found = column.find(name);
       if (found == column.end() ||
-          text::find_unit(csv.columns[found->second].unit)->dimension != text::Dimension::kLength)
-        throw text::InputError({path, csv.header_line}, name, "free lines are points x[mm],y[mm],z[mm],run");
+          format::find_unit(csv.columns[found->second].unit)->dimension != format::Dimension::kLength)
+        throw text::InputError({path, csv.header_line}, name,
+                               "free lines are points " + format::headings(format::columns::kPoint) + "," +
+                                   format::columns::kRun);
       const auto value = text::parse_number(csv.rows[i][found->second]);
       if (!value) throw text::InputError({path, csv.line[i]}, csv.rows[i][found->second], "not a number");
-      point[c] = *value * text::find_unit(csv.columns[found->second].unit)->factor;
+      point[c] = *value * format::find_unit(csv.columns[found->second].unit)->factor;
     }
     if (!bench.reaches(point))
       throw text::InputError({path, csv.line[i]}, "", "this point is outside the working volume");
-    lines[column.contains("run") ? csv.rows[i][column["run"]] : ""].push_back(point);
+    lines[column.contains(format::columns::kRun) ? csv.rows[i][column[format::columns::kRun]] : ""].push_back(
+        point);
   }
   Json list = Json::array();
   for (const auto& [name, points] : lines) {

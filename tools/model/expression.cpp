@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "tools/format/columns.h"
 #include "tools/maths/factors.h"
 #include "tools/text/numbers.h"
 
@@ -142,7 +143,7 @@ class Parser {
     while (at_ < text_.size() && (is_letter(text_[at_]) || is_digit(text_[at_]) || skip_placeholder())) ++at_;
     const std::string name(text_.substr(start, at_ - start));
     if (!peek('(')) return symbol(name, start);
-    if (name == "run") return run_label();
+    if (name == format::columns::kRun) return run_label();
     for (const NamedFunction& function : kFunctions)
       if (name == function.name) return call(function);
     fail_at(start, name, "unknown function");
@@ -158,7 +159,7 @@ class Parser {
   }
 
   ExprPtr symbol(const std::string& name, std::size_t start) {
-    if (name == "run" || is_function(name))
+    if (name == format::columns::kRun || is_function(name))
       fail_at(start, name, "a function needs its argument in parentheses");
     return make_symbol(name);
   }
@@ -346,9 +347,14 @@ const char* function_name(Op op) {
   return nullptr;
 }
 
+std::vector<std::string> function_names() {
+  std::vector<std::string> names;
+  for (const NamedFunction& function : kFunctions) names.emplace_back(function.name);
+  return names;
+}
+
 bool is_reserved_word(std::string_view name) {
-  for (const char* word : {"t", "feed", "curv", "visit", "nx", "ny", "nz", "run"})
-    if (name == word) return true;
+  if (format::is_name_of_terms(name)) return true;
   for (const NamedFunction& function : kFunctions)
     if (name == function.name) return true;
   return false;

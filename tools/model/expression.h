@@ -114,6 +114,8 @@ bool is_constant(const Expr& expr, double& value);
 
 /// The function's name in expressions ("sin"), or nullptr for operators and leaves.
 const char* function_name(Op op);
+/// All of them: sin, cos …
+std::vector<std::string> function_names();
 /// Is `name` a function or a fixed quantity of the expression language (t, feed, run, sin ...)?
 bool is_reserved_word(std::string_view name);
 

@@ -3,10 +3,14 @@
 
 #include <algorithm>
 
+#include "tools/format/columns.h"
 #include "tools/text/numbers.h"
 
 namespace vernier::model {
 namespace {
+
+namespace columns = format::columns;
+using format::AxisQuantity;
 
 template <class List>
 std::optional<std::size_t> find_named(const List& list, std::string_view name) {
@@ -15,18 +19,18 @@ std::optional<std::size_t> find_named(const List& list, std::string_view name) {
   return std::nullopt;
 }
 
+constexpr std::pair<AxisQuantity, SymbolKind> kAxisSymbols[] = {
+    {AxisQuantity::kSpeed, SymbolKind::kVelocity},
+    {AxisQuantity::kAcceleration, SymbolKind::kAcceleration},
+    {AxisQuantity::kSense, SymbolKind::kDirection},
+    {AxisQuantity::kSince, SymbolKind::kSince}};
+
 /// Names that the axes bring along: v a dir since, and the table values l..x to r..z.
 Symbol resolve_derived(const Machine& machine, std::string_view name) {
-  constexpr std::pair<std::string_view, SymbolKind> kPrefixes[] = {{"v", SymbolKind::kVelocity},
-                                                                   {"a", SymbolKind::kAcceleration},
-                                                                   {"dir", SymbolKind::kDirection},
-                                                                   {"since", SymbolKind::kSince}};
   for (std::size_t axis = 0; axis < machine.axes.size(); ++axis) {
     const std::string& axis_name = machine.axes[axis].name;
-    for (const auto& [prefix, kind] : kPrefixes)
-      if (name.size() == prefix.size() + axis_name.size() && name.starts_with(prefix) &&
-          name.ends_with(axis_name))
-        return {kind, axis};
+    for (const auto& [quantity, kind] : kAxisSymbols)
+      if (name == format::axis_column(quantity, axis_name)) return {kind, axis};
     if (name.size() != axis_name.size() + 2 || name.substr(1, axis_name.size()) != axis_name) continue;
     const char last = name.back();
     if ((name.front() == 'l' || name.front() == 'r') && last >= 'x' && last <= 'z')
@@ -37,13 +41,12 @@ Symbol resolve_derived(const Machine& machine, std::string_view name) {
 }
 
 Symbol resolve_fixed(std::string_view name) {
-  if (name == "t") return {SymbolKind::kTime, 0};
-  if (name == "feed") return {SymbolKind::kFeed, 0};
-  if (name == "curv") return {SymbolKind::kCurvature, 0};
-  if (name == "visit") return {SymbolKind::kVisit, 0};
-  if (name == "nx") return {SymbolKind::kNormal, 0};
-  if (name == "ny") return {SymbolKind::kNormal, 1};
-  if (name == "nz") return {SymbolKind::kNormal, 2};
+  if (name == columns::kTime) return {SymbolKind::kTime, 0};
+  if (name == columns::kFeed) return {SymbolKind::kFeed, 0};
+  if (name == columns::kCurvature) return {SymbolKind::kCurvature, 0};
+  if (name == columns::kVisit) return {SymbolKind::kVisit, 0};
+  for (std::size_t k = 0; k < columns::kNormal.size(); ++k)
+    if (name == columns::kNormal[k]) return {SymbolKind::kNormal, k};
   return {};
 }
 
@@ -120,23 +123,23 @@ std::string symbol_name(const Machine& machine, const Symbol& symbol) {
       return (column < 3 ? "l" : "r") + machine.axes[symbol.index / 6].name + "xyz"[column % 3];
     }
     case SymbolKind::kVelocity:
-      return "v" + machine.axes[symbol.index].name;
+      return format::axis_column(AxisQuantity::kSpeed, machine.axes[symbol.index].name);
     case SymbolKind::kAcceleration:
-      return "a" + machine.axes[symbol.index].name;
+      return format::axis_column(AxisQuantity::kAcceleration, machine.axes[symbol.index].name);
     case SymbolKind::kDirection:
-      return "dir" + machine.axes[symbol.index].name;
+      return format::axis_column(AxisQuantity::kSense, machine.axes[symbol.index].name);
     case SymbolKind::kSince:
-      return "since" + machine.axes[symbol.index].name;
+      return format::axis_column(AxisQuantity::kSince, machine.axes[symbol.index].name);
     case SymbolKind::kFeed:
-      return "feed";
+      return columns::kFeed;
     case SymbolKind::kCurvature:
-      return "curv";
+      return columns::kCurvature;
     case SymbolKind::kNormal:
-      return std::string("n") + "xyz"[symbol.index];
+      return columns::kNormal[symbol.index];
     case SymbolKind::kTime:
-      return "t";
+      return columns::kTime;
     case SymbolKind::kVisit:
-      return "visit";
+      return columns::kVisit;
     case SymbolKind::kUnresolved:
       break;
   }
@@ -144,29 +147,30 @@ std::string symbol_name(const Machine& machine, const Symbol& symbol) {
 }
 
 std::string symbol_unit(const Machine& machine, const Symbol& symbol) {
-  const auto axis_unit = [&](std::size_t axis) -> std::string {
-    return machine.axes[axis].rotary ? "deg" : "mm";
+  const auto axis_unit = [&](AxisQuantity quantity) -> std::string {
+    return format::unit_of(quantity, machine.axes[symbol.index].rotary);
   };
   switch (symbol.kind) {
     case SymbolKind::kStatic:
       return machine.statics[symbol.index].unit;
     case SymbolKind::kAxis:
+      return axis_unit(AxisQuantity::kPosition);
     case SymbolKind::kSince:
-      return axis_unit(symbol.index);
+      return axis_unit(AxisQuantity::kSince);
     case SymbolKind::kInput:
       return machine.inputs[symbol.index].unit;
     case SymbolKind::kTableValue:
       return symbol.index % 6 < 3 ? "mm" : "deg";
     case SymbolKind::kVelocity:
-      return axis_unit(symbol.index) + "/s";
+      return axis_unit(AxisQuantity::kSpeed);
     case SymbolKind::kAcceleration:
-      return axis_unit(symbol.index) + "/s^2";
+      return axis_unit(AxisQuantity::kAcceleration);
     case SymbolKind::kFeed:
-      return "mm/min";
+      return format::column_unit(columns::kFeed);
     case SymbolKind::kCurvature:
-      return "1/mm";
+      return format::column_unit(columns::kCurvature);
     case SymbolKind::kTime:
-      return "s";
+      return format::column_unit(columns::kTime);
     case SymbolKind::kDirection:
     case SymbolKind::kNormal:
     case SymbolKind::kVisit:

@@ -7,11 +7,11 @@
 #include <set>
 #include <sstream>
 
+#include "tools/format/units.h"
 #include "tools/model/fit_record.h"
 #include "tools/model/machine.h"
 #include "tools/text/files.h"
 #include "tools/text/numbers.h"
-#include "tools/text/units.h"
 #include "tools/text/words.h"
 #include "tools/text/xml_text.h"
 
@@ -313,7 +313,7 @@ class Reader {
       }
       if (attribute(node, "nominal")) item.nominal = number(node, "nominal", 0);
       item.scale = positive(node, "scale");
-      item.unit = text::canonical_unit(attribute(node, "unit").value_or(""));
+      item.unit = format::canonical_unit(attribute(node, "unit").value_or(""));
       item.note = attribute(node, "note").value_or("");
       item.hidden = boolean(node, "Hide", item.hidden);
       machine_.statics.push_back(item);
@@ -376,7 +376,7 @@ class Reader {
         if (optional_number(node, limit).value_or(1) <= 0)
           fail_attribute(node, limit, attribute(node, limit).value_or(""), "a limit must be greater than 0");
       if (boolean(node, "Hide", false)) {
-        machine_.inputs.push_back({axis.name, text::canonical_unit(attribute(node, "unit").value_or("")),
+        machine_.inputs.push_back({axis.name, format::canonical_unit(attribute(node, "unit").value_or("")),
                                    number(node, "reference", 0), axis.min, axis.max, true, axis.line,
                                    InputRole::kGuessed});
       } else {
@@ -393,7 +393,7 @@ class Reader {
       Input input;
       input.name = new_name(node);
       input.line = line(node);
-      input.unit = text::canonical_unit(attribute(node, "unit").value_or(""));
+      input.unit = format::canonical_unit(attribute(node, "unit").value_or(""));
       input.reference = number(node, "reference", 0);
       input.min = optional_number(node, "min");
       input.max = optional_number(node, "max");

@@ -10,119 +10,26 @@
 #include <map>
 #include <set>
 
+#include "tools/format/columns.h"
+#include "tools/format/csv_file.h"
+#include "tools/format/units.h"
+#include "tools/model/column_reader.h"
 #include "tools/model/measurement_names.h"
-#include "tools/text/csv.h"
 #include "tools/text/files.h"
 #include "tools/text/numbers.h"
-#include "tools/text/units.h"
 #include "tools/text/words.h"
 
 namespace vernier::model {
 namespace {
 
 constexpr double kAbsent = std::numeric_limits<double>::quiet_NaN();  // an empty cell
-/// Columns that say what a board had added: before an axis' name, and the image that ran.
-const std::string kCorrection(kCorrectionColumn), kCorrected = "corrected";
-
-/// One file's columns as numbers in their base units; NaN for an empty cell.
-class FileReader {
- public:
-  explicit FileReader(const text::CsvFile& csv) : csv_(csv) {
-    for (std::size_t i = 0; i < csv.columns.size(); ++i) index_[csv.columns[i].name] = i;
-  }
-
-  bool has(const std::string& name) const { return index_.contains(name); }
-
-  /// A column that must have this dimension; `required`: an empty cell is an error.
-  Column numbers(const std::string& name, text::Dimension dimension, bool required) {
-    const std::size_t column = index_.at(name);
-    used_.insert(name);
-    const text::Unit unit = *text::find_unit(csv_.columns[column].unit);
-    if (unit.dimension != dimension)
-      throw text::InputError(
-          header(), csv_.columns[column].unit.empty() ? name : name + "[" + unit.name + "]",
-          dimension == text::Dimension::kNone
-              ? std::string("this column is a pure number, it has no unit")
-              : std::string("this column needs a unit like ") + text::base_unit(dimension));
-    return read(column, unit.factor, unit.offset, required);
-  }
-
-  /// Does a column hold words in most of its filled cells? Fewer are numbers gone wrong.
-  bool is_text(const std::string& name) const {
-    const std::size_t column = index_.at(name);
-    std::size_t words = 0, filled = 0;
-    for (const auto& row : csv_.rows) {
-      if (row[column].empty()) continue;
-      ++filled;
-      if (!text::parse_number(row[column])) ++words;
-    }
-    return 2 * words > filled && csv_.columns[column].unit.empty();
-  }
-
-  text::Dimension dimension(const std::string& name) const { return text::find_unit(unit(name))->dimension; }
-
-  /// A column as it is, without conversion.
-  Column raw(const std::string& name) {
-    used_.insert(name);
-    return read(index_.at(name), 1, 0, false);
-  }
-
-  std::vector<std::string> words(const std::string& name) {
-    used_.insert(name);
-    return peek(name);
-  }
-
-  /// The same of a column that is somebody else's.
-  std::vector<std::string> peek(const std::string& name) const {
-    std::vector<std::string> result;
-    for (const auto& row : csv_.rows) result.push_back(row[index_.at(name)]);
-    return result;
-  }
-
-  std::vector<text::CsvColumn> unused() const {
-    std::vector<text::CsvColumn> list;
-    for (const text::CsvColumn& column : csv_.columns)
-      if (!used_.contains(column.name)) list.push_back(column);
-    return list;
-  }
-
-  text::Place header() const { return {csv_.file, csv_.header_line}; }
-  text::Place place(std::size_t row) const { return {csv_.file, csv_.line[row]}; }
-  const std::string& unit(const std::string& name) const { return csv_.columns[index_.at(name)].unit; }
-  const std::string& cell(const std::string& name, std::size_t row) const {
-    return csv_.rows[row][index_.at(name)];
-  }
-  std::size_t rows() const { return csv_.rows.size(); }
-
- private:
-  Column read(std::size_t column, double factor, double offset, bool required) {
-    Column result(static_cast<Eigen::Index>(rows()));
-    for (std::size_t row = 0; row < rows(); ++row) {
-      const std::string& text = csv_.rows[row][column];
-      double& value = result[static_cast<Eigen::Index>(row)];
-      if (text.empty()) {
-        if (required)
-          throw text::InputError(place(row), csv_.columns[column].name, "this column may not be empty");
-        value = kAbsent;
-        continue;
-      }
-      const auto number = text::parse_number(text);
-      if (!number)
-        throw text::InputError(place(row), text, "not a number, in column " + csv_.columns[column].name);
-      value = factor * *number + offset;
-    }
-    return result;
-  }
-
-  const text::CsvFile& csv_;
-  std::map<std::string, std::size_t> index_;
-  std::set<std::string> used_;
-};
+namespace columns = format::columns;
+using format::AxisQuantity;
 
 /// Reads one file into a Measurement of its own.
 class Builder {
  public:
-  Builder(const text::CsvFile& csv, const Machine& machine) : machine_(machine), reader_(csv) {
+  Builder(const format::CsvFile& csv, const Machine& machine) : machine_(machine), reader_(csv) {
     result_.states = make_states(reader_.rows(), machine);
     result_.files = {csv.file};
     result_.file.assign(reader_.rows(), 0);
@@ -140,8 +47,8 @@ class Builder {
     read_directions();
     read_distances();
     read_observations();
-    if (machine_.instrument && !reader_.has("u")) state_uncertainty(*machine_.instrument);
-    for (const text::CsvColumn& column : reader_.unused())
+    if (machine_.instrument && !reader_.has(columns::kUncertainty)) state_uncertainty(*machine_.instrument);
+    for (const format::CsvColumn& column : reader_.unused())
       if (reader_.is_text(column.name))
         result_.labels.push_back({column.name, reader_.words(column.name)});
       else
@@ -165,10 +72,9 @@ class Builder {
   void read_axes() {
     for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
       const Axis& axis = machine_.axes[i];
-      if (!reader_.has(axis.name))
-        throw text::InputError(reader_.header(), axis.name, "the column of this axis is missing");
+      reader_.require(axis.name, "the column of this axis is missing");
       result_.states.axis[i] =
-          reader_.numbers(axis.name, axis.rotary ? text::Dimension::kAngle : text::Dimension::kLength, true);
+          reader_.numbers(axis.name, format::dimension_of(AxisQuantity::kPosition, axis.rotary), true);
     }
   }
 
@@ -176,21 +82,22 @@ class Builder {
   void read_corrections() {
     const auto zero = Column::Zero(static_cast<Eigen::Index>(reader_.rows()));
     for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
-      const std::string name = kCorrection + machine_.axes[i].name;
+      const std::string name = format::axis_column(AxisQuantity::kCorrection, machine_.axes[i].name);
       if (!reader_.has(name)) continue;
       if (result_.correction.empty()) result_.correction.assign(machine_.axes.size(), zero);
       const Column read = reader_.numbers(
-          name, machine_.axes[i].rotary ? text::Dimension::kAngle : text::Dimension::kLength, false);
+          name, format::dimension_of(AxisQuantity::kCorrection, machine_.axes[i].rotary), false);
       result_.correction[i] = read.isNaN().select(0, read);
     }
-    for (const text::CsvColumn& column : reader_.unused())
-      if (column.name.starts_with(kCorrection) && reader_.has(column.name.substr(kCorrection.size())))
+    const std::string_view prefix = format::entry_of(AxisQuantity::kCorrection).prefix;
+    for (const format::CsvColumn& column : reader_.unused())
+      if (column.name.starts_with(prefix) && reader_.has(column.name.substr(prefix.size())))
         throw text::InputError(reader_.header(), column.name, "the machine file has no such axis");
-    if (reader_.has(kCorrected)) read_fingerprints();
+    if (reader_.has(columns::kCorrected)) read_fingerprints();
   }
 
   void read_fingerprints() {
-    result_.corrected = reader_.words(kCorrected);
+    result_.corrected = reader_.words(columns::kCorrected);
     bool any = false;
     for (std::size_t row = 0; row < reader_.rows(); ++row) {
       std::string& word = result_.corrected[row];
@@ -198,43 +105,46 @@ class Builder {
       any = true;
       word = text::in_small_letters(word);
       if (word.size() != 16 || word.find_first_not_of("0123456789abcdef") != std::string::npos)
-        throw text::InputError(reader_.place(row), reader_.cell(kCorrected, row),
+        throw text::InputError(reader_.place(row), reader_.cell(columns::kCorrected, row),
                                "the fingerprint of an image has 16 hexadecimal digits");
     }
     if (!any) result_.corrected.clear();
   }
 
-  void motion(const std::string& name, text::Dimension dimension, Column& target, double factor = 1) {
+  void motion(const std::string& name, format::Dimension dimension, Column& target, double factor = 1) {
     if (!reader_.has(name)) return;
     target = factor * reader_.numbers(name, dimension, true);
     result_.recorded.push_back(name);
+  }
+  void motion(const char* name, Column& target, double factor = 1) {
+    motion(name, format::dimension_of(*format::find_column(name)), target, factor);
+  }
+  void motion(AxisQuantity quantity, const Axis& axis, Column& target) {
+    motion(format::axis_column(quantity, axis.name), format::dimension_of(quantity, axis.rotary), target);
   }
 
   void read_motion() {
     States& states = result_.states;
     for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
       const Axis& axis = machine_.axes[i];
-      motion("v" + axis.name, axis.rotary ? text::Dimension::kAngularSpeed : text::Dimension::kSpeed,
-             states.velocity[i]);
-      motion("a" + axis.name,
-             axis.rotary ? text::Dimension::kAngularAcceleration : text::Dimension::kAcceleration,
-             states.acceleration[i]);
-      motion("dir" + axis.name, text::Dimension::kNone, states.direction[i]);
-      motion("since" + axis.name, axis.rotary ? text::Dimension::kAngle : text::Dimension::kLength,
-             states.since[i]);
+      motion(AxisQuantity::kSpeed, axis, states.velocity[i]);
+      motion(AxisQuantity::kAcceleration, axis, states.acceleration[i]);
+      motion(AxisQuantity::kSense, axis, states.direction[i]);
+      motion(AxisQuantity::kSince, axis, states.since[i]);
       for (std::size_t row = 0; row < reader_.rows(); ++row) {
         const double dir = states.direction[i][static_cast<Eigen::Index>(row)];
         if (dir != -1 && dir != 0 && dir != 1)
-          throw text::InputError(reader_.place(row), reader_.cell("dir" + axis.name, row),
+          throw text::InputError(reader_.place(row),
+                                 reader_.cell(format::axis_column(AxisQuantity::kSense, axis.name), row),
                                  "a direction is -1, 0 or 1");
       }
     }
-    motion("feed", text::Dimension::kSpeed, states.feed, 60);
-    motion("curv", text::Dimension::kCurvature, states.curvature);
-    motion("t", text::Dimension::kTime, states.time);
+    motion(columns::kFeed, states.feed, 60);  // mm/min
+    motion(columns::kCurvature, states.curvature);
+    motion(columns::kTime, states.time);
     for (std::size_t k = 0; k < 3; ++k)
-      if (const std::string name = std::string("n") + "xyz"[k]; reader_.has(name))
-        states.normal[k] = reader_.numbers(name, text::Dimension::kNone, false);
+      if (const std::string name = columns::kNormal[k]; reader_.has(name))
+        states.normal[k] = reader_.numbers(name, format::Dimension::kNone, false);
     for (Column& normal : states.normal) normal = normal.isNaN().select(0, normal);
   }
 
@@ -245,14 +155,15 @@ class Builder {
       if (!reader_.has(input.name)) continue;
       Column& target = result_.states.input[i];
       target = reader_.raw(input.name);
-      const text::Unit written = *text::find_unit(reader_.unit(input.name));
-      const auto declared = text::find_unit(input.unit);
+      const format::Unit written = *format::find_unit(reader_.unit(input.name));
+      const auto declared = format::find_unit(input.unit);
       const bool same_text = input.unit == written.name;
       if (!same_text && !input.unit.empty()) {
         if (!declared || declared->dimension != written.dimension)
           throw text::InputError(reader_.header(),
-                                 input.name + (written.dimension == text::Dimension::kNone ? "" : "[") +
-                                     written.name + (written.dimension == text::Dimension::kNone ? "" : "]"),
+                                 input.name + (written.dimension == format::Dimension::kNone ? "" : "[") +
+                                     written.name +
+                                     (written.dimension == format::Dimension::kNone ? "" : "]"),
                                  "the machine file declares this input in " + input.unit);
         target = (written.factor * target + written.offset - declared->offset) / declared->factor;
       }
@@ -263,37 +174,40 @@ class Builder {
 
   void read_labels() {
     result_.check.assign(reader_.rows(), 0);
-    if (reader_.has("role")) {
-      const std::vector<std::string> roles = reader_.words("role");
+    if (reader_.has(columns::kRole)) {
+      const std::vector<std::string> roles = reader_.words(columns::kRole);
       for (std::size_t row = 0; row < roles.size(); ++row) {
-        if (roles[row] != "fit" && roles[row] != "check" && !roles[row].empty())
-          throw text::InputError(reader_.place(row), roles[row], "a role is fit or check");
-        result_.check[row] = roles[row] == "check" ? 1 : 0;
+        if (!roles[row].empty() && !format::is_role(roles[row]))
+          throw text::InputError(reader_.place(row), roles[row], format::kRoleRule);
+        result_.check[row] = roles[row] == format::kCheckRole ? 1 : 0;
       }
     }
     States& states = result_.states;
-    if (reader_.has("run")) {
-      const Labels runs = labels_of(reader_.words("run"));
+    if (reader_.has(columns::kRun)) {
+      const Labels runs = labels_of(reader_.words(columns::kRun));
       states.run = runs.of;
       states.run_names = runs.names;
     }
-    if (has_word("setup")) states.setup = labels_of(setups_of_rows());
-    if (has_word("clock")) states.clock = labels_of(reader_.words("clock"));
-    if (has_word("block")) states.block = labels_of(reader_.words("block"));
+    if (has_word(columns::kSetup)) states.setup = labels_of(setups_of_rows());
+    if (has_word(columns::kClock)) states.clock = labels_of(reader_.words(columns::kClock));
+    if (has_word(columns::kBlock)) states.block = labels_of(reader_.words(columns::kBlock));
     std::vector<double> seen(states.names(states.clock).size(), 0);
     for (std::size_t row = 0; row < reader_.rows(); ++row)
       states.visit[static_cast<Eigen::Index>(row)] = seen[states.of(states.clock, row)]++;
-    if (reader_.has("visit")) states.visit = reader_.numbers("visit", text::Dimension::kNone, true);
+    if (reader_.has(columns::kVisit))
+      states.visit = reader_.numbers(columns::kVisit, format::Dimension::kNone, true);
     result_.uncertainty = Column::Zero(static_cast<Eigen::Index>(reader_.rows()));
-    if (reader_.has("u")) {
-      const bool angle = reader_.dimension("u") == text::Dimension::kAngle;
-      result_.uncertainty =
-          reader_.numbers("u", angle ? text::Dimension::kAngle : text::Dimension::kLength, true);
-      require_above_zero("u", result_.uncertainty);
+    if (reader_.has(columns::kUncertainty)) {
+      const bool angle = reader_.dimension(columns::kUncertainty) == format::Dimension::kAngle;
+      result_.uncertainty = reader_.numbers(
+          columns::kUncertainty, angle ? format::Dimension::kAngle : format::Dimension::kLength, true);
+      require_above_zero(columns::kUncertainty, result_.uncertainty);
     }
-    if (!has_word("ua") || reader_.dimension("ua") != text::Dimension::kAngle) return;
-    const Column read = reader_.numbers("ua", text::Dimension::kAngle, false);
-    require_above_zero("ua", read);
+    if (!has_word(columns::kAngleUncertainty) ||
+        reader_.dimension(columns::kAngleUncertainty) != format::Dimension::kAngle)
+      return;
+    const Column read = reader_.numbers(columns::kAngleUncertainty, format::Dimension::kAngle, false);
+    require_above_zero(columns::kAngleUncertainty, read);
     result_.angle_uncertainty = read.isNaN().select(0, read);
   }
 
@@ -304,7 +218,7 @@ class Builder {
       const auto row = static_cast<Eigen::Index>(o.row);
       const bool own_u = result_.angle_uncertainty.size() > 0 && result_.angle_uncertainty[row] > 0;
       if (is_rotation(o.kind) && !own_u)
-        throw text::InputError(reader_.place(o.row), "ua",
+        throw text::InputError(reader_.place(o.row), columns::kAngleUncertainty,
                                "the machine file states the u of lengths: a rotation needs one of its own");
       if (is_rotation(o.kind)) continue;
       const bool is_length = o.kind == ObservationKind::kLength || o.kind == ObservationKind::kDistance;
@@ -350,7 +264,7 @@ class Builder {
 
   /// The set-up of each row; a run for which the machine file has a BaseShift keeps that.
   std::vector<std::string> setups_of_rows() {
-    std::vector<std::string> setups = reader_.words("setup");
+    std::vector<std::string> setups = reader_.words(columns::kSetup);
     const States& states = result_.states;
     for (std::size_t row = 0; row < setups.size(); ++row)
       for (const BaseShift& shift : machine_.base_shifts)
@@ -358,21 +272,30 @@ class Builder {
     return setups;
   }
 
-  /// ax ay az: three pure numbers, a unit vector where they are given. With a unit they are other columns.
+  /// Are the columns of this name a reading in this file, and not an input of the machine file?
+  bool is_reading(const std::string& name) const {
+    return reader_.has(name) && format::is_reading(reader_.column(name), [&](std::string_view other) {
+             const std::string word(other);
+             return has_word(word) ? &reader_.column(word) : nullptr;
+           });
+  }
+
+  /// ax ay az: three pure numbers, a unit vector where they are given. Words are other columns.
   void read_directions() {
-    for (const char* name : {"ax", "ay", "az"})
-      if (!has_word(name) || reader_.dimension(name) != text::Dimension::kNone || reader_.is_text(name))
-        return;
+    if (!is_reading(columns::kDirection.front())) return;
+    for (const char* name : columns::kDirection)
+      if (reader_.is_text(name)) return;
     result_.direction.resize(3, static_cast<Eigen::Index>(reader_.rows()));
-    for (Eigen::Index k = 0; k < 3; ++k)
-      result_.direction.row(k) =
-          reader_.numbers(std::string("a") + "xyz"[k], text::Dimension::kNone, false).matrix().transpose();
+    for (std::size_t k = 0; k < 3; ++k)
+      result_.direction.row(static_cast<Eigen::Index>(k)) =
+          reader_.numbers(columns::kDirection[k], format::Dimension::kNone, false).matrix().transpose();
     for (std::size_t row = 0; row < reader_.rows(); ++row) {
       auto direction = result_.direction.col(static_cast<Eigen::Index>(row));
       const auto given = 3 - direction.array().isNaN().count();
       if (given != 0 && (given != 3 || std::abs(direction.norm() - 1) > 0.01))
-        throw text::InputError(reader_.place(row), reader_.cell("ax", row),
-                               "ax, ay, az must be a unit vector");
+        throw text::InputError(reader_.place(row), reader_.cell(columns::kDirection.front(), row),
+                               text::joined({columns::kDirection.begin(), columns::kDirection.end()}, ", ") +
+                                   " must be a unit vector");
       direction.normalize();
     }
     has_directions_ = true;
@@ -381,11 +304,11 @@ class Builder {
   /// A word that names the row at the other end of a distance: a label that one row of the file bears, or the
   /// number of a row of data, from 1.
   void read_distances() {
-    if (!has_word("distance") || !reader_.has("from")) return;
-    const std::vector<std::string> from = reader_.words("from");
+    if (!is_reading(columns::kDistance)) return;
+    const std::vector<std::string> from = reader_.words(columns::kFrom);
     std::map<std::string, std::size_t> rows_of_word;
     std::set<std::string> twice;
-    for (const text::CsvColumn& column : reader_.unused())
+    for (const format::CsvColumn& column : reader_.unused())
       if (reader_.is_text(column.name)) {
         const std::vector<std::string> words = reader_.peek(column.name);
         for (std::size_t row = 0; row < words.size(); ++row)
@@ -413,43 +336,46 @@ class Builder {
     has_distances_ = true;
   }
 
-  void three(const std::string& prefix, const char* owner, Eigen::Matrix3Xd& target) {
+  /// Three columns beside a reading: lengths of a point, or pure numbers of a direction.
+  void three(const std::array<const char*, 3>& names, const char* owner, Eigen::Matrix3Xd& target) {
     target = Eigen::Matrix3Xd::Zero(3, static_cast<Eigen::Index>(reader_.rows()));
     for (std::size_t k = 0; k < 3; ++k) {
-      const std::string name = prefix + "xyz"[k];
-      if (!reader_.has(name)) {
+      if (!reader_.has(names[k])) {
         if (reader_.has(owner))
-          throw text::InputError(reader_.header(), owner, "this column needs " + name + " beside it");
+          throw text::InputError(reader_.header(), owner,
+                                 std::string("this column needs ") + names[k] + " beside it");
         continue;
       }
-      const Column column = prefix == "n" ? reader_.numbers(name, text::Dimension::kNone, false)
-                                          : reader_.numbers(name, text::Dimension::kLength, false);
+      const Column column =
+          reader_.numbers(names[k], format::dimension_of(*format::find_column(names[k])), false);
       target.row(static_cast<Eigen::Index>(k)) = column.matrix().transpose();
     }
   }
 
   void read_geometry() {
-    three("c", "length", result_.centre);
-    three("p", "d", result_.nominal_point);
+    three(columns::kCentre, columns::kLength, result_.centre);
+    three(columns::kNominalPoint, columns::kDeviation, result_.nominal_point);
     Eigen::Matrix3Xd normal;
-    three("n", "d", normal);
+    three(columns::kNormal, columns::kDeviation, normal);
   }
 
   void read_observations() {
-    std::array<Column, kObservationNames.size()> values;
+    std::array<Column, format::kReadingKindCount> values;
     bool any = false;
-    for (std::size_t k = 0; k < kObservationNames.size(); ++k) {
+    for (std::size_t k = 0; k < format::kReadingKindCount; ++k) {
       const auto kind = static_cast<ObservationKind>(k);
       if (is_direction(kind)) {
         if (has_directions_) values[k] = 0 * result_.direction.row(0).transpose().array();
       } else if (is_measured(kind)) {
-        values[k] =
-            reader_.numbers(kObservationNames[k],
-                            is_rotation(kind) ? text::Dimension::kAngle : text::Dimension::kLength, false);
+        values[k] = reader_.numbers(
+            format::name_of(kind), is_rotation(kind) ? format::Dimension::kAngle : format::Dimension::kLength,
+            false);
       }
       any = any || values[k].size() > 0;
     }
-    if (!any) throw text::InputError(reader_.header(), "", "no measured column (" + reading_names() + ")");
+    if (!any)
+      throw text::InputError(reader_.header(), "",
+                             "no measured column (" + format::reading_column_names() + ")");
     for (std::size_t row = 0; row < reader_.rows(); ++row)
       for (std::size_t k = 0; k < values.size(); ++k) {
         const auto at = static_cast<Eigen::Index>(row);
@@ -460,41 +386,40 @@ class Builder {
       }
   }
 
-  /// Is there a column of this kind of reading? Words of the second round that stand for something else in
-  /// older files are readings only with what belongs to them.
-  bool is_measured(ObservationKind kind) const {
-    const char* name = kObservationNames[static_cast<std::size_t>(kind)];
-    if (kind == ObservationKind::kDistance) return has_distances_;
-    if (is_inclination(kind)) return has_word(name) && reader_.dimension(name) == text::Dimension::kAngle;
-    return reader_.has(name);
-  }
+  bool is_measured(ObservationKind kind) const { return is_reading(format::name_of(kind)); }
 
   /// A length needs its centre, a deviation its nominal point and a unit normal.
   void check_geometry(ObservationKind kind, std::size_t row) {
     const auto at = static_cast<Eigen::Index>(row);
     const auto finite = [&](const Eigen::Matrix3Xd& m) { return m.col(at).allFinite(); };
     if (kind == ObservationKind::kLength && !finite(result_.centre))
-      throw text::InputError(reader_.place(row), "length", "cx, cy and cz may not be empty here");
-    for (const char* name : {"length", "distance"})
-      if (kObservationNames[static_cast<std::size_t>(kind)] == std::string_view(name) &&
-          reader_.cell(name, row).front() == '-')
-        throw text::InputError(reader_.place(row), reader_.cell(name, row), "a length is not negative");
+      throw text::InputError(reader_.place(row), columns::kLength, all_needed(columns::kCentre));
+    if (format::entry_of(format::form_of(kind)).never_negative &&
+        reader_.cell(format::name_of(kind), row).front() == '-')
+      throw text::InputError(reader_.place(row), reader_.cell(format::name_of(kind), row),
+                             "a length is not negative");
     if (kind == ObservationKind::kDistance && result_.other_end[row] == kNoRow)
-      throw text::InputError(reader_.place(row), "from", "may not be empty here: the row at the other end");
+      throw text::InputError(reader_.place(row), columns::kFrom,
+                             "may not be empty here: the row at the other end");
     if (is_inclination(kind) && !machine_.workpiece.empty())
-      throw text::InputError(reader_.header(), kObservationNames[static_cast<std::size_t>(kind)],
+      throw text::InputError(reader_.header(), format::name_of(kind),
                              "an inclination is read on the tool of a machine whose workpiece stands still");
     if (kind != ObservationKind::kD) return;
     if (!finite(result_.nominal_point))
-      throw text::InputError(reader_.place(row), "d", "px, py and pz may not be empty here");
+      throw text::InputError(reader_.place(row), columns::kDeviation, all_needed(columns::kNominalPoint));
     const auto& n = result_.states.normal;
     const double size = std::hypot(n[0][at], n[1][at], n[2][at]);
     if (std::abs(size - 1) > 0.01)
-      throw text::InputError(reader_.place(row), reader_.cell("nx", row), "nx, ny, nz must be a unit vector");
+      throw text::InputError(reader_.place(row), reader_.cell(columns::kNormal.front(), row),
+                             "nx, ny, nz must be a unit vector");
+  }
+
+  static std::string all_needed(const std::array<const char*, 3>& names) {
+    return fmt::format("{}, {} and {} may not be empty here", names[0], names[1], names[2]);
   }
 
   const Machine& machine_;
-  FileReader reader_;
+  ColumnReader reader_;
   Measurement result_;
   std::vector<char> excluded_;
   bool has_directions_ = false, has_distances_ = false;
@@ -612,9 +537,8 @@ void add_corrections(Measurement& m, const Machine& machine, const std::string& 
     if (!images)
       throw text::InputError(
           {m.files.front(), m.line[row]}, m.corrected[row],
-          "what this image added is not known: say where it is (--images DIR), or give columns "
-          "correction" +
-              machine.axes.front().name + " and so on");
+          "what this image added is not known: say where it is (--images DIR), or give columns " +
+              format::axis_column(AxisQuantity::kCorrection, machine.axes.front().name) + " and so on");
     m.correction.assign(machine.axes.size(), Column::Zero(static_cast<Eigen::Index>(m.rows())));
     images(m, machine, text);
   }
@@ -676,7 +600,7 @@ void require_time_order(const Measurement& m) {
     std::size_t& before = last[clock];
     const auto at = static_cast<Eigen::Index>(row), from = static_cast<Eigen::Index>(before);
     if (before < m.rows() && m.states.time[at] < m.states.time[from])
-      throw text::InputError({m.files[m.file[row]], m.line[row]}, "t",
+      throw text::InputError({m.files[m.file[row]], m.line[row]}, format::columns::kTime,
                              fmt::format("falls from {} to {} s in run \"{}\": rows are in the order of time",
                                          m.states.time[from], m.states.time[at], clocks[clock]));
     before = row;
@@ -759,7 +683,7 @@ void append_measurement(Measurement& all, Measurement next, bool apart) {
 
 Measurement parse_measurement(const std::string& text, const std::string& file, const Machine& machine,
                               const ImageCorrection& images) {
-  const text::CsvFile csv = text::parse_csv(text, file);
+  const format::CsvFile csv = format::parse_csv(text, file);
   Builder builder(csv, machine);
   const Measurement all = builder.build();
   Measurement rows = without(all, builder.excluded());

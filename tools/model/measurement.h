@@ -5,47 +5,18 @@
 #include <string>
 #include <vector>
 
+#include "tools/format/readings.h"
 #include "tools/model/machine.h"
 #include "tools/model/states.h"
 
 namespace vernier::model {
 
-/// a1 a2: the two angles by which a measured direction is off (columns ax ay az); ix iy: inclinations of the
-/// tool's x and y axes against the horizontal; distance: to the tool point of another row.
-enum class ObservationKind : std::uint8_t {
-  kX,
-  kY,
-  kZ,
-  kRx,
-  kRy,
-  kRz,
-  kLength,
-  kD,
-  kA1,
-  kA2,
-  kDistance,
-  kIx,
-  kIy
-};
-inline constexpr std::array<const char*, 13> kObservationNames = {
-    "x", "y", "z", "rx", "ry", "rz", "length", "d", "a1", "a2", "distance", "ix", "iy"};
-constexpr bool is_direction(ObservationKind kind) {
-  return kind == ObservationKind::kA1 || kind == ObservationKind::kA2;
-}
-constexpr bool is_inclination(ObservationKind kind) {
-  return kind == ObservationKind::kIx || kind == ObservationKind::kIy;
-}
-/// Readings of the tool's orientation, deg: rx ry rz (its rotation vector), a1 a2, ix iy. The others are
-/// lengths, mm.
-constexpr bool is_rotation(ObservationKind kind) {
-  return kind == ObservationKind::kRx || kind == ObservationKind::kRy || kind == ObservationKind::kRz ||
-         is_direction(kind) || is_inclination(kind);
-}
-/// Readings that no set-up of the instrument touches: d is told in workpiece coordinates, an inclination by
-/// gravity.
-constexpr bool is_free_of_setup(ObservationKind kind) {
-  return kind == ObservationKind::kD || is_inclination(kind);
-}
+/// Kinds of reading are the measurement format's.
+using ObservationKind = format::ReadingKind;
+using format::is_direction;
+using format::is_free_of_setup;
+using format::is_inclination;
+using format::is_rotation;
 
 /// One measured number: mm, or deg for rotations.
 struct Observation {
@@ -75,7 +46,7 @@ inline constexpr std::size_t kNoRow = static_cast<std::size_t>(-1);
 struct Measurement {
   std::vector<std::string> files;
   States states;
-  std::vector<Observation> observations;  // by row, in the order of kObservationNames
+  std::vector<Observation> observations;  // by row, in the order of their kinds
   std::vector<CandidateInput> candidates;
   std::vector<LabelColumn> labels;
   Column uncertainty;                   // u of the row, mm (deg for its rotations); 0 where not given

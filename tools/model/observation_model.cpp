@@ -94,7 +94,11 @@ const Vector3d& ObservationModel::rotation_vector(std::size_t row) {
 Matrix3d ObservationModel::sight(Eigen::Index row) const {
   Vector3d along = tool_axis();
   if (m_.direction.cols() > 0 && m_.direction.col(row).allFinite()) along = m_.direction.col(row);
-  const Vector3d across = along.unitOrthogonal();
+  // The two directions across turn smoothly with the measured one, so that noise does not choose them.
+  // Eigen's unitOrthogonal() near z takes them from the small components, which are noise.
+  constexpr double kMostAlongX = 0.8;  // cosine; beyond it y is farther from the direction than x
+  const Vector3d away = std::abs(along.x()) < kMostAlongX ? Vector3d::UnitX() : Vector3d::UnitY();
+  const Vector3d across = along.cross(away).normalized();
   Matrix3d frame;
   frame << along, across, along.cross(across);
   return frame;

@@ -3,10 +3,10 @@
 
 #include <cctype>
 
+#include "tools/format/units.h"
 #include "tools/maths/factors.h"
 #include "tools/text/error.h"
 #include "tools/text/numbers.h"
-#include "tools/text/units.h"
 #include "tools/text/words.h"
 
 namespace vernier::model {
@@ -35,8 +35,8 @@ void add_length(const std::string& term, ReadingUncertainty& sum) {
   const std::size_t unit_at = length.find_first_not_of("0123456789.");
   const auto number = text::parse_number(length.substr(0, unit_at));
   const std::string name = unit_at == std::string::npos ? "um" : length.substr(unit_at);
-  const auto unit = text::find_unit(name);
-  if (!number || !unit || unit->dimension != text::Dimension::kLength) refuse(term);
+  const auto unit = format::find_unit(name);
+  if (!number || !unit || unit->dimension != format::Dimension::kLength) refuse(term);
   const double mm = *number * unit->factor;
   if (per_metre)
     sum.per_mm += mm / kMmPerMetre;

@@ -10,12 +10,14 @@
 #include <optional>
 #include <sstream>
 
+#include "tools/format/columns.h"
+#include "tools/format/csv_file.h"
+#include "tools/format/units.h"
 #include "tools/kinematics/inverse.h"
 #include "tools/kinematics/rotations.h"
 #include "tools/text/csv.h"
 #include "tools/text/error.h"
 #include "tools/text/numbers.h"
-#include "tools/text/units.h"
 
 namespace vernier::offline {
 namespace {
@@ -28,20 +30,20 @@ constexpr int kDigits = 7;
 /// The columns of one file as numbers.
 class PositionTable {
  public:
-  PositionTable(const std::string& text, const std::string& file) : csv_(text::parse_csv(text, file)) {}
+  PositionTable(const std::string& text, const std::string& file) : csv_(format::parse_csv(text, file)) {}
 
-  const text::CsvFile& csv() const { return csv_; }
+  const format::CsvFile& csv() const { return csv_; }
   std::optional<std::size_t> find(const std::string& name) const {
     for (std::size_t i = 0; i < csv_.columns.size(); ++i)
       if (csv_.columns[i].name == name) return i;
     return std::nullopt;
   }
-  model::Column numbers(std::size_t column, text::Dimension dimension) const {
-    const text::CsvColumn& head = csv_.columns[column];
-    const text::Unit unit = *text::find_unit(head.unit);
+  model::Column numbers(std::size_t column, format::Dimension dimension) const {
+    const format::CsvColumn& head = csv_.columns[column];
+    const format::Unit unit = *format::find_unit(head.unit);
     if (unit.dimension != dimension)
       throw text::InputError({csv_.file, csv_.header_line}, head.name,
-                             std::string("this column needs a unit like ") + text::base_unit(dimension));
+                             std::string("this column needs a unit like ") + format::base_unit(dimension));
     model::Column result(static_cast<Index>(csv_.rows.size()));
     for (std::size_t row = 0; row < csv_.rows.size(); ++row) {
       const auto number = text::parse_number(csv_.rows[row][column]);
@@ -54,10 +56,10 @@ class PositionTable {
   }
 
  private:
-  text::CsvFile csv_;
+  format::CsvFile csv_;
 };
 
-void read_column(const PositionTable& table, const std::string& name, text::Dimension dimension,
+void read_column(const PositionTable& table, const std::string& name, format::Dimension dimension,
                  model::Column& target, double factor = 1) {
   if (const auto column = table.find(name)) target = factor * table.numbers(*column, dimension);
 }
@@ -68,26 +70,25 @@ model::States states_of(const PositionTable& table, const model::Machine& machin
   model::States states = model::select_states(at, std::vector<std::size_t>(rows, 0));
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
     const model::Axis& axis = machine.axes[i];
-    const auto either = [&](text::Dimension linear, text::Dimension rotary) {
-      return axis.rotary ? rotary : linear;
+    using format::AxisQuantity;
+    const auto read = [&](AxisQuantity quantity, model::Column& target) {
+      read_column(table, format::axis_column(quantity, axis.name),
+                  format::dimension_of(quantity, axis.rotary), target);
     };
-    read_column(table, axis.name, either(text::Dimension::kLength, text::Dimension::kAngle), states.axis[i]);
-    read_column(table, "v" + axis.name, either(text::Dimension::kSpeed, text::Dimension::kAngularSpeed),
-                states.velocity[i]);
-    read_column(table, "a" + axis.name,
-                either(text::Dimension::kAcceleration, text::Dimension::kAngularAcceleration),
-                states.acceleration[i]);
-    read_column(table, "dir" + axis.name, text::Dimension::kNone, states.direction[i]);
-    read_column(table, "since" + axis.name, either(text::Dimension::kLength, text::Dimension::kAngle),
-                states.since[i]);
+    read(AxisQuantity::kPosition, states.axis[i]);
+    read(AxisQuantity::kSpeed, states.velocity[i]);
+    read(AxisQuantity::kAcceleration, states.acceleration[i]);
+    read(AxisQuantity::kSense, states.direction[i]);
+    read(AxisQuantity::kSince, states.since[i]);
   }
-  read_column(table, "feed", text::Dimension::kSpeed, states.feed, 60);
-  read_column(table, "curv", text::Dimension::kCurvature, states.curvature);
-  read_column(table, "t", text::Dimension::kTime, states.time);
+  namespace columns = format::columns;
+  read_column(table, columns::kFeed, format::Dimension::kSpeed, states.feed, 60);
+  read_column(table, columns::kCurvature, format::Dimension::kCurvature, states.curvature);
+  read_column(table, columns::kTime, format::Dimension::kTime, states.time);
   for (std::size_t i = 0; i < machine.inputs.size(); ++i) {
     const model::Input& input = machine.inputs[i];
     const auto column = table.find(input.name);
-    const auto unit = text::find_unit(input.unit);
+    const auto unit = format::find_unit(input.unit);
     if (!column || !unit) continue;
     states.input[i] = (table.numbers(*column, unit->dimension) - unit->offset) / unit->factor;
   }
@@ -99,10 +100,10 @@ model::Poses targets_of(const PositionTable& table, bool& with_direction) {
   const std::size_t rows = table.csv().rows.size();
   target.position = Eigen::Matrix3Xd::Zero(3, static_cast<Index>(rows));
   target.rotation.assign(rows, Eigen::Matrix3d::Identity());
-  const auto three = [&](const char* names, const char* prefix, text::Dimension dimension) {
+  const auto three = [&](const std::array<const char*, 3>& names, format::Dimension dimension) {
     Eigen::Matrix3Xd values(3, static_cast<Index>(rows));
     for (Index k = 0; k < 3; ++k) {
-      const std::string name = std::string(prefix) + names[k];
+      const std::string name = names[static_cast<std::size_t>(k)];
       const auto column = table.find(name);
       if (!column)
         throw text::InputError({table.csv().file, table.csv().header_line}, name, "this column is missing");
@@ -110,12 +111,12 @@ model::Poses targets_of(const PositionTable& table, bool& with_direction) {
     }
     return values;
   };
-  target.position = three("xyz", "", text::Dimension::kLength);
-  with_direction = table.find("rx") || table.find("i");
+  target.position = three(format::columns::kPoint, format::Dimension::kLength);
+  with_direction = table.find(format::columns::kRotation.front()) || table.find("i");
   if (!with_direction) return target;
-  const bool vector = table.find("rx").has_value();
-  const Eigen::Matrix3Xd turn =
-      vector ? three("xyz", "r", text::Dimension::kAngle) : three("ijk", "", text::Dimension::kNone);
+  const bool vector = table.find(format::columns::kRotation.front()).has_value();
+  const Eigen::Matrix3Xd turn = vector ? three(format::columns::kRotation, format::Dimension::kAngle)
+                                       : three({"i", "j", "k"}, format::Dimension::kNone);
   for (std::size_t row = 0; row < rows; ++row) {
     const Eigen::Vector3d one = turn.col(static_cast<Index>(row));
     if (vector) {
@@ -169,7 +170,7 @@ std::string corrected_positions(const std::string& text, const std::string& file
     found += column_of[i] ? 1 : 0;
   }
   model::States states = states_of(table, machine, at);
-  if (found == 0 && table.find("x"))
+  if (found == 0 && table.find(format::columns::kPoint.front()))
     states = solved(table, machine, states);
   else
     for (std::size_t i = 0; i < machine.axes.size(); ++i)
@@ -182,7 +183,7 @@ std::string corrected_positions(const std::string& text, const std::string& file
   const auto written = [&](std::size_t axis, std::size_t row) {
     double value = commands(static_cast<Index>(axis), static_cast<Index>(row));
     if (const auto column = column_of[axis]) {
-      const text::Unit unit = *text::find_unit(table.csv().columns[*column].unit);
+      const format::Unit unit = *format::find_unit(table.csv().columns[*column].unit);
       value = (value - unit.offset) / unit.factor;
     }
     return fmt::format("{:.{}f}", value, kDigits);

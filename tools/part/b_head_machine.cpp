@@ -5,9 +5,9 @@
 
 #include <cmath>
 
+#include "tools/format/units.h"
 #include "tools/model/chain.h"
 #include "tools/text/numbers.h"
-#include "tools/text/units.h"
 #include "tools/text/words.h"
 
 namespace vernier::part {
@@ -31,7 +31,7 @@ double error_value(const model::Static& target, const std::string& word, const s
   if (!number) throw text::InputError({"--errors", 0}, word, "not a number");
   const std::string name = text.substr(split);
   if (name.empty()) return *number;
-  const std::optional<text::Unit> from = text::find_unit(name), to = text::find_unit(target.unit);
+  const std::optional<format::Unit> from = format::find_unit(name), to = format::find_unit(target.unit);
   if (!from || !to || from->dimension != to->dimension)
     throw text::InputError(
         {"--errors", 0}, word,

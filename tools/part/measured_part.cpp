@@ -5,9 +5,9 @@
 
 #include <cmath>
 
+#include "tools/format/csv_file.h"
 #include "tools/part/part_column.h"
 #include "tools/part/s_part.h"
-#include "tools/text/csv.h"
 #include "tools/text/numbers.h"
 
 namespace vernier::part {
@@ -56,9 +56,9 @@ PartPoint place_on_part(const Eigen::Vector3d& position, const text::Place& plac
 }  // namespace
 
 MeasuredPart read_measured_part(const std::string& text, const std::string& file) {
-  const text::CsvFile csv = text::parse_csv(text, file);
+  const format::CsvFile csv = format::parse_csv(text, file);
   const auto length = [&](const char* name, bool required) {
-    return PartColumn(csv, name, text::Dimension::kLength, required);
+    return PartColumn(csv, name, format::Dimension::kLength, required);
   };
   const PartColumn x = length("sx", true), y = length("sy", true), z = length("sz", true),
                    defect = length("defect", true), u = length("u", false);

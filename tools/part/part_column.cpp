@@ -5,7 +5,7 @@
 
 namespace vernier::part {
 
-PartColumn::PartColumn(const text::CsvFile& csv, const std::string& name, text::Dimension dimension,
+PartColumn::PartColumn(const format::CsvFile& csv, const std::string& name, format::Dimension dimension,
                        bool required)
     : csv_(csv) {
   for (std::size_t i = 0; i < csv.columns.size(); ++i)
@@ -13,10 +13,10 @@ PartColumn::PartColumn(const text::CsvFile& csv, const std::string& name, text::
   const text::Place header{csv.file, csv.header_line};
   if (!index_ && required) throw text::InputError(header, name, "this file needs this column");
   if (!index_) return;
-  const std::optional<text::Unit> unit = text::find_unit(csv.columns[*index_].unit);
+  const std::optional<format::Unit> unit = format::find_unit(csv.columns[*index_].unit);
   if (!unit || unit->dimension != dimension)
     throw text::InputError(header, name,
-                           "needs a unit like " + name + "[" + text::base_unit(dimension) + "]");
+                           "needs a unit like " + name + "[" + format::base_unit(dimension) + "]");
   factor_ = unit->factor;
 }
 

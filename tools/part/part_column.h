@@ -3,8 +3,8 @@
 #include <optional>
 #include <string>
 
-#include "tools/text/csv.h"
-#include "tools/text/units.h"
+#include "tools/format/csv_file.h"
+#include "tools/format/units.h"
 
 namespace vernier::part {
 
@@ -12,13 +12,13 @@ namespace vernier::part {
 class PartColumn {
  public:
   /// Throws InputError where it is missing though required, or has a unit of another dimension. tool.
-  PartColumn(const text::CsvFile& csv, const std::string& name, text::Dimension dimension, bool required);
+  PartColumn(const format::CsvFile& csv, const std::string& name, format::Dimension dimension, bool required);
   bool present() const { return index_.has_value(); }
   /// Throws InputError where the cell is no number. tool.
   double at(std::size_t row) const;
 
  private:
-  const text::CsvFile& csv_;
+  const format::CsvFile& csv_;
   std::optional<std::size_t> index_;
   double factor_ = 1;
 };

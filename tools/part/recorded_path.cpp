@@ -75,13 +75,13 @@ struct Stretch {
 }  // namespace
 
 RecordedPath read_recorded(const std::string& text, const std::string& file, const JointPose& zero) {
-  const text::CsvFile csv = text::parse_csv(text, file);
-  const auto column = [&](const char* name, text::Dimension dimension) {
+  const format::CsvFile csv = format::parse_csv(text, file);
+  const auto column = [&](const char* name, format::Dimension dimension) {
     return PartColumn(csv, name, dimension, true);
   };
-  const PartColumn x = column("X", text::Dimension::kLength), y = column("Y", text::Dimension::kLength),
-                   z = column("Z", text::Dimension::kLength), b = column("B", text::Dimension::kAngle),
-                   c = column("C", text::Dimension::kAngle);
+  const PartColumn x = column("X", format::Dimension::kLength), y = column("Y", format::Dimension::kLength),
+                   z = column("Z", format::Dimension::kLength), b = column("B", format::Dimension::kAngle),
+                   c = column("C", format::Dimension::kAngle);
   RecordedPath path{file, {}};
   for (std::size_t row = 0; row < csv.rows.size(); ++row)
     path.joints.push_back({x.at(row) - zero.x_mm, y.at(row) - zero.y_mm, z.at(row) - zero.z_mm,

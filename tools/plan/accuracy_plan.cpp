@@ -7,6 +7,7 @@
 #include "tools/fit/point_readings.h"
 #include "tools/fit/reach.h"
 #include "tools/fit/statistics.h"
+#include "tools/format/columns.h"
 #include "tools/maths/decompositions.h"
 #include "tools/maths/factors.h"
 #include "tools/maths/halton.h"
@@ -290,7 +291,8 @@ Knowledge knowledge_of(const fit::FitResult& fitted, const model::Measurement& m
   for (const model::Observation& o : measurement.observations)
     if (o.kind <= model::ObservationKind::kZ) knowledge.reads[static_cast<std::size_t>(o.kind)] = true;
   if (!knowledge.reads[0] && !knowledge.reads[1] && !knowledge.reads[2])
-    throw text::InputError({measurement.files.empty() ? "" : measurement.files[0], 0}, "x, y, z",
+    throw text::InputError({measurement.files.empty() ? "" : measurement.files[0], 0},
+                           format::words_of(format::columns::kPoint),
                            "a plan for accuracy is one of readings of the tool point; this has none");
   const fit::NoiseModel& noise = fitted.noise;
   const double unit_mm = usual_reading_mm(measurement);

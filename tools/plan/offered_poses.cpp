@@ -7,6 +7,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "tools/format/columns.h"
 #include "tools/maths/halton.h"
 #include "tools/model/work_poses.h"
 #include "tools/text/error.h"
@@ -70,10 +71,13 @@ std::string pose_rows_csv(const model::Machine& machine, const model::States& st
                           const std::vector<char>& check, double reading_um, const std::string& run) {
   std::string text;
   for (const model::Axis& axis : machine.axes)
-    text += fmt::format("{0}[{1}],dir{0},", axis.name, axis.rotary ? "deg" : "mm");
+    for (const auto quantity : {format::AxisQuantity::kPosition, format::AxisQuantity::kSense})
+      text += format::axis_heading(quantity, axis.name, axis.rotary) + ",";
   for (const model::Input& input : machine.inputs)
     text += input.unit.empty() ? input.name + "," : fmt::format("{}[{}],", input.name, input.unit);
-  text += "x[mm],y[mm],z[mm],u[mm],run,role\n";
+  namespace columns = format::columns;
+  text += format::headings(columns::kPoint) + "," +
+          format::headings(std::array{columns::kUncertainty, columns::kRun, columns::kRole}) + "\n";
   for (std::size_t row = 0; row < states.count; ++row) {
     const auto at = static_cast<Index>(row);
     for (std::size_t i = 0; i < machine.axes.size(); ++i)

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "tools/effects/input_class.h"
+#include "tools/format/columns.h"
 #include "tools/maths/median.h"
 
 namespace vernier::plan {
@@ -73,9 +74,10 @@ class Offerer {
 
  private:
   bool driven(model::SymbolKind kind) const { return drivers_.kinds.contains(kind); }
-  bool any_recorded(const char* prefix) const {
-    return std::any_of(machine_.axes.begin(), machine_.axes.end(),
-                       [&](const model::Axis& axis) { return old_.has_recorded(prefix + axis.name); });
+  bool any_recorded(format::AxisQuantity quantity) const {
+    return std::any_of(machine_.axes.begin(), machine_.axes.end(), [&](const model::Axis& axis) {
+      return old_.has_recorded(format::axis_column(quantity, axis.name));
+    });
   }
 
   void find_ranges() {
@@ -127,8 +129,8 @@ class Offerer {
     bool moving = false;
     for (std::size_t row = 0; row < old_.rows(); ++row) moving = moving || moves(old_.states, row);
     speeds_ = moving ? std::vector<double>(kSpeeds.begin(), kSpeeds.end()) : std::vector<double>{1};
-    senses_ = any_recorded("dir") || driven(model::SymbolKind::kDirection);
-    since_ = any_recorded("since") || driven(model::SymbolKind::kSince);
+    senses_ = any_recorded(format::AxisQuantity::kSense) || driven(model::SymbolKind::kDirection);
+    since_ = any_recorded(format::AxisQuantity::kSince) || driven(model::SymbolKind::kSince);
   }
 
   double step_of_time() const {

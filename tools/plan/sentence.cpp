@@ -8,6 +8,7 @@
 #include <cmath>
 #include <set>
 
+#include "tools/format/columns.h"
 #include "tools/maths/median.h"
 #include "tools/model/prediction.h"
 #include "tools/model/rebind.h"
@@ -94,7 +95,7 @@ Explanation::Contrast Explanation::speed() const {
   c.where = fmt::format("at speeds of {} mm/s or deg/s ({})", listed(moving_only(planned)), so_far(old));
   c.farthest = fmt::format("{:.4g} mm/s or deg/s", farthest);
   const model::Column feed = moving_only(plan_.rows.states.feed);
-  if (feed.size() == moving_only(planned).size() && existing_.has_recorded("feed")) {
+  if (feed.size() == moving_only(planned).size() && existing_.has_recorded(format::columns::kFeed)) {
     c.where = fmt::format("at F{} mm/min ({})", listed(feed), so_far(moving_only(existing_.states.feed)));
     c.farthest = fmt::format("F{:.4g}", c.planned.states.feed[0]);
   }

@@ -9,6 +9,7 @@
 #include <set>
 #include <vector>
 
+#include "tools/format/columns.h"
 #include "tools/plan/offers.h"
 #include "tools/text/numbers.h"
 
@@ -34,43 +35,53 @@ class Sheet {
     drivers_ = drivers_of(std::vector<const FittedRival*>{&plan.a, &plan.b});
     const std::vector<model::Axis>& axes = plan.machine.axes;
     for (std::size_t a = 0; a < axes.size(); ++a)
-      add(axes[a].name + (axes[a].rotary ? "[deg]" : "[mm]"), rows_.states.axis[a]);
+      add(format::axis_heading(format::AxisQuantity::kPosition, axes[a].name, axes[a].rotary),
+          rows_.states.axis[a]);
     for (std::size_t a = 0; a < axes.size(); ++a) motion(a, axes[a]);
-    if (any_nonzero(rows_.states.feed)) add("feed[mm/min]", rows_.states.feed);
-    if (any_nonzero(rows_.states.curvature)) add("curv[1/mm]", rows_.states.curvature);
-    if (rows_.has_recorded("t")) add("t[s]", rows_.states.time);
+    namespace names = format::columns;
+    if (any_nonzero(rows_.states.feed)) add(format::heading(names::kFeed), rows_.states.feed);
+    if (any_nonzero(rows_.states.curvature)) add(format::heading(names::kCurvature), rows_.states.curvature);
+    if (rows_.has_recorded(names::kTime)) add(format::heading(names::kTime), rows_.states.time);
     for (std::size_t i = 0; i < plan.machine.inputs.size(); ++i)
-      add(header(plan.machine.inputs[i].name, plan.machine.inputs[i].unit), rows_.states.input[i]);
+      add(format::heading(plan.machine.inputs[i].name, plan.machine.inputs[i].unit), rows_.states.input[i]);
     for (const model::CandidateInput& candidate : rows_.candidates)
       if (drivers_.inputs.contains(candidate.name))
-        add(header(candidate.name, candidate.unit), candidate.value);
+        add(format::heading(candidate.name, candidate.unit), candidate.value);
   }
 
   std::vector<SheetColumn> columns;
 
   void add_readings() {
     std::set<model::ObservationKind> kinds;
-    for (const model::Observation& o : rows_.observations) kinds.insert(o.kind);
-    for (const model::ObservationKind kind : kinds)
-      columns.push_back({std::string(model::kObservationNames[static_cast<std::size_t>(kind)]) +
-                             (model::is_rotation(kind) ? "[deg]" : "[mm]"),
-                         [](std::size_t) { return std::string(); }});
-    if (kinds.contains(model::ObservationKind::kLength))
-      add_points({"cx[mm]", "cy[mm]", "cz[mm]"}, rows_.centre);
-    if (kinds.contains(model::ObservationKind::kD)) {
-      add_points({"px[mm]", "py[mm]", "pz[mm]"}, rows_.nominal_point);
-      static constexpr std::array<const char*, 3> kNormals = {"nx", "ny", "nz"};
-      for (std::size_t i = 0; i < kNormals.size(); ++i) add(kNormals[i], rows_.states.normal[i]);
+    std::set<format::ReadingForm> forms;
+    for (const model::Observation& o : rows_.observations) {
+      kinds.insert(o.kind);
+      forms.insert(format::form_of(o.kind));
     }
-    if (any_nonzero(rows_.uncertainty)) add("u[mm]", rows_.uncertainty);
-    columns.push_back({"run", [](std::size_t) { return std::string(kPlanRun); }});
+    for (const format::ColumnGroup& group : format::column_groups()) {
+      if (group.use != format::ColumnUse::kReading || !forms.contains(group.form)) continue;
+      for (const char* const name : group.list()) {
+        const auto kind = format::kind_named(name);
+        if (format::entry_of(group.form).together || (kind && kinds.contains(*kind)))
+          columns.push_back({format::heading(name), [](std::size_t) { return std::string(); }});
+      }
+    }
+    if (forms.contains(format::ReadingForm::kLength)) add_points(format::columns::kCentre, rows_.centre);
+    if (forms.contains(format::ReadingForm::kDeviation)) {
+      add_points(format::columns::kNominalPoint, rows_.nominal_point);
+      for (std::size_t i = 0; i < 3; ++i) add(format::columns::kNormal[i], rows_.states.normal[i]);
+    }
+    if (forms.contains(format::ReadingForm::kDistance))
+      columns.push_back({format::columns::kFrom, [this](std::size_t row) {
+                           const std::size_t end = rows_.other_end[row];
+                           return end == model::kNoRow ? std::string() : std::to_string(end + 1);
+                         }});
+    if (any_nonzero(rows_.uncertainty))
+      add(format::heading(format::columns::kUncertainty), rows_.uncertainty);
+    columns.push_back({format::columns::kRun, [](std::size_t) { return std::string(kPlanRun); }});
   }
 
  private:
-  static std::string header(const std::string& name, const std::string& unit) {
-    return unit.empty() ? name : name + "[" + unit + "]";
-  }
-
   void add(const std::string& header, const model::Column& column) {
     columns.push_back(
         {header, [&column](std::size_t row) { return cell_text(column[static_cast<Eigen::Index>(row)]); }});
@@ -78,20 +89,21 @@ class Sheet {
 
   void add_points(const std::array<const char*, 3>& names, const Eigen::Matrix3Xd& points) {
     for (Eigen::Index i = 0; i < 3; ++i)
-      columns.push_back({names[static_cast<std::size_t>(i)], [&points, i](std::size_t row) {
+      columns.push_back({format::heading(names[static_cast<std::size_t>(i)]), [&points, i](std::size_t row) {
                            return cell_text(points(i, static_cast<Eigen::Index>(row)));
                          }});
   }
 
   void motion(std::size_t a, const model::Axis& axis) {
-    const std::string unit = axis.rotary ? "deg" : "mm";
-    if (any_nonzero(rows_.states.direction[a])) add("dir" + axis.name, rows_.states.direction[a]);
-    if (any_nonzero(rows_.states.velocity[a]))
-      add("v" + axis.name + "[" + unit + "/s]", rows_.states.velocity[a]);
+    using format::AxisQuantity;
+    const auto column = [&](AxisQuantity quantity, const model::Column& values) {
+      add(format::axis_heading(quantity, axis.name, axis.rotary), values);
+    };
+    if (any_nonzero(rows_.states.direction[a])) column(AxisQuantity::kSense, rows_.states.direction[a]);
+    if (any_nonzero(rows_.states.velocity[a])) column(AxisQuantity::kSpeed, rows_.states.velocity[a]);
     if (any_nonzero(rows_.states.acceleration[a]))
-      add("a" + axis.name + "[" + unit + "/s^2]", rows_.states.acceleration[a]);
-    if ((rows_.states.since[a] < model::kLongWay).all())
-      add("since" + axis.name + "[" + unit + "]", rows_.states.since[a]);
+      column(AxisQuantity::kAcceleration, rows_.states.acceleration[a]);
+    if ((rows_.states.since[a] < model::kLongWay).all()) column(AxisQuantity::kSince, rows_.states.since[a]);
   }
 
   const model::Measurement& rows_;
@@ -206,8 +218,9 @@ std::string plan_csv(const Plan& plan) {
   sheet.add_readings();
   std::string text = "# " + plan.sentence + "\n";
   if (!plan.rows.correction.empty())
-    text += "# with the correction off (or give what it adds in columns correction" +
-            plan.machine.axes.front().name + " and so on)\n";
+    text += "# with the correction off (or give what it adds in columns " +
+            format::axis_column(format::AxisQuantity::kCorrection, plan.machine.axes.front().name) +
+            " and so on)\n";
   for (std::size_t i = 0; i < sheet.columns.size(); ++i) text += (i ? "," : "") + sheet.columns[i].header;
   text += "\n";
   for (std::size_t row = 0; row < plan.rows.rows(); ++row) {

@@ -10,6 +10,7 @@
 #include <iterator>
 #include <set>
 
+#include "tools/format/columns.h"
 #include "tools/maths/factors.h"
 #include "tools/text/error.h"
 
@@ -51,11 +52,11 @@ Touches read_touches(TouchTable& table, const FeatureSetup& setup, std::vector<s
   const auto z = table.find({"z", "Z"});
   if (!z && !flat) table.need({"z"}, "recorded point");
   touches.p.col(2) = z ? *z : VectorXd::Zero(rows);
-  if (const auto nx = table.find({"nx"})) {
+  if (const auto nx = table.find({format::columns::kNormal[0]})) {
     MatrixXd n(rows, 3);
     n.col(0) = *nx;
-    n.col(1) = table.need({"ny"}, "normal");
-    const auto nz = table.find({"nz"});
+    n.col(1) = table.need({format::columns::kNormal[1]}, "normal");
+    const auto nz = table.find({format::columns::kNormal[2]});
     n.col(2) = nz ? *nz : VectorXd::Zero(rows);
     for (Index i = 0; i < rows; ++i) {
       const double length = n.row(i).norm();
@@ -480,20 +481,32 @@ MeasuredFeature fit_feature(TouchTable& table, const FeatureSetup& setup) {
 }
 
 std::string feature_csv(const TouchTable& table, const MeasuredFeature& feature) {
-  static const std::set<std::string> kReplaced = {"x", "y", "z", "nx", "ny", "nz", "d", "px", "py", "pz"};
+  // The columns of a deviation take the place of the recorded point.
+  std::set<std::string> replaced;
+  std::string headings;
+  const auto take = [&](const format::ColumnGroup& group, bool written) {
+    for (const char* const name : group.list()) {
+      replaced.insert(name);
+      if (written) headings += (headings.empty() ? "" : ",") + format::heading(name);
+    }
+  };
+  take(format::reading_columns(format::ReadingForm::kPoint), false);
+  take(format::reading_columns(format::ReadingForm::kDeviation), true);
+  take(*format::find_column(format::columns::kNormal.front()), true);
+  take(*format::find_column(format::columns::kNominalPoint.front()), true);
   std::string text;
   auto out = std::back_inserter(text);
-  const text::CsvFile& csv = table.csv();
-  for (const text::CsvColumn& column : csv.columns)
-    if (!kReplaced.contains(column.name))
+  const format::CsvFile& csv = table.csv();
+  for (const format::CsvColumn& column : csv.columns)
+    if (!replaced.contains(column.name))
       fmt::format_to(out, "{}{},", column.name, column.unit.empty() ? "" : "[" + column.unit + "]");
-  text += "d[mm],nx,ny,nz,px[mm],py[mm],pz[mm]\n";
+  text += headings + "\n";
   for (std::size_t i = 0; i < csv.rows.size(); ++i) {
     const auto k = static_cast<Index>(i);
     // An outlier is no observation of this feature.
     if (!feature.fit.kept[i]) continue;
     for (std::size_t c = 0; c < csv.columns.size(); ++c)
-      if (!kReplaced.contains(csv.columns[c].name)) text += csv.rows[i][c] + ",";
+      if (!replaced.contains(csv.columns[c].name)) text += csv.rows[i][c] + ",";
     const Vector3d n = feature.normals.row(k), p = Vector3d(feature.points.row(k)) - feature.deviation(k) * n;
     fmt::format_to(out, "{:.9g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g}\n", feature.deviation(k),
                    n(0), n(1), n(2), p(0), p(1), p(2));

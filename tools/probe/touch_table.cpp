@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "tools/format/units.h"
 #include "tools/text/error.h"
 #include "tools/text/numbers.h"
-#include "tools/text/units.h"
 
 namespace vernier::probe {
 namespace {
@@ -40,36 +40,36 @@ std::pair<std::string, std::string> split(const std::string& words, const char* 
   return {words.substr(0, at), words.substr(at + 1)};
 }
 
-void rename(text::CsvFile& csv, const std::string& words) {
+void rename(format::CsvFile& csv, const std::string& words) {
   auto parts = split(words, "--column");
   std::string &from = parts.first, &to = parts.second;
   const auto found = std::find_if(csv.columns.begin(), csv.columns.end(),
-                                  [&](const text::CsvColumn& c) { return c.name == from; });
+                                  [&](const format::CsvColumn& c) { return c.name == from; });
   if (found == csv.columns.end()) throw text::InputError({csv.file, csv.header_line}, from, "no such column");
   if (const auto bracket = to.find('['); bracket != std::string::npos && to.back() == ']') {
     found->unit = to.substr(bracket + 1, to.size() - bracket - 2);
     to.resize(bracket);
-    if (!text::find_unit(found->unit))
+    if (!format::find_unit(found->unit))
       throw text::InputError({csv.file, csv.header_line}, found->unit, "unknown unit");
   }
   // "mean_lp_um=lower" stays a column in um.
   if (found->unit.empty()) found->unit = unit_in_name(from);
   // A column that had the name already steps back.
-  for (text::CsvColumn& column : csv.columns)
+  for (format::CsvColumn& column : csv.columns)
     if (column.name == to && &column != &*found) column.name += "_before";
   found->name = to;
 }
 
-std::size_t column_of(const text::CsvFile& csv, const std::string& name) {
+std::size_t column_of(const format::CsvFile& csv, const std::string& name) {
   const auto found = std::find_if(csv.columns.begin(), csv.columns.end(),
-                                  [&](const text::CsvColumn& c) { return c.name == name; });
+                                  [&](const format::CsvColumn& c) { return c.name == name; });
   if (found == csv.columns.end()) throw text::InputError({csv.file, csv.header_line}, name, "no such column");
   return static_cast<std::size_t>(found - csv.columns.begin());
 }
 
-void keep_rows(text::CsvFile& csv, const std::string& name, const std::string& value) {
+void keep_rows(format::CsvFile& csv, const std::string& name, const std::string& value) {
   const std::size_t index = column_of(csv, name);
-  text::CsvFile kept = csv;
+  format::CsvFile kept = csv;
   kept.rows.clear(), kept.line.clear();
   for (std::size_t i = 0; i < csv.rows.size(); ++i) {
     if (csv.rows[i][index] != value) continue;
@@ -85,7 +85,7 @@ void keep_rows(text::CsvFile& csv, const std::string& name, const std::string& v
 
 TouchTable::TouchTable(const std::string& text, const std::string& file,
                        const std::vector<std::string>& renames, const std::vector<std::string>& where)
-    : csv_(text::parse_csv(text, file)) {
+    : csv_(format::parse_csv(text, file)) {
   for (const std::string& words : renames) rename(csv_, words);
   for (const std::string& words : where) {
     const auto [name, value] = split(words, "--where");
@@ -131,7 +131,7 @@ std::optional<Eigen::VectorXd> TouchTable::find(const std::vector<std::string>& 
   if (found == nullptr) return std::nullopt;
   const std::string& unit_name = found->unit;
   const bool per_minute = unit_name == "mm/min";  // the unit of feeds here
-  const auto unit = text::find_unit(unit_name);
+  const auto unit = format::find_unit(unit_name);
   Eigen::VectorXd values(static_cast<Eigen::Index>(rows()));
   for (std::size_t i = 0; i < rows(); ++i) {
     const std::string& cell = csv_.rows[i][found->index];
@@ -141,7 +141,7 @@ std::optional<Eigen::VectorXd> TouchTable::find(const std::vector<std::string>& 
                              "not a number in column " + csv_.columns[found->index].name);
     const double value = per_minute || !unit ? *number : unit->factor * *number + unit->offset;
     values(static_cast<Eigen::Index>(i)) =
-        unit && unit->dimension == text::Dimension::kSpeed && !per_minute ? 60 * value : value;
+        unit && unit->dimension == format::Dimension::kSpeed && !per_minute ? 60 * value : value;
   }
   return values;
 }

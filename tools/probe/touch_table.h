@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/text/csv.h"
+#include "tools/format/csv_file.h"
 
 namespace vernier::probe {
 
@@ -25,7 +25,7 @@ class TouchTable {
   std::size_t rows() const { return csv_.rows.size(); }
   const std::string& file() const { return csv_.file; }
   std::size_t line(std::size_t row) const { return csv_.line[row]; }
-  const text::CsvFile& csv() const { return csv_; }
+  const format::CsvFile& csv() const { return csv_; }
 
   /// Numbers of the column known under one of the names, in base units (mm, deg, mm/min stays mm/min, s,
   /// degC); nothing where there is none. A cell that is no number is an InputError. The first name that a
@@ -47,7 +47,7 @@ class TouchTable {
     std::size_t index = 0;
   };
   std::vector<Column> columns_;
-  text::CsvFile csv_;
+  format::CsvFile csv_;
   std::vector<std::string> notes_;
 };
 

@@ -12,6 +12,8 @@
 #include "tools/fit/domain.h"
 #include "tools/fit/fit.h"
 #include "tools/fit/statistics.h"
+#include "tools/format/columns.h"
+#include "tools/format/csv_file.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/machine_writer.h"
 #include "tools/plan/advice.h"
@@ -21,7 +23,6 @@
 #include "tools/results/residual_csv.h"
 #include "tools/results/results.h"
 #include "tools/results/structure_json.h"
-#include "tools/text/csv.h"
 #include "tools/text/error.h"
 #include "tools/text/files.h"
 #include "tools/text/numbers.h"
@@ -105,19 +106,20 @@ MeasurementsOfPython measurements_of(const py::args& paths) {
   }
   if (made.paths.empty()) throw vernier::text::InputError("Measurements: no file");
   // Now, not at the first fit: is it there, and is it a table?
-  for (const std::string& path : made.paths) vernier::text::parse_csv(vernier::text::read_file(path), path);
+  for (const std::string& path : made.paths) vernier::format::parse_csv(vernier::text::read_file(path), path);
   return made;
 }
 
 /// The columns of --residuals, as numbers where they are numbers: what pandas.DataFrame takes.
 py::dict table_of(const ResultOfPython& result) {
-  const vernier::text::CsvFile csv = vernier::text::parse_csv(
+  const vernier::format::CsvFile csv = vernier::format::parse_csv(
       vernier::results::residual_csv(*result.measurement, result.residual), "residuals");
   py::dict table;
   for (std::size_t k = 0; k < csv.columns.size(); ++k) {
     const std::string& name = csv.columns[k].name;
+    const vernier::format::ColumnGroup* const known = vernier::format::find_column(name);
     const bool words =
-        name == "observation" || name == "unit" || name == "role" || name == "run" || name == "file";
+        name == "observation" || name == "unit" || name == "file" || (known != nullptr && known->words);
     py::list cells;
     for (const auto& row : csv.rows) {
       const auto number = words ? std::nullopt : vernier::text::parse_number(row[k]);

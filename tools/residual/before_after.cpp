@@ -11,6 +11,7 @@
 #include "tools/fit/fit.h"
 #include "tools/fit/set_up.h"
 #include "tools/fit/statistics.h"
+#include "tools/format/columns.h"
 #include "tools/maths/factors.h"
 
 namespace vernier::residual {
@@ -307,7 +308,8 @@ std::set<model::ObservationKind> kinds_of(const Side& side) {
 
 /// Feeds that somebody set, to two digits; nothing where it is one, or where there are too many to be set.
 std::vector<double> feeds_of(const Side& before, const Side& after) {
-  if (!before.rows.has_recorded("feed") || !after.rows.has_recorded("feed")) return {};
+  if (!before.rows.has_recorded(format::columns::kFeed) || !after.rows.has_recorded(format::columns::kFeed))
+    return {};
   std::set<double> feeds;
   for (const Side* side : {&before, &after})
     for (const double feed : side->rows.states.feed) feeds.insert(digits(feed, 2));

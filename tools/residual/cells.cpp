@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "tools/format/readings.h"
 #include "tools/maths/factors.h"
 #include "tools/model/prediction.h"
 #include "tools/residual/repeats.h"
@@ -45,8 +46,10 @@ RowVectors row_vectors(const model::Measurement& m, const Eigen::VectorXd& resid
       direction = (point.col(row) - m.centre.col(row)).normalized();
     else if (o.kind == model::ObservationKind::kD)
       for (Eigen::Index k = 0; k < 3; ++k) direction[k] = m.states.normal[static_cast<std::size_t>(k)][row];
+    else if (o.kind == model::ObservationKind::kDistance)
+      direction = (point.col(row) - point.col(static_cast<Eigen::Index>(m.other_end[o.row]))).normalized();
     else
-      direction[static_cast<Eigen::Index>(o.kind)] = 1;
+      direction[static_cast<Eigen::Index>(format::component_of(o.kind))] = 1;
     vectors.value.col(row) += residual[static_cast<Eigen::Index>(i)] * direction;
     ++vectors.seen[o.row];
   }

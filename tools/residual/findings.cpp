@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "tools/format/columns.h"
 #include "tools/maths/chance.h"
 #include "tools/maths/factors.h"
 #include "tools/residual/sentence.h"
@@ -444,8 +445,8 @@ class Describer {
   /// Does the curve, as fitted over all runs, hold within each? A run has a say where its own rows would show
   /// it.
   void by_run(std::size_t at, Finding& f, SentenceFacts& facts) const {
-    if (f.shape == Shape::kJumps || f.shape == Shape::kConstant || f.column == "run" ||
-        f.second_column == "run")
+    if (f.shape == Shape::kJumps || f.shape == Shape::kConstant || f.column == format::columns::kRun ||
+        f.second_column == format::columns::kRun)
       return;
     const auto& states = context_.measurement.states;
     struct RunSums {
@@ -525,7 +526,7 @@ void add_wandering(const KindSample& sample, const FindingContext& context, cons
   if (p >= context.least_p || best.correlation < 0.15) return;
   Finding f;
   f.observation = sample.name();
-  f.column = "visit";
+  f.column = format::columns::kVisit;
   f.shape = Shape::kWanders;
   f.p_value = p;
   const double scale = model::is_rotation(sample.kind) ? maths::kUradPerDeg : maths::kUmPerMm;

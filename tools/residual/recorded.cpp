@@ -6,10 +6,14 @@
 #include <limits>
 #include <set>
 
+#include "tools/format/columns.h"
 #include "tools/maths/factors.h"
 
 namespace vernier::residual {
 namespace {
+
+namespace columns = format::columns;
+using format::AxisQuantity;
 
 // Of a polynomial: eight bends in a range are a curve, more are a wave and looked for as one.
 constexpr int kMostDegree = 8;
@@ -43,18 +47,21 @@ void add_motion(Recorder& recorder, const model::Machine& machine, const model::
   const model::States& s = m.states;
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
     const std::string& axis = machine.axes[i].name;
-    const std::string unit = machine.axes[i].rotary ? "deg" : "mm";
-    const auto motion = [&](const std::string& name, const std::string& u, ColumnKind kind,
-                            const model::Column& v) {
-      if (m.has_recorded(name)) recorder.add(name, u, kind, v);
+    const auto motion = [&](AxisQuantity quantity, ColumnKind kind, const model::Column& v) {
+      const std::string name = format::axis_column(quantity, axis);
+      if (m.has_recorded(name))
+        recorder.add(name, format::unit_of(quantity, machine.axes[i].rotary), kind, v);
     };
-    motion("dir" + axis, "", ColumnKind::kDirection, s.direction[i]);
-    motion("v" + axis, unit + "/s", ColumnKind::kMotion, s.velocity[i]);
-    motion("a" + axis, unit + "/s^2", ColumnKind::kMotion, s.acceleration[i]);
-    motion("since" + axis, unit, ColumnKind::kMotion, s.since[i]);
+    motion(AxisQuantity::kSense, ColumnKind::kDirection, s.direction[i]);
+    motion(AxisQuantity::kSpeed, ColumnKind::kMotion, s.velocity[i]);
+    motion(AxisQuantity::kAcceleration, ColumnKind::kMotion, s.acceleration[i]);
+    motion(AxisQuantity::kSince, ColumnKind::kMotion, s.since[i]);
   }
-  if (m.has_recorded("feed")) recorder.add("feed", "mm/min", ColumnKind::kMotion, s.feed);
-  if (m.has_recorded("curv")) recorder.add("curv", "1/mm", ColumnKind::kMotion, s.curvature);
+  const auto path = [&](const char* name, const model::Column& v) {
+    if (m.has_recorded(name)) recorder.add(name, format::column_unit(name), ColumnKind::kMotion, v);
+  };
+  path(columns::kFeed, s.feed);
+  path(columns::kCurvature, s.curvature);
 }
 
 bool is_recorded(const RecordedColumn& column, const std::vector<std::size_t>& rows) {
@@ -257,7 +264,10 @@ int pair_rank(const RecordedColumn& a, const RecordedColumn& b) {
       case ColumnKind::kNormal:
         return 2;
       case ColumnKind::kMotion:
-        return c.name.starts_with("a") || c.name.starts_with("since") ? 5 : 2;
+        return c.name.starts_with(format::entry_of(AxisQuantity::kAcceleration).prefix) ||
+                       c.name.starts_with(format::entry_of(AxisQuantity::kSince).prefix)
+                   ? 5
+                   : 2;
       case ColumnKind::kVisit:
         return 5;
       case ColumnKind::kRun:
@@ -279,12 +289,13 @@ std::vector<RecordedColumn> recorded_columns(const model::Machine& machine, cons
     recorder.add(machine.axes[i].name, machine.axes[i].rotary ? "deg" : "mm", ColumnKind::kAxis,
                  model::commanded(m, i), machine.axes[i].rotary);
   add_motion(recorder, machine, m);
-  if (m.has_recorded("t")) recorder.add("t", "s", ColumnKind::kTime, s.time);
-  recorder.add("visit", "", ColumnKind::kVisit, s.visit);
+  if (m.has_recorded(columns::kTime))
+    recorder.add(columns::kTime, format::column_unit(columns::kTime), ColumnKind::kTime, s.time);
+  recorder.add(columns::kVisit, "", ColumnKind::kVisit, s.visit);
   model::Column run(static_cast<Eigen::Index>(m.rows()));
   for (std::size_t row = 0; row < m.rows(); ++row)
     run[static_cast<Eigen::Index>(row)] = static_cast<double>(s.run[row]);
-  recorder.add("run", "", ColumnKind::kRun, run);
+  recorder.add(columns::kRun, "", ColumnKind::kRun, run);
   for (std::size_t i = 0; i < machine.inputs.size(); ++i)
     recorder.add(machine.inputs[i].name, machine.inputs[i].unit, ColumnKind::kInput, s.input[i]);
   for (const model::CandidateInput& candidate : m.candidates)

@@ -6,6 +6,7 @@
 #include <limits>
 #include <map>
 
+#include "tools/format/readings.h"
 #include "tools/maths/chance.h"
 #include "tools/maths/decompositions.h"
 #include "tools/maths/median.h"
@@ -165,7 +166,7 @@ KindSample make_sample(const model::Measurement& m, const Eigen::VectorXd& resid
 
 /// Observations of the fit rows that are tested, kind by kind.
 std::vector<std::vector<std::size_t>> tested_observations(const model::Measurement& m) {
-  std::array<std::vector<std::size_t>, model::kObservationNames.size()> of_kind;
+  std::array<std::vector<std::size_t>, format::kReadingKindCount> of_kind;
   for (std::size_t i = 0; i < m.observations.size(); ++i)
     if (m.check[m.observations[i].row] == 0)
       of_kind[static_cast<std::size_t>(m.observations[i].kind)].push_back(i);

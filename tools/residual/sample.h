@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/format/readings.h"
 #include "tools/maths/moments.h"
 #include "tools/residual/recorded.h"
 #include "tools/residual/types.h"
@@ -30,7 +31,7 @@ struct KindSample {
   /// all kinds together, each in units of its own spread. Without a Jacobian the same as `moments`.
   maths::Moments projected;
 
-  const char* name() const { return model::kObservationNames[static_cast<std::size_t>(kind)]; }
+  const char* name() const { return format::name_of(kind); }
   /// What `held` keeps once the joint fit of these functions is taken out.
   Eigen::VectorXd without(const maths::FunctionSet& functions) const;
 };

@@ -5,19 +5,21 @@
 
 #include <cmath>
 
+#include "tools/format/columns.h"
 
 namespace vernier::residual {
 namespace {
 
-bool is_angle(const Finding& f) { return f.observation.starts_with("r"); }
+bool is_angle(const Finding& f) {
+  const auto kind = format::kind_named(f.observation);
+  return kind && format::is_rotation(*kind);
+}
 std::string unit_of(const Finding& f) { return is_angle(f) ? "urad" : "um"; }
 
-/// "Y error", "rotation about X", "length error", "deviation d".
+/// "Y error", "rotation error about X", "length error", "deviation d".
 std::string subject(const Finding& f) {
-  if (f.observation == "length") return "length error";
-  if (f.observation == "d") return "deviation d";
-  const std::string axis(1, static_cast<char>(std::toupper(f.observation.back())));
-  return is_angle(f) ? "rotation error about " + axis : axis + " error";
+  const auto kind = format::kind_named(f.observation);
+  return kind ? format::subject_of(*kind) : f.observation;
 }
 
 std::string with_unit(double value, const std::string& unit) {
@@ -77,9 +79,10 @@ std::string statement(const Finding& f, const SentenceFacts& facts) {
       return fmt::format("{} repeats every {} of {} with an amplitude of {:.3g} {}", subject(f),
                          with_unit(f.period.value_or(0), facts.unit), f.column, half, unit_of(f));
     case Shape::kProduct:
-      if (f.column == "run" || f.second_column == "run")
+      if (f.column == format::columns::kRun || f.second_column == format::columns::kRun)
         return fmt::format("{} depends on {} differently from run to run ({:.3g} {} in all)", subject(f),
-                           f.column == "run" ? f.second_column : f.column, f.high_um - f.low_um, unit_of(f));
+                           f.column == format::columns::kRun ? f.second_column : f.column,
+                           f.high_um - f.low_um, unit_of(f));
       return fmt::format(
           "{} goes with {} times {}: how it depends on one changes with the other ({:.3g} {} in all)",
           subject(f), f.column, f.second_column, f.high_um - f.low_um, unit_of(f));

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "tools/format/readings.h"
 #include "tools/text/optional_json.h"
 
 namespace vernier::results {
@@ -99,7 +100,7 @@ std::vector<std::string> remarks(const residual::BeforeAfter& result) {
 }
 
 std::string name_of(const residual::ReductionGroup& group) {
-  std::string name = group.kind ? model::kObservationNames[static_cast<std::size_t>(*group.kind)] : "all";
+  std::string name = group.kind ? format::name_of(*group.kind) : "all";
   if (group.feed) name += fmt::format(" at {:g} mm/min", *group.feed);
   return name;
 }
@@ -143,7 +144,7 @@ Json before_after_json(const residual::BeforeAfter& result) {
   json["groups"] = Json::array();
   for (const residual::ReductionGroup& group : result.groups) {
     Json one = {{"axis", nullptr}, {"feed", text::or_null(group.feed)}, {"unit", unit_of(group)}};
-    if (group.kind) one["axis"] = model::kObservationNames[static_cast<std::size_t>(*group.kind)];
+    if (group.kind) one["axis"] = format::name_of(*group.kind);
     add_figures(one, group);
     json["groups"].push_back(std::move(one));
   }

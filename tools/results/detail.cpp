@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/results/detail.h"
+#include "tools/format/columns.h"
 #include "tools/results/ball_bar_table.h"
 
 #include <algorithm>
@@ -48,14 +49,14 @@ void add_columns(ordered_json& detail, const model::Machine& machine, const mode
 void add_observations(ordered_json& detail, const model::Measurement& m, const Eigen::VectorXd& residual) {
   ordered_json kinds = ordered_json::array(), row = kinds, kind = kinds, scaled = kinds, measured = kinds,
                model = kinds;
-  std::array<int, 8> slot;
+  std::array<int, format::kReadingKindCount> slot;
   slot.fill(-1);
   for (std::size_t i = 0; i < m.observations.size(); ++i) {
     const model::Observation& o = m.observations[i];
     int& at = slot[static_cast<std::size_t>(o.kind)];
     if (at < 0) {
       at = static_cast<int>(kinds.size());
-      kinds.push_back(model::kObservationNames[static_cast<std::size_t>(o.kind)]);
+      kinds.push_back(format::name_of(o.kind));
     }
     const double r = residual[static_cast<Eigen::Index>(i)];
     row.push_back(o.row);
@@ -86,7 +87,7 @@ void add_worst(ordered_json& detail, const model::Measurement& m, const Eigen::V
          {"line", m.line[o.row]},
          {"run", m.states.run_names[m.states.run[o.row]]},
          {"role", m.check[o.row] != 0 ? "check" : "fit"},
-         {"kind", model::kObservationNames[static_cast<std::size_t>(o.kind)]},
+         {"kind", format::name_of(o.kind)},
          {"unit", model::is_rotation(o.kind) ? "urad" : "um"},
          {"residual", in_report_unit(o.kind, residual[static_cast<Eigen::Index>(order[k])])}});
   }
@@ -166,20 +167,23 @@ void each_column(const model::Machine& machine, const model::Measurement& m, con
     visit(machine.axes[i].name, machine.axes[i].rotary ? "deg" : "mm", "axis", model::commanded(m, i));
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
     const std::string& axis = machine.axes[i].name;
-    const std::string unit = machine.axes[i].rotary ? "deg" : "mm";
-    const auto motion = [&](const std::string& name, const std::string& u, const char* kind,
-                            const model::Column& data) {
-      if (m.has_recorded(name)) visit(name, u, kind, data);
+    const auto motion = [&](format::AxisQuantity quantity, const char* kind, const model::Column& data) {
+      const std::string name = format::axis_column(quantity, axis);
+      if (m.has_recorded(name)) visit(name, format::unit_of(quantity, machine.axes[i].rotary), kind, data);
     };
-    motion("dir" + axis, "", "direction", s.direction[i]);
-    motion("v" + axis, unit + "/s", "motion", s.velocity[i]);
-    motion("a" + axis, unit + "/s^2", "motion", s.acceleration[i]);
-    motion("since" + axis, unit, "motion", s.since[i]);
+    motion(format::AxisQuantity::kSense, "direction", s.direction[i]);
+    motion(format::AxisQuantity::kSpeed, "motion", s.velocity[i]);
+    motion(format::AxisQuantity::kAcceleration, "motion", s.acceleration[i]);
+    motion(format::AxisQuantity::kSince, "motion", s.since[i]);
   }
-  if (m.has_recorded("feed")) visit("feed", "mm/min", "motion", s.feed);
-  if (m.has_recorded("curv")) visit("curv", "1/mm", "motion", s.curvature);
-  if (m.has_recorded("t")) visit("t", "s", "time", s.time);
-  visit("visit", "", "visit", s.visit);
+  namespace columns = format::columns;
+  const auto path = [&](const char* name, const char* kind, const model::Column& data) {
+    if (m.has_recorded(name)) visit(name, format::column_unit(name), kind, data);
+  };
+  path(columns::kFeed, "motion", s.feed);
+  path(columns::kCurvature, "motion", s.curvature);
+  path(columns::kTime, "time", s.time);
+  visit(columns::kVisit, format::column_unit(columns::kVisit), columns::kVisit, s.visit);
   for (std::size_t i = 0; i < machine.inputs.size(); ++i)
     visit(machine.inputs[i].name, machine.inputs[i].unit, "input", s.input[i]);
   for (const model::CandidateInput& candidate : m.candidates)

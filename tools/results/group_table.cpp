@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 
+#include "tools/format/columns.h"
 #include "tools/maths/chance.h"
 #include "tools/maths/factors.h"
 #include "tools/text/error.h"
@@ -25,7 +26,7 @@ struct Sums {
 using Groups = std::map<std::string, Sums>;
 
 std::vector<std::string> known_columns(const model::Measurement& m) {
-  std::vector<std::string> names = {"run"};
+  std::vector<std::string> names = {format::columns::kRun};
   for (const model::LabelColumn& label : m.labels) names.push_back(label.name);
   for (const model::CandidateInput& candidate : m.candidates) names.push_back(candidate.name);
   return names;
@@ -36,7 +37,7 @@ std::vector<std::string> values_of(const model::Measurement& m, const std::strin
   for (const model::LabelColumn& label : m.labels)
     if (label.name == column) return label.value;
   std::vector<std::string> values(m.rows());
-  if (column == "run") {
+  if (column == format::columns::kRun) {
     for (std::size_t row = 0; row < m.rows(); ++row) values[row] = m.states.run_names[m.states.run[row]];
     return values;
   }
@@ -92,7 +93,7 @@ ordered_json one_column(const model::Measurement& m, const Eigen::VectorXd& resi
       const auto group = groups.find(value);
       if (group == groups.end()) continue;
       const Sums& sums = group->second;
-      readings.push_back({{"reading", model::kObservationNames[static_cast<std::size_t>(kind)]},
+      readings.push_back({{"reading", format::name_of(kind)},
                           {"unit", model::is_rotation(kind) ? "urad" : "um"},
                           {"n", static_cast<std::size_t>(sums.count)},
                           {"mean", sums.sum / sums.count},

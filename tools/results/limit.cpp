@@ -5,9 +5,10 @@
 #include <cmath>
 #include <map>
 
+#include "tools/format/columns.h"
+#include "tools/format/units.h"
 #include "tools/text/error.h"
 #include "tools/text/numbers.h"
-#include "tools/text/units.h"
 
 namespace vernier::results {
 namespace {
@@ -33,7 +34,7 @@ double u_of(const model::Measurement& m, std::size_t row, bool rotation) {
   const double angle = rotation && m.angle_uncertainty.size() > 0 ? m.angle_uncertainty[at] : 0;
   const double u = angle > 0 ? angle : m.uncertainty[at];
   if (!(u > 0))
-    throw text::InputError({m.files[m.file[row]], m.line[row]}, "u",
+    throw text::InputError({m.files[m.file[row]], m.line[row]}, format::columns::kUncertainty,
                            "the limit is told in u, and this row has none");
   return u;
 }
@@ -48,11 +49,11 @@ ResidualLimit residual_limit(const std::string& words) {
   const std::size_t end = std::min(rest.find_first_not_of("0123456789."), rest.size());
   const auto number = text::parse_number(rest.substr(0, end));
   const std::string unit = rest.substr(end);
-  const auto found = text::find_unit(unit);
-  limit.of_u = unit == "u";
-  limit.rotation = found && found->dimension == text::Dimension::kAngle;
+  const auto found = format::find_unit(unit);
+  limit.of_u = unit == format::columns::kUncertainty;
+  limit.rotation = found && found->dimension == format::Dimension::kAngle;
   if (!number || !(*number > 0) ||
-      !(limit.of_u || limit.rotation || (found && found->dimension == text::Dimension::kLength)))
+      !(limit.of_u || limit.rotation || (found && found->dimension == format::Dimension::kLength)))
     throw text::InputError({}, words,
                            "a limit is of the form 2u, 25um, 0.2mm or 0.025deg; rms=1.5u judges the rms");
   limit.value = *number * (limit.of_u ? 1 : found->factor);

@@ -5,6 +5,7 @@
 
 #include "tools/fit/fit.h"
 #include "tools/fit/statistics.h"
+#include "tools/format/columns.h"
 #include "tools/results/detail.h"
 #include "tools/results/results.h"
 #include "tools/text/optional_json.h"
@@ -36,9 +37,11 @@ ordered_json model_section(const std::string& title, const model::Machine& machi
   ordered_json section = {
       {"title", title}, {"prose", ordered_json::array()}, {"detail", with_detail["detail"]}};
   if (rows.size() > 1 && rows.size() <= 24)
-    section["tables"] = {{{"caption", "Residual by run and role, in the order of the rows"},
-                          {"columns", {"run", "role", "from line", "to line", "readings", "rms [µm]"}},
-                          {"rows", rows}}};
+    section["tables"] = {
+        {{"caption", "Residual by run and role, in the order of the rows"},
+         {"columns",
+          {format::columns::kRun, format::columns::kRole, "from line", "to line", "readings", "rms [µm]"}},
+         {"rows", rows}}};
   return section;
 }
 

@@ -10,6 +10,7 @@
 #include "tools/fit/decisions.h"
 #include "tools/fit/domain.h"
 #include "tools/fit/reach.h"
+#include "tools/format/columns.h"
 #include "tools/kinematics/correction.h"
 #include "tools/results/detail.h"
 #include "tools/results/fit_findings.h"
@@ -220,11 +221,11 @@ ordered_json noise_json(const fit::NoiseModel& noise, const fit::NoiseUnit& unit
     const bool rotation = model::is_rotation(static_cast<model::ObservationKind>(step.kind));
     const std::string name = fit::unit_name(rotation);
     steps.push_back({{"row", step.row + 1},
-                     {"observation", model::kObservationNames[static_cast<std::size_t>(step.kind)]},
+                     {"observation", format::name_of(static_cast<format::ReadingKind>(step.kind))},
                      {"height_" + name, step.height * unit.of(rotation)},
                      {"std_" + name, step.std * unit.of(rotation)}});
     if (step.of_set_up())
-      steps.back()["along"] = std::array{"x", "y", "z"}[static_cast<std::size_t>(step.component)];
+      steps.back()["along"] = format::columns::kPoint[static_cast<std::size_t>(step.component)];
   }
   const double size = unit.of_all();
   const std::string name = fit::unit_name(unit.angles_only);

@@ -7,10 +7,10 @@
 #include <set>
 #include <utility>
 
+#include "tools/format/units.h"
 #include "tools/sheet/dates.h"
 #include "tools/sheet/sheet_number.h"
 #include "tools/text/error.h"
-#include "tools/text/units.h"
 #include "tools/text/words.h"
 
 namespace vernier::sheet {
@@ -158,16 +158,16 @@ Heading heading_of_two(const std::string& upper, const std::string& lower) {
 }  // namespace
 
 std::optional<std::string> unit_meant(std::string_view word) {
-  const std::string bare = without_brackets(text::usual_spelling(word));
+  const std::string bare = without_brackets(format::usual_spelling(word));
   if (bare.empty()) return std::nullopt;
-  if (const auto unit = text::find_unit(bare)) return std::string(unit->name);
+  if (const auto unit = format::find_unit(bare)) return std::string(unit->name);
   std::string small = text::in_small_letters(bare);
   if (small.ends_with('.')) small.pop_back();
   for (const auto& [text, unit] : kUnitWords)
     if (small == text) return std::string(unit);
   // Capital letters where none belong: MM, Sec. Not for a single one: A is no a, M no m.
   if (bare.size() > 1)
-    if (const auto unit = text::find_unit(small)) return std::string(unit->name);
+    if (const auto unit = format::find_unit(small)) return std::string(unit->name);
   return std::nullopt;
 }
 

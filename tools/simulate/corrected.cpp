@@ -11,6 +11,7 @@
 
 #include "comp/compensator.h"
 #include "tools/compile/compile.h"
+#include "tools/format/columns.h"
 #include "tools/simulate/counts.h"
 #include "tools/simulate/loop.h"
 #include "tools/text/files.h"
@@ -119,8 +120,8 @@ class ImageRun {
 
   std::vector<model::Column> corrections() {
     const bool remembers = image_.view.program().equation.lag_count > 0;
-    if (remembers && !rows_.has_recorded("t"))
-      throw text::InputError({rows_.files.front(), 0}, "t",
+    if (remembers && !rows_.has_recorded(format::columns::kTime))
+      throw text::InputError({rows_.files.front(), 0}, format::columns::kTime,
                              "the image that ran has lags: it needs this column");
     if (remembers) model::require_time_order(rows_);
     std::vector<std::size_t> last(rows_.states.names(rows_.states.clock).size(), rows_.rows());
@@ -145,7 +146,7 @@ class ImageRun {
         (t[static_cast<Index>(after)] - t[static_cast<Index>(before)]) * 1e6 / image_.view.header().tick_us;
     if ((ticks_ += ticks) > kMostTicks)
       throw text::InputError(
-          {rows_.files.front(), rows_.line[after]}, "t",
+          {rows_.files.front(), rows_.line[after]}, format::columns::kTime,
           "the image that ran has lags, and more than forty million ticks lie before this row");
     const auto count = std::llround(ticks);
     const CycleInput from = input_of(before), to = input_of(after);

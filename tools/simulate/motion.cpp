@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "tools/format/columns.h"
 #include "tools/simulate/path.h"
 #include "tools/text/error.h"
 
@@ -75,29 +76,25 @@ void fill_axis(const Path& path, const model::Axis& axis, const Ticks& ticks, st
                model::States& states) {
   if (!path.has(axis.name))
     throw text::InputError({path.file(), 0}, axis.name, "the path has no column of this axis");
-  const auto dimension = [&](text::Dimension linear, text::Dimension rotary) {
-    return axis.rotary ? rotary : linear;
+  using format::AxisQuantity;
+  const auto name = [&](AxisQuantity quantity) { return format::axis_column(quantity, axis.name); };
+  const auto numbers = [&](AxisQuantity quantity) {
+    return path.numbers(name(quantity), format::dimension_of(quantity, axis.rotary));
   };
-  const model::Column rows =
-      path.numbers(axis.name, dimension(text::Dimension::kLength, text::Dimension::kAngle));
+  const auto has = [&](AxisQuantity quantity) { return path.has(name(quantity)); };
+  const model::Column rows = numbers(AxisQuantity::kPosition);
   const Segments s = segments_of(path.time(), rows);
-  const auto given = [&](const std::string& name, text::Dimension linear, text::Dimension rotary) {
-    return interpolate(path.numbers(name, dimension(linear, rotary)), ticks);
-  };
-  const std::string& n = axis.name;
   states.axis[i] = interpolate(rows, ticks);
-  states.velocity[i] = path.has("v" + n)
-                           ? given("v" + n, text::Dimension::kSpeed, text::Dimension::kAngularSpeed)
-                           : of_segment(s.speed, ticks);
-  states.acceleration[i] = path.has("a" + n) ? given("a" + n, text::Dimension::kAcceleration,
-                                                     text::Dimension::kAngularAcceleration)
-                                             : interpolate(s.acceleration, ticks);
-  states.direction[i] = path.has("dir" + n) ? hold(path.numbers("dir" + n, text::Dimension::kNone), ticks)
-                                            : of_segment(s.sense, ticks);
+  states.velocity[i] = has(AxisQuantity::kSpeed) ? interpolate(numbers(AxisQuantity::kSpeed), ticks)
+                                                 : of_segment(s.speed, ticks);
+  states.acceleration[i] = interpolate(
+      has(AxisQuantity::kAcceleration) ? numbers(AxisQuantity::kAcceleration) : s.acceleration, ticks);
+  states.direction[i] =
+      has(AxisQuantity::kSense) ? hold(numbers(AxisQuantity::kSense), ticks) : of_segment(s.sense, ticks);
   if (((states.direction[i] != 0) && (states.direction[i].abs() != 1)).any())
-    throw text::InputError({path.file(), 0}, "dir" + n, "a direction is -1, 0 or 1");
-  if (path.has("since" + n)) {
-    states.since[i] = given("since" + n, text::Dimension::kLength, text::Dimension::kAngle);
+    throw text::InputError({path.file(), 0}, name(AxisQuantity::kSense), "a direction is -1, 0 or 1");
+  if (has(AxisQuantity::kSince)) {
+    states.since[i] = interpolate(numbers(AxisQuantity::kSince), ticks);
   } else {
     const model::Column turn = of_segment(s.turn, ticks);
     states.since[i] = turn.isNaN().select(model::kLongWay, (states.axis[i] - turn).abs());
@@ -114,18 +111,22 @@ void fill_path(const Path& path, const model::Machine& machine, const Ticks& tic
     aa += states.acceleration[i].square();
     va += states.velocity[i] * states.acceleration[i];
   }
-  states.feed = path.has("feed")
-                    ? model::Column(60 * interpolate(path.numbers("feed", text::Dimension::kSpeed), ticks))
-                    : model::Column(60 * vv.sqrt());
+  states.feed =
+      path.has(format::columns::kFeed)
+          ? model::Column(60 *
+                          interpolate(path.numbers(format::columns::kFeed, format::Dimension::kSpeed), ticks))
+          : model::Column(60 * vv.sqrt());
   // |v x a|^2 = |v|^2 |a|^2 - (v.a)^2, in any number of dimensions. At rest a path has no curvature.
   const model::Column bend = (vv * aa - va.square()).max(0).sqrt() / (vv * vv.sqrt()).max(1e-300);
-  states.curvature = path.has("curv") ? interpolate(path.numbers("curv", text::Dimension::kCurvature), ticks)
-                                      : model::Column((vv > 1e-12).select(bend, 0));
+  states.curvature =
+      path.has(format::columns::kCurvature)
+          ? interpolate(path.numbers(format::columns::kCurvature, format::Dimension::kCurvature), ticks)
+          : model::Column((vv > 1e-12).select(bend, 0));
 }
 
 void fill_runs(const Path& path, const Ticks& ticks, model::States& states) {
-  if (!path.has("run")) return;
-  const std::vector<std::string> labels = path.words("run");
+  if (!path.has(format::columns::kRun)) return;
+  const std::vector<std::string> labels = path.words(format::columns::kRun);
   std::map<std::string, std::size_t> known;
   states.run_names.clear();
   for (std::size_t k = 0; k < ticks.count(); ++k) {
@@ -147,8 +148,9 @@ model::States path_states(const Path& path, const model::Machine& machine, const
     if (path.has(machine.inputs[i].name)) states.input[i] = interpolate(path.input(machine.inputs[i]), ticks);
   for (std::size_t i = 0; i < 3; ++i)
     if (const std::string name = std::string("n") + "xyz"[i]; path.has(name))
-      states.normal[i] = interpolate(path.numbers(name, text::Dimension::kNone), ticks);
-  if (path.has("visit")) states.visit = hold(path.numbers("visit", text::Dimension::kNone), ticks);
+      states.normal[i] = interpolate(path.numbers(name, format::Dimension::kNone), ticks);
+  if (path.has(format::columns::kVisit))
+    states.visit = hold(path.numbers(format::columns::kVisit, format::Dimension::kNone), ticks);
   fill_runs(path, ticks, states);
   return states;
 }

@@ -4,20 +4,22 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tools/format/columns.h"
 #include "tools/text/error.h"
 #include "tools/text/files.h"
 #include "tools/text/numbers.h"
 
 namespace vernier::simulate {
 
-Path::Path(const std::string& text, const std::string& file) : csv_(text::parse_csv(text, file)) {
-  if (!has("t"))
-    throw text::InputError({file, csv_.header_line}, "t", "the column of the path's time is missing");
-  time_ = numbers("t", text::Dimension::kTime);
+Path::Path(const std::string& text, const std::string& file) : csv_(format::parse_csv(text, file)) {
+  if (!has(format::columns::kTime))
+    throw text::InputError({file, csv_.header_line}, format::columns::kTime,
+                           "the column of the path's time is missing");
+  time_ = numbers(format::columns::kTime, format::Dimension::kTime);
   for (std::size_t row = 1; row < rows(); ++row) {
     const auto at = static_cast<Eigen::Index>(row);
     if (!(time_[at] > time_[at - 1]))
-      throw text::InputError({file, csv_.line[row]}, csv_.rows[row][*index_of("t")],
+      throw text::InputError({file, csv_.line[row]}, csv_.rows[row][*index_of(format::columns::kTime)],
                              "the time of a path must increase from row to row");
   }
 }
@@ -42,16 +44,17 @@ model::Column Path::read(std::size_t column) const {
   return values;
 }
 
-model::Column Path::numbers(const std::string& name, text::Dimension dimension) const {
+model::Column Path::numbers(const std::string& name, format::Dimension dimension) const {
   const auto column = index_of(name);
   if (!column) throw text::InputError({csv_.file, csv_.header_line}, name, "this column is missing");
   const std::string& written = csv_.columns[*column].unit;
-  const text::Unit unit = *text::find_unit(written);
+  const format::Unit unit = *format::find_unit(written);
   if (unit.dimension != dimension)
-    throw text::InputError({csv_.file, csv_.header_line}, name + (written.empty() ? "" : "[" + written + "]"),
-                           dimension == text::Dimension::kNone
-                               ? std::string("this column is a pure number, it has no unit")
-                               : std::string("this column needs a unit like ") + text::base_unit(dimension));
+    throw text::InputError(
+        {csv_.file, csv_.header_line}, name + (written.empty() ? "" : "[" + written + "]"),
+        dimension == format::Dimension::kNone
+            ? std::string("this column is a pure number, it has no unit")
+            : std::string("this column needs a unit like ") + format::base_unit(dimension));
   return unit.factor * read(*column) + unit.offset;
 }
 
@@ -59,8 +62,8 @@ model::Column Path::input(const model::Input& input) const {
   const std::size_t column = index_of(input.name).value();
   const std::string& written = csv_.columns[column].unit;
   if (written == input.unit || input.unit.empty()) return read(column);
-  const auto declared = text::find_unit(input.unit);
-  const text::Unit unit = *text::find_unit(written);
+  const auto declared = format::find_unit(input.unit);
+  const format::Unit unit = *format::find_unit(written);
   if (!declared || declared->dimension != unit.dimension)
     throw text::InputError({csv_.file, csv_.header_line}, input.name + "[" + written + "]",
                            "the machine file declares this input in " + input.unit);

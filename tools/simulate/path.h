@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "tools/format/csv_file.h"
+#include "tools/format/units.h"
 #include "tools/model/machine.h"
 #include "tools/model/states.h"
-#include "tools/text/csv.h"
-#include "tools/text/units.h"
 
 namespace vernier::simulate {
 
@@ -26,7 +26,7 @@ class Path {
   bool has(const std::string& name) const { return index_of(name).has_value(); }
   /// A column in the base unit of its dimension. Throws InputError where it is absent, has another dimension,
   /// or a cell is empty or no number.
-  model::Column numbers(const std::string& name, text::Dimension dimension) const;
+  model::Column numbers(const std::string& name, format::Dimension dimension) const;
   /// The column of an input in the unit that the machine declares for it.
   model::Column input(const model::Input& input) const;
   /// The column's cells as they are.
@@ -37,7 +37,7 @@ class Path {
   std::optional<std::size_t> index_of(const std::string& name) const;
   model::Column read(std::size_t column) const;
 
-  text::CsvFile csv_;
+  format::CsvFile csv_;
   model::Column time_;
 };
 

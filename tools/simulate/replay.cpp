@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tools/format/columns.h"
 #include "tools/model/prediction.h"
 #include "tools/simulate/counts.h"
 
@@ -20,7 +21,7 @@ class BetweenRows : public TickPath {
       if (m.states.run[row] == run) rows_.push_back(row);
     for (std::size_t i = 1; i < rows_.size(); ++i)
       if (time_at(i) <= time_at(i - 1))
-        throw text::InputError({m.files[m.file[rows_[i]]], m.line[rows_[i]]}, "t",
+        throw text::InputError({m.files[m.file[rows_[i]]], m.line[rows_[i]]}, format::columns::kTime,
                                "replay needs a time that increases within each run");
     count_ =
         1 + static_cast<std::size_t>(std::floor((time_at(rows_.size() - 1) - time_at(0)) / period_s + 1e-6));
@@ -119,9 +120,9 @@ void add_loop(const LoopResult& loop, std::size_t ticks, ReplayResult& result) {
 
 ReplayResult replay(const compile::LoadedImage& image, const model::Measurement& m,
                     const LoopOptions& options) {
-  const bool timed = m.has_recorded("t");
+  const bool timed = m.has_recorded(format::columns::kTime);
   if (!timed && needs_time(image.view))
-    throw text::InputError({m.files.front(), 0}, "t",
+    throw text::InputError({m.files.front(), 0}, format::columns::kTime,
                            "replay needs this column: a term of the machine goes with time");
   const double period_s = 1e-6 * image.view.header().tick_us;
   model::Measurement corrected = m;

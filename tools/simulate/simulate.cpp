@@ -9,6 +9,7 @@
 #include "hal/sim/analogue_chain.h"
 #include "tools/compile/functions.h"
 #include "tools/compile/orientation.h"
+#include "tools/format/columns.h"
 #include "tools/kinematics/correction.h"
 #include "tools/model/chain.h"
 #include "tools/simulate/motion.h"
@@ -107,7 +108,7 @@ nlohmann::ordered_json simulate_json(const SimulateResult& result, const model::
 }
 
 std::string ticks_csv(const SimulateResult& result, const model::Machine& machine) {
-  std::string text = "t[s]";
+  std::string text = format::heading(format::columns::kTime);
   for (const model::Axis& axis : machine.axes) text += "," + axis.name + (axis.rotary ? "[deg]" : "[mm]");
   for (const model::Axis& axis : machine.axes)
     text += ",corr_" + axis.name + (axis.rotary ? "[deg]" : "[um]");

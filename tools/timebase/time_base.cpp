@@ -8,6 +8,7 @@
 #include <cmath>
 #include <optional>
 
+#include "tools/format/readings.h"
 #include "tools/timebase/revisit.h"
 
 namespace vernier::timebase {
@@ -46,7 +47,7 @@ std::vector<RecordSeries> series_of(const model::Measurement& m, const Eigen::Ve
                                     bool with_check) {
   std::vector<RecordSeries> runs = rows_by_run(m);
   Eigen::MatrixXd table = Eigen::MatrixXd::Constant(
-      static_cast<Index>(m.rows()), static_cast<Index>(model::kObservationNames.size()), std::nan(""));
+      static_cast<Index>(m.rows()), static_cast<Index>(format::kReadingKindCount), std::nan(""));
   for (std::size_t i = 0; i < m.observations.size(); ++i) {
     const model::Observation& o = m.observations[i];
     if (!model::is_rotation(o.kind) && (with_check || !m.check[o.row]))

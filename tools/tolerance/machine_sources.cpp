@@ -10,6 +10,7 @@
 
 #include "tools/effects/candidate.h"
 #include "tools/effects/input_class.h"
+#include "tools/format/columns.h"
 
 namespace vernier::tolerance {
 namespace {
@@ -163,16 +164,16 @@ class Namer {
         term.tokens.insert("n");
         return;
       case model::SymbolKind::kFeed:
-        term.tokens.insert("feed");
+        term.tokens.insert(format::columns::kFeed);
         return;
       case model::SymbolKind::kCurvature:
-        term.tokens.insert("curv");
+        term.tokens.insert(format::columns::kCurvature);
         return;
       case model::SymbolKind::kTime:
-        term.tokens.insert("t");
+        term.tokens.insert(format::columns::kTime);
         return;
       case model::SymbolKind::kVisit:
-        term.tokens.insert("visit");
+        term.tokens.insert(format::columns::kVisit);
         return;
       case model::SymbolKind::kStatic:
       case model::SymbolKind::kUnresolved:

@@ -7,10 +7,11 @@
 #include <numbers>
 #include <set>
 
-#include "tools/text/csv.h"
+#include "tools/format/columns.h"
+#include "tools/format/csv_file.h"
+#include "tools/format/units.h"
 #include "tools/text/error.h"
 #include "tools/text/numbers.h"
-#include "tools/text/units.h"
 
 namespace vernier::tolerance {
 namespace {
@@ -21,20 +22,28 @@ constexpr std::array<const char*, 3> kCharacteristicNames = {"position", "size",
 /// The cells of a part's file by column name.
 class PartSheet {
  public:
-  PartSheet(const std::string& text, const std::string& file) : csv_(text::parse_csv(text, file)) {
-    static const std::set<std::string> kKnown = {
-        "feature",  "kind",   "x",     "y",        "z",    "nx",       "ny",        "nz",   "i",    "j", "k",
-        "diameter", "length", "width", "position", "size", "size_low", "size_high", "form", "datum"};
-    for (const text::CsvColumn& column : csv_.columns) {
-      const auto unit = text::find_unit(column.unit);
+  PartSheet(const std::string& text, const std::string& file) : csv_(format::parse_csv(text, file)) {
+    static const std::set<std::string> kKnown = {"feature",  "kind",      "i",     "j",        "k",
+                                                 "diameter", "length",    "width", "position", "size",
+                                                 "size_low", "size_high", "form",  "datum"};
+    const auto is_known = [](const std::string& name) {
+      const auto among = [&](const std::array<const char*, 3>& names) {
+        return std::find(names.begin(), names.end(), name) != names.end();
+      };
+      return kKnown.contains(name) || among(format::columns::kPoint) || among(format::columns::kNormal);
+    };
+    for (const format::CsvColumn& column : csv_.columns) {
+      const auto unit = format::find_unit(column.unit);
       const bool number = column.name != "feature" && column.name != "kind" && column.name != "datum";
-      if (!kKnown.contains(column.name))
+      if (!is_known(column.name))
         throw text::InputError(head(), column.name,
                                "not a column of a part: see `vernier part conformity --help`");
-      if (!column.unit.empty() && (!number || !unit || unit->dimension != text::Dimension::kLength))
+      if (!column.unit.empty() && (!number || !unit || unit->dimension != format::Dimension::kLength))
         throw text::InputError(head(), column.unit, "a part's numbers are lengths");
     }
-    for (const char* name : {"feature", "kind", "x", "y", "z"})
+    std::vector<const char*> needed = {"feature", "kind"};
+    needed.insert(needed.end(), format::columns::kPoint.begin(), format::columns::kPoint.end());
+    for (const char* name : needed)
       if (!find(name)) throw text::InputError(head(), name, "this column is missing");
   }
 
@@ -52,7 +61,7 @@ class PartSheet {
     if (text.empty()) return std::nullopt;
     const auto value = text::parse_number(text);
     if (!value) throw text::InputError(place(row), text, name + ": not a number");
-    const auto unit = text::find_unit(csv_.columns[*find(name)].unit);
+    const auto unit = format::find_unit(csv_.columns[*find(name)].unit);
     return *value * (csv_.columns[*find(name)].unit.empty() ? 1 : unit->factor);
   }
 
@@ -90,7 +99,7 @@ class PartSheet {
     return std::nullopt;
   }
 
-  text::CsvFile csv_;
+  format::CsvFile csv_;
 };
 
 void read_size(const PartSheet& sheet, std::size_t row, PartFeature& feature) {
@@ -119,11 +128,12 @@ PartFeature read_feature(const PartSheet& sheet, std::size_t row) {
   if (found == kKindNames.begin() + 3)
     throw text::InputError(sheet.place(row), kind, "a feature is a point, a plane or a cylinder");
   feature.kind = static_cast<PartFeatureKind>(found - kKindNames.begin());
-  const auto at = sheet.vector(row, {"x", "y", "z"});
+  const auto at = sheet.vector(row, format::columns::kPoint);
   if (!at) throw text::InputError(sheet.place(row), "x", "where the feature stands is missing");
   feature.at = *at;
   const bool point = feature.kind == PartFeatureKind::kPoint;
-  feature.direction = sheet.direction(row, {"nx", "ny", "nz"}).value_or(Eigen::Vector3d(0, 0, point ? 0 : 1));
+  feature.direction =
+      sheet.direction(row, format::columns::kNormal).value_or(Eigen::Vector3d(0, 0, point ? 0 : 1));
   feature.tool = sheet.direction(row, {"i", "j", "k"});
   feature.diameter_mm = sheet.positive(row, "diameter").value_or(0);
   feature.length_mm = sheet.number(row, "length").value_or(0);

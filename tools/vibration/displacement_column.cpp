@@ -10,8 +10,8 @@
 #include <numbers>
 
 #include "comp/vibration/displacement.h"
+#include "tools/format/units.h"
 #include "tools/text/error.h"
-#include "tools/text/units.h"
 #include "tools/vibration/integration.h"
 
 namespace vernier::vibration {
@@ -26,8 +26,8 @@ constexpr std::size_t kCorners = 60, kLineSteps = 200;
 
 /// mm/s^2 in the signal's unit.
 double acceleration_factor(const Signal& signal) {
-  const auto unit = text::find_unit(signal.unit);
-  if (!unit || unit->dimension != text::Dimension::kAcceleration)
+  const auto unit = format::find_unit(signal.unit);
+  if (!unit || unit->dimension != format::Dimension::kAcceleration)
     throw text::InputError(
         fmt::format("\"{}\": no acceleration (unit g, m/s^2 or mm/s^2), so no displacement: \"{}\"",
                     signal.name, signal.unit));
@@ -178,8 +178,8 @@ std::vector<double> offered_cuts(const VibrationRecord& record, const std::vecto
 }  // namespace
 
 bool is_acceleration(const Signal& signal) {
-  const auto unit = text::find_unit(signal.unit);
-  return unit && unit->dimension == text::Dimension::kAcceleration;
+  const auto unit = format::find_unit(signal.unit);
+  return unit && unit->dimension == format::Dimension::kAcceleration;
 }
 
 DisplacementSeries displacement_of(const Signal& signal, double rate_Hz, const DisplacementChoice& choice) {

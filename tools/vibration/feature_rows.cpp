@@ -9,20 +9,21 @@
 #include <numeric>
 #include <span>
 
+#include "tools/format/columns.h"
+#include "tools/format/units.h"
 #include "tools/text/error.h"
 #include "tools/text/numbers.h"
-#include "tools/text/units.h"
 
 namespace vernier::vibration {
 namespace {
 
-std::optional<std::size_t> column_named(const text::CsvFile& file, const std::string& name) {
+std::optional<std::size_t> column_named(const format::CsvFile& file, const std::string& name) {
   for (std::size_t i = 0; i < file.columns.size(); ++i)
     if (file.columns[i].name == name) return i;
   return {};
 }
 
-std::vector<double> column_values(const text::CsvFile& file, std::size_t column) {
+std::vector<double> column_values(const format::CsvFile& file, std::size_t column) {
   std::vector<double> values;
   for (std::size_t row = 0; row < file.rows.size(); ++row) {
     const std::string& cell = file.rows[row][column];
@@ -34,7 +35,7 @@ std::vector<double> column_values(const text::CsvFile& file, std::size_t column)
 }
 
 /// Rate of even times; throws where they are not.
-double rate_of(const text::CsvFile& file, const std::vector<double>& t_s) {
+double rate_of(const format::CsvFile& file, const std::vector<double>& t_s) {
   const auto n = static_cast<double>(t_s.size() - 1);
   const double step = (t_s.back() - t_s.front()) / n;
   for (std::size_t i = 0; i < t_s.size(); ++i)
@@ -58,20 +59,20 @@ std::string header_of(const Signal& signal, std::size_t feature) {
 
 }  // namespace
 
-std::vector<double> numeric_column(const text::CsvFile& file, const std::string& name) {
+std::vector<double> numeric_column(const format::CsvFile& file, const std::string& name) {
   const auto column = column_named(file, name);
   if (!column) throw text::InputError({file.file, file.header_line}, name, "the file has no such column");
   std::vector<double> values = column_values(file, *column);
-  if (const auto unit = text::find_unit(file.columns[*column].unit))
+  if (const auto unit = format::find_unit(file.columns[*column].unit))
     for (double& value : values) value = unit->factor * value + unit->offset;
   return values;
 }
 
-std::vector<double> measured_lengths_um(const text::CsvFile& file, const std::string& name) {
+std::vector<double> measured_lengths_um(const format::CsvFile& file, const std::string& name) {
   const auto column = column_named(file, name);
   if (!column) throw text::InputError({file.file, file.header_line}, name, "the file has no such column");
-  const auto unit = text::find_unit(file.columns[*column].unit);
-  if (!unit || unit->dimension != text::Dimension::kLength)
+  const auto unit = format::find_unit(file.columns[*column].unit);
+  if (!unit || unit->dimension != format::Dimension::kLength)
     throw text::InputError({file.file, file.header_line}, name, "is no length (unit mm, um, m or in)");
   std::vector<double> lengths_um;
   for (std::size_t row = 0; row < file.rows.size(); ++row) {
@@ -83,27 +84,29 @@ std::vector<double> measured_lengths_um(const text::CsvFile& file, const std::st
   return lengths_um;
 }
 
-VibrationRecord read_vibration(const text::CsvFile& file, std::optional<double> rate_Hz,
+VibrationRecord read_vibration(const format::CsvFile& file, std::optional<double> rate_Hz,
                                const std::vector<std::string>& positions) {
   if (file.rows.size() < 2)
     throw text::InputError({file.file, 0}, file.file, "an accelerometer record of less than two samples");
   VibrationRecord record;
   record.samples = file.rows.size();
-  if (column_named(file, "t")) {
-    const std::vector<double> t_s = numeric_column(file, "t");
+  if (column_named(file, format::columns::kTime)) {
+    const std::vector<double> t_s = numeric_column(file, format::columns::kTime);
     record.start_s = t_s.front();
     record.rate_Hz = rate_of(file, t_s);
   } else if (rate_Hz) {
     record.rate_Hz = *rate_Hz;
   } else {
-    throw text::InputError({file.file, file.header_line}, "t",
+    throw text::InputError({file.file, file.header_line}, format::columns::kTime,
                            "no column t; --rate gives the samples per second");
   }
   for (const std::string& name : positions)
     record.positions.push_back({name, "", numeric_column(file, name)});
   for (std::size_t i = 0; i < file.columns.size(); ++i) {
-    const text::CsvColumn& column = file.columns[i];
-    if (column.name == "t" || std::count(positions.begin(), positions.end(), column.name) != 0) continue;
+    const format::CsvColumn& column = file.columns[i];
+    if (column.name == format::columns::kTime ||
+        std::count(positions.begin(), positions.end(), column.name) != 0)
+      continue;
     record.signals.push_back({column.name, column.unit, column_values(file, i)});
   }
   if (record.signals.empty()) throw text::InputError({file.file, file.header_line}, file.file, "no signal");

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/text/csv.h"
+#include "tools/format/csv_file.h"
 #include "tools/vibration/alignment.h"
 #include "tools/vibration/signal_features.h"
 
@@ -26,7 +26,7 @@ struct VibrationRecord {
 
 /// `rate_Hz`: of a record without t; else t must be even to 1 % of a sample period and gives the rate. Throws
 /// InputError with line and word: an empty or malformed cell, uneven t, no signal. tool.
-VibrationRecord read_vibration(const text::CsvFile& file, std::optional<double> rate_Hz,
+VibrationRecord read_vibration(const format::CsvFile& file, std::optional<double> rate_Hz,
                                const std::vector<std::string>& positions);
 
 /// Adds the signal `name` = a - b ("wrist=hand-base"); throws InputError for an unknown signal or a
@@ -53,11 +53,11 @@ FeatureColumns feature_columns(const VibrationRecord& record, const FeatureChoic
 
 /// Column `name` of a measurement file in its base unit (mm, deg, s, ...); throws InputError where it is
 /// absent or a cell is no number. tool.
-std::vector<double> numeric_column(const text::CsvFile& file, const std::string& name);
+std::vector<double> numeric_column(const format::CsvFile& file, const std::string& name);
 
 /// Column `name` as lengths in um, NaN for an empty cell; throws InputError where it is absent, no length, or
 /// a cell is no number. tool.
-std::vector<double> measured_lengths_um(const text::CsvFile& file, const std::string& name);
+std::vector<double> measured_lengths_um(const format::CsvFile& file, const std::string& name);
 
 /// Second derivative of a position over (uneven) times, as a record: one value less at each end. tool.
 Series acceleration_of(const std::vector<double>& t_s, const std::vector<double>& position);

@@ -3,52 +3,52 @@
 
 #include <cmath>
 
-#include "tools/text/units.h"
+#include "tools/format/units.h"
 
 namespace vernier::workbench {
 namespace {
 
 constexpr std::array<const char*, 8> kNames = {"mm", "deg", "degC", "s", "V", "N", "kg", "A"};
 
-std::optional<UnitPowers> powers_of(text::Dimension dimension) {
+std::optional<UnitPowers> powers_of(format::Dimension dimension) {
   switch (dimension) {
-    case text::Dimension::kNone:
+    case format::Dimension::kNone:
       return UnitPowers{};
-    case text::Dimension::kLength:
+    case format::Dimension::kLength:
       return UnitPowers{1};
-    case text::Dimension::kAngle:
+    case format::Dimension::kAngle:
       return UnitPowers{0, 1};
-    case text::Dimension::kTemperature:
+    case format::Dimension::kTemperature:
       return UnitPowers{0, 0, 1};
-    case text::Dimension::kTime:
+    case format::Dimension::kTime:
       return UnitPowers{0, 0, 0, 1};
-    case text::Dimension::kSpeed:
+    case format::Dimension::kSpeed:
       return UnitPowers{1, 0, 0, -1};
-    case text::Dimension::kAngularSpeed:
+    case format::Dimension::kAngularSpeed:
       return UnitPowers{0, 1, 0, -1};
-    case text::Dimension::kAcceleration:
+    case format::Dimension::kAcceleration:
       return UnitPowers{1, 0, 0, -2};
-    case text::Dimension::kAngularAcceleration:
+    case format::Dimension::kAngularAcceleration:
       return UnitPowers{0, 1, 0, -2};
-    case text::Dimension::kVoltage:
+    case format::Dimension::kVoltage:
       return UnitPowers{0, 0, 0, 0, 1};
-    case text::Dimension::kForce:
+    case format::Dimension::kForce:
       return UnitPowers{0, 0, 0, 0, 0, 1};
-    case text::Dimension::kMass:
+    case format::Dimension::kMass:
       return UnitPowers{0, 0, 0, 0, 0, 0, 1};
-    case text::Dimension::kCurvature:
+    case format::Dimension::kCurvature:
       return UnitPowers{-1};
-    case text::Dimension::kCurrent:
+    case format::Dimension::kCurrent:
       return UnitPowers{0, 0, 0, 0, 0, 0, 0, 1};
-    case text::Dimension::kFrequency:
+    case format::Dimension::kFrequency:
       return UnitPowers{0, 0, 0, -1};
-    case text::Dimension::kPressure:
+    case format::Dimension::kPressure:
       return UnitPowers{-2, 0, 0, 0, 0, 1};
-    case text::Dimension::kTorque:
+    case format::Dimension::kTorque:
       return UnitPowers{1, 0, 0, 0, 0, 1};
-    case text::Dimension::kPower:
+    case format::Dimension::kPower:
       return UnitPowers{1, 0, 0, -1, 0, 1};
-    case text::Dimension::kRatio:
+    case format::Dimension::kRatio:
       return UnitPowers{};
   }
   return std::nullopt;
@@ -192,7 +192,7 @@ class UnitWalk {
 }  // namespace
 
 std::optional<UnitPowers> unit_powers(const std::string& unit) {
-  const auto found = text::find_unit(unit);
+  const auto found = format::find_unit(unit);
   return found ? powers_of(found->dimension) : std::nullopt;
 }
 

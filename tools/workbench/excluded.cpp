@@ -7,7 +7,7 @@
 #include <optional>
 #include <string_view>
 
-#include "tools/text/csv.h"
+#include "tools/format/csv_file.h"
 #include "tools/text/error.h"
 
 namespace vernier::workbench {
@@ -77,7 +77,7 @@ std::string exclude_rows(const std::string& text, const std::string& file,
   if (std::any_of(reason.begin(), reason.end(),
                   [](char c) { return c == '"' || static_cast<unsigned char>(c) < 0x20; }))
     throw text::InputError("--reason: quotes and line ends cannot stand in it");
-  const text::CsvFile csv = text::parse_csv(text, file);
+  const format::CsvFile csv = format::parse_csv(text, file);
   for (const std::size_t line : lines)
     if (!std::binary_search(csv.line.begin(), csv.line.end(), line))
       throw text::InputError({file, line}, std::to_string(line),
@@ -99,7 +99,7 @@ std::string restore_rows(const std::string& text, const std::string& file,
   });
   if (restored != lines.size())
     throw text::InputError({file, lines.back()}, std::to_string(lines.back()), "beyond the end of the file");
-  text::parse_csv(result, file);  // what is written can be read
+  format::parse_csv(result, file);  // what is written can be read
   return result;
 }
 

@@ -3,11 +3,11 @@
 
 #include <cmath>
 
+#include "tools/format/csv_file.h"
 #include "tools/model/machine.h"
 #include "tools/model/machine_reader.h"
 #include "tools/results/safety_json.h"
 #include "tools/safety/safety_sheet.h"
-#include "tools/text/csv.h"
 #include "tools/text/error.h"
 #include "tools/text/files.h"
 #include "tools/workbench/excluded.h"
@@ -56,7 +56,7 @@ ApiReply FileDesk::check(const ApiRequest& request) {
   const std::string name = request.word("name");
   if (name.ends_with(".xml")) model::parse_machine(request.body, name);
   // What does not even begin as a measurement file may be a spreadsheet: kept, and imported from there.
-  if (name.ends_with(".csv") && begins_as_measurement(request.body)) text::parse_csv(request.body, name);
+  if (name.ends_with(".csv") && begins_as_measurement(request.body)) format::parse_csv(request.body, name);
   return json_reply({{"name", name}});
 }
 

@@ -9,6 +9,7 @@
 #include "tools/fit/fit.h"
 #include "tools/fit/set_up.h"
 #include "tools/fit/statistics.h"
+#include "tools/format/readings.h"
 #include "tools/maths/factors.h"
 #include "tools/model/chain.h"
 #include "tools/model/fit_record.h"
@@ -56,13 +57,16 @@ Json vectors(Blob& blob, const Eigen::Matrix3Xd& list) {
   return json;
 }
 
-/// Unit vectors along which a row's length or d is measured; 0 for rows without.
+/// Unit vectors along which a row's length, distance or d is measured; 0 for rows without.
 Eigen::Matrix3Xd directions(const model::Measurement& m, const Eigen::Matrix3Xd& point) {
   Eigen::Matrix3Xd list = Eigen::Matrix3Xd::Zero(3, point.cols());
   for (const model::Observation& o : m.observations) {
     const auto row = static_cast<Eigen::Index>(o.row);
     if (o.kind == model::ObservationKind::kLength)
       list.col(row) = (point.col(row) - m.centre.col(row)).stableNormalized();
+    if (o.kind == model::ObservationKind::kDistance)
+      list.col(row) =
+          (point.col(row) - point.col(static_cast<Eigen::Index>(m.other_end[o.row]))).stableNormalized();
     if (o.kind == model::ObservationKind::kD)
       for (std::size_t k = 0; k < 3; ++k) list(static_cast<Eigen::Index>(k), row) = m.states.normal[k][row];
   }
@@ -96,7 +100,13 @@ Json observations_json(Blob& blob, const model::Measurement& m, const Eigen::Vec
     kind.push_back(static_cast<std::uint8_t>(o.kind));
     row.push_back(static_cast<std::uint32_t>(o.row));
   }
-  return {{"kinds", model::kObservationNames},
+  Json kinds = Json::array(), rotations = Json::array();
+  for (const format::ReadingKindEntry& entry : format::kReadingKinds) {
+    kinds.push_back(entry.name);
+    if (format::is_rotation(entry.kind)) rotations.push_back(entry.name);
+  }
+  return {{"kinds", kinds},
+          {"rotations", rotations},
           {"kind", blob.u8(kind)},
           {"row", blob.u32(row)},
           {"u", blob.f32(in_report_units(m, standard_uncertainties(m)))},

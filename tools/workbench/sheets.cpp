@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "tools/text/csv.h"
+#include "tools/format/csv_file.h"
 #include "tools/text/error.h"
 #include "tools/text/words.h"
 
@@ -53,9 +53,9 @@ bool begins_as_measurement(const std::string& text) {
     if (line.empty() || line.front() == '#') continue;
     try {
       const auto commas = static_cast<std::size_t>(std::count(line.begin(), line.end(), ','));
-      const text::CsvFile csv = text::parse_csv(line + "\n0" + std::string(commas, ',') + "\n", "");
+      const format::CsvFile csv = format::parse_csv(line + "\n0" + std::string(commas, ',') + "\n", "");
       return std::any_of(csv.columns.begin(), csv.columns.end(),
-                         [](const text::CsvColumn& column) { return !column.unit.empty(); });
+                         [](const format::CsvColumn& column) { return !column.unit.empty(); });
     } catch (const text::InputError&) {
       return false;
     }

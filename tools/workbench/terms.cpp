@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/workbench/terms.h"
 
+#include "tools/format/columns.h"
 #include "tools/workbench/dimensions.h"
 
 namespace vernier::workbench {
@@ -28,23 +29,29 @@ model::Machine with_unknown(const model::Machine& machine) {
 Json expression_names(const model::Machine& machine) {
   Json list = Json::array();
   for (const model::Axis& axis : machine.axes) {
-    const std::string unit = axis.rotary ? "deg" : "mm";
-    add(list, axis.name, unit, "axis position");
-    add(list, "v" + axis.name, unit + "/s", "speed of the axis");
-    add(list, "a" + axis.name, unit + "/s^2", "acceleration of the axis");
-    add(list, "dir" + axis.name, "", "sense of the last motion");
-    add(list, "since" + axis.name, unit, "travel since the last reversal");
+    using format::AxisQuantity;
+    const auto quantity = [&](AxisQuantity one, const char* words) {
+      add(list, format::axis_column(one, axis.name), format::unit_of(one, axis.rotary), words);
+    };
+    quantity(AxisQuantity::kPosition, "axis position");
+    quantity(AxisQuantity::kSpeed, "speed of the axis");
+    quantity(AxisQuantity::kAcceleration, "acceleration of the axis");
+    quantity(AxisQuantity::kSense, "sense of the last motion");
+    quantity(AxisQuantity::kSince, "travel since the last reversal");
   }
   for (const model::Input& input : machine.inputs) add(list, input.name, input.unit, "input");
   for (const model::Static& one : machine.statics) add(list, one.name, one.unit, "static");
-  add(list, "feed", "mm/min", "along the path");
-  add(list, "curv", "1/mm", "path curvature");
-  add(list, "t", "s", "time");
-  add(list, "visit", "", "rows since the start of the run");
-  for (const char* name : {"nx", "ny", "nz"}) add(list, name, "", "normal of the row");
-  for (const char* name :
-       {"sin", "cos", "tan", "atan2", "sqrt", "abs", "exp", "log", "sign", "min", "max", "lag", "run"})
-    add(list, std::string(name) + "(", "", "function");
+  namespace columns = format::columns;
+  const auto column = [&](const char* name, const char* words) {
+    add(list, name, format::column_unit(name), words);
+  };
+  column(columns::kFeed, "along the path");
+  column(columns::kCurvature, "path curvature");
+  column(columns::kTime, "time");
+  column(columns::kVisit, "rows since the start of the run");
+  for (const char* name : columns::kNormal) column(name, "normal of the row");
+  for (const std::string& name : model::function_names()) add(list, name + "(", "", "function");
+  add(list, std::string(columns::kRun) + "(", "", "function");
   add(list, "k", "", "the unknown coefficient");
   return list;
 }

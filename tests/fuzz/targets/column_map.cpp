@@ -2,12 +2,13 @@
 #include "tools/import/column_map.h"
 
 #include "tests/fuzz/target.h"
+#include "tools/format/csv_file.h"
 #include "tools/import/survey.h"
-#include "tools/text/csv.h"
 
 namespace vernier::fuzz {
 
 using namespace vernier::importer;
+using namespace vernier::format;
 using namespace vernier::text;
 namespace {
 

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/text/csv.h"
+#include "tools/format/csv_file.h"
 
 #include "tests/fuzz/target.h"
 
 namespace vernier::fuzz {
 
+using namespace vernier::format;
 using namespace vernier::text;
 namespace {
 

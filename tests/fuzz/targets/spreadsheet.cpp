@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tests/fuzz/target.h"
+#include "tools/format/csv_file.h"
 #include "tools/import/sheet_columns.h"
 #include "tools/import/wide_sheet.h"
-#include "tools/text/csv.h"
 
 namespace vernier::fuzz {
 
 using namespace vernier::importer;
 using namespace vernier::sheet;
+using namespace vernier::format;
 using namespace vernier::text;
 namespace {
 

@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "tests/unit/offline/machine.h"
+#include "tools/format/csv_file.h"
 #include "tools/model/chain.h"
-#include "tools/text/csv.h"
 #include "tools/text/error.h"
 #include "tools/text/numbers.h"
 
@@ -13,6 +13,7 @@ namespace vernier::offline_test {
 
 using namespace vernier::model;
 using namespace vernier::offline;
+using namespace vernier::format;
 using namespace vernier::text;
 namespace {
 

@@ -16,6 +16,7 @@ namespace vernier::command_test {
 
 using namespace vernier::model;
 using namespace vernier::simulate;
+using namespace vernier::format;
 using namespace vernier::text;
 namespace {
 

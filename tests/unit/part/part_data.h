@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "tools/format/csv_file.h"
 #include "tools/model/machine_reader.h"
 #include "tools/part/b_head_machine.h"
-#include "tools/text/csv.h"
 #include "tools/text/files.h"
 #include "tools/text/numbers.h"
 
@@ -14,6 +14,7 @@ namespace vernier::part_data {
 
 using namespace vernier::model;
 using namespace vernier::part;
+using namespace vernier::format;
 using namespace vernier::text;
 
 inline std::string path(const std::string& name) {

@@ -14,6 +14,7 @@
 namespace vernier::feature_test {
 
 using namespace vernier::probe;
+using namespace vernier::format;
 using namespace vernier::text;
 namespace {
 

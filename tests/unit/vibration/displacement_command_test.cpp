@@ -11,11 +11,12 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
-#include "tools/text/csv.h"
+#include "tools/format/csv_file.h"
 #include "tools/text/files.h"
 
 namespace vernier::displacement_command_test {
 
+using namespace vernier::format;
 using namespace vernier::text;
 namespace {
 

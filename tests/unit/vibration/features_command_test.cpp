@@ -13,6 +13,7 @@
 
 namespace vernier::features_command_test {
 
+using namespace vernier::format;
 using namespace vernier::text;
 using namespace vernier::vibration;
 namespace {

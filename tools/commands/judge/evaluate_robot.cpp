@@ -11,6 +11,7 @@
 #include "tools/evaluate/limits.h"
 #include "tools/evaluate/positioning.h"
 #include "tools/evaluate/robot_path.h"
+#include "tools/format/columns.h"
 #include "tools/maths/factors.h"
 #include "tools/model/chain.h"
 #include "tools/model/machine_reader.h"
@@ -61,7 +62,8 @@ std::vector<evaluate::PoseReading> readings_by_machine(const RobotArguments& arg
     if ((seen[row] & kRotation) != kRotation) rows[row].measured_deg = std::nullopt;
     readings.push_back(rows[row]);
   }
-  if (readings.empty()) throw text::InputError({m.files.front(), 0}, "x", "no row has x, y and z");
+  if (readings.empty())
+    throw text::InputError({m.files.front(), 0}, format::columns::kPoint.front(), "no row has x, y and z");
   return readings;
 }
 

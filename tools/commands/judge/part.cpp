@@ -11,6 +11,7 @@
 #include "tools/commands/judge/part_kinds.h"
 #include "tools/commands/report_header.h"
 #include "tools/evaluate/judgement.h"
+#include "tools/format/csv_file.h"
 #include "tools/kinematics/at.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/machine_writer.h"
@@ -21,7 +22,6 @@
 #include "tools/part/s_part.h"
 #include "tools/part/spline_program.h"
 #include "tools/report/report.h"
-#include "tools/text/csv.h"
 #include "tools/text/error.h"
 #include "tools/text/numbers.h"
 #include "tools/text/words.h"
@@ -216,7 +216,7 @@ void run_s_shape(const Arguments& arguments) {
 
 /// Columns C[deg] and y[mm]; one row each for 0, 90, 180 and 270 deg.
 std::array<double, 4> read_gauge_block(const std::string& file) {
-  const text::CsvFile csv = text::parse_csv(text::read_file(file), file);
+  const format::CsvFile csv = format::parse_csv(text::read_file(file), file);
   const auto column = [&](const char* name, const char* unit) {
     for (std::size_t i = 0; i < csv.columns.size(); ++i)
       if (csv.columns[i].name == name && csv.columns[i].unit == unit) return i;

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "tools/commands/command.h"
+#include "tools/format/columns.h"
 #include "tools/text/error.h"
 #include "tools/text/numbers.h"
 #include "tools/vibration/displacement_column.h"
@@ -76,7 +77,7 @@ vibration::DisplacementChoice displacement_choice_of(const FeaturesArguments& ar
 
 /// Displacements that were measured in the rows; an empty cell is none.
 std::vector<vibration::KnownDisplacement> known_displacements(const FeaturesArguments& arguments,
-                                                              const text::CsvFile& rows) {
+                                                              const format::CsvFile& rows) {
   std::vector<vibration::KnownDisplacement> known;
   for (const std::string& pair : arguments.against) {
     const auto equals = pair.find('=');
@@ -89,7 +90,7 @@ std::vector<vibration::KnownDisplacement> known_displacements(const FeaturesArgu
 
 /// Appends the column of every acceleration; the cut-off by name of signal goes to the result.
 void add_displacements(const FeaturesArguments& arguments, const vibration::VibrationRecord& record,
-                       const text::CsvFile& rows, const Ends& ends, vibration::FeatureColumns& columns,
+                       const format::CsvFile& rows, const Ends& ends, vibration::FeatureColumns& columns,
                        Json& json) {
   vibration::DisplacementChoice choice = displacement_choice_of(arguments);
   Json result = {{"cut", choice.cut == vibration::Cut::kCorner ? "corner" : "power"},
@@ -135,7 +136,7 @@ void print_displacements(std::FILE* out, const Json& displacement) {
 
 /// The clock of the record against the rows' t: given, or found from the motion of an axis.
 vibration::ClockFit clock_of(const FeaturesArguments& arguments, const vibration::VibrationRecord& record,
-                             const text::CsvFile& rows) {
+                             const format::CsvFile& rows) {
   vibration::ClockFit clock;
   clock.offset_s = arguments.offset_s;
   clock.rate = arguments.clock_rate;
@@ -150,14 +151,15 @@ vibration::ClockFit clock_of(const FeaturesArguments& arguments, const vibration
   for (std::size_t i = 0; i < record.samples; ++i)
     accelerometer.t_s.push_back(record.start_s + static_cast<double>(i) / record.rate_Hz);
   return vibration::align_clocks(
-      vibration::acceleration_of(vibration::numeric_column(rows, "t"), vibration::numeric_column(rows, axis)),
+      vibration::acceleration_of(vibration::numeric_column(rows, format::columns::kTime),
+                                 vibration::numeric_column(rows, axis)),
       accelerometer);
 }
 
-Ends ends_by_time(const vibration::VibrationRecord& record, const text::CsvFile& rows,
+Ends ends_by_time(const vibration::VibrationRecord& record, const format::CsvFile& rows,
                   const vibration::ClockFit& clock) {
   Ends ends;
-  for (const double t : vibration::numeric_column(rows, "t")) {
+  for (const double t : vibration::numeric_column(rows, format::columns::kTime)) {
     // A time written in decimals is that sample's own, not one just before it.
     constexpr double kSameInstant = 1e-6;
     const double sample =
@@ -178,7 +180,7 @@ Eigen::MatrixXd matrix_of(const std::vector<std::vector<double>>& lines) {
 }
 
 Ends ends_by_position(const FeaturesArguments& arguments, const vibration::VibrationRecord& record,
-                      const text::CsvFile& rows, Json& json) {
+                      const format::CsvFile& rows, Json& json) {
   std::vector<std::vector<double>> path, points;
   for (const vibration::Signal& position : record.positions) {
     path.push_back(position.value);
@@ -196,10 +198,10 @@ Ends ends_by_position(const FeaturesArguments& arguments, const vibration::Vibra
 }
 
 /// Windows one after the other, without rows to belong to.
-text::CsvFile rows_of_windows(const FeaturesArguments& arguments, const vibration::VibrationRecord& record,
-                              Ends& ends) {
-  text::CsvFile rows;
-  rows.columns = {{"t", "s"}};
+format::CsvFile rows_of_windows(const FeaturesArguments& arguments, const vibration::VibrationRecord& record,
+                                Ends& ends) {
+  format::CsvFile rows;
+  rows.columns = {{format::columns::kTime, "s"}};
   const std::size_t every = arguments.every == 0 ? arguments.window : arguments.every;
   for (std::size_t end = arguments.window - 1; end < record.samples; end += every) {
     ends.push_back(end);
@@ -208,9 +210,9 @@ text::CsvFile rows_of_windows(const FeaturesArguments& arguments, const vibratio
   return rows;
 }
 
-std::string text_of(const text::CsvFile& rows, const vibration::FeatureColumns& columns) {
+std::string text_of(const format::CsvFile& rows, const vibration::FeatureColumns& columns) {
   std::vector<std::string> header;
-  for (const text::CsvColumn& column : rows.columns)
+  for (const format::CsvColumn& column : rows.columns)
     header.push_back(column.unit.empty() ? column.name : column.name + "[" + column.unit + "]");
   header.insert(header.end(), columns.header.begin(), columns.header.end());
   std::string text = fmt::format("{}\n", fmt::join(header, ","));
@@ -227,16 +229,16 @@ std::string text_of(const text::CsvFile& rows, const vibration::FeatureColumns& 
 void run_features(const FeaturesArguments& arguments) {
   const vibration::FeatureChoice choice = choice_of(arguments);
   vibration::VibrationRecord record =
-      vibration::read_vibration(text::parse_csv(text::read_file(arguments.record), arguments.record),
+      vibration::read_vibration(format::parse_csv(text::read_file(arguments.record), arguments.record),
                                 arguments.rate_Hz, arguments.positions);
   for (const std::string& difference : arguments.differences) vibration::add_difference(record, difference);
   Json json = {{"window", choice.window}, {"rate_Hz", record.rate_Hz}, {"samples", record.samples}};
   Ends ends;
-  text::CsvFile rows;
+  format::CsvFile rows;
   if (arguments.rows.empty()) {
     rows = rows_of_windows(arguments, record, ends);
   } else {
-    rows = text::parse_csv(text::read_file(arguments.rows), arguments.rows);
+    rows = format::parse_csv(text::read_file(arguments.rows), arguments.rows);
     if (arguments.positions.empty()) {
       const vibration::ClockFit clock = clock_of(arguments, record, rows);
       ends = ends_by_time(record, rows, clock);

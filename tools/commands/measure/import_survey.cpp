@@ -6,6 +6,7 @@
 
 #include "tools/commands/command.h"
 #include "tools/commands/measure/import_kinds.h"
+#include "tools/format/columns.h"
 #include "tools/import/machine_log.h"
 #include "tools/import/survey.h"
 #include "tools/model/machine_reader.h"
@@ -49,9 +50,9 @@ Json summary(const std::string& kind, const importer::ImportTable& table) {
   for (const auto& column : table.columns)
     columns.push_back(column.name + (column.unit.empty() ? "" : "[" + column.unit + "]"));
   std::set<std::string> runs;
-  if (const auto* run = table.find("run")) runs.insert(run->cells.begin(), run->cells.end());
+  if (const auto* run = table.find(format::columns::kRun)) runs.insert(run->cells.begin(), run->cells.end());
   std::size_t check = 0;
-  if (const auto* role = table.find("role"))
+  if (const auto* role = table.find(format::columns::kRole))
     for (const std::string& cell : role->cells) check += cell == "check" ? 1 : 0;
   return {
       {"kind", kind}, {"n_rows", table.line.size()}, {"n_fit", table.line.size() - check}, {"n_check", check},

@@ -7,6 +7,7 @@
 #include "tools/create/machine_file.h"
 #include "tools/create/survey_template.h"
 #include "tools/create/urdf.h"
+#include "tools/format/readings.h"
 #include "tools/model/machine_reader.h"
 #include "tools/text/numbers.h"
 #include "tools/text/words.h"
@@ -109,6 +110,14 @@ create::MachinePlan plan_of(const NewArguments& arguments, const CLI::App& comma
   return plan;
 }
 
+/// "point: tracker …; length: ball bar …".
+std::string reading_help() {
+  std::vector<std::string> list;
+  for (const format::SurveyReading& reading : format::kSurveyReadings)
+    list.push_back(std::string(reading.word) + ": " + reading.instruments);
+  return text::joined(list, "; ");
+}
+
 void run_new(const NewArguments& arguments, const CLI::App& command) {
   const create::MachinePlan plan = plan_of(arguments, command);
   const std::string text = create::machine_file(plan);
@@ -169,7 +178,7 @@ void register_new(CLI::App& vernier) {
       ->capture_default_str();
   command
       ->add_option("--reading", arguments->reading,
-                   "what the survey reads: point (x y z), length (ball bar), touch (dial gauge, probe), pose")
+                   "what the survey reads: " + format::survey_words("or") + " (" + reading_help() + ")")
       ->capture_default_str();
   command->add_option("--tool", arguments->tool,
                       "tool point in the frame of the last axis that carries it, mm: 0,0,-120");

@@ -10,6 +10,7 @@
 #include "tools/fit/fit.h"
 #include "tools/fit/freedom.h"
 #include "tools/fit/statistics.h"
+#include "tools/format/units.h"
 #include "tools/lint/measurement_meaning.h"
 #include "tools/model/fit_record.h"
 #include "tools/model/machine.h"
@@ -20,7 +21,6 @@
 #include "tools/results/results.h"
 #include "tools/simulate/corrected.h"
 #include "tools/text/numbers.h"
-#include "tools/text/units.h"
 #include "tools/text/words.h"
 
 namespace vernier::commands::fit_cli {
@@ -79,8 +79,8 @@ void print_odd_inputs(std::FILE* out, const model::Machine& machine) {
   for (const model::FitRecord::Range& range : machine.fitted->measured) {
     const auto input = machine.find_input(range.name);
     if (!input) continue;
-    const auto unit = text::find_unit(machine.inputs[*input].unit);
-    if (!unit || unit->dimension != text::Dimension::kTemperature) continue;
+    const auto unit = format::find_unit(machine.inputs[*input].unit);
+    if (!unit || unit->dimension != format::Dimension::kTemperature) continue;
     const auto degC = [&](double value) { return value * unit->factor + unit->offset; };
     const std::string doubt = lint::temperature_doubt(degC(range.min), degC(range.max));
     if (!doubt.empty())

@@ -8,6 +8,7 @@
 #include "tools/commands/command.h"
 #include "tools/commands/fit_findings.h"
 #include "tools/commands/report_header.h"
+#include "tools/format/columns.h"
 #include "tools/map/simulated.h"
 #include "tools/report/report.h"
 #include "tools/results/field_json.h"
@@ -207,7 +208,9 @@ void register_map(CLI::App& vernier) {
   command->add_option("--inputs,--at", arguments->at, "inputs, motion and axes that stay: \"T=25,B=30\"");
   command->add_option("--over", arguments->over, "axes to sweep, one to three; default: the linear ones")
       ->delimiter(',');
-  command->add_option("--lines", arguments->lines, "free lines to measure (CSV): x[mm],y[mm],z[mm],run");
+  command->add_option("--lines", arguments->lines,
+                      "free lines to measure (CSV): " + format::headings(format::columns::kPoint) + "," +
+                          format::columns::kRun);
   command->footer(
       "Lengths and diagonals with reversal (ISO 230-6), circles (ISO 230-4), squares, a cylinder, free "
       "lines.");

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "tools/commands/command.h"
+#include "tools/format/columns.h"
 #include "tools/model/machine.h"
 #include "tools/model/machine_reader.h"
 #include "tools/text/error.h"
@@ -31,15 +32,17 @@ std::string unit_of(const std::string& input, const std::optional<model::Machine
 
 // Columns of FORMATS section 2; a measured tool point is added by whoever measures.
 std::string header(const upload::BoardInfo& info, const std::optional<model::Machine>& machine) {
-  std::string text = "t[s]";
+  using format::AxisQuantity;
+  std::string text = format::heading(format::columns::kTime);
   for (const upload::BoardSignal& axis : info.axes)
-    text += fmt::format(",{}[{}]", axis.name, axis.rotary ? "deg" : "mm");
-  for (const upload::BoardSignal& axis : info.axes) text += ",dir" + axis.name;
-  text += ",feed[mm/min]";
+    text += "," + format::axis_heading(AxisQuantity::kPosition, axis.name, axis.rotary);
+  for (const upload::BoardSignal& axis : info.axes)
+    text += "," + format::axis_heading(AxisQuantity::kSense, axis.name, axis.rotary);
+  text += "," + format::heading(format::columns::kFeed);
   for (const std::string& input : info.inputs) text += "," + input + unit_of(input, machine);
   for (const upload::BoardSignal& axis : info.axes)
-    text += fmt::format(",correction{}[{}]", axis.name, axis.rotary ? "deg" : "mm");
-  return text + ",run\n";
+    text += "," + format::axis_heading(AxisQuantity::kCorrection, axis.name, axis.rotary);
+  return text + "," + format::columns::kRun + "\n";
 }
 
 void append(std::string& text, const upload::BoardTick& tick, const std::string& run) {

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "tools/commands/command.h"
+#include "tools/format/columns.h"
 #include "tools/text/error.h"
 #include "tools/upload/client.h"
 #include "tools/upload/open_transport.h"
@@ -33,11 +34,12 @@ const char* unit_of(const upload::BoardSignal& axis) { return axis.rotary ? "deg
 // Columns of FORMATS section 2: axes as read, the tool point in workpiece coordinates, compensated axes
 // beside them.
 std::string header(const upload::BoardInfo& info) {
-  std::string text = "touch,t[s]";
+  std::string text = "touch," + format::heading(format::columns::kTime);
   for (const upload::BoardSignal& axis : info.axes) text += fmt::format(",{}[{}]", axis.name, unit_of(axis));
   for (const upload::BoardSignal& axis : info.axes)
     text += fmt::format(",compensated{}[{}]", axis.name, unit_of(axis));
-  return text + ",x[mm],y[mm],z[mm],u[mm],bounces,run\n";
+  return text + "," + format::headings(format::columns::kPoint) + "," +
+         format::heading(format::columns::kUncertainty) + ",bounces," + format::columns::kRun + "\n";
 }
 
 void append(std::string& text, const upload::BoardInfo& info, const upload::BoardTouch& touch,

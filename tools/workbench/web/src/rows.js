@@ -2,16 +2,16 @@
 import { getBlob } from './api.js';
 import { emit, select, selection, store } from './store.js';
 
-const kRotations = new Set(['rx', 'ry', 'rz']);
 const kAcross = { x: 0, y: 1, z: 2 };
 
 /** Observations of one kind, side by side: {kind, unit, index (among all), row, value}. */
 function byKind(observations) {
   const counts = new Uint32Array(observations.kinds.length);
+  const rotations = new Set(observations.rotations);
   for (const kind of observations.kind) ++counts[kind];
   const groups = observations.kinds.map((kind, k) => ({
     kind,
-    unit: kRotations.has(kind) ? 'µrad' : 'µm',
+    unit: rotations.has(kind) ? 'µrad' : 'µm',
     index: new Uint32Array(counts[k]),
     row: new Uint32Array(counts[k]),
     u: new Float32Array(counts[k]),

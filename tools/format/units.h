@@ -3,8 +3,9 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
-namespace vernier::text {
+namespace vernier::format {
 
 enum class Dimension {
   kNone,
@@ -50,10 +51,11 @@ std::string canonical_unit(std::string_view unit);
 /// All names, for messages.
 std::string known_units();
 
+/// All dimensions in the order of Dimension; the names of the units of one of them.
+std::vector<Dimension> all_dimensions();
+std::vector<std::string> units_of(Dimension dimension);
+
 /// The base unit of a dimension as written.
 const char* base_unit(Dimension dimension);
 
-/// The reading that holds a rotary axis' angle: rx, ry, rz of A, B, C (ISO 841); nothing for other axes.
-std::optional<std::string> angle_about(std::string_view axis);
-
-}  // namespace vernier::text
+}  // namespace vernier::format

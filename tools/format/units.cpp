@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/text/units.h"
+#include "tools/format/units.h"
 
 #include <array>
 #include <utility>
 
 #include "tools/maths/factors.h"
 
-namespace vernier::text {
+namespace vernier::format {
 namespace {
 
 /// Standard gravity, mm/s^2 (ISO 80000-3).
@@ -116,17 +116,24 @@ std::string known_units() {
   return text + kPerMm.name;
 }
 
+std::vector<Dimension> all_dimensions() {
+  std::vector<Dimension> list;
+  for (int k = 0; k <= static_cast<int>(Dimension::kRatio); ++k) list.push_back(static_cast<Dimension>(k));
+  return list;
+}
+
+std::vector<std::string> units_of(Dimension dimension) {
+  std::vector<std::string> names;
+  for (const Unit& unit : kUnits)
+    if (unit.dimension == dimension && *unit.name != '\0') names.emplace_back(unit.name);
+  if (dimension == kPerMm.dimension) names.emplace_back(kPerMm.name);
+  return names;
+}
+
 const char* base_unit(Dimension dimension) {
   for (const Unit& unit : kUnits)
     if (unit.dimension == dimension && unit.factor == 1 && unit.offset == 0) return unit.name;
   return kPerMm.name;
 }
 
-std::optional<std::string> angle_about(std::string_view axis) {
-  if (axis == "A") return "rx";
-  if (axis == "B") return "ry";
-  if (axis == "C") return "rz";
-  return std::nullopt;
-}
-
-}  // namespace vernier::text
+}  // namespace vernier::format

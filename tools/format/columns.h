@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <array>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tools/format/csv_file.h"
+#include "tools/format/readings.h"
+#include "tools/format/units.h"
+
+namespace vernier::format {
+
+/// Names of columns, for code that reads or writes one of them.
+namespace columns {
+inline constexpr std::array kPoint = {"x", "y", "z"};
+inline constexpr std::array kRotation = {"rx", "ry", "rz"};
+inline constexpr std::array kCentre = {"cx", "cy", "cz"};
+inline constexpr std::array kNominalPoint = {"px", "py", "pz"};
+inline constexpr std::array kNormal = {"nx", "ny", "nz"};
+inline constexpr std::array kDirection = {"ax", "ay", "az"};
+inline constexpr std::array kInclination = {"ix", "iy"};
+inline constexpr const char* kLength = "length";
+inline constexpr const char* kDeviation = "d";
+inline constexpr const char* kDistance = "distance";
+inline constexpr const char* kFrom = "from";
+inline constexpr const char* kUncertainty = "u";
+inline constexpr const char* kAngleUncertainty = "ua";
+inline constexpr const char* kTime = "t";
+inline constexpr const char* kFeed = "feed";
+inline constexpr const char* kCurvature = "curv";
+inline constexpr const char* kVisit = "visit";
+inline constexpr const char* kRun = "run";
+inline constexpr const char* kRole = "role";
+inline constexpr const char* kCorrected = "corrected";
+inline constexpr const char* kSetup = "setup";
+inline constexpr const char* kClock = "clock";
+inline constexpr const char* kBlock = "block";
+}  // namespace columns
+
+/// What a column is for.
+enum class ColumnUse : std::uint8_t {
+  kReading,      // holds a reading
+  kBeside,       // what a reading needs in its row: a centre, a normal
+  kUncertainty,  // of the readings of the row
+  kMotion,       // state of the machine along its path
+  kLabel         // says which rows belong together
+};
+
+/// Columns of one meaning: "x y z", or one alone.
+struct ColumnGroup {
+  std::array<const char*, 3> names;
+  std::size_t count;
+  const char* unit;  // in which files are written; "": a pure number or a word
+  ColumnUse use;
+  const char* meaning;                     // a phrase; of one column and of several
+  ReadingForm form = ReadingForm::kPoint;  // of kReading and kBeside
+  bool words = false;                      // words, not numbers
+  /// Of a later version of the format: a machine file may use the name for an input of its own. Then, or
+  /// with another unit, the column is a person's own.
+  bool later = false;
+  bool filled = false;              // no cell may be empty
+  bool in_terms = false;            // expressions read it by this name, so nothing else may have it
+  const char* or_unit = nullptr;    // a second dimension that it may have
+  const char* if_absent = nullptr;  // what holds without the column
+
+  std::span<const char* const> list() const { return std::span(names).first(count); }
+};
+
+/// All columns that have a meaning whatever the machine.
+std::span<const ColumnGroup> column_groups();
+
+/// One of them by its name; nullptr: no column of the format has it. Names are case-sensitive.
+const ColumnGroup* find_column(std::string_view name);
+/// The columns that hold readings of a form; those that stand beside them.
+const ColumnGroup& reading_columns(ReadingForm form);
+std::vector<const ColumnGroup*> columns_beside(ReadingForm form);
+
+/// The dimension that a column needs; the second one of `u`, else nullopt.
+Dimension dimension_of(const ColumnGroup& group);
+std::optional<Dimension> other_dimension_of(const ColumnGroup& group);
+/// The unit in which files give a column; "": a pure number, a word, or no column of the format.
+const char* column_unit(std::string_view name);
+/// "x[mm]", "nx".
+std::string heading(std::string_view name, std::string_view unit);
+/// The same with the unit of the table: "feed[mm/min]".
+std::string heading(std::string_view name);
+
+/// "x[mm],y[mm],z[mm]": several of them, as a header has them.
+std::string headings(std::span<const char* const> names);
+
+/// A quantity that has a column for each axis.
+enum class AxisQuantity : std::uint8_t { kPosition, kSense, kSince, kSpeed, kAcceleration, kCorrection };
+
+struct AxisColumnEntry {
+  AxisQuantity quantity;
+  const char* prefix;  // before the name of the axis
+  Dimension linear, rotary;
+  const char* unit;  // in which files give it for a linear axis
+  bool in_terms;     // expressions read it by this name
+  const char* meaning;
+  const char* if_absent;
+};
+
+inline constexpr std::array kAxisColumns = {
+    AxisColumnEntry{AxisQuantity::kPosition, "", Dimension::kLength, Dimension::kAngle, "mm", true,
+                    "commanded or read position of the axis", "an error"},
+    AxisColumnEntry{AxisQuantity::kSense, "dir", Dimension::kNone, Dimension::kNone, "", true,
+                    "approach direction: sense of the last motion of the axis, 1 or −1; 0: not known", "0"},
+    AxisColumnEntry{AxisQuantity::kSince, "since", Dimension::kLength, Dimension::kAngle, "mm", true,
+                    "travel of the axis since its last reversal", "a long way"},
+    AxisColumnEntry{AxisQuantity::kSpeed, "v", Dimension::kSpeed, Dimension::kAngularSpeed, "mm/s", true,
+                    "speed of the axis at the reading", "0"},
+    AxisColumnEntry{AxisQuantity::kAcceleration, "a", Dimension::kAcceleration,
+                    Dimension::kAngularAcceleration, "mm/s^2", true,
+                    "acceleration of the axis at the reading", "0"},
+    AxisColumnEntry{AxisQuantity::kCorrection, "correction", Dimension::kLength, Dimension::kAngle, "um",
+                    false, "what a board added to the commanded position of the axis in this row", "0"},
+};
+
+constexpr const AxisColumnEntry& entry_of(AxisQuantity quantity) {
+  return kAxisColumns[static_cast<std::size_t>(quantity)];
+}
+/// "dirX": the column of a quantity of an axis.
+std::string axis_column(AxisQuantity quantity, std::string_view axis);
+constexpr Dimension dimension_of(AxisQuantity quantity, bool rotary) {
+  return rotary ? entry_of(quantity).rotary : entry_of(quantity).linear;
+}
+/// "mm/s", "deg/s"; "": a pure number.
+const char* unit_of(AxisQuantity quantity, bool rotary);
+
+/// "vX[mm/s]", "vC[deg/s]".
+std::string axis_heading(AxisQuantity quantity, std::string_view axis, bool rotary);
+
+/// A column of an axis, taken apart.
+struct AxisColumnName {
+  AxisQuantity quantity;
+  std::string axis;
+};
+/// Which quantity of which axis a name is; nullopt: of none. The axis of that very name comes first.
+std::optional<AxisColumnName> axis_column_named(std::string_view name,
+                                                const std::function<bool(const std::string&)>& is_axis);
+
+/// "nx ny nz": names of columns in one text, for messages.
+std::string words_of(std::span<const char* const> names);
+/// "x y z rx …": the columns of all readings, for messages.
+std::string reading_column_names();
+
+/// Is a column a reading in a file with this header? A column of the first version is, by its name. One of a
+/// later version is only with what belongs to it: `from` beside `distance`, an angle's unit for `ix` and
+/// `iy`, all of `ax ay az` without a unit. `find`: a column of the header; nullptr: it has none of this name,
+/// or the machine file uses the name for an input.
+bool is_reading(const CsvColumn& column, const std::function<const CsvColumn*(std::string_view)>& find);
+
+/// Does an expression read a quantity of this name (t, feed, nx …)? Then nothing else may have the name.
+bool is_name_of_terms(std::string_view name);
+
+/// The reading that holds a rotary axis' angle: rx, ry, rz of A, B, C (ISO 841); nullopt for other axes.
+std::optional<std::string> angle_about(std::string_view axis);
+
+/// Words of the column `role`. An empty cell is `fit`.
+inline constexpr const char* kFitRole = "fit";
+inline constexpr const char* kCheckRole = "check";
+inline constexpr std::array kRoles = {kFitRole, kCheckRole};
+bool is_role(std::string_view word);
+inline constexpr const char* kRoleRule = "a role is fit or check";
+
+}  // namespace vernier::format

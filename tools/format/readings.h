@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace vernier::format {
+
+/// What one measured number is. The numbers of the kinds index every table by kind.
+enum class ReadingKind : std::uint8_t {
+  kX,
+  kY,
+  kZ,
+  kRx,
+  kRy,
+  kRz,
+  kLength,
+  kD,
+  kA1,
+  kA2,
+  kDistance,
+  kIx,
+  kIy
+};
+
+/// How a reading is taken. Readings of one form share their columns and their formula.
+enum class ReadingForm : std::uint8_t {
+  kPoint,
+  kRotation,
+  kLength,
+  kDeviation,
+  kDirection,
+  kDistance,
+  kInclination
+};
+
+/// One form of reading. Its columns are in columns.h: those that hold the reading, and those beside it.
+struct ReadingFormEntry {
+  ReadingForm form;
+  bool rotation;        // the reading is an angle, deg; else a length, mm
+  bool free_of_set_up;  // the set-up of the instrument (BaseShift) does not change it
+  /// One reading takes all columns of the form; a row without one of them has no reading of this form.
+  bool together;
+  /// The reading is the length of an arm: never below 0.
+  bool never_negative;
+  const char* subject;  // "length error": how a sentence names its residual; "%": the axis in capitals
+  const char* meaning;  // one plain sentence
+};
+
+inline constexpr std::array kReadingForms = {
+    ReadingFormEntry{ReadingForm::kPoint, false, false, false, false, "% error",
+                     "Coordinates of the tool point in the measuring frame."},
+    ReadingFormEntry{ReadingForm::kRotation, true, false, false, false, "rotation error about %",
+                     "Rotation of the tool in the measuring frame, as a rotation vector."},
+    ReadingFormEntry{ReadingForm::kLength, false, false, false, true, "length error",
+                     "Distance of the tool point from a fixed centre."},
+    ReadingFormEntry{ReadingForm::kDeviation, false, true, false, false, "deviation d",
+                     "Deviation of the tool point from a nominal point along a unit normal."},
+    ReadingFormEntry{ReadingForm::kDirection, true, false, true, false, "direction error",
+                     "Direction of the tool axis or of a line of sight, as a unit vector."},
+    ReadingFormEntry{ReadingForm::kDistance, false, false, false, true, "distance error",
+                     "Distance of the tool point of this row from the tool point of another row."},
+    ReadingFormEntry{ReadingForm::kInclination, true, true, false, false, "inclination error of tool axis %",
+                     "Inclination of an axis of the tool's frame to the horizontal."},
+};
+
+constexpr const ReadingFormEntry& entry_of(ReadingForm form) {
+  return kReadingForms[static_cast<std::size_t>(form)];
+}
+
+/// One kind of reading.
+struct ReadingKindEntry {
+  ReadingKind kind;
+  const char* name;  // in results and messages; also its column, except for the two angles of a direction
+  ReadingForm form;
+  std::size_t component;  // within its form, from 0
+  const char* meaning;    // one plain sentence
+};
+
+/// Every kind, in the order of ReadingKind. A direction weighs as two angles a1 and a2 across it.
+inline constexpr std::array kReadingKinds = {
+    ReadingKindEntry{ReadingKind::kX, "x", ReadingForm::kPoint, 0,
+                     "The x coordinate of the tool point in the measuring frame."},
+    ReadingKindEntry{ReadingKind::kY, "y", ReadingForm::kPoint, 1,
+                     "The y coordinate of the tool point in the measuring frame."},
+    ReadingKindEntry{ReadingKind::kZ, "z", ReadingForm::kPoint, 2,
+                     "The z coordinate of the tool point in the measuring frame."},
+    ReadingKindEntry{ReadingKind::kRx, "rx", ReadingForm::kRotation, 0,
+                     "The rotation of the tool about x of the measuring frame."},
+    ReadingKindEntry{ReadingKind::kRy, "ry", ReadingForm::kRotation, 1,
+                     "The rotation of the tool about y of the measuring frame."},
+    ReadingKindEntry{ReadingKind::kRz, "rz", ReadingForm::kRotation, 2,
+                     "The rotation of the tool about z of the measuring frame."},
+    ReadingKindEntry{ReadingKind::kLength, "length", ReadingForm::kLength, 0,
+                     "The distance of the tool point from a fixed centre."},
+    ReadingKindEntry{ReadingKind::kD, "d", ReadingForm::kDeviation, 0,
+                     "The deviation of the tool point along a unit normal from a nominal point."},
+    ReadingKindEntry{ReadingKind::kA1, "a1", ReadingForm::kDirection, 0,
+                     "The first angle between the tool axis and the measured direction."},
+    ReadingKindEntry{ReadingKind::kA2, "a2", ReadingForm::kDirection, 1,
+                     "The second angle between the tool axis and the measured direction, across the first."},
+    ReadingKindEntry{ReadingKind::kDistance, "distance", ReadingForm::kDistance, 0,
+                     "The distance between the tool points of two rows."},
+    ReadingKindEntry{ReadingKind::kIx, "ix", ReadingForm::kInclination, 0,
+                     "The inclination of the tool's x axis to the horizontal."},
+    ReadingKindEntry{ReadingKind::kIy, "iy", ReadingForm::kInclination, 1,
+                     "The inclination of the tool's y axis to the horizontal."},
+};
+inline constexpr std::size_t kReadingKindCount = kReadingKinds.size();
+
+constexpr const ReadingKindEntry& entry_of(ReadingKind kind) {
+  return kReadingKinds[static_cast<std::size_t>(kind)];
+}
+constexpr ReadingForm form_of(ReadingKind kind) { return entry_of(kind).form; }
+/// Within its form, from 0.
+constexpr std::size_t component_of(ReadingKind kind) { return entry_of(kind).component; }
+/// "x", "a1": in results and messages.
+constexpr const char* name_of(ReadingKind kind) { return entry_of(kind).name; }
+/// An angle, deg; the others are lengths, mm.
+constexpr bool is_rotation(ReadingKind kind) { return entry_of(form_of(kind)).rotation; }
+/// "mm" or "deg".
+constexpr const char* unit_of(ReadingKind kind) { return is_rotation(kind) ? "deg" : "mm"; }
+/// The set-up of the instrument does not change the reading.
+constexpr bool is_free_of_setup(ReadingKind kind) { return entry_of(form_of(kind)).free_of_set_up; }
+constexpr bool is_direction(ReadingKind kind) { return form_of(kind) == ReadingForm::kDirection; }
+constexpr bool is_inclination(ReadingKind kind) { return form_of(kind) == ReadingForm::kInclination; }
+
+/// The kind of that name; nullopt: no kind has it.
+std::optional<ReadingKind> kind_named(std::string_view name);
+
+/// What a sentence calls the residual of a kind: "X error", "rotation error about Z", "length error".
+std::string subject_of(ReadingKind kind);
+
+/// A reading as `vernier new --reading` names it: one form, or several that one instrument reads together.
+struct SurveyReading {
+  const char* word;
+  std::array<ReadingForm, 2> forms;
+  std::size_t form_count;
+  const char* instruments;
+  std::span<const ReadingForm> list() const { return std::span(forms).first(form_count); }
+};
+
+inline constexpr std::array kSurveyReadings = {
+    SurveyReading{"point", {ReadingForm::kPoint}, 1, "tracker, 3-D probe on a known sphere, camera"},
+    SurveyReading{"length", {ReadingForm::kLength}, 1, "ball bar, telescoping bar"},
+    SurveyReading{"touch", {ReadingForm::kDeviation}, 1, "dial gauge, touch probe on a known surface"},
+    SurveyReading{"pose", {ReadingForm::kPoint, ReadingForm::kRotation}, 2, "six-degree tracker"},
+    SurveyReading{"rotation", {ReadingForm::kRotation}, 1, "autocollimator, angle interferometer"},
+    SurveyReading{"direction", {ReadingForm::kDirection}, 1, "theodolite, camera on the tool axis"},
+    SurveyReading{"distance", {ReadingForm::kDistance}, 1, "step gauge, ball plate, length between points"},
+    SurveyReading{"inclination", {ReadingForm::kInclination}, 1, "electronic level on the tool"},
+};
+
+/// nullptr: no survey reading has this word.
+const SurveyReading* survey_reading(std::string_view word);
+/// "point, length, touch …", with `last` before the last one.
+std::string survey_words(const std::string& last);
+
+}  // namespace vernier::format
