@@ -81,8 +81,6 @@ constexpr WeightQ16 kFullWeight{65536};
 /// Counts of one turn of a rotary axis.
 constexpr std::int64_t kTurnCounts = std::int64_t{1} << 32;
 
-constexpr AxisPosition axis_position(PositionNm position) { return AxisPosition(position.count); }
-constexpr AxisPosition axis_position(TurnsQ32 position) { return AxisPosition(position.count); }
 /// A reading of a thermometer for an input declared in degC. absolute: mK above absolute zero.
 constexpr InputMicro input_degC(TempMilliK absolute) {
   return InputMicro((std::int64_t{absolute.count} - 273150) * 1000);

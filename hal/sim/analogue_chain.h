@@ -23,7 +23,6 @@ class AnalogueChain {
         step_nm_(kRangeVolt * kNmPerVolt / static_cast<double>((std::int64_t{1} << bits) - 1)) {}
 
   double step_nm() const { return step_nm_; }
-  std::int64_t zero_code() const { return zero_code_; }
   std::int64_t last_code() const { return 2 * zero_code_; }
 
   /// Nearest code, held at the first and last.

@@ -27,8 +27,6 @@ class Evidence {
   const DiagnoseThresholds& thresholds() const { return thresholds_; }
   const model::Machine& machine() const { return machine_; }  // with every logged column as an input
   const model::Measurement& measurement() const { return measurement_; }
-  /// Names of inputs that the user's machine does not declare start at this index.
-  std::size_t declared_inputs() const { return declared_; }
   /// What an input is counted from: the declared reference, 20 degC, else a round number near its mean.
   double reference_of(std::size_t input) const;
   const std::vector<effects::DofPlace>& places() const { return places_; }
@@ -122,7 +120,7 @@ class Evidence {
   DiagnoseThresholds thresholds_;
   model::Machine machine_;
   model::Measurement measurement_;
-  std::size_t declared_ = 0;
+  std::size_t declared_ = 0;  // inputs of the user's machine; logged columns come after them
   std::vector<effects::DofPlace> places_;
   std::vector<std::size_t> observation_, rows_;  // of the fit observations
   Eigen::MatrixXd response_, absorbed_;

@@ -35,7 +35,6 @@ class FitProblem {
   /// Weighted residuals (measured - predicted) / u and, if asked for, the weighted Jacobian of `predicted`.
   Eigen::VectorXd weighted_residuals(const Eigen::VectorXd& point, model::SparseRows* jacobian) const;
 
-  std::size_t parameter_count() const { return parameters_.size(); }
   const Eigen::SparseMatrix<double>& prior_precision() const { return prior_precision_; }
   const Eigen::VectorXd& prior_centre() const { return prior_centre_; }  // empty: no priors
   const model::Measurement& measurement() const { return measurement_; }

@@ -12,8 +12,6 @@ namespace vernier::workbench {
 namespace {
 
 enum class FieldKind : std::uint8_t { kIn, kInList, kOut, kText, kTextList, kNumber, kFlag, kRegistry };
-constexpr const char* kFieldKinds[] = {"file",  "files",  "output", "text",
-                                       "texts", "number", "flag",   "registry"};
 
 /// A field of a request and where it stands in the command: behind `option`, or as a word of its own.
 struct Field {
@@ -240,17 +238,6 @@ PlannedCommand plan_command(const nlohmann::json& request, const Project& projec
   }
   if (known != request.size()) throw text::InputError("a field that " + name + " does not have");
   return command;
-}
-
-nlohmann::ordered_json command_list() {
-  nlohmann::ordered_json list = nlohmann::ordered_json::object();
-  for (const Allowed& one : allowed()) {
-    list[one.name] = nlohmann::ordered_json::object();
-    for (const Field& field : one.fields)
-      list[one.name][field.key] = {{"kind", kFieldKinds[static_cast<std::size_t>(field.kind)]},
-                                   {"required", field.required}};
-  }
-  return list;
 }
 
 }  // namespace vernier::workbench

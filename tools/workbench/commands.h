@@ -22,7 +22,4 @@ struct PlannedCommand {
 /// project, texts may not look like options. Throws InputError naming field and word. tool.
 PlannedCommand plan_command(const nlohmann::json& request, const Project& project);
 
-/// The commands and their fields, for the page and its tests.
-nlohmann::ordered_json command_list();
-
 }  // namespace vernier::workbench
