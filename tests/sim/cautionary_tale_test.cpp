@@ -135,7 +135,7 @@ TEST_F(CautionaryTale, ALearnedModelIsBoundedAndTheMissingCauseNamed) {
   // On other days it fails, and compare says along what.
   vernier("compare blind.xml all.csv --json fails.json");
   const std::string where = read_file(directory_ + "/out.txt");
-  EXPECT_NE(where.find("X error goes with X times T"), std::string::npos) << where;
+  EXPECT_NE(where.find("X error depends on X times T"), std::string::npos) << where;
   EXPECT_GT(json("fails.json")["check_rms_um"].get<double>(), 3 * left);
   vernier("compare bounded.xml all.csv --json bounded_on_all.json");
   const Json domains = json("bounded_on_all.json")["domains"];

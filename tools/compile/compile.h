@@ -12,7 +12,7 @@
 namespace vernier::compile {
 
 /// Compiles a machine (FORMATS section 1). Throws InputError in one line where it cannot, LimitNotMet where
-/// the bound exceeds the budget, naming the term to blame. machine_text: the file's bytes, for its hash.
+/// the bound exceeds the budget, naming the dominant term. machine_text: the file's bytes, for its hash.
 /// tool.
 CompiledMachine compile_machine(const model::Machine& machine, const std::string& machine_text,
                                 const CompileOptions& options);

@@ -77,7 +77,7 @@ class Graph {
   bool is_zero(NodeId id) const { return nodes_[id].kind == NodeKind::kConstant && nodes_[id].number == 0; }
   std::optional<double> constant_value(NodeId id) const;
 
-  /// d node / d channel where that is a constant; nothing where it varies or cannot be told.
+  /// d node / d channel where that is a constant; nullopt where it varies or is not known.
   std::optional<double> constant_slope(NodeId id, NodeId channel) const;
 
   bool depends_on(NodeId id, NodeId other) const;

@@ -211,7 +211,7 @@ class Lowering {
     return b_.channel(c, unit, reach, channel_name(machine_, n.channel, n.index[0]));
   }
 
-  // The bounds of the least squares and of the direction are told apart by these.
+  // The bounds of the least squares and of the direction are distinguished by these.
   void keep_pieces_of_bounds() {
     for (const Evaluation& e : d_.before) {
       given_.insert(e.values.begin(), e.values.end());

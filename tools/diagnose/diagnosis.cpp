@@ -67,7 +67,7 @@ class Diagnoser {
     return fit::fit(machine, m, independent_readings());
   }
 
-  /// What hangs together is not known before the search.
+  /// Correlations are not known before the search.
   static fit::FitOptions independent_readings() {
     fit::FitOptions options;
     options.noise = fit::NoiseModel{};
@@ -129,7 +129,7 @@ class Diagnoser {
     bool of_check_rows = false;  // 20 to 1; else of runs left out in turn
   };
 
-  /// Nothing: rows that no fit saw do not bear it out. Check rows speak first, as far as the step shows on
+  /// Nothing: held-out rows do not confirm it. Check rows are asked first, as far as the step shows on
   /// them; runs that were left out where they do not reach 20 to 1.
   std::optional<StepEvidence> borne_out_by(const fit::FitResult& before, const fit::FitResult& after,
                                            std::size_t item) const {
@@ -219,7 +219,7 @@ class Diagnoser {
       rest.emplace_back(finder_.score_alone(i), i);
     }
     std::sort(rest.begin(), rest.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
-    // The cause, those that cannot be told from it, then the others of the ladder.
+    // The cause, those that cannot be distinguished from it, then the other accepted steps.
     std::vector<std::size_t> items;
     std::set<std::string> seen;
     const auto take = [&](std::size_t item) {
@@ -266,7 +266,7 @@ class Diagnoser {
     }
   }
 
-  /// The residual at the end of the ladder (mm, deg) with the errors that hang together taken out of the fit
+  /// The residual at the end of the ladder (mm, deg) with the correlated errors taken out of the fit
   /// rows: what an independent reading would have left.
   Eigen::VectorXd independent_residual(const model::Measurement& rows) const {
     const fit::NoiseModel& noise = result_.noise;
@@ -297,7 +297,7 @@ class Diagnoser {
     return residual;
   }
 
-  /// The instrument, where what hangs together in time or by run is as large as the readings' own noise;
+  /// The instrument, where errors correlated in time or by run are as large as the readings' own noise;
   /// empty elsewhere.
   std::string drift_of_instrument() const {
     const fit::NoiseModel& noise = result_.noise;
@@ -382,7 +382,7 @@ class Diagnoser {
       }
     }
     if (!disproved_.empty()) {
-      std::string text = "The check rows do not bear out " + disproved_.front();
+      std::string text = "The check rows do not confirm " + disproved_.front();
       for (std::size_t i = 1; i < disproved_.size(); ++i) text += ", " + disproved_[i];
       not_borne_out_ = text + ".";
     }
@@ -465,13 +465,13 @@ class Diagnoser {
     const double std = std::hypot(check->square_std / with_u, ratio * fitted);
     if (ratio < 1 + options_.thresholds.proof.carries_sigmas * std) return {};
     return fmt::format(
-        "It does not carry: the check rows, which nothing was fitted to, are off {:.2g} times as "
-        "far as the fit rows.",
+        "The improvement is not confirmed on held-out rows: the residual of the check rows is {:.2g} times "
+        "that of the fit rows.",
         std::sqrt(ratio));
   }
 
   /// How many terms that only a search found are more likely pieces of one thing: all of them, where there
-  /// are two at one degree of freedom, or two that the check rows do not both bear out. 0: each stands for
+  /// are two at one degree of freedom, or two that the check rows do not both confirm. 0: each stands for
   /// itself.
   std::size_t terms_without_standing() const {
     std::vector<effects::DofPlace> places;
@@ -597,8 +597,8 @@ class Diagnoser {
   const Pool& pool_;                 // the finder's
   std::vector<std::size_t> chosen_;  // the finder's, without those that gain nothing in the fit
   std::vector<std::size_t> shown_;
-  std::set<std::size_t> proven_;        // items that the check rows bear out
-  std::vector<std::string> disproved_;  // labels of steps that the check rows speak against
+  std::set<std::size_t> proven_;        // items that the check rows confirm
+  std::vector<std::string> disproved_;  // labels of steps that the check rows contradict
   std::string not_borne_out_;
   Rivals rivals_;
   Diagnosis result_;

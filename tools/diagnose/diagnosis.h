@@ -36,7 +36,7 @@ struct CandidateFinding {
   std::vector<fit::ParameterEstimate> parameters;
   std::optional<double> rms_after_um, check_rms_before_um, check_rms_after_um;
   double share = 0, p_value = 1;
-  double score = 0;       // fall of the criterion (extended BIC); above 6 is evidence
+  double score = 0;       // decrease of the extended BIC; above 6 is evidence
   bool accepted = false;  // stands in the ladder
   std::string why_not;    // the test that it fails
   std::vector<std::string> confounded_with;
@@ -75,7 +75,7 @@ struct Diagnosis {
   residual::FailurePicture left;         // and at the end of the ladder
   timebase::TimeBaseFinding time_base;   // `found` where the clock is the likelier cause
   std::size_t searched = 0;              // candidates looked at
-  fit::NoiseModel noise;                 // how the errors of the readings hang together
+  fit::NoiseModel noise;                 // how the errors of the readings are correlated
   fit::NoiseUnit noise_unit;             // what 1 of it stands for
 };
 

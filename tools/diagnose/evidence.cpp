@@ -128,7 +128,7 @@ void Evidence::silence_rounding() {
 }
 
 void Evidence::find_reach(const Eigen::VectorXd& predicted) {
-  // Of each length that is read, how far the model goes; a ball bar's own length says nothing of it.
+  // Of each length that is read, how far the model goes; a ball bar's own length does not show it.
   std::map<model::ObservationKind, std::pair<double, double>> ranges;
   for (const std::size_t i : observation_) {
     const model::ObservationKind kind = measurement_.observations[i].kind;

@@ -72,7 +72,7 @@ class Evidence {
   const fit::NoiseModel& noise() const { return noise_; }
   /// log det of the covariance of the readings under that model.
   double log_determinant() const { return log_determinant_; }
-  /// How the readings' errors hang together beside the model and columns that `raw_columns` gave.
+  /// How the readings' errors are correlated beside the model and columns that `raw_columns` gave.
   /// `given`: steps that are taken to be there, with the heights that they have beside all that.
   fit::NoiseModel estimate(const Eigen::MatrixXd& raw, std::vector<fit::NoiseStep> given = {}) const;
   const fit::NoiseLayout& layout() const { return layout_; }
@@ -110,7 +110,7 @@ class Evidence {
   void absorb();
   void share_poses(Eigen::MatrixXd& columns) const;
   void split_blocks();
-  /// Index of the part that a row may be left out with: its block, where none are told its run.
+  /// Index of the part that a row may be left out with: its block, or its run where there are no blocks.
   std::size_t block_of(std::size_t row) const {
     return measurement_.states.of(measurement_.states.block, row);
   }

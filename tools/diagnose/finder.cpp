@@ -176,7 +176,7 @@ void Finder::simplify(double share) {
           (named || pool_.penalty(pool_[other].scored) < pool_.penalty(pool_[chosen_[i]].scored)) &&
           pool_.same_columns(chosen_[i], other);
       if (!same_but_nearer && !pool_.contains(chosen_[i], other)) continue;
-      // One of many that hold it fits better by chance: what it has more pays for that.
+      // One of many that hold it fits better by chance: it must lower the BIC by more.
       const double price = same_but_nearer ? 0 : 2 * std::log(std::max(1.0, holders_of(other)));
       if (!does_it && trial.criterion - criterion_ >= thresholds_.evidence + price) continue;
       simplest = other;
@@ -293,7 +293,7 @@ void Finder::share_poses() {
 }
 
 void Finder::weigh_correlation() {
-  // The instrument is a rival of every name: errors that hang together may be its own drift, or what an
+  // The instrument is an alternative to every name: correlated errors may be its own drift, or what an
   // effect leaves of itself. Both ways are gone, from all that a search can explain and from nothing
   // explained, and the better one is taken.
   const fit::NoiseModel white = evidence_.noise();
@@ -365,7 +365,7 @@ std::optional<fit::NoiseModel> Finder::touched_anew(const fit::NoiseModel& expla
   const double fall = evidence_.left_in_full(none) - evidence_.left_in_full(columns);
   const double price = static_cast<double>(steps.size()) * std::log(static_cast<double>(none.rows()));
   if (fall < (price + thresholds_.instrument_distance) * explained.own * explained.own) return std::nullopt;
-  // From independent readings: what else hangs together may be a cause that is still to be found.
+  // From independent readings: what else is correlated may be a cause that is still to be found.
   fit::NoiseModel start = evidence_.estimate(none, std::move(steps));
   start.own = explained.own;
   start.pose = start.run = start.drift = 0;
@@ -406,7 +406,7 @@ void Finder::ban_hollow_products() {
 std::string Finder::failed_test(std::size_t item) const {
   const Selection rest = evaluate(without(item));
   if (rest.criterion - criterion_ < thresholds_.evidence)
-    return fmt::format("evidence: the fall of the criterion is below {:g}", thresholds_.evidence);
+    return fmt::format("evidence: the BIC decreases by less than {:g}", thresholds_.evidence);
   const Eigen::Index count = pool_[item].columns.cols();
   std::vector<std::size_t> others = without(item), all = {item};
   all.insert(all.end(), others.begin(), others.end());

@@ -40,7 +40,7 @@ class Finder {
   const std::vector<std::size_t>& chosen() const { return chosen_; }
   const Pool& pool() const { return pool_; }
   const Evidence& evidence() const { return evidence_; }
-  /// How the errors of the readings hang together beside the accepted effects.
+  /// How the errors of the readings are correlated beside the accepted effects.
   fit::NoiseModel noise() const;
   const std::vector<ScannedCandidate>& candidates() const { return list_; }
 
@@ -48,7 +48,7 @@ class Finder {
   Eigen::VectorXd own_coefficients(std::size_t item) const;
   /// The same, one for each coefficient of its term: 0 for those whose column the model or others hold.
   std::vector<double> coefficient_of_each_unknown(std::size_t item) const;
-  /// Fall of the criterion that an item brings alone.
+  /// Decrease of the BIC that an item brings alone.
   double score_alone(std::size_t item) const;
   /// Chance of such a gain on noise alone, times the number of candidates looked at.
   double p_value(std::size_t item) const;
@@ -83,7 +83,7 @@ class Finder {
   /// above 1: none does.
   void simplify(double share = 2);
   /// The effect first that takes most off the residual as it stands, and so on. What is most certain beside
-  /// errors that hang together need not be large.
+  /// correlated errors need not be large.
   void order_by_size();
   /// Without u, where any structure left counts as noise: the simplest form that does nearly all, where it
   /// passes the tests.
@@ -91,7 +91,7 @@ class Finder {
   /// How many entries hold a simpler one and more.
   double holders_of(std::size_t simple) const;
   void search();
-  /// Readings that hang together, at one pose, in a run or in time, count for less.
+  /// Readings whose errors are correlated, at one pose, in a run or in time, count for less.
   void weigh_correlation();
   void share_poses();
   /// The criterion of selection with the price of the noise model.
@@ -105,7 +105,7 @@ class Finder {
   /// the instrument's part of a rival, where it takes more away than it costs. explained: what is left beside
   /// all that was chosen.
   std::optional<fit::NoiseModel> touched_anew(const fit::NoiseModel& explained) const;
-  /// Does what hangs together by run or in time under this model come to one offset of all readings? A common
+  /// Is what is correlated by run or in time under this model one offset of all readings? A common
   /// cause does that, and no instrument that is set up anew or drifts.
   bool is_one_offset(const fit::NoiseModel& noise) const;
   /// Unwhitened columns of several items side by side.

@@ -21,7 +21,7 @@ struct Proof {
 };
 
 /// The check rows under two models. before, after: residuals (measured - model) of all observations; noise:
-/// how the readings' errors hang together; variance: of a weighted reading's own part, where the stated u is
+/// how the readings' errors are correlated; variance: of a weighted reading's own part, where the stated u is
 /// too small, at least 1 (with u); without u its square in mm. tool.
 Proof proof_on_check_rows(const model::Measurement& rows, const Eigen::VectorXd& before,
                           const Eigen::VectorXd& after, const fit::NoiseModel& noise, double variance);

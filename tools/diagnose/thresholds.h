@@ -138,7 +138,7 @@ struct FinePeriodThresholds {
   /// Waves over the range, and waves for each position read, beyond which none are looked for: a ball screw
   /// of 1 mm on a metre; a wave of fewer positions is not shown by them.
   /// With twelve positions the best of a thousand waves holds 80 % of a pattern that has nothing to do with
-  /// it, and others hold as much: such a wave is told with its aliases (Scanner::aliases).
+  /// it, and others hold as much: such a cyclic error is reported with its aliases (Scanner::aliases).
   double most_periods = 1000, per_position = 80;
   /// Peaks of a place that are scored in full, beside the slowest of those that do nearly as well.
   std::size_t peaks = 3;
@@ -177,7 +177,7 @@ struct PoolThresholds {
   double least_own = 1e-3, least_independent = 1e-3;
   /// Share of a column's square left beside the columns of a set below which it is a copy of them.
   double least_pivot = 1e-5;
-  /// Between forms that fit alike the one nearest to the axis: a step of the criterion far below any
+  /// Between forms that fit alike the one nearest to the axis: a step of the BIC far below any
   /// evidence.
   double step_of_place = 0.05;
   /// Twice the logarithm of how much more seldom than the others a form is met that the catalogue calls so: a
@@ -220,8 +220,8 @@ struct PoolThresholds {
 
 /// What an effect must show to be accepted.
 struct AcceptanceThresholds {
-  /// Fall of the criterion that is evidence, and the distance that a rival must keep for a name to be given.
-  /// Kass and Raftery 1995: 6 is strong.
+  /// Decrease of the BIC that is evidence, and the distance that an alternative must keep for a name to be
+  /// given. Kass and Raftery 1995: 6 is strong.
   double evidence = 6, distance = 6;
   /// How much better a name must do than the instrument alone. Kass and Raftery 1995: 10 is very strong.
   double instrument_distance = 10;
@@ -290,8 +290,8 @@ struct ProofThresholds {
   /// log of 20: an e-value of 20 is wrong for one step in twenty at most that is not there, whatever was
   /// looked at before (Ville's inequality).
   double evidence = 2.996;
-  /// Expected evidence of a step below which the rows say nothing of it: a true one would be denied by chance
-  /// one time in six.
+  /// Expected evidence of a step below which the rows give no information about it: a true one would be
+  /// denied by chance one time in six.
   double least_expected = 2;
   /// Spreads of that evidence below its mean that one true step in a hundred falls by.
   double chance_sigmas = 2.33;
@@ -330,8 +330,8 @@ struct VerdictThresholds {
   double enough_readings = 300;
   /// ... and only where no candidate stands out of it at this level.
   double stands_out = 1e-3;
-  /// The instrument does not hold still where what hangs together is this share of the readings' own noise,
-  /// and -2 log likelihood falls by this much for it.
+  /// The instrument does not hold still where the correlated part of the errors is this share of the
+  /// readings' own noise, and -2 log likelihood falls by this much for it.
   double drift_share = 0.7, drift_support = 20;
   /// Spreads beyond which a reading is an outlier: one in 5e8 of a normal distribution.
   double outlier_spreads = 6;

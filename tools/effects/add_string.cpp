@@ -157,7 +157,7 @@ class AddReader {
     }
   }
 
-  /// The transform that branch and transform name; nothing where the string says nothing of it.
+  /// The transform that branch and transform name; nullopt where the string does not name it.
   std::optional<DofPlace> named_transform() {
     const auto branch = take("branch"), number = take("transform");
     if (branch && *branch != "tool" && *branch != "workpiece") fail(*branch, "expected tool or workpiece");
@@ -257,7 +257,7 @@ class AddReader {
       return;
     }
     if (label) fail(*label, "this effect has no such form");
-    fail(id_, "no form of this effect goes with these inputs and this degree of freedom");
+    fail(id_, "no form of this effect takes these inputs and this degree of freedom");
   }
 
   static bool acts_at_one(const EffectForm& form) {

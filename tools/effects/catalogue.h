@@ -78,8 +78,8 @@ void read_term(EffectForm& form);
 /// The placeholders in a name of a term: dir{q} has q, {hats 5} has "hats 5".
 std::vector<std::string> marks_in(const std::string& name);
 
-/// The number that a person is told of an effect: the factor times one unknown, or times the root of the sum
-/// of the squares of several (the amplitude of a sine and a cosine).
+/// The number that describes an effect to a person: the factor times one unknown, or times the root of the
+/// sum of the squares of several (the amplitude of a sine and a cosine).
 struct EffectSize {
   double factor = 1;
   std::vector<std::string> unknowns;  // by their names in the catalogue

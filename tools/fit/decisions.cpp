@@ -46,7 +46,7 @@ Decision decision_of(const DecisionGroup& group) {
   const std::string names = first_names(group.names);
   const char* said = group.unseen == group.open ? "not measured: only the prior"
                      : group.names.size() > 1
-                         ? "not told apart by these readings: as near to nominal as can be"
+                         ? "not distinguished by these readings: as near to nominal as can be"
                          : "determined in part: the rest as near to nominal as can be";
   return {group.names, group.reach_um,
           fmt::format("{}: {}; +- {:.3g} um at the edge of the measured box", names, said, group.reach_um)};
@@ -55,7 +55,7 @@ Decision decision_of(const DecisionGroup& group) {
 }  // namespace
 
 std::vector<Decision> decisions_of(const FitResult& result, std::size_t most) {
-  // Combinations join the columns that take part in them; what is open alone stands alone.
+  // Combinations join the columns that take part in them; a column that is open by itself stays by itself.
   std::map<std::string, std::string> head;
   const auto root = [&](std::string name) {
     while (head.contains(name) && head[name] != name) name = head[name];

@@ -284,7 +284,7 @@ std::optional<double> check_ratio(const FitResult& result, const Eigen::VectorXd
   return std::max(as_fitted, *fitted / *anew);
 }
 
-/// Standard uncertainty of the mean of numbers that may hang together: from the means of stretches.
+/// Standard uncertainty of the mean of numbers that may be correlated: from the means of stretches.
 double std_of_mean(const std::vector<double>& numbers) {
   constexpr std::size_t kStretches = 12, kLeast = 3;  // readings of a stretch
   if (numbers.size() < kStretches * kLeast) return std::numeric_limits<double>::infinity();

@@ -26,7 +26,7 @@ double NoiseModel::shared() const { return std::sqrt(pose * pose + run * run + d
 
 double NoiseModel::price(double of_place) const {
   double parameters = (pose > 0 ? 1 : 0) + (run > 0 ? 1 : 0) + (drift > 0 ? 2 : 0);
-  std::set<std::size_t> places;  // of a set-up the row is told
+  std::set<std::size_t> places;  // of a set-up the row matters
   for (const NoiseStep& step : steps)
     parameters += step.of_set_up() || !places.insert(step.row).second ? 1 : 1 + of_place;
   return parameters;
@@ -57,7 +57,8 @@ std::vector<NoiseStep> set_up_steps(const NoiseLayout& layout) {
         for (int component = 0; component < 3; ++component)
           steps.push_back({series.kind, series.row[i], 0, 0, component});
   }
-  constexpr std::size_t kOneSetUp = 3;  // components of a single set-up, which no other is told from
+  constexpr std::size_t kOneSetUp =
+      3;  // components of a single set-up, which is not distinguished from another one
   return steps.size() > kOneSetUp ? steps : std::vector<NoiseStep>();
 }
 

@@ -22,7 +22,7 @@ struct NoiseStep {
   }
 };
 
-/// How the errors of readings hang together: each reading's own, one that the readings of a pose share, one
+/// How the errors of readings are correlated: each reading's own, one that the readings of a pose share, one
 /// that a set-up shares (`run`), and one that wanders with the clock (Ornstein-Uhlenbeck; a random walk where
 /// the time constant is far beyond its stretch). Standard deviations in units of u, in mm and deg where no u
 /// is given.

@@ -98,7 +98,7 @@ NoiseLayout noise_layout(const model::Measurement& measurement, const std::vecto
   std::vector<int> pose(measurement.rows(), 0);
   for (std::size_t row = 1; row < pose.size(); ++row)
     pose[row] = pose[row - 1] + (steps[row] > tolerance ? 1 : 0);
-  // Time counts where it is told and never runs back within a clock.
+  // Time counts where it is recorded and never runs back within a clock.
   bool moves = false, falls = false;
   for (std::size_t row = 1; row < measurement.rows(); ++row) {
     if (states.of(states.clock, row) != states.of(states.clock, row - 1)) continue;

@@ -9,8 +9,8 @@
 
 namespace vernier::fit {
 
-/// Readings of one kind in the order of the file: what an error that hangs together in time, run or pose is
-/// shared along.
+/// Readings of one kind in the order of the file: an error that is correlated in time, run or pose is
+/// common along it.
 struct NoiseSeries {
   std::vector<Eigen::Index> reading;  // positions in the list that the layout was made for
   std::vector<double> time;  // s, or rows where no time tells them apart; never falling within a clock

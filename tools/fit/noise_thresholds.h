@@ -17,7 +17,7 @@ struct LayoutThresholds {
   /// Share of a range below which a step is rounding.
   double no_step = 1e-9;
 
-  /// Share of the rows that has to come back to a place before distances of neighbours are told apart into
+  /// Share of the rows that has to come back to a place before distances of neighbours are divided into
   /// small and large ones: of positions at random a few are close by chance.
   double least_revisits = 0.1;
   /// Factor between the two. Of positions at random neighbours in the order of distances, but for those few,
@@ -34,7 +34,7 @@ struct LayoutThresholds {
   }
 };
 
-/// How much it takes to believe that errors of readings hang together.
+/// The evidence that it takes to call errors of readings correlated.
 struct NoiseThresholds {
   /// Fall of -2 log likelihood at which a component of one parameter on its boundary is no chance: a tail of
   /// chi^2 of 1e-3. Self and Liang 1987.

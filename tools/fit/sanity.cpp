@@ -170,7 +170,8 @@ LikelyMistake likely_mistake(const model::Machine& machine, const model::Measure
   // likely.
   constexpr double kMostOfAll = 0.5, kFivefold = 0.2, kAsGood = 1.5;
   if (const std::string cell = cell_out_of_range(machine, rows); !cell.empty()) return {cell, false};
-  if (worst.share > kMostOfAll) return {worst.reading + " stands alone against all others", true};
+  if (worst.share > kMostOfAll)
+    return {worst.reading + " is an outlier: no other reading is so far off", true};
   const model::ParameterSet none;
   const double misfit_mm = convention_of(machine, rows, none).misfit_mm;
   struct Found {

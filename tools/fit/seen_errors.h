@@ -12,8 +12,8 @@ namespace vernier::fit {
 /// of linear or rotary axes), and each table beside the others. All in units of the convention's scales.
 ///
 /// A table whose lengths, its squareness with them, are larger than the others' may have angles as much
-/// larger: a survey with one tool sees only their sum, and what is seen of the good axes says nothing of a
-/// bad one's.
+/// larger: a survey with one tool sees only their sum, and what is seen of the good axes is no evidence about
+/// a bad one's.
 class SeenErrors {
  public:
   /// squares: of each value as expected beside its neighbours; from_data: share of each that the readings

@@ -242,7 +242,7 @@ class Settler {
   }
 
   /// J^T W cov(readings) W J: `variance` times the normal matrix where errors are independent; where they
-  /// hang together, what they do to a fit that took them for independent (White 1980).
+  /// are correlated, what they do to a fit that took them for independent (White 1980).
   MatrixXd readings_covariance(const MatrixXd& data) {
     constexpr double kMostNumbers = 5e7;  // 400 MB of them: beyond, rows are taken as independent
     const model::Measurement& rows = problem_.measurement();

@@ -25,7 +25,7 @@ struct Settled {
   double variance = 1;         // of a weighted reading: chi^2 / freedom, not below 1 where u is given
   double chi_square = 0;       // of the readings alone
   double freedom = 0;          // readings less what was fitted: trace of F (2 - F), F the share from data
-  NoiseModel noise;            // how the errors of the readings hang together: in the covariance
+  NoiseModel noise;            // how the errors of the readings are correlated: in the covariance
   Eigen::MatrixXd normal;      // J^T W^2 J of the readings and stated priors
   bool converged = false;
   int iterations = 0;
@@ -35,7 +35,7 @@ struct Settled {
 /// minimise chi^2 + variance * sum ((value - centre) / scale)^2, scales of tables lowered to what the
 /// determined entries of their kind are (evidence, MacKay 1992), once more from there (iterated Tikhonov, so
 /// that what data determine to a fifth of its scale is moved by less than 1 % of its standard deviation), to
-/// rounding. `with_u`: weights are 1 / u. noise: how the readings' errors hang together, for the covariance
+/// rounding. `with_u`: weights are 1 / u. noise: how the readings' errors are correlated, for the covariance
 /// (the point stays that of independent readings); nothing: estimated from the residual. tool.
 Settled settle(FitProblem& problem, const Eigen::VectorXd& point, const Convention& convention,
                const StatedPriors& stated, std::size_t observations, bool with_u,

@@ -38,8 +38,8 @@ struct FitOptions {
   /// each stage.
   std::vector<std::vector<std::string>> stages;
   std::vector<Prior> priors;  // besides the convention's own
-  /// How the errors of the readings hang together, for the uncertainties; nothing: estimated from what the
-  /// fit leaves.
+  /// How the errors of the readings are correlated, for the uncertainties; nullopt: estimated from the
+  /// residual.
   std::optional<NoiseModel> noise;
   /// Called after every iteration with its number and the weighted sum of squares.
   std::function<void(int, double)> progress;
@@ -67,7 +67,7 @@ struct NormalisedError {
   double within_3 = 0;  // share of the readings
   std::size_t count = 0;
   /// Standard uncertainty of the square of `rms`, from stretches of rows that follow one another: tails and
-  /// errors that hang together are in it. Infinite where there are too few of them.
+  /// correlated errors are in it. Infinite where there are too few of them.
   double square_std = std::numeric_limits<double>::infinity();
 };
 
@@ -85,9 +85,9 @@ struct StageFigures {
   RoleStatistics fit, check;
 };
 
-/// Where each parameter stays if the data say nothing of it, and how far from there it may plausibly be. This
-/// is the convention that makes a fit's answer unique: of all machines that the data cannot tell apart, the
-/// one nearest to nominal in these units.
+/// Where each parameter stays if the data do not determine it, and how far from there it may plausibly be.
+/// This is the convention that makes a fit's answer unique: of all machines that the data cannot tell apart,
+/// the one nearest to nominal in these units.
 struct Convention {
   /// Kinds below it are of tables; from it on, of statics.
   static constexpr int kFirstOfStatics = 5;
@@ -127,7 +127,7 @@ struct FitResult {
   Observability observability;
   RoleStatistics before, after, check;
   std::optional<double> noise_um;
-  NoiseModel noise;  // how the errors of the readings hang together, as the covariance has it
+  NoiseModel noise;  // how the errors of the readings are correlated, as the covariance has it
   double misfit_mm = 0, reach_mm = 0;     // what the scales were made from (tools/fit/convention.h)
   Eigen::MatrixXd covariance;             // of all parameters, convention included
   Eigen::MatrixXd open;                   // part of it: what no reading bears on

@@ -36,7 +36,7 @@ struct Axis {
   std::optional<double> max_correction, max_slew;  // axis unit; axis unit per s
   bool rollover = false;
   double scale_factor = 0;
-  bool scale_free = false;  // the scale factor is a parameter of a fit (no attribute: a fit is told so)
+  bool scale_free = false;  // the scale factor is a parameter of a fit (no attribute: a fit is asked to)
   std::size_t line = 0;
 };
 

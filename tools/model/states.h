@@ -54,7 +54,7 @@ inline constexpr std::array<Labels States::*, 3> kStateLabels = {&States::setup,
 
 /// All moments are one run of this name, and one of all else.
 void make_one_run(States& states, const std::string& name);
-/// A moment begins a run of its own by this name, and with it all else that is told apart.
+/// A moment begins a run of its own by this name, and with it every other label.
 void begin_run(States& states, std::size_t moment, const std::string& name);
 /// Appends the runs, set-ups, clocks and blocks of `next`; labels of one name are one, or where `apart` none
 /// of `next` is one of `all`. The columns are not touched.

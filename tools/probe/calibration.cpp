@@ -18,8 +18,8 @@ using Eigen::VectorXd;
 
 /// Feeds that lie closer together than this say nothing about the delay.
 constexpr double kLeastFeedSpread = 0.05;
-/// A gap in the azimuths, or a span of the threefold angle, from which lobes cannot be told from an eccentric
-/// centre.
+/// A gap in the azimuths, or a span of the threefold angle, from which lobes cannot be distinguished from an
+/// eccentric centre.
 constexpr double kLargestGapDeg = 100;
 constexpr double kLobeChance = 0.01, kGroupChance = 0.01;
 
@@ -36,13 +36,14 @@ struct LeverReach {
 void say_feeds(const VectorXd& feed, bool delay, std::vector<std::string>& findings) {
   if (!delay) {
     findings.push_back(fmt::format(
-        "All touches have a feed near {:.0f} mm/min: the delay cannot be told from pretravel and tip radius. "
+        "All touches have a feed near {:.0f} mm/min: the delay cannot be distinguished from pretravel and "
+        "tip radius. "
         "The effective "
         "tip radius holds at this feed only; touch again at a feed at least twice or half as fast.",
         feed.mean()));
   } else if (feed.maxCoeff() < 2 * feed.minCoeff()) {
     findings.push_back(
-        fmt::format("Feeds reach from {:.0f} to {:.0f} mm/min only: delay and pretravel hang together; a "
+        fmt::format("Feeds reach from {:.0f} to {:.0f} mm/min only: delay and pretravel are correlated; a "
                     "wider range makes both surer.",
                     feed.minCoeff(), feed.maxCoeff()));
   }
@@ -221,11 +222,11 @@ void say_round(const RoundTouches& touches, const LeverReach& reach, double gap,
                std::vector<std::string>& findings) {
   say_feeds(touches.speed * maths::kSecondsPerMinute, reach.delay, findings);
   if (!reach.lobes && gap > kLargestGapDeg)
-    findings.push_back(
-        fmt::format("No touch in {:.0f} deg of the azimuth: a three-lobed pretravel cannot be told from an "
-                    "eccentric centre. Touch all round, "
-                    "every 30 deg or closer.",
-                    gap));
+    findings.push_back(fmt::format(
+        "No touch in {:.0f} deg of the azimuth: a three-lobed pretravel cannot be distinguished from an "
+        "eccentric centre. Touch all round, "
+        "every 30 deg or closer.",
+        gap));
   if (touches.braking.cwiseAbs().maxCoeff() == 0)
     findings.push_back(
         "Every touch counts as one at constant feed; where an approach is too short for that, record "
@@ -335,7 +336,7 @@ void refuse_absurd(const ProbeCalibration& result, const CalibrationSetup& setup
         table.file(), tip->value, setup.size_mm, kHint));
 }
 
-// How the touches were made, where that is told.
+// How the touches were made, where that is stated.
 void say_conditions(TouchTable& table, const CalibrationSetup& setup, std::vector<std::string>& findings) {
   if (!setup.clearance_mm && !setup.overtravel_mm) return;
   const VectorXd feed = table.need({"feed", "F"}, "feed along the approach");

@@ -18,7 +18,7 @@ struct CalibrationSetup {
   double size_mm = 0;  // block: distance of its faces; ring, sphere: diameter
   std::optional<double> ball_radius_mm = std::nullopt;  // nominal, of the stylus ball
   double outlier_level = 0.01;
-  /// How the touches were made, where it is told: what was not a valid touch is said.
+  /// How the touches were made, where it is stated: invalid touches are reported.
   std::optional<double> clearance_mm = std::nullopt, overtravel_mm = std::nullopt;
   TouchConditions conditions = {};
 };
@@ -49,7 +49,7 @@ struct ProbeCalibration {
   std::optional<double> line_intercept_um, line_slope_um_per_mm_min;  // block: difference against feed
   std::optional<double> line_intercept_std_um, line_slope_std;
   bool delay_found = false, lobes_found = false;
-  std::vector<std::string> findings;  // in plain sentences: coverage, outliers, what cannot be told apart
+  std::vector<std::string> findings;  // in plain sentences: coverage, outliers, what cannot be distinguished
 
   const Calibrated* find(const std::string& name) const { return find_calibrated(parameters, name); }
 };

@@ -19,7 +19,7 @@ namespace {
 
 using Index = Eigen::Index;
 
-/// Fewer say nothing of how much they scatter.
+/// Fewer do not show their scatter.
 constexpr std::size_t kLeastSamples = 5;
 /// More are joined with their neighbours: nothing is lost and the resampling stays quick.
 constexpr std::size_t kMostSamples = 400;

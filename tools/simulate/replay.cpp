@@ -123,7 +123,7 @@ ReplayResult replay(const compile::LoadedImage& image, const model::Measurement&
   const bool timed = m.has_recorded(format::columns::kTime);
   if (!timed && needs_time(image.view))
     throw text::InputError({m.files.front(), 0}, format::columns::kTime,
-                           "replay needs this column: a term of the machine goes with time");
+                           "replay needs this column: a term of the machine depends on time");
   const double period_s = 1e-6 * image.view.header().tick_us;
   model::Measurement corrected = m;
   ReplayResult result;

@@ -22,7 +22,7 @@ struct ReplayResult {
 /// Runs the firmware along every run of a measurement, tick by tick between its rows (positions, motion and
 /// inputs linear between them, a sense held), and moves the readings by what the correction does to the
 /// nominal machine: reading' = reading + nominal(q + correction) - nominal(q). Column t increases within each
-/// run; without it every row is a pose at which the machine stands, if no term of the image goes with time.
+/// run; without it every row is a pose at which the machine stands, if no term of the image depends on time.
 /// Throws InputError otherwise. tool.
 ReplayResult replay(const compile::LoadedImage& image, const model::Measurement& measurement,
                     const LoopOptions& options);

@@ -78,7 +78,7 @@ Index nearest(const Eigen::MatrixXd& points, const std::vector<Index>& rows, std
   return best;
 }
 
-// The first stretch of neighbouring rows after `row` that does not hang together with it and goes the same
+// The first stretch of neighbouring rows after `row` that is not correlated with it and goes the same
 // way.
 double return_to(const Eigen::MatrixXd& points, const std::vector<Index>& near, Index row) {
   const auto self = static_cast<std::size_t>(std::find(near.begin(), near.end(), row) - near.begin());

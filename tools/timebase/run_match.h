@@ -29,10 +29,9 @@ struct RunMatchOptions {
 
 /// Compares two residual series (rows x channels of one unit, no gaps) of runs whose positions map as
 /// `implied`. The chance is that of surrogates: the second series with its own spectrum and random phases,
-/// the same for all channels; the tail beyond their number by a Gumbel law. Runs of opposite sense are told
-/// apart only where the implied rate is not one row a row: an error that depends on the sense may look like a
-/// constant shift.
-/// Nothing where a run is shorter than 150 rows or without residual. tool.
+/// the same for all channels; the tail beyond their number by a Gumbel law. Runs of opposite direction are
+/// distinguished only where the implied rate is not one row a row: an error that depends on the sense may
+/// look like a constant shift. Nothing where a run is shorter than 150 rows or without residual. tool.
 /// Source: Theiler et al., Physica D 58 (1992), surrogate data.
 std::optional<RunMatch> match_runs(const Eigen::MatrixXd& first, const Eigen::MatrixXd& second,
                                    const PathMap& implied, const RunMatchOptions& options = {});

@@ -181,7 +181,7 @@ void join_chances(TimeBaseFinding& finding, double revisits) {
   finding.p_value = std::min(1.0, kWays * std::min({revisits, match, joint(match, closure)}));
 }
 
-// What is told as evidence must be unlikely in itself, if not beyond the limit of the finding.
+// What is reported as evidence must be unlikely in itself, if not beyond the limit of the finding.
 constexpr double kWorthTelling = 0.02;
 
 void tell(const model::Measurement& m, TimeBaseFinding& finding) {

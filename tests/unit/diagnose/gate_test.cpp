@@ -75,7 +75,7 @@ TEST(Gate, AStepThatMakesFewCheckRowsWorseIsNotNamed) {
 
   EXPECT_NE(answer.verdict, Verdict::kMissingEffect) << "seed " << kSeed << ": " << answer.explanation;
   EXPECT_EQ(answer.ladder.size(), 1U);
-  EXPECT_NE(answer.explanation.find("do not bear out"), std::string::npos) << answer.explanation;
+  EXPECT_NE(answer.explanation.find("do not confirm"), std::string::npos) << answer.explanation;
 }
 
 // Consistent, or named, before: the check rows entered no verdict as a whole.
@@ -84,7 +84,8 @@ TEST(Gate, AnAnswerThatDoesNotCarryToCheckRowsIsNone) {
     const Diagnosis answer = diagnosed({reversal, reversal, 2});
 
     EXPECT_EQ(answer.verdict, Verdict::kUnexplained) << "seed " << kSeed << ": " << answer.explanation;
-    EXPECT_NE(answer.explanation.find("does not carry"), std::string::npos) << answer.explanation;
+    EXPECT_NE(answer.explanation.find("not confirmed on held-out rows"), std::string::npos)
+        << answer.explanation;
   }
   EXPECT_EQ(diagnosed({}).verdict, Verdict::kConsistent);
 }

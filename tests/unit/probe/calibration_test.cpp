@@ -85,7 +85,7 @@ TEST(ProbeCal, SaysWhichTouchesCameBeforeConstantSpeed) {
 TEST(ProbeCal, SaysThatOneFeedCannotTellDelayFromPretravel) {
   const ProbeCalibration result = published({}, {"feed_mm_min=254"});
   EXPECT_FALSE(result.delay_found);
-  EXPECT_NE(result.findings.front().find("cannot be told from pretravel"), std::string::npos);
+  EXPECT_NE(result.findings.front().find("cannot be distinguished from pretravel"), std::string::npos);
 }
 
 struct Truth {

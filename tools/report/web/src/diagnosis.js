@@ -71,7 +71,7 @@ export function candidates(result) {
     ['share', false, (one) => (Number.isFinite(one.share) ? `${number(100 * one.share, 3)} %` : '–')],
     ['chance', false, (one) => number(one.p_value, 2)],
     ...(has('score') ? [['score', false, (one) => number(one.score, 4)]] : []),
-    ['cannot be told from', true, (one) => (one.confounded_with ?? []).join(', ')],
+    ['not distinguished from', true, (one) => (one.confounded_with ?? []).join(', ')],
     ...(has('why_not') ? [['why not', true, (one) => one.why_not ?? '']] : []),
   ];
   const values = (one) =>

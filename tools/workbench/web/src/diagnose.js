@@ -30,7 +30,7 @@ function evidence(one) {
       ['Signature', one.signature],
       ['Exposed by', one.exposed_by],
       ['Known impostors', (one.impostors ?? []).join(', ')],
-      ['Cannot be told from', (one.confounded_with ?? []).join(', ')],
+      ['Not distinguished from', (one.confounded_with ?? []).join(', ')],
       ['Not accepted', one.why_not],
     ]
       .filter(([, words]) => words)

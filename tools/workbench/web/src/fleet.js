@@ -89,7 +89,7 @@ export function fleetView(root) {
     error,
     panel('Machines', el('div', { class: 'controls' }, registry, look), machines),
     panel('What drifts', drifts),
-    panel('Mass work', jobs),
+    panel('Jobs on many machines', jobs),
   );
   return { show() {} };
 }

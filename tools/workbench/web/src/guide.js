@@ -31,7 +31,7 @@ const kPath = [
     'Watch it fall',
     'add',
     () => store.steps.length > 0,
-    () => 'Fit, add what was named, and see the error fall on rows that no fit saw.',
+    () => 'Fit, add what was named, and see the error fall on held-out rows.',
   ],
   [
     'safe',

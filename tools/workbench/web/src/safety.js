@@ -17,7 +17,7 @@ const kAsks = {
   converged: 'Did the fit come to an end?',
   residual: 'Is little left of the readings?',
   outlier: 'Does no single reading stand apart?',
-  'check-rows': 'Do rows that no fit saw bear it out?',
+  'check-rows': 'Do held-out rows confirm the model?',
   disturbed: 'Was the instrument undisturbed?',
 };
 
@@ -78,7 +78,7 @@ export function safetyPanel() {
     emit('safety');
     const unknown = sheet ? sheet.rules.filter((one) => one.value === null).length : 0;
     const holds = unknown
-      ? `What is known holds; ${unknown} of ${sheet.rules.length} rules cannot be told: no fit wrote this file.`
+      ? `What is known holds; ${unknown} of ${sheet.rules.length} rules cannot be evaluated: no fit wrote this file.`
       : 'Every rule holds.';
     words.textContent = sheet ? (sheet.ok ? holds : `Not safe: ${sheet.refusal}`) : '';
     words.classList.toggle('error', Boolean(sheet) && !sheet.ok);

@@ -163,7 +163,7 @@ export async function importSheet(box, name, done) {
             wish('decimal'),
           ),
           choice(
-            'columns parted by',
+            'columns separated by',
             [
               ['', 'guessed'],
               ['semicolon', ';'],

@@ -78,7 +78,7 @@ export function termPanel(addEffect) {
     words.dataset.ok = answer.ok;
     words.className = answer.ok ? 'note' : 'error';
     words.textContent = answer.ok
-      ? [answer.k_unit === null ? 'the unit of k cannot be told' : `k is in ${answer.k_unit}`, ...answer.warnings].join('; ')
+      ? [answer.k_unit === null ? 'the unit of k is not known' : `k is in ${answer.k_unit}`, ...answer.warnings].join('; ')
       : `${answer.message}${answer.word ? `: "${answer.word}"` : ''}`;
   }
   input.addEventListener('input', () => {
