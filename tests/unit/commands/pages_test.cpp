@@ -106,7 +106,7 @@ TEST_F(Pages, ConformityAndPlanRunAsPrinted) {
   script.clear();
   for (const std::string& block : blocks(page("tools/docs/plan.md"), "sh")) script += block;
   EXPECT_EQ(run(script), 0) << said_;
-  EXPECT_NE(said_.find("what is left comes from"), std::string::npos) << said_;
+  EXPECT_NE(said_.find("the remaining uncertainty comes from"), std::string::npos) << said_;
 }
 
 /// A stranger's way: from a German spreadsheet to ISO 230-2 values, a named cause and a table for the
