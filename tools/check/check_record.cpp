@@ -26,14 +26,14 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Share of a column's square that must be its own beside the set-up and the suspects before it: less is the
-/// same suspect under another name.
+/// Smallest share of a column's square that is independent of the set-up and of the tested parameters before
+/// it. Below it the column is the same parameter under another name.
 constexpr double kOwn = 1e-3;
-/// Share of a column's length beside the set-up below which it is rounding: no direction of its own, and no
-/// degree of freedom.
+/// Share of a column's length, without the set-up, below which the column is rounding: no independent
+/// direction and no degree of freedom.
 constexpr double kRounding = 1e-7;
 
-/// Collects the columns of suspects, weighted, with the set-up projected out.
+/// Collects the columns of the tested parameters, weighted, with the set-up projected out.
 class Collector {
  public:
   Collector(model::Machine machine, const model::Measurement& m) : machine_(std::move(machine)), m_(m) {
@@ -88,7 +88,7 @@ class Collector {
     noise_.own = unit * kept->own, noise_.pose = unit * kept->pose, noise_.run = unit * kept->run;
     noise_.drift = unit * kept->drift;
     noise_.in_time = layout_.in_time;
-    // Where only one of both has a clock, its steps stand for the rows of the other.
+    // If only one of both has a clock, its steps are used for the rows of the other.
     noise_.time_constant = kept->time_constant;
     if (kept->in_time && !layout_.in_time) noise_.time_constant /= std::max(kept->step, 1e-9);
     if (!kept->in_time && layout_.in_time) noise_.time_constant *= layout_.step;

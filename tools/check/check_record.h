@@ -16,33 +16,33 @@ struct Suspect {
   bool operator==(const Suspect&) const = default;
 };
 
-/// All that is kept of one check: its readings as they bear on the suspects, in units of their uncertainty,
-/// with what its own set-ups take up projected out.
+/// The data that are kept of one check: the sensitivity of its readings to the tested parameters, in units of
+/// their uncertainty, with its set-ups projected out.
 struct CheckRecord {
   std::string label;              // when or what it was
   std::vector<Suspect> suspects;  // the machine's free parameters first, in their order
   std::size_t parameters = 0;     // how many of them are
-  Eigen::MatrixXd gram;           // suspects x suspects
+  Eigen::MatrixXd gram;           // tested parameters x tested parameters
   Eigen::VectorXd moment;
-  double rest = 0, freedom = 0;  // chi^2 beside all suspects, and its degrees of freedom
+  double rest = 0, freedom = 0;  // chi^2 without all tested parameters, and its degrees of freedom
   std::size_t readings = 0;
   double beyond_set_up = 0;  // readings less what the set-up takes
 };
 
-/// Reads what a measurement says of a fitted machine; fit and check rows alike. The set-up of the instrument
-/// is fitted anew, however it is turned, and its columns are taken there. Suspects are the free parameters,
-/// and where the chain has them and they are not the same: reversal and scale of every axis, a tilt and an
-/// offset of every transform, a drift of the instrument along each direction that it reads. Throws InputError
-/// where the machine was never fitted. tool.
+/// Evaluates a measurement against a fitted machine; fit and check rows are treated alike. The set-up of the
+/// instrument is fitted again, with any rotation, and its columns are taken there. Tested parameters are the
+/// free parameters. Further tested parameters, if the chain has them and they are not the same: reversal and
+/// scale of every axis, a tilt and an offset of every transform, a drift of the instrument along each
+/// direction that it reads. Throws InputError if the machine was never fitted. tool.
 CheckRecord record_of(const model::Machine& machine, const model::Measurement& measurement,
                       std::string label);
 
-/// The same suspects as columns at the set-up of the machine file: what a change by 1 does to each reading,
-/// over its uncertainty.
+/// The same tested parameters as columns at the set-up of the machine file: the effect of a change by 1 on
+/// each reading, divided by the uncertainty of the reading.
 struct SuspectColumns {
   std::vector<Suspect> suspects;
   std::size_t parameters = 0;
-  Eigen::MatrixXd columns, set_up;  // readings x suspects, readings x numbers of the set-ups
+  Eigen::MatrixXd columns, set_up;  // readings x tested parameters, readings x numbers of the set-ups
 };
 SuspectColumns suspect_columns(const model::Machine& machine, const model::Measurement& measurement);
 

@@ -21,7 +21,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Part of the readings' information on a suspect that the fit's own doubt must leave for it to be seen.
+/// Smallest part of the readings' information on a tested parameter that remains after the uncertainty of the
+/// fit. Below it the parameter is not seen.
 constexpr double kSeen = 1e-6;
 /// Part of the rate of false alarms that the test of the readings' scatter has; the evidence has the rest.
 constexpr double kScatterShare = 0.2;
@@ -31,7 +32,7 @@ constexpr double kShown = 5;
 /// weight.
 constexpr std::array kSizes = {2.0, 4.0, 8.0, 16.0, 32.0, 64.0};
 
-/// What the checks from some check on say of one suspect.
+/// Evidence on one tested parameter from a certain check onwards.
 struct Information {
   double amount = 0, score = 0;  // of a change by 1; its most likely value is score / amount
   double log_ratio(double size) const {
@@ -94,7 +95,7 @@ class Judge {
     return gram.col(suspect).head(static_cast<Index>(last_.parameters));
   }
 
-  /// Information on a suspect beside parameters that are uncertain by `doubt`.
+  /// Information on a tested parameter, given parameters that are uncertain by `doubt`.
   double amount_beside(const MatrixXd& gram, Index suspect, const MatrixXd& doubt) const {
     const VectorXd with = parameters_of(gram, suspect);
     return gram(suspect, suspect) - with.dot(doubt * with);
@@ -112,7 +113,7 @@ class Judge {
     return full > 0 && one.amount > kSeen * full;
   }
 
-  /// The first check from `since` on that could show a change of this suspect; nothing: none has yet.
+  /// The first check from `since` on that could show a change of this parameter; `nullopt`: no check so far.
   std::optional<std::size_t> first_look(std::size_t since, Index suspect) const {
     for (std::size_t k = since; k < checks_.size(); ++k) {
       const MatrixXd& gram = checks_[k].gram;
@@ -122,8 +123,8 @@ class Judge {
     return std::nullopt;
   }
 
-  /// A change since a check, of a suspect that this check or an earlier one looked at: weights are fixed
-  /// before the readings that they weigh, so that a suspect that a later check brings changes none of them.
+  /// A change since a check, of a parameter that this check or an earlier one tested. Weights are fixed
+  /// before the readings that they weigh: a parameter that a later check adds changes no weight.
   std::vector<Index> suspects_at(std::size_t since) const {
     std::vector<Index> known;
     for (Index j = 0; j < static_cast<Index>(last_.suspects.size()); ++j)
@@ -161,7 +162,7 @@ class Judge {
         of_suspect[j].emplace_back(ratio, since);
       }
     }
-    // What is left of the weight is on changes that are still to come.
+    // The remaining weight is on changes that are still to come.
     all.push_back(-std::log(static_cast<double>(checks_.size() + 1)));
     const double total = log_sum(all);
     answer_.evidence = text::decisive(std::exp(std::min(total, 700.0)), "the evidence for a change");
@@ -197,7 +198,8 @@ class Judge {
                                      "the chance of the readings' scatter");
   }
 
-  /// Numbers beyond the set-up of all checks: with fewer than three any of them may be any suspect's.
+  /// Numbers beyond the set-up of all checks. With fewer than three, any of them may belong to any tested
+  /// parameter.
   void state_rules() {
     double beyond = 0;
     for (const CheckRecord& check : checks_) beyond += check.beyond_set_up;
@@ -298,7 +300,8 @@ const char* verdict_name(CheckVerdict verdict) {
 
 namespace {
 
-/// Checks with the suspects of all of them, in one order; what a check did not look at it tells nothing of.
+/// Checks with the tested parameters of all of them, in one order. A check has no information on a parameter
+/// that it did not test.
 std::vector<CheckRecord> aligned(const std::vector<CheckRecord>& checks) {
   std::vector<Suspect> all = checks.back().suspects;
   for (const CheckRecord& check : checks)
@@ -331,7 +334,8 @@ CheckAnswer judge(const model::Machine& machine, const std::vector<CheckRecord>&
     if (all[i].freedom < 1 ||
         maths::chi_square_tail(all[i].rest, all[i].freedom) >= scatter_limit(false_alarms, k))
       continue;
-    // Scatter and evidence come from different parts of the readings: leaving it out favours no suspect.
+    // Scatter and evidence come from different parts of the readings: the exclusion of a check favours no
+    // parameter.
     all[i].gram.setZero();
     all[i].moment.setZero();
     if (i + 1 < all.size()) left_out.push_back(all[i].label);

@@ -94,7 +94,7 @@ CheckHistory parse_history(const std::string& text, const std::string& file) {
       check.rest = one.at("rest").get<double>();
       check.freedom = one.at("freedom").get<double>();
       if (check.parameters > check.suspects.size())
-        throw std::invalid_argument("more parameters than suspects");
+        throw std::invalid_argument("more parameters than tested parameters");
       history.checks.push_back(std::move(check));
     }
     return history;

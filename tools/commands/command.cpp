@@ -21,7 +21,8 @@ namespace {
 /// Progress is shown from this moment on, and at most so often.
 constexpr double kShowAfterS = 1.0, kShowEveryS = 0.2;
 
-/// Does a program read the progress (VERNIER_PROGRESS=lines)? Then every step is a line, at once.
+/// True if a program reads the progress (VERNIER_PROGRESS=lines). Then every step is printed as a line
+/// immediately.
 bool wants_lines() {
   const char* const how = std::getenv("VERNIER_PROGRESS");
   return how != nullptr && std::string_view(how) == "lines";

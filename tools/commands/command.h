@@ -130,7 +130,7 @@ void register_image_diff(CLI::App& vernier);
 /// Throws std::logic_error where a figure that tools/docs/formats.md promises is not finite.
 void write_json(const std::string& path, const nlohmann::ordered_json& result);
 
-/// What `--help` says of the option `--residuals`.
+/// Help text of the option `--residuals`.
 inline constexpr const char* kResidualsHelp =
     "every reading as CSV: row, observation, value, prediction, residual, u (mm or deg)";
 
@@ -138,8 +138,9 @@ inline constexpr const char* kResidualsHelp =
 /// output.
 std::FILE* human_stream(const std::string& json_path);
 
-/// Progress of a job that may take more than two seconds, on standard error if it is a terminal; else one
-/// line a step (all of them, and at once, where VERNIER_PROGRESS=lines says that a program reads them).
+/// Progress of a job that may take more than two seconds, on standard error. On a terminal the line is
+/// updated; else each step is one line. With VERNIER_PROGRESS=lines (a program reads them) every step is
+/// printed immediately.
 class Progress {
  public:
   explicit Progress(std::string what);

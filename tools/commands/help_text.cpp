@@ -89,7 +89,7 @@ std::pair<std::string, std::string> HelpText::option_words(const CLI::Option* op
   const auto open = type.find('{'), close = type.find('}');
   if (open != std::string::npos && close != std::string::npos) {
     std::vector<std::string> words = text::parts_of(type.substr(open + 1, close - open - 1), ',');
-    // A word that stands for a value of ours comes as word->value.
+    // A word of the command line that is used for one of our values is written as word->value.
     for (std::string& word : words) word = word.substr(0, word.find("->"));
     const std::string all = text::joined(words, " ");
     std::erase_if(words, [&](const std::string& word) { return right.find(word) != std::string::npos; });

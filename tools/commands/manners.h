@@ -24,8 +24,8 @@ void take_plain_numbers(CLI::App& vernier);
 /// command as it was meant. tool.
 void require_files_in_their_places(const CLI::App& vernier, const std::vector<std::string>& arguments);
 
-/// What lint warns of in the machine file of a command that fits, judges or compiles it: on standard error, a
-/// line each, once. tool.
+/// Prints the warnings of lint on the machine file of a command that fits, evaluates or compiles it: on
+/// standard error, one line each, once. tool.
 void warn_of_machine(const CLI::App& vernier);
 
 /// The command that reads a spreadsheet of which an error complains; empty where none does. tool.

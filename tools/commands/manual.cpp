@@ -105,7 +105,7 @@ std::string manual_page(const CLI::App& command, const std::string& names, const
   }
   if (!command.get_footer().empty()) text += ".SH NOTES\n" + notes_of(command.get_footer());
   text += ".SH SEE ALSO\n";
-  text += names == "vernier" ? "Every command has a page of its own: \\fBvernier\\-fit\\fR(1) and so on.\n"
+  text += names == "vernier" ? "Each command has a separate page: \\fBvernier\\-fit\\fR(1) and so on.\n"
                              : "\\fBvernier\\fR(1)\n";
   return text;
 }

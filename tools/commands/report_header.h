@@ -8,8 +8,8 @@
 
 namespace vernier::commands {
 
-/// What a report to be handed over says besides its numbers: company, machine, serial number, operator,
-/// instrument, date, temperature and whatever else is given.
+/// Data of a report that is handed over: company, machine, serial number, operator, instrument, date,
+/// temperature and further entries.
 struct ReportHeader {
   std::vector<std::string> given;  // --header "serial number=4711"
   std::string file;                // --letterhead: lines of such entries, for all reports of a shop

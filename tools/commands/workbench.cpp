@@ -140,9 +140,9 @@ void register_image_diff(CLI::App& vernier) {
   command->add_option("DIR", arguments->directory, "directory that `vernier compile` wrote")->required();
   command->add_option("--with", arguments->with, "another such directory");
   command->add_option("--to", arguments->url, "the board whose confirmed image it is compared with");
-  command->add_option(
-      "--key", arguments->key,
-      "secret key of `vernier keys` (or VERNIER_KEY): a board with keys gives its image to nobody else");
+  command->add_option("--key", arguments->key,
+                      "secret key of `vernier keys` (or VERNIER_KEY): a board with keys sends its image only "
+                      "to the owner of a trusted key");
   command->add_option("--json", arguments->json, "result for programs; - is standard output");
   command->footer("Exit status 0 done, 1 bad input or no board, 2 the board's store has no confirmed image.");
   command->callback([arguments] { run_diff(*arguments); });

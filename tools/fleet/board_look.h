@@ -7,7 +7,7 @@
 
 namespace vernier::fleet {
 
-/// What a board says of itself within a few milliseconds.
+/// Reads the state of a board within a few milliseconds.
 struct BoardLook {
   upload::BoardTick tick;
   upload::BoardState state;
@@ -23,8 +23,8 @@ BoardLook look_at(upload::Client& board);
 /// axis is in. tool.
 std::string not_in_effect(const BoardLook& look, const upload::BoardInfo& info, std::uint64_t fingerprint);
 
-/// Why no image can come into effect on this board before somebody does something to it; empty: one can. A
-/// fault is latched, the corrections are held, or an axis has a weight below 1. tool.
+/// Reason why no image can come into effect on this board before somebody changes its state; empty: an image
+/// can. Reasons: a latched fault, held corrections, or an axis with a weight below 1. tool.
 std::string blocked(const BoardLook& look, const upload::BoardInfo& info);
 
 }  // namespace vernier::fleet

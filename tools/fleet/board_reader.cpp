@@ -98,7 +98,7 @@ std::vector<Metric> check_metrics(const std::string& json, std::int64_t time_us)
   const auto answer = nlohmann::json::parse(json, nullptr, false);
   if (!answer.is_object() || !answer.contains("verdict") || !answer["verdict"].is_string()) return {};
   const auto number = [&](const char* key) {
-    // Null stands for what is beyond the largest number.
+    // Null is used for values beyond the largest number.
     if (answer.contains(key) && answer[key].is_null()) return std::numeric_limits<double>::max();
     return answer.contains(key) && answer[key].is_number() ? answer[key].get<double>() : 0.0;
   };

@@ -11,9 +11,9 @@ namespace vernier::fleet {
 /// What `vernier check --json` wrote, without machine and time. Throws InputError. tool.
 registry::FleetCheck parse_check(const std::string& json, const std::string& file);
 
-/// What one check reads of each suspect of a machine: the change that explains it best, each as if it alone
-/// had changed, with its standard uncertainty; suspects of the instrument and those that it does not see are
-/// left out. tool.
+/// The result of one check for each tested parameter of a machine: the change that explains the readings best
+/// if only this parameter changed, with its standard uncertainty. Parameters of the instrument and parameters
+/// that the check does not see are excluded. tool.
 std::vector<registry::FleetReading> readings_of(const check::CheckRecord& record, const std::string& machine,
                                                 std::int64_t at_us);
 

@@ -53,7 +53,7 @@ bool EdgeNode::data(const std::string& device, SparkplugPayload payload) {
   const std::string shape = shape_of(payload.metrics);
   std::string& known = shapes_[device];
   if (known != shape) {
-    // What a birth says is how things stand, whenever the values were taken.
+    // A birth message reports the present state, whenever the values were taken.
     SparkplugPayload birth;
     birth.metrics = payload.metrics;
     for (Metric& metric : birth.metrics) metric.historical = false;

@@ -25,7 +25,7 @@ class EdgeNode {
   bool data(const std::string& device, SparkplugPayload payload);
   /// The device is away; nothing where it was never born.
   bool death(const std::string& device);
-  /// Says that the node goes, as its will would, and parts.
+  /// Publishes the death certificate of the node, as its will does, and disconnects.
   void part();
 
  private:

@@ -15,7 +15,7 @@
 namespace vernier::fleet {
 namespace {
 
-/// A table of the file whose keys are asked for one by one; one that nobody asked for is an error.
+/// A table of the file whose keys are read one by one. A key that was not read is an error.
 class Section {
  public:
   Section(const toml::table& table, std::string path) : table_(table), path_(std::move(path)) {}
@@ -29,7 +29,7 @@ class Section {
     if (!value) throw text::InputError(place(*node), key, "a text in quotes is wanted");
     return *value;
   }
-  /// A name that stands in topics.
+  /// A name that is used in topics.
   std::string name(const char* key, const std::string& otherwise, bool needed = false) {
     std::string name = word(key, otherwise, needed);
     if (!fits_a_topic(name)) wrong(key, "one line without + / # is wanted, of 1 to 200 bytes");
@@ -48,7 +48,7 @@ class Section {
     const toml::node* const node = table_.get(key);
     throw text::InputError(place(node == nullptr ? table_ : *node), key, what);
   }
-  /// What `judge` throws of a value stands at its line.
+  /// An error that `judge` throws for a value is reported with the line of the value.
   void require(const char* key, const std::function<void()>& judge) const {
     try {
       judge();

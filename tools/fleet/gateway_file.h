@@ -15,7 +15,7 @@ struct GatewayBoard {
   std::string check;  // file of `vernier check --json`; empty: none
 };
 
-/// What a gateway is told (TOML; tools/docs/fleet.md).
+/// Settings of a gateway (TOML; tools/docs/fleet.md).
 struct GatewayFile {
   std::string name, group = "vernier", host = "vernier", store;
   Broker broker;

@@ -22,7 +22,7 @@ using Kind = TrialEnd::Kind;
 constexpr std::chrono::milliseconds kLookEvery{200};
 // So much of a trial's time stays for the answer to reach the board.
 constexpr double kTrialMargin_s = 1;
-// Until a board that was told to keep an image says that it has.
+// Time until a board reports that it has confirmed an image as requested.
 constexpr double kConfirmedWithin_s = 3;
 
 SteadyTime after(double seconds) {
@@ -90,20 +90,21 @@ TrialEnd ImageTrial::run(std::uint64_t own_issued) {
   }
 }
 
-/// The board keeps the image already: an answer was lost, or somebody else brought it.
+/// The board has confirmed the image already: an answer was lost, or another caller sent the image.
 TrialEnd ImageTrial::of_kept() {
   const KeptLook look = look_at_kept(machine_, options_, locks_, stop_);
   if (look.why.empty()) return {Kind::kKept, ""};
   return {look.away ? Kind::kAway : Kind::kNotInEffect, "the board keeps the image, but: " + look.why};
 }
 
-/// A trial that runs: this rollout's own, of a call that was interrupted, is given up. Why not, or empty.
+/// Reverts a running trial of this rollout, left by a call that was interrupted. Returns the reason if it
+/// cannot, else empty.
 std::string ImageTrial::clear_trial(const SlotsReply& slots, std::uint64_t own_issued) {
   if (slots.trial == kNoSlot) return {};
   const bool own = own_issued != 0 && slots.newest_issued == own_issued;
   if (!own && !options_.take_over_trial)
     return fmt::format(
-        "{} is on trial for {:.0f} s more, begun by somebody else: keep it or give it up first (vernier "
+        "{} is on trial for {:.0f} s more, begun by somebody else: confirm or revert it first (vernier "
         "upload "
         "--confirm, --revert), or call with --take-over-trial; nothing was sent",
         text::fingerprint_text(slots.trial_fingerprint), slots.trial_left_ms * 1e-3);
@@ -136,13 +137,14 @@ void ImageTrial::breathe() {
   std::this_thread::sleep_for(kLookEvery);
 }
 
-/// What ends a trial at once; empty: nothing.
+/// The reason to end a trial immediately; empty: no reason.
 std::string ImageTrial::broken(const BoardLook& look) const {
   if (look.tick.fault != Fault::kNone) return fmt::format("fault {}", name_of(look.tick.fault));
   if (look.faults > faults_before_) return "a fault came and went";
   if (look.faults < faults_before_) return "the board was started again";
-  if (look.slots.trial == kNoSlot) return "the trial has ended: the board or somebody else gave the image up";
-  if (look.slots.newest_issued != issued_) return "somebody else began another trial";
+  if (look.slots.trial == kNoSlot)
+    return "the trial has ended: the board or another caller reverted the image";
+  if (look.slots.newest_issued != issued_) return "another caller began another trial";
   return {};
 }
 
@@ -185,7 +187,7 @@ std::string ImageTrial::judge() {
   registry::ShellCommand running(registry::command_for(options_.judge, machine_.name));
   while (!running.wait(std::chrono::milliseconds(1))) {
     breathe();
-    if (is_over(end)) return "nobody judged it within the board's trial";
+    if (is_over(end)) return "no --judge result within the board's trial time";
     if (std::string why = why_not(); !why.empty()) return "while it was judged: " + why;
   }
   if (running.status() == 0) return {};
@@ -194,7 +196,7 @@ std::string ImageTrial::judge() {
                      running.last_line());
 }
 
-/// Tells the board to keep the image, and believes it only when the board says so itself.
+/// Requests the board to confirm the image. Success only if the board reports it afterwards.
 TrialEnd ImageTrial::keep() {
   locks_.require();
   board_.require_board(machine_.claim);
@@ -215,11 +217,11 @@ TrialEnd ImageTrial::keep() {
     } while (!is_over(end));
   } catch (const text::InputError& error) {
     return {Kind::kAway,
-            std::string("the board was told to keep the image and does not answer: ") + error.what()};
+            std::string("the board was asked to confirm the image and does not answer: ") + error.what()};
   } catch (const text::LimitNotMet& error) {
-    return {Kind::kNotInEffect, std::string("the board was told to keep the image: ") + error.what()};
+    return {Kind::kNotInEffect, std::string("the board was asked to confirm the image: ") + error.what()};
   }
-  return {Kind::kNotInEffect, "the board was told to keep the image: " + why};
+  return {Kind::kNotInEffect, "the board was asked to confirm the image: " + why};
 }
 
 /// Gives the image up where the trial is this rollout's own.

@@ -19,7 +19,7 @@ struct RolloutOptions {
   std::string judge;     // a shell's command: 0 not worse, anything else worse or not known; empty: only the
                          // board is watched
   bool go_on = false;    // machines that were taken back are tried again
-  bool take_over_trial = false;  // a trial that somebody else began is given up
+  bool take_over_trial = false;  // a trial of another caller is reverted
 };
 
 /// How one machine's turn ended.
@@ -39,8 +39,8 @@ class ImageTrial {
   /// arguments outlive the trial.
   ImageTrial(const RolloutMachine& machine, const RolloutOptions& options, RolloutBook& book,
              registry::MachineLocks& locks, const std::atomic<bool>& stop);
-  /// own_issued: RolloutState::issued, by which a trial that this rollout left is told from that of somebody
-  /// else. Throws LockLost: nothing more was done to the board.
+  /// own_issued: RolloutState::issued; it distinguishes a trial of this rollout from a trial of another
+  /// caller. Throws LockLost: the board was not changed any more. tool.
   TrialEnd run(std::uint64_t own_issued);
 
  private:

@@ -60,7 +60,7 @@ class Listener {
     ask_for_births();
   }
 
-  /// Says that nothing is stored here for now.
+  /// Publishes that no data are stored here at present.
   void part() {
     if (connected()) connection_.publish(state_topic(options_.host), state_text(false, ms_now()), 1, true);
     connection_.part();

@@ -14,9 +14,10 @@ struct IngestOptions {
   Broker broker;
 };
 
-/// The host application: hears all edge nodes of a group, writes what their machines say into the registry,
-/// each sample once, and tells the gateways what is stored, until `stop`. Broker and database may be away at
-/// any time. Throws InputError where the registry is none at the beginning. tool.
+/// The host application, which runs until `stop`. It receives the messages of all edge nodes of a group and
+/// writes their data into the registry, each sample once. It reports to the gateways which samples are
+/// stored. Broker and database may be unavailable at any time. Throws InputError if the registry is not valid
+/// at the beginning. tool.
 void run_ingest(const IngestOptions& options, const std::atomic<bool>& stop, const Say& say);
 
 }  // namespace vernier::fleet

@@ -103,7 +103,7 @@ std::string metrics_text(registry::Registry& registry, std::int64_t at_us) {
   for (const registry::DueMachine& one : due)
     if (one.last_us) verdict.add({{"machine", one.machine}, {"verdict", one.verdict}}, 1);
   Family lost(text, "vernier_lost_samples_total", "counter",
-              "Samples that a gateway had to give up for want of room.");
+              "Samples that a gateway discarded because its store was full.");
   lost.add({},
            registry::real(
                database.run("SELECT COALESCE(SUM(before_number - after_number - 1), 0) FROM loss").at(0)[0]));

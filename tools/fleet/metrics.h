@@ -8,7 +8,7 @@
 
 namespace vernier::fleet {
 
-/// The fleet's state as Prometheus reads it (text format 0.0.4); names stand in tools/docs/fleet.md. tool.
+/// The state of the fleet in the Prometheus text format 0.0.4; names are in tools/docs/fleet.md. tool.
 std::string metrics_text(registry::Registry& registry, std::int64_t at_us);
 
 /// Serves it as /metrics at HOST:PORT until `stop`. Throws InputError where it cannot listen there. tool.

@@ -16,7 +16,8 @@ namespace vernier::fleet {
 namespace {
 
 constexpr int kKeepAliveS = 20, kConnectS = 5, kFarewellMs = 1000;
-// What may wait here until it is taken: beyond, what comes is thrown away, and the sender's numbers tell.
+// Largest number of messages that wait here. Further messages are discarded; the sequence numbers of the
+// sender show the gap.
 constexpr std::size_t kMostWaiting = 200'000;
 
 }  // namespace
@@ -55,7 +56,7 @@ void require_broker_address(const std::string& address) {
   constexpr std::size_t kMostPort = 65535;
   const std::size_t scheme = address.starts_with("tcp://") || address.starts_with("ssl://") ? 6 : 0;
   const std::string place = address.substr(scheme);
-  // An IPv6 address stands in brackets, and its colons are no port's.
+  // An IPv6 address is written in brackets; its colons do not separate a port.
   const std::size_t colon =
       place.find(':', place.starts_with("[") ? std::min(place.find(']'), place.size()) : 0);
   const std::string host = place.substr(0, colon);
@@ -100,7 +101,8 @@ MqttConnection::MqttConnection(const Broker& broker, const std::string& client, 
 }
 
 MqttConnection::~MqttConnection() {
-  // Destroying does not say farewell: the broker sees the connection break and tells the will.
+  // The destructor sends no disconnect message: the broker detects the lost connection and publishes the
+  // will.
   MQTTClient_destroy(&inside_->client);
 }
 

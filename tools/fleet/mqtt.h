@@ -24,7 +24,7 @@ struct MqttMessage {
   bool retained = false;  // it was there before we came
 };
 
-/// What the broker says for us when we are gone without a farewell.
+/// The message that the broker publishes if the connection ends without a disconnect message.
 struct MqttWill {
   std::string topic, payload;
   bool retained = false;

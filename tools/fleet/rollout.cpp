@@ -113,8 +113,8 @@ class RolloutCall {
     const auto key = board.proved_key();
     if (!key) {
       end_.notes.push_back(machine.name +
-                           ": only the name of the board was compared: it has no key of its own, "
-                           "and a board that says the same name would pass");
+                           ": only the name of the board was compared: the board has no key, "
+                           "and another board with the same name would pass");
       return;
     }
     const std::string text = upload::board_key_text(*key);

@@ -20,16 +20,19 @@ struct RolloutEnd {
   std::vector<std::string> notes;   // what was not proved, a sentence each
 };
 
-/// Brings images to boards by stages: each on trial first, watched to be in effect, judged, then kept. Before
-/// anything is signed or sent a board proves that it is the machine's (RolloutMachine::claim); where no key
-/// is entered and the board has one, that key is entered in the registry (trust on first use) and said. All
-/// machines are locked in the registry for the whole call. Kept machines are looked at when the call begins,
-/// before each stage and at the end: one that does not answer, is another board or does not have its image in
-/// effect stops the rollout and is not called kept any more. At the first machine that is worse, or of which
-/// that is not known, its image is taken back and the rollout stands until somebody allows it to go on. What
-/// was done stands in the registry: a rollout that was interrupted goes on where it was, and a board whose
-/// trial nobody confirms goes back by itself. kept: called for each machine that was kept. Throws LimitNotMet
-/// where another caller has one of the machines; nothing was done then. tool.
+/// Brings images to boards by stages. Each image is on trial first; its effect is watched, the judge command
+/// evaluates it, then it is confirmed. Before data are signed or sent, a board proves that it is the board of
+/// the machine (RolloutMachine::claim). If no key is entered and the board has one, the key is entered in the
+/// registry (trust on first use) and reported.
+/// All machines are locked in the registry for the whole call. Machines in the state kept are checked when
+/// the call begins, before each stage and at the end. A machine stops the rollout and loses the state kept if
+/// it does not answer, is another board or does not have its image in effect. At the first machine that is
+/// worse, or whose result is not known, its image is reverted; the rollout stops until a user allows it to
+/// continue.
+/// The registry records the steps: an interrupted rollout continues where it stopped. A board whose trial is
+/// not confirmed returns to its previous image by itself. kept: called for each machine whose image was
+/// confirmed. Throws LimitNotMet if another caller has locked one of the machines; then no step was done.
+/// tool.
 RolloutEnd roll_out(registry::Registry& registry, std::vector<RolloutMachine> machines,
                     const RolloutOptions& options, const std::atomic<bool>& stop, const Say& say,
                     const std::function<void(const RolloutMachine&)>& kept);

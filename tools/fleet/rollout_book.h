@@ -20,7 +20,7 @@ struct RolloutMachine {
 /// Of the image of a machine.
 std::uint64_t fingerprint_of(const RolloutMachine& machine);
 
-/// Where a machine stands in a rollout.
+/// State of a machine in a rollout.
 struct RolloutState {
   std::string machine;
   std::string state;  // "waiting", "trial", "kept", "taken-back", "refused", "not-in-effect", "away"
@@ -50,7 +50,7 @@ class RolloutBook {
   const registry::MachineLocks& locks_;
 };
 
-/// In the rollout's order; empty where there is none of that name.
+/// In the order of the rollout; empty if no rollout has that name.
 std::vector<RolloutState> rollout_states(registry::Registry& registry, const std::string& name);
 
 }  // namespace vernier::fleet

@@ -111,8 +111,9 @@ bool SampleWriter::take(const DeviceData& one, Batch& batch) {
                             registry::cell(number_of(one.payload, "Check/Evidence")),
                             registry::cell(number_of(one.payload, "Check/Alarm"))});
   }
-  // The order of receipt counts, never a gateway's clock: a store's records come in the order of their
-  // numbers, and what waited in one store says nothing after a sample that has just been taken by another.
+  // The order of receipt decides, not the clock of a gateway. The records of a store arrive in the order of
+  // their numbers. A record that waited in one store does not replace a newer sample that another store has
+  // just taken.
   const bool same_store = newest.spool.empty() || newest.spool == *spool;
   if (!same_store && historical && (!newest.historical || at_us < newest.at_us)) return true;
   newest.at_us = at_us, newest.gateway = one.gateway, newest.fault = fault, newest.shape = shape_id;

@@ -17,16 +17,16 @@ struct DeviceData {
   SparkplugPayload payload;
 };
 
-/// How far a gateway's store is in the registry, to be told to it.
+/// The last number of a gateway's store that is in the registry; it is reported to the gateway.
 struct Receipt {
   std::string spool;
   std::uint64_t stored = 0;
   bool resend = false;  // a record is missing: begin behind `stored`
 };
 
-/// Puts samples into the registry, each once: a store's records are taken in the order of their numbers, the
-/// number moves in the transaction that writes the records, and what was taken before is passed over. Two
-/// writers at once do no harm. tool.
+/// Writes samples into the registry, each once. The records of a store are taken in the order of their
+/// numbers. The number is updated in the same transaction as the records, and earlier records are ignored.
+/// Two writers may run at the same time. tool.
 class SampleWriter {
  public:
   explicit SampleWriter(registry::Registry& registry) : registry_(registry) {}

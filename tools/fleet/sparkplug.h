@@ -21,12 +21,12 @@ struct Metric {
   bool operator==(const Metric&) const = default;
 };
 
-/// What a message says (Sparkplug 3.0.0, 6.4).
+/// Contents of a message (Sparkplug 3.0.0, 6.4).
 struct SparkplugPayload {
   std::uint64_t time_ms = 0;
   std::optional<std::uint64_t> seq;  // 0..255; absent in NDEATH and commands
   std::vector<Metric> metrics;
-  /// The metric of that name; null where there is none.
+  /// The metric of that name; null if no metric has it.
   const Metric* find(std::string_view name) const;
 };
 
@@ -50,11 +50,11 @@ struct SparkplugTopic {
 std::string topic_text(const SparkplugTopic& topic);
 /// Nothing where it is no topic of an edge node.
 std::optional<SparkplugTopic> parse_topic(std::string_view text);
-/// Where a host application says whether it is there.
+/// The topic on which a host application publishes its state.
 std::string state_topic(const std::string& host);
-/// What it says there: JSON of Sparkplug 3.0.0, 6.4.24.
+/// The state message: JSON of Sparkplug 3.0.0, 6.4.24.
 std::string state_text(bool online, std::uint64_t time_ms);
-/// Is the host there, by its own words? Nothing for any other text.
+/// True if the text reports that the host is online; `nullopt` for any other text.
 std::optional<bool> online_of(std::string_view state);
 
 /// Is this a name that a topic can carry: not empty, none of + / #, printable?

@@ -22,8 +22,8 @@ struct SpoolRecord {
 /// record leaves it when the registry has stored it, or, counted, when there is no room. tool.
 class Spool {
  public:
-  /// owner: the gateway; a file of another one (a medium that was copied) gets an id of its own. most:
-  /// records that fit. Throws InputError where the file cannot be had.
+  /// owner: the gateway; the file of another gateway (a copied medium) gets a new id. most: number of records
+  /// that fit. Throws InputError if the file cannot be opened or created.
   Spool(const std::string& file, const std::string& owner, std::uint64_t most);
 
   /// Of this spool among all: fresh where the file was made, so that numbers never mean two things.

@@ -24,10 +24,10 @@ struct BallbarSimulation {
   std::vector<double> reading_mm;  // in time order
 };
 
-/// When and where each sample of a run was taken, where the file's constant speed between START and END is
-/// not believed (repair_time_base).
+/// Time and angle of each sample of a run, for a file whose constant speed between START and END is not
+/// accepted (repair_time_base).
 struct RunClock {
-  std::vector<double> turned_deg;  // per sample: from angle 0 in the sense of motion, not wrapped
+  std::vector<double> turned_deg;  // per sample: from angle 0 in the direction of motion, not wrapped
   std::vector<double> sample;      // its number, had none been lost
   std::vector<char> on_circle;     // 0: feed in or out, no part of the repeating motion
   double turn_samples = 0;         // of a whole turn
@@ -44,7 +44,7 @@ struct BallbarRun {
          last_deg = 360;  // the arc that start..end spans, first_deg < last_deg whatever the direction
   std::vector<double> reading_mm;  // length - nominal length
   std::vector<BallbarFeature> features;
-  std::optional<RunClock> clock;  // nothing: constant speed, one turn (or arc) from start to end
+  std::optional<RunClock> clock;  // nullopt: constant speed, one turn (or arc) from start to end
 };
 
 /// A circular test with a telescoping bar as its instrument's software stores it.

@@ -15,7 +15,7 @@ struct CirclePoint {
   double position_mm[2] = {0, 0};    // along A and B, about the programmed centre
   double velocity_mm_s[2] = {0, 0};  // the same order
   double acceleration_mm_s2[2] = {0, 0};
-  int direction[2] = {0, 0};    // sense of the last motion, -1 or +1
+  int direction[2] = {0, 0};    // direction of the last motion, -1 or +1
   double since_mm[2] = {0, 0};  // travel of the axis since its last reversal
 };
 

@@ -15,8 +15,8 @@ struct CircularPass {
   std::optional<double> feed_mm_min;
 };
 
-/// ISO 230-4 numbers of one pass. Circular deviations are about the pass' own least-squares centre and
-/// radius, radial ones about its own centre and the nominal radius.
+/// ISO 230-4 numbers of one pass. Circular deviations refer to the least-squares centre and radius of the
+/// pass, radial deviations to its centre and the nominal radius.
 struct CircularPassResult {
   std::string label;
   int direction = +1;
@@ -36,7 +36,8 @@ struct Hysteresis {
   double deg = 0;
 };
 
-/// Both senses about their mean centre and mean radius (ANSI/ASME B5.54), and where the extremes lie.
+/// Both directions about their mean centre and mean radius (ANSI/ASME B5.54), and the locations of the
+/// extremes.
 struct AboutMean {
   double max_um = 0, min_um = 0;
   double max_deg = 0, min_deg = 0;
@@ -45,12 +46,13 @@ struct AboutMean {
 struct CircularResult {
   double nominal_radius_mm = 0;
   std::vector<CircularPassResult> passes;
-  /// The rest is of the first pass of each sense, absent where one sense is missing.
+  /// The remaining values are of the first pass in each direction; absent if one direction is missing.
   std::optional<double> bidirectional_um;
   std::optional<double> mean_centre_a_mm, mean_centre_b_mm, mean_radius_mm;
   std::optional<AboutMean> about_mean;
-  /// Mean of both senses' radii, each of the circle least in its true distances, minus the nominal radius
-  /// (ISO 230-4:2005). The linearised circle of the rest lacks the eccentricity squared over four radii.
+  /// Mean of the radii of both directions minus the nominal radius (ISO 230-4:2005). Each radius is that of
+  /// the least-squares circle in true distances. The linearised circle of the other values lacks the
+  /// eccentricity squared over four radii.
   std::optional<double> mean_bidirectional_radial_um;
   std::optional<Hysteresis> hysteresis;  // sample i of one sense with sample i from the end of the other
   std::optional<Hysteresis> hysteresis_by_angle;  // at the same angle, linear between samples

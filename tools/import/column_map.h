@@ -14,7 +14,7 @@ struct MappedColumn {
   std::string source;      // a number from 1, or a name in the header line; empty for a constant
   std::string constant;    // the value, where it is the same in every row
   std::string name, unit;  // of the measurement file
-  text::Place place;       // where the map says so; no file for an argument
+  text::Place place;       // line of the map; no file for an argument
 };
 
 /// What an instrument's table means.

@@ -9,7 +9,7 @@ namespace vernier::importer {
 
 /// How a table of an instrument is written.
 struct DelimitedFormat {
-  char separator = 0;  // ',' ';' '\t'; ' ' is any run of blanks; 0: told from the first line
+  char separator = 0;  // ',' ';' '\t'; ' ' is any run of blanks; 0: detected from the first line
   bool decimal_comma = false;
   std::size_t skip = 0;       // lines at the top that are no data
   std::string comment = "#";  // lines that begin so are left out; empty: none
@@ -25,7 +25,7 @@ struct DelimitedFile {
   std::vector<std::size_t> line;  // 1-based line of each row
 };
 
-/// Splits a text. Fields may stand in double quotes. Throws InputError with file, line and word: a row of
+/// Splits a text. Fields may be in double quotes. Throws InputError with file, line and word: a row of
 /// another length, an open quote, a zero byte, no rows. tool.
 DelimitedFile parse_delimited(const std::string& text, const std::string& file,
                               const DelimitedFormat& format);

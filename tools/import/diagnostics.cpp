@@ -16,7 +16,7 @@ namespace {
 
 double sign(double x) { return x > 0 ? 1.0 : (x < 0 ? -1.0 : 0.0); }
 
-// Sense of motion of both axes at an angle of the circle.
+// Direction of motion of both axes at an angle of the circle.
 struct Senses {
   double a, b;
 };
@@ -30,7 +30,7 @@ bool near_reversal(double angle_deg, double gap_deg) {
   return std::min(in_quadrant, 90 - in_quadrant) < gap_deg;
 }
 
-// The cyclic columns: (axis, sense of the axis, sense of the circle) times cosine and sine.
+// The cyclic columns: (axis, direction of the axis, direction of the circle) times cosine and sine.
 constexpr std::size_t kCyclicPerAxis = 8;
 
 void cyclic_columns(const DiagnosticsSample& sample, char axis, const DiagnosticsSetup& setup,

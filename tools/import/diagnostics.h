@@ -56,7 +56,7 @@ struct DiagnosticsSetup {
 std::array<double, kDiagnosticsCount> diagnostics_basis(double angle_deg, int direction,
                                                         const DiagnosticsSetup& setup);
 
-/// Peak-to-peak of a cyclic error of one axis, one sense of motion of the axis, one sense of the circle.
+/// Peak-to-peak of a cyclic error of one axis, for one direction of the axis and one direction of the circle.
 struct CyclicAmplitude {
   char axis = 'A';
   bool forward = true;  // the axis moves in its positive sense
@@ -64,7 +64,8 @@ struct CyclicAmplitude {
   double peak_to_peak_um = 0;
 };
 
-/// What the cyclic terms of one axis do to the radius in one sense of the circle: largest minus smallest.
+/// Effect of the cyclic terms of one axis on the radius in one direction of the circle: largest minus
+/// smallest.
 struct CyclicEffect {
   char axis = 'A';
   int direction = +1;
@@ -79,8 +80,8 @@ struct DiagnosticsResult {
   double rms_um = 0, max_um = 0;                   // of the residual
 };
 
-/// Least squares of the linear diagnostics (and cyclic terms) to samples of both senses; the minimum-norm
-/// solution where the rank is short. Throws std::invalid_argument where there are fewer samples than terms.
+/// Least squares of the linear diagnostics (and cyclic terms) to samples of both directions; the minimum-norm
+/// solution if the rank is deficient. Throws std::invalid_argument if there are fewer samples than terms.
 /// tool.
 DiagnosticsResult fit_diagnostics(const std::vector<DiagnosticsSample>& samples,
                                   const DiagnosticsSetup& setup);

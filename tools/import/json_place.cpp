@@ -66,7 +66,7 @@ class Locator {
   std::vector<Level> levels_;
 };
 
-// An iterator that tells how far the parser has read.
+// An iterator that reports the position of the parser.
 struct Counting {
   using iterator_category = std::input_iterator_tag;
   using value_type = char;
@@ -93,7 +93,7 @@ nlohmann::json parse_json(const std::string& path, std::string_view text) {
   try {
     return nlohmann::json::parse(text);
   } catch (const nlohmann::json::out_of_range& error) {
-    // The library says which number, but not where it stands.
+    // The library reports the number, but not its position.
     const std::string what = error.what();
     const std::size_t open = what.find('\''), close = what.rfind('\'');
     const std::string word = open < close ? what.substr(open + 1, close - open - 1) : "";

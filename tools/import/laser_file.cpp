@@ -211,7 +211,7 @@ LaserFile read_laser_file(const std::string& text, const std::string& file, cons
   if (senses == RunSenses::kAsListed && both && !back && read.runs.size() > 1)
     throw text::InputError(
         {file, read.runs.begin()->second.front().line}, "Run Target Data",
-        "both senses by the flags, and no run is listed backward: say --senses alternate (odd "
+        "both directions by the flags, and no run is listed backward: give --senses alternate (odd "
         "runs forward, even back) or --senses forward");
   const std::string small = text::in_small_letters(result.axis);
   std::vector<ImportTable::Column> columns = {

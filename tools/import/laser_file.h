@@ -9,7 +9,7 @@ namespace vernier::importer {
 /// In which senses the runs went, where the order of their lines does not say it.
 enum class RunSenses { kAsListed, kAlternate, kForward };
 
-/// What a file of linear laser runs says.
+/// Contents of a file of linear laser runs.
 struct LaserFile {
   std::string axis, filetype, machine, date;
   std::size_t targets = 0, runs = 0, left_out = 0;  // runs of nothing but zeros that fill a test of one sense
@@ -18,8 +18,9 @@ struct LaserFile {
 
 /// Reads a file of linear targets and runs (.rtl) as the common laser software writes it: sections HEADER::,
 /// TARGET DATA:: (targets in mm), USER-TEXT::, RUNS::, DEVIATIONS:: (run, target, deviation in um). axis:
-/// over the file's own; empty: its own. Throws InputError with file, line and word: another kind of file, an
-/// axis that turns, counts that do not agree, a target twice in a run, senses that nothing says. tool.
+/// replaces the axis of the file; empty: the axis of the file. Throws InputError with file, line and word:
+/// another kind of file, a rotary axis, counts that do not agree, a target twice in a run, approach
+/// directions that the file does not define. tool.
 LaserFile read_laser_file(const std::string& text, const std::string& file, const std::string& axis,
                           RunSenses senses);
 

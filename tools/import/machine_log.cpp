@@ -42,7 +42,7 @@ class Log {
       values[static_cast<Index>(row)] = number(row, column);
     return values;
   }
-  /// What a column says of a dwell: the mean of its numbers as they are written, or its first word.
+  /// Value of a column in a dwell: the mean of its numbers as they are written, or its first word.
   std::string of(const Dwell& dwell, std::size_t column) const {
     double sum = 0;
     for (std::size_t row = dwell.first; row <= dwell.last; ++row) {
@@ -70,7 +70,7 @@ Eigen::Matrix3Xd points_of(const ImportTable& tracker) {
   return points;
 }
 
-/// Where the nominal machine stands in each dwell.
+/// Tool point of the nominal machine in each dwell.
 Eigen::Matrix3Xd stands(const model::Machine& machine, const Eigen::MatrixXd& axes,
                         const std::vector<Dwell>& dwells) {
   model::States states = model::make_states(dwells.size(), machine);

@@ -171,7 +171,7 @@ Pairing pair_points(const PairingInput& input) {
   if (input.stand.cols() == 0 && !input.time) {
     if (points != input.dwells.size())
       throw text::InputError(
-          fmt::format("{} points and {} dwells, and nothing that tells which belong together: give a "
+          fmt::format("{} points and {} dwells, and no data to assign them: give a "
                       "column t, or --machine for the ways between them",
                       points, input.dwells.size()));
     for (std::size_t i = 0; i < points; ++i) result.dwell.emplace_back(i);

@@ -22,9 +22,9 @@ std::vector<Dwell> find_dwells(const Eigen::VectorXd& time, const Eigen::MatrixX
 
 struct PairingInput {
   std::vector<Dwell> dwells;
-  /// Where the nominal machine stands in each dwell, mm (3 x dwells); empty: distances tell nothing.
+  /// Tool point of the nominal machine in each dwell, mm (3 x dwells); empty: distances are not used.
   Eigen::Matrix3Xd stand;
-  Eigen::Matrix3Xd point;  // what the instrument measured, mm, in its own frame (3 x points), in its order
+  Eigen::Matrix3Xd point;  // what the instrument measured, mm, in its frame (3 x points), in its order
   std::optional<Eigen::VectorXd> time;  // of each point by the instrument's clock, s
   double distance_tolerance_mm = 2;  // by how much machine and nominal machine may differ between two points
 };

@@ -80,7 +80,7 @@ void take_cyclic(const DiagnosticsResult& found, Values& values) {
     if (effect.direction < 0) values[std::string("AF_CYCLIC_ERROR_") + effect.axis + "_IC"] = effect.um;
 }
 
-// Largest minus smallest reading of both senses about the diagnostics' centre, um.
+// Largest minus smallest reading of both directions about the centre of the diagnostics, um.
 double roundness_um(const BallbarFile& file, const DiagnosticsResult& found) {
   const double a = found.value[diagnostic("CENTRE_OFFSET_A")], b = found.value[diagnostic("CENTRE_OFFSET_B")];
   Extent extent;
@@ -142,7 +142,7 @@ void say_what_is_not_known(RecomputedResults& results) {
     results.why[std::string("AF_CYCLIC_PHASE_") + sense] = "from where a phase counts" + not_found;
   for (const char* end : {"A_POS", "A_NEG", "B_POS", "B_NEG"})
     results.why[std::string("AF_REVERSAL_SPIKES_") + end] =
-        "one number of the spikes of both senses" + not_found;
+        "one number of the spikes of both directions" + not_found;
   for (const char* axis : {"A", "B"})
     results.why[std::string("AF_CYCLIC_PITCH_") + axis] = "a setting of the software, taken over here";
   results.why["AF_POSITIONAL_TOLERANCE"] = kOnlyPrinted;

@@ -97,7 +97,7 @@ std::vector<PrintedResult> printed_results(const BallbarFile& file, const Circul
   }
   const RecomputedResults values = analysis_values(circle);
   for (const auto& analysis : file.analyses) {
-    // The diagnostics' centre and radius come from its own model of the whole test, not from a circle.
+    // Centre and radius of the diagnostics come from their model of the whole test, not from a circle.
     const bool diagnostics = analysis.name == kDiagnosticsAnalysis;
     compare(analysis.name + (analysis.version.empty() ? "" : " " + analysis.version), analysis.features,
             diagnostics ? recompute_diagnostics(file, analysis, circle) : values, results);

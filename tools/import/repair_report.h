@@ -12,7 +12,8 @@ namespace vernier::importer {
 /// A repaired file and what repeats in it, before and after.
 struct RepairReport {
   TimeRepair repair;
-  std::vector<RepeatingError> before, after;  // one a repaired run: by the file's angles, by its own
+  std::vector<RepeatingError> before,
+      after;  // one per repaired run: by the file's angles, by the repaired angles
 };
 
 /// Repairs a file and fits the repeating error of each repaired run, on the same samples before and after.

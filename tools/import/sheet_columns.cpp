@@ -114,7 +114,7 @@ class Guess {
     return column;
   }
 
-  /// What a heading says that names no axis and nothing else either: "Soll", "Pos", "Istposition".
+  /// Words of a heading that names no axis: "Soll", "Pos", "Istposition".
   enum class Bare { kOther, kTarget, kActual };
   static Bare bare(const std::string& name) {
     static const Words kActual = {"ist", "istwert", "istposition", "actual", "act"};
@@ -360,7 +360,8 @@ void settle(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::vect
     else if (column.name == kSensePrefix && moved.size() == 1)
       column.name = format::axis_column(format::AxisQuantity::kSense, *moved.begin());
     else if (column.name == kSensePrefix)
-      leave(column, "the sense of which axis? Say it: --column \"dirX=" + table.headings[k].text + "\"");
+      leave(column, "the approach direction of which axis? Give it: --column \"dirX=" +
+                        table.headings[k].text + "\"");
     else if (column.name == columns::kTime && content == Holds::kDates)
       leave(column, "dates or times of day, no seconds");
     // Dates where a position or a reading should be are refused with their row.
@@ -437,8 +438,8 @@ void check_quantity(const SheetColumn& column, const Guess& guess, const std::st
                                      column.name, pure ? "a pure number" : "a unit like " + needs));
 }
 
-/// Senses as numbers: 1 and -1, 0 where nothing moved. A heading of a shop that counts 1 and 0, or 1 and 2,
-/// means the other sense by its second; `dirX` of the measurement file means what it says.
+/// Approach directions as numbers: 1 and -1, 0 without motion. In the heading of a user who counts 1 and 0,
+/// or 1 and 2, the second number is the other direction. `dirX` of the measurement file keeps its meaning.
 void settle_senses(const sheet::Sheet& sheet, const std::vector<std::size_t>& rows, bool own_name,
                    std::vector<std::string>& cells) {
   Words found(cells.begin(), cells.end());
@@ -488,7 +489,7 @@ std::string cell_text(const sheet::Sheet& sheet, const SheetColumn& column, cons
       place, cell,
       "not a number, for " + column.name +
           (other_sign ? std::string("; a decimal ") + (sheet.decimal_comma ? "point" : "comma") +
-                            "? (--decimal point or comma says which is meant)"
+                            "? (give --decimal point or --decimal comma)"
                       : std::string()));
 }
 

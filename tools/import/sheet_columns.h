@@ -21,8 +21,8 @@ struct SheetColumn {
   bool to_target = false;  // of a deviation: the measured position is there, the target is what is made
 };
 
-/// What a person says of the columns: assignments by heading or number, constants, and the unit of headings
-/// that have none.
+/// Columns as the user describes them: assignments by heading or number, constants, and the unit of headings
+/// without a unit.
 struct SheetWishes {
   struct Assignment {
     std::string heading;  // its text, its name, or a number from 1
@@ -36,7 +36,7 @@ struct SheetWishes {
   std::vector<std::string> axes;  // of the machine, where it is known; else X Y Z A B C U V W J1 …
 };
 
-/// Adds "x[mm]=X ist" (also "X ist=x[mm]", as the other imports have it: `table` says which side is a
+/// Adds "x[mm]=X ist" (also "X ist=x[mm]", as the other imports accept it: `table` defines which side is a
 /// heading). Throws InputError.
 void assign_column(SheetWishes& wishes, const sheet::SheetTable& table, const std::string& words);
 /// Adds "X[um]=Abweichung": the position of the axis plus this deviation is what was measured.

@@ -55,10 +55,9 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
 
 std::string how_read(const sheet::Sheet& sheet) {
   if (sheet.workbook) return "workbook, sheet \"" + sheet.sheet + "\"";
-  return fmt::format(
-      "{}, columns parted by {}, decimal {}{}", sheet::encoding_name(sheet.encoding),
-      sheet::separator_word(sheet.separator), sheet.decimal_comma ? "comma" : "point",
-      sheet.decimal_doubtful ? " (it could part thousands as well: --decimal says which)" : "");
+  return fmt::format("{}, columns separated by {}, decimal {}{}", sheet::encoding_name(sheet.encoding),
+                     sheet::separator_word(sheet.separator), sheet.decimal_comma ? "comma" : "point",
+                     sheet.decimal_doubtful ? " (it could separate thousands as well: give --decimal)" : "");
 }
 
 std::string becomes(const SheetColumn& column) {

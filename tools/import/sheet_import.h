@@ -9,7 +9,7 @@
 
 namespace vernier::importer {
 
-/// What a person says of a spreadsheet, in the words of `vernier import table`; empty: guessed.
+/// Description of a spreadsheet by the user, in the words of `vernier import table`; empty: detected.
 struct SheetWords {
   std::string separator, decimal, comment, sheet, unit;
   std::optional<std::size_t> skip;
@@ -31,7 +31,7 @@ struct SheetReading {
 SheetReading read_as_sheet(const std::string& bytes, const std::string& file, const SheetWords& words,
                            SheetWishes wishes = {});
 
-/// "UTF-8, columns parted by semicolon, decimal comma".
+/// "UTF-8, columns separated by semicolon, decimal comma".
 std::string how_read(const sheet::Sheet& sheet);
 /// "x[mm]", "position of X + this, [um]", "left out".
 std::string becomes(const SheetColumn& column);

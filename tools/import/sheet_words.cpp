@@ -118,7 +118,7 @@ std::string axis_of_titles(const sheet::Sheet& sheet, const sheet::SheetTable& t
   for (std::size_t k = 0; k < words.size(); ++k) {
     const std::string small = text::in_small_letters(words[k]);
     if (small != "axis" && small != "achse") continue;
-    // "Achse" and "X" may stand in cells of their own.
+    // "Achse" and "X" may be in separate cells.
     const std::size_t next = k + 1 < words.size() && words[k + 1].empty() ? k + 2 : k + 1;
     if (k > 0 && letter(words[k - 1]))
       found.insert(words[k - 1]);

@@ -12,7 +12,7 @@ namespace vernier::importer {
 /// The words of a heading; X_ist and X-ist are two.
 std::vector<std::string> heading_words(const std::string& name);
 
-// What a word, in small letters, says of a column in the languages of shop floors.
+// Meaning of a word, in small letters, for a column, in the languages of shop floors.
 bool says_target(const std::string& word);
 bool says_measured(const std::string& word);
 bool says_deviation(const std::string& word);
@@ -20,8 +20,8 @@ bool says_deviation(const std::string& word);
 /// 1 for forward, +, hin …; -1 for back, -, zurück …; 0: no sense. tool.
 int sense_said(std::string_view word);
 
-/// Is a deviation said to be nominal - actual: "(nominal-actual)", "= Soll - Ist"? `whole`: also where the
-/// text is nothing else; "Soll-Ist-Vergleich" says no sign. tool.
+/// True if a deviation is described as nominal - actual: "(nominal-actual)", "= Soll - Ist". `whole`: also if
+/// the text contains only that; "Soll-Ist-Vergleich" gives no sign. tool.
 bool says_nominal_less_actual(std::string_view text, bool whole);
 
 /// The cells above the headings of a table. tool.

@@ -75,7 +75,7 @@ double at_sample(const Eigen::MatrixXd& series, const std::vector<double>& sampl
   return series(k, 0) * (1 - part) + series(k - 1, 0) * part;
 }
 
-// The record and its own later pass on one list of sample numbers.
+// The record and its later pass on one list of sample numbers.
 struct PairOfPasses {
   Eigen::MatrixXd first, second;  // NaN where one has no reading
 };

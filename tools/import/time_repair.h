@@ -45,12 +45,12 @@ struct TimeRepair {
   std::vector<RunRepair> runs;
 };
 
-/// Finds from the record itself how many samples a turn takes and where samples are missing (the second pass
-/// over the circle repeats the first one; where the lag between them jumps, one lacks samples or the other
-/// waited: missing is assumed), and gives each sample its own angle and time. The angle of the file's START
-/// is kept in the run whose turn it gets right best; in the others the angle is turned so that the repeating
-/// error agrees with that run's. A run of less than one and a half turns, or one that does not repeat, is
-/// left as it is and says why. tool.
+/// Finds from the record how many samples a turn takes and where samples are missing, and gives each sample
+/// its angle and time. Method: the second pass over the circle repeats the first one. If the lag between them
+/// jumps, one pass lacks samples or the other waited; the function assumes missing samples. The angle of the
+/// file's START is kept in the run whose turn it reproduces best. In the other runs the angle is turned until
+/// the repeating error agrees with that run. A run of less than one and a half turns, or a run that does not
+/// repeat, is not changed and contains the reason. tool.
 TimeRepair repair_time_base(const BallbarFile& file);
 
 }  // namespace vernier::importer

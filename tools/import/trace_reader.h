@@ -15,7 +15,7 @@ struct TraceSetup {
   double feed_mm_min = 0;  // actual; the speed is taken as constant
   double start_deg = 180;  // angle of the first reading, from +A towards +B
   double sample_rate_hz = 200;
-  int direction_of_zero = +1;  // sense of "Direction": 0
+  int direction_of_zero = +1;  // direction of "Direction": 0
 };
 
 /// A circle of a path: its plane, first axis first ("YZ"), and where its first reading lies.
@@ -24,11 +24,11 @@ struct TraceCircle {
   double start_deg = 180;
 };
 
-/// The files of a test whose path has several circles about one centre (XY, YZ, ZX), one after the other: a
-/// BallbarFile a circle. The runs of all files, in their order, are dealt to the circles in theirs: as many
-/// to each (two where both senses of a circle follow each other), labelled with their plane. With one circle
-/// it takes all runs of each file, a BallbarFile each. Throws InputError where the runs do not divide evenly,
-/// and as read_ballbar_trace. tool.
+/// Reads the files of a test whose path has several circles about one centre (XY, YZ, ZX), one after the
+/// other: one BallbarFile per circle. The runs of all files, in their order, are assigned to the circles in
+/// their order. Each circle gets the same number of runs (two if both directions of a circle follow each
+/// other), labelled with their plane. With one circle it takes all runs of each file, one BallbarFile each.
+/// Throws InputError if the runs do not divide evenly, and as read_ballbar_trace. tool.
 std::vector<BallbarFile> read_trace_circles(const std::vector<std::string>& paths, const TraceSetup& setup,
                                             const std::vector<TraceCircle>& circles);
 

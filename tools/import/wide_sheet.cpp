@@ -20,7 +20,7 @@
 namespace vernier::importer {
 namespace {
 
-/// One run in one sense, as its heading says it.
+/// One run in one approach direction, as its heading describes it.
 struct RunColumn {
   std::size_t column = 0;
   std::string run, axis, unit;
@@ -103,7 +103,7 @@ std::optional<RunColumn> run_column(const sheet::Heading& heading) {
   column.unit = heading.unit;
   column.turned = says_nominal_less_actual(heading.name, true);
   std::string name = with_its_sign(heading);
-  if (column.turned) {  // what is in brackets says the sign and nothing else
+  if (column.turned) {  // the text in brackets gives the sign only
     const auto open = name.find_first_of("(["), close = name.find_last_of(")]");
     if (open == std::string::npos || close == std::string::npos || close < open) return std::nullopt;
     name.erase(open, close - open + 1);
@@ -172,7 +172,7 @@ double spread_of(const sheet::Sheet& sheet, const sheet::SheetTable& table, std:
   return most - least;
 }
 
-/// The unit of lengths or angles that stands in a title: "Abweichungen in µm (Soll-Ist)".
+/// The unit of lengths or angles in a title: "Abweichungen in µm (Soll-Ist)".
 std::string unit_in(const std::string& title) {
   for (const std::string& word : text::words_in(title, " \t,;:")) {
     const auto unit = sheet::unit_meant(word);

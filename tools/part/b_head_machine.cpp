@@ -16,8 +16,8 @@ namespace {
 /// Far above rounding of a chain of this size (1e-12 mm), far below any error that matters.
 constexpr double kSameMm = 1e-8, kSameAxis = 1e-11;
 
-/// Poses that tell the nominal chain apart from any other of sliding and turning axes: each axis alone, both
-/// senses, and all together.
+/// Poses that distinguish the nominal chain from any other chain of linear and rotary axes: each axis alone,
+/// in both directions, and all axes together.
 const std::vector<JointPose> kProbes = {{0, 0, 0, 0, 0},       {70, 0, 0, 0, 0},      {0, -60, 0, 0, 0},
                                         {0, 0, 90, 0, 0},      {0, 0, 0, 25, 0},      {0, 0, 0, -35, 0},
                                         {0, 0, 0, 0, 50},      {0, 0, 0, 0, -110},    {40, 30, 20, 10, 60},

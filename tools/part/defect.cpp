@@ -43,7 +43,7 @@ Probe probe_of(const PartPoint& point, const DefectOptions& options) {
   const FlankPose pose = flank_pose(surface, options.cutter, point.u);
   const SurfacePoint at = surface_point(surface, point.u, point.v);
   if (options.reading == DefectReading::kTip) return {at.position, pose.normal, 0};
-  // A turn about the axis moves no cylinder, so the point of the axis beside the contact stands for it.
+  // A rotation about the axis moves no cylinder: the point of the axis beside the contact is used.
   Eigen::Vector3d along = at.normal;
   if (options.reading == DefectReading::kInPlane) {
     along.z() = 0;

@@ -37,7 +37,7 @@ struct ToolDisplacement {
 std::vector<ToolDisplacement> displacements(const BHeadMachine& machine, const std::vector<JointPose>& joints,
                                             const std::vector<double>& height_mm);
 
-/// Indices of the statics that `by` and the Jacobian of a part stand for, in the order of the machine file.
+/// Indices of the statics of `by` and of the Jacobian of a part, in the order of the machine file.
 std::vector<std::size_t> free_statics(const model::Machine& machine);
 
 /// What the errors of a machine do to the part, at N points.
@@ -52,8 +52,8 @@ struct PartDefect {
 
 /// Mdef(u) = n . (displacement of the tool at the point - displacement at the origin of the work coordinates,
 /// where the offsets were set); displacement = actual - nominal chain. The part is clamped on the table where
-/// it was cut; no alignment. The point is taken as cut at its own u: the envelope's true contact is up to
-/// 0.55 mm further along the surface at 11 mm height. tool.
+/// it was cut; no alignment. The point counts as cut at its parameter u: the true contact of the envelope is
+/// up to 0.55 mm further along the surface at 11 mm height. tool.
 PartDefect part_defect(const BHeadMachine& machine, const std::vector<PartPoint>& points,
                        const DefectOptions& options = {});
 

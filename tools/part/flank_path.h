@@ -38,7 +38,7 @@ struct FlankPose {
   Eigen::Vector3d tip, tip_du;    // tool tip
   Eigen::Vector3d axis, axis_du;  // R: unit, from the tip to the spindle
   Eigen::Vector3d tangent;        // T: unit, along the curve that is touched; T(u,1) of the top one
-  Eigen::Vector3d normal;         // N there: as the reading says
+  Eigen::Vector3d normal;         // N at the point, as in the measurement
   double generatrix_mm = 0;       // |C1 - C0|
 };
 

@@ -101,8 +101,8 @@ class PartProblem {
     gradient = jacobian.transpose() * left;
     return left.squaredNorm();
   }
-  /// What the points can tell apart, seen where all errors are nominal: away from there the second order
-  /// feigns a difference between columns that are one.
+  /// The combinations that the points can distinguish, evaluated at nominal errors. Away from there
+  /// second-order terms show differences between columns that are equal.
   fit::Observability seen_at_nominal() const {
     Eigen::VectorXd point = Eigen::VectorXd::Zero(size());
     for (std::size_t i = 0; i < free_.size(); ++i) {
@@ -184,7 +184,7 @@ void warn_of_rest(const BHeadMachine& machine, const MeasuredPart& part, const I
     result.warnings.push_back(
         fmt::format("the rest is {:.2g} times the points' uncertainty: these errors do not explain the part, "
                     "and their values "
-                    "may be off by far more than their standard uncertainties",
+                    "may have errors far larger than their standard uncertainties",
                     over));
   if (options.tool_radius || result.freedom < 2 || (with_uncertainty && !loud)) return;
   IdentifyOptions more = options;
@@ -192,7 +192,7 @@ void warn_of_rest(const BHeadMachine& machine, const MeasuredPart& part, const I
   const Identification with = identify(machine, part, more);
   if (result.chi_square < kExplains * with.chi_square || !with.errors.back().std) return;
   result.warnings.push_back(
-      fmt::format("a tool whose radius is off by {:+.4f} +- {:.2g} mm would explain it (chi^2 {:.3g} -> "
+      fmt::format("a tool radius error of {:+.4f} +- {:.2g} mm would explain it (chi^2 {:.3g} -> "
                   "{:.3g}): --tool-radius "
                   "fits it too",
                   with.errors.back().value, *with.errors.back().std, result.chi_square, with.chi_square));

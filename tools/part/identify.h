@@ -40,14 +40,14 @@ struct Identification {
   std::vector<std::string> warnings;
 };
 
-/// Weighted least squares of the free statics of the machine against the measured defects. Errors that the
-/// points cannot tell apart (where all errors are nominal) keep their start along those directions and are
-/// named in `observability`. Standard uncertainties as those of `vernier fit`. Throws InputError where
-/// nothing is free or points are fewer than errors. tool.
+/// Weighted least squares of the free statics of the machine to the measured defects. Errors that the points
+/// cannot distinguish (at nominal errors) keep their start values along those directions and are named in
+/// `observability`. Standard uncertainties as those of `vernier fit`. Throws InputError if no static is free
+/// or if there are fewer points than errors. tool.
 Identification identify(const BHeadMachine& machine, const MeasuredPart& part,
                         const IdentifyOptions& options = {});
 
-/// What N points could tell about the free statics at all (at their nominal values), each point with standard
+/// Singular values of the free statics (at their nominal values) for N points, each point with standard
 /// uncertainty 1 mm.
 fit::Observability part_observability(const BHeadMachine& machine, const std::vector<PartPoint>& points,
                                       const DefectOptions& options);

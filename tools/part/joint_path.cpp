@@ -11,7 +11,7 @@ namespace vernier::part {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-/// Horizontal part of the tool axis below which C cannot be told: rounding is 1e-16, so that C is still good
+/// Horizontal part of the tool axis below which C cannot be computed: rounding is 1e-16, and C is still right
 /// to 1e-7 rad at this limit.
 constexpr double kVertical = 1e-9;
 constexpr int kGridPerSpan = 40;

@@ -21,7 +21,7 @@ std::string point_text(const Eigen::Vector3d& p) {
   return fmt::format("({:g}, {:g}, {:g})", p.x(), p.y(), p.z());
 }
 
-/// Nothing where the point is so far off that it has no settled foot.
+/// `nullopt` if the point is so far from the surface that the search for its foot point does not converge.
 std::optional<SurfaceFoot> foot_near(const RuledSurface& surface, const Eigen::Vector3d& position) {
   try {
     return nearest(surface, position);

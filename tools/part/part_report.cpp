@@ -144,12 +144,12 @@ ordered_json observability_section(const ordered_json& result) {
   for (const ordered_json& error : result["errors"])
     rows.push_back({error["name"], error["value"], spread[error["name"].get<std::string>()], error["unit"]});
   return {
-      {"title", "What the part tells about the machine"},
+      {"title", "Errors of the machine from the part"},
       {"prose",
        {"With the horizontal part of the displacement alone, tilts of the Z slide and of the table axis are "
-        "one and the same; the vertical part on the leaning flanks is all that tells them apart."}},
+        "one and the same; only the vertical part on the leaning flanks distinguishes them."}},
       {"tables",
-       {{{"caption", "Errors that cannot be told apart"},
+       {{{"caption", "Errors that cannot be distinguished"},
          {"columns", {"reading", "rank", "condition", "inseparable"}},
          {"rows", groups}},
         {{"caption", "Standard uncertainty of each error per 1 µm of the points"},
@@ -170,7 +170,7 @@ ordered_json identification_section(const PartJob& job, const ordered_json& resu
     index.push_back(static_cast<double>(i + 1));
     measured[static_cast<Eigen::Index>(i)] = job.measured->points[i].defect_mm;
   }
-  ordered_json notes = {"Cannot be told apart: " + joined_groups(result["unidentifiable"])};
+  ordered_json notes = {"Cannot be distinguished: " + joined_groups(result["unidentifiable"])};
   for (const std::string& warning : found.warnings) notes.push_back("Warning: " + warning + ".");
   return {{"title", "Errors from the measured part"},
           {"numbers",

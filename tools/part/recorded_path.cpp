@@ -48,8 +48,8 @@ double least_between(const Function& value, double low, double high) {
   return -maths::golden_peak(depth, low, high, kSections).value;
 }
 
-/// What the path that the flank is programmed with leaves at a point: the pose of its own u does not cut
-/// deepest there, one near it does.
+/// Residual of the programmed path of the flank at a point: the pose at its u does not cut deepest there; a
+/// pose near it does.
 double programmed_mm(const PartPoint& point, const SurfacePoint& at, const Cutter& cutter) {
   constexpr double kNear = 0.003;  // of u: 2 mm, where the contact is 0.55 mm off at most
   const auto value = [&](double u) {

@@ -40,7 +40,7 @@ SurfaceFoot nearest(const RuledSurface& surface, const Eigen::Vector3d& point, d
     if (next_u != u + step[0])  // held at an end: v alone moves to its best
       step[1] = s.by_v.dot(point - s.position - (next_u - u) * s.by_u) / s.by_v.squaredNorm();
     settled = std::abs(next_u - u) < kSettled && std::abs(step[1]) < kSettled;
-    // Gauss-Newton ends on a cycle of the last bits; a step of that size counts as settled too.
+    // Gauss-Newton ends on a cycle of the last bits; a step of that size counts as converged too.
     settled = settled || (i > 20 && std::abs(next_u - u) < 1e-11 && std::abs(step[1]) < 1e-11);
     u = next_u;
     v += step[1];

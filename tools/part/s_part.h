@@ -7,8 +7,8 @@
 namespace vernier::part {
 
 /// The two flanks of the S-shaped test part of ISO 10791-7, A and B. Control points: the programs of tables 1
-/// and 2 in Chanal, Duc, Chevalier, Precision Engineering 75 (2022) 193-209, with the misprints that
-/// tools/docs/s_part.md lists put right. tool.
+/// and 2 in Chanal, Duc, Chevalier, Precision Engineering 75 (2022) 193-209. Misprints are corrected as
+/// listed in tools/docs/s_part.md. tool.
 const std::array<RuledSurface, 2>& s_part();
 
 /// Height of the part and the heights at which it is measured (bottom and top line), mm.

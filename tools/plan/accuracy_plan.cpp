@@ -29,7 +29,7 @@ using Eigen::MatrixXd;
 constexpr std::size_t kOverVolume = 500, kAtAim = 300;
 /// Standard deviation of a set-up that nothing is known of, mm and rad: as far as it matters anything.
 constexpr double kAnywhere = 10;
-/// Readings so much better than they are show what no number of them tells.
+/// Readings with this much less noise show the part of the uncertainty that no number of readings reduces.
 constexpr double kFarBetter = 1e-3;
 
 /// Poses one after the other; both of the same machine.
@@ -123,7 +123,7 @@ class AccuracyPlanner {
     return all;
   }
 
-  /// What each coordinate that is read there says of parameters, set-up and run: three rows a pose.
+  /// Sensitivity of each coordinate that is read there to parameters, set-up and run: three rows per pose.
   MatrixXd rows_at(const model::States& poses) const {
     MatrixXd rows = MatrixXd::Zero(3 * static_cast<Index>(poses.count), size_);
     const model::ParameterSet& parameters = knowledge_.parameters;
@@ -250,7 +250,7 @@ class AccuracyPlanner {
     return std::sqrt(squares / kDraws);
   }
 
-  /// What is left of the mean square, by source.
+  /// The remaining mean square, by source.
   std::vector<AccuracyLimit> limits_of(const MatrixXd& covariance) const {
     const MatrixXd product = covariance * weight_;
     const double total = std::max(product.trace(), 1e-300);
@@ -275,7 +275,7 @@ class AccuracyPlanner {
   MatrixXd jacobian_, covariance_;
 };
 
-/// Median u of the coordinates, 1 mm where none is given: what a weight stands for.
+/// Median u of the coordinates, 1 mm without u: the unit of a weight.
 double usual_reading_mm(const model::Measurement& m) {
   std::vector<double> all;
   for (const model::Observation& o : m.observations)
@@ -309,8 +309,9 @@ Knowledge knowledge_of(const fit::FitResult& fitted, const model::Measurement& m
 Knowledge knowledge_of(const model::Machine& fitted) {
   const fit::Reach reach(fitted);
   if (!reach.known())
-    throw text::InputError({fitted.file, 0}, fitted.name,
-                           "was never fitted (no <fitted>): what is to be told from here on is not known");
+    throw text::InputError(
+        {fitted.file, 0}, fitted.name,
+        "was never fitted (no <fitted>): the present uncertainty is not known. Run vernier fit first");
   Knowledge knowledge;
   knowledge.machine = reach.machine();
   knowledge.parameters = reach.parameters();
@@ -328,7 +329,7 @@ double expected_accuracy_um(const Knowledge& knowledge, const AccuracyAim& aim, 
 }
 
 std::string accuracy_plan_csv(const Knowledge& knowledge, const AccuracyPlan& plan) {
-  return "# Approach every pose in the sense that dir tells; fill in x, y, z as they are read; then fit "
+  return "# Approach every pose in the direction of dir; fill in x, y, z as they are read; then fit "
          "these "
          "rows together with the others.\n" +
          pose_rows_csv(knowledge.machine, plan.states, std::vector<char>(plan.states.count, 0),

@@ -9,9 +9,9 @@
 
 namespace vernier::plan {
 
-/// From measurements at hand: the fit's covariance, the noise that it found. The next readings stand in the
-/// set-up of the plain BaseShift where the file has a free one, else in a new one. Throws InputError where
-/// the measurement has no x, y or z. tool.
+/// From existing measurements: the covariance and the noise of the fit. The next readings are in the set-up
+/// of the plain BaseShift if the file has a free one, else in a new set-up. Throws InputError if the
+/// measurement has no x, y or z. tool.
 Knowledge knowledge_of(const fit::FitResult& fitted, const model::Measurement& measurement);
 /// From the machine file alone, a new set-up. Throws InputError where it was never fitted. tool.
 Knowledge knowledge_of(const model::Machine& fitted);

@@ -9,8 +9,9 @@
 
 namespace vernier::plan {
 
-/// What to measure next where the first candidate of an ambiguous diagnosis and one that it is confounded
-/// with explain the rows alike; empty where nothing is to be told apart. text: the machine file's. tool.
+/// Advice for the next measurement if the first candidate of an ambiguous diagnosis and an alternative
+/// explain the rows equally well; empty if no effects need to be distinguished. text: the machine file's.
+/// tool.
 std::vector<std::string> advice_for(const std::string& text, const model::Machine& machine,
                                     const model::Measurement& measurement,
                                     const diagnose::Diagnosis& diagnosis,

@@ -23,7 +23,7 @@ constexpr std::size_t kCheckOffered = 400;  // poses that a short check is chose
 /// Standard deviations from which a change shows.
 constexpr double kShown = 5;
 
-/// What chosen readings tell: sums over their rows.
+/// Information of the chosen readings: sums over their rows.
 struct Told {
   MatrixXd gram, with_set_up, set_up;
 };
@@ -83,7 +83,7 @@ class CheckPlanner {
     return told;
   }
 
-  /// Information on a change of each suspect by 1, beside the set-up and the doubt of the fit.
+  /// Information on a change of each tested parameter by 1, after the set-up and the uncertainty of the fit.
   VectorXd amounts_of(const Told& told) const {
     MatrixXd gram = told.gram;
     if (told.set_up.cols() > 0) {
@@ -94,7 +94,7 @@ class CheckPlanner {
       gram -= told.with_set_up.transpose() * maths::solve_symmetric(set_up, told.with_set_up);
     }
     const auto p = static_cast<Index>(all_.parameters);
-    const MatrixXd left = spread_.transpose() * gram.topRows(p);  // factors x suspects
+    const MatrixXd left = spread_.transpose() * gram.topRows(p);  // factors x tested parameters
     const MatrixXd inner = MatrixXd::Identity(spread_.cols(), spread_.cols()) + left.leftCols(p) * spread_;
     VectorXd amounts = gram.diagonal();
     amounts -= left.cwiseProduct(maths::solve_positive(inner, left)).colwise().sum().transpose();
@@ -162,7 +162,7 @@ class CheckPlanner {
   check::SuspectColumns all_;
   MatrixXd spread_;
   VectorXd moves_um_;          // of the tool point by a change of 1, rms over the poses
-  std::vector<Index> looked_;  // suspects of the machine
+  std::vector<Index> looked_;  // tested parameters of the machine
 };
 
 }  // namespace
@@ -172,7 +172,7 @@ CheckPlan check_plan(const model::Machine& machine, const CheckPlanOptions& opti
 }
 
 std::string check_plan_csv(const model::Machine& machine, const CheckPlan& plan, double reading_um) {
-  return "# Approach every pose in the sense that dir tells; fill in x, y, z as they are read; then: vernier "
+  return "# Approach every pose in the direction of dir; fill in x, y, z as they are read; then: vernier "
          "check.\n" +
          pose_rows_csv(machine, plan.states, std::vector<char>(plan.states.count, 0), reading_um, "check");
 }

@@ -30,10 +30,11 @@ struct CheckPlan {
   double random_um = 0;  // the first of `shows`, from as many poses at random (median of several draws)
 };
 
-/// The poses, one by one, that raise the sum over the suspects of log(1 + information on a change that moves
-/// the tool point by `expected_um`) most, beside a free set-up and what the fit itself left uncertain. A
-/// change shows from five standard deviations on: what evidence of 100 against some thirty suspects of six
-/// sizes takes. Throws InputError: never fitted, an axis without range. tool.
+/// Chooses the poses one by one. Each pose raises most the sum over the tested parameters of log(1 +
+/// information on a change that moves the tool point by `expected_um`), with a free set-up and the
+/// uncertainty of the fit. A change is detected from five standard deviations on: evidence of 100 against
+/// some thirty parameters of six sizes needs this. Throws InputError: never fitted, an axis without range.
+/// tool.
 CheckPlan check_plan(const model::Machine& machine, const CheckPlanOptions& options = {});
 
 /// A measurement file with these rows, readings to be filled in.

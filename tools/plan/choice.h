@@ -6,7 +6,8 @@
 
 namespace vernier::plan {
 
-/// Everything that the rows must tell apart: one entry per pair of a truth and a rival that is refitted.
+/// All comparisons that the rows must decide: one entry per pair of a true effect and an alternative that is
+/// refitted.
 struct Sides {
   std::vector<Discrimination> side;
   std::vector<double> needed;

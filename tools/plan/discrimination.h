@@ -5,10 +5,10 @@
 
 namespace vernier::plan {
 
-/// How well rows tell two rivals apart when one of them is true and the other one, with all free parameters
-/// of the model, is fitted to the rows. The non-centrality of the rest's chi^2 is
+/// Computes how well rows distinguish two alternatives if one of them is true and the other one, with all
+/// free parameters of the model, is fitted to the rows. The non-centrality of the residual's chi^2 is
 ///   lambda = min over theta of |d - J theta|^2 = d'd - (J'd)' (J'J)^-1 (J'd),
-/// d the difference between the two predictions and J the wrong model's Jacobian, both weighted by 1/u
+/// d the difference between the two predictions and J the Jacobian of the wrong model, both weighted by 1/u
 /// (T-optimal discrimination: Atkinson and Fedorov, Biometrika 62 (1975) 57-70, eq. 2.3).
 class Discrimination {
  public:

@@ -204,9 +204,9 @@ double planned_uncertainty_um(const model::Machine& machine, const model::States
 }
 
 std::string first_plan_csv(const model::Machine& machine, const FirstPlan& plan, double reading_um) {
-  return "# Approach every pose in the sense that dir tells. The first pose comes again: a drift shows "
+  return "# Approach every pose in the direction of dir. The first pose is repeated: a drift shows "
          "there.\n"
-         "# Fill in x, y, z as they are read; rows with the role check judge the fit and never enter it.\n" +
+         "# Fill in x, y, z as they are read; rows with the role check test the fit and never enter it.\n" +
          pose_rows_csv(machine, plan.states, plan.check, reading_um, "first");
 }
 

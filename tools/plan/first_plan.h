@@ -15,7 +15,7 @@ struct FirstPlanOptions {
   double reading_um = 5;     // standard uncertainty of a coordinate that will be read
   double expected_um = 100;  // by how much a parameter may plausibly move the tool point, rms over the volume
   std::size_t most = 400;    // poses
-  double check_share = 0.15;  // poses beside them that only judge
+  double check_share = 0.15;  // share of additional poses that only test the fit
 };
 
 /// Poses to measure a machine at for the first time.

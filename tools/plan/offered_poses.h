@@ -8,9 +8,9 @@
 
 namespace vernier::plan {
 
-/// Poses that a plan may choose from: spread over the ranges in which the machine works (Halton's sequence,
-/// from its member `from` on), a third of them at the ends of an axis, where errors show most; inputs at
-/// their reference, either sense of approach. Throws InputError for an axis without a range. tool.
+/// Poses that a plan may choose from, spread over the working ranges of the machine (Halton's sequence, from
+/// its member `from` on). A third of them are at the ends of an axis, where errors are largest; inputs at
+/// their reference, either approach direction. Throws InputError for an axis without a range. tool.
 model::States offered_poses(const model::Machine& machine, std::size_t count, std::size_t from);
 
 /// The chosen ones as a way: always to the nearest that is left, in shares of the axes' ranges.

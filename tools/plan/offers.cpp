@@ -91,7 +91,8 @@ class Offerer {
     }
   }
 
-  /// Levels of a column: its range, and beyond it what can be set; the middle alone where nobody uses it.
+  /// Levels of a column: its range and the values beyond it that can be set; only the middle if no effect
+  /// uses the column.
   std::vector<double> levels(const model::Column& column, const model::Input& input) {
     const double middle = maths::median(values_of(column));
     if (!drivers_.inputs.contains(input.name)) return {middle};

@@ -15,7 +15,7 @@ inline constexpr const char* kPlanRun = "plan";
 /// Rows of `second` behind those of `first`; both bound to the same machine, with the same columns. tool.
 model::Measurement append_rows(const model::Measurement& first, const model::Measurement& second);
 
-/// The rows that the plan builds on: fit rows with every input that the rivals use, at most `most` of them,
+/// The rows that the plan extends: fit rows with every input of the two effects, at most `most` of them,
 /// spread evenly. tool.
 model::Measurement rows_to_build_on(const model::Measurement& all, const Drivers& drivers, std::size_t most);
 
@@ -23,15 +23,15 @@ model::Measurement rows_to_build_on(const model::Measurement& all, const Drivers
 struct Offers {
   model::Measurement rows;                // bound to the machine that the measurement is bound to
   std::size_t existing = 0;               // rows [0, existing) are measured
-  std::vector<std::string> not_settable;  // inputs that a rival uses and that nobody can set (a decoy)
+  std::vector<std::string> not_settable;  // inputs that an alternative uses and that cannot be set (a decoy)
 };
 
-/// `count` rows drawn with low discrepancy: poses over the declared ranges (corners, edges, interior) where
-/// the tool point is read, the recorded ones where a length about a centre or a deviation along a normal is;
-/// both senses of approach; recorded motion at half, once and twice its speed; travel since the reversal,
-/// time and inputs as the rivals ask for them. Temperatures go 5 K beyond what was recorded, loads down to 0
-/// and to 1.5 times the largest. Each row is a run of its own, labelled kPlanRun, so that a lag has settled.
-/// u: that of the existing rows (median). tool.
+/// `count` rows drawn with low discrepancy. Poses where the tool point is read: over the declared ranges
+/// (corners, edges, interior). Poses where a length about a centre or a deviation along a normal is read: the
+/// recorded ones. Both approach directions; recorded motion at half, once and twice its speed; travel since
+/// the reversal, time and inputs as the effects need them. Temperatures extend 5 K beyond the recorded range,
+/// loads from 0 to 1.5 times the largest. Each row is a separate run, labelled kPlanRun, so that a lag has
+/// reached its final value. u: the median of the existing rows. tool.
 Offers offer_rows(const model::Machine& machine, const model::Measurement& existing, const Drivers& drivers,
                   std::size_t count);
 

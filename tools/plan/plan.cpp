@@ -18,7 +18,7 @@
 namespace vernier::plan {
 namespace {
 
-/// The distance that a diagnosis asks of a rival before it gives a name with confidence.
+/// The distance that a diagnosis requires from an alternative before it gives a name with confidence.
 constexpr double kLead = 6;
 /// One reading must not decide.
 constexpr std::size_t kLeastPoints = 4;
@@ -28,7 +28,7 @@ constexpr std::size_t kMostExisting = 1500;
 /// Time for a part to take on a new temperature before it is measured again, s.
 constexpr double kSoakS = 3600;
 
-/// Sides of the two named rivals, in front of those of the bystanders.
+/// Sides of the two named effects, before those of the bystanders.
 constexpr std::size_t kPair = 2;
 
 /// First observation of each row, and one past the last.
@@ -78,7 +78,7 @@ class Planner {
   }
 
  private:
-  /// Where every run has a BaseShift of its own, so will the new one.
+  /// If every run has its BaseShift, the new run gets one too.
   static void free_shift_of_plan(model::Machine& machine) {
     bool own = false, plain = false;
     for (const model::BaseShift& shift : machine.base_shifts) {
@@ -100,7 +100,7 @@ class Planner {
     return fit::residuals(rival.machine, bound).cwiseProduct(fit::fit_weights(bound)).squaredNorm();
   }
 
-  /// What a weight of 1/u must be divided by: the spread of the better rival's residual, not below 1 where u
+  /// Divisor of the weight 1/u: the standard deviation of the residual of the better effect, not below 1 if u
   /// is given.
   double spread() const {
     double least = 1e300;
@@ -136,7 +136,7 @@ class Planner {
     });
   }
 
-  /// A rival's readings and what its free parameters do to them, weighted.
+  /// The predicted readings of an effect and their derivatives with respect to its free parameters, weighted.
   struct Linear {
     const FittedRival* rival;
     Eigen::VectorXd predicted;
@@ -186,7 +186,8 @@ class Planner {
     choose_at_most(offers, most);
     if (!plan_.separable || others.empty()) return;
     bystanders_ = others;
-    // What no moderate number of rows rules out must not take the rows from what they can tell.
+    // An alternative that no moderate number of rows excludes must not use up the rows that can distinguish
+    // the others.
     const std::size_t moderate =
         options_.points.value_or(std::min(most, std::max(kModerate, 3 * plan_.rows.rows())));
     choose_at_most(offers, moderate);
@@ -220,7 +221,7 @@ class Planner {
     for (int round = 0; round < kRounds; ++round) {
       choose_rows(sides, chosen, least, most, goal);
       exchange_rows(sides, chosen);
-      // In their real order, at their real times, they may be worth less than one by one.
+      // In their real order, at their real times, the rows may carry less information than one by one.
       plan_.rows = carried_out(offers, chosen);
       const Sides real = sides_of(append_rows(existing_, plan_.rows), existing_.rows() + plan_.rows.rows());
       note(real, &Separation::planned);

@@ -10,14 +10,14 @@
 
 namespace vernier::plan {
 
-/// Which rows, measured next, would tell two named effects apart? `a`, `b`: ids or add strings (see
+/// Finds the rows to measure next that distinguish two named effects. `a`, `b`: ids or add strings (see
 /// fit_rival). The effects must outlive the plan. Throws InputError. tool.
 Plan plan_next(const std::string& text, const model::Machine& machine, const model::Measurement& measurement,
                const std::string& a, const std::string& b, const std::vector<effects::Effect>& effects,
                const PlanOptions& options = {});
 
-/// The plan's sentence and what it needs to be carried out, for the list of a diagnosis. Empty where there is
-/// nothing to say about the pair. tool.
+/// The sentence of the plan and what the plan needs, for the list of a diagnosis. Empty if the plan has no
+/// advice for the pair. tool.
 std::vector<std::string> next_measurement(const std::string& text, const model::Machine& machine,
                                           const model::Measurement& measurement, const std::string& a,
                                           const std::string& b, const std::vector<effects::Effect>& effects,

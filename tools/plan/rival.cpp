@@ -23,8 +23,8 @@ const effects::Effect* effect_named(const std::vector<effects::Effect>& effects,
 
 std::string id_of(const std::string& text) { return text.substr(0, text.find(':')); }
 
-/// A time constant or decay length at the short end of what was looked at: the term has become a constant or
-/// a spike, and tells nothing of the effect that it is named for.
+/// A time constant or decay length at the short end of the search range: the term has become a constant or a
+/// spike and does not represent the effect of its name.
 bool degenerate(const diagnose::Scored& scored, const diagnose::ScannedCandidate& item) {
   std::size_t next = 0;
   for (const effects::CandidateUnknown& unknown : effects::scanned_unknowns(item.candidate)) {
@@ -111,7 +111,8 @@ FittedRival fit_rival(const effects::MachineText& model, const diagnose::Evidenc
   effects::EffectToFit one;
   one.choice = effects::parse_add_string(rival.add, base, effects);
   one.coefficients = linear_estimate(evidence, effects::make_candidate(base, one.choice));
-  // What the scan found is held: data that cannot tell two effects apart do not settle a period either.
+  // The result of the scan is fixed: data that cannot distinguish two effects do not determine a period
+  // either.
   one.hold_scanned = true;
   effects::FittedEffects fitted = effects::fit_with_effects(model, measurement, {one});
   rival.candidate = std::move(fitted.effects[0]);

@@ -13,7 +13,7 @@
 
 namespace vernier::plan {
 
-/// The machine at its best fit: what rivals are added to.
+/// The machine at its best fit, to which the alternatives are added.
 effects::MachineText fit_model(const std::string& text, const model::Machine& machine,
                                const model::Measurement& measurement);
 
@@ -43,14 +43,14 @@ double value_of(const diagnose::Scored& scored, const diagnose::Evidence& eviden
 std::vector<std::string> split_rivals(const std::vector<std::string>& arguments,
                                       const std::vector<effects::Effect>& effects);
 
-/// What the rivals depend on besides positions and constants.
+/// Variables of the alternatives besides positions and constants.
 struct Drivers {
   std::set<model::SymbolKind> kinds;
   std::set<std::string> inputs;
 };
 Drivers drivers_of(const std::vector<const FittedRival*>& rivals);
 
-/// The rival's machine with the effect taken back: its coefficients 0.
+/// The machine of the alternative without its effect: its coefficients are 0.
 model::Machine without_effect(const FittedRival& rival);
 
 }  // namespace vernier::plan

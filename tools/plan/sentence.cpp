@@ -17,7 +17,7 @@
 namespace vernier::plan {
 namespace {
 
-/// A ratio beyond this says no more than that the effect appears.
+/// A larger ratio means only that the effect appears.
 constexpr double kMostRatio = 20;
 
 double median(const model::Column& column) { return maths::median({column.begin(), column.end()}); }
@@ -117,7 +117,7 @@ Explanation::Contrast Explanation::sense(std::size_t axis) const {
   c.as_was.states.direction[axis] *= -1;
   c.as_was.states.velocity[axis] *= -1;
   const std::string& name = plan_.machine.axes[axis].name;
-  c.where = fmt::format("with {} approached from both sides (so far from one)", name);
+  c.where = fmt::format("with {} approached from both sides (until now from one side only)", name);
   c.farthest = "the new sense";
   c.usable = true;
   return c;
@@ -193,7 +193,7 @@ std::string Explanation::sentence() const {
     beyond += fmt::format(" {} is logged but nothing that a plan can set.", name);
   if (plan_.told_already && plan_.rows.rows() == 0)
     return fmt::format(
-        "The rows measured so far already tell the two apart: {} explains them better than {} by {:.3g} "
+        "The rows measured so far already distinguish the two: {} explains them better than {} by {:.3g} "
         "(non-centrality {:.3g}, needed {:.3g}).",
         plan_.lead_of_a > 0 ? a : b, plan_.lead_of_a > 0 ? b : a, std::abs(plan_.lead_of_a), worse.now,
         worse.needed);

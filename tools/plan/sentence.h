@@ -9,8 +9,8 @@
 
 namespace vernier::plan {
 
-/// Says in one sentence why the planned rows tell the rivals apart: which state they have that the existing
-/// rows lack, and what that does to each rival. Keeps references. tool.
+/// Explains in one sentence why the planned rows distinguish the two effects: the state that the existing
+/// rows lack, and its influence on each effect. Keeps references. tool.
 class Explanation {
  public:
   /// `existing`: the rows that the plan builds on, bound to the plan's machine.

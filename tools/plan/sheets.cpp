@@ -195,7 +195,7 @@ class MoveWriter {
   std::string& out_;
 };
 
-/// What a person sets before a row: inputs that the rivals use.
+/// Settings that a person makes before a row: inputs of the two effects.
 std::string settings(const Plan& plan, const Drivers& drivers, std::size_t row) {
   std::string text;
   const auto add = [&](const std::string& name, const std::string& unit, double value) {

@@ -6,13 +6,13 @@
 
 namespace vernier::plan {
 
-/// The planned rows as a measurement file whose readings are left to be filled in: units in the header, run
-/// kPlanRun. Only columns that the existing rows have or the rivals use. tool.
+/// The planned rows as a measurement file with empty readings: units in the header, run kPlanRun. Only
+/// columns that the existing rows have or the two effects use. tool.
 std::string plan_csv(const Plan& plan);
 
-/// The planned rows as G-code: each pose is approached from the side that gives the sense of motion (rows at
-/// speed are passed through along their velocity); what a person must set stands in comments. Millimetres,
-/// degrees, mm/min; axes are called as in the machine file. Approaches end within the declared ranges. tool.
+/// The planned rows as G-code. Each pose is approached in the required direction of motion; rows at speed are
+/// passed through along their velocity. Values that a person must set are in comments. Millimetres, degrees,
+/// mm/min; axes have the names of the machine file. Approaches end within the declared ranges. tool.
 std::string plan_gcode(const Plan& plan);
 
 /// Poses to stand at one after the other, as G-code in the same way: `remark` is its first line. tool.

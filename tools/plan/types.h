@@ -24,7 +24,7 @@ struct PlanOptions {
   std::size_t offers = 1000;          // rows to choose from
 };
 
-/// One direction: how far the rival's best refit stays away while `truth` is true, in units of u^2.
+/// One direction: the distance of the best refit of the alternative while `truth` is true, in units of u^2.
 struct Separation {
   double now = 0, planned = 0, needed = 0;
 };
@@ -38,9 +38,9 @@ struct Plan {
   double lead_of_a = 0;                    // by how much B explains the rows so far worse than A (BIC)
   bool told_already = false;               // that, or what they could show, is enough to name one of them
   bool separable = false;                  // the planned rows reach what the confidence needs
-  std::vector<std::string> not_settable;   // inputs that a rival uses and nobody can set
+  std::vector<std::string> not_settable;   // inputs that an alternative uses and that cannot be set
   std::vector<std::string> ruled_out;      // other effects that explain the rows so far, and will no more
-  std::vector<std::string> not_ruled_out;  // ... and that no such plan tells from the two
+  std::vector<std::string> not_ruled_out;  // ... and that no such plan distinguishes from the two
   std::string sentence;                    // for people
   const Separation& worse() const;
 };
@@ -50,7 +50,7 @@ struct Knowledge {
   model::Machine machine;
   model::ParameterSet parameters;
   Eigen::MatrixXd covariance;  // of them, convention included
-  double reading_mm = 0.005;   // standard deviation of a coordinate that will be read, all that is its own
+  double reading_mm = 0.005;   // standard deviation of a coordinate that will be read, independent noise only
   double run_mm = 0;           // ... of what all readings of a run share
   bool new_set_up = true;      // the next readings are in a set-up that nothing is known of
   std::array<bool, 3> reads{true, true, true};  // x, y, z
@@ -61,7 +61,7 @@ struct Knowledge {
 struct AccuracyAim {
   std::string words;  // "the volume"
   std::optional<tolerance::PlacedPart> part;
-  std::vector<model::WorkRange> region;  // in place of the volume; an axis that is not named keeps its own
+  std::vector<model::WorkRange> region;  // in place of the volume; an axis that is not named keeps its range
   /// The machine with the one tool that counts, else that of the file and those of <tools>.
   std::optional<model::Machine> tooled;
 };
@@ -99,8 +99,8 @@ struct AccuracyPlan {
   double random_um = 0;  // after as many poses drawn evenly over the volume (rms over several draws)
   bool reached = true;
   std::vector<AccuracyStep> steps;
-  std::vector<AccuracyLimit> limits;  // of what is left at the end, largest first
-  std::vector<AccuracyLimit> unseen;  // of the floor: what such readings cannot tell
+  std::vector<AccuracyLimit> limits;  // of the remaining uncertainty, largest first
+  std::vector<AccuracyLimit> unseen;  // of the floor: sources that such readings cannot reduce
   std::vector<AccuracyOf> parts;
 };
 

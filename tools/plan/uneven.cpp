@@ -15,7 +15,7 @@ namespace {
 using Wave = std::complex<double>;
 
 constexpr double kMostPeriods = 1000;  // as a diagnosis looks for (FinePeriodThresholds::most_periods)
-constexpr std::size_t kPerRange = 2;   // frequencies looked at for each that the range tells apart
+constexpr std::size_t kPerRange = 2;   // frequencies evaluated for each that the range can distinguish
 constexpr std::size_t kFrequencies = static_cast<std::size_t>(kMostPeriods) * kPerRange;  // looked at in all
 
 /// sum over the positions of exp(2 pi i f q) at f = k / (kPerRange * span), k = 0 ...
@@ -69,7 +69,7 @@ std::vector<double> uneven_positions(double low, double high, const std::vector<
 
 std::string uneven_sentence(const model::Machine& machine, const model::Measurement& measurement,
                             const diagnose::CandidateFinding& finding) {
-  constexpr std::size_t kPositions = 12;  // that are advised: six waves' worth
+  constexpr std::size_t kPositions = 12;  // recommended number: two for each of six periods
   const std::size_t axis = finding.axis.value();
   const model::Column at = model::commanded(measurement, axis);
   std::vector<double> taken;
@@ -80,9 +80,9 @@ std::string uneven_sentence(const model::Machine& machine, const model::Measurem
   for (const double q : uneven_positions(*low, *high, taken, kPositions))
     text += (text.empty() ? "" : ", ") + text::number_text(q);
   const model::Axis& item = machine.axes[axis];
-  return "Measure " + item.name + " in uneven steps as well, which tell the " +
+  return "Measure " + item.name + " in uneven steps as well, which distinguish the " +
          std::to_string(finding.aliases.size() + 1) + " periods apart: " + text +
-         (item.rotary ? " deg, both senses." : " mm, both senses.");
+         (item.rotary ? " deg, both directions." : " mm, both directions.");
 }
 
 }  // namespace vernier::plan

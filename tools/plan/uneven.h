@@ -16,8 +16,8 @@ namespace vernier::plan {
 std::vector<double> uneven_positions(double low, double high, const std::vector<double>& taken,
                                      std::size_t count);
 
-/// Where to measure next, as a sentence, where the positions of the axis do not tell the periods of `finding`
-/// from others (CandidateFinding::aliases). tool.
+/// Advice for the next measurement, as a sentence, if the positions of the axis do not distinguish the
+/// periods of `finding` from others (CandidateFinding::aliases). tool.
 std::string uneven_sentence(const model::Machine& machine, const model::Measurement& measurement,
                             const diagnose::CandidateFinding& finding);
 

@@ -24,11 +24,13 @@ using Eigen::VectorXd;
 // A scatter below a thousandth of what is stated is rounding, and no measure for anything.
 constexpr double kLeastVariance = 1e-6;
 constexpr std::size_t kFewest = 3;  // machines, times, and readings of a machine whose rate is asked for
-// Machines that are asked how far they wander: more tell it no better, and cost as much as all else.
+// Number of machines whose wander is estimated: more machines give no better estimate and take as long as all
+// other steps.
 constexpr std::size_t kMostAsked = 60;
 // Fall of -2 log likelihood at which wandering is no chance: chi^2 of two at 1e-3. It counts whatever it is.
 constexpr double kWorthSaying = 13;
-// A rate that one reading carries is no drift: without any of its readings it is still told at this level.
+// A rate that depends on one reading is no drift: without any one of its readings it must still be
+// significant at this level.
 const double kLogStillTold = std::log(0.05);
 
 /// Readings of one quantity in units of their uncertainty, and the columns of a model of them.
@@ -153,7 +155,7 @@ struct Clearest {
 class FleetFit {
  public:
   explicit FleetFit(const AdditiveModel& model) : model_(model) {
-    // What is left beside what is common: a machine's own steady rate is no wandering.
+    // Residual after the common part: a machine's steady rate is no wander.
     const Solved plain = solve(model.columns(true, {}), model.values());
     VectorXd left = model.values();
     const auto levels = static_cast<Index>(model.machines());
@@ -176,7 +178,7 @@ class FleetFit {
     now_ = solve(x_, whitened(model_.values()));
   }
 
-  /// The machine whose own rate would explain most of what is left.
+  /// The machine whose individual rate would explain most of the residual.
   Clearest clearest_own() const {
     Clearest best;
     if (now_.freedom < 2) return best;
@@ -188,7 +190,7 @@ class FleetFit {
     return best;
   }
 
-  /// Logarithm of the chance of a machine's rate when the reading is left out that carries most of it.
+  /// Logarithm of the probability of a machine's rate without the reading that contributes most to it.
   double without_its_best_reading(const std::string& machine) const {
     double most = -1e300;
     for (const Index row : model_.series_of(machine).row) {
@@ -240,7 +242,7 @@ Drift drift_of(const std::vector<FleetReading>& readings, const AlikeOptions& op
   const double share = options.false_alarms / (2 * static_cast<double>(quantities));
   FleetFit fit(model);
   std::vector<std::string> own;
-  // Were all but two let go their own way, nobody would be left to be common.
+  // If all machines but two had individual rates, no machine would define the common part.
   while (own.size() + 2 < drift.machines) {
     const Clearest next = fit.clearest_own();
     if (next.machine.empty() || next.log_p > std::log(share / static_cast<double>(drift.machines)) ||

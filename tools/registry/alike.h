@@ -11,7 +11,7 @@ namespace vernier::registry {
 
 struct AlikeOptions {
   double every_days = 7;       // readings of one such span count as of one time
-  double false_alarms = 0.01;  // chance of telling any drift, common or own, where there is none
+  double false_alarms = 0.01;  // probability of reporting any drift, common or individual, if none exists
 };
 
 /// A machine that drifts beside the others; the quantity's unit.
@@ -35,13 +35,14 @@ struct Drift {
   std::vector<OwnDrift> own;                           // the clearest first
 };
 
-/// Tells what the machines of a fleet do alike from what one does alone: reading = level of the machine +
-/// common curve of time + own rate x time, least squares weighted by the stated uncertainties. Own rates are
-/// let in one by one, the clearest first, as long as an F test tells them at false_alarms / (2 x machines x
-/// quantities); the common curve by an F test at false_alarms / (2 x quantities). So what most machines do is
-/// common; a scatter beyond the stated uncertainty widens everything, and so does what the machines wander
-/// (wander.h): a drift is what wanders farther than the others do. A rate that falls to chance when one
-/// reading is left out is none. tool.
+/// Separates the common changes of the machines of a fleet from the change of one machine: reading = level of
+/// the machine + common curve of time + individual rate x time, least squares weighted by the stated
+/// uncertainties. Individual rates are added one by one, the clearest first, while an F test is significant
+/// at false_alarms / (2 x machines x quantities); the common curve by an F test at false_alarms / (2 x
+/// quantities). A change of most machines is therefore common. Scatter beyond the stated uncertainty
+/// increases all uncertainties, as does the wander of the machines (wander.h): a drift is a change larger
+/// than the wander of the others. A rate that is not significant without one of its readings is not reported.
+/// tool.
 std::vector<Drift> drifts(const std::vector<FleetReading>& readings, const AlikeOptions& options);
 
 }  // namespace vernier::registry

@@ -7,8 +7,8 @@
 
 namespace vernier::registry {
 
-/// Values as cells of a row, and back. A cell that is NULL reads as nothing: "", 0. Throw DatabaseError for
-/// what is no number.
+/// Converts values to cells of a row, and back. A NULL cell is read as an empty value: "", 0. Throw
+/// DatabaseError if a cell is not a number.
 Cell cell(std::int64_t value);
 Cell cell(double value);
 std::string words(const Cell& cell);

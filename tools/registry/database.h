@@ -8,7 +8,7 @@
 
 namespace vernier::registry {
 
-/// A value of a row as text; nothing: NULL.
+/// A value of a row as text; `nullopt`: NULL.
 using Cell = std::optional<std::string>;
 using Row = std::vector<Cell>;
 
@@ -29,7 +29,7 @@ class Database {
   virtual std::int64_t written() const = 0;
   /// What begins a transaction that writes.
   virtual const char* begin() const = 0;
-  /// What makes a SELECT pass over rows that somebody else has in hand; empty where writers stand in line.
+  /// Clause with which a SELECT skips rows that another caller has locked; empty if writers wait in a queue.
   virtual const char* skip_locked() const = 0;
   /// Microseconds since 1970 by the database's own clock (a file's: that of this computer): one clock for all
   /// who use it. Throws DatabaseError.

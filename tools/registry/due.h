@@ -12,11 +12,11 @@ namespace vernier::registry {
 /// When a machine is to be checked, and why.
 struct DueMachine {
   std::string machine, verdict, why;            // of the last check; why it is due, empty: it is not
-  std::optional<std::int64_t> last_us, due_us;  // none: never checked; none: nobody asked for checks
+  std::optional<std::int64_t> last_us, due_us;  // nullopt: never checked; nullopt: no checks requested
 };
 
-/// All machines, the most overdue first. A check is due when its time has come, when none was ever made, when
-/// the last one could not tell, or when what runs was put there after it. tool.
+/// All machines, the most overdue first. A check is due in four cases: its time has come, no check was ever
+/// made, the last check was not conclusive, or the running image was loaded after it. tool.
 std::vector<DueMachine> due_machines(Registry& registry, std::int64_t at_us);
 
 }  // namespace vernier::registry

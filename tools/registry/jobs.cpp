@@ -197,7 +197,7 @@ std::int64_t work(const WorkOptions& options, const std::atomic<bool>& stop,
     }
     if (!command.ended()) {
       command.end();
-      // Given back at once, without waiting for the lease.
+      // Returned immediately, without waiting for the lease.
       if (mine) patient.with([&](JobQueue& queue) { return queue.renew(job, -1); });
       continue;
     }

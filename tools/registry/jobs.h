@@ -24,15 +24,15 @@ struct JobCounts {
   std::int64_t waiting = 0, taken = 0, done = 0, failed = 0;
 };
 
-/// The queue in the registry. A job is taken under a lease that its worker renews while it lives; one whose
-/// lease has run out is free again. What a job answered is written once, by the attempt that holds it:
-/// whoever lost it meanwhile is told so and writes nothing. tool.
+/// The queue in the registry. A job is taken under a lease, which its worker renews while it runs. A job
+/// whose lease has expired is free again. The answer of a job is written once, by the attempt that holds the
+/// lease. An attempt that has lost the lease gets an error and writes no answer. tool.
 class JobQueue {
  public:
   explicit JobQueue(Registry& registry) : registry_(registry) {}
 
-  /// Adds a job for each machine that the batch has none for; how many were new. {machine} in the command
-  /// stands for the name, as one word of a shell.
+  /// Adds a job for each machine without a job in the batch; returns the number of new jobs. {machine} in the
+  /// command is replaced by the name, as one word of a shell.
   std::int64_t add(const std::string& batch, const std::string& command,
                    const std::vector<std::string>& machines);
   /// The next job that is free, now this worker's for lease_s; nothing where none is.

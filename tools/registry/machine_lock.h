@@ -31,7 +31,7 @@ class MachineLocks {
   /// Prolongs the leases where a third of one has passed. Throws LockLost where a lease has ended or another
   /// caller has taken the machine.
   void renew();
-  /// As renew(), at once: asked right before something that cannot be undone.
+  /// As renew(), but immediate: called right before a step that cannot be undone.
   void require();
   /// Who holds them, for statements that are only carried out while the lock is held.
   const std::string& holder() const { return holder_; }

@@ -17,7 +17,7 @@ class PostgresDatabase : public Database {
   explicit PostgresDatabase(const std::string& address)
       : connection_(PQconnectdb(address.c_str()), PQfinish) {
     if (PQstatus(connection_.get()) != CONNECTION_OK) fail();
-    // Notices ("relation exists, skipping") are nobody's business here.
+    // Notices ("relation exists, skipping") are not reported.
     PQsetNoticeProcessor(
         connection_.get(), [](void*, const char*) {}, nullptr);
   }

@@ -78,7 +78,7 @@ constexpr double kClockAhead_s = 2, kClockBehind_s = 10;
 Registry::Registry(std::unique_ptr<Database> database) : database_(std::move(database)) { make_tables(); }
 
 void Registry::make_tables() {
-  // Who finds the tables there writes nothing: readers of a file that others fill never stand in their way.
+  // If the tables exist no data are written: readers of a file that others fill do not block them.
   const bool server = database_->skip_locked()[0] != '\0';
   const char* const found = server ? "SELECT 1 FROM pg_tables WHERE tablename = 'rollout' AND schemaname = "
                                      "ANY (current_schemas(false))"

@@ -54,15 +54,15 @@ struct LiveState {
   bool historical = false;       // the sample had waited in the gateway's store
 };
 
-/// How far a live state may be believed at a moment.
+/// Reliability of a live state at a given time.
 struct LiveAge {
   enum class State : std::uint8_t { kOnline, kStale, kAway } state = State::kAway;
   double age_s = 0;    // since the registry took the newest sample
   double clock_s = 0;  // gateway's clock less the registry's, where the sample had not waited
   bool clock_off = false;
 };
-/// now_us: of the registry's clock (Database::now_us); stale_s: a state that is older is not believed. A
-/// gateway's clock is off where its stamp is more than 2 s ahead or 10 s behind. tool.
+/// now_us: of the registry's clock (Database::now_us); stale_s: an older state is not accepted. The clock of
+/// a gateway has an error if its stamp is more than 2 s ahead or 10 s behind. tool.
 LiveAge live_age(const LiveState& live, std::int64_t now_us, double stale_s);
 /// "online", "stale" or "away".
 const char* name_of(LiveAge::State state);
@@ -79,7 +79,7 @@ class Registry {
   /// Adds a machine, or changes one of that name.
   void put(const FleetMachine& machine);
   std::vector<FleetMachine> machines();
-  /// Throws InputError where there is none of that name.
+  /// Throws InputError if no machine has that name.
   FleetMachine machine(const std::string& name);
   /// Enters the key of a machine's board where none is entered. False: another machine's board has this key,
   /// or one was entered meanwhile.

@@ -7,11 +7,11 @@
 
 namespace vernier::registry {
 
-/// A command with {machine} put in, as one word of a shell whatever stands in it. tool.
+/// Replaces {machine} in a command by the name, as one word of a shell with any characters. tool.
 std::string command_for(const std::string& command, const std::string& machine);
 
-/// A shell's command that runs, in a process group of its own; ended with whoever started it. Its output is
-/// read, and the last line of it kept. tool.
+/// A running shell command in a separate process group. It ends together with the process that started it.
+/// Its output is read, and the last line of the output is kept. tool.
 class ShellCommand {
  public:
   /// Throws InputError where no process can be had.
@@ -27,7 +27,7 @@ class ShellCommand {
   int status() const { return status_; }
   /// The last line that is not empty of what it printed, 400 letters at most.
   std::string last_line() const;
-  /// Ends it, and all that it started, at once.
+  /// Ends it, and all that it started, immediately.
   void end();
 
  private:

@@ -11,7 +11,7 @@
 namespace vernier::registry {
 namespace {
 
-constexpr int kBusyMs = 20'000;  // how long a writer stands in line
+constexpr int kBusyMs = 20'000;  // how long a writer waits
 constexpr std::size_t kStatementsKept = 64;
 
 class SqliteDatabase : public Database {
@@ -65,7 +65,7 @@ class SqliteDatabase : public Database {
     return statements_[sql] = statement;
   }
   void bind(sqlite3_stmt* statement, std::size_t at, const Cell& value) {
-    // "$2" is a name to SQLite, numbered in the order in which names first stand in the text.
+    // "$2" is a name to SQLite, numbered in the order in which names first appear in the text.
     const int index = sqlite3_bind_parameter_index(statement, ("$" + std::to_string(at + 1)).c_str());
     const int code = !value ? sqlite3_bind_null(statement, index)
                             : sqlite3_bind_text64(statement, index, value->data(), value->size(),

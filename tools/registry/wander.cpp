@@ -91,7 +91,7 @@ Wander estimated_wander(const std::vector<WanderSeries>& machines, const VectorX
       tried.push_back({{ratio, days}, judged(machines, left, {ratio, days})});
       least = std::min(least, tried.back().second.unlikelihood);
     }
-  // A rate is told only where all that the readings do not exclude would let it be told.
+  // A rate is reported only if it is significant for all values that the readings do not exclude.
   double widest = 0;
   for (const auto& [wander, here] : tried)
     if (here.unlikelihood <= least + kNotExcluded && here.rate_variance > widest)

@@ -21,10 +21,10 @@ struct Wander {
   double gain = 0;  // fall of -2 log likelihood against independent readings
 };
 
-/// Restricted maximum likelihood (Patterson and Thompson 1971) of what is left of the readings, in units of
-/// their uncertainty, when each machine may have a level and a steady rate of its own: over ratios and times
-/// on a grid of factors of two. Of those that the readings do not exclude at 95 % the one under which rates
-/// are known worst. tool.
+/// Restricted maximum likelihood (Patterson and Thompson 1971) of the residual of the readings, in units of
+/// their uncertainty, with a level and a steady rate for each machine. Evaluates ratios and times on a grid
+/// of factors of two. Of the values that the readings do not exclude at 95 %, it returns the one for which
+/// rates have the largest uncertainty. tool.
 Wander estimated_wander(const std::vector<WanderSeries>& machines, const Eigen::VectorXd& left);
 
 /// Multiplies the rows of each machine by the inverse root of their covariance: as if they were independent.

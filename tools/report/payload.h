@@ -18,8 +18,8 @@ std::string escape_html(std::string_view text);
 /// little-endian floats, null and what is not finite as NaN. Short rows stay as they are. tool.
 nlohmann::ordered_json packed(const nlohmann::ordered_json& value);
 
-/// JSON that can stand in a <script> element: no '<' and '>' in it, ASCII only; bytes that are no UTF-8 are
-/// replaced. tool.
+/// JSON that is valid inside a <script> element: no '<' and '>' in it, ASCII only; bytes that are no UTF-8
+/// are replaced. tool.
 std::string script_json(const nlohmann::ordered_json& value);
 
 }  // namespace vernier::report

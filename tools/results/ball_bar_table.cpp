@@ -13,7 +13,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// In the order of kDiagnosticsNames; A and B stand for the axes of the plane, an empty name is left out.
+/// In the order of kDiagnosticsNames; A and B are placeholders for the axes of the plane, an empty name is
+/// not written.
 constexpr std::array<const char*, importer::kDiagnosticsCount> kWords = {
     "scale of both axes",
     "",
@@ -36,7 +37,7 @@ constexpr std::array<const char*, importer::kDiagnosticsCount> kWords = {
     "lateral play of B",
     "lateral play of B, between its ends"};
 
-/// The axis' letter for A and B where they stand alone.
+/// The letter of the axis for A and B if they are separate words.
 std::string in_words(const char* words, const Circle& circle) {
   std::string text = words;
   for (std::size_t k = 0; k < 2; ++k) {

@@ -6,10 +6,10 @@
 
 namespace vernier::results {
 
-/// The diagnostics of a ball bar, those that shape the circle most first: {name, value, unit, effect_um (what
-/// it does to the radius, peak to peak), share (of all effects)}. Where the bar stood (its centre) is no
-/// diagnostic of the machine and is left out. Fit rows of both senses; null where one sense is missing or
-/// they cannot tell the terms apart. tool.
+/// The diagnostics of a ball bar, those with the largest effect on the circle first: {name, value, unit,
+/// effect_um (effect on the radius, peak to peak), share (of all effects)}. The position of the ball bar (its
+/// centre) is no diagnostic of the machine and is not included. Uses fit rows of both directions; null if one
+/// direction is missing or if the rows cannot distinguish the terms. tool.
 nlohmann::ordered_json ball_bar_table(const Circle& circle, const model::Measurement& measurement);
 
 }  // namespace vernier::results

@@ -66,9 +66,8 @@ std::string sentence(const residual::BeforeAfter& result) {
   const std::string figures =
       fmt::format("{:.4g} um rms before, {:.4g} um after", all.before.rms, all.after.rms);
   if (!all.interval)
-    return fmt::format(
-        "It cannot be told whether the correction helped: {}; there are too few {} to judge by.", figures,
-        result.paired ? "poses" : "rows");
+    return fmt::format("It cannot be decided if the correction helped: {}; there are too few {}.", figures,
+                       result.paired ? "poses" : "rows");
   const std::string how =
       fmt::format("{}: {} % less (95 % interval {} %)", figures, percent(*all.reduction), interval_text(all));
   switch (result.verdict()) {
@@ -80,7 +79,7 @@ std::string sentence(const residual::BeforeAfter& result) {
     case residual::Helped::kCannotBeTold:
       break;
   }
-  return "It cannot be told whether the correction helped: " + how + ", which holds 0.";
+  return "It cannot be decided if the correction helped: " + how + ", which holds 0.";
 }
 
 /// How the two were compared, and what a reader should mind.

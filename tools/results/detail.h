@@ -27,7 +27,7 @@ void each_column(const model::Machine& machine, const model::Measurement& measur
 nlohmann::ordered_json circular_detail(const model::Machine& machine, const model::Measurement& measurement,
                                        const Eigen::VectorXd& residual, bool with_rows = false);
 
-/// ISO 230-4 numbers of every circular test among the rows (a list, empty where there is none).
+/// ISO 230-4 numbers of every circular test among the rows (a list, empty without such tests).
 nlohmann::ordered_json circular_json(const model::Machine& machine, const model::Measurement& measurement);
 
 }  // namespace vernier::results

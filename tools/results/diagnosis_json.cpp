@@ -110,7 +110,7 @@ void add_not_covered(text::Assurance& assurance, const model::Machine& machine, 
     assurance.not_covered("The rows have no u: the size of the noise is not known, only its structure.");
 }
 
-/// Vouched for is one verdict only: there is nothing to add.
+/// Only one verdict has an assurance: no error can be added to the model.
 text::Assurance assurance_of(const diagnose::Diagnosis& diagnosis, const model::Measurement& m) {
   text::Assurance assurance(text::AssuranceKind::kDiagnose);
   assurance.require("verdict-consistent", diagnosis.verdict == diagnose::Verdict::kConsistent,

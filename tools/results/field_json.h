@@ -16,9 +16,9 @@ nlohmann::ordered_json field_json(const model::Machine& machine, const map::Erro
 /// `words` say (as for state_at). Throws InputError with the word. tool.
 model::States middle_state(const model::Machine& machine, const std::string& words);
 
-/// field_json over the linear axes, `count` nodes along each, from middle_state. Nothing where the machine
-/// has no such volume (no linear axis, more than three, one without min and max); `why_not` then says why.
-/// tool.
+/// field_json over the linear axes, `count` nodes along each, from middle_state. `nullopt` if the machine has
+/// no such volume (no linear axis, more than three, one without min and max); `why_not` then contains the
+/// reason. tool.
 std::optional<nlohmann::ordered_json> volume_json(const model::Machine& machine, std::size_t count,
                                                   std::string& why_not);
 

@@ -53,7 +53,8 @@ std::vector<std::string> values_of(const model::Measurement& m, const std::strin
                          "no such column to group by; there are " + text::joined(known_columns(m), ", "));
 }
 
-/// log of the chance that means of groups of one spread differ so much; 0 where there is none to tell from.
+/// log of the probability that means of groups with the same standard deviation differ so much; 0 without
+/// groups to distinguish.
 double log_chance(const Groups& groups) {
   double count = 0, sum = 0, squares = 0, between = 0;
   for (const auto& [value, group] : groups) {
@@ -83,7 +84,7 @@ ordered_json one_column(const model::Measurement& m, const Eigen::VectorXd& resi
   constexpr std::size_t kMostGroups = 50;  // rows of a table that a person reads
   if (seen.size() > kMostGroups)
     throw text::InputError({}, column,
-                           fmt::format("{} different values: too many groups to be told apart", seen.size()));
+                           fmt::format("{} different values: too many groups to distinguish", seen.size()));
   double least = 0;
   for (const auto& [kind, groups] : kinds) least = std::min(least, log_chance(groups));
   ordered_json each = ordered_json::array();

@@ -35,7 +35,7 @@ double u_of(const model::Measurement& m, std::size_t row, bool rotation) {
   const double u = angle > 0 ? angle : m.uncertainty[at];
   if (!(u > 0))
     throw text::InputError({m.files[m.file[row]], m.line[row]}, format::columns::kUncertainty,
-                           "the limit is told in u, and this row has none");
+                           "the limit is in units of u, and this row has no u");
   return u;
 }
 
@@ -55,7 +55,7 @@ ResidualLimit residual_limit(const std::string& words) {
   if (!number || !(*number > 0) ||
       !(limit.of_u || limit.rotation || (found && found->dimension == format::Dimension::kLength)))
     throw text::InputError({}, words,
-                           "a limit is of the form 2u, 25um, 0.2mm or 0.025deg; rms=1.5u judges the rms");
+                           "a limit is of the form 2u, 25um, 0.2mm or 0.025deg; rms=1.5u tests the rms");
   limit.value = *number * (limit.of_u ? 1 : found->factor);
   return limit;
 }

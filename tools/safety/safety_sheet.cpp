@@ -31,7 +31,7 @@ struct RuleText {
 const RuleText& text_of(SafetyRule rule) {
   static const std::array<RuleText, kSafetyRuleCount> kTexts = {{
       {"correction", "of the working volume",
-       "a machine that is off by more than 1 % of its volume is not the machine of this file", 0.01},
+       "a machine with errors above 1 % of its volume is not the machine of this file", 0.01},
       {"max-correction", "of maxcorrection", "beyond it the correction would be cut off", 1},
       {"cancellation", "times the correction",
        "terms ten times larger than their sum hold only where they were measured together", 10},
@@ -51,7 +51,7 @@ const RuleText& text_of(SafetyRule rule) {
       {"disturbed", "of what the machine shows",
        "something that the model does not hold, as large as the errors of the machine, has bent the fit",
        0.75},
-      {"bound", "of the correction", "an image may be off by no more than what it corrects", 1},
+      {"bound", "of the correction", "the error of an image must not exceed its correction", 1},
   }};
   return kTexts[static_cast<std::size_t>(rule)];
 }
@@ -143,7 +143,7 @@ class Judge {
   void judge_cancellation() {
     double sum = 0;
     for (const Source& source : sources_of_machine()) sum += source.varying_rms_mm;
-    // Below the finest instrument's resolution there is nothing to compare.
+    // Not tested below the resolution of the finest instrument.
     constexpr double kNothing_mm = 1e-4;
     add(SafetyRule::kCancellation, sum / std::max(varying_rms_mm(), kNothing_mm), largest_source());
   }
@@ -241,8 +241,8 @@ class Judge {
     add(SafetyRule::kSetUp, worst_um, of);
   }
 
-  /// Upper end (95 %, one-sided) of what check rows leave of this machine over what they leave of the nominal
-  /// one: a spread of n readings is known to 1 / sqrt(2 n).
+  /// Upper limit (95 %, one-sided) of the ratio of check-row residuals: this machine over the nominal
+  /// machine. The relative uncertainty of a standard deviation of n readings is 1 / sqrt(2 n).
   static double upper_ratio(const model::FitRecord& record) {
     constexpr double kOneSided = 1.645;  // standard deviations
     if (record.check_count == 0) return record.check_ratio;

@@ -31,7 +31,7 @@ std::optional<SafetyRule> rule_named(const std::string& name);
 
 struct SafetyFinding {
   SafetyRule rule = SafetyRule::kCorrection;
-  std::optional<double> value;  // nothing where the file cannot tell (a machine that was never fitted)
+  std::optional<double> value;  // nullopt if the file does not give it (a machine that was never fitted)
   double limit = 0;
   std::string unit;
   bool ok = true;
@@ -54,9 +54,9 @@ struct SafetySheet {
   std::string refusal() const;
 };
 
-/// Judges a machine over its <volume> (else its axes' ranges) and with its <tools>, at the references of its
-/// inputs, its uncertainty also at both ends of what each input was measured at. `accepted`: rules that the
-/// user overrides. Throws InputError for an axis without a range. tool.
+/// Evaluates a machine over its <volume> (else the ranges of its axes) and with its <tools>, at the
+/// references of its inputs; the uncertainty also at both ends of the measured range of each input.
+/// `accepted`: rules that the user overrides. Throws InputError for an axis without a range. tool.
 SafetySheet safety_sheet(const model::Machine& machine, const std::vector<SafetyRule>& accepted = {});
 
 /// Rules by their names. Throws InputError for one that does not exist, naming those that do.

@@ -32,15 +32,15 @@ using Eigen::VectorXd;
 constexpr Index kBlock = 10000, kAtOnce = 1000;
 /// Trials through the whole chain that the linear ones are held against.
 constexpr int kTried = 12;
-/// Lengths of what a model may lack, mm: an encoder's period, a screw's pitch, the way between stations. One
-/// class is as good as another; each gives an interval of its own.
+/// Assumed lengths of errors that a model may lack, mm: period of an encoder, pitch of a screw, distance
+/// between stations. Each class is treated alike and gives a separate interval.
 struct Wavelengths {
   double shortest_mm, longest_mm;
 };
 constexpr std::array<Wavelengths, 3> kWavelengths = {{{1, 10}, {10, 60}, {60, 600}}};
-/// What is smaller is nobody's concern: a nanometre.
+/// Smaller values are ignored: a nanometre.
 constexpr double kNothing_mm = 1e-6;
-/// A linear trial may be off by this share of the standard deviation.
+/// Largest error of a linear trial, as a share of the standard deviation.
 constexpr double kLinearEnough = 0.05;
 
 class ConformityRunner {
@@ -342,7 +342,7 @@ class ConformityRunner {
     return std::all_of(classes.begin(), classes.end(), [&](const Tallies& all) { return settled(all); });
   }
 
-  /// What the model lacks is known to a tenth or so: its intervals are told half as finely.
+  /// The discrepancy is known to about a tenth: its intervals are computed with half the resolution.
   double tolerance() const { return classes_ > 1 ? 2 * options_.tolerance : options_.tolerance; }
 
   bool settled(const std::vector<TrialTally>& tallies) const {
@@ -351,7 +351,7 @@ class ConformityRunner {
     });
   }
 
-  /// Trials that it will take, as far as those so far tell: the doubt falls with the root of their number.
+  /// Estimated number of trials, from those so far: the uncertainty falls with the root of their number.
   double needed(const std::vector<Tallies>& off, const std::vector<Tallies>& on) const {
     double worst = 1;
     for (const auto* classes : {&off, &on})

@@ -64,8 +64,8 @@ struct CharacteristicResult {
   std::optional<std::array<double, 2>> limits_mm;
   Expectation off, on;               // without and with the correction
   std::vector<SourceShare> sources;  // largest fall first
-  /// The sources of which one falls most with the confidence asked for: one where it is told, none where no
-  /// fall is above a nanometre.
+  /// The sources whose removal lowers the value most, with the required confidence: one source if it is
+  /// significant, none if no decrease is above a nanometre.
   std::vector<std::string> dominant;
   double open = 0;         // part of the variance that no reading bears on
   double process = 0;      // part of the points' own errors
@@ -80,10 +80,10 @@ struct PartConformity {
   bool settled = true;     // the numerical tolerance was reached
   bool exact = false;      // every trial through the whole chain; else linear in the parameters
   double linear_mm = 0;    // by how much the linear trials were off in those that were tried with the chain
-  bool open_known = true;  // the machine file says what its readings left open
+  bool open_known = true;  // the machine file states what its readings did not determine
   std::array<double, 3> discrepancy_mm{};  // what the fit saw the model lack, in every interval; x, y, z
   std::vector<std::string> stale;          // parameters that were changed since the fit
-  std::vector<std::string> outside;        // "Z -350..-300": where the part is and nobody measured
+  std::vector<std::string> outside;        // "Z -350..-300": ranges of the part that were not measured
 };
 
 /// Monte Carlo over the covariance that the last fit left in the machine file (JCGM 101:2008): what every

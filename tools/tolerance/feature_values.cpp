@@ -19,14 +19,14 @@ using Eigen::MatrixXd;
 /// Below this share of its length a row is nothing that the frame left.
 constexpr double kLeft = 1e-9;
 
-/// Rows that pick the deviations along the directions of a feature's points (all three where there is none).
+/// Rows that select the deviations along the directions of a feature's points (all three without directions).
 MatrixXd along_directions(const PlacedFeature& feature, Index points) {
   const bool every = feature.direction.squaredNorm() == 0 || feature.feature.kind == PartFeatureKind::kPath;
   const auto count = static_cast<Index>(feature.count), first = static_cast<Index>(feature.first);
   MatrixXd rows = MatrixXd::Zero((every ? 3 : 1) * count, 3 * points);
   for (Index i = 0; i < count; ++i) {
     if (every) {
-      // Along a path nothing is off.
+      // Along a path the deviation is zero.
       const Eigen::Vector3d tangent = feature.direction.col(i);
       rows.block<3, 3>(3 * i, 3 * (first + i)) = Eigen::Matrix3d::Identity() - tangent * tangent.transpose();
     } else {

@@ -15,7 +15,7 @@
 namespace vernier::tolerance {
 namespace {
 
-/// The quantities and functions of a term, written as the catalogue writes them: {q} dir{q} {T} wave exp.
+/// The quantities and functions of a term, written as in the catalogue: {q} dir{q} {T} wave exp.
 using Tokens = std::set<std::string>;
 
 const char* token_of(model::Op op) {
@@ -77,7 +77,7 @@ class Namer {
         forms_.push_back({&effect, &form, tokens_of_form(form)});
   }
 
-  /// Id and label of what acts as `is` says.
+  /// Id and label of an effect with the action of `is`.
   std::pair<std::string, std::string> name(const std::function<bool(const model::Expr&)>& is, bool hats,
                                            std::optional<std::size_t> axis) const {
     const std::optional<PlacedTerm> term = find_term(is, hats, axis);
@@ -113,7 +113,7 @@ class Namer {
         term.tokens.insert("hats");
       else
         collect(whole, is, term);
-      // max(0, 1 - abs(q - station) / width) is a hat.
+      // max(0, 1 - abs(q - station) / width) is a function of a piecewise linear basis.
       if (term.tokens.contains("max") && term.tokens.contains("abs")) {
         for (const char* of_hat : {"max", "abs", "q"}) term.tokens.erase(of_hat);
         term.tokens.insert("hats");
@@ -296,7 +296,7 @@ class SourceList {
     if (parameter) source.parameters.push_back(*parameter);
   }
 
-  /// What no parameter stands for, and is away from nominal all the same.
+  /// Errors away from nominal that no parameter represents.
   void take_fixed() {
     for (std::size_t i = 0; i < machine_.statics.size(); ++i)
       if (machine_.statics[i].value != nominal_.statics[i].value) take_static(i, std::nullopt);

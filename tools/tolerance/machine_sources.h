@@ -21,9 +21,9 @@ struct MachineSource {
   std::vector<std::size_t> scales;                           // axes with a scale factor
 };
 
-/// What is free in a machine, or is away from nominal. A static is named by the term that it stands in: its
-/// quantities and functions, and the degree of freedom that it acts on, are looked for among the forms of the
-/// catalogue, in its order. tool.
+/// The free or non-nominal errors of a machine. A static gets the name of its term: the forms of the
+/// catalogue are searched in order for its quantities, its functions and the degree of freedom on which it
+/// acts. tool.
 std::vector<MachineSource> machine_sources(const model::Machine& machine,
                                            const model::ParameterSet& parameters,
                                            const std::vector<effects::Effect>& catalogue);

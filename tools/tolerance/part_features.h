@@ -21,7 +21,7 @@ const char* kind_name(PartFeatureKind kind);
 enum class PartCharacteristic : std::uint8_t {
   kPosition,  // width or diameter of the zone about its true place that it takes up, ISO 1101
   kSize,      // actual - nominal diameter
-  kForm,      // width of the zone about its own least-squares plane or cylinder
+  kForm,      // width of the zone about its least-squares plane or cylinder
 };
 const char* characteristic_name(PartCharacteristic characteristic);
 
@@ -46,10 +46,10 @@ struct PartDrawing {
   std::vector<PartFeature> features;
 };
 
-/// Reads a part from CSV: feature, kind (point plane cylinder), x y z, and where they say something nx ny nz,
-/// i j k (direction of the tool), diameter, length, width, position, size (plus and minus) or size_low and
-/// size_high, form, datum (yes). A unit stands in the header, mm where there is none. Throws InputError with
-/// file, line and word. tool.
+/// Reads a part from CSV. Columns: feature, kind (point plane cylinder), x y z, and if needed nx ny nz, i j k
+/// (direction of the tool), diameter, length, width, position, size (plus and minus) or size_low and
+/// size_high, form, datum (yes). A unit is in the header; mm without one. Throws InputError with file, line
+/// and word. tool.
 PartDrawing parse_part(const std::string& text, const std::string& file);
 
 /// The part moved: turned about the workpiece's z by `turn_deg`, then shifted, mm. tool.

@@ -17,8 +17,8 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector3d;
 
-/// Points of a feature: on each circle, circles of a cylinder, points along an edge of a plane. Twelve tell
-/// the first three waves of a circle, five a curve of fourth degree.
+/// Points of a feature: on each circle, circles of a cylinder, points along an edge of a plane. Twelve points
+/// determine the first three harmonics of a circle, five a curve of fourth degree.
 constexpr int kOnCircle = 12, kCircles = 3, kOnEdge = 5;
 
 struct SurfaceSample {
@@ -118,8 +118,8 @@ model::States start_of(const model::Machine& machine, const model::States& at) {
   return start;
 }
 
-/// Senses of the axes as points follow one another; an axis that stays keeps its last sense, and begins
-/// coming from below.
+/// Directions of the axes as points follow one another. An axis without motion keeps its last direction; it
+/// begins with + (from below).
 void set_senses(const model::Machine& machine, std::size_t first, std::size_t count, model::States& states) {
   constexpr double kStill = 1e-6;  // mm or deg
   for (std::size_t a = 0; a < machine.axes.size(); ++a) {

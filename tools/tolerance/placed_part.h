@@ -18,7 +18,7 @@ struct PlacedFeature {
   Eigen::Matrix3Xd direction;
 };
 
-/// Where the machine stands for every point of every feature.
+/// Positions of the machine for every point of every feature.
 struct PlacedPart {
   std::vector<PlacedFeature> features;
   model::States states;
@@ -26,9 +26,9 @@ struct PlacedPart {
 };
 
 /// Points spread over every feature (a cylinder's 12 on each of three circles, a plane's 5 x 5) and the axis
-/// positions at which the nominal chain has its tool there; senses of motion as they follow one another, a
-/// circle counter-clockwise about its axis. `at`: inputs, and where the axes stand that are not needed.
-/// Throws LimitNotMet where a point is out of reach, naming the line. tool.
+/// positions at which the nominal chain has its tool there. Directions of motion are as the points follow one
+/// another, a circle counter-clockwise about its axis. `at`: inputs, and the positions of axes that are not
+/// needed. Throws LimitNotMet if a point is out of reach, naming the line. tool.
 PlacedPart place_part(const model::Machine& machine, const PartDrawing& part, const model::States& at);
 
 }  // namespace vernier::tolerance

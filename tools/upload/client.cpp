@@ -157,8 +157,7 @@ void Client::require_board(const BoardClaim& claim) {
                                         info_.board.empty() ? "without a name" : info_.board, claim.name));
   if (claim.key) {
     const auto proof = proof_of(info_.board);
-    if (!proof)
-      throw text::LimitNotMet("this board has no key of its own and cannot prove that it is the right one");
+    if (!proof) throw text::LimitNotMet("this board has no key and cannot prove its identity");
     if (std::memcmp(proof->key, claim.key->data(), claim.key->size()) != 0)
       throw text::LimitNotMet(
           "this board has another key than the one that is expected: it is another board");
@@ -167,7 +166,7 @@ void Client::require_board(const BoardClaim& claim) {
   claim_ = claim;
 }
 
-// A signed request is worth something only to the start of a board whose nonce stands in it.
+// A signed request is valid only for the start of a board whose nonce it contains.
 void Client::require_same_start(const ChallengeReply& challenge) {
   if (!claim_.key || std::memcmp(challenge.nonce, proved_start_.data(), proved_start_.size()) == 0) return;
   require_board(BoardClaim(claim_));
@@ -386,7 +385,7 @@ std::optional<std::vector<std::uint8_t>> Client::confirmed(const std::function<v
     put(payload, size);
     return ask(LinkOp::kRead, payload);
   };
-  // Sizes stand in the same place of every version.
+  // Sizes are at the same offset in every version.
   std::vector<std::uint8_t> bytes = piece(0, 16);
   const std::size_t total = std::size_t{get<std::uint32_t>(bytes, offsetof(UploadHeader, header_bytes))} +
                             get<std::uint32_t>(bytes, offsetof(UploadHeader, image_bytes));

@@ -110,7 +110,7 @@ struct BoardClaim {
 class Client {
  public:
   explicit Client(std::unique_ptr<Transport> transport);
-  /// What the board wants signed is signed with this key from now on; nothing is where there is none.
+  /// Requests that must be signed are signed with this key from now on; without a key no request is signed.
   void sign_with(const std::optional<SigningKey>& key) { key_ = key; }
 
   /// Asks the board who it is, now. With a key in the claim the board must sign a fresh nonce and its name
@@ -140,7 +140,7 @@ class Client {
   /// The next tick takes it; whether it fitted shows in the mode and in `refused_commands`.
   void command(Command command);
   void weight(std::uint8_t axis, double share);
-  /// Touches from number `first`, as many as one reply carries; empty where none came since.
+  /// Touches from number `first`, as many as one reply holds; empty if no touch occurred since.
   BoardTouches touches(std::uint64_t first);
   /// Where the workpiece lies: origin in machine coordinates, mm; angle about Z, deg. Counts for later
   /// touches.

@@ -13,9 +13,9 @@ nlohmann::ordered_json live_json(const BoardInfo& info, const BoardTick& tick, c
                                  const BoardState& state);
 /// Has a board an image to go back to: of its store, or given to it at its start (vernier-hal --image)? tool.
 bool has_confirmed(const SlotsReply& slots);
-/// "0123456789abcdef is confirmed", where it is not in the store with that; or that there is none. tool.
+/// "0123456789abcdef is confirmed", with its state in the store; or that no image is confirmed. tool.
 std::string confirmed_text(const SlotsReply& slots);
-/// Its fingerprint, of 16 hexadecimal digits; null where there is none. tool.
+/// Its fingerprint, of 16 hexadecimal digits; null if no image is confirmed. tool.
 nlohmann::ordered_json confirmed_json(const SlotsReply& slots);
 /// The same for people, several lines, each ended. tool.
 std::string live_text(const BoardInfo& info, const BoardTick& tick, const HealthRecord& health,

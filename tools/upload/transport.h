@@ -7,7 +7,7 @@
 
 namespace vernier::upload {
 
-/// Carries one request to a board and its reply back (tables/link_format.h).
+/// Sends one request to a board and returns its reply (tables/link_format.h).
 class Transport {
  public:
   virtual ~Transport() = default;

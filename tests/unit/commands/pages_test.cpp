@@ -106,7 +106,7 @@ TEST_F(Pages, ConformityAndPlanRunAsPrinted) {
   script.clear();
   for (const std::string& block : blocks(page("tools/docs/plan.md"), "sh")) script += block;
   EXPECT_EQ(run(script), 0) << said_;
-  EXPECT_NE(said_.find("what is left comes from"), std::string::npos) << said_;
+  EXPECT_NE(said_.find("the remaining uncertainty comes from"), std::string::npos) << said_;
 }
 
 /// A stranger's way: from a German spreadsheet to ISO 230-2 values, a named cause and a table for the
@@ -116,7 +116,7 @@ TEST_F(Pages, FirstHourRunsAsPrinted) {
   for (const std::string& block : blocks(page("tools/docs/first_hour.md"), "sh")) script += block;
   ASSERT_EQ(run(script), 0) << said_;
   for (const char* figure :
-       {"Windows-1252, columns parted by semicolon, decimal comma", "92.120 um", "tolerance 50: not met",
+       {"Windows-1252, columns separated by semicolon, decimal comma", "92.120 um", "tolerance 50: not met",
         "25.750 um", "31.245 um", "12.194 um", "verdict: missing-effect",
         "X carriage: backlash -23.7 +- 0.4 um", "fit rows 6.701 um", "check rows 8.848 um",
         "check rows 1.355 um", "verdict: consistent", "safe to run: every rule of the sheet holds"})

@@ -53,7 +53,7 @@ std::string along_x(const std::string& reading, const std::string& unit = "mm", 
 
 const Case kCases[] = {
     {"Semicolons", "X[mm];x[mm]\n1;2\n",
-     "error: \"X[mm];x[mm]\": columns parted by semicolon, not by comma -- a spreadsheet"},
+     "error: \"X[mm];x[mm]\": columns separated by semicolon, not by comma -- a spreadsheet"},
     {"DecimalCommaBehindSemicolons", "X[mm];x[mm]\n1;2,5\n", "s.csv:2: error: \"2,5\": a decimal comma"},
     {"QuotedDecimalComma", kHead + "0,0,-300,1,0,1,20,\"0,5\",0,-300,a,fit\n" + kRow2,
      "s.csv:2: error: \"0,5\": not a number, in column x -- decimal comma?"},

@@ -51,7 +51,8 @@ void trust_board(registry::FleetMachine& machine) {
   machine.board_key = key ? upload::board_key_text(*key) : "";
 }
 
-/// What the user says of the board; another name than before is another board, whose key is not known yet.
+/// The description of the board by the user. A name that differs from the previous one is another board,
+/// whose key is not known yet.
 void enter_board(const AddArguments& arguments, registry::FleetMachine& machine) {
   if (arguments.trust && (arguments.board || arguments.board_key))
     throw text::InputError(
@@ -94,7 +95,7 @@ void run_add(const AddArguments& arguments) {
   if (arguments.trust)
     fmt::print(stderr, "{}: board {} with {} is entered, on the word of the board that answers at {}\n",
                machine.name, machine.board,
-               machine.board_key.empty() ? "no key of its own" : "key " + machine.board_key, machine.url);
+               machine.board_key.empty() ? "no board key" : "key " + machine.board_key, machine.url);
 }
 
 struct ListArguments {
@@ -164,7 +165,7 @@ Json live_json(const registry::LiveState& one, const registry::LiveAge& age) {
   return json;
 }
 
-/// One line for people. Mode and fault of a state that is not of now are told as the last that was heard.
+/// One line for people. If the state is not current, mode and fault are reported as the last received ones.
 std::string live_line(const registry::LiveState& one, const registry::LiveAge& age) {
   using State = registry::LiveAge::State;
   const char* const word = age.state == State::kOnline  ? "online"
@@ -243,7 +244,8 @@ void run_check(const CheckArguments& arguments) {
   std::vector<registry::FleetReading> readings;
   if (!arguments.history.empty()) {
     const auto history = check::parse_history(text::read_file(arguments.history), arguments.history);
-    if (history.checks.empty()) throw text::InputError({arguments.history, 0}, "", "no check stands in it");
+    if (history.checks.empty())
+      throw text::InputError({arguments.history, 0}, "", "the file contains no check");
     check.label = history.checks.back().label;
     readings = fleet::readings_of(history.checks.back(), arguments.machine, at_us);
   }

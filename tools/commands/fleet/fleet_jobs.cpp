@@ -135,7 +135,8 @@ void add_jobs(CLI::App& fleet) {
   CLI::App* command =
       fleet.add_subcommand("enqueue", "mass work: a command for each machine, no machine twice");
   command->add_option("BATCH", enqueue->batch, "name of this work, e.g. night-2026-11-23")->required();
-  command->add_option("COMMAND", enqueue->command, "for a shell; {machine} stands for the machine's name")
+  command
+      ->add_option("COMMAND", enqueue->command, "shell command; {machine} is replaced by the machine's name")
       ->required();
   add_registry(*command, enqueue->registry);
   command->add_option("--machine", enqueue->machines, "only these; default: all of the registry");
@@ -147,7 +148,7 @@ void add_jobs(CLI::App& fleet) {
                                  "take jobs of a batch and run them, here and on as many computers as like");
   command->add_option("BATCH", work->options.batch, "as `enqueue` named it")->required();
   add_registry(*command, work->options.registry);
-  command->add_option("-w,--workers", work->workers, "jobs at once")
+  command->add_option("-w,--workers", work->workers, "number of jobs that run in parallel")
       ->check(CLI::Range(1, 256))
       ->capture_default_str();
   command

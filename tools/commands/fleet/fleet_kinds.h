@@ -10,7 +10,7 @@
 
 namespace vernier::commands::fleet_cli {
 
-/// Adds `--registry`, which VERNIER_REGISTRY stands in for. tool.
+/// Adds `--registry`; its default is the variable VERNIER_REGISTRY. tool.
 void add_registry(CLI::App& command, std::string& place);
 /// The registry that was named; a file that is not there yet is made. Throws InputError where none was named,
 /// or it is away. tool.
@@ -22,7 +22,7 @@ registry::Registry open_registry(const std::string& place);
 /// what is no time. tool.
 std::int64_t time_of(const std::string& text, std::int64_t otherwise);
 
-/// Runs something that goes on until SIGINT, SIGTERM or SIGHUP says stop. tool.
+/// Runs a function that continues until SIGINT, SIGTERM or SIGHUP stops it. tool.
 void until_told(const std::function<void(const std::atomic<bool>& stop)>& run);
 /// A line on standard error, whole, from any thread. tool.
 void say_line(const std::string& line);

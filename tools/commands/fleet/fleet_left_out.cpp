@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Stands in for fleet.cpp where its packages were missing when this program was built.
+// Used instead of fleet.cpp if its packages were missing when this program was built.
 #include "tools/commands/command.h"
 #include "tools/text/error.h"
 

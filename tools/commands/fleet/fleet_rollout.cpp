@@ -53,7 +53,7 @@ void refuse_shared_boards(const std::vector<fleet::RolloutMachine>& machines) {
       if (!same_key && machines[i].url != machines[k].url) continue;
       throw text::InputError({}, machines[i].name,
                              std::string(same_key ? "has the board key of " : "has the address of ") +
-                                 machines[k].name + ": each machine has a board of its own");
+                                 machines[k].name + ": each machine needs a different board");
     }
 }
 
@@ -97,12 +97,12 @@ void write_kept(registry::Registry& registry, const RolloutArguments& arguments,
   registry.put(one);
 }
 
-/// What the call vouches for; end null: no board was asked.
+/// The assurance of the call; end null: no board was asked.
 text::Assurance vouch(const RolloutArguments& arguments, const std::vector<fleet::RolloutState>& states,
                       const fleet::RolloutEnd* end) {
   text::Assurance assurance(text::AssuranceKind::kRollout);
   if (end == nullptr) {
-    assurance.not_covered("no board was asked: this is what the registry says of earlier calls");
+    assurance.not_covered("no board was asked: the registry reports earlier calls");
     return assurance;
   }
   const auto total = static_cast<double>(states.size());
@@ -200,7 +200,7 @@ void add_rollout(CLI::App& fleet) {
       "directories that `vernier compile` wrote, {machine} in the name; without it: how far it is");
   command->add_option("--key", arguments->key, "secret key of `vernier keys` (or VERNIER_KEY)");
   command->add_option("--signed-by", arguments->signed_by,
-                      "who answers for the images; stands in the registry");
+                      "person responsible for the images; recorded in the registry");
   command->add_option("--machine", arguments->machines,
                       "these, in this order; default: all that have a board and an image");
   command->add_option("--stages", arguments->stages, "how many machines until the end of each stage")
@@ -225,12 +225,14 @@ void add_rollout(CLI::App& fleet) {
       ->capture_default_str();
   command->add_flag("--go-on", arguments->options.go_on,
                     "a rollout that stands goes on, with the machine where it stopped");
-  command->add_flag("--take-over-trial", arguments->options.take_over_trial,
-                    "give up a trial that somebody else began on a board; without it that board is refused");
+  command->add_flag(
+      "--take-over-trial", arguments->options.take_over_trial,
+      "revert a trial that another caller began on a board; without this option the board is refused");
   command->add_option("--json", arguments->json,
                       "where each machine stands, for programs; - for standard output");
   command->footer(
-      "The judge must answer within the board's own trial time, e.g. measure and `vernier compare --limit`.\n"
+      "The judge command must answer within the trial time of the board, e.g. measure and `vernier compare "
+      "--limit`.\n"
       "Before anything is signed or sent, each board must give its name and prove its key (vernier fleet add "
       "--board, --board-key, --trust).\n"
       "Exit status 0 all kept and in effect (without --images: told), 1 bad input (no board was asked), 2 it "

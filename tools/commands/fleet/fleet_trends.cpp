@@ -110,13 +110,13 @@ void add_trends(CLI::App& fleet) {
       ->capture_default_str();
   command
       ->add_option("--false-alarms", alike->alike.false_alarms,
-                   "chance of telling any drift where there is none")
+                   "probability of reporting any drift if no machine drifts")
       ->check(CLI::Range(1e-9, 0.5))
       ->capture_default_str();
   command->add_option("--json", alike->json, "result for programs; - for standard output");
   command->footer(
       "reading = level of the machine + common curve of time + own rate x time, weighted by the stated\n"
-      "uncertainties; own rates are let in one by one as far as an F test tells them. Readings count as\n"
+      "uncertainties; individual rates are added one by one if an F test is significant. Readings count as\n"
       "independent and normal. Exit status 0 done, whatever the finding; 1 bad input.");
   command->callback([alike] { run_alike(*alike); });
 }

@@ -48,7 +48,8 @@ Json answer_json(const check::CheckAnswer& answer, const check::CheckHistory& hi
   return json;
 }
 
-/// The machine file with what has changed put right. Throws LimitNotMet where it is none of its parameters.
+/// The machine file with the changed parameter corrected. Throws LimitNotMet if the change is not a parameter
+/// of the machine.
 std::string put_right(const CheckArguments& arguments, model::Machine machine, const model::Measurement& rows,
                       const check::CheckAnswer& answer) {
   const model::ParameterSet parameters(machine, rows.states.names(rows.states.setup));
@@ -104,15 +105,16 @@ void register_check(CLI::App& vernier) {
       vernier.add_subcommand("check", "Check with a short measurement whether a calibration is still valid");
   command->add_option("MACHINE", arguments->machine, "machine file (XML) as `fit` wrote it")->required();
   command->add_option("MEAS", arguments->measurements, "measurement files (CSV) of this check")->required();
-  command->add_option("--history", arguments->history,
-                      "file of all checks so far; this one is added (made where there is none)");
+  command->add_option(
+      "--history", arguments->history,
+      "file of all checks so far; this check is added (the file is created if it does not exist)");
   command
       ->add_option("--false-alarms", arguments->false_alarms,
-                   "chance of ever telling a change where there is none, over all checks together")
+                   "probability of ever reporting a change if nothing changed, over all checks together")
       ->capture_default_str();
   command->add_option("--label", arguments->label, "name of this check; default: its files");
   command->add_option("-o,--output", arguments->output,
-                      "the machine file with the changed parameter put right, where one has changed");
+                      "the machine file with the changed parameter corrected, if a parameter changed");
   command->add_option("--images", arguments->images, "folder of images, for rows measured with one running");
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->footer(

@@ -120,9 +120,9 @@ void run_positioning(const PositioningArguments& arguments) {
   print_result(human_stream(arguments.json), json);
   for (const auto& one : json["characteristics"])
     if (one.contains("conformity") && one["conformity"].is_null())
-      throw text::LimitNotMet(
-          one["name"].get<std::string>() +
-          " cannot be judged: these readings do not have it (both senses, two runs each)");
+      throw text::LimitNotMet(one["name"].get<std::string>() +
+                              " cannot be judged: these readings do not contain it (needed: both approach "
+                              "directions, two runs each)");
   for (const auto& one : json["characteristics"])
     if (one.contains("conformity") && one["conformity"] == "not met")
       throw text::LimitNotMet("the tolerance of " + one["name"].get<std::string>() + " is not met");
@@ -147,17 +147,18 @@ void register_evaluate(CLI::App& vernier) {
   kind->add_option("--uncertainty", arguments->uncertainties,
                    "expanded uncertainty (k = 2) of a characteristic: A=2um; again for each")
       ->allow_extra_args(false);
-  kind->add_option(
-          "--budget", arguments->budget,
-          "a part of the uncertainty, from which that of each characteristic is worked out: device=0.8 "
-          "(um/m, k = 2), misalignment=1 (mm/m), thermometer=1 (range, K), expansion=11.5 and "
-          "expansion-range=2 (um/(m K)), away=3 (K from 20), drift=1.5 (range, um); again for each")
+  kind->add_option("--budget", arguments->budget,
+                   "a part of the uncertainty, from which the uncertainty of each characteristic is "
+                   "computed: device=0.8 "
+                   "(um/m, k = 2), misalignment=1 (mm/m), thermometer=1 (range, K), expansion=11.5 and "
+                   "expansion-range=2 (um/(m K)), away=3 (K from 20), drift=1.5 (range, um); again for each")
       ->allow_extra_args(false);
   add_report_header(*kind, arguments->header);
   kind->add_option("-o,--output", arguments->output, "report (HTML)");
   kind->add_option("--json", arguments->json, "result for programs; - for standard output");
   kind->footer(
-      "Deviation = reading - position. A, R, E, B, M by ISO 230-2:2014, both senses, from dirX or the order "
+      "Deviation = reading - position. A, R, E, B, M by ISO 230-2:2014, both approach directions, from dirX "
+      "or the order "
       "of the rows. Exit status 0 "
       "done, 1 bad input, 2 a tolerance is not met (ISO 14253-1: beyond it by more than the uncertainty).");
   kind->callback([arguments] { run_positioning(*arguments); });

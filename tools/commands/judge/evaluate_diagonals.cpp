@@ -128,7 +128,7 @@ void run_diagonals(const DiagonalArguments& arguments) {
       along.axis = one.name;
       if (one.name.size() == kBody && !body.emplace(one.name, result).second)
         throw text::InputError(path + ": the diagonal " + one.name +
-                               " stands in two files: put them into one");
+                               " is in two files: put the rows into one file");
       Json each = {{"diagonal", one.name}, {"length_mm", one.length}};
       const Json evaluated = evaluate::positioning_json(result, one.positions, along);
       pages.push_back(evaluate::positioning_page(evaluated, along));
@@ -171,7 +171,8 @@ void add_diagonals_kind(CLI::App& evaluate) {
   kind->add_option("--json", arguments->json, "result for programs; - for standard output");
   kind->footer(
       "Each diagonal is evaluated as an axis by ISO 230-2, by the way along it from row to row; what the "
-      "machine is worth is the largest of its body diagonals (E_d, B_d …). Exit status 0 done, 1 bad input, "
+      "volumetric accuracy of the machine is the largest of its body diagonals (E_d, B_d …). Exit status 0 "
+      "done, 1 bad input, "
       "2 a "
       "tolerance is not met (ISO 14253-1).");
   kind->callback([arguments] { run_diagonals(*arguments); });

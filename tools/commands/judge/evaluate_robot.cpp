@@ -31,7 +31,7 @@ struct RobotArguments {
   bool path = false, distance = false, drift = false, align = false;
 };
 
-/// Where the robot was told to be, from the axes and the nominal chain.
+/// The commanded pose of the robot, from the axes and the nominal chain.
 std::vector<evaluate::PoseReading> readings_by_machine(const RobotArguments& arguments) {
   const model::Machine machine = model::read_machine(arguments.machine);
   const model::Measurement m = model::read_measurement(arguments.measurements, machine);
@@ -88,7 +88,7 @@ Json shortcomings(const std::vector<evaluate::PoseReading>& readings, const Robo
   if (2 * u > page.least_spread_mm / 4)
     notes.push_back(
         fmt::format("U of the instrument is {:.3g} um, more than a quarter of the {:.3g} um of "
-                    "repeatability: it judges itself",
+                    "repeatability: it contains its own rules",
                     2 * u * maths::kUmPerMm, page.least_spread_mm * maths::kUmPerMm));
   return notes;
 }

@@ -133,9 +133,9 @@ void print_summary(std::FILE* out, const nlohmann::ordered_json& result) {
                p["unit"].get<std::string>());
 }
 
-/// A profile tolerance is a zone about the true surface, half of it on either side (ISO 1101); it is met, not
-/// met or not decided by ISO 14253-1 with what the measuring machine is worth. Of measured points, else of
-/// the predicted ones.
+/// A profile tolerance is a zone about the true surface, half of it on either side (ISO 1101). The result is
+/// met, not met or not decided by ISO 14253-1, with the uncertainty of the measuring machine. Evaluates the
+/// measured points, else the predicted points.
 nlohmann::ordered_json judged(const Arguments& arguments, const part::PartJob& job,
                               const nlohmann::ordered_json& defect) {
   evaluate::Conformity worst = evaluate::Conformity::kMet;
@@ -308,7 +308,7 @@ void add_s_shape(CLI::App& part) {
   command->add_option("--free", a->free, "only these statics are fitted, e.g. EA0B,EX0B");
   command->add_flag("--aligned", a->aligned, "the measured part was best-fitted: fit a rigid motion too")
       ->needs(identify_option);
-  command->add_flag("--tool-radius", a->tool_radius, "fit what the tool's radius is off by, too")
+  command->add_flag("--tool-radius", a->tool_radius, "fit also the error of the tool radius")
       ->needs(identify_option);
   command
       ->add_option(

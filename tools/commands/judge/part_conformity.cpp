@@ -132,7 +132,7 @@ std::string words_of(const tolerance::Expectation& e) {
   return text;
 }
 
-/// What would help: to correct where a source is told, to measure where nobody did.
+/// Advice: correct a source that is reported, measure where no reading is.
 std::string why(const tolerance::CharacteristicResult& one) {
   if (one.dominant.empty()) return "";
   if (one.dominant.size() == 1) return one.dominant[0];
@@ -140,7 +140,7 @@ std::string why(const tolerance::CharacteristicResult& one) {
   std::vector<std::string> names(
       one.dominant.begin(),
       one.dominant.begin() + static_cast<std::ptrdiff_t>(std::min(kMost, one.dominant.size())));
-  return "not told apart: " + text::joined(names, ", ") +
+  return "not distinguished: " + text::joined(names, ", ") +
          (one.dominant.size() > kMost ? fmt::format(" and {} more", one.dominant.size() - kMost) : "");
 }
 
@@ -279,15 +279,14 @@ void run_conformity(const ConformityArguments& arguments) {
 void add_conformity(CLI::App& part) {
   auto a = std::make_shared<ConformityArguments>();
   CLI::App* command = part.add_subcommand(
-      "conformity", "Will a part be in tolerance, how sure is that, and what is to blame?");
+      "conformity", "Will a part be in tolerance, with which probability, and which errors contribute most?");
   command->add_option("MACHINE", a->machine, "machine file (XML), fitted")->required();
   command->add_option("PART", a->part.path, "features with tolerances (CSV), or a part program (RS-274)")
       ->required();
   command->add_option("MEAS", a->measurements,
                       "measurement files (CSV) to fit the machine to first; none: as its file has it");
-  command->add_option(
-      "--place", a->part.place,
-      "where the list's zero stands in workpiece coordinates: \"X,Y,Z\" or \"X,Y,Z,TURN\" (mm, deg)");
+  command->add_option("--place", a->part.place,
+                      "zero of the list in workpiece coordinates: \"X,Y,Z\" or \"X,Y,Z,TURN\" (mm, deg)");
   command->add_option("--zero", a->part.zero,
                       "machine position of the program's zero, tool length included: \"X=120,Y=80,Z=-40\"");
   command->add_option("--at", a->part.at,

@@ -25,11 +25,11 @@ tolerance::PlacedPart placed_part(const PartSource& source, const model::Machine
   const model::States at = kinematics::state_at(machine, source.at);
   if (is_list(source.path, text)) {
     if (!source.zero.empty())
-      throw text::InputError({}, "--zero", "goes with a part program; --place moves a list");
+      throw text::InputError({}, "--zero", "needs a part program; for a list use --place");
     for (const auto& [value, name] :
          {std::pair(source.position_mm, "--position"), std::pair(source.size_mm, "--size"),
           std::pair(source.form_mm, "--form")})
-      if (value > 0) throw text::InputError({}, name, "goes with a part program; a list has columns for it");
+      if (value > 0) throw text::InputError({}, name, "needs a part program; in a list use its columns");
     tolerance::PartDrawing part = tolerance::parse_part(text, source.path);
     if (!source.place.empty()) {
       const std::vector<double> place = kinematics::number_list(source.place, {3, 4}, "--place");
@@ -38,7 +38,7 @@ tolerance::PlacedPart placed_part(const PartSource& source, const model::Machine
     return tolerance::place_part(machine, part, at);
   }
   if (!source.place.empty())
-    throw text::InputError({}, "--place", "goes with a list of features; --zero moves a part program");
+    throw text::InputError({}, "--place", "needs a list of features; for a part program use --zero");
   tolerance::ProgramOptions options;
   const model::States zero = kinematics::state_at(machine, source.zero);
   std::vector<char> known;

@@ -88,7 +88,7 @@ std::vector<vibration::KnownDisplacement> known_displacements(const FeaturesArgu
   return known;
 }
 
-/// Appends the column of every acceleration; the cut-off by name of signal goes to the result.
+/// Appends the column of every acceleration; the result is the cut-off by name of signal.
 void add_displacements(const FeaturesArguments& arguments, const vibration::VibrationRecord& record,
                        const format::CsvFile& rows, const Ends& ends, vibration::FeatureColumns& columns,
                        Json& json) {
@@ -254,7 +254,7 @@ void run_features(const FeaturesArguments& arguments) {
   if (displaced) {
     add_displacements(arguments, record, rows, ends, columns, json);
   } else {
-    displacement_choice_of(arguments);  // refuses what goes with a displacement only
+    displacement_choice_of(arguments);  // refuses options that need a displacement
   }
   json["rows"] = rows.rows.size();
   json["rows_without_window"] = columns.empty_rows;

@@ -125,7 +125,7 @@ std::vector<importer::BallbarFile> repaired_files(const std::vector<importer::Re
   return files;
 }
 
-// Writes the CSV and tells what it holds: the same for both kinds of file.
+// Writes the CSV and reports its contents: the same for both kinds of file.
 void write_import(const std::string& kind, const std::vector<importer::BallbarFile>& files,
                   const importer::BallbarCsvOptions& options, const ImportOutput& output,
                   bool repair = false) {

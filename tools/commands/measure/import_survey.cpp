@@ -29,7 +29,7 @@ struct SurveyArguments {
   ImportOutput output;
 };
 
-/// The map file first, then what the command line says over it.
+/// The map file first, then the command line, which overrides it.
 importer::ColumnMap map_of(const SurveyArguments& arguments, const CLI::App& kind) {
   importer::ColumnMap map;
   if (!arguments.map.empty()) importer::read_column_map(map, text::read_file(arguments.map), arguments.map);

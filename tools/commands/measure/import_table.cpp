@@ -69,7 +69,7 @@ void run_table(const TableArguments& arguments) {
     try {
       return importer::table_of_sheet(sheet, reading.table, reading.columns, reading.wishes);
     } catch (const text::InputError&) {
-      // What was understood is where the mend begins.
+      // The corrections start from the assignment that was recognised.
       if (!arguments.preview) print_columns(stderr, reading);
       throw;
     }
@@ -132,7 +132,8 @@ void add_table_kind(CLI::App& import) {
   kind->add_option("--skip", arguments->words.skip, "lines at the top to leave out");
   kind->add_option("--comment", arguments->words.comment,
                    "lines that begin so are left out; none for none; default: #");
-  kind->add_option("--profile", arguments->profile, "read it as this profile says")->type_name("FILE");
+  kind->add_option("--profile", arguments->profile, "read the file with the assignments of this profile")
+      ->type_name("FILE");
   kind->add_option("--save-profile", arguments->save_profile, "write how it was read, for the next one")
       ->type_name("FILE");
   kind->add_option("--check-every", arguments->check_every, "every Nth row gets the role check")

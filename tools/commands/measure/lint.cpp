@@ -60,7 +60,7 @@ void register_lint(CLI::App& vernier) {
       ->required();
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->footer(
-      "error: the file cannot be used; warning: it can, and says perhaps something else than was\n"
+      "error: the file cannot be used; warning: it can be used, but its meaning may differ from what was\n"
       "meant; remark: good to know. With a machine file among them the measurements are looked\n"
       "at with its eyes. Exit status 0 where no file has an error, 1 else.");
   command->callback([arguments] { run_lint(*arguments); });

@@ -53,7 +53,7 @@ create::MachinePlan plan_of_urdf(const NewArguments& arguments, const CLI::App& 
   if (arguments.type != "robot") throw text::InputError("--urdf: only a robot has one");
   for (const char* option : {"--dh", "--joint", "--axis"})
     if (command.count(option) > 0)
-      throw text::InputError(std::string(option) + ": the arm stands in the URDF");
+      throw text::InputError(std::string(option) + ": not allowed, because the URDF describes the arm");
   const create::UrdfArm arm =
       create::parse_urdf(text::read_file(arguments.urdf), arguments.urdf, arguments.tip);
   create::MachinePlan plan = create::plan_robot(arm.axes, arm.rows);
@@ -94,7 +94,7 @@ create::MachinePlan plan_of_words(const NewArguments& arguments, const CLI::App&
         axis.centre = point_of(words.substr(colon + 1), ':', "--centre");
         found = true;
       }
-    if (!found) throw text::InputError("--centre " + words + ": NAME:X:Y:Z of a turning axis");
+    if (!found) throw text::InputError("--centre " + words + ": NAME:X:Y:Z of a rotary axis");
   }
   return plan;
 }
@@ -163,7 +163,7 @@ void register_new(CLI::App& vernier) {
       ->required();
   command
       ->add_option("--axis", arguments->axes,
-                   "NAME:MIN:MAX in mm or deg; again for each. Behind it, where the name does not tell: X Y "
+                   "NAME:MIN:MAX in mm or deg; again for each. After it, if the name does not define it: X Y "
                    "Z (along) or "
                    "A B C (about); wrap (turns without end)")
       ->allow_extra_args(false);
@@ -187,7 +187,7 @@ void register_new(CLI::App& vernier) {
   command->add_option("--work-side", arguments->work_side, "axes from the bed to the workpiece: A,C");
   command
       ->add_option("--centre", arguments->centres,
-                   "NAME:X:Y:Z: where the line of a turning axis is, mm; again for each")
+                   "NAME:X:Y:Z: a point on the line of a rotary axis, mm; repeat for each axis")
       ->allow_extra_args(false);
   command->add_option("--dh", arguments->dh,
                       "robot: its rows as CSV, theta[deg],d[mm],a[mm],alpha[deg] (type R or P)");
@@ -201,7 +201,7 @@ void register_new(CLI::App& vernier) {
                       "the URDF's link that ends the arm (default: the only one); --tool is in its frame");
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->footer(
-      "Which side carries which axis is the type's habit, printed as a line; --tool-side and\n"
+      "The type of the machine sets the side of each axis, printed as a line; --tool-side and\n"
       "--work-side say otherwise. A robot without rows is six joints with the lengths of a\n"
       "UR10e. A delta or hexapod cannot be written: its chain closes loops.");
   command->callback([arguments, command] { run_new(*arguments, *command); });

@@ -60,7 +60,8 @@ void register_ballbar_path(CLI::App& vernier) {
   command->add_option("--acceleration", path.acceleration_mm_s2, "urscript: mm/s^2")->capture_default_str();
   command->add_option("-o,--output", arguments->output, "the program")->required();
   command->footer(
-      "Both senses, each with its way in and out; it stops at the start point for the bar to be mounted.\n"
+      "Both directions, each with its approach and its exit; it stops at the start point for the bar to be "
+      "mounted.\n"
       "Look at the ways before you run it: nothing is known of what stands there.");
   command->callback([arguments] { run(*arguments); });
 }

@@ -76,7 +76,7 @@ void print_circle(std::FILE* out, const nlohmann::ordered_json& circle) {
   }
 }
 
-/// Worth a look where the rows of a run change roles, and few enough to read.
+/// Useful if the rows of a run change roles and are few enough to read.
 void print_stretches(std::FILE* out, const nlohmann::ordered_json& stretches) {
   constexpr std::size_t kMost = 12;
   if (stretches.size() < 2 || stretches.size() > kMost) return;
@@ -140,7 +140,7 @@ void print_groups(std::FILE* out, const nlohmann::ordered_json& groups) {
     const auto& chance = column["differ_p"];
     fmt::print(out, "by {}: {}\n", column["column"].get<std::string>(),
                chance.is_null()
-                   ? "too few readings to tell whether the groups differ"
+                   ? "too few readings to decide if the groups differ"
                    : fmt::format("chance that they differ so much by accident {:.2g}", chance.get<double>()));
     for (const auto& group : column["each"])
       for (const auto& one : group["readings"])
@@ -151,7 +151,7 @@ void print_groups(std::FILE* out, const nlohmann::ordered_json& groups) {
   }
 }
 
-/// Accept, or requalify: the exit status says it too.
+/// Accept or requalify. The exit status gives the same answer.
 void judge(std::FILE* out, const nlohmann::ordered_json& limit) {
   const auto& worst = limit["worst"];
   const std::string words = fmt::format(
@@ -254,7 +254,7 @@ void register_compare(CLI::App& vernier) {
   command->add_option(
       "--limit", arguments->limit,
       "accept or requalify: check rows (else fit rows) must stay within 2u, 25um, 0.025deg; rms=1.5u "
-      "judges the rms; exit status 2 where not");
+      "tests the rms; exit status 2 if not met");
   command->add_flag(
       "--datum", arguments->datum,
       "fit how the instrument stood (free BaseShifts) first, nothing else: offsets and turns of "

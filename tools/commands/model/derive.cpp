@@ -45,17 +45,17 @@ void register_derive(CLI::App& vernier) {
   command->add_option("--json", arguments->json, "result for programs (- is standard output)");
   command
       ->add_option("--length", arguments->sizes.length_mm,
-                   "size of length errors that the file says nothing about, mm")
+                   "scale of length errors that the file does not give, mm")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
   command
       ->add_option("--angle", arguments->sizes.angle_rad,
-                   "size of angle errors that the file says nothing about, rad")
+                   "scale of angle errors that the file does not give, rad")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
   command
       ->add_option("--number", arguments->sizes.number,
-                   "size of other errors that the file says nothing about, in their own unit")
+                   "scale of other errors that the file does not give, in the unit of each")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
   command->callback([arguments] { run_derive(*arguments); });

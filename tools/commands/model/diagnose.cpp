@@ -31,7 +31,7 @@ struct DiagnoseArguments {
 };
 
 void print_ladder(std::FILE* out, const diagnose::Diagnosis& d) {
-  fmt::print(out, "{:<58} {:>12} {:>12}\n", "ladder", "fit rows", "check rows");
+  fmt::print(out, "{:<58} {:>12} {:>12}\n", "stepwise model", "fit rows", "check rows");
   const diagnose::LadderStep* before = nullptr;
   for (const diagnose::LadderStep& step : d.ladder) {
     const bool lengths = step.rms_um.has_value();
@@ -115,14 +115,15 @@ void register_diagnose(CLI::App& vernier) {
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->add_option("--residuals", arguments->residuals, kResidualsHelp);
   command->add_option("--machine-out", arguments->write,
-                      "the machine file with the effects of the ladder, fitted");
+                      "the machine file with the effects of the stepwise model, fitted");
   command->add_option("--effects", arguments->effects, "files with effects of your own; may be repeated");
-  command->add_option("--most", arguments->most, "most effects in the ladder")
+  command->add_option("--most", arguments->most, "largest number of effects in the stepwise model")
       ->check(CLI::Range(1, 10))
       ->capture_default_str();
   command->footer(
       "Fits the model first, then looks for what explains the residual beyond what its free parameters can\n"
-      "absorb. Verdict: missing-effect, ambiguous, unexplained, instrument or consistent. Check rows judge, "
+      "absorb. Verdict: missing-effect, ambiguous, unexplained, instrument or consistent. Check rows test "
+      "the model, "
       "they\n"
       "enter nothing. Exit status 0 whatever the finding, 1 bad input.");
   command->callback([arguments] { run_diagnose(*arguments); });

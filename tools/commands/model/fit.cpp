@@ -38,7 +38,7 @@ struct FitArguments {
 void print_decisions(std::FILE* out, const fit::FitResult& result) {
   const std::vector<fit::Decision> decisions = fit::decisions_of(result);
   if (decisions.empty()) return;
-  fmt::print(out, "decided by convention (nearest to nominal in units of each scale):\n");
+  fmt::print(out, "not determined by the data; set to the value nearest nominal (in units of each scale):\n");
   for (const fit::Decision& decision : decisions) fmt::print(out, "  {}\n", decision.sentence);
 }
 
@@ -93,9 +93,9 @@ void print_result(std::FILE* out, const fit::FitResult& result, const model::Mea
   print_stages(out, result);
   fmt::print(out, "{:<24} {:>15} {:>12}  {:<6} {}\n", "parameter", "value", "std", "unit", "from");
   for (const fit::ParameterEstimate& item : result.estimates)
-    fmt::print(
-        out, "{:<24} {:>15.6g} {:>12.2g}  {:<6} {}\n", item.name, item.value, item.std, item.unit,
-        item.from == fit::Origin::kPrior ? "not measured: only the prior" : fit::origin_name(item.from));
+    fmt::print(out, "{:<24} {:>15.6g} {:>12.2g}  {:<6} {}\n", item.name, item.value, item.std, item.unit,
+               item.from == fit::Origin::kPrior ? "not measured; stays at nominal +- scale"
+                                                : fit::origin_name(item.from));
   print_decisions(out, result);
   print_odd_inputs(out, result.machine);
   for (const auto& [name, std] : result.priors)
@@ -111,7 +111,7 @@ void print_result(std::FILE* out, const fit::FitResult& result, const model::Mea
                results::number_or_dash(result.before.rms_urad, "urad"));
   fmt::print(out, "noise           {}\n", results::number_or_dash(result.noise_um, "um"));
   if (!result.noise.independent())
-    fmt::print(out, "errors that hang together, in every uncertainty below: {}\n",
+    fmt::print(out, "correlated errors, in every uncertainty below: {}\n",
                fit::in_words(result.noise, fit::noise_unit(m)));
   fmt::print(out, "{} observations, {} parameters, rank {}, {} rows excluded, {} iterations{}\n",
              result.before.count, result.parameters.size(), result.observability.rank, m.excluded,
@@ -188,15 +188,17 @@ void register_fit(CLI::App& vernier) {
       ->capture_default_str();
   command
       ->add_option("--loss-scale", arguments->loss_scale,
-                   "where a robust loss bends, in u (in robust spreads of the residual where u is absent)")
+                   "residual at which a robust loss becomes linear, in u (without u: in robust standard "
+                   "deviations of the residual)")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   command->add_option(
       "--stage", arguments->stages,
       "patterns (comma between them) of the parameters freed in a stage before all are; may be repeated");
-  command->add_option("--free", arguments->free,
-                      "patterns of what is free besides what the file says: statics, table.X.rY, BaseShift, "
-                      "scalefactor.X; may be repeated");
+  command->add_option(
+      "--free", arguments->free,
+      "patterns of free parameters in addition to those of the file: statics, table.X.rY, BaseShift, "
+      "scalefactor.X; may be repeated");
   command->add_option("--hold", arguments->hold, "patterns of what is held, after --free; may be repeated");
   command->add_option("--prior", arguments->priors,
                       "NAME=STD: hold parameters near nominal as if measured there; may be repeated");

@@ -33,7 +33,7 @@ struct ImproveArguments {
   ReportHeader header;
 };
 
-/// A rung of the ladder that was taken, and the machine file that stands on it.
+/// A step of the stepwise model that was accepted, and the machine file with it.
 struct Rung {
   std::string label, effect, add, file, text;
   std::optional<double> rms_um, check_rms_um;
@@ -83,7 +83,7 @@ Json replayed(const Rung& rung, const model::Measurement& rows, const model::Mac
   }
 }
 
-/// One walk up the ladder.
+/// One run through all steps.
 class Improver {
  public:
   explicit Improver(const ImproveArguments& arguments)
@@ -236,7 +236,7 @@ void register_improve(CLI::App& vernier) {
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->add_flag("--yes", arguments->yes, "add every effect that is found, without asking");
   command->footer(
-      "Only effects of a verdict missing-effect are added. Each rung leaves its fitted machine file; the "
+      "Only effects of a verdict missing-effect are added. Each step writes its fitted machine file; the "
       "last line\n"
       "of figures is what the measurement would have read with the 1 kHz correction running. Exit status 0 "
       "done\n"

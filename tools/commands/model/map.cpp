@@ -141,7 +141,7 @@ Json page_of(const Json& json) {
   if (measured) {
     sections.push_back(line_section("Diagonals",
                                     "What a laser along the diagonals would read (ISO 230-6), one run "
-                                    "in each sense.",
+                                    "in each approach direction.",
                                     "Body and face diagonals", json["diagonals"]));
     sections.push_back(line_section("Axes", "The same along each axis through the middle of the volume.",
                                     "Single axes", json["lengths"]));

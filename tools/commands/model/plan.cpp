@@ -154,12 +154,13 @@ void run_first_plan(const PlanArguments& arguments) {
 
 void run_plan(const PlanArguments& arguments) {
   if (arguments.check && !(arguments.measurements.empty() && arguments.separate.empty()))
-    throw text::InputError({}, "--check", "goes with the fitted machine alone");
+    throw text::InputError({}, "--check", "needs the fitted machine only");
   if (arguments.check) return run_check_plan(arguments);
   const bool aimed = !arguments.part.path.empty() || !arguments.region.empty() || !arguments.tool.empty();
   if (aimed && !arguments.separate.empty())
-    throw text::InputError({}, "--separate",
-                           "tells two effects apart; --part, --region and --tool say where accuracy matters");
+    throw text::InputError(
+        {}, "--separate",
+        "distinguishes two effects; --part, --region and --tool say where accuracy matters");
   if (arguments.measurements.empty() && !aimed) return run_first_plan(arguments);
   if (arguments.separate.empty()) return run_accuracy_plan(arguments);
   const std::string text = text::read_file(arguments.machine);
@@ -242,7 +243,7 @@ void register_plan(CLI::App& vernier) {
   command->add_option("--part", arguments->part.path,
                       "accuracy for the features of this part (CSV, or a part program)");
   command->add_option("--place", arguments->part.place,
-                      "where the part's zero stands in workpiece coordinates: \"X,Y,Z\" or \"X,Y,Z,TURN\"");
+                      "zero of the part in workpiece coordinates: \"X,Y,Z\" or \"X,Y,Z,TURN\"");
   command->add_option("--zero", arguments->part.zero, "machine position of a part program's zero");
   command->add_option("--at", arguments->part.at,
                       "inputs, and where axes stand that the part does not ask for");
@@ -267,7 +268,7 @@ void register_plan(CLI::App& vernier) {
       "the wrong\n"
       "one and all free parameters were fitted again (T-optimal, the worse of both directions). Points: as\n"
       "many as bring the non-centrality to (z + sqrt(z^2 + 6))^2, z the normal quantile of the confidence.\n"
-      "Exit status 0 done (also where nothing separates them: the sentence says so), 1 bad input or usage\n"
+      "Exit status 0 done (also if no pose separates them: a sentence reports it), 1 bad input or usage\n"
       "(nothing written), 2 the accuracy asked for cannot be reached (nothing written), 70 internal error. "
       "See tools/docs/plan.md.");
   command->callback([arguments] { run_plan(*arguments); });

@@ -96,7 +96,7 @@ std::string why_not(const plan::AccuracyPlan& plan, double asked_um) {
   if (plan.floor_um > asked_um)
     return fmt::format(
         "U95 of {:g} um cannot be reached: no number of such readings goes below {:.3g} um; they do "
-        "not tell {}",
+        "not distinguish {}",
         asked_um, plan.floor_um, named(plan.unseen));
   return fmt::format(
       "U95 of {:g} um is not reached: {} poses lead to {:.3g} um, limited by {}; more --points, or "
@@ -118,7 +118,7 @@ void print_accuracy(std::FILE* out, const plan::AccuracyAim& aim, const plan::Ac
              plan.random_um, plan.floor_um);
   for (const plan::AccuracyOf& one : plan.parts)
     fmt::print(out, "  {:<36} {:>8.3g} -> {:.3g} um\n", one.name, one.now_um, one.after_um);
-  if (!plan.limits.empty()) fmt::print(out, "what is left comes from {}\n", named(plan.limits));
+  if (!plan.limits.empty()) fmt::print(out, "the remaining uncertainty comes from {}\n", named(plan.limits));
 }
 
 }  // namespace
@@ -126,7 +126,7 @@ void print_accuracy(std::FILE* out, const plan::AccuracyAim& aim, const plan::Ac
 void run_accuracy_plan(const PlanArguments& arguments) {
   if (!(arguments.accuracy_um > 0) && arguments.points == 0)
     throw text::InputError({}, "--accuracy",
-                           "the U95 to reach (or --points), or --separate A,B: two effects to tell apart");
+                           "the U95 to reach (or --points), or --separate A,B: two effects to distinguish");
   if (!arguments.part.path.empty() && !arguments.region.empty())
     throw text::InputError({}, "--region", "either a part or a region");
   const model::Machine machine = read_model(arguments.machine);
@@ -162,7 +162,7 @@ void run_accuracy_plan(const PlanArguments& arguments) {
   if (knowledge.new_set_up && plan.states.count > 0)
     fmt::print(
         human_stream(arguments.json),
-        "planned as a set-up of its own: the machine file needs <BaseShift run=\"{}\"/> to fit these rows\n",
+        "planned as a separate set-up: the machine file needs <BaseShift run=\"{}\"/> to fit these rows\n",
         plan::kAccuracyRun);
 }
 

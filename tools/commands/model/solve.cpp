@@ -71,7 +71,7 @@ text::Assurance assurance_of(const model::Machine& machine, const kinematics::In
   return assurance;
 }
 
-/// What a Newton iteration found, and whether the closed form says the same.
+/// Result of a Newton iteration, and whether the closed form agrees.
 nlohmann::ordered_json solution_json(const model::Machine& machine, const kinematics::InverseResult& result,
                                      const model::States& start, const model::Poses& target,
                                      const kinematics::InverseOptions& options) {
@@ -152,7 +152,7 @@ void register_solve(CLI::App& vernier) {
       ->capture_default_str();
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->footer(
-      "Every answer carries its proof: the forward solution of the axes found, against the target. Exit "
+      "Every answer is verified: the forward kinematics of the axes found, compared with the target. Exit "
       "status\n"
       "0 done, 1 bad input, 2 no solution: the pose is singular, out of reach, or beyond an axis range.");
   command->callback([arguments] { run_solve(*arguments); });

@@ -58,7 +58,8 @@ text::Assurance assurance_of(const CorrectArguments& arguments, const offline::C
     assurance.at_most(
         "off-the-path", *path_um, arguments.deviation_um,
         "Largest distance of the blocks from the corrected path, um, between all places looked at.");
-  assurance.not_covered("Errors that depend on what is not logged (time, inputs) count as --at says.");
+  assurance.not_covered(
+      "Errors that depend on what is not logged (time, inputs) are evaluated at the values of --at.");
   return assurance;
 }
 
@@ -78,8 +79,7 @@ void run_correct(const CorrectArguments& arguments) {
     result = offline::corrected_positions(text, arguments.path, at, corrector);
   } else {
     if (arguments.back)
-      throw text::InputError({arguments.path, 0}, "--back",
-                             "goes with a CSV of positions, not with a part program");
+      throw text::InputError({arguments.path, 0}, "--back", "needs a CSV of positions, not a part program");
     offline::PartProgramOptions program;
     program.deviation_mm = 1e-3 * arguments.deviation_um;
     program.arcs = !arguments.chords;

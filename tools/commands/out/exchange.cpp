@@ -51,8 +51,8 @@ struct AxisLines {
   double worst_um = 0;
 };
 
-/// What an export vouches for: the machine may run so, all of its errors are in the files, and between their
-/// lines no more is lost than was allowed.
+/// Assurance of an export: the machine may run with the correction, all of its errors are in the files, and
+/// the error between the lines is within the tolerance.
 text::Assurance assurance_of(const model::Machine& machine, const ExchangeArguments& arguments,
                              const std::vector<exchange::LeftOut>& left_out,
                              const std::vector<AxisLines>& axes) {
@@ -84,14 +84,14 @@ void finish(const model::Machine& machine, const ExchangeArguments& arguments, c
   write_json(arguments.json, json);
   std::FILE* out = human_stream(arguments.json);
   for (const AxisLines& one : axes)
-    fmt::print(out, "{}: {} lines, off by {:.3g} um at most between them ({} positions looked at)\n",
-               one.axis, one.lines, one.worst_um, one.probed);
+    fmt::print(out, "{}: {} lines, error between them at most {:.3g} um ({} positions evaluated)\n", one.axis,
+               one.lines, one.worst_um, one.probed);
   for (const exchange::LeftOut& one : left_out)
     fmt::print(out, "left out: {}: up to {:.4g} um\n", one.what, one.um);
   for (const Json& file : files) fmt::print(out, "{}\n", file.get<std::string>());
 }
 
-/// The state that stays: middle of the ranges, then what the user says.
+/// The fixed state: the middle of the ranges, overridden by the values of the user.
 model::States state_of(const model::Machine& machine, const ExchangeArguments& arguments) {
   std::string words;
   for (const model::Axis& axis : machine.axes)
@@ -248,7 +248,7 @@ CLI::App* add_export(CLI::App* parent, const char* kind, const char* what, const
   command->add_option("MACHINE", arguments->machine, "machine file (XML)")->required();
   command->add_option("-o,--output", arguments->output, output)->required();
   command->add_flag("--leave-out", arguments->leave_out,
-                    "write what the format can hold, and tell what it cannot");
+                    "write what the format can represent, and list what it cannot");
   command->add_option("--at", arguments->at,
                       "what the other axes and inputs stand at: \"Y=0,T=25\"; default: middle of the ranges");
   command->add_option(

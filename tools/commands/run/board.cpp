@@ -45,8 +45,9 @@ void set_weight(const Arguments& arguments, upload::Client& client) {
 void identify(const Arguments& arguments, upload::Client& client) {
   const auto key = client.proved_key();
   const std::string& name = client.info().board;
-  fmt::print(human_stream(arguments.json), "board {}, {}\n", name.empty() ? "without a name" : name,
-             key ? "key " + upload::board_key_text(*key) : "no key of its own: it cannot prove who it is");
+  fmt::print(
+      human_stream(arguments.json), "board {}, {}\n", name.empty() ? "without a name" : name,
+      key ? "key " + upload::board_key_text(*key) : "no board key: the board cannot prove its identity");
   nlohmann::ordered_json json = {{"board", name}, {"board_key", nullptr}};
   if (key) json["board_key"] = upload::board_key_text(*key);
   write_json(arguments.json, json);

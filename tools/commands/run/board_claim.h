@@ -13,7 +13,7 @@ struct ClaimWords {
   std::string board, board_key;
 };
 
-/// Adds `--board` and `--board-key` to a command that tells a board something. tool.
+/// Adds `--board` and `--board-key` to a command that changes a board. tool.
 void add_board_claim(CLI::App& command, ClaimWords& words);
 /// What the words ask of the board. Throws InputError where the key is none. tool.
 upload::BoardClaim claim_of(const ClaimWords& words);

@@ -144,8 +144,8 @@ void print_for_people(std::FILE* out, const compile::CompiledMachine& c, const m
   for (const std::string& note : c.notes) fmt::print(out, "note: {}\n", note);
 }
 
-/// The proved error of each axis against the largest deviation over the working volume; below a micrometre
-/// nobody asks. A bound of intervals alone would be measured by itself.
+/// The proved error of each axis divided by the largest deviation over the working volume; not evaluated
+/// below a micrometre. A bound from intervals alone would be compared with itself.
 void judge_bound(safety::SafetySheet& sheet, const compile::CompiledMachine& compiled,
                  const model::Machine& machine, const std::vector<safety::SafetyRule>& accepted) {
   constexpr double kLeast_um = 1;
@@ -211,9 +211,9 @@ void register_compile(CLI::App& vernier) {
       "--accept", arguments->accept,
       "a rule of the sheet \"safe to run?\" to override, recorded in the image; may be repeated");
   command->footer(
-      "The sheet judges the correction over <volume> (else the axes' ranges) and with the <tools> of the "
+      "The sheet tests the correction over <volume> (else the axes' ranges) and with the <tools> of the "
       "file.\n"
-      "Exit status 0 done, 1 bad input, 2 the bound exceeds the budget or the sheet says no: nothing "
+      "Exit status 0 done, 1 bad input, 2 the bound exceeds the budget or the sheet refuses: nothing "
       "written.");
   command->callback([arguments] { run_compile(*arguments); });
 }

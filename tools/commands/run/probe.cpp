@@ -129,7 +129,7 @@ void run_cal(CalArguments& arguments) {
     groups = probe::compare_groups(table, arguments.setup, arguments.group, result);
   if (!arguments.output.empty()) {
     if (!result.delay_found)
-      throw text::LimitNotMet("no delay was found, so there is nothing to write: " + result.findings.front());
+      throw text::LimitNotMet("no delay was found and no file is written: " + result.findings.front());
     text::write_file(arguments.output, board_lines(result));
   }
   Json json = {{"artefact", arguments.artefact},           {"n_touches", table.rows()},
@@ -235,7 +235,7 @@ void register_probe_cal(CLI::App& vernier) {
       "--group", arguments->group,
       "column by which touches are compared, such as the probe's angle: each group by itself");
   command->add_option("--clearance", arguments->clearance,
-                      "approach of the touches, mm: says which of them came before constant speed");
+                      "approach distance of the touches, mm: touches before constant speed are reported");
   command->add_option("--overtravel", arguments->overtravel, "end of the approach beyond the surface, mm");
   add_conditions(*command, arguments->setup.conditions);
   command->add_option("-o", arguments->output, "delay as lines of a board file");

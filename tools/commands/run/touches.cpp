@@ -151,7 +151,8 @@ void register_touches(CLI::App& vernier) {
       arguments->frame = true;
     });
   };
-  frame("--origin-x", arguments->x, "tell the board where the workpiece lies: machine coordinates, mm");
+  frame("--origin-x", arguments->x,
+        "send the position of the workpiece to the board: machine coordinates, mm");
   frame("--origin-y", arguments->y, "the same");
   frame("--origin-z", arguments->z, "the same");
   frame("--angle", arguments->angle, "turn about Z from the machine's X to the workpiece's X, deg");

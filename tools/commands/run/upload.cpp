@@ -54,8 +54,8 @@ nlohmann::ordered_json slots_json(const SlotsReply& slots) {
           {"trial_left_s", slots.trial_left_ms * 1e-3}};
 }
 
-/// The sheet once more: the machine file beside the image may have been changed, or compiled elsewhere. What
-/// was accepted at compilation stands in the image.
+/// Evaluates the sheet again: the machine file beside the image may have been changed, or compiled elsewhere.
+/// The rules accepted at compilation are in the image.
 void require_safe(const std::string& directory) {
   const auto image = compile::load_image_dir(directory);
   repeat_findings(image->machine);
@@ -104,7 +104,7 @@ std::uint64_t send(const Arguments& arguments, upload::Client& client) {
   return header.fingerprint;
 }
 
-/// What was done to the board, by what it says afterwards.
+/// The change that was made to the board, according to its later report.
 struct Done {
   std::optional<std::uint64_t> sent, kept;  // fingerprints
   bool given_up = false;
@@ -162,7 +162,7 @@ void tell(const Arguments& arguments, upload::Client& client, const Done& done) 
   json["assurance"] = assurance.json();
   write_json(arguments.json, json);
   for (const text::AssuranceRule& rule : assurance.because())
-    if (!rule.ok) throw text::LimitNotMet("the board did not do what it was told: " + rule.text);
+    if (!rule.ok) throw text::LimitNotMet("the board did not execute the request: " + rule.text);
 }
 
 void run(const Arguments& arguments) {
@@ -206,7 +206,7 @@ void register_upload(CLI::App& vernier) {
                    "serial://DEVICE?baud=115200")
       ->required();
   command->add_option("--key", arguments->key, "secret key of `vernier keys` (or VERNIER_KEY)");
-  command->add_flag("--confirm", arguments->confirm, "keep the image on trial; with DIR: at once");
+  command->add_flag("--confirm", arguments->confirm, "confirm the image on trial; with DIR: immediately");
   command->add_flag("--revert", arguments->revert, "give the image on trial up");
   command->add_flag(
       "--force", arguments->force,
@@ -218,8 +218,9 @@ void register_upload(CLI::App& vernier) {
       ->check(CLI::Range(std::int64_t{0}, std::int64_t{UINT32_MAX}));
   command->add_option("--json", arguments->json, "result for programs; - is standard output");
   command->footer(
-      "Exit status: 0 done, 1 bad input or no board, 2 the board refuses (and says why), is another board "
-      "(nothing was sent), or did not do what it was told.");
+      "Exit status: 0 done, 1 bad input or no board, 2 the board refuses (and reports the reason), is "
+      "another board "
+      "(nothing was sent), or did not execute the request.");
   command->callback([arguments] { run(*arguments); });
 }
 
