@@ -83,12 +83,18 @@ class LinePlacer {
     const model::Detail detail = model::detail_along(machine_, axis_, at_);
     const double wanted = (high - low) * std::max(kPerPeriod / detail.period, kPerStation / detail.station);
     const auto count = static_cast<std::size_t>(std::clamp(wanted, kFewest, kMost));
+    const double apart = (high - low) / static_cast<double>(count);
     std::vector<double> positions;
     for (std::size_t i = 0; i < count; ++i) {
       const double place = static_cast<double>(i) * kGolden;
       positions.push_back(low + (high - low) * (static_cast<double>(i) + place - std::floor(place)) /
                                     static_cast<double>(count));
     }
+    for (const model::Detail::Sharp& sharp : detail.sharp)
+      if (sharp.spacing < apart)
+        for (double x = std::max(sharp.from, low); x <= std::min(sharp.to, high); x += sharp.spacing)
+          positions.push_back(x);
+    std::sort(positions.begin(), positions.end());
     return trims_of(positions);
   }
 

@@ -12,7 +12,7 @@ namespace vernier::model {
 namespace {
 
 constexpr double kTurn = 360;   // deg: arguments of sin, cos and tan are degrees
-constexpr double kReach = 100;  // mm or deg, of an axis without min and max
+constexpr double kReach = 100;  // mm or deg: of an axis without min and max
 
 /// Pairs of states a small step apart, all over the axis.
 struct Slopes {
@@ -46,19 +46,92 @@ struct Slopes {
 
 bool is_wave(const Expr& node) { return node.op == Op::kSin || node.op == Op::kCos || node.op == Op::kTan; }
 
+/// Where an expression of an axis is not straight: on a grid so fine that nothing real is between its points.
+class SharpStretches {
+ public:
+  SharpStretches(const Machine& machine, std::size_t axis, const States& at)
+      : machine_(machine), axis_(axis), at_(at) {
+    low_ = machine.axes[axis].min.value_or(-kReach);
+    step_ = (machine.axes[axis].max.value_or(kReach) - low_) / static_cast<double>(kGaps * kSteps);
+  }
+
+  /// Adds the stretches of one expression.
+  void look_at(const Expr& expr, std::vector<Detail::Sharp>& found) const {
+    if (!may_be_sharp(expr) || !(step_ > 0)) return;
+    constexpr std::size_t kAtATime = 16;  // gaps: 16384 states, a few megabytes
+    for (std::size_t first = 0; first < kGaps; first += kAtATime) {
+      const Column values = evaluate(machine_, expr, grid(first * kSteps, kAtATime * kSteps + 1));
+      for (std::size_t gap = 0; gap < kAtATime; ++gap) {
+        const std::size_t stride =
+            straight_stride(values.segment(static_cast<Eigen::Index>(gap * kSteps), kSteps + 1));
+        if (stride == kSteps) continue;
+        const double from = low_ + static_cast<double>((first + gap) * kSteps) * step_;
+        found.push_back({from, from + kSteps * step_, static_cast<double>(stride) * step_});
+      }
+    }
+  }
+
+ private:
+  /// Gaps over the range, and steps of the grid in each: 262144 positions, 1 um of an axis of 262 mm.
+  static constexpr std::size_t kGaps = 256, kSteps = 1024;
+  static constexpr double kStraight = 2e-5;  // mm or deg: a fiftieth of what any machine is corrected to
+
+  /// Does it depend on the axis by more than sums, products and waves? Those have their own figures.
+  bool may_be_sharp(const Expr& expr) const {
+    bool of_axis = false, other = false;
+    walk(expr, [&](const Expr& node) {
+      of_axis = of_axis || (node.op == Op::kSymbol && node.symbol == Symbol{SymbolKind::kAxis, axis_});
+      other = other || (node.op >= Op::kDivide && !is_wave(node));
+    });
+    return of_axis && other && !any_node(expr, [](const Expr& node) { return node.op == Op::kLag; });
+  }
+
+  States grid(std::size_t first, std::size_t count) const {
+    States states = select_states(at_, std::vector<std::size_t>(count, 0));
+    for (std::size_t i = 0; i < count; ++i)
+      states.axis[axis_][static_cast<Eigen::Index>(i)] = low_ + static_cast<double>(first + i) * step_;
+    states.direction[axis_].setConstant(1);
+    return states;
+  }
+
+  /// The largest part of a gap between whose points the values are straight; 1 where none is.
+  static std::size_t straight_stride(const Column& values) {
+    std::size_t stride = kSteps;
+    while (stride > 1 && !is_straight(values, static_cast<Eigen::Index>(stride))) stride /= 2;
+    return stride;
+  }
+  static bool is_straight(const Column& values, Eigen::Index stride) {
+    for (Eigen::Index a = 0; a + stride < values.size(); a += stride)
+      for (Eigen::Index i = 1; i < stride; ++i) {
+        const double share = static_cast<double>(i) / static_cast<double>(stride);
+        const double line = (1 - share) * values[a] + share * values[a + stride];
+        if (std::abs(values[a + i] - line) > kStraight) return false;
+      }
+    return true;
+  }
+
+  const Machine& machine_;
+  std::size_t axis_;
+  const States& at_;
+  double low_ = 0, step_ = 0;
+};
+
 }  // namespace
 
 Detail detail_along(const Machine& machine, std::size_t axis, const States& at) {
-  Detail detail{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+  Detail detail{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(), {}};
   const Slopes slopes(machine, axis, at);
+  const SharpStretches sharp(machine, axis, at);
   for (const auto* branch : {&machine.tool, &machine.workpiece})
     for (const Transform& transform : *branch)
-      for (std::size_t d = 0; d < transform.dof_count(); ++d)
+      for (std::size_t d = 0; d < transform.dof_count(); ++d) {
+        sharp.look_at(*transform.dof[d], detail.sharp);
         walk(*transform.dof[d], [&](const Expr& node) {
           if (!is_wave(node)) return;
           if (const double slope = slopes.steepest(machine, *node.args[0]); slope > 0)
             detail.period = std::min(detail.period, kTurn / slope);
         });
+      }
   if (const Table* table = machine.table_of(axis))
     for (std::size_t i = 1; i < table->stations.size(); ++i)
       detail.station = std::min(detail.station, table->stations[i].loc - table->stations[i - 1].loc);

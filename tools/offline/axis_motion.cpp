@@ -87,7 +87,7 @@ int AxisMotion::looks(const ProgramMove& move, double from, double to, double de
   double length = 0, turn = 0, bend = 0, detail = 0;
   VectorXd reached =
       VectorXd::Zero(static_cast<Index>(machine_.axes.size()));  // by each axis, along the move
-  VectorXd last = move.at(from), way;
+  VectorXd last = move.at(from), low = last, high = last, way;
   for (int k = 1; k <= kChords; ++k) {
     const VectorXd next = move.at(from + (to - from) * k / kChords), step = next - last;
     double squares = 0;
@@ -103,10 +103,20 @@ int AxisMotion::looks(const ProgramMove& move, double from, double to, double de
     if (k > 1) bend = std::max(bend, (step - way).norm());
     way = step;
     last = next;
+    low = low.cwiseMin(next);
+    high = high.cwiseMax(next);
   }
   for (std::size_t i = 0; i < machine_.axes.size(); ++i)
     detail = std::max(detail, reached[static_cast<Index>(i)] *
                                   std::max(kPerPeriod / detail_[i].period, kPerStation / detail_[i].station));
+  // Of an arc the positions of its chords are its range, to one chord.
+  for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
+    const auto axis = static_cast<Index>(i);
+    for (const model::Detail::Sharp& sharp : detail_[i].sharp)
+      if (sharp.from <= high[axis] + reached[axis] / kChords &&
+          sharp.to >= low[axis] - reached[axis] / kChords)
+        detail = std::max(detail, reached[axis] / sharp.spacing);
+  }
   // A chord of n parts of this one is off by its eighth over n^2.
   const double chords = move.arc ? kChords * std::sqrt(bend / deviation_mm) : 0;
   return static_cast<int>(std::clamp(std::max({length / kStep_mm, turn / kStep_deg, chords, detail}),

@@ -160,6 +160,35 @@ TEST(ScrewComp, WaveWhosePeriodDividesEveryQuarterIsSeen) {
   EXPECT_GE(table.probed, 4096u);
 }
 
+TEST(ScrewComp, ABumpNarrowerThanTheLooksAndAStepAreSeen) {
+  // GIVEN bumps of 0.1 mm and of 0.02 mm width, and a step, in an axis of 400 mm
+  for (const char* term : {"+k*exp(0-((X-51.283)/0.0822)^2)", "+k*exp(0-((X-171.719)/0.02)^2)"}) {
+    Machine bump = parse_machine(machine_text(term), "m.xml");
+    bump.statics[1].value = 0.0135;
+    // THEN the file has lines on the bump, and holds it as far as it says
+    const ScrewTable table = screw_table(bump, 0, at(), 0.5);
+    double highest = -1;
+    States there = at();
+    for (int n = -400; n <= 400; ++n) {
+      there.axis[0][0] = (term[13] == '5' ? 51.283 : 171.719) + 0.0005 * n;
+      there.direction[0][0] = 1;
+      std::size_t i = 0;
+      while (i + 2 < table.points.size() && table.points[i + 1].nominal < there.axis[0][0]) ++i;
+      const ScrewPoint &a = table.points[i], &b = table.points[i + 1];
+      const double f = (there.axis[0][0] - a.nominal) / (b.nominal - a.nominal);
+      const double line = (1 - f) * a.forward_trim + f * b.forward_trim;
+      highest = std::max(highest, 1000 * std::abs(first_order_offset(bump, there)[0][0] - line));
+    }
+    EXPECT_LE(highest, 0.5 + 0.05) << term;  // 0.05: between looks
+  }
+  Machine step = parse_machine(machine_text("+k*(X>51.283)"), "m.xml");
+  step.statics[1].value = 0.01;
+  const ScrewTable table = screw_table(step, 0, at(), 0.5);
+  double nearest = 400;
+  for (const ScrewPoint& point : table.points) nearest = std::min(nearest, std::abs(point.nominal - 51.283));
+  EXPECT_LT(nearest, 0.01);  // the line that the controller draws is off beside the step by less than that
+}
+
 TEST(ScrewComp, WhatItCannotExpressIsNamed) {
   const auto reasons = [](const std::string& term) {
     Machine m = parse_machine(machine_text(term), "m.xml");

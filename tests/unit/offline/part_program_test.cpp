@@ -117,6 +117,27 @@ TEST(PartPrograms, AWaveShorterThanTheStepOfTheLooksIsCorrected) {
   EXPECT_GE(program.worst_mm, 0.2 * worst);
 }
 
+TEST(PartPrograms, ABumpNarrowerThanTheStepOfTheLooksIsCorrected) {
+  const Machine machine = parse_machine(
+      R"XML(<machine name="bump"><variables><static><k value="0.0135" nominal="0" unit="mm"/></static>
+      <machineaxes><X min="0" max="250"/><Y min="0" max="250"/></machineaxes></variables>
+      <transforms branch="tool"><sixdof n="1" X="X" Y="Y+k*exp(0-((X-51.283)/0.0822)^2)"/></transforms></machine>)XML",
+      "bump.xml");
+  Corrector corrector(machine);
+  PartProgramOptions options;
+  options.deviation_mm = kDeviation_mm;
+  options.zero = {0, 0};
+  const PartProgram program = corrected_program("G21 G90\nG0 X0 Y10\nG1 X120 Y10 F600\n", "bump.ngc",
+                                                at_rest(machine), {0, 0}, options, corrector);
+  // THEN a block ends near the top of the bump, corrected by it
+  double lowest = 10;
+  std::istringstream lines(program.text);
+  for (std::string line; std::getline(lines, line);)
+    if (const std::size_t y = line.find('Y'); y != std::string::npos && line.find('X') != std::string::npos)
+      lowest = std::min(lowest, std::stod(line.substr(y + 1)));
+  EXPECT_NEAR(lowest, 10 - 0.0135, kDeviation_mm);
+}
+
 TEST(PartPrograms, ArcsOfEveryPlaneStayOnTheirCircle) {
   struct Case {
     const char* block;
